@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace splinecast::core {
+
+/// What holds at the first or the last waypoint of a spline.
+enum class ConditionKind {
+  natural,       ///< acceleration 0
+  rest,          ///< velocity 0
+  halt,          ///< velocity and acceleration 0, by an order-6 end segment
+  velocity,      ///< given velocity ("clamped")
+  acceleration,  ///< given acceleration
+};
+
+/// A condition and, for `velocity` [unit/s] and `acceleration` [unit/s²], one value per dimension.
+struct Condition {
+  ConditionKind kind = ConditionKind::natural;
+  std::vector<double> value{};
+
+  friend bool operator==(const Condition&, const Condition&) = default;
+};
+
+/// The condition at the newest knot while a stream goes on.
+enum class Tail {
+  bessel,     ///< slope of the parabola through the last three waypoints
+  parabolic,  ///< the last segment has no cubic term
+  natural,    ///< acceleration 0
+  rest,       ///< velocity 0
+};
+
+/// How a condition is written on a command line: `natural`, `rest`, `halt`, `velocity=1,2,3`,
+/// `acceleration=1,2,3`.
+[[nodiscard]] std::string to_string(const Condition& condition);
+[[nodiscard]] std::string_view to_string(Tail tail) noexcept;
+
+/// Reads what to_string writes. Returns nothing for any other text; a name without its values, a
+/// value that is not a finite number and values behind a name that takes none are other texts.
+[[nodiscard]] std::optional<Condition> parse_condition(std::string_view text);
+[[nodiscard]] std::optional<Tail> parse_tail(std::string_view text) noexcept;
+
+/// Throws std::invalid_argument, naming the counts, unless the condition carries one finite value
+/// per dimension where its kind takes values, and none where it takes none.
+void require_values(const Condition& condition, std::size_t dimensions);
+
+}  // namespace splinecast::core

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "splinecast/core/state.hpp"
+#include "splinecast/core/time.hpp"
+
+/// Segments: polynomials local to their left knot, u = t − left in seconds.
+///
+/// Coefficients are laid out [power][dimension], lowest power first, so that loops run over
+/// contiguous dimensions. Source: doc 003 eq 4-3, 4-4 (with the exponent it omits).
+namespace splinecast::core {
+
+/// Coefficients per dimension: 4 for a cubic; 6 at splices, halts and stop tails.
+inline constexpr int kCubicOrder = 4;
+inline constexpr int kMaxOrder = 6;
+
+/// What a segment is for; readers derive a sample's status from it.
+enum class SegmentKind : std::uint8_t {
+  spline = 0,     ///< between two waypoints
+  splice = 1,     ///< order-6 entry from a given state
+  stop_tail = 2,  ///< behind the newest knot, ends at rest
+  hold = 3,       ///< of no length: the one waypoint of a finished stream
+};
+
+/// One polynomial piece of a curve with D dimensions.
+struct Segment {
+  /// Allocates 7·D doubles; nothing allocates afterwards.
+  explicit Segment(std::size_t dimensions)
+      : coefficients(static_cast<std::size_t>(kMaxOrder) * dimensions),
+        acceleration_step(dimensions) {}
+
+  Time left{};
+  Time right{};
+  int order = kCubicOrder;
+  SegmentKind kind = SegmentKind::spline;
+  std::vector<double> coefficients;       ///< [power][dimension]; powers ≥ order are 0
+  std::vector<double> acceleration_step;  ///< a⁺ − a⁻ at the left knot, per dimension
+};
+
+/// Evaluates position, velocity, acceleration and jerk at u seconds after the left knot.
+///
+/// `coefficients` holds order·D values, order being 4 or 6; D is the size of each span of `out`.
+/// By Horner's rule, in the same operations everywhere: the bits depend on nothing but the
+/// arguments. O(order·D). Never throws or allocates; safe from any thread.
+void evaluate(int order, std::span<const double> coefficients, double u, StateRef out) noexcept;
+
+/// An interval between two knots together with what the solve found at them. Spans hold one value
+/// per dimension. A view: it owns nothing.
+struct Interval {
+  Time left{};
+  Time right{};
+  double h = 0;                    ///< length in seconds
+  std::span<const double> x0;      ///< position at the left knot
+  std::span<const double> chord;   ///< chord slope m = (x1 − x0)/h
+  std::span<const double> v0, v1;  ///< knot velocities
+  bool halts_left = false;         ///< acceleration 0 at the left knot instead of the cubic's
+  bool halts_right = false;        ///< likewise at the right knot
+};
+
+/// Writes the segment of an interval: the cubic of its knot velocities (doc 003 eq 4-7; doc 000
+/// eq 5.27, 5.28), or, where an end halts, the quintic with that end's acceleration 0 and at the
+/// other end the state of the cubic it replaces. Sets everything but `acceleration_step`.
+void build_segment(const Interval& interval, Segment& out) noexcept;
+
+/// One-sided accelerations of an interval's segment at its knots, for dimension d.
+[[nodiscard]] double left_acceleration(const Interval& interval, std::size_t d) noexcept;
+[[nodiscard]] double right_acceleration(const Interval& interval, std::size_t d) noexcept;
+
+/// Writes the stop tail behind a knot at time `from` with the given position, velocity and
+/// acceleration: it comes to rest after `stop_time` (> 0), its velocity being the cubic Hermite
+/// from (v, a) to (0, 0). Sets everything but `acceleration_step`.
+void build_stop_tail(Time from, Time stop_time, std::span<const double> position,
+                     std::span<const double> velocity, std::span<const double> acceleration,
+                     Segment& out) noexcept;
+
+/// Writes the segment of no length that holds `position` at time `at`.
+void build_hold(Time at, std::span<const double> position, Segment& out) noexcept;
+
+}  // namespace splinecast::core

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "splinecast/core/condition.hpp"
+#include "splinecast/core/knot_ring.hpp"
+#include "splinecast/core/segment.hpp"
+
+namespace splinecast::core {
+
+/// Largest settle lag. The effect of a new waypoint has faded below 2⁻⁵² after 52 knots on the
+/// worst mesh, so that a longer lag would change no bit.
+inline constexpr std::size_t kMaxSettle = 64;
+
+/// What shapes a curve that is solved online.
+struct WindowOptions {
+  std::size_t settle = 8;           ///< settle lag K: 0 … kMaxSettle newer knots
+  Tail tail = Tail::bessel;         ///< condition at the newest knot while the stream goes on
+  Condition start{};                ///< condition at knot 0
+  Time stop_time{250'000'000};      ///< length of the stop tail, > 0
+  bool held_before_start = false;   ///< a hold stands before knot 0, as on a live stream
+};
+
+/// The online C² cubic spline: the knots that an append still changes, and the segments at them.
+///
+/// Invariants, for newest knot n and settle lag K:
+/// - knot i is *converged* once i + K ≤ n; no append touches it again. Its velocity is that of a
+///   full solve over waypoints 0 … i+K with the tail at the last;
+/// - a converged velocity is no boundary condition: the elimination prefix goes on unchanged, so
+///   that truncations never accumulate;
+/// - segment i lies between knots i and i+1; segment n is the stop tail, until `finish`.
+///
+/// Allocates when made only. Not thread-safe: one thread uses it.
+class SlidingWindow {
+ public:
+  /// Throws std::invalid_argument for dimensions, a lag, a stop time or start values out of range.
+  SlidingWindow(std::size_t dimensions, WindowOptions options);
+
+  [[nodiscard]] std::size_t dimensions() const noexcept { return knots_.dimensions(); }
+  [[nodiscard]] const WindowOptions& options() const noexcept { return options_; }
+
+  /// Number of knots so far.
+  [[nodiscard]] std::size_t knots() const noexcept { return knots_.size(); }
+
+  /// Number of segments so far, the stop tail included; segments are numbered from 0.
+  [[nodiscard]] std::size_t segments() const noexcept;
+
+  /// Number of leading segments that nothing changes any more.
+  [[nodiscard]] std::size_t settled_segments() const noexcept;
+
+  /// The oldest segment that can still be asked for.
+  [[nodiscard]] std::size_t oldest_segment() const noexcept;
+
+  [[nodiscard]] bool finished() const noexcept { return finished_; }
+
+  /// Appends a waypoint: one forward row and K backward rows for all dimensions at once,
+  /// O(K·D) whatever the length of the stream. `time` must be later than the newest knot's and
+  /// the position finite: the caller has checked. Changes the segments from
+  /// `settled_segments()` as it was before the call (with K = 0: from the one it adds).
+  void append(Time time, std::span<const double> position) noexcept;
+
+  /// Ends the stream at its newest knot, with a condition there that may change what has not
+  /// converged. No append may follow. The condition's values must have been checked.
+  void finish(const Condition& end) noexcept;
+
+  /// Writes segment i, oldest_segment() ≤ i < segments(), with its acceleration step: O(D).
+  /// `out` must have this window's dimensions.
+  void segment(std::size_t i, Segment& out) const noexcept;
+
+  /// What is kept of knot i, oldest_segment() ≤ i < knots(): what `restore` needs.
+  [[nodiscard]] Knot knot(std::size_t i) const noexcept { return knots_.knot(i); }
+
+  /// How many newer knots knot i had seen when its velocity was last solved.
+  [[nodiscard]] std::size_t newer_knots_seen(std::size_t i) const noexcept;
+
+  /// How many of its newest knots a window needs in order to go on where another one stood.
+  [[nodiscard]] std::size_t knots_to_restore() const noexcept { return reach() + 3; }
+
+  /// Goes on where a window with the same options stood that died: `first` is the number of the
+  /// oldest knot given; `knots` are its consecutive knots up to the newest, at least
+  /// min(first + knots.size(), knots_to_restore()) of them. The stream must not be finished.
+  void restore(std::size_t first, std::span<const Knot> knots) noexcept;
+
+ private:
+  /// How many knots before the newest one an append or the finish may change. With K = 0 an append
+  /// leaves the newest knot's velocity alone, but `finish` may change it.
+  [[nodiscard]] std::size_t reach() const noexcept {
+    return options_.settle > 0 ? options_.settle : 1;
+  }
+  void write_stop_tail(Segment& out) const noexcept;
+
+  WindowOptions options_;
+  KnotRing knots_;
+  bool finished_ = false;
+};
+
+}  // namespace splinecast::core

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace splinecast::core {
+
+/// Fewest and most dimensions of a stream.
+inline constexpr std::size_t kMinDimensions = 1;
+inline constexpr std::size_t kMaxDimensions = 64;
+
+/// Where a sample is written: position [unit], velocity [unit/s], acceleration [unit/s²] and jerk
+/// [unit/s³], one value per dimension in each span. Does not own its memory.
+struct StateRef {
+  std::span<double> position;
+  std::span<double> velocity;
+  std::span<double> acceleration;
+  std::span<double> jerk;
+};
+
+/// A state with memory of its own. Allocates once, when it is made; may be sampled into for ever.
+class State {
+ public:
+  /// Makes a zero state of `dimensions` values per derivative.
+  explicit State(std::size_t dimensions) : dimensions_(dimensions), values_(4 * dimensions) {}
+
+  [[nodiscard]] std::size_t dimensions() const noexcept { return dimensions_; }
+  [[nodiscard]] std::span<const double> position() const noexcept { return part(0); }
+  [[nodiscard]] std::span<const double> velocity() const noexcept { return part(1); }
+  [[nodiscard]] std::span<const double> acceleration() const noexcept { return part(2); }
+  [[nodiscard]] std::span<const double> jerk() const noexcept { return part(3); }
+
+  /// All 4·D values: positions, velocities, accelerations, jerks.
+  [[nodiscard]] std::span<const double> values() const noexcept { return values_; }
+
+  /// The memory of this state, for an evaluation to write to.
+  [[nodiscard]] StateRef ref() noexcept {
+    const std::span<double> all(values_);
+    return {all.subspan(0, dimensions_), all.subspan(dimensions_, dimensions_),
+            all.subspan(2 * dimensions_, dimensions_), all.subspan(3 * dimensions_, dimensions_)};
+  }
+
+ private:
+  [[nodiscard]] std::span<const double> part(std::size_t derivative) const noexcept {
+    return std::span<const double>(values_).subspan(derivative * dimensions_, dimensions_);
+  }
+
+  std::size_t dimensions_;
+  std::vector<double> values_;
+};
+
+}  // namespace splinecast::core

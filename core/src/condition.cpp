@@ -1,0 +1,106 @@
+#include "splinecast/core/condition.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace splinecast::core {
+namespace {
+
+constexpr std::array<std::pair<ConditionKind, std::string_view>, 5> kConditionNames{{
+    {ConditionKind::natural, "natural"},
+    {ConditionKind::rest, "rest"},
+    {ConditionKind::halt, "halt"},
+    {ConditionKind::velocity, "velocity"},
+    {ConditionKind::acceleration, "acceleration"},
+}};
+
+constexpr std::array<std::pair<Tail, std::string_view>, 4> kTailNames{{
+    {Tail::bessel, "bessel"},
+    {Tail::parabolic, "parabolic"},
+    {Tail::natural, "natural"},
+    {Tail::rest, "rest"},
+}};
+
+bool takes_values(ConditionKind kind) noexcept {
+  return kind == ConditionKind::velocity || kind == ConditionKind::acceleration;
+}
+
+std::optional<std::vector<double>> parse_values(std::string_view text) {
+  std::vector<double> values;
+  for (;;) {
+    const std::size_t comma = text.find(',');
+    const std::string_view field = text.substr(0, comma);
+    double value = 0;
+    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+    if (error != std::errc{} || end != field.data() + field.size() || !std::isfinite(value)) {
+      return std::nullopt;
+    }
+    values.push_back(value);
+    if (comma == std::string_view::npos) return values;
+    text.remove_prefix(comma + 1);
+  }
+}
+
+}  // namespace
+
+std::string to_string(const Condition& condition) {
+  std::string text;
+  for (const auto& [kind, name] : kConditionNames) {
+    if (kind == condition.kind) text = name;
+  }
+  char separator = '=';
+  for (const double value : condition.value) {
+    std::array<char, 32> buffer{};
+    const auto result = std::to_chars(buffer.begin(), buffer.end(), value);
+    text.push_back(std::exchange(separator, ','));
+    text.append(buffer.begin(), result.ptr);
+  }
+  return text;
+}
+
+std::string_view to_string(Tail tail) noexcept {
+  for (const auto& [kind, name] : kTailNames) {
+    if (kind == tail) return name;
+  }
+  return "unknown";
+}
+
+std::optional<Condition> parse_condition(std::string_view text) {
+  const std::size_t equals = text.find('=');
+  const std::string_view wanted = text.substr(0, equals);
+  for (const auto& [kind, name] : kConditionNames) {
+    if (name != wanted) continue;
+    if (takes_values(kind) != (equals != std::string_view::npos)) return std::nullopt;
+    if (!takes_values(kind)) return Condition{.kind = kind};
+    auto values = parse_values(text.substr(equals + 1));
+    if (!values) return std::nullopt;
+    return Condition{.kind = kind, .value = std::move(*values)};
+  }
+  return std::nullopt;
+}
+
+std::optional<Tail> parse_tail(std::string_view text) noexcept {
+  for (const auto& [kind, name] : kTailNames) {
+    if (name == text) return kind;
+  }
+  return std::nullopt;
+}
+
+void require_values(const Condition& condition, std::size_t dimensions) {
+  const std::size_t wanted = takes_values(condition.kind) ? dimensions : 0;
+  if (condition.value.size() != wanted) {
+    throw std::invalid_argument("condition '" + to_string(condition) + "' has " +
+                                std::to_string(condition.value.size()) + " values; " +
+                                std::to_string(wanted) + " are needed");
+  }
+  if (!std::ranges::all_of(condition.value, [](double x) { return std::isfinite(x); })) {
+    throw std::invalid_argument("condition '" + to_string(condition) +
+                                "' has a value that is not finite");
+  }
+}
+
+}  // namespace splinecast::core

@@ -1,0 +1,149 @@
+#include "splinecast/core/segment.hpp"
+
+#include <algorithm>
+
+namespace splinecast::core {
+namespace {
+
+/// Horner's rule for a polynomial and its first three derivatives at once.
+template <int Order>
+void evaluate_order(std::size_t dimensions, const double* __restrict c, double u,
+                    double* __restrict p, double* __restrict v, double* __restrict a,
+                    double* __restrict j) noexcept {
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    double position = 0;
+    double velocity = 0;
+    double acceleration = 0;
+    double jerk = 0;
+    for (int power = Order - 1; power >= 0; --power) {
+      const double coefficient = c[static_cast<std::size_t>(power) * dimensions + d];
+      position = position * u + coefficient;
+      if (power >= 1) velocity = velocity * u + power * coefficient;
+      if (power >= 2) acceleration = acceleration * u + power * (power - 1) * coefficient;
+      if (power >= 3) jerk = jerk * u + power * (power - 1) * (power - 2) * coefficient;
+    }
+    p[d] = position;
+    v[d] = velocity;
+    a[d] = acceleration;
+    j[d] = jerk;
+  }
+}
+
+/// The row of coefficients of one power.
+std::span<double> power_of(Segment& segment, std::size_t power, std::size_t dimensions) noexcept {
+  return std::span<double>(segment.coefficients).subspan(power * dimensions, dimensions);
+}
+
+double cubic_left_acceleration(const Interval& i, std::size_t d) noexcept {
+  return (6 * i.chord[d] - 4 * i.v0[d] - 2 * i.v1[d]) / i.h;
+}
+
+double cubic_right_acceleration(const Interval& i, std::size_t d) noexcept {
+  return (2 * i.v0[d] + 4 * i.v1[d] - 6 * i.chord[d]) / i.h;
+}
+
+void write_cubic(const Interval& i, Segment& out) noexcept {
+  const std::size_t dimensions = i.x0.size();
+  const double per_h = 1 / i.h;
+  const double per_h2 = per_h * per_h;
+  const auto c2 = power_of(out, 2, dimensions);
+  const auto c3 = power_of(out, 3, dimensions);
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    c2[d] = (3 * i.chord[d] - 2 * i.v0[d] - i.v1[d]) * per_h;
+    c3[d] = (i.v0[d] + i.v1[d] - 2 * i.chord[d]) * per_h2;
+  }
+}
+
+/// The quintic with position, velocity and acceleration given at both ends; c0 and c1 stand.
+void write_quintic(const Interval& i, Segment& out) noexcept {
+  const std::size_t dimensions = i.x0.size();
+  const double h = i.h;
+  const double per_2h2 = 1 / (2 * h * h);
+  const double per_2h3 = per_2h2 / h;
+  const double per_2h4 = per_2h3 / h;
+  const auto c2 = power_of(out, 2, dimensions);
+  const auto c3 = power_of(out, 3, dimensions);
+  const auto c4 = power_of(out, 4, dimensions);
+  const auto c5 = power_of(out, 5, dimensions);
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    const double m = i.chord[d];
+    const double v0 = i.v0[d];
+    const double v1 = i.v1[d];
+    const double a0 = left_acceleration(i, d);
+    const double a1 = right_acceleration(i, d);
+    c2[d] = a0 / 2;
+    c3[d] = (20 * m - 12 * v0 - 8 * v1 - (3 * a0 - a1) * h) * per_2h2;
+    c4[d] = (-30 * m + 16 * v0 + 14 * v1 + (3 * a0 - 2 * a1) * h) * per_2h3;
+    c5[d] = (12 * m - 6 * (v0 + v1) - (a0 - a1) * h) * per_2h4;
+  }
+}
+
+}  // namespace
+
+void evaluate(int order, std::span<const double> coefficients, double u, StateRef out) noexcept {
+  const std::size_t dimensions = out.position.size();
+  const auto evaluate_at = order == kCubicOrder ? &evaluate_order<kCubicOrder>
+                                                : &evaluate_order<kMaxOrder>;
+  evaluate_at(dimensions, coefficients.data(), u, out.position.data(), out.velocity.data(),
+              out.acceleration.data(), out.jerk.data());
+}
+
+double left_acceleration(const Interval& interval, std::size_t d) noexcept {
+  return interval.halts_left ? 0 : cubic_left_acceleration(interval, d);
+}
+
+double right_acceleration(const Interval& interval, std::size_t d) noexcept {
+  return interval.halts_right ? 0 : cubic_right_acceleration(interval, d);
+}
+
+void build_segment(const Interval& interval, Segment& out) noexcept {
+  const std::size_t dimensions = interval.x0.size();
+  out.left = interval.left;
+  out.right = interval.right;
+  out.kind = SegmentKind::spline;
+  std::ranges::fill(out.coefficients, 0.0);
+  std::ranges::copy(interval.x0, power_of(out, 0, dimensions).begin());
+  std::ranges::copy(interval.v0, power_of(out, 1, dimensions).begin());
+  if (interval.halts_left || interval.halts_right) {
+    out.order = kMaxOrder;
+    write_quintic(interval, out);
+  } else {
+    out.order = kCubicOrder;
+    write_cubic(interval, out);
+  }
+}
+
+void build_stop_tail(Time from, Time stop_time, std::span<const double> position,
+                     std::span<const double> velocity, std::span<const double> acceleration,
+                     Segment& out) noexcept {
+  const std::size_t dimensions = position.size();
+  const double rest_after = to_seconds(stop_time);
+  out.left = from;
+  out.right = from + stop_time;
+  out.order = kMaxOrder;
+  out.kind = SegmentKind::stop_tail;
+  std::ranges::fill(out.coefficients, 0.0);
+  std::ranges::copy(position, power_of(out, 0, dimensions).begin());
+  std::ranges::copy(velocity, power_of(out, 1, dimensions).begin());
+  const auto c2 = power_of(out, 2, dimensions);
+  const auto c3 = power_of(out, 3, dimensions);
+  const auto c4 = power_of(out, 4, dimensions);
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    const double jerk_scale = velocity[d] / (rest_after * rest_after);
+    const double snap_scale = acceleration[d] / rest_after;
+    c2[d] = acceleration[d] / 2;
+    c3[d] = -jerk_scale - 2 * snap_scale / 3;
+    c4[d] = (2 * jerk_scale + snap_scale) / (4 * rest_after);
+  }
+}
+
+void build_hold(Time at, std::span<const double> position, Segment& out) noexcept {
+  out.left = at;
+  out.right = at;
+  out.order = kCubicOrder;
+  out.kind = SegmentKind::hold;
+  std::ranges::fill(out.coefficients, 0.0);
+  std::ranges::copy(position, power_of(out, 0, position.size()).begin());
+}
+
+}  // namespace splinecast::core

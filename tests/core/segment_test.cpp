@@ -1,0 +1,146 @@
+#include "splinecast/core/segment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "splinecast/core/eigen.hpp"
+#include "support/mesh.hpp"
+
+namespace splinecast::core {
+namespace {
+
+using testing::random_values;
+
+constexpr Time kLeft{1'000'000'000};
+constexpr Time kRight{1'250'000'000};
+
+struct Ends {
+  std::vector<double> x0, x1, v0, v1, chord;
+  explicit Ends(std::size_t dimensions)
+      : x0(random_values(1, dimensions)),
+        x1(random_values(2, dimensions)),
+        v0(random_values(3, dimensions)),
+        v1(random_values(4, dimensions)),
+        chord(dimensions) {
+    for (std::size_t d = 0; d < dimensions; ++d) chord[d] = (x1[d] - x0[d]) / 0.25;
+  }
+  [[nodiscard]] Interval interval(bool halts_left, bool halts_right) const {
+    return {kLeft, kRight, 0.25, x0, chord, v0, v1, halts_left, halts_right};
+  }
+};
+
+void expect_near(std::span<const double> got, std::span<const double> wanted, double tolerance) {
+  ASSERT_EQ(got.size(), wanted.size());
+  for (std::size_t d = 0; d < got.size(); ++d) EXPECT_NEAR(got[d], wanted[d], tolerance) << d;
+}
+
+TEST(Segment, EvaluatesEachDerivativeOfItsPolynomial) {
+  for (const int order : {4, 6}) {
+    const auto c = random_values(5, static_cast<std::size_t>(order) * 3);
+    State state(3);
+    const double u = 0.7;
+    evaluate(order, c, u, state.ref());
+    for (std::size_t d = 0; d < 3; ++d) {
+      double p = 0;
+      double v = 0;
+      double a = 0;
+      double j = 0;
+      for (int k = 0; k < order; ++k) {
+        const double ck = c[static_cast<std::size_t>(k) * 3 + d];
+        p += ck * std::pow(u, k);
+        if (k >= 1) v += ck * k * std::pow(u, k - 1);
+        if (k >= 2) a += ck * k * (k - 1) * std::pow(u, k - 2);
+        if (k >= 3) j += ck * k * (k - 1) * (k - 2) * std::pow(u, k - 3);
+      }
+      EXPECT_NEAR(state.position()[d], p, 1e-14);
+      EXPECT_NEAR(state.velocity()[d], v, 1e-14);
+      EXPECT_NEAR(state.acceleration()[d], a, 1e-13);
+      EXPECT_NEAR(state.jerk()[d], j, 1e-13);
+    }
+  }
+}
+
+TEST(Segment, AnOrderSixPolynomialWithoutItsHighPowersIsTheCubicBitForBit) {
+  auto c = random_values(6, 24);
+  std::fill(c.begin() + 16, c.end(), 0.0);
+  State cubic(4);
+  State quintic(4);
+  for (const double u : {0.0, 1e-9, 0.01, 0.3, 2.5}) {
+    evaluate(4, c, u, cubic.ref());
+    evaluate(6, c, u, quintic.ref());
+    EXPECT_TRUE(std::ranges::equal(cubic.values(), quintic.values())) << u;
+  }
+}
+
+TEST(Segment, MeetsPositionsAndVelocitiesAtBothEndsWhetherCubicOrQuintic) {
+  const Ends ends(5);
+  for (const bool left : {false, true}) {
+    for (const bool right : {false, true}) {
+      Segment segment(5);
+      build_segment(ends.interval(left, right), segment);
+      EXPECT_EQ(segment.order, left || right ? 6 : 4);
+      State state(5);
+      evaluate(segment.order, segment.coefficients, 0, state.ref());
+      expect_near(state.position(), ends.x0, 0);
+      expect_near(state.velocity(), ends.v0, 0);
+      evaluate(segment.order, segment.coefficients, 0.25, state.ref());
+      expect_near(state.position(), ends.x1, 1e-14);
+      expect_near(state.velocity(), ends.v1, 1e-13);
+    }
+  }
+}
+
+TEST(Segment, AHaltingEndHasNoAccelerationAndTheOtherEndKeepsTheCubics) {
+  const Ends ends(3);
+  const Interval halting = ends.interval(true, false);
+  Segment cubic(3);
+  Segment quintic(3);
+  build_segment(ends.interval(false, false), cubic);
+  build_segment(halting, quintic);
+  State state(3);
+  State wanted(3);
+  evaluate(quintic.order, quintic.coefficients, 0, state.ref());
+  expect_near(state.acceleration(), std::vector<double>(3), 0);
+  evaluate(quintic.order, quintic.coefficients, 0.25, state.ref());
+  evaluate(cubic.order, cubic.coefficients, 0.25, wanted.ref());
+  expect_near(state.acceleration(), wanted.acceleration(), 1e-10);
+  for (std::size_t d = 0; d < 3; ++d) {
+    EXPECT_NEAR(right_acceleration(halting, d), wanted.acceleration()[d], 1e-12);
+    EXPECT_EQ(left_acceleration(halting, d), 0);
+  }
+}
+
+TEST(Segment, AStopTailContinuesItsKnotAndComesToRestWhereTheoryPutsIt) {
+  const auto x = random_values(7, 2);
+  const auto v = random_values(8, 2);
+  const auto a = random_values(9, 2);
+  Segment tail(2);
+  build_stop_tail(kLeft, Time(400'000'000), x, v, a, tail);
+  const double stop = 0.4;
+  State state(2);
+  evaluate(tail.order, tail.coefficients, 0, state.ref());
+  expect_near(state.position(), x, 0);
+  expect_near(state.velocity(), v, 0);
+  expect_near(state.acceleration(), a, 0);
+  evaluate(tail.order, tail.coefficients, stop, state.ref());
+  expect_near(state.velocity(), std::vector<double>(2), 1e-15);
+  expect_near(state.acceleration(), std::vector<double>(2), 1e-14);
+  for (std::size_t d = 0; d < 2; ++d) {
+    EXPECT_NEAR(state.position()[d], x[d] + v[d] * stop / 2 + a[d] * stop * stop / 12, 1e-15);
+  }
+}
+
+TEST(Segment, FixedSizeEigenStatesAreTheSameMemory) {
+  const auto c = random_values(10, 12);
+  EigenState<3> fixed;
+  State state(3);
+  evaluate(4, c, 0.3, fixed.ref());
+  evaluate(4, c, 0.3, state.ref());
+  EXPECT_EQ(fixed.velocity, as_vector<3>(state.velocity()));
+  EXPECT_EQ(as_vector(state.jerk()), fixed.jerk);
+}
+
+}  // namespace
+}  // namespace splinecast::core
