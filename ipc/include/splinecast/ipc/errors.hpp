@@ -1,0 +1,40 @@
+#pragma once
+
+#include <stdexcept>
+
+/// What opening, attaching and removing may throw. Appending, solving and sampling never throw:
+/// they return statuses.
+namespace splinecast::ipc {
+
+/// Base of the errors below. The message names the stream and the offending values.
+class StreamError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// There is no stream of this name, or none came in time.
+class NoSuchStream : public StreamError {
+ public:
+  using StreamError::StreamError;
+};
+
+/// Another living process owns the region that was to be written or removed.
+class StreamBusy : public StreamError {
+ public:
+  using StreamError::StreamError;
+};
+
+/// A region that must not be used: another layout, a wrong size, an owner or a mode that is not
+/// trusted, another time namespace.
+class BadRegion : public StreamError {
+ public:
+  using StreamError::StreamError;
+};
+
+/// What was asked for cannot be, or contradicts the stream as it stands: a usage error.
+class BadRequest : public StreamError {
+ public:
+  using StreamError::StreamError;
+};
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace splinecast::ipc {
+
+/// The folder in which Linux keeps POSIX shared memory.
+inline constexpr std::string_view kSharedMemoryFolder = "/dev/shm/";
+
+/// The two regions of a stream, each written by one process.
+enum class RegionKind : std::uint64_t {
+  waypoints = 1,  ///< written by the producer
+  spline = 2,     ///< written by the solver
+};
+
+/// `producer` or `solver`: who writes a region of this kind.
+[[nodiscard]] std::string_view owner_role(RegionKind kind) noexcept;
+
+/// Throws BadRequest unless the name has 1 to 128 characters of A–Z a–z 0–9 . _ - and does not
+/// begin with a dot.
+void require_stream_name(std::string_view stream);
+
+/// Name of a region as shared memory, `splinecast.<stream>.waypoints` or `….spline`.
+[[nodiscard]] std::string region_name(std::string_view stream, RegionKind kind);
+
+/// Path of a region, and of the lock that makes its owner.
+[[nodiscard]] std::string region_path(std::string_view stream, RegionKind kind);
+[[nodiscard]] std::string lock_path(std::string_view stream, RegionKind kind);
+
+/// Names of all streams of which any region or lock stands on this host, sorted.
+[[nodiscard]] std::vector<std::string> stream_names();
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "splinecast/core/waypoint.hpp"
+#include "splinecast/ipc/status.hpp"
+#include "splinecast/ipc/stream_options.hpp"
+
+namespace splinecast::ipc {
+
+/// The role that appends waypoints: the one writer of a stream's waypoint ring.
+///
+/// One thread uses it. Other processes read what it writes; while it lives, no other process can
+/// become the producer of the same stream.
+class Producer {
+ public:
+  /// Makes the stream, or makes it anew if it stands finished, or continues it if its producer died
+  /// before finishing. Throws StreamBusy if it has a living producer, BadRequest if the options
+  /// contradict a stream that is continued, BadRegion if shared memory is full or what stands under
+  /// the name cannot be used.
+  Producer(std::string stream, ProducerOptions options);
+  Producer(Producer&&) noexcept;
+  Producer& operator=(Producer&&) noexcept;
+  ~Producer();
+
+  /// Appends a waypoint. O(D), never blocks or allocates; one system call where it wakes a sleeping
+  /// solver, and one per call until a solver has come. `full` asks to try again later.
+  [[nodiscard]] AppendStatus append(const core::Waypoint& waypoint) noexcept;
+
+  /// Ends the stream at its last waypoint. Throws std::invalid_argument if the condition's values
+  /// do not fit the dimensions; otherwise as append.
+  [[nodiscard]] AppendStatus finish(const core::Condition& end);
+
+  /// Waits until a solver has taken the stream up. Returns false after the timeout.
+  [[nodiscard]] bool wait_for_solver(core::Time timeout);
+
+  /// Waits until the ring has room, or until the solver has consumed everything. Returns false
+  /// after the timeout. Look at solver_alive() before waiting again.
+  [[nodiscard]] bool wait_for_room(core::Time timeout);
+  [[nodiscard]] bool wait_until_consumed(core::Time timeout);
+
+  /// Whether a solver process lives. System calls.
+  [[nodiscard]] bool solver_alive() const;
+
+  /// Items appended and, of these, consumed by the solver.
+  [[nodiscard]] Word appended() const noexcept;
+  [[nodiscard]] Word consumed() const noexcept;
+
+  /// Whether waypoints of a producer that died stand in the ring, and the last one's time.
+  [[nodiscard]] bool continues() const noexcept;
+  [[nodiscard]] core::Time last_time() const noexcept;
+
+  [[nodiscard]] bool is_memory_locked() const noexcept;
+
+  /// Removes the stream's waypoint region: for a stream that no solver ever took up.
+  void withdraw() noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "splinecast/core/state.hpp"
+#include "splinecast/ipc/sampler.hpp"
+#include "splinecast/ipc/stream_options.hpp"
+
+namespace splinecast::ipc {
+
+/// Why `Reader::wait` returned.
+enum class WaitStatus : std::uint8_t {
+  advanced,  ///< there is a revision that this reader had not seen
+  timed_out,
+  retired,  ///< attach again
+};
+
+/// Which of a stream's writers live.
+struct Alive {
+  bool producer = false;
+  bool solver = false;
+};
+
+/// The role that reads the curve: what a controller links. Any number of processes read one stream;
+/// in each, one thread uses a reader, and every thread may have its own.
+class Reader {
+ public:
+  /// Maps the stream's segment board, waiting for it up to `wait`. Throws NoSuchStream if none has
+  /// come by then, BadRegion if it cannot be used.
+  explicit Reader(std::string stream, core::Time wait = core::Time::zero(),
+                  const Trust& trust = {});
+  Reader(Reader&&) noexcept;
+  Reader& operator=(Reader&&) noexcept;
+  ~Reader();
+
+  [[nodiscard]] std::size_t dimensions() const noexcept { return dimensions_; }
+
+  /// Evaluates position, velocity, acceleration and jerk at time `t` of the stream's clock into
+  /// `out`, one value per dimension in each span. Wait-free: no system call, no allocation, no
+  /// store to shared memory, whatever the writers do. O(D) where time advances, O(log n + D) at a
+  /// jump. Where the status has no values, `out` is left as it was.
+  [[nodiscard]] SampleStatus sample(core::Time t, core::StateRef out) noexcept {
+    return sampler_->sample(t, out);
+  }
+  [[nodiscard]] SampleStatus sample(core::Time t, core::State& out) noexcept {
+    return sample(t, out.ref());
+  }
+
+  /// Copies the segments between two times, all of one revision: see Sampler::snapshot.
+  [[nodiscard]] SampleStatus snapshot(core::Time from, core::Time to, Snapshot& out) {
+    return sampler_->snapshot(from, to, out);
+  }
+
+  /// Copies the head of the newest revision. Returns false if there is none, or if the writer
+  /// overtook every try.
+  [[nodiscard]] bool head(Head& out) const noexcept;
+
+  /// Sleeps until a revision that this reader has not seen, for programs that need not spin.
+  [[nodiscard]] WaitStatus wait(core::Time timeout) noexcept;
+
+  /// Which writers live: system calls, so not inside a control loop.
+  [[nodiscard]] Alive alive() const noexcept;
+
+  /// What the stream's header says.
+  [[nodiscard]] const RegionHeader& header() const noexcept;
+  [[nodiscard]] StreamClock clock() const noexcept;
+  [[nodiscard]] std::vector<std::string> names() const;
+  [[nodiscard]] bool is_memory_locked() const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+  Sampler* sampler_;  ///< inside impl_
+  std::size_t dimensions_;
+};
+
+}  // namespace splinecast::ipc

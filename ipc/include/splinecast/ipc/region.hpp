@@ -1,0 +1,77 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "splinecast/ipc/names.hpp"
+
+namespace splinecast::ipc {
+
+/// Who may use the regions that this process makes.
+struct RegionAccess {
+  mode_t mode = 0600;          ///< permission bits; nobody but the owner ever writes
+  std::optional<gid_t> group;  ///< group to give it to; unset: this process's
+};
+
+/// Whose regions this process uses: its own user's and root's, and those of `owner` if set. A
+/// region must also be a regular file that neither its group nor others may write.
+struct Trust {
+  std::optional<uid_t> owner;
+};
+
+/// A mapped region of shared memory. Moves; unmaps and closes when it dies; does not unlink.
+class Region {
+ public:
+  /// Makes a region without a name, its pages reserved and populated, filled with zeros. Throws
+  /// BadRegion if shared memory has no room, naming the bytes needed and free.
+  [[nodiscard]] static Region create(std::size_t bytes, const RegionAccess& access);
+
+  /// Maps an existing region; `writable` for its owner only. Populates its pages. Throws
+  /// NoSuchStream if there is none, BadRegion if it is not to be trusted.
+  [[nodiscard]] static Region open(std::string_view stream, RegionKind kind, bool writable,
+                                   const Trust& trust = {});
+
+  Region(Region&&) noexcept;
+  Region& operator=(Region&&) noexcept;
+  ~Region();
+
+  /// Gives the region its name, whole and at once. Returns false if the name is taken.
+  [[nodiscard]] bool link(std::string_view stream, RegionKind kind) const;
+
+  /// Whether the name of the stream still leads to this very region. A system call.
+  [[nodiscard]] bool is_linked(std::string_view stream, RegionKind kind) const noexcept;
+
+  /// The bytes. Those of a region that was not opened writable must not be written.
+  [[nodiscard]] std::span<std::byte> bytes() const noexcept;
+
+  [[nodiscard]] int descriptor() const noexcept;
+
+  /// Whether its pages are locked into memory; best effort, see RLIMIT_MEMLOCK.
+  [[nodiscard]] bool is_memory_locked() const noexcept;
+
+ private:
+  struct Mapping;
+  explicit Region(std::unique_ptr<Mapping> mapping);
+  std::unique_ptr<Mapping> mapping_;
+};
+
+/// Whether a region of this name stands. A system call; throws nothing.
+[[nodiscard]] bool region_exists(std::string_view stream, RegionKind kind) noexcept;
+
+/// Unlinks a region's name; mappings of it stay.
+void unlink_region(std::string_view stream, RegionKind kind) noexcept;
+
+/// Inode of the time namespace of this process: clocks of two namespaces differ.
+[[nodiscard]] std::uint64_t time_namespace() noexcept;
+
+/// A random number that is not 0.
+[[nodiscard]] std::uint64_t random_id();
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "splinecast/core/state.hpp"
+#include "splinecast/core/time.hpp"
+#include "splinecast/ipc/clock.hpp"
+#include "splinecast/ipc/segment_board.hpp"
+#include "splinecast/ipc/status.hpp"
+
+namespace splinecast::ipc {
+
+/// Several segments of one revision: a consistent piece of the curve, whole or not at all.
+class Snapshot {
+ public:
+  /// Allocates as it grows; reuse one to allocate no more.
+  explicit Snapshot(std::size_t dimensions) : dimensions_(dimensions) {}
+
+  [[nodiscard]] std::size_t dimensions() const noexcept { return dimensions_; }
+  [[nodiscard]] const Head& head() const noexcept { return head_; }
+
+  /// The segments, oldest first.
+  [[nodiscard]] std::span<const SegmentCopy> segments() const noexcept {
+    return std::span(segments_).first(size_);
+  }
+
+ private:
+  friend class Sampler;
+  std::size_t dimensions_;
+  Head head_;
+  std::size_t size_ = 0;
+  std::vector<SegmentCopy> segments_;
+};
+
+/// The reader without its region: looks a time up on a segment board and evaluates the curve.
+///
+/// It keeps its own copy of the segment it used last, with the tag of the revision that wrote it.
+/// While that tag stands, the next sample copies nothing. One thread uses a sampler; any number of
+/// samplers, in any processes, read one board. Allocates when made only; stores to shared memory
+/// never.
+class Sampler {
+ public:
+  /// `board` is read as often as sampled; `clock` says whether a hold stands before the first
+  /// waypoint.
+  Sampler(const SegmentBoardReader& board, StreamClock clock);
+
+  /// Evaluates the curve at `t` into `out`, whose spans have one value per dimension. Wait-free:
+  /// no system call, no allocation; O(D) where `t` lies in the segment used last or the next one,
+  /// O(log n + D) elsewhere; a bounded number of tries. Where the status has no values, `out` is
+  /// left as it was.
+  [[nodiscard]] SampleStatus sample(core::Time t, core::StateRef out) noexcept;
+
+  /// Copies every segment that has a part between `from` and `to` (inclusive), all under one
+  /// revision. Returns `settled` or `provisional` for the whole; `before_history`, `no_data`,
+  /// `busy` or `retired` leave `out` without segments. Allocates if `out` must grow.
+  [[nodiscard]] SampleStatus snapshot(core::Time from, core::Time to, Snapshot& out);
+
+  /// The revision that the last sample saw; 0 before the first.
+  [[nodiscard]] Word revision_seen() const noexcept { return head_.revision; }
+
+ private:
+  /// Result of looking a time up under one revision.
+  enum class Found { segment, before_first, torn };
+
+  [[nodiscard]] SegmentCopy& current() noexcept { return copies_[current_]; }
+  [[nodiscard]] bool is_confirmed(Word r) noexcept;
+  void confirm() noexcept;
+  [[nodiscard]] Found locate(core::Time t) noexcept;
+  [[nodiscard]] bool take(Word number) noexcept;
+  [[nodiscard]] bool spans(const SegmentCopy& segment, core::Time t) const noexcept;
+  [[nodiscard]] Word number_by_hint(core::Time t) const noexcept;
+  [[nodiscard]] bool number_by_cells(core::Time t, Word& number) const noexcept;
+  [[nodiscard]] SampleStatus evaluate(const SegmentCopy& segment, core::Time t,
+                                      core::StateRef out) const noexcept;
+  [[nodiscard]] SampleStatus hold_first(core::StateRef out) noexcept;
+  [[nodiscard]] SampleStatus from_own_copy(core::Time t, core::StateRef out) noexcept;
+
+  const SegmentBoardReader* board_;
+  StreamClock clock_;
+  Head head_;                           ///< bounds under the revision last seen whole
+  Word confirmed_ = 0;                  ///< revision that the current copy is known to be part of
+  core::Time copied_settled_until_{};   ///< settled_until of that revision
+  std::array<SegmentCopy, 2> copies_;   ///< the current one, and one to copy into
+  std::size_t current_ = 0;
+};
+
+}  // namespace splinecast::ipc

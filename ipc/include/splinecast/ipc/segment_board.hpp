@@ -1,0 +1,180 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "splinecast/core/knot_ring.hpp"
+#include "splinecast/core/segment.hpp"
+#include "splinecast/ipc/layout.hpp"
+#include "splinecast/ipc/publication.hpp"
+#include "splinecast/ipc/status.hpp"
+
+/// The segment board: the segments of a stream and the head that goes with each revision, over a
+/// span of bytes. One solver writes it, by publication.hpp; anybody reads. Segments are numbered
+/// from 1; segment n lies in slot n modulo the capacity.
+namespace splinecast::ipc {
+
+/// What holds for a whole revision.
+struct Head {
+  Word revision = 0;         ///< the revision that this head is of; 0: none yet
+  Word first = 0;            ///< oldest segment on the board
+  Word newest = 0;           ///< newest segment, the stop tail of a stream that goes on; 0: none
+  core::Time settled_until{};  ///< no time before it ever changes
+  bool finished = false;
+  core::Time changed_from{};  ///< earliest time whose curve this revision changed
+  Word consumed = 0;          ///< ring items taken
+  Word knots = 0;             ///< waypoints interpolated
+  core::Time newest_knot{};   ///< time of the newest knot
+  core::Time committed{};     ///< the solver's clock at the commit
+  Word refused = 0;           ///< items refused
+  std::array<Word, kRefusalReasons> reasons{};  ///< of these, by Refusal
+};
+
+/// An item that the solver refused.
+struct RefusedItem {
+  Word item = 0;
+  Refusal reason{};
+};
+
+/// The solver's side. One thread of one process uses it; no function blocks or allocates.
+class SegmentBoardWriter {
+ public:
+  /// `region` holds a board of this layout and outlives the writer. Retires whatever a writer
+  /// before this one had not committed (T1).
+  SegmentBoardWriter(std::span<std::byte> region, const BoardLayout& layout) noexcept;
+
+  [[nodiscard]] std::size_t capacity() const noexcept { return layout_.capacity; }
+
+  /// The last revision that was committed.
+  [[nodiscard]] Word revision() const noexcept { return revision_; }
+
+  /// Writes a segment, and what the solver needs of its left knot, for the next revision. At most
+  /// `capacity` different numbers in one revision.
+  void write(Word number, const core::Segment& segment, const core::Knot& knot,
+             std::size_t newer_knots) noexcept;
+
+  /// Notes a refusal beside the head.
+  void write_refusal(Word index, const RefusedItem& refusal) noexcept;
+
+  /// Writes the head of the next revision and commits it: all of it becomes visible at once.
+  /// `head.revision` is set.
+  void commit(Head& head) noexcept;
+
+  /// Tells the producer what has been consumed, after the commit.
+  void store_tail(Word consumed) noexcept {
+    store(control_[kTail], consumed, std::memory_order_release);
+  }
+
+  /// For a solver about to sleep, or awake again: seq_cst, see WaypointRingWriter.
+  void store_sleeping(bool sleeping) noexcept {
+    store(control_[kSleeping], sleeping ? 1 : 0, std::memory_order_seq_cst);
+  }
+
+  /// Says that the region is of no more use.
+  void retire() noexcept { store(control_[kRetired], 1, std::memory_order_release); }
+
+  /// The word that waiting readers watch.
+  [[nodiscard]] const Word& revision_word() const noexcept { return control_[kRevision]; }
+
+ private:
+  [[nodiscard]] SlotView<Word> slot(Word number) const noexcept;
+  [[nodiscard]] SlotView<Word> head_slot() const noexcept;
+
+  BoardLayout layout_;
+  std::span<Word> control_;
+  std::span<Word> head_;
+  std::span<Word> refusals_;
+  std::span<Word> times_;
+  std::span<Word> slots_;
+  Word revision_;
+  std::array<Word, kHeadChangesKept> changes_{};
+};
+
+/// A reader's own copy of a segment. Allocates when made only.
+struct SegmentCopy {
+  explicit SegmentCopy(std::size_t dimensions)
+      : coefficients(static_cast<std::size_t>(core::kMaxOrder) * dimensions) {}
+
+  Word tag = 0;  ///< revision that wrote it; 0: nothing copied
+  Word number = 0;
+  core::Time left{};
+  core::Time right{};
+  int order = core::kCubicOrder;
+  core::SegmentKind kind{};
+  std::vector<double> coefficients;  ///< [power][dimension]; of these the first `order` powers
+};
+
+/// A reader's side; no function blocks, allocates or stores. Every copy is taken under a revision
+/// `r` that the caller has loaded, and fails if the writer has gone on too far meanwhile.
+class SegmentBoardReader {
+ public:
+  /// `region` holds a board of this layout and outlives the reader.
+  SegmentBoardReader(std::span<const std::byte> region, const BoardLayout& layout) noexcept;
+
+  [[nodiscard]] std::size_t dimensions() const noexcept { return layout_.dimensions; }
+  [[nodiscard]] std::size_t capacity() const noexcept { return layout_.capacity; }
+
+  /// R1: the newest revision; 0: none yet.
+  [[nodiscard]] Word revision() const noexcept {
+    return load(control_[kRevision], std::memory_order_acquire);
+  }
+  [[nodiscard]] const Word& revision_word() const noexcept { return control_[kRevision]; }
+  [[nodiscard]] bool retired() const noexcept {
+    return load(control_[kRetired], std::memory_order_acquire) != 0;
+  }
+
+  /// Items consumed; acquire, for the producer that will overwrite them.
+  [[nodiscard]] Word tail() const noexcept {
+    return load(control_[kTail], std::memory_order_acquire);
+  }
+  /// Whether the solver sleeps; seq_cst, see WaypointRingWriter.
+  [[nodiscard]] bool sleeping() const noexcept {
+    return load(control_[kSleeping], std::memory_order_seq_cst) != 0;
+  }
+
+  /// Copies what lookups need of the head under r: revision, first, newest, settled_until,
+  /// finished. The other members stay.
+  [[nodiscard]] bool copy_bounds(Word r, Head& out) const noexcept;
+
+  /// Copies the whole head under r.
+  [[nodiscard]] bool copy_head(Word r, Head& out) const noexcept;
+
+  /// Copies segment `number` under r. Upon failure `out.tag` is 0 and the rest of no use.
+  [[nodiscard]] bool copy_segment(Word number, Word r, SegmentCopy& out) const noexcept;
+
+  /// Whether a copy is what the board holds under r too: no words are copied again.
+  [[nodiscard]] bool is_current(const SegmentCopy& copy, Word r) const noexcept;
+
+  /// Copies the left end of segment `number` under r.
+  [[nodiscard]] bool copy_left(Word number, Word r, core::Time& left) const noexcept;
+
+  /// The left end of segment `number` from the packed array: a hint, to be confirmed in the cell.
+  [[nodiscard]] core::Time left_hint(Word number) const noexcept {
+    return to_time(load(times_[number & (layout_.capacity - 1)], std::memory_order_relaxed));
+  }
+
+  /// The refusal noted at `index`, counted from 0 over the stream's life; only the last
+  /// kRefusalsKept are there.
+  [[nodiscard]] RefusedItem refusal(Word index) const noexcept;
+
+  /// What a new solver needs of a knot: copied into `values` (position, velocity, g; D each), which
+  /// the returned spans view. For the one writer only, who races with nobody.
+  [[nodiscard]] core::Knot knot(Word number, Word r, std::span<double> values) const noexcept;
+
+ private:
+  [[nodiscard]] SlotView<const Word> slot(Word number) const noexcept;
+  [[nodiscard]] SlotView<const Word> head_slot() const noexcept;
+  [[nodiscard]] bool has_sane_bounds(const Head& head) const noexcept;
+
+  BoardLayout layout_;
+  std::span<const Word> control_;
+  std::span<const Word> head_;
+  std::span<const Word> refusals_;
+  std::span<const Word> times_;
+  std::span<const Word> slots_;
+};
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "splinecast/ipc/stream_options.hpp"
+#include "splinecast/ipc/stream_solver.hpp"
+
+namespace splinecast::ipc {
+
+/// The role that turns waypoints into segments: the one writer of a stream's segment board.
+///
+/// Runs in a process of its own or inside the producer's: the same code and the same regions. One
+/// thread uses it; it has none of its own. While it lives, no other process can become the solver
+/// of the same stream.
+class Solver {
+ public:
+  /// Becomes the stream's solver, whether or not the stream stands already. Throws StreamBusy if it
+  /// has a living one.
+  Solver(std::string stream, SolverOptions options);
+  Solver(Solver&&) noexcept;
+  Solver& operator=(Solver&&) noexcept;
+  ~Solver();
+
+  /// Takes the stream up once its producer has made it: goes on with the board of a solver that
+  /// died, retires the board of an earlier stream, or makes a new one. Returns false while there is
+  /// no stream. Throws BadRequest if the options contradict a board that is taken over, BadRegion
+  /// if a region cannot be used or made. System calls; does nothing if attached.
+  bool attach();
+  [[nodiscard]] bool attached() const noexcept;
+
+  /// Takes what waypoints there are and publishes; detaches when the stream has been retired or
+  /// made anew. No system call but the clock's and, with SolverOptions::wake, one wake a revision.
+  StepResult step(const Clock& clock);
+
+  /// Sleeps until there may be something to do, or for the timeout.
+  void wait(core::Time timeout) noexcept;
+
+  /// The head last committed; attached() only.
+  [[nodiscard]] const Head& head() const noexcept;
+
+  /// Whether this solver went on with a board that a dead one left.
+  [[nodiscard]] bool took_over() const noexcept;
+  [[nodiscard]] bool is_memory_locked() const noexcept;
+  [[nodiscard]] const std::string& stream() const noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace splinecast::ipc

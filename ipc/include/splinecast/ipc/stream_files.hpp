@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "splinecast/ipc/segment_board.hpp"
+#include "splinecast/ipc/status.hpp"
+#include "splinecast/ipc/stream_options.hpp"
+
+namespace splinecast::ipc {
+
+/// Whether the process lives that owns a region of this kind. System calls; throws nothing.
+[[nodiscard]] bool owner_lives(std::string_view stream, RegionKind kind) noexcept;
+
+/// What stands of a stream on this host, without taking part in it.
+struct StreamInfo {
+  std::string stream;
+  bool producer_alive = false;
+  bool solver_alive = false;
+  std::optional<RegionHeader> waypoints;  ///< header of the producer's region
+  std::optional<RegionHeader> spline;     ///< header of the solver's region
+  Word appended = 0;
+  std::array<Word, 8> refused_by_producer{};  ///< by AppendStatus
+  Head head;                                  ///< revision 0: nothing solved yet
+  std::vector<RefusedItem> refusals;          ///< the last refused items, oldest first
+};
+
+/// Looks at a stream. Throws NoSuchStream if nothing of it stands, BadRegion if a region cannot
+/// be used.
+[[nodiscard]] StreamInfo inspect(const std::string& stream, const Trust& trust = {});
+
+/// Removes a stream: takes both locks, says `retired` to its readers and wakes them, unlinks
+/// regions and lock files. Throws NoSuchStream, or StreamBusy if a writer of it lives; then nothing
+/// has been changed.
+void remove_stream(const std::string& stream, const Trust& trust = {});
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "splinecast/core/condition.hpp"
+#include "splinecast/core/sliding_window.hpp"
+#include "splinecast/ipc/clock.hpp"
+#include "splinecast/ipc/layout.hpp"
+#include "splinecast/ipc/region.hpp"
+#include "splinecast/ipc/waypoint_ring.hpp"
+
+namespace splinecast::ipc {
+
+/// What a producer fixes about its stream.
+struct ProducerOptions {
+  std::size_t dimensions = 1;         ///< 1 to 64
+  std::vector<std::string> names{};   ///< one per dimension, or none: up to 31 bytes each
+  std::vector<std::string> units{};   ///< likewise, up to 15 bytes each
+  StreamClock clock = StreamClock::monotonic;
+  core::Condition start{.kind = core::ConditionKind::halt, .value = {}};
+  IngestLimits limits{};
+  std::size_t capacity = 1024;        ///< ring items; rounded up to a power of two, at most 2²⁴
+  RegionAccess access{};
+  Trust trust{};
+};
+
+/// What a solver fixes about its curve. What is unset takes its default on a new board; a solver
+/// that takes a board over takes its options too, and may not contradict them.
+struct SolverOptions {
+  std::optional<std::size_t> settle;      ///< settle lag K, 0 to 64; default 8
+  std::optional<core::Tail> tail;         ///< default bessel
+  std::optional<core::Time> stop_time;    ///< length of the stop tail; default 250 ms
+  std::optional<std::size_t> capacity;    ///< segments of history; default 4,096
+  bool wake = true;                       ///< wake waiting readers: one system call a revision
+  RegionAccess access{};
+  Trust trust{};
+};
+
+/// A header for a new region, all but what depends on its kind and capacity.
+[[nodiscard]] RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id);
+
+/// What a header says of the stream: the options that its producer gave.
+[[nodiscard]] core::Condition start_condition(const RegionHeader& header);
+[[nodiscard]] std::vector<std::string> dimension_names(const RegionHeader& header);
+[[nodiscard]] std::vector<std::string> dimension_units(const RegionHeader& header);
+[[nodiscard]] IngestLimits ingest_limits(const RegionHeader& header) noexcept;
+[[nodiscard]] StreamClock stream_clock(const RegionHeader& header) noexcept;
+
+/// Throws BadRegion, naming both, if a live stream's clock is another time namespace's.
+void require_same_clock(const RegionHeader& header, const std::string& stream);
+
+/// Writes a header to the beginning of a region that has no name yet.
+void write_header(std::span<std::byte> region, const RegionHeader& header) noexcept;
+
+/// Enters this process as the region's owner and counts its epoch up.
+void enter_owner(std::span<std::byte> region, const RegionHeader& before) noexcept;
+
+}  // namespace splinecast::ipc

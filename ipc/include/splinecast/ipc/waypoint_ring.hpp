@@ -1,0 +1,132 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "splinecast/core/condition.hpp"
+#include "splinecast/core/waypoint.hpp"
+#include "splinecast/ipc/layout.hpp"
+#include "splinecast/ipc/status.hpp"
+
+/// The waypoint ring: items from one producer to one solver, over a span of bytes.
+///
+/// Hand-over. The producer stores an item's words (release), then `head` (seq_cst, which is also a
+/// release): the solver that loads `head` (acquire) sees the words. The solver stores `tail`, in
+/// its own region, with release after it has read the items: the producer that loads it (acquire)
+/// may overwrite them. Relaxed would not do: the overwriting stores could then be seen by the
+/// loads before it. Items are numbered from 0; item i lies at i modulo the capacity.
+namespace splinecast::ipc {
+
+/// What a ring item says.
+enum class ItemKind : std::uint8_t {
+  waypoint = 1,
+  replace = 2,      ///< withdraws the future from a time on; a count of waypoints follows
+  start_state = 3,  ///< the state that a live stream starts in
+  finish = 4,       ///< the stream ends at its last waypoint, with a condition there
+};
+
+/// A ring item with memory of its own. Allocates when made only.
+struct RingItem {
+  explicit RingItem(std::size_t dimensions) : values(3 * dimensions) {}
+
+  ItemKind kind = ItemKind::waypoint;
+  bool has_velocity = false;
+  bool has_acceleration = false;
+  core::ConditionKind condition{};  ///< of a finish
+  core::Time time{};
+  std::vector<double> values;  ///< positions, velocities, accelerations
+};
+
+/// The checks that a waypoint must pass, wherever it comes from.
+struct IngestLimits {
+  core::Time min_interval{1'000};              ///< 1 µs
+  core::Time max_interval{3'600'000'000'000};  ///< 1 h
+};
+
+/// The producer's side. One thread of one process uses it. No function blocks or allocates.
+class WaypointRingWriter {
+ public:
+  /// `region` holds a ring of this layout and outlives the writer. Goes on behind what it holds.
+  WaypointRingWriter(std::span<std::byte> region, const RingLayout& layout,
+                     const IngestLimits& limits);
+
+  /// Appends a waypoint if its form is right and there is room; `consumed` is how many items the
+  /// solver has taken. O(D), wait-free.
+  [[nodiscard]] AppendStatus append(const core::Waypoint& waypoint, Word consumed) noexcept;
+
+  /// Appends the end of the stream. The condition's values must have been checked.
+  [[nodiscard]] AppendStatus finish(const core::Condition& end, Word consumed) noexcept;
+
+  /// Items appended so far.
+  [[nodiscard]] Word head() const noexcept { return head_; }
+  [[nodiscard]] bool finished() const noexcept { return finished_; }
+  [[nodiscard]] bool has_waypoint() const noexcept { return has_last_; }
+  [[nodiscard]] core::Time last_time() const noexcept { return last_time_; }
+
+  /// The word that waiting solvers watch.
+  [[nodiscard]] const Word& head_word() const noexcept { return control_[kHead]; }
+
+  /// Says that the region is of no more use.
+  void retire() noexcept;
+
+ private:
+  [[nodiscard]] AppendStatus check(const core::Waypoint& waypoint) const noexcept;
+  void put_item(Word kind_and_flags, core::Time time, std::span<const double> position,
+                std::span<const double> velocity, std::span<const double> acceleration) noexcept;
+  void count(AppendStatus status) noexcept;
+
+  RingLayout layout_;
+  IngestLimits limits_;
+  std::span<Word> control_;
+  std::span<Word> items_;
+  Word head_ = 0;
+  bool finished_ = false;
+  bool has_last_ = false;
+  core::Time last_time_{};
+};
+
+/// The solver's side, and any passive observer's. No function blocks, allocates or stores.
+class WaypointRingReader {
+ public:
+  /// `region` holds a ring of this layout and outlives the reader.
+  WaypointRingReader(std::span<const std::byte> region, const RingLayout& layout) noexcept;
+
+  [[nodiscard]] std::size_t dimensions() const noexcept { return layout_.dimensions; }
+  [[nodiscard]] std::size_t capacity() const noexcept { return layout_.capacity; }
+
+  /// Items appended so far; acquire, or seq_cst for a solver about to sleep.
+  [[nodiscard]] Word head(std::memory_order order = std::memory_order_acquire) const noexcept {
+    return load(control_[kHead], order);
+  }
+  [[nodiscard]] const Word& head_word() const noexcept { return control_[kHead]; }
+  [[nodiscard]] bool retired() const noexcept {
+    return load(control_[kRetired], std::memory_order_acquire) != 0;
+  }
+
+  /// Copies item i < head(), of which the consumer has not yet stored a tail beyond it.
+  void copy(Word i, RingItem& out) const noexcept;
+
+  /// Copies item i for an observer whom the producer does not wait for. Returns false if the
+  /// item is, or may be, overwritten: it may be kept iff head − i < capacity *after* the copy. At
+  /// head − i = capacity the producer may already be writing over it.
+  [[nodiscard]] bool observe(Word i, RingItem& out) const noexcept;
+
+  /// Items that the producer itself refused with this status.
+  [[nodiscard]] Word refused(AppendStatus status) const noexcept;
+
+ private:
+  RingLayout layout_;
+  std::span<const Word> control_;
+  std::span<const Word> items_;
+};
+
+/// Whether a waypoint's time may follow the one before it.
+[[nodiscard]] constexpr bool is_interval_in_range(core::Time interval,
+                                                  const IngestLimits& limits) noexcept {
+  return interval >= limits.min_interval && interval <= limits.max_interval;
+}
+
+[[nodiscard]] bool is_finite(std::span<const double> values) noexcept;
+
+}  // namespace splinecast::ipc

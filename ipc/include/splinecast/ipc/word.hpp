@@ -1,0 +1,51 @@
+#pragma once
+
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "splinecast/core/time.hpp"
+
+/// Shared memory is made of 64-bit words, and every access to one that another process may write
+/// is atomic: no plain memory is shared, so there is nothing to race on.
+namespace splinecast::ipc {
+
+using Word = std::uint64_t;
+static_assert(std::atomic_ref<Word>::is_always_lock_free);
+static_assert(sizeof(double) == sizeof(Word));
+
+/// Loads a word, also through a read-only mapping: a lock-free 64-bit load stores nothing, which
+/// std::atomic_ref cannot say in its type.
+[[nodiscard]] inline Word load(const Word& word, std::memory_order order) noexcept {
+  return std::atomic_ref<Word>(const_cast<Word&>(word)).load(order);  // NOLINT(*-const-cast)
+}
+
+inline void store(Word& word, Word value, std::memory_order order) noexcept {
+  std::atomic_ref<Word>(word).store(value, order);
+}
+
+[[nodiscard]] inline Word to_word(double value) noexcept { return std::bit_cast<Word>(value); }
+[[nodiscard]] inline Word to_word(core::Time value) noexcept {
+  return static_cast<Word>(value.count());
+}
+[[nodiscard]] inline double to_double(Word word) noexcept { return std::bit_cast<double>(word); }
+[[nodiscard]] inline core::Time to_time(Word word) noexcept {
+  return core::Time(static_cast<std::int64_t>(word));
+}
+
+/// Views part of a region as words. `offset` is a multiple of 8 and lies, with `count` words,
+/// within the region: the caller has checked its layout.
+[[nodiscard]] inline std::span<Word> words_at(std::span<std::byte> region, std::size_t offset,
+                                              std::size_t count) noexcept {
+  return {reinterpret_cast<Word*>(region.data() + offset), count};  // NOLINT(*-reinterpret-cast)
+}
+[[nodiscard]] inline std::span<const Word> words_at(std::span<const std::byte> region,
+                                                    std::size_t offset,
+                                                    std::size_t count) noexcept {
+  return {reinterpret_cast<const Word*>(region.data() + offset),  // NOLINT(*-reinterpret-cast)
+          count};
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,132 @@
+#include "splinecast/ipc/layout.hpp"
+
+#include <bit>
+#include <cstring>
+#include <initializer_list>
+#include <string>
+
+#include "splinecast/ipc/errors.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+constexpr std::size_t round_up(std::size_t value, std::size_t multiple) noexcept {
+  return (value + multiple - 1) / multiple * multiple;
+}
+
+void require(bool holds, const char* what, std::uint64_t found, std::uint64_t wanted) {
+  if (holds) return;
+  throw BadRegion("region has " + std::string(what) + ' ' + std::to_string(found) + ", not " +
+                  std::to_string(wanted));
+}
+
+void require_range(const char* what, std::uint64_t found, std::uint64_t least,
+                   std::uint64_t most) {
+  if (found >= least && found <= most) return;
+  throw BadRegion("region has " + std::string(what) + ' ' + std::to_string(found) +
+                  ", not between " + std::to_string(least) + " and " + std::to_string(most));
+}
+
+/// What both kinds of region share.
+void require_common(const RegionHeader& header, RegionKind kind, std::size_t real_bytes,
+                    std::size_t max_capacity) {
+  require(header.magic == kMagic, "magic number", header.magic, kMagic);
+  require(header.byte_order == kByteOrder, "byte order", header.byte_order, kByteOrder);
+  require(header.layout_version == kLayoutVersion, "layout version", header.layout_version,
+          kLayoutVersion);
+  require(header.layout_hash == layout_hash(), "layout hash", header.layout_hash, layout_hash());
+  require(header.kind == static_cast<std::uint64_t>(kind), "kind", header.kind,
+          static_cast<std::uint64_t>(kind));
+  require_range("dimensions", header.dimensions, core::kMinDimensions, core::kMaxDimensions);
+  require(header.order == core::kMaxOrder, "order", header.order, core::kMaxOrder);
+  require_range("capacity", header.capacity, 2, max_capacity);
+  require(std::has_single_bit(header.capacity), "capacity", header.capacity,
+          std::bit_ceil(header.capacity));
+  require_range("control offset", header.control, kHeaderBytes,
+                kHeaderBytes + kControlPositions * kSeparation);
+  require(header.control % kSeparation == 0, "control offset", header.control,
+          round_up(header.control, kSeparation));
+  require_range("clock", header.clock, 0, 1);
+  require(header.region_bytes == real_bytes, "size", real_bytes, header.region_bytes);
+}
+
+}  // namespace
+
+std::uint64_t layout_hash() noexcept {
+  // FNV-1a over every number that fixes where a word lies.
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const std::uint64_t value : std::initializer_list<std::uint64_t>{
+           sizeof(RegionHeader), kHeaderBytes, kBodyOffset, kSeparation, kCacheLine, kControlLines,
+           kRevision, kRetired, kTail, kSleeping, kProducerCounters, kItemValues, kCellShape,
+           kCellCoefficients, kCellExtraWords, kHeadWords, kHeadReasons, kHeadChanges,
+           kHeadChangesKept, kRefusalsKept, kNameBytes, kUnitBytes, core::kMaxOrder,
+           core::kMaxDimensions}) {
+    hash = (hash ^ value) * 0x100000001b3;
+  }
+  return hash;
+}
+
+RingLayout RingLayout::of(std::size_t dimensions, std::size_t capacity,
+                          std::size_t control) noexcept {
+  const std::size_t stride = round_up((kItemValues + 3 * dimensions) * sizeof(Word), kCacheLine);
+  return {.dimensions = dimensions,
+          .capacity = capacity,
+          .control = control,
+          .items = kBodyOffset,
+          .stride = stride,
+          .bytes = round_up(kBodyOffset + capacity * stride, kPage)};
+}
+
+BoardLayout BoardLayout::of(std::size_t dimensions, std::size_t capacity,
+                            std::size_t control) noexcept {
+  const std::size_t vectors = core::kMaxOrder + 3;  // coefficients, step, position, g
+  const std::size_t cell = round_up(
+      (kCellCoefficients + vectors * dimensions + kCellExtraWords) * sizeof(Word), kCacheLine);
+  BoardLayout layout{.dimensions = dimensions,
+                     .capacity = capacity,
+                     .control = control,
+                     .head = kBodyOffset,
+                     .refusals = 0,
+                     .times = 0,
+                     .slots = 0,
+                     .cell = cell,
+                     .stride = 2 * cell,
+                     .bytes = 0};
+  layout.refusals = layout.head + 2 * kHeadWords * sizeof(Word);
+  layout.times = layout.refusals + kRefusalsKept * sizeof(Word);
+  layout.slots = round_up(layout.times + capacity * sizeof(Word), kPage);
+  layout.bytes = round_up(layout.slots + capacity * layout.stride, kPage);
+  return layout;
+}
+
+RegionHeader copy_header(std::span<const std::byte> region) {
+  if (region.size() < kBodyOffset) {
+    throw BadRegion("region has " + std::to_string(region.size()) + " bytes, fewer than its first " +
+                    std::to_string(kBodyOffset));
+  }
+  constexpr std::size_t kWords = sizeof(RegionHeader) / sizeof(Word);
+  std::array<Word, kWords> copy{};
+  const auto words = words_at(region, 0, kWords);
+  for (std::size_t i = 0; i < kWords; ++i) copy[i] = load(words[i], std::memory_order_relaxed);
+  RegionHeader header{};
+  std::memcpy(&header, copy.data(), sizeof header);
+  return header;
+}
+
+RingLayout checked_ring_layout(const RegionHeader& header, std::size_t real_bytes) {
+  require_common(header, RegionKind::waypoints, real_bytes, kMaxRingCapacity);
+  const auto layout = RingLayout::of(header.dimensions, header.capacity, header.control);
+  require(header.stride == layout.stride, "item size", header.stride, layout.stride);
+  require(real_bytes == layout.bytes, "size", real_bytes, layout.bytes);
+  return layout;
+}
+
+BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_bytes) {
+  require_common(header, RegionKind::spline, real_bytes, kMaxBoardCapacity);
+  const auto layout = BoardLayout::of(header.dimensions, header.capacity, header.control);
+  require(header.stride == layout.stride, "slot size", header.stride, layout.stride);
+  require(real_bytes == layout.bytes, "size", real_bytes, layout.bytes);
+  return layout;
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,62 @@
+#include "splinecast/ipc/owned_descriptor.hpp"
+
+#include <pthread.h>
+#include <unistd.h>
+
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace splinecast::ipc {
+namespace {
+
+/// Every owned descriptor of this process. The mutex is held across fork, so that the child sees
+/// the list whole.
+struct Registry {
+  std::mutex mutex;
+  std::vector<int> descriptors;
+};
+
+Registry& registry() {
+  static Registry* const the_registry = [] {
+    pthread_atfork([] { registry().mutex.lock(); }, [] { registry().mutex.unlock(); },
+                   [] {
+                     for (const int descriptor : registry().descriptors) ::close(descriptor);
+                     registry().descriptors.clear();
+                     registry().mutex.unlock();
+                   });
+    return new Registry;  // lives as long as the process: forks may come in static destructors
+  }();
+  return *the_registry;
+}
+
+}  // namespace
+
+OwnedDescriptor::OwnedDescriptor(int descriptor) : descriptor_(descriptor) {
+  if (descriptor < 0) return;
+  const std::scoped_lock guard(registry().mutex);
+  registry().descriptors.push_back(descriptor);
+}
+
+OwnedDescriptor::OwnedDescriptor(OwnedDescriptor&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+OwnedDescriptor& OwnedDescriptor::operator=(OwnedDescriptor&& other) noexcept {
+  if (this != &other) {
+    close();
+    descriptor_ = std::exchange(other.descriptor_, -1);
+  }
+  return *this;
+}
+
+OwnedDescriptor::~OwnedDescriptor() { close(); }
+
+void OwnedDescriptor::close() noexcept {
+  if (descriptor_ < 0) return;
+  const std::scoped_lock guard(registry().mutex);
+  // In a forked child the list is empty and the number may be somebody else's by now.
+  if (std::erase(registry().descriptors, descriptor_) > 0) ::close(descriptor_);
+  descriptor_ = -1;
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,223 @@
+#include "splinecast/ipc/producer.hpp"
+
+#include <bit>
+#include <chrono>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/futex.hpp"
+#include "splinecast/ipc/owner_lock.hpp"
+#include "splinecast/ipc/segment_board.hpp"
+#include "splinecast/ipc/stream_files.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+/// A wait is cut into slices, in case a solver dies between its store and its wake.
+constexpr core::Time kSlice = std::chrono::milliseconds(20);
+constexpr core::Time kPoll = std::chrono::milliseconds(2);
+
+/// The solver's region as the producer sees it: where the ring's tail comes from.
+struct SolverView {
+  Region region;
+  SegmentBoardReader board;
+
+  SolverView(Region mapped, const BoardLayout& layout)
+      : region(std::move(mapped)), board(region.bytes(), layout) {}
+};
+
+/// A ring region, made or taken over, and its writer.
+struct OwnedRing {
+  Region region;
+  RegionHeader header;
+  WaypointRingWriter writer;
+
+  OwnedRing(Region mapped, const RegionHeader& described, const RingLayout& layout)
+      : region(std::move(mapped)),
+        header(described),
+        writer(region.bytes(), layout, ingest_limits(described)) {}
+};
+
+OwnedRing make_ring(const std::string& stream, const ProducerOptions& options) {
+  if (options.capacity < 2 || options.capacity > kMaxRingCapacity) {
+    throw BadRequest("a ring has 2 to " + std::to_string(kMaxRingCapacity) + " items, not " +
+                     std::to_string(options.capacity));
+  }
+  RegionHeader header = make_header(options, random_id());
+  header.kind = static_cast<std::uint64_t>(RegionKind::waypoints);
+  header.capacity = std::bit_ceil(options.capacity);
+  const auto layout = RingLayout::of(header.dimensions, header.capacity, header.control);
+  header.stride = layout.stride;
+  header.region_bytes = layout.bytes;
+  Region region = Region::create(layout.bytes, options.access);
+  write_header(region.bytes(), header);
+  enter_owner(region.bytes(), header);
+  try_lock_region(region.descriptor());
+  if (!region.link(stream, RegionKind::waypoints)) {
+    throw BadRegion(region_path(stream, RegionKind::waypoints) + " came to be while it was made");
+  }
+  return {std::move(region), header, layout};
+}
+
+void require_no_contradiction(const std::string& stream, const RegionHeader& stands,
+                              const ProducerOptions& options) {
+  const auto contradict = [&](const std::string& what) {
+    throw BadRequest("stream '" + stream + "' was left unfinished by its producer and has " + what +
+                     "; 'splinecast rm " + stream + "' removes it");
+  };
+  const RegionHeader wanted = make_header(options, stands.stream_id);
+  if (wanted.dimensions != stands.dimensions) {
+    contradict(std::to_string(stands.dimensions) + " dimensions, not " +
+               std::to_string(wanted.dimensions));
+  }
+  if (wanted.clock != stands.clock) contradict("another clock");
+  if (start_condition(wanted) != start_condition(stands)) {
+    contradict("start condition " + to_string(start_condition(stands)) + ", not " +
+               to_string(options.start));
+  }
+  if (wanted.name != stands.name) contradict("other dimension names");
+  if (wanted.unit != stands.unit) contradict("other units");
+  if (wanted.min_interval != stands.min_interval || wanted.max_interval != stands.max_interval) {
+    contradict("other interval limits");
+  }
+}
+
+/// Takes over the ring that stands under the name, if it is one to be continued; retires it if it
+/// is finished.
+std::optional<OwnedRing> continue_ring(const std::string& stream, const ProducerOptions& options) {
+  if (!region_exists(stream, RegionKind::waypoints)) return std::nullopt;
+  Region region = Region::open(stream, RegionKind::waypoints, true, options.trust);
+  const RegionHeader header = copy_header(region.bytes());
+  const auto layout = checked_ring_layout(header, region.bytes().size());
+  OwnedRing ring(std::move(region), header, layout);
+  const WaypointRingReader past(ring.region.bytes(), layout);
+  if (past.retired() || ring.writer.finished()) {
+    ring.writer.retire();
+    wake_all(ring.writer.head_word());
+    unlink_region(stream, RegionKind::waypoints);
+    return std::nullopt;
+  }
+  require_same_clock(header, stream);
+  require_no_contradiction(stream, header, options);
+  enter_owner(ring.region.bytes(), header);
+  try_lock_region(ring.region.descriptor());
+  return ring;
+}
+
+OwnedRing own_ring(const std::string& stream, const ProducerOptions& options) {
+  auto continued = continue_ring(stream, options);
+  return continued ? std::move(*continued) : make_ring(stream, options);
+}
+
+}  // namespace
+
+struct Producer::Impl {
+  std::string stream;
+  ProducerOptions options;
+  OwnerLock lock;
+  OwnedRing ring;
+  bool continues;
+  std::optional<SolverView> solver;
+
+  Impl(std::string name, ProducerOptions how)
+      : stream(std::move(name)),
+        options(std::move(how)),
+        lock(stream, RegionKind::waypoints),
+        ring(own_ring(stream, options)),
+        continues(ring.writer.head() > 0) {}
+
+  /// Looks for the solver's region until there is one for this very stream.
+  void look_for_solver() noexcept {
+    if (solver && !solver->board.retired()) return;
+    solver.reset();
+    if (!region_exists(stream, RegionKind::spline)) return;
+    try {
+      Region region = Region::open(stream, RegionKind::spline, false, options.trust);
+      const RegionHeader header = copy_header(region.bytes());
+      const auto layout = checked_board_layout(header, region.bytes().size());
+      if (header.stream_id != ring.header.stream_id) return;
+      solver.emplace(std::move(region), layout);
+    } catch (const std::exception&) {
+      solver.reset();  // not there yet, or not ours: looked for again
+    }
+  }
+
+  [[nodiscard]] Word consumed() const noexcept { return solver ? solver->board.tail() : 0; }
+
+  AppendStatus appended(AppendStatus status) noexcept {
+    if (status == AppendStatus::accepted && solver && solver->board.sleeping()) {
+      wake_all(ring.writer.head_word());
+    }
+    return status;
+  }
+
+  /// Waits until `done()`, or for the timeout, with the solver's revision as the word to watch.
+  template <typename Done>
+  bool wait(core::Time timeout, const Done& done) {
+    const MonotonicClock clock;
+    const core::Time end = clock.now() + timeout;
+    for (;;) {
+      look_for_solver();
+      const Word seen = solver ? solver->board.revision() : 0;
+      if (done()) return true;
+      const core::Time left = end - clock.now();
+      if (left <= core::Time::zero()) return false;
+      if (solver) {
+        wait_while_equal(solver->board.revision_word(), seen, std::min(left, kSlice));
+      } else {
+        std::this_thread::sleep_for(std::min(left, kPoll));
+      }
+    }
+  }
+};
+
+Producer::Producer(std::string stream, ProducerOptions options)
+    : impl_(std::make_unique<Impl>(std::move(stream), std::move(options))) {}
+Producer::Producer(Producer&&) noexcept = default;
+Producer& Producer::operator=(Producer&&) noexcept = default;
+Producer::~Producer() = default;
+
+AppendStatus Producer::append(const core::Waypoint& waypoint) noexcept {
+  if (!impl_->solver) impl_->look_for_solver();
+  return impl_->appended(impl_->ring.writer.append(waypoint, impl_->consumed()));
+}
+
+AppendStatus Producer::finish(const core::Condition& end) {
+  core::require_values(end, impl_->ring.header.dimensions);
+  if (!impl_->solver) impl_->look_for_solver();
+  return impl_->appended(impl_->ring.writer.finish(end, impl_->consumed()));
+}
+
+bool Producer::wait_for_solver(core::Time timeout) {
+  return impl_->wait(timeout, [this] { return impl_->solver && solver_alive(); });
+}
+
+bool Producer::wait_for_room(core::Time timeout) {
+  return impl_->wait(timeout, [this] {
+    const Word waiting = impl_->ring.writer.head() - impl_->consumed();
+    return waiting < impl_->ring.header.capacity;
+  });
+}
+
+bool Producer::wait_until_consumed(core::Time timeout) {
+  return impl_->wait(timeout, [this] { return impl_->consumed() == impl_->ring.writer.head(); });
+}
+
+bool Producer::solver_alive() const { return owner_lives(impl_->stream, RegionKind::spline); }
+
+Word Producer::appended() const noexcept { return impl_->ring.writer.head(); }
+Word Producer::consumed() const noexcept { return impl_->consumed(); }
+bool Producer::continues() const noexcept { return impl_->continues; }
+core::Time Producer::last_time() const noexcept { return impl_->ring.writer.last_time(); }
+bool Producer::is_memory_locked() const noexcept { return impl_->ring.region.is_memory_locked(); }
+
+void Producer::withdraw() noexcept {
+  impl_->ring.writer.retire();
+  wake_all(impl_->ring.writer.head_word());
+  unlink_region(impl_->stream, RegionKind::waypoints);
+  impl_->lock.remove_file();
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,121 @@
+#include "splinecast/ipc/reader.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/futex.hpp"
+#include "splinecast/ipc/owner_lock.hpp"
+#include "splinecast/ipc/stream_files.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+constexpr core::Time kPoll = std::chrono::milliseconds(2);
+/// A wait is cut into slices, in case a solver dies between its commit and its wake.
+constexpr core::Time kSlice = std::chrono::milliseconds(50);
+constexpr int kHeadTries = 16;
+
+/// Whether the board belongs to the stream that its producer has made, if there is one: after a
+/// stream was made anew, the old board stands until a solver comes.
+bool is_of_current_stream(const std::string& stream, const RegionHeader& header,
+                          const Trust& trust) {
+  if (!region_exists(stream, RegionKind::waypoints)) return true;
+  const Region region = Region::open(stream, RegionKind::waypoints, false, trust);
+  return copy_header(region.bytes()).stream_id == header.stream_id;
+}
+
+}  // namespace
+
+struct Reader::Impl {
+  std::string stream;
+  Region region;
+  RegionHeader header;
+  SegmentBoardReader board;
+  Sampler sampler;
+  Word seen = 0;
+
+  Impl(std::string name, Region mapped, const RegionHeader& described, const BoardLayout& layout)
+      : stream(std::move(name)),
+        region(std::move(mapped)),
+        header(described),
+        board(region.bytes(), layout),
+        sampler(board, stream_clock(described)) {}
+
+  /// Maps the stream's board, or returns nothing if there is none now.
+  static std::unique_ptr<Impl> open(const std::string& stream, const Trust& trust) {
+    if (!region_exists(stream, RegionKind::spline)) return nullptr;
+    try {
+      Region region = Region::open(stream, RegionKind::spline, false, trust);
+      const RegionHeader header = copy_header(region.bytes());
+      const auto layout = checked_board_layout(header, region.bytes().size());
+      if (!is_of_current_stream(stream, header, trust)) return nullptr;
+      require_same_clock(header, stream);
+      auto impl = std::make_unique<Impl>(stream, std::move(region), header, layout);
+      return impl->board.retired() ? nullptr : std::move(impl);
+    } catch (const NoSuchStream&) {
+      return nullptr;  // it went between the look and the opening
+    }
+  }
+
+  static std::unique_ptr<Impl> await(const std::string& stream, core::Time wait,
+                                     const Trust& trust) {
+    const MonotonicClock clock;
+    const core::Time end = clock.now() + wait;
+    for (;;) {
+      if (auto impl = open(stream, trust)) return impl;
+      if (clock.now() >= end) {
+        throw NoSuchStream("there is no stream '" + stream + "' with a solver");
+      }
+      std::this_thread::sleep_for(kPoll);
+    }
+  }
+};
+
+Reader::Reader(std::string stream, core::Time wait, const Trust& trust)
+    : impl_((require_stream_name(stream), Impl::await(stream, wait, trust))),
+      sampler_(&impl_->sampler),
+      dimensions_(impl_->board.dimensions()) {}
+Reader::Reader(Reader&&) noexcept = default;
+Reader& Reader::operator=(Reader&&) noexcept = default;
+Reader::~Reader() = default;
+
+bool Reader::head(Head& out) const noexcept {
+  for (int attempt = 0; attempt < kHeadTries; ++attempt) {
+    const Word r = impl_->board.revision();
+    if (r == 0) return false;
+    if (impl_->board.copy_head(r, out)) return true;
+  }
+  return false;
+}
+
+WaitStatus Reader::wait(core::Time timeout) noexcept {
+  const MonotonicClock clock;
+  const core::Time end = clock.now() + timeout;
+  impl_->seen = std::max(impl_->seen, impl_->sampler.revision_seen());
+  for (;;) {
+    if (impl_->board.retired()) return WaitStatus::retired;
+    const Word revision = impl_->board.revision();
+    if (revision != impl_->seen) {
+      impl_->seen = revision;
+      return WaitStatus::advanced;
+    }
+    const core::Time left = end - clock.now();
+    if (left <= core::Time::zero()) return WaitStatus::timed_out;
+    wait_while_equal(impl_->board.revision_word(), revision, std::min(left, kSlice));
+  }
+}
+
+Alive Reader::alive() const noexcept {
+  return {.producer = owner_lives(impl_->stream, RegionKind::waypoints),
+          .solver = is_region_locked(impl_->region.descriptor())};
+}
+
+const RegionHeader& Reader::header() const noexcept { return impl_->header; }
+StreamClock Reader::clock() const noexcept { return stream_clock(impl_->header); }
+std::vector<std::string> Reader::names() const { return dimension_names(impl_->header); }
+bool Reader::is_memory_locked() const noexcept { return impl_->region.is_memory_locked(); }
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,193 @@
+#include "splinecast/ipc/sampler.hpp"
+
+#include <algorithm>
+
+#include "splinecast/core/segment.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+/// How often a sample tries again when the writer overtakes it. A try takes well under a
+/// microsecond and fails only if a whole revision was written within it.
+constexpr int kTries = 16;
+
+/// Sets velocity, acceleration and jerk to 0: at rest.
+void come_to_rest(core::StateRef out) noexcept {
+  std::ranges::fill(out.velocity, 0.0);
+  std::ranges::fill(out.acceleration, 0.0);
+  std::ranges::fill(out.jerk, 0.0);
+}
+
+}  // namespace
+
+Sampler::Sampler(const SegmentBoardReader& board, StreamClock clock)
+    : board_(&board),
+      clock_(clock),
+      copies_{SegmentCopy(board.dimensions()), SegmentCopy(board.dimensions())} {}
+
+SampleStatus Sampler::sample(core::Time t, core::StateRef out) noexcept {
+  for (int attempt = 0; attempt < kTries; ++attempt) {
+    if (board_->retired()) return SampleStatus::retired;
+    const Word r = board_->revision();
+    if (r == 0) return SampleStatus::no_data;
+    if (r != head_.revision && !board_->copy_bounds(r, head_)) {
+      head_.revision = 0;  // bounds half taken over must not pass for those of a revision
+      continue;
+    }
+    if (head_.newest == 0) return SampleStatus::no_data;
+    const Found found = locate(t);
+    if (found == Found::segment) return evaluate(current(), t, out);
+    if (found == Found::before_first) {
+      const bool holds = clock_ == StreamClock::monotonic && head_.first == 1;
+      if (!holds) return SampleStatus::before_history;
+      if (take(head_.first)) return hold_first(out);
+    }
+  }
+  return from_own_copy(t, out);
+}
+
+/// Makes current() the segment of `t` under head_.revision.
+Sampler::Found Sampler::locate(core::Time t) noexcept {
+  const Word r = head_.revision;
+  const SegmentCopy& last = current();
+  if (is_confirmed(r)) {
+    if (spans(last, t)) return Found::segment;
+    const Word next = last.number + 1;
+    if (t >= last.right && next <= head_.newest) {
+      if (!take(next)) return Found::torn;
+      if (spans(current(), t)) return Found::segment;
+    }
+  }
+  Word number = number_by_hint(t);
+  if (number != 0) {
+    if (!take(number)) return Found::torn;
+    if (spans(current(), t)) return Found::segment;
+  }
+  // The hint failed: a writer died between, or is at work. The cells decide.
+  if (!number_by_cells(t, number)) return Found::torn;
+  if (number == 0) return Found::before_first;
+  if (!take(number)) return Found::torn;
+  return spans(current(), t) ? Found::segment : Found::torn;
+}
+
+/// Whether the current copy is what revision r holds, without copying it again.
+bool Sampler::is_confirmed(Word r) noexcept {
+  if (confirmed_ == r) return true;
+  const SegmentCopy& last = current();
+  const bool stands = last.tag != 0 && last.number >= head_.first &&
+                      last.number <= head_.newest && board_->is_current(last, r);
+  if (stands) confirm();
+  return stands;
+}
+
+void Sampler::confirm() noexcept {
+  confirmed_ = head_.revision;
+  copied_settled_until_ = head_.settled_until;
+}
+
+/// Makes segment `number` the current copy; keeps the one before if that fails.
+bool Sampler::take(Word number) noexcept {
+  if (!board_->copy_segment(number, head_.revision, copies_[1 - current_])) return false;
+  current_ = 1 - current_;
+  confirm();
+  return true;
+}
+
+/// Whether a time belongs to a segment: a time on a knot to the one on its right; all times behind
+/// the newest segment to that one.
+bool Sampler::spans(const SegmentCopy& segment, core::Time t) const noexcept {
+  return t >= segment.left && (t < segment.right || segment.number == head_.newest);
+}
+
+/// The last segment whose left end is at or before t, by the packed times; 0 if t is before all.
+Word Sampler::number_by_hint(core::Time t) const noexcept {
+  Word low = head_.first;
+  Word high = head_.newest + 1;
+  while (low < high) {
+    const Word middle = low + (high - low) / 2;
+    if (board_->left_hint(middle) <= t) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low == head_.first ? 0 : low - 1;
+}
+
+/// The same by the cells, under the revision of the head. Returns false if a cell was written
+/// meanwhile.
+bool Sampler::number_by_cells(core::Time t, Word& number) const noexcept {
+  Word low = head_.first;
+  Word high = head_.newest + 1;
+  while (low < high) {
+    const Word middle = low + (high - low) / 2;
+    core::Time left{};
+    if (!board_->copy_left(middle, head_.revision, left)) return false;
+    if (left <= t) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  number = low == head_.first ? 0 : low - 1;
+  return true;
+}
+
+SampleStatus Sampler::evaluate(const SegmentCopy& segment, core::Time t,
+                               core::StateRef out) const noexcept {
+  const bool past_end = t > segment.right || segment.kind == core::SegmentKind::hold ||
+                        (t == segment.right && segment.kind == core::SegmentKind::stop_tail);
+  const core::Time at = past_end ? segment.right : t;
+  core::evaluate(segment.order, segment.coefficients, core::to_seconds(at - segment.left), out);
+  if (past_end) come_to_rest(out);
+  if (head_.finished && t <= segment.right) return SampleStatus::settled;
+  if (past_end) return SampleStatus::holding;
+  if (segment.kind == core::SegmentKind::stop_tail) return SampleStatus::stopping;
+  return t < head_.settled_until ? SampleStatus::settled : SampleStatus::provisional;
+}
+
+/// Before the first waypoint of a live stream the machine stands where it will start.
+SampleStatus Sampler::hold_first(core::StateRef out) noexcept {
+  core::evaluate(current().order, current().coefficients, 0, out);
+  come_to_rest(out);
+  return SampleStatus::holding;
+}
+
+/// What a reader may still say when the writer has overtaken every try: a time inside its own copy
+/// and before the settled_until copied with it can no longer change.
+SampleStatus Sampler::from_own_copy(core::Time t, core::StateRef out) noexcept {
+  const SegmentCopy& own = current();
+  if (own.tag == 0 || t < own.left || t >= own.right || t >= copied_settled_until_) {
+    return SampleStatus::busy;
+  }
+  core::evaluate(own.order, own.coefficients, core::to_seconds(t - own.left), out);
+  return SampleStatus::settled;
+}
+
+SampleStatus Sampler::snapshot(core::Time from, core::Time to, Snapshot& out) {
+  out.size_ = 0;
+  for (int attempt = 0; attempt < kTries; ++attempt) {
+    if (board_->retired()) return SampleStatus::retired;
+    const Word r = board_->revision();
+    if (r == 0) return SampleStatus::no_data;
+    if (!board_->copy_head(r, out.head_)) continue;
+    head_ = out.head_;
+    if (head_.newest == 0) return SampleStatus::no_data;
+    Word oldest = 0;
+    Word newest = 0;
+    if (!number_by_cells(from, oldest) || !number_by_cells(to, newest)) continue;
+    if (oldest == 0) return SampleStatus::before_history;
+    const std::size_t count = newest >= oldest ? newest - oldest + 1 : 0;
+    while (out.segments_.size() < count) out.segments_.emplace_back(board_->dimensions());
+    // The newest first: it is the one that the writer will overwrite first.
+    std::size_t left = count;
+    while (left > 0 && board_->copy_segment(oldest + left - 1, r, out.segments_[left - 1])) --left;
+    if (left > 0) continue;
+    out.size_ = count;
+    return head_.finished || to < head_.settled_until ? SampleStatus::settled
+                                                      : SampleStatus::provisional;
+  }
+  return SampleStatus::busy;
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,225 @@
+#include "splinecast/ipc/segment_board.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace splinecast::ipc {
+namespace {
+
+constexpr Word kFinishedFlag = 1;
+constexpr std::size_t kBoundsWords = kHeadFlags;  // words 1 … 4
+constexpr unsigned kShapeKindShift = 8;
+constexpr unsigned kShapeSeenShift = 16;
+constexpr Word kByteMask = 0xff;
+constexpr unsigned kRefusalItemShift = 8;
+
+// Vectors of a cell behind the coefficients, in units of D words.
+constexpr std::size_t kStepVector = core::kMaxOrder;
+constexpr std::size_t kPositionVector = kStepVector + 1;
+constexpr std::size_t kGVector = kPositionVector + 1;
+constexpr std::size_t kGammaAfter = kGVector + 1;
+
+std::size_t control_words() noexcept { return kControlLines * kSeparation / sizeof(Word); }
+
+void put_values(Word* words, std::span<const double> values) noexcept {
+  for (std::size_t i = 0; i < values.size(); ++i) put(words[i], to_word(values[i]));
+}
+
+/// The members of a head that lookups need, out of its words 1 … kBoundsWords.
+void take_bounds(std::span<const Word> words, Word r, Head& out) noexcept {
+  out.revision = r;
+  out.first = words[kHeadFirst - 1];
+  out.newest = words[kHeadNewest - 1];
+  out.settled_until = to_time(words[kHeadSettledUntil - 1]);
+  out.finished = (words[kHeadFlags - 1] & kFinishedFlag) != 0;
+}
+
+}  // namespace
+
+SegmentBoardWriter::SegmentBoardWriter(std::span<std::byte> region,
+                                       const BoardLayout& layout) noexcept
+    : layout_(layout),
+      control_(words_at(region, layout.control, control_words())),
+      head_(words_at(region, layout.head, 2 * kHeadWords)),
+      refusals_(words_at(region, layout.refusals, kRefusalsKept)),
+      times_(words_at(region, layout.times, layout.capacity)),
+      slots_(words_at(region, layout.slots, layout.capacity * layout.stride / sizeof(Word))),
+      revision_(load(control_[kRevision], std::memory_order_relaxed)) {
+  retire_uncommitted(head_slot(), revision_);
+  for (Word number = 0; number < layout_.capacity; ++number) {
+    retire_uncommitted(slot(number), revision_);
+  }
+  const auto head = head_slot();
+  const Word* const newest = head.cell(head.tags(std::memory_order_relaxed).newest(revision_));
+  for (std::size_t i = 0; i < kHeadChangesKept; ++i) {
+    changes_[i] = load(newest[kHeadChanges + i], std::memory_order_relaxed);
+  }
+}
+
+SlotView<Word> SegmentBoardWriter::slot(Word number) const noexcept {
+  const std::size_t index = number & (layout_.capacity - 1);
+  return {slots_.subspan(index * (layout_.stride / sizeof(Word))).data(),
+          layout_.cell / sizeof(Word)};
+}
+
+SlotView<Word> SegmentBoardWriter::head_slot() const noexcept { return {head_.data(), kHeadWords}; }
+
+void SegmentBoardWriter::write(Word number, const core::Segment& segment, const core::Knot& knot,
+                               std::size_t newer_knots) noexcept {
+  const std::size_t dimensions = layout_.dimensions;
+  Word* const cell = claim_spare(slot(number), revision_ + 1);
+  put(cell[kCellNumber], number);
+  put(cell[kCellLeft], to_word(segment.left));
+  put(cell[kCellRight], to_word(segment.right));
+  put(cell[kCellShape], static_cast<Word>(segment.order) |
+                            static_cast<Word>(segment.kind) << kShapeKindShift |
+                            static_cast<Word>(newer_knots) << kShapeSeenShift);
+  Word* const vectors = cell + kCellCoefficients;
+  put_values(vectors, std::span(segment.coefficients)
+                          .first(static_cast<std::size_t>(segment.order) * dimensions));
+  put_values(vectors + kStepVector * dimensions, segment.acceleration_step);
+  put_values(vectors + kPositionVector * dimensions, knot.position);
+  put_values(vectors + kGVector * dimensions, knot.g);
+  put(vectors[kGammaAfter * dimensions], to_word(knot.gamma));
+  // A hint only: readers confirm it in the cell, so no ordering is needed.
+  store(times_[number & (layout_.capacity - 1)], to_word(segment.left), std::memory_order_relaxed);
+}
+
+void SegmentBoardWriter::write_refusal(Word index, const RefusedItem& refusal) noexcept {
+  // One word, so that it is never torn; published by the commit of the head that counts it.
+  put(refusals_[index % kRefusalsKept],
+      refusal.item << kRefusalItemShift | static_cast<Word>(refusal.reason));
+}
+
+void SegmentBoardWriter::commit(Head& head) noexcept {
+  const Word r = revision_ + 1;
+  head.revision = r;
+  changes_[r % kHeadChangesKept] = to_word(head.changed_from);
+  Word* const cell = claim_spare(head_slot(), r);
+  put(cell[kHeadFirst], head.first);
+  put(cell[kHeadNewest], head.newest);
+  put(cell[kHeadSettledUntil], to_word(head.settled_until));
+  put(cell[kHeadFlags], head.finished ? kFinishedFlag : 0);
+  put(cell[kHeadChangedFrom], to_word(head.changed_from));
+  put(cell[kHeadConsumed], head.consumed);
+  put(cell[kHeadKnots], head.knots);
+  put(cell[kHeadNewestKnot], to_word(head.newest_knot));
+  put(cell[kHeadCommitted], to_word(head.committed));
+  put(cell[kHeadRefused], head.refused);
+  for (std::size_t i = 0; i < kRefusalReasons; ++i) put(cell[kHeadReasons + i], head.reasons[i]);
+  for (std::size_t i = 0; i < kHeadChangesKept; ++i) put(cell[kHeadChanges + i], changes_[i]);
+  store(control_[kRevision], r, std::memory_order_release);  // W3
+  revision_ = r;
+}
+
+SegmentBoardReader::SegmentBoardReader(std::span<const std::byte> region,
+                                       const BoardLayout& layout) noexcept
+    : layout_(layout),
+      control_(words_at(region, layout.control, control_words())),
+      head_(words_at(region, layout.head, 2 * kHeadWords)),
+      refusals_(words_at(region, layout.refusals, kRefusalsKept)),
+      times_(words_at(region, layout.times, layout.capacity)),
+      slots_(words_at(region, layout.slots, layout.capacity * layout.stride / sizeof(Word))) {}
+
+SlotView<const Word> SegmentBoardReader::slot(Word number) const noexcept {
+  const std::size_t index = number & (layout_.capacity - 1);
+  return {slots_.subspan(index * (layout_.stride / sizeof(Word))).data(),
+          layout_.cell / sizeof(Word)};
+}
+
+SlotView<const Word> SegmentBoardReader::head_slot() const noexcept {
+  return {head_.data(), kHeadWords};
+}
+
+/// Whether the segments of a head can all lie on this board; no writer of ours says otherwise.
+bool SegmentBoardReader::has_sane_bounds(const Head& head) const noexcept {
+  if (head.newest == 0) return true;
+  return head.first >= 1 && head.first <= head.newest &&
+         head.newest - head.first < layout_.capacity && head.newest != kRetiredTag;
+}
+
+bool SegmentBoardReader::copy_bounds(Word r, Head& out) const noexcept {
+  std::array<Word, kBoundsWords> words{};
+  if (copy_newest(head_slot(), r, words.size(), words.data()) == 0) return false;
+  take_bounds(words, r, out);
+  return has_sane_bounds(out);
+}
+
+bool SegmentBoardReader::copy_head(Word r, Head& out) const noexcept {
+  std::array<Word, kHeadReasons + kRefusalReasons - 1> words{};
+  if (copy_newest(head_slot(), r, words.size(), words.data()) == 0) return false;
+  const auto word = [&](std::size_t at) { return words[at - 1]; };
+  take_bounds(words, r, out);
+  out.changed_from = to_time(word(kHeadChangedFrom));
+  out.consumed = word(kHeadConsumed);
+  out.knots = word(kHeadKnots);
+  out.newest_knot = to_time(word(kHeadNewestKnot));
+  out.committed = to_time(word(kHeadCommitted));
+  out.refused = word(kHeadRefused);
+  for (std::size_t i = 0; i < kRefusalReasons; ++i) out.reasons[i] = word(kHeadReasons + i);
+  return has_sane_bounds(out);
+}
+
+bool SegmentBoardReader::copy_segment(Word number, Word r, SegmentCopy& out) const noexcept {
+  out.tag = 0;
+  const auto view = slot(number);
+  const Tags tags = view.tags(std::memory_order_acquire);
+  if (!tags.holds_any(r)) return false;
+  const std::size_t c = tags.newest(r);
+  const Word* const cell = view.cell(c);
+  const auto word = [cell](std::size_t i) { return load(cell[i], std::memory_order_acquire); };
+  out.number = word(kCellNumber);
+  out.left = to_time(word(kCellLeft));
+  out.right = to_time(word(kCellRight));
+  const Word shape = word(kCellShape);
+  out.order = (shape & kByteMask) == core::kCubicOrder ? core::kCubicOrder : core::kMaxOrder;
+  out.kind = static_cast<core::SegmentKind>((shape >> kShapeKindShift) & kByteMask);
+  const std::size_t values = static_cast<std::size_t>(out.order) * layout_.dimensions;
+  for (std::size_t i = 0; i < values; ++i) {
+    out.coefficients[i] = to_double(word(kCellCoefficients + i));
+  }
+  if (load(cell[kCellTag], std::memory_order_relaxed) != tags.of[c] || out.number != number) {
+    return false;
+  }
+  out.tag = tags.of[c];
+  return true;
+}
+
+bool SegmentBoardReader::is_current(const SegmentCopy& copy, Word r) const noexcept {
+  if (copy.tag == 0) return false;
+  const Tags tags = slot(copy.number).tags(std::memory_order_acquire);
+  return tags.of[tags.newest(r)] == copy.tag;
+}
+
+bool SegmentBoardReader::copy_left(Word number, Word r, core::Time& left) const noexcept {
+  std::array<Word, kCellLeft> words{};
+  if (copy_newest(slot(number), r, words.size(), words.data()) == 0) return false;
+  left = to_time(words[kCellLeft - 1]);
+  return words[kCellNumber - 1] == number;
+}
+
+RefusedItem SegmentBoardReader::refusal(Word index) const noexcept {
+  const Word word = load(refusals_[index % kRefusalsKept], std::memory_order_acquire);
+  return {.item = word >> kRefusalItemShift, .reason = static_cast<Refusal>(word & kByteMask)};
+}
+
+core::Knot SegmentBoardReader::knot(Word number, Word r, std::span<double> values) const noexcept {
+  const std::size_t dimensions = layout_.dimensions;
+  const auto view = slot(number);
+  const Word* const cell = view.cell(view.tags(std::memory_order_relaxed).newest(r));
+  const Word* const vectors = cell + kCellCoefficients;
+  const auto take = [&](std::size_t part, std::size_t vector) {
+    const auto out = values.subspan(part * dimensions, dimensions);
+    for (std::size_t d = 0; d < dimensions; ++d) {
+      out[d] = to_double(load(vectors[vector * dimensions + d], std::memory_order_relaxed));
+    }
+    return out;
+  };
+  return {.time = to_time(load(cell[kCellLeft], std::memory_order_relaxed)),
+          .gamma = to_double(load(vectors[kGammaAfter * dimensions], std::memory_order_relaxed)),
+          .position = take(0, kPositionVector),
+          .velocity = take(1, 1),
+          .g = take(2, kGVector)};
+}
+
+}  // namespace splinecast::ipc

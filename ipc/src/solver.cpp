@@ -1,0 +1,234 @@
+#include "splinecast/ipc/solver.hpp"
+
+#include <bit>
+#include <chrono>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/futex.hpp"
+#include "splinecast/ipc/owner_lock.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+constexpr std::size_t kDefaultSettle = 8;
+constexpr std::size_t kDefaultCapacity = 4096;
+constexpr core::Time kDefaultStopTime = std::chrono::milliseconds(250);
+/// How often a solver without a stream looks for one.
+constexpr core::Time kPoll = std::chrono::milliseconds(5);
+
+template <typename T>
+void require_same(const std::string& stream, const char* what, const std::optional<T>& wanted,
+                  const T& stands, const std::string& wanted_text, const std::string& stands_text) {
+  if (!wanted || *wanted == stands) return;
+  throw BadRequest("stream '" + stream + "' is solved with " + what + ' ' + stands_text + ", not " +
+                   wanted_text + "; 'splinecast rm " + stream + "' removes it");
+}
+
+void require_no_contradiction(const std::string& stream, const RegionHeader& stands,
+                              const SolverOptions& options) {
+  const auto number = [](auto value) { return std::to_string(value); };
+  require_same<std::size_t>(stream, "settle lag", options.settle, stands.settle,
+                            number(options.settle.value_or(0)), number(stands.settle));
+  const auto tail = static_cast<core::Tail>(stands.tail);
+  require_same(stream, "tail", options.tail, tail,
+               std::string(core::to_string(options.tail.value_or(tail))),
+               std::string(core::to_string(tail)));
+  const core::Time stop_time(stands.stop_time);
+  require_same(stream, "stop time in ns", options.stop_time, stop_time,
+               number(options.stop_time.value_or(stop_time).count()), number(stands.stop_time));
+  if (options.capacity) {
+    require_same<std::size_t>(stream, "capacity", std::bit_ceil(*options.capacity),
+                              stands.capacity, number(*options.capacity),
+                              number(stands.capacity));
+  }
+}
+
+core::WindowOptions window_options(const RegionHeader& header) {
+  return {.settle = header.settle,
+          .tail = static_cast<core::Tail>(header.tail),
+          .start = start_condition(header),
+          .stop_time = core::Time(header.stop_time),
+          .held_before_start = stream_clock(header) == StreamClock::monotonic};
+}
+
+void require_options(const SolverOptions& options) {
+  if (options.settle && *options.settle > core::kMaxSettle) {
+    throw BadRequest("settle lag must be 0 to 64, not " + std::to_string(*options.settle));
+  }
+  if (options.stop_time && *options.stop_time <= core::Time::zero()) {
+    throw BadRequest("stop time must be positive, not " +
+                     std::to_string(options.stop_time->count()) + " ns");
+  }
+  const std::size_t least = StreamSolver::min_capacity(options.settle.value_or(kDefaultSettle));
+  if (options.capacity && (*options.capacity < least || *options.capacity > kMaxBoardCapacity)) {
+    throw BadRequest("capacity must be " + std::to_string(least) + " to " +
+                     std::to_string(kMaxBoardCapacity) + " segments, not " +
+                     std::to_string(*options.capacity));
+  }
+}
+
+/// The producer's region, as the solver reads it.
+struct RingView {
+  Region region;
+  RegionHeader header;
+  WaypointRingReader ring;
+
+  RingView(Region mapped, const RegionHeader& described, const RingLayout& layout)
+      : region(std::move(mapped)), header(described), ring(region.bytes(), layout) {}
+};
+
+/// The solver's own region, made or taken over.
+struct OwnedBoard {
+  Region region;
+  RegionHeader header;
+  bool taken_over;
+  SegmentBoardWriter writer;
+  SegmentBoardReader reader;
+
+  OwnedBoard(Region mapped, const RegionHeader& described, const BoardLayout& layout, bool old)
+      : region(std::move(mapped)),
+        header(described),
+        taken_over(old),
+        writer(region.bytes(), layout),
+        reader(region.bytes(), layout) {}
+};
+
+OwnedBoard make_board(const std::string& stream, const RegionHeader& ring_header,
+                      const SolverOptions& options) {
+  RegionHeader header = ring_header;
+  header.kind = static_cast<std::uint64_t>(RegionKind::spline);
+  header.settle = options.settle.value_or(kDefaultSettle);
+  header.tail = static_cast<std::uint64_t>(options.tail.value_or(core::Tail::bessel));
+  header.stop_time = options.stop_time.value_or(kDefaultStopTime).count();
+  header.capacity = std::bit_ceil(options.capacity.value_or(kDefaultCapacity));
+  const auto layout = BoardLayout::of(header.dimensions, header.capacity, header.control);
+  header.stride = layout.stride;
+  header.region_bytes = layout.bytes;
+  header.epoch = 0;
+  Region region = Region::create(layout.bytes, options.access);
+  write_header(region.bytes(), header);
+  enter_owner(region.bytes(), header);
+  try_lock_region(region.descriptor());
+  if (!region.link(stream, RegionKind::spline)) {
+    throw BadRegion(region_path(stream, RegionKind::spline) + " came to be while it was made");
+  }
+  return {std::move(region), header, layout, false};
+}
+
+OwnedBoard own_board(const std::string& stream, const RegionHeader& ring_header,
+                     const SolverOptions& options) {
+  if (!region_exists(stream, RegionKind::spline)) return make_board(stream, ring_header, options);
+  Region region = Region::open(stream, RegionKind::spline, true, options.trust);
+  const RegionHeader header = copy_header(region.bytes());
+  const auto layout = checked_board_layout(header, region.bytes().size());
+  OwnedBoard board(std::move(region), header, layout, true);
+  if (header.stream_id != ring_header.stream_id || board.reader.retired()) {
+    board.writer.retire();
+    wake_all(board.writer.revision_word());
+    unlink_region(stream, RegionKind::spline);
+    return make_board(stream, ring_header, options);
+  }
+  require_no_contradiction(stream, header, options);
+  enter_owner(board.region.bytes(), header);
+  board.writer.store_sleeping(false);
+  try_lock_region(board.region.descriptor());
+  return board;
+}
+
+}  // namespace
+
+/// What a solver has while a stream stands.
+struct Attachment {
+  RingView ring;
+  OwnedBoard board;
+  StreamSolver solver;
+
+  Attachment(RingView producer, OwnedBoard own)
+      : ring(std::move(producer)),
+        board(std::move(own)),
+        solver(ring.ring, board.writer, board.reader, window_options(board.header),
+               ingest_limits(ring.header)) {}
+};
+
+struct Solver::Impl {
+  std::string stream;
+  SolverOptions options;
+  OwnerLock lock;
+  std::unique_ptr<Attachment> attachment;
+
+  Impl(std::string name, SolverOptions how)
+      : stream(std::move(name)),
+        options((require_options(how), std::move(how))),
+        lock(stream, RegionKind::spline) {}
+
+  ~Impl() {
+    // A lock file beside no region is litter.
+    if (!region_exists(stream, RegionKind::spline)) lock.remove_file();
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+};
+
+Solver::Solver(std::string stream, SolverOptions options)
+    : impl_(std::make_unique<Impl>(std::move(stream), std::move(options))) {}
+Solver::Solver(Solver&&) noexcept = default;
+Solver& Solver::operator=(Solver&&) noexcept = default;
+Solver::~Solver() = default;
+
+bool Solver::attach() {
+  if (attached()) return true;
+  if (!region_exists(impl_->stream, RegionKind::waypoints)) return false;
+  try {
+    Region region =
+        Region::open(impl_->stream, RegionKind::waypoints, false, impl_->options.trust);
+    const RegionHeader header = copy_header(region.bytes());
+    const auto layout = checked_ring_layout(header, region.bytes().size());
+    require_same_clock(header, impl_->stream);
+    RingView ring(std::move(region), header, layout);
+    if (ring.ring.retired()) return false;
+    OwnedBoard board = own_board(impl_->stream, header, impl_->options);
+    impl_->attachment = std::make_unique<Attachment>(std::move(ring), std::move(board));
+  } catch (const NoSuchStream&) {
+    return false;  // it went between the look and the opening
+  }
+  return true;
+}
+
+bool Solver::attached() const noexcept { return impl_->attachment != nullptr; }
+
+StepResult Solver::step(const Clock& clock) {
+  if (!attached()) return {};
+  Attachment& at = *impl_->attachment;
+  const StepResult result = at.solver.step(clock);
+  if (result.published && impl_->options.wake) wake_all(at.board.writer.revision_word());
+  if (result.consumed == 0 && at.ring.ring.retired()) impl_->attachment.reset();
+  return result;
+}
+
+void Solver::wait(core::Time timeout) noexcept {
+  if (!attached()) {
+    std::this_thread::sleep_for(std::min(timeout, kPoll));
+    return;
+  }
+  Attachment& at = *impl_->attachment;
+  // The store and the load are seq_cst, as are the producer's store of head and load of sleeping:
+  // either this load sees the new head, or the producer sees that somebody is to be woken.
+  at.board.writer.store_sleeping(true);
+  const Word head = at.ring.ring.head(std::memory_order_seq_cst);
+  if (head == at.solver.head().consumed && !at.ring.ring.retired()) {
+    wait_while_equal(at.ring.ring.head_word(), head, timeout);
+  }
+  at.board.writer.store_sleeping(false);
+}
+
+const Head& Solver::head() const noexcept { return impl_->attachment->solver.head(); }
+bool Solver::took_over() const noexcept { return attached() && impl_->attachment->board.taken_over; }
+bool Solver::is_memory_locked() const noexcept {
+  return attached() && impl_->attachment->board.region.is_memory_locked();
+}
+const std::string& Solver::stream() const noexcept { return impl_->stream; }
+
+}  // namespace splinecast::ipc

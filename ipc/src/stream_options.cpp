@@ -1,0 +1,124 @@
+#include "splinecast/ipc/stream_options.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+
+#include "splinecast/ipc/errors.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+template <std::size_t N>
+void put_texts(const std::vector<std::string>& texts, std::size_t dimensions, const char* what,
+               std::array<std::array<char, N>, core::kMaxDimensions>& out) {
+  if (!texts.empty() && texts.size() != dimensions) {
+    throw BadRequest(std::to_string(texts.size()) + ' ' + what + " for " +
+                     std::to_string(dimensions) + " dimensions");
+  }
+  for (std::size_t d = 0; d < texts.size(); ++d) {
+    const std::size_t length = std::min(texts[d].size(), N - 1);
+    std::copy_n(texts[d].begin(), length, out[d].begin());
+  }
+}
+
+template <std::size_t N>
+std::vector<std::string> texts_of(
+    const std::array<std::array<char, N>, core::kMaxDimensions>& texts, std::size_t dimensions) {
+  std::vector<std::string> out;
+  for (std::size_t d = 0; d < dimensions; ++d) out.push_back(text_of(texts[d]));
+  return out;
+}
+
+Word& header_word(std::span<std::byte> region, std::size_t offset) noexcept {
+  return words_at(region, offset, 1)[0];
+}
+
+}  // namespace
+
+RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id) {
+  if (options.dimensions < core::kMinDimensions || options.dimensions > core::kMaxDimensions) {
+    throw BadRequest("a stream has 1 to 64 dimensions, not " + std::to_string(options.dimensions));
+  }
+  if (options.limits.min_interval < core::Time(1) ||
+      options.limits.max_interval < options.limits.min_interval) {
+    throw BadRequest("intervals from " + std::to_string(options.limits.min_interval.count()) +
+                     " ns to " + std::to_string(options.limits.max_interval.count()) +
+                     " ns are no range of positive times");
+  }
+  core::require_values(options.start, options.dimensions);
+  RegionHeader header{};
+  header.magic = kMagic;
+  header.layout_version = kLayoutVersion;
+  header.byte_order = kByteOrder;
+  header.layout_hash = layout_hash();
+  header.stream_id = stream_id;
+  header.dimensions = options.dimensions;
+  header.order = core::kMaxOrder;
+  header.clock = static_cast<std::uint64_t>(options.clock);
+  header.time_namespace = options.clock == StreamClock::monotonic ? time_namespace() : 0;
+  header.control = kHeaderBytes + stream_id % (kControlPositions + 1) * kSeparation;
+  header.min_interval = options.limits.min_interval.count();
+  header.max_interval = options.limits.max_interval.count();
+  header.start_kind = static_cast<std::uint64_t>(options.start.kind);
+  std::ranges::copy(options.start.value, header.start_value.begin());
+  put_texts(options.names, options.dimensions, "names", header.name);
+  put_texts(options.units, options.dimensions, "units", header.unit);
+  return header;
+}
+
+core::Condition start_condition(const RegionHeader& header) {
+  core::Condition start{.kind = static_cast<core::ConditionKind>(header.start_kind), .value = {}};
+  if (header.start_kind > static_cast<std::uint64_t>(core::ConditionKind::acceleration)) {
+    throw BadRegion("region has start condition " + std::to_string(header.start_kind));
+  }
+  if (start.kind == core::ConditionKind::velocity ||
+      start.kind == core::ConditionKind::acceleration) {
+    const auto values = std::span(header.start_value).first(header.dimensions);
+    start.value.assign(values.begin(), values.end());
+  }
+  return start;
+}
+
+std::vector<std::string> dimension_names(const RegionHeader& header) {
+  return texts_of(header.name, header.dimensions);
+}
+
+std::vector<std::string> dimension_units(const RegionHeader& header) {
+  return texts_of(header.unit, header.dimensions);
+}
+
+IngestLimits ingest_limits(const RegionHeader& header) noexcept {
+  return {.min_interval = core::Time(header.min_interval),
+          .max_interval = core::Time(header.max_interval)};
+}
+
+StreamClock stream_clock(const RegionHeader& header) noexcept {
+  return static_cast<StreamClock>(header.clock);
+}
+
+void require_same_clock(const RegionHeader& header, const std::string& stream) {
+  if (stream_clock(header) != StreamClock::monotonic || header.time_namespace == time_namespace()) {
+    return;
+  }
+  throw BadRegion("stream '" + stream + "' runs on the clock of time namespace " +
+                  std::to_string(header.time_namespace) + ", this process on that of " +
+                  std::to_string(time_namespace()));
+}
+
+void write_header(std::span<std::byte> region, const RegionHeader& header) noexcept {
+  std::memcpy(region.data(), &header, sizeof header);
+}
+
+void enter_owner(std::span<std::byte> region, const RegionHeader& before) noexcept {
+  store(header_word(region, offsetof(RegionHeader, owner_pid)), static_cast<Word>(getpid()),
+        std::memory_order_relaxed);
+  store(header_word(region, offsetof(RegionHeader, owner_since)),
+        to_word(MonotonicClock().now()), std::memory_order_relaxed);
+  store(header_word(region, offsetof(RegionHeader, epoch)), before.epoch + 1,
+        std::memory_order_release);
+}
+
+}  // namespace splinecast::ipc

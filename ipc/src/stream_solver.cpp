@@ -1,0 +1,147 @@
+#include "splinecast/ipc/stream_solver.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace splinecast::ipc {
+namespace {
+
+/// Most items of one revision: bounds how long a step takes.
+constexpr std::size_t kMaxBatch = 256;
+
+/// Segments that a revision may change besides one per item: those of the open knots, the one
+/// before them, and the stop tail.
+constexpr std::size_t changed_besides(std::size_t settle) noexcept { return settle + 4; }
+
+constexpr core::Time kNothingChanged = core::Time::max();
+
+}  // namespace
+
+std::size_t StreamSolver::min_capacity(std::size_t settle) noexcept {
+  return 2 * changed_besides(settle);
+}
+
+StreamSolver::StreamSolver(const WaypointRingReader& ring, SegmentBoardWriter& board,
+                           const SegmentBoardReader& published, const core::WindowOptions& window,
+                           const IngestLimits& limits)
+    : ring_(&ring),
+      board_(&board),
+      limits_(limits),
+      window_(ring.dimensions(), window),
+      max_batch_(std::min(kMaxBatch, board.capacity() - changed_besides(window.settle))),
+      item_(ring.dimensions()),
+      segment_(ring.dimensions()) {
+  if (board.capacity() < min_capacity(window.settle)) {
+    throw std::invalid_argument("a board of " + std::to_string(board.capacity()) +
+                                " segments is too small for settle lag " +
+                                std::to_string(window.settle));
+  }
+  end_.value.reserve(ring.dimensions());
+  restore(published);
+}
+
+void StreamSolver::restore(const SegmentBoardReader& published) {
+  const Word r = published.revision();
+  if (r == 0 || !published.copy_head(r, head_)) return;
+  board_->store_tail(head_.consumed);  // its last writer may have died between commit and tail
+  if (head_.finished || head_.knots == 0) return;
+  const std::size_t knots = head_.knots;
+  const std::size_t count = std::min(knots, window_.knots_to_restore());
+  std::vector<double> values(3 * ring_->dimensions() * count);
+  std::vector<core::Knot> restored;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t i = knots - count + k;
+    const auto part = std::span(values).subspan(3 * ring_->dimensions() * k);
+    restored.push_back(published.knot(i + 1, r, part.first(3 * ring_->dimensions())));
+  }
+  window_.restore(knots - count, restored);
+  settled_written_ = window_.settled_segments();
+}
+
+StepResult StreamSolver::step(const Clock& clock) noexcept {
+  const Word available = ring_->head() - head_.consumed;
+  if (available == 0) return {};
+  const Word batch = std::min<Word>({available, max_batch_, ring_->capacity()});
+  head_.changed_from = kNothingChanged;
+  for (Word k = 0; k < batch; ++k) {
+    const Word number = head_.consumed++;
+    ring_->copy(number, item_);
+    take(item_, number);
+  }
+  publish(clock);
+  return {.consumed = batch, .published = true};
+}
+
+void StreamSolver::take(const RingItem& item, Word number) noexcept {
+  if (head_.finished) return refuse(number, Refusal::after_finish);
+  switch (item.kind) {
+    case ItemKind::waypoint: return take_waypoint(item, number);
+    case ItemKind::finish: return take_finish(item, number);
+    case ItemKind::replace:
+    case ItemKind::start_state: break;
+  }
+  refuse(number, Refusal::unknown_kind);
+}
+
+/// The producer has checked all of this; but what another process wrote is never trusted.
+void StreamSolver::take_waypoint(const RingItem& item, Word number) noexcept {
+  const auto position = std::span(item.values).first(window_.dimensions());
+  if (!is_finite(position)) return refuse(number, Refusal::not_finite);
+  if (head_.knots > 0) {
+    if (item.time <= head_.newest_knot) return refuse(number, Refusal::not_increasing);
+    if (!is_interval_in_range(item.time - head_.newest_knot, limits_)) {
+      return refuse(number, Refusal::interval_out_of_range);
+    }
+  }
+  window_.append(item.time, position);
+  head_.knots = window_.knots();
+  head_.newest_knot = item.time;
+  // What has settled leaves the window and is written once, with its last value.
+  while (settled_written_ < window_.settled_segments()) write_segment(settled_written_++);
+}
+
+void StreamSolver::take_finish(const RingItem& item, Word number) noexcept {
+  end_.kind = item.condition;
+  end_.value.clear();
+  const std::size_t dimensions = window_.dimensions();
+  if (item.condition > core::ConditionKind::acceleration) {
+    return refuse(number, Refusal::unknown_kind);
+  }
+  const bool is_velocity = item.condition == core::ConditionKind::velocity;
+  if (is_velocity || item.condition == core::ConditionKind::acceleration) {
+    const auto values = std::span(item.values).subspan((is_velocity ? 1 : 2) * dimensions,
+                                                       dimensions);
+    if (!is_finite(values)) return refuse(number, Refusal::not_finite);
+    end_.value.assign(values.begin(), values.end());
+  }
+  window_.finish(end_);
+  head_.finished = true;
+}
+
+void StreamSolver::refuse(Word number, Refusal reason) noexcept {
+  board_->write_refusal(head_.refused++, {.item = number, .reason = reason});
+  ++head_.reasons[static_cast<std::size_t>(reason)];
+}
+
+void StreamSolver::write_segment(std::size_t i) noexcept {
+  window_.segment(i, segment_);
+  head_.changed_from = std::min(head_.changed_from, segment_.left);
+  board_->write(i + 1, segment_, window_.knot(i), window_.newer_knots_seen(i));
+}
+
+void StreamSolver::publish(const Clock& clock) noexcept {
+  const std::size_t segments = window_.segments();
+  for (std::size_t i = settled_written_; i < segments; ++i) write_segment(i);
+  if (segments > 0) {
+    head_.newest = segments;
+    head_.first = segments - std::min<Word>(segments, board_->capacity()) + 1;
+    const std::size_t open = window_.settled_segments();
+    head_.settled_until = window_.knot(std::min(open, window_.knots() - 1)).time;
+  }
+  head_.committed = clock.now();
+  board_->commit(head_);
+  board_->store_tail(head_.consumed);
+}
+
+}  // namespace splinecast::ipc
