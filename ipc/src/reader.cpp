@@ -91,6 +91,14 @@ bool Reader::head(Head& out) const noexcept {
   return false;
 }
 
+bool Reader::first_time(core::Time& out) const noexcept {
+  Head bounds;
+  for (int attempt = 0; attempt < kHeadTries && head(bounds) && bounds.newest != 0; ++attempt) {
+    if (impl_->board.copy_left(bounds.first, bounds.revision, out)) return true;
+  }
+  return false;
+}
+
 WaitStatus Reader::wait(core::Time timeout) noexcept {
   const MonotonicClock clock;
   const core::Time end = clock.now() + timeout;

@@ -57,6 +57,10 @@ class Reader {
   /// overtook every try.
   [[nodiscard]] bool head(Head& out) const noexcept;
 
+  /// Time of the oldest knot that the board keeps. Returns false if there is none yet, or if the
+  /// writer overtook every try.
+  [[nodiscard]] bool first_time(core::Time& out) const noexcept;
+
   /// Sleeps until a revision that this reader has not seen, for programs that need not spin.
   [[nodiscard]] WaitStatus wait(core::Time timeout) noexcept;
 

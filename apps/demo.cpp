@@ -1,0 +1,159 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "demo_reader.hpp"
+#include "replay.hpp"
+#include "solve.hpp"
+#include "splinecast/ipc/stream_files.hpp"
+#include "support/child.hpp"
+#include "support/exit_codes.hpp"
+#include "support/options.hpp"
+#include "support/output.hpp"
+#include "support/pick_and_place.hpp"
+#include "support/signals.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kReaders = 2;
+
+struct DemoOptions {
+  std::string file;
+  TableOptions table;
+  std::optional<core::Time> seconds;
+  bool json = false;
+};
+
+json replay_json(const ReplayReport& report) {
+  return {{"sent", report.sent},
+          {"interpolated", report.interpolated},
+          {"refused", report.refused},
+          {"skipped", report.skipped},
+          {"interrupted", report.interrupted}};
+}
+
+/// Sums and largest values over the readers.
+json merged(const std::vector<json>& readers) {
+  json sum = readers.front();
+  for (std::size_t r = 1; r < readers.size(); ++r) {
+    sum["samples"] = sum["samples"].get<std::size_t>() + readers[r]["samples"].get<std::size_t>();
+    for (std::size_t i = 0; i < sum["by_status"].size(); ++i) {
+      sum["by_status"][i] =
+          sum["by_status"][i].get<std::size_t>() + readers[r]["by_status"][i].get<std::size_t>();
+    }
+    for (const char* const key : {"step_at_knots", "change_of_the_past", "age_ms", "sample_ns"}) {
+      for (std::size_t i = 0; i < sum[key].size(); ++i) {
+        sum[key][i] = std::max(sum[key][i].get<double>(), readers[r][key][i].get<double>());
+      }
+    }
+  }
+  return sum;
+}
+
+void print_steps(const char* what, const json& steps) {
+  fmt::print("  {:<34} position {:.2g}, velocity {:.2g}, acceleration {:.2g}\n", what,
+             steps[0].get<double>(), steps[1].get<double>(), steps[2].get<double>());
+}
+
+void print_summary(const WaypointTable& table, const json& sent, const json& read) {
+  fmt::print("\nOne producer, one solver and {} readers, each a process of its own; {} dimensions "
+             "from {}, played live.\n\n",
+             kReaders, table.dimensions(), table.file);
+  fmt::print("  {:<34} {} sent, {} interpolated, {} refused\n", "waypoints",
+             sent["sent"].get<std::size_t>(), sent["interpolated"].get<std::size_t>(),
+             sent["refused"].get<std::size_t>());
+  std::string statuses;
+  for (std::size_t i = 0; i < read["by_status"].size(); ++i) {
+    const auto count = read["by_status"][i].get<std::size_t>();
+    if (count == 0) continue;
+    statuses += fmt::format("{}{} {}", statuses.empty() ? "" : ", ", count,
+                            ipc::to_string(static_cast<ipc::SampleStatus>(i)));
+  }
+  fmt::print("  {:<34} {} in all: {}\n", "samples at 1 kHz", read["samples"].get<std::size_t>(),
+             statuses);
+  print_steps("largest step at a knot", read["step_at_knots"]);
+  print_steps("largest change of what was read", read["change_of_the_past"]);
+  fmt::print("  {:<34} {:.1f} ms in the median, {:.1f} ms at most\n", "age of the data",
+             read["age_ms"][0].get<double>(), read["age_ms"][1].get<double>());
+  fmt::print("  {:<34} {:.0f} ns in the median, {:.0f} ns for 99 of 100\n", "time per sample",
+             read["sample_ns"][0].get<double>(), read["sample_ns"][1].get<double>());
+}
+
+/// Removes what the demo leaves in shared memory, however it ends.
+class StreamRemover {
+ public:
+  explicit StreamRemover(std::string stream) : stream_(std::move(stream)) {}
+  StreamRemover(const StreamRemover&) = delete;
+  StreamRemover& operator=(const StreamRemover&) = delete;
+  ~StreamRemover() {
+    try {
+      ipc::remove_stream(stream_);
+    } catch (const std::exception& error) {
+      say(error.what());
+    }
+  }
+
+ private:
+  std::string stream_;
+};
+
+int run_demo(const DemoOptions& options) {
+  constexpr core::Time kDefaultLength = std::chrono::seconds(10);
+  const WaypointTable table = options.file.empty()
+                                  ? pick_and_place(options.seconds.value_or(kDefaultLength))
+                                  : read_waypoints(options.file, options.table);
+  const std::string stream = fmt::format("demo.{}", getpid());
+  ReplayOptions replay{.stream = stream, .duration = options.seconds};
+
+  catch_stop_signals();
+  const StreamRemover remover(stream);
+  Child solver(
+      [&] {
+        return json(run_solve({.streams = {stream}, .quiet = true}));
+      },
+      true);
+  std::vector<Child> readers;
+  for (std::size_t r = 0; r < kReaders; ++r) {
+    readers.emplace_back([&] { return run_demo_reader(stream); }, false);
+  }
+  Child producer([&] { return replay_json(replay_table(table, replay)); }, false);
+
+  const json sent = producer.result();
+  std::vector<json> seen;
+  for (Child& reader : readers) seen.push_back(reader.result());
+  solver.stop();
+  solver.result();
+  const json read = merged(seen);
+  if (options.json) {
+    fmt::print("{}\n", json{{"waypoints", sent}, {"readers", seen}, {"all_readers", read}}.dump(2));
+  } else {
+    print_summary(table, sent, read);
+  }
+  return kOk;
+}
+
+}  // namespace
+
+void add_demo(CLI::App& program, Action& action) {
+  auto options = std::make_shared<DemoOptions>();
+  auto* verb = program.add_subcommand(
+      "demo", "Show it: a producer, a solver and two readers as processes, and what they saw");
+  verb->add_option("--file", options->file,
+                   "Waypoint file to play (default: a pick-and-place of seven joints)")
+      ->type_name("FILE");
+  add_seconds(*verb, "--seconds", options->seconds,
+              "How much to play (default 10, or the whole file)");
+  verb->add_flag("--json", options->json, "As JSON");
+  add_table_options(*verb, options->table);
+  verb->callback([&action, options] { action = [options] { return run_demo(*options); }; });
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,188 @@
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "splinecast/core/c2_spline.hpp"
+#include "splinecast/core/sliding_window.hpp"
+#include "support/exit_codes.hpp"
+#include "support/options.hpp"
+#include "support/output.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+struct FitOptions {
+  std::string file;
+  TableOptions table;
+  std::optional<core::Condition> start;
+  std::optional<core::Condition> end;
+  bool online = false;
+  std::optional<std::size_t> settle;
+  std::optional<core::Tail> tail;
+  std::string at;
+  std::optional<core::Time> dt;
+  std::string emit = "samples";
+  std::string output;
+};
+
+/// Feeds the waypoints through the sliding window, as the solver does, and keeps each segment as it
+/// settles.
+core::PiecewisePolynomial fit_online(const WaypointTable& table, const FitOptions& options) {
+  core::WindowOptions how;
+  how.settle = options.settle.value_or(how.settle);
+  how.tail = options.tail.value_or(how.tail);
+  how.start = options.start.value_or(core::Condition{});
+  core::SlidingWindow window(table.dimensions(), how);
+  core::PiecewisePolynomial curve(table.dimensions());
+  core::Segment segment(table.dimensions());
+  const auto take_settled = [&] {
+    while (curve.segments() < window.settled_segments()) {
+      window.segment(curve.segments(), segment);
+      curve.append(segment);
+    }
+  };
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    window.append(table.times[i], table.waypoint(i).position);
+    take_settled();
+  }
+  const core::Condition end =
+      options.end.value_or(core::Condition{.kind = core::ConditionKind::halt, .value = {}});
+  core::require_values(end, table.dimensions());
+  window.finish(end);
+  take_settled();
+  return curve;
+}
+
+core::PiecewisePolynomial fit(const WaypointTable& table, const FitOptions& options) {
+  if (options.online) return fit_online(table, options);
+  return core::c2_spline(table.times, table.positions, table.dimensions(),
+                         options.start.value_or(core::Condition{}),
+                         options.end.value_or(core::Condition{}));
+}
+
+/// Times every dt from the first to the last waypoint.
+std::vector<core::Time> regular_times(const core::PiecewisePolynomial& curve, core::Time dt) {
+  std::vector<core::Time> times;
+  const core::Time last = curve.breaks().back();
+  for (core::Time t = curve.breaks().front(); t <= last; t += dt) times.push_back(t);
+  return times;
+}
+
+void require_inside(const std::vector<core::Time>& times, const core::PiecewisePolynomial& curve,
+                    const std::string& file) {
+  const core::Time first = curve.breaks().front();
+  const core::Time last = curve.breaks().back();
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (times[i] >= first && times[i] <= last) continue;
+    throw InputError(fmt::format(
+        "{}: row {}: time {} ns lies outside the data, which go from {} ns to {} ns", file, i + 1,
+        times[i].count(), first.count(), last.count()));
+  }
+}
+
+void emit_samples(const core::PiecewisePolynomial& curve, const FitOptions& options,
+                  Output& output) {
+  const auto times = options.at.empty() ? regular_times(curve, *options.dt)
+                                        : read_times(options.at, options.table.time_unit);
+  require_inside(times, curve, options.at);
+  SampleWriter writer(output, curve.dimensions(), false);
+  core::State state(curve.dimensions());
+  for (const core::Time t : times) {
+    curve.evaluate(t, state.ref());
+    writer.write(t, state);
+  }
+}
+
+/// Coefficients [segment][dimension][power, highest first], all of one order.
+nlohmann::json coefficients_json(const core::PiecewisePolynomial& curve) {
+  const auto order = static_cast<std::size_t>(curve.order());
+  nlohmann::json segments = nlohmann::json::array();
+  if (curve.breaks().size() < 2) return segments;  // a hold has no piece
+  for (std::size_t i = 0; i < curve.segments(); ++i) {
+    nlohmann::json segment = nlohmann::json::array();
+    for (std::size_t d = 0; d < curve.dimensions(); ++d) {
+      nlohmann::json powers = nlohmann::json::array();
+      for (std::size_t k = order; k-- > 0;) {
+        powers.push_back(curve.coefficients(i)[k * curve.dimensions() + d]);
+      }
+      segment.push_back(std::move(powers));
+    }
+    segments.push_back(std::move(segment));
+  }
+  return segments;
+}
+
+void emit_piecewise_polynomial(const core::PiecewisePolynomial& curve, Output& output) {
+  nlohmann::ordered_json json;
+  json["breaks_ns"] = nlohmann::json::array();
+  for (const core::Time t : curve.breaks()) json["breaks_ns"].push_back(t.count());
+  json["coefficients"] = coefficients_json(curve);
+  output.write(json.dump());
+  output.write("\n");
+}
+
+int run_fit(const FitOptions& options) {
+  const WaypointTable table = read_waypoints(options.file, options.table);
+  require_spline_input(table);
+  const auto curve = fit(table, options);
+  Output output(options.output);
+  if (options.emit == "pp") {
+    emit_piecewise_polynomial(curve, output);
+  } else {
+    emit_samples(curve, options, output);
+  }
+  output.close();
+  return kOk;
+}
+
+void require_consistent(const FitOptions& options) {
+  const auto refuse = [](const std::string& name, const std::string& why) {
+    throw CLI::ValidationError(name, why);
+  };
+  if (!options.online && (options.settle || options.tail)) {
+    refuse("--settle, --tail", "go with --online only");
+  }
+  if (options.emit == "samples") {
+    if (options.at.empty() && !options.dt) refuse("fit", "needs --at or --dt to write samples");
+  } else if (!options.at.empty() || options.dt) {
+    refuse("--at, --dt", "go with --emit samples only");
+  }
+  if (options.dt && *options.dt <= core::Time::zero()) {
+    refuse("--dt", "must be at least a nanosecond");
+  }
+}
+
+}  // namespace
+
+void add_fit(CLI::App& program, Action& action) {
+  auto options = std::make_shared<FitOptions>();
+  auto* verb = program.add_subcommand("fit", "Fit a spline to a file, without shared memory");
+  verb->add_option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
+      ->required();
+  add_method(*verb);
+  add_condition(*verb, "--start", options->start, "Condition at the first waypoint (default natural)");
+  add_condition(*verb, "--end", options->end,
+                "Condition at the last waypoint (default natural; halt with --online)");
+  verb->add_flag("--online", options->online, "As the solver would: through the sliding window");
+  add_settle(*verb, options->settle);
+  add_tail(*verb, options->tail);
+  auto* at = verb->add_option("--at", options->at, "File with a time column: where to sample")
+                 ->type_name("FILE");
+  add_seconds(*verb, "--dt", options->dt, "Sample this often, from the first waypoint on");
+  verb->get_option("--dt")->excludes(at);
+  verb->add_option("--emit", options->emit,
+                   "What to write: samples (CSV, default) or pp (piecewise polynomial, JSON)")
+      ->type_name("WHAT")
+      ->check(CLI::IsMember({"samples", "pp"}));
+  verb->add_option("-o,--output", options->output, "File to write (default: standard output)")
+      ->type_name("OUT");
+  add_table_options(*verb, options->table);
+  verb->callback([&action, options] {
+    require_consistent(*options);
+    action = [options] { return run_fit(*options); };
+  });
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,66 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "splinecast/ipc/clock.hpp"
+#include "splinecast/ipc/stream_files.hpp"
+#include "support/exit_codes.hpp"
+#include "support/options.hpp"
+#include "support/stream_report.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string text_of(const ordered_json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+void print_table(const ordered_json& json, int indent) {
+  for (const auto& [key, value] : json.items()) {
+    if (value.is_object()) {
+      fmt::print("{:{}}{}\n", "", indent, key);
+      print_table(value, indent + 2);
+    } else {
+      fmt::print("{:{}}{:<{}}  {}\n", "", indent, key, 26 - indent, text_of(value));
+    }
+  }
+}
+
+/// What a person asks first, in words.
+void print_age(const ipc::StreamInfo& info) {
+  if (info.head.revision == 0) return;
+  const double age = core::to_seconds(ipc::MonotonicClock().now() - info.head.committed);
+  fmt::print("{:<26}  {:.3f} s ago\n", "last published", age);
+}
+
+}  // namespace
+
+void add_info(CLI::App& program, Action& action) {
+  struct Options {
+    std::string stream;
+    bool json = false;
+    ipc::Trust trust;
+  };
+  auto options = std::make_shared<Options>();
+  auto* verb = program.add_subcommand("info", "Show all that is known about one stream");
+  verb->add_option("STREAM", options->stream, "Stream to show")->required();
+  verb->add_flag("--json", options->json, "As JSON");
+  add_trust(*verb, options->trust);
+  verb->callback([&action, options] {
+    action = [options] {
+      const ipc::StreamInfo info = ipc::inspect(options->stream, options->trust);
+      const ordered_json json = to_json(info);
+      if (options->json) {
+        fmt::print("{}\n", json.dump(2));
+      } else {
+        print_table(json, 0);
+        print_age(info);
+      }
+      return kOk;
+    };
+  });
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,71 @@
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <exception>
+#include <stdexcept>
+
+#include "splinecast/ipc/errors.hpp"
+#include "support/exit_codes.hpp"
+#include "support/options.hpp"
+#include "support/output.hpp"
+#include "version.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+int run(const Action& action) {
+  try {
+    return action();
+  } catch (const InputError& error) {
+    say(error.what());
+    return kBadUsageOrInput;
+  } catch (const std::invalid_argument& error) {
+    say(error.what());
+    return kBadUsageOrInput;
+  } catch (const ipc::BadRequest& error) {
+    say(error.what());
+    return kBadUsageOrInput;
+  } catch (const TimeOut& error) {
+    say(error.what());
+    return kNoStreamOrTimeOut;
+  } catch (const ipc::NoSuchStream& error) {
+    say(error.what());
+    return kNoStreamOrTimeOut;
+  } catch (const std::exception& error) {
+    say(error.what());
+    return kFailed;
+  }
+}
+
+int run_program(int argc, char** argv) {
+  CLI::App program("Online streaming cubic splines over shared memory", "splinecast");
+  program.set_version_flag("--version", std::string("splinecast ") + kVersion);
+  program.require_subcommand(1);
+  Action action;
+  add_demo(program, action);
+  add_solve(program, action);
+  add_replay(program, action);
+  add_sample(program, action);
+  add_fit(program, action);
+  add_ls(program, action);
+  add_info(program, action);
+  add_rm(program, action);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? kOk : kBadUsageOrInput;
+  }
+  return run(action);
+}
+
+}  // namespace
+}  // namespace splinecast::apps
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a write error like any other
+  try {
+    return splinecast::apps::run_program(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "splinecast: %s\n", error.what());
+    return splinecast::apps::kFailed;
+  }
+}

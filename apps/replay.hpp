@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "splinecast/ipc/solver.hpp"
+#include "splinecast/ipc/stream_options.hpp"
+#include "support/waypoint_table.hpp"
+
+namespace splinecast::apps {
+
+/// What `replay` is told.
+struct ReplayOptions {
+  std::string file{};
+  TableOptions table{};
+  std::string stream{};
+  std::optional<double> rate = 1.0;  ///< unset: as fast as it goes
+  std::size_t loops = 1;
+  std::optional<core::Time> from{};
+  std::optional<core::Time> duration{};
+  ipc::StreamClock clock = ipc::StreamClock::monotonic;
+  core::Time lead{200'000'000};
+  std::optional<core::Condition> start{};
+  std::optional<core::Condition> end{};
+  bool skip_bad = false;
+  core::Time wait{10'000'000'000};
+  bool embedded = false;
+  bool json = false;
+  bool quiet = false;
+  std::size_t capacity = 1024;
+  ipc::IngestLimits limits{};
+  ipc::RegionAccess access{};
+  ipc::Trust trust{};
+  ipc::SolverOptions solver{};  ///< of the embedded solver
+};
+
+/// What became of a replay.
+struct ReplayReport {
+  ipc::Word sent = 0;          ///< waypoints accepted by the ring
+  ipc::Word interpolated = 0;  ///< of these, by the solver
+  ipc::Word refused = 0;       ///< of these, by the solver, with a reason
+  ipc::Word skipped = 0;       ///< rows left out under --on-error skip
+  bool interrupted = false;
+};
+
+/// Sends a table's waypoints to a solver and waits until all are consumed. Throws InputError for a
+/// row that cannot be sent, TimeOut if no solver comes.
+ReplayReport replay_table(WaypointTable table, const ReplayOptions& options);
+
+}  // namespace splinecast::apps

@@ -1,0 +1,198 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/reader.hpp"
+#include "support/exit_codes.hpp"
+#include "support/options.hpp"
+#include "support/output.hpp"
+#include "support/signals.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+struct SampleOptions {
+  std::string stream;
+  std::string at;
+  std::optional<TimeUnit> time_unit;
+  double rate = 0;
+  std::size_t count = 0;
+  std::string output;
+  core::Time wait{10'000'000'000};
+  ipc::Trust trust;
+};
+
+/// Samples one stream to a file, attaching again when it is made anew.
+class Sampling {
+ public:
+  explicit Sampling(const SampleOptions& options)
+      : options_(options),
+        reader_(attach(options)),
+        output_(options.output),
+        state_(reader_.dimensions()),
+        none_(reader_.dimensions()),
+        writer_(output_, reader_.dimensions(), true) {
+    fill_with_nan(none_);
+  }
+
+  int run() {
+    if (!options_.at.empty()) {
+      for (const core::Time t : read_times(options_.at, options_.time_unit)) {
+        if (stop_requested()) break;
+        write(t);
+      }
+    } else if (reader_.clock() == ipc::StreamClock::monotonic) {
+      follow_live();
+    } else {
+      step_through_recording();
+    }
+    output_.close();
+    return kOk;
+  }
+
+ private:
+  /// Waits for the stream in slices, so that a stop ends the wait.
+  static ipc::Reader attach(const SampleOptions& options) {
+    constexpr core::Time kSlice = std::chrono::milliseconds(50);
+    const ipc::MonotonicClock clock;
+    const core::Time end = clock.now() + options.wait;
+    for (;;) {
+      const core::Time left = std::max(end - clock.now(), core::Time::zero());
+      try {
+        return ipc::Reader(options.stream, std::min(kSlice, left), options.trust);
+      } catch (const ipc::NoSuchStream&) {
+        if (clock.now() >= end || stop_requested()) throw;
+      }
+    }
+  }
+
+  static void fill_with_nan(core::State& state) {
+    const core::StateRef all = state.ref();
+    for (const auto part : {all.position, all.velocity, all.acceleration, all.jerk}) {
+      std::ranges::fill(part, std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+
+  [[nodiscard]] core::Time period_times(std::size_t k) const {
+    return core::Time(std::llround(static_cast<double>(k) * 1e9 / options_.rate));
+  }
+
+  void follow_live() {
+    const core::Time start = clock_.now();
+    for (std::size_t k = 0; k < options_.count; ++k) {
+      const core::Time t = start + period_times(k);
+      if (!sleep_until(t)) return;
+      write(t);
+    }
+  }
+
+  void step_through_recording() {
+    const core::Time start = first_knot();
+    for (std::size_t k = 0; k < options_.count && !stop_requested(); ++k) {
+      write(start + period_times(k));
+    }
+  }
+
+  /// Time of the oldest knot that the board keeps.
+  core::Time first_knot() {
+    const core::Time end = clock_.now() + options_.wait;
+    for (;;) {
+      core::Time first{};
+      if (reader_.first_time(first)) return first;
+      if (clock_.now() >= end || stop_requested()) {
+        throw TimeOut(fmt::format("stream '{}' has no waypoints", options_.stream));
+      }
+      (void)reader_.wait(std::chrono::milliseconds(50));
+    }
+  }
+
+  void write(core::Time t) {
+    const auto status = sample(t);
+    writer_.write(t, ipc::has_values(status) ? state_ : none_, ipc::to_string(status));
+  }
+
+  /// A recorded stream is sampled where it is final, as long as it goes on: what is not settled yet
+  /// is waited for, until nothing new has come for --wait.
+  ipc::SampleStatus sample(core::Time t) {
+    core::Time end = clock_.now() + options_.wait;
+    for (;;) {
+      const auto status = reader_.sample(t, state_);
+      if (status == ipc::SampleStatus::retired) {
+        reattach();
+        continue;
+      }
+      if (status == ipc::SampleStatus::busy && clock_.now() < end) continue;
+      if (!patient_ || stop_requested() || is_final(status)) return status;
+      if (reader_.wait(std::chrono::milliseconds(20)) == ipc::WaitStatus::advanced) {
+        end = clock_.now() + options_.wait;
+      } else if (clock_.now() >= end) {
+        patient_ = false;
+      }
+    }
+  }
+
+  [[nodiscard]] bool is_final(ipc::SampleStatus status) const {
+    if (reader_.clock() == ipc::StreamClock::monotonic) return true;
+    if (status == ipc::SampleStatus::settled || status == ipc::SampleStatus::before_history) {
+      return true;
+    }
+    ipc::Head head;
+    return reader_.head(head) && head.finished;
+  }
+
+  void reattach() {
+    const std::size_t dimensions = reader_.dimensions();
+    reader_ = attach(options_);
+    if (reader_.dimensions() == dimensions) return;
+    throw Failure(fmt::format("stream '{}' was made anew with {} dimensions, not {}",
+                              options_.stream, reader_.dimensions(), dimensions));
+  }
+
+  const SampleOptions& options_;
+  ipc::MonotonicClock clock_;
+  ipc::Reader reader_;
+  Output output_;
+  core::State state_;
+  core::State none_;
+  SampleWriter writer_;
+  bool patient_ = true;  ///< whether what is not settled is still waited for
+};
+
+}  // namespace
+
+void add_sample(CLI::App& program, Action& action) {
+  auto options = std::make_shared<SampleOptions>();
+  auto* verb = program.add_subcommand("sample", "Read a stream's curve and write it as CSV");
+  verb->add_option("STREAM", options->stream, "Stream to read")->required();
+  auto* at = verb->add_option("--at", options->at, "File with a time column: where to sample")
+                 ->type_name("FILE");
+  auto* rate = verb->add_option("--rate", options->rate, "Samples a second")
+                   ->type_name("HZ")
+                   ->check(CLI::PositiveNumber);
+  auto* count = verb->add_option("--count", options->count, "Number of samples")->type_name("N");
+  rate->needs(count)->excludes(at);
+  count->needs(rate);
+  verb->add_option("-o,--output", options->output, "File to write (default: standard output)")
+      ->type_name("OUT");
+  add_seconds(*verb, "--wait", options->wait,
+              "Wait this long for the stream, and for what a recorded one has yet to settle "
+          "(default 10)");
+  add_time_unit(*verb, options->time_unit);
+  add_trust(*verb, options->trust);
+  verb->callback([&action, options, at, rate] {
+    if (at->empty() && rate->empty()) {
+      throw CLI::ValidationError("sample", "needs --at, or --rate with --count");
+    }
+    action = [options] {
+      catch_stop_signals();
+      return Sampling(*options).run();
+    };
+  });
+}
+
+}  // namespace splinecast::apps

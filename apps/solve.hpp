@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "splinecast/ipc/stream_options.hpp"
+
+namespace splinecast::apps {
+
+/// What `solve` is told.
+struct SolveOptions {
+  std::vector<std::string> streams{};
+  ipc::SolverOptions solver{};
+  core::Time sweep{1'000'000};  ///< pause between looks at several streams
+  bool quiet = false;
+};
+
+/// Solves until a stop is requested. Returns the exit code.
+int run_solve(const SolveOptions& options);
+
+}  // namespace splinecast::apps

@@ -1,0 +1,91 @@
+#include "support/child.hpp"
+
+#include <fmt/format.h>
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <exception>
+#include <string>
+#include <utility>
+
+#include "support/exit_codes.hpp"
+#include "support/output.hpp"
+#include "support/signals.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+[[noreturn]] void run_child(const std::function<nlohmann::json()>& run, int pipe) {
+  int code = kOk;
+  try {
+    catch_stop_signals();
+    const std::string text = run().dump();
+    if (write(pipe, text.data(), text.size()) != static_cast<ssize_t>(text.size())) code = kFailed;
+  } catch (const std::exception& error) {
+    say(error.what());
+    code = kFailed;
+  }
+  _exit(code);  // the parent's buffers and objects are not this process's to close
+}
+
+}  // namespace
+
+Child::Child(const std::function<nlohmann::json()>& run, bool in_background) {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw Failure("no pipe for a child process");
+  std::fflush(nullptr);
+  const pid_t parent = getpid();
+  pid_ = fork();
+  if (pid_ < 0) throw Failure("no process for a child");
+  if (pid_ == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != parent) _exit(kFailed);
+    if (in_background) setpgid(0, 0);
+    close(ends[0]);
+    run_child(run, ends[1]);
+  }
+  close(ends[1]);
+  pipe_ = ends[0];
+}
+
+Child::Child(Child&& other) noexcept
+    : pid_(std::exchange(other.pid_, -1)), pipe_(std::exchange(other.pipe_, -1)) {}
+
+Child::~Child() {
+  if (pipe_ >= 0) close(pipe_);
+  if (pid_ < 0) return;
+  kill(pid_, SIGKILL);
+  waitpid(pid_, nullptr, 0);
+}
+
+nlohmann::json Child::result() {
+  std::string text;
+  std::array<char, 4096> buffer{};
+  for (;;) {
+    const ssize_t got = read(pipe_, buffer.data(), buffer.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) break;
+    text.append(buffer.data(), static_cast<std::size_t>(got));
+  }
+  int status = 0;
+  while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+  }
+  pid_ = -1;
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != kOk) {
+    throw Failure(fmt::format("a process of the demo ended with {} {}",
+                              WIFSIGNALED(status) ? "signal" : "code",
+                              WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status)));
+  }
+  return nlohmann::json::parse(text);
+}
+
+void Child::stop() const noexcept {
+  if (pid_ > 0) kill(pid_, SIGTERM);
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <functional>
+#include <nlohmann/json.hpp>
+
+namespace splinecast::apps {
+
+/// A child process that runs a function and hands its result back as JSON through a pipe. It dies
+/// with its parent.
+class Child {
+ public:
+  /// Forks at once. With `in_background` the child does not get the terminal's Ctrl-C.
+  Child(const std::function<nlohmann::json()>& run, bool in_background);
+  Child(Child&& other) noexcept;
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+  Child& operator=(Child&&) = delete;
+  /// Kills it if it has not been waited for.
+  ~Child();
+
+  /// Waits for the child's end and returns its result. Throws Failure if it failed or was killed.
+  nlohmann::json result();
+
+  /// Asks the child to end (SIGTERM).
+  void stop() const noexcept;
+
+ private:
+  pid_t pid_ = -1;
+  int pipe_ = -1;
+};
+
+}  // namespace splinecast::apps

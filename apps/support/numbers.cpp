@@ -1,0 +1,112 @@
+#include "support/numbers.hpp"
+
+#include <charconv>
+#include <cstdint>
+#include <limits>
+
+namespace splinecast::apps {
+namespace {
+
+bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
+
+/// A decimal number taken apart: digits before and after the point, and a power of ten.
+struct Decimal {
+  bool negative = false;
+  std::string_view whole;
+  std::string_view fraction;
+  int exponent = 0;
+
+  /// The digit that stands for 10^position; 0 where none is written.
+  [[nodiscard]] int digit(int position) const noexcept {
+    const int written = position - exponent;
+    const int from_point = static_cast<int>(whole.size()) - 1 - written;
+    if (written >= 0) {
+      return from_point >= 0 ? whole[static_cast<std::size_t>(from_point)] - '0' : 0;
+    }
+    const auto behind = static_cast<std::size_t>(-written - 1);
+    return behind < fraction.size() ? fraction[behind] - '0' : 0;
+  }
+};
+
+std::string_view take_digits(std::string_view& text) noexcept {
+  std::size_t length = 0;
+  while (length < text.size() && is_digit(text[length])) ++length;
+  const std::string_view digits = text.substr(0, length);
+  text.remove_prefix(length);
+  return digits;
+}
+
+bool take_exponent(std::string_view text, int& exponent) noexcept {
+  text.remove_prefix(1);
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  constexpr int kLargest = 1000;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), exponent);
+  return error == std::errc{} && end == text.data() + text.size() && exponent > -kLargest &&
+         exponent < kLargest;
+}
+
+std::optional<Decimal> take_apart(std::string_view text) noexcept {
+  Decimal decimal;
+  if (!text.empty() && (text.front() == '-' || text.front() == '+')) {
+    decimal.negative = text.front() == '-';
+    text.remove_prefix(1);
+  }
+  decimal.whole = take_digits(text);
+  if (!text.empty() && text.front() == '.') {
+    text.remove_prefix(1);
+    decimal.fraction = take_digits(text);
+  }
+  if (decimal.whole.empty() && decimal.fraction.empty()) return std::nullopt;
+  if (text.empty()) return decimal;
+  const bool has_exponent = text.front() == 'e' || text.front() == 'E';
+  if (!has_exponent || !take_exponent(text, decimal.exponent)) return std::nullopt;
+  return decimal;
+}
+
+}  // namespace
+
+std::optional<TimeUnit> parse_time_unit(std::string_view text) noexcept {
+  if (text == "ns") return TimeUnit::nanoseconds;
+  if (text == "us") return TimeUnit::microseconds;
+  if (text == "ms") return TimeUnit::milliseconds;
+  if (text == "s") return TimeUnit::seconds;
+  return std::nullopt;
+}
+
+std::optional<core::Time> parse_time(std::string_view text, TimeUnit unit) noexcept {
+  auto decimal = take_apart(trimmed(text));
+  if (!decimal) return std::nullopt;
+  decimal->exponent += static_cast<int>(unit);
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  std::int64_t value = decimal->digit(-1) >= 5 ? 1 : 0;  // rounds to the nearest nanosecond
+  std::int64_t weight = 1;
+  const int highest = static_cast<int>(decimal->whole.size()) + decimal->exponent;
+  for (int position = 0; position < highest; ++position) {
+    const int digit = decimal->digit(position);
+    if (digit != 0 && (weight == 0 || digit > (kMost - value) / weight)) return std::nullopt;
+    value += digit * weight;
+    weight = weight > kMost / 10 ? 0 : weight * 10;
+  }
+  return core::Time(decimal->negative ? -value : value);
+}
+
+std::optional<double> parse_number(std::string_view text) noexcept {
+  text = trimmed(text);
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::string_view trimmed(std::string_view text) noexcept {
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  if (text.size() >= 2 && text.front() == '"' && text.back() == '"') {
+    text = text.substr(1, text.size() - 2);
+  }
+  return text;
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "splinecast/core/time.hpp"
+
+namespace splinecast::apps {
+
+/// Units of time in files: the power of ten that makes one of them nanoseconds.
+enum class TimeUnit : int { nanoseconds = 0, microseconds = 3, milliseconds = 6, seconds = 9 };
+
+/// `ns`, `us`, `ms` or `s`.
+[[nodiscard]] std::optional<TimeUnit> parse_time_unit(std::string_view text) noexcept;
+
+/// Reads a decimal number of `unit`s as nanoseconds, exactly: `1403636579.763555584` seconds lose
+/// nothing. Digits beyond the nanosecond round to the nearest one, halves away from 0. Nothing for
+/// any other text or a time that 64 bits cannot hold.
+[[nodiscard]] std::optional<core::Time> parse_time(std::string_view text, TimeUnit unit) noexcept;
+
+/// Reads a number, `nan` and `inf` included; nothing for any other text. Accepts a leading plus.
+[[nodiscard]] std::optional<double> parse_number(std::string_view text) noexcept;
+
+/// Without the blanks, and then the double quotes, around it.
+[[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
+
+}  // namespace splinecast::apps

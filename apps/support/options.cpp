@@ -1,0 +1,181 @@
+#include "support/options.hpp"
+
+#include <fmt/format.h>
+#include <grp.h>
+#include <pwd.h>
+
+#include <array>
+#include <charconv>
+
+#include "support/exit_codes.hpp"
+#include "support/numbers.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+core::Time time_of(const std::string& name, const std::string& text, TimeUnit unit) {
+  const auto time = parse_time(text, unit);
+  if (!time || *time < core::Time::zero()) {
+    throw CLI::ValidationError(name, fmt::format("'{}' is not a time of 0 or more", text));
+  }
+  return *time;
+}
+
+std::optional<unsigned> parse_unsigned(const std::string& text, int base) {
+  unsigned value = 0;
+  const auto [end, error] =
+      std::from_chars(text.data(), text.data() + text.size(), value, base);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+void add_table_options(CLI::App& verb, TableOptions& options) {
+  verb.add_option("--columns", options.columns, "Position columns to use, by name")
+      ->delimiter(',')
+      ->type_name("NAME,...");
+  add_time_unit(verb, options.time_unit);
+}
+
+void add_time_unit(CLI::App& verb, std::optional<TimeUnit>& unit) {
+  verb.add_option_function<std::string>(
+          "--time-unit",
+          [&unit](const std::string& text) {
+            unit = parse_time_unit(text);
+            if (!unit) {
+              throw CLI::ValidationError("--time-unit",
+                                         fmt::format("'{}' is none of ns, us, ms, s", text));
+            }
+          },
+          "Unit of the time column, whatever its name says: ns, us, ms or s")
+      ->type_name("UNIT");
+}
+
+void add_method(CLI::App& verb) {
+  verb.add_option_function<std::string>(
+          "--method",
+          [](const std::string& text) {
+            if (text == "c2") return;
+            throw CLI::ValidationError("--method", fmt::format("'{}' is not known; c2 is", text));
+          },
+          "Interpolant: c2 (default)")
+      ->type_name("METHOD");
+}
+
+void add_condition(CLI::App& verb, const std::string& name, std::optional<core::Condition>& value,
+                   const std::string& help) {
+  verb.add_option_function<std::string>(
+          name,
+          [&value, name](const std::string& text) {
+            value = core::parse_condition(text);
+            if (value) return;
+            throw CLI::ValidationError(
+                name, fmt::format("'{}' is none of natural, rest, halt, velocity=N,..., "
+                                  "acceleration=N,...",
+                                  text));
+          },
+          help)
+      ->type_name("CONDITION");
+}
+
+void add_tail(CLI::App& verb, std::optional<core::Tail>& value) {
+  verb.add_option_function<std::string>(
+          "--tail",
+          [&value](const std::string& text) {
+            value = core::parse_tail(text);
+            if (value) return;
+            throw CLI::ValidationError(
+                "--tail", fmt::format("'{}' is none of bessel, parabolic, natural, rest", text));
+          },
+          "Condition at the newest waypoint while the stream goes on: bessel (default), "
+          "parabolic, natural, rest")
+      ->type_name("TAIL");
+}
+
+void add_settle(CLI::App& verb, std::optional<std::size_t>& value) {
+  verb.add_option("--settle", value,
+                  "Settle lag: newer waypoints after which a knot is final, 0 to 64 (default 8)")
+      ->type_name("K")
+      ->check(CLI::Range(std::size_t{0}, core::kMaxSettle));
+}
+
+void add_seconds(CLI::App& verb, const std::string& name, std::optional<core::Time>& value,
+                 const std::string& help) {
+  verb.add_option_function<std::string>(
+          name,
+          [&value, name](const std::string& text) {
+            value = time_of(name, text, TimeUnit::seconds);
+          },
+          help)
+      ->type_name("SECONDS");
+}
+
+void add_seconds(CLI::App& verb, const std::string& name, core::Time& value,
+                 const std::string& help) {
+  verb.add_option_function<std::string>(
+          name,
+          [&value, name](const std::string& text) {
+            value = time_of(name, text, TimeUnit::seconds);
+          },
+          help)
+      ->type_name("SECONDS");
+}
+
+void add_milliseconds(CLI::App& verb, const std::string& name, core::Time& value,
+                      const std::string& help) {
+  verb.add_option_function<std::string>(
+          name,
+          [&value, name](const std::string& text) {
+            value = time_of(name, text, TimeUnit::milliseconds);
+          },
+          help)
+      ->type_name("MS");
+}
+
+void add_access(CLI::App& verb, ipc::RegionAccess& access) {
+  verb.add_option_function<std::string>(
+          "--mode",
+          [&access](const std::string& text) {
+            const auto mode = parse_unsigned(text, 8);
+            constexpr unsigned kAllowed = 0644;
+            if (!mode || (*mode & ~kAllowed) != 0 || (*mode & 0600U) != 0600U) {
+              throw CLI::ValidationError(
+                  "--mode", fmt::format("'{}' is none of 0600, 0640, 0604, 0644: only the owner "
+                                        "may write",
+                                        text));
+            }
+            access.mode = static_cast<mode_t>(*mode);
+          },
+          "Permissions of the region to be made, in octal (default 0600)")
+      ->type_name("MODE");
+  verb.add_option_function<std::string>(
+          "--group",
+          [&access](const std::string& text) {
+            const group* const entry = getgrnam(text.c_str());
+            const auto number = parse_unsigned(text, 10);
+            if (entry == nullptr && !number) {
+              throw CLI::ValidationError("--group", fmt::format("there is no group '{}'", text));
+            }
+            access.group = entry != nullptr ? entry->gr_gid : static_cast<gid_t>(*number);
+          },
+          "Group of the region to be made")
+      ->type_name("GROUP");
+}
+
+void add_trust(CLI::App& verb, ipc::Trust& trust) {
+  verb.add_option_function<std::string>(
+          "--owner",
+          [&trust](const std::string& text) {
+            const passwd* const entry = getpwnam(text.c_str());
+            const auto number = parse_unsigned(text, 10);
+            if (entry == nullptr && !number) {
+              throw CLI::ValidationError("--owner", fmt::format("there is no user '{}'", text));
+            }
+            trust.owner = entry != nullptr ? entry->pw_uid : static_cast<uid_t>(*number);
+          },
+          "Trust regions of this user too, besides one's own and root's")
+      ->type_name("USER");
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "splinecast/core/condition.hpp"
+#include "splinecast/core/sliding_window.hpp"
+#include "splinecast/ipc/stream_options.hpp"
+#include "support/waypoint_table.hpp"
+
+namespace splinecast::apps {
+
+/// A verb: what it runs once its arguments are parsed. Returns the exit code.
+using Action = std::function<int()>;
+
+/// Each adds its verb to the program and sets `action` when that verb is chosen.
+void add_demo(CLI::App& program, Action& action);
+void add_fit(CLI::App& program, Action& action);
+void add_info(CLI::App& program, Action& action);
+void add_ls(CLI::App& program, Action& action);
+void add_replay(CLI::App& program, Action& action);
+void add_rm(CLI::App& program, Action& action);
+void add_sample(CLI::App& program, Action& action);
+void add_solve(CLI::App& program, Action& action);
+
+/// `--columns` and `--time-unit`.
+void add_table_options(CLI::App& verb, TableOptions& options);
+void add_time_unit(CLI::App& verb, std::optional<TimeUnit>& unit);
+
+/// `--method`: the interpolant.
+void add_method(CLI::App& verb);
+
+/// An option that takes a condition, a tail, a settle lag, or a time of 0 or more in seconds or
+/// milliseconds.
+void add_condition(CLI::App& verb, const std::string& name, std::optional<core::Condition>& value,
+                   const std::string& help);
+void add_tail(CLI::App& verb, std::optional<core::Tail>& value);
+void add_settle(CLI::App& verb, std::optional<std::size_t>& value);
+void add_seconds(CLI::App& verb, const std::string& name, std::optional<core::Time>& value,
+                 const std::string& help);
+void add_seconds(CLI::App& verb, const std::string& name, core::Time& value,
+                 const std::string& help);
+void add_milliseconds(CLI::App& verb, const std::string& name, core::Time& value,
+                      const std::string& help);
+
+/// `--mode` and `--group` of the regions to be made.
+void add_access(CLI::App& verb, ipc::RegionAccess& access);
+
+/// `--owner`: a user whose regions are trusted besides the own ones and root's.
+void add_trust(CLI::App& verb, ipc::Trust& trust);
+
+}  // namespace splinecast::apps

@@ -1,0 +1,85 @@
+#include "support/output.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <iterator>
+#include <utility>
+#include <system_error>
+
+#include "splinecast/ipc/clock.hpp"
+#include "support/exit_codes.hpp"
+
+namespace splinecast::apps {
+
+Output::Output(const std::string& path)
+    : name_(path.empty() ? "standard output" : path),
+      file_(path.empty() ? stdout : std::fopen(path.c_str(), "we")) {
+  if (file_ == nullptr) fail();
+}
+
+Output::~Output() {
+  if (file_ != nullptr && file_ != stdout) std::fclose(file_);
+}
+
+void Output::write(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail();
+}
+
+void Output::flush() {
+  if (std::fflush(file_) != 0) fail();
+}
+
+void Output::close() {
+  flush();
+  if (file_ == stdout) return;
+  if (std::fclose(std::exchange(file_, nullptr)) != 0) fail();
+}
+
+void Output::fail() const {
+  throw Failure(fmt::format("{}: cannot be written: {}", name_,
+                            std::generic_category().message(errno)));
+}
+
+SampleWriter::SampleWriter(Output& output, std::size_t dimensions, bool with_status)
+    : output_(&output) {
+  auto to = std::back_inserter(line_);
+  fmt::format_to(to, "t_ns");
+  for (const char letter : {'p', 'v', 'a', 'j'}) {
+    for (std::size_t d = 0; d < dimensions; ++d) fmt::format_to(to, ",{}[{}]", letter, d);
+  }
+  fmt::format_to(to, "{}\n", with_status ? ",status" : "");
+  output_->write({line_.data(), line_.size()});
+}
+
+void SampleWriter::write(core::Time time, const core::State& state, std::string_view status) {
+  line_.clear();
+  auto to = std::back_inserter(line_);
+  fmt::format_to(to, "{}", time.count());
+  for (const double value : state.values()) fmt::format_to(to, ",{}", value);
+  if (!status.empty()) fmt::format_to(to, ",{}", status);
+  line_.push_back('\n');
+  output_->write({line_.data(), line_.size()});
+}
+
+Progress::Progress() : terminal_(isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() {
+  if (shown_) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::show(std::string_view text) {
+  if (!terminal_) return;
+  const core::Time now = ipc::MonotonicClock().now();
+  if (now < next_) return;
+  constexpr core::Time kPeriod = std::chrono::milliseconds(100);
+  next_ = now + kPeriod;
+  shown_ = true;
+  fmt::print(stderr, "\r\033[K{}", text);
+  std::fflush(stderr);
+}
+
+void say(std::string_view text) { fmt::print(stderr, "splinecast: {}\n", text); }
+
+}  // namespace splinecast::apps

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "splinecast/core/state.hpp"
+#include "splinecast/core/time.hpp"
+
+namespace splinecast::apps {
+
+/// Where a verb's data goes: a file, or standard output for an empty path. Throws Failure if it
+/// cannot be written; `close` must be called for the last of it.
+class Output {
+ public:
+  explicit Output(const std::string& path);
+  Output(const Output&) = delete;
+  Output& operator=(const Output&) = delete;
+  ~Output();
+
+  void write(std::string_view text);
+  void flush();
+  void close();
+
+ private:
+  [[noreturn]] void fail() const;
+  std::string name_;
+  std::FILE* file_;
+};
+
+/// Writes samples as CSV: `t_ns,p[0],…,v[0],…,a[0],…,j[0],…`, numbers in the shortest form that
+/// reads back exactly.
+class SampleWriter {
+ public:
+  /// Writes the header, with a last column `status` if asked for.
+  SampleWriter(Output& output, std::size_t dimensions, bool with_status);
+
+  /// Writes a row. An empty `status` writes none.
+  void write(core::Time time, const core::State& state, std::string_view status = {});
+
+ private:
+  Output* output_;
+  fmt::memory_buffer line_;
+};
+
+/// A line on stderr that overwrites itself, where stderr is a terminal; else nothing.
+class Progress {
+ public:
+  Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress();
+
+  /// Shows the text, at most ten times a second.
+  void show(std::string_view text);
+
+ private:
+  bool terminal_;
+  bool shown_ = false;
+  core::Time next_{};
+};
+
+/// A message on stderr: `splinecast: …`.
+void say(std::string_view text);
+
+}  // namespace splinecast::apps

@@ -1,0 +1,108 @@
+#include "support/stream_report.hpp"
+
+#include <vector>
+
+#include "splinecast/core/condition.hpp"
+#include "splinecast/ipc/status.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string clock_name(const ipc::RegionHeader& header) {
+  return ipc::stream_clock(header) == ipc::StreamClock::monotonic ? "live" : "recorded";
+}
+
+/// What both headers say; the producer's if it stands.
+ordered_json stream_json(const ipc::RegionHeader& header) {
+  return {
+      {"stream_id", header.stream_id},
+      {"dimensions", header.dimensions},
+      {"names", ipc::dimension_names(header)},
+      {"clock", clock_name(header)},
+      {"start", core::to_string(ipc::start_condition(header))},
+      {"min_interval_ns", header.min_interval},
+      {"max_interval_ns", header.max_interval},
+  };
+}
+
+ordered_json producer_json(const ipc::StreamInfo& info) {
+  ordered_json refused = ordered_json::object();
+  for (std::size_t i = 1; i < info.refused_by_producer.size(); ++i) {
+    const auto status = static_cast<ipc::AppendStatus>(i);
+    if (status > ipc::AppendStatus::finished) break;
+    refused[std::string(ipc::to_string(status))] = info.refused_by_producer[i];
+  }
+  return {
+      {"alive", info.producer_alive},
+      {"pid", info.waypoints->owner_pid},
+      {"epoch", info.waypoints->epoch},
+      {"ring_capacity", info.waypoints->capacity},
+      {"region_bytes", info.waypoints->region_bytes},
+      {"appended", info.appended},
+      {"refused", refused},
+  };
+}
+
+ordered_json refusals_json(const ipc::StreamInfo& info) {
+  ordered_json list = ordered_json::array();
+  for (const ipc::RefusedItem& refusal : info.refusals) {
+    list.push_back({{"item", refusal.item}, {"reason", ipc::to_string(refusal.reason)}});
+  }
+  return list;
+}
+
+ordered_json solver_json(const ipc::StreamInfo& info) {
+  const ipc::Head& head = info.head;
+  ordered_json refused = ordered_json::object();
+  for (std::size_t i = 1; i < ipc::kRefusals; ++i) {
+    refused[std::string(ipc::to_string(static_cast<ipc::Refusal>(i)))] = head.reasons[i];
+  }
+  return {
+      {"alive", info.solver_alive},
+      {"pid", info.spline->owner_pid},
+      {"epoch", info.spline->epoch},
+      {"method", "c2"},
+      {"settle", info.spline->settle},
+      {"tail", core::to_string(static_cast<core::Tail>(info.spline->tail))},
+      {"stop_time_ns", info.spline->stop_time},
+      {"board_capacity", info.spline->capacity},
+      {"region_bytes", info.spline->region_bytes},
+      {"revision", head.revision},
+      {"consumed", head.consumed},
+      {"interpolated", head.knots},
+      {"refused", head.refused},
+      {"refused_by_reason", refused},
+      {"refusals", refusals_json(info)},
+      {"first_segment", head.first},
+      {"newest_segment", head.newest},
+      {"settled_until_ns", head.settled_until.count()},
+      {"newest_knot_ns", head.newest_knot.count()},
+      {"committed_ns", head.committed.count()},
+      {"finished", head.finished},
+  };
+}
+
+}  // namespace
+
+std::string state_of(const ipc::StreamInfo& info) {
+  if (!info.waypoints) return info.solver_alive ? "waiting for a producer" : "left behind";
+  if (!info.spline || info.spline->stream_id != info.waypoints->stream_id) {
+    return "waiting for a solver";
+  }
+  if (info.head.finished) return "finished";
+  if (info.producer_alive && info.solver_alive) return "running";
+  return info.producer_alive || info.solver_alive ? "one writer gone" : "both writers gone";
+}
+
+ordered_json to_json(const ipc::StreamInfo& info) {
+  ordered_json json{{"stream", info.stream}, {"state", state_of(info)}};
+  const auto& header = info.waypoints ? info.waypoints : info.spline;
+  if (header) json.update(stream_json(*header));
+  json["producer"] = info.waypoints ? producer_json(info) : ordered_json(nullptr);
+  json["solver"] = info.spline ? solver_json(info) : ordered_json(nullptr);
+  return json;
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,467 @@
+#include "support/waypoint_table.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "splinecast/core/state.hpp"
+#include "support/text_file.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+constexpr std::array<std::string_view, 8> kTumColumns{"t", "x", "y", "z", "qx", "qy", "qz", "qw"};
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+/// One line of a file.
+struct Line {
+  std::size_t number = 0;
+  std::string_view text;
+};
+
+/// Walks over the lines of a text; takes `\n` and `\r\n`, and a last line without either.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : rest_(text) {
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+  }
+  bool next(Line& line) {
+    if (rest_.empty()) return false;
+    const std::size_t end = rest_.find('\n');
+    line.text = rest_.substr(0, end);
+    line.number = ++number_;
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    if (line.text.ends_with('\r')) line.text.remove_suffix(1);
+    return true;
+  }
+  /// The next line that is neither blank nor a comment.
+  bool next_data(Line& line) {
+    while (next(line)) {
+      const std::string_view text = trimmed(line.text);
+      if (!text.empty() && text.front() != '#') return true;
+    }
+    return false;
+  }
+
+ private:
+  std::string_view rest_;
+  std::size_t number_ = 0;
+};
+
+/// Splits a line at commas, or at runs of blanks; views into the line.
+void split(std::string_view line, bool at_commas, std::vector<std::string_view>& fields) {
+  fields.clear();
+  if (at_commas) {
+    for (;;) {
+      const std::size_t comma = line.find(',');
+      fields.push_back(line.substr(0, comma));
+      if (comma == std::string_view::npos) return;
+      line.remove_prefix(comma + 1);
+    }
+  }
+  constexpr std::string_view kBlanks = " \t";
+  for (;;) {
+    const std::size_t begin = line.find_first_not_of(kBlanks);
+    if (begin == std::string_view::npos) return;
+    line.remove_prefix(begin);
+    const std::size_t end = line.find_first_of(kBlanks);
+    fields.push_back(line.substr(0, end));
+    if (end == std::string_view::npos) return;
+    line.remove_prefix(end);
+  }
+}
+
+/// What a file's beginning says about its rows.
+struct Format {
+  bool at_commas = true;
+  std::vector<std::string> names;
+  std::vector<std::string> aliases;  ///< other names of the same columns, or none
+  Line first_row;                    ///< number 0: there is no row
+};
+
+std::string column_list(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::vector<std::string> names_of(std::string_view line, bool at_commas) {
+  std::vector<std::string_view> fields;
+  split(line, at_commas, fields);
+  std::vector<std::string> names;
+  for (const auto field : fields) names.emplace_back(trimmed(field));
+  return names;
+}
+
+/// TUM text: t x y z qx qy qz qw; a comment with as many words gives the columns other names.
+Format tum_format(const TextFile& file, const Line& first, std::string_view comment) {
+  Format format{.at_commas = false,
+                .names = {kTumColumns.begin(), kTumColumns.end()},
+                .aliases = names_of(comment, false),
+                .first_row = first};
+  if (format.aliases.size() != format.names.size()) format.aliases.clear();
+  std::vector<std::string_view> fields;
+  split(first.text, false, fields);
+  if (fields.size() != kTumColumns.size()) {
+    throw InputError(fmt::format(
+        "{}:{}: neither CSV (no comma, no header) nor TUM text (8 fields; this line has {})",
+        file.name(), first.number, fields.size()));
+  }
+  return format;
+}
+
+Format read_format(const TextFile& file, Lines& lines) {
+  Line line;
+  std::string_view comment;
+  while (lines.next(line)) {
+    const std::string_view text = trimmed(line.text);
+    if (text.empty()) continue;
+    if (text.front() != '#') break;
+    comment = trimmed(text.substr(1));
+    line = {};
+  }
+  const std::string_view text = trimmed(line.text);
+  if (line.number == 0 || text.empty() || text.front() == '#') {
+    throw InputError(fmt::format("{}: there are no rows", file.name()));
+  }
+  const bool has_comma = text.find(',') != std::string_view::npos;
+  const bool starts_with_number = parse_number(names_of(text, has_comma)[0]).has_value();
+  if (!has_comma && starts_with_number &&
+      text.find_first_of(" \t") != std::string_view::npos) {
+    return tum_format(file, line, comment);
+  }
+  Format format;
+  if (!starts_with_number) {
+    format.names = names_of(text, true);
+    if (!lines.next_data(format.first_row)) format.first_row = {};
+  } else {
+    format.names = names_of(comment, true);
+    format.first_row = line;
+    if (comment.empty()) {
+      throw InputError(fmt::format("{}:{}: there is no header before the first row", file.name(),
+                                   line.number));
+    }
+  }
+  return format;
+}
+
+/// The unit of a time column by its name, or nothing if the name is not one of a time column.
+std::optional<TimeUnit> unit_of_time_column(std::string_view name) {
+  std::string lower(name);
+  std::ranges::transform(lower, lower.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::string_view rest = lower;
+  for (const std::string_view base : {"timestamp", "time", "t"}) {
+    if (!rest.starts_with(base)) continue;
+    rest.remove_prefix(base.size());
+    if (rest.empty()) return TimeUnit::seconds;
+    if (rest.front() == '_') return parse_time_unit(rest.substr(1));
+    rest = trimmed(rest);
+    const bool bracketed = (rest.starts_with('[') && rest.ends_with(']')) ||
+                           (rest.starts_with('(') && rest.ends_with(')'));
+    return bracketed ? parse_time_unit(rest.substr(1, rest.size() - 2)) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+/// i of a column named `<letter>[i]`, else kNone.
+std::size_t index_of(std::string_view name, char letter) {
+  if (name.size() < 4 || name[0] != letter || name[1] != '[' || name.back() != ']') return kNone;
+  std::size_t index = 0;
+  const char* const end = name.data() + name.size() - 1;
+  const auto [last, error] = std::from_chars(name.data() + 2, end, index);
+  return error == std::errc{} && last == end ? index : kNone;
+}
+
+std::size_t find(const std::vector<std::string>& names, std::string_view name) {
+  const auto at = std::ranges::find(names, name);
+  return at == names.end() ? kNone : static_cast<std::size_t>(at - names.begin());
+}
+
+/// Which field of a row is what.
+struct Roles {
+  std::size_t time = kNone;
+  TimeUnit unit = TimeUnit::seconds;
+  std::vector<std::size_t> positions;
+  std::vector<std::size_t> velocities;
+  std::vector<std::size_t> accelerations;
+};
+
+/// A waypoint file with its format known, ready to give its rows.
+class TableReader {
+ public:
+  TableReader(const std::string& path, std::optional<TimeUnit> time_unit)
+      : file_(path), lines_(file_.text()), format_(read_format(file_, lines_)) {
+    find_time(time_unit);
+  }
+
+  [[nodiscard]] const std::string& name() const { return file_.name(); }
+  [[nodiscard]] const Roles& roles() const { return roles_; }
+  [[nodiscard]] std::vector<std::string> position_names() const {
+    std::vector<std::string> names;
+    for (const std::size_t field : roles_.positions) names.push_back(format_.names[field]);
+    return names;
+  }
+
+  /// Finds out which columns hold positions and given derivatives.
+  void find_values(const std::vector<std::string>& selected) {
+    const std::vector<std::size_t> all = position_columns();
+    if (selected.empty()) {
+      roles_.positions = all;
+    } else {
+      for (const std::string& name : selected) roles_.positions.push_back(column(name));
+    }
+    if (roles_.positions.empty()) {
+      throw InputError(fmt::format("{}: there is no position column besides the time ({})", name(),
+                                   column_list(format_.names)));
+    }
+    if (roles_.positions.size() > core::kMaxDimensions) {
+      throw InputError(fmt::format("{}: {} position columns; at most {} dimensions are possible",
+                                   name(), roles_.positions.size(), core::kMaxDimensions));
+    }
+    roles_.velocities = derivative_columns('v', all);
+    roles_.accelerations = derivative_columns('a', all);
+  }
+
+  /// The fields of the next row, or false at the end. Throws for a row of another width.
+  bool next(std::vector<std::string_view>& fields) {
+    if (!started_) {
+      started_ = true;
+      line_ = format_.first_row;
+      if (line_.number == 0) return false;
+    } else if (!lines_.next_data(line_)) {
+      return false;
+    }
+    split(line_.text, format_.at_commas, fields);
+    return true;
+  }
+  void require_width(const std::vector<std::string_view>& fields) const {
+    if (fields.size() == format_.names.size()) return;
+    throw InputError(fmt::format("{}:{}:1: {} fields, but there are {} columns", name(),
+                                 line_.number, fields.size(), format_.names.size()));
+  }
+
+  [[nodiscard]] std::size_t line() const { return line_.number; }
+
+  [[nodiscard]] core::Time time(const std::vector<std::string_view>& fields) const {
+    const auto time = parse_time(fields[roles_.time], roles_.unit);
+    if (!time) fail(fields[roles_.time], roles_.time, "is not a time");
+    return *time;
+  }
+  [[nodiscard]] double number(const std::vector<std::string_view>& fields,
+                              std::size_t column) const {
+    const auto value = parse_number(fields[column]);
+    if (!value) fail(fields[column], column, "is not a number");
+    return *value;
+  }
+
+ private:
+  void find_time(std::optional<TimeUnit> time_unit) {
+    std::set<std::string> seen;
+    for (std::size_t c = 0; c < format_.names.size(); ++c) {
+      const std::string& column_name = format_.names[c];
+      if (!column_name.empty() && !seen.insert(column_name).second) {
+        throw InputError(fmt::format("{}: two columns are named '{}'", name(), column_name));
+      }
+      const auto unit = unit_of_time_column(column_name);
+      if (!unit || roles_.time != kNone) continue;
+      roles_.time = c;
+      roles_.unit = time_unit.value_or(*unit);
+    }
+    if (roles_.time == kNone) {
+      throw InputError(fmt::format(
+          "{}: there is no time column (t_ns, timestamp_us, timestamp [ns], t, time, timestamp) "
+          "among {}",
+          name(), column_list(format_.names)));
+    }
+  }
+
+  /// A column by name, or by the name that a comment gives it.
+  [[nodiscard]] std::size_t column(const std::string& wanted) const {
+    std::size_t c = find(format_.names, wanted);
+    if (c == kNone) c = find(format_.aliases, wanted);
+    if (c == kNone) {
+      throw InputError(fmt::format("{}: there is no column '{}' among {}", name(), wanted,
+                                   column_list(format_.names)));
+    }
+    return c;
+  }
+
+  /// Columns that hold positions if none are selected: numeric ones that are nothing else.
+  [[nodiscard]] std::vector<std::size_t> position_columns() const {
+    std::vector<std::string_view> fields;
+    split(format_.first_row.text, format_.at_commas, fields);
+    std::vector<std::size_t> columns;
+    for (std::size_t c = 0; c < format_.names.size(); ++c) {
+      const std::string& column_name = format_.names[c];
+      if (c == roles_.time || index_of(column_name, 'v') != kNone ||
+          index_of(column_name, 'a') != kNone || is_sampled_jerk(column_name)) {
+        continue;
+      }
+      if (c < fields.size() && parse_number(fields[c])) {
+        columns.push_back(c);
+      } else if (!column_name.empty()) {
+        fmt::print(stderr, "splinecast: {}: column '{}' is not numeric and is left out\n", name(),
+                   column_name);
+      }
+    }
+    return columns;
+  }
+
+  /// j[i] beside p[i], v[i] and a[i]: samples that this program wrote, whose jerk is no position.
+  [[nodiscard]] bool is_sampled_jerk(const std::string& column_name) const {
+    const std::size_t i = index_of(column_name, 'j');
+    if (i == kNone) return false;
+    return std::ranges::all_of(std::string_view("pva"), [&](char letter) {
+      return find(format_.names, fmt::format("{}[{}]", letter, i)) != kNone;
+    });
+  }
+
+  /// Columns of a given derivative, one per selected position, or none at all. `<letter>[i]` goes
+  /// with the column p[i] if there is one, else with the file's i-th position column.
+  [[nodiscard]] std::vector<std::size_t> derivative_columns(
+      char letter, const std::vector<std::size_t>& all) const {
+    std::vector<std::size_t> columns;
+    for (const std::size_t position : roles_.positions) {
+      std::size_t i = index_of(format_.names[position], 'p');
+      if (i == kNone) {
+        i = static_cast<std::size_t>(std::ranges::find(all, position) - all.begin());
+      }
+      const std::size_t c = find(format_.names, fmt::format("{}[{}]", letter, i));
+      if (c != kNone && std::ranges::find(roles_.positions, c) == roles_.positions.end()) {
+        columns.push_back(c);
+      }
+    }
+    if (!columns.empty() && columns.size() != roles_.positions.size()) {
+      throw InputError(fmt::format("{}: {} columns {}[i] for {} positions; one each, or none",
+                                   name(), columns.size(), letter, roles_.positions.size()));
+    }
+    return columns;
+  }
+
+  [[noreturn]] void fail(std::string_view field, std::size_t column_at, const char* what) const {
+    throw InputError(fmt::format("{}:{}:{}: column '{}': '{}' {}", name(), line_.number,
+                                 field.data() - line_.text.data() + 1, format_.names[column_at],
+                                 trimmed(field), what));
+  }
+
+  TextFile file_;
+  Lines lines_;
+  Format format_;
+  Roles roles_;
+  Line line_;
+  bool started_ = false;
+};
+
+void append_row(const TableReader& reader, const std::vector<std::string_view>& fields,
+                std::vector<double>& row, WaypointTable& table) {
+  reader.require_width(fields);
+  const core::Time time = reader.time(fields);
+  const Roles& roles = reader.roles();
+  row.clear();
+  for (const auto* columns : {&roles.positions, &roles.velocities, &roles.accelerations}) {
+    for (const std::size_t column : *columns) row.push_back(reader.number(fields, column));
+  }
+  // Only a row that was read to its end is taken over.
+  auto from = row.begin();
+  for (const auto& [columns, values] : {std::pair(&roles.positions, &table.positions),
+                                        std::pair(&roles.velocities, &table.velocities),
+                                        std::pair(&roles.accelerations, &table.accelerations)}) {
+    const auto to = from + static_cast<std::ptrdiff_t>(columns->size());
+    values->insert(values->end(), from, to);
+    from = to;
+  }
+  table.times.push_back(time);
+  table.lines.push_back(reader.line());
+}
+
+std::span<const double> row_of(const std::vector<double>& values, std::size_t i,
+                               std::size_t dimensions) noexcept {
+  return values.empty() ? std::span<const double>{}
+                        : std::span(values).subspan(i * dimensions, dimensions);
+}
+
+}  // namespace
+
+core::Waypoint WaypointTable::waypoint(std::size_t i) const noexcept {
+  return {.time = times[i],
+          .position = row_of(positions, i, dimensions()),
+          .velocity = row_of(velocities, i, dimensions()),
+          .acceleration = row_of(accelerations, i, dimensions())};
+}
+
+WaypointTable WaypointTable::without_rows() const {
+  WaypointTable empty;
+  empty.file = file;
+  empty.names = names;
+  return empty;
+}
+
+void WaypointTable::append_row(const WaypointTable& from, std::size_t i) {
+  const core::Waypoint row = from.waypoint(i);
+  times.push_back(row.time);
+  lines.push_back(from.lines[i]);
+  positions.insert(positions.end(), row.position.begin(), row.position.end());
+  velocities.insert(velocities.end(), row.velocity.begin(), row.velocity.end());
+  accelerations.insert(accelerations.end(), row.acceleration.begin(), row.acceleration.end());
+}
+
+std::string WaypointTable::where(std::size_t i) const {
+  return fmt::format("{}:{}", file, lines[i]);
+}
+
+WaypointTable read_waypoints(const std::string& path, const TableOptions& options) {
+  TableReader reader(path, options.time_unit);
+  reader.find_values(options.columns);
+  WaypointTable table;
+  table.file = reader.name();
+  table.names = reader.position_names();
+  std::vector<std::string_view> fields;
+  std::vector<double> row;
+  while (reader.next(fields)) {
+    try {
+      append_row(reader, fields, row, table);
+    } catch (const InputError& error) {
+      if (!options.on_bad_row) throw;
+      options.on_bad_row(error);
+    }
+  }
+  if (table.size() == 0) throw InputError(fmt::format("{}: there are no waypoints", table.file));
+  return table;
+}
+
+std::vector<core::Time> read_times(const std::string& path, std::optional<TimeUnit> time_unit) {
+  TableReader reader(path, time_unit);
+  std::vector<core::Time> times;
+  std::vector<std::string_view> fields;
+  while (reader.next(fields)) {
+    reader.require_width(fields);
+    times.push_back(reader.time(fields));
+  }
+  return times;
+}
+
+void require_spline_input(const WaypointTable& table) {
+  const std::size_t dimensions = table.dimensions();
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    for (std::size_t d = 0; d < dimensions; ++d) {
+      const double value = table.positions[i * dimensions + d];
+      if (std::isfinite(value)) continue;
+      throw InputError(fmt::format("{}: column '{}': {} is not finite", table.where(i),
+                                   table.names[d], value));
+    }
+    if (i == 0 || table.times[i] > table.times[i - 1]) continue;
+    throw InputError(fmt::format("{}: time {} ns is not after {} ns on line {}", table.where(i),
+                                 table.times[i].count(), table.times[i - 1].count(),
+                                 table.lines[i - 1]));
+  }
+}
+
+}  // namespace splinecast::apps
