@@ -72,7 +72,9 @@ class DemoReader {
     costs_.push_back(static_cast<double>((clock_.now() - t).count()));
     ++samples_;
     ++by_status_[static_cast<std::size_t>(status)];
-    if (reader_.head(head_)) ages_.push_back(core::to_seconds(t - head_.committed) * 1e3);
+    if (reader_.head(head_) && !head_.finished) {
+      ages_.push_back(core::to_seconds(t - head_.committed) * 1e3);
+    }
     if (ipc::has_values(status)) check(t);
   }
 

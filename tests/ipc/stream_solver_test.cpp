@@ -1,0 +1,203 @@
+#include "splinecast/ipc/stream_solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+#include "splinecast/core/piecewise_polynomial.hpp"
+#include "splinecast/ipc/sampler.hpp"
+#include "support/memory_stream.hpp"
+#include "support/mesh.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+using core::Time;
+using testing::FixedClock;
+using testing::MemoryBoard;
+using testing::MemoryRing;
+using testing::Mesh;
+using testing::random_mesh;
+
+/// A whole stream in plain memory: ring, board and solver.
+struct MemoryStream {
+  MemoryRing ring;
+  MemoryBoard board;
+  core::WindowOptions window;
+  IngestLimits limits;
+  StreamSolver solver;
+  FixedClock clock;
+
+  explicit MemoryStream(std::size_t dimensions, core::WindowOptions how = {},
+                        std::size_t ring_capacity = 64, std::size_t board_capacity = 1024,
+                        IngestLimits solver_limits = {})
+      : ring(dimensions, ring_capacity),
+        board(dimensions, board_capacity),
+        window(how),
+        limits(solver_limits),
+        solver(ring.reader, board.writer, board.reader, window, limits) {}
+
+  AppendStatus append(Time t, std::span<const double> x) {
+    return ring.writer.append({t, x, {}, {}}, board.reader.tail());
+  }
+  void send(const Mesh& mesh, std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      while (append(mesh.times[i], mesh.position(i)) == AppendStatus::full) solver.step(clock);
+    }
+  }
+  void finish(const core::Condition& end = {}) {
+    while (ring.writer.finish(end, board.reader.tail()) == AppendStatus::full) solver.step(clock);
+    drain();
+  }
+  void drain() {
+    while (solver.step(clock).consumed > 0) {
+    }
+  }
+  /// What happens when the solver is killed and another one comes.
+  void replace_solver() {
+    board.replace_writer();
+    solver = StreamSolver(ring.reader, board.writer, board.reader, window, limits);
+  }
+};
+
+/// The segments that a window gives when it is fed directly.
+core::PiecewisePolynomial direct(const Mesh& mesh, const core::WindowOptions& how,
+                                 const core::Condition& end) {
+  core::SlidingWindow window(mesh.dimensions, how);
+  core::PiecewisePolynomial curve(mesh.dimensions);
+  core::Segment segment(mesh.dimensions);
+  for (std::size_t i = 0; i <= mesh.size(); ++i) {
+    if (i < mesh.size()) {
+      window.append(mesh.times[i], mesh.position(i));
+    } else {
+      window.finish(end);
+    }
+    while (curve.segments() < window.settled_segments()) {
+      window.segment(curve.segments(), segment);
+      curve.append(segment);
+    }
+  }
+  return curve;
+}
+
+void expect_same_bits(MemoryStream& stream, const Mesh& mesh,
+                      const core::PiecewisePolynomial& wanted) {
+  Sampler sampler(stream.board.reader, StreamClock::recorded);
+  core::State a(mesh.dimensions);
+  core::State b(mesh.dimensions);
+  for (const Time t : testing::query_times(mesh, 3)) {
+    ASSERT_EQ(sampler.sample(t, a.ref()), SampleStatus::settled) << t.count();
+    wanted.evaluate(t, b.ref());
+    ASSERT_TRUE(std::ranges::equal(a.values(), b.values())) << t.count();
+  }
+}
+
+TEST(StreamSolver, PublishesTheBitsOfTheWindowHoweverTheItemsAreBatched) {
+  for (const std::size_t settle : {0U, 1U, 8U}) {
+    const core::WindowOptions how{.settle = settle};
+    const Mesh mesh = random_mesh(settle + 1, 300, 3, 5);
+    const core::Condition halt{core::ConditionKind::halt, {}};
+    const auto wanted = direct(mesh, how, halt);
+    for (const std::size_t batch : {1U, 7U, 300U}) {
+      MemoryStream stream(3, how);
+      for (std::size_t i = 0; i < mesh.size(); i += batch) {
+        stream.send(mesh, i, std::min(mesh.size(), i + batch));
+        stream.drain();
+      }
+      stream.finish(halt);
+      EXPECT_TRUE(stream.solver.head().finished);
+      EXPECT_EQ(stream.solver.head().knots, mesh.size());
+      expect_same_bits(stream, mesh, wanted);
+    }
+  }
+}
+
+TEST(StreamSolver, ASolverThatTakesOverGoesOnBitForBitWhereverTheFirstOneDied) {
+  const core::WindowOptions how{.settle = 8};
+  const Mesh mesh = random_mesh(3, 60, 2, 5);
+  const auto wanted = direct(mesh, how, {});
+  for (std::size_t cut = 0; cut <= mesh.size(); cut += 3) {
+    MemoryStream stream(2, how);
+    stream.send(mesh, 0, cut);
+    stream.drain();
+    stream.replace_solver();
+    EXPECT_EQ(stream.solver.head().knots, cut);
+    stream.send(mesh, cut, mesh.size());
+    stream.finish();
+    expect_same_bits(stream, mesh, wanted);
+  }
+}
+
+TEST(StreamSolver, RefusesWhatAProducerShouldNotHaveSentWithReasonAndNumber) {
+  MemoryStream stream(1, {}, 64, 64, {.min_interval = Time(5000), .max_interval = Time(1'000'000)});
+  const auto put = [&](std::int64_t t, double x) {
+    const std::vector<double> position{x};
+    ASSERT_EQ(stream.append(Time(t), position), AppendStatus::accepted);
+  };
+  put(10'000, 1);
+  put(12'000, 2);      // closer than the solver takes
+  put(20'000, 3);
+  put(2'000'000, 4);   // farther
+  put(2'005'000, 5);   // farther still from the last one interpolated
+  stream.finish();
+  const Head& head = stream.solver.head();
+  EXPECT_EQ(head.knots, 2U);
+  EXPECT_EQ(head.refused, 3U);
+  EXPECT_EQ(head.reasons[static_cast<std::size_t>(Refusal::interval_out_of_range)], 3U);
+  EXPECT_EQ(stream.board.reader.refusal(0).item, 1U);
+  EXPECT_EQ(stream.board.reader.refusal(2).item, 4U);
+  EXPECT_EQ(head.consumed, 6U);
+}
+
+TEST(StreamSolver, TellsTheProducerWhatItConsumedAndReadersWhatChanged) {
+  const Mesh mesh = random_mesh(4, 40, 1, 2);
+  MemoryStream stream(1, {.settle = 4});
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    stream.send(mesh, i, i + 1);
+    stream.clock.time = Time(static_cast<std::int64_t>(i));
+    const auto result = stream.solver.step(stream.clock);
+    EXPECT_EQ(result.consumed, 1U);
+    Head head;
+    ASSERT_TRUE(stream.board.reader.copy_head(i + 1, head));
+    EXPECT_EQ(head.consumed, i + 1);
+    EXPECT_EQ(stream.board.reader.tail(), i + 1);
+    EXPECT_EQ(head.newest, i + 1);
+    EXPECT_EQ(head.newest_knot, mesh.times[i]);
+    EXPECT_EQ(head.changed_from, mesh.times[i >= 5 ? i - 5 : 0]);
+    EXPECT_EQ(head.settled_until, mesh.times[i >= 4 ? i - 4 : 0]);
+    EXPECT_EQ(head.committed, stream.clock.time);
+  }
+  EXPECT_FALSE(stream.solver.step(stream.clock).published);
+}
+
+TEST(StreamSolver, KeepsAsMuchHistoryAsTheBoardHolds) {
+  const Mesh mesh = random_mesh(5, 500, 1, 2);
+  MemoryStream stream(1, {}, 64, 64);
+  stream.send(mesh, 0, mesh.size());
+  stream.finish();
+  const Head& head = stream.solver.head();
+  EXPECT_EQ(head.newest, 499U);
+  EXPECT_EQ(head.newest - head.first + 1, 64U);
+  Sampler sampler(stream.board.reader, StreamClock::recorded);
+  core::State state(1);
+  EXPECT_EQ(sampler.sample(mesh.times[499 - 64] - Time(1), state.ref()),
+            SampleStatus::before_history);
+  EXPECT_EQ(sampler.sample(mesh.times[499 - 64], state.ref()), SampleStatus::settled);
+}
+
+TEST(StreamSolver, AFinishWithoutWaypointsEndsAStreamWithoutData) {
+  MemoryStream stream(1);
+  stream.finish();
+  EXPECT_TRUE(stream.solver.head().finished);
+  Sampler sampler(stream.board.reader, StreamClock::recorded);
+  core::State state(1);
+  EXPECT_EQ(sampler.sample(Time(0), state.ref()), SampleStatus::no_data);
+}
+
+TEST(StreamSolver, RefusesABoardTooSmallForItsLag) {
+  EXPECT_THROW(MemoryStream(1, {.settle = 64}, 64, 64), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace splinecast::ipc
