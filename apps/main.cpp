@@ -2,6 +2,7 @@
 #include <csignal>
 #include <exception>
 #include <stdexcept>
+#include <string>
 
 #include "splinecast/ipc/errors.hpp"
 #include "support/exit_codes.hpp"
@@ -50,6 +51,14 @@ int run_program(int argc, char** argv) {
   add_info(program, action);
   add_rm(program, action);
   try {
+    // CLI11 would only say that a subcommand is missing.
+    const std::string verb = argc > 1 ? argv[1] : "";
+    const auto verbs = program.get_subcommands([&](const CLI::App* known) {
+      return known->get_name() == verb;
+    });
+    if (!verb.empty() && verb.front() != '-' && verbs.empty()) {
+      throw CLI::ValidationError("there is no verb '" + verb + "'");
+    }
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? kOk : kBadUsageOrInput;

@@ -305,7 +305,8 @@ class TableReader {
           index_of(column_name, 'a') != kNone || is_sampled_jerk(column_name)) {
         continue;
       }
-      if (c < fields.size() && parse_number(fields[c])) {
+      const bool has_rows = format_.first_row.number != 0;
+      if (!has_rows || (c < fields.size() && parse_number(fields[c]))) {
         columns.push_back(c);
       } else if (!column_name.empty()) {
         fmt::print(stderr, "splinecast: {}: column '{}' is not numeric and is left out\n", name(),

@@ -17,13 +17,13 @@ namespace splinecast::ipc {
 /// Who may use the regions that this process makes.
 struct RegionAccess {
   mode_t mode = 0600;          ///< permission bits; nobody but the owner ever writes
-  std::optional<gid_t> group;  ///< group to give it to; unset: this process's
+  std::optional<gid_t> group{};  ///< group to give it to; unset: this process's
 };
 
 /// Whose regions this process uses: its own user's and root's, and those of `owner` if set. A
 /// region must also be a regular file that neither its group nor others may write.
 struct Trust {
-  std::optional<uid_t> owner;
+  std::optional<uid_t> owner{};
 };
 
 /// A mapped region of shared memory. Moves; unmaps and closes when it dies; does not unlink.

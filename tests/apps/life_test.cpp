@@ -1,0 +1,401 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/names.hpp"
+#include "splinecast/ipc/reader.hpp"
+#include "splinecast/ipc/stream_files.hpp"
+#include "support/mesh.hpp"
+#include "support/process.hpp"
+#include "support/recordings.hpp"
+
+/// A stream's life with real processes: who may come first, who may pause, who is refused.
+namespace splinecast::apps {
+namespace {
+
+using ipc::RegionKind;
+using testing::await;
+using testing::Ended;
+using testing::info;
+using testing::Process;
+using testing::run;
+using testing::TestFolder;
+using testing::TestStream;
+
+/// A recording, where to sample it, and what must come out.
+class Life : public ::testing::Test {
+ protected:
+  Life() {
+    const auto mesh = testing::random_mesh(4, 2000, 2, 4);
+    file_ = folder_.write("a.csv", testing::to_csv(mesh));
+    at_ = folder_.write("at.csv", testing::times_csv(mesh, 2));
+    wanted_ = run({"fit", file_, "--online", "--at", at_}).out;
+  }
+  [[nodiscard]] std::vector<std::string> solve() const { return {"solve", name()}; }
+  [[nodiscard]] std::vector<std::string> replay() const {
+    return {"replay", file_, "--stream", name(), "--rate", "max", "--clock", "recorded"};
+  }
+  [[nodiscard]] std::vector<std::string> sample() const { return {"sample", name(), "--at", at_}; }
+  [[nodiscard]] const std::string& name() const { return stream_.name(); }
+  [[nodiscard]] ipc::Word field(const char* role, const char* key) const {
+    const auto now = info(name());
+    return now.contains(role) && now[role].is_object() ? now[role][key].get<ipc::Word>() : 0;
+  }
+  void expect_all_sampled(Process& sampling) const {
+    const Ended sampled = sampling.wait();
+    EXPECT_EQ(sampled.code, 0) << sampled.err;
+    EXPECT_TRUE(testing::same_text(testing::without_status(sampled.out), wanted_));
+  }
+  static void expect_all_sent(Process& replaying) {
+    const Ended sent = replaying.wait();
+    EXPECT_EQ(sent.code, 0) << sent.err;
+    EXPECT_NE(sent.err.find("2000 waypoints sent, 2000 interpolated, 0 refused"),
+              std::string::npos)
+        << sent.err;
+  }
+
+  TestFolder folder_;
+  TestStream stream_;
+  std::string file_, at_, wanted_;
+};
+
+TEST_F(Life, EveryOrderOfArrivalGivesTheWholeStream) {
+  const std::vector<std::string> orders[] = {
+      {"solve", "replay", "sample"}, {"solve", "sample", "replay"}, {"replay", "solve", "sample"},
+      {"replay", "sample", "solve"}, {"sample", "solve", "replay"}, {"sample", "replay", "solve"}};
+  for (const auto& order : orders) {
+    const TestStream stream;
+    std::vector<Process> processes;
+    const auto index_of = [&](const std::string& verb) {
+      return static_cast<std::size_t>(std::ranges::find(order, verb) - order.begin());
+    };
+    for (const std::string& verb : order) {
+      auto arguments = verb == "solve"    ? solve()
+                       : verb == "replay" ? replay()
+                                          : sample();
+      std::ranges::replace(arguments, name(), stream.name());
+      processes.emplace_back(arguments);
+      if (verb == "solve") processes.back().await_message(stream.name());
+      if (verb == "replay") {
+        // The next one comes when the producer's region stands, or has already been worked off.
+        EXPECT_TRUE(await([&] {
+          return std::filesystem::exists(
+              ipc::region_path(stream.name(), RegionKind::waypoints));
+        }));
+      }
+    }
+    expect_all_sent(processes[index_of("replay")]);
+    expect_all_sampled(processes[index_of("sample")]);
+  }
+}
+
+TEST_F(Life, APausedSolverHoldsTheProducerBackAndNothingIsLost) {
+  Process solver(solve());
+  solver.await_message("waiting");
+  Process replaying({"replay", file_, "--stream", name(), "--rate", "max", "--clock", "recorded",
+                     "--capacity", "64", "--wait", "1"});
+  ASSERT_TRUE(await([&] { return field("solver", "interpolated") > 100; }));
+  solver.signal(SIGSTOP);
+  ipc::Word before = 0;
+  // Full: the ring holds its capacity, and the producer waits however long the solver sleeps.
+  const bool full = await([&] {
+    const auto now = info(name());
+    before = now["producer"]["appended"];
+    return before - now["solver"]["consumed"].get<ipc::Word>() == 64 || before == 2001;
+  });
+  EXPECT_TRUE(full);
+  solver.signal(SIGCONT);
+  expect_all_sent(replaying);
+  Process sampling(sample());
+  expect_all_sampled(sampling);
+}
+
+TEST_F(Life, APausedProducerHoldsNobodyElseUp) {
+  Process solver(solve());
+  Process replaying({"replay", file_, "--stream", name(), "--rate", "1", "--clock", "recorded",
+                     "--duration", "2"});
+  ASSERT_TRUE(await([&] { return field("solver", "interpolated") > 20; }));
+  replaying.signal(SIGSTOP);
+  ASSERT_TRUE(await([&] {
+    const auto now = info(name());
+    return now["producer"]["appended"] == now["solver"]["consumed"];
+  }));
+  ipc::Reader reader(name());
+  core::State state(reader.dimensions());
+  ipc::Head head;
+  ASSERT_TRUE(reader.head(head));
+  EXPECT_EQ(reader.sample(head.newest_knot - core::Time(1), state), ipc::SampleStatus::provisional);
+  EXPECT_EQ(reader.sample(head.newest_knot, state), ipc::SampleStatus::stopping);
+  EXPECT_EQ(reader.sample(head.newest_knot + core::Time(1'000'000'000), state),
+            ipc::SampleStatus::holding);
+  EXPECT_TRUE(reader.alive().producer);
+  EXPECT_TRUE(reader.alive().solver);
+  replaying.signal(SIGCONT);
+  EXPECT_EQ(replaying.wait().code, 0);
+}
+
+TEST_F(Life, ASecondProducerAndASecondSolverAreRefusedWithTheFirstOnesProcess) {
+  Process solver(solve());
+  Process replaying({"replay", file_, "--stream", name(), "--rate", "1"});
+  solver.await_message("solving");
+  const Ended second_solver = run(solve());
+  EXPECT_EQ(second_solver.code, 1);
+  EXPECT_NE(second_solver.err.find("has a living solver (process " + std::to_string(solver.pid())),
+            std::string::npos)
+      << second_solver.err;
+  const Ended second_producer = run(replay());
+  EXPECT_EQ(second_producer.code, 1);
+  EXPECT_NE(
+      second_producer.err.find("has a living producer (process " + std::to_string(replaying.pid())),
+      std::string::npos)
+      << second_producer.err;
+  const Ended removal = run({"rm", name()});
+  EXPECT_EQ(removal.code, 1);
+  EXPECT_NE(removal.err.find("has a living producer"), std::string::npos) << removal.err;
+  EXPECT_TRUE(info(name())["producer"]["alive"]);
+}
+
+TEST_F(Life, ANewSolverIsRefusedWhileTheFirstStillWaitsForAProducer) {
+  Process solver(solve());
+  solver.await_message("waiting for a producer");
+  EXPECT_EQ(run(solve()).code, 1);
+  EXPECT_EQ(run({"rm", name()}).code, 1);
+  solver.signal(SIGINT);
+  EXPECT_EQ(solver.wait().code, 0);
+  EXPECT_FALSE(std::filesystem::exists(ipc::lock_path(name(), RegionKind::spline)));
+}
+
+TEST_F(Life, RemovingAStreamTellsItsReadersToAttachAgain) {
+  {
+    Process solver(solve());
+    ASSERT_EQ(run(replay()).code, 0);
+  }
+  ipc::Reader reader(name());
+  core::State state(reader.dimensions());
+  EXPECT_EQ(reader.sample(core::Time(1000), state), ipc::SampleStatus::settled);
+  EXPECT_FALSE(reader.alive().solver);
+  ASSERT_EQ(run({"rm", name()}).code, 0);
+  EXPECT_EQ(reader.sample(core::Time(1000), state), ipc::SampleStatus::retired);
+  EXPECT_EQ(reader.wait(core::Time(1)), ipc::WaitStatus::retired);
+  for (const RegionKind kind : {RegionKind::waypoints, RegionKind::spline}) {
+    EXPECT_FALSE(std::filesystem::exists(ipc::region_path(name(), kind)));
+    EXPECT_FALSE(std::filesystem::exists(ipc::lock_path(name(), kind)));
+  }
+  EXPECT_EQ(run({"rm", name()}).code, 4);
+  EXPECT_EQ(run({"info", name()}).code, 4);
+  EXPECT_EQ(run({"sample", name(), "--at", at_, "--wait", "0.1"}).code, 4);
+}
+
+TEST_F(Life, AReaderIsWokenWhenItsStreamIsRemoved) {
+  {
+    Process solver(solve());
+    ASSERT_EQ(run(replay()).code, 0);
+  }
+  ipc::Reader reader(name());
+  EXPECT_EQ(reader.wait(core::Time(1)), ipc::WaitStatus::advanced);
+  EXPECT_EQ(reader.wait(core::Time(1)), ipc::WaitStatus::timed_out);
+  Process removal({"rm", name()});
+  EXPECT_EQ(reader.wait(core::Time(60'000'000'000)), ipc::WaitStatus::retired);
+  EXPECT_EQ(removal.wait().code, 0);
+}
+
+TEST_F(Life, AReplayOntoAFinishedStreamMakesItAnewAndReadersAttachAgain) {
+  Process solver(solve());
+  ASSERT_EQ(run(replay()).code, 0);
+  const auto first = info(name());
+  ipc::Reader reader(name());
+  core::State state(reader.dimensions());
+  Process again(replay());
+  expect_all_sent(again);
+  EXPECT_NE(info(name())["stream_id"], first["stream_id"]);
+  EXPECT_EQ(reader.sample(core::Time(1000), state), ipc::SampleStatus::retired);
+  reader = ipc::Reader(name());
+  EXPECT_EQ(reader.sample(core::Time(1000), state), ipc::SampleStatus::settled);
+  Process sampling(sample());
+  expect_all_sampled(sampling);
+}
+
+TEST_F(Life, AReplayOntoAFinishedStreamWithoutASolverLeavesTheOldBoardUntilOneComes) {
+  {
+    Process solver(solve());
+    ASSERT_EQ(run(replay()).code, 0);
+  }
+  Process again(replay());
+  ASSERT_TRUE(await([&] { return info(name())["state"] == "waiting for a solver"; }));
+  EXPECT_THROW(ipc::Reader{name()}, ipc::NoSuchStream);  // not the old curve for the new stream
+  Process solver(solve());
+  expect_all_sent(again);
+  Process sampling(sample());
+  expect_all_sampled(sampling);
+}
+
+TEST_F(Life, WithoutASolverReplayExitsWith4AndLeavesNothingBehind) {
+  auto arguments = replay();
+  arguments.insert(arguments.end(), {"--wait", "0.2"});
+  const Ended ended = run(arguments);
+  EXPECT_EQ(ended.code, 4);
+  EXPECT_NE(ended.err.find("no solver for stream"), std::string::npos) << ended.err;
+  EXPECT_EQ(info(name()), nlohmann::json());
+}
+
+TEST_F(Life, WhenTheSolverIsKilledAndNoneComesReplayExitsWith4) {
+  Process solver(solve());
+  Process replaying({"replay", file_, "--stream", name(), "--rate", "1", "--clock", "recorded",
+                     "--capacity", "4", "--wait", "0.3"});
+  ASSERT_TRUE(await([&] { return field("solver", "interpolated") > 10; }));
+  solver.signal(SIGKILL);
+  const Ended ended = replaying.wait();
+  EXPECT_EQ(ended.code, 4);
+  EXPECT_NE(ended.err.find("has gone"), std::string::npos) << ended.err;
+}
+
+TEST_F(Life, AKilledProducersStreamIsContinuedOnlyWhereTimeGoesOn) {
+  Process solver(solve());
+  {
+    Process replaying({"replay", file_, "--stream", name(), "--rate", "1", "--clock", "recorded"});
+    ASSERT_TRUE(await([&] { return field("solver", "interpolated") > 20; }));
+    replaying.signal(SIGKILL);
+    EXPECT_EQ(replaying.wait().signal, SIGKILL);
+  }
+  const Ended from_the_start = run(replay());
+  EXPECT_EQ(from_the_start.code, 2);
+  EXPECT_NE(from_the_start.err.find("left unfinished by its producer at"), std::string::npos)
+      << from_the_start.err;
+  auto other_start = replay();
+  other_start.insert(other_start.end(), {"--start", "halt", "--from", "15"});
+  const Ended contradicting = run(other_start);
+  EXPECT_EQ(contradicting.code, 2);
+  EXPECT_NE(contradicting.err.find("start condition natural, not halt"), std::string::npos)
+      << contradicting.err;
+  auto later = replay();
+  later.insert(later.end(), {"--from", "15"});
+  const Ended continued = run(later);
+  EXPECT_EQ(continued.code, 0) << continued.err;
+  const auto now = info(name());
+  EXPECT_EQ(now["state"], "finished");
+  EXPECT_GE(now["producer"]["epoch"], 2);
+  EXPECT_EQ(now["solver"]["refused"], 0);
+}
+
+TEST_F(Life, ASolverThatTakesOverMayNotContradictTheBoard) {
+  {
+    Process solver({"solve", name(), "--settle", "4"});
+    ASSERT_EQ(run(replay()).code, 0);
+  }
+  const Ended contradicting = run({"solve", name(), "--settle", "5"});
+  EXPECT_EQ(contradicting.code, 2);
+  EXPECT_NE(contradicting.err.find("settle lag 4, not 5"), std::string::npos) << contradicting.err;
+  Process agreeing({"solve", name(), "--settle", "4"});
+  agreeing.await_message("taken over");
+}
+
+TEST_F(Life, AnInterruptedReplayFinishesItsStream) {
+  Process solver(solve());
+  Process replaying({"replay", file_, "--stream", name(), "--rate", "1", "--clock", "recorded"});
+  ASSERT_TRUE(await([&] { return field("solver", "interpolated") > 20; }));
+  replaying.signal(SIGINT);
+  const Ended ended = replaying.wait();
+  EXPECT_EQ(ended.code, 0);
+  EXPECT_NE(ended.err.find("interrupted"), std::string::npos) << ended.err;
+  EXPECT_TRUE(await([&] { return info(name())["state"] == "finished"; }));
+}
+
+TEST_F(Life, BadRowsStopAReplayBeforeAnythingIsSentOrAreSkippedByName) {
+  const auto bad = folder_.write("bad.csv", "t,x\n1,1\n2,nan\n3,oops\n4,2\n4,3\n5,4\n");
+  Process solver(solve());
+  const Ended stopped = run({"replay", bad, "--stream", name(), "--clock", "recorded"});
+  EXPECT_EQ(stopped.code, 2);
+  EXPECT_NE(stopped.err.find("bad.csv:4:3: column 'x': 'oops' is not a number"),
+            std::string::npos)
+      << stopped.err;
+  EXPECT_EQ(info(name()), nlohmann::json());
+  const Ended skipped = run({"replay", bad, "--stream", name(), "--clock", "recorded", "--rate",
+                             "max", "--on-error", "skip", "--json"});
+  EXPECT_EQ(skipped.code, 0);
+  for (const char* text : {"bad.csv:4:3", "bad.csv:3: waypoint refused: not finite",
+                           "bad.csv:6: waypoint refused: not increasing"}) {
+    EXPECT_NE(skipped.err.find(text), std::string::npos) << skipped.err;
+  }
+  const auto report = nlohmann::json::parse(skipped.out);
+  EXPECT_EQ(report["sent"], 3);
+  EXPECT_EQ(report["interpolated"], 3);
+  EXPECT_EQ(report["skipped"], 3);
+}
+
+TEST_F(Life, ALoopShiftsTimesByTheDurationPlusTheMedianInterval) {
+  const auto file = folder_.write("loop.csv", "t,x\n1,0\n1.5,1\n2,0\n");
+  Process solver(solve());
+  ASSERT_EQ(run({"replay", file, "--stream", name(), "--clock", "recorded", "--rate", "max",
+                 "--loop", "3"})
+                .code,
+            0);
+  const auto now = info(name());
+  EXPECT_EQ(now["solver"]["interpolated"], 9);
+  EXPECT_EQ(now["solver"]["newest_knot_ns"], 5'000'000'000);
+}
+
+TEST_F(Life, ALiveStreamPlaysNowFromHaltToHalt) {
+  Process solver(solve());
+  Process replaying({"replay", file_, "--stream", name(), "--duration", "1", "--lead", "300"});
+  ipc::Reader reader(name(), core::Time(30'000'000'000));
+  core::State state(reader.dimensions());
+  while (reader.sample(core::Time(0), state) == ipc::SampleStatus::no_data) {
+    ASSERT_NE(reader.wait(core::Time(60'000'000'000)), ipc::WaitStatus::timed_out);
+  }
+  const core::Time now = ipc::MonotonicClock().now();
+  EXPECT_EQ(reader.sample(core::Time(0), state), ipc::SampleStatus::holding);
+  core::Time first{};
+  ASSERT_TRUE(reader.first_time(first));
+  EXPECT_LT(first - now, core::Time(300'000'000));
+  ASSERT_EQ(replaying.wait().code, 0);
+  ipc::Head head;
+  ASSERT_TRUE(reader.head(head));
+  for (const core::Time end : {first, head.newest_knot}) {
+    EXPECT_TRUE(ipc::has_values(reader.sample(end, state)));
+    for (const double v : state.velocity()) EXPECT_NEAR(v, 0, 1e-9);
+    for (const double a : state.acceleration()) EXPECT_NEAR(a, 0, 1e-5);
+  }
+  const Ended sampled = run({"sample", name(), "--rate", "1000", "--count", "5"});
+  EXPECT_EQ(sampled.code, 0);
+  EXPECT_EQ(std::ranges::count(sampled.out, '\n'), 6);
+}
+
+TEST_F(Life, OneSolverProcessServesSeveralStreams) {
+  const TestStream second;
+  Process solver({"solve", name(), second.name()});
+  ASSERT_EQ(run(replay()).code, 0);
+  auto other = replay();
+  std::ranges::replace(other, name(), second.name());
+  ASSERT_EQ(run(other).code, 0);
+  const Ended list = run({"ls", "--json"});
+  EXPECT_EQ(list.code, 0);
+  std::size_t finished = 0;
+  for (const auto& entry : nlohmann::json::parse(list.out)) {
+    const bool ours = entry["stream"] == name() || entry["stream"] == second.name();
+    if (ours && entry["state"] == "finished") ++finished;
+  }
+  EXPECT_EQ(finished, 2U);
+}
+
+TEST_F(Life, TheDemoEndsWithASummaryAndLeavesNothingBehind) {
+  const Ended ended = run({"demo", "--seconds", "1", "--json"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const auto summary = nlohmann::json::parse(ended.out);
+  EXPECT_EQ(summary["waypoints"]["sent"], summary["waypoints"]["interpolated"]);
+  EXPECT_GE(summary["waypoints"]["sent"], 99);
+  EXPECT_EQ(summary["readers"].size(), 2U);
+  EXPECT_GT(summary["all_readers"]["by_status"][0], 100);
+  EXPECT_LT(summary["all_readers"]["step_at_knots"][1], 1e-9);
+  for (const std::string& stream : ipc::stream_names()) {
+    EXPECT_FALSE(stream.starts_with("demo.")) << stream;
+  }
+}
+
+}  // namespace
+}  // namespace splinecast::apps

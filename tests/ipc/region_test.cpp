@@ -1,0 +1,158 @@
+#include "splinecast/ipc/region.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <string>
+
+#include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/layout.hpp"
+#include "splinecast/ipc/owner_lock.hpp"
+#include "splinecast/ipc/stream_files.hpp"
+#include "support/process.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+using testing::TestStream;
+
+constexpr std::size_t kSize = 4 * kPage;
+
+TEST(Region, HasNoNameUntilItIsLinkedAndReplacesNothing) {
+  const TestStream stream;
+  const Region region = Region::create(kSize, {});
+  EXPECT_FALSE(region_exists(stream.name(), RegionKind::waypoints));
+  EXPECT_FALSE(region.is_linked(stream.name(), RegionKind::waypoints));
+  ASSERT_TRUE(region.link(stream.name(), RegionKind::waypoints));
+  EXPECT_TRUE(region.is_linked(stream.name(), RegionKind::waypoints));
+  const Region second = Region::create(kSize, {});
+  EXPECT_FALSE(second.link(stream.name(), RegionKind::waypoints));
+  EXPECT_FALSE(second.is_linked(stream.name(), RegionKind::waypoints));
+}
+
+TEST(Region, ItsPagesAreReservedAndItsModeIsTheOneAskedFor) {
+  const TestStream stream;
+  const mode_t before = umask(077);
+  const Region region = Region::create(kSize, {.mode = 0640});
+  umask(before);
+  ASSERT_TRUE(region.link(stream.name(), RegionKind::spline));
+  struct stat status {};
+  ASSERT_EQ(stat(region_path(stream.name(), RegionKind::spline).c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777U, 0640U);
+  EXPECT_EQ(static_cast<std::size_t>(status.st_size), kSize);
+  EXPECT_GE(static_cast<std::size_t>(status.st_blocks) * 512, kSize);
+}
+
+TEST(Region, MoreThanSharedMemoryHoldsIsRefusedWithNeededAndFreeBytes) {
+  try {
+    (void)Region::create(std::size_t{1} << 50U, {});
+    FAIL();
+  } catch (const BadRegion& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("1125899906842624 bytes"), std::string::npos) << text;
+    EXPECT_NE(text.find("are free"), std::string::npos) << text;
+  }
+}
+
+TEST(Region, WhatOthersMayWriteIsNotTrusted) {
+  const TestStream stream;
+  const Region region = Region::create(kSize, {});
+  ASSERT_TRUE(region.link(stream.name(), RegionKind::waypoints));
+  EXPECT_NO_THROW((void)Region::open(stream.name(), RegionKind::waypoints, false));
+  for (const mode_t mode : {0620U, 0602U, 0666U}) {
+    ASSERT_EQ(fchmod(region.descriptor(), mode), 0);
+    EXPECT_THROW((void)Region::open(stream.name(), RegionKind::waypoints, false), BadRegion);
+  }
+  ASSERT_EQ(fchmod(region.descriptor(), 0600), 0);
+}
+
+TEST(Region, OtherUsersRegionsAreTrustedOnlyByName) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can give a region away";
+  const TestStream stream;
+  const Region region = Region::create(kSize, {});
+  ASSERT_TRUE(region.link(stream.name(), RegionKind::waypoints));
+  ASSERT_EQ(fchown(region.descriptor(), 12345, static_cast<gid_t>(-1)), 0);
+  EXPECT_THROW((void)Region::open(stream.name(), RegionKind::waypoints, false), BadRegion);
+  EXPECT_NO_THROW((void)Region::open(stream.name(), RegionKind::waypoints, false, {.owner = 12345}));
+  ASSERT_EQ(fchown(region.descriptor(), 0, static_cast<gid_t>(-1)), 0);
+}
+
+TEST(Region, NoRegularFileIsOpenedOrWaitedFor) {
+  const TestStream stream;
+  const std::string path = region_path(stream.name(), RegionKind::waypoints);
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  EXPECT_THROW((void)Region::open(stream.name(), RegionKind::waypoints, false), BadRegion);
+  unlink(path.c_str());
+  ASSERT_EQ(symlink("/etc/passwd", path.c_str()), 0);
+  EXPECT_THROW((void)Region::open(stream.name(), RegionKind::waypoints, false), BadRegion);
+  unlink(path.c_str());
+  EXPECT_THROW((void)Region::open(stream.name(), RegionKind::waypoints, false), NoSuchStream);
+}
+
+TEST(OwnerLock, IsHeldByOneAndFreeWhenItsHolderDies) {
+  const TestStream stream;
+  const pid_t child = fork();
+  if (child == 0) {
+    const OwnerLock lock(stream.name(), RegionKind::spline);
+    raise(SIGSTOP);
+    _exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, WUNTRACED), child);
+  ASSERT_TRUE(WIFSTOPPED(status));
+  EXPECT_THROW(OwnerLock(stream.name(), RegionKind::spline), StreamBusy);
+  EXPECT_NO_THROW(OwnerLock(stream.name(), RegionKind::waypoints));
+  kill(child, SIGKILL);
+  waitpid(child, &status, 0);
+  EXPECT_NO_THROW(OwnerLock(stream.name(), RegionKind::spline));
+}
+
+TEST(OwnerLock, AForkedChildDoesNotKeepIt) {
+  const TestStream stream;
+  pid_t child = -1;
+  {
+    const OwnerLock lock(stream.name(), RegionKind::spline);
+    const Region region = Region::create(kSize, {});
+    ASSERT_TRUE(region.link(stream.name(), RegionKind::spline));
+    ASSERT_TRUE(try_lock_region(region.descriptor()));
+    child = fork();
+    if (child == 0) {
+      pause();
+      _exit(0);
+    }
+    EXPECT_TRUE(owner_lives(stream.name(), RegionKind::spline));
+  }
+  EXPECT_NO_THROW(OwnerLock(stream.name(), RegionKind::spline));
+  EXPECT_FALSE(owner_lives(stream.name(), RegionKind::spline));
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+}
+
+TEST(OwnerLock, AReaderThatLocksWhatItCanStopsNobody) {
+  const TestStream stream;
+  const Region region = Region::create(kSize, {});
+  ASSERT_TRUE(region.link(stream.name(), RegionKind::spline));
+  const int reader = open(region_path(stream.name(), RegionKind::spline).c_str(), O_RDONLY);
+  struct flock lock {};
+  lock.l_type = F_RDLCK;
+  ASSERT_EQ(fcntl(reader, F_OFD_SETLK, &lock), 0);
+  EXPECT_FALSE(owner_lives(stream.name(), RegionKind::spline));
+  EXPECT_NO_THROW(OwnerLock(stream.name(), RegionKind::spline));
+  close(reader);
+}
+
+TEST(Names, AreCheckedBeforeTheyBecomePaths) {
+  for (const char* name : {"", ".x", "a/b", "a b", "ä"}) {
+    EXPECT_THROW(require_stream_name(name), BadRequest) << name;
+  }
+  EXPECT_THROW(require_stream_name(std::string(129, 'a')), BadRequest);
+  EXPECT_NO_THROW(require_stream_name("arm-1.left_hand"));
+}
+
+}  // namespace
+}  // namespace splinecast::ipc
