@@ -64,9 +64,10 @@ void print_steps(const char* what, const json& steps) {
 }
 
 void print_summary(const WaypointTable& table, const json& sent, const json& read) {
-  fmt::print("\nOne producer, one solver and {} readers, each a process of its own; {} dimensions "
-             "from {}, played live.\n\n",
-             kReaders, table.dimensions(), table.file);
+  fmt::print(
+      "\nOne producer, one solver and {} readers, each a process of its own; {} dimensions "
+      "from {}, played live.\n\n",
+      kReaders, table.dimensions(), table.file);
   fmt::print("  {:<34} {} sent, {} interpolated, {} refused\n", "waypoints",
              sent["sent"].get<std::size_t>(), sent["interpolated"].get<std::size_t>(),
              sent["refused"].get<std::size_t>());
@@ -115,11 +116,7 @@ int run_demo(const DemoOptions& options) {
 
   catch_stop_signals();
   const StreamRemover remover(stream);
-  Child solver(
-      [&] {
-        return json(run_solve({.streams = {stream}, .quiet = true}));
-      },
-      true);
+  Child solver([&] { return json(run_solve({.streams = {stream}, .quiet = true})); }, true);
   std::vector<Child> readers;
   for (std::size_t r = 0; r < kReaders; ++r) {
     readers.emplace_back([&] { return run_demo_reader(stream); }, false);

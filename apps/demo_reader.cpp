@@ -82,7 +82,8 @@ class DemoReader {
   /// then.
   void check(core::Time t) {
     if (has_before_) {
-      if (ipc::has_values(reader_.sample(before_time_, left_))) of_the_past_.compare(left_, before_);
+      if (ipc::has_values(reader_.sample(before_time_, left_)))
+        of_the_past_.compare(left_, before_);
       if (ipc::has_values(reader_.snapshot(before_time_, t, snapshot_))) check_knots();
     }
     std::swap(now_, before_);

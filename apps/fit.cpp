@@ -76,9 +76,9 @@ void require_inside(const std::vector<core::Time>& times, const core::PiecewiseP
   const core::Time last = curve.breaks().back();
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (times[i] >= first && times[i] <= last) continue;
-    throw InputError(fmt::format(
-        "{}: row {}: time {} ns lies outside the data, which go from {} ns to {} ns", file, i + 1,
-        times[i].count(), first.count(), last.count()));
+    throw InputError(
+        fmt::format("{}: row {}: time {} ns lies outside the data, which go from {} ns to {} ns",
+                    file, i + 1, times[i].count(), first.count(), last.count()));
   }
 }
 
@@ -162,7 +162,8 @@ void add_fit(CLI::App& program, Action& action) {
   verb->add_option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
       ->required();
   add_method(*verb);
-  add_condition(*verb, "--start", options->start, "Condition at the first waypoint (default natural)");
+  add_condition(*verb, "--start", options->start,
+                "Condition at the first waypoint (default natural)");
   add_condition(*verb, "--end", options->end,
                 "Condition at the last waypoint (default natural; halt with --online)");
   verb->add_flag("--online", options->online, "As the solver would: through the sliding window");

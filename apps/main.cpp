@@ -53,9 +53,8 @@ int run_program(int argc, char** argv) {
   try {
     // CLI11 would only say that a subcommand is missing.
     const std::string verb = argc > 1 ? argv[1] : "";
-    const auto verbs = program.get_subcommands([&](const CLI::App* known) {
-      return known->get_name() == verb;
-    });
+    const auto verbs =
+        program.get_subcommands([&](const CLI::App* known) { return known->get_name() == verb; });
     if (!verb.empty() && verb.front() != '-' && verbs.empty()) {
       throw CLI::ValidationError("there is no verb '" + verb + "'");
     }

@@ -76,8 +76,8 @@ std::string value_in_row(const WaypointTable& table, std::size_t i) {
 /// Why a row was not accepted, with its line and the offending value.
 std::string refusal_message(const WaypointTable& table, std::size_t i, ipc::AppendStatus status,
                             core::Time interval) {
-  const std::string row = fmt::format("{}: waypoint refused: {}", table.where(i),
-                                      ipc::to_string(status));
+  const std::string row =
+      fmt::format("{}: waypoint refused: {}", table.where(i), ipc::to_string(status));
   switch (status) {
     case ipc::AppendStatus::not_finite:
       return fmt::format("{}: {}", row, value_in_row(table, i));
@@ -155,8 +155,7 @@ class Replay {
     if (!await_solver()) return interrupted();
     const core::Time base = first_time();
     require_continuation(base);
-    const core::Time shift =
-        table_.times.back() - table_.times.front() + median_interval(table_);
+    const core::Time shift = table_.times.back() - table_.times.front() + median_interval(table_);
     Progress progress;
     for (std::size_t loop = 0; loop < options_.loops; ++loop) {
       const core::Time offset = base - table_.times.front() + shift * static_cast<int>(loop);
@@ -171,9 +170,8 @@ class Replay {
  private:
   [[nodiscard]] ipc::ProducerOptions producer_options() const {
     const bool live = options_.clock == ipc::StreamClock::monotonic;
-    const core::Condition start{.kind = live ? core::ConditionKind::halt
-                                             : core::ConditionKind::natural,
-                                .value = {}};
+    const core::Condition start{
+        .kind = live ? core::ConditionKind::halt : core::ConditionKind::natural, .value = {}};
     return {.dimensions = table_.dimensions(),
             .names = table_.names,
             .clock = options_.clock,
@@ -192,7 +190,8 @@ class Replay {
     }
   }
 
-  /// Waits for a solver; false if a stop is requested meanwhile. Without one nothing is left behind.
+  /// Waits for a solver; false if a stop is requested meanwhile. Without one nothing is left
+  /// behind.
   bool await_solver() {
     const core::Time end = clock_.now() + options_.wait;
     solve();
@@ -200,9 +199,8 @@ class Replay {
       if (producer_.wait_for_solver(kSlice)) return true;
       if (clock_.now() < end) continue;
       withdraw_if_new();
-      throw TimeOut(
-          fmt::format("no solver for stream '{}' within {} s: run 'splinecast solve {}'",
-                      options_.stream, core::to_seconds(options_.wait), options_.stream));
+      throw TimeOut(fmt::format("no solver for stream '{}' within {} s: run 'splinecast solve {}'",
+                                options_.stream, core::to_seconds(options_.wait), options_.stream));
     }
     withdraw_if_new();
     return false;
@@ -367,8 +365,8 @@ void add_playback_options(CLI::App& verb, ReplayOptions& options) {
               throw CLI::ValidationError("--clock",
                                          fmt::format("'{}' is neither live nor recorded", text));
             }
-            options.clock = text == "live" ? ipc::StreamClock::monotonic
-                                           : ipc::StreamClock::recorded;
+            options.clock =
+                text == "live" ? ipc::StreamClock::monotonic : ipc::StreamClock::recorded;
           },
           "live (default): now on this host's clock; recorded: the file's own stamps")
       ->type_name("CLOCK");
@@ -430,8 +428,7 @@ void add_replay(CLI::App& program, Action& action) {
   verb->add_option("--capacity", options->capacity,
                    "Waypoints that the ring holds (default 1024; rounded up to a power of two)")
       ->type_name("N");
-  add_seconds(*verb, "--wait", options->wait,
-              "Wait this long for a solver (default 10)");
+  add_seconds(*verb, "--wait", options->wait, "Wait this long for a solver (default 10)");
   add_interval(*verb, "--min-interval", options->limits.min_interval,
                "Least time between waypoints (default 1e-6)");
   add_interval(*verb, "--max-interval", options->limits.max_interval,

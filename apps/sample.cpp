@@ -181,7 +181,7 @@ void add_sample(CLI::App& program, Action& action) {
       ->type_name("OUT");
   add_seconds(*verb, "--wait", options->wait,
               "Wait this long for the stream, and for what a recorded one has yet to settle "
-          "(default 10)");
+              "(default 10)");
   add_time_unit(*verb, options->time_unit);
   add_trust(*verb, options->trust);
   verb->callback([&action, options, at, rate] {

@@ -23,8 +23,7 @@ core::Time time_of(const std::string& name, const std::string& text, TimeUnit un
 
 std::optional<unsigned> parse_unsigned(const std::string& text, int base) {
   unsigned value = 0;
-  const auto [end, error] =
-      std::from_chars(text.data(), text.data() + text.size(), value, base);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, base);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return value;
 }

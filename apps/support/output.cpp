@@ -5,8 +5,8 @@
 #include <cerrno>
 #include <chrono>
 #include <iterator>
-#include <utility>
 #include <system_error>
+#include <utility>
 
 #include "splinecast/ipc/clock.hpp"
 #include "support/exit_codes.hpp"
@@ -38,8 +38,8 @@ void Output::close() {
 }
 
 void Output::fail() const {
-  throw Failure(fmt::format("{}: cannot be written: {}", name_,
-                            std::generic_category().message(errno)));
+  throw Failure(
+      fmt::format("{}: cannot be written: {}", name_, std::generic_category().message(errno)));
 }
 
 SampleWriter::SampleWriter(Output& output, std::size_t dimensions, bool with_status)

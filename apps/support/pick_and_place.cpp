@@ -49,8 +49,7 @@ Pose pose_at(core::Time t) {
   const auto move = static_cast<std::size_t>(t / cycle);
   const Pose& from = kPoses[move % kPoses.size()];
   const Pose& to = kPoses[(move + 1) % kPoses.size()];
-  const double fraction =
-      std::min(1.0, core::to_seconds(t % cycle) / core::to_seconds(kMove));
+  const double fraction = std::min(1.0, core::to_seconds(t % cycle) / core::to_seconds(kMove));
   Pose pose{};
   for (std::size_t j = 0; j < kJoints; ++j) {
     pose[j] = from[j] + (to[j] - from[j]) * minimum_jerk(fraction);

@@ -133,8 +133,7 @@ Format read_format(const TextFile& file, Lines& lines) {
   }
   const bool has_comma = text.find(',') != std::string_view::npos;
   const bool starts_with_number = parse_number(names_of(text, has_comma)[0]).has_value();
-  if (!has_comma && starts_with_number &&
-      text.find_first_of(" \t") != std::string_view::npos) {
+  if (!has_comma && starts_with_number && text.find_first_of(" \t") != std::string_view::npos) {
     return tum_format(file, line, comment);
   }
   Format format;
@@ -145,8 +144,8 @@ Format read_format(const TextFile& file, Lines& lines) {
     format.names = names_of(comment, true);
     format.first_row = line;
     if (comment.empty()) {
-      throw InputError(fmt::format("{}:{}: there is no header before the first row", file.name(),
-                                   line.number));
+      throw InputError(
+          fmt::format("{}:{}: there is no header before the first row", file.name(), line.number));
     }
   }
   return format;
@@ -455,8 +454,8 @@ void require_spline_input(const WaypointTable& table) {
     for (std::size_t d = 0; d < dimensions; ++d) {
       const double value = table.positions[i * dimensions + d];
       if (std::isfinite(value)) continue;
-      throw InputError(fmt::format("{}: column '{}': {} is not finite", table.where(i),
-                                   table.names[d], value));
+      throw InputError(
+          fmt::format("{}: column '{}': {} is not finite", table.where(i), table.names[d], value));
     }
     if (i == 0 || table.times[i] > table.times[i - 1]) continue;
     throw InputError(fmt::format("{}: time {} ns is not after {} ns on line {}", table.where(i),

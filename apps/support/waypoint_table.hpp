@@ -16,8 +16,8 @@ namespace splinecast::apps {
 
 /// How a waypoint file is to be read.
 struct TableOptions {
-  std::vector<std::string> columns{};      ///< position columns, in this order; none: all numeric
-  std::optional<TimeUnit> time_unit{};     ///< overrides what the time column's name says
+  std::vector<std::string> columns{};   ///< position columns, in this order; none: all numeric
+  std::optional<TimeUnit> time_unit{};  ///< overrides what the time column's name says
   /// Called for each row that cannot be read, which is then left out; unset: the first one throws.
   std::function<void(const InputError&)> on_bad_row{};
 };
@@ -26,7 +26,7 @@ struct TableOptions {
 class WaypointTable {
  public:
   std::string file;
-  std::vector<std::string> names;     ///< of the position columns
+  std::vector<std::string> names;  ///< of the position columns
   std::vector<core::Time> times;
   std::vector<std::size_t> lines;     ///< line of each waypoint in the file, from 1
   std::vector<double> positions;      ///< [waypoint][dimension]

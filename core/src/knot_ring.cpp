@@ -47,8 +47,8 @@ void KnotRing::eliminate(std::size_t i) noexcept {
   if (i == 0) {
     row(0).gamma = eliminate_first(start_, row(0).h, values(0, kChord), values(0, kG));
   } else {
-    row(i).gamma = eliminate_interior(neighbours(i), row(i - 1).gamma, values(i - 1, kG),
-                                      values(i, kG));
+    row(i).gamma =
+        eliminate_interior(neighbours(i), row(i - 1).gamma, values(i - 1, kG), values(i, kG));
   }
 }
 
@@ -79,12 +79,11 @@ void KnotRing::restore(std::size_t first, std::span<const Knot> knots) noexcept 
 void KnotRing::close(Tail tail) noexcept {
   const std::size_t n = newest();
   if (n == 0) return;
-  const Neighbours last_two =
-      n >= 2 ? neighbours(n - 1)
-             : Neighbours{.h_before = 0,
-                          .h_after = row(0).h,
-                          .chord_before = {},
-                          .chord_after = values(0, kChord)};
+  const Neighbours last_two = n >= 2 ? neighbours(n - 1)
+                                     : Neighbours{.h_before = 0,
+                                                  .h_after = row(0).h,
+                                                  .chord_before = {},
+                                                  .chord_after = values(0, kChord)};
   solve_tail(tail, last_two, row(n - 1).gamma, values(n - 1, kG), values(n, kVelocity));
 }
 

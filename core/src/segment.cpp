@@ -82,8 +82,8 @@ void write_quintic(const Interval& i, Segment& out) noexcept {
 
 void evaluate(int order, std::span<const double> coefficients, double u, StateRef out) noexcept {
   const std::size_t dimensions = out.position.size();
-  const auto evaluate_at = order == kCubicOrder ? &evaluate_order<kCubicOrder>
-                                                : &evaluate_order<kMaxOrder>;
+  const auto evaluate_at =
+      order == kCubicOrder ? &evaluate_order<kCubicOrder> : &evaluate_order<kMaxOrder>;
   evaluate_at(dimensions, coefficients.data(), u, out.position.data(), out.velocity.data(),
               out.acceleration.data(), out.jerk.data());
 }

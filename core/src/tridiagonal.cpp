@@ -9,7 +9,8 @@ namespace {
 /// Which way an end row looks at its interval: the acceleration changes sign in the mirror.
 enum class Side { start, end };
 
-/// An end row before elimination: inner · v_neighbour + outer · v_end = slope · m + value[d] · scale.
+/// An end row before elimination: inner · v_neighbour + outer · v_end = slope · m + value[d] ·
+/// scale.
 struct EndRow {
   double inner;
   double outer;

@@ -20,8 +20,7 @@ void require(bool holds, const char* what, std::uint64_t found, std::uint64_t wa
                   std::to_string(wanted));
 }
 
-void require_range(const char* what, std::uint64_t found, std::uint64_t least,
-                   std::uint64_t most) {
+void require_range(const char* what, std::uint64_t found, std::uint64_t least, std::uint64_t most) {
   if (found >= least && found <= most) return;
   throw BadRegion("region has " + std::string(what) + ' ' + std::to_string(found) +
                   ", not between " + std::to_string(least) + " and " + std::to_string(most));
@@ -55,12 +54,30 @@ void require_common(const RegionHeader& header, RegionKind kind, std::size_t rea
 std::uint64_t layout_hash() noexcept {
   // FNV-1a over every number that fixes where a word lies.
   std::uint64_t hash = 0xcbf29ce484222325;
-  for (const std::uint64_t value : std::initializer_list<std::uint64_t>{
-           sizeof(RegionHeader), kHeaderBytes, kBodyOffset, kSeparation, kCacheLine, kControlLines,
-           kRevision, kRetired, kTail, kSleeping, kProducerCounters, kItemValues, kCellShape,
-           kCellCoefficients, kCellExtraWords, kHeadWords, kHeadReasons, kHeadChanges,
-           kHeadChangesKept, kRefusalsKept, kNameBytes, kUnitBytes, core::kMaxOrder,
-           core::kMaxDimensions}) {
+  for (const std::uint64_t value : std::initializer_list<std::uint64_t>{sizeof(RegionHeader),
+                                                                        kHeaderBytes,
+                                                                        kBodyOffset,
+                                                                        kSeparation,
+                                                                        kCacheLine,
+                                                                        kControlLines,
+                                                                        kRevision,
+                                                                        kRetired,
+                                                                        kTail,
+                                                                        kSleeping,
+                                                                        kProducerCounters,
+                                                                        kItemValues,
+                                                                        kCellShape,
+                                                                        kCellCoefficients,
+                                                                        kCellExtraWords,
+                                                                        kHeadWords,
+                                                                        kHeadReasons,
+                                                                        kHeadChanges,
+                                                                        kHeadChangesKept,
+                                                                        kRefusalsKept,
+                                                                        kNameBytes,
+                                                                        kUnitBytes,
+                                                                        core::kMaxOrder,
+                                                                        core::kMaxDimensions}) {
     hash = (hash ^ value) * 0x100000001b3;
   }
   return hash;
@@ -101,8 +118,8 @@ BoardLayout BoardLayout::of(std::size_t dimensions, std::size_t capacity,
 
 RegionHeader copy_header(std::span<const std::byte> region) {
   if (region.size() < kBodyOffset) {
-    throw BadRegion("region has " + std::to_string(region.size()) + " bytes, fewer than its first " +
-                    std::to_string(kBodyOffset));
+    throw BadRegion("region has " + std::to_string(region.size()) +
+                    " bytes, fewer than its first " + std::to_string(kBodyOffset));
   }
   constexpr std::size_t kWords = sizeof(RegionHeader) / sizeof(Word);
   std::array<Word, kWords> copy{};

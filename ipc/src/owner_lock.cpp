@@ -72,8 +72,7 @@ OwnerLock::OwnerLock(std::string_view stream, RegionKind kind) : path_(lock_path
     const int descriptor = open_lock_file(path_);
     if (descriptor < 0) {
       if (errno == EACCES) throw BadRegion("lock " + path_ + " belongs to another user");
-      throw BadRegion("cannot open lock " + path_ + ": " +
-                      std::generic_category().message(errno));
+      throw BadRegion("cannot open lock " + path_ + ": " + std::generic_category().message(errno));
     }
     descriptor_ = OwnedDescriptor(descriptor);
     require_own_file(descriptor, path_);

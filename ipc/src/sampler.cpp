@@ -74,8 +74,8 @@ Sampler::Found Sampler::locate(core::Time t) noexcept {
 bool Sampler::is_confirmed(Word r) noexcept {
   if (confirmed_ == r) return true;
   const SegmentCopy& last = current();
-  const bool stands = last.tag != 0 && last.number >= head_.first &&
-                      last.number <= head_.newest && board_->is_current(last, r);
+  const bool stands = last.tag != 0 && last.number >= head_.first && last.number <= head_.newest &&
+                      board_->is_current(last, r);
   if (stands) confirm();
   return stands;
 }

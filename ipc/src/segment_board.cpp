@@ -75,8 +75,9 @@ void SegmentBoardWriter::write(Word number, const core::Segment& segment, const 
                             static_cast<Word>(segment.kind) << kShapeKindShift |
                             static_cast<Word>(newer_knots) << kShapeSeenShift);
   Word* const vectors = cell + kCellCoefficients;
-  put_values(vectors, std::span(segment.coefficients)
-                          .first(static_cast<std::size_t>(segment.order) * dimensions));
+  put_values(
+      vectors,
+      std::span(segment.coefficients).first(static_cast<std::size_t>(segment.order) * dimensions));
   put_values(vectors + kStepVector * dimensions, segment.acceleration_step);
   put_values(vectors + kPositionVector * dimensions, knot.position);
   put_values(vectors + kGVector * dimensions, knot.g);

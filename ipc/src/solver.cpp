@@ -40,9 +40,8 @@ void require_no_contradiction(const std::string& stream, const RegionHeader& sta
   require_same(stream, "stop time in ns", options.stop_time, stop_time,
                number(options.stop_time.value_or(stop_time).count()), number(stands.stop_time));
   if (options.capacity) {
-    require_same<std::size_t>(stream, "capacity", std::bit_ceil(*options.capacity),
-                              stands.capacity, number(*options.capacity),
-                              number(stands.capacity));
+    require_same<std::size_t>(stream, "capacity", std::bit_ceil(*options.capacity), stands.capacity,
+                              number(*options.capacity), number(stands.capacity));
   }
 }
 
@@ -182,8 +181,7 @@ bool Solver::attach() {
   if (attached()) return true;
   if (!region_exists(impl_->stream, RegionKind::waypoints)) return false;
   try {
-    Region region =
-        Region::open(impl_->stream, RegionKind::waypoints, false, impl_->options.trust);
+    Region region = Region::open(impl_->stream, RegionKind::waypoints, false, impl_->options.trust);
     const RegionHeader header = copy_header(region.bytes());
     const auto layout = checked_ring_layout(header, region.bytes().size());
     require_same_clock(header, impl_->stream);
@@ -225,7 +223,9 @@ void Solver::wait(core::Time timeout) noexcept {
 }
 
 const Head& Solver::head() const noexcept { return impl_->attachment->solver.head(); }
-bool Solver::took_over() const noexcept { return attached() && impl_->attachment->board.taken_over; }
+bool Solver::took_over() const noexcept {
+  return attached() && impl_->attachment->board.taken_over;
+}
 bool Solver::is_memory_locked() const noexcept {
   return attached() && impl_->attachment->board.region.is_memory_locked();
 }

@@ -63,8 +63,8 @@ void retire_region(const std::string& stream, RegionKind kind, const Trust& trus
 }  // namespace
 
 bool owner_lives(std::string_view stream, RegionKind kind) noexcept {
-  const int opened = open(region_path(stream, kind).c_str(),
-                          O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  const int opened =
+      open(region_path(stream, kind).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   if (opened < 0) return false;
   const bool lives = is_region_locked(opened);
   close(opened);

@@ -115,8 +115,8 @@ void write_header(std::span<std::byte> region, const RegionHeader& header) noexc
 void enter_owner(std::span<std::byte> region, const RegionHeader& before) noexcept {
   store(header_word(region, offsetof(RegionHeader, owner_pid)), static_cast<Word>(getpid()),
         std::memory_order_relaxed);
-  store(header_word(region, offsetof(RegionHeader, owner_since)),
-        to_word(MonotonicClock().now()), std::memory_order_relaxed);
+  store(header_word(region, offsetof(RegionHeader, owner_since)), to_word(MonotonicClock().now()),
+        std::memory_order_relaxed);
   store(header_word(region, offsetof(RegionHeader, epoch)), before.epoch + 1,
         std::memory_order_release);
 }

@@ -76,10 +76,13 @@ StepResult StreamSolver::step(const Clock& clock) noexcept {
 void StreamSolver::take(const RingItem& item, Word number) noexcept {
   if (head_.finished) return refuse(number, Refusal::after_finish);
   switch (item.kind) {
-    case ItemKind::waypoint: return take_waypoint(item, number);
-    case ItemKind::finish: return take_finish(item, number);
+    case ItemKind::waypoint:
+      return take_waypoint(item, number);
+    case ItemKind::finish:
+      return take_finish(item, number);
     case ItemKind::replace:
-    case ItemKind::start_state: break;
+    case ItemKind::start_state:
+      break;
   }
   refuse(number, Refusal::unknown_kind);
 }
@@ -110,8 +113,8 @@ void StreamSolver::take_finish(const RingItem& item, Word number) noexcept {
   }
   const bool is_velocity = item.condition == core::ConditionKind::velocity;
   if (is_velocity || item.condition == core::ConditionKind::acceleration) {
-    const auto values = std::span(item.values).subspan((is_velocity ? 1 : 2) * dimensions,
-                                                       dimensions);
+    const auto values =
+        std::span(item.values).subspan((is_velocity ? 1 : 2) * dimensions, dimensions);
     if (!is_finite(values)) return refuse(number, Refusal::not_finite);
     end_.value.assign(values.begin(), values.end());
   }

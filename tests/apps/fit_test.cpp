@@ -78,9 +78,10 @@ TEST(Fit, PiecewisePolynomialsEvaluateToTheSamples) {
 TEST(Fit, OnlineWithALongLagEqualsBatchTo1eMinus12) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", to_csv(random_mesh(2, 150, 3, 3)));
-  for (const char* condition : {"natural", "halt", "rest", "velocity=1,2,3", "acceleration=-1,0,1"}) {
-    const auto batch = rows(
-        run({"fit", file, "--start", condition, "--end", condition, "--dt", "0.002"}).out);
+  for (const char* condition :
+       {"natural", "halt", "rest", "velocity=1,2,3", "acceleration=-1,0,1"}) {
+    const auto batch =
+        rows(run({"fit", file, "--start", condition, "--end", condition, "--dt", "0.002"}).out);
     const auto online = rows(run({"fit", file, "--online", "--settle", "48", "--start", condition,
                                   "--end", condition, "--dt", "0.002"})
                                  .out);

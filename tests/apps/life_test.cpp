@@ -55,8 +55,7 @@ class Life : public ::testing::Test {
   static void expect_all_sent(Process& replaying) {
     const Ended sent = replaying.wait();
     EXPECT_EQ(sent.code, 0) << sent.err;
-    EXPECT_NE(sent.err.find("2000 waypoints sent, 2000 interpolated, 0 refused"),
-              std::string::npos)
+    EXPECT_NE(sent.err.find("2000 waypoints sent, 2000 interpolated, 0 refused"), std::string::npos)
         << sent.err;
   }
 
@@ -76,17 +75,14 @@ TEST_F(Life, EveryOrderOfArrivalGivesTheWholeStream) {
       return static_cast<std::size_t>(std::ranges::find(order, verb) - order.begin());
     };
     for (const std::string& verb : order) {
-      auto arguments = verb == "solve"    ? solve()
-                       : verb == "replay" ? replay()
-                                          : sample();
+      auto arguments = verb == "solve" ? solve() : verb == "replay" ? replay() : sample();
       std::ranges::replace(arguments, name(), stream.name());
       processes.emplace_back(arguments);
       if (verb == "solve") processes.back().await_message(stream.name());
       if (verb == "replay") {
         // The next one comes when the producer's region stands, or has already been worked off.
         EXPECT_TRUE(await([&] {
-          return std::filesystem::exists(
-              ipc::region_path(stream.name(), RegionKind::waypoints));
+          return std::filesystem::exists(ipc::region_path(stream.name(), RegionKind::waypoints));
         }));
       }
     }
@@ -311,8 +307,7 @@ TEST_F(Life, BadRowsStopAReplayBeforeAnythingIsSentOrAreSkippedByName) {
   Process solver(solve());
   const Ended stopped = run({"replay", bad, "--stream", name(), "--clock", "recorded"});
   EXPECT_EQ(stopped.code, 2);
-  EXPECT_NE(stopped.err.find("bad.csv:4:3: column 'x': 'oops' is not a number"),
-            std::string::npos)
+  EXPECT_NE(stopped.err.find("bad.csv:4:3: column 'x': 'oops' is not a number"), std::string::npos)
       << stopped.err;
   EXPECT_EQ(info(name()), nlohmann::json());
   const Ended skipped = run({"replay", bad, "--stream", name(), "--clock", "recorded", "--rate",

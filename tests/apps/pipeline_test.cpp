@@ -44,11 +44,11 @@ void expect_same_bits(const std::string& file, const std::vector<std::string>& c
   const TestStream stream;
   Process solver({"solve", stream.name(), "--settle", shape.settle, "--tail", shape.tail,
                   "--capacity", "8192"});
-  std::vector<std::string> replay{"replay",  file,       "--stream",  stream.name(),
-                                  "--rate",  "max",      "--clock",   "recorded",
+  std::vector<std::string> replay{"replay",  file,        "--stream", stream.name(),
+                                  "--rate",  "max",       "--clock",  "recorded",
                                   "--start", shape.start, "--end",    shape.end};
-  std::vector<std::string> fit{"fit",    file,        "--online", "--settle", shape.settle,
-                               "--tail", shape.tail,  "--start",  shape.start, "--end",
+  std::vector<std::string> fit{"fit",     file,       "--online", "--settle",  shape.settle,
+                               "--tail",  shape.tail, "--start",  shape.start, "--end",
                                shape.end, "--at",     at};
   replay.insert(replay.end(), columns.begin(), columns.end());
   fit.insert(fit.end(), columns.begin(), columns.end());
@@ -101,13 +101,12 @@ TEST(Pipeline, ACamerasGroundTruthComesThroughBitForBit) {
 }
 
 TEST(Pipeline, QuadrotorPolynomialsAt100HzComeThroughBitForBit) {
-  for (const char* name : {"figure8.csv", "traj0.csv", "figure8_ideal_traj.csv",
-                           "multi_trajectory_ideal_traj0.csv"}) {
+  for (const char* name :
+       {"figure8.csv", "traj0.csv", "figure8_ideal_traj.csv", "multi_trajectory_ideal_traj0.csv"}) {
     const auto path = testing::shared_file(std::string("data/crazyswarm2_poly/") + name);
     REQUIRE_SHARED_FILE(path);
     const TestFolder folder;
-    const auto mesh =
-        testing::PolynomialTrajectory(path).sampled(core::Time(10'000'000));
+    const auto mesh = testing::PolynomialTrajectory(path).sampled(core::Time(10'000'000));
     const auto file = folder.write("a.csv", testing::to_csv(mesh));
     const auto at = folder.write("at.csv", testing::times_csv(mesh, 5));
     for (const Shape& shape : shapes()) expect_same_bits(file, {}, at, shape);
@@ -123,9 +122,9 @@ TEST(Pipeline, AnEmbeddedSolverGivesTheSameBits) {
   const Ended sent = run({"replay", file, "--stream", stream.name(), "--rate", "max", "--clock",
                           "recorded", "--embedded", "--settle", "5"});
   ASSERT_EQ(sent.code, 0) << sent.err;
-  EXPECT_TRUE(testing::same_text(
-      testing::without_status(run({"sample", stream.name(), "--at", at}).out),
-      run({"fit", file, "--online", "--settle", "5", "--at", at}).out));
+  EXPECT_TRUE(
+      testing::same_text(testing::without_status(run({"sample", stream.name(), "--at", at}).out),
+                         run({"fit", file, "--online", "--settle", "5", "--at", at}).out));
 }
 
 TEST(Pipeline, ASolverKilledInTheMiddleIsTakenOverBitForBit) {
@@ -156,9 +155,9 @@ TEST(Pipeline, ASolverKilledInTheMiddleIsTakenOverBitForBit) {
   ASSERT_EQ(sent.code, 0) << sent.err;
   EXPECT_NE(sent.err.find("3000 waypoints sent, 3000 interpolated, 0 refused"), std::string::npos)
       << sent.err;
-  EXPECT_TRUE(testing::same_text(
-      testing::without_status(run({"sample", stream.name(), "--at", at}).out),
-      run({"fit", file, "--online", "--at", at}).out));
+  EXPECT_TRUE(
+      testing::same_text(testing::without_status(run({"sample", stream.name(), "--at", at}).out),
+                         run({"fit", file, "--online", "--at", at}).out));
   EXPECT_EQ(testing::info(stream.name())["solver"]["epoch"], 5);
 }
 

@@ -24,10 +24,15 @@ std::string error_of(const std::string& path, const TableOptions& options = {}) 
 
 TEST(WaypointTable, TakesTheTimeUnitFromTheColumnsName) {
   const TestFolder folder;
-  const std::vector<std::pair<const char*, std::int64_t>> headers{
-      {"t_ns,x", 3},          {"timestamp_us,x", 3'000},     {"#timestamp [ns],x", 3},
-      {"time_ms,x", 3'000'000}, {"t,x", 3'000'000'000},        {"time,x", 3'000'000'000},
-      {"timestamp,x", 3'000'000'000}, {"# Timestamp [us] , x", 3'000}, {"\xef\xbb\xbft_ns,x", 3}};
+  const std::vector<std::pair<const char*, std::int64_t>> headers{{"t_ns,x", 3},
+                                                                  {"timestamp_us,x", 3'000},
+                                                                  {"#timestamp [ns],x", 3},
+                                                                  {"time_ms,x", 3'000'000},
+                                                                  {"t,x", 3'000'000'000},
+                                                                  {"time,x", 3'000'000'000},
+                                                                  {"timestamp,x", 3'000'000'000},
+                                                                  {"# Timestamp [us] , x", 3'000},
+                                                                  {"\xef\xbb\xbft_ns,x", 3}};
   for (const auto& [header, wanted] : headers) {
     const auto path = folder.write("a.csv", std::string(header) + "\n3,1\n");
     const auto table = read_waypoints(path, {});
@@ -40,8 +45,9 @@ TEST(WaypointTable, TakesTheTimeUnitFromTheColumnsName) {
 
 TEST(WaypointTable, EveryOtherNumericColumnIsAPositionUnlessSelected) {
   const TestFolder folder;
-  const auto path = folder.write(
-      "a.csv", "name,x,t,y,v[0],v[1],a[0],a[1]\r\nfoo, 1 ,0.5,2,3,4,5,6\r\n\r\n# note\r\nbar,7,1,8,9,10,11,12");
+  const auto path = folder.write("a.csv",
+                                 "name,x,t,y,v[0],v[1],a[0],a[1]\r\nfoo, 1 ,0.5,2,3,4,5,6\r\n\r\n# "
+                                 "note\r\nbar,7,1,8,9,10,11,12");
   const auto table = read_waypoints(path, {});
   EXPECT_EQ(table.names, (std::vector<std::string>{"x", "y"}));
   EXPECT_EQ(table.positions, (std::vector<double>{1, 2, 7, 8}));
@@ -67,7 +73,8 @@ TEST(WaypointTable, ReadsTumTextWithItsOwnNamesOrTheComments) {
                                  "# ground truth\n# timestamp tx ty tz qx qy qz qw\n"
                                  "1305031098.6659 1 2 3 0 0 0 1\n1305031098.6758  4 5 6 0 0 0 1\n");
   EXPECT_EQ(read_waypoints(path, {}).dimensions(), 7U);
-  for (const auto& columns : {std::vector<std::string>{"x", "z"}, std::vector<std::string>{"tx", "tz"}}) {
+  for (const auto& columns :
+       {std::vector<std::string>{"x", "z"}, std::vector<std::string>{"tx", "tz"}}) {
     const auto table = read_waypoints(path, {.columns = columns});
     EXPECT_EQ(table.positions, (std::vector<double>{1, 3, 4, 6}));
     EXPECT_EQ(table.times.at(1).count(), 1305031098675800000);

@@ -9,7 +9,8 @@ namespace splinecast::core {
 namespace {
 
 TEST(Condition, ReadsBackWhatItWrites) {
-  for (const char* text : {"natural", "rest", "halt", "velocity=1,-2.5,3e-07", "acceleration=0.1"}) {
+  for (const char* text :
+       {"natural", "rest", "halt", "velocity=1,-2.5,3e-07", "acceleration=0.1"}) {
     const auto condition = parse_condition(text);
     ASSERT_TRUE(condition.has_value()) << text;
     EXPECT_EQ(to_string(*condition), text);

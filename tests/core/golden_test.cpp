@@ -73,19 +73,17 @@ TEST_P(Golden, AgreesTo1eMinus9OfTheLargestValue) {
 
 INSTANTIATE_TEST_SUITE_P(
     C2, Golden,
-    ::testing::Values("c2-acceleration-acceleration-n25-d7-jitter",
-                      "c2-acceleration-acceleration-n40-d3-wild",
-                      "c2-acceleration-acceleration-n6-d1-jitter",
-                      "c2-natural-acceleration-n25-d7-jitter",
-                      "c2-natural-acceleration-n40-d3-wild",
-                      "c2-natural-acceleration-n6-d1-jitter", "c2-natural-n2", "c2-natural-n3",
-                      "c2-natural-natural-n25-d7-jitter", "c2-natural-natural-n40-d3-wild",
-                      "c2-natural-natural-n6-d1-jitter", "c2-velocity-natural-n25-d7-jitter",
-                      "c2-velocity-natural-n40-d3-wild", "c2-velocity-natural-n6-d1-jitter",
-                      "c2-velocity-rest-n2", "c2-velocity-rest-n25-d7-jitter",
-                      "c2-velocity-rest-n3", "c2-velocity-rest-n40-d3-wild",
-                      "c2-velocity-rest-n6-d1-jitter", "c2-velocity-velocity-n25-d7-jitter",
-                      "c2-velocity-velocity-n40-d3-wild", "c2-velocity-velocity-n6-d1-jitter"));
+    ::testing::Values(
+        "c2-acceleration-acceleration-n25-d7-jitter", "c2-acceleration-acceleration-n40-d3-wild",
+        "c2-acceleration-acceleration-n6-d1-jitter", "c2-natural-acceleration-n25-d7-jitter",
+        "c2-natural-acceleration-n40-d3-wild", "c2-natural-acceleration-n6-d1-jitter",
+        "c2-natural-n2", "c2-natural-n3", "c2-natural-natural-n25-d7-jitter",
+        "c2-natural-natural-n40-d3-wild", "c2-natural-natural-n6-d1-jitter",
+        "c2-velocity-natural-n25-d7-jitter", "c2-velocity-natural-n40-d3-wild",
+        "c2-velocity-natural-n6-d1-jitter", "c2-velocity-rest-n2", "c2-velocity-rest-n25-d7-jitter",
+        "c2-velocity-rest-n3", "c2-velocity-rest-n40-d3-wild", "c2-velocity-rest-n6-d1-jitter",
+        "c2-velocity-velocity-n25-d7-jitter", "c2-velocity-velocity-n40-d3-wild",
+        "c2-velocity-velocity-n6-d1-jitter"));
 
 }  // namespace
 }  // namespace splinecast::core

@@ -16,9 +16,9 @@ TEST(SlidingWindowAgainstPolynomials, TheFigureEightIsMetWithin2eMinus5InPositio
     const auto v = trajectory.at(to_seconds(t), 1);
     return Condition{ConditionKind::velocity, {v.begin(), v.end()}};
   };
-  SlidingWindow window(mesh.dimensions, {.settle = 4,
-                                         .tail = Tail::natural,
-                                         .start = velocity_at(mesh.times.front())});
+  SlidingWindow window(
+      mesh.dimensions,
+      {.settle = 4, .tail = Tail::natural, .start = velocity_at(mesh.times.front())});
   double worst[2] = {0, 0};
   Segment segment(mesh.dimensions);
   State state(mesh.dimensions);
@@ -33,7 +33,8 @@ TEST(SlidingWindowAgainstPolynomials, TheFigureEightIsMetWithin2eMinus5InPositio
           const auto exact = trajectory.at(to_seconds(segment.left + u), derivative);
           for (std::size_t d = 0; d < mesh.dimensions; ++d) {
             const auto at = static_cast<std::size_t>(derivative) * mesh.dimensions + d;
-            worst[derivative] = std::max(worst[derivative], std::abs(state.values()[at] - exact[d]));
+            worst[derivative] =
+                std::max(worst[derivative], std::abs(state.values()[at] - exact[d]));
           }
         }
       }

@@ -22,8 +22,8 @@ TEST(PiecewisePolynomial, AKnotBelongsToTheSegmentOnItsRightAndTheLastToTheOneOn
   curve.append(constant(0, 10, 1));
   curve.append(constant(10, 20, 2));
   State state(1);
-  for (const auto& [t, value] : std::vector<std::pair<int, double>>{{0, 1}, {9, 1}, {10, 2},
-                                                                    {19, 2}, {20, 2}}) {
+  for (const auto& [t, value] :
+       std::vector<std::pair<int, double>>{{0, 1}, {9, 1}, {10, 2}, {19, 2}, {20, 2}}) {
     curve.evaluate(Time(t), state.ref());
     EXPECT_EQ(state.position()[0], value) << t;
   }

@@ -51,8 +51,7 @@ TEST(SlidingWindow, AConvergedVelocityIsThatOfAFullSolveWithTheTailAtTheLastWayp
       for (const std::uint64_t seed : {1U, 2U, 3U}) {
         const Mesh mesh = random_mesh(seed, 60, 2, 10);
         SlidingWindow window(2, options(settle, tail));
-        const double scale =
-            testing::dense_velocities(mesh, {}, Condition{}).cwiseAbs().maxCoeff();
+        const double scale = testing::dense_velocities(mesh, {}, Condition{}).cwiseAbs().maxCoeff();
         for (std::size_t n = 0; n < mesh.size(); ++n) {
           window.append(mesh.times[n], mesh.position(n));
           if (n < settle || n < 1) continue;
@@ -93,8 +92,8 @@ TEST(SlidingWindow, NoAppendTouchesASettledSegment) {
 TEST(SlidingWindow, WithALongLagEqualsTheBatchSolveInPositionVelocityAndAcceleration) {
   const Condition halt{ConditionKind::halt, {}};
   const Condition natural{};
-  for (const auto& [start, end] : {std::pair(natural, natural), std::pair(halt, halt),
-                                   std::pair(natural, halt)}) {
+  for (const auto& [start, end] :
+       {std::pair(natural, natural), std::pair(halt, halt), std::pair(natural, halt)}) {
     const Mesh mesh = random_mesh(6, 200, 2, 3);
     const auto got = online(mesh, options(48, Tail::bessel, start), end);
     const auto wanted = c2_spline(mesh.times, mesh.positions, 2, start, end);
@@ -124,7 +123,8 @@ TEST(SlidingWindow, PositionAndVelocityNeverStepAndTheAccelerationStepIsTheOneCa
     State state(2);
     for (const Time t : query_times(mesh, 4)) {
       curve.evaluate(t, state.ref());
-      for (const double a : state.acceleration()) accelerations = std::max(accelerations, std::abs(a));
+      for (const double a : state.acceleration())
+        accelerations = std::max(accelerations, std::abs(a));
     }
     State before(2);
     for (std::size_t i = 1; i < curve.segments(); ++i) {

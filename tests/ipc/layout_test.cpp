@@ -69,7 +69,11 @@ TEST(Layout, AHeaderThatSaysSomethingElseIsRefusedWithTheValue) {
       {"control offset 8200", [](RegionHeader& h) { h.control = kHeaderBytes + 8; }},
       {"clock 7", [](RegionHeader& h) { h.clock = 7; }},
       {"item size 8", [](RegionHeader& h) { h.stride = 8; }},
-      {"size", [](RegionHeader& h) { h.capacity = 16; h.region_bytes = 4096; }},
+      {"size",
+       [](RegionHeader& h) {
+         h.capacity = 16;
+         h.region_bytes = 4096;
+       }},
   };
   for (const auto& [text, spoil] : cases) {
     RegionHeader bad = good;

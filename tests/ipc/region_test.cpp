@@ -78,7 +78,8 @@ TEST(Region, OtherUsersRegionsAreTrustedOnlyByName) {
   ASSERT_TRUE(region.link(stream.name(), RegionKind::waypoints));
   ASSERT_EQ(fchown(region.descriptor(), 12345, static_cast<gid_t>(-1)), 0);
   EXPECT_THROW((void)Region::open(stream.name(), RegionKind::waypoints, false), BadRegion);
-  EXPECT_NO_THROW((void)Region::open(stream.name(), RegionKind::waypoints, false, {.owner = 12345}));
+  EXPECT_NO_THROW(
+      (void)Region::open(stream.name(), RegionKind::waypoints, false, {.owner = 12345}));
   ASSERT_EQ(fchown(region.descriptor(), 0, static_cast<gid_t>(-1)), 0);
 }
 

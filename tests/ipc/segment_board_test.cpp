@@ -135,8 +135,8 @@ TEST(SegmentBoard, KeepsTheLastRefusalsWithTheirItems) {
 TEST(SegmentBoard, AHeadThatCannotBeIsNotBelieved) {
   MemoryBoard board(1, 16);
   Head head;
-  for (const auto& [first, newest] : std::vector<std::pair<Word, Word>>{
-           {0, 5}, {6, 5}, {1, 17}, {1, kRetiredTag}}) {
+  for (const auto& [first, newest] :
+       std::vector<std::pair<Word, Word>>{{0, 5}, {6, 5}, {1, 17}, {1, kRetiredTag}}) {
     Head lying{.first = first, .newest = newest};
     board.writer.commit(lying);
     EXPECT_FALSE(board.reader.copy_bounds(board.reader.revision(), head)) << newest;

@@ -136,10 +136,10 @@ TEST(StreamSolver, RefusesWhatAProducerShouldNotHaveSentWithReasonAndNumber) {
     ASSERT_EQ(stream.append(Time(t), position), AppendStatus::accepted);
   };
   put(10'000, 1);
-  put(12'000, 2);      // closer than the solver takes
+  put(12'000, 2);  // closer than the solver takes
   put(20'000, 3);
-  put(2'000'000, 4);   // farther
-  put(2'005'000, 5);   // farther still from the last one interpolated
+  put(2'000'000, 4);  // farther
+  put(2'005'000, 5);  // farther still from the last one interpolated
   stream.finish();
   const Head& head = stream.solver.head();
   EXPECT_EQ(head.knots, 2U);

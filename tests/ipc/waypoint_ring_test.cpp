@@ -97,8 +97,7 @@ TEST(WaypointRing, APassiveObserverKeepsAnItemOnlyWhileItCannotBeOverwritten) {
 TEST(WaypointRing, NothingFollowsAFinishAndItCarriesItsCondition) {
   MemoryRing ring(2, 4);
   ASSERT_EQ(append(ring, kMillisecond, {1, 2}), AppendStatus::accepted);
-  ASSERT_EQ(ring.writer.finish({core::ConditionKind::velocity, {3, 4}}, 0),
-            AppendStatus::accepted);
+  ASSERT_EQ(ring.writer.finish({core::ConditionKind::velocity, {3, 4}}, 0), AppendStatus::accepted);
   EXPECT_EQ(append(ring, 2 * kMillisecond, {1, 2}), AppendStatus::finished);
   EXPECT_EQ(ring.writer.finish({}, 0), AppendStatus::finished);
   RingItem item(2);
@@ -111,7 +110,8 @@ TEST(WaypointRing, NothingFollowsAFinishAndItCarriesItsCondition) {
 
 TEST(WaypointRing, ANewWriterGoesOnBehindTheLastWaypoint) {
   MemoryRing ring(1, 4);
-  for (int i = 1; i <= 3; ++i) ASSERT_EQ(append(ring, i * kMillisecond, {0}), AppendStatus::accepted);
+  for (int i = 1; i <= 3; ++i)
+    ASSERT_EQ(append(ring, i * kMillisecond, {0}), AppendStatus::accepted);
   WaypointRingWriter next(ring.bytes.span(), ring.layout, {});
   EXPECT_EQ(next.head(), 3U);
   EXPECT_FALSE(next.finished());

@@ -41,8 +41,8 @@ struct System {
   /// Row i of an end whose only interval is `interval` and whose neighbour is knot `inner`.
   void end_row(const Condition& condition, Eigen::Index i, Eigen::Index inner,
                Eigen::Index interval) {
-    const bool gives_acceleration = condition.kind == ConditionKind::natural ||
-                                    condition.kind == ConditionKind::acceleration;
+    const bool gives_acceleration =
+        condition.kind == ConditionKind::natural || condition.kind == ConditionKind::acceleration;
     Eigen::RowVectorXd value = Eigen::RowVectorXd::Zero(b.cols());
     for (std::size_t d = 0; d < condition.value.size(); ++d) {
       value(static_cast<Eigen::Index>(d)) = condition.value[d];

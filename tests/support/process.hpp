@@ -34,7 +34,8 @@ class Process {
   [[nodiscard]] pid_t pid() const { return pid_; }
   void signal(int number) const;
 
-  /// Waits until standard error has said `text`. Fails the test if the process ends or falls silent.
+  /// Waits until standard error has said `text`. Fails the test if the process ends or falls
+  /// silent.
   void await_message(const std::string& text);
 
   /// Waits for its end.

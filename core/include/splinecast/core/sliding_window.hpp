@@ -16,11 +16,11 @@ inline constexpr std::size_t kMaxSettle = 64;
 
 /// What shapes a curve that is solved online.
 struct WindowOptions {
-  std::size_t settle = 8;           ///< settle lag K: 0 … kMaxSettle newer knots
-  Tail tail = Tail::bessel;         ///< condition at the newest knot while the stream goes on
-  Condition start{};                ///< condition at knot 0
-  Time stop_time{250'000'000};      ///< length of the stop tail, > 0
-  bool held_before_start = false;   ///< a hold stands before knot 0, as on a live stream
+  std::size_t settle = 8;          ///< settle lag K: 0 … kMaxSettle newer knots
+  Tail tail = Tail::bessel;        ///< condition at the newest knot while the stream goes on
+  Condition start{};               ///< condition at knot 0
+  Time stop_time{250'000'000};     ///< length of the stop tail, > 0
+  bool held_before_start = false;  ///< a hold stands before knot 0, as on a live stream
 };
 
 /// The online C² cubic spline: the knots that an append still changes, and the segments at them.

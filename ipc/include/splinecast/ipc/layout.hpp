@@ -40,13 +40,13 @@ struct RegionHeader {
   std::uint32_t layout_version;
   std::uint32_t byte_order;
   std::uint64_t layout_hash;
-  std::uint64_t kind;          ///< RegionKind
-  std::uint64_t region_bytes;  ///< size of the whole region
-  std::uint64_t stream_id;     ///< random; the same in both regions of a stream
-  std::uint64_t dimensions;    ///< 1 … 64
-  std::uint64_t order;         ///< coefficients stored per dimension: 6
-  std::uint64_t capacity;      ///< ring items or segment slots, a power of two
-  std::uint64_t clock;         ///< StreamClock
+  std::uint64_t kind;            ///< RegionKind
+  std::uint64_t region_bytes;    ///< size of the whole region
+  std::uint64_t stream_id;       ///< random; the same in both regions of a stream
+  std::uint64_t dimensions;      ///< 1 … 64
+  std::uint64_t order;           ///< coefficients stored per dimension: 6
+  std::uint64_t capacity;        ///< ring items or segment slots, a power of two
+  std::uint64_t clock;           ///< StreamClock
   std::uint64_t time_namespace;  ///< inode of the time namespace of a live stream's clock
   std::uint64_t control;         ///< offset of the control lines
   std::uint64_t stride;          ///< bytes from one ring item or segment slot to the next
@@ -78,7 +78,8 @@ static_assert(offsetof(RegionHeader, name) == 1792);
 static_assert(offsetof(RegionHeader, unit) == 3840);
 
 /// The page behind the header holds four control lines, kSeparation apart. They begin at an offset
-/// that differs from stream to stream, so that a sweep over many streams does not hit one cache set.
+/// that differs from stream to stream, so that a sweep over many streams does not hit one cache
+/// set.
 inline constexpr std::size_t kControlLines = 4;
 inline constexpr std::size_t kControlPositions = kPage / kSeparation - kControlLines;
 inline constexpr std::size_t kBodyOffset = kHeaderBytes + kPage;
@@ -87,7 +88,7 @@ inline constexpr std::size_t kBodyOffset = kHeaderBytes + kPage;
 inline constexpr std::size_t kRevision = 0;  ///< spline: the commit word
 inline constexpr std::size_t kHead = 0;      ///< waypoints: items appended
 inline constexpr std::size_t kRetired = 1;   ///< both: not 0 once the region is of no more use
-inline constexpr std::size_t kTail = kSeparation / sizeof(Word);         ///< spline: items consumed
+inline constexpr std::size_t kTail = kSeparation / sizeof(Word);  ///< spline: items consumed
 inline constexpr std::size_t kSleeping = 2 * kSeparation / sizeof(Word);  ///< spline: solver sleeps
 inline constexpr std::size_t kProducerCounters = kSeparation / sizeof(Word);  ///< waypoints
 
@@ -146,12 +147,12 @@ struct BoardLayout {
   std::size_t dimensions;
   std::size_t capacity;
   std::size_t control;
-  std::size_t head;       ///< two cells of kHeadWords words
-  std::size_t refusals;   ///< kRefusalsKept words
-  std::size_t times;      ///< packed knot times: capacity words
-  std::size_t slots;      ///< capacity slots of two cells
-  std::size_t cell;       ///< bytes of a cell
-  std::size_t stride;     ///< bytes of a slot
+  std::size_t head;      ///< two cells of kHeadWords words
+  std::size_t refusals;  ///< kRefusalsKept words
+  std::size_t times;     ///< packed knot times: capacity words
+  std::size_t slots;     ///< capacity slots of two cells
+  std::size_t cell;      ///< bytes of a cell
+  std::size_t stride;    ///< bytes of a slot
   std::size_t bytes;
 
   [[nodiscard]] static BoardLayout of(std::size_t dimensions, std::size_t capacity,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -43,7 +44,7 @@ inline constexpr Word kRetiredTag = std::numeric_limits<Word>::max();
 
 /// The two tags of a slot, as seen once.
 struct Tags {
-  Word of[2];
+  std::array<Word, 2> of;
 
   /// The cell that is newest under revision r; may itself be newer than r: see holds_any.
   [[nodiscard]] std::size_t newest(Word r) const noexcept {

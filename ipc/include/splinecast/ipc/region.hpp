@@ -16,7 +16,7 @@ namespace splinecast::ipc {
 
 /// Who may use the regions that this process makes.
 struct RegionAccess {
-  mode_t mode = 0600;          ///< permission bits; nobody but the owner ever writes
+  mode_t mode = 0600;            ///< permission bits; nobody but the owner ever writes
   std::optional<gid_t> group{};  ///< group to give it to; unset: this process's
 };
 

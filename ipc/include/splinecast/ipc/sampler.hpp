@@ -79,10 +79,10 @@ class Sampler {
 
   const SegmentBoardReader* board_;
   StreamClock clock_;
-  Head head_;                           ///< bounds under the revision last seen whole
-  Word confirmed_ = 0;                  ///< revision that the current copy is known to be part of
-  core::Time copied_settled_until_{};   ///< settled_until of that revision
-  std::array<SegmentCopy, 2> copies_;   ///< the current one, and one to copy into
+  Head head_;                          ///< bounds under the revision last seen whole
+  Word confirmed_ = 0;                 ///< revision that the current copy is known to be part of
+  core::Time copied_settled_until_{};  ///< settled_until of that revision
+  std::array<SegmentCopy, 2> copies_;  ///< the current one, and one to copy into
   std::size_t current_ = 0;
 };
 

@@ -19,17 +19,17 @@ namespace splinecast::ipc {
 
 /// What holds for a whole revision.
 struct Head {
-  Word revision = 0;         ///< the revision that this head is of; 0: none yet
-  Word first = 0;            ///< oldest segment on the board
-  Word newest = 0;           ///< newest segment, the stop tail of a stream that goes on; 0: none
+  Word revision = 0;           ///< the revision that this head is of; 0: none yet
+  Word first = 0;              ///< oldest segment on the board
+  Word newest = 0;             ///< newest segment, the stop tail of a stream that goes on; 0: none
   core::Time settled_until{};  ///< no time before it ever changes
   bool finished = false;
-  core::Time changed_from{};  ///< earliest time whose curve this revision changed
-  Word consumed = 0;          ///< ring items taken
-  Word knots = 0;             ///< waypoints interpolated
-  core::Time newest_knot{};   ///< time of the newest knot
-  core::Time committed{};     ///< the solver's clock at the commit
-  Word refused = 0;           ///< items refused
+  core::Time changed_from{};                    ///< earliest time whose curve this revision changed
+  Word consumed = 0;                            ///< ring items taken
+  Word knots = 0;                               ///< waypoints interpolated
+  core::Time newest_knot{};                     ///< time of the newest knot
+  core::Time committed{};                       ///< the solver's clock at the commit
+  Word refused = 0;                             ///< items refused
   std::array<Word, kRefusalReasons> reasons{};  ///< of these, by Refusal
 };
 

@@ -16,13 +16,13 @@ namespace splinecast::ipc {
 
 /// What a producer fixes about its stream.
 struct ProducerOptions {
-  std::size_t dimensions = 1;         ///< 1 to 64
-  std::vector<std::string> names{};   ///< one per dimension, or none: up to 31 bytes each
-  std::vector<std::string> units{};   ///< likewise, up to 15 bytes each
+  std::size_t dimensions = 1;        ///< 1 to 64
+  std::vector<std::string> names{};  ///< one per dimension, or none: up to 31 bytes each
+  std::vector<std::string> units{};  ///< likewise, up to 15 bytes each
   StreamClock clock = StreamClock::monotonic;
   core::Condition start{.kind = core::ConditionKind::halt, .value = {}};
   IngestLimits limits{};
-  std::size_t capacity = 1024;        ///< ring items; rounded up to a power of two, at most 2²⁴
+  std::size_t capacity = 1024;  ///< ring items; rounded up to a power of two, at most 2²⁴
   RegionAccess access{};
   Trust trust{};
 };
@@ -30,10 +30,10 @@ struct ProducerOptions {
 /// What a solver fixes about its curve. What is unset takes its default on a new board; a solver
 /// that takes a board over takes its options too, and may not contradict them.
 struct SolverOptions {
-  std::optional<std::size_t> settle{};      ///< settle lag K, 0 to 64; default 8
-  std::optional<core::Tail> tail{};         ///< default bessel
-  std::optional<core::Time> stop_time{};    ///< length of the stop tail; default 250 ms
-  std::optional<std::size_t> capacity{};    ///< segments of history; default 4,096
+  std::optional<std::size_t> settle{};    ///< settle lag K, 0 to 64; default 8
+  std::optional<core::Tail> tail{};       ///< default bessel
+  std::optional<core::Time> stop_time{};  ///< length of the stop tail; default 250 ms
+  std::optional<std::size_t> capacity{};  ///< segments of history; default 4,096
   bool wake = true;                       ///< wake waiting readers: one system call a revision
   RegionAccess access{};
   Trust trust{};

@@ -13,7 +13,7 @@ namespace splinecast::ipc {
 
 /// What one step of a solver did.
 struct StepResult {
-  Word consumed = 0;      ///< ring items taken
+  Word consumed = 0;       ///< ring items taken
   bool published = false;  ///< whether a revision was committed
 };
 

@@ -1,0 +1,36 @@
+#include <benchmark/benchmark.h>
+
+#include <vector>
+
+#include "splinecast/core/segment.hpp"
+#include "splinecast/core/state.hpp"
+
+namespace splinecast::bench {
+namespace {
+
+/// The least a sample can cost: the same polynomials from this process's own memory, without a
+/// lookup.
+void floor_eval(benchmark::State& bench) {
+  const auto dimensions = static_cast<std::size_t>(bench.range(0));
+  const std::vector<double> coefficients(4 * dimensions, 0.25);
+  core::State state(dimensions);
+  double u = 0;
+  for (auto _ : bench) {
+    core::evaluate(core::kCubicOrder, coefficients, u, state.ref());
+    benchmark::DoNotOptimize(state.values().data());
+    u += 1e-9;
+  }
+}
+
+BENCHMARK(floor_eval)
+    ->Name("floor/eval")
+    ->ArgName("dims")
+    ->Arg(1)
+    ->Arg(3)
+    ->Arg(6)
+    ->Arg(7)
+    ->Arg(16)
+    ->Arg(32);
+
+}  // namespace
+}  // namespace splinecast::bench
