@@ -125,6 +125,7 @@ int run_demo(const DemoOptions& options) {
 
   const json sent = producer.result();
   std::vector<json> seen;
+  seen.reserve(readers.size());
   for (Child& reader : readers) seen.push_back(reader.result());
   solver.stop();
   solver.result();

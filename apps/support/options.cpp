@@ -21,6 +21,17 @@ core::Time time_of(const std::string& name, const std::string& text, TimeUnit un
   return *time;
 }
 
+/// An option that takes a time; `Target` is a time, or an optional one.
+template <typename Target>
+void add_time(CLI::App& verb, const std::string& name, Target& value, TimeUnit unit,
+              const std::string& help) {
+  verb.add_option_function<std::string>(
+          name,
+          [&value, name, unit](const std::string& text) { value = time_of(name, text, unit); },
+          help)
+      ->type_name(unit == TimeUnit::seconds ? "SECONDS" : "MS");
+}
+
 std::optional<unsigned> parse_unsigned(const std::string& text, int base) {
   unsigned value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, base);
@@ -101,35 +112,17 @@ void add_settle(CLI::App& verb, std::optional<std::size_t>& value) {
 
 void add_seconds(CLI::App& verb, const std::string& name, std::optional<core::Time>& value,
                  const std::string& help) {
-  verb.add_option_function<std::string>(
-          name,
-          [&value, name](const std::string& text) {
-            value = time_of(name, text, TimeUnit::seconds);
-          },
-          help)
-      ->type_name("SECONDS");
+  add_time(verb, name, value, TimeUnit::seconds, help);
 }
 
 void add_seconds(CLI::App& verb, const std::string& name, core::Time& value,
                  const std::string& help) {
-  verb.add_option_function<std::string>(
-          name,
-          [&value, name](const std::string& text) {
-            value = time_of(name, text, TimeUnit::seconds);
-          },
-          help)
-      ->type_name("SECONDS");
+  add_time(verb, name, value, TimeUnit::seconds, help);
 }
 
 void add_milliseconds(CLI::App& verb, const std::string& name, core::Time& value,
                       const std::string& help) {
-  verb.add_option_function<std::string>(
-          name,
-          [&value, name](const std::string& text) {
-            value = time_of(name, text, TimeUnit::milliseconds);
-          },
-          help)
-      ->type_name("MS");
+  add_time(verb, name, value, TimeUnit::milliseconds, help);
 }
 
 void add_access(CLI::App& verb, ipc::RegionAccess& access) {

@@ -21,7 +21,10 @@ void request_stop(int /*signal*/) { stop.store(true, std::memory_order_relaxed);
 void catch_stop_signals() {
   struct sigaction action {};
   action.sa_handler = request_stop;  // without SA_RESTART: sleeps end early
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+  struct sigaction hang_up {};
+  sigaction(SIGHUP, nullptr, &hang_up);
+  if (hang_up.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup stays nohup
 }
 
 bool stop_requested() noexcept { return stop.load(std::memory_order_relaxed); }

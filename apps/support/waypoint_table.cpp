@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -13,161 +12,16 @@
 #include <utility>
 
 #include "splinecast/core/state.hpp"
+#include "support/table_format.hpp"
 #include "support/text_file.hpp"
 
 namespace splinecast::apps {
 namespace {
 
-constexpr std::array<std::string_view, 8> kTumColumns{"t", "x", "y", "z", "qx", "qy", "qz", "qw"};
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-
-/// One line of a file.
-struct Line {
-  std::size_t number = 0;
-  std::string_view text;
-};
-
-/// Walks over the lines of a text; takes `\n` and `\r\n`, and a last line without either.
-class Lines {
- public:
-  explicit Lines(std::string_view text) : rest_(text) {
-    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-    if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
-  }
-  bool next(Line& line) {
-    if (rest_.empty()) return false;
-    const std::size_t end = rest_.find('\n');
-    line.text = rest_.substr(0, end);
-    line.number = ++number_;
-    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-    if (line.text.ends_with('\r')) line.text.remove_suffix(1);
-    return true;
-  }
-  /// The next line that is neither blank nor a comment.
-  bool next_data(Line& line) {
-    while (next(line)) {
-      const std::string_view text = trimmed(line.text);
-      if (!text.empty() && text.front() != '#') return true;
-    }
-    return false;
-  }
-
- private:
-  std::string_view rest_;
-  std::size_t number_ = 0;
-};
-
-/// Splits a line at commas, or at runs of blanks; views into the line.
-void split(std::string_view line, bool at_commas, std::vector<std::string_view>& fields) {
-  fields.clear();
-  if (at_commas) {
-    for (;;) {
-      const std::size_t comma = line.find(',');
-      fields.push_back(line.substr(0, comma));
-      if (comma == std::string_view::npos) return;
-      line.remove_prefix(comma + 1);
-    }
-  }
-  constexpr std::string_view kBlanks = " \t";
-  for (;;) {
-    const std::size_t begin = line.find_first_not_of(kBlanks);
-    if (begin == std::string_view::npos) return;
-    line.remove_prefix(begin);
-    const std::size_t end = line.find_first_of(kBlanks);
-    fields.push_back(line.substr(0, end));
-    if (end == std::string_view::npos) return;
-    line.remove_prefix(end);
-  }
-}
-
-/// What a file's beginning says about its rows.
-struct Format {
-  bool at_commas = true;
-  std::vector<std::string> names;
-  std::vector<std::string> aliases;  ///< other names of the same columns, or none
-  Line first_row;                    ///< number 0: there is no row
-};
 
 std::string column_list(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ", "));
-}
-
-std::vector<std::string> names_of(std::string_view line, bool at_commas) {
-  std::vector<std::string_view> fields;
-  split(line, at_commas, fields);
-  std::vector<std::string> names;
-  for (const auto field : fields) names.emplace_back(trimmed(field));
-  return names;
-}
-
-/// TUM text: t x y z qx qy qz qw; a comment with as many words gives the columns other names.
-Format tum_format(const TextFile& file, const Line& first, std::string_view comment) {
-  Format format{.at_commas = false,
-                .names = {kTumColumns.begin(), kTumColumns.end()},
-                .aliases = names_of(comment, false),
-                .first_row = first};
-  if (format.aliases.size() != format.names.size()) format.aliases.clear();
-  std::vector<std::string_view> fields;
-  split(first.text, false, fields);
-  if (fields.size() != kTumColumns.size()) {
-    throw InputError(fmt::format(
-        "{}:{}: neither CSV (no comma, no header) nor TUM text (8 fields; this line has {})",
-        file.name(), first.number, fields.size()));
-  }
-  return format;
-}
-
-Format read_format(const TextFile& file, Lines& lines) {
-  Line line;
-  std::string_view comment;
-  while (lines.next(line)) {
-    const std::string_view text = trimmed(line.text);
-    if (text.empty()) continue;
-    if (text.front() != '#') break;
-    comment = trimmed(text.substr(1));
-    line = {};
-  }
-  const std::string_view text = trimmed(line.text);
-  if (line.number == 0 || text.empty() || text.front() == '#') {
-    throw InputError(fmt::format("{}: there are no rows", file.name()));
-  }
-  const bool has_comma = text.find(',') != std::string_view::npos;
-  const bool starts_with_number = parse_number(names_of(text, has_comma)[0]).has_value();
-  if (!has_comma && starts_with_number && text.find_first_of(" \t") != std::string_view::npos) {
-    return tum_format(file, line, comment);
-  }
-  Format format;
-  if (!starts_with_number) {
-    format.names = names_of(text, true);
-    if (!lines.next_data(format.first_row)) format.first_row = {};
-  } else {
-    format.names = names_of(comment, true);
-    format.first_row = line;
-    if (comment.empty()) {
-      throw InputError(
-          fmt::format("{}:{}: there is no header before the first row", file.name(), line.number));
-    }
-  }
-  return format;
-}
-
-/// The unit of a time column by its name, or nothing if the name is not one of a time column.
-std::optional<TimeUnit> unit_of_time_column(std::string_view name) {
-  std::string lower(name);
-  std::ranges::transform(lower, lower.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  std::string_view rest = lower;
-  for (const std::string_view base : {"timestamp", "time", "t"}) {
-    if (!rest.starts_with(base)) continue;
-    rest.remove_prefix(base.size());
-    if (rest.empty()) return TimeUnit::seconds;
-    if (rest.front() == '_') return parse_time_unit(rest.substr(1));
-    rest = trimmed(rest);
-    const bool bracketed = (rest.starts_with('[') && rest.ends_with(']')) ||
-                           (rest.starts_with('(') && rest.ends_with(')'));
-    return bracketed ? parse_time_unit(rest.substr(1, rest.size() - 2)) : std::nullopt;
-  }
-  return std::nullopt;
 }
 
 /// i of a column named `<letter>[i]`, else kNone.
@@ -354,7 +208,7 @@ class TableReader {
 
   TextFile file_;
   Lines lines_;
-  Format format_;
+  TableFormat format_;
   Roles roles_;
   Line line_;
   bool started_ = false;

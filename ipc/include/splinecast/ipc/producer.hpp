@@ -25,7 +25,8 @@ class Producer {
   ~Producer();
 
   /// Appends a waypoint. O(D), never blocks or allocates; one system call where it wakes a sleeping
-  /// solver, and one per call until a solver has come. `full` asks to try again later.
+  /// solver. Until a solver has come each call looks for one, which is a system call and may
+  /// allocate. `full` asks to try again later.
   [[nodiscard]] AppendStatus append(const core::Waypoint& waypoint) noexcept;
 
   /// Ends the stream at its last waypoint. Throws std::invalid_argument if the condition's values

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+
+#include "splinecast/ipc/waypoint_ring.hpp"
+#include "support/waypoint_table.hpp"
+
+/// What is done to a recording before it is sent.
+namespace splinecast::apps {
+
+/// Keeps the rows from `from` on, for `duration` if it is set; both count from the first row's
+/// time. Throws InputError if none is left.
+void select_rows(WaypointTable& table, core::Time from, std::optional<core::Time> duration);
+
+/// Plays `rate` times as fast: divides times about the first one by it, multiplies velocities by it
+/// and accelerations by its square.
+void change_rate(WaypointTable& table, double rate);
+
+/// The median interval between rows; 10 ms for a single row.
+[[nodiscard]] core::Time median_interval(const WaypointTable& table);
+
+/// Drops the rows that the ring would refuse, with a message each naming line and value, or throws
+/// InputError for the first one unless `skip`. Returns how many were dropped; throws if none is
+/// left.
+std::uint64_t drop_unfit_rows(WaypointTable& table, const ipc::IngestLimits& limits, bool skip);
+
+}  // namespace splinecast::apps
