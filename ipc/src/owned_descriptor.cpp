@@ -1,5 +1,6 @@
 #include "splinecast/ipc/owned_descriptor.hpp"
 
+#include <fcntl.h>
 #include <pthread.h>
 #include <unistd.h>
 
@@ -55,7 +56,14 @@ void OwnedDescriptor::close() noexcept {
   if (descriptor_ < 0) return;
   const std::scoped_lock guard(registry().mutex);
   // In a forked child the list is empty and the number may be somebody else's by now.
-  if (std::erase(registry().descriptors, descriptor_) > 0) ::close(descriptor_);
+  if (std::erase(registry().descriptors, descriptor_) > 0) {
+    // A child that was forked a moment ago may not have closed its copy yet: unlocking through any
+    // copy unlocks them all.
+    struct flock whole_file {};
+    whole_file.l_type = F_UNLCK;
+    fcntl(descriptor_, F_OFD_SETLK, &whole_file);
+    ::close(descriptor_);
+  }
   descriptor_ = -1;
 }
 

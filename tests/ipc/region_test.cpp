@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <filesystem>
 #include <string>
@@ -115,21 +116,55 @@ TEST(OwnerLock, IsHeldByOneAndFreeWhenItsHolderDies) {
 
 TEST(OwnerLock, AForkedChildDoesNotKeepIt) {
   const TestStream stream;
+  // An owner that forks a child and is killed; the child lives on.
+  std::array<int, 2> pipe_ends{};
+  ASSERT_EQ(pipe(pipe_ends.data()), 0);
+  const pid_t owner = fork();
+  if (owner == 0) {
+    const OwnerLock lock(stream.name(), RegionKind::spline);
+    const Region region = Region::create(kSize, {});
+    if (!region.link(stream.name(), RegionKind::spline) || !try_lock_region(region.descriptor())) {
+      _exit(1);
+    }
+    const pid_t child = fork();
+    if (child != 0 && write(pipe_ends[1], &child, sizeof child) != sizeof child) _exit(1);
+    pause();
+    _exit(0);
+  }
+  pid_t child = -1;
+  ASSERT_EQ(read(pipe_ends[0], &child, sizeof child), static_cast<ssize_t>(sizeof child));
+  EXPECT_TRUE(owner_lives(stream.name(), RegionKind::spline));
+  EXPECT_THROW(OwnerLock(stream.name(), RegionKind::spline), StreamBusy);
+  kill(owner, SIGKILL);
+  waitpid(owner, nullptr, 0);
+  // As soon as the child has had its first instant.
+  EXPECT_TRUE(testing::await([&] { return !owner_lives(stream.name(), RegionKind::spline); }));
+  EXPECT_TRUE(testing::await([&] {
+    try {
+      const OwnerLock lock(stream.name(), RegionKind::spline);
+      return true;
+    } catch (const StreamBusy&) {
+      return false;
+    }
+  }));
+  EXPECT_EQ(kill(child, 0), 0);
+  kill(child, SIGKILL);
+  close(pipe_ends[0]);
+  close(pipe_ends[1]);
+}
+
+TEST(OwnerLock, IsFreeAtOnceWhenItsHolderLetsGoEvenIfAChildWasJustForked) {
+  const TestStream stream;
   pid_t child = -1;
   {
     const OwnerLock lock(stream.name(), RegionKind::spline);
-    const Region region = Region::create(kSize, {});
-    ASSERT_TRUE(region.link(stream.name(), RegionKind::spline));
-    ASSERT_TRUE(try_lock_region(region.descriptor()));
     child = fork();
     if (child == 0) {
       pause();
       _exit(0);
     }
-    EXPECT_TRUE(owner_lives(stream.name(), RegionKind::spline));
   }
   EXPECT_NO_THROW(OwnerLock(stream.name(), RegionKind::spline));
-  EXPECT_FALSE(owner_lives(stream.name(), RegionKind::spline));
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
 }

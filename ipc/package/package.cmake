@@ -11,7 +11,7 @@ endif()
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/splinecast)
 install(EXPORT splinecast-targets NAMESPACE splinecast:: DESTINATION ${package_dir})
-configure_package_config_file(cmake/splinecast-config.cmake.in splinecast-config.cmake
+configure_package_config_file(ipc/package/splinecast-config.cmake.in splinecast-config.cmake
                               INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(splinecast-config-version.cmake
                                  COMPATIBILITY SameMinorVersion)
@@ -19,5 +19,5 @@ install(FILES ${PROJECT_BINARY_DIR}/splinecast-config.cmake
               ${PROJECT_BINARY_DIR}/splinecast-config-version.cmake
         DESTINATION ${package_dir})
 
-configure_file(cmake/splinecast.pc.in splinecast.pc @ONLY)
+configure_file(ipc/package/splinecast.pc.in splinecast.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/splinecast.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
