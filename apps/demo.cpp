@@ -58,34 +58,46 @@ json merged(const std::vector<json>& readers) {
   return sum;
 }
 
-void print_steps(const char* what, const json& steps) {
-  fmt::print("  {:<34} position {:.2g}, velocity {:.2g}, acceleration {:.2g}\n", what,
-             steps[0].get<double>(), steps[1].get<double>(), steps[2].get<double>());
+std::string line(const char* what, const std::string& text) {
+  return fmt::format("  {:<34} {}\n", what, text);
 }
 
-void print_summary(const WaypointTable& table, const json& sent, const json& read) {
-  fmt::print(
-      "\nOne producer, one solver and {} readers, each a process of its own; {} dimensions "
-      "from {}, played live.\n\n",
-      kReaders, table.dimensions(), table.file);
-  fmt::print("  {:<34} {} sent, {} interpolated, {} refused\n", "waypoints",
-             sent["sent"].get<std::size_t>(), sent["interpolated"].get<std::size_t>(),
-             sent["refused"].get<std::size_t>());
-  std::string statuses;
-  for (std::size_t i = 0; i < read["by_status"].size(); ++i) {
-    const auto count = read["by_status"][i].get<std::size_t>();
+std::string steps_line(const char* what, const json& steps) {
+  return line(what,
+              fmt::format("position {:.2g}, velocity {:.2g}, acceleration {:.2g}",
+                          steps[0].get<double>(), steps[1].get<double>(), steps[2].get<double>()));
+}
+
+std::string counts_by_status(const json& by_status) {
+  std::string text;
+  for (std::size_t i = 0; i < by_status.size(); ++i) {
+    const auto count = by_status[i].get<std::size_t>();
     if (count == 0) continue;
-    statuses += fmt::format("{}{} {}", statuses.empty() ? "" : ", ", count,
-                            ipc::to_string(static_cast<ipc::SampleStatus>(i)));
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count,
+                        ipc::to_string(static_cast<ipc::SampleStatus>(i)));
   }
-  fmt::print("  {:<34} {} in all: {}\n", "samples at 1 kHz", read["samples"].get<std::size_t>(),
-             statuses);
-  print_steps("largest step at a knot", read["step_at_knots"]);
-  print_steps("largest change of what was read", read["change_of_the_past"]);
-  fmt::print("  {:<34} {:.1f} ms in the median, {:.1f} ms at most\n", "age of the data",
-             read["age_ms"][0].get<double>(), read["age_ms"][1].get<double>());
-  fmt::print("  {:<34} {:.0f} ns in the median, {:.0f} ns for 99 of 100\n", "time per sample",
-             read["sample_ns"][0].get<double>(), read["sample_ns"][1].get<double>());
+  return text;
+}
+
+std::string summary(const WaypointTable& table, const json& sent, const json& read) {
+  return fmt::format(
+             "\nOne producer, one solver and {} readers, each a process of its own; {} dimensions "
+             "from {}, played live.\n\n",
+             kReaders, table.dimensions(), table.file) +
+         line("waypoints",
+              fmt::format("{} sent, {} interpolated, {} refused", sent["sent"].get<std::size_t>(),
+                          sent["interpolated"].get<std::size_t>(),
+                          sent["refused"].get<std::size_t>())) +
+         line("samples at 1 kHz", fmt::format("{} in all: {}", read["samples"].get<std::size_t>(),
+                                              counts_by_status(read["by_status"]))) +
+         steps_line("largest step at a knot", read["step_at_knots"]) +
+         steps_line("largest change of what was read", read["change_of_the_past"]) +
+         line("age of the data",
+              fmt::format("{:.1f} ms in the median, {:.1f} ms at most",
+                          read["age_ms"][0].get<double>(), read["age_ms"][1].get<double>())) +
+         line("time per sample",
+              fmt::format("{:.0f} ns in the median, {:.0f} ns for 99 of 100",
+                          read["sample_ns"][0].get<double>(), read["sample_ns"][1].get<double>()));
 }
 
 /// Removes what the demo leaves in shared memory, however it ends.
@@ -108,11 +120,13 @@ class StreamRemover {
 
 int run_demo(const DemoOptions& options) {
   constexpr core::Time kDefaultLength = std::chrono::seconds(10);
-  const WaypointTable table = options.file.empty()
-                                  ? pick_and_place(options.seconds.value_or(kDefaultLength))
-                                  : read_waypoints(options.file, options.table);
+  WaypointTable table = options.file.empty()
+                            ? pick_and_place(options.seconds.value_or(kDefaultLength))
+                            : read_waypoints(options.file, options.table);
   const std::string stream = fmt::format("demo.{}", getpid());
-  ReplayOptions replay{.stream = stream, .duration = options.seconds};
+  ReplayOptions replay{.stream = stream};
+  if (!options.file.empty()) replay.duration = options.seconds;
+  prepare_replay(table, replay);
 
   catch_stop_signals();
   const StreamRemover remover(stream);
@@ -131,9 +145,10 @@ int run_demo(const DemoOptions& options) {
   solver.result();
   const json read = merged(seen);
   if (options.json) {
-    fmt::print("{}\n", json{{"waypoints", sent}, {"readers", seen}, {"all_readers", read}}.dump(2));
+    const json all{{"waypoints", sent}, {"readers", seen}, {"all_readers", read}};
+    print_report(all.dump(2) + "\n");
   } else {
-    print_summary(table, sent, read);
+    print_report(summary(table, sent, read));
   }
   return kOk;
 }

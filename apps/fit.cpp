@@ -62,14 +62,6 @@ core::PiecewisePolynomial fit(const WaypointTable& table, const FitOptions& opti
                          options.end.value_or(core::Condition{}));
 }
 
-/// Times every dt from the first to the last waypoint.
-std::vector<core::Time> regular_times(const core::PiecewisePolynomial& curve, core::Time dt) {
-  std::vector<core::Time> times;
-  const core::Time last = curve.breaks().back();
-  for (core::Time t = curve.breaks().front(); t <= last; t += dt) times.push_back(t);
-  return times;
-}
-
 void require_inside(const std::vector<core::Time>& times, const core::PiecewisePolynomial& curve,
                     const std::string& file) {
   const core::Time first = curve.breaks().front();
@@ -82,17 +74,20 @@ void require_inside(const std::vector<core::Time>& times, const core::PiecewiseP
   }
 }
 
-void emit_samples(const core::PiecewisePolynomial& curve, const FitOptions& options,
-                  Output& output) {
-  const auto times = options.at.empty() ? regular_times(curve, *options.dt)
-                                        : read_times(options.at, options.table.time_unit);
-  require_inside(times, curve, options.at);
+/// Samples at the given times, or every dt from the first to the last waypoint.
+void emit_samples(const core::PiecewisePolynomial& curve, const std::vector<core::Time>& at,
+                  const FitOptions& options, Output& output) {
   SampleWriter writer(output, curve.dimensions(), false);
   core::State state(curve.dimensions());
-  for (const core::Time t : times) {
+  const auto write = [&](core::Time t) {
     curve.evaluate(t, state.ref());
     writer.write(t, state);
-  }
+  };
+  for (const core::Time t : at) write(t);
+  if (!options.dt) return;
+  const core::Time last = curve.breaks().back();
+  core::Time t = curve.breaks().front();
+  for (write(t); last - t >= *options.dt; write(t)) t += *options.dt;
 }
 
 /// Coefficients [segment][dimension][power, highest first], all of one order.
@@ -127,11 +122,14 @@ int run_fit(const FitOptions& options) {
   const WaypointTable table = read_waypoints(options.file, options.table);
   require_spline_input(table);
   const auto curve = fit(table, options);
-  Output output(options.output);
+  const auto at = options.at.empty() ? std::vector<core::Time>{}
+                                     : read_times(options.at, options.table.time_unit);
+  require_inside(at, curve, options.at);
+  Output output(options.output);  // after all input was read: it may be the same file
   if (options.emit == "pp") {
     emit_piecewise_polynomial(curve, output);
   } else {
-    emit_samples(curve, options, output);
+    emit_samples(curve, at, options, output);
   }
   output.close();
   return kOk;

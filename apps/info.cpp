@@ -6,6 +6,7 @@
 #include "splinecast/ipc/stream_files.hpp"
 #include "support/exit_codes.hpp"
 #include "support/options.hpp"
+#include "support/output.hpp"
 #include "support/stream_report.hpp"
 
 namespace splinecast::apps {
@@ -14,25 +15,27 @@ namespace {
 using nlohmann::ordered_json;
 
 std::string text_of(const ordered_json& value) {
-  return value.is_string() ? value.get<std::string>() : value.dump();
+  return value.is_string() ? value.get<std::string>()
+                           : value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-void print_table(const ordered_json& json, int indent) {
+std::string table_of(const ordered_json& json, int indent) {
+  std::string table;
   for (const auto& [key, value] : json.items()) {
     if (value.is_object()) {
-      fmt::print("{:{}}{}\n", "", indent, key);
-      print_table(value, indent + 2);
+      table += fmt::format("{:{}}{}\n", "", indent, key) + table_of(value, indent + 2);
     } else {
-      fmt::print("{:{}}{:<{}}  {}\n", "", indent, key, 26 - indent, text_of(value));
+      table += fmt::format("{:{}}{:<{}}  {}\n", "", indent, key, 26 - indent, text_of(value));
     }
   }
+  return table;
 }
 
 /// What a person asks first, in words.
-void print_age(const ipc::StreamInfo& info) {
-  if (info.head.revision == 0) return;
+std::string age_of(const ipc::StreamInfo& info) {
+  if (info.head.revision == 0) return {};
   const double age = core::to_seconds(ipc::MonotonicClock().now() - info.head.committed);
-  fmt::print("{:<26}  {:.3f} s ago\n", "last published", age);
+  return fmt::format("{:<26}  {:.3f} s ago\n", "last published", age);
 }
 
 }  // namespace
@@ -53,10 +56,9 @@ void add_info(CLI::App& program, Action& action) {
       const ipc::StreamInfo info = ipc::inspect(options->stream, options->trust);
       const ordered_json json = to_json(info);
       if (options->json) {
-        fmt::print("{}\n", json.dump(2));
+        print_report(pretty(json));
       } else {
-        print_table(json, 0);
-        print_age(info);
+        print_report(table_of(json, 0) + age_of(info));
       }
       return kOk;
     };

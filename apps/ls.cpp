@@ -7,6 +7,7 @@
 #include "splinecast/ipc/stream_files.hpp"
 #include "support/exit_codes.hpp"
 #include "support/options.hpp"
+#include "support/output.hpp"
 #include "support/stream_report.hpp"
 
 namespace splinecast::apps {
@@ -25,30 +26,31 @@ ordered_json list_entry(const std::string& stream, const ipc::Trust& trust) {
   }
 }
 
-void print_row(const ordered_json& entry) {
+std::string row(const ordered_json& entry) {
   const auto alive = [&](const char* role) {
     const bool stands = entry.contains(role) && entry[role].is_object();
     return !stands ? "-" : entry[role]["alive"].get<bool>() ? "alive" : "gone";
   };
   const bool solved = entry.contains("solver") && entry["solver"].is_object();
-  fmt::print("{:<24} {:>4} {:<9} {:<9} {:<7} {:>10}  {}\n", entry["stream"].get<std::string>(),
-             entry.contains("dimensions") ? entry["dimensions"].dump() : "-",
-             entry.value("clock", "-"), alive("producer"), alive("solver"),
-             solved ? entry["solver"]["interpolated"].dump() : "-",
-             entry.contains("error") ? entry["error"].get<std::string>()
-                                     : entry["state"].get<std::string>());
+  return fmt::format(
+      "{:<24} {:>4} {:<9} {:<9} {:<7} {:>10}  {}\n", entry["stream"].get<std::string>(),
+      entry.contains("dimensions") ? entry["dimensions"].dump() : "-", entry.value("clock", "-"),
+      alive("producer"), alive("solver"), solved ? entry["solver"]["interpolated"].dump() : "-",
+      entry.contains("error") ? entry["error"].get<std::string>()
+                              : entry["state"].get<std::string>());
 }
 
 int list_streams(bool as_json, const ipc::Trust& trust) {
   ordered_json list = ordered_json::array();
   for (const std::string& stream : ipc::stream_names()) list.push_back(list_entry(stream, trust));
   if (as_json) {
-    fmt::print("{}\n", list.dump(2));
+    print_report(pretty(list));
     return kOk;
   }
-  fmt::print("{:<24} {:>4} {:<9} {:<9} {:<7} {:>10}  {}\n", "STREAM", "DIMS", "CLOCK", "PRODUCER",
-             "SOLVER", "WAYPOINTS", "STATE");
-  for (const ordered_json& entry : list) print_row(entry);
+  std::string table = fmt::format("{:<24} {:>4} {:<9} {:<9} {:<7} {:>10}  {}\n", "STREAM", "DIMS",
+                                  "CLOCK", "PRODUCER", "SOLVER", "WAYPOINTS", "STATE");
+  for (const ordered_json& entry : list) table += row(entry);
+  print_report(table);
   return kOk;
 }
 

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <exception>
+#include <iostream>
 #include <stdexcept>
 #include <string>
 
@@ -25,6 +26,8 @@ int run(const Action& action) {
   } catch (const ipc::BadRequest& error) {
     say(error.what());
     return kBadUsageOrInput;
+  } catch (const ClosedPipe&) {
+    return kFailed;
   } catch (const TimeOut& error) {
     say(error.what());
     return kNoStreamOrTimeOut;
@@ -60,7 +63,9 @@ int run_program(int argc, char** argv) {
     }
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return program.exit(error) == 0 ? kOk : kBadUsageOrInput;
+    const bool asked_for_help = program.exit(error) == 0;
+    if (!asked_for_help) return kBadUsageOrInput;
+    return std::cout.flush() ? kOk : kFailed;
   }
   return run(action);
 }

@@ -23,8 +23,10 @@ int run_replay(ReplayOptions options) {
       ++unreadable;
     };
   }
-  ReplayReport report = replay_table(read_waypoints(options.file, options.table), options);
-  report.skipped += unreadable;
+  WaypointTable table = read_waypoints(options.file, options.table);
+  const ipc::Word unfit = prepare_replay(table, options);
+  ReplayReport report = replay_table(table, options);
+  report.skipped = unreadable + unfit;
   if (options.json) {
     const nlohmann::ordered_json json{{"stream", options.stream},
                                       {"sent", report.sent},
@@ -32,7 +34,7 @@ int run_replay(ReplayOptions options) {
                                       {"refused", report.refused},
                                       {"skipped", report.skipped},
                                       {"interrupted", report.interrupted}};
-    fmt::print("{}\n", json.dump(2));
+    print_report(json.dump(2) + "\n");
   } else {
     say(fmt::format("'{}': {} waypoints sent, {} interpolated, {} refused, {} rows skipped{}",
                     options.stream, report.sent, report.interpolated, report.refused,
@@ -45,18 +47,15 @@ void add_playback_options(CLI::App& verb, ReplayOptions& options) {
   verb.add_option_function<std::string>(
           "--rate",
           [&options](const std::string& text) {
-            const auto rate = parse_number(text);
-            if (text != "max" && (!rate || !(*rate > 0) || !std::isfinite(*rate))) {
-              throw CLI::ValidationError(
-                  "--rate", fmt::format("'{}' is neither a positive number nor 'max'", text));
+            if (text == "max") {
+              options.rate.reset();
+            } else {
+              options.rate = positive_number("--rate", text);
             }
-            options.rate = rate;
           },
           "Play R times as fast as recorded (default 1), or as fast as it goes: max")
       ->type_name("R|max");
-  verb.add_option("--loop", options.loops, "Play the recording N times (default 1)")
-      ->type_name("N")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}));
+  add_count(verb, "--loop", options.loops, "Play the recording N times (default 1)");
   add_seconds(verb, "--from", options.from, "Begin this long after the first waypoint");
   add_seconds(verb, "--duration", options.duration, "Play only so much of the recording");
   verb.add_option_function<std::string>(
@@ -114,9 +113,8 @@ void add_replay(CLI::App& program, Action& action) {
           "What to do about a row that cannot be sent: stop (default), before anything is sent, or "
           "skip it")
       ->type_name("skip|stop");
-  verb->add_option("--capacity", options->capacity,
-                   "Waypoints that the ring holds (default 1024; rounded up to a power of two)")
-      ->type_name("N");
+  add_count(*verb, "--capacity", options->capacity,
+            "Waypoints that the ring holds (default 1024; rounded up to a power of two)");
   add_seconds(*verb, "--wait", options->wait, "Wait this long for a solver (default 10)");
   add_interval(*verb, "--min-interval", options->limits.min_interval,
                "Least time between waypoints (default 1e-6)");

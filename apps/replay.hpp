@@ -43,8 +43,12 @@ struct ReplayReport {
   bool interrupted = false;
 };
 
-/// Sends a table's waypoints to a solver and waits until all are consumed. Throws InputError for a
-/// row that cannot be sent, TimeOut if no solver comes.
-ReplayReport replay_table(WaypointTable table, const ReplayOptions& options);
+/// Makes a file's table what is to be sent: the rows and the rate asked for. Returns how many rows
+/// were left out. Throws InputError for a row that cannot be sent.
+ipc::Word prepare_replay(WaypointTable& table, const ReplayOptions& options);
+
+/// Sends a prepared table's waypoints to a solver and waits until all are consumed. Throws TimeOut
+/// if no solver comes.
+ReplayReport replay_table(const WaypointTable& table, const ReplayOptions& options);
 
 }  // namespace splinecast::apps

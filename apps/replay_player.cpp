@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "replay.hpp"
+#include "splinecast/ipc/owner_lock.hpp"
 #include "splinecast/ipc/producer.hpp"
 #include "splinecast/ipc/stream_files.hpp"
 #include "support/exit_codes.hpp"
@@ -17,16 +18,40 @@ namespace {
 
 constexpr core::Time kSlice = std::chrono::milliseconds(50);
 
+[[noreturn]] void throw_no_solver(const ReplayOptions& options) {
+  throw TimeOut(fmt::format("no solver for stream '{}' within {} s: run 'splinecast solve {}'",
+                            options.stream, core::to_seconds(options.wait), options.stream));
+}
+
+/// A finished stream is made anew only once there is a solver for the new one: until then its curve
+/// can still be read. Returns false if a stop is requested meanwhile.
+bool await_solver_of_finished(const ReplayOptions& options) {
+  if (!ipc::region_exists(options.stream, ipc::RegionKind::spline)) return true;
+  const ipc::MonotonicClock clock;
+  const core::Time end = ipc::deadline(clock, options.wait);
+  while (!ipc::is_owned(options.stream, ipc::RegionKind::spline)) {
+    if (clock.now() >= end) throw_no_solver(options);
+    if (!sleep_until(clock.now() + std::chrono::milliseconds(2))) return false;
+  }
+  return true;
+}
+
 /// A replay on its way: the producer, and the embedded solver if there is one.
 class Replay {
  public:
   Replay(const WaypointTable& table, const ReplayOptions& options)
-      : table_(table), options_(options), producer_(options.stream, producer_options()) {
-    if (options.embedded) solver_.emplace(options.stream, options.solver);
-  }
+      : table_(table),
+        options_(options),
+        solver_(options.embedded
+                    ? std::optional<ipc::Solver>(std::in_place, options.stream, options.solver)
+                    : std::nullopt),
+        producer_(options.stream, producer_options()) {}
 
   ReplayReport run() {
-    if (!await_solver()) return interrupted();
+    if (!await_solver()) return {.interrupted = true};
+    const ipc::Head before = head();
+    interpolated_before_ = before.knots;
+    refused_before_ = before.refused;
     const core::Time base = first_time();
     require_continuation(base);
     const core::Time shift = table_.times.back() - table_.times.front() + median_interval(table_);
@@ -67,7 +92,7 @@ class Replay {
   /// Waits for a solver; false if a stop is requested meanwhile. Without one nothing is left
   /// behind.
   bool await_solver() {
-    const core::Time end = clock_.now() + options_.wait;
+    const core::Time end = ipc::deadline(clock_, options_.wait);
     solve();
     while (!stop_requested()) {
       if (producer_.wait_for_solver(kSlice)) return true;
@@ -94,7 +119,7 @@ class Replay {
     if (!producer_.continues() || first > producer_.last_time()) return;
     throw InputError(fmt::format(
         "stream '{}' was left unfinished by its producer at {} ns; this recording begins at {} "
-        "ns; 'splinecast rm {}' removes it",
+        "ns; 'splinecast rm {}' removes it, once its solver has been stopped",
         options_.stream, producer_.last_time().count(), first.count(), options_.stream));
   }
 
@@ -102,7 +127,7 @@ class Replay {
   bool send(std::size_t i, core::Time offset, Progress& progress) {
     core::Waypoint waypoint = table_.waypoint(i);
     waypoint.time += offset;
-    if (options_.rate && !pace(waypoint.time)) return false;
+    if (stop_requested() || (options_.rate && !pace(waypoint.time))) return false;
     for (;;) {
       const auto status = producer_.append(waypoint);
       if (status == ipc::AppendStatus::accepted) break;
@@ -135,13 +160,13 @@ class Replay {
   /// may take its time; without one, only --wait.
   template <typename Wait>
   bool await(const Wait& wait) {
-    core::Time end = clock_.now() + options_.wait;
+    core::Time end = ipc::deadline(clock_, options_.wait);
     for (;;) {
       solve();
       if (wait()) return true;
       if (stop_requested()) return false;
       if (producer_.solver_alive()) {
-        end = clock_.now() + options_.wait;
+        end = ipc::deadline(clock_, options_.wait);
       } else if (clock_.now() >= end) {
         throw TimeOut(fmt::format("the solver of stream '{}' has gone and none came within {} s",
                                   options_.stream, core::to_seconds(options_.wait)));
@@ -169,36 +194,47 @@ class Replay {
     return result;
   }
 
-  [[nodiscard]] ReplayReport report() const {
-    ReplayReport result{.sent = sent_};
-    if (!ipc::region_exists(options_.stream, ipc::RegionKind::spline)) return result;
+  /// The head of this very stream's board; revision 0 if it cannot be had.
+  [[nodiscard]] ipc::Head head() const {
+    if (!ipc::region_exists(options_.stream, ipc::RegionKind::spline)) return {};
     const ipc::StreamInfo info = ipc::inspect(options_.stream, options_.trust);
-    result.interpolated = info.head.knots;
-    result.refused = info.head.refused;
-    return result;
+    const bool ours = info.spline && info.spline->stream_id == producer_.stream_id();
+    return ours ? info.head : ipc::Head{};
+  }
+
+  [[nodiscard]] ReplayReport report() const {
+    const ipc::Head now = head();
+    return {.sent = sent_,
+            .interpolated = now.knots - interpolated_before_,
+            .refused = now.refused - refused_before_};
   }
 
   const WaypointTable& table_;
   const ReplayOptions& options_;
   ipc::MonotonicClock clock_;
+  std::optional<ipc::Solver> solver_;  ///< first: if there is another one, nothing has been made
   ipc::Producer producer_;
-  std::optional<ipc::Solver> solver_;
   core::Time recorded_start_{};
   ipc::Word sent_ = 0;
+  ipc::Word interpolated_before_ = 0;  ///< by a producer whose stream is continued
+  ipc::Word refused_before_ = 0;
 };
 
 }  // namespace
 
-ReplayReport replay_table(WaypointTable table, const ReplayOptions& options) {
+ipc::Word prepare_replay(WaypointTable& table, const ReplayOptions& options) {
   select_rows(table, options.from.value_or(core::Time::zero()), options.duration);
   change_rate(table, options.rate.value_or(1.0));
   const ipc::Word skipped = drop_unfit_rows(table, options.limits, options.skip_bad);
   const core::Condition none;
   core::require_values(options.start.value_or(none), table.dimensions());
   core::require_values(options.end.value_or(none), table.dimensions());
-  ReplayReport report = Replay(table, options).run();
-  report.skipped += skipped;
-  return report;
+  return skipped;
+}
+
+ReplayReport replay_table(const WaypointTable& table, const ReplayOptions& options) {
+  if (!options.embedded && !await_solver_of_finished(options)) return {.interrupted = true};
+  return Replay(table, options).run();
 }
 
 }  // namespace splinecast::apps

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/reader.hpp"
@@ -32,6 +33,8 @@ class Sampling {
  public:
   explicit Sampling(const SampleOptions& options)
       : options_(options),
+        times_(options.at.empty() ? std::vector<core::Time>{}
+                                  : read_times(options.at, options.time_unit)),
         reader_(attach(options)),
         output_(options.output),
         state_(reader_.dimensions()),
@@ -42,7 +45,7 @@ class Sampling {
 
   int run() {
     if (!options_.at.empty()) {
-      for (const core::Time t : read_times(options_.at, options_.time_unit)) {
+      for (const core::Time t : times_) {
         if (stop_requested()) break;
         write(t);
       }
@@ -60,13 +63,14 @@ class Sampling {
   static ipc::Reader attach(const SampleOptions& options) {
     constexpr core::Time kSlice = std::chrono::milliseconds(50);
     const ipc::MonotonicClock clock;
-    const core::Time end = clock.now() + options.wait;
+    const core::Time end = ipc::deadline(clock, options.wait);
     for (;;) {
       const core::Time left = std::max(end - clock.now(), core::Time::zero());
       try {
         return ipc::Reader(options.stream, std::min(kSlice, left), options.trust);
       } catch (const ipc::NoSuchStream&) {
-        if (clock.now() >= end || stop_requested()) throw;
+        if (stop_requested()) throw Failure("interrupted before the stream was there");
+        if (clock.now() >= end) throw;
       }
     }
   }
@@ -100,7 +104,7 @@ class Sampling {
 
   /// Time of the oldest knot that the board keeps.
   core::Time first_knot() {
-    const core::Time end = clock_.now() + options_.wait;
+    const core::Time end = ipc::deadline(clock_, options_.wait);
     for (;;) {
       core::Time first{};
       if (reader_.first_time(first)) return first;
@@ -119,19 +123,24 @@ class Sampling {
   /// A recorded stream is sampled where it is final, as long as it goes on: what is not settled yet
   /// is waited for, until nothing new has come for --wait.
   ipc::SampleStatus sample(core::Time t) {
-    core::Time end = clock_.now() + options_.wait;
+    core::Time end = ipc::deadline(clock_, options_.wait);
     for (;;) {
       const auto status = reader_.sample(t, state_);
       if (status == ipc::SampleStatus::retired) {
         reattach();
         continue;
       }
-      if (status == ipc::SampleStatus::busy && clock_.now() < end) continue;
+      if (status == ipc::SampleStatus::busy && clock_.now() < end) {
+        (void)reader_.wait(std::chrono::milliseconds(1));
+        continue;
+      }
       if (!patient_ || stop_requested() || is_final(status)) return status;
       if (reader_.wait(std::chrono::milliseconds(20)) == ipc::WaitStatus::advanced) {
-        end = clock_.now() + options_.wait;
+        end = ipc::deadline(clock_, options_.wait);
       } else if (clock_.now() >= end) {
         patient_ = false;
+        say(fmt::format("stream '{}': nothing new for {} s; from {} ns on samples are not settled",
+                        options_.stream, core::to_seconds(options_.wait), t.count()));
       }
     }
   }
@@ -154,6 +163,7 @@ class Sampling {
   }
 
   const SampleOptions& options_;
+  std::vector<core::Time> times_;  ///< of --at; read before the output is opened
   ipc::MonotonicClock clock_;
   ipc::Reader reader_;
   Output output_;
@@ -171,10 +181,13 @@ void add_sample(CLI::App& program, Action& action) {
   verb->add_option("STREAM", options->stream, "Stream to read")->required();
   auto* at = verb->add_option("--at", options->at, "File with a time column: where to sample")
                  ->type_name("FILE");
-  auto* rate = verb->add_option("--rate", options->rate, "Samples a second")
-                   ->type_name("HZ")
-                   ->check(CLI::PositiveNumber);
-  auto* count = verb->add_option("--count", options->count, "Number of samples")->type_name("N");
+  auto* rate = verb->add_option_function<std::string>(
+      "--rate",
+      [options](const std::string& text) { options->rate = positive_number("--rate", text); },
+      "Samples a second");
+  rate->type_name("HZ");
+  add_count(*verb, "--count", options->count, "Number of samples");
+  auto* count = verb->get_option("--count");
   rate->needs(count)->excludes(at);
   count->needs(rate);
   verb->add_option("-o,--output", options->output, "File to write (default: standard output)")

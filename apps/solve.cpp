@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <exception>
 #include <memory>
 #include <set>
 
@@ -83,7 +84,17 @@ int run_solve(const SolveOptions& options) {
   }
   while (!stop_requested()) {
     bool worked = false;
-    for (Served& served : all) worked = served.serve(clock, announcer) || worked;
+    std::erase_if(all, [&](Served& served) {
+      try {
+        worked = served.serve(clock, announcer) || worked;
+        return false;
+      } catch (const std::exception& error) {
+        if (!many) throw;
+        say(fmt::format("'{}': given up: {}", served.solver.stream(), error.what()));
+        return true;
+      }
+    });
+    if (all.empty()) return kFailed;
     if (worked) continue;
     if (many) {
       sleep_until(clock.now() + options.sweep);
@@ -91,7 +102,7 @@ int run_solve(const SolveOptions& options) {
       all.front().solver.wait(kLongestWait);
     }
   }
-  return kOk;
+  return all.size() == options.streams.size() ? kOk : kFailed;
 }
 
 void add_solve(CLI::App& program, Action& action) {
@@ -103,9 +114,8 @@ void add_solve(CLI::App& program, Action& action) {
   add_method(*verb);
   add_seconds(*verb, "--stop-time", options->solver.stop_time,
               "Time in which a stream that dries up comes to rest (default 0.25)");
-  verb->add_option("--capacity", options->solver.capacity,
-                   "Segments of history to keep (default 4096; rounded up to a power of two)")
-      ->type_name("N");
+  add_count(*verb, "--capacity", options->solver.capacity,
+            "Segments of history to keep (default 4096; rounded up to a power of two)");
   verb->add_flag("!--no-wake", options->solver.wake,
                  "Wake no waiting readers: for hosts where every reader polls");
   verb->add_option_function<std::string>(

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -67,6 +68,10 @@ nlohmann::json Child::result() {
   std::string text;
   std::array<char, 4096> buffer{};
   for (;;) {
+    if (stop_requested()) stop();
+    constexpr int kSliceMilliseconds = 100;
+    pollfd ready{.fd = pipe_, .events = POLLIN, .revents = 0};
+    if (poll(&ready, 1, kSliceMilliseconds) <= 0) continue;
     const ssize_t got = read(pipe_, buffer.data(), buffer.size());
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) break;

@@ -20,7 +20,8 @@ class Child {
   /// Kills it if it has not been waited for.
   ~Child();
 
-  /// Waits for the child's end and returns its result. Throws Failure if it failed or was killed.
+  /// Waits for the child's end and returns its result; passes a stop that is requested meanwhile on
+  /// to it. Throws Failure if it failed or was killed.
   nlohmann::json result();
 
   /// Asks the child to end (SIGTERM).

@@ -23,6 +23,12 @@ class Failure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Whoever read the output has had enough of it (`| head`): exit code 1, without a message.
+class ClosedPipe : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// What was waited for did not come: exit code 4.
 class TimeOut : public std::runtime_error {
  public:

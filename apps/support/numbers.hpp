@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string_view>
 
@@ -19,7 +20,14 @@ enum class TimeUnit : int { nanoseconds = 0, microseconds = 3, milliseconds = 6,
 [[nodiscard]] std::optional<core::Time> parse_time(std::string_view text, TimeUnit unit) noexcept;
 
 /// Reads a number, `nan` and `inf` included; nothing for any other text. Accepts a leading plus.
+/// What a double cannot hold becomes 0 or infinite.
 [[nodiscard]] std::optional<double> parse_number(std::string_view text) noexcept;
+
+/// Reads a whole number of 0 or more; nothing for any other text.
+[[nodiscard]] std::optional<std::uint64_t> parse_count(std::string_view text) noexcept;
+
+/// Without the blanks around it.
+[[nodiscard]] std::string_view without_blanks(std::string_view text) noexcept;
 
 /// Without the blanks, and then the double quotes, around it.
 [[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;

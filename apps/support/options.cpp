@@ -6,6 +6,7 @@
 
 #include <array>
 #include <charconv>
+#include <chrono>
 
 #include "support/exit_codes.hpp"
 #include "support/numbers.hpp"
@@ -15,8 +16,9 @@ namespace {
 
 core::Time time_of(const std::string& name, const std::string& text, TimeUnit unit) {
   const auto time = parse_time(text, unit);
-  if (!time || *time < core::Time::zero()) {
-    throw CLI::ValidationError(name, fmt::format("'{}' is not a time of 0 or more", text));
+  constexpr core::Time kLongest = std::chrono::hours(24 * 366 * 100);
+  if (!time || *time < core::Time::zero() || *time > kLongest) {
+    throw CLI::ValidationError(name, fmt::format("'{}' is no time from 0 to 100 years", text));
   }
   return *time;
 }
@@ -30,6 +32,23 @@ void add_time(CLI::App& verb, const std::string& name, Target& value, TimeUnit u
           [&value, name, unit](const std::string& text) { value = time_of(name, text, unit); },
           help)
       ->type_name(unit == TimeUnit::seconds ? "SECONDS" : "MS");
+}
+
+/// An option that takes a count; `Target` is a number, or an optional one.
+template <typename Target>
+void add_number(CLI::App& verb, const std::string& name, Target& value, const std::string& help) {
+  verb.add_option_function<std::string>(
+          name,
+          [&value, name](const std::string& text) {
+            const auto count = parse_count(text);
+            if (!count || *count == 0) {
+              throw CLI::ValidationError(name,
+                                         fmt::format("'{}' is no whole number of 1 or more", text));
+            }
+            value = *count;
+          },
+          help)
+      ->type_name("N");
 }
 
 std::optional<unsigned> parse_unsigned(const std::string& text, int base) {
@@ -104,10 +123,16 @@ void add_tail(CLI::App& verb, std::optional<core::Tail>& value) {
 }
 
 void add_settle(CLI::App& verb, std::optional<std::size_t>& value) {
-  verb.add_option("--settle", value,
-                  "Settle lag: newer waypoints after which a knot is final, 0 to 64 (default 8)")
-      ->type_name("K")
-      ->check(CLI::Range(std::size_t{0}, core::kMaxSettle));
+  verb.add_option_function<std::string>(
+          "--settle",
+          [&value](const std::string& text) {
+            value = parse_count(text);
+            if (value && *value <= core::kMaxSettle) return;
+            throw CLI::ValidationError("--settle",
+                                       fmt::format("'{}' is no whole number from 0 to 64", text));
+          },
+          "Settle lag: newer waypoints after which a knot is final, 0 to 64 (default 8)")
+      ->type_name("K");
 }
 
 void add_seconds(CLI::App& verb, const std::string& name, std::optional<core::Time>& value,
@@ -123,6 +148,24 @@ void add_seconds(CLI::App& verb, const std::string& name, core::Time& value,
 void add_milliseconds(CLI::App& verb, const std::string& name, core::Time& value,
                       const std::string& help) {
   add_time(verb, name, value, TimeUnit::milliseconds, help);
+}
+
+void add_count(CLI::App& verb, const std::string& name, std::size_t& value,
+               const std::string& help) {
+  add_number(verb, name, value, help);
+}
+
+void add_count(CLI::App& verb, const std::string& name, std::optional<std::size_t>& value,
+               const std::string& help) {
+  add_number(verb, name, value, help);
+}
+
+double positive_number(const std::string& name, const std::string& text) {
+  const auto number = parse_number(text);
+  constexpr double kLeast = 1e-6;
+  constexpr double kMost = 1e9;
+  if (number && *number >= kLeast && *number <= kMost) return *number;
+  throw CLI::ValidationError(name, fmt::format("'{}' is no number from 1e-6 to 1e9", text));
 }
 
 void add_access(CLI::App& verb, ipc::RegionAccess& access) {

@@ -46,6 +46,15 @@ void add_seconds(CLI::App& verb, const std::string& name, core::Time& value,
 void add_milliseconds(CLI::App& verb, const std::string& name, core::Time& value,
                       const std::string& help);
 
+/// An option that takes a whole number of 1 or more.
+void add_count(CLI::App& verb, const std::string& name, std::size_t& value,
+               const std::string& help);
+void add_count(CLI::App& verb, const std::string& name, std::optional<std::size_t>& value,
+               const std::string& help);
+
+/// A number between 1e-6 and 1e9, of which times can still be made; else CLI::ValidationError.
+[[nodiscard]] double positive_number(const std::string& name, const std::string& text);
+
 /// `--mode` and `--group` of the regions to be made.
 void add_access(CLI::App& verb, ipc::RegionAccess& access);
 

@@ -38,8 +38,15 @@ void Output::close() {
 }
 
 void Output::fail() const {
+  if (errno == EPIPE) throw ClosedPipe("standard output was closed");
   throw Failure(
       fmt::format("{}: cannot be written: {}", name_, std::generic_category().message(errno)));
+}
+
+void print_report(std::string_view text) {
+  Output output("");
+  output.write(text);
+  output.close();
 }
 
 SampleWriter::SampleWriter(Output& output, std::size_t dimensions, bool with_status)

@@ -31,6 +31,9 @@ class Output {
   std::FILE* file_;
 };
 
+/// Writes a whole report to standard output. Throws as Output does.
+void print_report(std::string_view text);
+
 /// Writes samples as CSV: `t_ns,p[0],…,v[0],…,a[0],…,j[0],…`, numbers in the shortest form that
 /// reads back exactly.
 class SampleWriter {

@@ -66,7 +66,8 @@ WaypointTable pick_and_place(core::Time duration) {
   Random random;
   std::size_t row = 1;
   for (core::Time due{}; due <= duration; due += kPeriod) {
-    const core::Time t = due == core::Time::zero() ? due : due + core::Time(random.next(kJitter));
+    const bool is_end = due == core::Time::zero() || due + kPeriod > duration;
+    const core::Time t = is_end ? due : due + core::Time(random.next(kJitter));
     const Pose pose = pose_at(t);
     table.times.push_back(t);
     table.lines.push_back(++row);

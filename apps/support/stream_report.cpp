@@ -86,6 +86,10 @@ ordered_json solver_json(const ipc::StreamInfo& info) {
 
 }  // namespace
 
+std::string pretty(const ordered_json& json) {
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
 std::string state_of(const ipc::StreamInfo& info) {
   if (!info.waypoints) return info.solver_alive ? "waiting for a producer" : "left behind";
   if (!info.spline || info.spline->stream_id != info.waypoints->stream_id) {

@@ -38,6 +38,19 @@ TableFormat tum_format(const TextFile& file, const Line& first, std::string_view
   return format;
 }
 
+/// Where the first field of a CSV line ends: at a comma that is not within double quotes.
+std::size_t end_of_field(std::string_view line) noexcept {
+  if (line.empty() || without_blanks(line).substr(0, 1) != "\"") return line.find(',');
+  const std::size_t closing = line.find('"', line.find('"') + 1);
+  return closing == std::string_view::npos ? line.find(',') : line.find(',', closing);
+}
+
+bool names_a_time_column(std::string_view comment) {
+  return std::ranges::any_of(names_of(comment, true), [](const std::string& name) {
+    return unit_of_time_column(name).has_value();
+  });
+}
+
 }  // namespace
 
 Lines::Lines(std::string_view text) : rest_(text) {
@@ -67,7 +80,7 @@ void split(std::string_view line, bool at_commas, std::vector<std::string_view>&
   fields.clear();
   if (at_commas) {
     for (;;) {
-      const std::size_t comma = line.find(',');
+      const std::size_t comma = end_of_field(line);
       fields.push_back(line.substr(0, comma));
       if (comma == std::string_view::npos) return;
       line.remove_prefix(comma + 1);
@@ -87,31 +100,31 @@ void split(std::string_view line, bool at_commas, std::vector<std::string_view>&
 
 TableFormat read_format(const TextFile& file, Lines& lines) {
   Line line;
-  std::string_view comment;
-  while (lines.next(line)) {
-    const std::string_view text = trimmed(line.text);
+  bool found = false;
+  std::string_view header;   // the last comment that could be a CSV's header
+  std::string_view comment;  // the last comment
+  while (!found && lines.next(line)) {
+    const std::string_view text = without_blanks(line.text);
     if (text.empty()) continue;
-    if (text.front() != '#') break;
-    comment = trimmed(text.substr(1));
-    line = {};
+    found = text.front() != '#';
+    if (found) break;
+    comment = without_blanks(text.substr(1));
+    if (names_a_time_column(comment)) header = comment;
   }
-  const std::string_view text = trimmed(line.text);
-  if (line.number == 0 || text.empty() || text.front() == '#') {
-    throw InputError(fmt::format("{}: there are no rows", file.name()));
-  }
+  if (!found) throw InputError(fmt::format("{}: there are no rows", file.name()));
+  const std::string_view text = without_blanks(line.text);
   const bool has_comma = text.find(',') != std::string_view::npos;
   const bool starts_with_number = parse_number(names_of(text, has_comma)[0]).has_value();
-  if (!has_comma && starts_with_number && text.find_first_of(" \t") != std::string_view::npos) {
-    return tum_format(file, line, comment);
-  }
+  const bool has_blanks = text.find_first_of(" \t") != std::string_view::npos;
+  if (!has_comma && starts_with_number && has_blanks) return tum_format(file, line, comment);
   TableFormat format;
   if (!starts_with_number) {
     format.names = names_of(text, true);
     if (!lines.next_data(format.first_row)) format.first_row = {};
   } else {
-    format.names = names_of(comment, true);
+    format.names = names_of(header, true);
     format.first_row = line;
-    if (comment.empty()) {
+    if (header.empty()) {
       throw InputError(
           fmt::format("{}:{}: there is no header before the first row", file.name(), line.number));
     }

@@ -5,6 +5,7 @@
 #include <boost/interprocess/file_mapping.hpp>
 #include <boost/interprocess/mapped_region.hpp>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <iterator>
 #include <system_error>
@@ -32,8 +33,14 @@ TextFile::TextFile(const std::string& path)
   if (!std::filesystem::exists(status)) {
     throw InputError(fmt::format("{}: no such file", path));
   }
-  if (!std::filesystem::is_regular_file(status)) {
-    throw InputError(fmt::format("{}: not a regular file", path));
+  if (std::filesystem::is_directory(status)) {
+    throw InputError(fmt::format("{}: is a folder", path));
+  }
+  if (!std::filesystem::is_regular_file(status)) {  // a pipe: read to its end
+    std::ifstream pipe(path);
+    storage_->read.assign(std::istreambuf_iterator<char>(pipe), {});
+    text_ = storage_->read;
+    return;
   }
   if (std::filesystem::file_size(path, error) == 0) return;  // nothing can be mapped
   try {

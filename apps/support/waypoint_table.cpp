@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "splinecast/core/state.hpp"
+#include "splinecast/ipc/waypoint_ring.hpp"
 #include "support/table_format.hpp"
 #include "support/text_file.hpp"
 
@@ -69,7 +70,14 @@ class TableReader {
     if (selected.empty()) {
       roles_.positions = all;
     } else {
-      for (const std::string& name : selected) roles_.positions.push_back(column(name));
+      for (const std::string& wanted : selected) {
+        const std::size_t c = column(wanted);
+        if (c == roles_.time || std::ranges::find(roles_.positions, c) != roles_.positions.end()) {
+          throw InputError(fmt::format("{}: column '{}' is {}", name(), wanted,
+                                       c == roles_.time ? "the time" : "selected twice"));
+        }
+        roles_.positions.push_back(c);
+      }
     }
     if (roles_.positions.empty()) {
       throw InputError(fmt::format("{}: there is no position column besides the time ({})", name(),
@@ -106,6 +114,9 @@ class TableReader {
   [[nodiscard]] core::Time time(const std::vector<std::string_view>& fields) const {
     const auto time = parse_time(fields[roles_.time], roles_.unit);
     if (!time) fail(fields[roles_.time], roles_.time, "is not a time");
+    if (!ipc::is_time_in_range(*time)) {
+      fail(fields[roles_.time], roles_.time, "lies beyond ±2^62 ns, about 146 years");
+    }
     return *time;
   }
   [[nodiscard]] double number(const std::vector<std::string_view>& fields,
@@ -131,8 +142,9 @@ class TableReader {
     if (roles_.time == kNone) {
       throw InputError(fmt::format(
           "{}: there is no time column (t_ns, timestamp_us, timestamp [ns], t, time, timestamp) "
-          "among {}",
-          name(), column_list(format_.names)));
+          "among {}{}",
+          name(), column_list(format_.names),
+          format_.names.size() == 1 ? " (fields are separated by commas)" : ""));
     }
   }
 
@@ -149,8 +161,6 @@ class TableReader {
 
   /// Columns that hold positions if none are selected: numeric ones that are nothing else.
   [[nodiscard]] std::vector<std::size_t> position_columns() const {
-    std::vector<std::string_view> fields;
-    split(format_.first_row.text, format_.at_commas, fields);
     std::vector<std::size_t> columns;
     for (std::size_t c = 0; c < format_.names.size(); ++c) {
       const std::string& column_name = format_.names[c];
@@ -158,8 +168,7 @@ class TableReader {
           index_of(column_name, 'a') != kNone || is_sampled_jerk(column_name)) {
         continue;
       }
-      const bool has_rows = format_.first_row.number != 0;
-      if (!has_rows || (c < fields.size() && parse_number(fields[c]))) {
+      if (is_numeric(c)) {
         columns.push_back(c);
       } else if (!column_name.empty()) {
         fmt::print(stderr, "splinecast: {}: column '{}' is not numeric and is left out\n", name(),
@@ -167,6 +176,20 @@ class TableReader {
       }
     }
     return columns;
+  }
+
+  /// Whether a column holds numbers: its first cell does, or, if that is bad, any other. (A bad
+  /// cell must not make a dimension vanish.)
+  [[nodiscard]] bool is_numeric(std::size_t c) const {
+    Lines rest = lines_;
+    Line line = format_.first_row;
+    if (line.number == 0) return true;
+    std::vector<std::string_view> fields;
+    do {
+      split(line.text, format_.at_commas, fields);
+      if (c < fields.size() && parse_number(fields[c])) return true;
+    } while (rest.next_data(line));
+    return false;
   }
 
   /// j[i] beside p[i], v[i] and a[i]: samples that this program wrote, whose jerk is no position.

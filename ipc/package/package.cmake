@@ -19,5 +19,7 @@ install(FILES ${PROJECT_BINARY_DIR}/splinecast-config.cmake
               ${PROJECT_BINARY_DIR}/splinecast-config-version.cmake
         DESTINATION ${package_dir})
 
+# Relative, so that the files may be installed anywhere: cmake --install BUILD --prefix PREFIX.
+file(RELATIVE_PATH prefix_from_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(ipc/package/splinecast.pc.in splinecast.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/splinecast.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -5,10 +5,15 @@
 #include <initializer_list>
 #include <string>
 
+#include "splinecast/core/condition.hpp"
+#include "splinecast/core/sliding_window.hpp"
 #include "splinecast/ipc/errors.hpp"
 
 namespace splinecast::ipc {
 namespace {
+
+/// More than any interval or stop time needs, and little enough to be added to any time.
+constexpr std::uint64_t kLongestNanoseconds = std::uint64_t{1} << 61U;
 
 constexpr std::size_t round_up(std::size_t value, std::size_t multiple) noexcept {
   return (value + multiple - 1) / multiple * multiple;
@@ -46,6 +51,12 @@ void require_common(const RegionHeader& header, RegionKind kind, std::size_t rea
   require(header.control % kSeparation == 0, "control offset", header.control,
           round_up(header.control, kSeparation));
   require_range("clock", header.clock, 0, 1);
+  require_range("start condition", header.start_kind, 0,
+                static_cast<std::uint64_t>(core::ConditionKind::acceleration));
+  require_range("least interval", static_cast<std::uint64_t>(header.min_interval), 1,
+                kLongestNanoseconds);
+  require_range("most interval", static_cast<std::uint64_t>(header.max_interval), 1,
+                kLongestNanoseconds);
   require(header.region_bytes == real_bytes, "size", real_bytes, header.region_bytes);
 }
 
@@ -141,6 +152,9 @@ RingLayout checked_ring_layout(const RegionHeader& header, std::size_t real_byte
 BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_bytes) {
   require_common(header, RegionKind::spline, real_bytes, kMaxBoardCapacity);
   const auto layout = BoardLayout::of(header.dimensions, header.capacity, header.control);
+  require_range("settle lag", header.settle, 0, core::kMaxSettle);
+  require_range("tail", header.tail, 0, static_cast<std::uint64_t>(core::Tail::rest));
+  require_range("stop time", static_cast<std::uint64_t>(header.stop_time), 1, kLongestNanoseconds);
   require(header.stride == layout.stride, "slot size", header.stride, layout.stride);
   require(real_bytes == layout.bytes, "size", real_bytes, layout.bytes);
   return layout;

@@ -5,14 +5,21 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <system_error>
+#include <thread>
 
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/layout.hpp"
 #include "splinecast/ipc/region.hpp"
+#include "splinecast/ipc/stream_files.hpp"
 
 namespace splinecast::ipc {
 namespace {
+
+/// How long a lock is tried for whose holder has no region locked: it may be an `rm` passing by.
+constexpr int kLockTries = 10;
+constexpr std::chrono::milliseconds kLockPoll{5};
 
 struct flock whole_file(short type) noexcept {
   struct flock lock {};
@@ -67,8 +74,9 @@ std::string owner_process(std::string_view stream, RegionKind kind) {
 
 }  // namespace
 
-OwnerLock::OwnerLock(std::string_view stream, RegionKind kind) : path_(lock_path(stream, kind)) {
-  for (;;) {
+OwnerLock::OwnerLock(std::string_view stream, RegionKind kind)
+    : stream_(stream), kind_(kind), path_(lock_path(stream, kind)), holder_(getpid()) {
+  for (int attempt = 1;; ++attempt) {
     const int descriptor = open_lock_file(path_);
     if (descriptor < 0) {
       if (errno == EACCES) throw BadRegion("lock " + path_ + " belongs to another user");
@@ -77,6 +85,10 @@ OwnerLock::OwnerLock(std::string_view stream, RegionKind kind) : path_(lock_path
     descriptor_ = OwnedDescriptor(descriptor);
     require_own_file(descriptor, path_);
     if (!try_lock(descriptor)) {
+      if (attempt < kLockTries && !owner_lives(stream, kind)) {
+        std::this_thread::sleep_for(kLockPoll);
+        continue;
+      }
       throw StreamBusy("stream '" + std::string(stream) + "' has a living " +
                        std::string(owner_role(kind)) + owner_process(stream, kind));
     }
@@ -85,7 +97,22 @@ OwnerLock::OwnerLock(std::string_view stream, RegionKind kind) : path_(lock_path
   }
 }
 
-void OwnerLock::remove_file() noexcept { unlink(path_.c_str()); }
+void OwnerLock::remove_file() noexcept {
+  if (getpid() == holder_) unlink(path_.c_str());
+}
+
+void OwnerLock::remove_file_without_region() noexcept {
+  if (!region_exists(stream_, kind_)) remove_file();
+}
+
+bool is_owned(std::string_view stream, RegionKind kind) {
+  const int opened =
+      open(lock_path(stream, kind).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (opened < 0) return false;
+  const bool owned = is_region_locked(opened);
+  close(opened);
+  return owned;
+}
 
 bool try_lock_region(int descriptor) noexcept { return try_lock(descriptor); }
 

@@ -15,8 +15,9 @@
 namespace splinecast::ipc {
 namespace {
 
-/// A wait is cut into slices, in case a solver dies between its store and its wake.
-constexpr core::Time kSlice = std::chrono::milliseconds(20);
+/// A wait is cut into slices: it watches the commit word, and the tail that it waits for is stored
+/// only after that, so that a wake can be missed; and a solver may die before it wakes.
+constexpr core::Time kSlice = std::chrono::milliseconds(1);
 constexpr core::Time kPoll = std::chrono::milliseconds(2);
 
 /// The solver's region as the producer sees it: where the ring's tail comes from.
@@ -65,7 +66,8 @@ void require_no_contradiction(const std::string& stream, const RegionHeader& sta
                               const ProducerOptions& options) {
   const auto contradict = [&](const std::string& what) {
     throw BadRequest("stream '" + stream + "' was left unfinished by its producer and has " + what +
-                     "; 'splinecast rm " + stream + "' removes it");
+                     "; 'splinecast rm " + stream +
+                     "' removes it, once its solver has been stopped");
   };
   const RegionHeader wanted = make_header(options, stands.stream_id);
   if (wanted.dimensions != stands.dimensions) {
@@ -106,9 +108,14 @@ std::optional<OwnedRing> continue_ring(const std::string& stream, const Producer
   return ring;
 }
 
-OwnedRing own_ring(const std::string& stream, const ProducerOptions& options) {
-  auto continued = continue_ring(stream, options);
-  return continued ? std::move(*continued) : make_ring(stream, options);
+OwnedRing own_ring(const std::string& stream, const ProducerOptions& options, OwnerLock& lock) {
+  try {
+    auto continued = continue_ring(stream, options);
+    return continued ? std::move(*continued) : make_ring(stream, options);
+  } catch (...) {
+    lock.remove_file_without_region();
+    throw;
+  }
 }
 
 }  // namespace
@@ -125,15 +132,17 @@ struct Producer::Impl {
       : stream(std::move(name)),
         options(std::move(how)),
         lock(stream, RegionKind::waypoints),
-        ring(own_ring(stream, options)),
+        ring(own_ring(stream, options, lock)),
         continues(ring.writer.head() > 0) {}
 
   /// Looks for the solver's region until there is one for this very stream.
   void look_for_solver() noexcept {
     if (solver && !solver->board.retired()) return;
     solver.reset();
-    if (!region_exists(stream, RegionKind::spline)) return;
     try {
+      // The id first: mapping a large board of an earlier stream each time would be costly.
+      const auto peeked = peek_header(stream, RegionKind::spline, options.trust);
+      if (!peeked || peeked->stream_id != ring.header.stream_id) return;
       Region region = Region::open(stream, RegionKind::spline, false, options.trust);
       const RegionHeader header = copy_header(region.bytes());
       const auto layout = checked_board_layout(header, region.bytes().size());
@@ -147,6 +156,8 @@ struct Producer::Impl {
   [[nodiscard]] Word consumed() const noexcept { return solver ? solver->board.tail() : 0; }
 
   AppendStatus appended(AppendStatus status) noexcept {
+    // Again after the store: a solver that came meanwhile may already sleep.
+    if (!solver) look_for_solver();
     if (status == AppendStatus::accepted && solver && solver->board.sleeping()) {
       wake_all(ring.writer.head_word());
     }
@@ -157,7 +168,7 @@ struct Producer::Impl {
   template <typename Done>
   bool wait(core::Time timeout, const Done& done) {
     const MonotonicClock clock;
-    const core::Time end = clock.now() + timeout;
+    const core::Time end = deadline(clock, timeout);
     for (;;) {
       look_for_solver();
       const Word seen = solver ? solver->board.revision() : 0;
@@ -209,6 +220,7 @@ bool Producer::solver_alive() const { return owner_lives(impl_->stream, RegionKi
 
 Word Producer::appended() const noexcept { return impl_->ring.writer.head(); }
 Word Producer::consumed() const noexcept { return impl_->consumed(); }
+std::uint64_t Producer::stream_id() const noexcept { return impl_->ring.header.stream_id; }
 bool Producer::continues() const noexcept { return impl_->continues; }
 core::Time Producer::last_time() const noexcept { return impl_->ring.writer.last_time(); }
 bool Producer::is_memory_locked() const noexcept { return impl_->ring.region.is_memory_locked(); }

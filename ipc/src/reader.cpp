@@ -22,10 +22,9 @@ constexpr int kHeadTries = 16;
 /// stream was made anew, the old board stands until a solver comes.
 bool is_of_current_stream(const std::string& stream, const RegionHeader& header,
                           const Trust& trust) {
-  if (!region_exists(stream, RegionKind::waypoints)) return true;
   try {
-    const Region region = Region::open(stream, RegionKind::waypoints, false, trust);
-    return copy_header(region.bytes()).stream_id == header.stream_id;
+    const auto producers = peek_header(stream, RegionKind::waypoints, trust);
+    return !producers || producers->stream_id == header.stream_id;
   } catch (const StreamError&) {
     return true;  // a reader need not be allowed to read what the producer writes
   }
@@ -67,7 +66,7 @@ struct Reader::Impl {
   static std::unique_ptr<Impl> await(const std::string& stream, core::Time wait,
                                      const Trust& trust) {
     const MonotonicClock clock;
-    const core::Time end = clock.now() + wait;
+    const core::Time end = deadline(clock, wait);
     for (;;) {
       if (auto impl = open(stream, trust)) return impl;
       if (clock.now() >= end) {
@@ -105,7 +104,7 @@ bool Reader::first_time(core::Time& out) const noexcept {
 
 WaitStatus Reader::wait(core::Time timeout) noexcept {
   const MonotonicClock clock;
-  const core::Time end = clock.now() + timeout;
+  const core::Time end = deadline(clock, timeout);
   impl_->seen = std::max(impl_->seen, impl_->sampler.revision_seen());
   for (;;) {
     if (impl_->board.retired()) return WaitStatus::retired;

@@ -36,6 +36,12 @@ class DescriptorMapping {
   int descriptor_;
 };
 
+int duplicate(int descriptor) {
+  const int copy = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+  if (copy < 0) throw BadRegion("no file descriptor for a region: " + error_text(errno));
+  return copy;
+}
+
 void reserve_pages(int descriptor, std::size_t bytes) {
   const int error = posix_fallocate(descriptor, 0, static_cast<off_t>(bytes));
   if (error == 0) return;
@@ -138,7 +144,7 @@ Region Region::create(std::size_t bytes, const RegionAccess& access) {
   if (fchmod(descriptor.get(), access.mode) != 0) {
     throw BadRegion("cannot set the region's mode: " + error_text(errno));
   }
-  const int mapped = fcntl(descriptor.get(), F_DUPFD_CLOEXEC, 0);
+  const int mapped = duplicate(descriptor.get());
   return Region(std::make_unique<Mapping>(mapped, true));
 }
 
@@ -153,7 +159,7 @@ Region Region::open(std::string_view stream, RegionKind kind, bool writable, con
                     " bytes, fewer than its first " + std::to_string(kBodyOffset));
   }
   try {
-    const int mapped = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
+    const int mapped = duplicate(descriptor);
     return Region(std::make_unique<Mapping>(mapped, writable));
   } catch (const bip::interprocess_exception& error) {
     throw BadRegion("cannot map " + region_path(stream, kind) + ": " + error.what());
@@ -176,7 +182,21 @@ bool Region::is_linked(std::string_view stream, RegionKind kind) const noexcept 
          mapped.st_ino == named.st_ino;
 }
 
-bool region_exists(std::string_view stream, RegionKind kind) noexcept {
+std::optional<RegionHeader> peek_header(std::string_view stream, RegionKind kind,
+                                        const Trust& trust) {
+  try {
+    const auto object = open_shared_memory(stream, kind, false);
+    const int descriptor = object.get_mapping_handle().handle;
+    require_trusted(descriptor, region_path(stream, kind), trust);
+    RegionHeader header{};
+    const bool whole = pread(descriptor, &header, sizeof header, 0) == sizeof header;
+    return whole ? std::optional(header) : std::nullopt;
+  } catch (const NoSuchStream&) {
+    return std::nullopt;
+  }
+}
+
+bool region_exists(std::string_view stream, RegionKind kind) {
   struct stat status {};
   return lstat(region_path(stream, kind).c_str(), &status) == 0;
 }

@@ -11,6 +11,11 @@ namespace {
 /// microsecond and fails only if a whole revision was written within it.
 constexpr int kTries = 16;
 
+/// Seconds from a segment's left end; whatever the region holds, without signed overflow.
+double seconds_after(core::Time left, core::Time t) noexcept {
+  return core::to_seconds(to_time(to_word(t) - to_word(left)));
+}
+
 /// Sets velocity, acceleration and jerk to 0: at rest.
 void come_to_rest(core::StateRef out) noexcept {
   std::ranges::fill(out.velocity, 0.0);
@@ -138,7 +143,7 @@ SampleStatus Sampler::evaluate(const SegmentCopy& segment, core::Time t,
   const bool past_end = t > segment.right || segment.kind == core::SegmentKind::hold ||
                         (t == segment.right && segment.kind == core::SegmentKind::stop_tail);
   const core::Time at = past_end ? segment.right : t;
-  core::evaluate(segment.order, segment.coefficients, core::to_seconds(at - segment.left), out);
+  core::evaluate(segment.order, segment.coefficients, seconds_after(segment.left, at), out);
   if (past_end) come_to_rest(out);
   if (head_.finished && t <= segment.right) return SampleStatus::settled;
   if (past_end) return SampleStatus::holding;
@@ -160,7 +165,7 @@ SampleStatus Sampler::from_own_copy(core::Time t, core::StateRef out) noexcept {
   if (own.tag == 0 || t < own.left || t >= own.right || t >= copied_settled_until_) {
     return SampleStatus::busy;
   }
-  core::evaluate(own.order, own.coefficients, core::to_seconds(t - own.left), out);
+  core::evaluate(own.order, own.coefficients, seconds_after(own.left, t), out);
   return SampleStatus::settled;
 }
 

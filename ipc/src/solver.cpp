@@ -16,6 +16,8 @@ namespace {
 constexpr std::size_t kDefaultSettle = 8;
 constexpr std::size_t kDefaultCapacity = 4096;
 constexpr core::Time kDefaultStopTime = std::chrono::milliseconds(250);
+/// Longest sleep: retiring a ring does not move the word slept on, so its wake can be missed.
+constexpr core::Time kSlice = std::chrono::milliseconds(50);
 /// How often a solver without a stream looks for one.
 constexpr core::Time kPoll = std::chrono::milliseconds(5);
 
@@ -57,8 +59,9 @@ void require_options(const SolverOptions& options) {
   if (options.settle && *options.settle > core::kMaxSettle) {
     throw BadRequest("settle lag must be 0 to 64, not " + std::to_string(*options.settle));
   }
-  if (options.stop_time && *options.stop_time <= core::Time::zero()) {
-    throw BadRequest("stop time must be positive, not " +
+  if (options.stop_time &&
+      (*options.stop_time <= core::Time::zero() || *options.stop_time > kLatestTime / 2)) {
+    throw BadRequest("stop time must be positive and at most 2^61 ns, not " +
                      std::to_string(options.stop_time->count()) + " ns");
   }
   const std::size_t least = StreamSolver::min_capacity(options.settle.value_or(kDefaultSettle));
@@ -163,10 +166,7 @@ struct Solver::Impl {
         options((require_options(how), std::move(how))),
         lock(stream, RegionKind::spline) {}
 
-  ~Impl() {
-    // A lock file beside no region is litter.
-    if (!region_exists(stream, RegionKind::spline)) lock.remove_file();
-  }
+  ~Impl() { lock.remove_file_without_region(); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 };
@@ -217,7 +217,7 @@ void Solver::wait(core::Time timeout) noexcept {
   at.board.writer.store_sleeping(true);
   const Word head = at.ring.ring.head(std::memory_order_seq_cst);
   if (head == at.solver.head().consumed && !at.ring.ring.retired()) {
-    wait_while_equal(at.ring.ring.head_word(), head, timeout);
+    wait_while_equal(at.ring.ring.head_word(), head, std::min(timeout, kSlice));
   }
   at.board.writer.store_sleeping(false);
 }

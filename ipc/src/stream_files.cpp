@@ -36,7 +36,8 @@ void inspect_spline(StreamInfo& info, const Trust& trust) {
     const Word r = board.revision();
     if (r == 0 || board.copy_head(r, info.head)) break;
   }
-  const Word kept = std::min<Word>(info.head.refused, kRefusalsKept);
+  // The oldest half of the ring may be written again while it is read.
+  const Word kept = std::min<Word>(info.head.refused, kRefusalsKept / 2);
   for (Word i = info.head.refused - kept; i < info.head.refused; ++i) {
     info.refusals.push_back(board.refusal(i));
   }
@@ -62,7 +63,7 @@ void retire_region(const std::string& stream, RegionKind kind, const Trust& trus
 
 }  // namespace
 
-bool owner_lives(std::string_view stream, RegionKind kind) noexcept {
+bool owner_lives(std::string_view stream, RegionKind kind) {
   const int opened =
       open(region_path(stream, kind).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   if (opened < 0) return false;
@@ -93,14 +94,20 @@ void remove_stream(const std::string& stream, const Trust& trust) {
   });
   if (!stands) throw NoSuchStream("there is no stream '" + stream + "'");
   OwnerLock producer_lock(stream, RegionKind::waypoints);
-  OwnerLock solver_lock(stream, RegionKind::spline);
+  std::optional<OwnerLock> solver_lock;
+  try {
+    solver_lock.emplace(stream, RegionKind::spline);
+  } catch (const StreamError&) {
+    producer_lock.remove_file_without_region();
+    throw;
+  }
   for (const RegionKind kind : kKinds) {
     if (!region_exists(stream, kind)) continue;
     retire_region(stream, kind, trust);
     unlink_region(stream, kind);
   }
   producer_lock.remove_file();
-  solver_lock.remove_file();
+  solver_lock->remove_file();
 }
 
 }  // namespace splinecast::ipc

@@ -19,7 +19,12 @@ void put_texts(const std::vector<std::string>& texts, std::size_t dimensions, co
                      std::to_string(dimensions) + " dimensions");
   }
   for (std::size_t d = 0; d < texts.size(); ++d) {
-    const std::size_t length = std::min(texts[d].size(), N - 1);
+    std::size_t length = std::min(texts[d].size(), N - 1);
+    // Not within a character: the byte after the cut must not be one that continues UTF-8.
+    while (length > 0 && length < texts[d].size() &&
+           (static_cast<unsigned char>(texts[d][length]) & 0xc0U) == 0x80U) {
+      --length;
+    }
     std::copy_n(texts[d].begin(), length, out[d].begin());
   }
 }
@@ -43,7 +48,8 @@ RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id
     throw BadRequest("a stream has 1 to 64 dimensions, not " + std::to_string(options.dimensions));
   }
   if (options.limits.min_interval < core::Time(1) ||
-      options.limits.max_interval < options.limits.min_interval) {
+      options.limits.max_interval < options.limits.min_interval ||
+      options.limits.max_interval > kLatestTime / 2) {
     throw BadRequest("intervals from " + std::to_string(options.limits.min_interval.count()) +
                      " ns to " + std::to_string(options.limits.max_interval.count()) +
                      " ns are no range of positive times");

@@ -91,6 +91,7 @@ void StreamSolver::take(const RingItem& item, Word number) noexcept {
 void StreamSolver::take_waypoint(const RingItem& item, Word number) noexcept {
   const auto position = std::span(item.values).first(window_.dimensions());
   if (!is_finite(position)) return refuse(number, Refusal::not_finite);
+  if (!is_time_in_range(item.time)) return refuse(number, Refusal::interval_out_of_range);
   if (head_.knots > 0) {
     if (item.time <= head_.newest_knot) return refuse(number, Refusal::not_increasing);
     if (!is_interval_in_range(item.time - head_.newest_knot, limits_)) {
@@ -138,7 +139,9 @@ void StreamSolver::publish(const Clock& clock) noexcept {
   for (std::size_t i = settled_written_; i < segments; ++i) write_segment(i);
   if (segments > 0) {
     head_.newest = segments;
-    head_.first = segments - std::min<Word>(segments, board_->capacity()) + 1;
+    // Never back: a finish drops the stop tail, but the slot that it took is not given back.
+    head_.first =
+        std::max<Word>(head_.first, segments - std::min<Word>(segments, board_->capacity()) + 1);
     const std::size_t open = window_.settled_segments();
     head_.settled_until = window_.knot(std::min(open, window_.knots() - 1)).time;
   }

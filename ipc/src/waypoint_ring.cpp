@@ -62,6 +62,7 @@ AppendStatus WaypointRingWriter::check(const core::Waypoint& waypoint) const noe
       !is_finite(waypoint.acceleration)) {
     return AppendStatus::not_finite;
   }
+  if (!is_time_in_range(waypoint.time)) return AppendStatus::interval_out_of_range;
   if (!has_last_) return AppendStatus::accepted;
   if (waypoint.time <= last_time_) return AppendStatus::not_increasing;
   if (!is_interval_in_range(waypoint.time - last_time_, limits_)) {

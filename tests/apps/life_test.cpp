@@ -217,16 +217,24 @@ TEST_F(Life, AReplayOntoAFinishedStreamMakesItAnewAndReadersAttachAgain) {
   expect_all_sampled(sampling);
 }
 
-TEST_F(Life, AReplayOntoAFinishedStreamWithoutASolverLeavesTheOldBoardUntilOneComes) {
+TEST_F(Life, AReplayOntoAFinishedStreamLeavesItAloneUntilASolverComes) {
   {
     Process solver(solve());
     ASSERT_EQ(run(replay()).code, 0);
   }
+  const auto first = info(name());
+  auto hasty = replay();
+  hasty.insert(hasty.end(), {"--wait", "0.1"});
+  EXPECT_EQ(run(hasty).code, 4);
+  EXPECT_EQ(info(name())["stream_id"], first["stream_id"]);
+  EXPECT_EQ(info(name())["state"], "finished");
   Process again(replay());
-  ASSERT_TRUE(await([&] { return info(name())["state"] == "waiting for a solver"; }));
-  EXPECT_THROW(ipc::Reader{name()}, ipc::NoSuchStream);  // not the old curve for the new stream
+  ipc::Reader reader(name());
+  core::State state(reader.dimensions());
+  EXPECT_EQ(reader.sample(core::Time(1000), state), ipc::SampleStatus::settled);
   Process solver(solve());
   expect_all_sent(again);
+  EXPECT_NE(info(name())["stream_id"], first["stream_id"]);
   Process sampling(sample());
   expect_all_sampled(sampling);
 }
@@ -376,6 +384,71 @@ TEST_F(Life, OneSolverProcessServesSeveralStreams) {
     if (ours && entry["state"] == "finished") ++finished;
   }
   EXPECT_EQ(finished, 2U);
+}
+
+TEST_F(Life, AHistoryShorterThanTheStreamEndsWhereItBegins) {
+  Process solver({"solve", name(), "--capacity", "32"});
+  // Paced, so that the finish comes as a revision of its own.
+  ASSERT_EQ(
+      run({"replay", file_, "--stream", name(), "--clock", "recorded", "--duration", "1"}).code, 0);
+  const Ended sampled = run({"sample", name(), "--rate", "1000", "--count", "5"});
+  EXPECT_EQ(sampled.code, 0) << sampled.err;
+  EXPECT_EQ(testing::count_status(sampled.out, "settled"), 5U);
+  const auto before = folder_.write("before.csv", "t_ns\n0\n5\n");
+  const Ended past = run({"sample", name(), "--at", before});
+  EXPECT_EQ(testing::count_status(past.out, "before history"), 2U) << past.out;
+}
+
+TEST_F(Life, ASignalStopsAReplayThatNeverWaits) {
+  Process replaying({"replay", file_, "--stream", name(), "--rate", "max", "--clock", "recorded",
+                     "--loop", "1000000", "--embedded"});
+  ASSERT_TRUE(await([&] { return field("solver", "interpolated") > 2000; }));
+  replaying.signal(SIGTERM);
+  const Ended ended = replaying.wait();
+  EXPECT_EQ(ended.code, 0);
+  EXPECT_NE(ended.err.find("interrupted"), std::string::npos) << ended.err;
+}
+
+TEST_F(Life, ASignalToTheDemoStopsItAndItCleansUp) {
+  Process demo({"demo", "--seconds", "1000"});
+  const std::string stream = "demo." + std::to_string(demo.pid());
+  ASSERT_TRUE(await([&] {
+    const auto now = info(stream);
+    return now.contains("solver") && now["solver"].is_object() &&
+           now["solver"]["interpolated"] > 10;
+  }));
+  demo.signal(SIGTERM);
+  EXPECT_EQ(demo.wait().code, 0);
+  EXPECT_EQ(info(stream), nlohmann::json());
+}
+
+TEST_F(Life, BadNamesAndFullOutputsAreErrorsEverywhere) {
+  for (const char* bad : {"../x", ".x", "", "a b"}) {
+    EXPECT_EQ(run({"info", bad}).code, 2) << bad;
+    EXPECT_EQ(run({"rm", bad}).code, 2) << bad;
+    EXPECT_EQ(run({"solve", bad}).code, 2) << bad;
+    EXPECT_EQ(run({"sample", bad, "--rate", "1", "--count", "1"}).code, 2) << bad;
+  }
+  for (const char* count : {"-1", "0", "x"}) {
+    EXPECT_EQ(run({"sample", name(), "--rate", "1", "--count", count}).code, 2) << count;
+  }
+  for (const char* rate : {"nan", "0", "-1", "inf", "1e-12"}) {
+    EXPECT_EQ(run({"sample", name(), "--rate", rate, "--count", "1"}).code, 2) << rate;
+  }
+  EXPECT_EQ(run({"replay", file_, "--stream", name(), "--capacity", "1"}).code, 2);
+  EXPECT_FALSE(std::filesystem::exists(ipc::lock_path(name(), RegionKind::waypoints)));
+}
+
+TEST_F(Life, NamesThatAreCutOrNotUtf8StillMakeJson) {
+  std::string wide = "t,";
+  for (int i = 0; i < 16; ++i) wide += "\xc3\xa9";
+  const auto file = folder_.write("names.csv", wide + ",\xe9\n0,1,1\n1,2,2\n");
+  ASSERT_EQ(run({"replay", file, "--stream", name(), "--clock", "recorded", "--rate", "max",
+                 "--embedded"})
+                .code,
+            0);
+  EXPECT_EQ(info(name())["names"][0].get<std::string>().size(), 30U);
+  EXPECT_EQ(run({"ls", "--json"}).code, 0);
 }
 
 TEST_F(Life, TheDemoEndsWithASummaryAndLeavesNothingBehind) {

@@ -108,7 +108,7 @@ TEST(Pipeline, QuadrotorPolynomialsAt100HzComeThroughBitForBit) {
     const TestFolder folder;
     const auto mesh = testing::PolynomialTrajectory(path).sampled(core::Time(10'000'000));
     const auto file = folder.write("a.csv", testing::to_csv(mesh));
-    const auto at = folder.write("at.csv", testing::times_csv(mesh, 5));
+    const auto at = folder.write("at.csv", testing::times_csv(mesh, 2));
     for (const Shape& shape : shapes()) expect_same_bits(file, {}, at, shape);
   }
 }

@@ -107,6 +107,29 @@ TEST(WaypointTable, NamesFileLineAndColumnOfWhatItCannotRead) {
   EXPECT_NE(error_of(folder.path("none.csv")).find("no such file"), std::string::npos);
 }
 
+TEST(WaypointTable, QuotedNamesMayHoldCommasAndAHeaderMayHaveCommentsBehindIt) {
+  const TestFolder folder;
+  const auto quoted = folder.write("q.csv", "\"t\",\"a,b\",\"y\"\n0,1,2\n");
+  EXPECT_EQ(read_waypoints(quoted, {}).names, (std::vector<std::string>{"a,b", "y"}));
+  const auto commented = folder.write("c.csv", "#t,x,y\n# robot 3, left arm\n0,1,2\n");
+  EXPECT_EQ(read_waypoints(commented, {}).names, (std::vector<std::string>{"x", "y"}));
+}
+
+TEST(WaypointTable, ABadFirstCellIsAnErrorAndNotAMissingDimension) {
+  const TestFolder folder;
+  const auto path = folder.write("a.csv", "t,a,x\n0,0,\n1,1,2\n");
+  EXPECT_NE(error_of(path).find("a.csv:2:5: column 'x': '' is not a number"), std::string::npos);
+  EXPECT_NE(error_of(path, {.columns = {"a", "a"}}).find("selected twice"), std::string::npos);
+  EXPECT_NE(error_of(path, {.columns = {"t"}}).find("is the time"), std::string::npos);
+}
+
+TEST(WaypointTable, TimesWhoseDifferencesDoNotFitAreRefused) {
+  const TestFolder folder;
+  const auto path = folder.write("a.csv", "t,x\n-9223372036,1\n9223372036,2\n");
+  EXPECT_NE(error_of(path).find("a.csv:2:1: column 't': '-9223372036' lies beyond"),
+            std::string::npos);
+}
+
 TEST(WaypointTable, LeavesOutUnreadableRowsWhenAskedTo) {
   const TestFolder folder;
   const auto path = folder.write("a.csv", "t,x\n1,2\n2,abc\n3,4\n4\n5,6\n");

@@ -14,7 +14,7 @@ cmake -S "$source/tests/example" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$work/pre
 cmake --build "$work/cmake" >/dev/null
 
 pkg=$(find "$work/prefix" -name splinecast.pc -printf '%h')
-flags=$(PKG_CONFIG_PATH=$pkg pkg-config --define-variable=prefix="$work/prefix" --cflags --libs splinecast)
+flags=$(PKG_CONFIG_PATH=$pkg pkg-config --cflags --libs splinecast)
 # shellcheck disable=SC2086
 g++ -std=c++20 "$source/tests/example/controller.cpp" $flags -o "$work/pkg_config"
 

@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <thread>
@@ -10,6 +13,8 @@
 #include "splinecast/ipc/producer.hpp"
 #include "splinecast/ipc/reader.hpp"
 #include "splinecast/ipc/solver.hpp"
+#include "splinecast/ipc/stream_files.hpp"
+#include "support/memory_stream.hpp"
 #include "support/mesh.hpp"
 #include "support/process.hpp"
 
@@ -141,6 +146,36 @@ TEST(Roles, SolversThatComeOneAfterTheOtherShareOneBoard) {
     EXPECT_EQ(state.position()[0], mesh.position(i)[0]);
   }
   EXPECT_EQ(reader->header().epoch, 1U);
+}
+
+TEST(Roles, AForkedChildThatEndsItsCopyOfASolverTakesNothingAway) {
+  const TestStream stream;
+  std::optional<Solver> solver;
+  solver.emplace(stream.name(), SolverOptions{});
+  const pid_t child = fork();
+  if (child == 0) {
+    solver.reset();
+    _exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+  EXPECT_THROW(Solver(stream.name(), {}), StreamBusy);
+}
+
+TEST(Roles, ARemovalThatIsRefusedLeavesNoLockBehind) {
+  const TestStream stream;
+  const Solver solver(stream.name(), {});
+  EXPECT_THROW(remove_stream(stream.name()), StreamBusy);
+  EXPECT_FALSE(std::filesystem::exists(lock_path(stream.name(), RegionKind::waypoints)));
+}
+
+TEST(Roles, VeryLongWaitsDoNotTimeOutAtOnce) {
+  const TestStream stream;
+  testing::FixedClock clock;
+  clock.time = Time(5);
+  EXPECT_EQ(deadline(clock, Time::max()), Time::max());
+  EXPECT_EQ(deadline(clock, Time(7)), Time(12));
 }
 
 TEST(Roles, BadOptionsAreRefusedBeforeAnythingIsMade) {

@@ -186,6 +186,28 @@ TEST(StreamSolver, KeepsAsMuchHistoryAsTheBoardHolds) {
   EXPECT_EQ(sampler.sample(mesh.times[499 - 64], state.ref()), SampleStatus::settled);
 }
 
+TEST(StreamSolver, AFinishOfItsOwnGivesNoSegmentBackThatTheBoardHasLost) {
+  for (const bool takes_over : {false, true}) {
+    const Mesh mesh = random_mesh(7, 300, 1, 2);
+    MemoryStream stream(1, {}, 64, 32);
+    stream.send(mesh, 0, mesh.size());
+    stream.drain();
+    EXPECT_EQ(stream.solver.head().first, 269U);
+    if (takes_over) stream.replace_solver();
+    stream.finish();
+    EXPECT_EQ(stream.solver.head().newest, 299U);
+    EXPECT_EQ(stream.solver.head().first, 269U);
+    Sampler sampler(stream.board.reader, StreamClock::recorded);
+    core::State state(1);
+    EXPECT_EQ(sampler.sample(Time(0), state.ref()), SampleStatus::before_history);
+    EXPECT_EQ(sampler.sample(mesh.times[268] - Time(1), state.ref()), SampleStatus::before_history);
+    EXPECT_EQ(sampler.sample(mesh.times[268], state.ref()), SampleStatus::settled);
+    Snapshot snapshot(1);
+    EXPECT_EQ(sampler.snapshot(mesh.times[268], mesh.times[299], snapshot), SampleStatus::settled);
+    EXPECT_EQ(snapshot.segments().size(), 31U);
+  }
+}
+
 TEST(StreamSolver, AFinishWithoutWaypointsEndsAStreamWithoutData) {
   MemoryStream stream(1);
   stream.finish();

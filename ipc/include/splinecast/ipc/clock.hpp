@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <ctime>
 
 #include "splinecast/core/time.hpp"
@@ -23,6 +24,12 @@ class Clock {
 
   [[nodiscard]] virtual core::Time now() const noexcept = 0;
 };
+
+/// The instant when a timeout that begins now has passed; the end of time for very long ones.
+[[nodiscard]] inline core::Time deadline(const Clock& clock, core::Time timeout) noexcept {
+  const core::Time now = clock.now();
+  return now + std::min(timeout, core::Time::max() - now);
+}
 
 /// CLOCK_MONOTONIC.
 class MonotonicClock final : public Clock {

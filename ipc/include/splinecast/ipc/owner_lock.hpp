@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <string>
 #include <string_view>
 
@@ -13,17 +15,29 @@ namespace splinecast::ipc {
 /// that ends: there are no stale locks, PID files or time-outs.
 class OwnerLock {
  public:
-  /// Takes the lock or throws StreamBusy at once, naming the owner's process where its region does;
-  /// BadRegion if the lock file is not this user's.
+  /// Takes the lock or throws StreamBusy within 50 ms (a passing `rm` holds it for an instant),
+  /// naming the owner's process where its region does; BadRegion if the lock file is not this
+  /// user's.
   OwnerLock(std::string_view stream, RegionKind kind);
 
-  /// Unlinks the lock file, while the lock is still held.
+  /// Unlinks the lock file, while the lock is still held. Does nothing in a forked child, which
+  /// does not hold it.
   void remove_file() noexcept;
 
+  /// The same if no region stands that it guards: a lock beside no region is litter.
+  void remove_file_without_region() noexcept;
+
  private:
+  std::string stream_;
+  RegionKind kind_;
   std::string path_;
+  pid_t holder_;
   OwnedDescriptor descriptor_;
 };
+
+/// Whether a process of this user holds the owner's lock, also one that has no region yet. System
+/// calls.
+[[nodiscard]] bool is_owned(std::string_view stream, RegionKind kind);
 
 /// Puts a write lock on a region itself, best effort: readers, who cannot open the lock file,
 /// query it to learn whether the owner lives.

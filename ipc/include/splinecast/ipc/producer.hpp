@@ -48,6 +48,9 @@ class Producer {
   [[nodiscard]] Word appended() const noexcept;
   [[nodiscard]] Word consumed() const noexcept;
 
+  /// The stream's random number, the same in both of its regions.
+  [[nodiscard]] std::uint64_t stream_id() const noexcept;
+
   /// Whether waypoints of a producer that died stand in the ring, and the last one's time.
   [[nodiscard]] bool continues() const noexcept;
   [[nodiscard]] core::Time last_time() const noexcept;

@@ -10,7 +10,9 @@
 #include <string>
 #include <string_view>
 
+#include "splinecast/ipc/layout.hpp"
 #include "splinecast/ipc/names.hpp"
+#include "splinecast/ipc/trust.hpp"
 
 namespace splinecast::ipc {
 
@@ -18,12 +20,6 @@ namespace splinecast::ipc {
 struct RegionAccess {
   mode_t mode = 0600;            ///< permission bits; nobody but the owner ever writes
   std::optional<gid_t> group{};  ///< group to give it to; unset: this process's
-};
-
-/// Whose regions this process uses: its own user's and root's, and those of `owner` if set. A
-/// region must also be a regular file that neither its group nor others may write.
-struct Trust {
-  std::optional<uid_t> owner{};
 };
 
 /// A mapped region of shared memory. Moves; unmaps and closes when it dies; does not unlink.
@@ -62,8 +58,13 @@ class Region {
   std::unique_ptr<Mapping> mapping_;
 };
 
-/// Whether a region of this name stands. A system call; throws nothing.
-[[nodiscard]] bool region_exists(std::string_view stream, RegionKind kind) noexcept;
+/// Reads the header of a region without mapping it; nothing if there is no such region, or one too
+/// short. Throws BadRegion if it is not to be trusted.
+[[nodiscard]] std::optional<RegionHeader> peek_header(std::string_view stream, RegionKind kind,
+                                                      const Trust& trust);
+
+/// Whether a region of this name stands. A system call. Throws BadRequest for what is no name.
+[[nodiscard]] bool region_exists(std::string_view stream, RegionKind kind);
 
 /// Unlinks a region's name; mappings of it stay.
 void unlink_region(std::string_view stream, RegionKind kind) noexcept;

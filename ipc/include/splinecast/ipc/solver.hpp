@@ -33,7 +33,7 @@ class Solver {
   /// made anew. No system call but the clock's and, with SolverOptions::wake, one wake a revision.
   StepResult step(const Clock& clock);
 
-  /// Sleeps until there may be something to do, or for the timeout.
+  /// Sleeps until there may be something to do, or for the timeout, or for 50 ms.
   void wait(core::Time timeout) noexcept;
 
   /// The head last committed; attached() only.

@@ -12,7 +12,8 @@ enum class AppendStatus : std::uint8_t {
   not_increasing,         ///< the time is not after that of the waypoint before
   not_finite,             ///< a value is infinite or not a number
   wrong_dimension,        ///< a span does not have one value per dimension
-  interval_out_of_range,  ///< too close to the waypoint before, or too far from it
+  interval_out_of_range,  ///< too close to the waypoint before, or too far from it, or the time
+                          ///< itself lies beyond ±2⁶² ns
   finished,               ///< the stream has been finished
 };
 

@@ -11,8 +11,9 @@
 
 namespace splinecast::ipc {
 
-/// Whether the process lives that owns a region of this kind. System calls; throws nothing.
-[[nodiscard]] bool owner_lives(std::string_view stream, RegionKind kind) noexcept;
+/// Whether the process lives that owns a region of this kind. System calls. Throws BadRequest for
+/// what is no name.
+[[nodiscard]] bool owner_lives(std::string_view stream, RegionKind kind);
 
 /// What stands of a stream on this host, without taking part in it.
 struct StreamInfo {

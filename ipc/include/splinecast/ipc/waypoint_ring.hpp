@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -120,6 +121,12 @@ class WaypointRingReader {
   std::span<const Word> control_;
   std::span<const Word> items_;
 };
+
+/// The earliest and latest times: the difference of any two fits into 64 bits.
+inline constexpr core::Time kLatestTime{std::int64_t{1} << 62U};
+[[nodiscard]] constexpr bool is_time_in_range(core::Time time) noexcept {
+  return time >= -kLatestTime && time <= kLatestTime;
+}
 
 /// Whether a waypoint's time may follow the one before it.
 [[nodiscard]] constexpr bool is_interval_in_range(core::Time interval,
