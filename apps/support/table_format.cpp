@@ -17,6 +17,7 @@ std::vector<std::string> names_of(std::string_view line, bool at_commas) {
   std::vector<std::string_view> fields;
   split(line, at_commas, fields);
   std::vector<std::string> names;
+  names.reserve(fields.size());
   for (const auto field : fields) names.emplace_back(trimmed(field));
   return names;
 }

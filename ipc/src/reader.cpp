@@ -77,7 +77,7 @@ struct Reader::Impl {
   }
 };
 
-Reader::Reader(std::string stream, core::Time wait, const Trust& trust)
+Reader::Reader(const std::string& stream, core::Time wait, const Trust& trust)
     : impl_((require_stream_name(stream), Impl::await(stream, wait, trust))),
       sampler_(&impl_->sampler),
       dimensions_(impl_->board.dimensions()) {}

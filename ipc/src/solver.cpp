@@ -161,9 +161,9 @@ struct Solver::Impl {
   OwnerLock lock;
   std::unique_ptr<Attachment> attachment;
 
-  Impl(std::string name, SolverOptions how)
+  Impl(std::string name, const SolverOptions& how)
       : stream(std::move(name)),
-        options((require_options(how), std::move(how))),
+        options((require_options(how), how)),
         lock(stream, RegionKind::spline) {}
 
   ~Impl() { lock.remove_file_without_region(); }
@@ -171,8 +171,8 @@ struct Solver::Impl {
   Impl& operator=(const Impl&) = delete;
 };
 
-Solver::Solver(std::string stream, SolverOptions options)
-    : impl_(std::make_unique<Impl>(std::move(stream), std::move(options))) {}
+Solver::Solver(std::string stream, const SolverOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(stream), options)) {}
 Solver::Solver(Solver&&) noexcept = default;
 Solver& Solver::operator=(Solver&&) noexcept = default;
 Solver::~Solver() = default;

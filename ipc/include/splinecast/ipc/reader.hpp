@@ -29,7 +29,7 @@ class Reader {
  public:
   /// Maps the stream's segment board, waiting for it up to `wait`. Throws NoSuchStream if none has
   /// come by then, BadRegion if it cannot be used.
-  explicit Reader(std::string stream, core::Time wait = core::Time::zero(),
+  explicit Reader(const std::string& stream, core::Time wait = core::Time::zero(),
                   const Trust& trust = {});
   Reader(Reader&&) noexcept;
   Reader& operator=(Reader&&) noexcept;

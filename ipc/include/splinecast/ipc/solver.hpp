@@ -17,7 +17,7 @@ class Solver {
  public:
   /// Becomes the stream's solver, whether or not the stream stands already. Throws StreamBusy if it
   /// has a living one.
-  Solver(std::string stream, SolverOptions options);
+  Solver(std::string stream, const SolverOptions& options);
   Solver(Solver&&) noexcept;
   Solver& operator=(Solver&&) noexcept;
   ~Solver();
