@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <memory>
 #include <string>
@@ -132,8 +133,10 @@ TEST(Pipeline, ASolverKilledInTheMiddleIsTakenOverBitForBit) {
   const TestStream stream;
   auto mesh = testing::random_mesh(3, 3000, 2, 5);
   // Paced, about 2 s long, so that every solver is killed somewhere inside the stream.
-  const core::Time length = mesh.times.back();
-  for (core::Time& t : mesh.times) t = core::Time(t.count() * 2'000'000'000 / length.count());
+  const double scale = 2e9 / static_cast<double>(mesh.times.back().count());
+  for (core::Time& t : mesh.times) {
+    t = core::Time(std::llround(static_cast<double>(t.count()) * scale));
+  }
   for (std::size_t i = 1; i < mesh.size(); ++i) {
     mesh.times[i] = std::max(mesh.times[i], mesh.times[i - 1] + core::Time(1000));
   }
