@@ -1,44 +1,17 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
+#include <cstdio>
 #include <exception>
 #include <iostream>
-#include <stdexcept>
 #include <string>
 
-#include "splinecast/ipc/errors.hpp"
 #include "support/exit_codes.hpp"
+#include "support/guarded.hpp"
 #include "support/options.hpp"
-#include "support/output.hpp"
 #include "version.hpp"
 
 namespace splinecast::apps {
 namespace {
-
-int run(const Action& action) {
-  try {
-    return action();
-  } catch (const InputError& error) {
-    say(error.what());
-    return kBadUsageOrInput;
-  } catch (const std::invalid_argument& error) {
-    say(error.what());
-    return kBadUsageOrInput;
-  } catch (const ipc::BadRequest& error) {
-    say(error.what());
-    return kBadUsageOrInput;
-  } catch (const ClosedPipe&) {
-    return kFailed;
-  } catch (const TimeOut& error) {
-    say(error.what());
-    return kNoStreamOrTimeOut;
-  } catch (const ipc::NoSuchStream& error) {
-    say(error.what());
-    return kNoStreamOrTimeOut;
-  } catch (const std::exception& error) {
-    say(error.what());
-    return kFailed;
-  }
-}
 
 int run_program(int argc, char** argv) {
   CLI::App program("Online streaming cubic splines over shared memory", "splinecast");
@@ -67,7 +40,7 @@ int run_program(int argc, char** argv) {
     if (!asked_for_help) return kBadUsageOrInput;
     return std::cout.flush() ? kOk : kFailed;
   }
-  return run(action);
+  return run_guarded(action);
 }
 
 }  // namespace

@@ -1,34 +1,12 @@
 #include <algorithm>
 #include <memory>
 
-#include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/stream_files.hpp"
 #include "support/exit_codes.hpp"
+#include "support/guarded.hpp"
 #include "support/options.hpp"
-#include "support/output.hpp"
 
 namespace splinecast::apps {
-namespace {
-
-/// Removes one stream; what hinders it is said and does not keep the others.
-int remove(const std::string& stream, const ipc::Trust& trust) {
-  try {
-    ipc::remove_stream(stream, trust);
-    return kOk;
-  } catch (const ipc::NoSuchStream& error) {
-    say(error.what());
-    return kNoStreamOrTimeOut;
-  } catch (const ipc::BadRequest& error) {
-    say(error.what());
-    return kBadUsageOrInput;
-  } catch (const ipc::StreamError& error) {
-    say(error.what());
-    return kFailed;
-  }
-}
-
-}  // namespace
-
 void add_rm(CLI::App& program, Action& action) {
   struct Options {
     std::vector<std::string> streams;
@@ -42,7 +20,11 @@ void add_rm(CLI::App& program, Action& action) {
     action = [options] {
       int code = kOk;
       for (const std::string& stream : options->streams) {
-        code = std::max(code, remove(stream, options->trust));
+        // What hinders one does not keep the others.
+        code = std::max(code, run_guarded([&] {
+                          ipc::remove_stream(stream, options->trust);
+                          return kOk;
+                        }));
       }
       return code;
     };

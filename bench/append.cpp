@@ -36,13 +36,17 @@ class Feed {
   core::Time offset_{};
 };
 
-/// One waypoint through the window, all dimensions.
+/// One waypoint through the window, all dimensions, after so many others.
 void append(benchmark::State& bench) {
   const auto dimensions = static_cast<std::size_t>(bench.range(0));
   core::SlidingWindow window(dimensions, {.settle = static_cast<std::size_t>(bench.range(1))});
   const Waypoints waypoints(4096, dimensions);
   Feed feed(waypoints);
   core::Segment segment(dimensions);
+  for (std::int64_t i = 0; i < bench.range(2); ++i) {
+    const core::Waypoint waypoint = feed.next();
+    window.append(waypoint.time, waypoint.position);
+  }
   for (auto _ : bench) {
     const core::Waypoint waypoint = feed.next();
     window.append(waypoint.time, waypoint.position);
@@ -71,7 +75,12 @@ void publish(benchmark::State& bench) {
   ipc::remove_stream(stream);
 }
 
-BENCHMARK(append)->ArgNames({"dims", "settle"})->Args({7, 8})->Args({7, 16})->Args({32, 8});
+BENCHMARK(append)
+    ->ArgNames({"dims", "settle", "after"})
+    ->Args({7, 8, 1'000})
+    ->Args({7, 8, 10'000'000})
+    ->Args({7, 16, 1'000})
+    ->Args({32, 8, 1'000});
 BENCHMARK(publish)->ArgName("dims")->Arg(7);
 
 }  // namespace
