@@ -44,7 +44,7 @@ core::PiecewisePolynomial fit_online(const WaypointTable& table, const FitOption
     }
   };
   for (std::size_t i = 0; i < table.size(); ++i) {
-    window.append(table.times[i], table.waypoint(i).position);
+    window.append(table.waypoint(i));
     take_settled();
   }
   const core::Condition end =

@@ -45,11 +45,11 @@ void append(benchmark::State& bench) {
   core::Segment segment(dimensions);
   for (std::int64_t i = 0; i < bench.range(2); ++i) {
     const core::Waypoint waypoint = feed.next();
-    window.append(waypoint.time, waypoint.position);
+    window.append(waypoint);
   }
   for (auto _ : bench) {
     const core::Waypoint waypoint = feed.next();
-    window.append(waypoint.time, waypoint.position);
+    window.append(waypoint);
     window.segment(window.oldest_segment(), segment);
     benchmark::DoNotOptimize(segment.coefficients.data());
   }

@@ -10,12 +10,15 @@
 namespace splinecast::core {
 namespace {
 
-constexpr std::array<std::pair<ConditionKind, std::string_view>, 5> kConditionNames{{
+constexpr std::array<std::pair<ConditionKind, std::string_view>, 8> kConditionNames{{
     {ConditionKind::natural, "natural"},
     {ConditionKind::rest, "rest"},
     {ConditionKind::halt, "halt"},
     {ConditionKind::velocity, "velocity"},
     {ConditionKind::acceleration, "acceleration"},
+    {ConditionKind::not_a_knot, "not-a-knot"},
+    {ConditionKind::periodic, "periodic"},
+    {ConditionKind::own, "own"},
 }};
 
 constexpr std::array<std::pair<Tail, std::string_view>, 4> kTailNames{{

@@ -1,124 +1,146 @@
 #include "splinecast/core/knot_ring.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <utility>
+
+#include "splinecast/core/state.hpp"
 
 namespace splinecast::core {
+namespace {
 
-KnotRing::KnotRing(std::size_t dimensions, std::size_t capacity, Condition start)
+constexpr std::array<double, kMaxDimensions> kZeros{};
+
+std::size_t values_kept(const Method& method) noexcept {
+  if (method.family == Family::smoothing) return KnotRing::kPositionChord + 1;
+  return method.needs_acceleration() ? KnotRing::kAcceleration + 1 : KnotRing::kVelocity + 1;
+}
+
+}  // namespace
+
+KnotRing::KnotRing(std::size_t dimensions, std::size_t capacity, const Method& method,
+                   bool halts_at_start)
     : dimensions_(dimensions),
-      start_(std::move(start)),
+      smooths_(method.family == Family::smoothing),
+      has_accelerations_(method.needs_acceleration()),
+      halts_at_start_(halts_at_start),
       mask_(std::bit_ceil(capacity) - 1),
+      values_per_knot_(values_kept(method)),
       rows_(mask_ + 1),
-      values_((mask_ + 1) * kValues * dimensions) {}
+      values_((mask_ + 1) * values_per_knot_ * dimensions) {}
 
 std::span<double> KnotRing::values(std::size_t i, Value which) noexcept {
-  return std::span(values_).subspan(((i & mask_) * kValues + which) * dimensions_, dimensions_);
+  return std::span(values_).subspan(((i & mask_) * values_per_knot_ + which) * dimensions_,
+                                    dimensions_);
 }
 
 std::span<const double> KnotRing::values(std::size_t i, Value which) const noexcept {
-  return std::span(values_).subspan(((i & mask_) * kValues + which) * dimensions_, dimensions_);
+  return std::span(values_).subspan(((i & mask_) * values_per_knot_ + which) * dimensions_,
+                                    dimensions_);
 }
 
 Neighbours KnotRing::neighbours(std::size_t i) const noexcept {
   return {.h_before = row(i - 1).h,
           .h_after = row(i).h,
-          .chord_before = values(i - 1, kChord),
-          .chord_after = values(i, kChord)};
+          .chord_before = chord(i - 1),
+          .chord_after = chord(i)};
 }
 
-void KnotRing::place(std::size_t i, Time time, std::span<const double> position) noexcept {
-  row(i) = {.time = time, .h = 0, .gamma = 0};
-  std::ranges::copy(position, values(i, kPosition).begin());
+EndIntervals KnotRing::start_intervals() const noexcept {
+  EndIntervals at{.h = row(0).h, .chord = chord(0)};
+  if (size_ > 2) {
+    at.h_next = row(1).h;
+    at.chord_next = chord(1);
+  }
+  return at;
+}
+
+EndIntervals KnotRing::end_intervals() const noexcept {
+  const std::size_t n = newest();
+  EndIntervals at{.h = row(n - 1).h, .chord = chord(n - 1)};
+  if (n > 1) {
+    at.h_next = row(n - 2).h;
+    at.chord_next = chord(n - 2);
+  }
+  return at;
+}
+
+void KnotRing::place(std::size_t i, Time time, std::span<const double> waypoint) noexcept {
+  row(i) = {.time = time, .h = 0, .prefix = {}};
+  std::ranges::copy(waypoint, values(i, kWaypoint).begin());
 }
 
 /// Length and chord slope of interval i.
 void KnotRing::measure(std::size_t i) noexcept {
-  const double h = to_seconds(row(i + 1).time - row(i).time);
-  row(i).h = h;
-  const auto x0 = values(i, kPosition);
-  const auto x1 = values(i + 1, kPosition);
-  const auto chord = values(i, kChord);
-  for (std::size_t d = 0; d < dimensions_; ++d) chord[d] = (x1[d] - x0[d]) / h;
+  row(i).h = to_seconds(row(i + 1).time - row(i).time);
+  write_chord(values(i, kWaypoint), values(i + 1, kWaypoint), row(i).h, values(i, kChord));
 }
 
-void KnotRing::eliminate(std::size_t i) noexcept {
-  if (i == 0) {
-    row(0).gamma = eliminate_first(start_, row(0).h, values(0, kChord), values(0, kG));
-  } else {
-    row(i).gamma =
-        eliminate_interior(neighbours(i), row(i - 1).gamma, values(i - 1, kG), values(i, kG));
-  }
-}
-
-void KnotRing::push(Time time, std::span<const double> position) noexcept {
+void KnotRing::push(Time time, std::span<const double> waypoint) noexcept {
   const std::size_t i = size_++;
-  place(i, time, position);
-  if (i > 0) {
-    measure(i - 1);
-    eliminate(i - 1);
-  }
-  const auto v = values(i, kVelocity);
-  std::ranges::fill(v, 0.0);
-  if (i == 0 && start_.kind == ConditionKind::velocity) std::ranges::copy(start_.value, v.begin());
+  place(i, time, waypoint);
+  if (i > 0) measure(i - 1);
 }
 
 void KnotRing::restore(std::size_t first, std::span<const Knot> knots) noexcept {
   for (std::size_t k = 0; k < knots.size(); ++k) {
     const Knot& knot = knots[k];
-    place(first + k, knot.time, knot.position);
-    row(first + k).gamma = knot.gamma;
-    std::ranges::copy(knot.velocity, values(first + k, kVelocity).begin());
-    std::ranges::copy(knot.g, values(first + k, kG).begin());
-    if (k > 0) measure(first + k - 1);
+    const std::size_t i = first + k;
+    place(i, knot.time, knot.waypoint);
+    row(i).prefix = knot.prefix;
+    std::ranges::copy(knot.g, values(i, kG).begin());
+    std::ranges::copy(knot.velocity, values(i, kVelocity).begin());
+    if (has_accelerations_) std::ranges::copy(knot.acceleration, values(i, kAcceleration).begin());
+    if (smooths_) std::ranges::copy(knot.position, values(i, kPosition).begin());
+    if (k == 0) continue;
+    measure(i - 1);
+    if (smooths_) {
+      write_chord(position(i - 1), position(i), row(i - 1).h, values(i - 1, kPositionChord));
+    }
   }
   size_ = first + knots.size();
 }
 
-void KnotRing::close(Tail tail) noexcept {
-  const std::size_t n = newest();
-  if (n == 0) return;
-  const Neighbours last_two = n >= 2 ? neighbours(n - 1)
-                                     : Neighbours{.h_before = 0,
-                                                  .h_after = row(0).h,
-                                                  .chord_before = {},
-                                                  .chord_after = values(0, kChord)};
-  solve_tail(tail, last_two, row(n - 1).gamma, values(n - 1, kG), values(n, kVelocity));
-}
-
-void KnotRing::close(const Condition& end) noexcept {
-  const std::size_t n = newest();
-  if (n == 0) return;
-  halts_at_end_ = end.kind == ConditionKind::halt;
-  solve_last(end, row(n - 1).h, values(n - 1, kChord), row(n - 1).gamma, values(n - 1, kG),
-             values(n, kVelocity));
-}
-
-void KnotRing::back_substitute_to(std::size_t last) noexcept {
-  for (std::size_t i = newest(); i-- > last;) {
-    back_substitute(row(i).gamma, values(i, kG), values(i + 1, kVelocity), values(i, kVelocity));
-  }
-}
-
 Knot KnotRing::knot(std::size_t i) const noexcept {
-  return {.time = row(i).time,
-          .gamma = row(i).gamma,
-          .position = values(i, kPosition),
-          .velocity = values(i, kVelocity),
-          .g = values(i, kG)};
+  Knot knot{.time = row(i).time,
+            .prefix = row(i).prefix,
+            .waypoint = values(i, kWaypoint),
+            .g = values(i, kG),
+            .position = position(i),
+            .velocity = values(i, kVelocity),
+            .acceleration = {}};
+  if (has_accelerations_) knot.acceleration = values(i, kAcceleration);
+  return knot;
 }
 
 Interval KnotRing::interval(std::size_t i) const noexcept {
-  return {.left = row(i).time,
-          .right = row(i + 1).time,
-          .h = row(i).h,
-          .x0 = values(i, kPosition),
-          .chord = values(i, kChord),
-          .v0 = values(i, kVelocity),
-          .v1 = values(i + 1, kVelocity),
-          .halts_left = i == 0 && start_.kind == ConditionKind::halt,
-          .halts_right = halts_at_end_ && i + 1 == newest()};
+  Interval interval{.left = row(i).time,
+                    .right = row(i + 1).time,
+                    .h = row(i).h,
+                    .x0 = position(i),
+                    .chord = chord(i),
+                    .v0 = values(i, kVelocity),
+                    .v1 = values(i + 1, kVelocity),
+                    .a0 = {},
+                    .a1 = {}};
+  if (has_accelerations_) {
+    interval.a0 = values(i, kAcceleration);
+    interval.a1 = values(i + 1, kAcceleration);
+  }
+  const auto zeros = std::span(kZeros).first(dimensions_);
+  if (halts_at_start_ && i == 0) interval.a0 = zeros;
+  if (halts_at_end_ && i + 1 == newest()) interval.a1 = zeros;
+  return interval;
+}
+
+double KnotRing::final_acceleration(std::size_t d) const noexcept {
+  if (newest() > 0) return right_acceleration(interval(newest() - 1), d);
+  return has_accelerations_ ? values(0, kAcceleration)[d] : 0;
+}
+
+void write_chord(std::span<const double> x0, std::span<const double> x1, double h,
+                 std::span<double> chord) noexcept {
+  for (std::size_t d = 0; d < chord.size(); ++d) chord[d] = (x1[d] - x0[d]) / h;
 }
 
 void write_acceleration_step(const KnotRing& knots, std::size_t i, bool held_before,

@@ -89,11 +89,11 @@ void evaluate(int order, std::span<const double> coefficients, double u, StateRe
 }
 
 double left_acceleration(const Interval& interval, std::size_t d) noexcept {
-  return interval.halts_left ? 0 : cubic_left_acceleration(interval, d);
+  return interval.a0.empty() ? cubic_left_acceleration(interval, d) : interval.a0[d];
 }
 
 double right_acceleration(const Interval& interval, std::size_t d) noexcept {
-  return interval.halts_right ? 0 : cubic_right_acceleration(interval, d);
+  return interval.a1.empty() ? cubic_right_acceleration(interval, d) : interval.a1[d];
 }
 
 void build_segment(const Interval& interval, Segment& out) noexcept {
@@ -104,12 +104,12 @@ void build_segment(const Interval& interval, Segment& out) noexcept {
   std::ranges::fill(out.coefficients, 0.0);
   std::ranges::copy(interval.x0, power_of(out, 0, dimensions).begin());
   std::ranges::copy(interval.v0, power_of(out, 1, dimensions).begin());
-  if (interval.halts_left || interval.halts_right) {
-    out.order = kMaxOrder;
-    write_quintic(interval, out);
-  } else {
+  if (interval.a0.empty() && interval.a1.empty()) {
     out.order = kCubicOrder;
     write_cubic(interval, out);
+  } else {
+    out.order = kMaxOrder;
+    write_quintic(interval, out);
   }
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "splinecast/core/slope_rule.hpp"
+
 namespace splinecast::core {
 namespace {
 
@@ -23,17 +25,32 @@ struct EndRow {
   }
 };
 
+/// Continuity of the third derivative at the next knot, that knot's own row subtracted so that two
+/// unknowns remain.
+EndRow not_a_knot_row(const EndIntervals& at) noexcept {
+  const double both = at.h + at.h_next;
+  return {.inner = both,
+          .outer = at.h_next,
+          .slope = (at.h + 2 * both) * at.h_next / both,
+          .scale = at.h * at.h / both,
+          .value = at.chord_next};
+}
+
 /// Natural is the acceleration row with a = 0, rest and halt the velocity row with v = 0
 /// (doc 003 eq 4-13, 4-19; doc 000 eq 4.14, 4.15).
-EndRow end_row(const Condition& condition, double h, Side side) noexcept {
-  const double half_h = side == Side::start ? -h / 2 : h / 2;
+EndRow end_row(const Condition& condition, const EndIntervals& at, Side side) noexcept {
+  const double half_h = side == Side::start ? -at.h / 2 : at.h / 2;
   switch (condition.kind) {
     case ConditionKind::natural:
     case ConditionKind::acceleration:
+    case ConditionKind::own:
       return {.inner = 1, .outer = 2, .slope = 3, .scale = half_h, .value = condition.value};
+    case ConditionKind::not_a_knot:
+      return not_a_knot_row(at);
     case ConditionKind::velocity:
     case ConditionKind::rest:
     case ConditionKind::halt:
+    case ConditionKind::periodic:  // closed by its caller, with these values
       break;
   }
   return {.inner = 0, .outer = 1, .slope = 0, .scale = 1, .value = condition.value};
@@ -47,21 +64,12 @@ void solve_end_row(const EndRow& row, std::span<const double> chord, double gamm
   }
 }
 
-/// Slope at the newest knot of the parabola through the last three waypoints.
-void parabola_slope(const Neighbours& last_two, std::span<double> v) noexcept {
-  const double weight = last_two.h_after / (last_two.h_before + last_two.h_after);
-  for (std::size_t d = 0; d < v.size(); ++d) {
-    const double m = last_two.chord_after[d];
-    v[d] = m + weight * (m - last_two.chord_before[d]);
-  }
-}
-
 }  // namespace
 
-double eliminate_first(const Condition& start, double h, std::span<const double> chord,
+double eliminate_first(const Condition& start, const EndIntervals& at,
                        std::span<double> g) noexcept {
-  const EndRow row = end_row(start, h, Side::start);
-  for (std::size_t d = 0; d < g.size(); ++d) g[d] = row.right_side(chord[d], d) / row.outer;
+  const EndRow row = end_row(start, at, Side::start);
+  for (std::size_t d = 0; d < g.size(); ++d) g[d] = row.right_side(at.chord[d], d) / row.outer;
   return row.inner / row.outer;
 }
 
@@ -78,29 +86,29 @@ double eliminate_interior(const Neighbours& neighbours, double gamma_before,
   return before / pivot;
 }
 
-void solve_last(const Condition& end, double h, std::span<const double> chord, double gamma_before,
+void solve_last(const Condition& end, const EndIntervals& at, double gamma_before,
                 std::span<const double> g_before, std::span<double> v) noexcept {
-  solve_end_row(end_row(end, h, Side::end), chord, gamma_before, g_before, v);
+  solve_end_row(end_row(end, at, Side::end), at.chord, gamma_before, g_before, v);
 }
 
-void solve_tail(Tail tail, const Neighbours& last_two, double gamma_before,
+void solve_tail(Tail tail, const EndIntervals& at, double gamma_before,
                 std::span<const double> g_before, std::span<double> v) noexcept {
-  const auto chord = last_two.chord_after;
   switch (tail) {
     case Tail::bessel:
-      if (last_two.h_before > 0) {
-        parabola_slope(last_two, v);
+      if (at.h_next > 0) {
+        for (std::size_t d = 0; d < v.size(); ++d) {
+          v[d] = parabola_end_slope({at.h, at.chord[d], at.h_next, at.chord_next[d]});
+        }
       } else {
-        std::ranges::copy(chord, v.begin());
+        std::ranges::copy(at.chord, v.begin());
       }
       break;
     case Tail::parabolic:
-      solve_end_row({.inner = 1, .outer = 1, .slope = 2, .scale = 0, .value = {}}, chord,
+      solve_end_row({.inner = 1, .outer = 1, .slope = 2, .scale = 0, .value = {}}, at.chord,
                     gamma_before, g_before, v);
       break;
     case Tail::natural:
-      solve_last({.kind = ConditionKind::natural, .value = {}}, last_two.h_after, chord,
-                 gamma_before, g_before, v);
+      solve_last({.kind = ConditionKind::natural, .value = {}}, at, gamma_before, g_before, v);
       break;
     case Tail::rest:
       std::ranges::fill(v, 0.0);
@@ -110,6 +118,10 @@ void solve_tail(Tail tail, const Neighbours& last_two, double gamma_before,
 
 void back_substitute(double gamma, std::span<const double> g, std::span<const double> v_after,
                      std::span<double> v) noexcept {
+  if (gamma == 0) {
+    std::ranges::copy(g, v.begin());  // −0 would else depend on the sign of v_after
+    return;
+  }
   for (std::size_t d = 0; d < v.size(); ++d) v[d] = g[d] - gamma * v_after[d];
 }
 

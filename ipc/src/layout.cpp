@@ -1,11 +1,13 @@
 #include "splinecast/ipc/layout.hpp"
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <initializer_list>
 #include <string>
 
 #include "splinecast/core/condition.hpp"
+#include "splinecast/core/method.hpp"
 #include "splinecast/core/sliding_window.hpp"
 #include "splinecast/ipc/errors.hpp"
 
@@ -52,12 +54,33 @@ void require_common(const RegionHeader& header, RegionKind kind, std::size_t rea
           round_up(header.control, kSeparation));
   require_range("clock", header.clock, 0, 1);
   require_range("start condition", header.start_kind, 0,
-                static_cast<std::uint64_t>(core::ConditionKind::acceleration));
+                static_cast<std::uint64_t>(core::ConditionKind::own));
+  if (!core::is_online(static_cast<core::ConditionKind>(header.start_kind))) {
+    throw BadRegion("region has start condition " + std::to_string(header.start_kind) +
+                    ", which is none for streams");
+  }
   require_range("least interval", static_cast<std::uint64_t>(header.min_interval), 1,
                 kLongestNanoseconds);
   require_range("most interval", static_cast<std::uint64_t>(header.max_interval), 1,
                 kLongestNanoseconds);
   require(header.region_bytes == real_bytes, "size", real_bytes, header.region_bytes);
+}
+
+/// What shapes the curve: SlidingWindow refuses all else as well, but not as a bad region.
+void require_curve(const RegionHeader& header) {
+  const core::Method* const method = core::find_method(header.method);
+  if (method == nullptr || !method->streams()) {
+    throw BadRegion("region has method " + std::to_string(header.method) +
+                    ", which is none for streams");
+  }
+  if (!std::isfinite(header.lambda) || header.lambda < 0) {
+    throw BadRegion("region has lambda " + std::to_string(header.lambda));
+  }
+  if (!std::isfinite(header.time_scale) || header.time_scale <= 0) {
+    throw BadRegion("region has time scale " + std::to_string(header.time_scale));
+  }
+  require_range("settle lag", header.settle, method->converges() ? 0 : method->look_ahead,
+                core::kMaxSettle);
 }
 
 }  // namespace
@@ -152,7 +175,7 @@ RingLayout checked_ring_layout(const RegionHeader& header, std::size_t real_byte
 BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_bytes) {
   require_common(header, RegionKind::spline, real_bytes, kMaxBoardCapacity);
   const auto layout = BoardLayout::of(header.dimensions, header.capacity, header.control);
-  require_range("settle lag", header.settle, 0, core::kMaxSettle);
+  require_curve(header);
   require_range("tail", header.tail, 0, static_cast<std::uint64_t>(core::Tail::rest));
   require_range("stop time", static_cast<std::uint64_t>(header.stop_time), 1, kLongestNanoseconds);
   require(header.stride == layout.stride, "slot size", header.stride, layout.stride);

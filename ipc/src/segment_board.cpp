@@ -15,9 +15,9 @@ constexpr unsigned kRefusalItemShift = 8;
 
 // Vectors of a cell behind the coefficients, in units of D words.
 constexpr std::size_t kStepVector = core::kMaxOrder;
-constexpr std::size_t kPositionVector = kStepVector + 1;
-constexpr std::size_t kGVector = kPositionVector + 1;
-constexpr std::size_t kGammaAfter = kGVector + 1;
+constexpr std::size_t kWaypointVector = kStepVector + 1;
+constexpr std::size_t kGVector = kWaypointVector + 1;
+constexpr std::size_t kPrefixAfter = kGVector + 1;
 
 std::size_t control_words() noexcept { return kControlLines * kSeparation / sizeof(Word); }
 
@@ -79,9 +79,13 @@ void SegmentBoardWriter::write(Word number, const core::Segment& segment, const 
       vectors,
       std::span(segment.coefficients).first(static_cast<std::size_t>(segment.order) * dimensions));
   put_values(vectors + kStepVector * dimensions, segment.acceleration_step);
-  put_values(vectors + kPositionVector * dimensions, knot.position);
+  put_values(vectors + kWaypointVector * dimensions, knot.waypoint);
   put_values(vectors + kGVector * dimensions, knot.g);
-  put(vectors[kGammaAfter * dimensions], to_word(knot.gamma));
+  Word* const prefix = vectors + kPrefixAfter * dimensions;
+  put(prefix[0], to_word(knot.prefix.gamma));
+  put(prefix[1], to_word(knot.prefix.smoothing.pivot));
+  put(prefix[2], to_word(knot.prefix.smoothing.lower1));
+  put(prefix[3], to_word(knot.prefix.smoothing.lower2));
   // A hint only: readers confirm it in the cell, so no ordering is needed.
   store(times_[number & (layout_.capacity - 1)], to_word(segment.left), std::memory_order_relaxed);
 }
@@ -216,11 +220,20 @@ core::Knot SegmentBoardReader::knot(Word number, Word r, std::span<double> value
     }
     return out;
   };
+  const auto prefix = [&](std::size_t i) {
+    const Word word = load(vectors[kPrefixAfter * dimensions + i], std::memory_order_relaxed);
+    return to_double(word);
+  };
+  const auto acceleration = take(4, 2);
+  for (double& a : acceleration) a *= 2;
   return {.time = to_time(load(cell[kCellLeft], std::memory_order_relaxed)),
-          .gamma = to_double(load(vectors[kGammaAfter * dimensions], std::memory_order_relaxed)),
-          .position = take(0, kPositionVector),
-          .velocity = take(1, 1),
-          .g = take(2, kGVector)};
+          .prefix = {.gamma = prefix(0),
+                     .smoothing = {.pivot = prefix(1), .lower1 = prefix(2), .lower2 = prefix(3)}},
+          .waypoint = take(0, kWaypointVector),
+          .g = take(1, kGVector),
+          .position = take(2, 0),
+          .velocity = take(3, 1),
+          .acceleration = acceleration};
 }
 
 }  // namespace splinecast::ipc

@@ -3,6 +3,7 @@
 #include <bit>
 #include <chrono>
 #include <optional>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -13,7 +14,6 @@
 namespace splinecast::ipc {
 namespace {
 
-constexpr std::size_t kDefaultSettle = 8;
 constexpr std::size_t kDefaultCapacity = 4096;
 constexpr core::Time kDefaultStopTime = std::chrono::milliseconds(250);
 /// Longest sleep: retiring a ring does not move the word slept on, so its wake can be missed.
@@ -29,9 +29,22 @@ void require_same(const std::string& stream, const char* what, const std::option
                    wanted_text + "; 'splinecast rm " + stream + "' removes it");
 }
 
+const core::Method& method_of(const SolverOptions& options) {
+  return options.method == nullptr ? core::c2() : *options.method;
+}
+
 void require_no_contradiction(const std::string& stream, const RegionHeader& stands,
                               const SolverOptions& options) {
   const auto number = [](auto value) { return std::to_string(value); };
+  const core::Method* const method = core::find_method(stands.method);
+  const std::optional<const core::Method*> wanted =
+      options.method == nullptr ? std::nullopt : std::optional(options.method);
+  require_same(stream, "method", wanted, method, std::string(method_of(options).name),
+               std::string(method->name));
+  require_same(stream, "lambda", options.lambda, stands.lambda, number(options.lambda.value_or(0)),
+               number(stands.lambda));
+  require_same(stream, "time scale", options.time_scale, stands.time_scale,
+               number(options.time_scale.value_or(0)), number(stands.time_scale));
   require_same<std::size_t>(stream, "settle lag", options.settle, stands.settle,
                             number(options.settle.value_or(0)), number(stands.settle));
   const auto tail = static_cast<core::Tail>(stands.tail);
@@ -47,24 +60,41 @@ void require_no_contradiction(const std::string& stream, const RegionHeader& sta
   }
 }
 
-core::WindowOptions window_options(const RegionHeader& header) {
-  return {.settle = header.settle,
-          .tail = static_cast<core::Tail>(header.tail),
-          .start = start_condition(header),
-          .stop_time = core::Time(header.stop_time),
-          .held_before_start = stream_clock(header) == StreamClock::monotonic};
+/// The options of a new board: what is unset takes its default.
+void write_options(const SolverOptions& options, RegionHeader& header) {
+  const core::Method& method = method_of(options);
+  header.method = method.number;
+  header.lambda = options.lambda.value_or(0.0);
+  header.time_scale = options.time_scale.value_or(1.0);
+  header.settle = options.settle.value_or(core::default_settle(method));
+  header.tail = static_cast<std::uint64_t>(options.tail.value_or(core::Tail::bessel));
+  header.stop_time = options.stop_time.value_or(kDefaultStopTime).count();
+  header.force_lag = options.force_lag ? 1 : 0;
+  header.capacity = std::bit_ceil(options.capacity.value_or(kDefaultCapacity));
 }
 
 void require_options(const SolverOptions& options) {
-  if (options.settle && *options.settle > core::kMaxSettle) {
-    throw BadRequest("settle lag must be 0 to 64, not " + std::to_string(*options.settle));
-  }
   if (options.stop_time &&
       (*options.stop_time <= core::Time::zero() || *options.stop_time > kLatestTime / 2)) {
     throw BadRequest("stop time must be positive and at most 2^61 ns, not " +
                      std::to_string(options.stop_time->count()) + " ns");
   }
-  const std::size_t least = StreamSolver::min_capacity(options.settle.value_or(kDefaultSettle));
+  const core::Method& method = method_of(options);
+  if (method.family == core::Family::smoothing && !options.lambda) {
+    throw BadRequest("method smoothing needs a lambda: online it cannot be chosen");
+  }
+  if (options.tail && method.has_own_tail()) {
+    throw BadRequest("method " + std::string(method.name) + " has a tail of its own, not '" +
+                     std::string(core::to_string(*options.tail)) + "'");
+  }
+  RegionHeader header{};
+  write_options(options, header);
+  try {
+    (void)core::SlidingWindow(1, window_options(header));
+  } catch (const std::invalid_argument& error) {
+    throw BadRequest(error.what());
+  }
+  const std::size_t least = StreamSolver::min_capacity(header.settle);
   if (options.capacity && (*options.capacity < least || *options.capacity > kMaxBoardCapacity)) {
     throw BadRequest("capacity must be " + std::to_string(least) + " to " +
                      std::to_string(kMaxBoardCapacity) + " segments, not " +
@@ -102,10 +132,7 @@ OwnedBoard make_board(const std::string& stream, const RegionHeader& ring_header
                       const SolverOptions& options) {
   RegionHeader header = ring_header;
   header.kind = static_cast<std::uint64_t>(RegionKind::spline);
-  header.settle = options.settle.value_or(kDefaultSettle);
-  header.tail = static_cast<std::uint64_t>(options.tail.value_or(core::Tail::bessel));
-  header.stop_time = options.stop_time.value_or(kDefaultStopTime).count();
-  header.capacity = std::bit_ceil(options.capacity.value_or(kDefaultCapacity));
+  write_options(options, header);
   const auto layout = BoardLayout::of(header.dimensions, header.capacity, header.control);
   header.stride = layout.stride;
   header.region_bytes = layout.bytes;

@@ -34,6 +34,10 @@ std::string_view to_string(Refusal refusal) noexcept {
       return "after finish";
     case Refusal::unknown_kind:
       return "unknown kind";
+    case Refusal::lacks_derivatives:
+      return "lacks derivatives";
+    case Refusal::lag_too_short:
+      return "lag too short";
   }
   return "unknown";
 }

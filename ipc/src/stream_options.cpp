@@ -55,6 +55,10 @@ RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id
                      " ns are no range of positive times");
   }
   core::require_values(options.start, options.dimensions);
+  if (!core::is_online(options.start.kind)) {
+    throw BadRequest("start condition '" + core::to_string(options.start) +
+                     "' needs all waypoints at once: a stream cannot meet it");
+  }
   RegionHeader header{};
   header.magic = kMagic;
   header.layout_version = kLayoutVersion;
@@ -77,9 +81,6 @@ RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id
 
 core::Condition start_condition(const RegionHeader& header) {
   core::Condition start{.kind = static_cast<core::ConditionKind>(header.start_kind), .value = {}};
-  if (header.start_kind > static_cast<std::uint64_t>(core::ConditionKind::acceleration)) {
-    throw BadRegion("region has start condition " + std::to_string(header.start_kind));
-  }
   if (start.kind == core::ConditionKind::velocity ||
       start.kind == core::ConditionKind::acceleration) {
     const auto values = std::span(header.start_value).first(header.dimensions);
@@ -103,6 +104,18 @@ IngestLimits ingest_limits(const RegionHeader& header) noexcept {
 
 StreamClock stream_clock(const RegionHeader& header) noexcept {
   return static_cast<StreamClock>(header.clock);
+}
+
+core::WindowOptions window_options(const RegionHeader& header) {
+  return {.interpolant = {.method = core::find_method(header.method),
+                          .lambda = header.lambda,
+                          .time_scale = header.time_scale},
+          .settle = header.settle,
+          .tail = static_cast<core::Tail>(header.tail),
+          .start = start_condition(header),
+          .stop_time = core::Time(header.stop_time),
+          .held_before_start = stream_clock(header) == StreamClock::monotonic,
+          .force_lag = header.force_lag != 0};
 }
 
 void require_same_clock(const RegionHeader& header, const std::string& stream) {

@@ -16,6 +16,15 @@ constexpr std::size_t changed_besides(std::size_t settle) noexcept { return sett
 
 constexpr core::Time kNothingChanged = core::Time::max();
 
+core::Waypoint waypoint_of(const RingItem& item) noexcept {
+  const std::size_t dimensions = item.values.size() / 3;
+  const auto values = std::span<const double>(item.values);
+  core::Waypoint waypoint{.time = item.time, .position = values.first(dimensions)};
+  if (item.has_velocity) waypoint.velocity = values.subspan(dimensions, dimensions);
+  if (item.has_acceleration) waypoint.acceleration = values.last(dimensions);
+  return waypoint;
+}
+
 }  // namespace
 
 std::size_t StreamSolver::min_capacity(std::size_t settle) noexcept {
@@ -48,12 +57,12 @@ void StreamSolver::restore(const SegmentBoardReader& published) {
   if (head_.finished || head_.knots == 0) return;
   const std::size_t knots = head_.knots;
   const std::size_t count = std::min(knots, window_.knots_to_restore());
-  std::vector<double> values(3 * ring_->dimensions() * count);
+  const std::size_t size = SegmentBoardReader::kKnotValues * ring_->dimensions();
+  std::vector<double> values(size * count);
   std::vector<core::Knot> restored;
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t i = knots - count + k;
-    const auto part = std::span(values).subspan(3 * ring_->dimensions() * k);
-    restored.push_back(published.knot(i + 1, r, part.first(3 * ring_->dimensions())));
+    restored.push_back(published.knot(i + 1, r, std::span(values).subspan(size * k, size)));
   }
   window_.restore(knots - count, restored);
   settled_written_ = window_.settled_segments();
@@ -89,8 +98,12 @@ void StreamSolver::take(const RingItem& item, Word number) noexcept {
 
 /// The producer has checked all of this; but what another process wrote is never trusted.
 void StreamSolver::take_waypoint(const RingItem& item, Word number) noexcept {
-  const auto position = std::span(item.values).first(window_.dimensions());
-  if (!is_finite(position)) return refuse(number, Refusal::not_finite);
+  const core::Waypoint waypoint = waypoint_of(item);
+  if (!is_finite(waypoint.position) || !is_finite(waypoint.velocity) ||
+      !is_finite(waypoint.acceleration)) {
+    return refuse(number, Refusal::not_finite);
+  }
+  if (!window_.takes(waypoint)) return refuse(number, Refusal::lacks_derivatives);
   if (!is_time_in_range(item.time)) return refuse(number, Refusal::interval_out_of_range);
   if (head_.knots > 0) {
     if (item.time <= head_.newest_knot) return refuse(number, Refusal::not_increasing);
@@ -98,7 +111,8 @@ void StreamSolver::take_waypoint(const RingItem& item, Word number) noexcept {
       return refuse(number, Refusal::interval_out_of_range);
     }
   }
-  window_.append(item.time, position);
+  if (!window_.lag_suffices(item.time)) return refuse(number, Refusal::lag_too_short);
+  window_.append(waypoint);
   head_.knots = window_.knots();
   head_.newest_knot = item.time;
   // What has settled leaves the window and is written once, with its last value.
@@ -109,7 +123,7 @@ void StreamSolver::take_finish(const RingItem& item, Word number) noexcept {
   end_.kind = item.condition;
   end_.value.clear();
   const std::size_t dimensions = window_.dimensions();
-  if (item.condition > core::ConditionKind::acceleration) {
+  if (!core::is_online(item.condition)) {
     return refuse(number, Refusal::unknown_kind);
   }
   const bool is_velocity = item.condition == core::ConditionKind::velocity;

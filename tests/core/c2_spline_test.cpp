@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -29,6 +31,36 @@ Condition with_values(ConditionKind kind, std::uint64_t seed, std::size_t dimens
 constexpr ConditionKind kAllKinds[] = {ConditionKind::natural, ConditionKind::rest,
                                        ConditionKind::halt, ConditionKind::velocity,
                                        ConditionKind::acceleration};
+
+/// Largest value of each derivative.
+std::array<double, 4> largest_values(const PiecewisePolynomial& curve, const Mesh& mesh) {
+  std::array<double, 4> most{};
+  State state(2);
+  for (const Time t : query_times(mesh, 4)) {
+    curve.evaluate(t, state.ref());
+    for (std::size_t k = 0; k < 8; ++k) {
+      most[k / 2] = std::max(most[k / 2], std::abs(state.values()[k]));
+    }
+  }
+  return most;
+}
+
+void expect_forms_agree(const Mesh& mesh, const Condition& start, const Condition& end) {
+  const Waypoints all{.dimensions = 2, .times = mesh.times, .positions = mesh.positions};
+  const auto a = c2_spline(all, start, end, C2Form::velocity);
+  const auto b = c2_spline(all, start, end, C2Form::acceleration);
+  const auto scale = largest_values(a, mesh);
+  State x(2);
+  State y(2);
+  for (const Time t : query_times(mesh, 4)) {
+    a.evaluate(t, x.ref());
+    b.evaluate(t, y.ref());
+    for (std::size_t k = 0; k < 8; ++k) {
+      ASSERT_NEAR(x.values()[k], y.values()[k], 1e-9 * scale[k / 2])
+          << to_string(start) << " to " << to_string(end) << ", " << mesh.size() << " knots";
+    }
+  }
+}
 
 TEST(C2Spline, InterpolatesIsC2AndAgreesWithADenseSolveForEveryPairingOfConditions) {
   for (const auto start_kind : kAllKinds) {
@@ -140,6 +172,94 @@ TEST(C2Spline, ShiftingTimeChangesNoBit) {
     moved.evaluate(t + offset, b.ref());
     EXPECT_TRUE(std::ranges::equal(a.values(), b.values())) << t.count();
   }
+}
+
+/// A mesh whose last position is its first.
+Mesh closed_mesh(std::uint64_t seed, std::size_t knots, double ratio) {
+  Mesh mesh = random_mesh(seed, knots, 2, ratio);
+  std::ranges::copy(mesh.first(1).positions, mesh.positions.end() - 2);
+  return mesh;
+}
+
+TEST(C2Spline, BothFormsAgreeForEveryPairingOfConditions) {
+  std::vector<ConditionKind> kinds(std::begin(kAllKinds), std::end(kAllKinds));
+  kinds.push_back(ConditionKind::not_a_knot);
+  for (const double ratio : {1.0, 10.0, 1000.0}) {
+    for (const auto start_kind : kinds) {
+      for (const auto end_kind : kinds) {
+        for (const std::size_t knots : {4U, 5U, 40U}) {
+          const Mesh mesh = random_mesh(knots, knots, 2, ratio);
+          expect_forms_agree(mesh, with_values(start_kind, 1, 2), with_values(end_kind, 2, 2));
+        }
+      }
+    }
+    const Condition periodic{ConditionKind::periodic, {}};
+    for (const std::size_t knots : {3U, 4U, 40U}) {
+      expect_forms_agree(closed_mesh(knots, knots, ratio), periodic, periodic);
+    }
+  }
+}
+
+TEST(C2Spline, PeriodicJoinsPositionVelocityAndAcceleration) {
+  for (const std::size_t knots : {3U, 4U, 5U, 40U}) {
+    const Mesh mesh = closed_mesh(9, knots, 5);
+    const Condition periodic{ConditionKind::periodic, {}};
+    const auto curve = spline(mesh, periodic, periodic);
+    State first(2);
+    State last(2);
+    State before(2);
+    curve.evaluate(mesh.times.front(), first.ref());
+    curve.evaluate(mesh.times.back(), last.ref());
+    const auto scale = largest_values(curve, mesh);
+    for (std::size_t k = 0; k < 6; ++k) {
+      EXPECT_NEAR(first.values()[k], last.values()[k], 1e-11 * scale[k / 2]);
+    }
+    for (std::size_t i = 1; i + 1 < mesh.size(); ++i) {
+      curve.evaluate(mesh.times[i], first.ref());
+      const double h = to_seconds(mesh.times[i] - mesh.times[i - 1]);
+      core::evaluate(curve.order_of(i - 1), curve.coefficients(i - 1), h, before.ref());
+      EXPECT_NEAR(first.acceleration()[0], before.acceleration()[0], 1e-11 * scale[2]) << i;
+    }
+  }
+}
+
+TEST(C2Spline, NotAKnotHasOneCubicOverTheFirstAndLastTwoIntervals) {
+  const Condition not_a_knot{ConditionKind::not_a_knot, {}};
+  const Mesh mesh = random_mesh(12, 9, 2, 8);
+  const auto curve = spline(mesh, not_a_knot, not_a_knot);
+  const double scale = largest_values(curve, mesh)[3];
+  for (const std::size_t knot : {std::size_t{1}, mesh.size() - 2}) {
+    for (std::size_t d = 0; d < 2; ++d) {
+      EXPECT_NEAR(curve.coefficients(knot - 1)[6 + d], curve.coefficients(knot)[6 + d],
+                  1e-11 * scale);
+    }
+  }
+}
+
+TEST(C2Spline, RefusesPairingsThatMakeNoSense) {
+  const Condition periodic{ConditionKind::periodic, {}};
+  const Condition not_a_knot{ConditionKind::not_a_knot, {}};
+  const auto reason = [](const Mesh& mesh, const Condition& start, const Condition& end) {
+    try {
+      (void)spline(mesh, start, end);
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const Mesh closed = closed_mesh(1, 6, 2);
+  const auto open = reason(random_mesh(1, 6, 2, 2), periodic, periodic);
+  EXPECT_NE(open.find("last position equal"), std::string::npos) << open;
+  EXPECT_NE(reason(closed, periodic, {}).find("not natural"), std::string::npos);
+  EXPECT_NE(reason(closed, {}, periodic).find("not natural"), std::string::npos);
+  EXPECT_NE(reason(closed_mesh(1, 2, 2), periodic, periodic).find("3 waypoints; there are 2"),
+            std::string::npos);
+  EXPECT_NE(reason(closed.first(3), not_a_knot, not_a_knot).find("4 waypoints; there are 3"),
+            std::string::npos);
+  EXPECT_NE(reason(closed.first(2), not_a_knot, {}).find("3 waypoints; there are 2"),
+            std::string::npos);
+  EXPECT_EQ(reason(closed.first(3), not_a_knot, {}), "");
+  EXPECT_EQ(reason(closed.first(4), not_a_knot, not_a_knot), "");
 }
 
 TEST(C2Spline, NamesWhatIsWrongWithItsInput) {

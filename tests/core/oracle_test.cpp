@@ -41,7 +41,7 @@ TEST(SlidingWindowAgainstPolynomials, TheFigureEightIsMetWithin2eMinus5InPositio
     }
   };
   for (std::size_t i = 0; i < mesh.size(); ++i) {
-    window.append(mesh.times[i], mesh.position(i));
+    window.append({mesh.times[i], mesh.position(i)});
     compare();
   }
   window.finish(velocity_at(mesh.times.back()));

@@ -26,8 +26,20 @@ struct Ends {
         chord(dimensions) {
     for (std::size_t d = 0; d < dimensions; ++d) chord[d] = (x1[d] - x0[d]) / 0.25;
   }
+  std::vector<double> at_rest = std::vector<double>(x0.size());
+
   [[nodiscard]] Interval interval(bool halts_left, bool halts_right) const {
-    return {kLeft, kRight, 0.25, x0, chord, v0, v1, halts_left, halts_right};
+    const std::span<const double> none;
+    const std::span<const double> zeros(at_rest);
+    return {kLeft,
+            kRight,
+            0.25,
+            x0,
+            chord,
+            v0,
+            v1,
+            halts_left ? zeros : none,
+            halts_right ? zeros : none};
   }
 };
 

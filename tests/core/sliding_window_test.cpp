@@ -11,6 +11,7 @@
 #include "splinecast/core/piecewise_polynomial.hpp"
 #include "support/dense_spline.hpp"
 #include "support/mesh.hpp"
+#include "support/online.hpp"
 
 namespace splinecast::core {
 namespace {
@@ -25,24 +26,9 @@ WindowOptions options(std::size_t settle, Tail tail, Condition start = {}) {
   return {.settle = settle, .tail = tail, .start = std::move(start), .stop_time = Time(1000)};
 }
 
-/// Feeds a mesh through a window and keeps each segment when it settles.
 PiecewisePolynomial online(const Mesh& mesh, const WindowOptions& how, const Condition& end) {
-  SlidingWindow window(mesh.dimensions, how);
-  PiecewisePolynomial curve(mesh.dimensions);
-  Segment segment(mesh.dimensions);
-  const auto take = [&] {
-    while (curve.segments() < window.settled_segments()) {
-      window.segment(curve.segments(), segment);
-      curve.append(segment);
-    }
-  };
-  for (std::size_t i = 0; i < mesh.size(); ++i) {
-    window.append(mesh.times[i], mesh.position(i));
-    take();
-  }
-  window.finish(end);
-  take();
-  return curve;
+  return testing::online(
+      {.dimensions = mesh.dimensions, .times = mesh.times, .positions = mesh.positions}, how, end);
 }
 
 TEST(SlidingWindow, AConvergedVelocityIsThatOfAFullSolveWithTheTailAtTheLastWaypoint) {
@@ -53,7 +39,7 @@ TEST(SlidingWindow, AConvergedVelocityIsThatOfAFullSolveWithTheTailAtTheLastWayp
         SlidingWindow window(2, options(settle, tail));
         const double scale = testing::dense_velocities(mesh, {}, Condition{}).cwiseAbs().maxCoeff();
         for (std::size_t n = 0; n < mesh.size(); ++n) {
-          window.append(mesh.times[n], mesh.position(n));
+          window.append({mesh.times[n], mesh.position(n)});
           if (n < settle || n < 1) continue;
           const std::size_t converged = n - settle;
           const auto full = testing::dense_velocities(mesh.first(n + 1), {}, tail);
@@ -77,7 +63,7 @@ TEST(SlidingWindow, NoAppendTouchesASettledSegment) {
     std::vector<Segment> first_seen;
     Segment segment(3);
     for (std::size_t n = 0; n < mesh.size(); ++n) {
-      window.append(mesh.times[n], mesh.position(n));
+      window.append({mesh.times[n], mesh.position(n)});
       ASSERT_LE(window.oldest_segment(), first_seen.size());
       for (std::size_t i = window.oldest_segment(); i < window.settled_segments(); ++i) {
         window.segment(i, segment);
@@ -147,7 +133,7 @@ TEST(SlidingWindow, TheNewestSegmentComesToRestWhileTheStreamRuns) {
   Segment segment(2);
   State state(2);
   for (std::size_t n = 0; n < mesh.size(); ++n) {
-    window.append(mesh.times[n], mesh.position(n));
+    window.append({mesh.times[n], mesh.position(n)});
     ASSERT_EQ(window.segments(), n + 1);
     window.segment(n, segment);
     EXPECT_EQ(segment.kind, SegmentKind::stop_tail);
@@ -163,7 +149,7 @@ TEST(SlidingWindow, TheNewestSegmentComesToRestWhileTheStreamRuns) {
 TEST(SlidingWindow, OneWaypointIsAHoldBeforeAndAfterTheFinish) {
   SlidingWindow window(2, {});
   const std::vector<double> x{1.5, -2};
-  window.append(Time(77), x);
+  window.append({Time(77), x});
   Segment segment(2);
   State state(2);
   for (const SegmentKind kind : {SegmentKind::stop_tail, SegmentKind::hold}) {
@@ -193,7 +179,7 @@ TEST(SlidingWindow, ARestoredWindowGoesOnBitForBit) {
     for (std::size_t cut = 1; cut < 24; ++cut) {
       const Mesh mesh = random_mesh(10, 24, 2, 4);
       SlidingWindow whole(2, options(settle, Tail::bessel));
-      for (std::size_t n = 0; n < cut; ++n) whole.append(mesh.times[n], mesh.position(n));
+      for (std::size_t n = 0; n < cut; ++n) whole.append({mesh.times[n], mesh.position(n)});
       SlidingWindow resumed(2, options(settle, Tail::bessel));
       const std::size_t first = cut - std::min(cut, whole.knots_to_restore());
       std::vector<Knot> knots;
@@ -202,8 +188,8 @@ TEST(SlidingWindow, ARestoredWindowGoesOnBitForBit) {
       Segment a(2);
       Segment b(2);
       for (std::size_t n = cut; n < mesh.size(); ++n) {
-        whole.append(mesh.times[n], mesh.position(n));
-        resumed.append(mesh.times[n], mesh.position(n));
+        whole.append({mesh.times[n], mesh.position(n)});
+        resumed.append({mesh.times[n], mesh.position(n)});
         for (std::size_t i = whole.oldest_segment(); i < whole.segments(); ++i) {
           whole.segment(i, a);
           resumed.segment(i, b);

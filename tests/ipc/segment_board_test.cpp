@@ -28,7 +28,13 @@ core::Segment marked(Word number, Word revision) {
 
 void write(MemoryBoard& board, Word number, Word revision) {
   const std::vector<double> zeros(kDimensions);
-  const core::Knot knot{.time = {}, .gamma = 0, .position = zeros, .velocity = zeros, .g = zeros};
+  const core::Knot knot{.time = {},
+                        .prefix = {},
+                        .waypoint = zeros,
+                        .g = zeros,
+                        .position = zeros,
+                        .velocity = zeros,
+                        .acceleration = {}};
   board.writer.write(number, marked(number, revision), knot, 0);
 }
 

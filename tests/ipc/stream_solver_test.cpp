@@ -69,7 +69,7 @@ core::PiecewisePolynomial direct(const Mesh& mesh, const core::WindowOptions& ho
   core::Segment segment(mesh.dimensions);
   for (std::size_t i = 0; i <= mesh.size(); ++i) {
     if (i < mesh.size()) {
-      window.append(mesh.times[i], mesh.position(i));
+      window.append({mesh.times[i], mesh.position(i)});
     } else {
       window.finish(end);
     }

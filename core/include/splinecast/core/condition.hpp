@@ -14,7 +14,15 @@ enum class ConditionKind {
   halt,          ///< velocity and acceleration 0, by an order-6 end segment
   velocity,      ///< given velocity ("clamped")
   acceleration,  ///< given acceleration
+  not_a_knot,    ///< third derivative continuous at the next knot; `c2` at once only
+  periodic,      ///< both ends joined; `c2` at once only
+  own,           ///< what the method does when nothing is asked for
 };
+
+/// Whether a condition can be met while waypoints come.
+[[nodiscard]] constexpr bool is_online(ConditionKind kind) noexcept {
+  return kind <= ConditionKind::acceleration || kind == ConditionKind::own;
+}
 
 /// A condition and, for `velocity` [unit/s] and `acceleration` [unit/s²], one value per dimension.
 struct Condition {
@@ -33,7 +41,7 @@ enum class Tail {
 };
 
 /// How a condition is written on a command line: `natural`, `rest`, `halt`, `velocity=1,2,3`,
-/// `acceleration=1,2,3`.
+/// `acceleration=1,2,3`, `not-a-knot`, `periodic`, `own`.
 [[nodiscard]] std::string to_string(const Condition& condition);
 [[nodiscard]] std::string_view to_string(Tail tail) noexcept;
 

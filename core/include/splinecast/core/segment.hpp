@@ -57,13 +57,12 @@ struct Interval {
   std::span<const double> x0;      ///< position at the left knot
   std::span<const double> chord;   ///< chord slope m = (x1 − x0)/h
   std::span<const double> v0, v1;  ///< knot velocities
-  bool halts_left = false;         ///< acceleration 0 at the left knot instead of the cubic's
-  bool halts_right = false;        ///< likewise at the right knot
+  std::span<const double> a0, a1;  ///< knot accelerations; empty: the cubic's
 };
 
 /// Writes the segment of an interval: the cubic of its knot velocities (doc 003 eq 4-7; doc 000
-/// eq 5.27, 5.28), or, where an end halts, the quintic with that end's acceleration 0 and at the
-/// other end the state of the cubic it replaces. Sets everything but `acceleration_step`.
+/// eq 5.27, 5.28), or, where a knot acceleration is given, the quintic with that acceleration and,
+/// at an end without one, that of the cubic it replaces. Sets everything but `acceleration_step`.
 void build_segment(const Interval& interval, Segment& out) noexcept;
 
 /// One-sided accelerations of an interval's segment at its knots, for dimension d.

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "splinecast/core/condition.hpp"
 #include "splinecast/core/knot_ring.hpp"
+#include "splinecast/core/knot_solver.hpp"
+#include "splinecast/core/method.hpp"
 #include "splinecast/core/segment.hpp"
 
 namespace splinecast::core {
@@ -14,20 +17,28 @@ namespace splinecast::core {
 /// worst mesh, so that a longer lag would change no bit.
 inline constexpr std::size_t kMaxSettle = 64;
 
+/// The settle lag that a method has when none is asked for: 8 for `c2`, the look-ahead of a local
+/// method, which is then exact, and kMaxSettle for `smoothing`.
+[[nodiscard]] std::size_t default_settle(const Method& method) noexcept;
+
 /// What shapes a curve that is solved online.
 struct WindowOptions {
-  std::size_t settle = 8;          ///< settle lag K: 0 … kMaxSettle newer knots
-  Tail tail = Tail::bessel;        ///< condition at the newest knot while the stream goes on
-  Condition start{};               ///< condition at knot 0
-  Time stop_time{250'000'000};     ///< length of the stop tail, > 0
+  Interpolant interpolant{};
+  std::size_t settle = 8;    ///< settle lag K: the method's look-ahead … kMaxSettle newer knots
+  Tail tail = Tail::bessel;  ///< condition at the newest knot while the stream goes on; `hermite`,
+                             ///< `quintic` and `smoothing` have one of their own
+  Condition start{.kind = ConditionKind::own, .value = {}};  ///< condition at knot 0
+  Time stop_time{250'000'000};                               ///< length of the stop tail, > 0
   bool held_before_start = false;  ///< a hold stands before knot 0, as on a live stream
+  bool force_lag = false;          ///< take a lag that is too short for λ
 };
 
-/// The online C² cubic spline: the knots that an append still changes, and the segments at them.
+/// The online spline: the knots that an append still changes, and the segments at them.
 ///
 /// Invariants, for newest knot n and settle lag K:
-/// - knot i is *converged* once i + K ≤ n; no append touches it again. Its velocity is that of a
-///   full solve over waypoints 0 … i+K with the tail at the last;
+/// - knot i is *converged* once i + K ≤ n; no append touches it again. Its velocity (and its
+///   position, if the method smooths) is that of a full solve over waypoints 0 … i+K with the
+///   tail at the last; of a local method it is exact;
 /// - a converged velocity is no boundary condition: the elimination prefix goes on unchanged, so
 ///   that truncations never accumulate;
 /// - segment i lies between knots i and i+1; segment n is the stop tail, until `finish`.
@@ -35,7 +46,8 @@ struct WindowOptions {
 /// Allocates when made only. Not thread-safe: one thread uses it.
 class SlidingWindow {
  public:
-  /// Throws std::invalid_argument for dimensions, a lag, a stop time or start values out of range.
+  /// Throws std::invalid_argument for dimensions, a method, a parameter, a lag, a stop time or
+  /// start values out of range, and for conditions or methods that cannot be met online.
   SlidingWindow(std::size_t dimensions, WindowOptions options);
 
   [[nodiscard]] std::size_t dimensions() const noexcept { return knots_.dimensions(); }
@@ -55,14 +67,23 @@ class SlidingWindow {
 
   [[nodiscard]] bool finished() const noexcept { return finished_; }
 
-  /// Appends a waypoint: one forward row and K backward rows for all dimensions at once,
-  /// O(K·D) whatever the length of the stream. `time` must be later than the newest knot's and
-  /// the position finite: the caller has checked. Changes the segments from
+  /// Whether a waypoint carries the velocity and acceleration that the method needs.
+  [[nodiscard]] bool takes(const Waypoint& waypoint) const noexcept;
+
+  /// Whether the knots that a waypoint at `time` would settle have had enough of the curve ahead of
+  /// them for λ: see smoothing_lag, with the mean of those intervals. Always so but for
+  /// `smoothing`, and with `force_lag`. O(1).
+  [[nodiscard]] bool lag_suffices(Time time) const noexcept;
+
+  /// Appends a waypoint: its forward rows and K backward rows for all dimensions at once,
+  /// O(K·D) whatever the length of the stream. It must be later than the newest knot, finite, and
+  /// one that the method takes: the caller has checked. Changes the segments from
   /// `settled_segments()` as it was before the call (with K = 0: from the one it adds).
-  void append(Time time, std::span<const double> position) noexcept;
+  void append(const Waypoint& waypoint) noexcept;
 
   /// Ends the stream at its newest knot, with a condition there that may change what has not
-  /// converged. No append may follow. The condition's values must have been checked.
+  /// converged; `own` is a halt for `c2`. No append may follow. The condition must be one for
+  /// streams and its values must have been checked.
   void finish(const Condition& end) noexcept;
 
   /// Writes segment i, oldest_segment() ≤ i < segments(), with its acceleration step: O(D).
@@ -76,7 +97,7 @@ class SlidingWindow {
   [[nodiscard]] std::size_t newer_knots_seen(std::size_t i) const noexcept;
 
   /// How many of its newest knots a window needs in order to go on where another one stood.
-  [[nodiscard]] std::size_t knots_to_restore() const noexcept { return reach() + 3; }
+  [[nodiscard]] std::size_t knots_to_restore() const noexcept { return reach() + kMaxReach + 3; }
 
   /// Goes on where a window with the same options stood that died: `first` is the number of the
   /// oldest knot given; `knots` are its consecutive knots up to the newest, at least
@@ -89,10 +110,12 @@ class SlidingWindow {
   [[nodiscard]] std::size_t reach() const noexcept {
     return options_.settle > 0 ? options_.settle : 1;
   }
+  [[nodiscard]] bool is_start_open() const noexcept;
   void write_stop_tail(Segment& out) const noexcept;
 
   WindowOptions options_;
   KnotRing knots_;
+  std::unique_ptr<const KnotSolver> solver_;
   bool finished_ = false;
 };
 

@@ -9,14 +9,24 @@
 ///
 /// After elimination a row reads v_i = g_i − γ_i v_{i+1}. γ is one scalar per knot, shared by all
 /// dimensions; g has one value per dimension. A row needs the knots up to i+1 only, so it is final
-/// as soon as waypoint i+1 has come. 0 ≤ γ ≤ 1/2 on any mesh, and the matrix is diagonally
-/// dominant: no pivoting. Every function is O(D), allocates nothing and throws nothing; spans hold
+/// as soon as waypoint i+1 has come. 0 ≤ γ ≤ 1/2 on any mesh (after a `not_a_knot` start from
+/// row 2 on), and the matrix is diagonally dominant: no pivoting. A local method's row is one whose
+/// γ is 0. Every function is O(D), allocates nothing and throws nothing; spans hold
 /// one value per dimension.
 namespace splinecast::core {
 
-/// Eliminates row 0. `h` and `chord` belong to the first interval. Writes g, returns γ.
-[[nodiscard]] double eliminate_first(const Condition& start, double h,
-                                     std::span<const double> chord, std::span<double> g) noexcept;
+/// The interval at an end and the one next to it, looking inwards: lengths in seconds and chord
+/// slopes. `h_next` is 0 where there is only one.
+struct EndIntervals {
+  double h;
+  std::span<const double> chord;
+  double h_next = 0;
+  std::span<const double> chord_next{};
+};
+
+/// Eliminates row 0. `not_a_knot` needs both intervals. Writes g, returns γ.
+[[nodiscard]] double eliminate_first(const Condition& start, const EndIntervals& at,
+                                     std::span<double> g) noexcept;
 
 /// Intervals around an interior knot: lengths in seconds and chord slopes.
 struct Neighbours {
@@ -31,17 +41,16 @@ struct Neighbours {
                                         std::span<const double> g_before,
                                         std::span<double> g) noexcept;
 
-/// Solves the last row for the velocity of the last knot, given the row before it and the last
-/// interval's length and chord slope.
-void solve_last(const Condition& end, double h, std::span<const double> chord, double gamma_before,
+/// Solves the last row for the velocity of the last knot, given the row before it.
+/// `not_a_knot` needs both intervals.
+void solve_last(const Condition& end, const EndIntervals& at, double gamma_before,
                 std::span<const double> g_before, std::span<double> v) noexcept;
 
-/// The same for the condition at the newest knot of a stream that goes on. `before` is the
-/// interval before the last one, with h_before = 0 where only one interval exists.
-void solve_tail(Tail tail, const Neighbours& last_two, double gamma_before,
+/// The same for the condition at the newest knot of a stream that goes on.
+void solve_tail(Tail tail, const EndIntervals& at, double gamma_before,
                 std::span<const double> g_before, std::span<double> v) noexcept;
 
-/// One row of the back-substitution: v = g − γ v_after.
+/// One row of the back-substitution: v = g − γ v_after. Where γ is 0, v is g bit for bit.
 void back_substitute(double gamma, std::span<const double> g, std::span<const double> v_after,
                      std::span<double> v) noexcept;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "splinecast/core/time.hpp"
@@ -13,6 +14,27 @@ struct Waypoint {
   std::span<const double> position{};
   std::span<const double> velocity{};
   std::span<const double> acceleration{};
+};
+
+/// Waypoints of a whole recording: values are [waypoint][dimension], `velocities` and
+/// `accelerations` empty if not given. A view: it owns nothing.
+struct Waypoints {
+  std::size_t dimensions = 0;
+  std::span<const Time> times{};
+  std::span<const double> positions{};
+  std::span<const double> velocities{};
+  std::span<const double> accelerations{};
+
+  [[nodiscard]] std::size_t size() const noexcept { return times.size(); }
+  [[nodiscard]] Waypoint operator[](std::size_t i) const noexcept {
+    const auto row = [&](std::span<const double> values) {
+      return values.empty() ? values : values.subspan(i * dimensions, dimensions);
+    };
+    return {.time = times[i],
+            .position = row(positions),
+            .velocity = row(velocities),
+            .acceleration = row(accelerations)};
+  }
 };
 
 }  // namespace splinecast::core

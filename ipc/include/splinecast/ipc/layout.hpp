@@ -16,7 +16,7 @@
 namespace splinecast::ipc {
 
 inline constexpr std::uint64_t kMagic = 0x54534143'4e4c5053;  // "SPLNCAST" in memory order
-inline constexpr std::uint32_t kLayoutVersion = 1;
+inline constexpr std::uint32_t kLayoutVersion = 2;
 inline constexpr std::uint32_t kByteOrder = 0x01020304;
 
 /// What different processes write, or poll, lies this far apart: two cache lines, because adjacent
@@ -53,14 +53,17 @@ struct RegionHeader {
   std::int64_t min_interval;     ///< ns between waypoints
   std::int64_t max_interval;
   std::uint64_t start_kind;  ///< core::ConditionKind at the first waypoint
-  std::uint64_t method;      ///< 0: c2
+  std::uint64_t method;      ///< core::Method::number; 0: c2
   std::uint64_t settle;      ///< settle lag K
   std::uint64_t tail;        ///< core::Tail
   std::int64_t stop_time;    ///< ns
   std::uint64_t epoch;       ///< number of the owner's life, from 1
   std::uint64_t owner_pid;
   std::int64_t owner_since;  ///< CLOCK_MONOTONIC when the owner took the region
-  std::array<std::uint64_t, 9> reserved;
+  double lambda;             ///< of smoothing, s³
+  double time_scale;         ///< of rounded, s
+  std::uint64_t force_lag;   ///< 1: a lag too short for lambda is taken
+  std::array<std::uint64_t, 6> reserved;
   std::array<double, core::kMaxDimensions> start_value;
   std::array<std::uint64_t, core::kMaxDimensions> dimension_kind;
   std::array<double, core::kMaxDimensions> period;
@@ -104,7 +107,7 @@ inline constexpr std::size_t kCellLeft = 2;
 inline constexpr std::size_t kCellRight = 3;
 inline constexpr std::size_t kCellShape = 4;  ///< order | kind << 8 | newer knots seen << 16
 inline constexpr std::size_t kCellCoefficients = 8;
-inline constexpr std::size_t kCellExtraWords = 4;  ///< γ and room for a longer prefix
+inline constexpr std::size_t kCellExtraWords = 4;  ///< γ, and the smoothing row: pivot, L1, L2
 
 /// Words of a head cell.
 inline constexpr std::size_t kHeadFirst = 1;

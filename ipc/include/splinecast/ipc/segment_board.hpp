@@ -160,8 +160,10 @@ class SegmentBoardReader {
   /// kRefusalsKept are there.
   [[nodiscard]] RefusedItem refusal(Word index) const noexcept;
 
-  /// What a new solver needs of a knot: copied into `values` (position, velocity, g; D each), which
-  /// the returned spans view. For the one writer only, who races with nobody.
+  /// What a new solver needs of a knot: copied into `values` (kKnotValues·D), which the returned
+  /// spans view. Position, velocity and acceleration are those that its segment begins with. For
+  /// the one writer only, who races with nobody.
+  static constexpr std::size_t kKnotValues = 5;
   [[nodiscard]] core::Knot knot(Word number, Word r, std::span<double> values) const noexcept;
 
  private:

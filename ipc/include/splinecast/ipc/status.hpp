@@ -24,8 +24,10 @@ enum class Refusal : std::uint8_t {
   interval_out_of_range = 3,
   after_finish = 4,
   unknown_kind = 5,
+  lacks_derivatives = 6,  ///< the method needs a velocity, or acceleration, that is not given
+  lag_too_short = 7,      ///< the settle lag is too short for λ with waypoints so close
 };
-inline constexpr std::uint8_t kRefusals = 6;
+inline constexpr std::uint8_t kRefusals = 8;
 
 /// What a sample is worth.
 enum class SampleStatus : std::uint8_t {

@@ -30,8 +30,12 @@ struct ProducerOptions {
 /// What a solver fixes about its curve. What is unset takes its default on a new board; a solver
 /// that takes a board over takes its options too, and may not contradict them.
 struct SolverOptions {
-  std::optional<std::size_t> settle{};    ///< settle lag K, 0 to 64; default 8
+  const core::Method* method = nullptr;   ///< default c2; one that streams
+  std::optional<double> lambda{};         ///< of smoothing, which needs it: λ ≥ 0 in s³
+  std::optional<double> time_scale{};     ///< of rounded; default 1 s
+  std::optional<std::size_t> settle{};    ///< settle lag K; default core::default_settle
   std::optional<core::Tail> tail{};       ///< default bessel
+  bool force_lag = false;                 ///< take a lag that is too short for λ
   std::optional<core::Time> stop_time{};  ///< length of the stop tail; default 250 ms
   std::optional<std::size_t> capacity{};  ///< segments of history; default 4,096
   bool wake = true;                       ///< wake waiting readers: one system call a revision
@@ -48,6 +52,9 @@ struct SolverOptions {
 [[nodiscard]] std::vector<std::string> dimension_units(const RegionHeader& header);
 [[nodiscard]] IngestLimits ingest_limits(const RegionHeader& header) noexcept;
 [[nodiscard]] StreamClock stream_clock(const RegionHeader& header) noexcept;
+
+/// What a header says of the curve: the options that its solver gave.
+[[nodiscard]] core::WindowOptions window_options(const RegionHeader& header);
 
 /// Throws BadRegion, naming both, if a live stream's clock is another time namespace's.
 void require_same_clock(const RegionHeader& header, const std::string& stream);

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "splinecast/core/condition.hpp"
+#include "splinecast/core/knot_ring.hpp"
+#include "splinecast/core/method.hpp"
+#include "splinecast/core/waypoint.hpp"
+
+namespace splinecast::core {
+
+/// Finds the knot velocities of one method, in the rows of a KnotRing: the batch solver over all
+/// knots at once, the sliding window over those that an append still changes.
+///
+/// Holds parameters only: the ring carries the state. No function allocates or throws.
+class KnotSolver {
+ public:
+  KnotSolver() = default;
+  KnotSolver(const KnotSolver&) = delete;
+  KnotSolver& operator=(const KnotSolver&) = delete;
+  virtual ~KnotSolver() = default;
+
+  /// Appends a knot to the ring and eliminates the rows that it completes: O(D). The waypoint must
+  /// be later than the newest knot and carry what the method needs.
+  virtual void push(KnotRing& knots, const Waypoint& waypoint) const noexcept = 0;
+
+  /// Solves knots `last` to the newest while the stream goes on: O(D) per knot.
+  virtual void solve(KnotRing& knots, Tail tail, std::size_t last) const noexcept = 0;
+
+  /// Solves knots `last` to the newest, with the end condition there.
+  virtual void solve(KnotRing& knots, const Condition& end, std::size_t last) const noexcept = 0;
+};
+
+/// The solver of a method; `start` is the condition at knot 0. Parameters and values must have been
+/// checked, and the method must stream.
+[[nodiscard]] std::unique_ptr<const KnotSolver> make_knot_solver(const Interpolant& how,
+                                                                 const Condition& start);
+
+/// Writes what the velocity of a lone knot is: the start condition's, else 0.
+void solve_lone_knot(KnotRing& knots, const Condition& start) noexcept;
+
+/// Back-substitutes velocities from the newest knot down to `last` inclusive.
+void back_substitute_to(KnotRing& knots, std::size_t last) noexcept;
+
+/// Solves the newest knot's velocity with a condition or a tail; the row before it is eliminated.
+void close(KnotRing& knots, const Condition& end) noexcept;
+void close(KnotRing& knots, Tail tail) noexcept;
+
+}  // namespace splinecast::core

@@ -1,0 +1,70 @@
+#include <algorithm>
+
+#include "knot_solvers.hpp"
+
+namespace splinecast::core {
+namespace {
+
+/// `hermite` and `quintic`: what the waypoints give is the solution; a condition asked for at an
+/// end overrides it there.
+class GivenSolver final : public KnotSolver {
+ public:
+  GivenSolver(const Interpolant& how, const Condition& start)
+      : has_accelerations_(how.method->needs_acceleration()), start_(start) {}
+
+  void push(KnotRing& knots, const Waypoint& waypoint) const noexcept override {
+    knots.push(waypoint.time, waypoint.position);
+    const std::size_t n = knots.newest();
+    std::ranges::copy(waypoint.velocity, knots.values(n, KnotRing::kVelocity).begin());
+    if (has_accelerations_) {
+      std::ranges::copy(waypoint.acceleration, knots.values(n, KnotRing::kAcceleration).begin());
+    }
+    if (n == 0) impose(knots, start_, 0);
+    std::ranges::copy(knots.values(n, KnotRing::kVelocity), knots.values(n, KnotRing::kG).begin());
+    if (n == 1 && !has_accelerations_ && start_.kind != ConditionKind::own) {
+      knots.row(0).prefix.gamma =
+          eliminate_first(start_, knots.start_intervals(), knots.values(0, KnotRing::kG));
+    }
+  }
+
+  void solve(KnotRing& knots, Tail /*tail*/, std::size_t last) const noexcept override {
+    back_substitute_to(knots, last);
+  }
+
+  void solve(KnotRing& knots, const Condition& end, std::size_t last) const noexcept override {
+    const std::size_t n = knots.newest();
+    if (n == 0) return;
+    if (has_accelerations_) {
+      impose(knots, end, n);
+    } else if (end.kind != ConditionKind::own) {
+      close(knots, end);
+    }
+    back_substitute_to(knots, last);
+  }
+
+ private:
+  /// Replaces what was given at knot i by what the condition says of it.
+  void impose(KnotRing& knots, const Condition& condition, std::size_t i) const noexcept {
+    const auto kind = condition.kind;
+    const bool stands = kind == ConditionKind::rest || kind == ConditionKind::halt;
+    const auto v = knots.values(i, KnotRing::kVelocity);
+    if (stands) std::ranges::fill(v, 0.0);
+    if (kind == ConditionKind::velocity) std::ranges::copy(condition.value, v.begin());
+    if (!has_accelerations_) return;
+    const auto a = knots.values(i, KnotRing::kAcceleration);
+    if (kind == ConditionKind::natural || kind == ConditionKind::halt) std::ranges::fill(a, 0.0);
+    if (kind == ConditionKind::acceleration) std::ranges::copy(condition.value, a.begin());
+  }
+
+  bool has_accelerations_;
+  Condition start_;
+};
+
+}  // namespace
+
+std::unique_ptr<const KnotSolver> make_given_solver(const Interpolant& how,
+                                                    const Condition& start) {
+  return std::make_unique<GivenSolver>(how, start);
+}
+
+}  // namespace splinecast::core

@@ -1,0 +1,53 @@
+#include "splinecast/core/knot_solver.hpp"
+
+#include <algorithm>
+
+#include "knot_solvers.hpp"
+
+namespace splinecast::core {
+
+std::unique_ptr<const KnotSolver> make_knot_solver(const Interpolant& how, const Condition& start) {
+  switch (how.method->family) {
+    case Family::local:
+      return make_local_solver(how, start);
+    case Family::given:
+      return make_given_solver(how, start);
+    case Family::smoothing:
+      return make_smoothing_solver(how, start);
+    case Family::tridiagonal:
+    case Family::unit:
+      break;
+  }
+  return make_tridiagonal_solver(start);
+}
+
+void solve_lone_knot(KnotRing& knots, const Condition& start) noexcept {
+  const auto v = knots.values(0, KnotRing::kVelocity);
+  if (start.kind == ConditionKind::velocity) {
+    std::ranges::copy(start.value, v.begin());
+  } else {
+    std::ranges::fill(v, 0.0);
+  }
+}
+
+void back_substitute_to(KnotRing& knots, std::size_t last) noexcept {
+  for (std::size_t i = knots.newest(); i-- > last;) {
+    back_substitute(knots.row(i).prefix.gamma, knots.values(i, KnotRing::kG),
+                    knots.values(i + 1, KnotRing::kVelocity), knots.values(i, KnotRing::kVelocity));
+  }
+}
+
+void close(KnotRing& knots, const Condition& end) noexcept {
+  const std::size_t n = knots.newest();
+  if (end.kind == ConditionKind::halt) knots.halt_at_end();
+  solve_last(end, knots.end_intervals(), knots.row(n - 1).prefix.gamma,
+             knots.values(n - 1, KnotRing::kG), knots.values(n, KnotRing::kVelocity));
+}
+
+void close(KnotRing& knots, Tail tail) noexcept {
+  const std::size_t n = knots.newest();
+  solve_tail(tail, knots.end_intervals(), knots.row(n - 1).prefix.gamma,
+             knots.values(n - 1, KnotRing::kG), knots.values(n, KnotRing::kVelocity));
+}
+
+}  // namespace splinecast::core

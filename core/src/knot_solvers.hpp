@@ -1,0 +1,14 @@
+#pragma once
+
+#include "splinecast/core/knot_solver.hpp"
+
+/// One solver a family, each in a file of its own.
+namespace splinecast::core {
+
+std::unique_ptr<const KnotSolver> make_tridiagonal_solver(const Condition& start);
+std::unique_ptr<const KnotSolver> make_local_solver(const Interpolant& how, const Condition& start);
+std::unique_ptr<const KnotSolver> make_given_solver(const Interpolant& how, const Condition& start);
+std::unique_ptr<const KnotSolver> make_smoothing_solver(const Interpolant& how,
+                                                        const Condition& start);
+
+}  // namespace splinecast::core
