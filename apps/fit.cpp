@@ -159,7 +159,7 @@ void add_fit(CLI::App& program, Action& action) {
   auto* verb = program.add_subcommand("fit", "Fit a spline to a file, without shared memory");
   verb->add_option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
       ->required();
-  add_method(*verb);
+
   add_condition(*verb, "--start", options->start,
                 "Condition at the first waypoint (default natural)");
   add_condition(*verb, "--end", options->end,

@@ -14,6 +14,25 @@
 namespace splinecast::apps {
 namespace {
 
+/// ` (3 not increasing, 1 not finite)`; nothing for none.
+std::string in_words(const std::array<ipc::Word, ipc::kRefusals>& refused) {
+  std::string text;
+  for (std::size_t i = 1; i < refused.size(); ++i) {
+    if (refused[i] == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? " (" : ", ", refused[i],
+                        ipc::to_string(static_cast<ipc::Refusal>(i)));
+  }
+  return text.empty() ? text : text + ")";
+}
+
+nlohmann::ordered_json to_json(const std::array<ipc::Word, ipc::kRefusals>& refused) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (std::size_t i = 1; i < refused.size(); ++i) {
+    json[std::string(ipc::to_string(static_cast<ipc::Refusal>(i)))] = refused[i];
+  }
+  return json;
+}
+
 int run_replay(ReplayOptions options) {
   catch_stop_signals();
   ipc::Word unreadable = 0;
@@ -32,15 +51,17 @@ int run_replay(ReplayOptions options) {
                                       {"sent", report.sent},
                                       {"interpolated", report.interpolated},
                                       {"refused", report.refused},
+                                      {"refused_by_reason", to_json(report.refused_by_reason)},
                                       {"skipped", report.skipped},
                                       {"interrupted", report.interrupted}};
     print_report(json.dump(2) + "\n");
   } else {
-    say(fmt::format("'{}': {} waypoints sent, {} interpolated, {} refused, {} rows skipped{}",
+    say(fmt::format("'{}': {} waypoints sent, {} interpolated, {} refused{}, {} rows skipped{}",
                     options.stream, report.sent, report.interpolated, report.refused,
-                    report.skipped, report.interrupted ? "; interrupted" : ""));
+                    in_words(report.refused_by_reason), report.skipped,
+                    report.interrupted ? "; interrupted" : ""));
   }
-  return kOk;
+  return report.refused > 0 && !options.skip_bad ? kFailed : kOk;
 }
 
 void add_playback_options(CLI::App& verb, ReplayOptions& options) {
@@ -73,8 +94,11 @@ void add_playback_options(CLI::App& verb, ReplayOptions& options) {
   add_milliseconds(verb, "--lead", options.lead,
                    "Append each waypoint of a live stream this long before its time (default 200)");
   add_condition(verb, "--start", options.start,
-                "Condition at the first waypoint (default halt; natural if recorded)");
-  add_condition(verb, "--end", options.end, "Condition at the last waypoint (default halt)");
+                "Condition at the first waypoint (default halt; if recorded, the method's own)");
+  add_condition(
+      verb, "--end", options.end,
+      "Condition at the last waypoint (default halt; if recorded, the method's own, which "
+      "for c2 is halt)");
 }
 
 void add_interval(CLI::App& verb, const std::string& name, core::Time& value,
@@ -121,15 +145,18 @@ void add_replay(CLI::App& program, Action& action) {
   add_interval(*verb, "--max-interval", options->limits.max_interval,
                "Most time between waypoints (default 3600)");
   verb->add_flag("--embedded", options->embedded, "Solve in this process");
-  add_settle(*verb, options->solver.settle);
-  add_tail(*verb, options->solver.tail);
+  add_solver_curve(*verb, options->solver);
   verb->add_flag("--json", options->json, "Report as JSON on standard output");
   add_table_options(*verb, options->table);
   add_access(*verb, options->access);
   add_trust(*verb, options->trust);
   verb->callback([&action, options] {
-    if (!options->embedded && (options->solver.settle || options->solver.tail)) {
-      throw CLI::ValidationError("--settle, --tail", "go with --embedded; else tell 'solve'");
+    const ipc::SolverOptions& curve = options->solver;
+    const bool shapes = curve.method != nullptr || curve.lambda || curve.time_scale ||
+                        curve.settle || curve.tail || curve.force_lag;
+    if (shapes && !options->embedded) {
+      throw CLI::ValidationError("--method, --lambda, --time-scale, --settle, --tail, --force-lag",
+                                 "go with --embedded; else tell 'solve'");
     }
     options->solver.access = options->access;
     options->solver.trust = options->trust;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -39,6 +40,7 @@ struct ReplayReport {
   ipc::Word sent = 0;          ///< waypoints accepted by the ring
   ipc::Word interpolated = 0;  ///< of these, by the solver
   ipc::Word refused = 0;       ///< of these, by the solver, with a reason
+  std::array<ipc::Word, ipc::kRefusals> refused_by_reason{};
   ipc::Word skipped = 0;       ///< rows left out under --on-error skip
   bool interrupted = false;
 };

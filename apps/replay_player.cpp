@@ -49,9 +49,7 @@ class Replay {
 
   ReplayReport run() {
     if (!await_solver()) return {.interrupted = true};
-    const ipc::Head before = head();
-    interpolated_before_ = before.knots;
-    refused_before_ = before.refused;
+    before_ = head();
     const core::Time base = first_time();
     require_continuation(base);
     const core::Time shift = table_.times.back() - table_.times.front() + median_interval(table_);
@@ -68,17 +66,20 @@ class Replay {
 
  private:
   [[nodiscard]] ipc::ProducerOptions producer_options() const {
-    const bool live = options_.clock == ipc::StreamClock::monotonic;
-    const core::Condition start{
-        .kind = live ? core::ConditionKind::halt : core::ConditionKind::natural, .value = {}};
     return {.dimensions = table_.dimensions(),
             .names = table_.names,
             .clock = options_.clock,
-            .start = options_.start.value_or(start),
+            .start = options_.start.value_or(unasked()),
             .limits = options_.limits,
             .capacity = options_.capacity,
             .access = options_.access,
             .trust = options_.trust};
+  }
+
+  /// The condition at an end that none was asked for.
+  [[nodiscard]] core::Condition unasked() const {
+    const bool live = options_.clock == ipc::StreamClock::monotonic;
+    return {.kind = live ? core::ConditionKind::halt : core::ConditionKind::own, .value = {}};
   }
 
   /// Lets the embedded solver work off what the ring holds.
@@ -181,8 +182,7 @@ class Replay {
   }
 
   void finish() {
-    const core::Condition halt{.kind = core::ConditionKind::halt, .value = {}};
-    while (producer_.finish(options_.end.value_or(halt)) == ipc::AppendStatus::full) {
+    while (producer_.finish(options_.end.value_or(unasked())) == ipc::AppendStatus::full) {
       if (!await_room()) return;
     }
     solve();
@@ -204,9 +204,13 @@ class Replay {
 
   [[nodiscard]] ReplayReport report() const {
     const ipc::Head now = head();
-    return {.sent = sent_,
-            .interpolated = now.knots - interpolated_before_,
-            .refused = now.refused - refused_before_};
+    ReplayReport report{.sent = sent_,
+                        .interpolated = now.knots - before_.knots,
+                        .refused = now.refused - before_.refused};
+    for (std::size_t i = 0; i < report.refused_by_reason.size(); ++i) {
+      report.refused_by_reason[i] = now.reasons[i] - before_.reasons[i];
+    }
+    return report;
   }
 
   const WaypointTable& table_;
@@ -216,8 +220,7 @@ class Replay {
   ipc::Producer producer_;
   core::Time recorded_start_{};
   ipc::Word sent_ = 0;
-  ipc::Word interpolated_before_ = 0;  ///< by a producer whose stream is continued
-  ipc::Word refused_before_ = 0;
+  ipc::Head before_;  ///< what a producer left whose stream is continued
 };
 
 }  // namespace
@@ -229,6 +232,14 @@ ipc::Word prepare_replay(WaypointTable& table, const ReplayOptions& options) {
   const core::Condition none;
   core::require_values(options.start.value_or(none), table.dimensions());
   core::require_values(options.end.value_or(none), table.dimensions());
+  for (const auto& condition : {options.start, options.end}) {
+    if (condition && !core::is_online(condition->kind)) {
+      throw InputError(
+          fmt::format("condition '{}' needs all waypoints at once: a stream cannot "
+                      "meet it",
+                      core::to_string(*condition)));
+    }
+  }
   return skipped;
 }
 

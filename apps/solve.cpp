@@ -109,9 +109,7 @@ void add_solve(CLI::App& program, Action& action) {
   auto options = std::make_shared<SolveOptions>();
   auto* verb = program.add_subcommand("solve", "Turn the waypoints of streams into splines");
   verb->add_option("STREAM", options->streams, "Streams to solve, in one process")->required();
-  add_settle(*verb, options->solver.settle);
-  add_tail(*verb, options->solver.tail);
-  add_method(*verb);
+  add_solver_curve(*verb, options->solver);
   add_seconds(*verb, "--stop-time", options->solver.stop_time,
               "Time in which a stream that dries up comes to rest (default 0.25)");
   add_count(*verb, "--capacity", options->solver.capacity,

@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 
 #include "support/exit_codes.hpp"
 #include "support/numbers.hpp"
@@ -81,15 +82,62 @@ void add_time_unit(CLI::App& verb, std::optional<TimeUnit>& unit) {
       ->type_name("UNIT");
 }
 
-void add_method(CLI::App& verb) {
+const core::Method& method_named(const std::string& text) {
+  const core::Method* const method = core::find_method(text);
+  if (method != nullptr) return *method;
+  throw CLI::ValidationError("--method",
+                             fmt::format("'{}' is none of {}", text, core::method_names(false)));
+}
+
+void add_lambda(CLI::App& verb, std::optional<double>& lambda, bool* automatic) {
+  verb.add_option_function<std::string>(
+          "--lambda",
+          [&lambda, automatic](const std::string& text) {
+            if (automatic != nullptr && text == "auto") {
+              *automatic = true;
+              return;
+            }
+            lambda = parse_number(text);
+            if (lambda && *lambda >= 0 && std::isfinite(*lambda)) return;
+            throw CLI::ValidationError("--lambda",
+                                       fmt::format("'{}' is no number of 0 or more", text));
+          },
+          automatic == nullptr
+              ? "How much smoothing smooths, in s^3"
+              : "How much smoothing smooths, in s^3, or auto (default): by cross-validation")
+      ->type_name(automatic == nullptr ? "L" : "L|auto");
+}
+
+void add_time_scale(CLI::App& verb, std::optional<double>& time_scale) {
+  verb.add_option_function<std::string>(
+          "--time-scale",
+          [&time_scale](const std::string& text) {
+            time_scale = positive_number("--time-scale", text);
+          },
+          "For rounded: seconds that count as one unit of position (default 1)")
+      ->type_name("SECONDS");
+}
+
+void add_solver_curve(CLI::App& verb, ipc::SolverOptions& options) {
   verb.add_option_function<std::string>(
           "--method",
-          [](const std::string& text) {
-            if (text == "c2") return;
-            throw CLI::ValidationError("--method", fmt::format("'{}' is not known; c2 is", text));
+          [&options](const std::string& text) {
+            options.method = &method_named(text);
+            if (options.method->streams()) return;
+            throw CLI::ValidationError(
+                "--method", fmt::format("{} needs all waypoints at once: only 'fit' has it", text));
           },
-          "Interpolant: c2 (default)")
+          fmt::format("Interpolant: {} (default c2)", core::method_names(true)))
       ->type_name("METHOD");
+  add_lambda(verb, options.lambda, nullptr);
+  add_time_scale(verb, options.time_scale);
+  add_settle(verb, options.settle);
+  add_tail(verb, options.tail);
+  add_force_lag(verb, options.force_lag);
+}
+
+void add_force_lag(CLI::App& verb, bool& force_lag) {
+  verb.add_flag("--force-lag", force_lag, "Smooth also with a settle lag too short for lambda");
 }
 
 void add_condition(CLI::App& verb, const std::string& name, std::optional<core::Condition>& value,
@@ -101,7 +149,7 @@ void add_condition(CLI::App& verb, const std::string& name, std::optional<core::
             if (value) return;
             throw CLI::ValidationError(
                 name, fmt::format("'{}' is none of natural, rest, halt, velocity=N,..., "
-                                  "acceleration=N,...",
+                                  "acceleration=N,..., not-a-knot, periodic",
                                   text));
           },
           help)
@@ -131,7 +179,9 @@ void add_settle(CLI::App& verb, std::optional<std::size_t>& value) {
             throw CLI::ValidationError("--settle",
                                        fmt::format("'{}' is no whole number from 0 to 64", text));
           },
-          "Settle lag: newer waypoints after which a knot is final, 0 to 64 (default 8)")
+          "Settle lag: newer waypoints after which a knot is final, 0 to 64 (default 8 for c2, 64 "
+          "for "
+          "smoothing, else what the method looks ahead)")
       ->type_name("K");
 }
 

@@ -30,8 +30,17 @@ void add_solve(CLI::App& program, Action& action);
 void add_table_options(CLI::App& verb, TableOptions& options);
 void add_time_unit(CLI::App& verb, std::optional<TimeUnit>& unit);
 
-/// `--method`: the interpolant.
-void add_method(CLI::App& verb);
+/// The method of that name; else CLI::ValidationError.
+[[nodiscard]] const core::Method& method_named(const std::string& text);
+
+/// What shapes a curve that is solved online: `--method`, `--lambda`, `--time-scale`, `--settle`,
+/// `--tail`, `--force-lag`.
+void add_solver_curve(CLI::App& verb, ipc::SolverOptions& options);
+void add_force_lag(CLI::App& verb, bool& force_lag);
+
+/// `--lambda`; `automatic`, if not null, is set by `auto`.
+void add_lambda(CLI::App& verb, std::optional<double>& lambda, bool* automatic);
+void add_time_scale(CLI::App& verb, std::optional<double>& time_scale);
 
 /// An option that takes a condition, a tail, a settle lag, or a time of 0 or more in seconds or
 /// milliseconds.

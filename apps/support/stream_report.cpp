@@ -55,6 +55,7 @@ ordered_json refusals_json(const ipc::StreamInfo& info) {
 
 ordered_json solver_json(const ipc::StreamInfo& info) {
   const ipc::Head& head = info.head;
+  const core::Method& method = *ipc::window_options(*info.spline).interpolant.method;
   ordered_json refused = ordered_json::object();
   for (std::size_t i = 1; i < ipc::kRefusals; ++i) {
     refused[std::string(ipc::to_string(static_cast<ipc::Refusal>(i)))] = head.reasons[i];
@@ -63,7 +64,9 @@ ordered_json solver_json(const ipc::StreamInfo& info) {
       {"alive", info.solver_alive},
       {"pid", info.spline->owner_pid},
       {"epoch", info.spline->epoch},
-      {"method", "c2"},
+      {"method", method.name},
+      {"lambda", info.spline->lambda},
+      {"time_scale", info.spline->time_scale},
       {"settle", info.spline->settle},
       {"tail", core::to_string(static_cast<core::Tail>(info.spline->tail))},
       {"stop_time_ns", info.spline->stop_time},

@@ -197,6 +197,10 @@ AppendStatus Producer::append(const core::Waypoint& waypoint) noexcept {
 
 AppendStatus Producer::finish(const core::Condition& end) {
   core::require_values(end, impl_->ring.header.dimensions);
+  if (!core::is_online(end.kind)) {
+    throw BadRequest("end condition '" + core::to_string(end) +
+                     "' needs all waypoints at once: a stream cannot meet it");
+  }
   if (!impl_->solver) impl_->look_for_solver();
   return impl_->appended(impl_->ring.writer.finish(end, impl_->consumed()));
 }

@@ -14,35 +14,21 @@ namespace splinecast::ipc {
 namespace {
 
 using core::Time;
-using testing::FixedClock;
-using testing::MemoryBoard;
-using testing::MemoryRing;
 using testing::Mesh;
 using testing::random_mesh;
 
-struct Stream {
-  MemoryRing ring;
-  MemoryBoard board;
-  StreamSolver solver;
-  FixedClock clock;
-
+struct Stream : testing::MemoryStream {
   explicit Stream(std::size_t dimensions, core::WindowOptions how = {})
-      : ring(dimensions, 1024),
-        board(dimensions, 1024),
-        solver(ring.reader, board.writer, board.reader, how, {}) {}
+      : MemoryStream(dimensions, std::move(how), 1024) {}
 
+  /// Appends, a revision each.
   void send(const Mesh& mesh, std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
-      ASSERT_EQ(ring.writer.append({mesh.times[i], mesh.position(i), {}, {}}, board.reader.tail()),
-                AppendStatus::accepted);
+      ASSERT_EQ(append(mesh.times[i], mesh.position(i)), AppendStatus::accepted);
       solver.step(clock);
     }
   }
-  void finish() {
-    ASSERT_EQ(ring.writer.finish({core::ConditionKind::halt, {}}, board.reader.tail()),
-              AppendStatus::accepted);
-    solver.step(clock);
-  }
+  void finish() { MemoryStream::finish({core::ConditionKind::halt, {}}); }
 };
 
 TEST(Sampler, GivesEachStatusItsTime) {

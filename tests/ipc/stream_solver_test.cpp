@@ -9,76 +9,21 @@
 #include "splinecast/ipc/sampler.hpp"
 #include "support/memory_stream.hpp"
 #include "support/mesh.hpp"
+#include "support/online.hpp"
 
 namespace splinecast::ipc {
 namespace {
 
 using core::Time;
-using testing::FixedClock;
-using testing::MemoryBoard;
-using testing::MemoryRing;
+using testing::MemoryStream;
 using testing::Mesh;
 using testing::random_mesh;
-
-/// A whole stream in plain memory: ring, board and solver.
-struct MemoryStream {
-  MemoryRing ring;
-  MemoryBoard board;
-  core::WindowOptions window;
-  IngestLimits limits;
-  StreamSolver solver;
-  FixedClock clock;
-
-  explicit MemoryStream(std::size_t dimensions, core::WindowOptions how = {},
-                        std::size_t ring_capacity = 64, std::size_t board_capacity = 1024,
-                        IngestLimits solver_limits = {})
-      : ring(dimensions, ring_capacity),
-        board(dimensions, board_capacity),
-        window(how),
-        limits(solver_limits),
-        solver(ring.reader, board.writer, board.reader, window, limits) {}
-
-  AppendStatus append(Time t, std::span<const double> x) {
-    return ring.writer.append({t, x, {}, {}}, board.reader.tail());
-  }
-  void send(const Mesh& mesh, std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i < to; ++i) {
-      while (append(mesh.times[i], mesh.position(i)) == AppendStatus::full) solver.step(clock);
-    }
-  }
-  void finish(const core::Condition& end = {}) {
-    while (ring.writer.finish(end, board.reader.tail()) == AppendStatus::full) solver.step(clock);
-    drain();
-  }
-  void drain() {
-    while (solver.step(clock).consumed > 0) {
-    }
-  }
-  /// What happens when the solver is killed and another one comes.
-  void replace_solver() {
-    board.replace_writer();
-    solver = StreamSolver(ring.reader, board.writer, board.reader, window, limits);
-  }
-};
 
 /// The segments that a window gives when it is fed directly.
 core::PiecewisePolynomial direct(const Mesh& mesh, const core::WindowOptions& how,
                                  const core::Condition& end) {
-  core::SlidingWindow window(mesh.dimensions, how);
-  core::PiecewisePolynomial curve(mesh.dimensions);
-  core::Segment segment(mesh.dimensions);
-  for (std::size_t i = 0; i <= mesh.size(); ++i) {
-    if (i < mesh.size()) {
-      window.append({mesh.times[i], mesh.position(i)});
-    } else {
-      window.finish(end);
-    }
-    while (curve.segments() < window.settled_segments()) {
-      window.segment(curve.segments(), segment);
-      curve.append(segment);
-    }
-  }
-  return curve;
+  return testing::online(
+      {.dimensions = mesh.dimensions, .times = mesh.times, .positions = mesh.positions}, how, end);
 }
 
 void expect_same_bits(MemoryStream& stream, const Mesh& mesh,

@@ -10,6 +10,7 @@
 #include "splinecast/ipc/segment_board.hpp"
 #include "splinecast/ipc/stream_solver.hpp"
 #include "splinecast/ipc/waypoint_ring.hpp"
+#include "support/mesh.hpp"
 
 namespace splinecast::testing {
 
@@ -66,6 +67,54 @@ class FixedClock final : public ipc::Clock {
  public:
   [[nodiscard]] core::Time now() const noexcept override { return time; }
   core::Time time{};
+};
+
+/// A whole stream in plain memory: ring, board and solver.
+struct MemoryStream {
+  MemoryRing ring;
+  MemoryBoard board;
+  core::WindowOptions window;
+  ipc::IngestLimits limits;
+  ipc::StreamSolver solver;
+  FixedClock clock;
+
+  explicit MemoryStream(std::size_t dimensions, core::WindowOptions how = {},
+                        std::size_t ring_capacity = 64, std::size_t board_capacity = 1024,
+                        ipc::IngestLimits solver_limits = {})
+      : ring(dimensions, ring_capacity),
+        board(dimensions, board_capacity),
+        window(how),
+        limits(solver_limits),
+        solver(ring.reader, board.writer, board.reader, window, limits) {}
+
+  ipc::AppendStatus append(const core::Waypoint& waypoint) {
+    return ring.writer.append(waypoint, board.reader.tail());
+  }
+  ipc::AppendStatus append(core::Time t, std::span<const double> x) {
+    return append({.time = t, .position = x});
+  }
+  /// Appends a waypoint, letting the solver work where the ring is full.
+  void send(const core::Waypoint& waypoint) {
+    while (append(waypoint) == ipc::AppendStatus::full) solver.step(clock);
+  }
+  void send(const Mesh& mesh, std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) send({mesh.times[i], mesh.position(i), {}, {}});
+  }
+  void finish(const core::Condition& end = {}) {
+    while (ring.writer.finish(end, board.reader.tail()) == ipc::AppendStatus::full) {
+      solver.step(clock);
+    }
+    drain();
+  }
+  void drain() {
+    while (solver.step(clock).consumed > 0) {
+    }
+  }
+  /// What happens when the solver is killed and another one comes.
+  void replace_solver() {
+    board.replace_writer();
+    solver = ipc::StreamSolver(ring.reader, board.writer, board.reader, window, limits);
+  }
 };
 
 }  // namespace splinecast::testing
