@@ -109,4 +109,6 @@ double largest_difference(const PiecewisePolynomial& a, const PiecewisePolynomia
   return result;
 }
 
+double relative_bound(double ratio, int r) { return ratio > 100 && r > 1 ? 2e-11 : 1e-12; }
+
 }  // namespace splinecast::testing
