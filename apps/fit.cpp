@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "splinecast/core/c2_spline.hpp"
+#include "splinecast/core/calculus.hpp"
 #include "splinecast/core/sliding_window.hpp"
 #include "support/exit_codes.hpp"
 #include "support/options.hpp"
@@ -91,10 +92,11 @@ void emit_samples(const core::PiecewisePolynomial& curve, const std::vector<core
 }
 
 /// Coefficients [segment][dimension][power, highest first], all of one order.
-nlohmann::json coefficients_json(const core::PiecewisePolynomial& curve) {
+nlohmann::json coefficients_json(const core::PiecewisePolynomial& mixed) {
+  const core::PiecewisePolynomial curve = core::raised(mixed, mixed.order());
   const auto order = static_cast<std::size_t>(curve.order());
   nlohmann::json segments = nlohmann::json::array();
-  if (curve.breaks().size() < 2) return segments;  // a hold has no piece
+  if (curve.is_hold()) return segments;  // a hold has no piece
   for (std::size_t i = 0; i < curve.segments(); ++i) {
     nlohmann::json segment = nlohmann::json::array();
     for (std::size_t d = 0; d < curve.dimensions(); ++d) {

@@ -1,13 +1,15 @@
 #include "splinecast/core/segment.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace splinecast::core {
 namespace {
 
-/// Horner's rule for a polynomial and its first three derivatives at once.
-template <int Order>
-void evaluate_order(std::size_t dimensions, const double* __restrict c, double u,
+/// Horner's rule for a polynomial and its first three derivatives at once. `Order` is an int, or an
+/// integral_constant, for which the loop over powers is unrolled.
+template <typename Order>
+void evaluate_order(Order order, std::size_t dimensions, const double* __restrict c, double u,
                     double* __restrict p, double* __restrict v, double* __restrict a,
                     double* __restrict j) noexcept {
   for (std::size_t d = 0; d < dimensions; ++d) {
@@ -15,7 +17,7 @@ void evaluate_order(std::size_t dimensions, const double* __restrict c, double u
     double velocity = 0;
     double acceleration = 0;
     double jerk = 0;
-    for (int power = Order - 1; power >= 0; --power) {
+    for (int power = order - 1; power >= 0; --power) {
       const double coefficient = c[static_cast<std::size_t>(power) * dimensions + d];
       position = position * u + coefficient;
       if (power >= 1) velocity = velocity * u + power * coefficient;
@@ -81,11 +83,28 @@ void write_quintic(const Interval& i, Segment& out) noexcept {
 }  // namespace
 
 void evaluate(int order, std::span<const double> coefficients, double u, StateRef out) noexcept {
-  const std::size_t dimensions = out.position.size();
-  const auto evaluate_at =
-      order == kCubicOrder ? &evaluate_order<kCubicOrder> : &evaluate_order<kMaxOrder>;
-  evaluate_at(dimensions, coefficients.data(), u, out.position.data(), out.velocity.data(),
-              out.acceleration.data(), out.jerk.data());
+  const auto evaluate_as = [&](auto any_order) {
+    evaluate_order(any_order, out.position.size(), coefficients.data(), u, out.position.data(),
+                   out.velocity.data(), out.acceleration.data(), out.jerk.data());
+  };
+  if (order == kCubicOrder) {
+    evaluate_as(std::integral_constant<int, kCubicOrder>{});
+  } else if (order == kMaxOrder) {
+    evaluate_as(std::integral_constant<int, kMaxOrder>{});
+  } else {
+    evaluate_as(order);
+  }
+}
+
+void evaluate_derivative(int order, std::span<const double> coefficients, double u, int derivative,
+                         std::span<double> out) noexcept {
+  std::ranges::fill(out, 0.0);
+  for (int power = order - 1; power >= derivative; --power) {
+    double factor = 1;  // exact: 15! < 2^53
+    for (int k = 0; k < derivative; ++k) factor *= power - k;
+    const double* row = coefficients.data() + static_cast<std::size_t>(power) * out.size();
+    for (std::size_t d = 0; d < out.size(); ++d) out[d] = out[d] * u + factor * row[d];
+  }
 }
 
 double left_acceleration(const Interval& interval, std::size_t d) noexcept {

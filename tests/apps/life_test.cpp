@@ -275,7 +275,7 @@ TEST_F(Life, AKilledProducersStreamIsContinuedOnlyWhereTimeGoesOn) {
   other_start.insert(other_start.end(), {"--start", "halt", "--from", "15"});
   const Ended contradicting = run(other_start);
   EXPECT_EQ(contradicting.code, 2);
-  EXPECT_NE(contradicting.err.find("start condition natural, not halt"), std::string::npos)
+  EXPECT_NE(contradicting.err.find("start condition own, not halt"), std::string::npos)
       << contradicting.err;
   auto later = replay();
   later.insert(later.end(), {"--from", "15"});

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
 #include "support/dense_spline.hpp"
 #include "support/mesh.hpp"
@@ -73,6 +74,7 @@ TEST(C2Spline, InterpolatesIsC2AndAgreesWithADenseSolveForEveryPairingOfConditio
       const double scale = wanted.cwiseAbs().maxCoeff();
       State state(3);
       State before(3);
+      std::vector<double> step(3);
       for (std::size_t i = 0; i < mesh.size(); ++i) {
         curve.evaluate(mesh.times[i], state.ref());
         for (std::size_t d = 0; d < 3; ++d) {
@@ -84,9 +86,10 @@ TEST(C2Spline, InterpolatesIsC2AndAgreesWithADenseSolveForEveryPairingOfConditio
         if (i == 0 || i + 1 == mesh.size()) continue;
         const double h = to_seconds(mesh.times[i] - mesh.times[i - 1]);
         core::evaluate(curve.order_of(i - 1), curve.coefficients(i - 1), h, before.ref());
+        curve.jump(i, 2, step);
         for (std::size_t d = 0; d < 3; ++d) {
           EXPECT_NEAR(before.acceleration()[d], state.acceleration()[d], 1e-6) << i;
-          EXPECT_NEAR(curve.acceleration_step(i)[d], 0, 1e-7) << i;
+          EXPECT_NEAR(step[d], 0, 1e-6) << i;
         }
       }
     }
@@ -125,7 +128,7 @@ TEST(C2Spline, TwoNaturalWaypointsMakeALineAndOneMakesAHold) {
 }
 
 TEST(C2Spline, ReproducesCubicsOnRandomMeshes) {
-  rc::check("cubics are reproduced", [](std::uint64_t seed) {
+  EXPECT_TRUE(rc::check("cubics are reproduced", [](std::uint64_t seed) {
     Mesh mesh = random_mesh(seed, 3 + seed % 40, 2, 10);
     const auto c = testing::random_values(seed + 1, 8);
     const auto cubic = [&](double t, std::size_t d, int derivative) {
@@ -155,7 +158,7 @@ TEST(C2Spline, ReproducesCubicsOnRandomMeshes) {
         RC_ASSERT(std::abs(state.velocity()[d] - cubic(to_seconds(t), d, 1)) < 1e-9 * scale);
       }
     }
-  });
+  }));
 }
 
 TEST(C2Spline, ShiftingTimeChangesNoBit) {

@@ -18,6 +18,9 @@ namespace splinecast::core {
 inline constexpr int kCubicOrder = 4;
 inline constexpr int kMaxOrder = 6;
 
+/// Highest order of a polynomial that is evaluated: a quintic integrated or raised leaves room.
+inline constexpr int kMaxPolynomialOrder = 16;
+
 /// What a segment is for; readers derive a sample's status from it.
 enum class SegmentKind : std::uint8_t {
   spline = 0,     ///< between two waypoints
@@ -43,10 +46,16 @@ struct Segment {
 
 /// Evaluates position, velocity, acceleration and jerk at u seconds after the left knot.
 ///
-/// `coefficients` holds order·D values, order being 4 or 6; D is the size of each span of `out`.
-/// By Horner's rule, in the same operations everywhere: the bits depend on nothing but the
-/// arguments. O(order·D). Never throws or allocates; safe from any thread.
+/// `coefficients` holds order·D values, 1 ≤ order ≤ kMaxPolynomialOrder; D is the size of each span
+/// of `out`. By Horner's rule, in the same operations everywhere: the bits depend on nothing but
+/// the arguments. O(order·D). Never throws or allocates; safe from any thread.
 void evaluate(int order, std::span<const double> coefficients, double u, StateRef out) noexcept;
+
+/// Evaluates the derivative-th derivative (≥ 0; 0 is the position) at u seconds after the left
+/// knot, in the operations, and hence to the bits, of `evaluate`. `out` takes D values. O(order·D).
+/// Never throws or allocates; safe from any thread.
+void evaluate_derivative(int order, std::span<const double> coefficients, double u, int derivative,
+                         std::span<double> out) noexcept;
 
 /// An interval between two knots together with what the solve found at them. Spans hold one value
 /// per dimension. A view: it owns nothing.

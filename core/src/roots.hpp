@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+/// Real roots of polynomials on the unit interval. Internal.
+namespace splinecast::core {
+
+/// Most coefficients of a polynomial whose roots are asked for: those of the derivative of |v|² for
+/// a curve of order kMaxPolynomialOrder.
+inline constexpr std::size_t kMaxRootCoefficients = 28;
+
+/// Roots in ascending order: at most as many as the degree, and the two ends.
+struct Roots {
+  std::array<double, kMaxRootCoefficients + 1> values{};
+  std::size_t count = 0;
+
+  [[nodiscard]] const double* begin() const noexcept { return values.data(); }
+  [[nodiscard]] const double* end() const noexcept { return values.data() + count; }
+};
+
+/// Σ c_k s^k by Horner's rule.
+[[nodiscard]] double value_at(std::span<const double> c, double s) noexcept;
+
+/// The roots of Σ c_k s^k, lowest power first, in 0 ≤ s ≤ 1; none if it is constant. At the ends of
+/// the interval, and where the polynomial turns, |value| ≤ tolerance counts as zero. At most
+/// kMaxRootCoefficients coefficients. Does not allocate; bounded work, O(degree³).
+///
+/// The roots of the derivative cut the interval into pieces on which the polynomial is monotone, so
+/// that each holds at most one root, between ends of different sign: in closed form up to degree 2,
+/// above by Newton's steps inside the bracket. The closed forms of Cardano and Ferrari would lose
+/// their digits to cancellation where the leading coefficient is small, as on every nearly straight
+/// segment, or where roots lie close together; and there is none for the quintics at a halt.
+[[nodiscard]] Roots unit_roots(std::span<const double> c, double tolerance) noexcept;
+
+}  // namespace splinecast::core
