@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "splinecast/core/c2_spline.hpp"
+#include "splinecast/core/sliding_window.hpp"
+#include "support/online.hpp"
 
 namespace splinecast::testing {
 namespace {

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "splinecast/core/piecewise_polynomial.hpp"
-#include "splinecast/core/sliding_window.hpp"
 #include "support/mesh.hpp"
 
 namespace splinecast::testing {
