@@ -2,11 +2,10 @@
 
 #include <cstdlib>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "splinecast/core/c2_spline.hpp"
-#include "splinecast/core/calculus.hpp"
 #include "splinecast/core/sliding_window.hpp"
+#include "support/emit.hpp"
 #include "support/exit_codes.hpp"
 #include "support/options.hpp"
 #include "support/output.hpp"
@@ -24,7 +23,7 @@ struct FitOptions {
   std::optional<core::Tail> tail;
   std::string at;
   std::optional<core::Time> dt;
-  std::string emit = "samples";
+  Emit emit = Emit::samples;
   std::string output;
 };
 
@@ -75,51 +74,6 @@ void require_inside(const std::vector<core::Time>& times, const core::PiecewiseP
   }
 }
 
-/// Samples at the given times, or every dt from the first to the last waypoint.
-void emit_samples(const core::PiecewisePolynomial& curve, const std::vector<core::Time>& at,
-                  const FitOptions& options, Output& output) {
-  SampleWriter writer(output, curve.dimensions(), false);
-  core::State state(curve.dimensions());
-  const auto write = [&](core::Time t) {
-    curve.evaluate(t, state.ref());
-    writer.write(t, state);
-  };
-  for (const core::Time t : at) write(t);
-  if (!options.dt) return;
-  const core::Time last = curve.breaks().back();
-  core::Time t = curve.breaks().front();
-  for (write(t); last - t >= *options.dt; write(t)) t += *options.dt;
-}
-
-/// Coefficients [segment][dimension][power, highest first], all of one order.
-nlohmann::json coefficients_json(const core::PiecewisePolynomial& mixed) {
-  const core::PiecewisePolynomial curve = core::raised(mixed, mixed.order());
-  const auto order = static_cast<std::size_t>(curve.order());
-  nlohmann::json segments = nlohmann::json::array();
-  if (curve.is_hold()) return segments;  // a hold has no piece
-  for (std::size_t i = 0; i < curve.segments(); ++i) {
-    nlohmann::json segment = nlohmann::json::array();
-    for (std::size_t d = 0; d < curve.dimensions(); ++d) {
-      nlohmann::json powers = nlohmann::json::array();
-      for (std::size_t k = order; k-- > 0;) {
-        powers.push_back(curve.coefficients(i)[k * curve.dimensions() + d]);
-      }
-      segment.push_back(std::move(powers));
-    }
-    segments.push_back(std::move(segment));
-  }
-  return segments;
-}
-
-void emit_piecewise_polynomial(const core::PiecewisePolynomial& curve, Output& output) {
-  nlohmann::ordered_json json;
-  json["breaks_ns"] = nlohmann::json::array();
-  for (const core::Time t : curve.breaks()) json["breaks_ns"].push_back(t.count());
-  json["coefficients"] = coefficients_json(curve);
-  output.write(json.dump());
-  output.write("\n");
-}
-
 int run_fit(const FitOptions& options) {
   const WaypointTable table = read_waypoints(options.file, options.table);
   require_spline_input(table);
@@ -128,10 +82,10 @@ int run_fit(const FitOptions& options) {
                                      : read_times(options.at, options.table.time_unit);
   require_inside(at, curve, options.at);
   Output output(options.output);  // after all input was read: it may be the same file
-  if (options.emit == "pp") {
-    emit_piecewise_polynomial(curve, output);
+  if (options.emit == Emit::samples) {
+    emit_samples(curve, at, options.dt, output);
   } else {
-    emit_samples(curve, at, options, output);
+    emit_json(curve, options.emit, output);
   }
   output.close();
   return kOk;
@@ -144,7 +98,7 @@ void require_consistent(const FitOptions& options) {
   if (!options.online && (options.settle || options.tail)) {
     refuse("--settle, --tail", "go with --online only");
   }
-  if (options.emit == "samples") {
+  if (options.emit == Emit::samples) {
     if (options.at.empty() && !options.dt) refuse("fit", "needs --at or --dt to write samples");
   } else if (!options.at.empty() || options.dt) {
     refuse("--at, --dt", "go with --emit samples only");
@@ -152,6 +106,22 @@ void require_consistent(const FitOptions& options) {
   if (options.dt && *options.dt <= core::Time::zero()) {
     refuse("--dt", "must be at least a nanosecond");
   }
+}
+
+void add_emit(CLI::App& verb, Emit& value) {
+  verb.add_option_function<std::string>(
+          "--emit",
+          [&value](const std::string& text) {
+            const auto emit = parse_emit(text);
+            if (!emit) {
+              throw CLI::ValidationError(
+                  "--emit", fmt::format("'{}' is none of samples, pp, bezier, bspline", text));
+            }
+            value = *emit;
+          },
+          "What to write: samples (CSV, default); as JSON pp (piecewise polynomial), bezier "
+          "(control points), bspline")
+      ->type_name("WHAT");
 }
 
 }  // namespace
@@ -173,10 +143,7 @@ void add_fit(CLI::App& program, Action& action) {
                  ->type_name("FILE");
   add_seconds(*verb, "--dt", options->dt, "Sample this often, from the first waypoint on");
   verb->get_option("--dt")->excludes(at);
-  verb->add_option("--emit", options->emit,
-                   "What to write: samples (CSV, default) or pp (piecewise polynomial, JSON)")
-      ->type_name("WHAT")
-      ->check(CLI::IsMember({"samples", "pp"}));
+  add_emit(*verb, options->emit);
   verb->add_option("-o,--output", options->output, "File to write (default: standard output)")
       ->type_name("OUT");
   add_table_options(*verb, options->table);

@@ -21,10 +21,13 @@ struct Ended {
   std::string err;  ///< standard error
 };
 
-/// A running `splinecast` process. Killed when it goes out of scope, and with the test.
+/// A running process. Killed when it goes out of scope, and with the test.
 class Process {
  public:
+  /// Starts `splinecast`.
   explicit Process(const std::vector<std::string>& arguments);
+  /// Starts any program, by its path.
+  Process(const std::string& program, const std::vector<std::string>& arguments);
   Process(Process&& other) noexcept;
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
