@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <memory>
 
-#include "splinecast/core/c2_spline.hpp"
-#include "splinecast/core/sliding_window.hpp"
+#include "support/curve_fit.hpp"
 #include "support/emit.hpp"
 #include "support/exit_codes.hpp"
 #include "support/options.hpp"
@@ -16,51 +16,12 @@ namespace {
 struct FitOptions {
   std::string file;
   TableOptions table;
-  std::optional<core::Condition> start;
-  std::optional<core::Condition> end;
-  bool online = false;
-  std::optional<std::size_t> settle;
-  std::optional<core::Tail> tail;
+  CurveOptions curve;
   std::string at;
   std::optional<core::Time> dt;
   Emit emit = Emit::samples;
   std::string output;
 };
-
-/// Feeds the waypoints through the sliding window, as the solver does, and keeps each segment as it
-/// settles.
-core::PiecewisePolynomial fit_online(const WaypointTable& table, const FitOptions& options) {
-  core::WindowOptions how;
-  how.settle = options.settle.value_or(how.settle);
-  how.tail = options.tail.value_or(how.tail);
-  how.start = options.start.value_or(core::Condition{});
-  core::SlidingWindow window(table.dimensions(), how);
-  core::PiecewisePolynomial curve(table.dimensions());
-  core::Segment segment(table.dimensions());
-  const auto take_settled = [&] {
-    while (curve.segments() < window.settled_segments()) {
-      window.segment(curve.segments(), segment);
-      curve.append(segment);
-    }
-  };
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    window.append(table.waypoint(i));
-    take_settled();
-  }
-  const core::Condition end =
-      options.end.value_or(core::Condition{.kind = core::ConditionKind::halt, .value = {}});
-  core::require_values(end, table.dimensions());
-  window.finish(end);
-  take_settled();
-  return curve;
-}
-
-core::PiecewisePolynomial fit(const WaypointTable& table, const FitOptions& options) {
-  if (options.online) return fit_online(table, options);
-  return core::c2_spline(table.times, table.positions, table.dimensions(),
-                         options.start.value_or(core::Condition{}),
-                         options.end.value_or(core::Condition{}));
-}
 
 void require_inside(const std::vector<core::Time>& times, const core::PiecewisePolynomial& curve,
                     const std::string& file) {
@@ -77,7 +38,7 @@ void require_inside(const std::vector<core::Time>& times, const core::PiecewiseP
 int run_fit(const FitOptions& options) {
   const WaypointTable table = read_waypoints(options.file, options.table);
   require_spline_input(table);
-  const auto curve = fit(table, options);
+  const auto curve = fit_table(table, *options.curve.methods.front(), options.curve);
   const auto at = options.at.empty() ? std::vector<core::Time>{}
                                      : read_times(options.at, options.table.time_unit);
   require_inside(at, curve, options.at);
@@ -95,9 +56,21 @@ void require_consistent(const FitOptions& options) {
   const auto refuse = [](const std::string& name, const std::string& why) {
     throw CLI::ValidationError(name, why);
   };
-  if (!options.online && (options.settle || options.tail)) {
-    refuse("--settle, --tail", "go with --online only");
+  const CurveOptions& curve = options.curve;
+  const auto has = [&](std::string_view name) {
+    return std::ranges::any_of(curve.methods, [&](const auto* m) { return m->name == name; });
+  };
+  if (!curve.online && (curve.settle || curve.tail || curve.force_lag)) {
+    refuse("--settle, --tail, --force-lag", "go with --online only");
   }
+  if (curve.online && curve.lambda_is_auto) refuse("--lambda auto", "needs all waypoints at once");
+  if ((curve.lambda || curve.lambda_is_auto) && !has("smoothing")) {
+    refuse("--lambda", "goes with --method smoothing only");
+  }
+  if (curve.time_scale && !has("rounded")) {
+    refuse("--time-scale", "goes with --method rounded only");
+  }
+  if (curve.methods.size() > 1) refuse("--method", "is given more than once");
   if (options.emit == Emit::samples) {
     if (options.at.empty() && !options.dt) refuse("fit", "needs --at or --dt to write samples");
   } else if (!options.at.empty() || options.dt) {
@@ -106,6 +79,27 @@ void require_consistent(const FitOptions& options) {
   if (options.dt && *options.dt <= core::Time::zero()) {
     refuse("--dt", "must be at least a nanosecond");
   }
+}
+
+void add_curve(CLI::App& verb, CurveOptions& options) {
+  verb.add_option_function<std::vector<std::string>>(
+          "--method",
+          [&options](const std::vector<std::string>& names) {
+            for (const std::string& name : names) options.methods.push_back(&method_named(name));
+          },
+          fmt::format("Interpolant: {} (default c2)", core::method_names(false)))
+      ->delimiter(',')
+      ->type_name("METHOD");
+  add_lambda(verb, options.lambda, &options.lambda_is_auto);
+  add_time_scale(verb, options.time_scale);
+  add_condition(verb, "--start", options.start,
+                "Condition at the first waypoint (default natural for c2, else the method's own)");
+  add_condition(verb, "--end", options.end,
+                "Condition at the last waypoint (default likewise; with --online halt for c2)");
+  verb.add_flag("--online", options.online, "As the solver would: through the sliding window");
+  add_settle(verb, options.settle);
+  add_tail(verb, options.tail);
+  add_force_lag(verb, options.force_lag);
 }
 
 void add_emit(CLI::App& verb, Emit& value) {
@@ -131,14 +125,7 @@ void add_fit(CLI::App& program, Action& action) {
   auto* verb = program.add_subcommand("fit", "Fit a spline to a file, without shared memory");
   verb->add_option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
       ->required();
-
-  add_condition(*verb, "--start", options->start,
-                "Condition at the first waypoint (default natural)");
-  add_condition(*verb, "--end", options->end,
-                "Condition at the last waypoint (default natural; halt with --online)");
-  verb->add_flag("--online", options->online, "As the solver would: through the sliding window");
-  add_settle(*verb, options->settle);
-  add_tail(*verb, options->tail);
+  add_curve(*verb, options->curve);
   auto* at = verb->add_option("--at", options->at, "File with a time column: where to sample")
                  ->type_name("FILE");
   add_seconds(*verb, "--dt", options->dt, "Sample this often, from the first waypoint on");
@@ -148,6 +135,7 @@ void add_fit(CLI::App& program, Action& action) {
       ->type_name("OUT");
   add_table_options(*verb, options->table);
   verb->callback([&action, options] {
+    if (options->curve.methods.empty()) options->curve.methods.push_back(&core::c2());
     require_consistent(*options);
     action = [options] { return run_fit(*options); };
   });

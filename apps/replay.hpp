@@ -41,7 +41,7 @@ struct ReplayReport {
   ipc::Word interpolated = 0;  ///< of these, by the solver
   ipc::Word refused = 0;       ///< of these, by the solver, with a reason
   std::array<ipc::Word, ipc::kRefusals> refused_by_reason{};
-  ipc::Word skipped = 0;       ///< rows left out under --on-error skip
+  ipc::Word skipped = 0;  ///< rows left out under --on-error skip
   bool interrupted = false;
 };
 

@@ -37,6 +37,15 @@ class WaypointTable {
   [[nodiscard]] std::size_t size() const noexcept { return times.size(); }
   [[nodiscard]] core::Waypoint waypoint(std::size_t i) const noexcept;
 
+  /// A view of all of them.
+  [[nodiscard]] core::Waypoints waypoints() const noexcept {
+    return {.dimensions = dimensions(),
+            .times = times,
+            .positions = positions,
+            .velocities = velocities,
+            .accelerations = accelerations};
+  }
+
   /// A table of the same file and columns without rows, and row i of such a table for it.
   [[nodiscard]] WaypointTable without_rows() const;
   void append_row(const WaypointTable& from, std::size_t i);

@@ -83,6 +83,12 @@ void require_options(const SolverOptions& options) {
   if (method.family == core::Family::smoothing && !options.lambda) {
     throw BadRequest("method smoothing needs a lambda: online it cannot be chosen");
   }
+  if (options.lambda && method.family != core::Family::smoothing) {
+    throw BadRequest("lambda is for method smoothing, not for " + std::string(method.name));
+  }
+  if (options.time_scale && method.laws.is_scale_free) {
+    throw BadRequest("the time scale is for method rounded, not for " + std::string(method.name));
+  }
   if (options.tail && method.has_own_tail()) {
     throw BadRequest("method " + std::string(method.name) + " has a tail of its own, not '" +
                      std::string(core::to_string(*options.tail)) + "'");
