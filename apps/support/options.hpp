@@ -21,6 +21,7 @@ void add_demo(CLI::App& program, Action& action);
 void add_fit(CLI::App& program, Action& action);
 void add_info(CLI::App& program, Action& action);
 void add_ls(CLI::App& program, Action& action);
+void add_methods(CLI::App& program, Action& action);
 void add_replay(CLI::App& program, Action& action);
 void add_rm(CLI::App& program, Action& action);
 void add_sample(CLI::App& program, Action& action);
