@@ -46,7 +46,8 @@ PiecewisePolynomial differentiated(const PiecewisePolynomial& curve) {
     const int order = std::max(curve.order_of(i) - 1, 1);
     std::vector<double> slopes(static_cast<std::size_t>(order) * dimensions);
     for (std::size_t k = dimensions; k < c.size(); ++k) {
-      slopes[k - dimensions] = static_cast<double>(k / dimensions) * c[k];
+      const std::size_t power = k / dimensions;
+      slopes[k - dimensions] = static_cast<double>(power) * c[k];
     }
     result.append(curve.left_of(i), curve.right_of(i), order, slopes);
   }
@@ -62,7 +63,8 @@ PiecewisePolynomial integrated(const PiecewisePolynomial& curve) {
     const int order = curve.order_of(i) + 1;
     std::vector<double> sums(area);
     for (std::size_t k = 0; k < c.size(); ++k) {
-      sums.push_back(c[k] / static_cast<double>(k / dimensions + 1));
+      const std::size_t power = k / dimensions + 1;
+      sums.push_back(c[k] / static_cast<double>(power));
     }
     result.append(curve.left_of(i), curve.right_of(i), order, sums);
     evaluate_derivative(order, sums, curve.seconds(i), 0, area);
