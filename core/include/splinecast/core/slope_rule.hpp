@@ -32,11 +32,14 @@ class Stencil {
   [[nodiscard]] double time_scale() const noexcept { return time_scale_; }
 
  private:
-  static std::size_t index(int k) noexcept { return static_cast<std::size_t>(k + kMaxReach); }
+  static constexpr std::size_t kIntervals = std::size_t{2} * kMaxReach;
+  static std::size_t index(int k) noexcept {
+    return static_cast<std::size_t>(std::ptrdiff_t{k} + kMaxReach);
+  }
 
   double time_scale_;
-  std::array<double, 2 * kMaxReach> h_{};
-  std::array<double, 2 * kMaxReach> m_{};
+  std::array<double, kIntervals> h_{};
+  std::array<double, kIntervals> m_{};
 };
 
 /// The two intervals at an end in one dimension, looking inwards: the end interval, then the next.
