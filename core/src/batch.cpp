@@ -46,7 +46,7 @@ KnotRing solve_knots(const Waypoints& waypoints, const Interpolant& how, const C
                      const Condition& end) {
   KnotRing knots(waypoints.dimensions, std::max<std::size_t>(waypoints.size(), 3), *how.method,
                  start.kind == ConditionKind::halt);
-  const auto solver = make_knot_solver(how, start);
+  const auto solver = make_knot_solver(how, start, waypoints.dimensions);
   for (std::size_t i = 0; i < waypoints.size(); ++i) solver->push(knots, waypoints[i]);
   solver->solve(knots, end, 0);
   return knots;

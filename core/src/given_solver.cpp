@@ -9,8 +9,10 @@ namespace {
 /// end overrides it there.
 class GivenSolver final : public KnotSolver {
  public:
-  GivenSolver(const Interpolant& how, const Condition& start)
-      : has_accelerations_(how.method->needs_acceleration()), start_(start) {}
+  GivenSolver(const Interpolant& how, const Condition& start, std::size_t dimensions)
+      : KnotSolver(start, dimensions), has_accelerations_(how.method->needs_acceleration()) {}
+
+  void eliminate_again(KnotRing& /*knots*/) const noexcept override {}
 
   void push(KnotRing& knots, const Waypoint& waypoint) const noexcept override {
     knots.push(waypoint.time, waypoint.position);
@@ -19,11 +21,11 @@ class GivenSolver final : public KnotSolver {
     if (has_accelerations_) {
       std::ranges::copy(waypoint.acceleration, knots.values(n, KnotRing::kAcceleration).begin());
     }
-    if (n == 0) impose(knots, start_, 0);
+    if (n == 0) impose(knots, start(), 0);
     std::ranges::copy(knots.values(n, KnotRing::kVelocity), knots.values(n, KnotRing::kG).begin());
-    if (n == 1 && !has_accelerations_ && start_.kind != ConditionKind::own) {
+    if (n == 1 && !has_accelerations_ && start().kind != ConditionKind::own) {
       knots.row(0).prefix.gamma =
-          eliminate_first(start_, knots.start_intervals(), knots.values(0, KnotRing::kG));
+          eliminate_first(start(), knots.start_intervals(), knots.values(0, KnotRing::kG));
     }
   }
 
@@ -57,14 +59,13 @@ class GivenSolver final : public KnotSolver {
   }
 
   bool has_accelerations_;
-  Condition start_;
 };
 
 }  // namespace
 
-std::unique_ptr<const KnotSolver> make_given_solver(const Interpolant& how,
-                                                    const Condition& start) {
-  return std::make_unique<GivenSolver>(how, start);
+std::unique_ptr<KnotSolver> make_given_solver(const Interpolant& how, const Condition& start,
+                                              std::size_t dimensions) {
+  return std::make_unique<GivenSolver>(how, start, dimensions);
 }
 
 }  // namespace splinecast::core

@@ -66,7 +66,7 @@ EndIntervals KnotRing::end_intervals() const noexcept {
 }
 
 void KnotRing::place(std::size_t i, Time time, std::span<const double> waypoint) noexcept {
-  row(i) = {.time = time, .h = 0, .prefix = {}};
+  row(i) = {.time = time, .h = 0, .prefix = {}, .newer_knots = 0};
   std::ranges::copy(waypoint, values(i, kWaypoint).begin());
 }
 
@@ -88,6 +88,7 @@ void KnotRing::restore(std::size_t first, std::span<const Knot> knots) noexcept 
     const std::size_t i = first + k;
     place(i, knot.time, knot.waypoint);
     row(i).prefix = knot.prefix;
+    row(i).newer_knots = knot.newer_knots;
     std::ranges::copy(knot.g, values(i, kG).begin());
     std::ranges::copy(knot.velocity, values(i, kVelocity).begin());
     if (has_accelerations_) std::ranges::copy(knot.acceleration, values(i, kAcceleration).begin());
@@ -104,6 +105,7 @@ void KnotRing::restore(std::size_t first, std::span<const Knot> knots) noexcept 
 Knot KnotRing::knot(std::size_t i) const noexcept {
   Knot knot{.time = row(i).time,
             .prefix = row(i).prefix,
+            .newer_knots = row(i).newer_knots,
             .waypoint = values(i, kWaypoint),
             .g = values(i, kG),
             .position = position(i),

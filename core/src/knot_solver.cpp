@@ -6,19 +6,20 @@
 
 namespace splinecast::core {
 
-std::unique_ptr<const KnotSolver> make_knot_solver(const Interpolant& how, const Condition& start) {
+std::unique_ptr<KnotSolver> make_knot_solver(const Interpolant& how, const Condition& start,
+                                             std::size_t dimensions) {
   switch (how.method->family) {
     case Family::local:
-      return make_local_solver(how, start);
+      return make_local_solver(how, start, dimensions);
     case Family::given:
-      return make_given_solver(how, start);
+      return make_given_solver(how, start, dimensions);
     case Family::smoothing:
-      return make_smoothing_solver(how, start);
+      return make_smoothing_solver(how, start, dimensions);
     case Family::tridiagonal:
     case Family::unit:
       break;
   }
-  return make_tridiagonal_solver(start);
+  return make_tridiagonal_solver(start, dimensions);
 }
 
 void solve_lone_knot(KnotRing& knots, const Condition& start) noexcept {

@@ -8,16 +8,22 @@ namespace {
 /// Rows of a slope rule: eliminated from the start, with γ = 0.
 class LocalSolver final : public KnotSolver {
  public:
-  LocalSolver(const Interpolant& how, const Condition& start)
-      : rule_(how.method->rule),
-        time_scale_(how.time_scale),
-        start_(start.kind == ConditionKind::own && rule_->natural_end ? Condition{} : start) {}
+  LocalSolver(const Interpolant& how, const Condition& start, std::size_t dimensions)
+      : KnotSolver(
+            start.kind == ConditionKind::own && how.method->rule->natural_end ? Condition{} : start,
+            dimensions),
+        rule_(how.method->rule),
+        time_scale_(how.time_scale) {}
+
+  void eliminate_again(KnotRing& knots) const noexcept override {
+    if (knots.size() > 1) eliminate_start(knots);
+  }
 
   void push(KnotRing& knots, const Waypoint& waypoint) const noexcept override {
     knots.push(waypoint.time, waypoint.position);
     const std::size_t n = knots.newest();
     if (n == 0) {
-      solve_lone_knot(knots, start_);
+      solve_lone_knot(knots, start());
       return;
     }
     if (n <= 2) eliminate_start(knots);  // the second interval may change the start's slope
@@ -47,10 +53,10 @@ class LocalSolver final : public KnotSolver {
  private:
   void eliminate_start(KnotRing& knots) const noexcept {
     const auto g = knots.values(0, KnotRing::kG);
-    if (start_.kind == ConditionKind::own) {
+    if (start().kind == ConditionKind::own) {
       write_own_end(knots, 0, knots.start_intervals(), g);
     } else {
-      knots.row(0).prefix.gamma = eliminate_first(start_, knots.start_intervals(), g);
+      knots.row(0).prefix.gamma = eliminate_first(start(), knots.start_intervals(), g);
     }
   }
 
@@ -99,14 +105,13 @@ class LocalSolver final : public KnotSolver {
 
   const SlopeRule* rule_;
   double time_scale_;
-  Condition start_;
 };
 
 }  // namespace
 
-std::unique_ptr<const KnotSolver> make_local_solver(const Interpolant& how,
-                                                    const Condition& start) {
-  return std::make_unique<LocalSolver>(how, start);
+std::unique_ptr<KnotSolver> make_local_solver(const Interpolant& how, const Condition& start,
+                                              std::size_t dimensions) {
+  return std::make_unique<LocalSolver>(how, start, dimensions);
 }
 
 }  // namespace splinecast::core

@@ -65,15 +65,25 @@ SlidingWindow::SlidingWindow(std::size_t dimensions, WindowOptions options)
     : options_(checked(std::move(options), dimensions)),
       knots_(dimensions, knots_to_restore() + 1, *options_.interpolant.method,
              options_.start.kind == ConditionKind::halt),
-      solver_(make_knot_solver(options_.interpolant, options_.start)) {}
+      solver_(make_knot_solver(options_.interpolant, options_.start, dimensions)),
+      entry_(dimensions) {}
 
 std::size_t SlidingWindow::segments() const noexcept {
+  if (is_entered_) return finished_ ? knots() : knots() + 1;
   return finished_ && knots() > 1 ? knots() - 1 : knots();
+}
+
+/// Intervals between knots that nothing changes any more.
+std::size_t SlidingWindow::settled_knot_segments() const noexcept {
+  const std::size_t converged = knots() - std::min(knots(), reach() + 1);
+  return std::max(converged, frozen_ - std::min<std::size_t>(frozen_, 1));
 }
 
 std::size_t SlidingWindow::settled_segments() const noexcept {
   if (finished_) return segments();
-  return knots() - std::min(knots(), reach() + 1);
+  const std::size_t settled = settled_knot_segments();
+  if (!is_entered_) return settled;
+  return settled > 0 || frozen_ > 0 ? settled + 1 : 0;
 }
 
 std::size_t SlidingWindow::oldest_segment() const noexcept {
@@ -81,7 +91,7 @@ std::size_t SlidingWindow::oldest_segment() const noexcept {
 }
 
 std::size_t SlidingWindow::newer_knots_seen(std::size_t i) const noexcept {
-  return std::min(knots_.newest() - i, options_.settle);
+  return knots_.row(i).newer_knots;
 }
 
 bool SlidingWindow::takes(const Waypoint& waypoint) const noexcept {
@@ -105,11 +115,50 @@ bool SlidingWindow::is_start_open() const noexcept {
   return !options_.interpolant.method->converges() && knots_.newest() <= reach() + 1;
 }
 
-void SlidingWindow::append(const Waypoint& waypoint) noexcept {
-  solver_->push(knots_, waypoint);
+void SlidingWindow::solve(const auto& closing, std::size_t last) noexcept {
   const std::size_t newest = knots_.newest();
-  solver_->solve(knots_, options_.tail,
-                 is_start_open() ? 0 : newest - std::min(newest, options_.settle));
+  // A finish changes the newest knot even where it has been frozen as a knot to pass through.
+  const std::size_t first = std::min(std::max(last, frozen_), newest);
+  solver_->solve(knots_, closing, first);
+  for (std::size_t i = first; i <= newest; ++i) {
+    knots_.row(i).newer_knots = static_cast<std::uint32_t>(newest - i);
+  }
+  if (is_entered_ && frozen_ == 0) entry_.take_acceleration(knots_);
+}
+
+void SlidingWindow::append(const Waypoint& waypoint) noexcept {
+  constexpr std::size_t kKnotsThatShapeTheEntry = 3;
+  solver_->push(knots_, waypoint);
+  const bool is_given = options_.interpolant.method->needs_velocity();
+  if (is_entered_ && frozen_ == 0 && knots() <= kKnotsThatShapeTheEntry) {
+    entry_.update(knots_);
+    if (!is_given) {
+      solver_->start_with(entry_.velocity());
+      solver_->eliminate_again(knots_);
+      if (knots() == 1) {
+        std::ranges::copy(entry_.velocity(), knots_.values(0, KnotRing::kVelocity).begin());
+      }
+    }
+  }
+  const std::size_t newest = knots_.newest();
+  solve(options_.tail, is_start_open() ? 0 : newest - std::min(newest, options_.settle));
+}
+
+void SlidingWindow::enter(const Instant& from, std::span<const StandingWaypoint> before) noexcept {
+  entry_.begin(from, before);
+  is_entered_ = true;
+  frozen_ = 0;
+  finished_ = false;
+  knots_.clear();
+}
+
+void SlidingWindow::freeze(Time t) noexcept {
+  if (is_entered_ && frozen_ == 0 && knots() > 0 && t >= entry_.time()) frozen_ = 1;
+  // Frozen is the right knot of the segment that contains t: the first one that is later.
+  while (frozen_ < knots() &&
+         (frozen_ == 0 ? t >= knots_.row(0).time : t >= knots_.row(frozen_ - 1).time)) {
+    ++frozen_;
+  }
 }
 
 void SlidingWindow::finish(const Condition& end) noexcept {
@@ -120,31 +169,55 @@ void SlidingWindow::finish(const Condition& end) noexcept {
   const bool from_start = newest < options_.settle || is_start_open();
   const bool is_halt =
       end.kind == ConditionKind::own && options_.interpolant.method->family == Family::tridiagonal;
-  solver_->solve(knots_, is_halt ? Condition{.kind = ConditionKind::halt, .value = {}} : end,
-                 from_start ? 0 : newest - (reach() - 1));
+  solve(is_halt ? Condition{.kind = ConditionKind::halt, .value = {}} : end,
+        from_start ? 0 : newest - (reach() - 1));
 }
 
 void SlidingWindow::segment(std::size_t i, Segment& out) const noexcept {
-  if (i == knots_.newest()) {
-    if (finished_) {
-      build_hold(knots_.row(i).time, knots_.position(i), out);
-    } else {
-      write_stop_tail(out);
-    }
+  const auto left = left_knot(i);
+  if (!left && knots() > 0) {
+    entry_.write_splice(knots_, out);
     std::ranges::fill(out.acceleration_step, 0.0);
+  } else if (!left) {
+    const Instant from = entry_.state();
+    build_stop_tail(from.time, options_.stop_time, from.position, from.velocity, from.acceleration,
+                    out);
+    std::ranges::fill(out.acceleration_step, 0.0);
+  } else if (*left < knots_.newest()) {
+    build_segment(knots_.interval(*left), out);
+    write_step(*left, out);
+  } else if (finished_) {
+    build_hold(knots_.row(*left).time, knots_.position(*left), out);
+    std::ranges::fill(out.acceleration_step, 0.0);
+  } else {
+    write_stop_tail(out);
+    std::ranges::fill(out.acceleration_step, 0.0);
+  }
+}
+
+/// The acceleration step at knot i, at which an interval begins.
+void SlidingWindow::write_step(std::size_t i, Segment& out) const noexcept {
+  if (i > 0 || !is_entered_) {
+    write_acceleration_step(knots_, i, options_.held_before_start, out.acceleration_step);
     return;
   }
-  build_segment(knots_.interval(i), out);
-  write_acceleration_step(knots_, i, options_.held_before_start, out.acceleration_step);
+  const Interval after = knots_.interval(0);
+  for (std::size_t d = 0; d < dimensions(); ++d) {
+    out.acceleration_step[d] = left_acceleration(after, d) - entry_.acceleration()[d];
+  }
 }
 
 void SlidingWindow::write_stop_tail(Segment& out) const noexcept {
   const std::size_t n = knots_.newest();
   const Knot knot = knots_.knot(n);
-  std::array<double, kMaxDimensions> acceleration{};
-  for (std::size_t d = 0; d < dimensions(); ++d) acceleration[d] = knots_.final_acceleration(d);
-  build_stop_tail(knot.time, options_.stop_time, knot.position, knot.velocity,
-                  std::span(acceleration).first(dimensions()), out);
+  std::array<double, kMaxDimensions> values{};
+  const auto acceleration = std::span(values).first(dimensions());
+  if (n == 0 && is_entered_) {
+    std::ranges::copy(entry_.acceleration(), acceleration.begin());
+  } else {
+    for (std::size_t d = 0; d < dimensions(); ++d) acceleration[d] = knots_.final_acceleration(d);
+  }
+  build_stop_tail(knot.time, options_.stop_time, knot.position, knot.velocity, acceleration, out);
 }
 
 void SlidingWindow::restore(std::size_t first, std::span<const Knot> knots) noexcept {

@@ -11,8 +11,10 @@ namespace {
 /// knots: it replaces the end's velocity by what the condition makes of its neighbour's.
 class SmoothingSolver final : public KnotSolver {
  public:
-  SmoothingSolver(const Interpolant& how, const Condition& start)
-      : lambda_(how.lambda), start_(start) {}
+  SmoothingSolver(const Interpolant& how, const Condition& start, std::size_t dimensions)
+      : KnotSolver(start, dimensions), lambda_(how.lambda) {}
+
+  void eliminate_again(KnotRing& /*knots*/) const noexcept override {}
 
   void push(KnotRing& knots, const Waypoint& waypoint) const noexcept override {
     knots.push(waypoint.time, waypoint.position);
@@ -25,13 +27,13 @@ class SmoothingSolver final : public KnotSolver {
     if (knots.newest() == 0) {
       std::ranges::copy(knots.values(0, KnotRing::kWaypoint),
                         knots.values(0, KnotRing::kPosition).begin());
-      solve_lone_knot(knots, start_);
+      solve_lone_knot(knots, start());
       return;
     }
     write_accelerations(knots, last == 0 ? 0 : last - 1);
     write_positions(knots, last);
     write_velocities(knots, last);
-    if (last == 0 && start_.kind != ConditionKind::own) impose_start(knots);
+    if (last == 0 && start().kind != ConditionKind::own) impose_start(knots);
   }
 
   void solve(KnotRing& knots, const Condition& end, std::size_t last) const noexcept override {
@@ -108,20 +110,19 @@ class SmoothingSolver final : public KnotSolver {
   void impose_start(KnotRing& knots) const noexcept {
     std::array<double, kMaxDimensions> values{};
     const auto g = std::span(values).first(knots.dimensions());
-    const double gamma = eliminate_first(start_, knots.start_intervals(), g);
+    const double gamma = eliminate_first(start(), knots.start_intervals(), g);
     back_substitute(gamma, g, knots.values(1, KnotRing::kVelocity),
                     knots.values(0, KnotRing::kVelocity));
   }
 
   double lambda_;
-  Condition start_;
 };
 
 }  // namespace
 
-std::unique_ptr<const KnotSolver> make_smoothing_solver(const Interpolant& how,
-                                                        const Condition& start) {
-  return std::make_unique<SmoothingSolver>(how, start);
+std::unique_ptr<KnotSolver> make_smoothing_solver(const Interpolant& how, const Condition& start,
+                                                  std::size_t dimensions) {
+  return std::make_unique<SmoothingSolver>(how, start, dimensions);
 }
 
 }  // namespace splinecast::core

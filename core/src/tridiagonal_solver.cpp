@@ -17,18 +17,19 @@ void eliminate(KnotRing& knots, std::size_t i) noexcept {
 /// `c2`.
 class TridiagonalSolver final : public KnotSolver {
  public:
-  explicit TridiagonalSolver(const Condition& start) : start_(start) {}
+  TridiagonalSolver(const Condition& start, std::size_t dimensions)
+      : KnotSolver(start, dimensions) {}
 
   void push(KnotRing& knots, const Waypoint& waypoint) const noexcept override {
     knots.push(waypoint.time, waypoint.position);
     const std::size_t n = knots.newest();
     if (n == 0) {
-      solve_lone_knot(knots, start_);
+      solve_lone_knot(knots, start());
       return;
     }
     // Not-a-knot looks at two intervals, so that row 0 must wait for the second one.
-    const std::size_t start_known_at = start_.kind == ConditionKind::not_a_knot ? 2 : 1;
-    if (n == start_known_at) eliminate_start(knots, start_);
+    const std::size_t start_known_at = start().kind == ConditionKind::not_a_knot ? 2 : 1;
+    if (n == start_known_at) eliminate_start(knots, start());
     if (n > 1) eliminate(knots, n - 1);
   }
 
@@ -44,14 +45,17 @@ class TridiagonalSolver final : public KnotSolver {
     back_substitute_to(knots, last);
   }
 
- private:
-  Condition start_;
+  void eliminate_again(KnotRing& knots) const noexcept override {
+    if (knots.size() > 1) eliminate_start(knots, start());
+    for (std::size_t i = 1; i < knots.newest(); ++i) eliminate(knots, i);
+  }
 };
 
 }  // namespace
 
-std::unique_ptr<const KnotSolver> make_tridiagonal_solver(const Condition& start) {
-  return std::make_unique<TridiagonalSolver>(start);
+std::unique_ptr<KnotSolver> make_tridiagonal_solver(const Condition& start,
+                                                    std::size_t dimensions) {
+  return std::make_unique<TridiagonalSolver>(start, dimensions);
 }
 
 }  // namespace splinecast::core

@@ -229,6 +229,8 @@ core::Knot SegmentBoardReader::knot(Word number, Word r, std::span<double> value
   return {.time = to_time(load(cell[kCellLeft], std::memory_order_relaxed)),
           .prefix = {.gamma = prefix(0),
                      .smoothing = {.pivot = prefix(1), .lower1 = prefix(2), .lower2 = prefix(3)}},
+          .newer_knots = static_cast<std::uint32_t>(
+              load(cell[kCellShape], std::memory_order_relaxed) >> kShapeSeenShift),
           .waypoint = take(0, kWaypointVector),
           .g = take(1, kGVector),
           .position = take(2, 0),

@@ -30,6 +30,7 @@ void write(MemoryBoard& board, Word number, Word revision) {
   const std::vector<double> zeros(kDimensions);
   const core::Knot knot{.time = {},
                         .prefix = {},
+                        .newer_knots = 0,
                         .waypoint = zeros,
                         .g = zeros,
                         .position = zeros,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct Prefix {
 struct Knot {
   Time time{};
   Prefix prefix{};
+  std::uint32_t newer_knots = 0;         ///< that it had seen when its velocity was last solved
   std::span<const double> waypoint;      ///< position of its waypoint
   std::span<const double> g;             ///< right side of its eliminated row
   std::span<const double> position;      ///< where the curve passes: the waypoint, or smoothed
@@ -48,6 +50,7 @@ class KnotRing {
     Time time{};
     double h = 0;  ///< seconds from this knot to the next, once there is one
     Prefix prefix{};
+    std::uint32_t newer_knots = 0;  ///< that it had seen when its velocity was last solved
   };
 
   /// Keeps at least the last `capacity` knots (≥ 3) of `dimensions` values each, with what the
@@ -66,6 +69,13 @@ class KnotRing {
   /// Forgets all knots and takes up again where another ring stood: `first` is the number of the
   /// oldest knot given, and `knots` are consecutive up to the newest one.
   void restore(std::size_t first, std::span<const Knot> knots) noexcept;
+
+  /// Forgets all knots, for a run that begins without a halt.
+  void clear() noexcept {
+    size_ = 0;
+    halts_at_start_ = false;
+    halts_at_end_ = false;
+  }
 
   /// Makes the acceleration at the newest knot 0, whatever the knot velocities say.
   void halt_at_end() noexcept { halts_at_end_ = true; }

@@ -16,7 +16,10 @@ namespace splinecast::core {
 /// Holds parameters only: the ring carries the state. No function allocates or throws.
 class KnotSolver {
  public:
-  KnotSolver() = default;
+  /// `start` is the condition at knot 0 of the first run.
+  KnotSolver(const Condition& start, std::size_t dimensions) : start_(start) {
+    start_.value.reserve(dimensions);
+  }
   KnotSolver(const KnotSolver&) = delete;
   KnotSolver& operator=(const KnotSolver&) = delete;
   virtual ~KnotSolver() = default;
@@ -25,17 +28,34 @@ class KnotSolver {
   /// be later than the newest knot and carry what the method needs.
   virtual void push(KnotRing& knots, const Waypoint& waypoint) const noexcept = 0;
 
+  /// Eliminates again all rows that stand: knot 0 has got another start condition. For the few
+  /// knots that a run begins with.
+  virtual void eliminate_again(KnotRing& knots) const noexcept = 0;
+
+  /// Makes a velocity the start condition of the run that stands, or begins.
+  void start_with(std::span<const double> velocity) noexcept {
+    start_.kind = ConditionKind::velocity;
+    start_.value.assign(velocity.begin(), velocity.end());
+  }
+
   /// Solves knots `last` to the newest while the stream goes on: O(D) per knot.
   virtual void solve(KnotRing& knots, Tail tail, std::size_t last) const noexcept = 0;
 
   /// Solves knots `last` to the newest, with the end condition there.
   virtual void solve(KnotRing& knots, const Condition& end, std::size_t last) const noexcept = 0;
+
+ protected:
+  [[nodiscard]] const Condition& start() const noexcept { return start_; }
+
+ private:
+  Condition start_;
 };
 
 /// The solver of a method; `start` is the condition at knot 0. Parameters and values must have been
 /// checked, and the method must stream.
-[[nodiscard]] std::unique_ptr<const KnotSolver> make_knot_solver(const Interpolant& how,
-                                                                 const Condition& start);
+[[nodiscard]] std::unique_ptr<KnotSolver> make_knot_solver(const Interpolant& how,
+                                                           const Condition& start,
+                                                           std::size_t dimensions);
 
 /// Writes what the velocity of a lone knot is: the start condition's, else 0.
 void solve_lone_knot(KnotRing& knots, const Condition& start) noexcept;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "splinecast/core/knot_ring.hpp"
 #include "splinecast/core/knot_solver.hpp"
 #include "splinecast/core/method.hpp"
+#include "splinecast/core/run_entry.hpp"
 #include "splinecast/core/segment.hpp"
 
 namespace splinecast::core {
@@ -43,6 +45,12 @@ struct WindowOptions {
 ///   that truncations never accumulate;
 /// - segment i lies between knots i and i+1; segment n is the stop tail, until `finish`.
 ///
+/// A *run* is a sequence of knots that one elimination goes through. The first run begins with the
+/// start condition; `enter` begins another one from a given state, and knots and segments are then
+/// counted from there: segment 0 is the splice to knot 0 (while there is no knot, the stop tail
+/// from the state), and segment i lies between knots i − 1 and i. A live stream also *freezes*:
+/// what readers may have executed stays, converged or not.
+///
 /// Allocates when made only. Not thread-safe: one thread uses it.
 class SlidingWindow {
  public:
@@ -53,10 +61,13 @@ class SlidingWindow {
   [[nodiscard]] std::size_t dimensions() const noexcept { return knots_.dimensions(); }
   [[nodiscard]] const WindowOptions& options() const noexcept { return options_; }
 
-  /// Number of knots so far.
+  /// Number of knots of this run so far.
   [[nodiscard]] std::size_t knots() const noexcept { return knots_.size(); }
 
-  /// Number of segments so far, the stop tail included; segments are numbered from 0.
+  /// Whether this run was entered from a state.
+  [[nodiscard]] bool is_entered() const noexcept { return is_entered_; }
+
+  /// Number of segments of this run so far, the stop tail included; segments are numbered from 0.
   [[nodiscard]] std::size_t segments() const noexcept;
 
   /// Number of leading segments that nothing changes any more.
@@ -81,6 +92,17 @@ class SlidingWindow {
   /// `settled_segments()` as it was before the call (with K = 0: from the one it adds).
   void append(const Waypoint& waypoint) noexcept;
 
+  /// Begins a run that goes on from a state; `before` are waypoints that stand before it, oldest
+  /// first, of which the last two count. O(D).
+  void enter(const Instant& from, std::span<const StandingWaypoint> before) noexcept;
+
+  /// Keeps every knot of this run up to the right end of the segment that contains t as it is: no
+  /// append changes the segments between them. Until `enter`, never undone. O(1) amortised.
+  void freeze(Time t) noexcept;
+
+  /// Number of leading knots that are frozen.
+  [[nodiscard]] std::size_t frozen_knots() const noexcept { return frozen_; }
+
   /// Ends the stream at its newest knot, with a condition there that may change what has not
   /// converged; `own` is a halt for `c2`. No append may follow. The condition must be one for
   /// streams and its values must have been checked.
@@ -90,7 +112,16 @@ class SlidingWindow {
   /// `out` must have this window's dimensions.
   void segment(std::size_t i, Segment& out) const noexcept;
 
-  /// What is kept of knot i, oldest_segment() ≤ i < knots(): what `restore` needs.
+  /// The knot at which segment i begins, if one does: not a splice, nor a stop tail from a state.
+  [[nodiscard]] std::optional<std::size_t> left_knot(std::size_t segment) const noexcept {
+    if (!is_entered_) return segment;
+    return segment == 0 ? std::nullopt : std::optional(segment - 1);
+  }
+
+  /// The entry of this run, if it was entered.
+  [[nodiscard]] const RunEntry& entry() const noexcept { return entry_; }
+
+  /// What is kept of knot i, which must still be in the window: what `restore` needs.
   [[nodiscard]] Knot knot(std::size_t i) const noexcept { return knots_.knot(i); }
 
   /// How many newer knots knot i had seen when its velocity was last solved.
@@ -111,11 +142,17 @@ class SlidingWindow {
     return options_.settle > 0 ? options_.settle : 1;
   }
   [[nodiscard]] bool is_start_open() const noexcept;
+  [[nodiscard]] std::size_t settled_knot_segments() const noexcept;
   void write_stop_tail(Segment& out) const noexcept;
+  void write_step(std::size_t i, Segment& out) const noexcept;
+  void solve(const auto& closing, std::size_t last) noexcept;
 
   WindowOptions options_;
   KnotRing knots_;
-  std::unique_ptr<const KnotSolver> solver_;
+  std::unique_ptr<KnotSolver> solver_;
+  RunEntry entry_;
+  bool is_entered_ = false;
+  std::size_t frozen_ = 0;
   bool finished_ = false;
 };
 

@@ -1,0 +1,60 @@
+#include "splinecast/core/run_entry.hpp"
+
+#include <algorithm>
+
+namespace splinecast::core {
+
+RunEntry::RunEntry(std::size_t dimensions)
+    : dimensions_(dimensions), values_(kValues * dimensions) {}
+
+void RunEntry::begin(const Instant& from, std::span<const StandingWaypoint> before) noexcept {
+  time_ = from.time;
+  std::ranges::copy(from.position, values(kPosition).begin());
+  std::ranges::copy(from.velocity, values(kVelocity).begin());
+  std::ranges::copy(from.acceleration, values(kAcceleration).begin());
+  standing_ = std::min<std::size_t>(before.size(), 2);
+  if (standing_ > 0) {
+    before_ = before.back().time;
+    std::ranges::copy(before.back().position, values(kBefore).begin());
+  }
+  if (standing_ > 1) {
+    const StandingWaypoint& second = before[before.size() - 2];
+    before2_ = second.time;
+    std::ranges::copy(second.position, values(kBefore2).begin());
+    write_chord(second.position, values(kBefore), to_seconds(before_ - before2_), values(kChord2));
+  }
+}
+
+void RunEntry::update(const KnotRing& knots) noexcept {
+  RunStart at;
+  if (standing_ > 0) {
+    const double h = to_seconds(knots.row(0).time - before_);
+    write_chord(values(kBefore), knots.values(0, KnotRing::kWaypoint), h, values(kChord));
+    at.before = {.h = h, .chord = values(kChord)};
+  }
+  if (standing_ > 1) at.before2 = {.h = to_seconds(before_ - before2_), .chord = values(kChord2)};
+  const auto after = [&knots](std::size_t i) {
+    return ChordInterval{.h = knots.row(i).h, .chord = knots.values(i, KnotRing::kChord)};
+  };
+  if (knots.size() > 1) at.after = after(0);
+  if (knots.size() > 2) at.after2 = after(1);
+  write_run_start(at, values(kKnotVelocity), values(kKnotAcceleration));
+}
+
+void RunEntry::take_acceleration(const KnotRing& knots) noexcept {
+  if (knots.size() < 2) return;
+  const Interval first = knots.interval(0);
+  const auto a = values(kKnotAcceleration);
+  for (std::size_t d = 0; d < dimensions_; ++d) a[d] = left_acceleration(first, d);
+}
+
+void RunEntry::write_splice(const KnotRing& knots, Segment& out) const noexcept {
+  build_splice(state(),
+               {.time = knots.row(0).time,
+                .position = knots.position(0),
+                .velocity = knots.values(0, KnotRing::kVelocity),
+                .acceleration = acceleration()},
+               out);
+}
+
+}  // namespace splinecast::core
