@@ -1,7 +1,8 @@
 # Makes one page of its parts and a C++ file that holds it.
 #   cmake -D PAGE_DIR=… -D DYGRAPHS_DIR=… -D OUT=….cpp -P embed.cmake
 file(READ ${PAGE_DIR}/report.html page)
-foreach(part report.css report.js dygraph.min.css dygraph.min.js)
+foreach(part report.css values.js marks.js charts.js tables.js page.js dygraph.min.css
+             dygraph.min.js)
   if(part MATCHES "^dygraph")
     file(READ ${DYGRAPHS_DIR}/${part} text)
   else()

@@ -13,9 +13,8 @@ namespace {
 
 using core::Time;
 
-constexpr std::int64_t kRowsAcross = 1600;  // of the whole time, at least
-constexpr std::int64_t kMostSteps = 8000;
-constexpr std::size_t kMostIntervals = 2500;  // that are drawn with samples of each
+constexpr std::int64_t kRowsAcross = 1600;     // of the whole time, at least
+constexpr std::int64_t kMostValues = 400'000;  // of each derivative: some MB of a file
 constexpr std::size_t kBuckets = 2000;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -168,12 +167,14 @@ std::vector<Time> breaks_of(std::span<const ReportCurve> curves) {
 ReportRows rows_of(std::span<const ReportCurve> curves, std::span<const ReportTable> tables) {
   const auto breaks = breaks_of(curves);
   const Time span = breaks.back() - breaks.front();
-  if (breaks.size() > kMostIntervals) {
+  const auto columns = static_cast<std::int64_t>(curves.size() * curves.front().curve.dimensions());
+  const auto most_rows = std::clamp<std::int64_t>(kMostValues / columns, 4000, 40'000);
+  const std::int64_t steps = most_rows / static_cast<std::int64_t>(breaks.size()) - 1;
+  if (steps < 2) {
     return decimated(
         curves, tables,
         instants_of(breaks, 3, span / (2 * static_cast<std::int64_t>(kBuckets)) + Time(1)));
   }
-  const std::int64_t steps = kMostSteps / static_cast<std::int64_t>(breaks.size());
   return sampled(
       curves, instants_of(breaks, std::min<std::int64_t>(steps, 6), span / kRowsAcross + Time(1)));
 }

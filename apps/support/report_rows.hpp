@@ -30,7 +30,8 @@ struct ReportRows {
 
 /// Samples curves of equal dimensions, of which `tables` says the extremes, densely enough that
 /// they look smooth: each break from both sides and between breaks, or, where that makes more than
-/// some thousand rows, the least and greatest values of 2000 equal intervals.
+/// 40000 rows, fewer the more curves and dimensions there are, but no fewer than 4000, the least
+/// and greatest values of 2000 equal intervals.
 [[nodiscard]] ReportRows rows_of(std::span<const ReportCurve> curves,
                                  std::span<const ReportTable> tables);
 

@@ -19,6 +19,7 @@ function facts_of_chart(chart) {
 function facts_of_section(section) {
   return {
     heading: section.querySelector("h2").textContent,
+    coarse: !section.querySelector(".coarse").hidden,
     charts: [...section.querySelectorAll(".chart")].map(facts_of_chart),
     table: [...section.querySelectorAll("tbody tr")].map((row) => ({
       texts: texts(row, "th, td"),

@@ -47,7 +47,8 @@ json data_of(const std::string& page) {
 
 /// What report_facts.js notes of a page in a browser: as it opens, with the mouse on it, after a
 /// drag from 0.4 to 0.6 of the first velocity chart, and after a double click.
-json facts_of(const TestFolder& folder, const std::string& page) {
+json facts_of(const TestFolder& folder, const std::string& page,
+              const std::string& hash = "draw=all") {
   const std::string script =
       testing::read_file(std::string(SPLINECAST_SOURCE) + "/tests/apps/report_facts.js");
   const auto file = folder.write("facts.html", page + "<script>" + script + "</script>");
@@ -55,7 +56,7 @@ json facts_of(const TestFolder& folder, const std::string& page) {
       testing::Process(kChromium,
                        {"--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
                         "--window-size=1280,1600", "--user-data-dir=" + folder.path("profile"),
-                        "--timeout=60000", "--dump-dom", "file://" + file + "#draw=all"})
+                        "--timeout=60000", "--dump-dom", "file://" + file + "#" + hash})
           .wait();
   const std::string facts = between(ended.out, "<pre>FACTS", "FACTS</pre>");
   EXPECT_FALSE(facts.empty()) << ended.err;
@@ -256,6 +257,11 @@ TEST(Report, KeepsThePeaksOfALongRecordingInASmallFile) {
   ASSERT_EQ(facts.size(), 4U);
   ASSERT_EQ(facts[0].at("notes").size(), 3U);
   EXPECT_NE(facts[0]["notes"][0].get<std::string>().find("least and greatest"), std::string::npos);
+  EXPECT_EQ(facts[0].at("sections")[0].at("coarse"), false);
+  const json close = facts_of(folder, page, "draw=all&time=12.3,12.4");
+  ASSERT_EQ(close.size(), 4U);
+  EXPECT_EQ(close[0].at("sections")[0].at("charts")[0].at("times"), json({12.3, 12.4}));
+  EXPECT_EQ(close[0]["sections"][0].at("coarse"), true);
 }
 
 TEST(Report, DraggingZoomsTheChartsOfADimensionAndADoubleClickShowsAllAgain) {
