@@ -9,6 +9,7 @@
 #include "support/exit_codes.hpp"
 #include "support/options.hpp"
 #include "support/output.hpp"
+#include "support/report_page.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -21,6 +22,7 @@ struct FitOptions {
   std::optional<core::Time> dt;
   Emit emit = Emit::samples;
   std::string output;
+  std::string report;
 };
 
 void require_inside(const std::vector<core::Time>& times, const core::PiecewisePolynomial& curve,
@@ -35,6 +37,26 @@ void require_inside(const std::vector<core::Time>& times, const core::PiecewiseP
   }
 }
 
+void write_report_of(const WaypointTable& table, const core::PiecewisePolynomial& curve,
+                     const FitOptions& options) {
+  const core::Waypoints waypoints{
+      .dimensions = table.dimensions(), .times = table.times, .positions = table.positions};
+  Output output(options.report);
+  write_report({.title = table.file,
+                .names = table.names,
+                .units = std::vector<std::string>(table.dimensions()),
+                .waypoints = waypoints,
+                .curves = {{.name = "c2", .curve = curve}}},
+               output);
+  output.close();
+}
+
+/// Whether all that is asked for is a report.
+bool only_reports(const FitOptions& options) {
+  return !options.report.empty() && options.emit == Emit::samples && options.at.empty() &&
+         !options.dt;
+}
+
 int run_fit(const FitOptions& options) {
   const WaypointTable table = read_waypoints(options.file, options.table);
   require_spline_input(table);
@@ -42,6 +64,8 @@ int run_fit(const FitOptions& options) {
   const auto at = options.at.empty() ? std::vector<core::Time>{}
                                      : read_times(options.at, options.table.time_unit);
   require_inside(at, curve, options.at);
+  if (!options.report.empty()) write_report_of(table, curve, options);
+  if (only_reports(options)) return kOk;
   Output output(options.output);  // after all input was read: it may be the same file
   if (options.emit == Emit::samples) {
     emit_samples(curve, at, options.dt, output);
@@ -72,7 +96,9 @@ void require_consistent(const FitOptions& options) {
   }
   if (curve.methods.size() > 1) refuse("--method", "is given more than once");
   if (options.emit == Emit::samples) {
-    if (options.at.empty() && !options.dt) refuse("fit", "needs --at or --dt to write samples");
+    if (options.at.empty() && !options.dt && options.report.empty()) {
+      refuse("fit", "needs --at or --dt to write samples, or --report");
+    }
   } else if (!options.at.empty() || options.dt) {
     refuse("--at, --dt", "go with --emit samples only");
   }
@@ -133,6 +159,7 @@ void add_fit(CLI::App& program, Action& action) {
   add_emit(*verb, options->emit);
   verb->add_option("-o,--output", options->output, "File to write (default: standard output)")
       ->type_name("OUT");
+  verb->add_option("--report", options->report, "Page of charts to write, HTML")->type_name("OUT");
   add_table_options(*verb, options->table);
   verb->callback([&action, options] {
     if (options->curve.methods.empty()) options->curve.methods.push_back(&core::c2());
