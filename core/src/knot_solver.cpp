@@ -6,14 +6,15 @@
 
 namespace splinecast::core {
 
-std::unique_ptr<const KnotSolver> make_knot_solver(const Interpolant& how, const Condition& start) {
+std::unique_ptr<const KnotSolver> make_knot_solver(const Interpolant& how, const Condition& start,
+                                                   Use use) {
   switch (how.method->family) {
     case Family::local:
       return make_local_solver(how, start);
     case Family::given:
       return make_given_solver(how, start);
     case Family::smoothing:
-      return make_smoothing_solver(how, start);
+      return make_smoothing_solver(how, start, use);
     case Family::tridiagonal:
     case Family::unit:
       break;

@@ -9,6 +9,6 @@ std::unique_ptr<const KnotSolver> make_tridiagonal_solver(const Condition& start
 std::unique_ptr<const KnotSolver> make_local_solver(const Interpolant& how, const Condition& start);
 std::unique_ptr<const KnotSolver> make_given_solver(const Interpolant& how, const Condition& start);
 std::unique_ptr<const KnotSolver> make_smoothing_solver(const Interpolant& how,
-                                                        const Condition& start);
+                                                        const Condition& start, Use use);
 
 }  // namespace splinecast::core

@@ -86,6 +86,10 @@ void require_options(const SolverOptions& options) {
   if (options.lambda && method.family != core::Family::smoothing) {
     throw BadRequest("lambda is for method smoothing, not for " + std::string(method.name));
   }
+  if (options.force_lag && method.family != core::Family::smoothing) {
+    throw BadRequest("a lag is forced for method smoothing only, not for " +
+                     std::string(method.name));
+  }
   if (options.time_scale && method.laws.is_scale_free) {
     throw BadRequest("the time scale is for method rounded, not for " + std::string(method.name));
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 
 #include "splinecast/core/condition.hpp"
@@ -13,7 +14,8 @@ namespace splinecast::core {
 /// Finds the knot velocities of one method, in the rows of a KnotRing: the batch solver over all
 /// knots at once, the sliding window over those that an append still changes.
 ///
-/// Holds parameters only: the ring carries the state. No function allocates or throws.
+/// Holds parameters only: the ring carries the state. No function throws, and none that is for
+/// online use allocates.
 class KnotSolver {
  public:
   KnotSolver() = default;
@@ -32,10 +34,16 @@ class KnotSolver {
   virtual void solve(KnotRing& knots, const Condition& end, std::size_t last) const noexcept = 0;
 };
 
+/// What a solver is for.
+enum class Use : std::uint8_t {
+  online,   ///< knots come and go, and are solved again and again
+  at_once,  ///< all knots are pushed, then solved once, with an end condition; may allocate
+};
+
 /// The solver of a method; `start` is the condition at knot 0. Parameters and values must have been
 /// checked, and the method must stream.
 [[nodiscard]] std::unique_ptr<const KnotSolver> make_knot_solver(const Interpolant& how,
-                                                                 const Condition& start);
+                                                                 const Condition& start, Use use);
 
 /// Writes what the velocity of a lone knot is: the start condition's, else 0.
 void solve_lone_knot(KnotRing& knots, const Condition& start) noexcept;
