@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include "knot_solvers.hpp"
 
@@ -9,8 +10,8 @@ namespace {
 /// end overrides it there.
 class GivenSolver final : public KnotSolver {
  public:
-  GivenSolver(const Interpolant& how, const Condition& start)
-      : has_accelerations_(how.method->needs_acceleration()), start_(start) {}
+  GivenSolver(const Interpolant& how, Condition start)
+      : has_accelerations_(how.method->needs_acceleration()), start_(std::move(start)) {}
 
   void push(KnotRing& knots, const Waypoint& waypoint) const noexcept override {
     knots.push(waypoint.time, waypoint.position);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "batch_smoothing.hpp"
 #include "knot_solvers.hpp"
@@ -15,8 +16,8 @@ using Value = KnotRing::Value;
 /// knots: it replaces the end's velocity by what the condition makes of its neighbour's.
 class SmoothingSolver final : public KnotSolver {
  public:
-  SmoothingSolver(const Interpolant& how, const Condition& start, Use use)
-      : lambda_(how.lambda), start_(start), use_(use) {}
+  SmoothingSolver(const Interpolant& how, Condition start, Use use)
+      : lambda_(how.lambda), start_(std::move(start)), use_(use) {}
 
   void push(KnotRing& knots, const Waypoint& waypoint) const noexcept override {
     knots.push(waypoint.time, waypoint.position);

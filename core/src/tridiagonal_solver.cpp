@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "knot_solvers.hpp"
 
 namespace splinecast::core {
@@ -17,7 +19,7 @@ void eliminate(KnotRing& knots, std::size_t i) noexcept {
 /// `c2`.
 class TridiagonalSolver final : public KnotSolver {
  public:
-  explicit TridiagonalSolver(const Condition& start) : start_(start) {}
+  explicit TridiagonalSolver(Condition start) : start_(std::move(start)) {}
 
   void push(KnotRing& knots, const Waypoint& waypoint) const noexcept override {
     knots.push(waypoint.time, waypoint.position);
