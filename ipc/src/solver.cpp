@@ -37,10 +37,10 @@ void require_no_contradiction(const std::string& stream, const RegionHeader& sta
                               const SolverOptions& options) {
   const auto number = [](auto value) { return std::to_string(value); };
   const core::Method* const method = core::find_method(stands.method);
-  const std::optional<const core::Method*> wanted =
-      options.method == nullptr ? std::nullopt : std::optional(options.method);
-  require_same(stream, "method", wanted, method, std::string(method_of(options).name),
-               std::string(method->name));
+  if (options.method != nullptr) {
+    require_same<const core::Method*>(stream, "method", options.method, method,
+                                      std::string(options.method->name), std::string(method->name));
+  }
   require_same(stream, "lambda", options.lambda, stands.lambda, number(options.lambda.value_or(0)),
                number(stands.lambda));
   require_same(stream, "time scale", options.time_scale, stands.time_scale,
