@@ -7,8 +7,10 @@
 #include "support/curve_fit.hpp"
 #include "support/emit.hpp"
 #include "support/exit_codes.hpp"
+#include "support/numbers.hpp"
 #include "support/options.hpp"
 #include "support/output.hpp"
+#include "support/report_page.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -21,6 +23,8 @@ struct FitOptions {
   std::optional<core::Time> dt;
   Emit emit = Emit::samples;
   std::string output;
+  std::string report;
+  std::vector<std::string> units;  ///< of positions in the report; the last one for all that follow
 };
 
 void require_inside(const std::vector<core::Time>& times, const core::PiecewisePolynomial& curve,
@@ -35,13 +39,57 @@ void require_inside(const std::vector<core::Time>& times, const core::PiecewiseP
   }
 }
 
+/// A column's name as `name [unit]` or `name (unit)`; without a unit the whole is the name.
+std::pair<std::string, std::string> name_and_unit(const std::string& column) {
+  for (const auto& brackets : {"[]", "()"}) {
+    const std::size_t open = column.rfind(brackets[0]);
+    if (open == std::string::npos || open == 0 || column.back() != brackets[1]) continue;
+    const std::string unit(without_blanks(column.substr(open + 1, column.size() - open - 2)));
+    // p[0], v[1], … count dimensions.
+    if (unit.empty() || parse_count(unit)) continue;
+    return {std::string(without_blanks(column.substr(0, open))), unit};
+  }
+  return {column, ""};
+}
+
+void write_report_of(const WaypointTable& table, std::vector<ReportCurve> curves,
+                     const FitOptions& options) {
+  Report report{.title = table.file,
+                .names = {},
+                .units = {},
+                .waypoints = table.waypoints(),
+                .curves = std::move(curves)};
+  for (std::size_t d = 0; d < table.dimensions(); ++d) {
+    auto [name, unit] = name_and_unit(table.names[d]);
+    if (!options.units.empty()) unit = options.units[std::min(d, options.units.size() - 1)];
+    report.names.push_back(std::move(name));
+    report.units.push_back(std::move(unit));
+  }
+  Output output(options.report);
+  write_report(report, output);
+  output.close();
+}
+
+/// Whether all that is asked for is a report.
+bool only_reports(const FitOptions& options) {
+  return !options.report.empty() && options.emit == Emit::samples && options.at.empty() &&
+         !options.dt;
+}
+
 int run_fit(const FitOptions& options) {
   const WaypointTable table = read_waypoints(options.file, options.table);
   require_spline_input(table);
-  const auto curve = fit_table(table, *options.curve.methods.front(), options.curve);
+  std::vector<ReportCurve> curves;
+  for (const core::Method* method : options.curve.methods) {
+    curves.push_back(
+        {.name = std::string(method->name), .curve = fit_table(table, *method, options.curve)});
+  }
+  const core::PiecewisePolynomial curve = curves.front().curve;
   const auto at = options.at.empty() ? std::vector<core::Time>{}
                                      : read_times(options.at, options.table.time_unit);
   require_inside(at, curve, options.at);
+  if (!options.report.empty()) write_report_of(table, std::move(curves), options);
+  if (only_reports(options)) return kOk;
   Output output(options.output);  // after all input was read: it may be the same file
   if (options.emit == Emit::samples) {
     emit_samples(curve, at, options.dt, output);
@@ -67,12 +115,20 @@ void require_consistent(const FitOptions& options) {
   if ((curve.lambda || curve.lambda_is_auto) && !has("smoothing")) {
     refuse("--lambda", "goes with --method smoothing only");
   }
+  if (curve.force_lag && !has("smoothing")) {
+    refuse("--force-lag", "goes with --method smoothing only");
+  }
   if (curve.time_scale && !has("rounded")) {
     refuse("--time-scale", "goes with --method rounded only");
   }
-  if (curve.methods.size() > 1) refuse("--method", "is given more than once");
+  if (curve.methods.size() > 1 && !only_reports(options)) {
+    refuse("--method", "is given more than once, which goes with --report alone");
+  }
+  if (!options.units.empty() && options.report.empty()) refuse("--unit", "goes with --report only");
   if (options.emit == Emit::samples) {
-    if (options.at.empty() && !options.dt) refuse("fit", "needs --at or --dt to write samples");
+    if (options.at.empty() && !options.dt && options.report.empty()) {
+      refuse("fit", "needs --at or --dt to write samples, or --report");
+    }
   } else if (!options.at.empty() || options.dt) {
     refuse("--at, --dt", "go with --emit samples only");
   }
@@ -87,7 +143,8 @@ void add_curve(CLI::App& verb, CurveOptions& options) {
           [&options](const std::vector<std::string>& names) {
             for (const std::string& name : names) options.methods.push_back(&method_named(name));
           },
-          fmt::format("Interpolant: {} (default c2)", core::method_names(false)))
+          fmt::format("Interpolant: {} (default c2); with --report several, separated by commas",
+                      core::method_names(false)))
       ->delimiter(',')
       ->type_name("METHOD");
   add_lambda(verb, options.lambda, &options.lambda_is_auto);
@@ -133,6 +190,13 @@ void add_fit(CLI::App& program, Action& action) {
   add_emit(*verb, options->emit);
   verb->add_option("-o,--output", options->output, "File to write (default: standard output)")
       ->type_name("OUT");
+  verb->add_option("--report", options->report, "Page of charts to write, HTML")->type_name("OUT");
+  verb->add_option(
+          "--unit", options->units,
+          "Unit of the positions in the report, or one per column (default: what a column's "
+          "name has in brackets)")
+      ->delimiter(',')
+      ->type_name("UNIT");
   add_table_options(*verb, options->table);
   verb->callback([&action, options] {
     if (options->curve.methods.empty()) options->curve.methods.push_back(&core::c2());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -19,7 +21,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr core::Time kCompareEvery = std::chrono::milliseconds(1);
+/// Instants between waypoints at which a curve is compared.
+constexpr int kComparisons = 100;
+constexpr std::int64_t kMostWaypoints = 100'000;
+constexpr double kUnmeasured = std::numeric_limits<double>::quiet_NaN();
 
 struct MethodsOptions {
   std::vector<std::string> files;
@@ -35,7 +40,8 @@ struct Choice {
 };
 
 /// How far a curve is from the truth: largest errors in p, v and a and largest acceleration step,
-/// each as a fraction of the truth's own largest p, v, a and a.
+/// each as a fraction of the truth's own largest p, v, a and a; NaN where the truth has none but
+/// rounding.
 using Errors = std::array<double, 4>;
 
 double largest(std::span<const double> values) {
@@ -64,7 +70,7 @@ std::vector<Choice> choices() {
 /// The continuous stretches of a trajectory. Where its position jumps, by more than the digits of
 /// its file explain, no curve through waypoints could follow it.
 std::vector<core::PiecewisePolynomial> stretches(const PolynomialFile& file,
-                                                 const std::string& name) {
+                                                 const std::string& name, core::Time period) {
   constexpr double kRounding = 1e-3;
   const core::PiecewisePolynomial& curve = file.curve;
   std::vector<core::PiecewisePolynomial> all;
@@ -80,6 +86,16 @@ std::vector<core::PiecewisePolynomial> stretches(const PolynomialFile& file,
     from = at;
   }
   all.push_back(core::restricted(curve, from, curve.breaks().back()));
+  if ((curve.breaks().back() - curve.breaks().front()) / period > kMostWaypoints) {
+    throw InputError(
+        fmt::format("{}: more than {} waypoints: choose a longer --every", name, kMostWaypoints));
+  }
+  const auto is_too_short = [period](const core::PiecewisePolynomial& stretch) {
+    return stretch.breaks().back() - stretch.breaks().front() < period;
+  };
+  if (std::erase_if(all, is_too_short) > 0) {
+    say(fmt::format("{}: what is shorter than --every is left out", name));
+  }
   return all;
 }
 
@@ -122,13 +138,15 @@ core::PiecewisePolynomial curve_of(const Choice& choice, const WaypointTable& ta
   return fit_table(table, *choice.method, options);
 }
 
-Errors errors_of(const core::PiecewisePolynomial& curve, const core::PiecewisePolynomial& truth) {
+Errors errors_of(const core::PiecewisePolynomial& curve, const core::PiecewisePolynomial& truth,
+                 core::Time period) {
   Errors errors{};
   Errors scale{};
   const std::size_t dimensions = curve.dimensions();
   core::State got(dimensions);
   core::State wanted(dimensions);
-  for (core::Time t = curve.breaks().front(); t <= curve.breaks().back(); t += kCompareEvery) {
+  const core::Time every = period / kComparisons;
+  for (core::Time t = curve.breaks().front(); t <= curve.breaks().back(); t += every) {
     curve.evaluate(t, got.ref());
     truth.evaluate(t, wanted.ref());
     for (std::size_t i = 0; i < 3 * dimensions; ++i) {
@@ -143,8 +161,11 @@ Errors errors_of(const core::PiecewisePolynomial& curve, const core::PiecewisePo
     curve.jump(i, 2, step);
     errors[3] = std::max(errors[3], largest(step));
   }
+  constexpr double kRounding = 1e-9;
   for (std::size_t k = 0; k < errors.size(); ++k) {
-    if (errors[k] > 0) errors[k] /= scale[k];
+    const std::size_t r = std::min<std::size_t>(k, 2);
+    const double natural = r == 0 ? 0 : kRounding * scale[r - 1] / core::to_seconds(period);
+    errors[k] = scale[k] > natural ? errors[k] / scale[k] : kUnmeasured;
   }
   return errors;
 }
@@ -152,12 +173,12 @@ Errors errors_of(const core::PiecewisePolynomial& curve, const core::PiecewisePo
 /// The largest errors of a choice over all trajectories.
 Errors measured(const Choice& choice, core::Time period,
                 const std::vector<core::PiecewisePolynomial>& truths) {
-  Errors worst{};
+  Errors worst;
+  worst.fill(kUnmeasured);
   for (const core::PiecewisePolynomial& truth : truths) {
     const WaypointTable table = sampled(truth, period);
-    if (table.size() < 2) continue;
-    const Errors found = errors_of(curve_of(choice, table, period), truth);
-    for (std::size_t k = 0; k < found.size(); ++k) worst[k] = std::max(worst[k], found[k]);
+    const Errors found = errors_of(curve_of(choice, table, period), truth, period);
+    for (std::size_t k = 0; k < found.size(); ++k) worst[k] = std::fmax(worst[k], found[k]);
   }
   return worst;
 }
@@ -183,17 +204,21 @@ std::string text_row(const ordered_json& row) {
                   fmt::format("C^{}", row["continuity"].dump()), row["order_of_convergence"].dump(),
                   row["needs"].get<std::string>());
   if (!row.contains("errors")) return text + "\n";
-  for (const ordered_json& error : row["errors"])
-    text += fmt::format(" {:>9.1e}", error.get<double>());
+  for (const double error : row["errors"].get<Errors>()) {
+    text += std::isnan(error) ? fmt::format(" {:>9}", "-") : fmt::format(" {:>9.1e}", error);
+  }
   return text + "\n";
 }
 
 int run_methods(const MethodsOptions& options) {
   std::vector<core::PiecewisePolynomial> truths;
   for (const std::string& file : options.files) {
-    for (auto& stretch : stretches(read_polynomials(file), file)) {
+    for (auto& stretch : stretches(read_polynomials(file), file, options.period)) {
       truths.push_back(std::move(stretch));
     }
+  }
+  if (truths.empty() && !options.files.empty()) {
+    throw InputError("no trajectory lasts as long as --every");
   }
   ordered_json rows = ordered_json::array();
   for (const Choice& choice : choices()) {

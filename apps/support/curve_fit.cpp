@@ -28,10 +28,10 @@ void require_derivatives(const WaypointTable& table, const core::Method& method)
       throw InputError(fmt::format("{}: method {} needs columns {}[0] to {}[{}]", table.file,
                                    method.name, letter, letter, table.dimensions() - 1));
     }
-    const auto bad = std::ranges::find_if(values, [](double x) { return !std::isfinite(x); });
+    const auto bad = std::ranges::find_if_not(values, core::is_usable);
     if (bad == values.end()) return;
     const auto at = static_cast<std::size_t>(bad - values.begin());
-    throw InputError(fmt::format("{}: column '{}[{}]': {} is not finite",
+    throw InputError(fmt::format("{}: column '{}[{}]': {} is not finite, or beyond 1e100",
                                  table.where(at / table.dimensions()), letter,
                                  at % table.dimensions(), *bad));
   };

@@ -7,7 +7,6 @@
 #include <array>
 #include <charconv>
 #include <chrono>
-#include <cmath>
 
 #include "support/exit_codes.hpp"
 #include "support/numbers.hpp"
@@ -98,9 +97,9 @@ void add_lambda(CLI::App& verb, std::optional<double>& lambda, bool* automatic) 
               return;
             }
             lambda = parse_number(text);
-            if (lambda && *lambda >= 0 && std::isfinite(*lambda)) return;
+            if (lambda && *lambda >= 0 && core::is_usable(*lambda)) return;
             throw CLI::ValidationError("--lambda",
-                                       fmt::format("'{}' is no number of 0 or more", text));
+                                       fmt::format("'{}' is no number from 0 to 1e100", text));
           },
           automatic == nullptr
               ? "How much smoothing smooths, in s^3"

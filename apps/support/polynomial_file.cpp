@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cctype>
+#include <chrono>
 
+#include "splinecast/core/waypoint.hpp"
 #include "support/exit_codes.hpp"
 #include "support/numbers.hpp"
 #include "support/table_format.hpp"
@@ -17,6 +19,8 @@ namespace {
 struct Column {
   std::size_t dimension = 0;
   std::size_t power = 0;
+
+  friend bool operator==(const Column&, const Column&) = default;
 };
 
 /// What the header says.
@@ -38,9 +42,17 @@ std::vector<std::string_view> fields_of(const Line& line) {
   return fields;
 }
 
+bool is_duration(std::string_view name) {
+  return std::ranges::equal(name, std::string_view("duration"),
+                            [](unsigned char a, char b) { return std::tolower(a) == b; });
+}
+
 Format read_header(const TextFile& file, const Line& line) {
   Format format;
   const auto fields = fields_of(line);
+  if (fields.empty() || !is_duration(trimmed(fields[0]))) {
+    fail(file, line, "the first column is not 'duration'");
+  }
   for (std::size_t i = 1; i < fields.size(); ++i) {
     const std::string_view field = trimmed(fields[i]);
     const std::size_t caret = field.find('^');
@@ -50,10 +62,15 @@ Format read_header(const TextFile& file, const Line& line) {
       fail(file, line, fmt::format("column '{}' names no power, as x^0 does", field));
     }
     const std::string name(field.substr(0, caret));
+    if (name.empty()) fail(file, line, fmt::format("column '{}' names no dimension", field));
     const auto found = std::ranges::find(format.names, name);
     const auto dimension = static_cast<std::size_t>(found - format.names.begin());
     if (found == format.names.end()) format.names.push_back(name);
-    format.columns.push_back({dimension, *power});
+    const Column column{dimension, *power};
+    if (std::ranges::find(format.columns, column) != format.columns.end()) {
+      fail(file, line, fmt::format("column '{}' is there twice", field));
+    }
+    format.columns.push_back(column);
     format.order = std::max<std::size_t>(format.order, *power + 1);
   }
   if (format.names.empty() || format.names.size() > core::kMaxDimensions) {
@@ -62,10 +79,13 @@ Format read_header(const TextFile& file, const Line& line) {
   return format;
 }
 
+/// Of a piece, and of all together.
+constexpr core::Time kLongest = std::chrono::hours(24 * 366);
+
 core::Time duration_of(const TextFile& file, const Line& line, std::string_view field) {
   const auto duration = parse_time(without_blanks(field), TimeUnit::seconds);
-  if (!duration || *duration <= core::Time::zero()) {
-    fail(file, line, fmt::format("'{}' is no duration", without_blanks(field)));
+  if (!duration || *duration <= core::Time::zero() || *duration > kLongest) {
+    fail(file, line, fmt::format("'{}' is no duration of up to a year", without_blanks(field)));
   }
   return *duration;
 }
@@ -81,16 +101,18 @@ void append_piece(const TextFile& file, const Line& line, const Format& format,
   for (std::size_t i = 0; i < format.columns.size(); ++i) {
     const auto value = parse_number(without_blanks(fields[i + 1]));
     const Column& column = format.columns[i];
-    if (!value || !std::isfinite(*value)) {
-      fail(file, line,
-           fmt::format("column '{}^{}': '{}' is no finite number", format.names[column.dimension],
-                       column.power, without_blanks(fields[i + 1])));
+    if (!value || !core::is_usable(*value)) {
+      fail(
+          file, line,
+          fmt::format("column '{}^{}': '{}' is no number within 1e100",
+                      format.names[column.dimension], column.power, without_blanks(fields[i + 1])));
     }
     coefficients[column.power * format.names.size() + column.dimension] = *value;
   }
   const core::Time left = curve.segments() == 0 ? core::Time::zero() : curve.breaks().back();
-  curve.append(left, left + duration_of(file, line, fields[0]), static_cast<int>(format.order),
-               coefficients);
+  const core::Time right = left + duration_of(file, line, fields[0]);
+  if (right > kLongest) fail(file, line, "the trajectory lasts longer than a year");
+  curve.append(left, right, static_cast<int>(format.order), coefficients);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ std::string value_in_row(const WaypointTable& table, std::size_t i) {
   const std::array parts{row.position, row.velocity, row.acceleration};
   for (std::size_t p = 0; p < 3; ++p) {
     for (std::size_t d = 0; d < parts[p].size(); ++d) {
-      if (std::isfinite(parts[p][d])) continue;
+      if (core::is_usable(parts[p][d])) continue;
       return fmt::format("column '{}{}': {}", letters[p], table.names[d], parts[p][d]);
     }
   }

@@ -330,9 +330,9 @@ void require_spline_input(const WaypointTable& table) {
   for (std::size_t i = 0; i < table.size(); ++i) {
     for (std::size_t d = 0; d < dimensions; ++d) {
       const double value = table.positions[i * dimensions + d];
-      if (std::isfinite(value)) continue;
-      throw InputError(
-          fmt::format("{}: column '{}': {} is not finite", table.where(i), table.names[d], value));
+      if (core::is_usable(value)) continue;
+      throw InputError(fmt::format("{}: column '{}': {} is not finite, or beyond 1e100",
+                                   table.where(i), table.names[d], value));
     }
     if (i == 0 || table.times[i] > table.times[i - 1]) continue;
     throw InputError(fmt::format("{}: time {} ns is not after {} ns on line {}", table.where(i),

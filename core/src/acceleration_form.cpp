@@ -111,15 +111,6 @@ class AccelerationSystem {
   std::vector<double> values_;  ///< right sides, then accelerations: [knot][dimension]
 };
 
-KnotRing measured(const Waypoints& waypoints, bool halts_at_start) {
-  KnotRing knots(waypoints.dimensions, std::max<std::size_t>(waypoints.size(), 3), c2(),
-                 halts_at_start);
-  for (std::size_t i = 0; i < waypoints.size(); ++i) {
-    knots.push(waypoints.times[i], waypoints[i].position);
-  }
-  return knots;
-}
-
 /// The periodic system: a = y + z·a_join, as in the velocity form.
 AccelerationSystem solved_periodic(const KnotRing& knots) {
   const std::size_t n = knots.newest();
@@ -180,7 +171,7 @@ void write_cubic_part(std::span<const double> a0, std::span<const double> a1, do
 
 PiecewisePolynomial c2_by_accelerations(const Waypoints& waypoints, const Condition& start,
                                         const Condition& end) {
-  KnotRing knots = measured(waypoints, start.kind == ConditionKind::halt);
+  KnotRing knots = measure_knots(waypoints, start.kind == ConditionKind::halt);
   if (end.kind == ConditionKind::halt) knots.halt_at_end();
   AccelerationSystem system = solved(knots, start, end);
   write_velocities(system, knots);

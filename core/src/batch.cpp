@@ -1,7 +1,8 @@
 #include "batch.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <charconv>
 #include <stdexcept>
 #include <string>
 
@@ -9,6 +10,16 @@
 #include "splinecast/core/state.hpp"
 
 namespace splinecast::core {
+
+namespace {
+
+/// Shortest form: std::to_string would write a hundred digits.
+std::string text_of(double value) {
+  std::array<char, 32> buffer{};
+  return {buffer.begin(), std::to_chars(buffer.begin(), buffer.end(), value).ptr};
+}
+
+}  // namespace
 
 void require_values_of(const Waypoints& waypoints, std::span<const double> values,
                        const char* what) {
@@ -18,12 +29,12 @@ void require_values_of(const Waypoints& waypoints, std::span<const double> value
                                 std::to_string(waypoints.size()) + " waypoints of " +
                                 std::to_string(dimensions) + " dimensions");
   }
-  const auto bad = std::ranges::find_if(values, [](double x) { return !std::isfinite(x); });
+  const auto bad = std::ranges::find_if_not(values, is_usable);
   if (bad == values.end()) return;
   const auto at = static_cast<std::size_t>(bad - values.begin());
   throw std::invalid_argument(
       std::string(what) + " of waypoint " + std::to_string(at / dimensions) + ", dimension " +
-      std::to_string(at % dimensions) + ", is not finite: " + std::to_string(*bad));
+      std::to_string(at % dimensions) + ", is not finite, or beyond 1e100: " + text_of(*bad));
 }
 
 void require_waypoints(const Waypoints& waypoints) {
@@ -42,11 +53,20 @@ void require_waypoints(const Waypoints& waypoints) {
   }
 }
 
+KnotRing measure_knots(const Waypoints& waypoints, bool halts_at_start) {
+  KnotRing knots(waypoints.dimensions, std::max<std::size_t>(waypoints.size(), 3), c2(),
+                 halts_at_start);
+  for (std::size_t i = 0; i < waypoints.size(); ++i) {
+    knots.push(waypoints.times[i], waypoints[i].position);
+  }
+  return knots;
+}
+
 KnotRing solve_knots(const Waypoints& waypoints, const Interpolant& how, const Condition& start,
                      const Condition& end) {
   KnotRing knots(waypoints.dimensions, std::max<std::size_t>(waypoints.size(), 3), *how.method,
                  start.kind == ConditionKind::halt);
-  const auto solver = make_knot_solver(how, start, waypoints.dimensions);
+  const auto solver = make_knot_solver(how, start, waypoints.dimensions, Use::at_once);
   for (std::size_t i = 0; i < waypoints.size(); ++i) solver->push(knots, waypoints[i]);
   solver->solve(knots, end, 0);
   return knots;

@@ -16,6 +16,10 @@ void require_waypoints(const Waypoints& waypoints);
 void require_values_of(const Waypoints& waypoints, std::span<const double> values,
                        const char* what);
 
+/// All waypoints as knots with their intervals measured, not solved; for a method that asks for
+/// nothing else.
+[[nodiscard]] KnotRing measure_knots(const Waypoints& waypoints, bool halts_at_start);
+
 /// All waypoints as knots, solved by a method that streams.
 [[nodiscard]] KnotRing solve_knots(const Waypoints& waypoints, const Interpolant& how,
                                    const Condition& start, const Condition& end);

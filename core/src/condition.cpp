@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
+
+#include "splinecast/core/waypoint.hpp"
 
 namespace splinecast::core {
 namespace {
@@ -39,7 +40,7 @@ std::optional<std::vector<double>> parse_values(std::string_view text) {
     const std::string_view field = text.substr(0, comma);
     double value = 0;
     const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (error != std::errc{} || end != field.data() + field.size() || !std::isfinite(value)) {
+    if (error != std::errc{} || end != field.data() + field.size() || !is_usable(value)) {
       return std::nullopt;
     }
     values.push_back(value);
@@ -76,7 +77,7 @@ std::optional<Condition> parse_condition(std::string_view text) {
   const std::size_t equals = text.find('=');
   const std::string_view wanted = text.substr(0, equals);
   for (const auto& [kind, name] : kConditionNames) {
-    if (name != wanted) continue;
+    if (name != wanted || kind == ConditionKind::own) continue;  // that is said by saying nothing
     if (takes_values(kind) != (equals != std::string_view::npos)) return std::nullopt;
     if (!takes_values(kind)) return Condition{.kind = kind};
     auto values = parse_values(text.substr(equals + 1));
@@ -100,9 +101,9 @@ void require_values(const Condition& condition, std::size_t dimensions) {
                                 std::to_string(condition.value.size()) + " values; " +
                                 std::to_string(wanted) + " are needed");
   }
-  if (!std::ranges::all_of(condition.value, [](double x) { return std::isfinite(x); })) {
+  if (!std::ranges::all_of(condition.value, is_usable)) {
     throw std::invalid_argument("condition '" + to_string(condition) +
-                                "' has a value that is not finite");
+                                "' has a value that is not finite, or beyond 1e100");
   }
 }
 

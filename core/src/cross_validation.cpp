@@ -4,73 +4,36 @@
 #include <vector>
 
 #include "batch.hpp"
+#include "batch_smoothing.hpp"
 #include "splinecast/core/fit.hpp"
 
 namespace splinecast::core {
 namespace {
 
-/// A row of A⁻¹, from its diagonal to the right, as far as the band of A goes.
-struct InverseBand {
-  double diagonal = 0;
-  double next = 0;
-  double second = 0;
-};
-
-/// tr(I − H) = λ tr(A⁻¹QᵀQ) with A = R + λQᵀQ: only the band of A⁻¹ counts, and that follows from
-/// LDLᵀ by a recursion from the right (Hutchinson and de Hoog 1985).
-double residual_trace(const KnotRing& knots, double lambda) {
-  const std::size_t n = knots.newest();
-  const auto row = [&](std::size_t j) {
-    return j < n ? knots.row(j).prefix.smoothing : SmoothingRow{};
-  };
-  const auto h = [&](std::size_t i) { return knots.row(i).h; };
-  InverseBand after;
-  InverseBand after2;
-  double trace = 0;
-  for (std::size_t j = n - 1; j >= 1; --j) {
-    const double l1 = row(j + 1).lower1;
-    const double l2 = row(j + 2).lower2;
-    InverseBand band;
-    band.second = -l1 * after.next - l2 * after2.diagonal;
-    band.next = -l1 * after.diagonal - l2 * after.next;
-    band.diagonal = 1 / row(j).pivot - l1 * band.next - l2 * band.second;
-    trace += band.diagonal * roughness_diagonal(h(j - 1), h(j));
-    if (j + 1 < n) {
-      trace += 2 * band.next *
-               roughness_neighbour({.h_before2 = h(j - 1), .h_before = h(j), .h_after = h(j + 1)});
-    }
-    if (j + 2 < n) {
-      trace += 2 * band.second *
-               roughness_second_neighbour(
-                   {.h_before2 = h(j), .h_before = h(j + 1), .h_after = h(j + 2)});
-    }
-    after2 = after;
-    after = band;
-  }
-  return lambda * trace;
-}
-
-/// Σ(x_i − f(t_i))², each residual as λ(Qa)_i: the difference itself would drown in rounding where
-/// λ is small.
-double squared_residuals(const KnotRing& knots, double lambda) {
-  const std::size_t n = knots.newest();
-  const auto a = [&](std::size_t i) { return knots.values(i, KnotRing::kAcceleration); };
-  const std::vector<double> zeros(knots.dimensions());
-  std::vector<double> residual(knots.dimensions());
+/// Σ(x_i − f(t_i))² over all dimensions.
+double squared_residuals(const BatchSmoothing& system, std::size_t dimensions) {
   double sum = 0;
-  for (std::size_t i = 0; i <= n; ++i) {
-    smooth_position(lambda, i > 0 ? knots.row(i - 1).h : 0, i < n ? knots.row(i).h : 0, zeros,
-                    a(i > 0 ? i - 1 : 0), a(i), a(std::min(i + 1, n)), residual);
-    for (const double r : residual) sum += r * r;
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    for (const DoubleDouble residual : system.solve(d).residual) {
+      sum += static_cast<double>(residual) * static_cast<double>(residual);
+    }
   }
   return sum;
+}
+
+double score_of(const SmoothingMesh& mesh, double lambda) {
+  const KnotRing& knots = mesh.knots();
+  const BatchSmoothing system(mesh, lambda);
+  const double trace = system.residual_trace();
+  return static_cast<double>(knots.size()) * squared_residuals(system, knots.dimensions()) /
+         (trace * trace);
 }
 
 /// Narrows down the minimum of a function between two points by golden sections.
 template <typename Function>
 double minimum_between(double low, double high, const Function& f) {
   constexpr double kGolden = 0.6180339887498949;
-  constexpr double kEnough = 1e-7;
+  constexpr double kEnough = 1e-4;
   double left = high - kGolden * (high - low);
   double right = low + kGolden * (high - low);
   double at_left = f(left);
@@ -101,28 +64,28 @@ double cross_validation_score(const Waypoints& waypoints, double lambda) {
     throw std::invalid_argument("cross-validation needs 3 waypoints; there are " +
                                 std::to_string(waypoints.size()));
   }
-  const Interpolant how{.method = find_method("smoothing"), .lambda = lambda, .time_scale = 1};
-  require_parameters(how);
-  const Condition own{.kind = ConditionKind::own, .value = {}};
-  const KnotRing knots = solve_knots(waypoints, how, own, own);
-  const double trace = residual_trace(knots, lambda);
-  return static_cast<double>(waypoints.size()) * squared_residuals(knots, lambda) / (trace * trace);
+  require_parameters({.method = find_method("smoothing"), .lambda = lambda, .time_scale = 1});
+  const KnotRing knots = measure_knots(waypoints, false);
+  return score_of(SmoothingMesh(knots), lambda);
 }
 
 double cross_validated_lambda(const Waypoints& waypoints) {
   require_waypoints(waypoints);
   if (waypoints.size() < 3) return 0;
-  // From next to no smoothing of neighbours to next to a line over the whole duration; λ/h³ tells
-  // the one, λ·(knots per second)/duration⁴ the other.
+  const KnotRing knots = measure_knots(waypoints, false);
+  const SmoothingMesh mesh(knots);
+  double shortest = knots.row(0).h;
+  for (std::size_t i = 1; i < knots.newest(); ++i) shortest = std::min(shortest, knots.row(i).h);
+  // From what smooths nothing to what leaves nothing but a line: λ/h³ tells the one,
+  // λ·(knots per second)/duration⁴ the other.
   const double duration = to_seconds(waypoints.times.back() - waypoints.times.front());
-  const double h = duration / static_cast<double>(waypoints.size() - 1);
-  const double lowest = std::log(1e-6 * h * h * h);
-  const double highest = std::log(std::pow(duration, 4) / h);
-  constexpr int kSteps = 60;
+  const double mean = duration / static_cast<double>(knots.newest());
+  constexpr double kMargin = 1e6;
+  const double lowest = std::log(shortest * shortest * shortest / kMargin);
+  const double highest = std::log(kMargin * std::pow(duration, 4) / mean);
+  constexpr int kSteps = 40;
   const double step = (highest - lowest) / kSteps;
-  const auto score = [&](double log_lambda) {
-    return cross_validation_score(waypoints, std::exp(log_lambda));
-  };
+  const auto score = [&](double log_lambda) { return score_of(mesh, std::exp(log_lambda)); };
   int best = 0;
   double least = score(lowest);
   for (int i = 1; i <= kSteps; ++i) {

@@ -57,11 +57,12 @@ PiecewisePolynomial normalized(const Waypoints& waypoints) {
     segment.right = waypoints.times[i + 1];
     const double h = to_seconds(segment.right - segment.left);
     double stretch = 1;
-    for (std::size_t k = 0; k < kCubicOrder; ++k, stretch *= h) {
+    for (std::size_t k = 0; k < kCubicOrder; ++k) {
       for (std::size_t d = 0; d < dimensions; ++d) {
         const std::size_t at = k * dimensions + d;
         segment.coefficients[at] = unit.coefficients(i)[at] / stretch;
       }
+      stretch *= h;
     }
     curve.append(segment);
   }

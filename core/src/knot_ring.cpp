@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 
+#include "smoothing_system.hpp"
 #include "splinecast/core/state.hpp"
 
 namespace splinecast::core {
@@ -17,6 +18,11 @@ std::size_t values_kept(const Method& method) noexcept {
 }
 
 }  // namespace
+
+void write_chord(std::span<const double> from, std::span<const double> to, double h,
+                 std::span<double> slope) noexcept {
+  for (std::size_t d = 0; d < slope.size(); ++d) slope[d] = (to[d] - from[d]) / h;
+}
 
 KnotRing::KnotRing(std::size_t dimensions, std::size_t capacity, const Method& method,
                    bool halts_at_start)
@@ -76,6 +82,14 @@ void KnotRing::measure(std::size_t i) noexcept {
   write_chord(values(i, kWaypoint), values(i + 1, kWaypoint), row(i).h, values(i, kChord));
 }
 
+void KnotRing::measure_smoothed(std::size_t i) noexcept {
+  const auto slope = values(i, kPositionChord);
+  for (std::size_t d = 0; d < dimensions_; ++d) {
+    slope[d] = smoothed_chord(values(i, kChord)[d], row(i).h, values(i, kResidual)[d],
+                              values(i + 1, kResidual)[d]);
+  }
+}
+
 void KnotRing::push(Time time, std::span<const double> waypoint) noexcept {
   const std::size_t i = size_++;
   place(i, time, waypoint);
@@ -92,12 +106,13 @@ void KnotRing::restore(std::size_t first, std::span<const Knot> knots) noexcept 
     std::ranges::copy(knot.g, values(i, kG).begin());
     std::ranges::copy(knot.velocity, values(i, kVelocity).begin());
     if (has_accelerations_) std::ranges::copy(knot.acceleration, values(i, kAcceleration).begin());
-    if (smooths_) std::ranges::copy(knot.position, values(i, kPosition).begin());
+    if (smooths_) {
+      std::ranges::copy(knot.position, values(i, kPosition).begin());
+      std::ranges::copy(knot.residual, values(i, kResidual).begin());
+    }
     if (k == 0) continue;
     measure(i - 1);
-    if (smooths_) {
-      write_chord(position(i - 1), position(i), row(i - 1).h, values(i - 1, kPositionChord));
-    }
+    if (smooths_) measure_smoothed(i - 1);
   }
   size_ = first + knots.size();
 }
@@ -110,8 +125,10 @@ Knot KnotRing::knot(std::size_t i) const noexcept {
             .g = values(i, kG),
             .position = position(i),
             .velocity = values(i, kVelocity),
-            .acceleration = {}};
+            .acceleration = {},
+            .residual = {}};
   if (has_accelerations_) knot.acceleration = values(i, kAcceleration);
+  if (smooths_) knot.residual = values(i, kResidual);
   return knot;
 }
 
@@ -138,11 +155,6 @@ Interval KnotRing::interval(std::size_t i) const noexcept {
 double KnotRing::final_acceleration(std::size_t d) const noexcept {
   if (newest() > 0) return right_acceleration(interval(newest() - 1), d);
   return has_accelerations_ ? values(0, kAcceleration)[d] : 0;
-}
-
-void write_chord(std::span<const double> x0, std::span<const double> x1, double h,
-                 std::span<double> chord) noexcept {
-  for (std::size_t d = 0; d < chord.size(); ++d) chord[d] = (x1[d] - x0[d]) / h;
 }
 
 void write_acceleration_step(const KnotRing& knots, std::size_t i, bool held_before,

@@ -7,14 +7,14 @@
 namespace splinecast::core {
 
 std::unique_ptr<KnotSolver> make_knot_solver(const Interpolant& how, const Condition& start,
-                                             std::size_t dimensions) {
+                                             std::size_t dimensions, Use use) {
   switch (how.method->family) {
     case Family::local:
       return make_local_solver(how, start, dimensions);
     case Family::given:
       return make_given_solver(how, start, dimensions);
     case Family::smoothing:
-      return make_smoothing_solver(how, start, dimensions);
+      return make_smoothing_solver(how, start, dimensions, use);
     case Family::tridiagonal:
     case Family::unit:
       break;

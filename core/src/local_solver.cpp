@@ -27,7 +27,7 @@ class LocalSolver final : public KnotSolver {
       return;
     }
     if (n <= 2) eliminate_start(knots);  // the second interval may change the start's slope
-    const std::size_t ahead = static_cast<std::size_t>(rule_->ahead);
+    const auto ahead = static_cast<std::size_t>(rule_->ahead);
     for (std::size_t i = std::max<std::size_t>(n - std::min(n, ahead), 1); i < n; ++i) {
       write_slope(knots, i, knots.values(i, KnotRing::kG));
     }

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <stdexcept>
 #include <vector>
+
+#include "splinecast/core/waypoint.hpp"
 
 namespace splinecast::core {
 namespace {
@@ -83,12 +84,12 @@ std::string method_names(bool only_streaming) {
 }
 
 void require_parameters(const Interpolant& interpolant) {
-  if (!(interpolant.lambda >= 0) || !std::isfinite(interpolant.lambda)) {
-    throw std::invalid_argument("lambda must be a number of 0 or more, not " +
+  if (!(interpolant.lambda >= 0 && is_usable(interpolant.lambda))) {
+    throw std::invalid_argument("lambda must be 0 to 1e100, not " +
                                 std::to_string(interpolant.lambda));
   }
-  if (!(interpolant.time_scale > 0) || !std::isfinite(interpolant.time_scale)) {
-    throw std::invalid_argument("time scale must be a number above 0, not " +
+  if (!(interpolant.time_scale > 0 && is_usable(interpolant.time_scale))) {
+    throw std::invalid_argument("time scale must be above 0 and at most 1e100, not " +
                                 std::to_string(interpolant.time_scale));
   }
 }

@@ -65,7 +65,7 @@ SlidingWindow::SlidingWindow(std::size_t dimensions, WindowOptions options)
     : options_(checked(std::move(options), dimensions)),
       knots_(dimensions, knots_to_restore() + 1, *options_.interpolant.method,
              options_.start.kind == ConditionKind::halt),
-      solver_(make_knot_solver(options_.interpolant, options_.start, dimensions)),
+      solver_(make_knot_solver(options_.interpolant, options_.start, dimensions, Use::online)),
       entry_(dimensions) {}
 
 std::size_t SlidingWindow::segments() const noexcept {

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "splinecast/core/slope_rule.hpp"
 
@@ -15,10 +17,15 @@ double bessel(const Stencil& s) noexcept {
 
 double bessel_end(const EndStencil& s) noexcept { return parabola_end_slope(s); }
 
-/// The mean of the neighbouring chord slopes, each weighted by the other side's unsteadiness.
+/// The mean of the neighbouring chord slopes, each weighted by the other side's unsteadiness; with
+/// no weights but what rounding leaves of chord slopes, `without_weights`.
 double weighted(const Stencil& s, double before, double after, double without_weights) noexcept {
+  constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
   const double sum = after + before;
-  return sum == 0 ? without_weights : (after * s.m(-1) + before * s.m(0)) / sum;
+  double steepest = 0;
+  for (int k = -2; k < 2; ++k) steepest = std::max(steepest, std::abs(s.m(k)));
+  if (sum <= kRounding * steepest) return without_weights;
+  return after / sum * s.m(-1) + before / sum * s.m(0);
 }
 
 /// doc 003 eq 4-12.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "splinecast/core/knot_ring.hpp"
 #include "splinecast/core/slope_rule.hpp"
 #include "splinecast/core/state.hpp"
 
@@ -47,7 +48,7 @@ void build_splice(const Instant& from, const Instant& to, Segment& out) noexcept
   const std::size_t dimensions = from.position.size();
   const double h = to_seconds(to.time - from.time);
   std::array<double, kMaxDimensions> chord{};
-  for (std::size_t d = 0; d < dimensions; ++d) chord[d] = (to.position[d] - from.position[d]) / h;
+  write_chord(from.position, to.position, h, std::span(chord).first(dimensions));
   build_segment({.left = from.time,
                  .right = to.time,
                  .h = h,

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "knot_solvers.hpp"
 
 namespace splinecast::core {

@@ -130,7 +130,7 @@ RingLayout RingLayout::of(std::size_t dimensions, std::size_t capacity,
 
 BoardLayout BoardLayout::of(std::size_t dimensions, std::size_t capacity,
                             std::size_t control) noexcept {
-  const std::size_t vectors = core::kMaxOrder + 3;  // coefficients, step, position, g
+  const std::size_t vectors = core::kMaxOrder + 4;  // coefficients, step, waypoint, g, residual
   const std::size_t cell = round_up(
       (kCellCoefficients + vectors * dimensions + kCellExtraWords) * sizeof(Word), kCacheLine);
   BoardLayout layout{.dimensions = dimensions,

@@ -17,7 +17,8 @@ constexpr unsigned kRefusalItemShift = 8;
 constexpr std::size_t kStepVector = core::kMaxOrder;
 constexpr std::size_t kWaypointVector = kStepVector + 1;
 constexpr std::size_t kGVector = kWaypointVector + 1;
-constexpr std::size_t kPrefixAfter = kGVector + 1;
+constexpr std::size_t kResidualVector = kGVector + 1;
+constexpr std::size_t kPrefixAfter = kResidualVector + 1;
 
 std::size_t control_words() noexcept { return kControlLines * kSeparation / sizeof(Word); }
 
@@ -81,6 +82,7 @@ void SegmentBoardWriter::write(Word number, const core::Segment& segment, const 
   put_values(vectors + kStepVector * dimensions, segment.acceleration_step);
   put_values(vectors + kWaypointVector * dimensions, knot.waypoint);
   put_values(vectors + kGVector * dimensions, knot.g);
+  put_values(vectors + kResidualVector * dimensions, knot.residual);
   Word* const prefix = vectors + kPrefixAfter * dimensions;
   put(prefix[0], to_word(knot.prefix.gamma));
   put(prefix[1], to_word(knot.prefix.smoothing.pivot));
@@ -235,7 +237,8 @@ core::Knot SegmentBoardReader::knot(Word number, Word r, std::span<double> value
           .g = take(1, kGVector),
           .position = take(2, 0),
           .velocity = take(3, 1),
-          .acceleration = acceleration};
+          .acceleration = acceleration,
+          .residual = take(5, kResidualVector)};
 }
 
 }  // namespace splinecast::ipc

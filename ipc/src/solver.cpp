@@ -37,10 +37,10 @@ void require_no_contradiction(const std::string& stream, const RegionHeader& sta
                               const SolverOptions& options) {
   const auto number = [](auto value) { return std::to_string(value); };
   const core::Method* const method = core::find_method(stands.method);
-  const std::optional<const core::Method*> wanted =
-      options.method == nullptr ? std::nullopt : std::optional(options.method);
-  require_same(stream, "method", wanted, method, std::string(method_of(options).name),
-               std::string(method->name));
+  if (options.method != nullptr) {
+    require_same<const core::Method*>(stream, "method", options.method, method,
+                                      std::string(options.method->name), std::string(method->name));
+  }
   require_same(stream, "lambda", options.lambda, stands.lambda, number(options.lambda.value_or(0)),
                number(stands.lambda));
   require_same(stream, "time scale", options.time_scale, stands.time_scale,
@@ -85,6 +85,10 @@ void require_options(const SolverOptions& options) {
   }
   if (options.lambda && method.family != core::Family::smoothing) {
     throw BadRequest("lambda is for method smoothing, not for " + std::string(method.name));
+  }
+  if (options.force_lag && method.family != core::Family::smoothing) {
+    throw BadRequest("a lag is forced for method smoothing only, not for " +
+                     std::string(method.name));
   }
   if (options.time_scale && method.laws.is_scale_free) {
     throw BadRequest("the time scale is for method rounded, not for " + std::string(method.name));

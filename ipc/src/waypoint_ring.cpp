@@ -1,7 +1,6 @@
 #include "splinecast/ipc/waypoint_ring.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 namespace splinecast::ipc {
@@ -30,7 +29,7 @@ bool fits(std::span<const double> values, std::size_t dimensions) noexcept {
 }  // namespace
 
 bool is_finite(std::span<const double> values) noexcept {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+  return std::ranges::all_of(values, core::is_usable);
 }
 
 WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLayout& layout,

@@ -135,6 +135,17 @@ TEST(MethodsVerb, MeasuresBeforeAndBehindAJumpOfTheTrajectory) {
   for (const json& row : json::parse(measured.out)) EXPECT_LT(row["errors"][0], 1e-6) << row.dump();
 }
 
+TEST(MethodsVerb, LeavesOutWhatATrajectoryHasNothingOf) {
+  const TestFolder folder;
+  const auto straight = folder.write("a.csv", "duration,x^0,x^1\n1,0,1\n");
+  const Ended measured = run({"methods", "--against", straight, "--json"});
+  ASSERT_EQ(measured.code, 0) << measured.err;
+  for (const json& row : json::parse(measured.out)) {
+    EXPECT_LT(row["errors"][0], 1e-12);
+    EXPECT_TRUE(row["errors"][2].is_null()) << row.dump();
+  }
+}
+
 TEST(MethodsVerb, SaysWhatIsWrongWithATrajectory) {
   const TestFolder folder;
   const std::vector<std::pair<std::string, std::string>> cases{
@@ -144,7 +155,14 @@ TEST(MethodsVerb, SaysWhatIsWrongWithATrajectory) {
       {"duration,x^0,x^99\n1,2,3\n", "column 'x^99'"},
       {"duration,x^0\n1\n", "a.csv:2: 1 fields; the header has 2"},
       {"duration,x^0\n0,1\n", "a.csv:2: '0' is no duration"},
-      {"duration,x^0\n1,nan\n", "column 'x^0': 'nan' is no finite number"},
+      {"duration,x^0\n1e9,1\n", "is no duration of up to a year"},
+      {"duration,x^0\n20000000,1\n20000000,1\n", "a.csv:3: the trajectory lasts longer"},
+      {"duration,x^0,x^0\n1,1,1\n", "column 'x^0' is there twice"},
+      {"duration,^0\n1,1\n", "column '^0' names no dimension"},
+      {"x^0,x^1\n1,1\n", "the first column is not 'duration'"},
+      {"duration,x^0\n0.01,1\n", "no trajectory lasts as long as --every"},
+      {"duration,x^0\n100000,1\n", "choose a longer --every"},
+      {"duration,x^0\n1,nan\n", "column 'x^0': 'nan' is no number within 1e100"},
   };
   for (const auto& [text, message] : cases) {
     const Ended ended = run({"methods", "--against", folder.write("a.csv", text)});
@@ -176,6 +194,8 @@ TEST(Fit, RefusesOptionsThatDoNotGoWithTheMethod) {
       {{"--method", "quintic"}, "needs columns v[0]"},
       {{"--method", "akima", "--lambda", "1"}, "--method smoothing only"},
       {{"--method", "akima", "--time-scale", "1"}, "--method rounded only"},
+      {{"--online", "--force-lag"}, "--method smoothing only"},
+      {{"--start", "own"}, "'own'"},
       {{"--method", "akima", "--online", "--settle", "1"}, "must be 2 to 64, not 1"},
       {{"--method", "smoothing", "--online", "--tail", "rest", "--lambda", "1"}, "tail of its own"},
       {{"--method", "smoothing", "--online"}, "online it cannot be chosen"},
@@ -186,7 +206,7 @@ TEST(Fit, RefusesOptionsThatDoNotGoWithTheMethod) {
       {{"--method", "bessel", "--end", "not-a-knot"}, "is for c2"},
       {{"--start", "periodic"}, "other end periodic"},
       {{"--start", "periodic", "--end", "periodic"}, "last position equal"},
-      {{"--method", "akima,pchip"}, "more than once"},
+      {{"--method", "akima,pchip"}, "--report alone"},
   };
   for (const auto& [arguments, text] : cases) {
     const Ended ended = run(Arguments{"fit", file, "--dt", "1"} + arguments);

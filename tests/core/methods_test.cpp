@@ -295,6 +295,37 @@ TEST(Pchip, NeverOvershoots) {
   }));
 }
 
+TEST(Akima, TakesWhatRoundingLeavesOfEqualChordsForNothing) {
+  // Slope 1, then slope 10, in steps of 0.1 s: the chords on either side are equal but for an ulp.
+  Mesh mesh = regular_mesh(9, 1, Time(100'000'000));
+  mesh.positions = {0, 0.1, 0.2, 0.3, 0.4, 1.4, 2.4, 3.4, 4.4};
+  const auto curve = fit({.dimensions = 1, .times = mesh.times, .positions = mesh.positions},
+                         plain_options(*find_method("akima")));
+  EXPECT_NEAR(state_at(curve, mesh.times[4])[1], 5.5, 1e-12);
+}
+
+TEST(Methods, RefuseValuesThatNoFormulaCouldTake) {
+  const Mesh mesh = regular_mesh(3, 1, Time(1'000'000));
+  for (const Method& method : methods()) {
+    for (const double largest_value : {1e100, 1.01e100}) {
+      const std::vector<double> x{0, largest_value, -largest_value};
+      const Waypoints all{.dimensions = 1,
+                          .times = mesh.times,
+                          .positions = x,
+                          .velocities = x,
+                          .accelerations = x};
+      if (largest_value > 1e100) {
+        EXPECT_THROW((void)fit(all, plain_options(method)), std::invalid_argument);
+        continue;
+      }
+      const auto curve = fit(all, plain_options(method));
+      for (const Time t : query_times(mesh, 3)) {
+        for (const double value : state_at(curve, t)) EXPECT_TRUE(std::isfinite(value));
+      }
+    }
+  }
+}
+
 TEST(Rounded, DependsOnItsTimeScale) {
   const Trial trial = random_trial(4, 20, 1, 3);
   FitOptions options = plain_options(*find_method("rounded"));

@@ -124,6 +124,105 @@ TEST(Smoothing, WithEverLargerLambdaTendsToTheLineOfLeastSquares) {
   EXPECT_LT(before, 1e-5);
 }
 
+/// The squared deviations, and the positions at both ends, of the line of least squares.
+struct Line {
+  double first;
+  double last;
+};
+Line line_through(const Mesh& mesh) {
+  const double n = static_cast<double>(mesh.size());
+  double st = 0;
+  double sx = 0;
+  double stt = 0;
+  double stx = 0;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    const double t = to_seconds(mesh.times[i] - mesh.times.front());
+    st += t;
+    sx += mesh.positions[i];
+    stt += t * t;
+    stx += t * mesh.positions[i];
+  }
+  const double slope = (n * stx - st * sx) / (n * stt - st * st);
+  const double first = (sx - slope * st) / n;
+  return {first, first + slope * to_seconds(mesh.times.back() - mesh.times.front())};
+}
+
+TEST(Smoothing, KeepsItsDigitsHoweverManyKnotsAndHoweverLargeLambda) {
+  Mesh mesh = regular_mesh(20'000, 1, Time(1'000'000));
+  mesh.positions = random_values(1, mesh.size());
+  const Line line = line_through(mesh);
+  State state(1);
+  for (const double lambda : {1e14, 1e30}) {
+    const auto curve = fit(waypoints_of(mesh), smoothing(lambda));
+    curve.evaluate(mesh.times.front(), state.ref());
+    EXPECT_NEAR(state.position()[0], line.first, 1e-9) << lambda;
+    curve.evaluate(mesh.times.back(), state.ref());
+    EXPECT_NEAR(state.position()[0], line.last, 1e-9) << lambda;
+  }
+}
+
+TEST(Smoothing, TwoWaypointsNextToEachOtherDisturbNothing) {
+  // A nanosecond apart, with λ/h³ of 1e25: two waypoints that count at one place.
+  Mesh mesh = regular_mesh(9, 1, Time(10'000'000));
+  mesh.positions = {0, 0.2, 0.4, 0.6, 0.8, 1.0, 0.9, 1.1, 1.0};
+  const auto smooth = fit(waypoints_of(mesh), smoothing(0.01));
+  Mesh close = mesh;
+  close.times.insert(close.times.begin() + 4, mesh.times[3] + Time(1));
+  State state(1);
+  smooth.evaluate(mesh.times[3] + Time(1), state.ref());
+  // A waypoint on the curve itself pulls nowhere.
+  close.positions.insert(close.positions.begin() + 4, state.position()[0]);
+  const auto curve = fit(waypoints_of(close), smoothing(0.01));
+  State other(1);
+  for (const Time t : query_times(mesh, 5)) {
+    smooth.evaluate(t, state.ref());
+    curve.evaluate(t, other.ref());
+    EXPECT_NEAR(other.position()[0], state.position()[0], 1e-12) << t.count();
+    EXPECT_NEAR(other.velocity()[0], state.velocity()[0], 1e-10) << t.count();
+  }
+}
+
+TEST(Smoothing, ALargeOffsetOfThePositionsCostsNoDigitsOfTheirMoves) {
+  Mesh mesh = regular_mesh(50, 1, Time(1'000'000));
+  for (std::size_t i = 0; i < 50; ++i) {
+    // Multiples of 2⁻²⁰, so that adding 2³⁰ loses nothing.
+    mesh.positions.push_back(std::round(std::sin(0.02 * static_cast<double>(i)) * 0x1p20) / 0x1p20);
+  }
+  Mesh far = mesh;
+  for (double& x : far.positions) x += 0x1p30;
+  const auto near_curve = fit(waypoints_of(mesh), smoothing(1e-6));
+  const auto far_curve = fit(waypoints_of(far), smoothing(1e-6));
+  WindowOptions how{.interpolant = smoothing(1e-6).interpolant, .settle = 64};
+  how.force_lag = true;
+  const auto online = testing::online(waypoints_of(far), how, {ConditionKind::own, {}});
+  State a(1);
+  State b(1);
+  State c(1);
+  for (const Time t : query_times(mesh, 4)) {
+    near_curve.evaluate(t, a.ref());
+    far_curve.evaluate(t, b.ref());
+    online.evaluate(t, c.ref());
+    EXPECT_NEAR(a.velocity()[0], b.velocity()[0], 1e-11 * 20);
+    EXPECT_NEAR(a.acceleration()[0], b.acceleration()[0], 1e-9 * 230);
+    EXPECT_NEAR(a.velocity()[0], c.velocity()[0], 1e-7 * 20);
+    EXPECT_NEAR(a.acceleration()[0], c.acceleration()[0], 1e-6 * 230);
+  }
+}
+
+TEST(Smoothing, BothEndsOfTwoWaypointsHaveTheConditionsAskedFor) {
+  Mesh mesh = regular_mesh(2, 1, Time(1'000'000'000));
+  mesh.positions = {0, 1};
+  FitOptions options = smoothing(1);
+  options.start = {ConditionKind::acceleration, {1}};
+  options.end = {ConditionKind::acceleration, {2}};
+  const auto curve = fit(waypoints_of(mesh), options);
+  State state(1);
+  curve.evaluate(mesh.times[0], state.ref());
+  EXPECT_NEAR(state.acceleration()[0], 1, 1e-12);
+  curve.evaluate(mesh.times[1], state.ref());
+  EXPECT_NEAR(state.acceleration()[0], 2, 1e-12);
+}
+
 TEST(CrossValidation, ScoresWithTheExactTrace) {
   for (const double ratio : {1.0, 5.0}) {
     const Mesh mesh = random_mesh(8, 30, 3, ratio);

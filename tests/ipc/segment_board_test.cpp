@@ -35,7 +35,8 @@ void write(MemoryBoard& board, Word number, Word revision) {
                         .g = zeros,
                         .position = zeros,
                         .velocity = zeros,
-                        .acceleration = {}};
+                        .acceleration = {},
+                        .residual = {}};
   board.writer.write(number, marked(number, revision), knot, 0);
 }
 

@@ -41,12 +41,13 @@ enum class Tail {
 };
 
 /// How a condition is written on a command line: `natural`, `rest`, `halt`, `velocity=1,2,3`,
-/// `acceleration=1,2,3`, `not-a-knot`, `periodic`, `own`.
+/// `acceleration=1,2,3`, `not-a-knot`, `periodic`; and `own`, which is what saying nothing means.
 [[nodiscard]] std::string to_string(const Condition& condition);
 [[nodiscard]] std::string_view to_string(Tail tail) noexcept;
 
-/// Reads what to_string writes. Returns nothing for any other text; a name without its values, a
-/// value that is not a finite number and values behind a name that takes none are other texts.
+/// Reads what to_string writes, but for `own`. Returns nothing for any other text; a name without
+/// its values, a value that is not a finite number and values behind a name that takes none are
+/// other texts.
 [[nodiscard]] std::optional<Condition> parse_condition(std::string_view text);
 [[nodiscard]] std::optional<Tail> parse_tail(std::string_view text) noexcept;
 

@@ -13,6 +13,10 @@
 
 namespace splinecast::core {
 
+/// Writes the chord slope from one position to another that is h seconds later: O(D).
+void write_chord(std::span<const double> from, std::span<const double> to, double h,
+                 std::span<double> slope) noexcept;
+
 /// The scalars of a knot's eliminated row: γ, and the smoothing spline's factors.
 struct Prefix {
   double gamma = 0;
@@ -29,6 +33,7 @@ struct Knot {
   std::span<const double> position;      ///< where the curve passes: the waypoint, or smoothed
   std::span<const double> velocity;      ///< as solved so far
   std::span<const double> acceleration;  ///< given with the waypoint; empty unless the method asks
+  std::span<const double> residual;      ///< waypoint − position; empty unless the method smooths
 };
 
 /// The last knots of a curve and their elimination prefix, in a ring of fixed capacity; what fills
@@ -43,6 +48,7 @@ class KnotRing {
     kG,
     kVelocity,
     kAcceleration,   ///< given, or a of the smoothing spline
+    kResidual,       ///< waypoint − smoothed position
     kPosition,       ///< smoothed
     kPositionChord,  ///< slope from this smoothed position to the next
   };
@@ -104,6 +110,9 @@ class KnotRing {
   /// The interval between knots i and i+1, both of which must still be kept.
   [[nodiscard]] Interval interval(std::size_t i) const noexcept;
 
+  /// Writes the smoothed chord slope of interval i from the residuals at both its ends.
+  void measure_smoothed(std::size_t i) noexcept;
+
   /// The acceleration that the curve reaches the newest knot with, for dimension d.
   [[nodiscard]] double final_acceleration(std::size_t d) const noexcept;
 
@@ -122,10 +131,6 @@ class KnotRing {
   std::vector<Row> rows_;
   std::vector<double> values_;  ///< [knot & mask][which][dimension]
 };
-
-/// Writes the chord slopes from x0 to x1 over h seconds.
-void write_chord(std::span<const double> x0, std::span<const double> x1, double h,
-                 std::span<double> chord) noexcept;
 
 /// Writes the acceleration step at the left knot of interval i: a⁺ − a⁻. At knot 0 it is a⁺ if a
 /// hold stands before it (`held_before`), else 0, because nothing stands before.

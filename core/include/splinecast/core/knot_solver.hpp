@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 
 #include "splinecast/core/condition.hpp"
@@ -13,7 +14,8 @@ namespace splinecast::core {
 /// Finds the knot velocities of one method, in the rows of a KnotRing: the batch solver over all
 /// knots at once, the sliding window over those that an append still changes.
 ///
-/// Holds parameters only: the ring carries the state. No function allocates or throws.
+/// Holds parameters only: the ring carries the state. No function throws, and none that is for
+/// online use allocates.
 class KnotSolver {
  public:
   /// `start` is the condition at knot 0 of the first run.
@@ -51,11 +53,17 @@ class KnotSolver {
   Condition start_;
 };
 
+/// What a solver is for.
+enum class Use : std::uint8_t {
+  online,   ///< knots come and go, and are solved again and again
+  at_once,  ///< all knots are pushed, then solved once, with an end condition; may allocate
+};
+
 /// The solver of a method; `start` is the condition at knot 0. Parameters and values must have been
 /// checked, and the method must stream.
 [[nodiscard]] std::unique_ptr<KnotSolver> make_knot_solver(const Interpolant& how,
                                                            const Condition& start,
-                                                           std::size_t dimensions);
+                                                           std::size_t dimensions, Use use);
 
 /// Writes what the velocity of a lone knot is: the start condition's, else 0.
 void solve_lone_knot(KnotRing& knots, const Condition& start) noexcept;

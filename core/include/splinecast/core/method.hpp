@@ -63,7 +63,7 @@ struct Method {
 /// A method and its parameters: all that makes a curve of waypoints but the conditions at its ends.
 struct Interpolant {
   const Method* method = &c2();
-  double lambda = 0;  ///< of `smoothing`: λ ≥ 0 in s³, in Σ(x_i − f(t_i))² + λ∫f″²
+  double lambda = 0;  ///< of `smoothing`: λ, 0 … 1e100, in s³, in Σ(x_i − f(t_i))² + λ∫f″²
   double time_scale = 1;  ///< of `rounded`: > 0, seconds that count as one unit of position
 
   friend bool operator==(const Interpolant&, const Interpolant&) = default;

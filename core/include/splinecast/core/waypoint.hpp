@@ -7,6 +7,15 @@
 
 namespace splinecast::core {
 
+/// The largest magnitude of a position, velocity or acceleration. Far beyond any use, and so far
+/// below a double's range that no formula overflows on the way.
+inline constexpr double kLargestValue = 1e100;
+
+/// Whether a value can be taken: a number within ±kLargestValue.
+[[nodiscard]] constexpr bool is_usable(double value) noexcept {
+  return value >= -kLargestValue && value <= kLargestValue;  // no NaN is
+}
+
 /// What a producer gives: a time, a position and, optionally, velocity and acceleration.
 /// Spans hold one value per dimension; an empty span says "not given". Does not own its values.
 struct Waypoint {

@@ -163,7 +163,7 @@ class SegmentBoardReader {
   /// What a new solver needs of a knot: copied into `values` (kKnotValues·D), which the returned
   /// spans view. Position, velocity and acceleration are those that its segment begins with. For
   /// the one writer only, who races with nobody.
-  static constexpr std::size_t kKnotValues = 5;
+  static constexpr std::size_t kKnotValues = 6;
   [[nodiscard]] core::Knot knot(Word number, Word r, std::span<double> values) const noexcept;
 
  private:

@@ -10,7 +10,7 @@ enum class AppendStatus : std::uint8_t {
   accepted,
   full,                   ///< the ring has no room until the solver consumes; try again
   not_increasing,         ///< the time is not after that of the waypoint before
-  not_finite,             ///< a value is infinite or not a number
+  not_finite,             ///< a value is infinite, not a number, or beyond ±core::kLargestValue
   wrong_dimension,        ///< a span does not have one value per dimension
   interval_out_of_range,  ///< too close to the waypoint before, or too far from it, or the time
                           ///< itself lies beyond ±2⁶² ns

@@ -134,6 +134,7 @@ inline constexpr core::Time kLatestTime{std::int64_t{1} << 62U};
   return interval >= limits.min_interval && interval <= limits.max_interval;
 }
 
+/// Whether all values are numbers within ±core::kLargestValue.
 [[nodiscard]] bool is_finite(std::span<const double> values) noexcept;
 
 }  // namespace splinecast::ipc

@@ -1,0 +1,82 @@
+// What is drawn besides the curves.
+
+// Marks of `times` that are seen, as [time, index], and whether there is room to draw them large.
+function seen(times, area, g) {
+  const [from, to] = g.xAxisRange();
+  const marks = times.map((t, i) => [t, i]).filter(([t]) => t >= from && t <= to);
+  return {marks, large: marks.length * kMarkSpacing <= area.w};
+}
+
+// Lines at the knots, behind the curves; where they crowd, ticks at the bottom of every 2nd, 4th…
+function draw_knots(chart, ctx, area, g) {
+  const {marks, large} = seen(report.knot_seconds, area, g);
+  let every = 1;
+  while (marks.length / every * kTickSpacing > area.w) every *= 2;
+  ctx.strokeStyle = large ? "#c4c4c4" : "#999";
+  ctx.lineWidth = 1;
+  ctx.beginPath();
+  for (const [t, i] of marks) {
+    if (i % every !== 0) continue;
+    const x = Math.round(g.toDomXCoord(t)) + 0.5;
+    ctx.moveTo(x, area.y + (large ? 0 : area.h - 6));
+    ctx.lineTo(x, area.y + area.h);
+  }
+  ctx.stroke();
+  chart.plot.dataset.knots = marks.length;
+}
+
+function draw_circles(chart, marks, ctx, g, radius) {
+  for (const [t, i] of marks) {
+    ctx.beginPath();
+    ctx.arc(g.toDomXCoord(t), g.toDomYCoord(chart.dimension.waypoints[i]), radius, 0, 2 * Math.PI);
+    ctx.fill();
+    if (ctx.strokeStyle !== ctx.fillStyle) ctx.stroke();
+  }
+}
+
+// Rings at the waypoints, over the curves; where they crowd, dots behind the curves.
+function draw_waypoints(chart, ctx, area, g, in_front) {
+  const {marks, large} = seen(report.waypoint_seconds, area, g);
+  chart.plot.dataset.waypoints = marks.length;
+  if (large !== in_front) return;
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(area.x, area.y, area.w, area.h);
+  ctx.clip();
+  ctx.lineWidth = 1.2;
+  ctx.strokeStyle = large ? "#000" : "#999999";
+  ctx.fillStyle = large ? "#fff" : "#999999";
+  draw_circles(chart, marks, ctx, g, large ? 3 : 2.5);
+  ctx.restore();
+}
+
+function draw_crosshair(g, x) {
+  const area = g.getArea();
+  const ctx = g.canvas_ctx_;
+  ctx.save();
+  ctx.strokeStyle = "#777";
+  ctx.setLineDash([3, 3]);
+  ctx.beginPath();
+  ctx.moveTo(Math.round(x) + 0.5, area.y);
+  ctx.lineTo(Math.round(x) + 0.5, area.y + area.h);
+  ctx.stroke();
+  ctx.restore();
+}
+
+// What draws besides dygraphs itself.
+function marks(chart) {
+  return {
+    activate: () => ({
+      willDrawChart: ({drawingContext, dygraph}) => {
+        const area = dygraph.getArea();
+        if (chart.r > 0) draw_knots(chart, drawingContext, area, dygraph);
+        else draw_waypoints(chart, drawingContext, area, dygraph, false);
+      },
+      didDrawChart: ({drawingContext, dygraph}) => {
+        if (chart.r > 0) return;
+        draw_waypoints(chart, drawingContext, dygraph.getArea(), dygraph, true);
+      },
+      select: (e) => draw_crosshair(e.dygraph, e.dygraph.toDomXCoord(e.selectedX)),
+    }),
+  };
+}

@@ -1,0 +1,103 @@
+// The page: what is around the charts, when they are drawn, and printing.
+
+function make_section(dimension, index) {
+  const node = element(document.getElementById("dimensions"), "section");
+  node.id = `dimension-${index}`;
+  element(node, "h2", dimension.name + (dimension.unit ? ` [${dimension.unit}]` : ""));
+  const section = {node, dimension, times: first_times(), drawn: false, zooming: false};
+  section.coarse = element(node, "p", `Closer than the charts can show: each of their intervals of ` +
+      `${short(report.bucket)} s is drawn as its least and greatest value only.`, "coarse");
+  section.coarse.hidden = true;
+  section.charts = kDerivatives.map((_, r) => make_chart(dimension, r, node));
+  make_table(dimension, node);
+  return section;
+}
+
+function first_times() {
+  const asked = (address.get("time") || "").split(",").map(Number);
+  return asked.length === 2 && asked[0] < asked[1] ? asked : whole;
+}
+
+function make_summary() {
+  document.title = report.title;
+  document.getElementById("title").textContent = report.title;
+  const list = document.getElementById("summary");
+  const item = (name, text) => {
+    const pair = element(list, "div");
+    element(pair, "dt", name);
+    element(pair, "dd", text);
+  };
+  item("Waypoints", String(report.count));
+  item("Duration", `${short(report.duration)} s`);
+  if (report.intervals) {
+    item("Intervals: least, median, most", report.intervals.map(short).join(", ") + " s");
+  }
+  item("Time 0", `${report.origin_ns} ns`);
+  item("Curves", report.curves.join(", "));
+}
+
+function make_contents() {
+  if (report.dimensions.length < 2) return;
+  report.dimensions.forEach((dimension, i) => {
+    const link = element(document.getElementById("contents"), "a", dimension.name);
+    link.href = `#dimension-${i}`;
+  });
+}
+
+function make_notes() {
+  const notes = document.getElementById("notes");
+  if (report.duration === 0) {
+    element(notes, "p", "A lone waypoint: the curve holds its position.");
+  }
+  if (report.bucket > 0) {
+    element(notes, "p", `This recording is long: each ${short(report.bucket)} s are drawn as their ` +
+        "least and greatest value. The tables are exact.");
+  }
+  if (report.stride > 1) {
+    element(notes, "p", "Not all waypoints and knots are marked: 4000 at the most.");
+  }
+  element(notes, "p", "Charts drawn with dygraphs (MIT licence).");
+}
+
+// Draws sections when they come near the window and frees them when they are far from it.
+function watch(sections) {
+  const watcher = new IntersectionObserver((entries) => {
+    for (const {target, isIntersecting} of entries) {
+      const section = sections.find(({node}) => node === target);
+      if (isIntersecting) draw(section);
+      else if (!document.body.classList.contains("printing")) release(section);
+    }
+  }, {rootMargin: "800px 0px"});
+  for (const {node} of sections) watcher.observe(node);
+}
+
+// Fits the charts to the page, with `scale` dots per CSS pixel; null: as many as the screen has.
+function resize(sections, scale) {
+  for (const {charts} of sections) {
+    for (const {graph} of charts) {
+      if (!graph) continue;
+      graph.updateOptions({pixelRatio: scale}, true);
+      graph.resize();
+    }
+  }
+}
+
+function prepare_print(sections) {
+  document.body.classList.add("printing");
+  sections.forEach(draw);
+  resize(sections, sections.length <= kSharpSections ? 2 : null);
+}
+
+function finish_print(sections) {
+  document.body.classList.remove("printing");
+  resize(sections, null);
+}
+
+make_summary();
+make_contents();
+const sections = report.dimensions.map(make_section);
+make_notes();
+if (address.get("draw") === "all") sections.forEach(draw);
+else watch(sections);
+addEventListener("beforeprint", () => prepare_print(sections));
+addEventListener("afterprint", () => finish_print(sections));

@@ -1,0 +1,118 @@
+// What the page is given, and how it says values.
+
+const report = JSON.parse(document.getElementById("data").textContent);
+
+const kDerivatives = [
+  {name: "position", per: ""},
+  {name: "velocity", per: "/s"},
+  {name: "acceleration", per: "/s²"},
+  {name: "jerk", per: "/s³"},
+];
+// Okabe and Ito's colours without yellow, which white swallows; black is for waypoints.
+const kColors = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#666666"];
+// The first is drawn through, so that it shows in the gaps of a curve that lies on it.
+const kDashes = [[], [8, 4], [3, 3], [10, 3, 3, 3], [14, 5]];
+const kLabelWidth = 70;     // px of an axis label
+const kMarkSpacing = 7;     // px between marks that are drawn large
+const kTickSpacing = 3;     // px between those that are drawn small
+const kPadding = 0.06;      // of the values' range, above and below
+const kTimePadding = 0.01;  // of the duration, before and after
+const kCoarse = 4;          // px of an interval that is drawn as two values, to say so
+const kSharpSections = 16;  // that are printed sharply; more would take too much memory
+
+// `#draw=all` draws every chart at once; `&time=FROM,TO` zooms them, in seconds.
+const address = new URLSearchParams(location.hash.slice(1));
+
+const whole = report.duration > 0
+    ? [-kTimePadding * report.duration, (1 + kTimePadding) * report.duration]
+    : [-1.05, 1.05];
+
+function element(parent, tag, text, className) {
+  const made = document.createElement(tag);
+  if (text !== undefined) made.textContent = text;
+  if (className) made.className = className;
+  parent.append(made);
+  return made;
+}
+
+function short(value) {
+  return value === null ? "–" : String(Number(value.toPrecision(6)));
+}
+
+function unit_of(dimension, r) {
+  const unit = dimension.unit || "unit";
+  return (r > 0 && unit.includes("/") ? `(${unit})` : unit) + kDerivatives[r].per;
+}
+
+function axis_title(dimension, r) {
+  return `${kDerivatives[r].name} [${unit_of(dimension, r)}]`;
+}
+
+const color_of = (c) => kColors[c % kColors.length];
+const dash_of = (c) => kDashes[c % kDashes.length];
+
+// Ticks at multiples of 1, 2 or 5 powers of ten, with the digits that tell them apart.
+function ticks(low, high, most) {
+  const rough = (high - low) / Math.max(most, 1);
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = power * [1, 2, 5, 10].find((factor) => factor * power >= rough * 0.999);
+  const digits = Math.floor(Math.log10(step) + 1e-9);
+  const size = Math.floor(Math.log10(Math.max(Math.abs(low), Math.abs(high))));
+  const label = (v) => {
+    if (v === 0) return "0";
+    if (size < 6 && digits > -6) return v.toFixed(Math.max(0, -digits));
+    return `${(v / 10 ** size).toFixed(Math.max(0, size - digits))}e${size}`;
+  };
+  const made = [];
+  for (let i = Math.ceil(low / step); i <= Math.floor(high / step); ++i) {
+    made.push({v: i * step, label: label(i * step)});
+  }
+  return made;
+}
+
+// First row at or after a time.
+function row_at(seconds) {
+  let [low, high] = [0, report.seconds.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (report.seconds[middle] < seconds) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+// Least and greatest of what a chart shows between two times, waypoints included.
+function extent(dimension, r, [from, to]) {
+  let [low, high] = [Infinity, -Infinity];
+  const consider = (value) => {
+    if (value === null) return;
+    low = Math.min(low, value);
+    high = Math.max(high, value);
+  };
+  const first = Math.max(0, row_at(from) - 1);
+  for (const curve of dimension.curves) {
+    const values = curve.values[r];
+    for (let i = first; i < values.length; ++i) {
+      consider(values[i]);
+      if (report.seconds[i] > to) break;
+    }
+  }
+  if (r > 0) return [low, high];
+  report.waypoint_seconds.forEach((t, i) => {
+    if (t >= from && t <= to) consider(dimension.waypoints[i]);
+  });
+  return [low, high];
+}
+
+// The values a chart spans. Those that differ by rounding only make a flat line, not a noise.
+function value_range(dimension, r, times) {
+  const [low, high] = extent(dimension, r, times);
+  if (!(high >= low)) return [-1.05, 1.05];
+  if (high - low > dimension.resolution[r]) {
+    const padding = kPadding * (high - low);
+    return [low - padding, high + padding];
+  }
+  const middle = Math.max(Math.abs(low), Math.abs(high)) > dimension.resolution[r] ? low : 0;
+  const half = 1.05 * (Math.abs(middle) * 0.1 || 1);
+  return [middle - half, middle + half];
+}
