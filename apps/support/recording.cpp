@@ -37,8 +37,10 @@ std::string refusal_message(const WaypointTable& table, std::size_t i, ipc::Appe
   switch (status) {
     case ipc::AppendStatus::not_finite:
       return fmt::format("{}: {}", row, value_in_row(table, i));
-    case ipc::AppendStatus::not_increasing:
-    case ipc::AppendStatus::interval_out_of_range:
+    case ipc::AppendStatus::duplicate:
+    case ipc::AppendStatus::out_of_order:
+    case ipc::AppendStatus::too_close:
+    case ipc::AppendStatus::too_far_apart:
       return fmt::format("{}: time {} ns, {} ns after the waypoint before", row,
                          table.times[i].count(), interval.count());
     default:
@@ -60,9 +62,9 @@ class RowCheck {
       return ipc::AppendStatus::not_finite;
     }
     interval_ = row.time - last_;
-    if (any_ && interval_ <= core::Time::zero()) return ipc::AppendStatus::not_increasing;
-    if (any_ && !ipc::is_interval_in_range(interval_, limits_)) {
-      return ipc::AppendStatus::interval_out_of_range;
+    if (any_) {
+      const auto status = ipc::judge_interval(interval_, limits_);
+      if (status != ipc::AppendStatus::accepted) return status;
     }
     any_ = true;
     last_ = row.time;

@@ -30,9 +30,8 @@ ordered_json stream_json(const ipc::RegionHeader& header) {
 ordered_json producer_json(const ipc::StreamInfo& info) {
   ordered_json refused = ordered_json::object();
   for (std::size_t i = 1; i < info.refused_by_producer.size(); ++i) {
-    const auto status = static_cast<ipc::AppendStatus>(i);
-    if (status > ipc::AppendStatus::finished) break;
-    refused[std::string(ipc::to_string(status))] = info.refused_by_producer[i];
+    refused[std::string(ipc::to_string(static_cast<ipc::AppendStatus>(i)))] =
+        info.refused_by_producer[i];
   }
   return {
       {"alive", info.producer_alive},

@@ -8,14 +8,26 @@ std::string_view to_string(AppendStatus status) noexcept {
       return "accepted";
     case AppendStatus::full:
       return "full";
-    case AppendStatus::not_increasing:
-      return "not increasing";
+    case AppendStatus::past:
+      return "past";
+    case AppendStatus::duplicate:
+      return "duplicate";
+    case AppendStatus::out_of_order:
+      return "out of order";
     case AppendStatus::not_finite:
       return "not finite";
+    case AppendStatus::too_close:
+      return "too close";
+    case AppendStatus::too_far_apart:
+      return "too far apart";
     case AppendStatus::wrong_dimension:
       return "wrong dimension";
-    case AppendStatus::interval_out_of_range:
-      return "interval out of range";
+    case AppendStatus::too_late:
+      return "too late";
+    case AppendStatus::too_many:
+      return "too many";
+    case AppendStatus::already_started:
+      return "already started";
     case AppendStatus::finished:
       return "finished";
   }
@@ -24,14 +36,24 @@ std::string_view to_string(AppendStatus status) noexcept {
 
 std::string_view to_string(Refusal refusal) noexcept {
   switch (refusal) {
-    case Refusal::not_increasing:
-      return "not increasing";
+    case Refusal::past:
+      return "past";
+    case Refusal::duplicate:
+      return "duplicate";
+    case Refusal::out_of_order:
+      return "out of order";
     case Refusal::not_finite:
       return "not finite";
-    case Refusal::interval_out_of_range:
-      return "interval out of range";
+    case Refusal::too_close:
+      return "too close";
+    case Refusal::too_far_apart:
+      return "too far apart";
+    case Refusal::too_late:
+      return "too late";
     case Refusal::after_finish:
       return "after finish";
+    case Refusal::already_started:
+      return "already started";
     case Refusal::unknown_kind:
       return "unknown kind";
     case Refusal::lacks_derivatives:
@@ -52,6 +74,8 @@ std::string_view to_string(SampleStatus status) noexcept {
       return "stopping";
     case SampleStatus::holding:
       return "holding";
+    case SampleStatus::revised:
+      return "revised";
     case SampleStatus::before_history:
       return "before history";
     case SampleStatus::no_data:

@@ -16,6 +16,20 @@ constexpr std::size_t changed_besides(std::size_t settle) noexcept { return sett
 
 constexpr core::Time kNothingChanged = core::Time::max();
 
+/// What an interval is refused for.
+Refusal to_refusal(AppendStatus status) noexcept {
+  switch (status) {
+    case AppendStatus::duplicate:
+      return Refusal::duplicate;
+    case AppendStatus::out_of_order:
+      return Refusal::out_of_order;
+    case AppendStatus::too_close:
+      return Refusal::too_close;
+    default:
+      return Refusal::too_far_apart;
+  }
+}
+
 core::Waypoint waypoint_of(const RingItem& item) noexcept {
   const std::size_t dimensions = item.values.size() / 3;
   const auto values = std::span<const double>(item.values);
@@ -104,12 +118,10 @@ void StreamSolver::take_waypoint(const RingItem& item, Word number) noexcept {
     return refuse(number, Refusal::not_finite);
   }
   if (!window_.takes(waypoint)) return refuse(number, Refusal::lacks_derivatives);
-  if (!is_time_in_range(item.time)) return refuse(number, Refusal::interval_out_of_range);
+  if (!is_time_in_range(item.time)) return refuse(number, Refusal::too_far_apart);
   if (head_.knots > 0) {
-    if (item.time <= head_.newest_knot) return refuse(number, Refusal::not_increasing);
-    if (!is_interval_in_range(item.time - head_.newest_knot, limits_)) {
-      return refuse(number, Refusal::interval_out_of_range);
-    }
+    const auto status = judge_interval(item.time - head_.newest_knot, limits_);
+    if (status != AppendStatus::accepted) return refuse(number, to_refusal(status));
   }
   if (!window_.lag_suffices(item.time)) return refuse(number, Refusal::lag_too_short);
   window_.append(waypoint);

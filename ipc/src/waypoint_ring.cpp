@@ -61,13 +61,9 @@ AppendStatus WaypointRingWriter::check(const core::Waypoint& waypoint) const noe
       !is_finite(waypoint.acceleration)) {
     return AppendStatus::not_finite;
   }
-  if (!is_time_in_range(waypoint.time)) return AppendStatus::interval_out_of_range;
+  if (!is_time_in_range(waypoint.time)) return AppendStatus::too_far_apart;
   if (!has_last_) return AppendStatus::accepted;
-  if (waypoint.time <= last_time_) return AppendStatus::not_increasing;
-  if (!is_interval_in_range(waypoint.time - last_time_, limits_)) {
-    return AppendStatus::interval_out_of_range;
-  }
-  return AppendStatus::accepted;
+  return judge_interval(waypoint.time - last_time_, limits_);
 }
 
 AppendStatus WaypointRingWriter::append(const core::Waypoint& waypoint, Word consumed) noexcept {

@@ -111,7 +111,7 @@ TEST_F(Life, BadRowsStopAReplayBeforeAnythingIsSentOrAreSkippedByName) {
                              "max", "--on-error", "skip", "--json"});
   EXPECT_EQ(skipped.code, 0);
   for (const char* text : {"bad.csv:4:3", "bad.csv:3: waypoint refused: not finite",
-                           "bad.csv:6: waypoint refused: not increasing"}) {
+                           "bad.csv:6: waypoint refused: duplicate"}) {
     EXPECT_NE(skipped.err.find(text), std::string::npos) << skipped.err;
   }
   const auto report = nlohmann::json::parse(skipped.out);

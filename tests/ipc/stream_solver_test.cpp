@@ -89,7 +89,8 @@ TEST(StreamSolver, RefusesWhatAProducerShouldNotHaveSentWithReasonAndNumber) {
   const Head& head = stream.solver.head();
   EXPECT_EQ(head.knots, 2U);
   EXPECT_EQ(head.refused, 3U);
-  EXPECT_EQ(head.reasons[static_cast<std::size_t>(Refusal::interval_out_of_range)], 3U);
+  EXPECT_EQ(head.reasons[static_cast<std::size_t>(Refusal::too_close)], 1U);
+  EXPECT_EQ(head.reasons[static_cast<std::size_t>(Refusal::too_far_apart)], 2U);
   EXPECT_EQ(stream.board.reader.refusal(0).item, 1U);
   EXPECT_EQ(stream.board.reader.refusal(2).item, 4U);
   EXPECT_EQ(head.consumed, 6U);

@@ -51,17 +51,19 @@ TEST(WaypointRing, RefusesBadFormWithTheReasonAndCountsIt) {
   EXPECT_EQ(ring.writer.append({kMillisecond, x, {}, std::span(x).first(1)}, 0),
             AppendStatus::wrong_dimension);
   EXPECT_EQ(append(ring, kMillisecond, {1, 2}), AppendStatus::accepted);
-  EXPECT_EQ(append(ring, kMillisecond, {1, 2}), AppendStatus::not_increasing);
-  EXPECT_EQ(append(ring, Time(0), {1, 2}), AppendStatus::not_increasing);
-  EXPECT_EQ(append(ring, kMillisecond + Time(999), {1, 2}), AppendStatus::interval_out_of_range);
+  EXPECT_EQ(append(ring, kMillisecond, {1, 2}), AppendStatus::duplicate);
+  EXPECT_EQ(append(ring, Time(0), {1, 2}), AppendStatus::out_of_order);
+  EXPECT_EQ(append(ring, kMillisecond + Time(999), {1, 2}), AppendStatus::too_close);
   EXPECT_EQ(append(ring, kMillisecond + Time(3'600'000'000'001), {1, 2}),
-            AppendStatus::interval_out_of_range);
+            AppendStatus::too_far_apart);
   EXPECT_EQ(append(ring, kMillisecond + Time(1000), {1, 2}), AppendStatus::accepted);
   EXPECT_EQ(ring.writer.head(), 2U);
   EXPECT_EQ(ring.reader.refused(AppendStatus::not_finite), 2U);
   EXPECT_EQ(ring.reader.refused(AppendStatus::wrong_dimension), 2U);
-  EXPECT_EQ(ring.reader.refused(AppendStatus::not_increasing), 2U);
-  EXPECT_EQ(ring.reader.refused(AppendStatus::interval_out_of_range), 2U);
+  EXPECT_EQ(ring.reader.refused(AppendStatus::duplicate), 1U);
+  EXPECT_EQ(ring.reader.refused(AppendStatus::out_of_order), 1U);
+  EXPECT_EQ(ring.reader.refused(AppendStatus::too_close), 1U);
+  EXPECT_EQ(ring.reader.refused(AppendStatus::too_far_apart), 1U);
 }
 
 TEST(WaypointRing, IsFullUntilTheSolverConsumesAndLosesNothing) {
@@ -117,7 +119,7 @@ TEST(WaypointRing, ANewWriterGoesOnBehindTheLastWaypoint) {
   EXPECT_FALSE(next.finished());
   EXPECT_EQ(next.last_time(), 3 * kMillisecond);
   const std::vector<double> x{0};
-  EXPECT_EQ(next.append({3 * kMillisecond, x, {}, {}}, 0), AppendStatus::not_increasing);
+  EXPECT_EQ(next.append({3 * kMillisecond, x, {}, {}}, 0), AppendStatus::duplicate);
   EXPECT_EQ(next.finish({}, 0), AppendStatus::accepted);
   EXPECT_TRUE(WaypointRingWriter(ring.bytes.span(), ring.layout, {}).finished());
 }

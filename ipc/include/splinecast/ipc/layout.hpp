@@ -16,7 +16,7 @@
 namespace splinecast::ipc {
 
 inline constexpr std::uint64_t kMagic = 0x54534143'4e4c5053;  // "SPLNCAST" in memory order
-inline constexpr std::uint32_t kLayoutVersion = 2;
+inline constexpr std::uint32_t kLayoutVersion = 3;
 inline constexpr std::uint32_t kByteOrder = 0x01020304;
 
 /// What different processes write, or poll, lies this far apart: two cache lines, because adjacent
@@ -31,6 +31,8 @@ inline constexpr std::size_t kUnitBytes = 16;
 /// What a dimension's values are.
 enum class DimensionKind : std::uint64_t {
   linear = 0,
+  wrap = 1,        ///< values repeat with the dimension's period: the curve takes the short way
+  quaternion = 2,  ///< one of four consecutive ones, in the order x y z w
 };
 
 /// The first bytes of both regions. Everything but epoch, owner_pid and owner_since is written
@@ -59,17 +61,21 @@ struct RegionHeader {
   std::int64_t stop_time;    ///< ns
   std::uint64_t epoch;       ///< number of the owner's life, from 1
   std::uint64_t owner_pid;
-  std::int64_t owner_since;  ///< CLOCK_MONOTONIC when the owner took the region
-  double lambda;             ///< of smoothing, s³
-  double time_scale;         ///< of rounded, s
-  std::uint64_t force_lag;   ///< 1: a lag too short for lambda is taken
-  std::array<std::uint64_t, 6> reserved;
+  std::int64_t owner_since;   ///< CLOCK_MONOTONIC when the owner took the region
+  double lambda;              ///< of smoothing, s³
+  double time_scale;          ///< of rounded, s
+  std::uint64_t force_lag;    ///< 1: a lag too short for lambda is taken
+  std::int64_t freeze_ahead;  ///< ns that a live stream settles ahead of now
+  std::int64_t history;       ///< ns before now that a live stream keeps
+  std::int64_t min_splice;    ///< ns: length of the shortest splice
+  std::array<std::uint64_t, 3> reserved;
   std::array<double, core::kMaxDimensions> start_value;
   std::array<std::uint64_t, core::kMaxDimensions> dimension_kind;
   std::array<double, core::kMaxDimensions> period;
   std::array<std::array<char, kNameBytes>, core::kMaxDimensions> name;
   std::array<std::array<char, kUnitBytes>, core::kMaxDimensions> unit;
-  std::array<std::uint64_t, 256> reserved_to_end;
+  std::array<double, core::kMaxDimensions> max_acceleration;  ///< 0: no limit
+  std::array<std::uint64_t, 192> reserved_to_end;
 };
 static_assert(sizeof(RegionHeader) == 2 * kPage - 1280);
 inline constexpr std::size_t kHeaderBytes = 2 * kPage;

@@ -8,26 +8,39 @@ namespace splinecast::ipc {
 /// What `append` answers. Only `accepted` changes anything.
 enum class AppendStatus : std::uint8_t {
   accepted,
-  full,                   ///< the ring has no room until the solver consumes; try again
-  not_increasing,         ///< the time is not after that of the waypoint before
-  not_finite,             ///< a value is infinite, not a number, or beyond ±core::kLargestValue
-  wrong_dimension,        ///< a span does not have one value per dimension
-  interval_out_of_range,  ///< too close to the waypoint before, or too far from it, or the time
-                          ///< itself lies beyond ±2⁶² ns
-  finished,               ///< the stream has been finished
+  full,             ///< the ring has no room until the solver consumes; try again
+  past,             ///< the time lies before what has settled; live streams only
+  duplicate,        ///< the time is that of the waypoint before
+  out_of_order,     ///< the time is earlier than that of the waypoint before
+  not_finite,       ///< a value is infinite, not a number, or beyond ±core::kLargestValue
+  too_close,        ///< less than the least interval after the waypoint before
+  too_far_apart,    ///< more than the most interval after the waypoint before (on a live stream:
+                    ///< after it and after what has settled), or beyond ±2⁶² ns
+  wrong_dimension,  ///< a span does not have one value per dimension
+  too_late,         ///< a replacement from a time that has settled: see Producer::earliest()
+  too_many,         ///< a replacement longer than the ring
+  already_started,  ///< a start state behind the first waypoint
+  finished,         ///< the stream has been finished
 };
+inline constexpr std::uint8_t kAppendStatuses = 13;
 
 /// Why the solver refused an item that the ring had accepted. Counted one by one.
 enum class Refusal : std::uint8_t {
-  not_increasing = 1,
-  not_finite = 2,
-  interval_out_of_range = 3,
-  after_finish = 4,
-  unknown_kind = 5,
-  lacks_derivatives = 6,  ///< the method needs a velocity, or acceleration, that is not given
-  lag_too_short = 7,      ///< the settle lag is too short for λ with waypoints so close
+  past = 1,  ///< before what has settled; live streams only
+  duplicate = 2,
+  out_of_order = 3,
+  not_finite = 4,
+  too_close = 5,
+  too_far_apart = 6,
+  too_late = 7,  ///< no splice reaches it in time, or with the acceleration allowed; or it belongs
+                 ///< to a replacement that came too late
+  after_finish = 8,
+  already_started = 9,  ///< a start state behind the first waypoint
+  unknown_kind = 10,
+  lacks_derivatives = 11,  ///< the method needs a velocity, or acceleration, that is not given
+  lag_too_short = 12,      ///< the settle lag is too short for λ with waypoints so close
 };
-inline constexpr std::uint8_t kRefusals = 8;
+inline constexpr std::uint8_t kRefusals = 13;
 
 /// What a sample is worth.
 enum class SampleStatus : std::uint8_t {
@@ -35,6 +48,7 @@ enum class SampleStatus : std::uint8_t {
   provisional,     ///< a newer waypoint may still change it
   stopping,        ///< in the stop tail behind the newest waypoint
   holding,         ///< at rest: past the end, or before the first waypoint of a live stream
+  revised,         ///< the curve has been changed before a time that this reader had sampled
   before_history,  ///< older than what the board keeps, or before a recorded stream; no values
   no_data,         ///< no waypoint has been solved yet; no values
   busy,            ///< the writer overtook every try; no values, try again
@@ -43,10 +57,10 @@ enum class SampleStatus : std::uint8_t {
 
 /// Whether a sample of this status has values.
 [[nodiscard]] constexpr bool has_values(SampleStatus status) noexcept {
-  return status <= SampleStatus::holding;
+  return status <= SampleStatus::revised;
 }
 
-/// In words, as files and messages have them: `before history`, `not increasing`, …
+/// In words, as files and messages have them: `before history`, `out of order`, …
 [[nodiscard]] std::string_view to_string(AppendStatus status) noexcept;
 [[nodiscard]] std::string_view to_string(Refusal refusal) noexcept;
 [[nodiscard]] std::string_view to_string(SampleStatus status) noexcept;

@@ -23,9 +23,9 @@ struct StreamInfo {
   std::optional<RegionHeader> waypoints;  ///< header of the producer's region
   std::optional<RegionHeader> spline;     ///< header of the solver's region
   Word appended = 0;
-  std::array<Word, 8> refused_by_producer{};  ///< by AppendStatus
-  Head head;                                  ///< revision 0: nothing solved yet
-  std::vector<RefusedItem> refusals;          ///< the last refused items, oldest first
+  std::array<Word, kAppendStatuses> refused_by_producer{};  ///< by AppendStatus
+  Head head;                                                ///< revision 0: nothing solved yet
+  std::vector<RefusedItem> refusals;  ///< the last refused items, oldest first
 };
 
 /// Looks at a stream. Throws NoSuchStream if nothing of it stands, BadRegion if a region cannot

@@ -128,10 +128,14 @@ inline constexpr core::Time kLatestTime{std::int64_t{1} << 62U};
   return time >= -kLatestTime && time <= kLatestTime;
 }
 
-/// Whether a waypoint's time may follow the one before it.
-[[nodiscard]] constexpr bool is_interval_in_range(core::Time interval,
-                                                  const IngestLimits& limits) noexcept {
-  return interval >= limits.min_interval && interval <= limits.max_interval;
+/// Whether a waypoint may follow another one this much earlier: `accepted`, or why not.
+[[nodiscard]] constexpr AppendStatus judge_interval(core::Time interval,
+                                                    const IngestLimits& limits) noexcept {
+  if (interval == core::Time::zero()) return AppendStatus::duplicate;
+  if (interval < core::Time::zero()) return AppendStatus::out_of_order;
+  if (interval < limits.min_interval) return AppendStatus::too_close;
+  if (interval > limits.max_interval) return AppendStatus::too_far_apart;
+  return AppendStatus::accepted;
 }
 
 /// Whether all values are numbers within ±core::kLargestValue.
