@@ -114,7 +114,7 @@ class DemoReader {
   core::Time before_time_{};
   bool has_before_ = false;
   std::size_t samples_ = 0;
-  std::array<std::size_t, 9> by_status_{};
+  std::array<std::size_t, ipc::kSampleStatuses> by_status_{};
   LargestStep at_knots_;
   LargestStep of_the_past_;
   std::vector<double> ages_;

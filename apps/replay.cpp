@@ -106,11 +106,7 @@ void add_interval(CLI::App& verb, const std::string& name, core::Time& value,
   verb.add_option_function<std::string>(
           name,
           [&value, name](const std::string& text) {
-            const auto time = parse_time(text, TimeUnit::seconds);
-            if (!time || *time <= core::Time::zero()) {
-              throw CLI::ValidationError(name, fmt::format("'{}' is no positive time", text));
-            }
-            value = *time;
+            value = positive_time(name, text, TimeUnit::seconds);
           },
           help)
       ->type_name("SECONDS");

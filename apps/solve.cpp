@@ -61,12 +61,12 @@ struct Served {
       if (!was_attached) return false;
       announcer.attached(solver);
     }
-    const bool worked = solver.step(clock).consumed > 0;
+    const ipc::StepResult result = solver.step(clock);
     if (solver.attached() && solver.head().finished && !was_finished) {
       was_finished = true;
       announcer.finished(solver);
     }
-    return worked;
+    return result.consumed > 0 || result.missed;
   }
 };
 
@@ -105,6 +105,35 @@ int run_solve(const SolveOptions& options) {
   return all.size() == options.streams.size() ? kOk : kFailed;
 }
 
+namespace {
+
+/// What concerns live streams.
+void add_live_options(CLI::App& verb, ipc::SolverOptions& options) {
+  verb.add_option_function<std::string>(
+          "--freeze-ahead",
+          [&options](const std::string& text) {
+            options.freeze_ahead = positive_time("--freeze-ahead", text, TimeUnit::milliseconds);
+          },
+          "Leave alone what lies this long ahead of now (default 5)")
+      ->type_name("MS");
+  add_seconds(verb, "--history", options.history,
+              "Keep what ended less than this ago; then consume no more (default 1)");
+  verb.add_option_function<std::string>(
+          "--max-acceleration",
+          [&options](const std::string& text) {
+            options.max_acceleration = core::parse_values(text);
+            if (options.max_acceleration) return;
+            throw CLI::ValidationError(
+                "--max-acceleration",
+                fmt::format("'{}' is no list of numbers such as 10 or 10,10,5", text));
+          },
+          "Largest acceleration of stop tails and splices: one number, or one per dimension; 0 for "
+          "no limit")
+      ->type_name("A,...");
+}
+
+}  // namespace
+
 void add_solve(CLI::App& program, Action& action) {
   auto options = std::make_shared<SolveOptions>();
   auto* verb = program.add_subcommand("solve", "Turn the waypoints of streams into splines");
@@ -113,17 +142,14 @@ void add_solve(CLI::App& program, Action& action) {
   add_seconds(*verb, "--stop-time", options->solver.stop_time,
               "Time in which a stream that dries up comes to rest (default 0.25)");
   add_count(*verb, "--capacity", options->solver.capacity,
-            "Segments of history to keep (default 4096; rounded up to a power of two)");
+            "Segments that the board holds (default 4096; rounded up to a power of two)");
+  add_live_options(*verb, options->solver);
   verb->add_flag("!--no-wake", options->solver.wake,
                  "Wake no waiting readers: for hosts where every reader polls");
   verb->add_option_function<std::string>(
           "--sweep",
           [options](const std::string& text) {
-            const auto sweep = parse_time(text, TimeUnit::milliseconds);
-            if (!sweep || *sweep <= core::Time::zero()) {
-              throw CLI::ValidationError("--sweep", fmt::format("'{}' is no positive time", text));
-            }
-            options->sweep = *sweep;
+            options->sweep = positive_time("--sweep", text, TimeUnit::milliseconds);
           },
           "Pause between looks at several streams (default 1)")
       ->type_name("MS");

@@ -209,6 +209,12 @@ void add_count(CLI::App& verb, const std::string& name, std::optional<std::size_
   add_number(verb, name, value, help);
 }
 
+core::Time positive_time(const std::string& name, const std::string& text, TimeUnit unit) {
+  const auto time = parse_time(text, unit);
+  if (time && *time > core::Time::zero()) return *time;
+  throw CLI::ValidationError(name, fmt::format("'{}' is no positive time", text));
+}
+
 double positive_number(const std::string& name, const std::string& text) {
   const auto number = parse_number(text);
   constexpr double kLeast = 1e-6;

@@ -65,6 +65,10 @@ void add_count(CLI::App& verb, const std::string& name, std::optional<std::size_
 /// A number between 1e-6 and 1e9, of which times can still be made; else CLI::ValidationError.
 [[nodiscard]] double positive_number(const std::string& name, const std::string& text);
 
+/// A time above 0; else CLI::ValidationError.
+[[nodiscard]] core::Time positive_time(const std::string& name, const std::string& text,
+                                       TimeUnit unit);
+
 /// `--mode` and `--group` of the regions to be made.
 void add_access(CLI::App& verb, ipc::RegionAccess& access);
 

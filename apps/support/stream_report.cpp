@@ -1,8 +1,10 @@
 #include "support/stream_report.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "splinecast/core/condition.hpp"
+#include "splinecast/ipc/clock.hpp"
 #include "splinecast/ipc/status.hpp"
 
 namespace splinecast::apps {
@@ -52,7 +54,19 @@ ordered_json refusals_json(const ipc::StreamInfo& info) {
   return list;
 }
 
+ordered_json limits_json(const ipc::RegionHeader& header) {
+  return ipc::window_options(header).max_acceleration;
+}
+
+/// Time from now to the newest knot; null where that means nothing.
+ordered_json depth(const ipc::StreamInfo& info) {
+  if (clock_name(*info.spline) == "recorded" || info.head.newest == 0) return nullptr;
+  const core::Time left = info.head.newest_knot - ipc::MonotonicClock().now();
+  return std::max(left, core::Time::zero()).count();
+}
+
 ordered_json solver_json(const ipc::StreamInfo& info) {
+  const bool has_low_water = info.head.low_water < core::Time::max();
   const ipc::Head& head = info.head;
   const core::Method& method = *ipc::window_options(*info.spline).interpolant.method;
   ordered_json refused = ordered_json::object();
@@ -71,6 +85,10 @@ ordered_json solver_json(const ipc::StreamInfo& info) {
       {"stop_time_ns", info.spline->stop_time},
       {"board_capacity", info.spline->capacity},
       {"region_bytes", info.spline->region_bytes},
+      {"max_acceleration", limits_json(*info.spline)},
+      {"freeze_ahead_ns", info.spline->freeze_ahead},
+      {"history_ns", info.spline->history},
+      {"min_splice_ns", info.spline->min_splice},
       {"revision", head.revision},
       {"consumed", head.consumed},
       {"interpolated", head.knots},
@@ -82,6 +100,13 @@ ordered_json solver_json(const ipc::StreamInfo& info) {
       {"settled_until_ns", head.settled_until.count()},
       {"newest_knot_ns", head.newest_knot.count()},
       {"committed_ns", head.committed.count()},
+      {"withdrawn", head.withdrawn},
+      {"depth_ns", depth(info)},
+      {"low_water_ns", has_low_water ? ordered_json(head.low_water.count()) : ordered_json()},
+      {"starved", head.starved},
+      {"underruns", head.underruns},
+      {"deadline_misses", head.misses},
+      {"late_commits", head.revisions},
       {"finished", head.finished},
   };
 }

@@ -75,7 +75,7 @@ KnotRing solve_knots(const Waypoints& waypoints, const Interpolant& how, const C
 PiecewisePolynomial hold_at(const Waypoints& waypoints) {
   PiecewisePolynomial curve(waypoints.dimensions);
   Segment segment(waypoints.dimensions);
-  build_hold(waypoints.times[0], waypoints[0].position, segment);
+  build_hold(waypoints.times[0], waypoints.times[0], waypoints[0].position, segment);
   curve.append(segment);
   return curve;
 }

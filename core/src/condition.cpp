@@ -33,6 +33,8 @@ bool takes_values(ConditionKind kind) noexcept {
   return kind == ConditionKind::velocity || kind == ConditionKind::acceleration;
 }
 
+}  // namespace
+
 std::optional<std::vector<double>> parse_values(std::string_view text) {
   std::vector<double> values;
   for (;;) {
@@ -48,8 +50,6 @@ std::optional<std::vector<double>> parse_values(std::string_view text) {
     text.remove_prefix(comma + 1);
   }
 }
-
-}  // namespace
 
 std::string to_string(const Condition& condition) {
   std::string text;

@@ -25,12 +25,13 @@ void RunEntry::begin(const Instant& from, std::span<const StandingWaypoint> befo
   }
 }
 
-void RunEntry::update(const KnotRing& knots) noexcept {
+void RunEntry::update(KnotRing& knots) noexcept {
   RunStart at;
   if (standing_ > 0) {
     const double h = to_seconds(knots.row(0).time - before_);
     write_chord(values(kBefore), knots.values(0, KnotRing::kWaypoint), h, values(kChord));
     at.before = {.h = h, .chord = values(kChord)};
+    knots.lead_in(at.before);
   }
   if (standing_ > 1) at.before2 = {.h = to_seconds(before_ - before2_), .chord = values(kChord2)};
   const auto after = [&knots](std::size_t i) {
@@ -46,6 +47,25 @@ void RunEntry::take_acceleration(const KnotRing& knots) noexcept {
   const Interval first = knots.interval(0);
   const auto a = values(kKnotAcceleration);
   for (std::size_t d = 0; d < dimensions_; ++d) a[d] = left_acceleration(first, d);
+}
+
+void RunEntry::take(std::span<const double> velocity,
+                    std::span<const double> acceleration) noexcept {
+  std::ranges::copy(velocity, values(kKnotVelocity).begin());
+  std::ranges::copy(acceleration, values(kKnotAcceleration).begin());
+}
+
+void RunEntry::keep() noexcept {
+  std::ranges::copy(values(kKnotVelocity), values(kKeptVelocity).begin());
+  std::ranges::copy(values(kKnotAcceleration), values(kKeptAcceleration).begin());
+}
+
+void RunEntry::restore_acceleration() noexcept {
+  std::ranges::copy(values(kKeptAcceleration), values(kKnotAcceleration).begin());
+}
+
+void RunEntry::swap_velocities() noexcept {
+  std::ranges::swap_ranges(values(kKnotVelocity), values(kKeptVelocity));
 }
 
 void RunEntry::write_splice(const KnotRing& knots, Segment& out) const noexcept {

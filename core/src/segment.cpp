@@ -156,9 +156,9 @@ void build_stop_tail(Time from, Time stop_time, std::span<const double> position
   }
 }
 
-void build_hold(Time at, std::span<const double> position, Segment& out) noexcept {
-  out.left = at;
-  out.right = at;
+void build_hold(Time from, Time to, std::span<const double> position, Segment& out) noexcept {
+  out.left = from;
+  out.right = to;
   out.order = kCubicOrder;
   out.kind = SegmentKind::hold;
   std::ranges::fill(out.coefficients, 0.0);

@@ -6,8 +6,14 @@
 #include <string>
 #include <utility>
 
+#include "splinecast/core/limits.hpp"
+
 namespace splinecast::core {
 namespace {
+
+constexpr std::size_t kKnotsThatShapeTheEntry = 3;
+/// Of an acceleration limit, when a waypoint is judged: those behind it still move the curve.
+constexpr double kShareOfLimit = 0.9;
 
 void require_lag(const WindowOptions& options) {
   const Method& method = *options.interpolant.method;
@@ -45,6 +51,16 @@ WindowOptions checked(WindowOptions options, std::size_t dimensions) {
     throw std::invalid_argument("dimensions must be 1 to 64, not " + std::to_string(dimensions));
   }
   require_streaming(options);
+  for (const double limit : options.max_acceleration) {
+    if (is_usable(limit) && limit >= 0) continue;
+    throw std::invalid_argument("acceleration limit must be positive, or 0 for none, not " +
+                                std::to_string(limit));
+  }
+  if (!options.max_acceleration.empty() && options.max_acceleration.size() != dimensions) {
+    throw std::invalid_argument(std::to_string(options.max_acceleration.size()) +
+                                " acceleration limits for " + std::to_string(dimensions) +
+                                " dimensions");
+  }
   if (options.stop_time <= Time::zero()) {
     throw std::invalid_argument("stop time must be positive, not " +
                                 std::to_string(options.stop_time.count()) + " ns");
@@ -66,7 +82,8 @@ SlidingWindow::SlidingWindow(std::size_t dimensions, WindowOptions options)
       knots_(dimensions, knots_to_restore() + 1, *options_.interpolant.method,
              options_.start.kind == ConditionKind::halt),
       solver_(make_knot_solver(options_.interpolant, options_.start, dimensions, Use::online)),
-      entry_(dimensions) {}
+      entry_(dimensions),
+      splice_(dimensions) {}
 
 std::size_t SlidingWindow::segments() const noexcept {
   if (is_entered_) return finished_ ? knots() : knots() + 1;
@@ -86,8 +103,13 @@ std::size_t SlidingWindow::settled_segments() const noexcept {
   return settled > 0 || frozen_ > 0 ? settled + 1 : 0;
 }
 
-std::size_t SlidingWindow::oldest_segment() const noexcept {
+std::size_t SlidingWindow::oldest_knot() const noexcept {
   return knots() - std::min(knots(), reach() + 2);
+}
+
+std::size_t SlidingWindow::oldest_segment() const noexcept {
+  const std::size_t oldest = oldest_knot();
+  return is_entered_ && oldest > 0 ? oldest + 1 : oldest;
 }
 
 std::size_t SlidingWindow::newer_knots_seen(std::size_t i) const noexcept {
@@ -123,25 +145,105 @@ void SlidingWindow::solve(const auto& closing, std::size_t last) noexcept {
   for (std::size_t i = first; i <= newest; ++i) {
     knots_.row(i).newer_knots = static_cast<std::uint32_t>(newest - i);
   }
-  if (is_entered_ && frozen_ == 0) entry_.take_acceleration(knots_);
+  // Until both its knots have converged, the first interval shapes the splice before it.
+  if (is_entry_open() && first <= 1) entry_.take_acceleration(knots_);
 }
 
-void SlidingWindow::append(const Waypoint& waypoint) noexcept {
-  constexpr std::size_t kKnotsThatShapeTheEntry = 3;
+bool SlidingWindow::can_append(std::span<const Waypoint> waypoints) noexcept {
+  const auto& limits = options_.max_acceleration;
+  const std::size_t before = knots();
+  if (limits.empty()) return true;
+  if (is_entry_open() && before < kKnotsThatShapeTheEntry) return can_shape_entry(waypoints);
+  const bool starts = !is_entered_ && before == 1;
+  const bool goes_on = before > 0 && frozen_ == before;
+  if (!starts && !goes_on) return true;
+  for (const Waypoint& waypoint : waypoints) (void)push_into_entry(waypoint);
+  build_segment(knots_.interval(before - 1), splice_);
+  const bool keeps = acceleration_excess(limits, splice_) <= kShareOfLimit;
+  while (knots() > before) knots_.pop();
+  return keeps;
+}
+
+/// Whether waypoints leave an open entry within the limits: tried, and taken back.
+bool SlidingWindow::can_shape_entry(std::span<const Waypoint> waypoints) noexcept {
+  std::array<double, kMaxDimensions> v{};
+  std::array<double, kMaxDimensions> a{};
+  std::ranges::copy(entry_.velocity(), v.begin());
+  std::ranges::copy(entry_.acceleration(), a.begin());
+  const std::size_t before = knots();
+  bool keeps = true;
+  for (const Waypoint& waypoint : waypoints) {
+    if (knots() == kKnotsThatShapeTheEntry) break;
+    append(waypoint);
+    // Also alone: those that follow the first one may be refused.
+    entry_.write_splice(knots_, splice_);
+    if (before == 0) keeps = keeps && keeps_within(options_.max_acceleration, splice_);
+  }
+  if (before > 0) keeps = entry_excess() <= kShareOfLimit;
+  while (knots() > before) knots_.pop();
+  if (before == 0) return keeps;
+  entry_.take(std::span(v).first(dimensions()), std::span(a).first(dimensions()));
+  start_with_entry();
+  solve(options_.tail, 0);
+  entry_.take(std::span(v).first(dimensions()), std::span(a).first(dimensions()));
+  return keeps;
+}
+
+/// The largest ratio of acceleration to limit in the splice and in the first interval behind it.
+double SlidingWindow::entry_excess() noexcept {
+  build_segment(knots_.interval(0), splice_);
+  const double behind = acceleration_excess(options_.max_acceleration, splice_);
+  entry_.write_splice(knots_, splice_);
+  return std::max(behind, acceleration_excess(options_.max_acceleration, splice_));
+}
+
+/// Makes the entry's velocity that of knot 0, unless the waypoint gives one.
+void SlidingWindow::start_with_entry() noexcept {
+  if (options_.interpolant.method->needs_velocity()) return;
+  solver_->start_with(entry_.velocity());
+  solver_->eliminate_again(knots_);
+  if (knots() == 1) {
+    std::ranges::copy(entry_.velocity(), knots_.values(0, KnotRing::kVelocity).begin());
+  }
+}
+
+/// Appends to a run whose entry is open. Returns whether the entry's velocity has changed.
+bool SlidingWindow::push_into_entry(const Waypoint& waypoint) noexcept {
   solver_->push(knots_, waypoint);
-  const bool is_given = options_.interpolant.method->needs_velocity();
-  if (is_entered_ && frozen_ == 0 && knots() <= kKnotsThatShapeTheEntry) {
+  const bool shapes = is_entry_open() && knots() <= kKnotsThatShapeTheEntry;
+  if (shapes) {
     entry_.update(knots_);
-    if (!is_given) {
-      solver_->start_with(entry_.velocity());
-      solver_->eliminate_again(knots_);
-      if (knots() == 1) {
-        std::ranges::copy(entry_.velocity(), knots_.values(0, KnotRing::kVelocity).begin());
-      }
-    }
+    start_with_entry();
   }
   const std::size_t newest = knots_.newest();
   solve(options_.tail, is_start_open() ? 0 : newest - std::min(newest, options_.settle));
+  return shapes;
+}
+
+void SlidingWindow::append(const Waypoint& waypoint) noexcept {
+  entry_.keep();
+  const bool shapes = push_into_entry(waypoint);
+  if (options_.max_acceleration.empty() || !is_entry_open() || knots() == 1) return;
+  entry_.write_splice(knots_, splice_);
+  if (keeps_within(options_.max_acceleration, splice_)) return;
+  if (shapes) {
+    take_better_entry();
+  } else {
+    entry_.restore_acceleration();
+  }
+}
+
+/// Of the velocity that the entry has and the one that it had, takes that with the smaller
+/// accelerations around the first knot.
+void SlidingWindow::take_better_entry() noexcept {
+  const double excess = entry_excess();
+  const auto exchange = [this] {
+    entry_.swap_velocities();
+    start_with_entry();
+    solve(options_.tail, 0);
+  };
+  exchange();
+  if (entry_excess() > excess) exchange();
 }
 
 void SlidingWindow::enter(const Instant& from, std::span<const StandingWaypoint> before) noexcept {
@@ -149,11 +251,14 @@ void SlidingWindow::enter(const Instant& from, std::span<const StandingWaypoint>
   is_entered_ = true;
   frozen_ = 0;
   finished_ = false;
-  knots_.clear();
+  knots_.clear(false);
 }
 
 void SlidingWindow::freeze(Time t) noexcept {
-  if (is_entered_ && frozen_ == 0 && knots() > 0 && t >= entry_.time()) frozen_ = 1;
+  // What has left the window needs no freezing.
+  const std::size_t oldest = oldest_knot();
+  if (oldest > frozen_) frozen_ = oldest;
+  if (is_entry_open() && knots() > 0 && t >= entry_.time()) frozen_ = 1;
   // Frozen is the right knot of the segment that contains t: the first one that is later.
   while (frozen_ < knots() &&
          (frozen_ == 0 ? t >= knots_.row(0).time : t >= knots_.row(frozen_ - 1).time)) {
@@ -165,12 +270,21 @@ void SlidingWindow::finish(const Condition& end) noexcept {
   finished_ = true;
   if (knots() == 0) return;
   const std::size_t newest = knots_.newest();
+  if (newest == 0 && is_entered_) return rest_at_only_knot();
   // Until K knots have followed it, knot 0 too is still open.
   const bool from_start = newest < options_.settle || is_start_open();
   const bool is_halt =
       end.kind == ConditionKind::own && options_.interpolant.method->family == Family::tridiagonal;
   solve(is_halt ? Condition{.kind = ConditionKind::halt, .value = {}} : end,
         from_start ? 0 : newest - (reach() - 1));
+}
+
+/// A run of one knot ends at rest there, whatever the condition: nothing else gives it a slope.
+void SlidingWindow::rest_at_only_knot() noexcept {
+  constexpr std::array<double, kMaxDimensions> kZeros{};
+  const auto zeros = std::span(kZeros).first(dimensions());
+  std::ranges::copy(zeros, knots_.values(0, KnotRing::kVelocity).begin());
+  entry_.take(zeros, zeros);
 }
 
 void SlidingWindow::segment(std::size_t i, Segment& out) const noexcept {
@@ -180,14 +294,14 @@ void SlidingWindow::segment(std::size_t i, Segment& out) const noexcept {
     std::ranges::fill(out.acceleration_step, 0.0);
   } else if (!left) {
     const Instant from = entry_.state();
-    build_stop_tail(from.time, options_.stop_time, from.position, from.velocity, from.acceleration,
-                    out);
+    build_stop_tail(from.time, stop_time(from.velocity, from.acceleration), from.position,
+                    from.velocity, from.acceleration, out);
     std::ranges::fill(out.acceleration_step, 0.0);
   } else if (*left < knots_.newest()) {
     build_segment(knots_.interval(*left), out);
     write_step(*left, out);
   } else if (finished_) {
-    build_hold(knots_.row(*left).time, knots_.position(*left), out);
+    build_hold(knots_.row(*left).time, knots_.row(*left).time, knots_.position(*left), out);
     std::ranges::fill(out.acceleration_step, 0.0);
   } else {
     write_stop_tail(out);
@@ -207,6 +321,12 @@ void SlidingWindow::write_step(std::size_t i, Segment& out) const noexcept {
   }
 }
 
+Time SlidingWindow::stop_time(std::span<const double> velocity,
+                              std::span<const double> acceleration) const noexcept {
+  if (options_.max_acceleration.empty()) return options_.stop_time;
+  return stop_time_within(options_.max_acceleration, options_.stop_time, velocity, acceleration);
+}
+
 void SlidingWindow::write_stop_tail(Segment& out) const noexcept {
   const std::size_t n = knots_.newest();
   const Knot knot = knots_.knot(n);
@@ -217,11 +337,28 @@ void SlidingWindow::write_stop_tail(Segment& out) const noexcept {
   } else {
     for (std::size_t d = 0; d < dimensions(); ++d) acceleration[d] = knots_.final_acceleration(d);
   }
-  build_stop_tail(knot.time, options_.stop_time, knot.position, knot.velocity, acceleration, out);
+  build_stop_tail(knot.time, stop_time(knot.velocity, acceleration), knot.position, knot.velocity,
+                  acceleration, out);
 }
 
 void SlidingWindow::restore(std::size_t first, std::span<const Knot> knots) noexcept {
+  is_entered_ = false;
+  frozen_ = 0;
+  finished_ = false;
+  solver_->start_as_first();
+  knots_.clear(options_.start.kind == ConditionKind::halt);
   knots_.restore(first, knots);
+}
+
+void SlidingWindow::restore_entered(const Entry& entry, std::size_t first,
+                                    std::span<const Knot> knots) noexcept {
+  enter(entry.from, entry.before);
+  knots_.restore(first, knots);
+  if (first > 0 || knots.empty()) return;
+  entry_.update(knots_);
+  entry_.take(knots[0].velocity, entry.acceleration);
+  // Rows stand as they were eliminated; only the condition behind them is taken up again.
+  if (!options_.interpolant.method->needs_velocity()) solver_->start_with(knots[0].velocity);
 }
 
 }  // namespace splinecast::core

@@ -104,6 +104,7 @@ std::uint64_t layout_hash() noexcept {
                                                                         kCellCoefficients,
                                                                         kCellExtraWords,
                                                                         kHeadWords,
+                                                                        kHeadRun,
                                                                         kHeadReasons,
                                                                         kHeadChanges,
                                                                         kHeadChangesKept,
@@ -177,6 +178,16 @@ BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_by
   const auto layout = BoardLayout::of(header.dimensions, header.capacity, header.control);
   require_curve(header);
   require_range("tail", header.tail, 0, static_cast<std::uint64_t>(core::Tail::rest));
+  require_range("freeze-ahead", static_cast<std::uint64_t>(header.freeze_ahead), 1,
+                kLongestNanoseconds);
+  require_range("history", static_cast<std::uint64_t>(header.history), 0, kLongestNanoseconds);
+  require_range("shortest splice", static_cast<std::uint64_t>(header.min_splice), 1,
+                kLongestNanoseconds);
+  for (std::size_t d = 0; d < header.dimensions; ++d) {
+    const double limit = header.max_acceleration[d];
+    if (core::is_usable(limit) && limit >= 0) continue;
+    throw BadRegion("region has acceleration limit " + std::to_string(limit));
+  }
   require_range("stop time", static_cast<std::uint64_t>(header.stop_time), 1, kLongestNanoseconds);
   require(header.stride == layout.stride, "slot size", header.stride, layout.stride);
   require(real_bytes == layout.bytes, "size", real_bytes, layout.bytes);

@@ -127,6 +127,8 @@ struct Producer::Impl {
   OwnedRing ring;
   bool continues;
   std::optional<SolverView> solver;
+  Head bounds;
+  core::Time settled_until = core::Time::min();
 
   Impl(std::string name, ProducerOptions how)
       : stream(std::move(name)),
@@ -154,6 +156,18 @@ struct Producer::Impl {
   }
 
   [[nodiscard]] Word consumed() const noexcept { return solver ? solver->board.tail() : 0; }
+
+  /// What is known of the solver.
+  [[nodiscard]] WaypointRingWriter::Solved solved() noexcept {
+    if (!solver) look_for_solver();
+    WaypointRingWriter::Solved known{.consumed = consumed()};
+    if (!solver || stream_clock(ring.header) == StreamClock::recorded) return known;
+    const Word r = solver->board.revision();
+    // A head that is overtaken is one that settles later still: what it said before holds.
+    if (r > 0 && solver->board.copy_bounds(r, r, bounds)) settled_until = bounds.settled_until;
+    known.settled_until = settled_until;
+    return known;
+  }
 
   AppendStatus appended(AppendStatus status) noexcept {
     // Again after the store: a solver that came meanwhile may already sleep.
@@ -191,9 +205,19 @@ Producer& Producer::operator=(Producer&&) noexcept = default;
 Producer::~Producer() = default;
 
 AppendStatus Producer::append(const core::Waypoint& waypoint) noexcept {
-  if (!impl_->solver) impl_->look_for_solver();
-  return impl_->appended(impl_->ring.writer.append(waypoint, impl_->consumed()));
+  return impl_->appended(impl_->ring.writer.append(waypoint, impl_->solved()));
 }
+
+AppendStatus Producer::replace_from(core::Time t,
+                                    std::span<const core::Waypoint> waypoints) noexcept {
+  return impl_->appended(impl_->ring.writer.replace_from(t, waypoints, impl_->solved()));
+}
+
+AppendStatus Producer::start_from(const core::Instant& state) noexcept {
+  return impl_->appended(impl_->ring.writer.start_from(state, impl_->solved()));
+}
+
+core::Time Producer::earliest() noexcept { return impl_->solved().settled_until; }
 
 AppendStatus Producer::finish(const core::Condition& end) {
   core::require_values(end, impl_->ring.header.dimensions);
@@ -201,8 +225,7 @@ AppendStatus Producer::finish(const core::Condition& end) {
     throw BadRequest("end condition '" + core::to_string(end) +
                      "' needs all waypoints at once: a stream cannot meet it");
   }
-  if (!impl_->solver) impl_->look_for_solver();
-  return impl_->appended(impl_->ring.writer.finish(end, impl_->consumed()));
+  return impl_->appended(impl_->ring.writer.finish(end, impl_->solved()));
 }
 
 bool Producer::wait_for_solver(core::Time timeout) {

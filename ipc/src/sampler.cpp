@@ -31,14 +31,38 @@ Sampler::Sampler(const SegmentBoardReader& board, StreamClock clock)
       copies_{SegmentCopy(board.dimensions()), SegmentCopy(board.dimensions())} {}
 
 SampleStatus Sampler::sample(core::Time t, core::StateRef out) noexcept {
+  const SampleStatus status = preview(t, out);
+  if (clock_ == StreamClock::recorded || !has_values(status)) return status;
+  const bool is_revised = revised_;
+  sampled_until_ = is_revised ? t : std::max(sampled_until_, t);
+  revised_ = false;
+  return is_revised ? SampleStatus::revised : status;
+}
+
+/// Takes the bounds of a revision over, and whether it, or one before it that this reader has not
+/// seen, changed the curve before a time that this reader has sampled. If more have passed than are
+/// kept, what was settled at the last look has stood.
+bool Sampler::see(Word r) noexcept {
+  const Word seen = seen_;
+  const core::Time settled_until = head_.settled_until;
+  if (!board_->copy_bounds(r, seen, head_)) {
+    head_.revision = 0;  // bounds half taken over must not pass for those of a revision
+    head_.settled_until = settled_until;
+    return false;
+  }
+  seen_ = r;
+  const core::Time changed_from =
+      head_.changed_from == core::Time::min() ? settled_until : head_.changed_from;
+  revised_ = revised_ || (seen > 0 && sampled_until_ >= changed_from);
+  return true;
+}
+
+SampleStatus Sampler::preview(core::Time t, core::StateRef out) noexcept {
   for (int attempt = 0; attempt < kTries; ++attempt) {
     if (board_->retired()) return SampleStatus::retired;
     const Word r = board_->revision();
     if (r == 0) return SampleStatus::no_data;
-    if (r != head_.revision && !board_->copy_bounds(r, head_)) {
-      head_.revision = 0;  // bounds half taken over must not pass for those of a revision
-      continue;
-    }
+    if (r != head_.revision && !see(r)) continue;
     if (head_.newest == 0) return SampleStatus::no_data;
     const Found found = locate(t);
     if (found == Found::segment) return evaluate(current(), t, out);
@@ -151,9 +175,14 @@ SampleStatus Sampler::evaluate(const SegmentCopy& segment, core::Time t,
   return t < head_.settled_until ? SampleStatus::settled : SampleStatus::provisional;
 }
 
-/// Before the first waypoint of a live stream the machine stands where it will start.
+/// Before the first waypoint of a live stream the machine stands where it will start, unless it
+/// starts in motion.
 SampleStatus Sampler::hold_first(core::StateRef out) noexcept {
-  core::evaluate(current().order, current().coefficients, 0, out);
+  const SegmentCopy& first = current();
+  const auto velocity =
+      std::span(first.coefficients).subspan(out.velocity.size()).first(out.velocity.size());
+  if (std::ranges::any_of(velocity, [](double v) { return v != 0; })) return SampleStatus::no_data;
+  core::evaluate(first.order, first.coefficients, 0, out);
   come_to_rest(out);
   return SampleStatus::holding;
 }
@@ -169,14 +198,20 @@ SampleStatus Sampler::from_own_copy(core::Time t, core::StateRef out) noexcept {
   return SampleStatus::settled;
 }
 
+bool Sampler::copy_whole(Word number, Word r, SegmentCopy& out) const {
+  if (!board_->copy_segment(number, r, out)) return false;
+  out.acceleration_step.resize(board_->dimensions());
+  board_->copy_step(out, out.acceleration_step);
+  return board_->is_current(out, r);
+}
+
 SampleStatus Sampler::snapshot(core::Time from, core::Time to, Snapshot& out) {
   out.size_ = 0;
   for (int attempt = 0; attempt < kTries; ++attempt) {
     if (board_->retired()) return SampleStatus::retired;
     const Word r = board_->revision();
     if (r == 0) return SampleStatus::no_data;
-    if (!board_->copy_head(r, out.head_)) continue;
-    head_ = out.head_;
+    if ((r != head_.revision && !see(r)) || !board_->copy_head(r, out.head_)) continue;
     if (head_.newest == 0) return SampleStatus::no_data;
     Word oldest = 0;
     Word newest = 0;
@@ -186,7 +221,7 @@ SampleStatus Sampler::snapshot(core::Time from, core::Time to, Snapshot& out) {
     while (out.segments_.size() < count) out.segments_.emplace_back(board_->dimensions());
     // The newest first: it is the one that the writer will overwrite first.
     std::size_t left = count;
-    while (left > 0 && board_->copy_segment(oldest + left - 1, r, out.segments_[left - 1])) --left;
+    while (left > 0 && copy_whole(oldest + left - 1, r, out.segments_[left - 1])) --left;
     if (left > 0) continue;
     out.size_ = count;
     return head_.finished || to < head_.settled_until ? SampleStatus::settled

@@ -7,10 +7,14 @@ namespace splinecast::ipc {
 namespace {
 
 constexpr Word kFinishedFlag = 1;
+constexpr Word kEnteredFlag = 2;
+constexpr Word kStarvedFlag = 4;
 constexpr std::size_t kBoundsWords = kHeadFlags;  // words 1 … 4
 constexpr unsigned kShapeKindShift = 8;
 constexpr unsigned kShapeSeenShift = 16;
+constexpr Word kShapeWaypoint = Word{1} << 48U;
 constexpr Word kByteMask = 0xff;
+constexpr Word kSeenMask = 0xffffffff;
 constexpr unsigned kRefusalItemShift = 8;
 
 // Vectors of a cell behind the coefficients, in units of D words.
@@ -65,16 +69,23 @@ SlotView<Word> SegmentBoardWriter::slot(Word number) const noexcept {
 
 SlotView<Word> SegmentBoardWriter::head_slot() const noexcept { return {head_.data(), kHeadWords}; }
 
-void SegmentBoardWriter::write(Word number, const core::Segment& segment, const core::Knot& knot,
-                               std::size_t newer_knots) noexcept {
+Word* SegmentBoardWriter::claim(Word number) noexcept {
+  lowest_written_ = std::min(lowest_written_, number);
+  highest_written_ = std::max(highest_written_, number);
+  return claim_spare(slot(number), revision_ + 1);
+}
+
+void SegmentBoardWriter::write(Word number, const core::Segment& segment,
+                               const core::Knot& knot) noexcept {
   const std::size_t dimensions = layout_.dimensions;
-  Word* const cell = claim_spare(slot(number), revision_ + 1);
+  Word* const cell = claim(number);
   put(cell[kCellNumber], number);
   put(cell[kCellLeft], to_word(segment.left));
   put(cell[kCellRight], to_word(segment.right));
   put(cell[kCellShape], static_cast<Word>(segment.order) |
                             static_cast<Word>(segment.kind) << kShapeKindShift |
-                            static_cast<Word>(newer_knots) << kShapeSeenShift);
+                            static_cast<Word>(knot.newer_knots) << kShapeSeenShift |
+                            (knot.waypoint.empty() ? 0 : kShapeWaypoint));
   Word* const vectors = cell + kCellCoefficients;
   put_values(
       vectors,
@@ -92,6 +103,36 @@ void SegmentBoardWriter::write(Word number, const core::Segment& segment, const 
   store(times_[number & (layout_.capacity - 1)], to_word(segment.left), std::memory_order_relaxed);
 }
 
+void SegmentBoardWriter::write_cut(Word number, core::Time right) noexcept {
+  const SlotView<Word> at = slot(number);
+  const Word* const committed =
+      at.cell(at.tags(std::memory_order_relaxed).newest(revision_));  // its own stores
+  Word* const cell = claim(number);
+  for (std::size_t i = kCellNumber; i < at.cell_words; ++i) {
+    put(cell[i], load(committed[i], std::memory_order_relaxed));
+  }
+  put(cell[kCellRight], to_word(right));
+}
+
+void SegmentBoardWriter::discard() noexcept {
+  retire_uncommitted(head_slot(), revision_);
+  for (Word number = lowest_written_; number <= highest_written_; ++number) {
+    const SlotView<Word> at = slot(number);
+    retire_uncommitted(at, revision_);
+    const Tags tags = at.tags(std::memory_order_relaxed);
+    if (!tags.holds_any(revision_)) continue;
+    const Word* const cell = at.cell(tags.newest(revision_));
+    store(times_[number & (layout_.capacity - 1)], load(cell[kCellLeft], std::memory_order_relaxed),
+          std::memory_order_relaxed);
+  }
+  forget_written();
+}
+
+void SegmentBoardWriter::forget_written() noexcept {
+  lowest_written_ = std::numeric_limits<Word>::max();
+  highest_written_ = 0;
+}
+
 void SegmentBoardWriter::write_refusal(Word index, const RefusedItem& refusal) noexcept {
   // One word, so that it is never torn; published by the commit of the head that counts it.
   put(refusals_[index % kRefusalsKept],
@@ -106,17 +147,26 @@ void SegmentBoardWriter::commit(Head& head) noexcept {
   put(cell[kHeadFirst], head.first);
   put(cell[kHeadNewest], head.newest);
   put(cell[kHeadSettledUntil], to_word(head.settled_until));
-  put(cell[kHeadFlags], head.finished ? kFinishedFlag : 0);
+  put(cell[kHeadFlags], (head.finished ? kFinishedFlag : 0) | (head.is_entered ? kEnteredFlag : 0) |
+                            (head.starved ? kStarvedFlag : 0));
   put(cell[kHeadChangedFrom], to_word(head.changed_from));
   put(cell[kHeadConsumed], head.consumed);
   put(cell[kHeadKnots], head.knots);
   put(cell[kHeadNewestKnot], to_word(head.newest_knot));
   put(cell[kHeadCommitted], to_word(head.committed));
   put(cell[kHeadRefused], head.refused);
+  put(cell[kHeadRun], head.run);
+  put(cell[kHeadRunKnots], head.run_knots);
+  put(cell[kHeadLowWater], to_word(head.low_water));
+  put(cell[kHeadUnderruns], head.underruns);
+  put(cell[kHeadMisses], head.misses);
+  put(cell[kHeadRevisions], head.revisions);
+  put(cell[kHeadWithdrawn], head.withdrawn);
   for (std::size_t i = 0; i < kRefusalReasons; ++i) put(cell[kHeadReasons + i], head.reasons[i]);
   for (std::size_t i = 0; i < kHeadChangesKept; ++i) put(cell[kHeadChanges + i], changes_[i]);
   store(control_[kRevision], r, std::memory_order_release);  // W3
   revision_ = r;
+  forget_written();
 }
 
 SegmentBoardReader::SegmentBoardReader(std::span<const std::byte> region,
@@ -145,10 +195,25 @@ bool SegmentBoardReader::has_sane_bounds(const Head& head) const noexcept {
          head.newest - head.first < layout_.capacity && head.newest != kRetiredTag;
 }
 
-bool SegmentBoardReader::copy_bounds(Word r, Head& out) const noexcept {
+bool SegmentBoardReader::copy_bounds(Word r, Word seen, Head& out) const noexcept {
+  const auto view = head_slot();
+  const Tags tags = view.tags(std::memory_order_acquire);
+  if (!tags.holds_any(r)) return false;
+  const std::size_t c = tags.newest(r);
+  const Word* const cell = view.cell(c);
   std::array<Word, kBoundsWords> words{};
-  if (copy_newest(head_slot(), r, words.size(), words.data()) == 0) return false;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    words[i] = load(cell[1 + i], std::memory_order_acquire);
+  }
+  core::Time earliest = core::Time::max();
+  if (r - seen > kHeadChangesKept) earliest = core::Time::min();
+  for (Word k = seen + 1; k <= r && r - seen <= kHeadChangesKept; ++k) {
+    const Word word = load(cell[kHeadChanges + k % kHeadChangesKept], std::memory_order_acquire);
+    earliest = std::min(earliest, to_time(word));
+  }
+  if (load(cell[0], std::memory_order_relaxed) != tags.of[c]) return false;
   take_bounds(words, r, out);
+  out.changed_from = earliest;
   return has_sane_bounds(out);
 }
 
@@ -163,6 +228,15 @@ bool SegmentBoardReader::copy_head(Word r, Head& out) const noexcept {
   out.newest_knot = to_time(word(kHeadNewestKnot));
   out.committed = to_time(word(kHeadCommitted));
   out.refused = word(kHeadRefused);
+  out.run = word(kHeadRun);
+  out.run_knots = word(kHeadRunKnots);
+  out.is_entered = (word(kHeadFlags) & kEnteredFlag) != 0;
+  out.starved = (word(kHeadFlags) & kStarvedFlag) != 0;
+  out.low_water = to_time(word(kHeadLowWater));
+  out.underruns = word(kHeadUnderruns);
+  out.misses = word(kHeadMisses);
+  out.revisions = word(kHeadRevisions);
+  out.withdrawn = word(kHeadWithdrawn);
   for (std::size_t i = 0; i < kRefusalReasons; ++i) out.reasons[i] = word(kHeadReasons + i);
   return has_sane_bounds(out);
 }
@@ -181,6 +255,8 @@ bool SegmentBoardReader::copy_segment(Word number, Word r, SegmentCopy& out) con
   const Word shape = word(kCellShape);
   out.order = (shape & kByteMask) == core::kCubicOrder ? core::kCubicOrder : core::kMaxOrder;
   out.kind = static_cast<core::SegmentKind>((shape >> kShapeKindShift) & kByteMask);
+  out.newer_knots = static_cast<std::uint32_t>((shape >> kShapeSeenShift) & kSeenMask);
+  out.has_waypoint = (shape & kShapeWaypoint) != 0;
   const std::size_t values = static_cast<std::size_t>(out.order) * layout_.dimensions;
   for (std::size_t i = 0; i < values; ++i) {
     out.coefficients[i] = to_double(word(kCellCoefficients + i));
@@ -203,6 +279,25 @@ bool SegmentBoardReader::copy_left(Word number, Word r, core::Time& left) const 
   if (copy_newest(slot(number), r, words.size(), words.data()) == 0) return false;
   left = to_time(words[kCellLeft - 1]);
   return words[kCellNumber - 1] == number;
+}
+
+bool SegmentBoardReader::copy_ends(Word number, Word r, core::Time& left,
+                                   core::Time& right) const noexcept {
+  std::array<Word, kCellRight> words{};
+  if (copy_newest(slot(number), r, words.size(), words.data()) == 0) return false;
+  left = to_time(words[kCellLeft - 1]);
+  right = to_time(words[kCellRight - 1]);
+  return words[kCellNumber - 1] == number;
+}
+
+void SegmentBoardReader::copy_step(const SegmentCopy& copy, std::span<double> step) const noexcept {
+  const auto view = slot(copy.number);
+  const Tags tags = view.tags(std::memory_order_acquire);
+  const Word* const cell = view.cell(tags.of[1] == copy.tag ? 1 : 0);
+  const Word* const words = cell + kCellCoefficients + kStepVector * layout_.dimensions;
+  for (std::size_t d = 0; d < step.size(); ++d) {
+    step[d] = to_double(load(words[d], std::memory_order_acquire));
+  }
 }
 
 RefusedItem SegmentBoardReader::refusal(Word index) const noexcept {
@@ -228,12 +323,13 @@ core::Knot SegmentBoardReader::knot(Word number, Word r, std::span<double> value
   };
   const auto acceleration = take(4, 2);
   for (double& a : acceleration) a *= 2;
+  const Word shape = load(cell[kCellShape], std::memory_order_relaxed);
+  const auto waypoint = take(0, kWaypointVector);
   return {.time = to_time(load(cell[kCellLeft], std::memory_order_relaxed)),
           .prefix = {.gamma = prefix(0),
                      .smoothing = {.pivot = prefix(1), .lower1 = prefix(2), .lower2 = prefix(3)}},
-          .newer_knots = static_cast<std::uint32_t>(
-              load(cell[kCellShape], std::memory_order_relaxed) >> kShapeSeenShift),
-          .waypoint = take(0, kWaypointVector),
+          .newer_knots = static_cast<std::uint32_t>((shape >> kShapeSeenShift) & kSeenMask),
+          .waypoint = (shape & kShapeWaypoint) != 0 ? waypoint : waypoint.first(0),
           .g = take(1, kGVector),
           .position = take(2, 0),
           .velocity = take(3, 1),

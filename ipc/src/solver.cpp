@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "splinecast/core/limits.hpp"
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/futex.hpp"
 #include "splinecast/ipc/owner_lock.hpp"
@@ -16,6 +17,9 @@ namespace {
 
 constexpr std::size_t kDefaultCapacity = 4096;
 constexpr core::Time kDefaultStopTime = std::chrono::milliseconds(250);
+/// Longest that anything settles ahead, or is kept: a minute and a day are out of all proportion.
+constexpr core::Time kLongestFreeze = std::chrono::minutes(1);
+constexpr core::Time kLongestHistory = std::chrono::hours(24);
 /// Longest sleep: retiring a ring does not move the word slept on, so its wake can be missed.
 constexpr core::Time kSlice = std::chrono::milliseconds(50);
 /// How often a solver without a stream looks for one.
@@ -31,6 +35,17 @@ void require_same(const std::string& stream, const char* what, const std::option
 
 const core::Method& method_of(const SolverOptions& options) {
   return options.method == nullptr ? core::c2() : *options.method;
+}
+
+/// One limit per dimension, or one for all.
+void write_limits(const std::vector<double>& limits, RegionHeader& header) {
+  if (limits.size() != 1 && limits.size() != header.dimensions) {
+    throw BadRequest(std::to_string(limits.size()) + " acceleration limits for " +
+                     std::to_string(header.dimensions) + " dimensions");
+  }
+  for (std::size_t d = 0; d < header.dimensions; ++d) {
+    header.max_acceleration[d] = limits[limits.size() == 1 ? 0 : d];
+  }
 }
 
 void require_no_contradiction(const std::string& stream, const RegionHeader& stands,
@@ -54,6 +69,23 @@ void require_no_contradiction(const std::string& stream, const RegionHeader& sta
   const core::Time stop_time(stands.stop_time);
   require_same(stream, "stop time in ns", options.stop_time, stop_time,
                number(options.stop_time.value_or(stop_time).count()), number(stands.stop_time));
+  const auto require_same_time = [&](const char* what, const std::optional<core::Time>& wanted,
+                                     std::int64_t stood) {
+    require_same(stream, what, wanted, core::Time(stood),
+                 number(wanted.value_or(core::Time(stood)).count()), number(stood));
+  };
+  require_same_time("freeze-ahead in ns", options.freeze_ahead, stands.freeze_ahead);
+  require_same_time("history in ns", options.history, stands.history);
+  require_same_time("shortest splice in ns", options.min_splice, stands.min_splice);
+  if (options.max_acceleration) {
+    RegionHeader wanted = stands;
+    write_limits(*options.max_acceleration, wanted);
+    for (std::size_t d = 0; d < stands.dimensions; ++d) {
+      require_same(stream, "acceleration limit", std::optional(wanted.max_acceleration[d]),
+                   stands.max_acceleration[d], number(wanted.max_acceleration[d]),
+                   number(stands.max_acceleration[d]));
+    }
+  }
   if (options.capacity) {
     require_same<std::size_t>(stream, "capacity", std::bit_ceil(*options.capacity), stands.capacity,
                               number(*options.capacity), number(stands.capacity));
@@ -68,9 +100,24 @@ void write_options(const SolverOptions& options, RegionHeader& header) {
   header.time_scale = options.time_scale.value_or(1.0);
   header.settle = options.settle.value_or(core::default_settle(method));
   header.tail = static_cast<std::uint64_t>(options.tail.value_or(core::Tail::bessel));
-  header.stop_time = options.stop_time.value_or(kDefaultStopTime).count();
+  header.stop_time =
+      options.stop_time.value_or(options.max_acceleration ? core::kLeastStopTime : kDefaultStopTime)
+          .count();
+  if (options.max_acceleration) write_limits(*options.max_acceleration, header);
+  const LiveOptions live;
+  const core::Time freeze_ahead = options.freeze_ahead.value_or(live.freeze_ahead);
+  header.freeze_ahead = freeze_ahead.count();
+  header.history = options.history.value_or(live.history).count();
+  header.min_splice = options.min_splice.value_or(freeze_ahead).count();
   header.force_lag = options.force_lag ? 1 : 0;
   header.capacity = std::bit_ceil(options.capacity.value_or(kDefaultCapacity));
+}
+
+void require_time(const char* what, const std::optional<core::Time>& time, core::Time least,
+                  core::Time most) {
+  if (!time || (*time >= least && *time <= most)) return;
+  throw BadRequest(std::string(what) + " must be " + std::to_string(least.count()) + " to " +
+                   std::to_string(most.count()) + " ns, not " + std::to_string(time->count()));
 }
 
 void require_options(const SolverOptions& options) {
@@ -78,6 +125,14 @@ void require_options(const SolverOptions& options) {
       (*options.stop_time <= core::Time::zero() || *options.stop_time > kLatestTime / 2)) {
     throw BadRequest("stop time must be positive and at most 2^61 ns, not " +
                      std::to_string(options.stop_time->count()) + " ns");
+  }
+  require_time("freeze-ahead", options.freeze_ahead, core::Time(1), kLongestFreeze);
+  require_time("history", options.history, core::Time::zero(), kLongestHistory);
+  require_time("shortest splice", options.min_splice, core::Time(1), kLongestFreeze);
+  for (const double limit : options.max_acceleration.value_or(std::vector<double>{})) {
+    if (core::is_usable(limit) && limit >= 0) continue;
+    throw BadRequest("acceleration limit must be positive, or 0 for none, not " +
+                     std::to_string(limit));
   }
   const core::Method& method = method_of(options);
   if (method.family == core::Family::smoothing && !options.lambda) {
@@ -98,7 +153,9 @@ void require_options(const SolverOptions& options) {
                      std::string(core::to_string(*options.tail)) + "'");
   }
   RegionHeader header{};
+  header.dimensions = options.max_acceleration ? options.max_acceleration->size() : 1;
   write_options(options, header);
+  header.dimensions = 1;  // how many there will be is not known yet
   try {
     (void)core::SlidingWindow(1, window_options(header));
   } catch (const std::invalid_argument& error) {
@@ -189,7 +246,7 @@ struct Attachment {
       : ring(std::move(producer)),
         board(std::move(own)),
         solver(ring.ring, board.writer, board.reader, window_options(board.header),
-               ingest_limits(ring.header)) {}
+               ingest_limits(ring.header), live_options(board.header)) {}
 };
 
 struct Solver::Impl {
@@ -239,7 +296,7 @@ StepResult Solver::step(const Clock& clock) {
   Attachment& at = *impl_->attachment;
   const StepResult result = at.solver.step(clock);
   if (result.published && impl_->options.wake) wake_all(at.board.writer.revision_word());
-  if (result.consumed == 0 && at.ring.ring.retired()) impl_->attachment.reset();
+  if (result.consumed == 0 && !result.missed && at.ring.ring.retired()) impl_->attachment.reset();
   return result;
 }
 
@@ -253,8 +310,10 @@ void Solver::wait(core::Time timeout) noexcept {
   // either this load sees the new head, or the producer sees that somebody is to be woken.
   at.board.writer.store_sleeping(true);
   const Word head = at.ring.ring.head(std::memory_order_seq_cst);
-  if (head == at.solver.head().consumed && !at.ring.ring.retired()) {
-    wait_while_equal(at.ring.ring.head_word(), head, std::min(timeout, kSlice));
+  const core::Time due = at.solver.due();
+  const core::Time now = due < core::Time::max() ? MonotonicClock().now() : core::Time::zero();
+  if (head == at.solver.seen() && due > now && !at.ring.ring.retired()) {
+    wait_while_equal(at.ring.ring.head_word(), head, std::min({timeout, kSlice, due - now}));
   }
   at.board.writer.store_sleeping(false);
 }

@@ -106,7 +106,16 @@ StreamClock stream_clock(const RegionHeader& header) noexcept {
   return static_cast<StreamClock>(header.clock);
 }
 
+std::optional<LiveOptions> live_options(const RegionHeader& header) noexcept {
+  if (stream_clock(header) != StreamClock::monotonic) return std::nullopt;
+  return LiveOptions{.freeze_ahead = core::Time(header.freeze_ahead),
+                     .history = core::Time(header.history),
+                     .min_splice = core::Time(header.min_splice)};
+}
+
 core::WindowOptions window_options(const RegionHeader& header) {
+  const auto limits = std::span(header.max_acceleration).first(header.dimensions);
+  const bool has_limits = std::ranges::any_of(limits, [](double a) { return a > 0; });
   return {.interpolant = {.method = core::find_method(header.method),
                           .lambda = header.lambda,
                           .time_scale = header.time_scale},
@@ -114,6 +123,8 @@ core::WindowOptions window_options(const RegionHeader& header) {
           .tail = static_cast<core::Tail>(header.tail),
           .start = start_condition(header),
           .stop_time = core::Time(header.stop_time),
+          .max_acceleration = has_limits ? std::vector<double>(limits.begin(), limits.end())
+                                         : std::vector<double>(),
           .held_before_start = stream_clock(header) == StreamClock::monotonic,
           .force_lag = header.force_lag != 0};
 }

@@ -11,8 +11,8 @@ namespace {
 constexpr std::size_t kMaxBatch = 256;
 
 /// Segments that a revision may change besides one per item: those of the open knots, the one
-/// before them, and the stop tail.
-constexpr std::size_t changed_besides(std::size_t settle) noexcept { return settle + 4; }
+/// before them, the stop tail, a cut and a hold.
+constexpr std::size_t changed_besides(std::size_t settle) noexcept { return settle + 6; }
 
 constexpr core::Time kNothingChanged = core::Time::max();
 
@@ -39,113 +39,268 @@ core::Waypoint waypoint_of(const RingItem& item) noexcept {
   return waypoint;
 }
 
+/// Segments that one item may add: a hold, a splice, and what goes back at a finish.
+constexpr std::size_t kAddedByItem = 4;
+
 }  // namespace
 
 std::size_t StreamSolver::min_capacity(std::size_t settle) noexcept {
-  return 2 * changed_besides(settle);
+  return 2 * changed_besides(settle) + 2;
 }
 
 StreamSolver::StreamSolver(const WaypointRingReader& ring, SegmentBoardWriter& board,
                            const SegmentBoardReader& published, const core::WindowOptions& window,
-                           const IngestLimits& limits)
+                           const IngestLimits& limits, const std::optional<LiveOptions>& live)
     : ring_(&ring),
       board_(&board),
+      published_(&published),
       limits_(limits),
-      window_(ring.dimensions(), window),
-      max_batch_(std::min(kMaxBatch, board.capacity() - changed_besides(window.settle))),
+      live_(live),
+      curve_(board, published, window),
+      max_batch_(std::min(kMaxBatch, board.capacity() / 2 - changed_besides(window.settle))),
       item_(ring.dimensions()),
-      segment_(ring.dimensions()) {
+      followers_(kFollowers, RingItem(ring.dimensions())) {
   if (board.capacity() < min_capacity(window.settle)) {
     throw std::invalid_argument("a board of " + std::to_string(board.capacity()) +
                                 " segments is too small for settle lag " +
                                 std::to_string(window.settle));
   }
   end_.value.reserve(ring.dimensions());
-  restore(published);
+  restore();
+  board_->store_tail(head_.consumed);  // its last writer may have died between commit and tail
 }
 
-void StreamSolver::restore(const SegmentBoardReader& published) {
-  const Word r = published.revision();
-  if (r == 0 || !published.copy_head(r, head_)) return;
-  board_->store_tail(head_.consumed);  // its last writer may have died between commit and tail
-  if (head_.finished || head_.knots == 0) return;
-  const std::size_t knots = head_.knots;
-  const std::size_t count = std::min(knots, window_.knots_to_restore());
-  const std::size_t size = SegmentBoardReader::kKnotValues * ring_->dimensions();
-  std::vector<double> values(size * count);
-  std::vector<core::Knot> restored;
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t i = knots - count + k;
-    restored.push_back(published.knot(i + 1, r, std::span(values).subspan(size * k, size)));
-  }
-  window_.restore(knots - count, restored);
-  settled_written_ = window_.settled_segments();
+void StreamSolver::restore() {
+  head_ = {};
+  const Word r = board_->revision();
+  if (r > 0) (void)published_->copy_head(r, head_);  // nobody else writes
+  curve_.restore(head_);
+}
+
+core::Time StreamSolver::due() const noexcept {
+  const bool settles =
+      live_ && !head_.finished && head_.newest > 0 && head_.settled_until < curve_.end_of_motion();
+  const bool waits = live_ && seen_ != head_.consumed;
+  return settles || waits ? head_.committed + live_->freeze_ahead / 2 : core::Time::max();
 }
 
 StepResult StreamSolver::step(const Clock& clock) noexcept {
-  const Word available = ring_->head() - head_.consumed;
-  if (available == 0) return {};
-  const Word batch = std::min<Word>({available, max_batch_, ring_->capacity()});
-  head_.changed_from = kNothingChanged;
-  for (Word k = 0; k < batch; ++k) {
-    const Word number = head_.consumed++;
-    ring_->copy(number, item_);
-    take(item_, number);
-  }
-  publish(clock);
-  return {.consumed = batch, .published = true};
+  const core::Time now = live_ ? clock.now() : core::Time::min();
+  freeze(now);
+  const Word consumed = consume(now);
+  if (consumed == 0 && (!live_ || now < due())) return {};
+  return publish(clock, consumed);
 }
 
-void StreamSolver::take(const RingItem& item, Word number) noexcept {
+/// Fixes what this step leaves alone.
+void StreamSolver::freeze(core::Time now) noexcept {
+  settled_until_ = head_.settled_until;
+  if (!live_) return;
+  settled_until_ = std::max(settled_until_, now + live_->freeze_ahead);
+  if (!curve_.has_begun() || head_.finished) return;
+  curve_.freeze(settled_until_);
+  head_.low_water =
+      std::min(head_.low_water, std::max(core::Time::zero(), curve_.newest_time() - now));
+  if (head_.starved || !is_starved()) return;
+  head_.starved = true;
+  ++head_.underruns;
+}
+
+/// Whether nothing of the run may be changed any more, so that what follows must be spliced.
+bool StreamSolver::is_starved() const noexcept {
+  if (!live_ || !curve_.has_begun()) return false;
+  return curve_.window().knots() > 0 ? settled_until_ >= curve_.newest_time()
+                                     : settled_until_ > curve_.newest_time();
+}
+
+Word StreamSolver::consume(core::Time now) noexcept {
+  const Word available = ring_->head();
+  const Word before = head_.consumed;
+  const core::Time keep = live_ ? now - live_->history : core::Time::max();
+  withdraw(available);
+  Word batch = 0;
+  bool is_blocked = false;
+  batch_limit_ = max_batch_;
+  while (head_.consumed < available && batch < batch_limit_) {
+    // A replacement cuts what has been committed, and nothing else.
+    is_blocked = !curve_.has_room(kAddedByItem + batch, keep) ||
+                 (curve_.has_changes() && ring_->kind(head_.consumed) == ItemKind::replace);
+    if (is_blocked) break;
+    take(head_.consumed++);
+    ++batch;
+  }
+  seen_ = is_blocked && !curve_.has_changes() ? available : head_.consumed;
+  return head_.consumed - before;
+}
+
+/// Looks ahead for a replacement that withdraws waypoints before they are taken: the board may have
+/// no room for them yet.
+void StreamSolver::withdraw(Word available) noexcept {
+  if (!curve_.has_begun() || head_.finished) return;
+  const core::Time newest = curve_.newest_time();
+  scanned_ = std::max(scanned_, head_.consumed);
+  Word replacement = available;
+  for (; scanned_ < available; ++scanned_) {
+    if (ring_->kind(scanned_) != ItemKind::replace) continue;
+    replacement = scanned_;
+    break;
+  }
+  if (replacement == available) return;
+  const core::Time t = ring_->time(replacement);
+  if (t < settled_until_ || t > newest) return;  // it waits for its turn
+  for (; head_.consumed < replacement; ++head_.consumed) {
+    if (ring_->kind(head_.consumed) == ItemKind::waypoint) ++head_.withdrawn;
+  }
+}
+
+void StreamSolver::take(Word number) noexcept {
+  ring_->copy(number, item_);
   if (head_.finished) return refuse(number, Refusal::after_finish);
-  switch (item.kind) {
+  switch (item_.kind) {
     case ItemKind::waypoint:
-      return take_waypoint(item, number);
-    case ItemKind::finish:
-      return take_finish(item, number);
+      return take_waypoint(number);
     case ItemKind::replace:
+      return take_replacement(number);
     case ItemKind::start_state:
-      break;
+      return take_start_state(number);
+    case ItemKind::finish:
+      return take_finish(number);
   }
   refuse(number, Refusal::unknown_kind);
 }
 
-/// The producer has checked all of this; but what another process wrote is never trusted.
-void StreamSolver::take_waypoint(const RingItem& item, Word number) noexcept {
-  const core::Waypoint waypoint = waypoint_of(item);
+/// The producer has checked most of this; but what another process wrote is never trusted.
+std::optional<Refusal> StreamSolver::has_right_form(const core::Waypoint& waypoint) const noexcept {
   if (!is_finite(waypoint.position) || !is_finite(waypoint.velocity) ||
       !is_finite(waypoint.acceleration)) {
-    return refuse(number, Refusal::not_finite);
+    return Refusal::not_finite;
   }
-  if (!window_.takes(waypoint)) return refuse(number, Refusal::lacks_derivatives);
-  if (!is_time_in_range(item.time)) return refuse(number, Refusal::too_far_apart);
-  if (head_.knots > 0) {
-    const auto status = judge_interval(item.time - head_.newest_knot, limits_);
-    if (status != AppendStatus::accepted) return refuse(number, to_refusal(status));
-  }
-  if (!window_.lag_suffices(item.time)) return refuse(number, Refusal::lag_too_short);
-  window_.append(waypoint);
-  head_.knots = window_.knots();
-  head_.newest_knot = item.time;
-  // What has settled leaves the window and is written once, with its last value.
-  while (settled_written_ < window_.settled_segments()) write_segment(settled_written_++);
+  if (!curve_.window().takes(waypoint)) return Refusal::lacks_derivatives;
+  if (!is_time_in_range(waypoint.time)) return Refusal::too_far_apart;
+  return std::nullopt;
 }
 
-void StreamSolver::take_finish(const RingItem& item, Word number) noexcept {
-  end_.kind = item.condition;
+std::optional<Refusal> StreamSolver::judge(const core::Waypoint& waypoint) const noexcept {
+  const auto refusal = has_right_form(waypoint);
+  return refusal ? refusal : judge_time(waypoint.time);
+}
+
+std::optional<Refusal> StreamSolver::judge_time(core::Time time) const noexcept {
+  if (!curve_.has_begun()) {
+    if (live_ && time < settled_until_) return Refusal::past;
+    return std::nullopt;
+  }
+  const core::Time newest = curve_.newest_time();
+  const core::Time earliest = is_starved() ? settled_until_ : newest;
+  const auto status = judge_interval(time - newest, limits_);
+  if (status == AppendStatus::too_far_apart && time - earliest > limits_.max_interval) {
+    return Refusal::too_far_apart;
+  }
+  if (status != AppendStatus::accepted && status != AppendStatus::too_far_apart) {
+    return to_refusal(status);
+  }
+  if (is_starved() && time < settled_until_) return Refusal::past;
+  const bool is_spliced =
+      is_starved() || (curve_.window().is_entered() && curve_.window().knots() == 0);
+  if (is_spliced && live_ && time - earliest < live_->min_splice) return Refusal::too_late;
+  if (!is_spliced && !curve_.window().lag_suffices(time)) return Refusal::lag_too_short;
+  return std::nullopt;
+}
+
+void StreamSolver::take_waypoint(Word number) noexcept {
+  const core::Waypoint waypoint = waypoint_of(item_);
+  if (const auto refusal = judge(waypoint)) return refuse(number, *refusal);
+  const bool starved = is_starved();
+  if (starved) curve_.enter(settled_until_);
+  if (!can_append(number)) {
+    // It cannot be reached with the acceleration allowed. The curve stays as it was committed.
+    if (starved) discard();
+    return refuse(number, Refusal::too_late);
+  }
+  curve_.append(waypoint);
+  head_.starved = false;
+  ++head_.knots;
+  head_.newest_knot = waypoint.time;
+}
+
+/// Whether the waypoint at hand is one that limits allow for; those that wait behind it count.
+bool StreamSolver::can_append(Word number) noexcept {
+  if (curve_.window().options().max_acceleration.empty()) return true;
+  const Word available = ring_->head();
+  std::array<core::Waypoint, 1 + kFollowers> first{waypoint_of(item_)};
+  std::size_t count = 1;
+  while (count < first.size() && number + count < available) {
+    RingItem& item = followers_[count - 1];
+    ring_->copy(number + count, item);
+    const core::Waypoint next = waypoint_of(item);
+    const bool follows =
+        item.kind == ItemKind::waypoint && has_right_form(next) == std::nullopt &&
+        judge_interval(next.time - first[count - 1].time, limits_) == AppendStatus::accepted;
+    if (!follows) break;
+    first[count++] = next;
+  }
+  return curve_.can_append(std::span(first).first(count));
+}
+
+/// Drops what this step has made of the curve, which is nothing but an entry.
+void StreamSolver::discard() noexcept {
+  Head committed;
+  (void)published_->copy_head(board_->revision(), committed);
+  curve_.discard(committed);
+  curve_.freeze(settled_until_);
+}
+
+void StreamSolver::take_replacement(Word number) noexcept {
+  const core::Time t = item_.time;
+  if (t < settled_until_ || !curve_.can_enter(t)) {
+    refuse(number, Refusal::too_late);
+    // All that belongs to it in one revision, so that no other solver takes it for something else.
+    const Word end = head_.consumed + std::min<Word>(item_.count, ring_->head() - head_.consumed);
+    while (head_.consumed < end) refuse(head_.consumed++, Refusal::too_late);
+    return;
+  }
+  // One revision, as far as the board has room.
+  batch_limit_ += std::min<Word>(item_.count, board_->capacity() / 2);
+  // Where nothing moves any more and nothing is to come, there is nothing to withdraw.
+  if (item_.count == 0 && is_starved() && t >= curve_.newest_time()) return;
+  curve_.enter(t);
+  head_.starved = false;
+  head_.newest_knot = t;
+}
+
+void StreamSolver::take_start_state(Word number) noexcept {
+  const core::Waypoint state = waypoint_of(item_);
+  if (curve_.has_begun()) return refuse(number, Refusal::already_started);
+  if (!is_finite(state.position) || !is_finite(state.velocity) || !is_finite(state.acceleration)) {
+    return refuse(number, Refusal::not_finite);
+  }
+  if (state.velocity.empty() || state.acceleration.empty()) {
+    return refuse(number, Refusal::lacks_derivatives);
+  }
+  if (!is_time_in_range(state.time)) return refuse(number, Refusal::too_far_apart);
+  if (live_ && state.time < settled_until_) return refuse(number, Refusal::past);
+  curve_.begin({.time = state.time,
+                .position = state.position,
+                .velocity = state.velocity,
+                .acceleration = state.acceleration});
+  head_.newest_knot = state.time;
+}
+
+void StreamSolver::take_finish(Word number) noexcept {
+  end_.kind = item_.condition;
   end_.value.clear();
-  const std::size_t dimensions = window_.dimensions();
-  if (!core::is_online(item.condition)) {
+  const std::size_t dimensions = ring_->dimensions();
+  if (!core::is_online(item_.condition)) {
     return refuse(number, Refusal::unknown_kind);
   }
-  const bool is_velocity = item.condition == core::ConditionKind::velocity;
-  if (is_velocity || item.condition == core::ConditionKind::acceleration) {
+  const bool is_velocity = item_.condition == core::ConditionKind::velocity;
+  if (is_velocity || item_.condition == core::ConditionKind::acceleration) {
     const auto values =
-        std::span(item.values).subspan((is_velocity ? 1 : 2) * dimensions, dimensions);
+        std::span(item_.values).subspan((is_velocity ? 1 : 2) * dimensions, dimensions);
     if (!is_finite(values)) return refuse(number, Refusal::not_finite);
     end_.value.assign(values.begin(), values.end());
   }
-  window_.finish(end_);
+  if (curve_.has_begun()) curve_.finish(end_, settled_until_);
   head_.finished = true;
 }
 
@@ -154,26 +309,33 @@ void StreamSolver::refuse(Word number, Refusal reason) noexcept {
   ++head_.reasons[static_cast<std::size_t>(reason)];
 }
 
-void StreamSolver::write_segment(std::size_t i) noexcept {
-  window_.segment(i, segment_);
-  head_.changed_from = std::min(head_.changed_from, segment_.left);
-  board_->write(i + 1, segment_, window_.knot(i), window_.newer_knots_seen(i));
-}
-
-void StreamSolver::publish(const Clock& clock) noexcept {
-  const std::size_t segments = window_.segments();
-  for (std::size_t i = settled_written_; i < segments; ++i) write_segment(i);
-  if (segments > 0) {
-    head_.newest = segments;
-    // Never back: a finish drops the stop tail, but the slot that it took is not given back.
-    head_.first =
-        std::max<Word>(head_.first, segments - std::min<Word>(segments, board_->capacity()) + 1);
-    const std::size_t open = window_.settled_segments();
-    head_.settled_until = window_.knot(std::min(open, window_.knots() - 1)).time;
+StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
+  head_.changed_from = core::Time::max();
+  const bool was_curve = head_.newest > 0;
+  curve_.write(head_);
+  if (live_ && (was_curve || head_.newest > 0)) {
+    head_.settled_until = settled_until_;
+  } else if (head_.newest > 0) {
+    head_.settled_until = curve_.settled_until();
   }
   head_.committed = clock.now();
+  if (live_ && head_.changed_from <= head_.committed) {
+    const Word misses = head_.misses + 1;
+    board_->discard();
+    restore();
+    head_.misses = misses;
+    seen_ = head_.consumed;
+    scanned_ = head_.consumed;
+    return {.missed = true};
+  }
   board_->commit(head_);
   board_->store_tail(head_.consumed);
+  curve_.committed();
+  // Stopped between the look at the clock and the commit: readers find out by changed_from.
+  if (live_ && head_.changed_from < core::Time::max() && head_.changed_from <= clock.now()) {
+    ++head_.revisions;
+  }
+  return {.consumed = consumed, .published = true};
 }
 
 }  // namespace splinecast::ipc

@@ -11,6 +11,7 @@ constexpr Word kKindMask = 0xff;
 constexpr Word kHasVelocity = 1U << 8;
 constexpr Word kHasAcceleration = 1U << 9;
 constexpr unsigned kConditionShift = 16;
+constexpr unsigned kCountShift = 32;
 
 std::size_t words_per_item(const RingLayout& layout) noexcept {
   return layout.stride / sizeof(Word);
@@ -39,18 +40,18 @@ WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLa
       control_(words_at(region, layout.control, kControlLines * kSeparation / sizeof(Word))),
       items_(words_at(region, layout.items, layout.capacity * words_per_item(layout))),
       head_(load(control_[kHead], std::memory_order_relaxed)) {
-  // Look back for the newest waypoint: a producer's last items are waypoints, then a finish.
+  // Look back for the newest item that says from when on the next may be: behind the last waypoint
+  // there may be a finish.
   const WaypointRingReader past(region, layout);
-  RingItem item(layout.dimensions);
   for (Word back = 1; back <= std::min<Word>(head_, layout.capacity) && !has_last_; ++back) {
-    past.copy(head_ - back, item);
-    finished_ = finished_ || item.kind == ItemKind::finish;
-    has_last_ = item.kind == ItemKind::waypoint;
-    last_time_ = item.time;
+    const ItemKind kind = past.kind(head_ - back);
+    finished_ = finished_ || kind == ItemKind::finish;
+    has_last_ = kind != ItemKind::finish;
+    last_time_ = past.time(head_ - back);
   }
 }
 
-AppendStatus WaypointRingWriter::check(const core::Waypoint& waypoint) const noexcept {
+AppendStatus WaypointRingWriter::check_form(const core::Waypoint& waypoint) const noexcept {
   const std::size_t dimensions = layout_.dimensions;
   if (finished_) return AppendStatus::finished;
   if (waypoint.position.size() != dimensions || !fits(waypoint.velocity, dimensions) ||
@@ -61,63 +62,127 @@ AppendStatus WaypointRingWriter::check(const core::Waypoint& waypoint) const noe
       !is_finite(waypoint.acceleration)) {
     return AppendStatus::not_finite;
   }
-  if (!is_time_in_range(waypoint.time)) return AppendStatus::too_far_apart;
-  if (!has_last_) return AppendStatus::accepted;
-  return judge_interval(waypoint.time - last_time_, limits_);
+  return is_time_in_range(waypoint.time) ? AppendStatus::accepted : AppendStatus::too_far_apart;
 }
 
-AppendStatus WaypointRingWriter::append(const core::Waypoint& waypoint, Word consumed) noexcept {
-  AppendStatus status = check(waypoint);
-  if (status == AppendStatus::accepted && head_ - consumed >= layout_.capacity) {
-    status = AppendStatus::full;
+AppendStatus WaypointRingWriter::check(const core::Waypoint& waypoint,
+                                       const Solved& solved) const noexcept {
+  AppendStatus status = check_form(waypoint);
+  if (status == AppendStatus::accepted && has_last_) {
+    status = judge_interval(waypoint.time - last_time_, limits_);
+    // However long a live stream has paused, it may go on.
+    if (status == AppendStatus::too_far_apart && solved.settled_until > last_time_ &&
+        waypoint.time - solved.settled_until <= limits_.max_interval) {
+      status = AppendStatus::accepted;
+    }
   }
-  if (status == AppendStatus::accepted) {
-    put_item(static_cast<Word>(ItemKind::waypoint), waypoint.time, waypoint.position,
-             waypoint.velocity, waypoint.acceleration);
-    has_last_ = true;
-    last_time_ = waypoint.time;
-  } else {
-    count(status);
-  }
+  if (status != AppendStatus::accepted) return status;
+  if (waypoint.time < solved.settled_until) return AppendStatus::past;
+  return has_room(1, solved) ? AppendStatus::accepted : AppendStatus::full;
+}
+
+AppendStatus WaypointRingWriter::append(const core::Waypoint& waypoint,
+                                        const Solved& solved) noexcept {
+  const AppendStatus status = check(waypoint, solved);
+  if (status != AppendStatus::accepted) return counted(status);
+  put_item(0, static_cast<Word>(ItemKind::waypoint), waypoint);
+  publish(1, waypoint.time);
   return status;
 }
 
-AppendStatus WaypointRingWriter::finish(const core::Condition& end, Word consumed) noexcept {
+AppendStatus WaypointRingWriter::check_replacement(core::Time t,
+                                                   std::span<const core::Waypoint> waypoints,
+                                                   const Solved& solved) const noexcept {
   if (finished_) return AppendStatus::finished;
-  if (head_ - consumed >= layout_.capacity) return AppendStatus::full;
+  if (!is_time_in_range(t)) return AppendStatus::too_far_apart;
+  if (t < solved.settled_until) return AppendStatus::too_late;
+  if (waypoints.size() >= layout_.capacity) return AppendStatus::too_many;
+  core::Time before = t;
+  for (const core::Waypoint& waypoint : waypoints) {
+    AppendStatus status = check_form(waypoint);
+    if (status == AppendStatus::accepted) status = judge_interval(waypoint.time - before, limits_);
+    if (status != AppendStatus::accepted) return status;
+    before = waypoint.time;
+  }
+  return has_room(1 + waypoints.size(), solved) ? AppendStatus::accepted : AppendStatus::full;
+}
+
+AppendStatus WaypointRingWriter::replace_from(core::Time t,
+                                              std::span<const core::Waypoint> waypoints,
+                                              const Solved& solved) noexcept {
+  const AppendStatus status = check_replacement(t, waypoints, solved);
+  if (status != AppendStatus::accepted) return counted(status);
+  const Word kind = static_cast<Word>(ItemKind::replace) | waypoints.size() << kCountShift;
+  put_item(0, kind, {.time = t, .position = {}});
+  for (std::size_t i = 0; i < waypoints.size(); ++i) {
+    put_item(1 + i, static_cast<Word>(ItemKind::waypoint), waypoints[i]);
+  }
+  publish(1 + waypoints.size(), waypoints.empty() ? t : waypoints.back().time);
+  return status;
+}
+
+AppendStatus WaypointRingWriter::start_from(const core::Instant& state,
+                                            const Solved& solved) noexcept {
+  const core::Waypoint values{state.time, state.position, state.velocity, state.acceleration};
+  AppendStatus status = check_form(values);
+  if (status == AppendStatus::accepted && (state.velocity.empty() || state.acceleration.empty())) {
+    status = AppendStatus::wrong_dimension;
+  }
+  if (status == AppendStatus::accepted && head_ > 0) status = AppendStatus::already_started;
+  if (status == AppendStatus::accepted && state.time < solved.settled_until) {
+    status = AppendStatus::past;
+  }
+  if (status != AppendStatus::accepted) return counted(status);
+  put_item(0, static_cast<Word>(ItemKind::start_state), values);
+  publish(1, state.time);
+  return status;
+}
+
+AppendStatus WaypointRingWriter::finish(const core::Condition& end, const Solved& solved) noexcept {
+  if (finished_) return AppendStatus::finished;
+  if (!has_room(1, solved)) return AppendStatus::full;
   const Word kind = static_cast<Word>(ItemKind::finish) | static_cast<Word>(end.kind)
                                                               << kConditionShift;
   const bool is_velocity = end.kind == core::ConditionKind::velocity;
   const std::span<const double> value(end.value);
-  put_item(kind, last_time_, {}, is_velocity ? value : std::span<const double>{},
-           is_velocity ? std::span<const double>{} : value);
+  put_item(0, kind,
+           {.time = last_time_,
+            .position = {},
+            .velocity = is_velocity ? value : std::span<const double>{},
+            .acceleration = is_velocity ? std::span<const double>{} : value});
   finished_ = true;
+  publish(1, last_time_);
   return AppendStatus::accepted;
 }
 
-void WaypointRingWriter::put_item(Word kind_and_flags, core::Time time,
-                                  std::span<const double> position,
-                                  std::span<const double> velocity,
-                                  std::span<const double> acceleration) noexcept {
+/// Writes the item that lies so many behind `head`.
+void WaypointRingWriter::put_item(Word index, Word kind_and_flags,
+                                  const core::Waypoint& values) noexcept {
   const std::size_t stride = words_per_item(layout_);
-  const auto words = items_.subspan((head_ & (layout_.capacity - 1)) * stride, stride);
-  const Word flags =
-      (velocity.empty() ? 0 : kHasVelocity) | (acceleration.empty() ? 0 : kHasAcceleration);
+  const auto words = items_.subspan(((head_ + index) & (layout_.capacity - 1)) * stride, stride);
+  const Word flags = (values.velocity.empty() ? 0 : kHasVelocity) |
+                     (values.acceleration.empty() ? 0 : kHasAcceleration);
   store(words[kItemKind], kind_and_flags | flags, std::memory_order_release);
-  store(words[kItemTime], to_word(time), std::memory_order_release);
-  const auto values = words.subspan(kItemValues);
-  put_values(values, position);
-  put_values(values.subspan(layout_.dimensions), velocity);
-  put_values(values.subspan(2 * layout_.dimensions), acceleration);
-  ++head_;
+  store(words[kItemTime], to_word(values.time), std::memory_order_release);
+  const auto rest = words.subspan(kItemValues);
+  put_values(rest, values.position);
+  put_values(rest.subspan(layout_.dimensions), values.velocity);
+  put_values(rest.subspan(2 * layout_.dimensions), values.acceleration);
+}
+
+void WaypointRingWriter::publish(Word items, core::Time last) noexcept {
+  head_ += items;
+  has_last_ = true;
+  last_time_ = last;
   // seq_cst, not only release: the producer loads `sleeping` next, and a solver about to sleep
   // stores `sleeping` and then loads this word. One of the two must see the other's store.
   store(control_[kHead], head_, std::memory_order_seq_cst);
 }
 
-void WaypointRingWriter::count(AppendStatus status) noexcept {
+AppendStatus WaypointRingWriter::counted(AppendStatus status) noexcept {
   Word& counter = control_[kProducerCounters + static_cast<std::size_t>(status)];
   store(counter, load(counter, std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  return status;
 }
 
 void WaypointRingWriter::retire() noexcept {
@@ -138,10 +203,21 @@ void WaypointRingReader::copy(Word i, RingItem& out) const noexcept {
   out.has_velocity = (kind & kHasVelocity) != 0;
   out.has_acceleration = (kind & kHasAcceleration) != 0;
   out.condition = static_cast<core::ConditionKind>((kind >> kConditionShift) & kKindMask);
+  out.count = static_cast<std::uint32_t>(kind >> kCountShift);
   out.time = to_time(load(words[kItemTime], std::memory_order_acquire));
   for (std::size_t v = 0; v < out.values.size(); ++v) {
     out.values[v] = to_double(load(words[kItemValues + v], std::memory_order_acquire));
   }
+}
+
+ItemKind WaypointRingReader::kind(Word i) const noexcept {
+  const Word& word = items_[(i & (layout_.capacity - 1)) * words_per_item(layout_) + kItemKind];
+  return static_cast<ItemKind>(load(word, std::memory_order_acquire) & kKindMask);
+}
+
+core::Time WaypointRingReader::time(Word i) const noexcept {
+  const Word& word = items_[(i & (layout_.capacity - 1)) * words_per_item(layout_) + kItemTime];
+  return to_time(load(word, std::memory_order_acquire));
 }
 
 bool WaypointRingReader::observe(Word i, RingItem& out) const noexcept {

@@ -66,7 +66,7 @@ TEST(Bezier, TheControlPointsOfACubicAreAThirdOfItsSlopesFromItsEnds) {
 TEST(Bezier, AHoldStaysOneAndAWrongNumberOfPointsIsRefused) {
   PiecewisePolynomial hold(2);
   Segment segment(2);
-  build_hold(Time(5), std::vector{3.0, 4.0}, segment);
+  build_hold(Time(5), Time(5), std::vector{3.0, 4.0}, segment);
   hold.append(segment);
   const auto segments = to_bezier(hold);
   EXPECT_EQ(segments[0].control_points, (std::vector<double>{3, 4, 3, 4, 3, 4, 3, 4}));

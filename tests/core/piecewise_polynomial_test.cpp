@@ -42,7 +42,7 @@ TEST(PiecewisePolynomial, RefusesAGapOtherDimensionsAndAnythingBehindAHold) {
   EXPECT_THROW(curve.append(Segment(2)), std::invalid_argument);
   PiecewisePolynomial held(1);
   Segment hold(1);
-  build_hold(Time(5), std::vector{3.0}, hold);
+  build_hold(Time(5), Time(5), std::vector{3.0}, hold);
   held.append(hold);
   EXPECT_EQ(held.breaks().size(), 1U);
   State state(1);

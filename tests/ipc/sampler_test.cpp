@@ -33,7 +33,9 @@ struct Stream : testing::MemoryStream {
 
 TEST(Sampler, GivesEachStatusItsTime) {
   const Mesh mesh = random_mesh(1, 20, 2, 2);
-  Stream stream(2, {.settle = 4, .stop_time = Time(1'000'000)});
+  Stream stream(2, {.settle = 4,
+                    .start = {.kind = core::ConditionKind::halt, .value = {}},
+                    .stop_time = Time(1'000'000)});
   Sampler live(stream.board.reader, StreamClock::monotonic);
   Sampler recorded(stream.board.reader, StreamClock::recorded);
   core::State state(2);

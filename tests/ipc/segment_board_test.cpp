@@ -37,7 +37,7 @@ void write(MemoryBoard& board, Word number, Word revision) {
                         .velocity = zeros,
                         .acceleration = {},
                         .residual = {}};
-  board.writer.write(number, marked(number, revision), knot, 0);
+  board.writer.write(number, marked(number, revision), knot);
 }
 
 /// Commits `segments` segments as the next revision.
@@ -147,7 +147,7 @@ TEST(SegmentBoard, AHeadThatCannotBeIsNotBelieved) {
        std::vector<std::pair<Word, Word>>{{0, 5}, {6, 5}, {1, 17}, {1, kRetiredTag}}) {
     Head lying{.first = first, .newest = newest};
     board.writer.commit(lying);
-    EXPECT_FALSE(board.reader.copy_bounds(board.reader.revision(), head)) << newest;
+    EXPECT_FALSE(board.reader.copy_bounds(board.reader.revision(), 0, head)) << newest;
   }
 }
 

@@ -17,7 +17,7 @@ constexpr Time kMillisecond{1'000'000};
 
 AppendStatus append(MemoryRing& ring, Time t, std::vector<double> x, Word consumed = 0) {
   return ring.writer.append({.time = t, .position = x, .velocity = {}, .acceleration = {}},
-                            consumed);
+                            {consumed});
 }
 
 TEST(WaypointRing, GivesBackWhatWasAppended) {
@@ -25,7 +25,7 @@ TEST(WaypointRing, GivesBackWhatWasAppended) {
   const std::vector<double> x{1, 2};
   const std::vector<double> v{3, 4};
   const std::vector<double> a{5, 6};
-  ASSERT_EQ(ring.writer.append({kMillisecond, x, v, a}, 0), AppendStatus::accepted);
+  ASSERT_EQ(ring.writer.append({kMillisecond, x, v, a}, {}), AppendStatus::accepted);
   ASSERT_EQ(append(ring, 2 * kMillisecond, {7, 8}), AppendStatus::accepted);
   RingItem item(2);
   ring.reader.copy(0, item);
@@ -47,8 +47,8 @@ TEST(WaypointRing, RefusesBadFormWithTheReasonAndCountsIt) {
   EXPECT_EQ(append(ring, kMillisecond, {1, nan}), AppendStatus::not_finite);
   const std::vector<double> x{1, 2};
   const std::vector<double> bad{inf, 0};
-  EXPECT_EQ(ring.writer.append({kMillisecond, x, bad, {}}, 0), AppendStatus::not_finite);
-  EXPECT_EQ(ring.writer.append({kMillisecond, x, {}, std::span(x).first(1)}, 0),
+  EXPECT_EQ(ring.writer.append({kMillisecond, x, bad, {}}, {}), AppendStatus::not_finite);
+  EXPECT_EQ(ring.writer.append({kMillisecond, x, {}, std::span(x).first(1)}, {}),
             AppendStatus::wrong_dimension);
   EXPECT_EQ(append(ring, kMillisecond, {1, 2}), AppendStatus::accepted);
   EXPECT_EQ(append(ring, kMillisecond, {1, 2}), AppendStatus::duplicate);
@@ -74,7 +74,7 @@ TEST(WaypointRing, IsFullUntilTheSolverConsumesAndLosesNothing) {
   double next_out = 0;
   for (int round = 0; round < 20; ++round) {
     while (append(ring, Time(static_cast<std::int64_t>(next_in + 1) * 10'000), {next_in},
-                  consumed) == AppendStatus::accepted) {
+                  {consumed}) == AppendStatus::accepted) {
       ++next_in;
     }
     EXPECT_EQ(ring.writer.head() - consumed, 4U);
@@ -99,9 +99,10 @@ TEST(WaypointRing, APassiveObserverKeepsAnItemOnlyWhileItCannotBeOverwritten) {
 TEST(WaypointRing, NothingFollowsAFinishAndItCarriesItsCondition) {
   MemoryRing ring(2, 4);
   ASSERT_EQ(append(ring, kMillisecond, {1, 2}), AppendStatus::accepted);
-  ASSERT_EQ(ring.writer.finish({core::ConditionKind::velocity, {3, 4}}, 0), AppendStatus::accepted);
+  ASSERT_EQ(ring.writer.finish({core::ConditionKind::velocity, {3, 4}}, {}),
+            AppendStatus::accepted);
   EXPECT_EQ(append(ring, 2 * kMillisecond, {1, 2}), AppendStatus::finished);
-  EXPECT_EQ(ring.writer.finish({}, 0), AppendStatus::finished);
+  EXPECT_EQ(ring.writer.finish({}, {}), AppendStatus::finished);
   RingItem item(2);
   ring.reader.copy(1, item);
   EXPECT_EQ(item.kind, ItemKind::finish);
@@ -119,8 +120,8 @@ TEST(WaypointRing, ANewWriterGoesOnBehindTheLastWaypoint) {
   EXPECT_FALSE(next.finished());
   EXPECT_EQ(next.last_time(), 3 * kMillisecond);
   const std::vector<double> x{0};
-  EXPECT_EQ(next.append({3 * kMillisecond, x, {}, {}}, 0), AppendStatus::duplicate);
-  EXPECT_EQ(next.finish({}, 0), AppendStatus::accepted);
+  EXPECT_EQ(next.append({3 * kMillisecond, x, {}, {}}, {}), AppendStatus::duplicate);
+  EXPECT_EQ(next.finish({}, {}), AppendStatus::accepted);
   EXPECT_TRUE(WaypointRingWriter(ring.bytes.span(), ring.layout, {}).finished());
 }
 

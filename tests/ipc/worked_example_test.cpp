@@ -40,12 +40,12 @@ struct Example {
     testing::FixedClock clock;
     clock.time = Time(5);
     const auto append = [&](std::int64_t t, double x) {
-      EXPECT_EQ(producer.append({Time(t), std::span(&x, 1), {}, {}}, 0), AppendStatus::accepted);
+      EXPECT_EQ(producer.append({Time(t), std::span(&x, 1), {}, {}}, {}), AppendStatus::accepted);
       solver.step(clock);
     };
     append(0, 1.0);
     append(100'000'000, 3.0);
-    EXPECT_EQ(producer.finish({}, 0), AppendStatus::accepted);
+    EXPECT_EQ(producer.finish({}, {}), AppendStatus::accepted);
     solver.step(clock);
   }
 

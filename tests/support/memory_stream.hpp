@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -75,20 +76,23 @@ struct MemoryStream {
   MemoryBoard board;
   core::WindowOptions window;
   ipc::IngestLimits limits;
+  std::optional<ipc::LiveOptions> live;
   ipc::StreamSolver solver;
   FixedClock clock;
 
   explicit MemoryStream(std::size_t dimensions, core::WindowOptions how = {},
                         std::size_t ring_capacity = 64, std::size_t board_capacity = 1024,
-                        ipc::IngestLimits solver_limits = {})
+                        ipc::IngestLimits solver_limits = {},
+                        std::optional<ipc::LiveOptions> how_live = {})
       : ring(dimensions, ring_capacity),
         board(dimensions, board_capacity),
         window(how),
         limits(solver_limits),
-        solver(ring.reader, board.writer, board.reader, window, limits) {}
+        live(how_live),
+        solver(ring.reader, board.writer, board.reader, window, limits, live) {}
 
   ipc::AppendStatus append(const core::Waypoint& waypoint) {
-    return ring.writer.append(waypoint, board.reader.tail());
+    return ring.writer.append(waypoint, {board.reader.tail()});
   }
   ipc::AppendStatus append(core::Time t, std::span<const double> x) {
     return append({.time = t, .position = x});
@@ -101,7 +105,7 @@ struct MemoryStream {
     for (std::size_t i = from; i < to; ++i) send({mesh.times[i], mesh.position(i), {}, {}});
   }
   void finish(const core::Condition& end = {}) {
-    while (ring.writer.finish(end, board.reader.tail()) == ipc::AppendStatus::full) {
+    while (ring.writer.finish(end, {board.reader.tail()}) == ipc::AppendStatus::full) {
       solver.step(clock);
     }
     drain();
@@ -113,7 +117,7 @@ struct MemoryStream {
   /// What happens when the solver is killed and another one comes.
   void replace_solver() {
     board.replace_writer();
-    solver = ipc::StreamSolver(ring.reader, board.writer, board.reader, window, limits);
+    solver = ipc::StreamSolver(ring.reader, board.writer, board.reader, window, limits, live);
   }
 };
 

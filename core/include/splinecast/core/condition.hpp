@@ -45,6 +45,9 @@ enum class Tail {
 [[nodiscard]] std::string to_string(const Condition& condition);
 [[nodiscard]] std::string_view to_string(Tail tail) noexcept;
 
+/// Numbers that are usable as values, separated by commas: `1,-2.5,0`.
+[[nodiscard]] std::optional<std::vector<double>> parse_values(std::string_view text);
+
 /// Reads what to_string writes, but for `own`. Returns nothing for any other text; a name without
 /// its values, a value that is not a finite number and values behind a name that takes none are
 /// other texts.

@@ -17,6 +17,12 @@ namespace splinecast::core {
 void write_chord(std::span<const double> from, std::span<const double> to, double h,
                  std::span<double> slope) noexcept;
 
+/// An interval between waypoints: length in seconds and chord slopes; length 0 where there is none.
+struct ChordInterval {
+  double h = 0;
+  std::span<const double> chord{};
+};
+
 /// The scalars of a knot's eliminated row: γ, and the smoothing spline's factors.
 struct Prefix {
   double gamma = 0;
@@ -72,16 +78,24 @@ class KnotRing {
   /// Appends a knot and measures the interval before it: O(D). It must be later than the newest.
   void push(Time time, std::span<const double> waypoint) noexcept;
 
+  /// Takes the newest knot back. What a solver has written of the others since it was pushed stands.
+  void pop() noexcept { --size_; }
+
   /// Forgets all knots and takes up again where another ring stood: `first` is the number of the
   /// oldest knot given, and `knots` are consecutive up to the newest one.
   void restore(std::size_t first, std::span<const Knot> knots) noexcept;
 
-  /// Forgets all knots, for a run that begins without a halt.
-  void clear() noexcept {
+  /// Forgets all knots, for a run that begins with or without a halt.
+  void clear(bool halts_at_start) noexcept {
     size_ = 0;
-    halts_at_start_ = false;
+    halts_at_start_ = halts_at_start;
     halts_at_end_ = false;
+    before_ = {};
   }
+
+  /// Tells of the interval between waypoints before knot 0, for a tail that looks at two intervals
+  /// while the ring has one. The chord slopes must outlive their use.
+  void lead_in(const ChordInterval& before) noexcept { before_ = before; }
 
   /// Makes the acceleration at the newest knot 0, whatever the knot velocities say.
   void halt_at_end() noexcept { halts_at_end_ = true; }
@@ -128,6 +142,7 @@ class KnotRing {
   std::size_t mask_;
   std::size_t values_per_knot_;
   std::size_t size_ = 0;
+  ChordInterval before_;
   std::vector<Row> rows_;
   std::vector<double> values_;  ///< [knot & mask][which][dimension]
 };

@@ -19,7 +19,7 @@ namespace splinecast::core {
 class KnotSolver {
  public:
   /// `start` is the condition at knot 0 of the first run.
-  KnotSolver(const Condition& start, std::size_t dimensions) : start_(start) {
+  KnotSolver(const Condition& start, std::size_t dimensions) : first_start_(start), start_(start) {
     start_.value.reserve(dimensions);
   }
   KnotSolver(const KnotSolver&) = delete;
@@ -34,10 +34,12 @@ class KnotSolver {
   /// knots that a run begins with.
   virtual void eliminate_again(KnotRing& knots) const noexcept = 0;
 
+  /// Takes the start condition again that it was made with.
+  void start_as_first() noexcept { start_with(first_start_.kind, first_start_.value); }
+
   /// Makes a velocity the start condition of the run that stands, or begins.
   void start_with(std::span<const double> velocity) noexcept {
-    start_.kind = ConditionKind::velocity;
-    start_.value.assign(velocity.begin(), velocity.end());
+    start_with(ConditionKind::velocity, velocity);
   }
 
   /// Solves knots `last` to the newest while the stream goes on: O(D) per knot.
@@ -50,6 +52,12 @@ class KnotSolver {
   [[nodiscard]] const Condition& start() const noexcept { return start_; }
 
  private:
+  void start_with(ConditionKind kind, std::span<const double> value) noexcept {
+    start_.kind = kind;
+    start_.value.assign(value.begin(), value.end());
+  }
+
+  const Condition first_start_;
   Condition start_;
 };
 

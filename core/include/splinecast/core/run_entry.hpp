@@ -28,8 +28,9 @@ class RunEntry {
 
   [[nodiscard]] Time time() const noexcept { return time_; }
 
-  /// Finds velocity and acceleration of knot 0 from the waypoints around it.
-  void update(const KnotRing& knots) noexcept;
+  /// Finds velocity and acceleration of knot 0 from the waypoints around it, and tells the knots of
+  /// the one before.
+  void update(KnotRing& knots) noexcept;
 
   /// The velocity of knot 0 as the waypoints have it.
   [[nodiscard]] std::span<const double> velocity() const noexcept { return values(kKnotVelocity); }
@@ -37,6 +38,16 @@ class RunEntry {
   /// Takes the acceleration that the knots give at knot 0; while no later knot stands it is the
   /// waypoints' own.
   void take_acceleration(const KnotRing& knots) noexcept;
+
+  /// Takes velocity and acceleration of knot 0 from elsewhere.
+  void take(std::span<const double> velocity, std::span<const double> acceleration) noexcept;
+
+  /// Remembers velocity and acceleration of knot 0 as they are.
+  void keep() noexcept;
+
+  /// Exchanges the velocity for the one remembered; takes the acceleration remembered.
+  void swap_velocities() noexcept;
+  void restore_acceleration() noexcept;
 
   /// The acceleration with which the splice reaches knot 0.
   [[nodiscard]] std::span<const double> acceleration() const noexcept {
@@ -65,6 +76,8 @@ class RunEntry {
     kBefore2,  ///< and of the one before that
     kChord,
     kChord2,
+    kKeptVelocity,
+    kKeptAcceleration,
     kValues
   };
   [[nodiscard]] std::span<double> values(Value which) noexcept {

@@ -26,7 +26,8 @@ enum class SegmentKind : std::uint8_t {
   spline = 0,     ///< between two waypoints
   splice = 1,     ///< order-6 entry from a given state
   stop_tail = 2,  ///< behind the newest knot, ends at rest
-  hold = 3,       ///< of no length: the one waypoint of a finished stream
+  hold = 3,       ///< at rest: between a stop tail and a splice, or, of no length, the one waypoint
+                  ///< of a finished stream
 };
 
 /// One polynomial piece of a curve with D dimensions.
@@ -85,7 +86,7 @@ void build_stop_tail(Time from, Time stop_time, std::span<const double> position
                      std::span<const double> velocity, std::span<const double> acceleration,
                      Segment& out) noexcept;
 
-/// Writes the segment of no length that holds `position` at time `at`.
-void build_hold(Time at, std::span<const double> position, Segment& out) noexcept;
+/// Writes the segment that holds `position` between two times, which may be the same.
+void build_hold(Time from, Time to, std::span<const double> position, Segment& out) noexcept;
 
 }  // namespace splinecast::core

@@ -30,9 +30,11 @@ struct WindowOptions {
   Tail tail = Tail::bessel;  ///< condition at the newest knot while the stream goes on; `hermite`,
                              ///< `quintic` and `smoothing` have one of their own
   Condition start{.kind = ConditionKind::own, .value = {}};  ///< condition at knot 0
-  Time stop_time{250'000'000};                               ///< length of the stop tail, > 0
-  bool held_before_start = false;  ///< a hold stands before knot 0, as on a live stream
-  bool force_lag = false;          ///< take a lag that is too short for λ
+  Time stop_time{250'000'000};  ///< length of the stop tail, > 0; with limits the least length
+  std::vector<double> max_acceleration{};  ///< limits of stop tails and splices, one value per
+                                           ///< dimension, 0 for none; empty: no limits
+  bool held_before_start = false;          ///< a hold stands before knot 0, as on a live stream
+  bool force_lag = false;                  ///< take a lag that is too short for λ
 };
 
 /// The online spline: the knots that an append still changes, and the segments at them.
@@ -93,7 +95,9 @@ class SlidingWindow {
   void append(const Waypoint& waypoint) noexcept;
 
   /// Begins a run that goes on from a state; `before` are waypoints that stand before it, oldest
-  /// first, of which the last two count. O(D).
+  /// first, of which the last two count. O(D). What later waypoints say of the first knot is taken
+  /// as long as the splice is open; where it would then pass an acceleration limit, only if the
+  /// accelerations around that knot become smaller by it.
   void enter(const Instant& from, std::span<const StandingWaypoint> before) noexcept;
 
   /// Keeps every knot of this run up to the right end of the segment that contains t as it is: no
@@ -118,6 +122,11 @@ class SlidingWindow {
     return segment == 0 ? std::nullopt : std::optional(segment - 1);
   }
 
+  /// Whether the acceleration limits allow for the first of these waypoints to come next, if the
+  /// others follow it: the splice to it must keep within them, the splice that it shapes, or, behind
+  /// the first knot of a curve or one that has been frozen, the interval to it. True without limits. O(K·D) each.
+  [[nodiscard]] bool can_append(std::span<const Waypoint> waypoints) noexcept;
+
   /// The entry of this run, if it was entered.
   [[nodiscard]] const RunEntry& entry() const noexcept { return entry_; }
 
@@ -130,10 +139,19 @@ class SlidingWindow {
   /// How many of its newest knots a window needs in order to go on where another one stood.
   [[nodiscard]] std::size_t knots_to_restore() const noexcept { return reach() + kMaxReach + 3; }
 
-  /// Goes on where a window with the same options stood that died: `first` is the number of the
-  /// oldest knot given; `knots` are its consecutive knots up to the newest, at least
+  /// Goes on where the first run of a window with the same options stood: `first` is the number of
+  /// the oldest knot given; `knots` are its consecutive knots up to the newest, at least
   /// min(first + knots.size(), knots_to_restore()) of them. The stream must not be finished.
   void restore(std::size_t first, std::span<const Knot> knots) noexcept;
+
+  /// The same for a run that was entered. `entry` counts only if `first` is 0.
+  struct Entry {
+    Instant from;
+    std::span<const StandingWaypoint> before;
+    std::span<const double>
+        acceleration;  ///< with which the splice reaches knot 0, if there is one
+  };
+  void restore_entered(const Entry& entry, std::size_t first, std::span<const Knot> knots) noexcept;
 
  private:
   /// How many knots before the newest one an append or the finish may change. With K = 0 an append
@@ -145,12 +163,23 @@ class SlidingWindow {
   [[nodiscard]] std::size_t settled_knot_segments() const noexcept;
   void write_stop_tail(Segment& out) const noexcept;
   void write_step(std::size_t i, Segment& out) const noexcept;
+  [[nodiscard]] bool can_shape_entry(std::span<const Waypoint> waypoints) noexcept;
+  void take_better_entry() noexcept;
+  [[nodiscard]] double entry_excess() noexcept;
+  [[nodiscard]] bool is_entry_open() const noexcept { return is_entered_ && frozen_ == 0; }
   void solve(const auto& closing, std::size_t last) noexcept;
+  [[nodiscard]] bool push_into_entry(const Waypoint& waypoint) noexcept;
+  void start_with_entry() noexcept;
+  void rest_at_only_knot() noexcept;
+  [[nodiscard]] std::size_t oldest_knot() const noexcept;
+  [[nodiscard]] Time stop_time(std::span<const double> velocity,
+                               std::span<const double> acceleration) const noexcept;
 
   WindowOptions options_;
   KnotRing knots_;
   std::unique_ptr<KnotSolver> solver_;
   RunEntry entry_;
+  Segment splice_;  ///< scratch
   bool is_entered_ = false;
   std::size_t frozen_ = 0;
   bool finished_ = false;

@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "splinecast/core/knot_ring.hpp"
 #include "splinecast/core/segment.hpp"
 #include "splinecast/core/time.hpp"
 
@@ -23,12 +24,6 @@ struct Instant {
 
 /// Writes the quintic from one state to a later one. Sets everything but `acceleration_step`.
 void build_splice(const Instant& from, const Instant& to, Segment& out) noexcept;
-
-/// An interval between waypoints: length in seconds and chord slopes; length 0 where there is none.
-struct ChordInterval {
-  double h = 0;
-  std::span<const double> chord{};
-};
 
 /// The intervals around the first waypoint of a run, between standing waypoints: the one before it,
 /// the one before that, the one after it, and the next.

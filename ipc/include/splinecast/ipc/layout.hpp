@@ -85,6 +85,8 @@ static_assert(offsetof(RegionHeader, dimension_kind) == 768);
 static_assert(offsetof(RegionHeader, period) == 1280);
 static_assert(offsetof(RegionHeader, name) == 1792);
 static_assert(offsetof(RegionHeader, unit) == 3840);
+static_assert(offsetof(RegionHeader, freeze_ahead) == 208);
+static_assert(offsetof(RegionHeader, max_acceleration) == 4864);
 
 /// The page behind the header holds four control lines, kSeparation apart. They begin at an offset
 /// that differs from stream to stream, so that a sweep over many streams does not hit one cache
@@ -111,7 +113,8 @@ inline constexpr std::size_t kCellTag = 0;
 inline constexpr std::size_t kCellNumber = 1;
 inline constexpr std::size_t kCellLeft = 2;
 inline constexpr std::size_t kCellRight = 3;
-inline constexpr std::size_t kCellShape = 4;  ///< order | kind << 8 | newer knots seen << 16
+inline constexpr std::size_t kCellShape = 4;  ///< order | kind << 8 | newer knots seen << 16 |
+                                              ///< (1 << 48 if a waypoint stands at the left end)
 inline constexpr std::size_t kCellCoefficients = 8;
 inline constexpr std::size_t kCellExtraWords = 4;  ///< γ, and the smoothing row: pivot, L1, L2
 
@@ -119,16 +122,24 @@ inline constexpr std::size_t kCellExtraWords = 4;  ///< γ, and the smoothing ro
 inline constexpr std::size_t kHeadFirst = 1;
 inline constexpr std::size_t kHeadNewest = 2;
 inline constexpr std::size_t kHeadSettledUntil = 3;
-inline constexpr std::size_t kHeadFlags = 4;  ///< bit 0: finished
+inline constexpr std::size_t kHeadFlags =
+    4;  ///< bit 0: finished, 1: the run was entered, 2: starved
 inline constexpr std::size_t kHeadChangedFrom = 5;
 inline constexpr std::size_t kHeadConsumed = 6;
 inline constexpr std::size_t kHeadKnots = 7;
 inline constexpr std::size_t kHeadNewestKnot = 8;
 inline constexpr std::size_t kHeadCommitted = 9;
 inline constexpr std::size_t kHeadRefused = 10;
-inline constexpr std::size_t kHeadReasons = 16;  ///< a counter per Refusal
+inline constexpr std::size_t kHeadRun = 11;  ///< number of the first segment of the run
+inline constexpr std::size_t kHeadRunKnots = 12;
+inline constexpr std::size_t kHeadLowWater = 13;
+inline constexpr std::size_t kHeadUnderruns = 14;
+inline constexpr std::size_t kHeadMisses = 15;
+inline constexpr std::size_t kHeadRevisions = 16;
+inline constexpr std::size_t kHeadWithdrawn = 17;
+inline constexpr std::size_t kHeadReasons = 24;  ///< a counter per Refusal
 inline constexpr std::size_t kRefusalReasons = 16;
-inline constexpr std::size_t kHeadChanges = 32;  ///< changed_from of revision r at r mod 64
+inline constexpr std::size_t kHeadChanges = 40;  ///< changed_from of revision r at r mod 64
 inline constexpr std::size_t kHeadChangesKept = 64;
 inline constexpr std::size_t kHeadWords = kHeadChanges + kHeadChangesKept;
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 
 #include "splinecast/core/waypoint.hpp"
@@ -28,6 +29,21 @@ class Producer {
   /// solver. Until a solver has come each call looks for one, which is a system call and may
   /// allocate. `full` asks to try again later.
   [[nodiscard]] AppendStatus append(const core::Waypoint& waypoint) noexcept;
+
+  /// Replaces all that lies behind time t by these waypoints, from none upwards, as one revision:
+  /// the curve goes on from its state at t by a splice, or, without a waypoint, comes to rest. `t`
+  /// must not lie before earliest(), else `too_late`; the waypoints must be later than it, and
+  /// fewer than the ring has items. O(D) per waypoint; otherwise as append.
+  [[nodiscard]] AppendStatus replace_from(core::Time t,
+                                          std::span<const core::Waypoint> waypoints) noexcept;
+
+  /// Says in which state the stream starts, before its first waypoint, which must be later:
+  /// velocity and acceleration have one value per dimension. Otherwise as append.
+  [[nodiscard]] AppendStatus start_from(const core::Instant& state) noexcept;
+
+  /// The earliest time that may still be changed: of a live stream what its solver has settled;
+  /// min() of a recorded one, or while there is no solver.
+  [[nodiscard]] core::Time earliest() noexcept;
 
   /// Ends the stream at its last waypoint. Throws std::invalid_argument if the condition's values
   /// do not fit the dimensions; otherwise as append.

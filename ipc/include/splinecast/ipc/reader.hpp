@@ -48,6 +48,18 @@ class Reader {
     return sample(t, out.ref());
   }
 
+  /// The same for a look ahead of what is settled, which does not count as executed: see
+  /// Sampler::preview.
+  [[nodiscard]] SampleStatus preview(core::Time t, core::StateRef out) noexcept {
+    return sampler_->preview(t, out);
+  }
+  [[nodiscard]] SampleStatus preview(core::Time t, core::State& out) noexcept {
+    return preview(t, out.ref());
+  }
+
+  /// The time before which what the last sample saw never changes.
+  [[nodiscard]] core::Time settled_until() const noexcept { return sampler_->settled_until(); }
+
   /// Copies the segments between two times, all of one revision: see Sampler::snapshot.
   [[nodiscard]] SampleStatus snapshot(core::Time from, core::Time to, Snapshot& out) {
     return sampler_->snapshot(from, to, out);

@@ -50,7 +50,18 @@ class Sampler {
   /// no system call, no allocation; O(D) where `t` lies in the segment used last or the next one,
   /// O(log n + D) elsewhere; a bounded number of tries. Where the status has no values, `out` is
   /// left as it was.
+  ///
+  /// On a live stream a sample counts as executed: if a revision since then changed the curve
+  /// before the latest time sampled, the next one is `revised`, once. That happens only if the
+  /// solver was stopped between its last look at the clock and the commit, or if a time ahead of
+  /// what is settled is sampled; use `preview` for that.
   [[nodiscard]] SampleStatus sample(core::Time t, core::StateRef out) noexcept;
+
+  /// The same for a look ahead: what it gives does not count as executed.
+  [[nodiscard]] SampleStatus preview(core::Time t, core::StateRef out) noexcept;
+
+  /// The time before which what the last sample saw never changes, whatever its status.
+  [[nodiscard]] core::Time settled_until() const noexcept { return head_.settled_until; }
 
   /// Copies every segment that has a part between `from` and `to` (inclusive), all under one
   /// revision. Returns `settled` or `provisional` for the whole; `before_history`, `no_data`,
@@ -75,12 +86,17 @@ class Sampler {
   [[nodiscard]] SampleStatus evaluate(const SegmentCopy& segment, core::Time t,
                                       core::StateRef out) const noexcept;
   [[nodiscard]] SampleStatus hold_first(core::StateRef out) noexcept;
+  [[nodiscard]] bool see(Word r) noexcept;
+  [[nodiscard]] bool copy_whole(Word number, Word r, SegmentCopy& out) const;
   [[nodiscard]] SampleStatus from_own_copy(core::Time t, core::StateRef out) noexcept;
 
   const SegmentBoardReader* board_;
   StreamClock clock_;
-  Head head_;                          ///< bounds under the revision last seen whole
-  Word confirmed_ = 0;                 ///< revision that the current copy is known to be part of
+  Head head_;                                     ///< bounds under the revision last seen whole
+  Word seen_ = 0;                                 ///< that revision
+  core::Time sampled_until_ = core::Time::min();  ///< latest time sampled as executed
+  bool revised_ = false;  ///< the curve before that time has been changed: not yet told
+  Word confirmed_ = 0;    ///< revision that the current copy is known to be part of
   core::Time copied_settled_until_{};  ///< settled_until of that revision
   std::array<SegmentCopy, 2> copies_;  ///< the current one, and one to copy into
   std::size_t current_ = 0;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -24,11 +25,20 @@ struct Head {
   Word newest = 0;             ///< newest segment, the stop tail of a stream that goes on; 0: none
   core::Time settled_until{};  ///< no time before it ever changes
   bool finished = false;
-  core::Time changed_from{};                    ///< earliest time whose curve this revision changed
-  Word consumed = 0;                            ///< ring items taken
-  Word knots = 0;                               ///< waypoints interpolated
-  core::Time newest_knot{};                     ///< time of the newest knot
-  core::Time committed{};                       ///< the solver's clock at the commit
+  core::Time changed_from{};  ///< earliest time whose curve this revision changed
+  Word consumed = 0;          ///< ring items taken
+  Word knots = 0;             ///< waypoints interpolated, replaced ones too
+  core::Time newest_knot{};   ///< time of the newest knot
+  core::Time committed{};     ///< the solver's clock at the commit
+  Word run = 1;               ///< number of the first segment of the run
+  Word run_knots = 0;         ///< knots of the run
+  bool is_entered = false;    ///< the run begins with a splice
+  bool starved = false;       ///< a live stream's settled time has passed its newest knot
+  core::Time low_water = core::Time::max();     ///< least depth so far; max() before there was any
+  Word underruns = 0;                           ///< times that a live stream has starved
+  Word misses = 0;                              ///< revisions discarded because they came too late
+  Word revisions = 0;                           ///< revisions committed too late: readers are told
+  Word withdrawn = 0;                           ///< waypoints that a replacement withdrew unread
   Word refused = 0;                             ///< items refused
   std::array<Word, kRefusalReasons> reasons{};  ///< of these, by Refusal
 };
@@ -51,10 +61,16 @@ class SegmentBoardWriter {
   /// The last revision that was committed.
   [[nodiscard]] Word revision() const noexcept { return revision_; }
 
-  /// Writes a segment, and what the solver needs of its left knot, for the next revision. At most
-  /// `capacity` different numbers in one revision.
-  void write(Word number, const core::Segment& segment, const core::Knot& knot,
-             std::size_t newer_knots) noexcept;
+  /// Writes a segment, and what a solver needs of its left knot in order to go on, for the next
+  /// revision. Of a segment that begins at no knot `knot.waypoint` is empty; of a splice `knot.g`
+  /// is the acceleration that it ends with. At most `capacity` different numbers in one revision.
+  void write(Word number, const core::Segment& segment, const core::Knot& knot) noexcept;
+
+  /// Writes committed segment `number` again with another right end, for the next revision.
+  void write_cut(Word number, core::Time right) noexcept;
+
+  /// Takes back what has been written for the next revision, as a takeover does (T1).
+  void discard() noexcept;
 
   /// Notes a refusal beside the head.
   void write_refusal(Word index, const RefusedItem& refusal) noexcept;
@@ -82,6 +98,8 @@ class SegmentBoardWriter {
  private:
   [[nodiscard]] SlotView<Word> slot(Word number) const noexcept;
   [[nodiscard]] SlotView<Word> head_slot() const noexcept;
+  [[nodiscard]] Word* claim(Word number) noexcept;
+  void forget_written() noexcept;
 
   BoardLayout layout_;
   std::span<Word> control_;
@@ -91,6 +109,8 @@ class SegmentBoardWriter {
   std::span<Word> slots_;
   Word revision_;
   std::array<Word, kHeadChangesKept> changes_{};
+  Word lowest_written_ = std::numeric_limits<Word>::max();  ///< for the next revision
+  Word highest_written_ = 0;
 };
 
 /// A reader's own copy of a segment. Allocates when made only.
@@ -104,7 +124,10 @@ struct SegmentCopy {
   core::Time right{};
   int order = core::kCubicOrder;
   core::SegmentKind kind{};
+  std::uint32_t newer_knots = 0;     ///< that its left knot had seen when it was last solved
+  bool has_waypoint = false;         ///< whether its left end is a waypoint
   std::vector<double> coefficients;  ///< [power][dimension]; of these the first `order` powers
+  std::vector<double> acceleration_step{};  ///< a⁺ − a⁻ at the left end; in a snapshot only
 };
 
 /// A reader's side; no function blocks, allocates or stores. Every copy is taken under a revision
@@ -136,8 +159,9 @@ class SegmentBoardReader {
   }
 
   /// Copies what lookups need of the head under r: revision, first, newest, settled_until,
-  /// finished. The other members stay.
-  [[nodiscard]] bool copy_bounds(Word r, Head& out) const noexcept;
+  /// finished; and the earliest changed_from of the revisions after `seen` up to r, min() if there
+  /// are more than are kept. The other members stay.
+  [[nodiscard]] bool copy_bounds(Word r, Word seen, Head& out) const noexcept;
 
   /// Copies the whole head under r.
   [[nodiscard]] bool copy_head(Word r, Head& out) const noexcept;
@@ -148,8 +172,14 @@ class SegmentBoardReader {
   /// Whether a copy is what the board holds under r too: no words are copied again.
   [[nodiscard]] bool is_current(const SegmentCopy& copy, Word r) const noexcept;
 
-  /// Copies the left end of segment `number` under r.
+  /// Copies the left end, or both ends, of segment `number` under r.
   [[nodiscard]] bool copy_left(Word number, Word r, core::Time& left) const noexcept;
+  [[nodiscard]] bool copy_ends(Word number, Word r, core::Time& left,
+                               core::Time& right) const noexcept;
+
+  /// Copies the acceleration step at the left end of a segment that has been copied: D values. What
+  /// it gives is of use iff the copy is current afterwards.
+  void copy_step(const SegmentCopy& copy, std::span<double> step) const noexcept;
 
   /// The left end of segment `number` from the packed array: a hint, to be confirmed in the cell.
   [[nodiscard]] core::Time left_hint(Word number) const noexcept {
@@ -161,8 +191,8 @@ class SegmentBoardReader {
   [[nodiscard]] RefusedItem refusal(Word index) const noexcept;
 
   /// What a new solver needs of a knot: copied into `values` (kKnotValues·D), which the returned
-  /// spans view. Position, velocity and acceleration are those that its segment begins with. For
-  /// the one writer only, who races with nobody.
+  /// spans view. Position, velocity and acceleration are those that its segment begins with; the
+  /// waypoint is empty where none stands. For the one writer only, who races with nobody.
   static constexpr std::size_t kKnotValues = 6;
   [[nodiscard]] core::Knot knot(Word number, Word r, std::span<double> values) const noexcept;
 

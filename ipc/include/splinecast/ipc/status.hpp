@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -32,7 +33,7 @@ enum class Refusal : std::uint8_t {
   not_finite = 4,
   too_close = 5,
   too_far_apart = 6,
-  too_late = 7,  ///< no splice reaches it in time, or with the acceleration allowed; or it belongs
+  too_late = 7,  ///< it cannot be reached in time, or with the acceleration allowed; or it belongs
                  ///< to a replacement that came too late
   after_finish = 8,
   already_started = 9,  ///< a start state behind the first waypoint
@@ -54,6 +55,8 @@ enum class SampleStatus : std::uint8_t {
   busy,            ///< the writer overtook every try; no values, try again
   retired,         ///< the region is of no more use: attach again; no values
 };
+
+inline constexpr std::size_t kSampleStatuses = 9;
 
 /// Whether a sample of this status has values.
 [[nodiscard]] constexpr bool has_values(SampleStatus status) noexcept {

@@ -10,6 +10,7 @@
 #include "splinecast/ipc/clock.hpp"
 #include "splinecast/ipc/layout.hpp"
 #include "splinecast/ipc/region.hpp"
+#include "splinecast/ipc/stream_solver.hpp"
 #include "splinecast/ipc/waypoint_ring.hpp"
 
 namespace splinecast::ipc {
@@ -36,9 +37,15 @@ struct SolverOptions {
   std::optional<std::size_t> settle{};    ///< settle lag K; default core::default_settle
   std::optional<core::Tail> tail{};       ///< default bessel
   bool force_lag = false;                 ///< take a lag that is too short for λ
-  std::optional<core::Time> stop_time{};  ///< length of the stop tail; default 250 ms
-  std::optional<std::size_t> capacity{};  ///< segments of history; default 4,096
-  bool wake = true;                       ///< wake waiting readers: one system call a revision
+  std::optional<core::Time> stop_time{};  ///< length of the stop tail; default 250 ms. With limits:
+                                          ///< its least length, default 1 ms
+  std::optional<std::vector<double>> max_acceleration{};  ///< limits of stop tails and splices, one
+                                                          ///< per dimension or one for all; 0: none
+  std::optional<core::Time> freeze_ahead{};  ///< live: what lies this long ahead settles; 5 ms
+  std::optional<core::Time> history{};       ///< live: what ended less than this ago is kept; 1 s
+  std::optional<core::Time> min_splice{};    ///< live: shortest splice; default as freeze_ahead
+  std::optional<std::size_t> capacity{};     ///< segments of history; default 4,096
+  bool wake = true;                          ///< wake waiting readers: one system call a revision
   RegionAccess access{};
   Trust trust{};
 };
@@ -55,6 +62,9 @@ struct SolverOptions {
 
 /// What a header says of the curve: the options that its solver gave.
 [[nodiscard]] core::WindowOptions window_options(const RegionHeader& header);
+
+/// What a header says of how a live stream is solved; nothing for a recorded one.
+[[nodiscard]] std::optional<LiveOptions> live_options(const RegionHeader& header) noexcept;
 
 /// Throws BadRegion, naming both, if a live stream's clock is another time namespace's.
 void require_same_clock(const RegionHeader& header, const std::string& stream);

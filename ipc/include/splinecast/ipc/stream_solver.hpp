@@ -1,11 +1,12 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "splinecast/core/sliding_window.hpp"
 #include "splinecast/ipc/clock.hpp"
+#include "splinecast/ipc/published_curve.hpp"
 #include "splinecast/ipc/segment_board.hpp"
 #include "splinecast/ipc/waypoint_ring.hpp"
 
@@ -15,51 +16,90 @@ namespace splinecast::ipc {
 struct StepResult {
   Word consumed = 0;       ///< ring items taken
   bool published = false;  ///< whether a revision was committed
+  bool missed = false;     ///< whether one was discarded because it came too late: step again
 };
 
-/// The solver without its regions: takes waypoints from a ring, solves the window, publishes
-/// segments on a board. Without a thread or a clock of its own, so that simulated time, fuzzers
-/// and ThreadSanitizer drive the code that runs for real. Allocates when made only; `step` never
-/// blocks and makes no system call but the clock's.
+/// How a live stream is solved.
+struct LiveOptions {
+  core::Time freeze_ahead{5'000'000};  ///< what lies this long before now + this never changes
+  core::Time history{1'000'000'000};   ///< what ends after now − this is not overwritten
+  core::Time min_splice{5'000'000};    ///< length of the shortest splice
+};
+
+/// The solver without its regions: takes items from a ring, solves the window, publishes segments
+/// on a board. Without a thread or a clock of its own, so that simulated time, fuzzers and
+/// ThreadSanitizer drive the code that runs for real. Allocates when made only; `step` never blocks
+/// and makes no system call but the clock's.
+///
+/// On a live stream everything before `settled_until` = now + freeze_ahead is frozen: before a step
+/// takes anything, up to the right end of the segment that contains that time. A waypoint that
+/// comes when the newest knot has been frozen is entered by a splice at settled_until, and so is
+/// what replaces the future. Directly before the commit the clock is read again: a revision that
+/// would change what may have been executed meanwhile is discarded, counted and made anew.
 class StreamSolver {
  public:
   /// `board` and `published` are the writing and the reading side of one board; with `ring` they
-  /// outlive the solver. Goes on where the board says that a solver before it stood. Throws
-  /// std::invalid_argument for window options out of range
+  /// outlive the solver. `live` is set for a live stream. Goes on where the board says that a
+  /// solver before it stood. Throws std::invalid_argument for window options out of range
   /// or a board too small for them.
   StreamSolver(const WaypointRingReader& ring, SegmentBoardWriter& board,
                const SegmentBoardReader& published, const core::WindowOptions& window,
-               const IngestLimits& limits);
+               const IngestLimits& limits, const std::optional<LiveOptions>& live = std::nullopt);
 
-  /// Takes what the ring holds, up to a bounded batch, and publishes the result as one revision.
-  /// O(batch·K·D).
+  /// Takes what the ring holds, up to a bounded batch, and publishes the result as one revision; on
+  /// a live stream also publishes how far the curve is settled, when that is due. O(batch·K·D).
   StepResult step(const Clock& clock) noexcept;
 
   /// The head last committed.
   [[nodiscard]] const Head& head() const noexcept { return head_; }
 
+  /// The ring's `head` when the last step found nothing more that it could take. A step is of use
+  /// once it has changed, or `due` has come.
+  [[nodiscard]] Word seen() const noexcept { return seen_; }
+
+  /// When the next step is due even if no item comes; max() for never.
+  [[nodiscard]] core::Time due() const noexcept;
+
   /// The smallest board for a settle lag.
   [[nodiscard]] static std::size_t min_capacity(std::size_t settle) noexcept;
 
  private:
-  void restore(const SegmentBoardReader& published);
-  void take(const RingItem& item, Word number) noexcept;
-  void take_waypoint(const RingItem& item, Word number) noexcept;
-  void take_finish(const RingItem& item, Word number) noexcept;
+  void restore();
+  void freeze(core::Time now) noexcept;
+  [[nodiscard]] Word consume(core::Time now) noexcept;
+  void withdraw(Word available) noexcept;
+  void take(Word number) noexcept;
+  void take_waypoint(Word number) noexcept;
+  void take_replacement(Word number) noexcept;
+  void take_start_state(Word number) noexcept;
+  void take_finish(Word number) noexcept;
+  [[nodiscard]] bool is_starved() const noexcept;
+  [[nodiscard]] bool can_append(Word number) noexcept;
+  [[nodiscard]] std::optional<Refusal> has_right_form(
+      const core::Waypoint& waypoint) const noexcept;
+  [[nodiscard]] std::optional<Refusal> judge(const core::Waypoint& waypoint) const noexcept;
+  [[nodiscard]] std::optional<Refusal> judge_time(core::Time time) const noexcept;
   void refuse(Word number, Refusal reason) noexcept;
-  void write_segment(std::size_t i) noexcept;
-  void publish(const Clock& clock) noexcept;
+  void discard() noexcept;
+  StepResult publish(const Clock& clock, Word consumed) noexcept;
 
   const WaypointRingReader* ring_;
   SegmentBoardWriter* board_;
+  const SegmentBoardReader* published_;
   IngestLimits limits_;
-  core::SlidingWindow window_;
+  std::optional<LiveOptions> live_;
+  PublishedCurve curve_;
   std::size_t max_batch_;
   Head head_;
+  core::Time settled_until_ = core::Time::min();  ///< what this step leaves alone lies before it
+  /// Waypoints behind the first one of a run that shape its splice.
+  static constexpr std::size_t kFollowers = 2;
   RingItem item_;
+  std::vector<RingItem> followers_;
   core::Condition end_;
-  core::Segment segment_;
-  std::size_t settled_written_ = 0;  ///< leading segments that are on the board for good
+  Word seen_ = 0;
+  Word batch_limit_ = 0;  ///< of this step
+  Word scanned_ = 0;      ///< items looked through for a replacement
 };
 
 }  // namespace splinecast::ipc

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "splinecast/core/condition.hpp"
+#include "splinecast/core/splice.hpp"
 #include "splinecast/core/waypoint.hpp"
 #include "splinecast/ipc/layout.hpp"
 #include "splinecast/ipc/status.hpp"
@@ -22,8 +23,8 @@ namespace splinecast::ipc {
 /// What a ring item says.
 enum class ItemKind : std::uint8_t {
   waypoint = 1,
-  replace = 2,      ///< withdraws the future from a time on; a count of waypoints follows
-  start_state = 3,  ///< the state that a live stream starts in
+  replace = 2,      ///< withdraws the future from a time on; so many waypoints follow
+  start_state = 3,  ///< the state that a stream starts in
   finish = 4,       ///< the stream ends at its last waypoint, with a condition there
 };
 
@@ -35,6 +36,7 @@ struct RingItem {
   bool has_velocity = false;
   bool has_acceleration = false;
   core::ConditionKind condition{};  ///< of a finish
+  std::uint32_t count = 0;          ///< of a replacement: waypoints that belong to it
   core::Time time{};
   std::vector<double> values;  ///< positions, velocities, accelerations
 };
@@ -52,17 +54,33 @@ class WaypointRingWriter {
   WaypointRingWriter(std::span<std::byte> region, const RingLayout& layout,
                      const IngestLimits& limits);
 
-  /// Appends a waypoint if its form is right and there is room; `consumed` is how many items the
-  /// solver has taken. O(D), wait-free.
-  [[nodiscard]] AppendStatus append(const core::Waypoint& waypoint, Word consumed) noexcept;
+  /// What is known of the solver: items that it has taken, and the time before which it changes
+  /// nothing any more; min() on a recorded stream.
+  struct Solved {
+    Word consumed = 0;
+    core::Time settled_until = core::Time::min();
+  };
+
+  /// Appends a waypoint if its form is right and there is room. O(D), wait-free.
+  [[nodiscard]] AppendStatus append(const core::Waypoint& waypoint, const Solved& solved) noexcept;
+
+  /// Replaces all that lies behind t: `waypoints`, which may be none, must be later than it, and
+  /// together with the replacement itself fit into the ring. One store of `head` makes all of it
+  /// visible. O(D) per waypoint.
+  [[nodiscard]] AppendStatus replace_from(core::Time t, std::span<const core::Waypoint> waypoints,
+                                          const Solved& solved) noexcept;
+
+  /// Says in which state the stream starts: before its first waypoint, which must be later.
+  [[nodiscard]] AppendStatus start_from(const core::Instant& state, const Solved& solved) noexcept;
 
   /// Appends the end of the stream. The condition's values must have been checked.
-  [[nodiscard]] AppendStatus finish(const core::Condition& end, Word consumed) noexcept;
+  [[nodiscard]] AppendStatus finish(const core::Condition& end, const Solved& solved) noexcept;
 
   /// Items appended so far.
   [[nodiscard]] Word head() const noexcept { return head_; }
   [[nodiscard]] bool finished() const noexcept { return finished_; }
-  [[nodiscard]] bool has_waypoint() const noexcept { return has_last_; }
+
+  /// The time that the next waypoint must be later than, once there is one.
   [[nodiscard]] core::Time last_time() const noexcept { return last_time_; }
 
   /// The word that waiting solvers watch.
@@ -72,10 +90,18 @@ class WaypointRingWriter {
   void retire() noexcept;
 
  private:
-  [[nodiscard]] AppendStatus check(const core::Waypoint& waypoint) const noexcept;
-  void put_item(Word kind_and_flags, core::Time time, std::span<const double> position,
-                std::span<const double> velocity, std::span<const double> acceleration) noexcept;
-  void count(AppendStatus status) noexcept;
+  [[nodiscard]] AppendStatus check_form(const core::Waypoint& waypoint) const noexcept;
+  [[nodiscard]] AppendStatus check(const core::Waypoint& waypoint,
+                                   const Solved& solved) const noexcept;
+  [[nodiscard]] AppendStatus check_replacement(core::Time t,
+                                               std::span<const core::Waypoint> waypoints,
+                                               const Solved& solved) const noexcept;
+  [[nodiscard]] bool has_room(Word items, const Solved& solved) const noexcept {
+    return head_ - solved.consumed + items <= layout_.capacity;
+  }
+  void put_item(Word index, Word kind_and_flags, const core::Waypoint& values) noexcept;
+  void publish(Word items, core::Time last) noexcept;
+  [[nodiscard]] AppendStatus counted(AppendStatus status) noexcept;
 
   RingLayout layout_;
   IngestLimits limits_;
@@ -107,6 +133,10 @@ class WaypointRingReader {
 
   /// Copies item i < head(), of which the consumer has not yet stored a tail beyond it.
   void copy(Word i, RingItem& out) const noexcept;
+
+  /// Kind and time of item i, of which the same holds.
+  [[nodiscard]] ItemKind kind(Word i) const noexcept;
+  [[nodiscard]] core::Time time(Word i) const noexcept;
 
   /// Copies item i for an observer whom the producer does not wait for. Returns false if the
   /// item is, or may be, overwritten: it may be kept iff head − i < capacity *after* the copy. At

@@ -1,0 +1,104 @@
+#include "splinecast/core/limits.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace splinecast::core {
+namespace {
+
+/// Longest time that limits can ask for, s: beyond it they are out of all proportion.
+constexpr double kLongest = 1e6;
+/// Leaves rounding in a coefficient out of account.
+constexpr double kRounding = 1 + 1e-9;
+
+/// Peak acceleration of a stop tail: its own at the start and where its jerk is 0.
+double stop_tail_peak(double v, double a, double time) noexcept {
+  // a(s) = 6 v/T (s² − s) + a (1 − 4 s + 3 s²), s = u/T.
+  const double w = 6 * v / time;
+  const double curvature = 2 * (w + 3 * a);
+  const double s = curvature == 0 ? 0 : (w + 4 * a) / curvature;
+  if (s <= 0 || s >= 1) return std::abs(a);
+  return std::max(std::abs(a), std::abs(w * (s * s - s) + a * (1 - 4 * s + 3 * s * s)));
+}
+
+double stop_seconds(double v, double a, double limit) noexcept {
+  constexpr double kLonger = 1.1;
+  const double allowed = std::max(limit, std::abs(a)) * kRounding;
+  double time = 1.5 * std::abs(v) / limit;
+  while (time > 0 && time < kLongest && stop_tail_peak(v, a, time) > allowed) time *= kLonger;
+  return time;
+}
+
+Time at_least(Time least, double seconds) noexcept {
+  constexpr double kNanoseconds = 1e9;
+  const double longest = std::min(seconds, kLongest);
+  return std::max(least, Time(static_cast<std::int64_t>(std::ceil(longest * kNanoseconds))));
+}
+
+}  // namespace
+
+Time stop_time_within(std::span<const double> limits, Time least, std::span<const double> velocity,
+                      std::span<const double> acceleration) noexcept {
+  double longest = 0;
+  for (std::size_t d = 0; d < limits.size(); ++d) {
+    if (limits[d] > 0) {
+      longest = std::max(longest, stop_seconds(velocity[d], acceleration[d], limits[d]));
+    }
+  }
+  return at_least(least, longest);
+}
+
+Time move_time_within(std::span<const double> limits, Time least,
+                      std::span<const double> distance) noexcept {
+  const double peak = 10 / std::sqrt(3.0);
+  double longest = 0;
+  for (std::size_t d = 0; d < limits.size(); ++d) {
+    if (limits[d] > 0) {
+      longest = std::max(longest, std::sqrt(peak * std::abs(distance[d]) / limits[d]));
+    }
+  }
+  return at_least(least, longest);
+}
+
+double peak_acceleration(const Segment& segment, std::size_t dimensions, std::size_t d) noexcept {
+  const auto c = [&](std::size_t power) { return segment.coefficients[power * dimensions + d]; };
+  const auto acceleration = [&](double u) {
+    return std::abs(2 * c(2) + u * (6 * c(3) + u * (12 * c(4) + u * 20 * c(5))));
+  };
+  const double h = to_seconds(segment.right - segment.left);
+  double peak = std::max(acceleration(0), acceleration(h));
+  // Jerk: 6 c3 + 24 c4 u + 60 c5 u². Both zeros by the stable form of the quadratic's.
+  const double qa = 10 * c(5);
+  const double qb = 4 * c(4);
+  const double qc = c(3);
+  const double discriminant = qb * qb - 4 * qa * qc;
+  if (discriminant < 0) return peak;
+  const double q = -(qb + std::copysign(std::sqrt(discriminant), qb)) / 2;
+  for (const double u : std::array{qa == 0 ? -1 : q / qa, q == 0 ? -1 : qc / q}) {
+    if (u > 0 && u < h) peak = std::max(peak, acceleration(u));
+  }
+  return peak;
+}
+
+double acceleration_excess(std::span<const double> limits, const Segment& segment) noexcept {
+  double most = 0;
+  for (std::size_t d = 0; d < limits.size(); ++d) {
+    if (limits[d] <= 0) continue;
+    most = std::max(most, peak_acceleration(segment, limits.size(), d) / limits[d]);
+  }
+  return most;
+}
+
+bool keeps_within(std::span<const double> limits, const Segment& segment) noexcept {
+  for (std::size_t d = 0; d < limits.size(); ++d) {
+    if (limits[d] <= 0) continue;
+    const double at_start = 2 * std::abs(segment.coefficients[2 * limits.size() + d]);
+    const double allowed = std::max(limits[d], at_start) * kRounding;
+    // Written so that what is no number does not pass.
+    if (!(peak_acceleration(segment, limits.size(), d) <= allowed)) return false;
+  }
+  return true;
+}
+
+}  // namespace splinecast::core

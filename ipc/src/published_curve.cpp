@@ -1,0 +1,291 @@
+#include "splinecast/ipc/published_curve.hpp"
+
+#include <algorithm>
+
+#include "splinecast/core/limits.hpp"
+#include "splinecast/core/splice.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+/// How far back the waypoints before a run are looked for: cuts and holds lie between them.
+constexpr Word kLookBack = 16;
+
+}  // namespace
+
+PublishedCurve::PublishedCurve(SegmentBoardWriter& board, const SegmentBoardReader& published,
+                               const core::WindowOptions& options)
+    : board_(&board),
+      published_(&published),
+      window_(published.dimensions(), options),
+      segment_(published.dimensions()),
+      copy_(published.dimensions()),
+      state_(published.dimensions()),
+      knot_values_(SegmentBoardReader::kKnotValues * published.dimensions() *
+                   (window_.knots_to_restore() + 1)),
+      standing_values_(SegmentBoardReader::kKnotValues * published.dimensions() * kStanding),
+      entry_step_(published.dimensions()) {
+  knots_.reserve(window_.knots_to_restore());
+}
+
+core::Time PublishedCurve::newest_time() const noexcept {
+  if (window_.knots() > 0) return window_.knot(window_.knots() - 1).time;
+  return window_.entry().time();
+}
+
+core::Time PublishedCurve::settled_until() const noexcept {
+  const std::size_t knots = window_.knots();
+  if (knots == 0) return window_.entry().time();
+  const std::size_t open = window_.settled_segments();
+  if (window_.is_entered() && open == 0) return window_.entry().time();
+  const std::size_t first = window_.is_entered() ? open - 1 : open;
+  return window_.knot(std::min(first, knots - 1)).time;
+}
+
+void PublishedCurve::freeze(core::Time t) noexcept {
+  window_.freeze(t);
+  // All segments have been committed as they are: those between frozen knots for good.
+  settled_written_ = std::max(settled_written_, window_.settled_segments());
+}
+
+bool PublishedCurve::has_room(std::size_t segments, core::Time keep) const noexcept {
+  const Word newest = newest_ + segments;
+  if (newest <= board_->capacity() || newest - board_->capacity() < first_) return true;
+  core::Time left{};
+  core::Time right{};
+  const bool is_there =
+      published_->copy_ends(newest - board_->capacity(), board_->revision(), left, right);
+  return !is_there || right <= keep;
+}
+
+bool PublishedCurve::can_enter(core::Time t) const noexcept {
+  core::Time left{};
+  core::Time right{};
+  if (newest_ == 0 || !published_->copy_ends(first_, board_->revision(), left, right)) return false;
+  return t >= left || (first_ == 1 && !window_.is_entered() && window_.options().held_before_start);
+}
+
+/// The last committed segment whose left end is at or before t; else the first one.
+Word PublishedCurve::segment_at(core::Time t) const noexcept {
+  Word low = first_;
+  Word high = newest_;
+  while (low < high) {
+    const Word middle = high - (high - low) / 2;
+    core::Time left{};
+    const bool is_there = published_->copy_left(middle, board_->revision(), left);
+    if (is_there && left <= t) {
+      low = middle;
+    } else {
+      high = middle - 1;
+    }
+  }
+  return low;
+}
+
+/// The last waypoints on the curve up to segment `number` and time t, oldest first.
+std::span<const core::StandingWaypoint> PublishedCurve::standing_before(Word number, core::Time t,
+                                                                        Word r) noexcept {
+  const std::size_t size = SegmentBoardReader::kKnotValues * window_.dimensions();
+  std::size_t found = 0;
+  for (Word k = 0; k < kLookBack && found < kStanding && number - k >= std::max<Word>(first_, 1);
+       ++k) {
+    const auto values = std::span(standing_values_).subspan(found * size, size);
+    const core::Knot knot = published_->knot(number - k, r, values);
+    if (knot.waypoint.empty() || knot.time > t) continue;
+    ++found;
+    standing_[kStanding - found] = {.time = knot.time, .position = knot.waypoint};
+  }
+  return std::span(standing_).last(found);
+}
+
+void PublishedCurve::note_change(core::Time from) noexcept {
+  changed_from_ = std::min(changed_from_, from);
+  has_changes_ = true;
+}
+
+void PublishedCurve::begin(const core::Instant& state) noexcept {
+  std::ranges::fill(entry_step_, 0.0);
+  window_.enter(state, {});
+  note_change(state.time);
+}
+
+void PublishedCurve::enter(core::Time t) noexcept {
+  const Word r = board_->revision();
+  const Word cut = segment_at(t);
+  (void)published_->copy_segment(cut, r, copy_);  // nobody else writes
+  const bool is_over = t >= copy_.right;
+  const bool is_before = t < copy_.left;  // the machine stands where the curve will begin
+  const core::Time at = std::clamp(t, copy_.left, copy_.right);
+  core::evaluate(copy_.order, copy_.coefficients, core::to_seconds(at - copy_.left), state_.ref());
+  std::ranges::fill(entry_step_, 0.0);
+  run_ = cut + 1;
+  note_change(t);
+  if (is_over || is_before) {
+    std::ranges::fill(state_.ref().velocity, 0.0);
+    std::ranges::fill(state_.ref().acceleration, 0.0);
+  }
+  if (is_before) {
+    run_ = cut;
+  } else if (t > copy_.right) {
+    core::build_hold(copy_.right, t, state_.position(), segment_);
+    std::ranges::fill(segment_.acceleration_step, 0.0);
+    board_->write(run_++, segment_, {});
+  } else if (is_over) {
+    // It ends at t as it is.
+  } else if (t > copy_.left) {
+    board_->write_cut(cut, t);
+  } else {
+    run_ = cut;  // the run takes its place, and begins with the same step
+    published_->copy_step(copy_, entry_step_);
+  }
+  window_.enter({.time = t,
+                 .position = state_.position(),
+                 .velocity = state_.velocity(),
+                 .acceleration = state_.acceleration()},
+                standing_before(std::min(run_ - 1, newest_), t, r));
+  settled_written_ = 0;
+}
+
+void PublishedCurve::append(const core::Waypoint& waypoint) noexcept {
+  window_.append(waypoint);
+  has_changes_ = true;
+  // What has settled leaves the window and is written once, with its last value.
+  while (settled_written_ < window_.settled_segments()) write_segment(settled_written_++);
+}
+
+void PublishedCurve::finish(const core::Condition& end, core::Time earliest) noexcept {
+  const std::size_t knots = window_.knots();
+  if (window_.frozen_knots() < knots || (knots == 0 && !window_.is_entered())) {
+    window_.finish(end);
+  } else {
+    // What stands of the run stays as it is.
+    if (!has_changes_) settled_written_ = window_.segments();
+    if (knots > 0) return_to(window_.knot(knots - 1), earliest);
+  }
+  has_changes_ = true;
+}
+
+/// Lets the stop tail run and goes back to the newest knot, behind the window's last segment.
+void PublishedCurve::return_to(const core::Knot& knot, core::Time earliest) noexcept {
+  const std::size_t dimensions = window_.dimensions();
+  window_.segment(window_.segments() - 1, segment_);
+  core::evaluate(segment_.order, segment_.coefficients,
+                 core::to_seconds(segment_.right - segment_.left), state_.ref());
+  if (std::ranges::equal(state_.position(), knot.position)) return;
+  constexpr std::array<double, core::kMaxDimensions> kZeros{};
+  std::array<double, core::kMaxDimensions> distance{};
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    distance[d] = state_.position()[d] - knot.position[d];
+  }
+  const core::Time least = window_.options().stop_time;
+  // Without limits a little slower than the stop: the same way at the same peak acceleration.
+  const core::Time time = window_.options().max_acceleration.empty()
+                              ? least + least / 2
+                              : core::move_time_within(window_.options().max_acceleration, least,
+                                                       std::span(distance).first(dimensions));
+  const core::Time rest = segment_.right;
+  const core::Time start = std::max(rest, earliest);
+  if (start > rest) {
+    core::build_hold(rest, start, state_.position(), segment_);
+    write_besides(segment_);
+  }
+  const auto zeros = std::span(kZeros).first(dimensions);
+  core::build_splice({start, state_.position(), zeros, zeros},
+                     {start + time, knot.position, zeros, zeros}, segment_);
+  write_besides(segment_);
+}
+
+void PublishedCurve::write_segment(std::size_t i) noexcept {
+  window_.segment(i, segment_);
+  note_change(segment_.left);
+  const auto left = window_.left_knot(i);
+  core::Knot knot{};
+  if (left) {
+    knot = window_.knot(*left);
+  } else {
+    std::ranges::copy(entry_step_, segment_.acceleration_step.begin());
+    knot.g = window_.entry().acceleration();
+  }
+  board_->write(number_of(i), segment_, knot);
+}
+
+/// Writes a segment behind the newest one, which the window knows nothing of.
+void PublishedCurve::write_besides(const core::Segment& segment) noexcept {
+  newest_ = number_of(window_.segments()) + besides_++;
+  std::ranges::fill(segment_.acceleration_step, 0.0);
+  // A hold says what stood already.
+  note_change(segment.kind == core::SegmentKind::hold ? segment.right : segment.left);
+  board_->write(newest_, segment, {});
+  end_ = segment.right;
+}
+
+void PublishedCurve::write(Head& head) noexcept {
+  head.changed_from = changed_from_;
+  changed_from_ = core::Time::max();
+  if (!has_changes_) return;
+  const std::size_t segments = window_.segments();
+  if (segments == 0) return;
+  for (std::size_t i = settled_written_; i < segments; ++i) write_segment(i);
+  if (besides_ == 0) {
+    newest_ = number_of(segments - 1);
+    window_.segment(segments - 1, segment_);
+    end_ = segment_.right;
+  }
+  head.changed_from = std::min(head.changed_from, changed_from_);
+  changed_from_ = core::Time::max();
+  // Never back: a finish drops the stop tail, but the slot that it took is not given back.
+  first_ = std::max<Word>({first_, 1, newest_ - std::min<Word>(newest_, board_->capacity()) + 1});
+  head.first = first_;
+  head.newest = newest_;
+  head.run = run_;
+  head.run_knots = window_.knots();
+  head.is_entered = window_.is_entered();
+}
+
+void PublishedCurve::discard(const Head& head) noexcept {
+  board_->discard();
+  restore(head);
+}
+
+void PublishedCurve::restore(const Head& head) noexcept {
+  has_changes_ = false;
+  changed_from_ = core::Time::max();
+  besides_ = 0;
+  run_ = head.run;
+  first_ = head.first;
+  newest_ = head.newest;
+  core::Time left{};
+  end_ = left;
+  if (newest_ > 0) (void)published_->copy_ends(newest_, board_->revision(), left, end_);
+  if (!head.finished) restore_run(head);
+  settled_written_ = window_.settled_segments();
+}
+
+void PublishedCurve::restore_run(const Head& head) noexcept {
+  const Word r = board_->revision();
+  const std::size_t dimensions = window_.dimensions();
+  const std::size_t size = SegmentBoardReader::kKnotValues * dimensions;
+  const std::size_t count = std::min<std::size_t>(head.run_knots, window_.knots_to_restore());
+  const std::size_t first = head.run_knots - count;
+  knots_.clear();
+  for (std::size_t k = 0; k < count; ++k) {
+    const Word number = number_of(first + k + (head.is_entered ? 1 : 0));
+    knots_.push_back(published_->knot(number, r, std::span(knot_values_).subspan(size * k, size)));
+  }
+  if (!head.is_entered) return window_.restore(first, knots_);
+  core::SlidingWindow::Entry entry{};
+  if (first == 0) {
+    const core::Knot splice =
+        published_->knot(run_, r, std::span(knot_values_).subspan(size * count, size));
+    entry = {.from = {.time = splice.time,
+                      .position = splice.position,
+                      .velocity = splice.velocity,
+                      .acceleration = splice.acceleration},
+             .before = standing_before(run_ - 1, splice.time, r),
+             .acceleration = splice.g};
+    if (published_->copy_segment(run_, r, copy_)) published_->copy_step(copy_, entry_step_);
+  }
+  window_.restore_entered(entry, first, knots_);
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,83 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/live_world.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+using std::chrono::seconds;
+using testing::LiveWorld;
+using testing::WorldOptions;
+
+/// What holds whatever happens. Positions are of order 1, velocities of order 10, accelerations of
+/// order 100.
+void expect_trusted(const LiveWorld& world, std::uint64_t seed) {
+  const auto& report = world.report();
+  EXPECT_EQ(report.changed, 0U) << "seed " << seed;
+  EXPECT_LT(report.position_step, 1e-11) << "seed " << seed;
+  EXPECT_LT(report.velocity_step, 1e-9) << "seed " << seed;
+  EXPECT_LT(report.unpublished_step, 1e-5) << "seed " << seed;
+  EXPECT_LE(report.acceleration, 10 * world.ideal_peak()) << "seed " << seed;
+  const Head& head = world.head();
+  EXPECT_LE(world.sent, head.knots + head.refused + head.withdrawn) << "seed " << seed;
+}
+
+/// Where each waypoint comes when the one before it has been frozen, each is entered by a splice.
+TEST(LiveContract, StaysNearTheMotionAtADepthOfOneKnot) {
+  for (std::uint64_t seed = 1; seed < 20; ++seed) {
+    LiveWorld world({.seed = seed, .starts_in_motion = true, .max_lead_knots = 1});
+    world.run(seconds(5));
+    EXPECT_LT(world.report().acceleration, 1.5 * world.ideal_peak()) << "seed " << seed;
+    EXPECT_GT(world.head().underruns, 100U);
+    EXPECT_EQ(world.head().refused, 0U);
+    world.finish();
+    expect_trusted(world, seed);
+    EXPECT_EQ(world.sent, world.interpolated);
+  }
+}
+
+/// Everything at once, for a second or two each, in many worlds.
+TEST(LiveContract, HoldsInThousandsOfShortWorlds) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  constexpr std::uint64_t kSeeds = 60;
+#else
+  constexpr std::uint64_t kSeeds = 2000;
+#endif
+  for (std::uint64_t seed = 1; seed <= kSeeds && !HasFailure(); ++seed) {
+    const bool is_calm = seed % 4 == 0;
+    LiveWorld world({.seed = seed,
+                     .dimensions = 1 + seed % 3,
+                     .starts_in_motion = seed % 2 == 0,
+                     .starvations = is_calm ? 0 : 1.0,
+                     .replacements = is_calm ? 0 : 3.0,
+                     .solver_kills = 2,
+                     .producer_kills = 2,
+                     .pauses = is_calm ? 0 : 2.0});
+    world.run(std::chrono::milliseconds(1500));
+    world.finish();
+    expect_trusted(world, seed);
+  }
+}
+
+TEST(LiveContract, HoldsThroughEverythingThatHappensInHalfAMinute) {
+  LiveWorld world({.seed = 1,
+                   .starts_in_motion = true,
+                   .starvations = 0.8,
+                   .replacements = 2,
+                   .solver_kills = 0.9,
+                   .producer_kills = 0.9,
+                   .pauses = 0.8});
+  world.run(seconds(30));
+  world.finish();
+  expect_trusted(world, 1);
+  EXPECT_GE(world.starved, 10U);
+  EXPECT_GE(world.replaced, 30U);
+  EXPECT_GE(world.solver_kills, 10U);
+  EXPECT_GE(world.producer_kills, 10U);
+  EXPECT_GT(world.interpolated, 500U);
+}
+
+}  // namespace
+}  // namespace splinecast::ipc

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "splinecast/ipc/stream_solver.hpp"
+#include "support/curve_watch.hpp"
+#include "support/memory_stream.hpp"
+
+namespace splinecast::testing {
+
+/// The motion that a world's producer sends: a sum of two sines per dimension.
+class Motion {
+ public:
+  Motion(std::uint64_t seed, std::size_t dimensions);
+  [[nodiscard]] std::size_t dimensions() const { return terms_.size() / 2; }
+  /// The derivative-th derivative at t.
+  [[nodiscard]] std::vector<double> at(core::Time t, int derivative = 0) const;
+  /// A bound of the acceleration, per dimension.
+  [[nodiscard]] std::vector<double> peak_acceleration() const;
+
+ private:
+  struct Term {
+    double amplitude, frequency, phase;
+  };
+  std::vector<Term> terms_;
+};
+
+/// What happens in a world, per second of its time. Instants are random.
+struct WorldOptions {
+  std::uint64_t seed = 1;
+  std::size_t dimensions = 7;
+  core::WindowOptions window{};
+  bool starts_in_motion = false;
+  double starvations = 0;
+  double replacements = 0;
+  double solver_kills = 0;
+  double producer_kills = 0;
+  double pauses = 0;  ///< of the solver, 1 to 200 ms, between steps or within one
+  std::size_t max_lead_knots = 20;
+  bool has_limits = true;  ///< acceleration limits of 10 times the motion's own
+};
+
+/// A producer at 100 Hz with jitter, a solver and a controller at 1 kHz on one simulated clock: the
+/// real ring, board, solver and sampler in plain memory. Everything is checked as it happens; what
+/// is wrong fails the test.
+class LiveWorld {
+ public:
+  explicit LiveWorld(const WorldOptions& options);
+  ~LiveWorld();
+
+  /// Lets it go on for so long.
+  void run(core::Time duration);
+
+  /// Finishes the stream, lets it come to rest and checks that it ends at its last waypoint.
+  void finish();
+
+  [[nodiscard]] const apps::WatchReport& report() const { return watch_.report(); }
+  [[nodiscard]] const ipc::Head& head() const { return stream_.solver.head(); }
+  /// Peak of the motion's own acceleration.
+  [[nodiscard]] double ideal_peak() const;
+
+  std::uint64_t sent = 0;          ///< waypoints that the ring accepted
+  std::uint64_t interpolated = 0;  ///< of these, found on the curve at their time
+  std::uint64_t starved = 0, replaced = 0, solver_kills = 0, producer_kills = 0, pauses = 0;
+
+ private:
+  class WorldClock;
+  void advance_to(core::Time t);
+  void tick();
+  void produce();
+  void replace();
+  void send(core::Time t, std::vector<double> x);
+  void run_quietly(core::Time duration);
+  void expect_passed();
+  void step_solver();
+  void check_settled();
+  void kill_solver();
+  [[nodiscard]] bool happens(double per_second, core::Time within);
+  [[nodiscard]] core::Time between(std::int64_t low_us, std::int64_t high_us);
+
+  WorldOptions options_;
+  std::mt19937_64 random_;
+  Motion motion_;
+  std::unique_ptr<WorldClock> clock_;
+  MemoryStream stream_;
+  ipc::Sampler sampler_;
+  apps::CurveWatch watch_;
+  core::Time now_{};
+  core::Time next_tick_{};
+  core::Time next_waypoint_{};  ///< time of the next waypoint
+  core::Time lead_{};           ///< how long before its time it is sent
+  core::Time silent_until_{};
+  struct Sent {
+    core::Time time{};
+    ipc::Word item = 0;
+    std::vector<double> position;
+  };
+  std::deque<Sent> on_the_way_;  ///< accepted waypoints whose time has not come
+  std::map<ipc::Word, std::vector<double>>
+      settled_;  ///< coefficients of settled segments by number
+};
+
+}  // namespace splinecast::testing
