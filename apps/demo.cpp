@@ -36,7 +36,6 @@ json replay_json(const ReplayReport& report) {
   return {{"sent", report.sent},
           {"interpolated", report.interpolated},
           {"refused", report.refused},
-          {"skipped", report.skipped},
           {"interrupted", report.interrupted}};
 }
 
@@ -126,7 +125,8 @@ int run_demo(const DemoOptions& options) {
   const std::string stream = fmt::format("demo.{}", getpid());
   ReplayOptions replay{.stream = stream};
   if (!options.file.empty()) replay.duration = options.seconds;
-  prepare_replay(table, replay);
+  RefusedRows refused;
+  prepare_replay(table, replay, refused);
 
   catch_stop_signals();
   const StreamRemover remover(stream);
@@ -135,7 +135,7 @@ int run_demo(const DemoOptions& options) {
   for (std::size_t r = 0; r < kReaders; ++r) {
     readers.emplace_back([&] { return run_demo_reader(stream); }, false);
   }
-  Child producer([&] { return replay_json(replay_table(table, replay)); }, false);
+  Child producer([&] { return replay_json(replay_table(table, replay, refused)); }, false);
 
   const json sent = producer.result();
   std::vector<json> seen;

@@ -14,54 +14,93 @@
 namespace splinecast::apps {
 namespace {
 
-/// ` (3 not increasing, 1 not finite)`; nothing for none.
-std::string in_words(const std::array<ipc::Word, ipc::kRefusals>& refused) {
-  std::string text;
-  for (std::size_t i = 1; i < refused.size(); ++i) {
-    if (refused[i] == 0) continue;
-    text += fmt::format("{}{} {}", text.empty() ? " (" : ", ", refused[i],
-                        ipc::to_string(static_cast<ipc::Refusal>(i)));
-  }
-  return text.empty() ? text : text + ")";
-}
+using nlohmann::ordered_json;
 
-nlohmann::ordered_json to_json(const std::array<ipc::Word, ipc::kRefusals>& refused) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  for (std::size_t i = 1; i < refused.size(); ++i) {
-    json[std::string(ipc::to_string(static_cast<ipc::Refusal>(i)))] = refused[i];
+constexpr std::string_view kUnreadable = "unreadable";
+
+/// Why rows were not sent, and how many each.
+ordered_json skipped_by_reason(const RefusedRows& refused) {
+  const auto count = [&](std::string_view reason) {
+    return refused.count(RefusedBy::file, reason) + refused.count(RefusedBy::producer, reason);
+  };
+  ordered_json json{{kUnreadable, count(kUnreadable)}};
+  for (std::uint8_t i = 1; i < ipc::kAppendStatuses; ++i) {
+    const auto status = static_cast<ipc::AppendStatus>(i);
+    if (status == ipc::AppendStatus::full) continue;  // sent again until there is room
+    json[std::string(ipc::to_string(status))] = count(ipc::to_string(status));
   }
   return json;
 }
 
+/// Why waypoints that were sent were refused, and how many each.
+ordered_json refused_by_reason(const ReplayReport& report) {
+  ordered_json json = ordered_json::object();
+  for (std::size_t i = 1; i < report.refused_by_reason.size(); ++i) {
+    const auto reason = static_cast<ipc::Refusal>(i);
+    json[std::string(ipc::to_string(reason))] = report.refused_by_reason[i];
+  }
+  return json;
+}
+
+/// ` (3 duplicate, 1 not finite)`; nothing for none.
+std::string in_words(const ordered_json& by_reason) {
+  std::string text;
+  for (const auto& [reason, count] : by_reason.items()) {
+    if (count == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? " (" : ", ", count.get<ipc::Word>(), reason);
+  }
+  return text.empty() ? text : text + ")";
+}
+
+/// What else is to be said about a replay that did not go as planned.
+std::string in_words(const ReplayReport& report, const RefusedRows& refused) {
+  std::string text;
+  const ipc::Word named = refused.count(RefusedBy::solver);
+  if (report.refused > named) {
+    text += fmt::format("; {} refusals came too fast to be named", report.refused - named);
+  }
+  if (report.interrupted) text += "; interrupted";
+  if (report.unsent > 0) text += fmt::format("; {} not sent", report.unsent);
+  return text;
+}
+
+int exit_code(const ReplayReport& report) {
+  if (!report.stopped) return kOk;
+  return *report.stopped == RefusedBy::solver ? kFailed : kBadUsageOrInput;
+}
+
 int run_replay(ReplayOptions options) {
   catch_stop_signals();
-  ipc::Word unreadable = 0;
+  RefusedRows refused;
   if (options.skip_bad) {
-    options.table.on_bad_row = [&unreadable](const InputError& error) {
-      say(error.what());
-      ++unreadable;
+    options.table.on_bad_row = [&refused](std::size_t line, const InputError& error) {
+      refused.add({.by = RefusedBy::file, .reason = kUnreadable, .line = line}, error.what());
     };
   }
   WaypointTable table = read_waypoints(options.file, options.table);
-  const ipc::Word unfit = prepare_replay(table, options);
-  ReplayReport report = replay_table(table, options);
-  report.skipped = unreadable + unfit;
+  prepare_replay(table, options, refused);
+  const ReplayReport report = replay_table(table, options, refused);
+  const ipc::Word skipped = refused.count(RefusedBy::file) + refused.count(RefusedBy::producer);
   if (options.json) {
-    const nlohmann::ordered_json json{{"stream", options.stream},
-                                      {"sent", report.sent},
-                                      {"interpolated", report.interpolated},
-                                      {"refused", report.refused},
-                                      {"refused_by_reason", to_json(report.refused_by_reason)},
-                                      {"skipped", report.skipped},
-                                      {"interrupted", report.interrupted}};
+    const ordered_json json{{"stream", options.stream},
+                            {"sent", report.sent},
+                            {"interpolated", report.interpolated},
+                            {"refused", report.refused},
+                            {"refused_by_reason", refused_by_reason(report)},
+                            {"skipped", skipped},
+                            {"skipped_by_reason", skipped_by_reason(refused)},
+                            {"unsent", report.unsent},
+                            {"interrupted", report.interrupted},
+                            {"rows", refused.to_json()},
+                            {"rows_not_listed", refused.unlisted()}};
     print_report(json.dump(2) + "\n");
   } else {
-    say(fmt::format("'{}': {} waypoints sent, {} interpolated, {} refused{}, {} rows skipped{}",
+    say(fmt::format("'{}': {} waypoints sent, {} interpolated, {} refused{}, {} rows skipped{}{}",
                     options.stream, report.sent, report.interpolated, report.refused,
-                    in_words(report.refused_by_reason), report.skipped,
-                    report.interrupted ? "; interrupted" : ""));
+                    in_words(refused_by_reason(report)), skipped,
+                    in_words(skipped_by_reason(refused)), in_words(report, refused)));
   }
-  return report.refused > 0 && !options.skip_bad ? kFailed : kOk;
+  return exit_code(report);
 }
 
 void add_playback_options(CLI::App& verb, ReplayOptions& options) {
@@ -130,8 +169,8 @@ void add_replay(CLI::App& program, Action& action) {
             }
             options->skip_bad = text == "skip";
           },
-          "What to do about a row that cannot be sent: stop (default), before anything is sent, or "
-          "skip it")
+          "What to do about a row that is refused: stop (default) the replay there, or skip the "
+          "row and go on")
       ->type_name("skip|stop");
   add_count(*verb, "--capacity", options->capacity,
             "Waypoints that the ring holds (default 1024; rounded up to a power of two)");

@@ -6,6 +6,7 @@
 
 #include "splinecast/ipc/solver.hpp"
 #include "splinecast/ipc/stream_options.hpp"
+#include "support/refused_rows.hpp"
 #include "support/waypoint_table.hpp"
 
 namespace splinecast::apps {
@@ -38,19 +39,22 @@ struct ReplayOptions {
 /// What became of a replay.
 struct ReplayReport {
   ipc::Word sent = 0;          ///< waypoints accepted by the ring
+  ipc::Word unsent = 0;        ///< not come to: the replay was stopped, or interrupted
   ipc::Word interpolated = 0;  ///< of these, by the solver
   ipc::Word refused = 0;       ///< of these, by the solver, with a reason
   std::array<ipc::Word, ipc::kRefusals> refused_by_reason{};
-  ipc::Word skipped = 0;  ///< rows left out under --on-error skip
+  std::optional<RefusedBy> stopped{};  ///< who refused the row at which --on-error stop stopped it
   bool interrupted = false;
 };
 
-/// Makes a file's table what is to be sent: the rows and the rate asked for. Returns how many rows
-/// were left out. Throws InputError for a row that cannot be sent.
-ipc::Word prepare_replay(WaypointTable& table, const ReplayOptions& options);
+/// Makes a file's table what is to be sent: the rows and the rate asked for. Rows that cannot be
+/// sent are noted in `refused`, or, without `skip_bad`, the first one throws InputError.
+void prepare_replay(WaypointTable& table, const ReplayOptions& options, RefusedRows& refused);
 
-/// Sends a prepared table's waypoints to a solver and waits until all are consumed. Throws TimeOut
-/// if no solver comes.
-ReplayReport replay_table(const WaypointTable& table, const ReplayOptions& options);
+/// Sends a prepared table's waypoints to a solver and waits until all are consumed. Notes in
+/// `refused` each row that the producer's append or the solver refused; without `skip_bad` the
+/// first one ends the stream with what has been sent. Throws TimeOut if no solver comes.
+ReplayReport replay_table(const WaypointTable& table, const ReplayOptions& options,
+                          RefusedRows& refused);
 
 }  // namespace splinecast::apps

@@ -1,16 +1,16 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
-#include <utility>
+#include <deque>
+#include <optional>
 
 #include "replay.hpp"
 #include "splinecast/ipc/owner_lock.hpp"
 #include "splinecast/ipc/producer.hpp"
-#include "splinecast/ipc/stream_files.hpp"
 #include "support/exit_codes.hpp"
 #include "support/output.hpp"
 #include "support/recording.hpp"
+#include "support/refusal_watch.hpp"
 #include "support/signals.hpp"
 
 namespace splinecast::apps {
@@ -39,32 +39,50 @@ bool await_solver_of_finished(const ReplayOptions& options) {
 /// A replay on its way: the producer, and the embedded solver if there is one.
 class Replay {
  public:
-  Replay(const WaypointTable& table, const ReplayOptions& options)
+  Replay(const WaypointTable& table, const ReplayOptions& options, RefusedRows& refused)
       : table_(table),
         options_(options),
+        refused_(refused),
         solver_(options.embedded
                     ? std::optional<ipc::Solver>(std::in_place, options.stream, options.solver)
                     : std::nullopt),
         producer_(options.stream, producer_options()) {}
 
   ReplayReport run() {
-    if (!await_solver()) return {.interrupted = true};
-    before_ = head();
+    // What a producer before this one left is worked off first, and counted as none of ours.
+    if (!await_solver() || !await_consumption()) return {.unsent = planned(), .interrupted = true};
+    watch_.emplace(options_.stream, producer_.stream_id(), options_.trust);
+    before_ = watch_->head();
     const core::Time base = first_time();
     require_continuation(base);
-    const core::Time shift = table_.times.back() - table_.times.front() + median_interval(table_);
-    Progress progress;
-    for (std::size_t loop = 0; loop < options_.loops; ++loop) {
-      const core::Time offset = base - table_.times.front() + shift * static_cast<int>(loop);
-      for (std::size_t i = 0; i < table_.size(); ++i) {
-        if (!send(i, offset, progress)) return finish(), interrupted();
-      }
-    }
+    const bool played = play(base);
     finish();
-    return await_consumption() ? report() : interrupted();
+    return report((played || stopped_) && await_consumption());
   }
 
  private:
+  /// A waypoint in the ring, by what it was in the recording.
+  struct Sent {
+    std::size_t row;
+    std::size_t loop;
+  };
+
+  [[nodiscard]] std::size_t planned() const { return table_.size() * options_.loops; }
+
+  /// Sends all loops; false if a stop is requested or a refused row stops it.
+  bool play(core::Time base) {
+    const core::Time shift = table_.times.back() - table_.times.front() + median_interval(table_);
+    Progress progress;
+    next_item_ = producer_.appended();
+    for (std::size_t loop = 0; loop < options_.loops; ++loop) {
+      const core::Time offset = base - table_.times.front() + shift * static_cast<int>(loop);
+      for (std::size_t i = 0; i < table_.size(); ++i) {
+        if (!send({.row = i, .loop = loop}, offset, progress)) return false;
+      }
+    }
+    return true;
+  }
+
   [[nodiscard]] ipc::ProducerOptions producer_options() const {
     return {.dimensions = table_.dimensions(),
             .names = table_.names,
@@ -87,6 +105,7 @@ class Replay {
     if (!solver_) return;
     solver_->attach();
     while (solver_->step(clock_).consumed > 0) {
+      if (watch_) look_for_refusals();
     }
   }
 
@@ -124,27 +143,66 @@ class Replay {
         options_.stream, producer_.last_time().count(), first.count(), options_.stream));
   }
 
-  /// Sends row i at its time. Returns false if a stop is requested.
-  bool send(std::size_t i, core::Time offset, Progress& progress) {
-    core::Waypoint waypoint = table_.waypoint(i);
+  /// Sends a row at its time. Returns false if a stop is requested or a refused row stops it.
+  bool send(const Sent& next, core::Time offset, Progress& progress) {
+    core::Waypoint waypoint = table_.waypoint(next.row);
     waypoint.time += offset;
     if (stop_requested() || (options_.rate && !pace(waypoint.time))) return false;
-    for (;;) {
-      const auto status = producer_.append(waypoint);
-      if (status == ipc::AppendStatus::accepted) break;
-      if (status != ipc::AppendStatus::full) {
-        throw Failure(fmt::format("{}: waypoint refused: {} (time {} ns)", table_.where(i),
-                                  ipc::to_string(status), waypoint.time.count()));
-      }
+    ipc::AppendStatus status = producer_.append(waypoint);
+    while (status == ipc::AppendStatus::full) {
       if (!await_room()) return false;
+      status = producer_.append(waypoint);
     }
-    ++sent_;
+    if (status == ipc::AppendStatus::accepted) {
+      ++sent_;
+      in_ring_.push_back(next);
+    } else {
+      note_refusal(next, waypoint.time, status);
+    }
     if (options_.rate) solve();
-    if (i % 256 == 0 || options_.rate) {
-      progress.show(fmt::format("{}: {} of {} waypoints", options_.stream, sent_,
-                                table_.size() * options_.loops));
+    look_for_refusals();
+    if (next.row % 256 == 0 || options_.rate) {
+      progress.show(fmt::format("{}: {} of {} waypoints", options_.stream, sent_, planned()));
     }
-    return true;
+    return !stopped_;
+  }
+
+  /// What the append refused is not in the ring.
+  void note_refusal(const Sent& row, core::Time time, ipc::AppendStatus status) {
+    ++refused_by_producer_;
+    note({.by = RefusedBy::producer,
+          .reason = ipc::to_string(status),
+          .line = table_.lines[row.row],
+          .loop = row.loop + 1},
+         fmt::format("{}: waypoint refused: {} (time {} ns)", table_.where(row.row),
+                     ipc::to_string(status), time.count()));
+  }
+
+  /// What the solver refused stands on the board under its item's number, but not for ever: so this
+  /// is called with every waypoint, and costs next to nothing where nothing was published since.
+  void look_for_refusals() {
+    watch_->look([this](const ipc::RefusedItem& item) { note_refusal(item); });
+    const ipc::Word consumed = watch_->head().consumed;
+    for (; next_item_ < consumed && !in_ring_.empty(); ++next_item_) in_ring_.pop_front();
+  }
+
+  void note_refusal(const ipc::RefusedItem& refused) {
+    RefusedRow row{
+        .by = RefusedBy::solver, .reason = ipc::to_string(refused.reason), .item = refused.item};
+    std::string where = "the end";
+    const ipc::Word i = refused.item - next_item_;
+    if (i < in_ring_.size()) {
+      row.line = table_.lines[in_ring_[i].row];
+      row.loop = in_ring_[i].loop + 1;
+      where = table_.where(in_ring_[i].row);
+    }
+    note(row, fmt::format("{}: waypoint refused by the solver: {} (item {})", where, row.reason,
+                          refused.item));
+  }
+
+  void note(const RefusedRow& row, const std::string& message) {
+    refused_.add(row, message);
+    if (!options_.skip_bad && !stopped_) stopped_ = row.by;
   }
 
   /// Sleeps until it is time to send: `lead` before a live waypoint's time, or, for a recorded
@@ -188,25 +246,16 @@ class Replay {
     solve();
   }
 
-  ReplayReport interrupted() {
-    ReplayReport result = report();
-    result.interrupted = true;
-    return result;
-  }
-
-  /// The head of this very stream's board; revision 0 if it cannot be had.
-  [[nodiscard]] ipc::Head head() const {
-    if (!ipc::region_exists(options_.stream, ipc::RegionKind::spline)) return {};
-    const ipc::StreamInfo info = ipc::inspect(options_.stream, options_.trust);
-    const bool ours = info.spline && info.spline->stream_id == producer_.stream_id();
-    return ours ? info.head : ipc::Head{};
-  }
-
-  [[nodiscard]] ReplayReport report() const {
-    const ipc::Head now = head();
+  [[nodiscard]] ReplayReport report(bool complete) {
+    look_for_refusals();
+    refused_.add_unnamed(watch_->missed());
+    const ipc::Head& now = watch_->head();
     ReplayReport report{.sent = sent_,
+                        .unsent = planned() - sent_ - refused_by_producer_,
                         .interpolated = now.knots - before_.knots,
-                        .refused = now.refused - before_.refused};
+                        .refused = now.refused - before_.refused,
+                        .stopped = stopped_,
+                        .interrupted = !complete};
     for (std::size_t i = 0; i < report.refused_by_reason.size(); ++i) {
       report.refused_by_reason[i] = now.reasons[i] - before_.reasons[i];
     }
@@ -215,20 +264,26 @@ class Replay {
 
   const WaypointTable& table_;
   const ReplayOptions& options_;
+  RefusedRows& refused_;
   ipc::MonotonicClock clock_;
   std::optional<ipc::Solver> solver_;  ///< first: if there is another one, nothing has been made
   ipc::Producer producer_;
   core::Time recorded_start_{};
+  std::optional<RefusalWatch> watch_;  ///< once there is a board
+  ipc::Head before_;                   ///< what a producer left whose stream is continued
+  std::deque<Sent> in_ring_;           ///< from item next_item_ on: not known to be consumed
+  ipc::Word next_item_ = 0;
   ipc::Word sent_ = 0;
-  ipc::Head before_;  ///< what a producer left whose stream is continued
+  ipc::Word refused_by_producer_ = 0;
+  std::optional<RefusedBy> stopped_;  ///< who refused the row that stops it
 };
 
 }  // namespace
 
-ipc::Word prepare_replay(WaypointTable& table, const ReplayOptions& options) {
+void prepare_replay(WaypointTable& table, const ReplayOptions& options, RefusedRows& refused) {
   select_rows(table, options.from.value_or(core::Time::zero()), options.duration);
   change_rate(table, options.rate.value_or(1.0));
-  const ipc::Word skipped = drop_unfit_rows(table, options.limits, options.skip_bad);
+  drop_unfit_rows(table, options.limits, options.skip_bad ? &refused : nullptr);
   const core::Condition none;
   core::require_values(options.start.value_or(none), table.dimensions());
   core::require_values(options.end.value_or(none), table.dimensions());
@@ -240,12 +295,14 @@ ipc::Word prepare_replay(WaypointTable& table, const ReplayOptions& options) {
                       core::to_string(*condition)));
     }
   }
-  return skipped;
 }
 
-ReplayReport replay_table(const WaypointTable& table, const ReplayOptions& options) {
-  if (!options.embedded && !await_solver_of_finished(options)) return {.interrupted = true};
-  return Replay(table, options).run();
+ReplayReport replay_table(const WaypointTable& table, const ReplayOptions& options,
+                          RefusedRows& refused) {
+  if (!options.embedded && !await_solver_of_finished(options)) {
+    return {.unsent = table.size() * options.loops, .interrupted = true};
+  }
+  return Replay(table, options, refused).run();
 }
 
 }  // namespace splinecast::apps

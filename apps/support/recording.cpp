@@ -12,7 +12,6 @@
 
 #include "splinecast/ipc/status.hpp"
 #include "support/exit_codes.hpp"
-#include "support/output.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -118,24 +117,23 @@ core::Time median_interval(const WaypointTable& table) {
   return *middle;
 }
 
-std::uint64_t drop_unfit_rows(WaypointTable& table, const ipc::IngestLimits& limits, bool skip) {
+void drop_unfit_rows(WaypointTable& table, const ipc::IngestLimits& limits, RefusedRows* skipped) {
   WaypointTable good = table.without_rows();
-  std::uint64_t dropped = 0;
   RowCheck check(table, limits);
   for (std::size_t i = 0; i < table.size(); ++i) {
     const auto status = check.judge(i);
     if (status != ipc::AppendStatus::accepted) {
       const std::string message = refusal_message(table, i, status, check.interval());
-      if (!skip) throw InputError(message);
-      say(message);
-      ++dropped;
+      if (skipped == nullptr) throw InputError(message);
+      skipped->add(
+          {.by = RefusedBy::file, .reason = ipc::to_string(status), .line = table.lines[i]},
+          message);
       continue;
     }
     good.append_row(table, i);
   }
   if (good.size() == 0) throw InputError(fmt::format("{}: no waypoint can be sent", table.file));
   table = std::move(good);
-  return dropped;
 }
 
 }  // namespace splinecast::apps

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <cstdint>
-
 #include "splinecast/ipc/waypoint_ring.hpp"
+#include "support/refused_rows.hpp"
 #include "support/waypoint_table.hpp"
 
 /// What is done to a recording before it is sent.
@@ -19,9 +18,8 @@ void change_rate(WaypointTable& table, double rate);
 /// The median interval between rows; 10 ms for a single row.
 [[nodiscard]] core::Time median_interval(const WaypointTable& table);
 
-/// Drops the rows that the ring would refuse, with a message each naming line and value, or throws
-/// InputError for the first one unless `skip`. Returns how many were dropped; throws if none is
-/// left.
-std::uint64_t drop_unfit_rows(WaypointTable& table, const ipc::IngestLimits& limits, bool skip);
+/// Drops the rows that the ring would refuse and notes each in `skipped`, with a message that names
+/// line and value; without `skipped`, throws InputError for the first one. Throws if none is left.
+void drop_unfit_rows(WaypointTable& table, const ipc::IngestLimits& limits, RefusedRows* skipped);
 
 }  // namespace splinecast::apps

@@ -307,7 +307,7 @@ WaypointTable read_waypoints(const std::string& path, const TableOptions& option
       append_row(reader, fields, row, table);
     } catch (const InputError& error) {
       if (!options.on_bad_row) throw;
-      options.on_bad_row(error);
+      options.on_bad_row(reader.line(), error);
     }
   }
   if (table.size() == 0) throw InputError(fmt::format("{}: there are no waypoints", table.file));

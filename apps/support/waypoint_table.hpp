@@ -18,8 +18,9 @@ namespace splinecast::apps {
 struct TableOptions {
   std::vector<std::string> columns{};   ///< position columns, in this order; none: all numeric
   std::optional<TimeUnit> time_unit{};  ///< overrides what the time column's name says
-  /// Called for each row that cannot be read, which is then left out; unset: the first one throws.
-  std::function<void(const InputError&)> on_bad_row{};
+  /// Called with the line of each row that cannot be read, which is then left out; unset: the first
+  /// one throws.
+  std::function<void(std::size_t line, const InputError&)> on_bad_row{};
 };
 
 /// The waypoints of a file.

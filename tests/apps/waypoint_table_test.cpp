@@ -133,11 +133,15 @@ TEST(WaypointTable, TimesWhoseDifferencesDoNotFitAreRefused) {
 TEST(WaypointTable, LeavesOutUnreadableRowsWhenAskedTo) {
   const TestFolder folder;
   const auto path = folder.write("a.csv", "t,x\n1,2\n2,abc\n3,4\n4\n5,6\n");
-  std::vector<std::string> messages;
-  const auto table = read_waypoints(
-      path, {.on_bad_row = [&](const InputError& error) { messages.emplace_back(error.what()); }});
+  std::vector<std::size_t> lines;
+  const auto table =
+      read_waypoints(path, {.on_bad_row = [&](std::size_t line, const InputError& error) {
+                       lines.push_back(line);
+                       const std::string where = "a.csv:" + std::to_string(line) + ":";
+                       EXPECT_NE(std::string(error.what()).find(where), std::string::npos);
+                     }});
   EXPECT_EQ(table.positions, (std::vector<double>{2, 4, 6}));
-  EXPECT_EQ(messages.size(), 2U);
+  EXPECT_EQ(lines, (std::vector<std::size_t>{3, 5}));
 }
 
 }  // namespace

@@ -1,0 +1,224 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "splinecast/ipc/producer.hpp"
+#include "support/process.hpp"
+#include "support/shared_files.hpp"
+
+/// What becomes of rows that cannot be interpolated: each is named with its line, whoever refused
+/// it, and all of them are accounted for.
+namespace splinecast::apps {
+namespace {
+
+using nlohmann::json;
+using testing::Ended;
+using testing::info;
+using testing::Process;
+using testing::run;
+using testing::shared_file;
+using testing::TestFolder;
+using testing::TestStream;
+using Arguments = std::vector<std::string>;
+
+std::string own_file(const std::string& name) {
+  return std::string(SPLINECAST_SOURCE) + "/tests/data/" + name;
+}
+
+/// A recording, and what is wrong with it.
+struct Case {
+  std::string file;
+  std::size_t rows;
+  std::map<std::string, std::size_t> skipped;  ///< by reason
+  std::string first;                           ///< `:line…reason` of the first of them
+  Arguments options{};
+};
+
+void PrintTo(const Case& played, std::ostream* out) { *out << played.file; }
+
+class Ingest : public ::testing::Test {
+ protected:
+  [[nodiscard]] const std::string& name() const { return stream_.name(); }
+  [[nodiscard]] Ended replay(const std::string& file, const Arguments& more) const {
+    Arguments arguments{"replay", file, "--stream", name(), "--clock", "recorded", "--rate", "max"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+  /// Whether a report accounts for `planned` rows, and names each that is not interpolated.
+  static void expect_accounted_for(const Ended& ended, std::size_t planned) {
+    const auto report = json::parse(ended.out);
+    const auto number = [&](const char* key) { return report[key].get<std::size_t>(); };
+    EXPECT_EQ(number("sent") + number("skipped") + number("unsent"), planned);
+    EXPECT_EQ(number("interpolated") + number("refused"), number("sent"));
+    EXPECT_EQ(report["rows"].size() + number("rows_not_listed"),
+              number("skipped") + number("refused"));
+    for (const auto& row : report["rows"]) {
+      const std::string line = fmt::format(":{}:", row["line"].get<std::size_t>());
+      EXPECT_NE(ended.err.find(line), std::string::npos) << line;
+    }
+  }
+  static std::size_t count(const json& report, const std::string& by) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(report["rows"], [&](const json& row) { return row["by"] == by; }));
+  }
+
+  TestStream stream_;
+};
+
+class IngestOf : public Ingest, public ::testing::WithParamInterface<Case> {};
+
+TEST_P(IngestOf, WhatIsSkippedIsNamedAndCountedAndTheRestIsInterpolated) {
+  const Case& played = GetParam();
+  REQUIRE_SHARED_FILE(played.file);
+  Process solver({"solve", name()});
+  Arguments options = played.options;
+  options.insert(options.end(), {"--on-error", "skip", "--json"});
+  const Ended ended = replay(played.file, options);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  expect_accounted_for(ended, played.rows);
+  const auto report = json::parse(ended.out);
+  std::size_t skipped = 0;
+  for (const auto& [reason, count] : report["skipped_by_reason"].items()) {
+    const auto wanted = played.skipped.find(reason);
+    EXPECT_EQ(count, wanted == played.skipped.end() ? 0 : wanted->second) << reason;
+    skipped += count.get<std::size_t>();
+  }
+  EXPECT_EQ(report["skipped"], skipped);
+  EXPECT_EQ(report["refused"], 0);
+  const auto now = info(name());
+  EXPECT_EQ(now["state"], "finished");
+  EXPECT_EQ(now["producer"]["appended"], played.rows - skipped + 1);  // and the finish
+  EXPECT_EQ(now["solver"]["interpolated"], played.rows - skipped);
+  EXPECT_EQ(now["solver"]["refused"], 0);
+}
+
+TEST_P(IngestOf, TheFirstBadRowStopsItByNameBeforeAnythingIsSent) {
+  const Case& played = GetParam();
+  REQUIRE_SHARED_FILE(played.file);
+  Process solver({"solve", name()});
+  const Ended ended = replay(played.file, played.options);
+  EXPECT_EQ(ended.code, played.skipped.empty() ? 0 : 2) << ended.err;
+  if (played.skipped.empty()) return;
+  EXPECT_NE(ended.err.find(played.file + played.first), std::string::npos) << ended.err;
+  EXPECT_EQ(info(name()), json());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Recordings, IngestOf,
+    ::testing::Values(
+        Case{own_file("duplicates.csv"), 115, {{"duplicate", 15}}, ":9: waypoint refused: dupl"},
+        Case{own_file("duplicates.csv"),
+             115,
+             {{"duplicate", 8}, {"too close", 57}},
+             ":5: waypoint refused: too close",
+             {"--min-interval", "0.03"}},
+        Case{own_file("gaps.csv"), 150, {}, ""},
+        Case{own_file("gaps.csv"),
+             150,
+             {{"too far apart", 70}},
+             ":83: waypoint refused: too far apart",
+             {"--max-interval", "3"}},
+        Case{own_file("not_finite.csv"),
+             80,
+             {{"not finite", 5}, {"unreadable", 4}},
+             ":34:7: column 'q1 [rad]': '' is not a number"},
+        Case{own_file("out_of_order.csv"),
+             150,
+             {{"out of order", 60}},
+             ":7: waypoint refused: out of order"},
+        Case{own_file("quaternion_sign_flips.tum"), 150, {}, ""},
+        Case{shared_file("data/px4_drone_log/actuator_outputs.csv"),
+             130,
+             {{"out of order", 56}},
+             ":5: waypoint refused: out of order"}));
+
+TEST_F(Ingest, WhatTheAppendRefusesIsNamedAndSkippedOrEndsTheStream) {
+  const TestFolder folder;
+  const auto file = folder.write("a.csv", "t,x\n5.0000005,0\n6,1\n7,2\n8,1\n");
+  const auto leave_unfinished = [&] {
+    ipc::Producer dies(name(), {.dimensions = 1,
+                                .names = {"x"},
+                                .clock = ipc::StreamClock::recorded,
+                                .start = {.kind = core::ConditionKind::own, .value = {}}});
+    const double x = 0;
+    ASSERT_EQ(dies.append({.time = core::Time(5'000'000'000), .position = {&x, 1}}),
+              ipc::AppendStatus::accepted);
+  };
+  const std::string message = "a.csv:2: waypoint refused: too close (time 5000000500 ns)";
+  Process solver({"solve", name()});
+
+  leave_unfinished();
+  const Ended skipped = replay(file, {"--on-error", "skip", "--json"});
+  EXPECT_EQ(skipped.code, 0) << skipped.err;
+  EXPECT_NE(skipped.err.find(message), std::string::npos) << skipped.err;
+  expect_accounted_for(skipped, 4);
+  const auto report = json::parse(skipped.out);
+  EXPECT_EQ(report["sent"], 3);
+  EXPECT_EQ(report["skipped_by_reason"]["too close"], 1);
+  EXPECT_EQ(count(report, "producer"), 1U);
+  EXPECT_EQ(info(name())["producer"]["refused"]["too close"], 1);
+  EXPECT_EQ(info(name())["solver"]["interpolated"], 4);
+
+  leave_unfinished();
+  const Ended stopped = replay(file, {"--json"});
+  EXPECT_EQ(stopped.code, 2) << stopped.err;
+  EXPECT_NE(stopped.err.find(message), std::string::npos) << stopped.err;
+  expect_accounted_for(stopped, 4);
+  EXPECT_EQ(json::parse(stopped.out)["unsent"], 3);
+  EXPECT_EQ(info(name())["state"], "finished");
+  EXPECT_EQ(info(name())["solver"]["newest_knot_ns"], 5'000'000'000);
+}
+
+TEST_F(Ingest, WhatTheSolverRefusesIsNamedByItsLineThoughTheRingHadTakenIt) {
+  Process solver({"solve", name(), "--method", "smoothing", "--lambda", "1e-3", "--settle", "20"});
+  const Ended skipped = replay(own_file("gaps.csv"), {"--on-error", "skip", "--json"});
+  EXPECT_EQ(skipped.code, 0) << skipped.err;
+  expect_accounted_for(skipped, 150);
+  const auto report = json::parse(skipped.out);
+  EXPECT_EQ(report["refused_by_reason"]["lag too short"], 70);
+  EXPECT_EQ(count(report, "solver"), 70U);
+  EXPECT_EQ(report["rows"][0]["line"], 23);
+  EXPECT_EQ(report["rows"][0]["item"], 20);
+  EXPECT_NE(
+      skipped.err.find("gaps.csv:23: waypoint refused by the solver: lag too short (item 20)"),
+      std::string::npos)
+      << skipped.err;
+  EXPECT_EQ(info(name())["solver"]["refused_by_reason"]["lag too short"], 70);
+
+  const Ended stopped = replay(own_file("gaps.csv"), {"--json"});
+  EXPECT_EQ(stopped.code, 1) << stopped.err;
+  EXPECT_NE(stopped.err.find("gaps.csv:23: waypoint refused by the solver"), std::string::npos)
+      << stopped.err;
+  expect_accounted_for(stopped, 150);
+}
+
+TEST_F(Ingest, EachOfManyRefusalsIsNamedAlsoInALoop) {
+  const TestFolder folder;
+  std::string rows = "t,x\n";
+  for (int i = 0; i < 2500; ++i) rows += fmt::format("{},1\n", i);
+  const auto file = folder.write("a.csv", rows);
+  Process solver({"solve", name(), "--method", "hermite"});
+  const Ended ended =
+      replay(file, {"--on-error", "skip", "--json", "--loop", "2", "--capacity", "256"});
+  EXPECT_EQ(ended.code, 0);
+  const auto report = json::parse(ended.out);
+  EXPECT_EQ(report["refused_by_reason"]["lacks derivatives"], 5000);
+  EXPECT_EQ(report["rows_not_listed"], 0);
+  ASSERT_EQ(report["rows"].size(), 5000U);
+  for (std::size_t i = 0; i < 5000; ++i) {
+    const json wanted{{"line", i % 2500 + 2},
+                      {"by", "solver"},
+                      {"reason", "lacks derivatives"},
+                      {"item", i},
+                      {"loop", i / 2500 + 1}};
+    ASSERT_EQ(report["rows"][i], wanted);
+  }
+}
+
+}  // namespace
+}  // namespace splinecast::apps
