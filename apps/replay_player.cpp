@@ -68,6 +68,7 @@ class Replay {
   [[nodiscard]] ipc::ProducerOptions producer_options() const {
     return {.dimensions = table_.dimensions(),
             .names = table_.names,
+            .kinds = table_.kinds,
             .clock = options_.clock,
             .start = options_.start.value_or(unasked()),
             .limits = options_.limits,
@@ -232,6 +233,7 @@ ipc::Word prepare_replay(WaypointTable& table, const ReplayOptions& options) {
   const core::Condition none;
   core::require_values(options.start.value_or(none), table.dimensions());
   core::require_values(options.end.value_or(none), table.dimensions());
+  core::DimensionKinds(table.kinds).require_end(options.end.value_or(none));
   for (const auto& condition : {options.start, options.end}) {
     if (condition && !core::is_online(condition->kind)) {
       throw InputError(

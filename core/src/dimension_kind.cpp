@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "splinecast/core/waypoint.hpp"
 
@@ -12,6 +13,13 @@ namespace splinecast::core {
 namespace {
 
 using Quaternion = std::array<double, kQuaternionSize>;
+
+constexpr std::string_view kWrap = "wrap:";
+constexpr std::array<std::pair<DimensionKind, std::string_view>, 3> kKindNames{{
+    {DimensionKind::linear, "linear"},
+    {DimensionKind::quaternion, "quaternion"},
+    {DimensionKind::quaternion_wxyz, "quaternion-wxyz"},
+}};
 
 bool is_quaternion(DimensionKind kind) noexcept {
   return kind == DimensionKind::quaternion || kind == DimensionKind::quaternion_wxyz;
@@ -22,10 +30,12 @@ std::string text_of(double value) {
   return {buffer.begin(), std::to_chars(buffer.begin(), buffer.end(), value).ptr};
 }
 
+bool is_period(double period) noexcept {
+  return period >= kLeastPeriod && period <= kLargestValue;  // no NaN is
+}
+
 double require_period(const Dimension& dimension, std::size_t d) {
-  if (dimension.period >= kLeastPeriod && dimension.period <= kLargestValue) {
-    return dimension.period;
-  }
+  if (is_period(dimension.period)) return dimension.period;
   throw std::invalid_argument("dimension " + std::to_string(d) + " wraps with period " +
                               text_of(dimension.period) + ", which is none from 1e-100 to 1e100");
 }
@@ -119,6 +129,30 @@ Vector3 body_rate(const Quaternion& q, const Quaternion& p, bool w_first) noexce
 }
 
 }  // namespace
+
+std::string to_string(const Dimension& dimension) {
+  if (dimension.kind == DimensionKind::wrap) {
+    return std::string(kWrap) + text_of(dimension.period);
+  }
+  for (const auto& [kind, name] : kKindNames) {
+    if (kind == dimension.kind) return std::string(name);
+  }
+  return "unknown";
+}
+
+std::optional<Dimension> parse_dimension(std::string_view text) {
+  for (const auto& [kind, name] : kKindNames) {
+    if (name == text) return Dimension{.kind = kind};
+  }
+  if (!text.starts_with(kWrap)) return std::nullopt;
+  text.remove_prefix(kWrap.size());
+  double period = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), period);
+  if (error != std::errc{} || end != text.data() + text.size() || !is_period(period)) {
+    return std::nullopt;
+  }
+  return Dimension{.kind = DimensionKind::wrap, .period = period};
+}
 
 DimensionKinds::DimensionKinds(std::span<const Dimension> dimensions) {
   for (std::size_t d = 0; d < dimensions.size(); ++d) {

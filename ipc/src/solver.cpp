@@ -189,7 +189,7 @@ struct Attachment {
       : ring(std::move(producer)),
         board(std::move(own)),
         solver(ring.ring, board.writer, board.reader, window_options(board.header),
-               ingest_limits(ring.header)) {}
+               ingest_limits(ring.header), dimension_kinds(ring.header)) {}
 };
 
 struct Solver::Impl {

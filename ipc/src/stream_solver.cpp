@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace splinecast::ipc {
 namespace {
@@ -39,6 +40,15 @@ core::Waypoint waypoint_of(const RingItem& item) noexcept {
   return waypoint;
 }
 
+core::WaypointValues values_of(RingItem& item) noexcept {
+  const std::size_t dimensions = item.values.size() / 3;
+  const auto values = std::span(item.values);
+  core::WaypointValues all{.position = values.first(dimensions)};
+  if (item.has_velocity) all.velocity = values.subspan(dimensions, dimensions);
+  if (item.has_acceleration) all.acceleration = values.last(dimensions);
+  return all;
+}
+
 }  // namespace
 
 std::size_t StreamSolver::min_capacity(std::size_t settle) noexcept {
@@ -47,10 +57,11 @@ std::size_t StreamSolver::min_capacity(std::size_t settle) noexcept {
 
 StreamSolver::StreamSolver(const WaypointRingReader& ring, SegmentBoardWriter& board,
                            const SegmentBoardReader& published, const core::WindowOptions& window,
-                           const IngestLimits& limits)
+                           const IngestLimits& limits, core::DimensionKinds kinds)
     : ring_(&ring),
       board_(&board),
       limits_(limits),
+      kinds_(std::move(kinds)),
       window_(ring.dimensions(), window),
       max_batch_(std::min(kMaxBatch, board.capacity() - changed_besides(window.settle))),
       item_(ring.dimensions()),
@@ -96,7 +107,7 @@ StepResult StreamSolver::step(const Clock& clock) noexcept {
   return {.consumed = batch, .published = true};
 }
 
-void StreamSolver::take(const RingItem& item, Word number) noexcept {
+void StreamSolver::take(RingItem& item, Word number) noexcept {
   if (head_.finished) return refuse(number, Refusal::after_finish);
   switch (item.kind) {
     case ItemKind::waypoint:
@@ -111,12 +122,13 @@ void StreamSolver::take(const RingItem& item, Word number) noexcept {
 }
 
 /// The producer has checked all of this; but what another process wrote is never trusted.
-void StreamSolver::take_waypoint(const RingItem& item, Word number) noexcept {
+void StreamSolver::take_waypoint(RingItem& item, Word number) noexcept {
   const core::Waypoint waypoint = waypoint_of(item);
   if (!is_finite(waypoint.position) || !is_finite(waypoint.velocity) ||
       !is_finite(waypoint.acceleration)) {
     return refuse(number, Refusal::not_finite);
   }
+  if (!kinds_.takes(waypoint.position)) return refuse(number, Refusal::zero_quaternion);
   if (!window_.takes(waypoint)) return refuse(number, Refusal::lacks_derivatives);
   if (!is_time_in_range(item.time)) return refuse(number, Refusal::too_far_apart);
   if (head_.knots > 0) {
@@ -124,6 +136,9 @@ void StreamSolver::take_waypoint(const RingItem& item, Word number) noexcept {
     if (status != AppendStatus::accepted) return refuse(number, to_refusal(status));
   }
   if (!window_.lag_suffices(item.time)) return refuse(number, Refusal::lag_too_short);
+  const std::size_t knots = window_.knots();
+  kinds_.continue_from(knots > 0 ? window_.knot(knots - 1).waypoint : std::span<const double>{},
+                       values_of(item));  // what `waypoint` looks at
   window_.append(waypoint);
   head_.knots = window_.knots();
   head_.newest_knot = item.time;

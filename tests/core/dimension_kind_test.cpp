@@ -162,6 +162,19 @@ TEST(DimensionKinds, RefusesPeriodsAndQuaternionsThatAreNone) {
             "taken");
 }
 
+TEST(Dimension, ReadsBackWhatItWrites) {
+  for (const char* text : {"linear", "wrap:360", "wrap:6.283185307179586", "wrap:1e-100",
+                           "quaternion", "quaternion-wxyz"}) {
+    const auto dimension = parse_dimension(text);
+    ASSERT_TRUE(dimension.has_value()) << text;
+    EXPECT_EQ(to_string(*dimension), text);
+  }
+  for (const char* text : {"", "wrap", "wrap:", "wrap:0", "wrap:-1", "wrap:nan", "wrap:inf",
+                           "wrap:1x", "wrap:1e200", "Linear", "quaternion:4"}) {
+    EXPECT_FALSE(parse_dimension(text).has_value()) << text;
+  }
+}
+
 TEST(DimensionKinds, AnEndConditionAsksForNothingOfAQuaternion) {
   const auto kinds = kinds_of({kLinear, kQuaternion, kQuaternion, kQuaternion, kQuaternion});
   EXPECT_NO_THROW(kinds.require_end({.kind = ConditionKind::halt}));

@@ -3,7 +3,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "splinecast/core/condition.hpp"
@@ -36,6 +39,13 @@ struct Dimension {
   friend bool operator==(const Dimension&, const Dimension&) = default;
 };
 inline constexpr double kLeastPeriod = 1e-100;
+
+/// How a kind is written on a command line: `linear`, `wrap:PERIOD`, `quaternion`,
+/// `quaternion-wxyz`.
+[[nodiscard]] std::string to_string(const Dimension& dimension);
+
+/// Reads what to_string writes. Returns nothing for any other text; a period out of range is one.
+[[nodiscard]] std::optional<Dimension> parse_dimension(std::string_view text);
 
 /// Four consecutive dimensions that hold a quaternion.
 struct QuaternionDimensions {

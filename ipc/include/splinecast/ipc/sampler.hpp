@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/state.hpp"
 #include "splinecast/core/time.hpp"
 #include "splinecast/ipc/clock.hpp"
@@ -43,18 +44,19 @@ class Snapshot {
 class Sampler {
  public:
   /// `board` is read as often as sampled; `clock` says whether a hold stands before the first
-  /// waypoint.
-  Sampler(const SegmentBoardReader& board, StreamClock clock);
+  /// waypoint; `kinds` are those of the board's dimensions.
+  Sampler(const SegmentBoardReader& board, StreamClock clock, core::DimensionKinds kinds = {});
 
-  /// Evaluates the curve at `t` into `out`, whose spans have one value per dimension. Wait-free:
-  /// no system call, no allocation; O(D) where `t` lies in the segment used last or the next one,
-  /// O(log n + D) elsewhere; a bounded number of tries. Where the status has no values, `out` is
-  /// left as it was.
+  /// Evaluates the curve at `t`, in the form in which its dimensions are read, into `out`, whose
+  /// spans have one value per dimension. Wait-free: no system call, no allocation; O(D) where `t`
+  /// lies in the segment used last or the next one, O(log n + D) elsewhere; a bounded number of
+  /// tries. Where the status has no values, `out` is left as it was.
   [[nodiscard]] SampleStatus sample(core::Time t, core::StateRef out) noexcept;
 
   /// Copies every segment that has a part between `from` and `to` (inclusive), all under one
   /// revision. Returns `settled` or `provisional` for the whole; `before_history`, `no_data`,
-  /// `busy` or `retired` leave `out` without segments. Allocates if `out` must grow.
+  /// `busy` or `retired` leave `out` without segments. The segments are the curve as it was solved,
+  /// before core::DimensionKinds::normalise. Allocates if `out` must grow.
   [[nodiscard]] SampleStatus snapshot(core::Time from, core::Time to, Snapshot& out);
 
   /// The revision that the last sample saw; 0 before the first.
@@ -72,6 +74,7 @@ class Sampler {
   [[nodiscard]] bool spans(const SegmentCopy& segment, core::Time t) const noexcept;
   [[nodiscard]] Word number_by_hint(core::Time t) const noexcept;
   [[nodiscard]] bool number_by_cells(core::Time t, Word& number) const noexcept;
+  void read(const SegmentCopy& segment, double u, core::StateRef out) const noexcept;
   [[nodiscard]] SampleStatus evaluate(const SegmentCopy& segment, core::Time t,
                                       core::StateRef out) const noexcept;
   [[nodiscard]] SampleStatus hold_first(core::StateRef out) noexcept;
@@ -79,6 +82,7 @@ class Sampler {
 
   const SegmentBoardReader* board_;
   StreamClock clock_;
+  core::DimensionKinds kinds_;
   Head head_;                          ///< bounds under the revision last seen whole
   Word confirmed_ = 0;                 ///< revision that the current copy is known to be part of
   core::Time copied_settled_until_{};  ///< settled_until of that revision

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/sliding_window.hpp"
 #include "splinecast/ipc/clock.hpp"
 #include "splinecast/ipc/segment_board.hpp"
@@ -24,12 +25,12 @@ struct StepResult {
 class StreamSolver {
  public:
   /// `board` and `published` are the writing and the reading side of one board; with `ring` they
-  /// outlive the solver. Goes on where the board says that a solver before it stood. Throws
-  /// std::invalid_argument for window options out of range
-  /// or a board too small for them.
+  /// outlive the solver. `kinds` are those of the ring's dimensions. Goes on where the board says
+  /// that a solver before it stood. Throws std::invalid_argument for window options out of range or
+  /// a board too small for them.
   StreamSolver(const WaypointRingReader& ring, SegmentBoardWriter& board,
                const SegmentBoardReader& published, const core::WindowOptions& window,
-               const IngestLimits& limits);
+               const IngestLimits& limits, core::DimensionKinds kinds = {});
 
   /// Takes what the ring holds, up to a bounded batch, and publishes the result as one revision.
   /// O(batch·K·D).
@@ -43,8 +44,8 @@ class StreamSolver {
 
  private:
   void restore(const SegmentBoardReader& published);
-  void take(const RingItem& item, Word number) noexcept;
-  void take_waypoint(const RingItem& item, Word number) noexcept;
+  void take(RingItem& item, Word number) noexcept;
+  void take_waypoint(RingItem& item, Word number) noexcept;
   void take_finish(const RingItem& item, Word number) noexcept;
   void refuse(Word number, Refusal reason) noexcept;
   void write_segment(std::size_t i) noexcept;
@@ -53,6 +54,7 @@ class StreamSolver {
   const WaypointRingReader* ring_;
   SegmentBoardWriter* board_;
   IngestLimits limits_;
+  core::DimensionKinds kinds_;
   core::SlidingWindow window_;
   std::size_t max_batch_;
   Head head_;
