@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "splinecast/ipc/layout.hpp"
 #include "splinecast/ipc/segment_board.hpp"
@@ -75,17 +76,20 @@ struct MemoryStream {
   MemoryBoard board;
   core::WindowOptions window;
   ipc::IngestLimits limits;
+  core::DimensionKinds kinds;
   ipc::StreamSolver solver;
   FixedClock clock;
 
   explicit MemoryStream(std::size_t dimensions, core::WindowOptions how = {},
                         std::size_t ring_capacity = 64, std::size_t board_capacity = 1024,
-                        ipc::IngestLimits solver_limits = {})
+                        ipc::IngestLimits solver_limits = {},
+                        core::DimensionKinds dimension_kinds = {})
       : ring(dimensions, ring_capacity),
         board(dimensions, board_capacity),
         window(how),
         limits(solver_limits),
-        solver(ring.reader, board.writer, board.reader, window, limits) {}
+        kinds(std::move(dimension_kinds)),
+        solver(ring.reader, board.writer, board.reader, window, limits, kinds) {}
 
   ipc::AppendStatus append(const core::Waypoint& waypoint) {
     return ring.writer.append(waypoint, board.reader.tail());
@@ -113,7 +117,7 @@ struct MemoryStream {
   /// What happens when the solver is killed and another one comes.
   void replace_solver() {
     board.replace_writer();
-    solver = ipc::StreamSolver(ring.reader, board.writer, board.reader, window, limits);
+    solver = ipc::StreamSolver(ring.reader, board.writer, board.reader, window, limits, kinds);
   }
 };
 
