@@ -58,8 +58,11 @@ void subtract(Quaternion& q, double times, const Quaternion& other) noexcept {
   for (std::size_t k = 0; k < q.size(); ++k) q[k] -= times * other[k];
 }
 
-/// Length by the largest component, so that no square overflows or vanishes.
+/// Length; by the largest component where squares would overflow or vanish.
 double length(const Quaternion& q) noexcept {
+  constexpr double kSmall = 1e-200;
+  const double square = dot(q, q);
+  if (square > kSmall && square < 1 / kSmall) return std::sqrt(square);
   double largest = 0;
   for (const double value : q) largest = std::max(largest, std::abs(value));
   if (!(largest > 0)) return 0;
@@ -68,16 +71,18 @@ double length(const Quaternion& q) noexcept {
   return largest * std::sqrt(dot(unit, unit));
 }
 
-/// Divides a quaternion and its derivatives by its length. Returns whether that could be done.
+/// Divides a quaternion and its derivatives by its length. Returns whether that could be done: not
+/// for what no curve between rotations comes to, a length of 0, next to 0, or beyond all numbers.
 template <typename... Derivatives>
 bool to_unit_length(Quaternion& q, Derivatives&... derivatives) noexcept {
   const double n = length(q);
-  if (!(n > 0) || !std::isfinite(n)) return false;
-  const auto divide = [n](Quaternion& values) {
-    for (double& value : values) value /= n;
+  if (!(n > 1 / kLargestValue && n < kLargestValue)) return false;
+  const double inverse = 1 / n;  // one division: this is in the way of every sample
+  const auto shorten = [inverse](Quaternion& values) {
+    for (double& value : values) value *= inverse;
   };
-  divide(q);
-  (divide(derivatives), ...);
+  shorten(q);
+  (shorten(derivatives), ...);
   return true;
 }
 

@@ -92,7 +92,7 @@ class DimensionKinds {
 
   /// Puts what was evaluated on a curve into the form in which it is read: wrapping positions into
   /// [−P/2, P/2); of a quaternion q the position, velocity, acceleration and jerk of q/|q|. A
-  /// quaternion of length 0 is left as it is.
+  /// quaternion whose length is no number from 1e-100 to 1e100 is left as it is.
   void normalise(const StateRef& state) const noexcept;
 
   /// The part of `normalise` that concerns quaternions, without jerk: for a state that a curve is
