@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "demo_chaos.hpp"
 #include "demo_reader.hpp"
 #include "replay.hpp"
 #include "solve.hpp"
@@ -24,11 +25,13 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kReaders = 2;
+constexpr core::Time kDefaultLength = std::chrono::seconds(10);
 
 struct DemoOptions {
   std::string file;
   TableOptions table;
   std::optional<core::Time> seconds;
+  bool chaos = false;
   bool json = false;
 };
 
@@ -117,12 +120,20 @@ class StreamRemover {
   std::string stream_;
 };
 
+int run_chaos_demo(const DemoOptions& options, const std::string& stream) {
+  catch_stop_signals();
+  const StreamRemover remover(stream);
+  const json found = run_chaos(stream, options.seconds.value_or(kDefaultLength), options.json);
+  print_report(options.json ? found.dump(2) + "\n" : chaos_summary(found));
+  return found["sound"].get<bool>() ? kOk : kFellShort;
+}
+
 int run_demo(const DemoOptions& options) {
-  constexpr core::Time kDefaultLength = std::chrono::seconds(10);
+  const std::string stream = fmt::format("demo.{}", getpid());
+  if (options.chaos) return run_chaos_demo(options, stream);
   WaypointTable table = options.file.empty()
                             ? pick_and_place(options.seconds.value_or(kDefaultLength))
                             : read_waypoints(options.file, options.table);
-  const std::string stream = fmt::format("demo.{}", getpid());
   ReplayOptions replay{.stream = stream};
   if (!options.file.empty()) replay.duration = options.seconds;
   RefusedRows refused;
@@ -164,6 +175,11 @@ void add_demo(CLI::App& program, Action& action) {
       ->type_name("FILE");
   add_seconds(*verb, "--seconds", options->seconds,
               "How much to play (default 10, or the whole file)");
+  verb->add_flag(
+          "--chaos", options->chaos,
+          "Kill, stop and starve everybody meanwhile, and show that no reader notices; exits "
+          "with 3 if one does")
+      ->excludes("--file");
   verb->add_flag("--json", options->json, "As JSON");
   add_table_options(*verb, options->table);
   verb->callback([&action, options] { action = [options] { return run_demo(*options); }; });

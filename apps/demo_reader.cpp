@@ -45,6 +45,7 @@ class DemoReader {
  public:
   explicit DemoReader(const std::string& stream)
       : reader_(stream, kWait),
+        kinds_(reader_.kinds()),
         snapshot_(reader_.dimensions()),
         now_(reader_.dimensions()),
         before_(reader_.dimensions()),
@@ -96,10 +97,17 @@ class DemoReader {
     for (std::size_t i = 1; i < segments.size(); ++i) {
       const ipc::SegmentCopy& a = segments[i - 1];
       const ipc::SegmentCopy& b = segments[i];
-      core::evaluate(a.order, a.coefficients, core::to_seconds(a.right - a.left), left_.ref());
-      core::evaluate(b.order, b.coefficients, 0, right_.ref());
+      evaluate(a, core::to_seconds(a.right - a.left), left_);
+      evaluate(b, 0, right_);
       at_knots_.compare(left_, right_);
     }
+  }
+
+  /// A wrapping position is left as it is: read, it steps by a period where it goes round.
+  void evaluate(const ipc::SegmentCopy& segment, double u, core::State& out) const {
+    const core::StateRef ref = out.ref();
+    core::evaluate(segment.order, segment.coefficients, u, ref);
+    kinds_.normalise_quaternions(ref.position, ref.velocity, ref.acceleration);
   }
 
   [[nodiscard]] bool has_ended() const {
@@ -108,6 +116,7 @@ class DemoReader {
 
   ipc::MonotonicClock clock_;
   ipc::Reader reader_;
+  core::DimensionKinds kinds_;
   ipc::Head head_;
   ipc::Snapshot snapshot_;
   core::State now_, before_, left_, right_;

@@ -7,6 +7,7 @@
 #include "support/curve_fit.hpp"
 #include "support/emit.hpp"
 #include "support/exit_codes.hpp"
+#include "support/kinds.hpp"
 #include "support/numbers.hpp"
 #include "support/options.hpp"
 #include "support/output.hpp"
@@ -77,8 +78,9 @@ bool only_reports(const FitOptions& options) {
 }
 
 int run_fit(const FitOptions& options) {
-  const WaypointTable table = read_waypoints(options.file, options.table);
+  WaypointTable table = read_waypoints(options.file, options.table);
   require_spline_input(table);
+  continue_waypoints(table);
   std::vector<ReportCurve> curves;
   for (const core::Method* method : options.curve.methods) {
     curves.push_back(
@@ -92,7 +94,7 @@ int run_fit(const FitOptions& options) {
   if (only_reports(options)) return kOk;
   Output output(options.output);  // after all input was read: it may be the same file
   if (options.emit == Emit::samples) {
-    emit_samples(curve, at, options.dt, output);
+    emit_samples(curve, core::DimensionKinds(table.kinds), at, options.dt, output);
   } else {
     emit_json(curve, options.emit, output);
   }

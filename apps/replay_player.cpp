@@ -86,6 +86,7 @@ class Replay {
   [[nodiscard]] ipc::ProducerOptions producer_options() const {
     return {.dimensions = table_.dimensions(),
             .names = table_.names,
+            .kinds = table_.kinds,
             .clock = options_.clock,
             .start = options_.start.value_or(unasked()),
             .limits = options_.limits,
@@ -287,6 +288,7 @@ void prepare_replay(WaypointTable& table, const ReplayOptions& options, RefusedR
   const core::Condition none;
   core::require_values(options.start.value_or(none), table.dimensions());
   core::require_values(options.end.value_or(none), table.dimensions());
+  core::DimensionKinds(table.kinds).require_end(options.end.value_or(none));
   for (const auto& condition : {options.start, options.end}) {
     if (condition && !core::is_online(condition->kind)) {
       throw InputError(

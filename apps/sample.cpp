@@ -39,7 +39,7 @@ class Sampling {
         output_(options.output),
         state_(reader_.dimensions()),
         none_(reader_.dimensions()),
-        writer_(output_, reader_.dimensions(), true) {
+        writer_(output_, reader_.dimensions(), reader_.kinds(), true) {
     fill_with_nan(none_);
   }
 
@@ -155,11 +155,15 @@ class Sampling {
   }
 
   void reattach() {
-    const std::size_t dimensions = reader_.dimensions();
+    const auto dimensions = ipc::dimensions_of(reader_.header());
     reader_ = attach(options_);
-    if (reader_.dimensions() == dimensions) return;
-    throw Failure(fmt::format("stream '{}' was made anew with {} dimensions, not {}",
-                              options_.stream, reader_.dimensions(), dimensions));
+    if (reader_.dimensions() != dimensions.size()) {
+      throw Failure(fmt::format("stream '{}' was made anew with {} dimensions, not {}",
+                                options_.stream, reader_.dimensions(), dimensions.size()));
+    }
+    if (ipc::dimensions_of(reader_.header()) == dimensions) return;
+    throw Failure(
+        fmt::format("stream '{}' was made anew with other dimension kinds", options_.stream));
   }
 
   const SampleOptions& options_;

@@ -89,8 +89,10 @@ nlohmann::json Child::result() {
   return nlohmann::json::parse(text);
 }
 
-void Child::stop() const noexcept {
-  if (pid_ > 0) kill(pid_, SIGTERM);
+void Child::signal(int number) const noexcept {
+  if (pid_ > 0) kill(pid_, number);
 }
+
+void Child::stop() const noexcept { signal(SIGTERM); }
 
 }  // namespace splinecast::apps

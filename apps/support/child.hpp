@@ -24,6 +24,9 @@ class Child {
   /// to it. Throws Failure if it failed or was killed.
   nlohmann::json result();
 
+  /// Sends it a signal; to kill it, destroy this object.
+  void signal(int number) const noexcept;
+
   /// Asks the child to end (SIGTERM).
   void stop() const noexcept;
 

@@ -94,6 +94,7 @@ core::PiecewisePolynomial fit_online(const WaypointTable& table, const core::Win
 core::PiecewisePolynomial fit_table(const WaypointTable& table, const core::Method& method,
                                     const CurveOptions& options) {
   require_derivatives(table, method);
+  core::DimensionKinds(table.kinds).require_end(or_own(options.end));
   const core::Waypoints waypoints = table.waypoints();
   core::Interpolant how{.method = &method, .lambda = 0, .time_scale = 1};
   if (method.family == core::Family::smoothing) how.lambda = chosen_lambda(waypoints, options);

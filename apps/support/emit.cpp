@@ -83,12 +83,13 @@ std::optional<Emit> parse_emit(std::string_view text) noexcept {
   return std::nullopt;
 }
 
-void emit_samples(const core::PiecewisePolynomial& curve, const std::vector<core::Time>& at,
-                  std::optional<core::Time> dt, Output& output) {
-  SampleWriter writer(output, curve.dimensions(), false);
+void emit_samples(const core::PiecewisePolynomial& curve, const core::DimensionKinds& kinds,
+                  const std::vector<core::Time>& at, std::optional<core::Time> dt, Output& output) {
+  SampleWriter writer(output, curve.dimensions(), kinds, false);
   core::State state(curve.dimensions());
   const auto write = [&](core::Time t) {
     curve.evaluate(t, state.ref());
+    kinds.normalise(state.ref());
     writer.write(t, state);
   };
   for (const core::Time t : at) write(t);

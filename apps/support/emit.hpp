@@ -21,9 +21,10 @@ enum class Emit {
 /// Reads `samples`, `pp`, `bezier` or `bspline`. Returns nothing for any other text.
 [[nodiscard]] std::optional<Emit> parse_emit(std::string_view text) noexcept;
 
-/// Writes samples at the given times, then, given `dt`, every dt from the first to the last break.
-void emit_samples(const core::PiecewisePolynomial& curve, const std::vector<core::Time>& at,
-                  std::optional<core::Time> dt, Output& output);
+/// Writes samples at the given times, then, given `dt`, every dt from the first to the last break,
+/// in the form in which dimensions of these kinds are read.
+void emit_samples(const core::PiecewisePolynomial& curve, const core::DimensionKinds& kinds,
+                  const std::vector<core::Time>& at, std::optional<core::Time> dt, Output& output);
 
 /// Writes a line of JSON, all segments raised to the highest order. A single waypoint has no
 /// segment that a polynomial or a knot vector could span: then there are the waypoint's time and

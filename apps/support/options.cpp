@@ -9,6 +9,7 @@
 #include <chrono>
 
 #include "support/exit_codes.hpp"
+#include "support/kinds.hpp"
 #include "support/numbers.hpp"
 
 namespace splinecast::apps {
@@ -64,6 +65,25 @@ void add_table_options(CLI::App& verb, TableOptions& options) {
   verb.add_option("--columns", options.columns, "Position columns to use, by name")
       ->delimiter(',')
       ->type_name("NAME,...");
+  verb.add_option_function<std::vector<std::string>>(
+          "--kind",
+          [&options](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) {
+              const auto kind = parse_kind_option(text);
+              if (!kind) {
+                throw CLI::ValidationError(
+                    "--kind", fmt::format("'{}' is no I:linear, I:wrap:PERIOD (1e-100 to 1e100), "
+                                          "I:quaternion or I:quaternion-wxyz",
+                                          text));
+              }
+              options.kinds.push_back(*kind);
+            }
+          },
+          "Kinds of position columns, by name or index from 0: I:linear, I:wrap:PERIOD, or "
+          "I:quaternion, of which I is the first of four (default: quaternion for columns named "
+          "qx qy qz qw or q_..._w to q_..._z, else linear)")
+      ->delimiter(',')
+      ->type_name("I:K,...");
   add_time_unit(verb, options.time_unit);
 }
 

@@ -27,7 +27,7 @@ void add_rm(CLI::App& program, Action& action);
 void add_sample(CLI::App& program, Action& action);
 void add_solve(CLI::App& program, Action& action);
 
-/// `--columns` and `--time-unit`.
+/// `--columns`, `--kind` and `--time-unit`.
 void add_table_options(CLI::App& verb, TableOptions& options);
 void add_time_unit(CLI::App& verb, std::optional<TimeUnit>& unit);
 

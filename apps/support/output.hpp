@@ -6,7 +6,9 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/state.hpp"
 #include "splinecast/core/time.hpp"
 
@@ -34,18 +36,21 @@ class Output {
 /// Writes a whole report to standard output. Throws as Output does.
 void print_report(std::string_view text);
 
-/// Writes samples as CSV: `t_ns,p[0],…,v[0],…,a[0],…,j[0],…`, numbers in the shortest form that
-/// reads back exactly.
+/// Writes samples as CSV: `t_ns,p[0],…,v[0],…,a[0],…,j[0],…`, where there are quaternions also
+/// `omega[0],…,alpha[0],…`, three for each; numbers in the shortest form that reads back exactly.
 class SampleWriter {
  public:
   /// Writes the header, with a last column `status` if asked for.
-  SampleWriter(Output& output, std::size_t dimensions, bool with_status);
+  SampleWriter(Output& output, std::size_t dimensions, core::DimensionKinds kinds,
+               bool with_status);
 
-  /// Writes a row. An empty `status` writes none.
+  /// Writes a row, of a state as it is read. An empty `status` writes none.
   void write(core::Time time, const core::State& state, std::string_view status = {});
 
  private:
   Output* output_;
+  core::DimensionKinds kinds_;
+  std::vector<core::AngularMotion> motions_;  ///< of the quaternions
   fmt::memory_buffer line_;
 };
 

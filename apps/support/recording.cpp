@@ -6,12 +6,15 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "splinecast/ipc/status.hpp"
 #include "support/exit_codes.hpp"
+#include "support/kinds.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -29,54 +32,53 @@ std::string value_in_row(const WaypointTable& table, std::size_t i) {
   return {};
 }
 
-/// Why a row was not accepted, with its line and the offending value.
-std::string refusal_message(const WaypointTable& table, std::size_t i, ipc::AppendStatus status,
-                            core::Time interval) {
-  std::string row = fmt::format("{}: waypoint refused: {}", table.where(i), ipc::to_string(status));
-  switch (status) {
-    case ipc::AppendStatus::not_finite:
-      return fmt::format("{}: {}", row, value_in_row(table, i));
-    case ipc::AppendStatus::duplicate:
-    case ipc::AppendStatus::out_of_order:
-    case ipc::AppendStatus::too_close:
-    case ipc::AppendStatus::too_far_apart:
-      return fmt::format("{}: time {} ns, {} ns after the waypoint before", row,
-                         table.times[i].count(), interval.count());
-    default:
-      return row;
-  }
-}
-
-/// What the ring would say to the rows of a table, said before anything is sent.
+/// What the ring or the solver would refuse of a table's rows, said before anything is sent.
 class RowCheck {
  public:
-  RowCheck(const WaypointTable& table, const ipc::IngestLimits& limits)
-      : table_(&table), limits_(limits) {}
+  struct Objection {
+    std::string_view reason;
+    std::string message;  ///< with the row's line and the offending value
+  };
 
-  /// Judges row i against the last row that passed.
-  ipc::AppendStatus judge(std::size_t i) {
+  RowCheck(const WaypointTable& table, const ipc::IngestLimits& limits)
+      : table_(&table), kinds_(table.kinds), limits_(limits) {}
+
+  /// Why row i cannot be sent after the last row that could; nothing if it can.
+  std::optional<Objection> judge(std::size_t i) {
     const core::Waypoint row = table_->waypoint(i);
     if (!ipc::is_finite(row.position) || !ipc::is_finite(row.velocity) ||
         !ipc::is_finite(row.acceleration)) {
-      return ipc::AppendStatus::not_finite;
+      return refused(i, ipc::to_string(ipc::AppendStatus::not_finite), value_in_row(*table_, i));
     }
-    interval_ = row.time - last_;
+    if (const auto bad = zero_quaternion(*table_, kinds_, i)) {
+      return Objection{ipc::to_string(ipc::Refusal::zero_quaternion),
+                       fmt::format("{}: waypoint refused: {}", table_->where(i), *bad)};
+    }
+    const core::Time interval = row.time - last_;
     if (any_) {
-      const auto status = ipc::judge_interval(interval_, limits_);
-      if (status != ipc::AppendStatus::accepted) return status;
+      const auto status = ipc::judge_interval(interval, limits_);
+      if (status != ipc::AppendStatus::accepted) {
+        return refused(i, ipc::to_string(status),
+                       fmt::format("time {} ns, {} ns after the waypoint before", row.time.count(),
+                                   interval.count()));
+      }
     }
     any_ = true;
     last_ = row.time;
-    return ipc::AppendStatus::accepted;
+    return std::nullopt;
   }
-  [[nodiscard]] core::Time interval() const { return interval_; }
 
  private:
+  [[nodiscard]] Objection refused(std::size_t i, std::string_view why,
+                                  const std::string& value) const {
+    return {why, fmt::format("{}: waypoint refused: {}: {}", table_->where(i), why, value)};
+  }
+
   const WaypointTable* table_;
+  core::DimensionKinds kinds_;
   ipc::IngestLimits limits_;
   bool any_ = false;
   core::Time last_{};
-  core::Time interval_{};
 };
 
 }  // namespace
@@ -121,13 +123,10 @@ void drop_unfit_rows(WaypointTable& table, const ipc::IngestLimits& limits, Refu
   WaypointTable good = table.without_rows();
   RowCheck check(table, limits);
   for (std::size_t i = 0; i < table.size(); ++i) {
-    const auto status = check.judge(i);
-    if (status != ipc::AppendStatus::accepted) {
-      const std::string message = refusal_message(table, i, status, check.interval());
-      if (skipped == nullptr) throw InputError(message);
-      skipped->add(
-          {.by = RefusedBy::file, .reason = ipc::to_string(status), .line = table.lines[i]},
-          message);
+    if (const auto objection = check.judge(i)) {
+      if (skipped == nullptr) throw InputError(objection->message);
+      skipped->add({.by = RefusedBy::file, .reason = objection->reason, .line = table.lines[i]},
+                   objection->message);
       continue;
     }
     good.append_row(table, i);

@@ -16,12 +16,21 @@ std::string clock_name(const ipc::RegionHeader& header) {
   return ipc::stream_clock(header) == ipc::StreamClock::monotonic ? "live" : "recorded";
 }
 
+ordered_json kinds_json(const ipc::RegionHeader& header) {
+  ordered_json kinds = ordered_json::array();
+  for (const core::Dimension& dimension : ipc::dimensions_of(header)) {
+    kinds.push_back(core::to_string(dimension));
+  }
+  return kinds;
+}
+
 /// What both headers say; the producer's if it stands.
 ordered_json stream_json(const ipc::RegionHeader& header) {
   return {
       {"stream_id", header.stream_id},
       {"dimensions", header.dimensions},
       {"names", ipc::dimension_names(header)},
+      {"kinds", kinds_json(header)},
       {"clock", clock_name(header)},
       {"start", core::to_string(ipc::start_condition(header))},
       {"min_interval_ns", header.min_interval},
@@ -101,6 +110,7 @@ ordered_json solver_json(const ipc::StreamInfo& info) {
       {"newest_knot_ns", head.newest_knot.count()},
       {"committed_ns", head.committed.count()},
       {"withdrawn", head.withdrawn},
+      {"controls", head.controls},
       {"depth_ns", depth(info)},
       {"low_water_ns", has_low_water ? ordered_json(head.low_water.count()) : ordered_json()},
       {"starved", head.starved},

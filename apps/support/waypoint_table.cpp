@@ -13,6 +13,7 @@
 
 #include "splinecast/core/state.hpp"
 #include "splinecast/ipc/waypoint_ring.hpp"
+#include "support/kinds.hpp"
 #include "support/table_format.hpp"
 #include "support/text_file.hpp"
 
@@ -25,12 +26,14 @@ std::string column_list(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// i of a column named `<letter>[i]`, else kNone.
-std::size_t index_of(std::string_view name, char letter) {
-  if (name.size() < 4 || name[0] != letter || name[1] != '[' || name.back() != ']') return kNone;
+/// i of a column named `<word>[i]`, else kNone.
+std::size_t index_of(std::string_view name, std::string_view word) {
+  if (!name.starts_with(word) || !name.ends_with(']')) return kNone;
+  name.remove_prefix(word.size());
+  if (name.size() < 3 || name[0] != '[') return kNone;
   std::size_t index = 0;
   const char* const end = name.data() + name.size() - 1;
-  const auto [last, error] = std::from_chars(name.data() + 2, end, index);
+  const auto [last, error] = std::from_chars(name.data() + 1, end, index);
   return error == std::errc{} && last == end ? index : kNone;
 }
 
@@ -64,6 +67,15 @@ class TableReader {
     return names;
   }
 
+  /// The kinds of the position columns.
+  [[nodiscard]] std::vector<core::Dimension> kinds(const std::vector<KindOption>& asked) const {
+    std::vector<std::string> aliases;
+    for (const std::size_t field : roles_.positions) {
+      if (!format_.aliases.empty()) aliases.push_back(format_.aliases[field]);
+    }
+    return resolve_kinds(name(), {.names = position_names(), .aliases = aliases}, asked);
+  }
+
   /// Finds out which columns hold positions and given derivatives.
   void find_values(const std::vector<std::string>& selected) {
     const std::vector<std::size_t> all = position_columns();
@@ -87,8 +99,8 @@ class TableReader {
       throw InputError(fmt::format("{}: {} position columns; at most {} dimensions are possible",
                                    name(), roles_.positions.size(), core::kMaxDimensions));
     }
-    roles_.velocities = derivative_columns('v', all);
-    roles_.accelerations = derivative_columns('a', all);
+    roles_.velocities = derivative_columns("v", all);
+    roles_.accelerations = derivative_columns("a", all);
   }
 
   /// The fields of the next row, or false at the end. Throws for a row of another width.
@@ -164,8 +176,8 @@ class TableReader {
     std::vector<std::size_t> columns;
     for (std::size_t c = 0; c < format_.names.size(); ++c) {
       const std::string& column_name = format_.names[c];
-      if (c == roles_.time || index_of(column_name, 'v') != kNone ||
-          index_of(column_name, 'a') != kNone || is_sampled_jerk(column_name)) {
+      if (c == roles_.time || index_of(column_name, "v") != kNone ||
+          index_of(column_name, "a") != kNone || is_sampled(column_name)) {
         continue;
       }
       if (is_numeric(c)) {
@@ -192,11 +204,14 @@ class TableReader {
     return false;
   }
 
-  /// j[i] beside p[i], v[i] and a[i]: samples that this program wrote, whose jerk is no position.
-  [[nodiscard]] bool is_sampled_jerk(const std::string& column_name) const {
-    const std::size_t i = index_of(column_name, 'j');
+  /// j[i] beside p[i], v[i] and a[i], omega[i] and alpha[i] behind j[0]: samples that this program
+  /// wrote, whose jerk and angular motion are no positions.
+  [[nodiscard]] bool is_sampled(const std::string& column_name) const {
+    const bool is_angular =
+        index_of(column_name, "omega") != kNone || index_of(column_name, "alpha") != kNone;
+    const std::size_t i = is_angular ? 0 : index_of(column_name, "j");
     if (i == kNone) return false;
-    return std::ranges::all_of(std::string_view("pva"), [&](char letter) {
+    return std::ranges::all_of(std::string_view("pvaj"), [&](char letter) {
       return find(format_.names, fmt::format("{}[{}]", letter, i)) != kNone;
     });
   }
@@ -204,10 +219,10 @@ class TableReader {
   /// Columns of a given derivative, one per selected position, or none at all. `<letter>[i]` goes
   /// with the column p[i] if there is one, else with the file's i-th position column.
   [[nodiscard]] std::vector<std::size_t> derivative_columns(
-      char letter, const std::vector<std::size_t>& all) const {
+      std::string_view letter, const std::vector<std::size_t>& all) const {
     std::vector<std::size_t> columns;
     for (const std::size_t position : roles_.positions) {
-      std::size_t i = index_of(format_.names[position], 'p');
+      std::size_t i = index_of(format_.names[position], "p");
       if (i == kNone) {
         i = static_cast<std::size_t>(std::ranges::find(all, position) - all.begin());
       }
@@ -278,6 +293,7 @@ WaypointTable WaypointTable::without_rows() const {
   WaypointTable empty;
   empty.file = file;
   empty.names = names;
+  empty.kinds = kinds;
   return empty;
 }
 
@@ -300,6 +316,7 @@ WaypointTable read_waypoints(const std::string& path, const TableOptions& option
   WaypointTable table;
   table.file = reader.name();
   table.names = reader.position_names();
+  table.kinds = reader.kinds(options.kinds);
   std::vector<std::string_view> fields;
   std::vector<double> row;
   while (reader.next(fields)) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/time.hpp"
 #include "splinecast/core/waypoint.hpp"
 #include "support/exit_codes.hpp"
@@ -14,9 +15,17 @@
 
 namespace splinecast::apps {
 
+/// A kind that is asked for: of a dimension by name, or by index from 0; of a quaternion, the
+/// first.
+struct KindOption {
+  std::string dimension;
+  core::Dimension kind{};
+};
+
 /// How a waypoint file is to be read.
 struct TableOptions {
   std::vector<std::string> columns{};   ///< position columns, in this order; none: all numeric
+  std::vector<KindOption> kinds{};      ///< of dimensions; else by the columns' names
   std::optional<TimeUnit> time_unit{};  ///< overrides what the time column's name says
   /// Called with the line of each row that cannot be read, which is then left out; unset: the first
   /// one throws.
@@ -27,7 +36,8 @@ struct TableOptions {
 class WaypointTable {
  public:
   std::string file;
-  std::vector<std::string> names;  ///< of the position columns
+  std::vector<std::string> names;      ///< of the position columns
+  std::vector<core::Dimension> kinds;  ///< of these; none: all linear
   std::vector<core::Time> times;
   std::vector<std::size_t> lines;     ///< line of each waypoint in the file, from 1
   std::vector<double> positions;      ///< [waypoint][dimension]

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <initializer_list>
+#include <stdexcept>
 #include <string>
 
 #include "splinecast/core/condition.hpp"
@@ -33,6 +34,17 @@ void require_range(const char* what, std::uint64_t found, std::uint64_t least, s
                   ", not between " + std::to_string(least) + " and " + std::to_string(most));
 }
 
+void require_dimension_kinds(const RegionHeader& header) {
+  for (std::size_t d = 0; d < header.dimensions; ++d) {
+    require_range("kind of dimension", header.dimension_kind[d], 0, core::kDimensionKinds - 1);
+  }
+  try {
+    (void)core::DimensionKinds(dimensions_of(header));
+  } catch (const std::invalid_argument& error) {
+    throw BadRegion(std::string("region has dimensions that cannot be: ") + error.what());
+  }
+}
+
 /// What both kinds of region share.
 void require_common(const RegionHeader& header, RegionKind kind, std::size_t real_bytes,
                     std::size_t max_capacity) {
@@ -44,6 +56,7 @@ void require_common(const RegionHeader& header, RegionKind kind, std::size_t rea
   require(header.kind == static_cast<std::uint64_t>(kind), "kind", header.kind,
           static_cast<std::uint64_t>(kind));
   require_range("dimensions", header.dimensions, core::kMinDimensions, core::kMaxDimensions);
+  require_dimension_kinds(header);
   require(header.order == core::kMaxOrder, "order", header.order, core::kMaxOrder);
   require_range("capacity", header.capacity, 2, max_capacity);
   require(std::has_single_bit(header.capacity), "capacity", header.capacity,
@@ -163,6 +176,15 @@ RegionHeader copy_header(std::span<const std::byte> region) {
   RegionHeader header{};
   std::memcpy(&header, copy.data(), sizeof header);
   return header;
+}
+
+std::vector<core::Dimension> dimensions_of(const RegionHeader& header) {
+  std::vector<core::Dimension> dimensions;
+  for (std::size_t d = 0; d < header.dimensions; ++d) {
+    dimensions.push_back({.kind = static_cast<core::DimensionKind>(header.dimension_kind[d]),
+                          .period = header.period[d]});
+  }
+  return dimensions;
 }
 
 RingLayout checked_ring_layout(const RegionHeader& header, std::size_t real_bytes) {

@@ -79,6 +79,7 @@ void require_no_contradiction(const std::string& stream, const RegionHeader& sta
     contradict("start condition " + to_string(start_condition(stands)) + ", not " +
                to_string(options.start));
   }
+  if (dimensions_of(wanted) != dimensions_of(stands)) contradict("other dimension kinds");
   if (wanted.name != stands.name) contradict("other dimension names");
   if (wanted.unit != stands.unit) contradict("other units");
   if (wanted.min_interval != stands.min_interval || wanted.max_interval != stands.max_interval) {
@@ -221,6 +222,7 @@ core::Time Producer::earliest() noexcept { return impl_->solved().settled_until;
 
 AppendStatus Producer::finish(const core::Condition& end) {
   core::require_values(end, impl_->ring.header.dimensions);
+  dimension_kinds(impl_->ring.header).require_end(end);
   if (!core::is_online(end.kind)) {
     throw BadRequest("end condition '" + core::to_string(end) +
                      "' needs all waypoints at once: a stream cannot meet it");

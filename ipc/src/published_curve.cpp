@@ -1,6 +1,7 @@
 #include "splinecast/ipc/published_curve.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "splinecast/core/limits.hpp"
 #include "splinecast/core/splice.hpp"
@@ -14,10 +15,11 @@ constexpr Word kLookBack = 16;
 }  // namespace
 
 PublishedCurve::PublishedCurve(SegmentBoardWriter& board, const SegmentBoardReader& published,
-                               const core::WindowOptions& options)
+                               const core::WindowOptions& options, core::DimensionKinds kinds)
     : board_(&board),
       published_(&published),
       window_(published.dimensions(), options),
+      kinds_(std::move(kinds)),
       segment_(published.dimensions()),
       copy_(published.dimensions()),
       state_(published.dimensions()),
@@ -40,6 +42,11 @@ core::Time PublishedCurve::settled_until() const noexcept {
   if (window_.is_entered() && open == 0) return window_.entry().time();
   const std::size_t first = window_.is_entered() ? open - 1 : open;
   return window_.knot(std::min(first, knots - 1)).time;
+}
+
+std::span<const double> PublishedCurve::newest_position() const noexcept {
+  if (window_.knots() > 0) return window_.knot(window_.knots() - 1).waypoint;
+  return window_.is_entered() ? window_.entry().state().position : std::span<const double>{};
 }
 
 void PublishedCurve::freeze(core::Time t) noexcept {
@@ -138,6 +145,8 @@ void PublishedCurve::enter(core::Time t) noexcept {
     run_ = cut;  // the run takes its place, and begins with the same step
     published_->copy_step(copy_, entry_step_);
   }
+  const core::StateRef state = state_.ref();
+  kinds_.normalise_quaternions(state.position, state.velocity, state.acceleration);
   window_.enter({.time = t,
                  .position = state_.position(),
                  .velocity = state_.velocity(),

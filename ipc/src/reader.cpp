@@ -45,7 +45,7 @@ struct Reader::Impl {
         region(std::move(mapped)),
         header(described),
         board(region.bytes(), layout),
-        sampler(board, stream_clock(described)) {}
+        sampler(board, stream_clock(described), dimension_kinds(described)) {}
 
   /// Maps the stream's board, or returns nothing if there is none now.
   static std::unique_ptr<Impl> open(const std::string& stream, const Trust& trust) {
@@ -127,6 +127,7 @@ Alive Reader::alive() const noexcept {
 const RegionHeader& Reader::header() const noexcept { return impl_->header; }
 StreamClock Reader::clock() const noexcept { return stream_clock(impl_->header); }
 std::vector<std::string> Reader::names() const { return dimension_names(impl_->header); }
+core::DimensionKinds Reader::kinds() const { return dimension_kinds(impl_->header); }
 bool Reader::is_memory_locked() const noexcept { return impl_->region.is_memory_locked(); }
 
 }  // namespace splinecast::ipc

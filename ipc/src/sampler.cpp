@@ -1,6 +1,7 @@
 #include "splinecast/ipc/sampler.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "splinecast/core/segment.hpp"
 
@@ -25,9 +26,10 @@ void come_to_rest(core::StateRef out) noexcept {
 
 }  // namespace
 
-Sampler::Sampler(const SegmentBoardReader& board, StreamClock clock)
+Sampler::Sampler(const SegmentBoardReader& board, StreamClock clock, core::DimensionKinds kinds)
     : board_(&board),
       clock_(clock),
+      kinds_(std::move(kinds)),
       copies_{SegmentCopy(board.dimensions()), SegmentCopy(board.dimensions())} {}
 
 SampleStatus Sampler::sample(core::Time t, core::StateRef out) noexcept {
@@ -162,12 +164,18 @@ bool Sampler::number_by_cells(core::Time t, Word& number) const noexcept {
   return true;
 }
 
+/// Evaluates a segment u seconds after its left end, in the form in which dimensions are read.
+void Sampler::read(const SegmentCopy& segment, double u, core::StateRef out) const noexcept {
+  core::evaluate(segment.order, segment.coefficients, u, out);
+  if (!kinds_.all_linear()) kinds_.normalise(out);
+}
+
 SampleStatus Sampler::evaluate(const SegmentCopy& segment, core::Time t,
                                core::StateRef out) const noexcept {
   const bool past_end = t > segment.right || segment.kind == core::SegmentKind::hold ||
                         (t == segment.right && segment.kind == core::SegmentKind::stop_tail);
   const core::Time at = past_end ? segment.right : t;
-  core::evaluate(segment.order, segment.coefficients, seconds_after(segment.left, at), out);
+  read(segment, seconds_after(segment.left, at), out);
   if (past_end) come_to_rest(out);
   if (head_.finished && t <= segment.right) return SampleStatus::settled;
   if (past_end) return SampleStatus::holding;
@@ -182,7 +190,7 @@ SampleStatus Sampler::hold_first(core::StateRef out) noexcept {
   const auto velocity =
       std::span(first.coefficients).subspan(out.velocity.size()).first(out.velocity.size());
   if (std::ranges::any_of(velocity, [](double v) { return v != 0; })) return SampleStatus::no_data;
-  core::evaluate(first.order, first.coefficients, 0, out);
+  read(first, 0, out);
   come_to_rest(out);
   return SampleStatus::holding;
 }
@@ -194,7 +202,7 @@ SampleStatus Sampler::from_own_copy(core::Time t, core::StateRef out) noexcept {
   if (own.tag == 0 || t < own.left || t >= own.right || t >= copied_settled_until_) {
     return SampleStatus::busy;
   }
-  core::evaluate(own.order, own.coefficients, seconds_after(own.left, t), out);
+  read(own, seconds_after(own.left, t), out);
   return SampleStatus::settled;
 }
 

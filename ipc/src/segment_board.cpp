@@ -162,6 +162,7 @@ void SegmentBoardWriter::commit(Head& head) noexcept {
   put(cell[kHeadMisses], head.misses);
   put(cell[kHeadRevisions], head.revisions);
   put(cell[kHeadWithdrawn], head.withdrawn);
+  put(cell[kHeadControls], head.controls);
   for (std::size_t i = 0; i < kRefusalReasons; ++i) put(cell[kHeadReasons + i], head.reasons[i]);
   for (std::size_t i = 0; i < kHeadChangesKept; ++i) put(cell[kHeadChanges + i], changes_[i]);
   store(control_[kRevision], r, std::memory_order_release);  // W3
@@ -237,6 +238,7 @@ bool SegmentBoardReader::copy_head(Word r, Head& out) const noexcept {
   out.misses = word(kHeadMisses);
   out.revisions = word(kHeadRevisions);
   out.withdrawn = word(kHeadWithdrawn);
+  out.controls = word(kHeadControls);
   for (std::size_t i = 0; i < kRefusalReasons; ++i) out.reasons[i] = word(kHeadReasons + i);
   return has_sane_bounds(out);
 }

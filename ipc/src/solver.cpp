@@ -246,7 +246,8 @@ struct Attachment {
       : ring(std::move(producer)),
         board(std::move(own)),
         solver(ring.ring, board.writer, board.reader, window_options(board.header),
-               ingest_limits(ring.header), live_options(board.header)) {}
+               ingest_limits(ring.header), dimension_kinds(ring.header),
+               live_options(board.header)) {}
 };
 
 struct Solver::Impl {

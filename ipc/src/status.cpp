@@ -60,6 +60,8 @@ std::string_view to_string(Refusal refusal) noexcept {
       return "lacks derivatives";
     case Refusal::lag_too_short:
       return "lag too short";
+    case Refusal::zero_quaternion:
+      return "quaternion of length 0";
   }
   return "unknown";
 }

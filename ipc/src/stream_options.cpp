@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <span>
+#include <stdexcept>
 
 #include "splinecast/ipc/errors.hpp"
 
@@ -35,6 +36,23 @@ std::vector<std::string> texts_of(
   std::vector<std::string> out;
   for (std::size_t d = 0; d < dimensions; ++d) out.push_back(text_of(texts[d]));
   return out;
+}
+
+void put_kinds(const ProducerOptions& options, RegionHeader& header) {
+  const std::vector<core::Dimension>& kinds = options.kinds;
+  if (!kinds.empty() && kinds.size() != options.dimensions) {
+    throw BadRequest(std::to_string(kinds.size()) + " kinds for " +
+                     std::to_string(options.dimensions) + " dimensions");
+  }
+  try {
+    (void)core::DimensionKinds(kinds);
+  } catch (const std::invalid_argument& error) {
+    throw BadRequest(error.what());
+  }
+  for (std::size_t d = 0; d < kinds.size(); ++d) {
+    header.dimension_kind[d] = static_cast<std::uint64_t>(kinds[d].kind);
+    header.period[d] = kinds[d].period;
+  }
 }
 
 Word& header_word(std::span<std::byte> region, std::size_t offset) noexcept {
@@ -74,6 +92,7 @@ RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id
   header.max_interval = options.limits.max_interval.count();
   header.start_kind = static_cast<std::uint64_t>(options.start.kind);
   std::ranges::copy(options.start.value, header.start_value.begin());
+  put_kinds(options, header);
   put_texts(options.names, options.dimensions, "names", header.name);
   put_texts(options.units, options.dimensions, "units", header.unit);
   return header;
@@ -95,6 +114,10 @@ std::vector<std::string> dimension_names(const RegionHeader& header) {
 
 std::vector<std::string> dimension_units(const RegionHeader& header) {
   return texts_of(header.unit, header.dimensions);
+}
+
+core::DimensionKinds dimension_kinds(const RegionHeader& header) {
+  return core::DimensionKinds(dimensions_of(header));
 }
 
 IngestLimits ingest_limits(const RegionHeader& header) noexcept {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace splinecast::ipc {
 namespace {
@@ -39,6 +40,15 @@ core::Waypoint waypoint_of(const RingItem& item) noexcept {
   return waypoint;
 }
 
+core::WaypointValues values_of(RingItem& item) noexcept {
+  const std::size_t dimensions = item.values.size() / 3;
+  const auto values = std::span(item.values);
+  core::WaypointValues all{.position = values.first(dimensions)};
+  if (item.has_velocity) all.velocity = values.subspan(dimensions, dimensions);
+  if (item.has_acceleration) all.acceleration = values.last(dimensions);
+  return all;
+}
+
 /// Segments that one item may add: a hold, a splice, and what goes back at a finish.
 constexpr std::size_t kAddedByItem = 4;
 
@@ -50,13 +60,14 @@ std::size_t StreamSolver::min_capacity(std::size_t settle) noexcept {
 
 StreamSolver::StreamSolver(const WaypointRingReader& ring, SegmentBoardWriter& board,
                            const SegmentBoardReader& published, const core::WindowOptions& window,
-                           const IngestLimits& limits, const std::optional<LiveOptions>& live)
+                           const IngestLimits& limits, core::DimensionKinds kinds,
+                           const std::optional<LiveOptions>& live)
     : ring_(&ring),
       board_(&board),
       published_(&published),
       limits_(limits),
       live_(live),
-      curve_(board, published, window),
+      curve_(board, published, window, std::move(kinds)),
       max_batch_(std::min(kMaxBatch, board.capacity() / 2 - changed_besides(window.settle))),
       item_(ring.dimensions()),
       followers_(kFollowers, RingItem(ring.dimensions())) {
@@ -148,9 +159,8 @@ void StreamSolver::withdraw(Word available) noexcept {
   if (replacement == available) return;
   const core::Time t = ring_->time(replacement);
   if (t < settled_until_ || t > newest) return;  // it waits for its turn
-  for (; head_.consumed < replacement; ++head_.consumed) {
-    if (ring_->kind(head_.consumed) == ItemKind::waypoint) ++head_.withdrawn;
-  }
+  head_.withdrawn += replacement - head_.consumed;
+  head_.consumed = replacement;
 }
 
 void StreamSolver::take(Word number) noexcept {
@@ -175,6 +185,7 @@ std::optional<Refusal> StreamSolver::has_right_form(const core::Waypoint& waypoi
       !is_finite(waypoint.acceleration)) {
     return Refusal::not_finite;
   }
+  if (!curve_.kinds().takes(waypoint.position)) return Refusal::zero_quaternion;
   if (!curve_.window().takes(waypoint)) return Refusal::lacks_derivatives;
   if (!is_time_in_range(waypoint.time)) return Refusal::too_far_apart;
   return std::nullopt;
@@ -212,6 +223,8 @@ void StreamSolver::take_waypoint(Word number) noexcept {
   if (const auto refusal = judge(waypoint)) return refuse(number, *refusal);
   const bool starved = is_starved();
   if (starved) curve_.enter(settled_until_);
+  // What `waypoint` looks at.
+  curve_.kinds().continue_from(curve_.newest_position(), values_of(item_));
   if (!can_append(number)) {
     // It cannot be reached with the acceleration allowed. The curve stays as it was committed.
     if (starved) discard();
@@ -237,6 +250,7 @@ bool StreamSolver::can_append(Word number) noexcept {
         item.kind == ItemKind::waypoint && has_right_form(next) == std::nullopt &&
         judge_interval(next.time - first[count - 1].time, limits_) == AppendStatus::accepted;
     if (!follows) break;
+    curve_.kinds().continue_from(first[count - 1].position, values_of(item));
     first[count++] = next;
   }
   return curve_.can_append(std::span(first).first(count));
@@ -259,6 +273,7 @@ void StreamSolver::take_replacement(Word number) noexcept {
     while (head_.consumed < end) refuse(head_.consumed++, Refusal::too_late);
     return;
   }
+  ++head_.controls;
   // One revision, as far as the board has room.
   batch_limit_ += std::min<Word>(item_.count, board_->capacity() / 2);
   // Where nothing moves any more and nothing is to come, there is nothing to withdraw.
@@ -279,6 +294,7 @@ void StreamSolver::take_start_state(Word number) noexcept {
   }
   if (!is_time_in_range(state.time)) return refuse(number, Refusal::too_far_apart);
   if (live_ && state.time < settled_until_) return refuse(number, Refusal::past);
+  ++head_.controls;
   curve_.begin({.time = state.time,
                 .position = state.position,
                 .velocity = state.velocity,
@@ -302,6 +318,7 @@ void StreamSolver::take_finish(Word number) noexcept {
   }
   if (curve_.has_begun()) curve_.finish(end_, settled_until_);
   head_.finished = true;
+  ++head_.controls;
 }
 
 void StreamSolver::refuse(Word number, Refusal reason) noexcept {

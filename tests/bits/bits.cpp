@@ -34,7 +34,11 @@ class Random {
 };
 
 void write(const std::string& stream) {
+  using splinecast::core::DimensionKind;
+  std::vector<splinecast::core::Dimension> kinds(kDimensions, {.kind = DimensionKind::quaternion});
+  kinds[0] = {.kind = DimensionKind::wrap, .period = 0.3};
   ipc::Producer producer(stream, {.dimensions = kDimensions,
+                                  .kinds = kinds,
                                   .clock = ipc::StreamClock::recorded,
                                   .start = {splinecast::core::ConditionKind::halt, {}}});
   ipc::Solver solver(stream, {});

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <string>
@@ -69,6 +70,15 @@ TEST(Layout, AHeaderThatSaysSomethingElseIsRefusedWithTheValue) {
       {"control offset 8200", [](RegionHeader& h) { h.control = kHeaderBytes + 8; }},
       {"clock 7", [](RegionHeader& h) { h.clock = 7; }},
       {"item size 8", [](RegionHeader& h) { h.stride = 8; }},
+      {"kind of dimension 4", [](RegionHeader& h) { h.dimension_kind[1] = 4; }},
+      {"period nan",
+       [](RegionHeader& h) {
+         h.dimension_kind[1] = 1;
+         h.period[1] = std::nan("");
+       }},
+      {"dimension 0 has period 2", [](RegionHeader& h) { h.period[0] = 2; }},
+      {"at dimension 0 does not have four dimensions",
+       [](RegionHeader& h) { h.dimension_kind[0] = h.dimension_kind[1] = 2; }},
       {"size",
        [](RegionHeader& h) {
          h.capacity = 16;

@@ -21,7 +21,10 @@ void expect_trusted(const LiveWorld& world, std::uint64_t seed) {
   EXPECT_LT(report.unpublished_step, 1e-5) << "seed " << seed;
   EXPECT_LE(report.acceleration, 10 * world.ideal_peak()) << "seed " << seed;
   const Head& head = world.head();
-  EXPECT_LE(world.sent, head.knots + head.refused + head.withdrawn) << "seed " << seed;
+  // Nothing is lost silently, whoever was killed when.
+  EXPECT_EQ(head.consumed, head.knots + head.refused + head.withdrawn + head.controls)
+      << "seed " << seed;
+  EXPECT_EQ(head.consumed, world.items()) << "seed " << seed;
 }
 
 /// Where each waypoint comes when the one before it has been frozen, each is entered by a splice.

@@ -102,7 +102,7 @@ LiveWorld::LiveWorld(const WorldOptions& options)
       random_(options.seed),
       motion_(options.seed, options.dimensions),
       clock_(std::make_unique<WorldClock>(*this)),
-      stream_(options.dimensions, window_of(options, motion_), 256, 1024, kLimits,
+      stream_(options.dimensions, window_of(options, motion_), 256, 1024, kLimits, {},
               ipc::LiveOptions{}),
       sampler_(stream_.board.reader, ipc::StreamClock::monotonic),
       watch_(sampler_, options.dimensions),

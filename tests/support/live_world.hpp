@@ -62,6 +62,8 @@ class LiveWorld {
 
   [[nodiscard]] const apps::WatchReport& report() const { return watch_.report(); }
   [[nodiscard]] const ipc::Head& head() const { return stream_.solver.head(); }
+  /// Items that the ring has accepted.
+  [[nodiscard]] ipc::Word items() const { return stream_.ring.writer.head(); }
   /// Peak of the motion's own acceleration.
   [[nodiscard]] double ideal_peak() const;
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "splinecast/ipc/layout.hpp"
 #include "splinecast/ipc/segment_board.hpp"
@@ -76,6 +77,7 @@ struct MemoryStream {
   MemoryBoard board;
   core::WindowOptions window;
   ipc::IngestLimits limits;
+  core::DimensionKinds kinds;
   std::optional<ipc::LiveOptions> live;
   ipc::StreamSolver solver;
   FixedClock clock;
@@ -83,13 +85,15 @@ struct MemoryStream {
   explicit MemoryStream(std::size_t dimensions, core::WindowOptions how = {},
                         std::size_t ring_capacity = 64, std::size_t board_capacity = 1024,
                         ipc::IngestLimits solver_limits = {},
+                        core::DimensionKinds dimension_kinds = {},
                         std::optional<ipc::LiveOptions> how_live = {})
       : ring(dimensions, ring_capacity),
         board(dimensions, board_capacity),
         window(how),
         limits(solver_limits),
+        kinds(std::move(dimension_kinds)),
         live(how_live),
-        solver(ring.reader, board.writer, board.reader, window, limits, live) {}
+        solver(ring.reader, board.writer, board.reader, window, limits, kinds, live) {}
 
   ipc::AppendStatus append(const core::Waypoint& waypoint) {
     return ring.writer.append(waypoint, {board.reader.tail()});
@@ -117,7 +121,8 @@ struct MemoryStream {
   /// What happens when the solver is killed and another one comes.
   void replace_solver() {
     board.replace_writer();
-    solver = ipc::StreamSolver(ring.reader, board.writer, board.reader, window, limits, live);
+    solver =
+        ipc::StreamSolver(ring.reader, board.writer, board.reader, window, limits, kinds, live);
   }
 };
 

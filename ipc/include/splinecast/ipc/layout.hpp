@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/segment.hpp"
 #include "splinecast/core/state.hpp"
 #include "splinecast/ipc/names.hpp"
@@ -27,13 +29,6 @@ inline constexpr std::size_t kPage = 4096;
 
 inline constexpr std::size_t kNameBytes = 32;
 inline constexpr std::size_t kUnitBytes = 16;
-
-/// What a dimension's values are.
-enum class DimensionKind : std::uint64_t {
-  linear = 0,
-  wrap = 1,        ///< values repeat with the dimension's period: the curve takes the short way
-  quaternion = 2,  ///< one of four consecutive ones, in the order x y z w
-};
 
 /// The first bytes of both regions. Everything but epoch, owner_pid and owner_since is written
 /// before the region gets its name, and never again.
@@ -70,8 +65,8 @@ struct RegionHeader {
   std::int64_t min_splice;    ///< ns: length of the shortest splice
   std::array<std::uint64_t, 3> reserved;
   std::array<double, core::kMaxDimensions> start_value;
-  std::array<std::uint64_t, core::kMaxDimensions> dimension_kind;
-  std::array<double, core::kMaxDimensions> period;
+  std::array<std::uint64_t, core::kMaxDimensions> dimension_kind;  ///< core::DimensionKind
+  std::array<double, core::kMaxDimensions> period;                 ///< of `wrap`; else 0
   std::array<std::array<char, kNameBytes>, core::kMaxDimensions> name;
   std::array<std::array<char, kUnitBytes>, core::kMaxDimensions> unit;
   std::array<double, core::kMaxDimensions> max_acceleration;  ///< 0: no limit
@@ -137,6 +132,7 @@ inline constexpr std::size_t kHeadUnderruns = 14;
 inline constexpr std::size_t kHeadMisses = 15;
 inline constexpr std::size_t kHeadRevisions = 16;
 inline constexpr std::size_t kHeadWithdrawn = 17;
+inline constexpr std::size_t kHeadControls = 18;
 inline constexpr std::size_t kHeadReasons = 24;  ///< a counter per Refusal
 inline constexpr std::size_t kRefusalReasons = 16;
 inline constexpr std::size_t kHeadChanges = 40;  ///< changed_from of revision r at r mod 64
@@ -192,6 +188,9 @@ inline constexpr std::size_t kMaxBoardCapacity = std::size_t{1} << 22;
 /// this kind, layout, byte order and real size. Returns its layout.
 RingLayout checked_ring_layout(const RegionHeader& header, std::size_t real_bytes);
 BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_bytes);
+
+/// The kinds of a header's dimensions, one each; the header's numbers must be kinds.
+[[nodiscard]] std::vector<core::Dimension> dimensions_of(const RegionHeader& header);
 
 /// A name or unit of a header, up to its first zero byte.
 template <std::size_t N>

@@ -46,7 +46,7 @@ class Producer {
   [[nodiscard]] core::Time earliest() noexcept;
 
   /// Ends the stream at its last waypoint. Throws std::invalid_argument if the condition's values
-  /// do not fit the dimensions; otherwise as append.
+  /// do not fit the dimensions, or are not 0 in those of a quaternion; otherwise as append.
   [[nodiscard]] AppendStatus finish(const core::Condition& end);
 
   /// Waits until a solver has taken the stream up. Returns false after the timeout.

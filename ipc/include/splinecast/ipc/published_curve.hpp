@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/sliding_window.hpp"
 #include "splinecast/ipc/segment_board.hpp"
 
@@ -23,7 +24,7 @@ class PublishedCurve {
   /// Both are sides of one board, and outlive the curve. Throws std::invalid_argument for window
   /// options out of range.
   PublishedCurve(SegmentBoardWriter& board, const SegmentBoardReader& published,
-                 const core::WindowOptions& options);
+                 const core::WindowOptions& options, core::DimensionKinds kinds);
 
   /// Goes on from what has been committed, of which `head` is the head. O(K·D).
   void restore(const Head& head) noexcept;
@@ -32,6 +33,11 @@ class PublishedCurve {
   void discard(const Head& head) noexcept;
 
   [[nodiscard]] const core::SlidingWindow& window() const noexcept { return window_; }
+  [[nodiscard]] const core::DimensionKinds& kinds() const noexcept { return kinds_; }
+
+  /// The position that the next waypoint is to be near: of the newest waypoint of the run, or of
+  /// the state that it was entered from; empty if there is none.
+  [[nodiscard]] std::span<const double> newest_position() const noexcept;
 
   /// Whether anything has been changed since the last commit.
   [[nodiscard]] bool has_changes() const noexcept { return has_changes_; }
@@ -99,6 +105,7 @@ class PublishedCurve {
   SegmentBoardWriter* board_;
   const SegmentBoardReader* published_;
   core::SlidingWindow window_;
+  core::DimensionKinds kinds_;
   core::Segment segment_;  ///< scratch
   SegmentCopy copy_;       ///< scratch
   core::State state_;      ///< scratch

@@ -38,9 +38,10 @@ class Reader {
   [[nodiscard]] std::size_t dimensions() const noexcept { return dimensions_; }
 
   /// Evaluates position, velocity, acceleration and jerk at time `t` of the stream's clock into
-  /// `out`, one value per dimension in each span. Wait-free: no system call, no allocation, no
-  /// store to shared memory, whatever the writers do. O(D) where time advances, O(log n + D) at a
-  /// jump. Where the status has no values, `out` is left as it was.
+  /// `out`, one value per dimension in each span; a wrapping position within half a period of 0, a
+  /// quaternion at unit length (core::angular_motion gives its ω and α). Wait-free: no system call,
+  /// no allocation, no store to shared memory, whatever the writers do. O(D) where time advances,
+  /// O(log n + D) at a jump. Where the status has no values, `out` is left as it was.
   [[nodiscard]] SampleStatus sample(core::Time t, core::StateRef out) noexcept {
     return sampler_->sample(t, out);
   }
@@ -56,6 +57,9 @@ class Reader {
   [[nodiscard]] SampleStatus preview(core::Time t, core::State& out) noexcept {
     return preview(t, out.ref());
   }
+
+  /// What `sample` asks: for code that works on streams in plain memory as well.
+  [[nodiscard]] Sampler& sampler() noexcept { return *sampler_; }
 
   /// The time before which what the last sample saw never changes.
   [[nodiscard]] core::Time settled_until() const noexcept { return sampler_->settled_until(); }
@@ -83,6 +87,7 @@ class Reader {
   [[nodiscard]] const RegionHeader& header() const noexcept;
   [[nodiscard]] StreamClock clock() const noexcept;
   [[nodiscard]] std::vector<std::string> names() const;
+  [[nodiscard]] core::DimensionKinds kinds() const;
   [[nodiscard]] bool is_memory_locked() const noexcept;
 
  private:

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/state.hpp"
 #include "splinecast/core/time.hpp"
 #include "splinecast/ipc/clock.hpp"
@@ -43,13 +44,13 @@ class Snapshot {
 class Sampler {
  public:
   /// `board` is read as often as sampled; `clock` says whether a hold stands before the first
-  /// waypoint.
-  Sampler(const SegmentBoardReader& board, StreamClock clock);
+  /// waypoint; `kinds` are those of the board's dimensions.
+  Sampler(const SegmentBoardReader& board, StreamClock clock, core::DimensionKinds kinds = {});
 
-  /// Evaluates the curve at `t` into `out`, whose spans have one value per dimension. Wait-free:
-  /// no system call, no allocation; O(D) where `t` lies in the segment used last or the next one,
-  /// O(log n + D) elsewhere; a bounded number of tries. Where the status has no values, `out` is
-  /// left as it was.
+  /// Evaluates the curve at `t`, in the form in which its dimensions are read, into `out`, whose
+  /// spans have one value per dimension. Wait-free: no system call, no allocation; O(D) where `t`
+  /// lies in the segment used last or the next one, O(log n + D) elsewhere; a bounded number of
+  /// tries. Where the status has no values, `out` is left as it was.
   ///
   /// On a live stream a sample counts as executed: if a revision since then changed the curve
   /// before the latest time sampled, the next one is `revised`, once. That happens only if the
@@ -65,7 +66,8 @@ class Sampler {
 
   /// Copies every segment that has a part between `from` and `to` (inclusive), all under one
   /// revision. Returns `settled` or `provisional` for the whole; `before_history`, `no_data`,
-  /// `busy` or `retired` leave `out` without segments. Allocates if `out` must grow.
+  /// `busy` or `retired` leave `out` without segments. The segments are the curve as it was solved,
+  /// before core::DimensionKinds::normalise. Allocates if `out` must grow.
   [[nodiscard]] SampleStatus snapshot(core::Time from, core::Time to, Snapshot& out);
 
   /// The revision that the last sample saw; 0 before the first.
@@ -83,6 +85,7 @@ class Sampler {
   [[nodiscard]] bool spans(const SegmentCopy& segment, core::Time t) const noexcept;
   [[nodiscard]] Word number_by_hint(core::Time t) const noexcept;
   [[nodiscard]] bool number_by_cells(core::Time t, Word& number) const noexcept;
+  void read(const SegmentCopy& segment, double u, core::StateRef out) const noexcept;
   [[nodiscard]] SampleStatus evaluate(const SegmentCopy& segment, core::Time t,
                                       core::StateRef out) const noexcept;
   [[nodiscard]] SampleStatus hold_first(core::StateRef out) noexcept;
@@ -92,6 +95,7 @@ class Sampler {
 
   const SegmentBoardReader* board_;
   StreamClock clock_;
+  core::DimensionKinds kinds_;
   Head head_;                                     ///< bounds under the revision last seen whole
   Word seen_ = 0;                                 ///< that revision
   core::Time sampled_until_ = core::Time::min();  ///< latest time sampled as executed

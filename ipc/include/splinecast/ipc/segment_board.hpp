@@ -34,12 +34,13 @@ struct Head {
   Word run_knots = 0;         ///< knots of the run
   bool is_entered = false;    ///< the run begins with a splice
   bool starved = false;       ///< a live stream's settled time has passed its newest knot
-  core::Time low_water = core::Time::max();     ///< least depth so far; max() before there was any
-  Word underruns = 0;                           ///< times that a live stream has starved
-  Word misses = 0;                              ///< revisions discarded because they came too late
-  Word revisions = 0;                           ///< revisions committed too late: readers are told
-  Word withdrawn = 0;                           ///< waypoints that a replacement withdrew unread
-  Word refused = 0;                             ///< items refused
+  core::Time low_water = core::Time::max();  ///< least depth so far; max() before there was any
+  Word underruns = 0;                        ///< times that a live stream has starved
+  Word misses = 0;                           ///< revisions discarded because they came too late
+  Word revisions = 0;                        ///< revisions committed too late: readers are told
+  Word withdrawn = 0;                        ///< items that a replacement withdrew unread
+  Word controls = 0;  ///< replacements, start states and finishes carried out
+  Word refused = 0;   ///< items refused
   std::array<Word, kRefusalReasons> reasons{};  ///< of these, by Refusal
 };
 

@@ -40,8 +40,9 @@ enum class Refusal : std::uint8_t {
   unknown_kind = 10,
   lacks_derivatives = 11,  ///< the method needs a velocity, or acceleration, that is not given
   lag_too_short = 12,      ///< the settle lag is too short for λ with waypoints so close
+  zero_quaternion = 13,    ///< a quaternion has length 0, of which no rotation can be made
 };
-inline constexpr std::uint8_t kRefusals = 13;
+inline constexpr std::uint8_t kRefusals = 14;
 
 /// What a sample is worth.
 enum class SampleStatus : std::uint8_t {

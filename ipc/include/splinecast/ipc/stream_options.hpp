@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "splinecast/core/condition.hpp"
+#include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/sliding_window.hpp"
 #include "splinecast/ipc/clock.hpp"
 #include "splinecast/ipc/layout.hpp"
@@ -17,9 +18,10 @@ namespace splinecast::ipc {
 
 /// What a producer fixes about its stream.
 struct ProducerOptions {
-  std::size_t dimensions = 1;        ///< 1 to 64
-  std::vector<std::string> names{};  ///< one per dimension, or none: up to 31 bytes each
-  std::vector<std::string> units{};  ///< likewise, up to 15 bytes each
+  std::size_t dimensions = 1;            ///< 1 to 64
+  std::vector<std::string> names{};      ///< one per dimension, or none: up to 31 bytes each
+  std::vector<std::string> units{};      ///< likewise, up to 15 bytes each
+  std::vector<core::Dimension> kinds{};  ///< one per dimension, or none: all linear
   StreamClock clock = StreamClock::monotonic;
   core::Condition start{.kind = core::ConditionKind::halt, .value = {}};
   IngestLimits limits{};
@@ -57,6 +59,7 @@ struct SolverOptions {
 [[nodiscard]] core::Condition start_condition(const RegionHeader& header);
 [[nodiscard]] std::vector<std::string> dimension_names(const RegionHeader& header);
 [[nodiscard]] std::vector<std::string> dimension_units(const RegionHeader& header);
+[[nodiscard]] core::DimensionKinds dimension_kinds(const RegionHeader& header);
 [[nodiscard]] IngestLimits ingest_limits(const RegionHeader& header) noexcept;
 [[nodiscard]] StreamClock stream_clock(const RegionHeader& header) noexcept;
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/sliding_window.hpp"
 #include "splinecast/ipc/clock.hpp"
 #include "splinecast/ipc/published_curve.hpp"
@@ -39,12 +40,13 @@ struct LiveOptions {
 class StreamSolver {
  public:
   /// `board` and `published` are the writing and the reading side of one board; with `ring` they
-  /// outlive the solver. `live` is set for a live stream. Goes on where the board says that a
-  /// solver before it stood. Throws std::invalid_argument for window options out of range
-  /// or a board too small for them.
+  /// outlive the solver. `kinds` are those of the ring's dimensions; `live` is set for a live
+  /// stream. Goes on where the board says that a solver before it stood. Throws
+  /// std::invalid_argument for window options out of range or a board too small for them.
   StreamSolver(const WaypointRingReader& ring, SegmentBoardWriter& board,
                const SegmentBoardReader& published, const core::WindowOptions& window,
-               const IngestLimits& limits, const std::optional<LiveOptions>& live = std::nullopt);
+               const IngestLimits& limits, core::DimensionKinds kinds = {},
+               const std::optional<LiveOptions>& live = std::nullopt);
 
   /// Takes what the ring holds, up to a bounded batch, and publishes the result as one revision; on
   /// a live stream also publishes how far the curve is settled, when that is due. O(batch·K·D).
