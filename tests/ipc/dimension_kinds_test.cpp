@@ -179,7 +179,9 @@ TEST(QuaternionStream, AQuaternionOfLengthZeroIsRefusedUnderItsNumber) {
 }
 
 TEST(QuaternionStream, HoldsAndStopsAtUnitLength) {
-  testing::MemoryStream stream(5, {.settle = 2}, 64, 1024, {}, pose_kinds());
+  const core::WindowOptions how{.settle = 2,
+                                .start = {.kind = core::ConditionKind::halt, .value = {}}};
+  testing::MemoryStream stream(5, how, 64, 1024, {}, pose_kinds());
   const testing::Coning coning;
   for (int i = 0; i < 20; ++i) {
     std::vector<double> x{0};

@@ -1,0 +1,159 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "splinecast/core/limits.hpp"
+#include "splinecast/core/sliding_window.hpp"
+#include "support/mesh.hpp"
+
+namespace splinecast::core {
+namespace {
+
+constexpr Time kMillisecond{1'000'000};
+
+/// x(t) = 1 + 2t − 3t² and its derivatives; of the second dimension twice as much.
+std::vector<double> parabola(Time t, int derivative) {
+  const double s = to_seconds(t);
+  const std::array<double, 3> x{1 + 2 * s - 3 * s * s, 2 - 6 * s, -6};
+  const double value = x[static_cast<std::size_t>(derivative)];
+  return {value, 2 * value};
+}
+
+struct Entered {
+  std::vector<double> x, v, a;
+  SlidingWindow window;
+
+  explicit Entered(Time t, WindowOptions how = {}, std::span<const Time> before = {})
+      : x(parabola(t, 0)), v(parabola(t, 1)), a(parabola(t, 2)), window(2, std::move(how)) {
+    std::vector<std::vector<double>> positions;
+    std::vector<StandingWaypoint> standing;
+    for (const Time b : before) positions.push_back(parabola(b, 0));
+    for (std::size_t i = 0; i < before.size(); ++i) standing.push_back({before[i], positions[i]});
+    window.enter({t, x, v, a}, standing);
+  }
+  void append(Time t) {
+    const auto position = parabola(t, 0);
+    window.append({.time = t, .position = position});
+  }
+  [[nodiscard]] Segment segment(std::size_t i) const {
+    Segment out(2);
+    window.segment(i, out);
+    return out;
+  }
+};
+
+void expect_parabola(const Segment& segment, double tolerance) {
+  State state(2);
+  const double h = to_seconds(segment.right - segment.left);
+  for (const double part : {0.0, 0.3, 1.0}) {
+    evaluate(segment.order, segment.coefficients, part * h, state.ref());
+    const Time t = segment.left + Time(std::llround(part * h * 1e9));
+    for (int r = 0; r < 3; ++r) {
+      const auto wanted = parabola(t, r);
+      const auto got = r == 0 ? state.position() : r == 1 ? state.velocity() : state.acceleration();
+      for (std::size_t d = 0; d < 2; ++d) EXPECT_NEAR(got[d], wanted[d], tolerance) << r;
+    }
+  }
+}
+
+TEST(EnteredRun, IsThePolynomialThatStateAndWaypointsLieOn) {
+  Entered run(5 * kMillisecond);
+  for (const int t : {17, 30, 37, 50, 62, 70, 81, 99, 110}) run.append(t * kMillisecond);
+  EXPECT_TRUE(run.window.is_entered());
+  EXPECT_EQ(run.window.segments(), 10U);
+  EXPECT_EQ(run.segment(0).kind, SegmentKind::splice);
+  EXPECT_EQ(run.segment(0).left, 5 * kMillisecond);
+  for (std::size_t i = 0; i + 1 < run.window.segments(); ++i) expect_parabola(run.segment(i), 1e-8);
+}
+
+TEST(EnteredRun, IsThePolynomialFromItsFirstWaypointOnIfTwoStandBefore) {
+  const std::vector<Time> before{-9 * kMillisecond, 2 * kMillisecond};
+  Entered run(5 * kMillisecond, {}, before);
+  run.append(17 * kMillisecond);
+  expect_parabola(run.segment(0), 1e-8);
+  run.append(29 * kMillisecond);
+  expect_parabola(run.segment(0), 1e-8);
+  expect_parabola(run.segment(1), 1e-7);
+}
+
+TEST(EnteredRun, WithoutAWaypointIsAStopTailFromItsState) {
+  Entered run(5 * kMillisecond);
+  ASSERT_EQ(run.window.segments(), 1U);
+  const Segment tail = run.segment(0);
+  EXPECT_EQ(tail.kind, SegmentKind::stop_tail);
+  State state(2);
+  evaluate(tail.order, tail.coefficients, 0, state.ref());
+  EXPECT_TRUE(std::ranges::equal(state.position(), run.x));
+  EXPECT_TRUE(std::ranges::equal(state.velocity(), run.v));
+}
+
+TEST(EnteredRun, AnAppendLeavesEverythingFrozenAlone) {
+  for (const std::size_t settle : {0U, 1U, 8U}) {
+    Entered run(5 * kMillisecond, {.settle = settle});
+    for (const int t : {17, 30, 37, 50}) run.append(t * kMillisecond);
+    run.window.freeze(31 * kMillisecond);  // within the segment from 30 to 37
+    std::vector<Segment> before;
+    for (std::size_t i = 0; i < 3; ++i) before.push_back(run.segment(i));
+    const std::vector<double> far{5, -5};
+    run.window.append({.time = 60 * kMillisecond, .position = far});
+    run.window.append({.time = 70 * kMillisecond, .position = far});
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(run.segment(i).coefficients, before[i].coefficients) << settle << ' ' << i;
+    }
+    EXPECT_GE(run.window.settled_segments(), 3U);
+  }
+}
+
+TEST(EnteredRun, GoesOnBitForBitWhereAWindowStoodThatDied) {
+  const std::vector<Time> before{-9 * kMillisecond, 2 * kMillisecond};
+  const std::vector<int> times{17, 30, 37, 50, 62, 70, 81, 99, 110, 120, 131, 140, 150};
+  for (std::size_t cut = 0; cut < times.size(); ++cut) {
+    Entered whole(5 * kMillisecond, {.settle = 4}, before);
+    for (std::size_t i = 0; i < cut; ++i) whole.append(times[i] * kMillisecond);
+    Entered next(5 * kMillisecond, {.settle = 4}, before);
+    const std::size_t kept = std::min(cut, whole.window.knots_to_restore());
+    std::vector<Knot> knots;
+    for (std::size_t i = cut - kept; i < cut; ++i) knots.push_back(whole.window.knot(i));
+    std::vector<std::vector<double>> positions{parabola(before[0], 0), parabola(before[1], 0)};
+    const std::vector<StandingWaypoint> standing{{before[0], positions[0]},
+                                                 {before[1], positions[1]}};
+    const RunEntry& entry = whole.window.entry();
+    next.window.restore_entered(
+        {.from = entry.state(), .before = standing, .acceleration = entry.acceleration()},
+        cut - kept, knots);
+    for (std::size_t i = cut; i < times.size(); ++i) {
+      whole.append(times[i] * kMillisecond);
+      next.append(times[i] * kMillisecond);
+      for (std::size_t s = whole.window.oldest_segment(); s < whole.window.segments(); ++s) {
+        if (cut > kept && s <= cut - kept) continue;
+        EXPECT_EQ(whole.segment(s).coefficients, next.segment(s).coefficients) << cut << ' ' << s;
+        EXPECT_EQ(whole.segment(s).acceleration_step, next.segment(s).acceleration_step);
+      }
+    }
+  }
+}
+
+TEST(EnteredRun, AWaypointThatNoSpliceReachesWithinTheLimitsIsNotTaken) {
+  Entered run(5 * kMillisecond, {.max_acceleration = {10, 20}});
+  const auto near = parabola(40 * kMillisecond, 0);
+  const auto next = parabola(60 * kMillisecond, 0);
+  const auto third = parabola(80 * kMillisecond, 0);
+  std::vector<Waypoint> waypoints{{.time = 40 * kMillisecond, .position = near},
+                                  {.time = 60 * kMillisecond, .position = next},
+                                  {.time = 80 * kMillisecond, .position = third}};
+  const std::vector<double> far{near[0] + 1, near[1]};
+  const Waypoint off_the_way{.time = 40 * kMillisecond, .position = far};
+  EXPECT_FALSE(run.window.can_append(std::span(&off_the_way, 1)));
+  EXPECT_EQ(run.window.knots(), 0U);
+  // The first one alone would be reached at rest, which is too hard; with those behind it it is
+  // not.
+  EXPECT_FALSE(run.window.can_append(std::span(waypoints).first(1)));
+  EXPECT_EQ(run.window.segments(), 1U);
+  EXPECT_EQ(run.segment(0).kind, SegmentKind::stop_tail);
+}
+
+}  // namespace
+}  // namespace splinecast::core
