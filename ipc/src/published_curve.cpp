@@ -56,7 +56,17 @@ void PublishedCurve::freeze(core::Time t) noexcept {
 }
 
 bool PublishedCurve::has_room(std::size_t segments, core::Time keep) const noexcept {
-  const Word newest = newest_ + segments;
+  return has_room_behind(has_changes_ ? number_of(window_.segments()) : newest_, segments, keep);
+}
+
+bool PublishedCurve::has_room_to_enter(core::Time t, std::size_t segments,
+                                       core::Time keep) const noexcept {
+  return has_room_behind(segment_at(t), segments, keep);
+}
+
+bool PublishedCurve::has_room_behind(Word number, std::size_t segments,
+                                     core::Time keep) const noexcept {
+  const Word newest = number + segments;
   if (newest <= board_->capacity() || newest - board_->capacity() < first_) return true;
   core::Time left{};
   core::Time right{};

@@ -133,15 +133,21 @@ Word StreamSolver::consume(core::Time now) noexcept {
   bool is_blocked = false;
   batch_limit_ = max_batch_;
   while (head_.consumed < available && batch < batch_limit_) {
-    // A replacement cuts what has been committed, and nothing else.
-    is_blocked = !curve_.has_room(kAddedByItem + batch, keep) ||
-                 (curve_.has_changes() && ring_->kind(head_.consumed) == ItemKind::replace);
+    is_blocked = !has_room(head_.consumed, keep);
     if (is_blocked) break;
     take(head_.consumed++);
     ++batch;
   }
   seen_ = is_blocked && !curve_.has_changes() ? available : head_.consumed;
   return head_.consumed - before;
+}
+
+/// Whether an item can be taken now: without losing what must be kept, and, as a replacement cuts
+/// what has been committed and nothing else, in this revision.
+bool StreamSolver::has_room(Word item, core::Time keep) const noexcept {
+  if (ring_->kind(item) != ItemKind::replace) return curve_.has_room(kAddedByItem, keep);
+  if (curve_.has_changes()) return false;
+  return !curve_.has_begun() || curve_.has_room_to_enter(ring_->time(item), kAddedByItem, keep);
 }
 
 /// Looks ahead for a replacement that withdraws waypoints before they are taken: the board may have

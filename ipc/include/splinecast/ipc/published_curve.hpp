@@ -58,8 +58,11 @@ class PublishedCurve {
   /// Keeps everything up to the right end of the segment that contains t as it has been committed.
   void freeze(core::Time t) noexcept;
 
-  /// Whether the board can take so many more segments without losing one that ends after `keep`.
+  /// Whether the board can take so many more segments without losing one that ends after `keep`;
+  /// likewise where the committed curve is cut at t first.
   [[nodiscard]] bool has_room(std::size_t segments, core::Time keep) const noexcept;
+  [[nodiscard]] bool has_room_to_enter(core::Time t, std::size_t segments,
+                                       core::Time keep) const noexcept;
 
   /// Begins the curve in a given state, instead of with a waypoint.
   void begin(const core::Instant& state) noexcept;
@@ -93,6 +96,8 @@ class PublishedCurve {
   /// Values of a restored knot, and of the standing waypoints before a run.
   static constexpr std::size_t kStanding = 2;
   [[nodiscard]] Word number_of(std::size_t segment) const noexcept { return run_ + segment; }
+  [[nodiscard]] bool has_room_behind(Word number, std::size_t segments,
+                                     core::Time keep) const noexcept;
   [[nodiscard]] Word segment_at(core::Time t) const noexcept;
   [[nodiscard]] std::span<const core::StandingWaypoint> standing_before(Word number, core::Time t,
                                                                         Word r) noexcept;

@@ -69,6 +69,7 @@ class StreamSolver {
   void restore();
   void freeze(core::Time now) noexcept;
   [[nodiscard]] Word consume(core::Time now) noexcept;
+  [[nodiscard]] bool has_room(Word item, core::Time keep) const noexcept;
   void withdraw(Word available) noexcept;
   void take(Word number) noexcept;
   void take_waypoint(Word number) noexcept;

@@ -1,0 +1,267 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include "splinecast/ipc/sampler.hpp"
+#include "support/memory_stream.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+using core::Time;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// A live stream of one dimension in plain memory whose clock stands at 100 s. Its motion is
+/// sin(t), in seconds from there.
+struct Live : testing::MemoryStream {
+  static constexpr Time kNow = seconds(100);
+
+  explicit Live(core::WindowOptions how = {}, std::size_t board = 1024, LiveOptions live = {})
+      : MemoryStream(1, from_halt(std::move(how)), 256, board, {}, {}, live),
+        sampler(this->board.reader, StreamClock::monotonic),
+        state(1) {
+    clock.time = kNow;
+  }
+
+  static core::WindowOptions from_halt(core::WindowOptions how) {
+    how.start = {.kind = core::ConditionKind::halt, .value = {}};
+    how.held_before_start = true;
+    return how;
+  }
+  static double x(Time t) { return std::sin(core::to_seconds(t - kNow)); }
+
+  AppendStatus put(Time t) {
+    const double position = x(t);
+    return ring.writer.append({.time = t, .position = std::span(&position, 1)}, solved());
+  }
+  WaypointRingWriter::Solved solved() { return {board.reader.tail(), solver.head().settled_until}; }
+  AppendStatus replace(Time t, const std::vector<Time>& times) {
+    std::vector<double> positions;
+    for (const Time at : times) positions.push_back(x(at));
+    std::vector<core::Waypoint> waypoints;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      waypoints.push_back({.time = times[i], .position = std::span(&positions[i], 1)});
+    }
+    return ring.writer.replace_from(t, waypoints, solved());
+  }
+  /// Appends waypoints every 10 ms from `from` to `to` after the start.
+  void put_all(int from_ms, int to_ms) {
+    for (int ms = from_ms; ms <= to_ms; ms += 10) {
+      ASSERT_EQ(put(kNow + milliseconds(ms)), AppendStatus::accepted) << ms;
+    }
+    drain();
+  }
+  double position_at(Time t) {
+    EXPECT_TRUE(has_values(sampler.preview(t, state.ref())));
+    return state.position()[0];
+  }
+  Word reason(Refusal refusal) const {
+    return solver.head().reasons[static_cast<std::size_t>(refusal)];
+  }
+
+  Sampler sampler;
+  core::State state;
+};
+
+TEST(LiveSolver, SettlesByTimeAndSaysSoWithoutWaypointsUntilTheMotionEnds) {
+  Live live;
+  live.put_all(50, 200);
+  EXPECT_EQ(live.solver.head().settled_until, Live::kNow + milliseconds(5));
+  EXPECT_EQ(live.solver.due(), Live::kNow + Time(2'500'000));
+  EXPECT_FALSE(live.solver.step(live.clock).published);
+  live.clock.time += milliseconds(3);
+  EXPECT_TRUE(live.solver.step(live.clock).published);
+  EXPECT_EQ(live.solver.head().settled_until, Live::kNow + milliseconds(8));
+  EXPECT_EQ(live.solver.head().changed_from, Time::max());
+  live.clock.time = Live::kNow + milliseconds(445);  // the stop tail ends at 450
+  EXPECT_TRUE(live.solver.step(live.clock).published);
+  EXPECT_EQ(live.solver.due(), Time::max());
+  EXPECT_EQ(live.sampler.sample(Live::kNow + milliseconds(460), live.state.ref()),
+            SampleStatus::holding);
+}
+
+TEST(LiveSolver, RefusesWhatHasGoneByAndSplicesWhatComesAfterAStarvation) {
+  Live live;
+  live.put_all(50, 200);
+  live.clock.time = Live::kNow + milliseconds(300);
+  live.solver.step(live.clock);
+  EXPECT_EQ(live.solver.head().underruns, 1U);
+  EXPECT_TRUE(live.solver.head().starved);
+  EXPECT_EQ(live.solver.head().low_water, Time::zero());
+  EXPECT_EQ(live.put(Live::kNow + milliseconds(304)), AppendStatus::past);
+  ASSERT_EQ(live.put(Live::kNow + milliseconds(307)), AppendStatus::accepted);  // too near
+  ASSERT_EQ(live.put(Live::kNow + milliseconds(350)), AppendStatus::accepted);
+  live.drain();
+  EXPECT_EQ(live.reason(Refusal::too_late), 1U);
+  EXPECT_EQ(live.board.reader.refusal(0).item, 16U);
+  EXPECT_FALSE(live.solver.head().starved);
+  EXPECT_EQ(live.solver.head().changed_from, Live::kNow + milliseconds(305));
+  EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(350)), std::sin(0.35), 1e-12);
+  EXPECT_EQ(live.solver.head().underruns, 1U);
+}
+
+TEST(LiveSolver, ReplacesTheFutureInOneRevisionAndLeavesWhatIsBeforeIt) {
+  Live live;
+  live.put_all(50, 500);
+  const Time t = Live::kNow + milliseconds(123);
+  const double before = live.position_at(t - milliseconds(1));
+  const Word revision = live.board.reader.revision();
+  ASSERT_EQ(live.replace(t, {t + milliseconds(20), t + milliseconds(33)}), AppendStatus::accepted);
+  live.drain();
+  EXPECT_EQ(live.board.reader.revision(), revision + 1);
+  EXPECT_EQ(live.solver.head().changed_from, t);
+  EXPECT_EQ(live.solver.head().newest_knot, t + milliseconds(33));
+  EXPECT_EQ(live.position_at(t - milliseconds(1)), before);
+  EXPECT_NEAR(live.position_at(t + milliseconds(20)), std::sin(0.143), 1e-12);
+  EXPECT_NEAR(live.position_at(t + milliseconds(33)), std::sin(0.156), 1e-12);
+  EXPECT_EQ(live.sampler.preview(t + milliseconds(40), live.state.ref()), SampleStatus::stopping);
+}
+
+TEST(LiveSolver, AReplacementByNothingIsAStopTailFromThere) {
+  Live live;
+  live.put_all(50, 500);
+  const Time t = Live::kNow + milliseconds(250);
+  ASSERT_EQ(live.replace(t, {}), AppendStatus::accepted);
+  live.drain();
+  EXPECT_EQ(live.sampler.preview(t, live.state.ref()), SampleStatus::stopping);
+  EXPECT_NEAR(live.state.velocity()[0], std::cos(0.25), 1e-3);
+  EXPECT_EQ(live.sampler.preview(t + milliseconds(251), live.state.ref()), SampleStatus::holding);
+}
+
+TEST(LiveSolver, AReplacementThatComesTooLateIsRefusedWithAllThatBelongsToIt) {
+  Live live;
+  live.put_all(50, 500);
+  EXPECT_EQ(live.replace(Live::kNow + milliseconds(4), {}), AppendStatus::too_late);
+  const Time t = Live::kNow + milliseconds(10);
+  ASSERT_EQ(live.replace(t, {t + milliseconds(20), t + milliseconds(30)}), AppendStatus::accepted);
+  ASSERT_EQ(live.put(Live::kNow + milliseconds(510)), AppendStatus::accepted);
+  live.clock.time += milliseconds(20);  // the solver wakes when it is too late
+  live.drain();
+  EXPECT_EQ(live.reason(Refusal::too_late), 3U);
+  EXPECT_EQ(live.solver.head().newest_knot, Live::kNow + milliseconds(510));
+  EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(400)), std::sin(0.4), 1e-12);
+}
+
+TEST(LiveSolver, KeepsItsHistoryAndWithdrawsWhatHasNotBeenTaken) {
+  Live live({.settle = 2}, 64, {.history = seconds(1)});
+  live.put_all(50, 2050);
+  const Head& head = live.solver.head();
+  EXPECT_LT(head.newest, 65U);
+  EXPECT_LT(head.consumed, live.ring.writer.head());
+  EXPECT_EQ(head.first, 1U);
+  EXPECT_FALSE(live.solver.step(live.clock).published);  // full: nothing may be overwritten
+  const Time t = Live::kNow + milliseconds(300);
+  ASSERT_EQ(live.replace(t, {}), AppendStatus::accepted);
+  live.drain();
+  EXPECT_EQ(head.consumed, live.ring.writer.head());
+  EXPECT_GT(head.withdrawn, 100U);
+  EXPECT_EQ(head.consumed, head.knots + head.refused + head.withdrawn + head.controls);
+  EXPECT_EQ(live.sampler.preview(t + milliseconds(300), live.state.ref()), SampleStatus::holding);
+}
+
+TEST(LiveSolver, AFinishBehindASettledKnotGoesBackToIt) {
+  for (const int late : {0, 100, 500}) {  // frozen, in the stop tail, and at rest
+    Live live;
+    live.put_all(50, 200);
+    live.clock.time = Live::kNow + milliseconds(196 + late);
+    live.solver.step(live.clock);
+    live.finish({.kind = core::ConditionKind::halt, .value = {}});
+    EXPECT_TRUE(live.solver.head().finished);
+    EXPECT_GT(live.solver.head().changed_from, live.clock.time);
+    const double end = live.position_at(Live::kNow + seconds(5));
+    EXPECT_NEAR(end, std::sin(0.2), 1e-12) << late;
+    EXPECT_EQ(live.sampler.preview(Live::kNow + seconds(5), live.state.ref()),
+              SampleStatus::holding);
+    // On the way there it has passed it.
+    EXPECT_GT(live.position_at(Live::kNow + milliseconds(400)), std::sin(0.2));
+  }
+}
+
+TEST(LiveSolver, StartsFromAGivenStateAndGivesNothingBeforeIt) {
+  Live live;
+  const Time t = Live::kNow + milliseconds(20);
+  const std::vector<double> position{std::sin(0.02)};
+  const std::vector<double> velocity{std::cos(0.02)};
+  const std::vector<double> acceleration{-std::sin(0.02)};
+  ASSERT_EQ(live.ring.writer.start_from({t, position, velocity, acceleration}, live.solved()),
+            AppendStatus::accepted);
+  EXPECT_EQ(live.ring.writer.start_from({t, position, velocity, acceleration}, live.solved()),
+            AppendStatus::already_started);
+  live.put_all(50, 200);
+  EXPECT_EQ(live.sampler.sample(t - Time(1), live.state.ref()), SampleStatus::no_data);
+  EXPECT_EQ(live.position_at(t), position[0]);
+  EXPECT_EQ(live.state.velocity()[0], velocity[0]);
+  EXPECT_EQ(live.state.acceleration()[0], acceleration[0]);
+  EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(35)), std::sin(0.035), 1e-5);
+}
+
+/// A clock that goes on by itself behind every look.
+class RunningClock final : public Clock {
+ public:
+  RunningClock(Time now, Time step) : now_(now), step_(step) {}
+  [[nodiscard]] Time now() const noexcept override {
+    now_ += step_;
+    return now_ - step_;
+  }
+
+ private:
+  mutable Time now_;
+  Time step_;
+};
+
+TEST(LiveSolver, DiscardsARevisionThatComesTooLateAndMakesItAnew) {
+  Live live;
+  live.put_all(50, 100);
+  const Word revision = live.board.reader.revision();
+  live.clock.time = Live::kNow + milliseconds(80);
+  ASSERT_EQ(live.put(Live::kNow + milliseconds(110)), AppendStatus::accepted);
+  const auto late = live.solver.step(RunningClock(live.clock.time, milliseconds(15)));
+  EXPECT_TRUE(late.missed);
+  EXPECT_FALSE(late.published);
+  EXPECT_EQ(live.board.reader.revision(), revision);
+  EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(75)), std::sin(0.075), 1e-3);
+  live.clock.time += milliseconds(2);
+  EXPECT_EQ(live.solver.step(live.clock).consumed, 1U);
+  EXPECT_EQ(live.solver.head().misses, 1U);
+  EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(110)), std::sin(0.11), 1e-12);
+}
+
+TEST(LiveSolver, AReaderThatSampledWhatWasChangedIsToldOnce) {
+  Live live;
+  live.put_all(50, 100);
+  core::State& state = live.state;
+  live.clock.time = Live::kNow + milliseconds(60);
+  live.solver.step(live.clock);
+  // Ahead of what is settled, as if the commit had come late.
+  EXPECT_TRUE(has_values(live.sampler.sample(Live::kNow + milliseconds(98), state.ref())));
+  live.put_all(110, 150);
+  const Time now = Live::kNow + milliseconds(62);
+  EXPECT_EQ(live.sampler.sample(now, state.ref()), SampleStatus::revised);
+  EXPECT_EQ(live.sampler.sample(now, state.ref()), SampleStatus::settled);
+  // A look ahead is none of it.
+  EXPECT_TRUE(has_values(live.sampler.preview(Live::kNow + milliseconds(148), state.ref())));
+  live.put_all(160, 170);
+  EXPECT_EQ(live.sampler.sample(now, state.ref()), SampleStatus::settled);
+}
+
+TEST(LiveSolver, AReaderFarBehindIsToldIfItSampledPastWhatWasSettled) {
+  for (const bool past : {false, true}) {
+    Live live;
+    live.put_all(50, 100);
+    live.clock.time = Live::kNow + milliseconds(60);
+    live.solver.step(live.clock);
+    const Time settled = Live::kNow + milliseconds(64);
+    const Time t = past ? Live::kNow + milliseconds(80) : settled;
+    EXPECT_TRUE(has_values(live.sampler.sample(t, live.state.ref())));
+    for (int i = 0; i < 100; ++i) live.put_all(110 + 10 * i, 110 + 10 * i);
+    EXPECT_EQ(live.sampler.sample(settled, live.state.ref()),
+              past ? SampleStatus::revised : SampleStatus::settled);
+  }
+}
+
+}  // namespace
+}  // namespace splinecast::ipc
