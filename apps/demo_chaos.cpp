@@ -8,6 +8,7 @@
 #include <csignal>
 #include <optional>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "chaos_producer.hpp"
@@ -104,8 +105,10 @@ class Recovery {
 
 class Chaos {
  public:
-  explicit Chaos(const std::string& stream)
-      : stream_(stream), start_(clock_.now() + milliseconds(700)), random_(std::random_device()()) {
+  explicit Chaos(std::string stream)
+      : stream_(std::move(stream)),
+        start_(clock_.now() + milliseconds(700)),
+        random_(std::random_device()()) {
     start_solver();
     start_producer();
     for (int r = 0; r < 2; ++r)

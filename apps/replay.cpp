@@ -193,6 +193,10 @@ void add_replay(CLI::App& program, Action& action) {
       throw CLI::ValidationError("--method, --lambda, --time-scale, --settle, --tail, --force-lag",
                                  "go with --embedded; else tell 'solve'");
     }
+    const bool is_live = options->clock == ipc::StreamClock::monotonic;
+    if (is_live && options->end && !core::is_at_rest(options->end->kind)) {
+      throw CLI::ValidationError("--end", "a live stream ends at rest: rest or halt");
+    }
     options->solver.access = options->access;
     options->solver.trust = options->trust;
     action = [options] { return run_replay(*options); };

@@ -227,6 +227,10 @@ AppendStatus Producer::finish(const core::Condition& end) {
     throw BadRequest("end condition '" + core::to_string(end) +
                      "' needs all waypoints at once: a stream cannot meet it");
   }
+  if (stream_clock(impl_->ring.header) == StreamClock::monotonic && !core::is_at_rest(end.kind)) {
+    throw BadRequest("end condition '" + core::to_string(end) +
+                     "' is not at rest: a live stream ends with rest or halt");
+  }
   return impl_->appended(impl_->ring.writer.finish(end, impl_->solved()));
 }
 

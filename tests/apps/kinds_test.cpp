@@ -99,7 +99,8 @@ TEST(Kinds, WrongKindsAreWrongUsage) {
       {{"--kind", "x:wrap:0"}, "'x:wrap:0' is no I:linear"},
       {{"--kind", "qy:quaternion"}, "four dimensions; from 'qy' on there are 3"},
       {{}, "a.csv:3: waypoint refused: columns 'qx' to 'qw': a quaternion of length 0"},
-      {{"--on-error", "skip", "--end", "velocity=1,0,2,0,0"}, "has 2 in dimension 2"}};
+      {{"--clock", "recorded", "--on-error", "skip", "--end", "velocity=1,0,2,0,0"},
+       "has 2 in dimension 2"}};
   for (const auto& [arguments, message] : cases) {
     std::vector<std::string> replay{"replay", file, "--stream", stream.name(), "--embedded"};
     replay.insert(replay.end(), arguments.begin(), arguments.end());

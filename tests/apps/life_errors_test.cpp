@@ -88,6 +88,44 @@ TEST_F(Life, ASolverThatTakesOverMayNotContradictTheBoard) {
   agreeing.await_message("taken over");
 }
 
+TEST_F(Life, ASolverThatTakesOverMayNotContradictHowALiveStreamIsSolved) {
+  {
+    Process solver({"solve", name(), "--freeze-ahead", "4", "--max-acceleration", "30,40",
+                    "--history", "2", "--stop-time", "0.1"});
+    const Ended sent = run({"replay", file_, "--stream", name(), "--duration", "0.2"});
+    ASSERT_EQ(sent.code, 0) << sent.err;
+    const auto live = info(name())["solver"];
+    EXPECT_EQ(live["freeze_ahead_ns"], 4'000'000);
+    EXPECT_EQ(live["min_splice_ns"], 4'000'000);
+    EXPECT_EQ(live["history_ns"], 2'000'000'000);
+    EXPECT_EQ(live["max_acceleration"], nlohmann::json({30.0, 40.0}));
+    for (const char* counter : {"underruns", "deadline_misses", "late_commits", "withdrawn"}) {
+      EXPECT_TRUE(live[counter].is_number()) << counter;
+    }
+    EXPECT_TRUE(live["low_water_ns"].is_number());
+  }
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+      {{"--freeze-ahead", "5"}, "freeze-ahead in ns 4000000, not 5000000"},
+      {{"--max-acceleration", "30"}, "acceleration limit"},
+      {{"--history", "1"}, "history in ns 2000000000, not 1000000000"},
+      {{"--max-acceleration", "-1"}, "must be positive"},
+      {{"--max-acceleration", "1,x"}, "is no list of numbers"},
+      {{"--freeze-ahead", "0"}, "'0' is no positive time"}};
+  for (const auto& [arguments, message] : cases) {
+    std::vector<std::string> solve{"solve", name()};
+    solve.insert(solve.end(), arguments.begin(), arguments.end());
+    const Ended ended = run(solve);
+    EXPECT_EQ(ended.code, 2) << message;
+    EXPECT_NE(ended.err.find(message), std::string::npos) << ended.err;
+  }
+}
+
+TEST_F(Life, ALiveStreamEndsAtRest) {
+  const Ended ended = run({"replay", file_, "--stream", name(), "--end", "natural"});
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_NE(ended.err.find("a live stream ends at rest"), std::string::npos) << ended.err;
+}
+
 TEST_F(Life, AnInterruptedReplayFinishesItsStream) {
   Process solver(solve());
   Process replaying({"replay", file_, "--stream", name(), "--rate", "1", "--clock", "recorded"});

@@ -20,9 +20,10 @@ using std::chrono::seconds;
 struct Live : testing::MemoryStream {
   static constexpr Time kNow = seconds(100);
 
-  explicit Live(core::WindowOptions how = {}, std::size_t board = 1024, LiveOptions live = {})
-      : MemoryStream(1, from_halt(std::move(how)), 256, board, {}, {}, live),
-        sampler(this->board.reader, StreamClock::monotonic),
+  explicit Live(core::WindowOptions how = {}, std::size_t capacity = 1024,
+                LiveOptions how_live = {})
+      : MemoryStream(1, from_halt(std::move(how)), 256, capacity, {}, {}, how_live),
+        sampler(board.reader, StreamClock::monotonic),
         state(1) {
     clock.time = kNow;
   }

@@ -40,6 +40,11 @@ enum class Tail {
   rest,       ///< velocity 0
 };
 
+/// Whether a curve that ends with this condition is at rest there, whatever its waypoints.
+[[nodiscard]] constexpr bool is_at_rest(ConditionKind kind) noexcept {
+  return kind == ConditionKind::rest || kind == ConditionKind::halt;
+}
+
 /// How a condition is written on a command line: `natural`, `rest`, `halt`, `velocity=1,2,3`,
 /// `acceleration=1,2,3`, `not-a-knot`, `periodic`; and `own`, which is what saying nothing means.
 [[nodiscard]] std::string to_string(const Condition& condition);
