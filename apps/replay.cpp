@@ -10,6 +10,7 @@
 #include "support/options.hpp"
 #include "support/output.hpp"
 #include "support/signals.hpp"
+#include "support/stream_log.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -61,12 +62,8 @@ std::string in_words(const ReplayReport& report, const RefusedRows& refused) {
   }
   if (report.interrupted) text += "; interrupted";
   if (report.unsent > 0) text += fmt::format("; {} not sent", report.unsent);
+  if (report.verification) text.append("; ").append(apps::in_words(*report.verification));
   return text;
-}
-
-int exit_code(const ReplayReport& report) {
-  if (!report.stopped) return kOk;
-  return *report.stopped == RefusedBy::solver ? kFailed : kBadUsageOrInput;
 }
 
 int run_replay(ReplayOptions options) {
@@ -82,17 +79,18 @@ int run_replay(ReplayOptions options) {
   const ReplayReport report = replay_table(table, options, refused);
   const ipc::Word skipped = refused.count(RefusedBy::file) + refused.count(RefusedBy::producer);
   if (options.json) {
-    const ordered_json json{{"stream", options.stream},
-                            {"sent", report.sent},
-                            {"interpolated", report.interpolated},
-                            {"refused", report.refused},
-                            {"refused_by_reason", refused_by_reason(report)},
-                            {"skipped", skipped},
-                            {"skipped_by_reason", skipped_by_reason(refused)},
-                            {"unsent", report.unsent},
-                            {"interrupted", report.interrupted},
-                            {"rows", refused.to_json()},
-                            {"rows_not_listed", refused.unlisted()}};
+    ordered_json json{{"stream", options.stream},
+                      {"sent", report.sent},
+                      {"interpolated", report.interpolated},
+                      {"refused", report.refused},
+                      {"refused_by_reason", refused_by_reason(report)},
+                      {"skipped", skipped},
+                      {"skipped_by_reason", skipped_by_reason(refused)},
+                      {"unsent", report.unsent},
+                      {"interrupted", report.interrupted},
+                      {"rows", refused.to_json()},
+                      {"rows_not_listed", refused.unlisted()}};
+    if (report.verification) json["verification"] = to_json(*report.verification);
     print_report(json.dump(2) + "\n");
   } else {
     say(fmt::format("'{}': {} waypoints sent, {} interpolated, {} refused{}, {} rows skipped{}{}",
@@ -153,6 +151,12 @@ void add_interval(CLI::App& verb, const std::string& name, core::Time& value,
 
 }  // namespace
 
+int exit_code(const ReplayReport& report) {
+  if (report.verification && report.verification->first) return kFellShort;
+  if (!report.stopped) return kOk;
+  return *report.stopped == RefusedBy::solver ? kFailed : kBadUsageOrInput;
+}
+
 void add_replay(CLI::App& program, Action& action) {
   auto options = std::make_shared<ReplayOptions>();
   auto* verb = program.add_subcommand("replay", "Send a recorded stream to a solver");
@@ -180,6 +184,10 @@ void add_replay(CLI::App& program, Action& action) {
   add_interval(*verb, "--max-interval", options->limits.max_interval,
                "Most time between waypoints (default 3600)");
   verb->add_flag("--embedded", options->embedded, "Solve in this process");
+  verb->add_flag(
+      "--verify", options->verify,
+      "Solve what was sent again, with the decisions that the stream records, and compare "
+      "every segment bit by bit: exit code 3 if one differs");
   add_solver_curve(*verb, options->solver);
   verb->add_flag("--json", options->json, "Report as JSON on standard output");
   add_table_options(*verb, options->table);

@@ -6,6 +6,7 @@
 
 #include "splinecast/ipc/solver.hpp"
 #include "splinecast/ipc/stream_options.hpp"
+#include "splinecast/ipc/verification.hpp"
 #include "support/refused_rows.hpp"
 #include "support/waypoint_table.hpp"
 
@@ -27,6 +28,7 @@ struct ReplayOptions {
   bool skip_bad = false;
   core::Time wait{10'000'000'000};
   bool embedded = false;
+  bool verify = false;  ///< solve what settles again, and compare
   bool json = false;
   bool quiet = false;
   std::size_t capacity = 1024;
@@ -45,7 +47,11 @@ struct ReplayReport {
   std::array<ipc::Word, ipc::kRefusals> refused_by_reason{};
   std::optional<RefusedBy> stopped{};  ///< who refused the row at which --on-error stop stopped it
   bool interrupted = false;
+  std::optional<ipc::Verification> verification{};  ///< if one was asked for
 };
+
+/// How a replay ends: kFellShort if what was solved again differs, else by who stopped it.
+[[nodiscard]] int exit_code(const ReplayReport& report);
 
 /// Makes a file's table what is to be sent: the rows and the rate asked for. Rows that cannot be
 /// sent are noted in `refused`, or, without `skip_bad`, the first one throws InputError.

@@ -12,6 +12,7 @@
 #include "support/recording.hpp"
 #include "support/refusal_watch.hpp"
 #include "support/signals.hpp"
+#include "support/stream_log.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -53,6 +54,7 @@ class Replay {
     if (!await_solver() || !await_consumption()) return {.unsent = planned(), .interrupted = true};
     watch_.emplace(options_.stream, producer_.stream_id(), options_.trust);
     before_ = watch_->head();
+    if (options_.verify) begin_log();
     const core::Time base = first_time();
     require_continuation(base);
     const bool played = play(base);
@@ -95,6 +97,8 @@ class Replay {
             .trust = options_.trust};
   }
 
+  [[nodiscard]] core::Condition end() const { return options_.end.value_or(unasked()); }
+
   /// The condition at an end that none was asked for.
   [[nodiscard]] core::Condition unasked() const {
     const bool live = options_.clock == ipc::StreamClock::monotonic;
@@ -136,6 +140,17 @@ class Replay {
                                                          : table_.times.front();
   }
 
+  /// What a producer before this one sent is not known, so that nothing behind it can be solved.
+  void begin_log() {
+    if (producer_.appended() > 0) {
+      throw InputError(fmt::format(
+          "stream '{}' was left unfinished by its producer, so that --verify lacks what it was "
+          "sent; 'splinecast rm {}' removes it, once its solver has been stopped",
+          options_.stream, options_.stream));
+    }
+    log_.emplace(options_.stream, producer_.stream_id(), options_.trust);
+  }
+
   void require_continuation(core::Time first) const {
     if (!producer_.continues() || first > producer_.last_time()) return;
     throw InputError(fmt::format(
@@ -157,6 +172,7 @@ class Replay {
     if (status == ipc::AppendStatus::accepted) {
       ++sent_;
       in_ring_.push_back(next);
+      if (log_) log_->sent(waypoint);
     } else {
       note_refusal(next, waypoint.time, status);
     }
@@ -182,12 +198,14 @@ class Replay {
   /// What the solver refused stands on the board under its item's number, but not for ever: so this
   /// is called with every waypoint, and costs next to nothing where nothing was published since.
   void look_for_refusals() {
+    if (log_) log_->look();
     watch_->look([this](const ipc::RefusedItem& item) { note_refusal(item); });
     const ipc::Word consumed = watch_->head().consumed;
     for (; next_item_ < consumed && !in_ring_.empty(); ++next_item_) in_ring_.pop_front();
   }
 
   void note_refusal(const ipc::RefusedItem& refused) {
+    if (log_) log_->refused(refused.item);
     RefusedRow row{
         .by = RefusedBy::solver, .reason = ipc::to_string(refused.reason), .item = refused.item};
     std::string where = "the end";
@@ -223,6 +241,7 @@ class Replay {
     core::Time end = ipc::deadline(clock_, options_.wait);
     for (;;) {
       solve();
+      if (watch_) look_for_refusals();
       if (wait()) return true;
       if (stop_requested()) return false;
       if (producer_.solver_alive()) {
@@ -241,7 +260,7 @@ class Replay {
   }
 
   void finish() {
-    while (producer_.finish(options_.end.value_or(unasked())) == ipc::AppendStatus::full) {
+    while (producer_.finish(end()) == ipc::AppendStatus::full) {
       if (!await_room()) return;
     }
     solve();
@@ -260,6 +279,7 @@ class Replay {
     for (std::size_t i = 0; i < report.refused_by_reason.size(); ++i) {
       report.refused_by_reason[i] = now.reasons[i] - before_.reasons[i];
     }
+    if (log_) report.verification = log_->verify(end());
     return report;
   }
 
@@ -271,6 +291,7 @@ class Replay {
   ipc::Producer producer_;
   core::Time recorded_start_{};
   std::optional<RefusalWatch> watch_;  ///< once there is a board
+  std::optional<StreamLog> log_;       ///< if it is to be verified
   ipc::Head before_;                   ///< what a producer left whose stream is continued
   std::deque<Sent> in_ring_;           ///< from item next_item_ on: not known to be consumed
   ipc::Word next_item_ = 0;

@@ -3,8 +3,8 @@
 #include <functional>
 #include <string>
 
-#include "splinecast/ipc/region.hpp"
 #include "splinecast/ipc/segment_board.hpp"
+#include "support/own_board.hpp"
 
 namespace splinecast::apps {
 
@@ -31,8 +31,7 @@ class RefusalWatch {
  private:
   [[nodiscard]] bool copy_head();
 
-  ipc::Region region_;
-  ipc::SegmentBoardReader board_;
+  OwnBoard board_;
   ipc::Head head_;
   ipc::Word seen_ = 0;  ///< refusals dealt with, over the stream's life
   ipc::Word missed_ = 0;

@@ -146,7 +146,9 @@ void SlidingWindow::solve(const auto& closing, std::size_t last) noexcept {
     knots_.row(i).newer_knots = static_cast<std::uint32_t>(newest - i);
   }
   // Until both its knots have converged, the first interval shapes the splice before it.
-  if (is_entry_open() && first <= 1) entry_.take_acceleration(knots_);
+  if (!is_entry_open() || first > 1) return;
+  entry_.take_acceleration(knots_);
+  entry_newer_knots_ = static_cast<std::uint32_t>(newest);
 }
 
 bool SlidingWindow::can_append(std::span<const Waypoint> waypoints) noexcept {
@@ -156,11 +158,36 @@ bool SlidingWindow::can_append(std::span<const Waypoint> waypoints) noexcept {
   if (is_entry_open() && before < kKnotsThatShapeTheEntry) return can_shape_entry(waypoints);
   const bool starts = !is_entered_ && before == 1;
   const bool goes_on = before > 0 && frozen_ == before;
-  if (!starts && !goes_on) return true;
+  if (starts) return can_follow_first(waypoints);
+  return !goes_on || keeps_behind_newest(waypoints);
+}
+
+/// Whether the interval to the first of these waypoints keeps within the limits: tried, and taken
+/// back.
+bool SlidingWindow::keeps_behind_newest(std::span<const Waypoint> waypoints) noexcept {
+  const std::size_t before = knots();
   for (const Waypoint& waypoint : waypoints) (void)push_into_entry(waypoint);
   build_segment(knots_.interval(before - 1), splice_);
-  const bool keeps = acceleration_excess(limits, splice_) <= kShareOfLimit;
   while (knots() > before) knots_.pop();
+  return acceleration_excess(options_.max_acceleration, splice_) <= kShareOfLimit;
+}
+
+/// The same behind the only knot of a curve, which what follows it also shapes.
+bool SlidingWindow::can_follow_first(std::span<const Waypoint> waypoints) noexcept {
+  const Knot knot = knots_.knot(0);
+  std::array<double, 3 * kMaxDimensions> values{};
+  const auto copy = [&](std::size_t part, std::span<const double> from) {
+    const auto to = std::span(values).subspan(part * kMaxDimensions, from.size());
+    std::ranges::copy(from, to.begin());
+    return to;
+  };
+  const Waypoint first{.time = knot.time,
+                       .position = copy(0, knot.waypoint),
+                       .velocity = copy(1, knot.velocity),
+                       .acceleration = copy(2, knot.acceleration)};
+  const bool keeps = keeps_behind_newest(waypoints);
+  knots_.pop();
+  solver_->push(knots_, first);
   return keeps;
 }
 
@@ -251,19 +278,23 @@ void SlidingWindow::enter(const Instant& from, std::span<const StandingWaypoint>
   is_entered_ = true;
   frozen_ = 0;
   finished_ = false;
+  entry_newer_knots_ = 0;
   knots_.clear(false);
 }
 
 void SlidingWindow::freeze(Time t) noexcept {
   // What has left the window needs no freezing.
-  const std::size_t oldest = oldest_knot();
-  if (oldest > frozen_) frozen_ = oldest;
-  if (is_entry_open() && knots() > 0 && t >= entry_.time()) frozen_ = 1;
+  freeze_knots(oldest_knot());
+  if (is_entry_open() && t >= entry_.time()) freeze_knots(1);
   // Frozen is the right knot of the segment that contains t: the first one that is later.
   while (frozen_ < knots() &&
          (frozen_ == 0 ? t >= knots_.row(0).time : t >= knots_.row(frozen_ - 1).time)) {
     ++frozen_;
   }
+}
+
+void SlidingWindow::freeze_knots(std::size_t count) noexcept {
+  frozen_ = std::max(frozen_, std::min(count, knots()));
 }
 
 void SlidingWindow::finish(const Condition& end) noexcept {
@@ -357,6 +388,7 @@ void SlidingWindow::restore_entered(const Entry& entry, std::size_t first,
   if (first > 0 || knots.empty()) return;
   entry_.update(knots_);
   entry_.take(knots[0].velocity, entry.acceleration);
+  entry_newer_knots_ = entry.newer_knots;
   // Rows stand as they were eliminated; only the condition behind them is taken up again.
   if (!options_.interpolant.method->needs_velocity()) solver_->start_with(knots[0].velocity);
 }

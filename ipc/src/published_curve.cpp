@@ -3,17 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "splinecast/core/limits.hpp"
-#include "splinecast/core/splice.hpp"
-
 namespace splinecast::ipc {
-namespace {
-
-/// How far back the waypoints before a run are looked for: cuts and holds lie between them.
-constexpr Word kLookBack = 16;
-
-}  // namespace
-
 PublishedCurve::PublishedCurve(SegmentBoardWriter& board, const SegmentBoardReader& published,
                                const core::WindowOptions& options, core::DimensionKinds kinds)
     : board_(&board),
@@ -25,7 +15,7 @@ PublishedCurve::PublishedCurve(SegmentBoardWriter& board, const SegmentBoardRead
       state_(published.dimensions()),
       knot_values_(SegmentBoardReader::kKnotValues * published.dimensions() *
                    (window_.knots_to_restore() + 1)),
-      standing_values_(SegmentBoardReader::kKnotValues * published.dimensions() * kStanding),
+      standing_values_(SegmentBoardReader::kKnotValues * published.dimensions() * standing_.size()),
       entry_step_(published.dimensions()) {
   knots_.reserve(window_.knots_to_restore());
 }
@@ -103,16 +93,12 @@ Word PublishedCurve::segment_at(core::Time t) const noexcept {
 std::span<const core::StandingWaypoint> PublishedCurve::standing_before(Word number, core::Time t,
                                                                         Word r) noexcept {
   const std::size_t size = SegmentBoardReader::kKnotValues * window_.dimensions();
-  std::size_t found = 0;
-  for (Word k = 0; k < kLookBack && found < kStanding && number - k >= std::max<Word>(first_, 1);
-       ++k) {
-    const auto values = std::span(standing_values_).subspan(found * size, size);
-    const core::Knot knot = published_->knot(number - k, r, values);
-    if (knot.waypoint.empty() || knot.time > t) continue;
-    ++found;
-    standing_[kStanding - found] = {.time = knot.time, .position = knot.waypoint};
-  }
-  return std::span(standing_).last(found);
+  return find_standing(
+      standing_, number, std::max<Word>(first_, 1), t, [&](Word candidate, std::size_t found) {
+        const auto values = std::span(standing_values_).subspan(found * size, size);
+        const core::Knot knot = published_->knot(candidate, r, values);
+        return core::StandingWaypoint{knot.time, knot.waypoint};
+      });
 }
 
 void PublishedCurve::note_change(core::Time from) noexcept {
@@ -131,16 +117,11 @@ void PublishedCurve::enter(core::Time t) noexcept {
   const Word cut = segment_at(t);
   (void)published_->copy_segment(cut, r, copy_);  // nobody else writes
   const bool is_over = t >= copy_.right;
-  const bool is_before = t < copy_.left;  // the machine stands where the curve will begin
-  const core::Time at = std::clamp(t, copy_.left, copy_.right);
-  core::evaluate(copy_.order, copy_.coefficients, core::to_seconds(at - copy_.left), state_.ref());
+  const bool is_before = t < copy_.left;
+  evaluate_at_cut(copy_, t, state_);
   std::ranges::fill(entry_step_, 0.0);
   run_ = cut + 1;
   note_change(t);
-  if (is_over || is_before) {
-    std::ranges::fill(state_.ref().velocity, 0.0);
-    std::ranges::fill(state_.ref().acceleration, 0.0);
-  }
   if (is_before) {
     run_ = cut;
   } else if (t > copy_.right) {
@@ -165,7 +146,8 @@ void PublishedCurve::enter(core::Time t) noexcept {
   settled_written_ = 0;
 }
 
-void PublishedCurve::append(const core::Waypoint& waypoint) noexcept {
+void PublishedCurve::append(const core::Waypoint& waypoint, Word item) noexcept {
+  if (window_.knots() == 0) run_item_ = item;
   window_.append(waypoint);
   has_changes_ = true;
   // What has settled leaves the window and is written once, with its last value.
@@ -186,31 +168,14 @@ void PublishedCurve::finish(const core::Condition& end, core::Time earliest) noe
 
 /// Lets the stop tail run and goes back to the newest knot, behind the window's last segment.
 void PublishedCurve::return_to(const core::Knot& knot, core::Time earliest) noexcept {
-  const std::size_t dimensions = window_.dimensions();
-  window_.segment(window_.segments() - 1, segment_);
-  core::evaluate(segment_.order, segment_.coefficients,
-                 core::to_seconds(segment_.right - segment_.left), state_.ref());
-  if (std::ranges::equal(state_.position(), knot.position)) return;
-  constexpr std::array<double, core::kMaxDimensions> kZeros{};
-  std::array<double, core::kMaxDimensions> distance{};
-  for (std::size_t d = 0; d < dimensions; ++d) {
-    distance[d] = state_.position()[d] - knot.position[d];
-  }
-  const core::Time least = window_.options().stop_time;
-  // Without limits a little slower than the stop: the same way at the same peak acceleration.
-  const core::Time time = window_.options().max_acceleration.empty()
-                              ? least + least / 2
-                              : core::move_time_within(window_.options().max_acceleration, least,
-                                                       std::span(distance).first(dimensions));
-  const core::Time rest = segment_.right;
-  const core::Time start = std::max(rest, earliest);
-  if (start > rest) {
-    core::build_hold(rest, start, state_.position(), segment_);
+  const auto way = way_back(window_, knot, segment_, state_);
+  if (!way) return;
+  const core::Time start = std::max(way->rest, earliest);
+  if (start > way->rest) {
+    core::build_hold(way->rest, start, state_.position(), segment_);
     write_besides(segment_);
   }
-  const auto zeros = std::span(kZeros).first(dimensions);
-  core::build_splice({start, state_.position(), zeros, zeros},
-                     {start + time, knot.position, zeros, zeros}, segment_);
+  build_way_back(*way, start, state_.position(), knot.position, segment_);
   write_besides(segment_);
 }
 
@@ -224,8 +189,19 @@ void PublishedCurve::write_segment(std::size_t i) noexcept {
   } else {
     std::ranges::copy(entry_step_, segment_.acceleration_step.begin());
     knot.g = window_.entry().acceleration();
+    knot.newer_knots = window_.newer_knots_seen_by_entry();
   }
-  board_->write(number_of(i), segment_, knot);
+  board_->write(number_of(i), segment_, knot, origin_of(i));
+}
+
+SegmentOrigin PublishedCurve::origin_of(std::size_t segment) const noexcept {
+  const auto left = window_.left_knot(segment);
+  const std::size_t right = left ? *left + 1 : 0;
+  if (right >= window_.knots()) return {};
+  SegmentOrigin origin{
+      .right_newer_knots = static_cast<std::uint32_t>(window_.newer_knots_seen(right)), .item = {}};
+  if (!left) origin.item = run_item_;
+  return origin;
 }
 
 /// Writes a segment behind the newest one, which the window knows nothing of.
@@ -258,6 +234,7 @@ void PublishedCurve::write(Head& head) noexcept {
   head.newest = newest_;
   head.run = run_;
   head.run_knots = window_.knots();
+  head.run_frozen = window_.frozen_knots();
   head.is_entered = window_.is_entered();
 }
 
@@ -301,8 +278,12 @@ void PublishedCurve::restore_run(const Head& head) noexcept {
                       .velocity = splice.velocity,
                       .acceleration = splice.acceleration},
              .before = standing_before(run_ - 1, splice.time, r),
-             .acceleration = splice.g};
-    if (published_->copy_segment(run_, r, copy_)) published_->copy_step(copy_, entry_step_);
+             .acceleration = splice.g,
+             .newer_knots = splice.newer_knots};
+    if (published_->copy_segment(run_, r, copy_)) {
+      published_->copy_step(copy_, entry_step_);
+      run_item_ = copy_.origin.item.value_or(0);
+    }
   }
   window_.restore_entered(entry, first, knots_);
 }

@@ -75,8 +75,8 @@ Word* SegmentBoardWriter::claim(Word number) noexcept {
   return claim_spare(slot(number), revision_ + 1);
 }
 
-void SegmentBoardWriter::write(Word number, const core::Segment& segment,
-                               const core::Knot& knot) noexcept {
+void SegmentBoardWriter::write(Word number, const core::Segment& segment, const core::Knot& knot,
+                               const SegmentOrigin& origin) noexcept {
   const std::size_t dimensions = layout_.dimensions;
   Word* const cell = claim(number);
   put(cell[kCellNumber], number);
@@ -86,6 +86,8 @@ void SegmentBoardWriter::write(Word number, const core::Segment& segment,
                             static_cast<Word>(segment.kind) << kShapeKindShift |
                             static_cast<Word>(knot.newer_knots) << kShapeSeenShift |
                             (knot.waypoint.empty() ? 0 : kShapeWaypoint));
+  put(cell[kCellRightSeen], origin.right_newer_knots);
+  put(cell[kCellItem], origin.item ? *origin.item + 1 : 0);
   Word* const vectors = cell + kCellCoefficients;
   put_values(
       vectors,
@@ -157,6 +159,7 @@ void SegmentBoardWriter::commit(Head& head) noexcept {
   put(cell[kHeadRefused], head.refused);
   put(cell[kHeadRun], head.run);
   put(cell[kHeadRunKnots], head.run_knots);
+  put(cell[kHeadRunFrozen], head.run_frozen);
   put(cell[kHeadLowWater], to_word(head.low_water));
   put(cell[kHeadUnderruns], head.underruns);
   put(cell[kHeadMisses], head.misses);
@@ -231,6 +234,7 @@ bool SegmentBoardReader::copy_head(Word r, Head& out) const noexcept {
   out.refused = word(kHeadRefused);
   out.run = word(kHeadRun);
   out.run_knots = word(kHeadRunKnots);
+  out.run_frozen = word(kHeadRunFrozen);
   out.is_entered = (word(kHeadFlags) & kEnteredFlag) != 0;
   out.starved = (word(kHeadFlags) & kStarvedFlag) != 0;
   out.low_water = to_time(word(kHeadLowWater));
@@ -259,6 +263,8 @@ bool SegmentBoardReader::copy_segment(Word number, Word r, SegmentCopy& out) con
   out.kind = static_cast<core::SegmentKind>((shape >> kShapeKindShift) & kByteMask);
   out.newer_knots = static_cast<std::uint32_t>((shape >> kShapeSeenShift) & kSeenMask);
   out.has_waypoint = (shape & kShapeWaypoint) != 0;
+  out.origin = {.right_newer_knots = static_cast<std::uint32_t>(word(kCellRightSeen)), .item = {}};
+  if (const Word item = word(kCellItem); item > 0) out.origin.item = item - 1;
   const std::size_t values = static_cast<std::size_t>(out.order) * layout_.dimensions;
   for (std::size_t i = 0; i < values; ++i) {
     out.coefficients[i] = to_double(word(kCellCoefficients + i));
@@ -293,12 +299,22 @@ bool SegmentBoardReader::copy_ends(Word number, Word r, core::Time& left,
 }
 
 void SegmentBoardReader::copy_step(const SegmentCopy& copy, std::span<double> step) const noexcept {
+  copy_vector(copy, kStepVector, step);
+}
+
+void SegmentBoardReader::copy_waypoint(const SegmentCopy& copy,
+                                       std::span<double> position) const noexcept {
+  copy_vector(copy, kWaypointVector, position);
+}
+
+void SegmentBoardReader::copy_vector(const SegmentCopy& copy, std::size_t vector,
+                                     std::span<double> out) const noexcept {
   const auto view = slot(copy.number);
   const Tags tags = view.tags(std::memory_order_acquire);
   const Word* const cell = view.cell(tags.of[1] == copy.tag ? 1 : 0);
-  const Word* const words = cell + kCellCoefficients + kStepVector * layout_.dimensions;
-  for (std::size_t d = 0; d < step.size(); ++d) {
-    step[d] = to_double(load(words[d], std::memory_order_acquire));
+  const Word* const words = cell + kCellCoefficients + vector * layout_.dimensions;
+  for (std::size_t d = 0; d < out.size(); ++d) {
+    out[d] = to_double(load(words[d], std::memory_order_acquire));
   }
 }
 

@@ -236,7 +236,7 @@ void StreamSolver::take_waypoint(Word number) noexcept {
     if (starved) discard();
     return refuse(number, Refusal::too_late);
   }
-  curve_.append(waypoint);
+  curve_.append(waypoint, number);
   head_.starved = false;
   ++head_.knots;
   head_.newest_knot = waypoint.time;

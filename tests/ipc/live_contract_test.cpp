@@ -27,6 +27,16 @@ void expect_trusted(const LiveWorld& world, std::uint64_t seed) {
   EXPECT_EQ(head.consumed, world.items()) << "seed " << seed;
 }
 
+/// Solved again from the same items with the recorded decisions, every settled segment has its
+/// bits.
+void expect_verified(const LiveWorld& world, std::uint64_t seed) {
+  const Verification found = world.verify();
+  EXPECT_GT(found.equal, 0U) << "seed " << seed;
+  EXPECT_FALSE(found.first) << "seed " << seed << ", segment " << found.first->segment << ", "
+                            << found.first->what << ": " << found.first->published << " published, "
+                            << found.first->solved << " solved";
+}
+
 /// Where each waypoint comes when the one before it has been frozen, each is entered by a splice.
 TEST(LiveContract, StaysNearTheMotionAtADepthOfOneKnot) {
   for (std::uint64_t seed = 1; seed < 20; ++seed) {
@@ -37,6 +47,7 @@ TEST(LiveContract, StaysNearTheMotionAtADepthOfOneKnot) {
     EXPECT_EQ(world.head().refused, 0U);
     world.finish();
     expect_trusted(world, seed);
+    expect_verified(world, seed);
     EXPECT_EQ(world.sent, world.interpolated);
   }
 }
@@ -61,6 +72,7 @@ TEST(LiveContract, HoldsInThousandsOfShortWorlds) {
     world.run(std::chrono::milliseconds(1500));
     world.finish();
     expect_trusted(world, seed);
+    expect_verified(world, seed);
   }
 }
 
@@ -75,6 +87,7 @@ TEST(LiveContract, HoldsThroughEverythingThatHappensInHalfAMinute) {
   world.run(seconds(30));
   world.finish();
   expect_trusted(world, 1);
+  expect_verified(world, 1);
   EXPECT_GE(world.starved, 10U);
   EXPECT_GE(world.replaced, 30U);
   EXPECT_GE(world.solver_kills, 10U);

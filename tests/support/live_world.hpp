@@ -8,7 +8,10 @@
 #include <random>
 #include <vector>
 
+#include "splinecast/ipc/sent_items.hpp"
+#include "splinecast/ipc/settled_segments.hpp"
 #include "splinecast/ipc/stream_solver.hpp"
+#include "splinecast/ipc/verification.hpp"
 #include "support/curve_watch.hpp"
 #include "support/memory_stream.hpp"
 
@@ -60,6 +63,9 @@ class LiveWorld {
   /// Finishes the stream, lets it come to rest and checks that it ends at its last waypoint.
   void finish();
 
+  /// Solves all that has settled again.
+  [[nodiscard]] ipc::Verification verify() const;
+
   [[nodiscard]] const apps::WatchReport& report() const { return watch_.report(); }
   [[nodiscard]] const ipc::Head& head() const { return stream_.solver.head(); }
   /// Items that the ring has accepted.
@@ -82,6 +88,7 @@ class LiveWorld {
   void expect_passed();
   void step_solver();
   void check_settled();
+  void note_items();
   void kill_solver();
   [[nodiscard]] bool happens(double per_second, core::Time within);
   [[nodiscard]] core::Time between(std::int64_t low_us, std::int64_t high_us);
@@ -93,6 +100,9 @@ class LiveWorld {
   MemoryStream stream_;
   ipc::Sampler sampler_;
   apps::CurveWatch watch_;
+  ipc::SentItems items_;
+  ipc::SettledSegments collected_;
+  ipc::Word refusals_noted_ = 0;
   core::Time now_{};
   core::Time next_tick_{};
   core::Time next_waypoint_{};  ///< time of the next waypoint

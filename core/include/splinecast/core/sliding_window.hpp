@@ -104,6 +104,10 @@ class SlidingWindow {
   /// append changes the segments between them. Until `enter`, never undone. O(1) amortised.
   void freeze(Time t) noexcept;
 
+  /// Keeps so many leading knots of this run as they are, or all if there are fewer; what is frozen
+  /// stays so.
+  void freeze_knots(std::size_t count) noexcept;
+
   /// Number of leading knots that are frozen.
   [[nodiscard]] std::size_t frozen_knots() const noexcept { return frozen_; }
 
@@ -123,8 +127,9 @@ class SlidingWindow {
   }
 
   /// Whether the acceleration limits allow for the first of these waypoints to come next, if the
-  /// others follow it: the splice to it must keep within them, the splice that it shapes, or, behind
-  /// the first knot of a curve or one that has been frozen, the interval to it. True without limits. O(K·D) each.
+  /// others follow it: the splice to it must keep within them, the splice that it shapes, or,
+  /// behind the first knot of a curve or one that has been frozen, the interval to it. True without
+  /// limits. O(K·D) each.
   [[nodiscard]] bool can_append(std::span<const Waypoint> waypoints) noexcept;
 
   /// The entry of this run, if it was entered.
@@ -135,6 +140,11 @@ class SlidingWindow {
 
   /// How many newer knots knot i had seen when its velocity was last solved.
   [[nodiscard]] std::size_t newer_knots_seen(std::size_t i) const noexcept;
+
+  /// How many knots stood behind knot 0 when the splice to it was last shaped.
+  [[nodiscard]] std::uint32_t newer_knots_seen_by_entry() const noexcept {
+    return entry_newer_knots_;
+  }
 
   /// How many of its newest knots a window needs in order to go on where another one stood.
   [[nodiscard]] std::size_t knots_to_restore() const noexcept { return reach() + kMaxReach + 3; }
@@ -149,7 +159,8 @@ class SlidingWindow {
     Instant from;
     std::span<const StandingWaypoint> before;
     std::span<const double>
-        acceleration;  ///< with which the splice reaches knot 0, if there is one
+        acceleration;               ///< with which the splice reaches knot 0, if there is one
+    std::uint32_t newer_knots = 0;  ///< that stood behind knot 0 when the splice was last shaped
   };
   void restore_entered(const Entry& entry, std::size_t first, std::span<const Knot> knots) noexcept;
 
@@ -163,6 +174,8 @@ class SlidingWindow {
   [[nodiscard]] std::size_t settled_knot_segments() const noexcept;
   void write_stop_tail(Segment& out) const noexcept;
   void write_step(std::size_t i, Segment& out) const noexcept;
+  [[nodiscard]] bool keeps_behind_newest(std::span<const Waypoint> waypoints) noexcept;
+  [[nodiscard]] bool can_follow_first(std::span<const Waypoint> waypoints) noexcept;
   [[nodiscard]] bool can_shape_entry(std::span<const Waypoint> waypoints) noexcept;
   void take_better_entry() noexcept;
   [[nodiscard]] double entry_excess() noexcept;
@@ -181,6 +194,7 @@ class SlidingWindow {
   RunEntry entry_;
   Segment splice_;  ///< scratch
   bool is_entered_ = false;
+  std::uint32_t entry_newer_knots_ = 0;
   std::size_t frozen_ = 0;
   bool finished_ = false;
 };

@@ -110,6 +110,8 @@ inline constexpr std::size_t kCellLeft = 2;
 inline constexpr std::size_t kCellRight = 3;
 inline constexpr std::size_t kCellShape = 4;  ///< order | kind << 8 | newer knots seen << 16 |
                                               ///< (1 << 48 if a waypoint stands at the left end)
+inline constexpr std::size_t kCellRightSeen = 5;  ///< newer knots that its right knot had seen
+inline constexpr std::size_t kCellItem = 6;  ///< of a splice: item of the run's first waypoint + 1
 inline constexpr std::size_t kCellCoefficients = 8;
 inline constexpr std::size_t kCellExtraWords = 4;  ///< γ, and the smoothing row: pivot, L1, L2
 
@@ -133,6 +135,7 @@ inline constexpr std::size_t kHeadMisses = 15;
 inline constexpr std::size_t kHeadRevisions = 16;
 inline constexpr std::size_t kHeadWithdrawn = 17;
 inline constexpr std::size_t kHeadControls = 18;
+inline constexpr std::size_t kHeadRunFrozen = 19;
 inline constexpr std::size_t kHeadReasons = 24;  ///< a counter per Refusal
 inline constexpr std::size_t kRefusalReasons = 16;
 inline constexpr std::size_t kHeadChanges = 40;  ///< changed_from of revision r at r mod 64

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
 #include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/sliding_window.hpp"
+#include "splinecast/ipc/run_edges.hpp"
 #include "splinecast/ipc/segment_board.hpp"
 
 namespace splinecast::ipc {
@@ -79,8 +79,8 @@ class PublishedCurve {
     return window_.can_append(waypoints);
   }
 
-  /// Appends a waypoint to the run.
-  void append(const core::Waypoint& waypoint) noexcept;
+  /// Appends a waypoint to the run: the ring's item of this number.
+  void append(const core::Waypoint& waypoint, Word item) noexcept;
 
   /// Ends the curve at its newest knot with a condition. If nothing may change that knot any more,
   /// the stop tail runs, and from its end, or from `earliest`, a splice goes back to the waypoint.
@@ -93,12 +93,11 @@ class PublishedCurve {
   void committed() noexcept { has_changes_ = false; }
 
  private:
-  /// Values of a restored knot, and of the standing waypoints before a run.
-  static constexpr std::size_t kStanding = 2;
   [[nodiscard]] Word number_of(std::size_t segment) const noexcept { return run_ + segment; }
   [[nodiscard]] bool has_room_behind(Word number, std::size_t segments,
                                      core::Time keep) const noexcept;
   [[nodiscard]] Word segment_at(core::Time t) const noexcept;
+  [[nodiscard]] SegmentOrigin origin_of(std::size_t segment) const noexcept;
   [[nodiscard]] std::span<const core::StandingWaypoint> standing_before(Word number, core::Time t,
                                                                         Word r) noexcept;
   void write_segment(std::size_t i) noexcept;
@@ -116,10 +115,11 @@ class PublishedCurve {
   core::State state_;      ///< scratch
   std::vector<core::Knot> knots_;
   std::vector<double> knot_values_;
-  std::array<core::StandingWaypoint, kStanding> standing_{};
+  StandingWaypoints standing_{};
   std::vector<double> standing_values_;
   std::vector<double> entry_step_;  ///< acceleration step at the left end of the run's splice
   Word run_ = 1;
+  Word run_item_ = 0;  ///< item of the run's first waypoint
   Word first_ = 0;
   Word newest_ = 0;
   core::Time end_{};

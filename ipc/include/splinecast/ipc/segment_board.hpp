@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct Head {
   core::Time committed{};     ///< the solver's clock at the commit
   Word run = 1;               ///< number of the first segment of the run
   Word run_knots = 0;         ///< knots of the run
+  Word run_frozen = 0;        ///< of these, frozen when this revision was made
   bool is_entered = false;    ///< the run begins with a splice
   bool starved = false;       ///< a live stream's settled time has passed its newest knot
   core::Time low_water = core::Time::max();  ///< least depth so far; max() before there was any
@@ -50,6 +52,12 @@ struct RefusedItem {
   Refusal reason{};
 };
 
+/// What else a segment came from, for whoever solves it again.
+struct SegmentOrigin {
+  std::uint32_t right_newer_knots = 0;  ///< that its right knot had seen when it was last solved
+  std::optional<Word> item{};           ///< of the splice into a run: the run's first waypoint
+};
+
 /// The solver's side. One thread of one process uses it; no function blocks or allocates.
 class SegmentBoardWriter {
  public:
@@ -64,8 +72,10 @@ class SegmentBoardWriter {
 
   /// Writes a segment, and what a solver needs of its left knot in order to go on, for the next
   /// revision. Of a segment that begins at no knot `knot.waypoint` is empty; of a splice `knot.g`
-  /// is the acceleration that it ends with. At most `capacity` different numbers in one revision.
-  void write(Word number, const core::Segment& segment, const core::Knot& knot) noexcept;
+  /// is the acceleration that it ends with, and `knot.newer_knots` how many knots stood behind its
+  /// right one when it was last shaped. At most `capacity` different numbers in one revision.
+  void write(Word number, const core::Segment& segment, const core::Knot& knot,
+             const SegmentOrigin& origin = {}) noexcept;
 
   /// Writes committed segment `number` again with another right end, for the next revision.
   void write_cut(Word number, core::Time right) noexcept;
@@ -125,10 +135,13 @@ struct SegmentCopy {
   core::Time right{};
   int order = core::kCubicOrder;
   core::SegmentKind kind{};
-  std::uint32_t newer_knots = 0;     ///< that its left knot had seen when it was last solved
+  std::uint32_t newer_knots = 0;  ///< that its left knot had seen when it was last solved
+  SegmentOrigin origin{};
   bool has_waypoint = false;         ///< whether its left end is a waypoint
   std::vector<double> coefficients;  ///< [power][dimension]; of these the first `order` powers
   std::vector<double> acceleration_step{};  ///< a⁺ − a⁻ at the left end; in a snapshot only
+  std::vector<double>
+      waypoint{};  ///< position of the waypoint at the left end; of a SettledSegments
 };
 
 /// A reader's side; no function blocks, allocates or stores. Every copy is taken under a revision
@@ -182,6 +195,9 @@ class SegmentBoardReader {
   /// it gives is of use iff the copy is current afterwards.
   void copy_step(const SegmentCopy& copy, std::span<double> step) const noexcept;
 
+  /// Likewise the position of the waypoint at its left end, if it has one.
+  void copy_waypoint(const SegmentCopy& copy, std::span<double> position) const noexcept;
+
   /// The left end of segment `number` from the packed array: a hint, to be confirmed in the cell.
   [[nodiscard]] core::Time left_hint(Word number) const noexcept {
     return to_time(load(times_[number & (layout_.capacity - 1)], std::memory_order_relaxed));
@@ -200,6 +216,8 @@ class SegmentBoardReader {
  private:
   [[nodiscard]] SlotView<const Word> slot(Word number) const noexcept;
   [[nodiscard]] SlotView<const Word> head_slot() const noexcept;
+  void copy_vector(const SegmentCopy& copy, std::size_t vector,
+                   std::span<double> out) const noexcept;
   [[nodiscard]] bool has_sane_bounds(const Head& head) const noexcept;
 
   BoardLayout layout_;

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "splinecast/ipc/region.hpp"
+#include "splinecast/ipc/segment_board.hpp"
+
+namespace splinecast::apps {
+
+/// The board of the stream that this process produces, read as any passive reader does.
+class OwnBoard {
+ public:
+  /// Opens the board of the stream with this id. Throws NoSuchStream, BadRegion, or Failure if
+  /// another stream stands under the name.
+  OwnBoard(const std::string& stream, std::uint64_t stream_id, const ipc::Trust& trust);
+
+  [[nodiscard]] const ipc::RegionHeader& header() const noexcept { return header_; }
+  [[nodiscard]] const ipc::SegmentBoardReader& reader() const noexcept { return reader_; }
+
+ private:
+  ipc::Region region_;
+  ipc::RegionHeader header_;
+  ipc::SegmentBoardReader reader_;
+};
+
+}  // namespace splinecast::apps
