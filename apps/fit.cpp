@@ -19,6 +19,7 @@ namespace {
 struct FitOptions {
   std::string file;
   TableOptions table;
+  std::vector<const core::Method*> methods;
   CurveOptions curve;
   std::string at;
   std::optional<core::Time> dt;
@@ -82,7 +83,7 @@ int run_fit(const FitOptions& options) {
   require_spline_input(table);
   continue_waypoints(table);
   std::vector<ReportCurve> curves;
-  for (const core::Method* method : options.curve.methods) {
+  for (const core::Method* method : options.methods) {
     curves.push_back(
         {.name = std::string(method->name), .curve = fit_table(table, *method, options.curve)});
   }
@@ -108,7 +109,7 @@ void require_consistent(const FitOptions& options) {
   };
   const CurveOptions& curve = options.curve;
   const auto has = [&](std::string_view name) {
-    return std::ranges::any_of(curve.methods, [&](const auto* m) { return m->name == name; });
+    return std::ranges::any_of(options.methods, [&](const auto* m) { return m->name == name; });
   };
   if (!curve.online && (curve.settle || curve.tail || curve.force_lag)) {
     refuse("--settle, --tail, --force-lag", "go with --online only");
@@ -123,7 +124,7 @@ void require_consistent(const FitOptions& options) {
   if (curve.time_scale && !has("rounded")) {
     refuse("--time-scale", "goes with --method rounded only");
   }
-  if (curve.methods.size() > 1 && !only_reports(options)) {
+  if (options.methods.size() > 1 && !only_reports(options)) {
     refuse("--method", "is given more than once, which goes with --report alone");
   }
   if (!options.units.empty() && options.report.empty()) refuse("--unit", "goes with --report only");
@@ -139,16 +140,19 @@ void require_consistent(const FitOptions& options) {
   }
 }
 
-void add_curve(CLI::App& verb, CurveOptions& options) {
+void add_interpolants(CLI::App& verb, std::vector<const core::Method*>& methods) {
   verb.add_option_function<std::vector<std::string>>(
           "--method",
-          [&options](const std::vector<std::string>& names) {
-            for (const std::string& name : names) options.methods.push_back(&method_named(name));
+          [&methods](const std::vector<std::string>& names) {
+            for (const std::string& name : names) methods.push_back(&method_named(name));
           },
           fmt::format("Interpolant: {} (default c2); with --report several, separated by commas",
                       core::method_names(false)))
       ->delimiter(',')
       ->type_name("METHOD");
+}
+
+void add_curve(CLI::App& verb, CurveOptions& options) {
   add_lambda(verb, options.lambda, &options.lambda_is_auto);
   add_time_scale(verb, options.time_scale);
   add_condition(verb, "--start", options.start,
@@ -184,6 +188,7 @@ void add_fit(CLI::App& program, Action& action) {
   auto* verb = program.add_subcommand("fit", "Fit a spline to a file, without shared memory");
   verb->add_option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
       ->required();
+  add_interpolants(*verb, options->methods);
   add_curve(*verb, options->curve);
   auto* at = verb->add_option("--at", options->at, "File with a time column: where to sample")
                  ->type_name("FILE");
@@ -201,7 +206,7 @@ void add_fit(CLI::App& program, Action& action) {
       ->type_name("UNIT");
   add_table_options(*verb, options->table);
   verb->callback([&action, options] {
-    if (options->curve.methods.empty()) options->curve.methods.push_back(&core::c2());
+    if (options->methods.empty()) options->methods.push_back(&core::c2());
     require_consistent(*options);
     action = [options] { return run_fit(*options); };
   });

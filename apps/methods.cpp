@@ -67,8 +67,8 @@ std::vector<Choice> choices() {
   return all;
 }
 
-/// The continuous stretches of a trajectory. Where its position jumps, by more than the digits of
-/// its file explain, no curve through waypoints could follow it.
+/// The continuous stretches of a trajectory. Where its position jumps, by a thousandth of its unit
+/// or more, no curve through waypoints could follow it; below that the digits of such files end.
 std::vector<core::PiecewisePolynomial> stretches(const PolynomialFile& file,
                                                  const std::string& name, core::Time period) {
   constexpr double kRounding = 1e-3;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "splinecast/core/condition.hpp"
 #include "splinecast/core/method.hpp"
@@ -11,11 +10,10 @@
 
 namespace splinecast::apps {
 
-/// What shapes the curves that `fit` makes of a file.
+/// What shapes a curve beside its method.
 struct CurveOptions {
-  std::vector<const core::Method*> methods{};  ///< none: c2
-  std::optional<double> lambda{};              ///< of smoothing; unset: by cross-validation
-  bool lambda_is_auto = false;                 ///< asked for by name
+  std::optional<double> lambda{};  ///< of smoothing; unset: by cross-validation
+  bool lambda_is_auto = false;     ///< asked for by name
   std::optional<double> time_scale{};
   std::optional<core::Condition> start{};
   std::optional<core::Condition> end{};

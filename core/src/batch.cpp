@@ -1,25 +1,14 @@
 #include "batch.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <stdexcept>
 #include <string>
 
+#include "number_text.hpp"
 #include "splinecast/core/knot_solver.hpp"
 #include "splinecast/core/state.hpp"
 
 namespace splinecast::core {
-
-namespace {
-
-/// Shortest form: std::to_string would write a hundred digits.
-std::string text_of(double value) {
-  std::array<char, 32> buffer{};
-  return {buffer.begin(), std::to_chars(buffer.begin(), buffer.end(), value).ptr};
-}
-
-}  // namespace
 
 void require_values_of(const Waypoints& waypoints, std::span<const double> values,
                        const char* what) {
@@ -34,7 +23,7 @@ void require_values_of(const Waypoints& waypoints, std::span<const double> value
   const auto at = static_cast<std::size_t>(bad - values.begin());
   throw std::invalid_argument(
       std::string(what) + " of waypoint " + std::to_string(at / dimensions) + ", dimension " +
-      std::to_string(at % dimensions) + ", is not finite, or beyond 1e100: " + text_of(*bad));
+      std::to_string(at % dimensions) + ", is not finite, or beyond 1e100: " + number_text(*bad));
 }
 
 void require_waypoints(const Waypoints& waypoints) {

@@ -2,23 +2,23 @@
 
 namespace splinecast::core {
 
-SmoothingMesh::SmoothingMesh(const KnotRing& knots) : knots_(knots), roughness_(knots.newest()) {
-  for (std::size_t j = 1; j < roughness_.size(); ++j) {
-    roughness_[j] = roughness_row<DoubleDouble>(at(j));
-  }
+SmoothingIntervals smoothing_intervals(const KnotRing& knots, std::size_t j) noexcept {
+  return {.h_before2 = knots.row(j > 1 ? j - 2 : 0).h,
+          .h_before = knots.row(j - 1).h,
+          .h_after = knots.row(j).h};
 }
 
-SmoothingIntervals SmoothingMesh::at(std::size_t j) const noexcept {
-  return {.h_before2 = knots_.row(j > 1 ? j - 2 : 0).h,
-          .h_before = knots_.row(j - 1).h,
-          .h_after = knots_.row(j).h};
+SmoothingMesh::SmoothingMesh(const KnotRing& knots) : knots_(knots), roughness_(knots.newest()) {
+  for (std::size_t j = 1; j < roughness_.size(); ++j) {
+    roughness_[j] = roughness_row<DoubleDouble>(smoothing_intervals(knots_, j));
+  }
 }
 
 BatchSmoothing::BatchSmoothing(const SmoothingMesh& mesh, double lambda)
     : mesh_(mesh), lambda_(lambda), rows_(mesh.knots().newest()) {
   for (std::size_t j = 1; j < rows_.size(); ++j) {
-    rows_[j] = factor_smoothing(lambda_, mesh_.at(j), mesh_.roughness(j), rows_[j > 1 ? j - 2 : 0],
-                                rows_[j - 1]);
+    rows_[j] = factor_smoothing(lambda_, smoothing_intervals(mesh_.knots(), j), mesh_.roughness(j),
+                                rows_[j > 1 ? j - 2 : 0], rows_[j - 1]);
   }
 }
 

@@ -8,6 +8,9 @@
 
 namespace splinecast::core {
 
+/// The intervals around knot j ≥ 1. Row 1 has none before: that of row 0 stands in.
+[[nodiscard]] SmoothingIntervals smoothing_intervals(const KnotRing& knots, std::size_t j) noexcept;
+
 /// What the smoothing spline's system has of its mesh alone, for any λ. The ring must have measured
 /// its intervals and live on. O(n).
 class SmoothingMesh {
@@ -15,7 +18,6 @@ class SmoothingMesh {
   explicit SmoothingMesh(const KnotRing& knots);
 
   [[nodiscard]] const KnotRing& knots() const noexcept { return knots_; }
-  [[nodiscard]] SmoothingIntervals at(std::size_t j) const noexcept;
   [[nodiscard]] const RoughnessRow<DoubleDouble>& roughness(std::size_t j) const noexcept {
     return roughness_[j];
   }

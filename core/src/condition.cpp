@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "number_text.hpp"
 #include "splinecast/core/waypoint.hpp"
 
 namespace splinecast::core {
@@ -58,10 +59,8 @@ std::string to_string(const Condition& condition) {
   }
   char separator = '=';
   for (const double value : condition.value) {
-    std::array<char, 32> buffer{};
-    const auto result = std::to_chars(buffer.begin(), buffer.end(), value);
     text.push_back(std::exchange(separator, ','));
-    text.append(buffer.begin(), result.ptr);
+    text += number_text(value);
   }
   return text;
 }

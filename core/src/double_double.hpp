@@ -42,7 +42,6 @@ class DoubleDouble {
     return a.high_ > b.high_ || (a.high_ == b.high_ && a.low_ > b.low_);
   }
   constexpr DoubleDouble& operator+=(DoubleDouble other) noexcept { return *this = *this + other; }
-  constexpr DoubleDouble& operator-=(DoubleDouble other) noexcept { return *this = *this - other; }
 
  private:
   constexpr DoubleDouble(double high, double low) : high_(high), low_(low) {}

@@ -10,8 +10,6 @@
 namespace splinecast::core {
 namespace {
 
-using Value = KnotRing::Value;
-
 /// `smoothing`. Its tail is its natural end. A condition asked for at an end does not change the
 /// knots: it replaces the end's velocity by what the condition makes of its neighbour's.
 class SmoothingSolver final : public KnotSolver {
@@ -54,9 +52,7 @@ class SmoothingSolver final : public KnotSolver {
  private:
   void eliminate(KnotRing& knots, std::size_t i) const noexcept {
     const std::size_t before2 = i > 1 ? i - 2 : 0;  // row 1 has none: row 0 stands in, as none too
-    const SmoothingIntervals at{.h_before2 = knots.row(before2).h,
-                                .h_before = knots.row(i - 1).h,
-                                .h_after = knots.row(i).h};
+    const SmoothingIntervals at = smoothing_intervals(knots, i);
     const SmoothingRow row =
         factor_smoothing(lambda_, at, roughness_row<double>(at),
                          knots.row(before2).prefix.smoothing, knots.row(i - 1).prefix.smoothing);

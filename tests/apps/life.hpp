@@ -12,6 +12,13 @@
 
 namespace splinecast::apps {
 
+using testing::await;
+using testing::Ended;
+using testing::info;
+using testing::Process;
+using testing::run;
+using testing::TestStream;
+
 /// A recording, where to sample it, and what must come out.
 class Life : public ::testing::Test {
  protected:

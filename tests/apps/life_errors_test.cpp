@@ -1,32 +1,14 @@
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <csignal>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "life.hpp"
-#include "splinecast/ipc/errors.hpp"
-#include "splinecast/ipc/names.hpp"
-#include "splinecast/ipc/reader.hpp"
-#include "splinecast/ipc/stream_files.hpp"
-#include "support/mesh.hpp"
-#include "support/process.hpp"
 
 /// A stream's life when something goes wrong: nobody comes, writers die, rows are bad.
 namespace splinecast::apps {
 namespace {
-
-using ipc::RegionKind;
-using testing::await;
-using testing::Ended;
-using testing::info;
-using testing::Process;
-using testing::run;
-using testing::TestFolder;
-using testing::TestStream;
 
 TEST_F(Life, WithoutASolverReplayExitsWith4AndLeavesNothingBehind) {
   auto arguments = replay();

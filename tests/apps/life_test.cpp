@@ -1,6 +1,4 @@
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <csignal>
 #include <filesystem>
@@ -8,25 +6,15 @@
 #include <vector>
 
 #include "life.hpp"
-#include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/names.hpp"
 #include "splinecast/ipc/reader.hpp"
 #include "splinecast/ipc/stream_files.hpp"
-#include "support/mesh.hpp"
-#include "support/process.hpp"
 
 /// A stream's life with real processes: who may come first, who may pause, who is refused.
 namespace splinecast::apps {
 namespace {
 
 using ipc::RegionKind;
-using testing::await;
-using testing::Ended;
-using testing::info;
-using testing::Process;
-using testing::run;
-using testing::TestFolder;
-using testing::TestStream;
 
 TEST_F(Life, EveryOrderOfArrivalGivesTheWholeStream) {
   const std::vector<std::string> orders[] = {

@@ -219,6 +219,22 @@ TEST(Fit, RefusesOptionsThatDoNotGoWithTheMethod) {
   EXPECT_NE(ended.err.find("needs 3 waypoints; there are 2"), std::string::npos) << ended.err;
 }
 
+TEST(Solve, RefusesOptionsThatDoNotGoWithTheMethod) {
+  const std::vector<std::pair<Arguments, std::string>> cases{
+      {{"--lambda", "1"}, "lambda is for method smoothing, not for c2"},
+      {{"--method", "pchip", "--force-lag"}, "for method smoothing only, not for pchip"},
+      {{"--method", "akima", "--time-scale", "2"}, "for method rounded, not for akima"},
+      {{"--method", "smoothing", "--lambda", "1", "--tail", "rest"}, "has a tail of its own"},
+      {{"--method", "smoothing"}, "needs a lambda"},
+  };
+  const TestStream stream;
+  for (const auto& [arguments, text] : cases) {
+    const Ended ended = run(Arguments{"solve", stream.name()} + arguments);
+    EXPECT_EQ(ended.code, 2) << text;
+    EXPECT_NE(ended.err.find(text), std::string::npos) << text << " is not in: " << ended.err;
+  }
+}
+
 TEST(Fit, NamesTheLineWhereALagIsTooShortForLambda) {
   const TestFolder folder;
   std::string text = "t,x\n";

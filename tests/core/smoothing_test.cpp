@@ -97,15 +97,20 @@ TEST(Smoothing, WithoutLambdaIsTheNaturalSpline) {
   }
 }
 
-TEST(Smoothing, WithEverLargerLambdaTendsToTheLineOfLeastSquares) {
-  const Mesh mesh = random_mesh(7, 40, 2, 4);
+/// The line of least squares from the first knot on: offset and slope of each dimension.
+Eigen::MatrixXd line_through(const Mesh& mesh) {
   const auto n = static_cast<Eigen::Index>(mesh.size());
   Eigen::MatrixXd basis(n, 2);
   for (Eigen::Index i = 0; i < n; ++i) {
     basis(i, 0) = 1;
     basis(i, 1) = to_seconds(mesh.times[static_cast<std::size_t>(i)] - mesh.times.front());
   }
-  const Eigen::MatrixXd line = basis.colPivHouseholderQr().solve(positions_of(mesh));
+  return basis.colPivHouseholderQr().solve(positions_of(mesh));
+}
+
+TEST(Smoothing, WithEverLargerLambdaTendsToTheLineOfLeastSquares) {
+  const Mesh mesh = random_mesh(7, 40, 2, 4);
+  const Eigen::MatrixXd line = line_through(mesh);
   State state(2);
   double before = std::numeric_limits<double>::infinity();
   for (const double lambda : {1e-3, 1.0, 1e3}) {
@@ -124,40 +129,18 @@ TEST(Smoothing, WithEverLargerLambdaTendsToTheLineOfLeastSquares) {
   EXPECT_LT(before, 1e-5);
 }
 
-/// The squared deviations, and the positions at both ends, of the line of least squares.
-struct Line {
-  double first;
-  double last;
-};
-Line line_through(const Mesh& mesh) {
-  const double n = static_cast<double>(mesh.size());
-  double st = 0;
-  double sx = 0;
-  double stt = 0;
-  double stx = 0;
-  for (std::size_t i = 0; i < mesh.size(); ++i) {
-    const double t = to_seconds(mesh.times[i] - mesh.times.front());
-    st += t;
-    sx += mesh.positions[i];
-    stt += t * t;
-    stx += t * mesh.positions[i];
-  }
-  const double slope = (n * stx - st * sx) / (n * stt - st * st);
-  const double first = (sx - slope * st) / n;
-  return {first, first + slope * to_seconds(mesh.times.back() - mesh.times.front())};
-}
-
 TEST(Smoothing, KeepsItsDigitsHoweverManyKnotsAndHoweverLargeLambda) {
   Mesh mesh = regular_mesh(20'000, 1, Time(1'000'000));
   mesh.positions = random_values(1, mesh.size());
-  const Line line = line_through(mesh);
+  const Eigen::MatrixXd line = line_through(mesh);
+  const double duration = to_seconds(mesh.times.back() - mesh.times.front());
   State state(1);
   for (const double lambda : {1e14, 1e30}) {
     const auto curve = fit(waypoints_of(mesh), smoothing(lambda));
     curve.evaluate(mesh.times.front(), state.ref());
-    EXPECT_NEAR(state.position()[0], line.first, 1e-9) << lambda;
+    EXPECT_NEAR(state.position()[0], line(0, 0), 1e-9) << lambda;
     curve.evaluate(mesh.times.back(), state.ref());
-    EXPECT_NEAR(state.position()[0], line.last, 1e-9) << lambda;
+    EXPECT_NEAR(state.position()[0], line(0, 0) + line(1, 0) * duration, 1e-9) << lambda;
   }
 }
 

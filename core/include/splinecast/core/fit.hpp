@@ -26,9 +26,8 @@ struct FitOptions {
 /// The λ that generalised cross-validation chooses for `smoothing`, one for all dimensions: the
 /// minimum of n·Σ(x_i − f(t_i))²/(n − tr H)² over λ, squares summed over dimensions, H being the
 /// matrix that takes x to f(t_i). The trace is exact, from the band of the inverse (Hutchinson and
-/// de Hoog). 0 for fewer than three waypoints. From what smooths nothing to what leaves
-/// but a line. O(n·D) times about sixty evaluations. Throws as
-/// `fit` does.
+/// de Hoog). Sought from what smooths nothing to what leaves but a line; 0 for fewer than three
+/// waypoints. O(n·D), about sixty times. Throws as `fit` does.
 [[nodiscard]] double cross_validated_lambda(const Waypoints& waypoints);
 
 /// The mean squared error, in the sense of generalised cross-validation, that smoothing with λ > 0
