@@ -30,7 +30,10 @@ ipc::SampleStatus CurveWatch::tick(core::Time now) {
     kept_ = 0;
     return status;
   }
-  if (now >= sampler_->settled_until()) ++report_.unsettled;
+  // At rest nothing settles any more: there is nothing left that could move.
+  const bool is_settled = status == ipc::SampleStatus::settled ||
+                          status == ipc::SampleStatus::holding || now < sampler_->settled_until();
+  if (!is_settled) ++report_.unsettled;
   for (const double a : now_.acceleration()) raise(report_.acceleration, a);
   if (status == ipc::SampleStatus::revised) kept_ = 0;
   if (kept_ > 0) {

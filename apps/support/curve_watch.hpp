@@ -14,7 +14,7 @@ struct WatchReport {
   std::uint64_t samples = 0;
   std::array<std::uint64_t, ipc::kSampleStatuses> by_status{};
   std::uint64_t changed = 0;     ///< earlier samples that read otherwise later, without `revised`
-  std::uint64_t unsettled = 0;   ///< samples at or before their instant that were not settled
+  std::uint64_t unsettled = 0;   ///< samples in motion that had not settled at their instant
   std::uint64_t knots = 0;       ///< joins between segments that were compared
   double position_step = 0;      ///< largest at a join
   double velocity_step = 0;      ///< largest at a join

@@ -337,7 +337,9 @@ StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   const bool was_curve = head_.newest > 0;
   curve_.write(head_);
   if (live_ && (was_curve || head_.newest > 0)) {
-    head_.settled_until = settled_until_;
+    // What is finished changes no more: it has settled to its end.
+    head_.settled_until =
+        head_.finished ? std::max(settled_until_, curve_.end_of_motion()) : settled_until_;
   } else if (head_.newest > 0) {
     head_.settled_until = curve_.settled_until();
   }
