@@ -127,8 +127,8 @@ void add_live_options(CLI::App& verb, ipc::SolverOptions& options) {
                 "--max-acceleration",
                 fmt::format("'{}' is no list of numbers such as 10 or 10,10,5", text));
           },
-          "Largest acceleration of stop tails and splices: one number, or one per dimension; 0 for "
-          "no limit")
+          "Largest acceleration of stop tails, splices, the first interval and the one behind a "
+          "frozen knot: one number, or one per dimension; 0 for no limit")
       ->type_name("A,...");
 }
 

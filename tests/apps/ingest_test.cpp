@@ -197,6 +197,31 @@ TEST_F(Ingest, WhatTheSolverRefusesIsNamedByItsLineThoughTheRingHadTakenIt) {
   expect_accounted_for(stopped, 150);
 }
 
+TEST_F(Ingest, AProducerThatWakesLateIsToldWhatHasGoneBy) {
+  const TestFolder folder;
+  std::string rows = "t,x\n";
+  for (int i = 0; i < 200; ++i) rows += fmt::format("{},{}\n", 0.01 * i, 0.001 * i);
+  const auto file = folder.write("a.csv", rows);
+  Process solver({"solve", name()});
+  Process replaying(
+      {"replay", file, "--stream", name(), "--lead", "100", "--on-error", "skip", "--json"});
+  const auto solved = [&](const char* key) {
+    const json stream = info(name());  // null before there is one, the solver's too
+    return stream.is_null() || stream["solver"].is_null()
+               ? std::int64_t{0}
+               : stream["solver"][key].get<std::int64_t>();
+  };
+  ASSERT_TRUE(testing::await([&] { return solved("interpolated") > 20; }));
+  replaying.signal(SIGSTOP);
+  ASSERT_TRUE(testing::await(
+      [&] { return solved("settled_until_ns") > solved("newest_knot_ns") + 100'000'000; }));
+  replaying.signal(SIGCONT);
+  const Ended ended = replaying.wait();
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  expect_accounted_for(ended, 200);
+  EXPECT_GT(json::parse(ended.out)["skipped_by_reason"]["past"], 5);
+}
+
 TEST_F(Ingest, EachOfManyRefusalsIsNamedAlsoInALoop) {
   const TestFolder folder;
   std::string rows = "t,x\n";
