@@ -78,7 +78,8 @@ class KnotRing {
   /// Appends a knot and measures the interval before it: O(D). It must be later than the newest.
   void push(Time time, std::span<const double> waypoint) noexcept;
 
-  /// Takes the newest knot back. What a solver has written of the others since it was pushed stands.
+  /// Takes the newest knot back. What a solver has written of the others since it was pushed
+  /// stands.
   void pop() noexcept { --size_; }
 
   /// Forgets all knots and takes up again where another ring stood: `first` is the number of the

@@ -45,10 +45,10 @@ class Producer {
   /// min() of a recorded one, or while there is no solver.
   [[nodiscard]] core::Time earliest() noexcept;
 
-  /// Ends the stream at its last waypoint; a live one at rest there. If that knot is frozen already,
-  /// the stop tail runs and a splice goes back to it. Throws std::invalid_argument if the
-  /// condition's values do not fit the dimensions or ask for motion in a quaternion's, BadRequest if
-  /// a stream cannot meet it; otherwise as append.
+  /// Ends the stream at its last waypoint; a live one at rest there. If that knot is frozen
+  /// already, the stop tail runs and a splice goes back to it. Throws std::invalid_argument if the
+  /// condition's values do not fit the dimensions or ask for motion in a quaternion's, BadRequest
+  /// if a stream cannot meet it; otherwise as append.
   [[nodiscard]] AppendStatus finish(const core::Condition& end);
 
   /// Waits until a solver has taken the stream up. Returns false after the timeout.
