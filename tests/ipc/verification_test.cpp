@@ -148,7 +148,7 @@ TEST(Verification, FindsWhateverElseDiffers) {
 TEST(Verification, MissesAWaypointThatIsNotOnTheCurve) {
   const Played played(core::WindowOptions{});
   SentItems more = played.items();
-  more.add(ItemKind::waypoint, more.waypoint(more.size() - 1));
+  more.add(ItemKind::waypoint, played.items().waypoint(more.size() - 1));
   const Verification found = played.verify(more);
   ASSERT_TRUE(found.first);
   EXPECT_EQ(found.first->what, "waypoint of item 150");
