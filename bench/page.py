@@ -1,6 +1,6 @@
 """Writes bench/README.md to standard output: ratios of a run of the benchmarks in blocks.
 
-    page.py BENCH.json
+    page.py BENCH.json SPLINECAST_BENCH
 """
 
 import json
@@ -9,6 +9,8 @@ import statistics
 import subprocess
 import sys
 from collections import defaultdict
+
+import profile_paths
 
 DIMENSIONS = (1, 3, 6, 7, 16, 32)
 
@@ -58,14 +60,24 @@ RATES = [
 ]
 
 
+# Google Benchmark ends a run early that other programs keep from the processor; one with less CPU
+# time than this measured cold caches and nothing else.
+LEAST_MEASURED_NS = 1e6
+
+
 def read_runs(document):
-    """name → the time of each block in ns: CPU time, or manual time where trips were measured."""
+    """name → the runs by block, with `ns`: CPU time, or manual time where trips were measured; and
+    how many runs were cut short, which are left out."""
     runs = defaultdict(dict)
+    cut_short = 0
     for run in document["runs"]:
+        if "p50_ns" not in run and run["iterations"] * run["cpu_ns"] < LEAST_MEASURED_NS:
+            cut_short += 1
+            continue
         name = run["name"].replace("/iterations:1", "").replace("/manual_time", "")
         run["ns"] = run["real_ns"] if "p50_ns" in run else run["cpu_ns"]
         runs[name][run["block"]] = run
-    return runs
+    return runs, cut_short
 
 
 def column(runs, name, key="ns"):
@@ -193,15 +205,18 @@ and acknowledges on a cache line; `roundtrip/solver` appends on one core, solves
 def main():
     with open(sys.argv[1], encoding="utf-8") as file:
         document = json.load(file)
-    runs = read_runs(document)
+    runs, cut_short = read_runs(document)
     print(INTRODUCTION.format(blocks=document["blocks"]))
     print(CURVE)
     print_machine(document)
+    print(f"Of {len(document['runs'])} runs {cut_short} measured less than 1 ms of CPU time, because other programs "
+          "kept them from the processor, and are left out.\n")
     print("## Targets\n")
     print_targets(runs)
     print("## Times\n")
     print_times(runs)
     print_trips(runs)
+    profile_paths.write(sys.argv[2])
 
 
 if __name__ == "__main__":

@@ -70,6 +70,8 @@ void publish(benchmark::State& bench) {
 
 BENCHMARK(publish)->ArgNames({"dims", "readers"})->ArgsProduct({{7}, {0, 1, 16, 64}});
 BENCHMARK(publish)->ArgNames({"dims", "readers"})->ArgsProduct({{1, 3, 6, 16, 32}, {0}});
+/// For counting instructions: profile_paths.py divides by the iterations.
+BENCHMARK(publish)->Name("counted/publish")->Args({7, 0})->Iterations(10'000);
 
 }  // namespace
 }  // namespace splinecast::bench

@@ -57,6 +57,8 @@ void sample_random(benchmark::State& bench) {
 
 BENCHMARK(sample)->ArgName("dims")->Apply(all_dimensions);
 BENCHMARK(sample_random)->ArgName("dims")->Arg(7);
+/// For counting instructions: profile_paths.py divides by the iterations.
+BENCHMARK(sample)->Name("counted/sample")->Arg(7)->Iterations(10'000);
 
 }  // namespace
 }  // namespace splinecast::bench
