@@ -3,12 +3,18 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdio>
+#include <exception>
 
 #include "splinecast/ipc/producer.hpp"
 #include "splinecast/ipc/solver.hpp"
 #include "splinecast/ipc/stream_files.hpp"
 
 namespace splinecast::bench {
+
+void all_dimensions(benchmark::internal::Benchmark* bench) {
+  for (const int dimensions : {1, 3, 6, 7, 16, 32}) bench->Arg(dimensions);
+}
 
 Waypoints::Waypoints(std::size_t count, std::size_t dims) : dimensions(dims) {
   core::Time t{};
@@ -21,25 +27,46 @@ Waypoints::Waypoints(std::size_t count, std::size_t dims) : dimensions(dims) {
   }
 }
 
-BenchStream::BenchStream(const Waypoints& waypoints) : name_("bench." + std::to_string(getpid())) {
+Feed::Feed(std::size_t dimensions) : waypoints_(4096, dimensions) {}
+
+core::Waypoint Feed::next() {
+  if (i_ == waypoints_.times.size()) {
+    i_ = 0;
+    offset_ += waypoints_.times.back() + core::Time(10'000'000);
+  }
+  const core::Waypoint waypoint{.time = offset_ + waypoints_.times[i_],
+                                .position = waypoints_.position(i_)};
+  ++i_;
+  return waypoint;
+}
+
+StreamName::StreamName() {
+  static int number = 0;
+  name_ = "bench." + std::to_string(getpid()) + '.' + std::to_string(number++);
+}
+
+StreamName::~StreamName() {
+  try {
+    ipc::remove_stream(name_);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "splinecast_bench: stream %s stays: %s\n", name_.c_str(), error.what());
+  }
+}
+
+BenchStream::BenchStream(const Waypoints& waypoints) {
   ipc::Producer producer(
       name_,
       {.dimensions = waypoints.dimensions, .clock = ipc::StreamClock::recorded, .start = {}});
   ipc::Solver solver(name_, {.capacity = waypoints.times.size()});
   solver.attach();
   const ipc::MonotonicClock clock;
-  const std::span<const double> positions(waypoints.positions);
   for (std::size_t i = 0; i < waypoints.times.size(); ++i) {
-    const core::Waypoint waypoint{
-        .time = waypoints.times[i],
-        .position = positions.subspan(i * waypoints.dimensions, waypoints.dimensions)};
+    const core::Waypoint waypoint{.time = waypoints.times[i], .position = waypoints.position(i)};
     while (producer.append(waypoint) == ipc::AppendStatus::full) solver.step(clock);
   }
   while (producer.finish({}) == ipc::AppendStatus::full) solver.step(clock);
   while (solver.step(clock).consumed > 0) {
   }
 }
-
-BenchStream::~BenchStream() { ipc::remove_stream(name_); }
 
 }  // namespace splinecast::bench

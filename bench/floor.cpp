@@ -2,13 +2,14 @@
 
 #include <vector>
 
+#include "bench_stream.hpp"
 #include "splinecast/core/segment.hpp"
 #include "splinecast/core/state.hpp"
 
 namespace splinecast::bench {
 namespace {
 
-/// The least a sample can cost: the same polynomials from this process's own memory, without a
+/// The least a sample can cost: the same polynomial from this process's own memory, without a
 /// lookup.
 void floor_eval(benchmark::State& bench) {
   const auto dimensions = static_cast<std::size_t>(bench.range(0));
@@ -22,15 +23,7 @@ void floor_eval(benchmark::State& bench) {
   }
 }
 
-BENCHMARK(floor_eval)
-    ->Name("floor/eval")
-    ->ArgName("dims")
-    ->Arg(1)
-    ->Arg(3)
-    ->Arg(6)
-    ->Arg(7)
-    ->Arg(16)
-    ->Arg(32);
+BENCHMARK(floor_eval)->Name("floor/eval")->ArgName("dims")->Apply(all_dimensions);
 
 }  // namespace
 }  // namespace splinecast::bench

@@ -1,22 +1,37 @@
 #include <benchmark/benchmark.h>
 
+#include <map>
 #include <random>
 
 #include "bench_stream.hpp"
+#include "random_times.hpp"
 #include "splinecast/ipc/reader.hpp"
 
 namespace splinecast::bench {
 namespace {
 
+struct Recorded {
+  Waypoints waypoints;
+  BenchStream stream;
+
+  Recorded(std::size_t count, std::size_t dimensions)
+      : waypoints(count, dimensions), stream(waypoints) {}
+};
+
+/// The streams are made once and stand until the end.
+const Recorded& recorded(std::size_t count, std::size_t dimensions) {
+  static std::map<std::pair<std::size_t, std::size_t>, Recorded> streams;
+  return streams.try_emplace({count, dimensions}, count, dimensions).first->second;
+}
+
 /// Position, velocity, acceleration and jerk at 1 kHz steps through 100 Hz knots, from shared
 /// memory, through the public interface.
 void sample(benchmark::State& bench) {
   const auto dimensions = static_cast<std::size_t>(bench.range(0));
-  const Waypoints waypoints(4096, dimensions);
-  const BenchStream stream(waypoints);
-  ipc::Reader reader(stream.name());
+  const Recorded& from = recorded(4096, dimensions);
+  ipc::Reader reader(from.stream.name());
   core::State state(dimensions);
-  const core::Time last = waypoints.times.back();
+  const core::Time last = from.waypoints.times.back();
   core::Time t{};
   for (auto _ : bench) {
     benchmark::DoNotOptimize(reader.sample(t, state));
@@ -29,16 +44,10 @@ void sample(benchmark::State& bench) {
 /// The same at random times over 65,536 segments.
 void sample_random(benchmark::State& bench) {
   const auto dimensions = static_cast<std::size_t>(bench.range(0));
-  const Waypoints waypoints(65'536, dimensions);
-  const BenchStream stream(waypoints);
-  ipc::Reader reader(stream.name());
+  const Recorded& from = recorded(kRandomSegments, dimensions);
+  ipc::Reader reader(from.stream.name());
   core::State state(dimensions);
-  std::mt19937_64 random(1);
-  std::vector<core::Time> times(1U << 16U);
-  for (core::Time& t : times) {
-    t = core::Time(static_cast<std::int64_t>(
-        random() % static_cast<std::uint64_t>(waypoints.times.back().count())));
-  }
+  const std::vector<core::Time> times = random_times(from.waypoints.times.back());
   std::size_t i = 0;
   for (auto _ : bench) {
     benchmark::DoNotOptimize(reader.sample(times[i++ % times.size()], state));
@@ -46,8 +55,10 @@ void sample_random(benchmark::State& bench) {
   }
 }
 
-BENCHMARK(sample)->ArgName("dims")->Arg(1)->Arg(3)->Arg(6)->Arg(7)->Arg(16)->Arg(32);
+BENCHMARK(sample)->ArgName("dims")->Apply(all_dimensions);
 BENCHMARK(sample_random)->ArgName("dims")->Arg(7);
+/// For counting instructions: profile_paths.py divides by the iterations.
+BENCHMARK(sample)->Name("counted/sample")->Arg(7)->Iterations(10'000);
 
 }  // namespace
 }  // namespace splinecast::bench

@@ -21,7 +21,10 @@ std::size_t values_kept(const Method& method) noexcept {
 
 void write_chord(std::span<const double> from, std::span<const double> to, double h,
                  std::span<double> slope) noexcept {
-  for (std::size_t d = 0; d < slope.size(); ++d) slope[d] = (to[d] - from[d]) / h;
+  const double* __restrict const x0 = from.data();
+  const double* __restrict const x1 = to.data();
+  double* __restrict const m = slope.data();
+  for (std::size_t d = 0; d < slope.size(); ++d) m[d] = (x1[d] - x0[d]) / h;
 }
 
 KnotRing::KnotRing(std::size_t dimensions, std::size_t capacity, const Method& method,
@@ -34,16 +37,6 @@ KnotRing::KnotRing(std::size_t dimensions, std::size_t capacity, const Method& m
       values_per_knot_(values_kept(method)),
       rows_(mask_ + 1),
       values_((mask_ + 1) * values_per_knot_ * dimensions) {}
-
-std::span<double> KnotRing::values(std::size_t i, Value which) noexcept {
-  return std::span(values_).subspan(((i & mask_) * values_per_knot_ + which) * dimensions_,
-                                    dimensions_);
-}
-
-std::span<const double> KnotRing::values(std::size_t i, Value which) const noexcept {
-  return std::span(values_).subspan(((i & mask_) * values_per_knot_ + which) * dimensions_,
-                                    dimensions_);
-}
 
 Neighbours KnotRing::neighbours(std::size_t i) const noexcept {
   return {.h_before = row(i - 1).h,
@@ -155,22 +148,27 @@ Interval KnotRing::interval(std::size_t i) const noexcept {
   return interval;
 }
 
-double KnotRing::final_acceleration(std::size_t d) const noexcept {
-  if (newest() > 0) return right_acceleration(interval(newest() - 1), d);
-  return has_accelerations_ ? values(0, kAcceleration)[d] : 0;
+void KnotRing::write_final_acceleration(std::span<double> acceleration) const noexcept {
+  if (newest() > 0) {
+    write_right_acceleration(interval(newest() - 1), acceleration);
+  } else if (has_accelerations_) {
+    std::ranges::copy(values(0, kAcceleration), acceleration.begin());
+  } else {
+    std::ranges::fill(acceleration, 0.0);
+  }
 }
 
 void write_acceleration_step(const KnotRing& knots, std::size_t i, bool held_before,
                              std::span<double> step) noexcept {
-  const Interval after = knots.interval(i);
-  const Interval before = i > 0 ? knots.interval(i - 1) : Interval{};
-  for (std::size_t d = 0; d < step.size(); ++d) {
-    if (i > 0) {
-      step[d] = left_acceleration(after, d) - right_acceleration(before, d);
-    } else {
-      step[d] = held_before ? left_acceleration(after, d) : 0;
-    }
+  if (i == 0 && !held_before) {
+    std::ranges::fill(step, 0.0);
+    return;
   }
+  write_left_acceleration(knots.interval(i), step);
+  if (i == 0) return;
+  std::array<double, kMaxDimensions> before{};
+  write_right_acceleration(knots.interval(i - 1), std::span(before).first(step.size()));
+  for (std::size_t d = 0; d < step.size(); ++d) step[d] -= before[d];
 }
 
 }  // namespace splinecast::core

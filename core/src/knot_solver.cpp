@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "back_substitution.hpp"
 #include "knot_solvers.hpp"
 
 namespace splinecast::core {
@@ -32,9 +33,12 @@ void solve_lone_knot(KnotRing& knots, const Condition& start) noexcept {
 }
 
 void back_substitute_to(KnotRing& knots, std::size_t last) noexcept {
+  const double* v_after = knots.values(knots.newest(), KnotRing::kVelocity).data();
   for (std::size_t i = knots.newest(); i-- > last;) {
-    back_substitute(knots.row(i).prefix.gamma, knots.values(i, KnotRing::kG),
-                    knots.values(i + 1, KnotRing::kVelocity), knots.values(i, KnotRing::kVelocity));
+    double* const v = knots.values(i, KnotRing::kVelocity).data();
+    back_substitute_row(knots.row(i).prefix.gamma, knots.values(i, KnotRing::kG).data(), v_after, v,
+                        knots.dimensions());
+    v_after = v;
   }
 }
 

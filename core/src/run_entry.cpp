@@ -44,9 +44,7 @@ void RunEntry::update(KnotRing& knots) noexcept {
 
 void RunEntry::take_acceleration(const KnotRing& knots) noexcept {
   if (knots.size() < 2) return;
-  const Interval first = knots.interval(0);
-  const auto a = values(kKnotAcceleration);
-  for (std::size_t d = 0; d < dimensions_; ++d) a[d] = left_acceleration(first, d);
+  write_left_acceleration(knots.interval(0), values(kKnotAcceleration));
 }
 
 void RunEntry::take(std::span<const double> velocity,

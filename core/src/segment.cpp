@@ -1,6 +1,7 @@
 #include "splinecast/core/segment.hpp"
 
 #include <algorithm>
+#include <array>
 #include <type_traits>
 
 namespace splinecast::core {
@@ -36,23 +37,18 @@ std::span<double> power_of(Segment& segment, std::size_t power, std::size_t dime
   return std::span<double>(segment.coefficients).subspan(power * dimensions, dimensions);
 }
 
-double cubic_left_acceleration(const Interval& i, std::size_t d) noexcept {
-  return (6 * i.chord[d] - 4 * i.v0[d] - 2 * i.v1[d]) / i.h;
-}
-
-double cubic_right_acceleration(const Interval& i, std::size_t d) noexcept {
-  return (2 * i.v0[d] + 4 * i.v1[d] - 6 * i.chord[d]) / i.h;
-}
-
 void write_cubic(const Interval& i, Segment& out) noexcept {
   const std::size_t dimensions = i.x0.size();
   const double per_h = 1 / i.h;
   const double per_h2 = per_h * per_h;
-  const auto c2 = power_of(out, 2, dimensions);
-  const auto c3 = power_of(out, 3, dimensions);
+  const double* __restrict const m = i.chord.data();
+  const double* __restrict const v0 = i.v0.data();
+  const double* __restrict const v1 = i.v1.data();
+  double* __restrict const c2 = power_of(out, 2, dimensions).data();
+  double* __restrict const c3 = power_of(out, 3, dimensions).data();
   for (std::size_t d = 0; d < dimensions; ++d) {
-    c2[d] = (3 * i.chord[d] - 2 * i.v0[d] - i.v1[d]) * per_h;
-    c3[d] = (i.v0[d] + i.v1[d] - 2 * i.chord[d]) * per_h2;
+    c2[d] = (3 * m[d] - 2 * v0[d] - v1[d]) * per_h;
+    c3[d] = (v0[d] + v1[d] - 2 * m[d]) * per_h2;
   }
 }
 
@@ -67,12 +63,16 @@ void write_quintic(const Interval& i, Segment& out) noexcept {
   const auto c3 = power_of(out, 3, dimensions);
   const auto c4 = power_of(out, 4, dimensions);
   const auto c5 = power_of(out, 5, dimensions);
+  std::array<double, kMaxDimensions> left{};
+  std::array<double, kMaxDimensions> right{};
+  write_left_acceleration(i, std::span(left).first(dimensions));
+  write_right_acceleration(i, std::span(right).first(dimensions));
   for (std::size_t d = 0; d < dimensions; ++d) {
     const double m = i.chord[d];
     const double v0 = i.v0[d];
     const double v1 = i.v1[d];
-    const double a0 = left_acceleration(i, d);
-    const double a1 = right_acceleration(i, d);
+    const double a0 = left[d];
+    const double a1 = right[d];
     c2[d] = a0 / 2;
     c3[d] = (20 * m - 12 * v0 - 8 * v1 - (3 * a0 - a1) * h) * per_2h2;
     c4[d] = (-30 * m + 16 * v0 + 14 * v1 + (3 * a0 - 2 * a1) * h) * per_2h3;
@@ -107,12 +107,30 @@ void evaluate_derivative(int order, std::span<const double> coefficients, double
   }
 }
 
-double left_acceleration(const Interval& interval, std::size_t d) noexcept {
-  return interval.a0.empty() ? cubic_left_acceleration(interval, d) : interval.a0[d];
+void write_left_acceleration(const Interval& interval, std::span<double> out) noexcept {
+  if (!interval.a0.empty()) {
+    std::ranges::copy(interval.a0, out.begin());
+    return;
+  }
+  const double h = interval.h;
+  const double* __restrict const m = interval.chord.data();
+  const double* __restrict const v0 = interval.v0.data();
+  const double* __restrict const v1 = interval.v1.data();
+  double* __restrict const a = out.data();
+  for (std::size_t d = 0; d < out.size(); ++d) a[d] = (6 * m[d] - 4 * v0[d] - 2 * v1[d]) / h;
 }
 
-double right_acceleration(const Interval& interval, std::size_t d) noexcept {
-  return interval.a1.empty() ? cubic_right_acceleration(interval, d) : interval.a1[d];
+void write_right_acceleration(const Interval& interval, std::span<double> out) noexcept {
+  if (!interval.a1.empty()) {
+    std::ranges::copy(interval.a1, out.begin());
+    return;
+  }
+  const double h = interval.h;
+  const double* __restrict const m = interval.chord.data();
+  const double* __restrict const v0 = interval.v0.data();
+  const double* __restrict const v1 = interval.v1.data();
+  double* __restrict const a = out.data();
+  for (std::size_t d = 0; d < out.size(); ++d) a[d] = (2 * v0[d] + 4 * v1[d] - 6 * m[d]) / h;
 }
 
 void build_segment(const Interval& interval, Segment& out) noexcept {
@@ -120,12 +138,12 @@ void build_segment(const Interval& interval, Segment& out) noexcept {
   out.left = interval.left;
   out.right = interval.right;
   out.kind = SegmentKind::spline;
-  std::ranges::fill(out.coefficients, 0.0);
   std::ranges::copy(interval.x0, power_of(out, 0, dimensions).begin());
   std::ranges::copy(interval.v0, power_of(out, 1, dimensions).begin());
   if (interval.a0.empty() && interval.a1.empty()) {
     out.order = kCubicOrder;
     write_cubic(interval, out);
+    std::ranges::fill(std::span(out.coefficients).subspan(kCubicOrder * dimensions), 0.0);
   } else {
     out.order = kMaxOrder;
     write_quintic(interval, out);
@@ -141,7 +159,6 @@ void build_stop_tail(Time from, Time stop_time, std::span<const double> position
   out.right = from + stop_time;
   out.order = kMaxOrder;
   out.kind = SegmentKind::stop_tail;
-  std::ranges::fill(out.coefficients, 0.0);
   std::ranges::copy(position, power_of(out, 0, dimensions).begin());
   std::ranges::copy(velocity, power_of(out, 1, dimensions).begin());
   const auto c2 = power_of(out, 2, dimensions);
@@ -154,6 +171,7 @@ void build_stop_tail(Time from, Time stop_time, std::span<const double> position
     c3[d] = -jerk_scale - 2 * snap_scale / 3;
     c4[d] = (2 * jerk_scale + snap_scale) / (4 * rest_after);
   }
+  std::ranges::fill(power_of(out, 5, dimensions), 0.0);
 }
 
 void build_hold(Time from, Time to, std::span<const double> position, Segment& out) noexcept {

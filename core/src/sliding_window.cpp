@@ -248,9 +248,10 @@ bool SlidingWindow::push_into_entry(const Waypoint& waypoint) noexcept {
 }
 
 void SlidingWindow::append(const Waypoint& waypoint) noexcept {
-  entry_.keep();
+  const bool is_limited = !options_.max_acceleration.empty() && is_entry_open();
+  if (is_limited) entry_.keep();
   const bool shapes = push_into_entry(waypoint);
-  if (options_.max_acceleration.empty() || !is_entry_open() || knots() == 1) return;
+  if (!is_limited || knots() == 1) return;
   entry_.write_splice(knots_, splice_);
   if (keeps_within(options_.max_acceleration, splice_)) return;
   if (shapes) {
@@ -346,9 +347,9 @@ void SlidingWindow::write_step(std::size_t i, Segment& out) const noexcept {
     write_acceleration_step(knots_, i, options_.held_before_start, out.acceleration_step);
     return;
   }
-  const Interval after = knots_.interval(0);
+  write_left_acceleration(knots_.interval(0), out.acceleration_step);
   for (std::size_t d = 0; d < dimensions(); ++d) {
-    out.acceleration_step[d] = left_acceleration(after, d) - entry_.acceleration()[d];
+    out.acceleration_step[d] -= entry_.acceleration()[d];
   }
 }
 
@@ -366,7 +367,7 @@ void SlidingWindow::write_stop_tail(Segment& out) const noexcept {
   if (n == 0 && is_entered_) {
     std::ranges::copy(entry_.acceleration(), acceleration.begin());
   } else {
-    for (std::size_t d = 0; d < dimensions(); ++d) acceleration[d] = knots_.final_acceleration(d);
+    knots_.write_final_acceleration(acceleration);
   }
   build_stop_tail(knot.time, stop_time(knot.velocity, acceleration), knot.position, knot.velocity,
                   acceleration, out);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "back_substitution.hpp"
 #include "splinecast/core/slope_rule.hpp"
 
 namespace splinecast::core {
@@ -78,10 +79,13 @@ double eliminate_interior(const Neighbours& neighbours, double gamma_before,
   const double before = neighbours.h_before;
   const double after = neighbours.h_after;
   const double pivot = 2 * (before + after) - after * gamma_before;
+  const double* __restrict const m_before = neighbours.chord_before.data();
+  const double* __restrict const m_after = neighbours.chord_after.data();
+  const double* __restrict const g_last = g_before.data();
+  double* __restrict const g_out = g.data();
   for (std::size_t d = 0; d < g.size(); ++d) {
-    const double right_side =
-        3 * (after * neighbours.chord_before[d] + before * neighbours.chord_after[d]);
-    g[d] = (right_side - after * g_before[d]) / pivot;
+    const double right_side = 3 * (after * m_before[d] + before * m_after[d]);
+    g_out[d] = (right_side - after * g_last[d]) / pivot;
   }
   return before / pivot;
 }
@@ -118,11 +122,7 @@ void solve_tail(Tail tail, const EndIntervals& at, double gamma_before,
 
 void back_substitute(double gamma, std::span<const double> g, std::span<const double> v_after,
                      std::span<double> v) noexcept {
-  if (gamma == 0) {
-    std::ranges::copy(g, v.begin());  // −0 would else depend on the sign of v_after
-    return;
-  }
-  for (std::size_t d = 0; d < v.size(); ++d) v[d] = g[d] - gamma * v_after[d];
+  back_substitute_row(gamma, g.data(), v_after.data(), v.data(), v.size());
 }
 
 }  // namespace splinecast::core

@@ -56,6 +56,7 @@ bool PublishedCurve::has_room_to_enter(core::Time t, std::size_t segments,
 
 bool PublishedCurve::has_room_behind(Word number, std::size_t segments,
                                      core::Time keep) const noexcept {
+  if (keep == core::Time::max()) return true;  // a recorded stream keeps nothing
   const Word newest = number + segments;
   if (newest <= board_->capacity() || newest - board_->capacity() < first_) return true;
   core::Time left{};
@@ -220,12 +221,12 @@ void PublishedCurve::write(Head& head) noexcept {
   if (!has_changes_) return;
   const std::size_t segments = window_.segments();
   if (segments == 0) return;
-  for (std::size_t i = settled_written_; i < segments; ++i) write_segment(i);
   if (besides_ == 0) {
     newest_ = number_of(segments - 1);
-    window_.segment(segments - 1, segment_);
-    end_ = segment_.right;
+    if (settled_written_ == segments) window_.segment(segments - 1, segment_);
   }
+  for (std::size_t i = settled_written_; i < segments; ++i) write_segment(i);
+  if (besides_ == 0) end_ = segment_.right;
   head.changed_from = std::min(head.changed_from, changed_from_);
   changed_from_ = core::Time::max();
   // Never back: a finish drops the stop tail, but the slot that it took is not given back.

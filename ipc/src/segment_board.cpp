@@ -27,7 +27,7 @@ constexpr std::size_t kPrefixAfter = kResidualVector + 1;
 std::size_t control_words() noexcept { return kControlLines * kSeparation / sizeof(Word); }
 
 void put_values(Word* words, std::span<const double> values) noexcept {
-  for (std::size_t i = 0; i < values.size(); ++i) put(words[i], to_word(values[i]));
+  for (const double value : values) put(*words++, to_word(value));
 }
 
 /// The members of a head that lookups need, out of its words 1 … kBoundsWords.
@@ -95,14 +95,15 @@ void SegmentBoardWriter::write(Word number, const core::Segment& segment, const 
   put_values(vectors + kStepVector * dimensions, segment.acceleration_step);
   put_values(vectors + kWaypointVector * dimensions, knot.waypoint);
   put_values(vectors + kGVector * dimensions, knot.g);
-  put_values(vectors + kResidualVector * dimensions, knot.residual);
   Word* const prefix = vectors + kPrefixAfter * dimensions;
   put(prefix[0], to_word(knot.prefix.gamma));
+  // A hint only: readers confirm it in the cell, so no ordering is needed.
+  store(times_[number & (layout_.capacity - 1)], to_word(segment.left), std::memory_order_relaxed);
+  if (knot.residual.empty()) return;  // what follows only smoothing has
+  put_values(vectors + kResidualVector * dimensions, knot.residual);
   put(prefix[1], to_word(knot.prefix.smoothing.pivot));
   put(prefix[2], to_word(knot.prefix.smoothing.lower1));
   put(prefix[3], to_word(knot.prefix.smoothing.lower2));
-  // A hint only: readers confirm it in the cell, so no ordering is needed.
-  store(times_[number & (layout_.capacity - 1)], to_word(segment.left), std::memory_order_relaxed);
 }
 
 void SegmentBoardWriter::write_cut(Word number, core::Time right) noexcept {
@@ -145,7 +146,15 @@ void SegmentBoardWriter::commit(Head& head) noexcept {
   const Word r = revision_ + 1;
   head.revision = r;
   changes_[r % kHeadChangesKept] = to_word(head.changed_from);
-  Word* const cell = claim_spare(head_slot(), r);
+  // The spare cell is mostly that of two revisions ago, and then holds all that had changed until
+  // then. Those words stand as they are: stored before this revision's tag is (W1, release), by
+  // this writer or by one whose lock it has taken over, they are seen by whoever acquires that tag.
+  const SlotView<Word> slot = head_slot();
+  const std::size_t spare = 1 - slot.tags(std::memory_order_relaxed).newest(revision_);
+  const Word spare_tag = load(slot.cell(spare)[kCellTag], std::memory_order_relaxed);
+  const Word changes_known =
+      r > 2 && spare_tag == r - 2 ? r - 2 : r - std::min<Word>(r, kHeadChangesKept);
+  Word* const cell = claim_spare(slot, r);
   put(cell[kHeadFirst], head.first);
   put(cell[kHeadNewest], head.newest);
   put(cell[kHeadSettledUntil], to_word(head.settled_until));
@@ -167,7 +176,9 @@ void SegmentBoardWriter::commit(Head& head) noexcept {
   put(cell[kHeadWithdrawn], head.withdrawn);
   put(cell[kHeadControls], head.controls);
   for (std::size_t i = 0; i < kRefusalReasons; ++i) put(cell[kHeadReasons + i], head.reasons[i]);
-  for (std::size_t i = 0; i < kHeadChangesKept; ++i) put(cell[kHeadChanges + i], changes_[i]);
+  for (Word k = changes_known + 1; k <= r; ++k) {
+    put(cell[kHeadChanges + k % kHeadChangesKept], changes_[k % kHeadChangesKept]);
+  }
   store(control_[kRevision], r, std::memory_order_release);  // W3
   revision_ = r;
   forget_written();

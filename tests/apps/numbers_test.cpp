@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
+#include <random>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -53,8 +58,23 @@ TEST(Numbers, NumbersAreReadWholeOrNotAtAll) {
   EXPECT_EQ(parse_number(" +3 "), 3.0);
   EXPECT_TRUE(std::isnan(parse_number("nan").value()));
   EXPECT_EQ(parse_number("-inf"), -std::numeric_limits<double>::infinity());
-  for (const char* text : {"", "1x", "x", "--1", "1 2", "0x1p3"}) {
+  EXPECT_EQ(parse_number("1e999"), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(parse_number("-1e-999"), 0.0);
+  for (const char* text : {"", "1x", "x", "--1", "1 2", "0x1p3", ".", "1e", "+-1"}) {
     EXPECT_FALSE(parse_number(text).has_value()) << text;
+  }
+}
+
+TEST(Numbers, EveryNumberIsReadAsTheNearestDouble) {
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 100'000; ++i) {
+    const double wanted = std::bit_cast<double>(random());
+    if (!std::isfinite(wanted)) continue;
+    for (const char* const format : {"%.17g", "%.25e", "%.3e"}) {
+      std::array<char, 64> text{};
+      std::snprintf(text.data(), text.size(), format, wanted);
+      ASSERT_EQ(parse_number(text.data()), std::strtod(text.data(), nullptr)) << text.data();
+    }
   }
 }
 

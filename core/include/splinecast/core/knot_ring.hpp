@@ -103,8 +103,12 @@ class KnotRing {
 
   [[nodiscard]] Row& row(std::size_t i) noexcept { return rows_[i & mask_]; }
   [[nodiscard]] const Row& row(std::size_t i) const noexcept { return rows_[i & mask_]; }
-  [[nodiscard]] std::span<double> values(std::size_t i, Value which) noexcept;
-  [[nodiscard]] std::span<const double> values(std::size_t i, Value which) const noexcept;
+  [[nodiscard]] std::span<double> values(std::size_t i, Value which) noexcept {
+    return {values_.data() + offset(i, which), dimensions_};
+  }
+  [[nodiscard]] std::span<const double> values(std::size_t i, Value which) const noexcept {
+    return {values_.data() + offset(i, which), dimensions_};
+  }
 
   /// Where the curve passes knot i, and its chord slope from there to knot i+1.
   [[nodiscard]] std::span<const double> position(std::size_t i) const noexcept {
@@ -128,10 +132,13 @@ class KnotRing {
   /// Writes the smoothed chord slope of interval i from the residuals at both its ends.
   void measure_smoothed(std::size_t i) noexcept;
 
-  /// The acceleration that the curve reaches the newest knot with, for dimension d.
-  [[nodiscard]] double final_acceleration(std::size_t d) const noexcept;
+  /// Writes the acceleration that the curve reaches the newest knot with.
+  void write_final_acceleration(std::span<double> acceleration) const noexcept;
 
  private:
+  [[nodiscard]] std::size_t offset(std::size_t i, Value which) const noexcept {
+    return ((i & mask_) * values_per_knot_ + which) * dimensions_;
+  }
   void place(std::size_t i, Time time, std::span<const double> waypoint) noexcept;
   void measure(std::size_t i) noexcept;
 

@@ -75,9 +75,10 @@ struct Interval {
 /// at an end without one, that of the cubic it replaces. Sets everything but `acceleration_step`.
 void build_segment(const Interval& interval, Segment& out) noexcept;
 
-/// One-sided accelerations of an interval's segment at its knots, for dimension d.
-[[nodiscard]] double left_acceleration(const Interval& interval, std::size_t d) noexcept;
-[[nodiscard]] double right_acceleration(const Interval& interval, std::size_t d) noexcept;
+/// Writes the one-sided accelerations of an interval's segment at its knots: D values, which must
+/// not overlap those of the interval.
+void write_left_acceleration(const Interval& interval, std::span<double> out) noexcept;
+void write_right_acceleration(const Interval& interval, std::span<double> out) noexcept;
 
 /// Writes the stop tail behind a knot at time `from` with the given position, velocity and
 /// acceleration: it comes to rest after `stop_time` (> 0), its velocity being the cubic Hermite
