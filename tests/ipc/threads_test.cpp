@@ -16,9 +16,9 @@ TEST(Threads, OnOneMappingReadersAndObserversGetWholePayloadsWhileWritersComeAnd
   RecordProperty("snapshots", std::to_string(counts.snapshots));
   RecordProperty("observed", std::to_string(counts.observed));
   RecordProperty("overwritten", std::to_string(counts.overwritten));
-  RecordProperty("torn samples", std::to_string(counts.torn_samples));
-  RecordProperty("torn snapshots", std::to_string(counts.torn_snapshots));
-  RecordProperty("torn items", std::to_string(counts.torn_items));
+  RecordProperty("torn_samples", std::to_string(counts.torn_samples));
+  RecordProperty("torn_snapshots", std::to_string(counts.torn_snapshots));
+  RecordProperty("torn_items", std::to_string(counts.torn_items));
   EXPECT_EQ(counts.torn_samples, 0U);
   EXPECT_EQ(counts.torn_snapshots, 0U);
   EXPECT_EQ(counts.torn_items, 0U);

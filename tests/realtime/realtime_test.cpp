@@ -37,8 +37,8 @@ void expect_undisturbed(const ConfinedEnd& end) {
   ::testing::Test::RecordProperty("busy", std::to_string(end.busy));
   ::testing::Test::RecordProperty("killed", std::to_string(end.signal != 0 ? 1 : 0));
   ::testing::Test::RecordProperty("allocations", std::to_string(end.allocations));
-  ::testing::Test::RecordProperty("minor faults", std::to_string(end.minor_faults));
-  ::testing::Test::RecordProperty("major faults", std::to_string(end.major_faults));
+  ::testing::Test::RecordProperty("minor_faults", std::to_string(end.minor_faults));
+  ::testing::Test::RecordProperty("major_faults", std::to_string(end.major_faults));
 }
 
 /// The live loops read CLOCK_MONOTONIC. Where the kernel has no vDSO clock for this machine's clock
