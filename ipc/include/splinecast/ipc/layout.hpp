@@ -184,8 +184,9 @@ inline constexpr std::size_t kMaxRingCapacity = std::size_t{1} << 24;
 inline constexpr std::size_t kMaxBoardCapacity = std::size_t{1} << 22;
 
 /// Copies a header out of a region, word by word: what a process checks is what it then uses,
-/// whatever happens to the region meanwhile. Throws BadRegion if the region is too short to hold
-/// one.
+/// whatever happens to the region meanwhile. Its loads are relaxed: the header was written before
+/// the region got its name, and the kernel has put the look-up of that name behind it. Throws
+/// BadRegion if the region is too short to hold one.
 [[nodiscard]] RegionHeader copy_header(std::span<const std::byte> region);
 
 /// Throws BadRegion, naming the offending value, unless the copied header describes a region of
