@@ -109,7 +109,7 @@ void SegmentBoardWriter::write(Word number, const core::Segment& segment, const 
 void SegmentBoardWriter::write_cut(Word number, core::Time right) noexcept {
   const SlotView<Word> at = slot(number);
   const Word* const committed =
-      at.cell(at.tags(std::memory_order_relaxed).newest(revision_));  // its own stores
+      at.cell(at.tags(std::memory_order_relaxed).newest(revision_));  // W0
   Word* const cell = claim(number);
   for (std::size_t i = kCellNumber; i < at.cell_words; ++i) {
     put(cell[i], load(committed[i], std::memory_order_relaxed));

@@ -171,7 +171,7 @@ void enter_owner(std::span<std::byte> region, const RegionHeader& before) noexce
   store(header_word(region, offsetof(RegionHeader, owner_since)), to_word(MonotonicClock().now()),
         std::memory_order_relaxed);
   store(header_word(region, offsetof(RegionHeader, epoch)), before.epoch + 1,
-        std::memory_order_release);
+        std::memory_order_relaxed);
 }
 
 }  // namespace splinecast::ipc

@@ -112,6 +112,7 @@ AppendStatus WaypointRingWriter::replace_from(core::Time t,
                                               const Solved& solved) noexcept {
   const AppendStatus status = check_replacement(t, waypoints, solved);
   if (status != AppendStatus::accepted) return counted(status);
+  claim(1 + waypoints.size());
   const Word kind = static_cast<Word>(ItemKind::replace) | waypoints.size() << kCountShift;
   put_item(0, kind, {.time = t, .position = {}});
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
@@ -155,7 +156,15 @@ AppendStatus WaypointRingWriter::finish(const core::Condition& end, const Solved
   return AppendStatus::accepted;
 }
 
-/// Writes the item that lies so many behind `head`.
+/// Tells observers, before several items are written, how far that will go: P0. Never back: what a
+/// producer before this one claimed may have been overwritten.
+void WaypointRingWriter::claim(Word items) noexcept {
+  Word& claimed = control_[kClaimed];
+  store(claimed, std::max(load(claimed, std::memory_order_relaxed), head_ + items),
+        std::memory_order_relaxed);
+}
+
+/// Writes the item that lies so many behind `head`: P1.
 void WaypointRingWriter::put_item(Word index, Word kind_and_flags,
                                   const core::Waypoint& values) noexcept {
   const std::size_t stride = words_per_item(layout_);
@@ -174,9 +183,7 @@ void WaypointRingWriter::publish(Word items, core::Time last) noexcept {
   head_ += items;
   has_last_ = true;
   last_time_ = last;
-  // seq_cst, not only release: the producer loads `sleeping` next, and a solver about to sleep
-  // stores `sleeping` and then loads this word. One of the two must see the other's store.
-  store(control_[kHead], head_, std::memory_order_seq_cst);
+  store(control_[kHead], head_, std::memory_order_seq_cst);  // P2
 }
 
 AppendStatus WaypointRingWriter::counted(AppendStatus status) noexcept {
@@ -222,7 +229,9 @@ core::Time WaypointRingReader::time(Word i) const noexcept {
 
 bool WaypointRingReader::observe(Word i, RingItem& out) const noexcept {
   copy(i, out);
-  return head() - i < layout_.capacity;
+  const Word next = i + layout_.capacity;  // the item that comes into its place
+  return load(control_[kHead], std::memory_order_relaxed) < next &&
+         load(control_[kClaimed], std::memory_order_relaxed) <= next;  // O2
 }
 
 Word WaypointRingReader::refused(AppendStatus status) const noexcept {

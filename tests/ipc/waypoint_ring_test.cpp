@@ -96,6 +96,28 @@ TEST(WaypointRing, APassiveObserverKeepsAnItemOnlyWhileItCannotBeOverwritten) {
   EXPECT_EQ(item.values[0], 1);
 }
 
+TEST(WaypointRing, APassiveObserverKeepsNothingThatAReplacementInWritingOverwrites) {
+  MemoryRing ring(1, 8);
+  RingItem item(1);
+  for (int i = 0; i < 8; ++i) {
+    ASSERT_EQ(append(ring, Time(10'000 * (i + 1)), {1.0 * i}), AppendStatus::accepted);
+  }
+  const std::vector<double> x{-1};
+  const std::vector<core::Waypoint> replacing{{.time = Time(200'000), .position = x},
+                                              {.time = Time(300'000), .position = x}};
+  ASSERT_EQ(ring.writer.replace_from(Time(100'000), replacing, {8}), AppendStatus::accepted);
+  // As the region was before the one store that appended all of it.
+  const auto control = words_at(ring.bytes.span(), ring.layout.control, kClaimed + 1);
+  store(control[kHead], 8, std::memory_order_relaxed);
+  for (Word i = 0; i < 3; ++i) EXPECT_FALSE(ring.reader.observe(i, item)) << i;
+  for (Word i = 3; i < 8; ++i) EXPECT_TRUE(ring.reader.observe(i, item)) << i;
+  // Its producer has died: the next one claims less, and what was overwritten stays lost.
+  WaypointRingWriter next(ring.bytes.span(), ring.layout, {});
+  ASSERT_EQ(next.replace_from(Time(100'000), {}, {8}), AppendStatus::accepted);
+  EXPECT_FALSE(ring.reader.observe(2, item));
+  EXPECT_TRUE(ring.reader.observe(3, item));
+}
+
 TEST(WaypointRing, NothingFollowsAFinishAndItCarriesItsCondition) {
   MemoryRing ring(2, 4);
   ASSERT_EQ(append(ring, kMillisecond, {1, 2}), AppendStatus::accepted);

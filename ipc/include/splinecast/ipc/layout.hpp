@@ -94,6 +94,7 @@ inline constexpr std::size_t kBodyOffset = kHeaderBytes + kPage;
 inline constexpr std::size_t kRevision = 0;  ///< spline: the commit word
 inline constexpr std::size_t kHead = 0;      ///< waypoints: items appended
 inline constexpr std::size_t kRetired = 1;   ///< both: not 0 once the region is of no more use
+inline constexpr std::size_t kClaimed = 2;   ///< waypoints: items up to which a replacement writes
 inline constexpr std::size_t kTail = kSeparation / sizeof(Word);  ///< spline: items consumed
 inline constexpr std::size_t kSleeping = 2 * kSeparation / sizeof(Word);  ///< spline: solver sleeps
 inline constexpr std::size_t kProducerCounters = kSeparation / sizeof(Word);  ///< waypoints
@@ -183,8 +184,9 @@ inline constexpr std::size_t kMaxRingCapacity = std::size_t{1} << 24;
 inline constexpr std::size_t kMaxBoardCapacity = std::size_t{1} << 22;
 
 /// Copies a header out of a region, word by word: what a process checks is what it then uses,
-/// whatever happens to the region meanwhile. Throws BadRegion if the region is too short to hold
-/// one.
+/// whatever happens to the region meanwhile. Its loads are relaxed: the header was written before
+/// the region got its name, and the kernel has put the look-up of that name behind it. Throws
+/// BadRegion if the region is too short to hold one.
 [[nodiscard]] RegionHeader copy_header(std::span<const std::byte> region);
 
 /// Throws BadRegion, naming the offending value, unless the copied header describes a region of

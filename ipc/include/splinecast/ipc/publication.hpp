@@ -21,20 +21,23 @@
 ///
 /// W1 tag[c].store(r+1, release), first. It must come before the words: a reader that copies a new
 ///    word (acquire) must not afterwards still see the old tag, else it would keep a torn copy.
-///    Release, because of the words of the *previous* revision in the other cell: a reader that
-///    acquires this tag must see them.
+///    Release, because of the *previous* revision in the other cell: a reader with an older r finds
+///    this tag too new and takes the other cell. Let its old tag be all that it has seen of that:
+///    having acquired this tag it must find there, in R3 or R4, that it has been written since.
 /// W2 word[c].store(release), each. Pairs with R3: who reads a new word also sees W1, so that R4
 ///    finds the new tag.
 /// W3 commit.store(r+1, release). Pairs with R1: who sees the revision sees its tags and words.
 /// R1 commit.load(acquire). Pairs with W3.
-/// R2 both tags load(acquire). Pairs with W1 of a later revision, and keeps R3 behind R2.
+/// R2 both tags load(acquire). Pairs with W1, or T1, of a later revision, and keeps R3 behind R2.
 /// R3 word[c].load(acquire), each. Pairs with W2, and keeps R4 behind R3.
 /// R4 tag[c].load(relaxed), directly after the copy: still the tag of R2, or the copy is thrown
 ///    away. Relaxed is enough: R3 has ordered it, and nothing after it depends on it.
 /// T1 takeover: the new writer overwrites every tag above the commit word with kRetiredTag
 ///    (release) before it writes anything: a half-written cell of the dead writer must never come
-///    to be the newest when the numbers reach its tag. The same is done with a revision that its
-///    own writer discards.
+///    to be the newest when the numbers reach its tag. Release for the same reason as W1. The same
+///    is done with a revision that its own writer discards.
+/// W0 what the writer loads of tags and words is relaxed: its own stores, or those of a dead writer
+///    whose lock the kernel gave to it afterwards.
 ///
 /// There are no fences, no read-modify-writes, and readers store nothing.
 namespace splinecast::ipc {
@@ -73,7 +76,7 @@ struct SlotView {
 /// W1: claims the spare cell of a slot for revision `r`, of which `r − 1` is committed. Returns the
 /// cell, to be filled from word 1 on with W2 stores. May be called again for the same r.
 [[nodiscard]] inline Word* claim_spare(const SlotView<Word>& slot, Word r) noexcept {
-  const Tags tags = slot.tags(std::memory_order_relaxed);  // its own stores: one writer
+  const Tags tags = slot.tags(std::memory_order_relaxed);  // W0
   Word* const spare = slot.cell(1 - tags.newest(r - 1));
   store(spare[0], r, std::memory_order_release);
   return spare;

@@ -17,6 +17,18 @@
 /// The segment board: the segments of a stream and the head that goes with each revision, over a
 /// span of bytes. One solver writes it, by publication.hpp; anybody reads. Segments are numbered
 /// from 1; segment n lies in slot n modulo the capacity.
+///
+/// Orderings of the words outside the slots; those of the cells are publication.hpp's:
+///
+/// - `tail` and `sleeping`: S3, P3 and the sleep of waypoint_ring.hpp. `tail` follows the commit,
+/// so
+///   that a solver that dies between the two has its items consumed: the next one stores it anew.
+/// - Packed knot times: relaxed. They are a hint; the cell that they lead to decides.
+/// - Refusals: one word each, which is never torn, stored before W3 of the head that counts it and
+///   loaded after R1. A later one may stand in its place: of an item not consumed under that head.
+/// - `retired`: stored with release and loaded with acquire; nothing depends on more than the word.
+/// - What the writer loads of its own board is relaxed: it made these stores itself, or its
+///   predecessor did, whose death the kernel told by giving the owner's lock away.
 namespace splinecast::ipc {
 
 /// What holds for a whole revision.
@@ -90,12 +102,12 @@ class SegmentBoardWriter {
   /// `head.revision` is set.
   void commit(Head& head) noexcept;
 
-  /// Tells the producer what has been consumed, after the commit.
+  /// Tells the producer what has been consumed, after the commit: S3.
   void store_tail(Word consumed) noexcept {
     store(control_[kTail], consumed, std::memory_order_release);
   }
 
-  /// For a solver about to sleep, or awake again: seq_cst, see WaypointRingWriter.
+  /// For a solver about to sleep, or awake again: seq_cst, see waypoint_ring.hpp.
   void store_sleeping(bool sleeping) noexcept {
     store(control_[kSleeping], sleeping ? 1 : 0, std::memory_order_seq_cst);
   }
@@ -163,11 +175,11 @@ class SegmentBoardReader {
     return load(control_[kRetired], std::memory_order_acquire) != 0;
   }
 
-  /// Items consumed; acquire, for the producer that will overwrite them.
+  /// Items consumed, which the producer may overwrite: P3.
   [[nodiscard]] Word tail() const noexcept {
     return load(control_[kTail], std::memory_order_acquire);
   }
-  /// Whether the solver sleeps; seq_cst, see WaypointRingWriter.
+  /// Whether the solver sleeps; seq_cst, see waypoint_ring.hpp.
   [[nodiscard]] bool sleeping() const noexcept {
     return load(control_[kSleeping], std::memory_order_seq_cst) != 0;
   }
@@ -183,7 +195,8 @@ class SegmentBoardReader {
   /// Copies segment `number` under r. Upon failure `out.tag` is 0 and the rest of no use.
   [[nodiscard]] bool copy_segment(Word number, Word r, SegmentCopy& out) const noexcept;
 
-  /// Whether a copy is what the board holds under r too: no words are copied again.
+  /// Whether a copy is what the board holds under r too: no words are copied again. R1 has made all
+  /// tags up to r visible, so that a newer cell cannot be missed; the acquire of R2 is R4's here.
   [[nodiscard]] bool is_current(const SegmentCopy& copy, Word r) const noexcept;
 
   /// Copies the left end, or both ends, of segment `number` under r.
@@ -192,7 +205,7 @@ class SegmentBoardReader {
                                core::Time& right) const noexcept;
 
   /// Copies the acceleration step at the left end of a segment that has been copied: D values. What
-  /// it gives is of use iff the copy is current afterwards.
+  /// it gives is of use iff the copy is current afterwards, which is R4 for these words (R3).
   void copy_step(const SegmentCopy& copy, std::span<double> step) const noexcept;
 
   /// Likewise the position of the waypoint at its left end, if it has one.

@@ -13,11 +13,39 @@
 
 /// The waypoint ring: items from one producer to one solver, over a span of bytes.
 ///
-/// Hand-over. The producer stores an item's words (release), then `head` (seq_cst, which is also a
-/// release): the solver that loads `head` (acquire) sees the words. The solver stores `tail`, in
-/// its own region, with release after it has read the items: the producer that loads it (acquire)
-/// may overwrite them. Relaxed would not do: the overwriting stores could then be seen by the
-/// loads before it. Items are numbered from 0; item i lies at i modulo the capacity.
+/// Items are numbered from 0; item i lies at i modulo the capacity. `head` counts the items
+/// appended, `tail`, in the solver's region, those consumed; both only grow.
+///
+/// Orderings of the hand-over:
+///
+/// P0 claimed.store(relaxed), before a replacement writes its items: how far they go. `head` alone
+///    says that the item behind it may be in writing, but not that many are. Relaxed is enough,
+///    because each P1 is a release: who sees a word of the replacement sees P0.
+/// P1 word.store(release), each. For the solver P2 would do; for an observer it pairs with O1: who
+///    sees a word of item i + capacity sees P0, and the P2 that let `head` reach i + capacity.
+/// P2 head.store(seq_cst), which is also a release. Pairs with S1: who sees the count sees the
+///    words. It comes last, so that a producer who dies before it has appended nothing.
+/// S1 head.load(acquire). Pairs with P2.
+/// S2 word.load(acquire), each; relaxed would do, as S1 has ordered it and nobody overwrites the
+///    item before S3: it is the same function as O1.
+/// S3 tail.store(release), when the items have been read. Pairs with P3: the loads of S2 come
+///    before the stores of the P1 that overwrite them. Relaxed would let those be seen by S2.
+/// P3 tail.load(acquire), before P1. Pairs with S3.
+/// O1 word.load(acquire), each: see P1. Keeps O2 behind it.
+/// O2 head.load and claimed.load (relaxed), after the copy: item i may be kept iff
+///    head < i + capacity and claimed ≤ i + capacity. At head = i + capacity the producer may
+///    already be writing the item that takes its place. Relaxed is enough: O1 has ordered both, and
+///    nothing after them depends on them. `claimed` never goes back, also not at a takeover: what a
+///    dead producer overwrote stays lost.
+///
+/// Orderings of sleep and wake. The solver stores `sleeping` and then loads `head`; the producer
+/// stores `head` and then loads `sleeping`. One of the two must see what the other stored, else the
+/// solver sleeps on beside an item that nobody wakes it for. All four are seq_cst: release and
+/// acquire let each load pass the store before it, on x86 as well. The solver sleeps only if `head`
+/// is still the one up to which it has consumed, and the kernel compares `head` once more.
+///
+/// `retired` is stored with release and loaded with acquire: nothing depends on more than the word
+/// itself. The counters of refusals are relaxed: each is a number of its own.
 namespace splinecast::ipc {
 
 /// What a ring item says.
@@ -99,6 +127,7 @@ class WaypointRingWriter {
   [[nodiscard]] bool has_room(Word items, const Solved& solved) const noexcept {
     return head_ - solved.consumed + items <= layout_.capacity;
   }
+  void claim(Word items) noexcept;
   void put_item(Word index, Word kind_and_flags, const core::Waypoint& values) noexcept;
   void publish(Word items, core::Time last) noexcept;
   [[nodiscard]] AppendStatus counted(AppendStatus status) noexcept;
@@ -122,7 +151,7 @@ class WaypointRingReader {
   [[nodiscard]] std::size_t dimensions() const noexcept { return layout_.dimensions; }
   [[nodiscard]] std::size_t capacity() const noexcept { return layout_.capacity; }
 
-  /// Items appended so far; acquire, or seq_cst for a solver about to sleep.
+  /// Items appended so far; S1, or seq_cst for a solver about to sleep.
   [[nodiscard]] Word head(std::memory_order order = std::memory_order_acquire) const noexcept {
     return load(control_[kHead], order);
   }
@@ -138,9 +167,8 @@ class WaypointRingReader {
   [[nodiscard]] ItemKind kind(Word i) const noexcept;
   [[nodiscard]] core::Time time(Word i) const noexcept;
 
-  /// Copies item i for an observer whom the producer does not wait for. Returns false if the
-  /// item is, or may be, overwritten: it may be kept iff head − i < capacity *after* the copy. At
-  /// head − i = capacity the producer may already be writing over it.
+  /// Copies item i for an observer whom the producer does not wait for. Returns false if the item
+  /// is, or may be, overwritten (O2); then `out` is of no use. Wait-free: O(D).
   [[nodiscard]] bool observe(Word i, RingItem& out) const noexcept;
 
   /// Items that the producer itself refused with this status.

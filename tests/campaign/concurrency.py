@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+"""Runs what attacks concurrency and real time, and writes its results: model, tsan and realtime.
+
+    concurrency.py [--tests PROGRAM] [--plain-word PROGRAM]
+
+The programs are splinecast_tests of the release preset and splinecast_plain_word of the tsan preset.
+"""
+
+import argparse
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from page import this_machine
+
+CAMPAIGN = Path(__file__).resolve().parent
+PROJECT = CAMPAIGN.parent.parent
+WORDS = ["tag", "coefficient", "head-slot", "knot-time", "revision", "tail", "head", "claimed", "item"]
+RACE = "WARNING: ThreadSanitizer: data race"
+
+
+def run(command, **environment):
+    """Its output, whether it ended well, and the seconds that it took."""
+    begin = time.monotonic()
+    ended = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,
+                           env={**os.environ, **environment})
+    return ended.stdout, ended.returncode == 0, time.monotonic() - begin
+
+
+def write(name, result):
+    version = re.search(r"project\(splinecast VERSION (\S+)", (PROJECT / "CMakeLists.txt").read_text())
+    result |= {"machine": this_machine(), "command": "tests/campaign/concurrency.py",
+               "version": version.group(1)}
+    path = CAMPAIGN / "results" / f"{name}.json"
+    path.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
+
+
+def attack_model():
+    with tempfile.TemporaryDirectory() as build:
+        text, good, seconds = run([str(CAMPAIGN.parent / "model" / "run.sh"), build])
+    if not good:
+        sys.exit(text)
+    held = {model: int(states) for model, states in re.findall(r"(\w+): holds in (\d+) states", text)}
+    write("model", {
+        "promise": [1, 3, 5, 8],
+        "attack": "models of the publication and the ring's hand-over, writers dying at any store and taken "
+                  "over, all interleavings, with spin",
+        "count": sum(held.values()),
+        "unit": "states",
+        "found": {"states in which a promise fails": 0, "mutants not caught": 0},
+        "measured": {"mutants caught": text.count(": caught after"),
+                     **{f"states of {model}": states for model, states in held.items()}},
+        "seconds": round(seconds, 1)})
+
+
+def attack_races(program):
+    text, good, seconds = run([program, "none"])
+    items, revisions, samples = map(int, re.search(r"(\d+) items, (\d+) revisions, (\d+) samples", text).groups())
+    missed = 0
+    for word in WORDS:
+        report, _, took = run([program, word], TSAN_OPTIONS="halt_on_error=1")
+        missed += RACE not in report
+        seconds += took
+    write("tsan", {
+        "promise": [1, 3, 8],
+        "attack": "a producer, a solver that is taken over, three readers and an observer as threads on one "
+                  "mapping under ThreadSanitizer; then one word of each kind as plain memory",
+        "count": samples,
+        "unit": "samples",
+        "found": {"races reported": text.count(RACE), "runs with torn payloads": 0 if good else 1,
+                  "plain words not reported": missed},
+        "measured": {"plain words reported": len(WORDS) - missed, "items": items, "revisions": revisions},
+        "seconds": round(seconds, 1)})
+
+
+def attack_real_time(program):
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "tests.json"
+        text, good, seconds = run([program, "--gtest_filter=RealTime.*NoSystemCall*:PreemptedWriter.*",
+                                   f"--gtest_output=json:{path}"])
+        tests = {test["name"]: test for suite in json.loads(path.read_text())["testsuites"]
+                 for test in suite["testsuite"]}
+    if not good or any("skipped" in test or test.get("result") == "SKIPPED" for test in tests.values()):
+        sys.exit(text)
+    loops = {name.split("Makes")[0]: test for name, test in tests.items() if "Makes" in name}
+    preempted = next(test for name, test in tests.items() if "Makes" not in name)
+
+    def total(counter):
+        return sum(int(test[counter]) for test in loops.values())
+
+    write("realtime", {
+        "promise": 3,
+        "attack": "sampling, appending and solving in a process that dies at a system call; a SCHED_FIFO reader "
+                  "that preempts the writer on its core",
+        "count": total("rounds") + int(preempted["samples"]),
+        "unit": "rounds",
+        "found": {"killed at a system call": total("killed"), "allocations": total("allocations"),
+                  "page faults": total("minor_faults") + total("major_faults"),
+                  "samples without an answer above a preempted writer": int(preempted["unanswered"])},
+        "measured": {"rounds of sampling": int(loops["Sampling"]["rounds"]),
+                     "waypoints appended": int(loops["Appending"]["answered"]),
+                     "revisions solved": int(loops["Solving"]["answered"]),
+                     "samples above a preempted writer": int(preempted["samples"]),
+                     "preemptions": int(preempted["preemptions"]),
+                     "of these within a publication": int(preempted["midway"]),
+                     "cpu per sample of 64 dimensions there [ns]": int(preempted["cpu_ns_per_sample"])},
+        "seconds": round(seconds, 1)})
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--tests", default=str(PROJECT / "build/release/bin/splinecast_tests"))
+    parser.add_argument("--plain-word", default=str(PROJECT / "build/tsan/bin/splinecast_plain_word"))
+    arguments = parser.parse_args()
+    attack_model()
+    attack_races(arguments.plain_word)
+    attack_real_time(arguments.tests)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,172 @@
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/timerfd.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdint>
+#include <ctime>
+#include <limits>
+#include <random>
+
+#include "realtime/sending.hpp"
+#include "splinecast/ipc/publication.hpp"
+#include "splinecast/ipc/reader.hpp"
+#include "splinecast/ipc/solver.hpp"
+#include "support/confined.hpp"
+#include "support/process.hpp"
+
+/// A reader that a priority above the writer's keeps on the writer's core: while it samples, the
+/// writer stands where it was preempted. Whoever waited for that writer would wait for ever.
+namespace splinecast::testing {
+namespace {
+
+using core::Time;
+using namespace std::chrono_literals;
+
+constexpr std::size_t kDimensions = 64;  // most of a revision's time is its publication
+constexpr int kPriority = 10;
+constexpr int kBurst = 50;                             // samples at one preemption
+constexpr std::uint64_t kMidway = 200;                 // preemptions within a publication, at least
+constexpr std::uint64_t kPreemptions = 1000;           // preemptions in all, at least
+constexpr std::int64_t kMostCpuPerSample = 1'000'000;  // ns; a sample takes less than 1000
+constexpr int kForbidden = 77;
+
+/// Keeps this process, and what it forks meanwhile, on one core.
+class OneCore {
+ public:
+  OneCore() {
+    sched_getaffinity(0, sizeof before_, &before_);
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(static_cast<std::size_t>(sched_getcpu()), &one);
+    sched_setaffinity(0, sizeof one, &one);
+  }
+  OneCore(const OneCore&) = delete;
+  OneCore& operator=(const OneCore&) = delete;
+  ~OneCore() { sched_setaffinity(0, sizeof before_, &before_); }
+
+ private:
+  cpu_set_t before_{};
+};
+
+/// A timer that can be waited for. Each wait is of another length, so that the writer is preempted
+/// anywhere.
+class Alarm {
+ public:
+  void wait() {
+    itimerspec when{};
+    when.it_value.tv_nsec = 50'000 + static_cast<std::int64_t>(random_() % 400'000);
+    timerfd_settime(timer_, 0, &when, nullptr);
+    std::uint64_t expirations = 0;
+    (void)!read(timer_, &expirations, sizeof expirations);
+  }
+
+ private:
+  int timer_ = timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC);
+  std::mt19937_64 random_{1};
+};
+
+/// Sees whether a stream's writer is at work between its first store of a revision and the commit.
+class PublicationWatch {
+ public:
+  explicit PublicationWatch(const std::string& stream)
+      : region_(ipc::Region::open(stream, ipc::RegionKind::spline, false)),
+        layout_(
+            ipc::checked_board_layout(ipc::copy_header(region_.bytes()), region_.bytes().size())),
+        board_(region_.bytes(), layout_) {}
+
+  [[nodiscard]] ipc::Word revision() const { return board_.revision(); }
+
+  [[nodiscard]] bool is_midway() {
+    const ipc::Word r = board_.revision();
+    if (r == 0 || !board_.copy_bounds(r, r, head_)) return false;
+    const ipc::Word first = head_.newest > kChanged ? head_.newest - kChanged : 1;
+    for (ipc::Word number = first; number <= head_.newest + 1; ++number) {
+      const auto words = ipc::words_at(std::span<const std::byte>(region_.bytes()),
+                                       layout_.slots + (number % layout_.capacity) * layout_.stride,
+                                       layout_.stride / sizeof(ipc::Word));
+      const ipc::SlotView<const ipc::Word> slot{words.data(), layout_.cell / sizeof(ipc::Word)};
+      for (const ipc::Word tag : slot.tags(std::memory_order_relaxed).of) {
+        if (tag == r + 1) return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  static constexpr ipc::Word kChanged = 16;  ///< segments back that a revision may change
+
+  ipc::Region region_;
+  ipc::BoardLayout layout_;
+  ipc::SegmentBoardReader board_;
+  ipc::Head head_;
+};
+
+std::int64_t cpu_time() {
+  timespec used{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+  return std::int64_t{used.tv_sec} * 1'000'000'000 + used.tv_nsec;
+}
+
+void read_above(const std::string& stream, Confined& process) {
+  ipc::Reader reader(stream, 60s);
+  PublicationWatch watch(stream);
+  const ipc::MonotonicClock clock;
+  core::State state(kDimensions);
+  Alarm alarm;
+  const sched_param above{.sched_priority = kPriority};
+  if (sched_setscheduler(0, SCHED_FIFO, &above) != 0) _exit(kForbidden);
+  ConfinedPage& page = process.page();
+  while (page.midway < kMidway || page.rounds < kPreemptions * kBurst) {
+    alarm.wait();
+    const ipc::Word revision = watch.revision();
+    if (watch.is_midway()) ++page.midway;
+    const std::int64_t before = cpu_time();
+    for (int i = 0; i < kBurst; ++i) {
+      const ipc::SampleStatus status = reader.sample(clock.now(), state);
+      if (ipc::has_values(status)) ++page.answered;
+      if (status == ipc::SampleStatus::busy) ++page.busy;
+      ++page.rounds;
+    }
+    page.cpu_ns += static_cast<std::uint64_t>(cpu_time() - before);
+    if (watch.revision() != revision) ++page.overtaken;
+  }
+  process.finish();
+}
+
+TEST(PreemptedWriter, AReaderOfHigherPriorityOnItsCoreNeverWaitsForIt) {
+  const TestStream stream;
+  const OneCore core;
+  Sending sending(stream.name(), kDimensions);
+  ipc::Solver solver(stream.name(), {.history = Time::zero(), .wake = false});
+  ASSERT_TRUE(solver.attach());
+  const ipc::MonotonicClock clock;
+  const auto work = [&] {
+    for (int i = 0; i < 100; ++i) {
+      sending.send();
+      solver.step(clock);
+    }
+  };
+  while (solver.head().knots < 100) work();
+  const ConfinedEnd end =
+      run_confined([&](Confined& process) { read_above(stream.name(), process); }, work);
+  if (end.code == kForbidden) GTEST_SKIP() << "SCHED_FIFO takes CAP_SYS_NICE or RLIMIT_RTPRIO";
+  EXPECT_EQ(end.signal, 0);
+  EXPECT_EQ(end.code, 0);
+  RecordProperty("samples", std::to_string(end.rounds));
+  RecordProperty("preemptions", std::to_string(end.rounds / kBurst));
+  RecordProperty("midway", std::to_string(end.midway));
+  RecordProperty("overtaken", std::to_string(end.overtaken));
+  RecordProperty("busy", std::to_string(end.busy));
+  RecordProperty("unanswered", std::to_string(end.rounds - end.answered));
+  RecordProperty("cpu_ns_per_sample",
+                 std::to_string(end.cpu_ns / std::max<std::uint64_t>(1, end.rounds)));
+  // Nobody stores while the reader samples, so that not even the first try can fail.
+  EXPECT_EQ(end.answered, end.rounds);
+  EXPECT_GE(end.midway, kMidway);
+  EXPECT_LT(end.cpu_ns, end.rounds * kMostCpuPerSample);
+}
+
+}  // namespace
+}  // namespace splinecast::testing

@@ -1,0 +1,198 @@
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <random>
+#include <vector>
+
+#include "realtime/sending.hpp"
+#include "splinecast/ipc/reader.hpp"
+#include "splinecast/ipc/solver.hpp"
+#include "support/confined.hpp"
+#include "support/process.hpp"
+
+/// The three loops as controllers would run them, in a process that dies at its first system call.
+namespace splinecast::testing {
+namespace {
+
+using core::Time;
+using namespace std::chrono_literals;
+
+constexpr std::size_t kDimensions = 7;
+constexpr std::uint64_t kWarmUp = 2'000;
+constexpr std::uint64_t kRounds = 20'000;
+const ipc::SolverOptions kSolving{.history = Time::zero(), .wake = false};
+
+void expect_undisturbed(const ConfinedEnd& end) {
+  EXPECT_EQ(end.signal, 0);
+  EXPECT_EQ(end.code, 0);
+  EXPECT_EQ(end.allocations, 0U);
+  EXPECT_EQ(end.minor_faults, 0U);
+  EXPECT_EQ(end.major_faults, 0U);
+  ::testing::Test::RecordProperty("rounds", std::to_string(end.rounds));
+  ::testing::Test::RecordProperty("answered", std::to_string(end.answered));
+  ::testing::Test::RecordProperty("busy", std::to_string(end.busy));
+  ::testing::Test::RecordProperty("killed", std::to_string(end.signal != 0 ? 1 : 0));
+  ::testing::Test::RecordProperty("allocations", std::to_string(end.allocations));
+  ::testing::Test::RecordProperty("minor_faults", std::to_string(end.minor_faults));
+  ::testing::Test::RecordProperty("major_faults", std::to_string(end.major_faults));
+}
+
+/// The live loops read CLOCK_MONOTONIC. Where the kernel has no vDSO clock for this machine's clock
+/// source that is a system call, and whoever reads it pays for it.
+class RealTime : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const ConfinedEnd end = run_confined([](Confined& process) {
+      const ipc::MonotonicClock clock;
+      (void)clock.now();
+      process.confine();
+      for (int i = 0; i < 1000; ++i) (void)clock.now();
+      process.finish();
+    });
+    if (end.signal == SIGSYS) GTEST_SKIP() << "CLOCK_MONOTONIC is a system call on this machine";
+    ASSERT_EQ(end.code, 0);
+  }
+};
+
+TEST_F(RealTime, SamplingMakesNoSystemCallNoAllocationAndNoPageFault) {
+  const TestStream stream;
+  Sending sending(stream.name(), kDimensions);
+  ipc::Solver solver(stream.name(), kSolving);
+  ASSERT_TRUE(solver.attach());
+  const ipc::MonotonicClock clock;
+  const auto work = [&] {
+    sending.send();
+    solver.step(clock);
+  };
+  for (int i = 0; i < 200; ++i) work();
+  const ConfinedEnd end = run_confined(
+      [&](Confined& process) {
+        ipc::Reader reader(stream.name(), 60s);
+        core::State state(kDimensions);
+        std::mt19937_64 random(1);
+        const auto round = [&] {
+          const Time now = clock.now();
+          const Time jump =
+              Sending::kInterval * (static_cast<std::int64_t>(random() % 4000) - 2000);
+          const ipc::SampleStatus status =
+              random() % 4 == 0 ? reader.preview(now + jump, state) : reader.sample(now, state);
+          if (ipc::has_values(status)) ++process.page().answered;
+          if (status == ipc::SampleStatus::busy) ++process.page().busy;
+          ++process.page().rounds;
+        };
+        for (std::uint64_t i = 0; i < kWarmUp; ++i) round();
+        process.page().rounds = process.page().answered = process.page().busy = 0;
+        process.confine();
+        for (std::uint64_t i = 0; i < 10 * kRounds; ++i) round();
+        process.finish();
+      },
+      work);
+  expect_undisturbed(end);
+  EXPECT_EQ(end.rounds, 10 * kRounds);
+  EXPECT_GT(end.answered, end.rounds / 2);
+}
+
+TEST_F(RealTime, AppendingMakesNoSystemCallNoAllocationAndNoPageFault) {
+  const TestStream stream;
+  ipc::Solver solver(stream.name(), kSolving);
+  const ipc::MonotonicClock clock;
+  const ConfinedEnd end = run_confined(
+      [&](Confined& process) {
+        Sending sending(stream.name(), kDimensions);
+        if (!sending.producer().wait_for_solver(60s)) _exit(1);
+        const auto send = [&](std::uint64_t waypoints) {
+          for (std::uint64_t sent = 0; sent < waypoints;) {
+            if (sending.send()) ++sent;
+            ++process.page().rounds;
+          }
+        };
+        send(kWarmUp);
+        process.page().rounds = 0;
+        process.confine();
+        send(kRounds);
+        process.page().answered = kRounds;
+        process.finish();
+      },
+      [&] {
+        solver.attach();
+        solver.step(clock);
+      });
+  expect_undisturbed(end);
+  EXPECT_EQ(end.answered, kRounds);
+}
+
+TEST_F(RealTime, SolvingMakesNoSystemCallNoAllocationAndNoPageFault) {
+  const TestStream stream;
+  Sending sending(stream.name(), kDimensions);
+  const ipc::MonotonicClock clock;
+  const ConfinedEnd end = run_confined(
+      [&](Confined& process) {
+        ipc::Solver solver(stream.name(), kSolving);
+        if (!solver.attach()) _exit(1);
+        const auto solve = [&](std::uint64_t waypoints) {
+          const ipc::Word enough = solver.head().knots + waypoints;
+          while (solver.head().knots < enough) {
+            if (solver.step(clock).published) ++process.page().answered;
+            ++process.page().rounds;
+          }
+        };
+        solve(kWarmUp);
+        process.page().rounds = process.page().answered = 0;
+        process.confine();
+        solve(kRounds);
+        process.finish();
+      },
+      [&] { sending.send(); });
+  expect_undisturbed(end);
+  EXPECT_GT(end.answered, 0U);
+}
+
+TEST_F(RealTime, ASolverThatWakesReadersDoesCallTheSystem) {
+  const TestStream stream;
+  Sending sending(stream.name(), kDimensions);
+  const ConfinedEnd end = run_confined(
+      [&](Confined& process) {
+        ipc::SolverOptions waking = kSolving;
+        waking.wake = true;
+        ipc::Solver solver(stream.name(), waking);
+        if (!solver.attach()) _exit(1);
+        const ipc::MonotonicClock clock;
+        process.confine();
+        for (;;) solver.step(clock);
+      },
+      [&] { sending.send(); });
+  EXPECT_EQ(end.signal, SIGSYS);
+}
+
+TEST(Confined, ASystemCallKills) {
+  const ConfinedEnd end = run_confined([](Confined& process) {
+    process.confine();
+    (void)syscall(SYS_getpid);
+    process.finish();
+  });
+  EXPECT_EQ(end.signal, SIGSYS);
+}
+
+TEST(Confined, AllocationsAndPageFaultsAreCounted) {
+  constexpr std::size_t kBytes = 64 * ipc::kPage;
+  const ConfinedEnd end = run_confined([](Confined& process) {
+    auto* const pages = static_cast<volatile char*>(
+        mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+    madvise(const_cast<char*>(pages), kBytes, MADV_NOHUGEPAGE);
+    { const std::vector<int> first(100, 1); }  // so that the heap has what the next one takes
+    process.confine();
+    for (std::size_t at = 0; at < kBytes; at += ipc::kPage) pages[at] = 1;
+    { const std::vector<int> second(100, pages[0]); }
+    process.finish();
+  });
+  EXPECT_EQ(end.code, 0);
+  EXPECT_EQ(end.allocations, 1U);
+  EXPECT_GE(end.minor_faults, 64U);
+}
+
+}  // namespace
+}  // namespace splinecast::testing
