@@ -109,6 +109,7 @@ std::uint64_t layout_hash() noexcept {
                                                                         kControlLines,
                                                                         kRevision,
                                                                         kRetired,
+                                                                        kBegun,
                                                                         kTail,
                                                                         kSleeping,
                                                                         kProducerCounters,

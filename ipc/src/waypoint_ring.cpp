@@ -112,6 +112,11 @@ AppendStatus WaypointRingWriter::replace_from(core::Time t,
                                               const Solved& solved) noexcept {
   const AppendStatus status = check_replacement(t, waypoints, solved);
   if (status != AppendStatus::accepted) return counted(status);
+  // Before any of its items, and relaxed: the items' words are released, so that an observer who
+  // sees one of them sees this too. It stands if this writer dies among the items.
+  const Word begun = head_ + 1 + waypoints.size();
+  store(control_[kBegun], std::max(begun, load(control_[kBegun], std::memory_order_relaxed)),
+        std::memory_order_relaxed);
   const Word kind = static_cast<Word>(ItemKind::replace) | waypoints.size() << kCountShift;
   put_item(0, kind, {.time = t, .position = {}});
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
@@ -222,7 +227,9 @@ core::Time WaypointRingReader::time(Word i) const noexcept {
 
 bool WaypointRingReader::observe(Word i, RingItem& out) const noexcept {
   copy(i, out);
-  return head() - i < layout_.capacity;
+  // The loads of the copy are acquire, so that these come after it.
+  const Word begun = load(control_[kBegun], std::memory_order_relaxed);
+  return std::max(head() + 1, begun) - i <= layout_.capacity;
 }
 
 Word WaypointRingReader::refused(AppendStatus status) const noexcept {

@@ -96,6 +96,28 @@ TEST(WaypointRing, APassiveObserverKeepsAnItemOnlyWhileItCannotBeOverwritten) {
   EXPECT_EQ(item.values[0], 1);
 }
 
+TEST(WaypointRing, APassiveObserverKeepsNoItemThatAReplacementHasBegunToOverwrite) {
+  constexpr Word kCapacity = 8;
+  constexpr Word kReplaced = 3;
+  MemoryRing ring(1, kCapacity);
+  RingItem item(1);
+  for (int i = 0; i < 8; ++i) {
+    ASSERT_EQ(append(ring, Time(10'000 * (i + 1)), {1.0 * i}), AppendStatus::accepted);
+  }
+  const std::vector<double> x{0};
+  std::vector<core::Waypoint> waypoints(kReplaced, {.position = x});
+  for (int i = 0; i < 3; ++i)
+    waypoints[static_cast<std::size_t>(i)].time = Time(100'000 + 10'000 * i);
+  ASSERT_EQ(ring.writer.replace_from(Time(90'000), waypoints, {.consumed = 8}),
+            AppendStatus::accepted);
+  // Its producer died before it stored `head`, and the next one has only appended one item.
+  const auto control = words_at(ring.bytes.span(), ring.layout.control, kHead + 1);
+  store(control[kHead], 8, std::memory_order_release);
+  WaypointRingWriter next(ring.bytes.span(), ring.layout, {});
+  ASSERT_EQ(next.append({Time(100'000), x, {}, {}}, {.consumed = 8}), AppendStatus::accepted);
+  for (Word i = 0; i < 8; ++i) EXPECT_EQ(ring.reader.observe(i, item), i > kReplaced) << i;
+}
+
 TEST(WaypointRing, NothingFollowsAFinishAndItCarriesItsCondition) {
   MemoryRing ring(2, 4);
   ASSERT_EQ(append(ring, kMillisecond, {1, 2}), AppendStatus::accepted);

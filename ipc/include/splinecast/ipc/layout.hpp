@@ -94,6 +94,7 @@ inline constexpr std::size_t kBodyOffset = kHeaderBytes + kPage;
 inline constexpr std::size_t kRevision = 0;  ///< spline: the commit word
 inline constexpr std::size_t kHead = 0;      ///< waypoints: items appended
 inline constexpr std::size_t kRetired = 1;   ///< both: not 0 once the region is of no more use
+inline constexpr std::size_t kBegun = 2;  ///< waypoints: end of a replacement begun to be written
 inline constexpr std::size_t kTail = kSeparation / sizeof(Word);  ///< spline: items consumed
 inline constexpr std::size_t kSleeping = 2 * kSeparation / sizeof(Word);  ///< spline: solver sleeps
 inline constexpr std::size_t kProducerCounters = kSeparation / sizeof(Word);  ///< waypoints

@@ -139,8 +139,10 @@ class WaypointRingReader {
   [[nodiscard]] core::Time time(Word i) const noexcept;
 
   /// Copies item i for an observer whom the producer does not wait for. Returns false if the
-  /// item is, or may be, overwritten: it may be kept iff head − i < capacity *after* the copy. At
-  /// head − i = capacity the producer may already be writing over it.
+  /// item is, or may be, overwritten. It may be kept iff *after* the copy head − i < capacity: at
+  /// head − i = capacity the producer may already be writing over it. A replacement writes several
+  /// items before it stores `head`; it says first where they end, e, and then e − i ≤ capacity must
+  /// hold too, also when its producer has died.
   [[nodiscard]] bool observe(Word i, RingItem& out) const noexcept;
 
   /// Items that the producer itself refused with this status.
