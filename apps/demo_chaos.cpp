@@ -19,6 +19,7 @@
 #include "support/curve_watch.hpp"
 #include "support/joint_motion.hpp"
 #include "support/output.hpp"
+#include "support/recovery.hpp"
 #include "support/signals.hpp"
 
 namespace splinecast::apps {
@@ -77,31 +78,6 @@ json run_chaos_reader(const std::string& stream) {
   }
   return to_json(watch.report());
 }
-
-/// How long something takes to come back, and how often it did.
-class Recovery {
- public:
-  void begin(Time now) { since_ = now; }
-  [[nodiscard]] bool is_awaited() const { return since_.has_value(); }
-  void end(Time now) {
-    took_ms_.push_back(core::to_seconds(now - *since_) * 1e3);
-    since_.reset();
-  }
-  [[nodiscard]] json result() const {
-    std::vector<double> sorted = took_ms_;
-    std::ranges::sort(sorted);
-    const auto at = [&](double share) {
-      return sorted.empty()
-                 ? 0.0
-                 : sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
-    };
-    return {{"kills", sorted.size()}, {"p50_ms", at(0.5)}, {"p99_ms", at(0.99)}, {"max_ms", at(1)}};
-  }
-
- private:
-  std::optional<Time> since_;
-  std::vector<double> took_ms_;
-};
 
 class Chaos {
  public:

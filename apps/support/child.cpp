@@ -82,11 +82,18 @@ nlohmann::json Child::result() {
   }
   pid_ = -1;
   if (!WIFEXITED(status) || WEXITSTATUS(status) != kOk) {
-    throw Failure(fmt::format("a process of the demo ended with {} {}",
+    throw Failure(fmt::format("a child process ended with {} {}",
                               WIFSIGNALED(status) ? "signal" : "code",
                               WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status)));
   }
   return nlohmann::json::parse(text);
+}
+
+std::optional<int> Child::ended() noexcept {
+  int status = 0;
+  if (pid_ < 0 || waitpid(pid_, &status, WNOHANG) != pid_) return std::nullopt;
+  pid_ = -1;
+  return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
 }
 
 void Child::signal(int number) const noexcept {

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 namespace splinecast::apps {
 
@@ -23,6 +24,10 @@ class Child {
   /// Waits for the child's end and returns its result; passes a stop that is requested meanwhile on
   /// to it. Throws Failure if it failed or was killed.
   nlohmann::json result();
+
+  /// Whether it has ended, and then how: its exit code, or minus the number of the signal that
+  /// killed it. Once it has, there is nothing more to be asked of it.
+  [[nodiscard]] std::optional<int> ended() noexcept;
 
   /// Sends it a signal; to kill it, destroy this object.
   void signal(int number) const noexcept;

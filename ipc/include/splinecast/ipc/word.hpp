@@ -7,6 +7,7 @@
 #include <span>
 
 #include "splinecast/core/time.hpp"
+#include "splinecast/ipc/store_hook.hpp"
 
 /// Shared memory is made of 64-bit words, and every access to one that another process may write
 /// is atomic: no plain memory is shared, so there is nothing to race on.
@@ -31,6 +32,7 @@ inline const Word* plain_word = nullptr;
   return std::atomic_ref<Word>(const_cast<Word&>(word)).load(order);  // NOLINT(*-const-cast)
 }
 
+/// Every store to a region that stands goes through here.
 inline void store(Word& word, Word value, std::memory_order order) noexcept {
 #ifdef SPLINECAST_PLAIN_WORD
   if (&word == plain_word) {
@@ -38,6 +40,7 @@ inline void store(Word& word, Word value, std::memory_order order) noexcept {
     return;
   }
 #endif
+  before_store();
   std::atomic_ref<Word>(word).store(value, order);
 }
 

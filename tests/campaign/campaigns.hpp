@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "campaign/findings.hpp"
+
+/// The campaigns: each attacks streams of its own name with real processes over real shared memory
+/// and returns its result, as the head of page.py says, and whether no promise was broken.
+namespace splinecast::campaign {
+
+struct Result {
+  nlohmann::json json;
+  bool is_sound = false;
+};
+
+struct CampaignOptions {
+  std::string command;  ///< that runs it again
+  std::uint64_t kills = 300;
+  std::uint64_t seed = 1;
+  double seconds = 2;  ///< of each part of the stress
+};
+
+/// Kills at random instants until there were so many kills: two live streams and two recorded ones,
+/// each with two readers. `seed` fixes whom and when, as far as a schedule can be fixed.
+[[nodiscard]] Result run_random_kills(const CampaignOptions& options);
+
+/// Kills before every single store of every step of both writers and of `rm`. Needs a build with
+/// hooks.
+[[nodiscard]] Result run_every_store(const CampaignOptions& options);
+
+/// One producer and one solver as fast as they go over the smallest ring and board, and 1, 2, 4, 8
+/// and 16 readers that read all they can.
+[[nodiscard]] Result run_stress(const CampaignOptions& options);
+
+/// A result in the form of the page, of this machine and version.
+[[nodiscard]] Result make_result(const CampaignOptions& options, nlohmann::json promises,
+                                 const std::string& attack, std::uint64_t count,
+                                 const std::string& unit, const Findings& findings,
+                                 nlohmann::json measured, double seconds);
+
+/// A stream name of this process.
+[[nodiscard]] std::string campaign_stream(const std::string& what);
+
+/// Between two looks at all streams of a campaign, and so the resolution of its times.
+inline constexpr core::Time kLook{500'000};
+
+}  // namespace splinecast::campaign

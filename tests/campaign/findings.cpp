@@ -1,0 +1,91 @@
+#include "campaign/findings.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <string>
+
+namespace splinecast::campaign {
+
+std::string_view to_string(Role role) noexcept {
+  switch (role) {
+    case Role::producer:
+      return "producer";
+    case Role::solver:
+      return "solver";
+    case Role::reader:
+      return "reader";
+    case Role::remover:
+      return "rm";
+  }
+  return "";
+}
+
+void Findings::add(const Findings& other) {
+  for (std::size_t role = 0; role < kRoles; ++role) {
+    kills[role] += other.kills[role];
+    recovery[role].add(other.recovery[role]);
+  }
+  constexpr std::array kCounters{
+      &Findings::hangs,   &Findings::unusable,  &Findings::clean_ups, &Findings::lost,
+      &Findings::torn,    &Findings::stepped,   &Findings::changed,   &Findings::wrong,
+      &Findings::lives,   &Findings::waypoints, &Findings::refused,   &Findings::withdrawn,
+      &Findings::samples, &Findings::busy,      &Findings::segments,  &Findings::items};
+  for (const auto counter : kCounters) this->*counter += other.*counter;
+}
+
+void Findings::add(const ReaderFacts& facts) {
+  torn += facts.torn;
+  stepped += facts.stepped;
+  changed += facts.changed;
+  wrong += facts.wrong;
+  samples += facts.samples;
+  busy += facts.busy;
+  segments += facts.segments;
+  items += facts.items;
+}
+
+std::uint64_t Findings::all_kills() const noexcept {
+  return std::reduce(kills.begin(), kills.end());
+}
+
+nlohmann::json Findings::found() const {
+  return {{"torn reads", torn},
+          {"settled samples changed", changed},
+          {"steps", stepped},
+          {"segments of another curve", wrong},
+          {"waypoints lost", lost},
+          {"hangs", hangs},
+          {"names left unusable", unusable},
+          {"manual clean-ups", clean_ups}};
+}
+
+bool Findings::is_sound() const {
+  return std::ranges::all_of(found(), [](const nlohmann::json& count) { return count == 0; });
+}
+
+nlohmann::json Findings::work() const {
+  return {{"streams ended and compared", lives},
+          {"waypoints interpolated", waypoints},
+          {"refused with a reason", refused},
+          {"withdrawn by a replacement", withdrawn},
+          {"samples", samples},
+          {"busy samples", busy},
+          {"segments read", segments},
+          {"ring items observed", items}};
+}
+
+nlohmann::json Findings::killing() const {
+  nlohmann::json all = nlohmann::json::object();
+  for (std::size_t role = 0; role < kRoles; ++role) {
+    const std::string name(to_string(static_cast<Role>(role)));
+    all["kills of " + name] = kills[role];
+    const nlohmann::json came_back = recovery[role].result();
+    if (came_back["kills"] == 0) continue;
+    all[name + " to new data p50 [ms]"] = came_back["p50_ms"];
+    all[name + " to new data p99 [ms]"] = came_back["p99_ms"];
+  }
+  return all;
+}
+
+}  // namespace splinecast::campaign

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string_view>
+
+#include "campaign/journal.hpp"
+#include "support/recovery.hpp"
+
+namespace splinecast::campaign {
+
+/// Who can be killed.
+enum class Role : std::uint8_t { producer, solver, reader, remover };
+inline constexpr std::size_t kRoles = 4;
+[[nodiscard]] std::string_view to_string(Role role) noexcept;
+
+/// What an attack on one or several streams did and found.
+struct Findings {
+  std::array<std::uint64_t, kRoles> kills{};
+  std::array<apps::Recovery, kRoles> recovery;
+
+  // Violations: each must be 0.
+  std::uint64_t hangs = 0;
+  std::uint64_t unusable = 0;   ///< starts that failed on what a killed process had left
+  std::uint64_t clean_ups = 0;  ///< files that a person would have to remove
+  std::uint64_t lost = 0;       ///< items neither interpolated nor refused nor withdrawn
+  std::uint64_t torn = 0;       ///< as in ReaderFacts, and so the next three
+  std::uint64_t stepped = 0;
+  std::uint64_t changed = 0;
+  std::uint64_t wrong = 0;
+
+  // What else was counted.
+  std::uint64_t lives = 0;  ///< streams that came to their end and were compared
+  std::uint64_t waypoints = 0;
+  std::uint64_t refused = 0;    ///< items of live streams, each with a reason
+  std::uint64_t withdrawn = 0;  ///< waypoints that a replacement withdrew
+  std::uint64_t samples = 0;    ///< as in ReaderFacts, and so the next three
+  std::uint64_t busy = 0;
+  std::uint64_t segments = 0;
+  std::uint64_t items = 0;
+
+  void add(const Findings& other);
+  void add(const ReaderFacts& facts);
+
+  [[nodiscard]] std::uint64_t all_kills() const noexcept;
+
+  /// The violations, by name.
+  [[nodiscard]] nlohmann::json found() const;
+  [[nodiscard]] bool is_sound() const;
+
+  /// What was read and solved, by name.
+  [[nodiscard]] nlohmann::json work() const;
+  /// Kills per role and the times from a kill to the first sample of new data, by name.
+  [[nodiscard]] nlohmann::json killing() const;
+};
+
+}  // namespace splinecast::campaign

@@ -1,0 +1,79 @@
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <fstream>
+
+#include "campaign/campaigns.hpp"
+#include "support/exit_codes.hpp"
+#include "support/guarded.hpp"
+#include "support/output.hpp"
+#include "support/signals.hpp"
+
+namespace splinecast::campaign {
+namespace {
+
+std::string joined(int argc, char** argv) {
+  std::string text = "splinecast_campaign";
+  for (int i = 1; i < argc; ++i) text += std::string(" ") + argv[i];
+  return text;
+}
+
+/// Writes a result where it was asked for. Exit code 3 if a promise was broken.
+int report(const Result& result, const std::string& path) {
+  const std::string text = result.json.dump(2) + "\n";
+  if (path.empty()) {
+    apps::print_report(text);
+  } else {
+    apps::Output output(path);
+    output.write(text);
+    output.close();
+  }
+  return result.is_sound ? apps::kOk : apps::kFellShort;
+}
+
+int run_program(int argc, char** argv) {
+  CLI::App program("Kills and stresses streams of its own and counts what breaks",
+                   "splinecast_campaign");
+  program.require_subcommand(1);
+  CampaignOptions options{.command = joined(argc, argv)};
+  std::string path;
+  bool every_store = false;
+  auto* kill = program.add_subcommand("kill", "SIGKILL to every process of a stream");
+  kill->add_option("--kills", options.kills, "How many, at random instants")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  kill->add_option("--seed", options.seed, "Of the random instants")->capture_default_str();
+  kill->add_flag("--every-store", every_store,
+                 "Before each store to shared memory instead; needs a build with hooks");
+  auto* stress = program.add_subcommand("stress", "1 to 16 readers against the fastest writers");
+  stress->add_option("--seconds", options.seconds, "For each number of readers")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  for (CLI::App* verb : {kill, stress}) {
+    verb->add_option("--json", path, "File for the result; else standard output");
+    verb->add_option("--command", options.command, "What the result says that runs it again");
+  }
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? apps::kOk : apps::kBadUsageOrInput;
+  }
+  return apps::run_guarded([&] {
+    apps::catch_stop_signals();
+    const Result result = *stress       ? run_stress(options)
+                          : every_store ? run_every_store(options)
+                                        : run_random_kills(options);
+    return report(result, path);
+  });
+}
+
+}  // namespace
+}  // namespace splinecast::campaign
+
+int main(int argc, char** argv) {
+  try {
+    return splinecast::campaign::run_program(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "splinecast_campaign: %s\n", error.what());
+    return splinecast::apps::kFailed;
+  }
+}

@@ -1,0 +1,208 @@
+#!/usr/bin/env python3
+"""Makes tests/README.md from what the campaigns found.
+
+    page.py            writes the page
+    page.py --check    exits 1 if the page is not what the results make of it
+    page.py --machine  prints this machine as the JSON object that a result holds
+
+Each file tests/campaign/results/*.json holds one result, or a list of them. A result is an object:
+
+    promise   number of the promise attacked, its row in the README's table "What it promises",
+              counted from 1; or a list of such numbers
+    attack    what was done, a phrase: it stands in a table
+    count     how often, a whole number from 1
+    unit      of what, in the plural: "kills", "inputs", "samples"
+    found     object of counters, each a whole number under a name that says what it counts
+              ("torn reads"): 0 means that the promise held
+    measured  object of what was measured besides, numbers or texts under names with their unit
+              ("recovery p50 [ms]"); may be empty
+    machine   object of cpu (text), cores (number) and kernel (text): what --machine prints
+    seconds   how long the attack took, a number
+    command   what runs it again, as typed at the project's top
+    version   of splinecast
+
+tests/campaign/bugs.json holds a list of the bugs that attacks have found, each an object of texts:
+what (was wrong), found_by (which attack), mended (how).
+"""
+
+import json
+import os
+import platform
+import re
+import sys
+from pathlib import Path
+
+CAMPAIGN = Path(__file__).resolve().parent
+PROJECT = CAMPAIGN.parent.parent
+PAGE = CAMPAIGN.parent / "README.md"
+
+HEAD = """# The promises under attack
+
+Each promise of the [README](../README.md#what-it-promises), what tried to break it, how often, and what was found.
+`./run campaign` runs the attacks and makes this page of what they wrote into [`campaign/results`](campaign/results);
+the schema stands at the head of [`campaign/page.py`](campaign/page.py). `./run test` runs shorter ones.
+
+A number under *found* counts violations: 0 means that the promise held each time.
+"""
+
+
+def is_text(value):
+    return isinstance(value, str) and value != ""
+
+
+def is_number(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def is_count(value):
+    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+
+
+def is_promise(value, promises):
+    numbers = value if isinstance(value, list) else [value]
+    return numbers != [] and all(is_count(n) and 1 <= n <= promises for n in numbers)
+
+
+def is_machine(value):
+    return (isinstance(value, dict) and value.keys() == {"cpu", "cores", "kernel"}
+            and is_text(value["cpu"]) and is_count(value["cores"]) and is_text(value["kernel"]))
+
+
+def is_table_of(check, value):
+    return isinstance(value, dict) and all(is_text(k) and check(v) for k, v in value.items())
+
+
+def faults(result, promises):
+    """The keys of a result that are missing, unknown or not as the schema has them."""
+    checks = {
+        "promise": lambda v: is_promise(v, promises),
+        "attack": is_text,
+        "count": lambda v: is_count(v) and v > 0,
+        "unit": is_text,
+        "found": lambda v: v != {} and is_table_of(is_count, v),
+        "measured": lambda v: is_table_of(lambda x: is_number(x) or is_text(x), v),
+        "machine": is_machine,
+        "seconds": lambda v: is_number(v) and v >= 0,
+        "command": is_text,
+        "version": is_text,
+    }
+    if not isinstance(result, dict):
+        return ["result"]
+    wrong = [key for key, check in checks.items() if key not in result or not check(result[key])]
+    return wrong + sorted(result.keys() - checks.keys())
+
+
+def read_promises():
+    """The sentences of the README's table of promises, in their order."""
+    text = (PROJECT / "README.md").read_text(encoding="utf-8")
+    table = text.split("\n## What it promises\n", 1)[1].split("\n## ", 1)[0]
+    rows = [line for line in table.splitlines() if line.startswith("| ")]
+    return [re.split(r"(?<!\\)\|", row)[1].strip() for row in rows[1:]]
+
+
+def read_results(promises):
+    results = []
+    for path in sorted((CAMPAIGN / "results").glob("*.json")):
+        content = json.loads(path.read_text(encoding="utf-8"))
+        for result in content if isinstance(content, list) else [content]:
+            wrong = faults(result, promises)
+            if wrong:
+                sys.exit(f"{path}: {', '.join(wrong)}: not as the head of page.py says")
+            results.append(result)
+    return results
+
+
+def read_bugs():
+    path = CAMPAIGN / "bugs.json"
+    bugs = json.loads(path.read_text(encoding="utf-8"))
+    for bug in bugs:
+        if bug.keys() != {"what", "found_by", "mended"} or not all(map(is_text, bug.values())):
+            sys.exit(f"{path}: a bug needs the texts what, found_by and mended")
+    return bugs
+
+
+def to_text(value):
+    if isinstance(value, int):
+        return f"{value:,}"
+    if isinstance(value, float):
+        return f"{value:.3g}" if abs(value) < 1000 else f"{value:,.0f}"
+    return value
+
+
+def cell(text):
+    return text.replace("|", r"\|").replace("\n", " ")
+
+
+def counters(table):
+    return ", ".join(f"{cell(name)} {cell(to_text(value))}" for name, value in table.items())
+
+
+def duration(seconds):
+    if seconds < 120:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.1f} h"
+
+
+def machine_text(machine):
+    return f"{machine['cpu']}, {machine['cores']} cores, {machine['kernel']}"
+
+
+def attack_rows(results, machines):
+    lines = ["| attack | how often | found | measured | run |", "|---|---|---|---|---|"]
+    for result in results:
+        machine = machines.index(machine_text(result["machine"])) + 1
+        lines.append(
+            f"| {cell(result['attack'])} | {to_text(result['count'])} {cell(result['unit'])} "
+            f"| {counters(result['found'])} | {counters(result['measured'])} "
+            f"| `{cell(result['command'])}`: {duration(result['seconds'])} on machine {machine}, "
+            f"version {cell(result['version'])} |")
+    return lines
+
+
+def bug_rows(bugs):
+    if not bugs:
+        return ["None so far."]
+    return ["| what | found by | mended |", "|---|---|---|"] + [
+        f"| {cell(bug['what'])} | {cell(bug['found_by'])} | {cell(bug['mended'])} |" for bug in bugs]
+
+
+def make_page():
+    promises = read_promises()
+    results = read_results(len(promises))
+    machines = sorted({machine_text(result["machine"]) for result in results})
+    lines = [HEAD]
+    for number, promise in enumerate(promises, 1):
+        lines += [f"## Promise {number}", "", promise, ""]
+        attacks = [r for r in results
+                   if number in (r["promise"] if isinstance(r["promise"], list) else [r["promise"]])]
+        lines += attack_rows(attacks, machines) if attacks else [
+            "No campaign attacks this one; the README names what holds it."]
+        lines.append("")
+    if machines:
+        lines += ["## Machines", ""]
+        lines += [f"{i}. {machine}" for i, machine in enumerate(machines, 1)] + [""]
+    lines += ["## Bugs that the attacks found", ""] + bug_rows(read_bugs())
+    return "\n".join(lines) + "\n"
+
+
+def this_machine():
+    with open("/proc/cpuinfo", encoding="utf-8") as info:
+        models = [line.split(":", 1)[1].strip() for line in info if line.startswith("model name")]
+    return {"cpu": models[0] if models else platform.machine(), "cores": os.cpu_count(),
+            "kernel": f"{platform.system()} {platform.release()}"}
+
+
+def main(arguments):
+    if arguments == ["--machine"]:
+        print(json.dumps(this_machine()))
+    elif arguments == ["--check"]:
+        if PAGE.read_text(encoding="utf-8") != make_page():
+            sys.exit(f"{PAGE} is not what the results make of it: run {Path(__file__).name}")
+    elif not arguments:
+        PAGE.write_text(make_page(), encoding="utf-8")
+    else:
+        sys.exit(__doc__)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
