@@ -18,15 +18,7 @@ int run_program(int argc, char** argv) {
   program.set_version_flag("--version", std::string("splinecast ") + kVersion);
   program.require_subcommand(1);
   Action action;
-  add_demo(program, action);
-  add_solve(program, action);
-  add_replay(program, action);
-  add_sample(program, action);
-  add_fit(program, action);
-  add_methods(program, action);
-  add_ls(program, action);
-  add_info(program, action);
-  add_rm(program, action);
+  add_verbs(program, action);
   try {
     // CLI11 would only say that a subcommand is missing.
     const std::string verb = argc > 1 ? argv[1] : "";

@@ -27,6 +27,9 @@ void add_rm(CLI::App& program, Action& action);
 void add_sample(CLI::App& program, Action& action);
 void add_solve(CLI::App& program, Action& action);
 
+/// Adds every verb, in the order in which the help lists them.
+void add_verbs(CLI::App& program, Action& action);
+
 /// `--columns`, `--kind` and `--time-unit`.
 void add_table_options(CLI::App& verb, TableOptions& options);
 void add_time_unit(CLI::App& verb, std::optional<TimeUnit>& unit);

@@ -54,6 +54,10 @@ double dot(const Quaternion& a, const Quaternion& b) noexcept {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
 }
 
+bool are_finite(const Quaternion& q) noexcept {
+  return std::isfinite(q[0] * 0 + q[1] * 0 + q[2] * 0 + q[3] * 0);
+}
+
 void subtract(Quaternion& q, double times, const Quaternion& other) noexcept {
   for (std::size_t k = 0; k < q.size(); ++k) q[k] -= times * other[k];
 }
@@ -114,6 +118,8 @@ void normalise_quaternion(const StateRef& state, std::size_t first) noexcept {
   subtract(j, 3 * m1, a);
   subtract(j, 3 * m2, v);
   subtract(j, m3, q);
+  // A derivative out of all proportion to the length: no curve between rotations has one.
+  if (!are_finite(v) || !are_finite(a) || !are_finite(j)) return;
   store(q, state.position, first);
   store(v, state.velocity, first);
   store(a, state.acceleration, first);

@@ -15,7 +15,7 @@
 namespace splinecast::ipc {
 namespace {
 
-/// More than any interval or stop time needs, and little enough to be added to any time.
+/// More than any interval needs, and little enough to be added to any time.
 constexpr std::uint64_t kLongestNanoseconds = std::uint64_t{1} << 61U;
 
 constexpr std::size_t round_up(std::size_t value, std::size_t multiple) noexcept {
@@ -71,6 +71,10 @@ void require_common(const RegionHeader& header, RegionKind kind, std::size_t rea
   if (!core::is_online(static_cast<core::ConditionKind>(header.start_kind))) {
     throw BadRegion("region has start condition " + std::to_string(header.start_kind) +
                     ", which is none for streams");
+  }
+  for (std::size_t d = 0; d < header.dimensions; ++d) {
+    if (core::is_usable(header.start_value[d])) continue;
+    throw BadRegion("region has start value " + std::to_string(header.start_value[d]));
   }
   require_range("least interval", static_cast<std::uint64_t>(header.min_interval), 1,
                 kLongestNanoseconds);
@@ -214,7 +218,8 @@ BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_by
     if (core::is_usable(limit) && limit >= 0) continue;
     throw BadRegion("region has acceleration limit " + std::to_string(limit));
   }
-  require_range("stop time", static_cast<std::uint64_t>(header.stop_time), 1, kLongestNanoseconds);
+  require_range("stop time", static_cast<std::uint64_t>(header.stop_time), 1,
+                static_cast<std::uint64_t>(kLongestStop.count()));
   require(header.stride == layout.stride, "slot size", header.stride, layout.stride);
   require(real_bytes == layout.bytes, "size", real_bytes, layout.bytes);
   return layout;

@@ -1,9 +1,29 @@
 #include "splinecast/ipc/published_curve.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "splinecast/ipc/waypoint_ring.hpp"
+
 namespace splinecast::ipc {
+namespace {
+
+/// Whether a knot that was read back can be gone on from.
+bool is_sound(const core::Knot& knot) noexcept {
+  const core::Prefix& prefix = knot.prefix;
+  const auto are_numbers = [](std::span<const double> values) {
+    return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+  };
+  return is_time_in_range(knot.time) &&
+         are_numbers(std::array{prefix.gamma, prefix.smoothing.pivot, prefix.smoothing.lower1,
+                                prefix.smoothing.lower2}) &&
+         are_numbers(knot.waypoint) && are_numbers(knot.g) && are_numbers(knot.position) &&
+         are_numbers(knot.velocity) && are_numbers(knot.acceleration) && are_numbers(knot.residual);
+}
+
+}  // namespace
+
 PublishedCurve::PublishedCurve(SegmentBoardWriter& board, const SegmentBoardReader& published,
                                const core::WindowOptions& options, core::DimensionKinds kinds)
     : board_(&board),
@@ -97,9 +117,20 @@ std::span<const core::StandingWaypoint> PublishedCurve::standing_before(Word num
   return find_standing(
       standing_, number, std::max<Word>(first_, 1), t, [&](Word candidate, std::size_t found) {
         const auto values = std::span(standing_values_).subspan(found * size, size);
-        const core::Knot knot = published_->knot(candidate, r, values);
-        return core::StandingWaypoint{knot.time, knot.waypoint};
+        const core::Knot read = knot(candidate, r, values);
+        return core::StandingWaypoint{read.time, read.waypoint};
       });
+}
+
+/// Reads a knot back; what is none leaves the curve damaged, and is read as a knot without values.
+core::Knot PublishedCurve::knot(Word number, Word r, std::span<double> values) noexcept {
+  core::Time left{};
+  if (published_->copy_left(number, r, left)) {
+    const core::Knot read = published_->knot(number, r, values);
+    if (is_sound(read)) return read;
+  }
+  is_damaged_ = true;
+  return {};
 }
 
 void PublishedCurve::note_change(core::Time from) noexcept {
@@ -116,7 +147,10 @@ void PublishedCurve::begin(const core::Instant& state) noexcept {
 void PublishedCurve::enter(core::Time t) noexcept {
   const Word r = board_->revision();
   const Word cut = segment_at(t);
-  (void)published_->copy_segment(cut, r, copy_);  // nobody else writes
+  if (!published_->copy_segment(cut, r, copy_)) {
+    is_damaged_ = true;  // nobody else writes
+    return;
+  }
   const bool is_over = t >= copy_.right;
   const bool is_before = t < copy_.left;
   evaluate_at_cut(copy_, t, state_);
@@ -253,12 +287,24 @@ void PublishedCurve::restore(const Head& head) noexcept {
   newest_ = head.newest;
   core::Time left{};
   end_ = left;
-  if (newest_ > 0) (void)published_->copy_ends(newest_, board_->revision(), left, end_);
+  is_damaged_ = newest_ > 0 && !published_->copy_ends(newest_, board_->revision(), left, end_);
   if (!head.finished) restore_run(head);
   settled_written_ = window_.settled_segments();
 }
 
+/// Whether the segments of a head's run, which goes on, are the newest ones.
+bool PublishedCurve::describes_a_run(const Head& head) const noexcept {
+  const Word segments = head.run_knots + (head.is_entered ? 1 : 0);
+  if (head.newest == 0) return segments == 0;
+  return head.run >= 1 && head.run <= head.newest && segments == head.newest - head.run + 1 &&
+         head.run_knots <= segments;
+}
+
 void PublishedCurve::restore_run(const Head& head) noexcept {
+  if (!describes_a_run(head)) {
+    is_damaged_ = true;
+    return;
+  }
   const Word r = board_->revision();
   const std::size_t dimensions = window_.dimensions();
   const std::size_t size = SegmentBoardReader::kKnotValues * dimensions;
@@ -267,13 +313,18 @@ void PublishedCurve::restore_run(const Head& head) noexcept {
   knots_.clear();
   for (std::size_t k = 0; k < count; ++k) {
     const Word number = number_of(first + k + (head.is_entered ? 1 : 0));
-    knots_.push_back(published_->knot(number, r, std::span(knot_values_).subspan(size * k, size)));
+    knots_.push_back(knot(number, r, std::span(knot_values_).subspan(size * k, size)));
+    const bool is_later = k == 0 || knots_[k].time > knots_[k - 1].time;
+    is_damaged_ = is_damaged_ || knots_[k].waypoint.empty() || !is_later;
   }
+  if (is_damaged_) return;
   if (!head.is_entered) return window_.restore(first, knots_);
   core::SlidingWindow::Entry entry{};
   if (first == 0) {
-    const core::Knot splice =
-        published_->knot(run_, r, std::span(knot_values_).subspan(size * count, size));
+    const core::Knot splice = knot(run_, r, std::span(knot_values_).subspan(size * count, size));
+    const bool is_earlier = knots_.empty() || splice.time < knots_.front().time;
+    is_damaged_ = is_damaged_ || !is_earlier;
+    if (is_damaged_) return;
     entry = {.from = {.time = splice.time,
                       .position = splice.position,
                       .velocity = splice.velocity,

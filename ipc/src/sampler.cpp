@@ -1,6 +1,7 @@
 #include "splinecast/ipc/sampler.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "splinecast/core/segment.hpp"
@@ -47,11 +48,7 @@ SampleStatus Sampler::sample(core::Time t, core::StateRef out) noexcept {
 bool Sampler::see(Word r) noexcept {
   const Word seen = seen_;
   const core::Time settled_until = head_.settled_until;
-  if (!board_->copy_bounds(r, seen, head_)) {
-    head_.revision = 0;  // bounds half taken over must not pass for those of a revision
-    head_.settled_until = settled_until;
-    return false;
-  }
+  if (!board_->copy_bounds(r, seen, head_)) return false;
   seen_ = r;
   const core::Time changed_from =
       head_.changed_from == core::Time::min() ? settled_until : head_.changed_from;
@@ -210,7 +207,9 @@ bool Sampler::copy_whole(Word number, Word r, SegmentCopy& out) const {
   if (!board_->copy_segment(number, r, out)) return false;
   out.acceleration_step.resize(board_->dimensions());
   board_->copy_step(out, out.acceleration_step);
-  return board_->is_current(out, r);
+  return board_->is_current(out, r) && std::ranges::all_of(out.acceleration_step, [](double step) {
+           return std::isfinite(step);
+         });
 }
 
 SampleStatus Sampler::snapshot(core::Time from, core::Time to, Snapshot& out) {

@@ -1,7 +1,10 @@
 #include "splinecast/ipc/segment_board.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "splinecast/ipc/waypoint_ring.hpp"
 
 namespace splinecast::ipc {
 namespace {
@@ -28,6 +31,21 @@ std::size_t control_words() noexcept { return kControlLines * kSeparation / size
 
 void put_values(Word* words, std::span<const double> values) noexcept {
   for (const double value : values) put(*words++, to_word(value));
+}
+
+/// Largest magnitude of a coefficient. Values within ±core::kLargestValue at the shortest intervals
+/// make none so large, and within it no polynomial of ours leaves the range of a double.
+constexpr double kLargestCoefficient = 1e200;
+
+/// Whether a segment is one that a solver could have made: what is evaluated of it are numbers.
+bool is_sound(const SegmentCopy& segment, std::size_t values) noexcept {
+  bool are_numbers = true;  // all are looked at, so that the loop vectorises
+  for (std::size_t i = 0; i < values; ++i) {
+    are_numbers &= std::abs(segment.coefficients[i]) <= kLargestCoefficient;
+  }
+  const Word length = to_word(segment.right) - to_word(segment.left);
+  return are_numbers && segment.left <= segment.right && length <= to_word(core::Time::max()) &&
+         segment.kind <= core::SegmentKind::hold;
 }
 
 /// The members of a head that lookups need, out of its words 1 … kBoundsWords.
@@ -203,11 +221,15 @@ SlotView<const Word> SegmentBoardReader::head_slot() const noexcept {
   return {head_.data(), kHeadWords};
 }
 
-/// Whether the segments of a head can all lie on this board; no writer of ours says otherwise.
-bool SegmentBoardReader::has_sane_bounds(const Head& head) const noexcept {
-  if (head.newest == 0) return true;
-  return head.first >= 1 && head.first <= head.newest &&
-         head.newest - head.first < layout_.capacity && head.newest != kRetiredTag;
+/// Whether the segments of a head, words 1 … kBoundsWords, can all lie on this board, and its time
+/// is one; no writer of ours says otherwise.
+bool SegmentBoardReader::has_sane_bounds(std::span<const Word> words) const noexcept {
+  const Word first = words[kHeadFirst - 1];
+  const Word newest = words[kHeadNewest - 1];
+  if (!is_time_in_range(to_time(words[kHeadSettledUntil - 1]))) return false;
+  if (newest == 0) return true;
+  return first >= 1 && first <= newest && newest - first < layout_.capacity &&
+         newest != kRetiredTag;
 }
 
 bool SegmentBoardReader::copy_bounds(Word r, Word seen, Head& out) const noexcept {
@@ -221,21 +243,27 @@ bool SegmentBoardReader::copy_bounds(Word r, Word seen, Head& out) const noexcep
     words[i] = load(cell[1 + i], std::memory_order_acquire);
   }
   core::Time earliest = core::Time::max();
-  if (r - seen > kHeadChangesKept) earliest = core::Time::min();
-  for (Word k = seen + 1; k <= r && r - seen <= kHeadChangesKept; ++k) {
-    const Word word = load(cell[kHeadChanges + k % kHeadChangesKept], std::memory_order_acquire);
-    earliest = std::min(earliest, to_time(word));
+  const Word missed = r - seen;  // very many if the commit word went back: no writer of ours does
+  if (missed > kHeadChangesKept) earliest = core::Time::min();
+  for (Word back = 0; back < missed && missed <= kHeadChangesKept; ++back) {
+    const Word at = kHeadChanges + (r - back) % kHeadChangesKept;
+    earliest = std::min(earliest, to_time(load(cell[at], std::memory_order_acquire)));
   }
   if (load(cell[0], std::memory_order_relaxed) != tags.of[c]) return false;
+  if (!has_sane_bounds(words)) return false;
   take_bounds(words, r, out);
   out.changed_from = earliest;
-  return has_sane_bounds(out);
+  return true;
 }
 
 bool SegmentBoardReader::copy_head(Word r, Head& out) const noexcept {
   std::array<Word, kHeadReasons + kRefusalReasons - 1> words{};
   if (copy_newest(head_slot(), r, words.size(), words.data()) == 0) return false;
   const auto word = [&](std::size_t at) { return words[at - 1]; };
+  if (!has_sane_bounds(words) || !is_time_in_range(to_time(word(kHeadNewestKnot))) ||
+      !is_time_in_range(to_time(word(kHeadCommitted)))) {
+    return false;
+  }
   take_bounds(words, r, out);
   out.changed_from = to_time(word(kHeadChangedFrom));
   out.consumed = word(kHeadConsumed);
@@ -255,7 +283,7 @@ bool SegmentBoardReader::copy_head(Word r, Head& out) const noexcept {
   out.withdrawn = word(kHeadWithdrawn);
   out.controls = word(kHeadControls);
   for (std::size_t i = 0; i < kRefusalReasons; ++i) out.reasons[i] = word(kHeadReasons + i);
-  return has_sane_bounds(out);
+  return true;
 }
 
 bool SegmentBoardReader::copy_segment(Word number, Word r, SegmentCopy& out) const noexcept {
@@ -280,7 +308,8 @@ bool SegmentBoardReader::copy_segment(Word number, Word r, SegmentCopy& out) con
   for (std::size_t i = 0; i < values; ++i) {
     out.coefficients[i] = to_double(word(kCellCoefficients + i));
   }
-  if (load(cell[kCellTag], std::memory_order_relaxed) != tags.of[c] || out.number != number) {
+  if (load(cell[kCellTag], std::memory_order_relaxed) != tags.of[c] || out.number != number ||
+      !is_sound(out, values)) {
     return false;
   }
   out.tag = tags.of[c];

@@ -122,8 +122,8 @@ void require_time(const char* what, const std::optional<core::Time>& time, core:
 
 void require_options(const SolverOptions& options) {
   if (options.stop_time &&
-      (*options.stop_time <= core::Time::zero() || *options.stop_time > kLatestTime / 2)) {
-    throw BadRequest("stop time must be positive and at most 2^61 ns, not " +
+      (*options.stop_time <= core::Time::zero() || *options.stop_time > kLongestStop)) {
+    throw BadRequest("stop time must be positive and at most 2^60 ns, not " +
                      std::to_string(options.stop_time->count()) + " ns");
   }
   require_time("freeze-ahead", options.freeze_ahead, core::Time(1), kLongestFreeze);
@@ -227,6 +227,7 @@ OwnedBoard own_board(const std::string& stream, const RegionHeader& ring_header,
     unlink_region(stream, RegionKind::spline);
     return make_board(stream, ring_header, options);
   }
+  require_same_stream(ring_header, header);
   require_no_contradiction(stream, header, options);
   enter_owner(board.region.bytes(), header);
   board.writer.store_sleeping(false);
@@ -296,6 +297,10 @@ StepResult Solver::step(const Clock& clock) {
   if (!attached()) return {};
   Attachment& at = *impl_->attachment;
   const StepResult result = at.solver.step(clock);
+  if (result.damaged) {
+    throw BadRegion(region_path(impl_->stream, RegionKind::spline) +
+                    " holds what its solver has not written");
+  }
   if (result.published && impl_->options.wake) wake_all(at.board.writer.revision_word());
   if (result.consumed == 0 && !result.missed && at.ring.ring.retired()) impl_->attachment.reset();
   return result;

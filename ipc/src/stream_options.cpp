@@ -161,6 +161,17 @@ void require_same_clock(const RegionHeader& header, const std::string& stream) {
                   std::to_string(time_namespace()));
 }
 
+void require_same_stream(const RegionHeader& ring, const RegionHeader& board) {
+  const auto require = [](bool is_same, const char* what) {
+    if (!is_same) throw BadRegion(std::string("the regions of the stream differ in ") + what);
+  };
+  require(ring.stream_id == board.stream_id, "their stream id");
+  require(ring.dimensions == board.dimensions, "the number of dimensions");
+  require(dimensions_of(ring) == dimensions_of(board), "dimension kinds");
+  require(ring.clock == board.clock && ring.time_namespace == board.time_namespace, "their clock");
+  require(start_condition(ring) == start_condition(board), "the start condition");
+}
+
 void write_header(std::span<std::byte> region, const RegionHeader& header) noexcept {
   std::memcpy(region.data(), &header, sizeof header);
 }

@@ -1,9 +1,12 @@
 #include "splinecast/ipc/stream_solver.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "splinecast/ipc/errors.hpp"
 
 namespace splinecast::ipc {
 namespace {
@@ -14,8 +17,6 @@ constexpr std::size_t kMaxBatch = 256;
 /// Segments that a revision may change besides one per item: those of the open knots, the one
 /// before them, the stop tail, a cut and a hold.
 constexpr std::size_t changed_besides(std::size_t settle) noexcept { return settle + 6; }
-
-constexpr core::Time kNothingChanged = core::Time::max();
 
 /// What an interval is refused for.
 Refusal to_refusal(AppendStatus status) noexcept {
@@ -49,6 +50,9 @@ core::WaypointValues values_of(RingItem& item) noexcept {
   return all;
 }
 
+/// No stream lives to see so many revisions.
+constexpr Word kMostRevisions = Word{1} << 62U;
+
 /// Segments that one item may add: a hold, a splice, and what goes back at a finish.
 constexpr std::size_t kAddedByItem = 4;
 
@@ -78,13 +82,17 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, SegmentBoardWriter& b
   }
   end_.value.reserve(ring.dimensions());
   restore();
+  if (is_damaged() || board.revision() > kMostRevisions) {
+    throw BadRegion("the board holds no curve that a solver could go on with at its revision " +
+                    std::to_string(board.revision()));
+  }
   board_->store_tail(head_.consumed);  // its last writer may have died between commit and tail
 }
 
 void StreamSolver::restore() {
   head_ = {};
   const Word r = board_->revision();
-  if (r > 0) (void)published_->copy_head(r, head_);  // nobody else writes
+  lacks_head_ = r > 0 && !published_->copy_head(r, head_);  // nobody else writes
   curve_.restore(head_);
 }
 
@@ -96,9 +104,11 @@ core::Time StreamSolver::due() const noexcept {
 }
 
 StepResult StreamSolver::step(const Clock& clock) noexcept {
+  if (is_damaged()) return {.damaged = true};
   const core::Time now = live_ ? clock.now() : core::Time::min();
   freeze(now);
   const Word consumed = consume(now);
+  if (is_damaged()) return {.damaged = true};
   if (consumed == 0 && (!live_ || now < due())) return {};
   return publish(clock, consumed);
 }
@@ -124,45 +134,56 @@ bool StreamSolver::is_starved() const noexcept {
                                      : settled_until_ > curve_.newest_time();
 }
 
+/// How far items can be taken if the ring's head is this: whatever it says, no further than a ring
+/// has items, and not back.
+Word StreamSolver::reachable(Word head) const noexcept {
+  const Word waiting = head - head_.consumed;
+  const bool goes_back = waiting > std::numeric_limits<Word>::max() / 2;
+  return head_.consumed + (goes_back ? 0 : std::min<Word>(waiting, ring_->capacity()));
+}
+
 Word StreamSolver::consume(core::Time now) noexcept {
-  const Word available = ring_->head();
+  const Word head = ring_->head();
+  available_ = reachable(head);
   const Word before = head_.consumed;
   const core::Time keep = live_ ? now - live_->history : core::Time::max();
-  withdraw(available);
+  withdraw();
   Word batch = 0;
   bool is_blocked = false;
   batch_limit_ = max_batch_;
-  while (head_.consumed < available && batch < batch_limit_) {
-    is_blocked = !has_room(head_.consumed, keep);
+  while (head_.consumed < available_ && batch < batch_limit_ && !is_damaged()) {
+    ring_->copy(head_.consumed, item_);
+    is_blocked = !has_room(keep);
     if (is_blocked) break;
     take(head_.consumed++);
     ++batch;
   }
-  seen_ = is_blocked && !curve_.has_changes() ? available : head_.consumed;
+  const bool waits = is_blocked && !curve_.has_changes();
+  seen_ = waits || available_ == before ? head : head_.consumed;
   return head_.consumed - before;
 }
 
-/// Whether an item can be taken now: without losing what must be kept, and, as a replacement cuts
-/// what has been committed and nothing else, in this revision.
-bool StreamSolver::has_room(Word item, core::Time keep) const noexcept {
-  if (ring_->kind(item) != ItemKind::replace) return curve_.has_room(kAddedByItem, keep);
+/// Whether the item at hand can be taken now: without losing what must be kept, and, as a
+/// replacement cuts what has been committed and nothing else, in this revision.
+bool StreamSolver::has_room(core::Time keep) const noexcept {
+  if (item_.kind != ItemKind::replace) return curve_.has_room(kAddedByItem, keep);
   if (curve_.has_changes()) return false;
-  return !curve_.has_begun() || curve_.has_room_to_enter(ring_->time(item), kAddedByItem, keep);
+  return !curve_.has_begun() || curve_.has_room_to_enter(item_.time, kAddedByItem, keep);
 }
 
 /// Looks ahead for a replacement that withdraws waypoints before they are taken: the board may have
 /// no room for them yet.
-void StreamSolver::withdraw(Word available) noexcept {
+void StreamSolver::withdraw() noexcept {
   if (!curve_.has_begun() || head_.finished) return;
   const core::Time newest = curve_.newest_time();
   scanned_ = std::max(scanned_, head_.consumed);
-  Word replacement = available;
-  for (; scanned_ < available; ++scanned_) {
+  Word replacement = available_;
+  for (; scanned_ < available_; ++scanned_) {
     if (ring_->kind(scanned_) != ItemKind::replace) continue;
     replacement = scanned_;
     break;
   }
-  if (replacement == available) return;
+  if (replacement == available_) return;
   const core::Time t = ring_->time(replacement);
   if (t < settled_until_ || t > newest) return;  // it waits for its turn
   head_.withdrawn += replacement - head_.consumed;
@@ -170,7 +191,6 @@ void StreamSolver::withdraw(Word available) noexcept {
 }
 
 void StreamSolver::take(Word number) noexcept {
-  ring_->copy(number, item_);
   if (head_.finished) return refuse(number, Refusal::after_finish);
   switch (item_.kind) {
     case ItemKind::waypoint:
@@ -245,7 +265,7 @@ void StreamSolver::take_waypoint(Word number) noexcept {
 /// Whether the waypoint at hand is one that limits allow for; those that wait behind it count.
 bool StreamSolver::can_append(Word number) noexcept {
   if (curve_.window().options().max_acceleration.empty()) return true;
-  const Word available = ring_->head();
+  const Word available = reachable(ring_->head());
   std::array<core::Waypoint, 1 + kFollowers> first{waypoint_of(item_)};
   std::size_t count = 1;
   while (count < first.size() && number + count < available) {
@@ -265,17 +285,18 @@ bool StreamSolver::can_append(Word number) noexcept {
 /// Drops what this step has made of the curve, which is nothing but an entry.
 void StreamSolver::discard() noexcept {
   Head committed;
-  (void)published_->copy_head(board_->revision(), committed);
+  lacks_head_ = !published_->copy_head(board_->revision(), committed);
+  if (lacks_head_) return;
   curve_.discard(committed);
   curve_.freeze(settled_until_);
 }
 
 void StreamSolver::take_replacement(Word number) noexcept {
   const core::Time t = item_.time;
-  if (t < settled_until_ || !curve_.can_enter(t)) {
+  if (t < settled_until_ || !is_time_in_range(t) || !curve_.can_enter(t)) {
     refuse(number, Refusal::too_late);
     // All that belongs to it in one revision, so that no other solver takes it for something else.
-    const Word end = head_.consumed + std::min<Word>(item_.count, ring_->head() - head_.consumed);
+    const Word end = head_.consumed + std::min<Word>(item_.count, available_ - head_.consumed);
     while (head_.consumed < end) refuse(head_.consumed++, Refusal::too_late);
     return;
   }

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
+
+#include "splinecast/ipc/errors.hpp"
 
 namespace splinecast::ipc {
 namespace {
@@ -48,6 +51,10 @@ WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLa
     finished_ = finished_ || kind == ItemKind::finish;
     has_last_ = kind != ItemKind::finish;
     last_time_ = past.time(head_ - back);
+  }
+  if (!is_time_in_range(last_time_)) {
+    throw BadRegion("the ring's last item has time " + std::to_string(last_time_.count()) +
+                    " ns, beyond 2^62 ns");
   }
 }
 

@@ -183,6 +183,9 @@ struct BoardLayout {
 inline constexpr std::size_t kMaxRingCapacity = std::size_t{1} << 24;
 inline constexpr std::size_t kMaxBoardCapacity = std::size_t{1} << 22;
 
+/// Longest stop tail: so short that a stop, and the way back behind it, can be added to any time.
+inline constexpr core::Time kLongestStop{std::int64_t{1} << 60};
+
 /// Copies a header out of a region, word by word: what a process checks is what it then uses,
 /// whatever happens to the region meanwhile. Its loads are relaxed: the header was written before
 /// the region got its name, and the kernel has put the look-up of that name behind it. Throws

@@ -26,6 +26,10 @@ class PublishedCurve {
   PublishedCurve(SegmentBoardWriter& board, const SegmentBoardReader& published,
                  const core::WindowOptions& options, core::DimensionKinds kinds);
 
+  /// Whether what was read back from the board was nothing that this class had written: then the
+  /// curve is of no more use.
+  [[nodiscard]] bool is_damaged() const noexcept { return is_damaged_; }
+
   /// Goes on from what has been committed, of which `head` is the head. O(K·D).
   void restore(const Head& head) noexcept;
 
@@ -98,6 +102,8 @@ class PublishedCurve {
                                      core::Time keep) const noexcept;
   [[nodiscard]] Word segment_at(core::Time t) const noexcept;
   [[nodiscard]] SegmentOrigin origin_of(std::size_t segment) const noexcept;
+  [[nodiscard]] core::Knot knot(Word number, Word r, std::span<double> values) noexcept;
+  [[nodiscard]] bool describes_a_run(const Head& head) const noexcept;
   [[nodiscard]] std::span<const core::StandingWaypoint> standing_before(Word number, core::Time t,
                                                                         Word r) noexcept;
   void write_segment(std::size_t i) noexcept;
@@ -127,6 +133,7 @@ class PublishedCurve {
   std::size_t settled_written_ = 0;  ///< leading segments of the run that are on the board for good
   std::size_t besides_ = 0;          ///< segments behind the run's: a return to the last waypoint
   bool has_changes_ = false;
+  bool is_damaged_ = false;
 };
 
 }  // namespace splinecast::ipc

@@ -157,7 +157,10 @@ struct SegmentCopy {
 };
 
 /// A reader's side; no function blocks, allocates or stores. Every copy is taken under a revision
-/// `r` that the caller has loaded, and fails if the writer has gone on too far meanwhile.
+/// `r` that the caller has loaded, and fails if the writer has gone on too far meanwhile, or if
+/// what lies there is nothing that a solver writes: whatever the bytes are, each call takes a
+/// bounded number of steps within the region, and a copied segment evaluates to numbers anywhere
+/// between its ends.
 class SegmentBoardReader {
  public:
   /// `region` holds a board of this layout and outlives the reader.
@@ -186,10 +189,10 @@ class SegmentBoardReader {
 
   /// Copies what lookups need of the head under r: revision, first, newest, settled_until,
   /// finished; and the earliest changed_from of the revisions after `seen` up to r, min() if there
-  /// are more than are kept. The other members stay.
+  /// are more than are kept. The other members stay, and upon failure all of them.
   [[nodiscard]] bool copy_bounds(Word r, Word seen, Head& out) const noexcept;
 
-  /// Copies the whole head under r.
+  /// Copies the whole head under r. Upon failure `out` stays as it is.
   [[nodiscard]] bool copy_head(Word r, Head& out) const noexcept;
 
   /// Copies segment `number` under r. Upon failure `out.tag` is 0 and the rest of no use.
@@ -231,7 +234,7 @@ class SegmentBoardReader {
   [[nodiscard]] SlotView<const Word> head_slot() const noexcept;
   void copy_vector(const SegmentCopy& copy, std::size_t vector,
                    std::span<double> out) const noexcept;
-  [[nodiscard]] bool has_sane_bounds(const Head& head) const noexcept;
+  [[nodiscard]] bool has_sane_bounds(std::span<const Word> words) const noexcept;
 
   BoardLayout layout_;
   std::span<const Word> control_;

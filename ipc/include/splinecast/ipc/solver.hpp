@@ -25,12 +25,13 @@ class Solver {
   /// Takes the stream up once its producer has made it: goes on with the board of a solver that
   /// died, retires the board of an earlier stream, or makes a new one. Returns false while there is
   /// no stream. Throws BadRequest if the options contradict a board that is taken over, BadRegion
-  /// if a region cannot be used or made. System calls; does nothing if attached.
+  /// if a region cannot be used, gone on with or made. System calls; does nothing if attached.
   bool attach();
   [[nodiscard]] bool attached() const noexcept;
 
   /// Takes what waypoints there are and publishes; detaches when the stream has been retired or
   /// made anew. No system call but the clock's and, with SolverOptions::wake, one wake a revision.
+  /// Throws BadRegion if another process has written to the board.
   StepResult step(const Clock& clock);
 
   /// Sleeps until there may be something to do, or for the timeout, or for 50 ms.

@@ -72,6 +72,10 @@ struct SolverOptions {
 /// Throws BadRegion, naming both, if a live stream's clock is another time namespace's.
 void require_same_clock(const RegionHeader& header, const std::string& stream);
 
+/// Throws BadRegion, naming what differs, unless a board describes the stream of this ring as the
+/// ring does: stream id, dimensions, their kinds, clock and start.
+void require_same_stream(const RegionHeader& ring, const RegionHeader& board);
+
 /// Writes a header to the beginning of a region that has no name yet.
 void write_header(std::span<std::byte> region, const RegionHeader& header) noexcept;
 

@@ -18,6 +18,7 @@ struct StepResult {
   Word consumed = 0;       ///< ring items taken
   bool published = false;  ///< whether a revision was committed
   bool missed = false;     ///< whether one was discarded because it came too late: step again
+  bool damaged = false;    ///< whether somebody else has written to the board: nothing is done
 };
 
 /// How a live stream is solved.
@@ -42,7 +43,8 @@ class StreamSolver {
   /// `board` and `published` are the writing and the reading side of one board; with `ring` they
   /// outlive the solver. `kinds` are those of the ring's dimensions; `live` is set for a live
   /// stream. Goes on where the board says that a solver before it stood. Throws
-  /// std::invalid_argument for window options out of range or a board too small for them.
+  /// std::invalid_argument for window options out of range or a board too small for them, BadRegion
+  /// if the board holds no curve that a solver can go on with.
   StreamSolver(const WaypointRingReader& ring, SegmentBoardWriter& board,
                const SegmentBoardReader& published, const core::WindowOptions& window,
                const IngestLimits& limits, core::DimensionKinds kinds = {},
@@ -50,6 +52,8 @@ class StreamSolver {
 
   /// Takes what the ring holds, up to a bounded batch, and publishes the result as one revision; on
   /// a live stream also publishes how far the curve is settled, when that is due. O(batch·K·D).
+  /// Whatever the ring holds, a step takes a bounded time and no more items than the ring has; what
+  /// is no item is refused. What it reads back of the board is checked as well.
   StepResult step(const Clock& clock) noexcept;
 
   /// The head last committed.
@@ -69,8 +73,10 @@ class StreamSolver {
   void restore();
   void freeze(core::Time now) noexcept;
   [[nodiscard]] Word consume(core::Time now) noexcept;
-  [[nodiscard]] bool has_room(Word item, core::Time keep) const noexcept;
-  void withdraw(Word available) noexcept;
+  [[nodiscard]] bool is_damaged() const noexcept { return lacks_head_ || curve_.is_damaged(); }
+  [[nodiscard]] Word reachable(Word head) const noexcept;
+  [[nodiscard]] bool has_room(core::Time keep) const noexcept;
+  void withdraw() noexcept;
   void take(Word number) noexcept;
   void take_waypoint(Word number) noexcept;
   void take_replacement(Word number) noexcept;
@@ -94,6 +100,7 @@ class StreamSolver {
   PublishedCurve curve_;
   std::size_t max_batch_;
   Head head_;
+  bool lacks_head_ = false;  ///< the board has none of its revision: somebody else wrote to it
   core::Time settled_until_ = core::Time::min();  ///< what this step leaves alone lies before it
   /// Waypoints behind the first one of a run that shape its splice.
   static constexpr std::size_t kFollowers = 2;
@@ -102,6 +109,7 @@ class StreamSolver {
   core::Condition end_;
   Word seen_ = 0;
   Word batch_limit_ = 0;  ///< of this step
+  Word available_ = 0;    ///< how far this step can take items
   Word scanned_ = 0;      ///< items looked through for a replacement
 };
 

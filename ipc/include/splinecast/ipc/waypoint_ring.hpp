@@ -78,7 +78,8 @@ struct IngestLimits {
 /// The producer's side. One thread of one process uses it. No function blocks or allocates.
 class WaypointRingWriter {
  public:
-  /// `region` holds a ring of this layout and outlives the writer. Goes on behind what it holds.
+  /// `region` holds a ring of this layout and outlives the writer. Goes on behind what it holds;
+  /// throws BadRegion if its last item has a time that no producer writes.
   WaypointRingWriter(std::span<std::byte> region, const RingLayout& layout,
                      const IngestLimits& limits);
 

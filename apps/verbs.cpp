@@ -1,0 +1,17 @@
+#include "support/options.hpp"
+
+namespace splinecast::apps {
+
+void add_verbs(CLI::App& program, Action& action) {
+  add_demo(program, action);
+  add_solve(program, action);
+  add_replay(program, action);
+  add_sample(program, action);
+  add_fit(program, action);
+  add_methods(program, action);
+  add_ls(program, action);
+  add_info(program, action);
+  add_rm(program, action);
+}
+
+}  // namespace splinecast::apps

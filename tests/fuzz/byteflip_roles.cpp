@@ -1,0 +1,150 @@
+#include "fuzz/byteflip_roles.hpp"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/producer.hpp"
+#include "splinecast/ipc/reader.hpp"
+#include "splinecast/ipc/solver.hpp"
+#include "splinecast/ipc/stream_files.hpp"
+#include "support/stream_report.hpp"
+
+namespace splinecast::fuzz {
+namespace {
+
+using namespace std::chrono_literals;
+using core::Time;
+
+constexpr std::size_t kDimensions = 5;
+constexpr std::size_t kSegments = 256;
+constexpr Time kLead = 50ms;
+
+/// Lets a millisecond pass.
+void rest() { poll(nullptr, 0, 1); }
+
+ipc::ProducerOptions producer_options() {
+  ipc::ProducerOptions options{.dimensions = kDimensions, .capacity = 64};
+  options.kinds.assign(kDimensions, {.kind = core::DimensionKind::quaternion});
+  options.kinds[0] = {.kind = core::DimensionKind::wrap, .period = 6};
+  return options;
+}
+
+/// A reader's life until its region is of no more use to it.
+class FlipReader {
+ public:
+  FlipReader(const std::string& stream, std::uint64_t seed, FlipCounters& counters)
+      : stream_(stream), random_(seed), counters_(&counters) {}
+
+  void attach_and_read() {
+    ipc::Reader reader(stream_);
+    ++counters_->attached;
+    core::State state(reader.dimensions());
+    ipc::Snapshot snapshot(reader.dimensions());
+    constexpr int kSamples = 2'000;
+    for (int i = 0; i < kSamples && !counters_->stop; ++i) {
+      const Time t =
+          clock_.now() + Time(static_cast<std::int64_t>(random_() % 200'000'000) - 100'000'000);
+      count(random_() % 2 == 0 ? reader.sample(clock_.now(), state) : reader.preview(t, state),
+            state);
+      if (i % 64 == 0) take_snapshot(reader, snapshot);
+      if (i % 256 == 0) (void)reader.wait(1ms);
+    }
+    look();
+  }
+
+ private:
+  void count(ipc::SampleStatus status, const core::State& state) {
+    ++counters_->samples;
+    if (!ipc::has_values(status)) return;
+    ++counters_->with_values;
+    const bool are_numbers =
+        std::ranges::all_of(state.values(), [](double value) { return std::isfinite(value); });
+    if (!are_numbers) ++counters_->not_numbers;
+  }
+
+  void take_snapshot(ipc::Reader& reader, ipc::Snapshot& snapshot) {
+    const Time now = clock_.now();
+    ++counters_->snapshots;
+    if (!ipc::has_values(reader.snapshot(now - kLead, now + kLead, snapshot))) return;
+    for (const ipc::SegmentCopy& segment : snapshot.segments()) {
+      const auto used = static_cast<std::size_t>(segment.order) * snapshot.dimensions();
+      const auto values = std::span(segment.coefficients).first(used);
+      if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
+        ++counters_->not_numbers;
+      }
+    }
+  }
+
+  void look() {
+    (void)apps::pretty(apps::to_json(ipc::inspect(stream_)));
+    ++counters_->reports;
+  }
+
+  std::string stream_;
+  std::mt19937_64 random_;
+  FlipCounters* counters_;
+  ipc::MonotonicClock clock_;
+};
+
+}  // namespace
+
+bool produce_until_stopped(const std::string& stream, FlipCounters& counters) {
+  try {
+    ipc::Producer producer(stream, producer_options());
+    const ipc::MonotonicClock clock;
+    std::vector<double> position(kDimensions);
+    while (!counters.stop) {
+      const Time t = clock.now() + kLead;
+      for (std::size_t d = 0; d < kDimensions; ++d) {
+        position[d] = std::sin(core::to_seconds(t) * static_cast<double>(1 + d));
+      }
+      if (producer.append({.time = t, .position = position}) == ipc::AppendStatus::accepted) {
+        ++counters.appended;
+      }
+      rest();
+    }
+    return true;
+  } catch (const ipc::StreamError&) {
+    return false;
+  }
+}
+
+bool solve_until_stopped(const std::string& stream, FlipCounters& counters) {
+  try {
+    ipc::Solver solver(stream, {.history = 50ms, .capacity = kSegments});
+    const ipc::MonotonicClock clock;
+    while (!counters.stop) {
+      if (!solver.attach()) rest();
+      if (solver.step(clock).published) ++counters.revisions;
+      solver.wait(5ms);
+    }
+    return true;
+  } catch (const ipc::StreamError&) {
+    return false;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
+bool read_until_stopped(const std::string& stream, std::uint64_t seed, FlipCounters& counters) {
+  FlipReader reader(stream, seed, counters);
+  while (!counters.stop) {
+    try {
+      reader.attach_and_read();
+    } catch (const ipc::NoSuchStream&) {
+      rest();
+    } catch (const ipc::StreamError&) {
+      ++counters.refused;
+      rest();
+    }
+  }
+  return true;
+}
+
+}  // namespace splinecast::fuzz

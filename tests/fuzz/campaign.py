@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""Runs every fuzzer and the byte flips, and says what they found as JSON.
+
+    campaign.py SECONDS [FOLDER]
+
+Runs each fuzzer for so long, from the seeds and what earlier runs in build/fuzz/corpus have found, then
+splinecast_byteflip. Writes fuzz.json and byteflip.json into FOLDER if it is given, in the form that
+tests/campaign asks for. Exits with 1 if a fuzzer found something, or a byte flip broke a promise; the
+input that did it is left in build/fuzz/found.
+"""
+
+import json
+import os
+import platform
+import re
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+PROJECT = Path(__file__).resolve().parent.parent.parent
+BUILD = PROJECT / "build" / "fuzz"
+SEEDS = PROJECT / "tests" / "fuzz" / "seeds"
+REGIONS = ["reader", "writers", "roles"]
+TEXTS = ["waypoints", "times", "polynomials", "words", "arguments"]
+PROMISE = 9  # its row in the README's table
+# Of an input: longer is a hang, s; largest, bytes; memory, MiB.
+LIMITS = ["-timeout=10", "-max_len=65536", "-rss_limit_mb=2048"]
+BYTE_FLIP_SECONDS = 5
+
+
+def machine():
+    models = re.findall(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
+    return {"cpu": models[0] if models else platform.machine(), "cores": os.cpu_count(),
+            "kernel": platform.release()}
+
+
+def version():
+    return re.search(r"VERSION (\S+)", (PROJECT / "CMakeLists.txt").read_text().split("project(")[1])[1]
+
+
+def result(attack, report, seconds, command):
+    return {"promise": PROMISE, "attack": attack, **report, "machine": machine(),
+            "seconds": round(seconds, 1), "command": command, "version": version()}
+
+
+def run_fuzzer(target, seconds):
+    """Executions of one fuzzer, edges of code that it covers, and whether it found something."""
+    corpus, found = BUILD / "corpus" / target, BUILD / "found" / target
+    for folder in (corpus, found):
+        folder.mkdir(parents=True, exist_ok=True)
+    seeds = SEEDS / ("regions" if target in REGIONS else target)
+    ended = subprocess.run(
+        [BUILD / "bin" / f"fuzz_{target}", corpus, seeds, f"-max_total_time={seconds}",
+         f"-artifact_prefix={found}/", "-print_final_stats=1", *LIMITS],
+        stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, errors="replace", check=False)
+    if ended.returncode != 0:
+        print(ended.stderr[-6000:], file=sys.stderr)
+    executed = re.findall(r"number_of_executed_units:\s*(\d+)", ended.stderr)
+    covered = re.findall(r"cov: (\d+)", ended.stderr)
+    print(f"fuzz_{target}: {executed[-1] if executed else '?'} inputs, "
+          f"exit code {ended.returncode}", file=sys.stderr)
+    return int(executed[-1]) if executed else 0, int(covered[-1]) if covered else 0, ended.returncode
+
+
+def fuzz(attack, targets, seconds, command):
+    begin = time.monotonic()
+    runs = {target: run_fuzzer(target, seconds) for target in targets}
+    broken = sum(code != 0 for _, _, code in runs.values())
+    measured = {f"inputs of {target}": count for target, (count, _, _) in runs.items()}
+    measured |= {f"edges covered by {target}": edges for target, (_, edges, _) in runs.items()}
+    report = {"count": sum(count for count, _, _ in runs.values()), "unit": "inputs",
+              "found": {"fuzzers stopped by a crash, hang or broken promise": broken},
+              "measured": measured}
+    return result(attack, report, time.monotonic() - begin, command), broken
+
+
+def flip(seconds, command):
+    begin = time.monotonic()
+    ended = subprocess.run([BUILD / "bin" / "splinecast_byteflip", "--seconds", str(seconds)],
+                           stdout=subprocess.PIPE, text=True, check=False)
+    print(f"splinecast_byteflip: exit code {ended.returncode}", file=sys.stderr)
+    report = json.loads(ended.stdout)
+    attack = "random bytes flipped in both regions under live processes, with AddressSanitizer"
+    return (result(attack, report, time.monotonic() - begin, command), ended.returncode)
+
+
+def main(seconds, folder):
+    command = f"./run fuzz {seconds}"
+    regions, first = fuzz("libFuzzer over whole regions", REGIONS, seconds, command)
+    texts, second = fuzz("libFuzzer over files and command lines", TEXTS, seconds, command)
+    flips, third = flip(max(BYTE_FLIP_SECONDS, seconds / 2), command)
+    if folder:
+        Path(folder, "fuzz.json").write_text(json.dumps([regions, texts], indent=2) + "\n")
+        Path(folder, "byteflip.json").write_text(json.dumps(flips, indent=2) + "\n")
+    return 1 if first + second + third else 0
+
+
+if __name__ == "__main__":
+    if len(sys.argv) not in (2, 3):
+        print(__doc__, file=sys.stderr)
+        sys.exit(2)
+    sys.exit(main(int(sys.argv[1]), sys.argv[2] if len(sys.argv) == 3 else None))

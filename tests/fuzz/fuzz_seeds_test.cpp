@@ -1,0 +1,90 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "fuzz/region_targets.hpp"
+#include "fuzz/seed_streams.hpp"
+#include "fuzz/text_targets.hpp"
+#include "support/process.hpp"
+
+/// The fuzzers' targets, over what fuzzers have found and over mutations of whole streams, in every
+/// build.
+namespace splinecast::fuzz {
+namespace {
+
+std::vector<std::string> files_in(const std::string& folder) {
+  std::vector<std::string> paths;
+  const std::string seeds = std::string(SPLINECAST_SOURCE) + "/tests/fuzz/seeds/" + folder;
+  for (const auto& entry : std::filesystem::directory_iterator(seeds)) {
+    paths.push_back(entry.path().string());
+  }
+  std::ranges::sort(paths);
+  return paths;
+}
+
+StreamImage image_in(const std::string& path) {
+  const std::string text = testing::read_file(path);
+  return decode(std::vector<std::uint8_t>(text.begin(), text.end()));
+}
+
+void try_texts(const std::string& folder, void (*target)(std::string_view)) {
+  const auto paths = files_in(folder);
+  EXPECT_FALSE(paths.empty());
+  for (const std::string& path : paths) {
+    EXPECT_NO_THROW(target(testing::read_file(path))) << path;
+  }
+}
+
+TEST(FuzzSeeds, RegionsAreReadRefusedOrContinued) {
+  const auto paths = files_in("regions");
+  EXPECT_FALSE(paths.empty());
+  for (const std::string& path : paths) EXPECT_NO_THROW(try_all(image_in(path))) << path;
+}
+
+TEST(FuzzSeeds, MutatedStreamsAreReadRefusedOrContinued) {
+  constexpr std::uint64_t kMutations = 500;
+  for (const Seed& seed : make_seeds()) {
+    for (std::uint64_t i = 0; i < kMutations; ++i) {
+      std::mt19937_64 random(i);
+      StreamImage image = seed.image;
+      mutate(image, random);
+      EXPECT_NO_THROW(try_reader(image)) << seed.name << ", mutation " << i;
+      EXPECT_NO_THROW(try_writers(image)) << seed.name << ", mutation " << i;
+      if (i % 10 == 0) {
+        EXPECT_NO_THROW(try_roles(image)) << seed.name << ", mutation " << i;
+      }
+    }
+  }
+}
+
+TEST(FuzzSeeds, AnImageIsWrittenAndReadAsItIs) {
+  for (const Seed& seed : make_seeds()) {
+    const StreamImage again = decode(encode(seed.image));
+    EXPECT_EQ(again.ring, seed.image.ring);
+    EXPECT_EQ(again.board, seed.image.board);
+    EXPECT_EQ(again.script, seed.image.script);
+  }
+}
+
+TEST(FuzzSeeds, WaypointFilesAreReadOrRefused) { try_texts("waypoints", try_waypoints); }
+TEST(FuzzSeeds, TimeFilesAreReadOrRefused) { try_texts("times", try_times); }
+TEST(FuzzSeeds, PolynomialFilesAreReadOrRefused) { try_texts("polynomials", try_polynomials); }
+TEST(FuzzSeeds, WordsAreReadOrRefused) { try_texts("words", try_words); }
+TEST(FuzzSeeds, CommandLinesAreReadOrRefused) { try_texts("arguments", try_arguments); }
+
+TEST(ByteFlip, NobodyCrashesHangsOrSaysWhatIsNoNumber) {
+  const testing::Ended ended =
+      testing::Process(SPLINECAST_BYTEFLIP, {"--seconds", "3", "--seed", "7"}).wait();
+  EXPECT_EQ(ended.code, 0) << ended.out << ended.err;
+  const auto report = nlohmann::json::parse(ended.out, nullptr, false);
+  ASSERT_FALSE(report.is_discarded());
+  EXPECT_GT(report["count"], 0);
+  EXPECT_GT(report["measured"]["samples with values"], 0);
+}
+
+}  // namespace
+}  // namespace splinecast::fuzz

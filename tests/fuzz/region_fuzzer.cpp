@@ -1,0 +1,29 @@
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include "fuzz/region_targets.hpp"
+
+// libFuzzer's entry to one region target: SPLINECAST_FUZZ_TARGET names it.
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  splinecast::fuzz::SPLINECAST_FUZZ_TARGET(splinecast::fuzz::decode({data, size}));
+  return 0;
+}
+
+/// Most mutations change words where they mean something; some change the file's own bytes.
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t max_size, unsigned seed) {
+  constexpr unsigned kPlain = 16;
+  if (seed % kPlain == 0) return LLVMFuzzerMutate(data, size, max_size);
+  auto image = splinecast::fuzz::decode({data, size});
+  std::mt19937_64 random(seed);
+  splinecast::fuzz::mutate(image, random);
+  const auto bytes = splinecast::fuzz::encode(image);
+  if (bytes.size() > max_size) return size;
+  std::ranges::copy(bytes, data);
+  return bytes.size();
+}

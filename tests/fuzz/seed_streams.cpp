@@ -1,0 +1,236 @@
+#include "fuzz/seed_streams.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+
+#include "splinecast/ipc/producer.hpp"
+#include "splinecast/ipc/solver.hpp"
+#include "splinecast/ipc/stream_files.hpp"
+#include "support/memory_stream.hpp"
+
+namespace splinecast::fuzz {
+namespace {
+
+using core::Time;
+using ipc::RegionKind;
+using ipc::Word;
+
+constexpr Time kTick{10'000'000};
+constexpr Time kBegin{1'000'000'000};
+
+/// The words of a region in shared memory, of which nothing depends on when and where it was made:
+/// stream id, owner and time namespace are set, and the control lines lie where the id asks.
+std::vector<Word> words_of(const std::string& stream, RegionKind kind) {
+  const auto region = ipc::Region::open(stream, kind, false);
+  const auto from = ipc::words_at(region.bytes(), 0, region.bytes().size() / sizeof(Word));
+  std::vector<Word> words(from.begin(), from.end());
+  const auto field = [&](std::size_t offset) -> Word& { return words[offset / sizeof(Word)]; };
+  constexpr Word kStream = 7;
+  constexpr std::size_t kControl = ipc::kHeaderBytes + kStream * ipc::kSeparation;
+  const auto page =
+      std::span(words).subspan(ipc::kHeaderBytes / sizeof(Word), ipc::kPage / sizeof(Word));
+  const auto lines =
+      std::span(words).subspan(field(offsetof(ipc::RegionHeader, control)) / sizeof(Word),
+                               ipc::kControlLines * ipc::kSeparation / sizeof(Word));
+  const std::vector<Word> control(lines.begin(), lines.end());
+  std::ranges::fill(page, 0);
+  std::ranges::copy(control, words.begin() + kControl / sizeof(Word));
+  field(offsetof(ipc::RegionHeader, control)) = kControl;
+  field(offsetof(ipc::RegionHeader, stream_id)) = kStream;
+  field(offsetof(ipc::RegionHeader, owner_pid)) = 1;
+  field(offsetof(ipc::RegionHeader, owner_since)) = 0;
+  const bool is_live = field(offsetof(ipc::RegionHeader, clock)) != 0;
+  field(offsetof(ipc::RegionHeader, time_namespace)) = is_live ? kHere : 0;
+  return words;
+}
+
+/// A stream between a real producer and a real solver, in simulated time.
+class Recorder {
+ public:
+  Recorder(ipc::ProducerOptions options, const ipc::SolverOptions& how)
+      : name_("fuzzseed" + std::to_string(getpid())),
+        dimensions_(options.dimensions),
+        producer_(name_, std::move(options)),
+        solver_(name_, how) {
+    clock.time = kBegin;
+    if (!solver_.attach()) throw std::logic_error("a solver finds the stream that stands");
+  }
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  void step() { (void)solver_.step(clock); }
+  void send(Time t, double scale = 1) {
+    const auto values = motion(t, scale);
+    const std::span<const double> all(values);
+    (void)producer_.append({.time = t,
+                            .position = all.first(dimensions_),
+                            .velocity = all.subspan(dimensions_, dimensions_),
+                            .acceleration = all.last(dimensions_)});
+    step();
+  }
+  void send_many(Time first, int count, Time interval = kTick) {
+    for (int i = 0; i < count; ++i) send(first + i * interval);
+  }
+  void start_from(Time t) {
+    const auto values = motion(t, 1);
+    const std::span<const double> all(values);
+    (void)producer_.start_from({.time = t,
+                                .position = all.first(dimensions_),
+                                .velocity = all.subspan(dimensions_, dimensions_),
+                                .acceleration = all.last(dimensions_)});
+    step();
+  }
+  void replace_from(Time t, Time next) {
+    const auto values = motion(next, 2);
+    const core::Waypoint waypoint{.time = next, .position = std::span(values).first(dimensions_)};
+    (void)producer_.replace_from(t, std::span(&waypoint, next > t ? 1 : 0));
+    step();
+  }
+  void finish(core::ConditionKind end = core::ConditionKind::halt) {
+    (void)producer_.finish({.kind = end, .value = {}});
+    step();
+  }
+
+  [[nodiscard]] StreamImage image(std::vector<std::uint8_t> script) const {
+    return {.ring = words_of(name_, RegionKind::waypoints),
+            .board = words_of(name_, RegionKind::spline),
+            .script = std::move(script)};
+  }
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+  testing::FixedClock clock;
+
+ private:
+  [[nodiscard]] std::vector<double> motion(Time t, double scale) const {
+    const double s = core::to_seconds(t - kBegin);
+    std::vector<double> values;
+    for (const int derivative : {0, 1, 2}) {
+      for (std::size_t d = 0; d < dimensions_; ++d) {
+        const double w = 1.0 + static_cast<double>(d);
+        const double phase = w * s + derivative * std::acos(-1.0) / 2;
+        values.push_back(scale * std::pow(w, derivative) * std::sin(phase));
+      }
+    }
+    return values;
+  }
+
+  std::string name_;
+  std::size_t dimensions_;
+  ipc::Producer producer_;
+  ipc::Solver solver_;
+};
+
+ipc::ProducerOptions recorded(std::size_t dimensions) {
+  return {.dimensions = dimensions,
+          .names = {},
+          .units = {},
+          .kinds = {},
+          .clock = ipc::StreamClock::recorded,
+          .start = {},
+          .limits = {},
+          .capacity = 8};
+}
+
+ipc::ProducerOptions live(std::size_t dimensions) {
+  auto options = recorded(dimensions);
+  options.clock = ipc::StreamClock::monotonic;
+  options.start = {.kind = core::ConditionKind::halt, .value = {}};
+  return options;
+}
+
+ipc::SolverOptions with(const char* method, std::size_t settle, std::size_t capacity) {
+  ipc::SolverOptions how;
+  how.method = core::find_method(method);
+  how.settle = settle;
+  how.capacity = capacity;
+  return how;
+}
+
+struct Plan {
+  const char* name;
+  ipc::ProducerOptions options;
+  ipc::SolverOptions how;
+  std::function<void(Recorder&)> play;
+};
+
+std::vector<Plan> plans() {
+  auto limited = with("c2", 2, 32);
+  limited.max_acceleration = {5.0, 0.0};
+  auto smoothing = with("smoothing", 16, 64);
+  smoothing.lambda = 1e-9;
+  auto kinds = recorded(5);
+  kinds.kinds.assign(5, {.kind = core::DimensionKind::quaternion});
+  kinds.kinds[0] = {.kind = core::DimensionKind::wrap, .period = 1.5};
+  kinds.names = {"heading", "qx", "qy", "qz", "qw"};
+  kinds.units = {"rad", "", "", "", ""};
+  auto moving = recorded(1);
+  moving.start = {.kind = core::ConditionKind::velocity, .value = {2.0}};
+  const auto starve = [](Recorder& r) {
+    r.send_many(kBegin + 2 * kTick, 4);
+    r.clock.time += 200 * kTick;
+    r.step();
+  };
+  return {
+      {"c2_running", recorded(1), with("c2", 2, 32), [](Recorder& r) { r.send_many(kBegin, 40); }},
+      {"c2_finished", moving, with("c2", 8, 32),
+       [](Recorder& r) {
+         r.send_many(kBegin, 12);
+         r.send(kBegin);  // refused: out of order
+         r.finish();
+       }},
+      {"live_running", live(2), limited, [](Recorder& r) { r.send_many(kBegin + 2 * kTick, 10); }},
+      {"live_starved", live(1), with("c2", 2, 32), starve},
+      {"live_entered", live(1), with("makima", 2, 32),
+       [starve](Recorder& r) {
+         starve(r);
+         r.send_many(r.clock.time + 2 * kTick, 3);
+       }},
+      {"live_replaced", live(2), limited,
+       [](Recorder& r) {
+         r.start_from(kBegin + kTick);
+         r.send_many(kBegin + 3 * kTick, 6);
+         r.replace_from(kBegin + 6 * kTick, kBegin + 9 * kTick);
+         r.replace_from(kBegin + 8 * kTick, kBegin);
+       }},
+      {"live_way_back", live(1), with("pchip", 1, 16),
+       [starve](Recorder& r) {
+         starve(r);
+         r.finish();
+       }},
+      {"quintic", recorded(1), with("quintic", 1, 16), [](Recorder& r) { r.send_many(kBegin, 5); }},
+      {"smoothing", recorded(1), smoothing, [](Recorder& r) { r.send_many(kBegin, 24); }},
+      {"kinds", kinds, with("rounded", 1, 16), [](Recorder& r) { r.send_many(kBegin, 6); }},
+      {"empty", live(3), with("hermite", 1, 16), [](Recorder& r) { r.step(); }},
+  };
+}
+
+/// Actions of every kind, so that a mutation has some to change.
+std::vector<std::uint8_t> script_of(std::size_t seed) {
+  std::mt19937_64 random(seed);
+  std::vector<std::uint8_t> script(160);
+  for (auto& byte : script) byte = static_cast<std::uint8_t>(random());
+  return script;
+}
+
+}  // namespace
+
+std::vector<Seed> make_seeds() {
+  std::vector<Seed> seeds;
+  for (Plan& plan : plans()) {
+    std::string name;
+    {
+      Recorder recorder(plan.options, plan.how);
+      plan.play(recorder);
+      name = recorder.name();
+      seeds.push_back({.name = plan.name, .image = recorder.image(script_of(seeds.size()))});
+    }
+    ipc::remove_stream(name);
+  }
+  return seeds;
+}
+
+}  // namespace splinecast::fuzz

@@ -1,0 +1,221 @@
+#include "fuzz/stream_image.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <limits>
+
+namespace splinecast::fuzz {
+namespace {
+
+using ipc::Word;
+
+/// Takes numbers from the front of bytes; zeros when they have run out.
+class Source {
+ public:
+  explicit Source(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+  [[nodiscard]] bool empty() const { return bytes_.empty(); }
+  [[nodiscard]] std::span<const std::uint8_t> take(std::size_t count) {
+    const auto taken = bytes_.first(std::min(count, bytes_.size()));
+    bytes_ = bytes_.subspan(taken.size());
+    return taken;
+  }
+  template <typename Number>
+  [[nodiscard]] Number number() {
+    Number value = 0;
+    const auto taken = take(sizeof value);
+    std::memcpy(&value, taken.data(), taken.size());
+    return value;
+  }
+
+ private:
+  std::span<const std::uint8_t> bytes_;
+};
+
+template <typename Number>
+void put(std::vector<std::uint8_t>& out, Number value) {
+  const std::size_t at = out.size();
+  out.resize(at + sizeof value);
+  std::memcpy(out.data() + at, &value, sizeof value);
+}
+
+/// Calls `visit(begin, end)` for each stretch of words that are not 0; a single 0 does not end one.
+void for_each_stretch(std::span<const Word> words, const auto& visit) {
+  std::size_t i = 0;
+  while (i < words.size()) {
+    if (words[i] == 0) {
+      ++i;
+      continue;
+    }
+    std::size_t end = i + 1;
+    while (end < words.size() &&
+           (words[end] != 0 || (end + 1 < words.size() && words[end + 1] != 0))) {
+      ++end;
+    }
+    visit(i, end);
+    i = end;
+  }
+}
+
+std::size_t below(std::size_t limit, std::mt19937_64& random) { return random() % limit; }
+
+Word interesting(std::mt19937_64& random, Word before, std::span<const Word> region) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr std::array<double, 12> kDoubles{
+      0,     -0.0,   1,      -1,    1e100,     -1e100,
+      1e300, 1e-300, 1e-320, 1e200, kInfinity, std::numeric_limits<double>::quiet_NaN()};
+  constexpr std::array<Word, 16> kWords{0,
+                                        1,
+                                        2,
+                                        3,
+                                        4,
+                                        6,
+                                        64,
+                                        65,
+                                        1U << 10U,
+                                        1ULL << 32U,
+                                        1ULL << 61U,
+                                        1ULL << 62U,
+                                        1ULL << 63U,
+                                        (1ULL << 63U) - 1,
+                                        std::numeric_limits<Word>::max(),
+                                        std::numeric_limits<Word>::max() - 1};
+  switch (below(9, random)) {
+    case 0:
+      return kWords[below(kWords.size(), random)];
+    case 1:
+      return std::bit_cast<Word>(kDoubles[below(kDoubles.size(), random)]);
+    case 2:
+      return before ^ Word { 1 } << below(64, random);
+    case 3:
+      return before + 1 - below(3, random);
+    case 4:
+      return before + below(256, random) - 128;
+    case 5:
+      return random();
+    case 6:
+      return region[below(region.size(), random)];
+    case 7:
+      return Word{0} - before;
+    default:
+      return before ^ (below(256, random) << (8 * below(8, random)));
+  }
+}
+
+/// Where a region's interesting words are: begin and end, in words.
+struct Range {
+  std::size_t begin;
+  std::size_t end;
+};
+
+/// A part of a region in which a word is to be changed. Most of a header's words lie in its first
+/// 256 bytes; most of what a region holds is not 0.
+Range part_of(std::span<const Word> region, std::mt19937_64& random) {
+  constexpr std::size_t kWord = sizeof(Word);
+  constexpr Range kFixed{0, 256 / kWord};
+  constexpr Range kPerDimension{256 / kWord, sizeof(ipc::RegionHeader) / kWord};
+  constexpr Range kControl{ipc::kHeaderBytes / kWord, ipc::kBodyOffset / kWord};
+  constexpr Range kBoardHead{ipc::kBodyOffset / kWord,
+                             ipc::kBodyOffset / kWord + 2 * ipc::kHeadWords};
+  constexpr std::array<Range, 4> kParts{kFixed, kPerDimension, kControl, kBoardHead};
+  const std::size_t choice = below(kParts.size() + 4, random);
+  Range part{0, region.size()};
+  if (choice < kParts.size()) part = kParts[choice];
+  if (choice > kParts.size()) part.begin = kBoardHead.begin;
+  return part.begin < part.end && part.end <= region.size() ? part : Range{0, region.size()};
+}
+
+/// A word in a part, most often one that is not 0, as the parts are mostly empty.
+std::size_t word_in(std::span<const Word> region, const Range& part, std::mt19937_64& random) {
+  const std::size_t size = part.end - part.begin;
+  const std::size_t begin = below(size, random);
+  if (below(8, random) == 0) return part.begin + begin;
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::size_t at = part.begin + (begin + i) % size;
+    if (region[at] != 0) return at;
+  }
+  return part.begin + begin;
+}
+
+void mutate_region(std::vector<Word>& region, std::mt19937_64& random) {
+  if (below(200, random) == 0) region.resize(below(kMaxWords, random));  // another file size
+  if (region.empty()) return;
+  const std::size_t at = word_in(region, part_of(region, random), random);
+  const std::size_t run = below(16, random) == 0 ? below(64, random) : 1;
+  const Word value = interesting(random, region[at], region);
+  for (std::size_t i = at; i < std::min(at + run, region.size()); ++i) region[i] = value;
+}
+
+void mutate_script(std::vector<std::uint8_t>& script, std::mt19937_64& random) {
+  constexpr std::size_t kLongest = 512;
+  const std::size_t at = below(script.size() + 1, random);
+  const auto where = script.begin() + static_cast<std::ptrdiff_t>(at);
+  const auto byte = static_cast<std::uint8_t>(random());
+  if (at == script.size() || below(3, random) == 0) {
+    if (script.size() < kLongest) script.insert(where, byte);
+  } else if (below(3, random) == 0) {
+    script.erase(where);
+  } else {
+    script[at] = byte;
+  }
+}
+
+}  // namespace
+
+StreamImage decode(std::span<const std::uint8_t> bytes) {
+  Source source(bytes);
+  const auto script = source.number<std::uint32_t>();
+  const auto ring = source.number<std::uint32_t>();
+  const auto board = source.number<std::uint32_t>();
+  StreamImage image;
+  image.ring.resize(ring % (kMaxWords + 1));
+  image.board.resize(board % (kMaxWords + 1));
+  const auto commands = source.take(script);
+  image.script.assign(commands.begin(), commands.end());
+  const std::size_t all = image.ring.size() + image.board.size();
+  while (!source.empty() && all > 0) {
+    const std::size_t at = source.number<std::uint32_t>() % all;
+    const std::size_t count = std::min<std::size_t>(source.number<std::uint32_t>(), all - at);
+    for (std::size_t i = at; i < at + count && !source.empty(); ++i) {
+      Word& word = i < image.ring.size() ? image.ring[i] : image.board[i - image.ring.size()];
+      word = source.number<Word>();
+    }
+  }
+  return image;
+}
+
+std::vector<std::uint8_t> encode(const StreamImage& image) {
+  std::vector<std::uint8_t> out;
+  put(out, static_cast<std::uint32_t>(image.script.size()));
+  put(out, static_cast<std::uint32_t>(image.ring.size()));
+  put(out, static_cast<std::uint32_t>(image.board.size()));
+  out.insert(out.end(), image.script.begin(), image.script.end());
+  std::size_t offset = 0;
+  for (const auto* region : {&image.ring, &image.board}) {
+    for_each_stretch(*region, [&](std::size_t begin, std::size_t end) {
+      put(out, static_cast<std::uint32_t>(offset + begin));
+      put(out, static_cast<std::uint32_t>(end - begin));
+      for (std::size_t i = begin; i < end; ++i) put(out, (*region)[i]);
+    });
+    offset += region->size();
+  }
+  return out;
+}
+
+void mutate(StreamImage& image, std::mt19937_64& random) {
+  for (std::size_t count = 1 + below(4, random); count > 0; --count) {
+    switch (below(4, random)) {
+      case 0:
+        mutate_script(image.script, random);
+        break;
+      case 1:
+        mutate_region(image.ring, random);
+        break;
+      default:
+        mutate_region(image.board, random);
+    }
+  }
+}
+
+}  // namespace splinecast::fuzz

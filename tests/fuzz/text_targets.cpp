@@ -1,0 +1,184 @@
+#include "fuzz/text_targets.hpp"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "fuzz/script.hpp"
+#include "splinecast/core/condition.hpp"
+#include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/names.hpp"
+#include "splinecast/ipc/waypoint_ring.hpp"
+#include "support/exit_codes.hpp"
+#include "support/kinds.hpp"
+#include "support/numbers.hpp"
+#include "support/options.hpp"
+#include "support/polynomial_file.hpp"
+#include "support/recording.hpp"
+#include "support/table_format.hpp"
+
+namespace splinecast::fuzz {
+namespace {
+
+/// A file in memory with a path of its own.
+class MemoryFile {
+ public:
+  explicit MemoryFile(std::string_view text) : descriptor_(memfd_create("fuzz", MFD_CLOEXEC)) {
+    if (descriptor_ < 0 ||
+        write(descriptor_, text.data(), text.size()) != static_cast<ssize_t>(text.size())) {
+      throw std::runtime_error("no memory for a file");
+    }
+  }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~MemoryFile() { close(descriptor_); }
+  [[nodiscard]] std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    lines.emplace_back(text.substr(0, end));
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+  return lines;
+}
+
+/// Takes the first line off a text.
+std::string take_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  const std::string line(text.substr(0, end));
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  return line;
+}
+
+apps::TableOptions options_of(const std::string& line) {
+  apps::TableOptions options;
+  std::vector<std::string_view> words;
+  apps::split(line, false, words);
+  for (const std::string_view word : words) {
+    const auto kind = apps::parse_kind_option(std::string(word));
+    const auto unit = apps::parse_time_unit(word);
+    if (kind) options.kinds.push_back(*kind);
+    if (unit) options.time_unit = unit;
+    if (!kind && !unit) options.columns.emplace_back(word);
+  }
+  return options;
+}
+
+void require_whole(const apps::WaypointTable& table) {
+  const std::size_t dimensions = table.dimensions();
+  require(dimensions >= 1 && dimensions <= core::kMaxDimensions, "a table has 1 to 64 dimensions");
+  require(table.lines.size() == table.size() && table.kinds.size() == dimensions,
+          "a table has a line for each row and a kind for each dimension");
+  for (const auto* values : {&table.velocities, &table.accelerations}) {
+    require(values->empty() || values->size() == table.size() * dimensions,
+            "a derivative is given for all positions or none");
+  }
+  require(table.positions.size() == table.size() * dimensions, "each row has each position");
+  for (const core::Time t : table.times) require(ipc::is_time_in_range(t), "times are in range");
+}
+
+/// What `replay` does with a table before it sends it.
+void prepare(apps::WaypointTable& table) {
+  apps::drop_unfit_rows(table, {}, nullptr);
+  apps::change_rate(table, 2.0);
+  (void)apps::median_interval(table);
+  apps::continue_waypoints(table);
+}
+
+}  // namespace
+
+void try_waypoints(std::string_view text) {
+  apps::TableOptions options = options_of(take_line(text));
+  const MemoryFile file(text);
+  std::size_t bad_rows = 0;
+  try {
+    apps::WaypointTable table = apps::read_waypoints(file.path(), options);
+    require_whole(table);
+    prepare(table);
+  } catch (const apps::InputError&) {
+    ++bad_rows;
+  }
+  options.on_bad_row = [&bad_rows](std::size_t, const std::exception&) { ++bad_rows; };
+  try {
+    apps::WaypointTable table = apps::read_waypoints(file.path(), options);
+    require_whole(table);
+    apps::require_spline_input(table);
+    apps::continue_waypoints(table);
+  } catch (const apps::InputError&) {
+    return;
+  }
+}
+
+void try_times(std::string_view text) {
+  const apps::TableOptions options = options_of(take_line(text));
+  const MemoryFile file(text);
+  try {
+    for (const core::Time t : apps::read_times(file.path(), options.time_unit)) {
+      require(ipc::is_time_in_range(t), "times are in range");
+    }
+  } catch (const apps::InputError&) {
+    return;
+  }
+}
+
+void try_polynomials(std::string_view text) {
+  const MemoryFile file(text);
+  try {
+    const apps::PolynomialFile read = apps::read_polynomials(file.path());
+    require(read.curve.segments() > 0, "a file of polynomials has a piece");
+    require(read.names.size() <= core::kMaxDimensions, "a file has at most 64 dimensions");
+  } catch (const apps::InputError&) {
+    return;
+  }
+}
+
+void try_words(std::string_view text) {
+  for (const std::string& line : lines_of(text)) {
+    for (const auto unit : {apps::TimeUnit::nanoseconds, apps::TimeUnit::seconds}) {
+      (void)apps::parse_time(line, unit);
+    }
+    (void)apps::parse_number(line);
+    (void)apps::parse_count(line);
+    (void)apps::unit_of_time_column(line);
+    if (const auto kind = core::parse_dimension(line)) {
+      require(core::parse_dimension(core::to_string(*kind)) == kind, "a kind reads back as it is");
+    }
+    if (const auto condition = core::parse_condition(line)) {
+      require(core::parse_condition(core::to_string(*condition)) == condition,
+              "a condition reads back as it is");
+    }
+    try {
+      ipc::require_stream_name(line);
+      require(line.find('/') == std::string::npos && line.front() != '.',
+              "a stream's name leads to no other folder");
+    } catch (const ipc::BadRequest&) {
+      continue;
+    }
+  }
+}
+
+void try_arguments(std::string_view text) {
+  CLI::App program("Fuzzed", "splinecast");
+  program.require_subcommand(1);
+  apps::Action action;
+  apps::add_verbs(program, action);
+  auto arguments = lines_of(text);
+  std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+  try {
+    program.parse(arguments);
+    require(static_cast<bool>(action), "a command line that is right has an action");
+  } catch (const CLI::ParseError&) {
+    return;
+  }
+}
+
+}  // namespace splinecast::fuzz
