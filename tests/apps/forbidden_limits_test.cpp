@@ -164,6 +164,7 @@ TEST_F(ForbiddenLimits, AnotherTimeNamespacesClockIsRefusedForLiveStreams) {
   const std::vector<std::string> said{"stream 'a' runs on the clock of time namespace"};
   attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 1, said, elsewhere);
   attack_in_vain(memory, {"solve", "a"}, 1, said, elsewhere);
+  attack_in_vain(memory, {"doctor", "a"}, 1, said, elsewhere);
   attack_in_vain(memory, {"info", "a"}, 0, {"finished"}, elsewhere);
   // A recorded stream runs on no clock.
   ASSERT_EQ(memory.run({"rm", "a"}, here).code, 0);

@@ -56,6 +56,8 @@ TEST_F(ForbiddenSharing, AGroupReadsAndNobodyElse) {
     attack_in_vain(memory, {"rm", "a", "--owner", "12345"}, 1, {"belongs to another user"}, other);
     attack_in_vain(memory, {"solve", "a", "--owner", "12345"}, 1, {"belongs to another user"},
                    other);
+    attack_in_vain(memory, {"doctor", "--clean"}, 0, {"belongs to user 12345", "left alone"},
+                   other);
   }
   auto into_the_group = shared({"replay", file_, "--stream", "b", "--embedded"});
   attack_in_vain(memory, into_the_group, 1, {"cannot give the region to group 54321"}, stranger_);
