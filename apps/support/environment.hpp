@@ -16,8 +16,8 @@ struct Environment {
   std::string governor;    ///< of the CPUs' frequency; several are joined by commas
   std::string kernel;      ///< release
   std::string preemption;  ///< `PREEMPT_RT`, `PREEMPT_DYNAMIC`, `PREEMPT` or `none`
-  std::string hypervisor;  ///< what the machine is virtual under: maker and product, else `unknown`;
-                           ///< empty on bare metal
+  std::string hypervisor;  ///< what the machine is virtual under: maker and product, else
+                           ///< `unknown`; empty on bare metal
   std::string clock;       ///< the kernel's clock source, such as `tsc`
   std::string rt_runtime;  ///< microseconds of each period (1 s by default) that SCHED_FIFO may
                            ///< take in all; -1: no limit

@@ -103,39 +103,57 @@ class ForbiddenFiles : public Forbidden {
     obstacle.put(memory.file(file));
     then(memory);
   }
+
+  void expect_refused_under_the_board(bool own_litter) {
+    for (const Obstacle& obstacle : obstacles()) {
+      if (obstacle.is_own_litter != own_litter) continue;
+      auto said = obstacle.said;
+      said.emplace_back(kBoard);
+      with_obstacle(kBoard, obstacle, [&](const PrivateSharedMemory& memory) {
+        attack_in_vain(memory, {"solve", "a"}, 1, said);
+        attack_in_vain(memory, replay(), 1, said);
+        attack_in_vain(memory, replay({"--embedded"}), 1, said);
+        attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 1, said);
+        attack_in_vain(memory, {"info", "a"}, 1, said);
+        attack_in_vain(memory, {"ls"}, 0, said);
+        if (!obstacle.is_own_litter) attack_in_vain(memory, {"rm", "a"}, 1, said);
+      });
+    }
+  }
+
+  void expect_refused_under_the_ring(bool own_litter) {
+    for (const Obstacle& obstacle : obstacles()) {
+      if (obstacle.is_own_litter != own_litter) continue;
+      auto said = obstacle.said;
+      said.emplace_back(kRing);
+      with_obstacle(kRing, obstacle, [&](const PrivateSharedMemory& memory) {
+        attack_in_vain(memory, {"solve", "a"}, 1, said);
+        attack_in_vain(memory, replay(), 4, {"no solver for stream 'a'"});
+        attack_in_vain(memory, replay({"--embedded"}), 1, said);
+        // The curve stands: its readers need no producer.
+        attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"});
+        attack_in_vain(memory, {"info", "a"}, 1, said);
+        attack_in_vain(memory, {"ls"}, 0, said);
+        if (!obstacle.is_own_litter) attack_in_vain(memory, {"rm", "a"}, 1, said);
+      });
+    }
+  }
 };
 
-TEST_F(ForbiddenFiles, UnderTheBoardsNameAreRefusedByEachVerbAndLeftAsTheyAre) {
-  for (const Obstacle& obstacle : obstacles()) {
-    auto said = obstacle.said;
-    said.emplace_back(kBoard);
-    with_obstacle(kBoard, obstacle, [&](const PrivateSharedMemory& memory) {
-      attack_in_vain(memory, {"solve", "a"}, 1, said);
-      attack_in_vain(memory, replay(), 1, said);
-      attack_in_vain(memory, replay({"--embedded"}), 1, said);
-      attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 1, said);
-      attack_in_vain(memory, {"info", "a"}, 1, said);
-      attack_in_vain(memory, {"ls"}, 0, said);
-      if (!obstacle.is_own_litter) attack_in_vain(memory, {"rm", "a"}, 1, said);
-    });
-  }
+TEST_F(ForbiddenFiles, UnderTheBoardsNameThatAreNoBoardAreRefusedByEachVerbAndLeftAsTheyAre) {
+  expect_refused_under_the_board(true);
 }
 
-TEST_F(ForbiddenFiles, UnderTheRingsNameAreRefusedByEachVerbAndLeftAsTheyAre) {
-  for (const Obstacle& obstacle : obstacles()) {
-    auto said = obstacle.said;
-    said.emplace_back(kRing);
-    with_obstacle(kRing, obstacle, [&](const PrivateSharedMemory& memory) {
-      attack_in_vain(memory, {"solve", "a"}, 1, said);
-      attack_in_vain(memory, replay(), 4, {"no solver for stream 'a'"});
-      attack_in_vain(memory, replay({"--embedded"}), 1, said);
-      // The curve stands: its readers need no producer.
-      attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"});
-      attack_in_vain(memory, {"info", "a"}, 1, said);
-      attack_in_vain(memory, {"ls"}, 0, said);
-      if (!obstacle.is_own_litter) attack_in_vain(memory, {"rm", "a"}, 1, said);
-    });
-  }
+TEST_F(ForbiddenFiles, UnderTheBoardsNameThatAreNotToBeTrustedAreRefusedByEachVerb) {
+  expect_refused_under_the_board(false);
+}
+
+TEST_F(ForbiddenFiles, UnderTheRingsNameThatAreNoRingAreRefusedByEachVerbAndLeftAsTheyAre) {
+  expect_refused_under_the_ring(true);
+}
+
+TEST_F(ForbiddenFiles, UnderTheRingsNameThatAreNotToBeTrustedAreRefusedByEachVerb) {
+  expect_refused_under_the_ring(false);
 }
 
 TEST_F(ForbiddenFiles, BesideNothingLeaveNothingBehind) {
