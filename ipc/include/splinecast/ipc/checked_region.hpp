@@ -14,7 +14,7 @@ namespace splinecast::ipc {
 template <typename Layout>
 struct CheckedRegion {
   Region region;
-  RegionHeader header;
+  RegionHeader header{};
   Layout layout;
 };
 
