@@ -40,7 +40,9 @@ int run_program(int argc, char** argv) {
 }  // namespace splinecast::apps
 
 int main(int argc, char** argv) {
-  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a write error like any other
+  // A closed pipe, and a file beyond RLIMIT_FSIZE, are write errors like any other.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     return splinecast::apps::run_program(argc, argv);
   } catch (const std::exception& error) {

@@ -5,8 +5,11 @@
 #include <optional>
 
 #include "replay.hpp"
+#include "splinecast/ipc/checked_region.hpp"
+#include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/owner_lock.hpp"
 #include "splinecast/ipc/producer.hpp"
+#include "splinecast/ipc/stream_files.hpp"
 #include "support/exit_codes.hpp"
 #include "support/output.hpp"
 #include "support/recording.hpp"
@@ -19,7 +22,11 @@ namespace {
 
 constexpr core::Time kSlice = std::chrono::milliseconds(50);
 
+/// Throws BadRegion instead, if what stands under the board's name is what keeps a solver from it.
 [[noreturn]] void throw_no_solver(const ReplayOptions& options) {
+  if (ipc::region_exists(options.stream, ipc::RegionKind::spline)) {
+    (void)ipc::open_board(options.stream, false, options.trust);
+  }
   throw TimeOut(fmt::format("no solver for stream '{}' within {} s: run 'splinecast solve {}'",
                             options.stream, core::to_seconds(options.wait), options.stream));
 }
@@ -37,6 +44,16 @@ bool await_solver_of_finished(const ReplayOptions& options) {
   return true;
 }
 
+/// The board that an embedded solver made for a ring that has been withdrawn.
+void remove_board_without_ring(const ReplayOptions& options) {
+  if (ipc::region_exists(options.stream, ipc::RegionKind::waypoints)) return;
+  try {
+    ipc::remove_stream(options.stream, options.trust);
+  } catch (const ipc::StreamError&) {
+    return;  // it was not made, or is somebody else's by now; what failed before is what is told
+  }
+}
+
 /// A replay on its way: the producer, and the embedded solver if there is one.
 class Replay {
  public:
@@ -50,11 +67,15 @@ class Replay {
         producer_(options.stream, producer_options()) {}
 
   ReplayReport run() {
-    // What a producer before this one left is worked off first, and counted as none of ours.
-    if (!await_solver() || !await_consumption()) return {.unsent = planned(), .interrupted = true};
-    watch_.emplace(options_.stream, producer_.stream_id(), options_.trust);
-    before_ = watch_->head();
-    if (options_.verify) begin_log();
+    try {
+      if (!prepare()) return {.unsent = planned(), .interrupted = true};
+    } catch (...) {
+      withdraw_if_new();  // nothing has been sent: nothing is left behind
+      throw;
+    }
+    if (!producer_.is_memory_locked() && !options_.quiet) {
+      say(fmt::format("'{}': pages are not locked into memory (RLIMIT_MEMLOCK)", options_.stream));
+    }
     const core::Time base = first_time();
     require_continuation(base);
     const bool played = play(base);
@@ -68,6 +89,20 @@ class Replay {
     std::size_t row;
     std::size_t loop;
   };
+
+  /// Waits until there is a solver that has worked off what a producer before this one left, which
+  /// is counted as none of ours. Returns false if a stop is requested meanwhile.
+  bool prepare() {
+    if (!await_solver()) {
+      withdraw_if_new();
+      return false;
+    }
+    if (!await_consumption()) return false;
+    watch_.emplace(options_.stream, producer_.stream_id(), options_.trust);
+    before_ = watch_->head();
+    if (options_.verify) begin_log();
+    return true;
+  }
 
   [[nodiscard]] std::size_t planned() const { return table_.size() * options_.loops; }
 
@@ -114,19 +149,14 @@ class Replay {
     }
   }
 
-  /// Waits for a solver; false if a stop is requested meanwhile. Without one nothing is left
-  /// behind.
+  /// Waits for a solver; false if a stop is requested meanwhile.
   bool await_solver() {
     const core::Time end = ipc::deadline(clock_, options_.wait);
     solve();
     while (!stop_requested()) {
       if (producer_.wait_for_solver(kSlice)) return true;
-      if (clock_.now() < end) continue;
-      withdraw_if_new();
-      throw TimeOut(fmt::format("no solver for stream '{}' within {} s: run 'splinecast solve {}'",
-                                options_.stream, core::to_seconds(options_.wait), options_.stream));
+      if (clock_.now() >= end) throw_no_solver(options_);
     }
-    withdraw_if_new();
     return false;
   }
 
@@ -325,7 +355,13 @@ ReplayReport replay_table(const WaypointTable& table, const ReplayOptions& optio
   if (!options.embedded && !await_solver_of_finished(options)) {
     return {.unsent = table.size() * options.loops, .interrupted = true};
   }
-  return Replay(table, options, refused).run();
+  const bool had_board = ipc::region_exists(options.stream, ipc::RegionKind::spline);
+  try {
+    return Replay(table, options, refused).run();
+  } catch (...) {
+    if (options.embedded && !had_board) remove_board_without_ring(options);
+    throw;
+  }
 }
 
 }  // namespace splinecast::apps

@@ -1,3 +1,4 @@
+#include "doctor.hpp"
 #include "support/options.hpp"
 
 namespace splinecast::apps {
@@ -12,6 +13,7 @@ void add_verbs(CLI::App& program, Action& action) {
   add_ls(program, action);
   add_info(program, action);
   add_rm(program, action);
+  add_doctor(program, action);
 }
 
 }  // namespace splinecast::apps

@@ -7,20 +7,20 @@
 namespace splinecast::apps {
 namespace {
 
-ipc::RegionHeader checked_header(const ipc::Region& region, const std::string& stream,
-                                 std::uint64_t stream_id) {
-  const ipc::RegionHeader header = ipc::copy_header(region.bytes());
-  if (header.stream_id != stream_id) {
+ipc::CheckedRegion<ipc::BoardLayout> open_own_board(const std::string& stream,
+                                                    std::uint64_t stream_id,
+                                                    const ipc::Trust& trust) {
+  auto board = ipc::open_board(stream, false, trust);
+  if (board.header.stream_id != stream_id) {
     throw Failure(fmt::format("stream '{}' has been made anew by another producer", stream));
   }
-  return header;
+  return board;
 }
 
 }  // namespace
 
 OwnBoard::OwnBoard(const std::string& stream, std::uint64_t stream_id, const ipc::Trust& trust)
-    : region_(ipc::Region::open(stream, ipc::RegionKind::spline, false, trust)),
-      header_(checked_header(region_, stream, stream_id)),
-      reader_(region_.bytes(), ipc::checked_board_layout(header_, region_.bytes().size())) {}
+    : board_(open_own_board(stream, stream_id, trust)),
+      reader_(board_.region.bytes(), board_.layout) {}
 
 }  // namespace splinecast::apps

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "splinecast/ipc/region.hpp"
+#include "splinecast/ipc/checked_region.hpp"
 #include "splinecast/ipc/segment_board.hpp"
 
 namespace splinecast::apps {
@@ -15,12 +15,11 @@ class OwnBoard {
   /// another stream stands under the name.
   OwnBoard(const std::string& stream, std::uint64_t stream_id, const ipc::Trust& trust);
 
-  [[nodiscard]] const ipc::RegionHeader& header() const noexcept { return header_; }
+  [[nodiscard]] const ipc::RegionHeader& header() const noexcept { return board_.header; }
   [[nodiscard]] const ipc::SegmentBoardReader& reader() const noexcept { return reader_; }
 
  private:
-  ipc::Region region_;
-  ipc::RegionHeader header_;
+  ipc::CheckedRegion<ipc::BoardLayout> board_;
   ipc::SegmentBoardReader reader_;
 };
 

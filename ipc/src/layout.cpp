@@ -18,6 +18,9 @@ namespace {
 /// More than any interval needs, and little enough to be added to any time.
 constexpr std::uint64_t kLongestNanoseconds = std::uint64_t{1} << 61U;
 
+/// kByteOrder as a machine with the other byte order writes it.
+constexpr std::uint32_t kOtherByteOrder = 0x04030201;
+
 constexpr std::size_t round_up(std::size_t value, std::size_t multiple) noexcept {
   return (value + multiple - 1) / multiple * multiple;
 }
@@ -48,6 +51,7 @@ void require_dimension_kinds(const RegionHeader& header) {
 /// What both kinds of region share.
 void require_common(const RegionHeader& header, RegionKind kind, std::size_t real_bytes,
                     std::size_t max_capacity) {
+  require(header.byte_order != kOtherByteOrder, "byte order", header.byte_order, kByteOrder);
   require(header.magic == kMagic, "magic number", header.magic, kMagic);
   require(header.byte_order == kByteOrder, "byte order", header.byte_order, kByteOrder);
   require(header.layout_version == kLayoutVersion, "layout version", header.layout_version,

@@ -6,13 +6,14 @@
 
 #include <cerrno>
 #include <chrono>
+#include <optional>
 #include <system_error>
 #include <thread>
 
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/layout.hpp"
+#include "splinecast/ipc/mode_text.hpp"
 #include "splinecast/ipc/region.hpp"
-#include "splinecast/ipc/stream_files.hpp"
 
 namespace splinecast::ipc {
 namespace {
@@ -33,14 +34,16 @@ bool try_lock(int descriptor) noexcept {
   return fcntl(descriptor, F_OFD_SETLK, &lock) == 0;
 }
 
-/// Opens the lock file, making it if there is none. Without O_CREAT first, because kernels refuse
-/// that flag on other users' files in sticky folders.
-int open_lock_file(const std::string& path) {
+/// Opens the lock file, making it if there is none; says which in `made_file`. Without O_CREAT
+/// first, because kernels refuse that flag on other users' files in sticky folders.
+int open_lock_file(const std::string& path, bool& made_file) {
   constexpr int kFlags = O_RDWR | O_CLOEXEC | O_NOFOLLOW;
   for (;;) {
+    made_file = false;
     const int existing = open(path.c_str(), kFlags);
     if (existing >= 0 || errno != ENOENT) return existing;
     const int made = open(path.c_str(), kFlags | O_CREAT | O_EXCL, S_IRUSR | S_IWUSR);
+    made_file = made >= 0;
     if (made >= 0 || errno != EEXIST) return made;
   }
 }
@@ -58,8 +61,22 @@ void require_own_file(int descriptor, const std::string& path) {
   fstat(descriptor, &status);
   if (!S_ISREG(status.st_mode) || status.st_uid != geteuid() || (status.st_mode & 077) != 0) {
     throw BadRegion("lock " + path + " is not a private file of this user (owner " +
-                    std::to_string(status.st_uid) + ")");
+                    std::to_string(status.st_uid) + ", mode " + mode_text(status.st_mode) + ")");
   }
+}
+
+/// Whether another open file holds the write lock of an owner on the file; nothing if this process
+/// may not open it.
+std::optional<bool> is_file_locked(const std::string& path) {
+  const int opened = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (opened < 0) return std::nullopt;
+  const bool locked = is_region_locked(opened);
+  close(opened);
+  return locked;
+}
+
+bool is_region_file_locked(std::string_view stream, RegionKind kind) {
+  return is_file_locked(region_path(stream, kind)).value_or(false);
 }
 
 /// " (process N)", if the owner's region can be read.
@@ -77,7 +94,7 @@ std::string owner_process(std::string_view stream, RegionKind kind) {
 OwnerLock::OwnerLock(std::string_view stream, RegionKind kind)
     : stream_(stream), kind_(kind), path_(lock_path(stream, kind)), holder_(getpid()) {
   for (int attempt = 1;; ++attempt) {
-    const int descriptor = open_lock_file(path_);
+    const int descriptor = open_lock_file(path_, made_file_);
     if (descriptor < 0) {
       if (errno == EACCES) throw BadRegion("lock " + path_ + " belongs to another user");
       throw BadRegion("cannot open lock " + path_ + ": " + std::generic_category().message(errno));
@@ -85,7 +102,7 @@ OwnerLock::OwnerLock(std::string_view stream, RegionKind kind)
     descriptor_ = OwnedDescriptor(descriptor);
     require_own_file(descriptor, path_);
     if (!try_lock(descriptor)) {
-      if (attempt < kLockTries && !owner_lives(stream, kind)) {
+      if (attempt < kLockTries && !is_region_file_locked(stream, kind)) {
         std::this_thread::sleep_for(kLockPoll);
         continue;
       }
@@ -101,17 +118,17 @@ void OwnerLock::remove_file() noexcept {
   if (getpid() == holder_) unlink(path_.c_str());
 }
 
-void OwnerLock::remove_file_without_region() noexcept {
-  if (!region_exists(stream_, kind_)) remove_file();
+void OwnerLock::remove_litter() noexcept {
+  if (made_file_ || !region_exists(stream_, kind_)) remove_file();
 }
 
 bool is_owned(std::string_view stream, RegionKind kind) {
-  const int opened =
-      open(lock_path(stream, kind).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-  if (opened < 0) return false;
-  const bool owned = is_region_locked(opened);
-  close(opened);
-  return owned;
+  return is_file_locked(lock_path(stream, kind)).value_or(false);
+}
+
+bool owner_lives(std::string_view stream, RegionKind kind) {
+  const auto owned = is_file_locked(lock_path(stream, kind));
+  return owned ? *owned : is_region_file_locked(stream, kind);
 }
 
 bool try_lock_region(int descriptor) noexcept { return try_lock(descriptor); }

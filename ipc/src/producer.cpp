@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "splinecast/ipc/checked_region.hpp"
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/futex.hpp"
 #include "splinecast/ipc/owner_lock.hpp"
@@ -91,9 +92,7 @@ void require_no_contradiction(const std::string& stream, const RegionHeader& sta
 /// is finished.
 std::optional<OwnedRing> continue_ring(const std::string& stream, const ProducerOptions& options) {
   if (!region_exists(stream, RegionKind::waypoints)) return std::nullopt;
-  Region region = Region::open(stream, RegionKind::waypoints, true, options.trust);
-  const RegionHeader header = copy_header(region.bytes());
-  const auto layout = checked_ring_layout(header, region.bytes().size());
+  auto [region, header, layout] = open_ring(stream, true, options.trust);
   OwnedRing ring(std::move(region), header, layout);
   const WaypointRingReader past(ring.region.bytes(), layout);
   if (past.retired() || ring.writer.finished()) {
@@ -114,7 +113,7 @@ OwnedRing own_ring(const std::string& stream, const ProducerOptions& options, Ow
     auto continued = continue_ring(stream, options);
     return continued ? std::move(*continued) : make_ring(stream, options);
   } catch (...) {
-    lock.remove_file_without_region();
+    lock.remove_litter();
     throw;
   }
 }
@@ -146,9 +145,7 @@ struct Producer::Impl {
       // The id first: mapping a large board of an earlier stream each time would be costly.
       const auto peeked = peek_header(stream, RegionKind::spline, options.trust);
       if (!peeked || peeked->stream_id != ring.header.stream_id) return;
-      Region region = Region::open(stream, RegionKind::spline, false, options.trust);
-      const RegionHeader header = copy_header(region.bytes());
-      const auto layout = checked_board_layout(header, region.bytes().size());
+      auto [region, header, layout] = open_board(stream, false, options.trust);
       if (header.stream_id != ring.header.stream_id) return;
       solver.emplace(std::move(region), layout);
     } catch (const std::exception&) {

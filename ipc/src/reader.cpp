@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include "splinecast/ipc/checked_region.hpp"
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/futex.hpp"
 #include "splinecast/ipc/owner_lock.hpp"
@@ -51,9 +52,7 @@ struct Reader::Impl {
   static std::unique_ptr<Impl> open(const std::string& stream, const Trust& trust) {
     if (!region_exists(stream, RegionKind::spline)) return nullptr;
     try {
-      Region region = Region::open(stream, RegionKind::spline, false, trust);
-      const RegionHeader header = copy_header(region.bytes());
-      const auto layout = checked_board_layout(header, region.bytes().size());
+      auto [region, header, layout] = open_board(stream, false, trust);
       if (!is_of_current_stream(stream, header, trust)) return nullptr;
       require_same_clock(header, stream);
       auto impl = std::make_unique<Impl>(stream, std::move(region), header, layout);
@@ -121,7 +120,9 @@ WaitStatus Reader::wait(core::Time timeout) noexcept {
 
 Alive Reader::alive() const noexcept {
   return {.producer = owner_lives(impl_->stream, RegionKind::waypoints),
-          .solver = is_region_locked(impl_->region.descriptor())};
+          .solver = is_region_locked(impl_->region.descriptor()) ||
+                    (impl_->region.is_linked(impl_->stream, RegionKind::spline) &&
+                     owner_lives(impl_->stream, RegionKind::spline))};
 }
 
 const RegionHeader& Reader::header() const noexcept { return impl_->header; }

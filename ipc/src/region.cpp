@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/random.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -15,6 +16,7 @@
 
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/layout.hpp"
+#include "splinecast/ipc/mode_text.hpp"
 #include "splinecast/ipc/owned_descriptor.hpp"
 
 namespace splinecast::ipc {
@@ -42,22 +44,51 @@ int duplicate(int descriptor) {
   return copy;
 }
 
-void reserve_pages(int descriptor, std::size_t bytes) {
-  const int error = posix_fallocate(descriptor, 0, static_cast<off_t>(bytes));
-  if (error == 0) return;
+/// Bytes free in the file system of an open file.
+std::string free_bytes(int descriptor) {
   struct statvfs status {};
   fstatvfs(descriptor, &status);
+  return std::to_string(status.f_bavail * status.f_frsize);
+}
+
+/// What `map` returns; boost's errors do not say what could not be mapped.
+template <typename Map>
+auto naming_what(const std::string& what, const Map& map) {
+  try {
+    return map();
+  } catch (const bip::interprocess_exception& error) {
+    throw BadRegion("cannot map " + what + ": " + error.what());
+  }
+}
+
+/// Beyond this limit the kernel would end the process with SIGXFSZ rather than refuse.
+void require_file_size(std::size_t bytes) {
+  struct rlimit limit {};
+  if (getrlimit(RLIMIT_FSIZE, &limit) != 0 || bytes <= limit.rlim_cur) return;
+  throw BadRegion("cannot reserve " + std::to_string(bytes) +
+                  " bytes of shared memory: this process's files may have " +
+                  std::to_string(limit.rlim_cur) + " (RLIMIT_FSIZE)");
+}
+
+void reserve_pages(int descriptor, std::size_t bytes) {
+  require_file_size(bytes);
+  const int error = posix_fallocate(descriptor, 0, static_cast<off_t>(bytes));
+  if (error == 0) return;
   throw BadRegion("cannot reserve " + std::to_string(bytes) + " bytes of shared memory, " +
-                  std::to_string(status.f_bavail * status.f_frsize) +
-                  " are free: " + error_text(error));
+                  free_bytes(descriptor) + " are free: " + error_text(error));
 }
 
 /// Faults every page in now, so that no sample, append or solve ever does.
-void populate(std::span<std::byte> bytes, bool writable) noexcept {
-  if (madvise(bytes.data(), bytes.size(), writable ? MADV_POPULATE_WRITE : MADV_POPULATE_READ) ==
-      0) {
-    return;
+void populate(std::span<std::byte> bytes, bool writable, int descriptor) {
+  const int advice = writable ? MADV_POPULATE_WRITE : MADV_POPULATE_READ;
+  if (madvise(bytes.data(), bytes.size(), advice) == 0) return;
+  if (errno != EINVAL) {
+    // A file with holes that there is no memory for: to touch them would be a SIGBUS.
+    throw BadRegion("cannot populate " + std::to_string(bytes.size()) +
+                    " bytes of shared memory, " + free_bytes(descriptor) +
+                    " are free: " + error_text(errno));
   }
+  // A kernel before 5.14.
   for (std::size_t at = 0; at < bytes.size(); at += kPage) {
     (void)load(words_at(std::span<const std::byte>(bytes), at, 1)[0], std::memory_order_relaxed);
   }
@@ -74,7 +105,8 @@ void require_trusted(int descriptor, const std::string& path, const Trust& trust
                     ", who is not trusted (--owner)");
   }
   if ((status.st_mode & (S_IWGRP | S_IWOTH)) != 0) {
-    throw BadRegion(path + " may be written by others than its owner");
+    throw BadRegion(path + " may be written by others than its owner (mode " +
+                    mode_text(status.st_mode) + ")");
   }
 }
 
@@ -109,7 +141,7 @@ struct Region::Mapping {
       : descriptor(owned),
         region(DescriptorMapping(owned), writable ? bip::read_write : bip::read_only) {
     const auto all = bytes();
-    populate(all, writable);
+    populate(all, writable, owned);
     // After the mapping stands: MAP_LOCKED would make it fail where the limit is small.
     memory_locked = mlock(all.data(), all.size()) == 0;
     // A forked child must not be a second writer.
@@ -144,8 +176,9 @@ Region Region::create(std::size_t bytes, const RegionAccess& access) {
   if (fchmod(descriptor.get(), access.mode) != 0) {
     throw BadRegion("cannot set the region's mode: " + error_text(errno));
   }
-  const int mapped = duplicate(descriptor.get());
-  return Region(std::make_unique<Mapping>(mapped, true));
+  return Region(naming_what(std::to_string(bytes) + " bytes of shared memory", [&] {
+    return std::make_unique<Mapping>(duplicate(descriptor.get()), true);
+  }));
 }
 
 Region Region::open(std::string_view stream, RegionKind kind, bool writable, const Trust& trust) {
@@ -158,12 +191,9 @@ Region Region::open(std::string_view stream, RegionKind kind, bool writable, con
     throw BadRegion(region_path(stream, kind) + " has " + std::to_string(status.st_size) +
                     " bytes, fewer than its first " + std::to_string(kBodyOffset));
   }
-  try {
-    const int mapped = duplicate(descriptor);
-    return Region(std::make_unique<Mapping>(mapped, writable));
-  } catch (const bip::interprocess_exception& error) {
-    throw BadRegion("cannot map " + region_path(stream, kind) + ": " + error.what());
-  }
+  return Region(
+      naming_what(region_path(stream, kind) + " (" + std::to_string(status.st_size) + " bytes)",
+                  [&] { return std::make_unique<Mapping>(duplicate(descriptor), writable); }));
 }
 
 bool Region::link(std::string_view stream, RegionKind kind) const {

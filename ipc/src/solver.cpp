@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "splinecast/core/limits.hpp"
+#include "splinecast/ipc/checked_region.hpp"
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/futex.hpp"
 #include "splinecast/ipc/owner_lock.hpp"
@@ -217,9 +218,7 @@ OwnedBoard make_board(const std::string& stream, const RegionHeader& ring_header
 OwnedBoard own_board(const std::string& stream, const RegionHeader& ring_header,
                      const SolverOptions& options) {
   if (!region_exists(stream, RegionKind::spline)) return make_board(stream, ring_header, options);
-  Region region = Region::open(stream, RegionKind::spline, true, options.trust);
-  const RegionHeader header = copy_header(region.bytes());
-  const auto layout = checked_board_layout(header, region.bytes().size());
+  auto [region, header, layout] = open_board(stream, true, options.trust);
   OwnedBoard board(std::move(region), header, layout, true);
   if (header.stream_id != ring_header.stream_id || board.reader.retired()) {
     board.writer.retire();
@@ -260,9 +259,17 @@ struct Solver::Impl {
   Impl(std::string name, const SolverOptions& how)
       : stream(std::move(name)),
         options((require_options(how), how)),
-        lock(stream, RegionKind::spline) {}
+        lock(stream, RegionKind::spline) {
+    try {
+      // Told now rather than when a producer comes: a board that cannot be taken over.
+      if (region_exists(stream, RegionKind::spline)) (void)open_board(stream, true, options.trust);
+    } catch (const StreamError&) {
+      lock.remove_litter();
+      throw;
+    }
+  }
 
-  ~Impl() { lock.remove_file_without_region(); }
+  ~Impl() { lock.remove_litter(); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 };
@@ -277,14 +284,13 @@ bool Solver::attach() {
   if (attached()) return true;
   if (!region_exists(impl_->stream, RegionKind::waypoints)) return false;
   try {
-    Region region = Region::open(impl_->stream, RegionKind::waypoints, false, impl_->options.trust);
-    const RegionHeader header = copy_header(region.bytes());
-    const auto layout = checked_ring_layout(header, region.bytes().size());
+    auto [region, header, layout] = open_ring(impl_->stream, false, impl_->options.trust);
     require_same_clock(header, impl_->stream);
     RingView ring(std::move(region), header, layout);
     if (ring.ring.retired()) return false;
     OwnedBoard board = own_board(impl_->stream, header, impl_->options);
     impl_->attachment = std::make_unique<Attachment>(std::move(ring), std::move(board));
+    impl_->lock.keep_file();
   } catch (const NoSuchStream&) {
     return false;  // it went between the look and the opening
   }

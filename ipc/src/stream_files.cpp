@@ -1,11 +1,13 @@
 #include "splinecast/ipc/stream_files.hpp"
 
-#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
+#include "splinecast/ipc/checked_region.hpp"
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/futex.hpp"
 #include "splinecast/ipc/owner_lock.hpp"
@@ -17,9 +19,8 @@ namespace {
 constexpr int kHeadTries = 16;
 
 void inspect_waypoints(StreamInfo& info, const Trust& trust) {
-  const Region region = Region::open(info.stream, RegionKind::waypoints, false, trust);
-  info.waypoints = copy_header(region.bytes());
-  const auto layout = checked_ring_layout(*info.waypoints, region.bytes().size());
+  const auto [region, header, layout] = open_ring(info.stream, false, trust);
+  info.waypoints = header;
   const WaypointRingReader ring(region.bytes(), layout);
   info.appended = ring.head();
   for (std::size_t i = 0; i < info.refused_by_producer.size(); ++i) {
@@ -28,9 +29,8 @@ void inspect_waypoints(StreamInfo& info, const Trust& trust) {
 }
 
 void inspect_spline(StreamInfo& info, const Trust& trust) {
-  const Region region = Region::open(info.stream, RegionKind::spline, false, trust);
-  info.spline = copy_header(region.bytes());
-  const auto layout = checked_board_layout(*info.spline, region.bytes().size());
+  const auto [region, header, layout] = open_board(info.stream, false, trust);
+  info.spline = header;
   const SegmentBoardReader board(region.bytes(), layout);
   for (int attempt = 0; attempt < kHeadTries; ++attempt) {
     const Word r = board.revision();
@@ -43,34 +43,55 @@ void inspect_spline(StreamInfo& info, const Trust& trust) {
   }
 }
 
-/// Says that a region is of no more use to whoever has it mapped. A region that is no region of
-/// ours says nothing.
-void retire_region(const std::string& stream, RegionKind kind, const Trust& trust) {
-  const Region region = Region::open(stream, kind, true, trust);
-  std::size_t control = 0;
+/// A file under a region's name that this process may remove.
+struct Removable {
+  RegionKind kind;
+  std::optional<Region> region{};  ///< none: it cannot be used as a region, so nobody waits for it
+  std::size_t control = 0;         ///< where its control lines are
+};
+
+bool is_own_file(const std::string& path) noexcept {
+  struct stat status {};
+  return lstat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid();
+}
+
+template <typename Layout>
+Removable as_removable(RegionKind kind, CheckedRegion<Layout> opened) {
+  return {.kind = kind, .region = std::move(opened.region), .control = opened.layout.control};
+}
+
+/// Whether a file's header and size are those of a region. Throws BadRegion if it is not to be
+/// trusted.
+bool describes_region(const std::string& stream, RegionKind kind, const Trust& trust) {
+  const auto header = peek_header(stream, kind, trust);
+  if (!header) return false;
+  const std::size_t size = std::filesystem::file_size(region_path(stream, kind));
   try {
-    const RegionHeader header = copy_header(region.bytes());
-    control = kind == RegionKind::waypoints
-                  ? checked_ring_layout(header, region.bytes().size()).control
-                  : checked_board_layout(header, region.bytes().size()).control;
+    if (kind == RegionKind::waypoints) checked_ring_layout(*header, size);
+    if (kind == RegionKind::spline) checked_board_layout(*header, size);
+    return true;
   } catch (const BadRegion&) {
-    return;
+    return false;
   }
-  const auto words = words_at(region.bytes(), control, kRetired + 1);
+}
+
+Removable removable(const std::string& stream, RegionKind kind, const Trust& trust) {
+  if (!describes_region(stream, kind, trust) && is_own_file(region_path(stream, kind))) {
+    return {.kind = kind};
+  }
+  return kind == RegionKind::waypoints ? as_removable(kind, open_ring(stream, true, trust))
+                                       : as_removable(kind, open_board(stream, true, trust));
+}
+
+/// Says that a region is of no more use to whoever has it mapped.
+void retire(const Removable& file) noexcept {
+  if (!file.region) return;
+  const auto words = words_at(file.region->bytes(), file.control, kRetired + 1);
   store(words[kRetired], 1, std::memory_order_release);
   wake_all(words[0]);  // head or revision: what its readers wait on
 }
 
 }  // namespace
-
-bool owner_lives(std::string_view stream, RegionKind kind) {
-  const int opened =
-      open(region_path(stream, kind).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-  if (opened < 0) return false;
-  const bool lives = is_region_locked(opened);
-  close(opened);
-  return lives;
-}
 
 StreamInfo inspect(const std::string& stream, const Trust& trust) {
   StreamInfo info;
@@ -95,16 +116,21 @@ void remove_stream(const std::string& stream, const Trust& trust) {
   if (!stands) throw NoSuchStream("there is no stream '" + stream + "'");
   OwnerLock producer_lock(stream, RegionKind::waypoints);
   std::optional<OwnerLock> solver_lock;
+  std::vector<Removable> files;
   try {
     solver_lock.emplace(stream, RegionKind::spline);
+    // All are looked at before any is touched.
+    for (const RegionKind kind : kKinds) {
+      if (region_exists(stream, kind)) files.push_back(removable(stream, kind, trust));
+    }
   } catch (const StreamError&) {
-    producer_lock.remove_file_without_region();
+    if (solver_lock) solver_lock->remove_litter();
+    producer_lock.remove_litter();
     throw;
   }
-  for (const RegionKind kind : kKinds) {
-    if (!region_exists(stream, kind)) continue;
-    retire_region(stream, kind, trust);
-    unlink_region(stream, kind);
+  for (const Removable& file : files) {
+    retire(file);
+    unlink_region(stream, file.kind);
   }
   producer_lock.remove_file();
   solver_lock->remove_file();

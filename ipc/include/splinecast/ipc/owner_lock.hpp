@@ -24,14 +24,19 @@ class OwnerLock {
   /// does not hold it.
   void remove_file() noexcept;
 
-  /// The same if no region stands that it guards: a lock beside no region is litter.
-  void remove_file_without_region() noexcept;
+  /// The same if the file is litter: if no region stands beside it, or if this lock made the file
+  /// and its holder was refused the region, which somebody else put there.
+  void remove_litter() noexcept;
+
+  /// Says that the holder has got its region: the lock file stays with that.
+  void keep_file() noexcept { made_file_ = false; }
 
  private:
   std::string stream_;
   RegionKind kind_;
   std::string path_;
   pid_t holder_;
+  bool made_file_ = false;
   OwnedDescriptor descriptor_;
 };
 
@@ -39,8 +44,13 @@ class OwnerLock {
 /// calls.
 [[nodiscard]] bool is_owned(std::string_view stream, RegionKind kind);
 
+/// Whether the process lives that owns a region of this kind: by the owner's lock, where this
+/// process may open its file, so that nobody else's locks on the region can hide an owner; else by
+/// the lock on the region. System calls. Throws BadRequest for what is no name.
+[[nodiscard]] bool owner_lives(std::string_view stream, RegionKind kind);
+
 /// Puts a write lock on a region itself, best effort: readers, who cannot open the lock file,
-/// query it to learn whether the owner lives.
+/// query it to learn whether the owner lives. One of them that holds a read lock prevents it.
 bool try_lock_region(int descriptor) noexcept;
 
 /// Whether another open file holds that write lock.

@@ -11,10 +11,6 @@
 
 namespace splinecast::ipc {
 
-/// Whether the process lives that owns a region of this kind. System calls. Throws BadRequest for
-/// what is no name.
-[[nodiscard]] bool owner_lives(std::string_view stream, RegionKind kind);
-
 /// What stands of a stream on this host, without taking part in it.
 struct StreamInfo {
   std::string stream;
@@ -33,8 +29,8 @@ struct StreamInfo {
 [[nodiscard]] StreamInfo inspect(const std::string& stream, const Trust& trust = {});
 
 /// Removes a stream: takes both locks, says `retired` to its readers and wakes them, unlinks
-/// regions and lock files. Throws NoSuchStream, or StreamBusy if a writer of it lives; then nothing
-/// has been changed.
+/// regions and lock files. Throws NoSuchStream, StreamBusy if a writer of it lives, or BadRegion if
+/// a file under its names is not to be trusted; then nothing has been changed.
 void remove_stream(const std::string& stream, const Trust& trust = {});
 
 }  // namespace splinecast::ipc

@@ -1,0 +1,322 @@
+#include "support/machine_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+#include "support/numbers.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+// From linux/capability.h, whose names are macros of another package.
+constexpr unsigned kCapabilityIpcLock = 14;
+constexpr unsigned kCapabilitySysNice = 23;
+/// Inodes of the namespaces that the kernel boots with (linux/proc_ns.h).
+constexpr std::uint64_t kFirstPidNamespace = 0xEFFFFFFC;
+constexpr std::uint64_t kFirstTimeNamespace = 0xEFFFFFFA;
+/// Users below are of the system: logind leaves their shared memory alone.
+constexpr uid_t kFirstOrdinaryUser = 1000;
+/// What a container runtime gives /dev/shm unless it is asked for more.
+constexpr std::uint64_t kContainersRoom = std::uint64_t{64} << 20U;
+/// A share of the CPUs' time below which steal is noise.
+constexpr double kLeastSteal = 0.01;
+
+std::string mebibytes(double bytes) { return fmt::format("{:.1f} MiB", bytes / (1 << 20)); }
+
+bool has_capability(const MachineFacts& facts, unsigned number) {
+  std::istringstream lines(facts.status);
+  for (std::string line; std::getline(lines, line);) {
+    constexpr std::string_view kField = "CapEff:";
+    if (!line.starts_with(kField)) continue;
+    std::uint64_t set = 0;
+    std::istringstream(line.substr(kField.size())) >> std::hex >> set;
+    return (set >> number & 1U) != 0;
+  }
+  return false;
+}
+
+/// Type and options of what is mounted on /dev/shm: the last mount hides those before it.
+struct Mount {
+  std::string type;
+  std::string options;
+};
+
+Mount shared_memory_mount(const std::string& mounts) {
+  Mount found;
+  std::istringstream lines(mounts);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream fields(line);
+    std::string device;
+    std::string point;
+    Mount mount;
+    fields >> device >> point >> mount.type >> mount.options;
+    if (point == "/dev/shm") found = mount;
+  }
+  return found;
+}
+
+/// The value that counts for a key of an INI file: the last one.
+std::string setting(const std::string& text, std::string_view key) {
+  std::string value;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t equals = line.find('=');
+    if (equals == std::string::npos) continue;
+    const std::string_view view(line);
+    if (without_blanks(view.substr(0, equals)) != key) continue;
+    value = without_blanks(view.substr(equals + 1));
+  }
+  return value;
+}
+
+/// The choice in brackets of a file such as `always [never]`.
+std::string chosen(const std::string& text) {
+  const std::size_t open = text.find('[');
+  const std::size_t close = text.find(']', open);
+  if (open == std::string::npos || close == std::string::npos) return {};
+  return text.substr(open + 1, close - open - 1);
+}
+
+}  // namespace
+
+Finding check_shared_memory(const MachineFacts& facts) {
+  const Mount mount = shared_memory_mount(facts.mounts);
+  const std::string check = "/dev/shm";
+  if (mount.type != "tmpfs") {
+    return {.check = check,
+            .verdict = Verdict::problem,
+            .means = mount.type.empty() ? "is not mounted: there is no shared memory"
+                                        : fmt::format("is {}, not memory (tmpfs)", mount.type),
+            .mend = "mount -t tmpfs -o mode=1777,size=50% tmpfs /dev/shm"};
+  }
+  if (fmt::format(",{},", mount.options).find(",ro,") != std::string::npos) {
+    return {.check = check,
+            .verdict = Verdict::problem,
+            .means = "is mounted read-only: no stream can be made",
+            .mend = "mount -o remount,rw /dev/shm"};
+  }
+  if (!facts.may_write_shared) {
+    return {.check = check,
+            .verdict = Verdict::problem,
+            .means = "this user may not make files there: no stream can be made",
+            .mend = "chmod 1777 /dev/shm"};
+  }
+  return {.check = check, .means = "is memory (tmpfs), and this user may make streams there"};
+}
+
+Finding check_room(const MachineFacts& facts, std::size_t needed) {
+  const std::string check = "room in /dev/shm";
+  const Room room = facts.room.value_or(Room{.total = 0, .free = 0});
+  const std::string means =
+      fmt::format("{} in all, {} free", mebibytes(static_cast<double>(room.total)),
+                  mebibytes(static_cast<double>(room.free)));
+  if (room.free < needed) {
+    return {.check = check,
+            .verdict = Verdict::problem,
+            .means = means + fmt::format("; another stream needs about {}",
+                                         mebibytes(static_cast<double>(needed))),
+            .mend =
+                "remove streams (splinecast rm), or mount -o remount,size=1g /dev/shm; of a "
+                "container: --shm-size=1g"};
+  }
+  if (room.total <= kContainersRoom) {
+    return {.check = check,
+            .verdict = Verdict::note,
+            .means = means + ", which is soon used up",
+            .mend = "mount -o remount,size=1g /dev/shm; of a container: --shm-size=1g"};
+  }
+  return {.check = check, .means = means};
+}
+
+Finding check_locked_memory(const MachineFacts& facts, std::size_t needed) {
+  const std::string check = "locked memory";
+  if (facts.lockable == RLIM_INFINITY || has_capability(facts, kCapabilityIpcLock)) {
+    return {.check = check, .means = "without a limit: no page of a stream is swapped out"};
+  }
+  const std::string means = fmt::format("RLIMIT_MEMLOCK is {}, the streams have {}",
+                                        mebibytes(static_cast<double>(facts.lockable)),
+                                        mebibytes(static_cast<double>(needed)));
+  if (facts.lockable >= needed) return {.check = check, .means = means};
+  return {.check = check,
+          .verdict = Verdict::note,
+          .means = means + ": everything works, but their pages may be swapped out",
+          .mend = fmt::format("`USER - memlock {}` in /etc/security/limits.d/splinecast.conf; of a "
+                              "service: LimitMEMLOCK=infinity",
+                              (needed >> 10U) + 1024)};
+}
+
+Finding check_priority(const MachineFacts& facts) {
+  const std::string check = "real-time priority";
+  if (has_capability(facts, kCapabilitySysNice)) {
+    return {.check = check, .means = "this user may use SCHED_FIFO (CAP_SYS_NICE)"};
+  }
+  if (facts.priority > 0) {
+    return {.check = check,
+            .means = fmt::format("this user may use SCHED_FIFO up to {} (RLIMIT_RTPRIO)",
+                                 facts.priority)};
+  }
+  return {.check = check,
+          .verdict = Verdict::note,
+          .means = "RLIMIT_RTPRIO is 0: solver and readers share the CPUs with everything else",
+          .mend =
+              "`USER - rtprio 80` in /etc/security/limits.d/splinecast.conf; of a service: "
+              "LimitRTPRIO=80"};
+}
+
+Finding check_remove_ipc(const MachineFacts& facts) {
+  const std::string check = "RemoveIPC";
+  if (!facts.runs_systemd) {
+    return {.check = check, .means = "no systemd: nobody removes a user's shared memory"};
+  }
+  if (facts.user < kFirstOrdinaryUser) {
+    return {.check = check, .means = "does not concern a user of the system"};
+  }
+  const std::string value = setting(facts.logind, "RemoveIPC");
+  constexpr std::array<std::string_view, 5> kNo{"no", "false", "off", "0", "n"};
+  if (std::ranges::find(kNo, value) != kNo.end()) {
+    return {.check = check, .means = "is off: streams outlive the user's last session"};
+  }
+  return {.check = check,
+          .verdict = Verdict::note,
+          .means = "is on: systemd removes this user's streams when the last session ends",
+          .mend =
+              "RemoveIPC=no in /etc/systemd/logind.conf, then systemctl restart systemd-logind; "
+              "or run the writers as a service of a system user"};
+}
+
+Finding check_container(const MachineFacts& facts) {
+  const std::string check = "container";
+  if (!facts.in_container && facts.pid_namespace == kFirstPidNamespace) {
+    return {.check = check, .means = "none: all processes of this host see the same streams"};
+  }
+  return {.check = check,
+          .verdict = Verdict::note,
+          .means = facts.in_container
+                       ? "this is one: only processes that share its /dev/shm see its streams"
+                       : "this is a process namespace of its own: the process numbers that streams "
+                         "name may mean nothing here",
+          .mend = "start all with --ipc=host, or with --ipc=shareable and --ipc=container:NAME"};
+}
+
+Finding check_time_namespace(const MachineFacts& facts) {
+  const std::string check = "time namespace";
+  if (facts.time_namespace == 0 || facts.time_namespace == kFirstTimeNamespace) {
+    return {.check = check, .means = "that of the host: its clock is everybody's"};
+  }
+  std::istringstream offsets(facts.clock_offsets);
+  std::string clock;
+  std::int64_t seconds = 0;
+  std::int64_t nanoseconds = 0;
+  offsets >> clock >> seconds >> nanoseconds;
+  return {.check = check,
+          .verdict = Verdict::note,
+          .means = fmt::format("one of its own, its clock {}.{:09} s ahead of the host's: live "
+                               "streams from outside are refused",
+                               seconds, nanoseconds),
+          .mend = "run producer, solver and readers in one time namespace"};
+}
+
+Finding check_clock(const MachineFacts& facts) {
+  const std::string check = "clock";
+  const std::string& source = facts.environment.clock;
+  const std::string means =
+      fmt::format("{}, {} ns a reading", source.empty() ? std::string("unknown source") : source,
+                  facts.clock_cost.count());
+  // Those that are read without a system call.
+  constexpr std::array<std::string_view, 4> kFast{"tsc", "kvm-clock", "arch_sys_counter",
+                                                  "hyperv_clocksource_tsc_page"};
+  if (source.empty() || std::ranges::find(kFast, source) != kFast.end()) {
+    return {.check = check, .means = means};
+  }
+  return {.check = check,
+          .verdict = Verdict::note,
+          .means = means + ": each reading of it is a system call",
+          .mend =
+              "find out why the kernel gave tsc up (dmesg | grep -i tsc); tsc=reliable on its "
+              "command line, if the machine's is"};
+}
+
+Finding check_governor(const MachineFacts& facts) {
+  const std::string& governor = facts.environment.governor;
+  if (governor.empty() || governor == "performance") {
+    return {.check = "cpu governor",
+            .means = governor.empty() ? "the kernel does not scale the CPUs' frequency" : governor};
+  }
+  return {.check = "cpu governor",
+          .verdict = Verdict::note,
+          .means = governor + ": a CPU that has slept begins slowly",
+          .mend = "cpupower frequency-set -g performance"};
+}
+
+Finding check_isolated_cpus(const MachineFacts& facts) {
+  const std::string& isolated = facts.environment.isolated;
+  if (!isolated.empty()) return {.check = "isolated cpus", .means = isolated};
+  return {.check = "isolated cpus",
+          .verdict = Verdict::note,
+          .means = "none: any process may delay a controller",
+          .mend = "isolcpus=LIST on the kernel's command line, and pin to these (taskset -c LIST)"};
+}
+
+Finding check_preemption(const MachineFacts& facts) {
+  const std::string& preemption = facts.environment.preemption;
+  if (preemption == "PREEMPT_RT") return {.check = "kernel preemption", .means = preemption};
+  return {.check = "kernel preemption",
+          .verdict = Verdict::note,
+          .means = (preemption.empty() ? std::string("unknown") : preemption) +
+                   ": the kernel may hold a real-time process up for milliseconds",
+          .mend = "apt-get install linux-image-rt-amd64"};
+}
+
+Finding check_huge_pages(const MachineFacts& facts) {
+  const std::string choice = chosen(facts.shared_huge_pages);
+  if (choice.empty() || choice == "never" || choice == "deny" || choice == "advise") {
+    return {.check = "huge pages",
+            .means = "shared memory has none: no page of a stream is moved into one"};
+  }
+  return {.check = "huge pages",
+          .verdict = Verdict::note,
+          .means = choice + " for shared memory: the kernel may stop a process to gather them",
+          .mend = "echo never > /sys/kernel/mm/transparent_hugepage/shmem_enabled"};
+}
+
+Finding check_steal(const MachineFacts& facts) {
+  const std::string& hypervisor = facts.environment.hypervisor;
+  std::istringstream fields(facts.cpu_times);
+  std::string cpu;
+  fields >> cpu;
+  // user, nice, system, idle, iowait, irq, softirq, steal
+  constexpr int kSteal = 7;
+  double total = 0;
+  double steal = 0;
+  double ticks = 0;
+  for (int i = 0; i <= kSteal && fields >> ticks; ++i) {
+    total += ticks;
+    if (i == kSteal) steal = ticks;
+  }
+  const double share = total > 0 ? steal / total : 0;
+  const std::string means = hypervisor.empty()
+                                ? std::string("none")
+                                : fmt::format("{}; {:.2f} % of the CPUs' time stolen since boot",
+                                              hypervisor, 100 * share);
+  if (share < kLeastSteal) return {.check = "hypervisor", .means = means};
+  return {.check = "hypervisor",
+          .verdict = Verdict::note,
+          .means = means + ": others use the CPUs while a deadline passes",
+          .mend = "give the machine CPUs of its own"};
+}
+
+std::vector<Finding> check_machine(const MachineFacts& facts, std::size_t needed) {
+  return {
+      check_shared_memory(facts),  check_room(facts, needed), check_locked_memory(facts, needed),
+      check_priority(facts),       check_remove_ipc(facts),   check_container(facts),
+      check_time_namespace(facts), check_clock(facts),        check_governor(facts),
+      check_isolated_cpus(facts),  check_preemption(facts),   check_huge_pages(facts),
+      check_steal(facts)};
+}
+
+}  // namespace splinecast::apps
