@@ -5,6 +5,7 @@
 #include <iostream>
 #include <string>
 
+#include "soak.hpp"
 #include "support/exit_codes.hpp"
 #include "support/guarded.hpp"
 #include "support/options.hpp"
@@ -27,6 +28,7 @@ int run_program(int argc, char** argv) {
   add_ls(program, action);
   add_info(program, action);
   add_rm(program, action);
+  add_soak(program, action);
   try {
     // CLI11 would only say that a subcommand is missing.
     const std::string verb = argc > 1 ? argv[1] : "";

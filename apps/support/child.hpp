@@ -24,6 +24,9 @@ class Child {
   /// to it. Throws Failure if it failed or was killed.
   nlohmann::json result();
 
+  /// Its process id; -1 once it has been waited for.
+  [[nodiscard]] pid_t pid() const noexcept { return pid_; }
+
   /// Sends it a signal; to kill it, destroy this object.
   void signal(int number) const noexcept;
 
