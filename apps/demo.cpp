@@ -11,13 +11,14 @@
 #include "demo_reader.hpp"
 #include "replay.hpp"
 #include "solve.hpp"
-#include "splinecast/ipc/stream_files.hpp"
+#include "splinecast/ipc/sampler.hpp"
 #include "support/child.hpp"
 #include "support/exit_codes.hpp"
 #include "support/options.hpp"
 #include "support/output.hpp"
 #include "support/pick_and_place.hpp"
 #include "support/signals.hpp"
+#include "support/stream_remover.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -102,27 +103,9 @@ std::string summary(const WaypointTable& table, const json& sent, const json& re
                           read["sample_ns"][0].get<double>(), read["sample_ns"][1].get<double>()));
 }
 
-/// Removes what the demo leaves in shared memory, however it ends.
-class StreamRemover {
- public:
-  explicit StreamRemover(std::string stream) : stream_(std::move(stream)) {}
-  StreamRemover(const StreamRemover&) = delete;
-  StreamRemover& operator=(const StreamRemover&) = delete;
-  ~StreamRemover() {
-    try {
-      ipc::remove_stream(stream_);
-    } catch (const std::exception& error) {
-      say(error.what());
-    }
-  }
-
- private:
-  std::string stream_;
-};
-
 int run_chaos_demo(const DemoOptions& options, const std::string& stream) {
   catch_stop_signals();
-  const StreamRemover remover(stream);
+  const StreamRemover remover({stream});
   const json found = run_chaos(stream, options.seconds.value_or(kDefaultLength), options.json);
   print_report(options.json ? found.dump(2) + "\n" : chaos_summary(found));
   return found["sound"].get<bool>() ? kOk : kFellShort;
@@ -140,8 +123,8 @@ int run_demo(const DemoOptions& options) {
   prepare_replay(table, replay, refused);
 
   catch_stop_signals();
-  const StreamRemover remover(stream);
-  Child solver([&] { return json(run_solve({.streams = {stream}, .quiet = true})); }, true);
+  const StreamRemover remover({stream});
+  Child solver([&] { return json(run_solve({.wanted = {stream}, .quiet = true})); }, true);
   std::vector<Child> readers;
   for (std::size_t r = 0; r < kReaders; ++r) {
     readers.emplace_back([&] { return run_demo_reader(stream); }, false);

@@ -35,16 +35,6 @@ constexpr Time kPatience = std::chrono::seconds(10);
 constexpr double kSolverKills = 0.7;
 constexpr double kProducerKills = 0.7;
 constexpr double kPauses = 0.7;
-/// What rounding may leave of a step, in rad, rad/s and rad/s².
-constexpr double kPositionRounding = 1e-10;
-constexpr double kVelocityRounding = 1e-8;
-constexpr double kAccelerationRounding = 1e-4;
-
-bool is_sound(const WatchReport& report) {
-  return report.changed == 0 && report.position_step < kPositionRounding &&
-         report.velocity_step < kVelocityRounding &&
-         report.unpublished_step < kAccelerationRounding;
-}
 
 json to_json(const WatchReport& report) {
   json by_status = json::object();
@@ -114,7 +104,7 @@ class Chaos {
     solver_.emplace(
         [this, limits] {
           return json(
-              run_solve({.streams = {stream_},
+              run_solve({.wanted = {stream_},
                          .solver = {.stop_time = milliseconds(250), .max_acceleration = limits},
                          .quiet = true}));
         },

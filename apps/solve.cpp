@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
-#include <exception>
 #include <memory>
 #include <set>
+#include <string_view>
 
-#include "splinecast/ipc/solver.hpp"
+#include "splinecast/ipc/stream_sweep.hpp"
+#include "support/descriptors.hpp"
 #include "support/exit_codes.hpp"
 #include "support/options.hpp"
 #include "support/output.hpp"
@@ -22,87 +24,104 @@ constexpr core::Time kLongestWait = std::chrono::milliseconds(50);
 /// Tells what becomes of each stream.
 class Announcer {
  public:
-  Announcer(bool quiet, bool waits_for_many) : quiet_(quiet), many_(waits_for_many) {}
+  Announcer(bool quiet, bool is_one_of_many) : quiet_(quiet), many_(is_one_of_many) {}
 
-  void waiting(const std::string& stream) const {
-    if (!quiet_) say(fmt::format("'{}': waiting for a producer", stream));
-  }
-  void attached(const ipc::Solver& solver) const {
-    if (quiet_) return;
-    say(fmt::format("'{}': {}", solver.stream(), solver.took_over() ? "taken over" : "solving"));
-    if (!solver.is_memory_locked() && !many_) {
-      say(fmt::format("'{}': pages are not locked into memory (RLIMIT_MEMLOCK)", solver.stream()));
+  void tell(ipc::SweepNews news, const std::string& stream, const ipc::Solver* solver,
+            std::string_view why = {}) {
+    using enum ipc::SweepNews;
+    const bool is_lost = news == no_descriptors || news == given_up;
+    has_lost_ = has_lost_ || is_lost;
+    if (quiet_ && !is_lost) return;
+    say(fmt::format("'{}': {}", stream, text(news, solver, why)));
+    if (news == solving && !many_ && !solver->is_memory_locked()) {
+      say(fmt::format("'{}': pages are not locked into memory (RLIMIT_MEMLOCK)", stream));
     }
   }
-  void finished(const ipc::Solver& solver) const {
-    if (quiet_) return;
-    const ipc::Head& head = solver.head();
-    say(fmt::format("'{}': finished; {} waypoints interpolated, {} items refused", solver.stream(),
-                    head.knots, head.refused));
-  }
+
+  /// Whether a stream was not solved that was to be.
+  [[nodiscard]] bool has_lost() const { return has_lost_; }
 
  private:
+  [[nodiscard]] static std::string text(ipc::SweepNews news, const ipc::Solver* solver,
+                                        std::string_view why) {
+    switch (news) {
+      case ipc::SweepNews::waiting:
+        return "waiting for a producer";
+      case ipc::SweepNews::solving:
+        return solver->took_over() ? "taken over" : "solving";
+      case ipc::SweepNews::finished:
+        return fmt::format("finished; {} waypoints interpolated, {} items refused",
+                           solver->head().knots, solver->head().refused);
+      case ipc::SweepNews::elsewhere:
+        return "left to the process that solves it";
+      case ipc::SweepNews::no_descriptors:
+        return fmt::format(
+            "left out: RLIMIT_NOFILE allows {} file descriptors, a stream takes {} "
+            "(ulimit -Hn)",
+            descriptor_limit(), ipc::StreamSweep::kDescriptorsPerStream);
+      case ipc::SweepNews::given_up:
+        return fmt::format("given up: {}", why);
+      case ipc::SweepNews::gone:
+        return "gone";
+    }
+    return {};
+  }
+
   bool quiet_;
   bool many_;
+  bool has_lost_ = false;
 };
 
-/// One stream's solver and what has been told of it.
-struct Served {
-  ipc::Solver solver;
+/// Solves one stream; sleeps on its ring while there is nothing to do.
+int solve_one(const SolveOptions& options) {
+  const ipc::MonotonicClock clock;
+  Announcer announcer(options.quiet, false);
+  ipc::Solver solver(options.wanted.front(), options.solver);
+  const auto tell = [&](ipc::SweepNews news) { announcer.tell(news, solver.stream(), &solver); };
+  tell(ipc::SweepNews::waiting);
   bool was_attached = false;
   bool was_finished = false;
-
-  /// Looks after the stream once. Returns whether there was anything to do.
-  bool serve(const ipc::Clock& clock, const Announcer& announcer) {
+  while (!stop_requested()) {
     if (!solver.attached()) {
-      if (was_attached) announcer.waiting(solver.stream());
+      if (was_attached) tell(ipc::SweepNews::waiting);
       was_attached = solver.attach();
       was_finished = false;
-      if (!was_attached) return false;
-      announcer.attached(solver);
+      if (was_attached) tell(ipc::SweepNews::solving);
     }
     const ipc::StepResult result = solver.step(clock);
     if (solver.attached() && solver.head().finished && !was_finished) {
       was_finished = true;
-      announcer.finished(solver);
+      tell(ipc::SweepNews::finished);
     }
-    return result.consumed > 0 || result.missed;
+    if (result.consumed == 0 && !result.missed) solver.wait(kLongestWait);
   }
-};
+  return kOk;
+}
+
+/// Solves many streams; looks at them from time to time.
+int solve_many(const SolveOptions& options) {
+  const ipc::MonotonicClock clock;
+  raise_descriptor_limit();
+  Announcer announcer(options.quiet, true);
+  ipc::StreamSweep sweep(
+      options.wanted, options.solver,
+      [&announcer](ipc::SweepNews news, const std::string& stream, const ipc::Solver* solver,
+                   std::string_view why) { announcer.tell(news, stream, solver, why); });
+  core::Time due = clock.now();
+  while (!stop_requested()) {
+    if (sweep.sweep(clock)) continue;
+    due = std::max(due + options.sweep, clock.now());
+    sleep_until(due);
+  }
+  return announcer.has_lost() ? kFailed : kOk;
+}
 
 }  // namespace
 
 int run_solve(const SolveOptions& options) {
   catch_stop_signals();
-  const ipc::MonotonicClock clock;
-  const bool many = options.streams.size() > 1;
-  const Announcer announcer(options.quiet, many);
-  std::vector<Served> all;
-  for (const std::string& stream : options.streams) {
-    all.push_back({.solver = ipc::Solver(stream, options.solver)});
-    announcer.waiting(stream);
-  }
-  while (!stop_requested()) {
-    bool worked = false;
-    std::erase_if(all, [&](Served& served) {
-      try {
-        worked = served.serve(clock, announcer) || worked;
-        return false;
-      } catch (const std::exception& error) {
-        if (!many) throw;
-        say(fmt::format("'{}': given up: {}", served.solver.stream(), error.what()));
-        return true;
-      }
-    });
-    if (all.empty()) return kFailed;
-    if (worked) continue;
-    if (many) {
-      sleep_until(clock.now() + options.sweep);
-    } else {
-      all.front().solver.wait(kLongestWait);
-    }
-  }
-  return all.size() == options.streams.size() ? kOk : kFailed;
+  const bool is_one = options.wanted.size() == 1 && !ipc::is_pattern(options.wanted.front());
+  return is_one ? solve_one(options) : solve_many(options);
 }
 
 namespace {
@@ -137,7 +156,10 @@ void add_live_options(CLI::App& verb, ipc::SolverOptions& options) {
 void add_solve(CLI::App& program, Action& action) {
   auto options = std::make_shared<SolveOptions>();
   auto* verb = program.add_subcommand("solve", "Turn the waypoints of streams into splines");
-  verb->add_option("STREAM", options->streams, "Streams to solve, in one process")->required();
+  verb->add_option("STREAM", options->wanted,
+                   "Streams to solve, in one process: names, and patterns such as 'arm.*' for all "
+                   "that come and go")
+      ->required();
   add_solver_curve(*verb, options->solver);
   add_seconds(*verb, "--stop-time", options->solver.stop_time,
               "Time in which a stream that dries up comes to rest (default 0.25)");
@@ -157,8 +179,8 @@ void add_solve(CLI::App& program, Action& action) {
   add_access(*verb, options->solver.access);
   add_trust(*verb, options->solver.trust);
   verb->callback([&action, options] {
-    const std::set<std::string> distinct(options->streams.begin(), options->streams.end());
-    if (distinct.size() != options->streams.size()) {
+    const std::set<std::string> distinct(options->wanted.begin(), options->wanted.end());
+    if (distinct.size() != options->wanted.size()) {
       throw CLI::ValidationError("STREAM", "a stream is named twice");
     }
     action = [options] { return run_solve(*options); };

@@ -9,7 +9,7 @@ namespace splinecast::apps {
 
 /// What `solve` is told.
 struct SolveOptions {
-  std::vector<std::string> streams{};
+  std::vector<std::string> wanted{};  ///< streams, and patterns of their names
   ipc::SolverOptions solver{};
   core::Time sweep{1'000'000};  ///< pause between looks at several streams
   bool quiet = false;

@@ -1,4 +1,5 @@
 #include "doctor.hpp"
+#include "soak.hpp"
 #include "support/options.hpp"
 
 namespace splinecast::apps {
@@ -14,6 +15,7 @@ void add_verbs(CLI::App& program, Action& action) {
   add_info(program, action);
   add_rm(program, action);
   add_doctor(program, action);
+  add_soak(program, action);
 }
 
 }  // namespace splinecast::apps

@@ -28,6 +28,8 @@ class Child {
   /// Whether it has ended, and then how: its exit code, or minus the number of the signal that
   /// killed it. Once it has, there is nothing more to be asked of it.
   [[nodiscard]] std::optional<int> ended() noexcept;
+  /// Its process id; -1 once it has been waited for.
+  [[nodiscard]] pid_t pid() const noexcept { return pid_; }
 
   /// Sends it a signal; to kill it, destroy this object.
   void signal(int number) const noexcept;

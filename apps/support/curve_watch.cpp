@@ -10,7 +10,18 @@ namespace {
 
 void raise(double& most, double value) { most = std::max(most, std::abs(value)); }
 
+/// What rounding may leave of a step, in rad, rad/s and rad/s².
+constexpr double kPositionRounding = 1e-10;
+constexpr double kVelocityRounding = 1e-8;
+constexpr double kAccelerationRounding = 1e-4;
+
 }  // namespace
+
+bool is_sound(const WatchReport& report) noexcept {
+  return report.changed == 0 && report.position_step < kPositionRounding &&
+         report.velocity_step < kVelocityRounding &&
+         report.unpublished_step < kAccelerationRounding;
+}
 
 CurveWatch::CurveWatch(ipc::Sampler& sampler, std::size_t dimensions)
     : sampler_(&sampler),

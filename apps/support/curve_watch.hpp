@@ -23,6 +23,9 @@ struct WatchReport {
   double acceleration = 0;       ///< largest sampled
 };
 
+/// Whether nothing stepped or changed that must not, of a motion of joint angles in rad.
+[[nodiscard]] bool is_sound(const WatchReport& report) noexcept;
+
 /// Samples a live curve as a controller does and checks what no controller has the time to: that
 /// what was read once reads the same ever after, that position and velocity never step, and that
 /// every acceleration step is the one published. One thread uses a watch.

@@ -1,5 +1,7 @@
 #include "splinecast/ipc/names.hpp"
 
+#include <fnmatch.h>
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -65,6 +67,14 @@ std::string region_path(std::string_view stream, RegionKind kind) {
 
 std::string lock_path(std::string_view stream, RegionKind kind) {
   return region_path(stream, kind).append(kLockSuffix);
+}
+
+bool is_pattern(std::string_view text) noexcept {
+  return text.find_first_of("*?[") != std::string_view::npos;
+}
+
+bool matches(const std::string& pattern, const std::string& stream) noexcept {
+  return fnmatch(pattern.c_str(), stream.c_str(), 0) == 0;
 }
 
 std::vector<std::string> stream_names() {

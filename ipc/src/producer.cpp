@@ -27,7 +27,9 @@ struct SolverView {
   SegmentBoardReader board;
 
   SolverView(Region mapped, const BoardLayout& layout)
-      : region(std::move(mapped)), board(region.bytes(), layout) {}
+      : region(std::move(mapped)), board(region.bytes(), layout) {
+    region.close_descriptor();
+  }
 };
 
 /// A ring region, made or taken over, and its writer.

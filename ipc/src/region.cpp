@@ -159,6 +159,7 @@ Region::~Region() = default;
 
 std::span<std::byte> Region::bytes() const noexcept { return mapping_->bytes(); }
 int Region::descriptor() const noexcept { return mapping_->descriptor.get(); }
+void Region::close_descriptor() noexcept { mapping_->descriptor = OwnedDescriptor(); }
 bool Region::is_memory_locked() const noexcept { return mapping_->memory_locked; }
 
 Region Region::create(std::size_t bytes, const RegionAccess& access) {

@@ -177,7 +177,9 @@ struct RingView {
   WaypointRingReader ring;
 
   RingView(Region mapped, const RegionHeader& described, const RingLayout& layout)
-      : region(std::move(mapped)), header(described), ring(region.bytes(), layout) {}
+      : region(std::move(mapped)), header(described), ring(region.bytes(), layout) {
+    region.close_descriptor();
+  }
 };
 
 /// The solver's own region, made or taken over.
@@ -280,6 +282,8 @@ Solver::Solver(Solver&&) noexcept = default;
 Solver& Solver::operator=(Solver&&) noexcept = default;
 Solver::~Solver() = default;
 
+void Solver::require(const SolverOptions& options) { require_options(options); }
+
 bool Solver::attach() {
   if (attached()) return true;
   if (!region_exists(impl_->stream, RegionKind::waypoints)) return false;
@@ -328,6 +332,11 @@ void Solver::wait(core::Time timeout) noexcept {
     wait_while_equal(at.ring.ring.head_word(), head, std::min({timeout, kSlice, due - now}));
   }
   at.board.writer.store_sleeping(false);
+}
+
+SolverWatch Solver::watch() const noexcept {
+  const Attachment& at = *impl_->attachment;
+  return {at.ring.ring.polled(), at.solver.seen(), at.solver.due()};
 }
 
 const Head& Solver::head() const noexcept { return impl_->attachment->solver.head(); }

@@ -30,6 +30,13 @@ void require_stream_name(std::string_view stream);
 [[nodiscard]] std::string region_path(std::string_view stream, RegionKind kind);
 [[nodiscard]] std::string lock_path(std::string_view stream, RegionKind kind);
 
+/// Whether a text is a pattern of stream names rather than a name: `*`, `?` and `[…]` as in a
+/// shell.
+[[nodiscard]] bool is_pattern(std::string_view text) noexcept;
+
+/// Whether a stream's name matches a pattern (fnmatch).
+[[nodiscard]] bool matches(const std::string& pattern, const std::string& stream) noexcept;
+
 /// Names of all streams of which any region or lock stands on this host, sorted.
 [[nodiscard]] std::vector<std::string> stream_names();
 

@@ -47,7 +47,12 @@ class Region {
   /// The bytes. Those of a region that was not opened writable must not be written.
   [[nodiscard]] std::span<std::byte> bytes() const noexcept;
 
+  /// -1 once it has been closed.
   [[nodiscard]] int descriptor() const noexcept;
+
+  /// Gives the descriptor back; the bytes stay mapped. For a process that maps many regions and
+  /// neither links this one nor locks it nor asks for its owner.
+  void close_descriptor() noexcept;
 
   /// Whether its pages are locked into memory; best effort, see RLIMIT_MEMLOCK.
   [[nodiscard]] bool is_memory_locked() const noexcept;

@@ -1,12 +1,38 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 
 #include "splinecast/ipc/stream_options.hpp"
 #include "splinecast/ipc/stream_solver.hpp"
 
 namespace splinecast::ipc {
+
+/// Where to look whether a step of a solver would be of use; for whoever looks after many. Made
+/// anew after each step, and of no use once its solver has detached.
+class SolverWatch {
+ public:
+  SolverWatch(std::span<const Word, 2> polled, Word seen, core::Time due) noexcept
+      : polled_(polled), seen_(seen), due_(due) {}
+
+  /// Whether the ring holds what the last step has not seen. One load of a word that only the
+  /// producer writes.
+  [[nodiscard]] bool has_items() const noexcept {
+    return load(polled_[kHead], std::memory_order_acquire) != seen_;
+  }
+
+  /// Whether a step is of use at `now`: there are items, or a revision is due, or the stream has
+  /// been retired. Loads from one cache line.
+  [[nodiscard]] bool calls(core::Time now) const noexcept {
+    return has_items() || due_ <= now || load(polled_[kRetired], std::memory_order_acquire) != 0;
+  }
+
+ private:
+  std::span<const Word, 2> polled_;
+  Word seen_;
+  core::Time due_;
+};
 
 /// The role that turns waypoints into segments: the one writer of a stream's segment board.
 ///
@@ -18,6 +44,9 @@ class Solver {
   /// Becomes the stream's solver, whether or not the stream stands already. Throws StreamBusy if it
   /// has a living one.
   Solver(std::string stream, const SolverOptions& options);
+  /// Throws BadRequest for options that can be no stream's; the constructor does so too.
+  static void require(const SolverOptions& options);
+
   Solver(Solver&&) noexcept;
   Solver& operator=(Solver&&) noexcept;
   ~Solver();
@@ -36,6 +65,9 @@ class Solver {
 
   /// Sleeps until there may be something to do, or for the timeout, or for 50 ms.
   void wait(core::Time timeout) noexcept;
+
+  /// What to look at before the next step; attached() only.
+  [[nodiscard]] SolverWatch watch() const noexcept;
 
   /// The head last committed; attached() only.
   [[nodiscard]] const Head& head() const noexcept;

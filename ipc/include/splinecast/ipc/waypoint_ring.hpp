@@ -161,6 +161,10 @@ class WaypointRingReader {
     return load(control_[kRetired], std::memory_order_acquire) != 0;
   }
 
+  /// `head` and `retired`, which lie in one cache line: all that has to be looked at of a ring to
+  /// which nothing happens.
+  [[nodiscard]] std::span<const Word, 2> polled() const noexcept { return control_.first<2>(); }
+
   /// Copies item i < head(), of which the consumer has not yet stored a tail beyond it.
   void copy(Word i, RingItem& out) const noexcept;
 

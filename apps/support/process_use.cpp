@@ -1,0 +1,48 @@
+#include "support/process_use.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace splinecast::apps {
+namespace {
+
+constexpr double kWarmUp = 0.25;
+constexpr double kSecondHalf = (1 + kWarmUp) / 2;
+
+}  // namespace
+
+std::optional<ProcessUse> process_use(pid_t pid) {
+  const std::string folder = fmt::format("/proc/{}", pid);
+  std::ifstream statm(folder + "/statm");
+  std::size_t size = 0;
+  std::size_t resident = 0;
+  if (!(statm >> size >> resident)) return std::nullopt;
+  std::error_code error;
+  const std::filesystem::directory_iterator files(folder + "/fd", error);
+  if (error) return std::nullopt;
+  const auto count = std::distance(begin(files), end(files));
+  return ProcessUse{.resident_bytes = resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)),
+                    .descriptors = static_cast<std::size_t>(count)};
+}
+
+core::Time cpu_time(pid_t pid) noexcept {
+  clockid_t clock{};
+  timespec time{};
+  if (clock_getcpuclockid(pid, &clock) != 0 || clock_gettime(clock, &time) != 0) return {};
+  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+}
+
+void Flatness::add(double share, std::size_t value) noexcept {
+  if (share < kWarmUp) return;
+  std::size_t& most = share < kSecondHalf ? first_ : second_;
+  most = std::max(most, value);
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "splinecast/ipc/folder_watch.hpp"
+#include "splinecast/ipc/solver.hpp"
+
+namespace splinecast::ipc {
+
+/// What becomes of a stream that a sweep looks after.
+enum class SweepNews : std::uint8_t {
+  waiting,         ///< there is no producer yet, or the stream has been removed
+  solving,         ///< it is solved here now
+  finished,        ///< its end has been solved
+  elsewhere,       ///< another process solves it; taken over when that dies
+  no_descriptors,  ///< RLIMIT_NOFILE leaves none for it; tried again when streams have come or gone
+  given_up,        ///< it cannot be solved; not tried again until its name has gone
+  gone,            ///< a stream that was found by a pattern stands no more
+};
+
+/// One thread's solvers of many streams, named, or found by patterns as they come and go.
+///
+/// A sweep looks at one cache line of each stream and steps those that have something to do; the
+/// rest of its work, which takes system calls, is done every 50 ms, and then only if files have
+/// come or gone in the folder of shared memory or another process solves a wanted stream. At most
+/// one stream is taken up in a sweep, because that maps memory, and the others must not wait long.
+/// Allocates when streams come and go only.
+class StreamSweep {
+ public:
+  /// Told at most once until something else becomes of the stream. `solver` is not null where the
+  /// stream is solved here; `why` is for `given_up`.
+  using Tell = std::function<void(SweepNews news, const std::string& stream, const Solver* solver,
+                                  std::string_view why)>;
+
+  /// Each of `wanted` is a stream's name or a pattern, see is_pattern(). A named stream is solved
+  /// by nobody else from now on, also while it has no producer. All are solved with these options.
+  /// Throws BadRequest for options or names that cannot be; `tell` is called here already.
+  StreamSweep(const std::vector<std::string>& wanted, SolverOptions options, Tell tell);
+
+  /// Looks after every stream once. Returns whether one of them has more to do than was done:
+  /// sweep again at once.
+  bool sweep(const Clock& clock);
+
+  /// Streams that are solved here.
+  [[nodiscard]] std::size_t solved() const noexcept { return served_.size(); }
+
+  /// File descriptors that a stream takes while it is solved: the lock and the board.
+  static constexpr std::size_t kDescriptorsPerStream = 2;
+
+ private:
+  enum class State : std::uint8_t { unowned, waiting, solved, elsewhere, no_descriptors, given_up };
+
+  struct Member {
+    bool is_named = false;
+    State state = State::unowned;
+    std::unique_ptr<Solver> waiting{};  ///< while there is no producer
+  };
+
+  struct Served {
+    std::unique_ptr<Solver> solver;
+    bool was_finished = false;
+  };
+
+  bool serve(std::size_t index, const Clock& clock);
+  void release_detached();
+  void look_around();
+  void look_for_names();
+  void look_elsewhere();
+  void take_next();
+  bool own(const std::string& stream, Member& member);
+  bool attach(const std::string& stream, Member& member);
+  void become(const std::string& stream, Member& member, State state, SweepNews news,
+              const Solver* solver = nullptr, std::string_view why = {});
+  [[nodiscard]] std::size_t owned() const noexcept;
+  [[nodiscard]] bool is_wanted(const std::string& stream) const;
+
+  SolverOptions options_;
+  Tell tell_;
+  std::vector<std::string> patterns_;
+  std::map<std::string, Member> members_;
+  FolderWatch folder_;
+  core::Time next_look_ = core::Time::min();
+  std::vector<std::string> to_take_;    ///< streams to try next, the first one last
+  std::vector<std::string> elsewhere_;  ///< streams that others solve, those to look at next last
+  std::size_t most_owned_;              ///< what RLIMIT_NOFILE allows
+  std::vector<SolverWatch> watches_;    ///< all that a sweep reads of an idle stream
+  std::vector<Served> served_;          ///< likewise, index by index
+  bool has_detached_ = false;
+};
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,218 @@
+#include "splinecast/ipc/stream_sweep.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <utility>
+
+#include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/owner_lock.hpp"
+#include "splinecast/ipc/region.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+constexpr core::Time kLookAround = std::chrono::milliseconds(50);
+
+/// Streams that are tried at once, and streams of other processes that are looked at each time.
+/// When one of these has died, the rest follow at once: they were mostly the same process's.
+constexpr std::size_t kTries = 16;
+
+/// Descriptors for all else that the process does.
+constexpr std::size_t kOtherDescriptors = 32;
+
+std::size_t most_streams(std::size_t descriptors_each) {
+  rlimit limit{};
+  getrlimit(RLIMIT_NOFILE, &limit);
+  const std::size_t all = limit.rlim_cur;
+  return all > kOtherDescriptors ? (all - kOtherDescriptors) / descriptors_each : 0;
+}
+
+}  // namespace
+
+StreamSweep::StreamSweep(const std::vector<std::string>& wanted, SolverOptions options, Tell tell)
+    : options_(std::move(options)),
+      tell_(std::move(tell)),
+      most_owned_(most_streams(kDescriptorsPerStream)) {
+  for (const std::string& text : wanted) {
+    if (is_pattern(text)) {
+      patterns_.push_back(text);
+      continue;
+    }
+    require_stream_name(text);
+    members_[text].is_named = true;
+  }
+  Solver::require(options_);
+  // Owned at once, and taken up one after the other by the sweeps.
+  for (auto& [stream, member] : members_) {
+    if (own(stream, member)) become(stream, member, State::waiting, SweepNews::waiting);
+  }
+}
+
+bool StreamSweep::sweep(const Clock& clock) {
+  const core::Time now = clock.now();
+  // Not while streams are being taken up: that makes files, for which it would look each time.
+  if (to_take_.empty() && now >= next_look_) {
+    look_around();
+    next_look_ = now + kLookAround;
+  }
+  if (!to_take_.empty()) take_next();
+  bool has_more = false;
+  for (std::size_t i = 0; i < watches_.size(); ++i) {
+    if (watches_[i].calls(now)) has_more = serve(i, clock) || has_more;
+  }
+  if (has_detached_) release_detached();
+  return has_more || !to_take_.empty();
+}
+
+/// Steps one stream. Returns whether it has more to do.
+bool StreamSweep::serve(std::size_t index, const Clock& clock) {
+  Served& served = served_[index];
+  const StepResult result = served.solver->step(clock);
+  if (!served.solver->attached()) {
+    has_detached_ = true;
+    return false;
+  }
+  watches_[index] = served.solver->watch();
+  if (!served.was_finished && served.solver->head().finished) {
+    served.was_finished = true;
+    tell_(SweepNews::finished, served.solver->stream(), served.solver.get(), {});
+  }
+  return result.missed || watches_[index].has_items();
+}
+
+/// Streams that have been retired wait for a producer again.
+void StreamSweep::release_detached() {
+  for (std::size_t i = served_.size(); i-- > 0;) {
+    if (served_[i].solver->attached()) continue;
+    const std::string stream = served_[i].solver->stream();
+    Member& member = members_[stream];
+    member.waiting = std::move(served_[i].solver);
+    become(stream, member, State::waiting, SweepNews::waiting);
+    to_take_.push_back(stream);
+    served_.erase(served_.begin() + static_cast<std::ptrdiff_t>(i));
+    watches_.erase(watches_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  has_detached_ = false;
+}
+
+void StreamSweep::look_around() {
+  if (folder_.has_changed()) look_for_names();
+  if (to_take_.empty()) look_elsewhere();
+}
+
+/// Notes which streams are to be taken up, and forgets those that patterns found and that have
+/// gone.
+void StreamSweep::look_for_names() {
+  to_take_.clear();
+  std::vector<std::string> standing = stream_names();
+  std::erase_if(standing, [](const std::string& stream) {
+    return !region_exists(stream, RegionKind::waypoints);
+  });
+  for (const std::string& stream : standing) {
+    if (is_wanted(stream)) members_.try_emplace(stream);
+  }
+  std::erase_if(members_, [&](const auto& entry) {
+    const auto& [stream, member] = entry;
+    const bool stands = std::ranges::binary_search(standing, stream);
+    if (member.state == State::solved || stands || member.is_named) return false;
+    tell_(SweepNews::gone, stream, nullptr, {});
+    return true;
+  });
+  for (auto& [stream, member] : members_) {
+    const bool stands = std::ranges::binary_search(standing, stream);
+    const bool may_be_taken = member.state == State::unowned || member.state == State::waiting ||
+                              member.state == State::no_descriptors;
+    if (may_be_taken && (stands || member.is_named)) to_take_.push_back(stream);
+  }
+  std::ranges::reverse(to_take_);
+}
+
+/// Looks whether streams of others have lost their solver, some each time.
+void StreamSweep::look_elsewhere() {
+  if (elsewhere_.empty()) {
+    for (const auto& [stream, member] : members_) {
+      if (member.state == State::elsewhere) elsewhere_.push_back(stream);
+    }
+  }
+  for (std::size_t looks = 0; looks < kTries && !elsewhere_.empty(); ++looks) {
+    const std::string stream = std::move(elsewhere_.back());
+    elsewhere_.pop_back();
+    const auto found = members_.find(stream);
+    if (found == members_.end() || found->second.state != State::elsewhere) continue;
+    if (is_owned(stream, RegionKind::spline)) continue;
+    to_take_.push_back(stream);
+    looks = 0;
+  }
+}
+
+/// Takes up the next stream that can be.
+void StreamSweep::take_next() {
+  for (std::size_t tries = 0; tries < kTries && !to_take_.empty(); ++tries) {
+    const std::string stream = std::move(to_take_.back());
+    to_take_.pop_back();
+    const auto found = members_.find(stream);
+    if (found == members_.end() || found->second.state == State::solved) continue;
+    if (own(stream, found->second) && attach(stream, found->second)) return;
+  }
+}
+
+/// Becomes the stream's solver, unless another process is.
+bool StreamSweep::own(const std::string& stream, Member& member) {
+  if (member.waiting) return true;
+  if (owned() >= most_owned_) {
+    become(stream, member, State::no_descriptors, SweepNews::no_descriptors);
+    return false;
+  }
+  try {
+    if (is_owned(stream, RegionKind::spline)) throw StreamBusy(stream);
+    member.waiting = std::make_unique<Solver>(stream, options_);
+    return true;
+  } catch (const StreamBusy&) {
+    become(stream, member, State::elsewhere, SweepNews::elsewhere);
+  } catch (const std::exception& error) {
+    become(stream, member, State::given_up, SweepNews::given_up, nullptr, error.what());
+  }
+  return false;
+}
+
+/// Takes the stream up if it stands. Returns whether it did.
+bool StreamSweep::attach(const std::string& stream, Member& member) {
+  try {
+    if (!member.waiting->attach()) {
+      become(stream, member, State::waiting, SweepNews::waiting);
+      return false;
+    }
+  } catch (const std::exception& error) {
+    member.waiting.reset();
+    become(stream, member, State::given_up, SweepNews::given_up, nullptr, error.what());
+    return false;
+  }
+  served_.push_back({.solver = std::move(member.waiting)});
+  watches_.push_back(served_.back().solver->watch());
+  become(stream, member, State::solved, SweepNews::solving, served_.back().solver.get());
+  return true;
+}
+
+/// Notes what has become of a stream, and tells it if that is news.
+void StreamSweep::become(const std::string& stream, Member& member, State state, SweepNews news,
+                         const Solver* solver, std::string_view why) {
+  const bool is_news = member.state != state;
+  member.state = state;
+  if (is_news) tell_(news, stream, solver, why);
+}
+
+std::size_t StreamSweep::owned() const noexcept {
+  const auto waiting = std::ranges::count_if(
+      members_, [](const auto& entry) { return entry.second.waiting != nullptr; });
+  return served_.size() + static_cast<std::size_t>(waiting);
+}
+
+bool StreamSweep::is_wanted(const std::string& stream) const {
+  return std::ranges::any_of(patterns_,
+                             [&](const std::string& pattern) { return matches(pattern, stream); });
+}
+
+}  // namespace splinecast::ipc
