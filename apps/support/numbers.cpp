@@ -38,9 +38,16 @@ std::string_view take_digits(std::string_view& text) noexcept {
   return digits;
 }
 
+/// Takes a plus that std::from_chars and its like do not know; another sign must not follow it.
+bool take_plus(std::string_view& text) noexcept {
+  if (!text.starts_with('+')) return true;
+  text.remove_prefix(1);
+  return !text.starts_with('-');
+}
+
 bool take_exponent(std::string_view text, int& exponent) noexcept {
   text.remove_prefix(1);
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  if (!take_plus(text)) return false;
   constexpr int kLargest = 1000;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), exponent);
   return error == std::errc{} && end == text.data() + text.size() && exponent > -kLargest &&
@@ -97,7 +104,7 @@ std::optional<core::Time> parse_time(std::string_view text, TimeUnit unit) noexc
 
 std::optional<double> parse_number(std::string_view text) noexcept {
   text = trimmed(text);
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  if (!take_plus(text)) return std::nullopt;
   double value = 0;
   // gcc 12's std::from_chars takes a few times as long for the same, correctly rounded, result.
   const auto [end, error] = fast_float::from_chars(text.data(), text.data() + text.size(), value);

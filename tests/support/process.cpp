@@ -63,6 +63,8 @@ Process::Process(const std::string& program, const std::vector<std::string>& arg
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     dup2(out[1], STDOUT_FILENO);
     dup2(err[1], STDERR_FILENO);
+    // What the tests' own parent left open must not count against a limit that a test sets.
+    close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
     execv(program.c_str(), argv.data());
     _exit(127);
   }
