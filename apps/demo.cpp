@@ -11,13 +11,13 @@
 #include "demo_reader.hpp"
 #include "replay.hpp"
 #include "solve.hpp"
-#include "splinecast/ipc/stream_files.hpp"
 #include "support/child.hpp"
 #include "support/exit_codes.hpp"
 #include "support/options.hpp"
 #include "support/output.hpp"
 #include "support/pick_and_place.hpp"
 #include "support/signals.hpp"
+#include "support/stream_remover.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -101,24 +101,6 @@ std::string summary(const WaypointTable& table, const json& sent, const json& re
               fmt::format("{:.0f} ns in the median, {:.0f} ns for 99 of 100",
                           read["sample_ns"][0].get<double>(), read["sample_ns"][1].get<double>()));
 }
-
-/// Removes what the demo leaves in shared memory, however it ends.
-class StreamRemover {
- public:
-  explicit StreamRemover(std::string stream) : stream_(std::move(stream)) {}
-  StreamRemover(const StreamRemover&) = delete;
-  StreamRemover& operator=(const StreamRemover&) = delete;
-  ~StreamRemover() {
-    try {
-      ipc::remove_stream(stream_);
-    } catch (const std::exception& error) {
-      say(error.what());
-    }
-  }
-
- private:
-  std::string stream_;
-};
 
 int run_chaos_demo(const DemoOptions& options, const std::string& stream) {
   catch_stop_signals();

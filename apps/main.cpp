@@ -24,6 +24,7 @@ int run_program(int argc, char** argv) {
   add_sample(program, action);
   add_fit(program, action);
   add_methods(program, action);
+  add_latency(program, action);
   add_ls(program, action);
   add_info(program, action);
   add_rm(program, action);

@@ -82,7 +82,7 @@ nlohmann::json Child::result() {
   }
   pid_ = -1;
   if (!WIFEXITED(status) || WEXITSTATUS(status) != kOk) {
-    throw Failure(fmt::format("a process of the demo ended with {} {}",
+    throw Failure(fmt::format("a child process ended with {} {}",
                               WIFSIGNALED(status) ? "signal" : "code",
                               WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status)));
   }

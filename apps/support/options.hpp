@@ -20,6 +20,7 @@ using Action = std::function<int()>;
 void add_demo(CLI::App& program, Action& action);
 void add_fit(CLI::App& program, Action& action);
 void add_info(CLI::App& program, Action& action);
+void add_latency(CLI::App& program, Action& action);
 void add_ls(CLI::App& program, Action& action);
 void add_methods(CLI::App& program, Action& action);
 void add_replay(CLI::App& program, Action& action);
