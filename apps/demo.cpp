@@ -11,7 +11,6 @@
 #include "demo_reader.hpp"
 #include "replay.hpp"
 #include "solve.hpp"
-#include "splinecast/ipc/sampler.hpp"
 #include "support/child.hpp"
 #include "support/exit_codes.hpp"
 #include "support/options.hpp"

@@ -1,5 +1,3 @@
-#include "doctor.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,6 +15,7 @@
 #include "support/left_names.hpp"
 #include "support/machine_checks.hpp"
 #include "support/machine_facts.hpp"
+#include "support/options.hpp"
 #include "support/output.hpp"
 #include "support/stream_report.hpp"
 

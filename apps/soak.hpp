@@ -2,21 +2,13 @@
 
 #include <chrono>
 #include <cstddef>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "splinecast/core/time.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace splinecast::apps {
-
-/// Adds the verb to the program and sets `action` when it is chosen.
-void add_soak(CLI::App& program, std::function<int()>& action);
 
 /// What a soak is told.
 struct SoakOptions {

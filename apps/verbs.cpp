@@ -1,5 +1,3 @@
-#include "doctor.hpp"
-#include "soak.hpp"
 #include "support/options.hpp"
 
 namespace splinecast::apps {
@@ -11,6 +9,7 @@ void add_verbs(CLI::App& program, Action& action) {
   add_sample(program, action);
   add_fit(program, action);
   add_methods(program, action);
+  add_latency(program, action);
   add_ls(program, action);
   add_info(program, action);
   add_rm(program, action);

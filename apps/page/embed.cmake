@@ -1,13 +1,10 @@
-# Makes one page of its parts and a C++ file that holds it.
-#   cmake -D PAGE_DIR=… -D DYGRAPHS_DIR=… -D OUT=….cpp -P embed.cmake
-file(READ ${PAGE_DIR}/report.html page)
-foreach(part report.css values.js marks.js charts.js tables.js page.js dygraph.min.css
-             dygraph.min.js)
-  if(part MATCHES "^dygraph")
-    file(READ ${DYGRAPHS_DIR}/${part} text)
-  else()
-    file(READ ${PAGE_DIR}/${part} text)
-  endif()
+# Makes one page of its parts, which it names as @part@, and a C++ file with a function that has it.
+#   cmake -D PAGE=….html -D "PARTS=…,…" -D FUNCTION=… -D OUT=….cpp -P embed.cmake
+file(READ ${PAGE} page)
+string(REPLACE "," ";" parts "${PARTS}")
+foreach(path ${parts})
+  cmake_path(GET path FILENAME part)
+  file(READ ${path} text)
   string(REGEX REPLACE "(//|/\\*)# sourceMappingURL=[^\n]*" "" text "${text}")  # a file not there
   string(REPLACE "@${part}@" "${text}" page "${page}")
 endforeach()
@@ -28,7 +25,7 @@ ${bytes}
 
 }  // namespace
 
-std::string_view report_template() noexcept {
+std::string_view ${FUNCTION}() noexcept {
   return {reinterpret_cast<const char*>(kBytes), sizeof(kBytes)};
 }
 

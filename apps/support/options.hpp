@@ -18,13 +18,16 @@ using Action = std::function<int()>;
 
 /// Each adds its verb to the program and sets `action` when that verb is chosen.
 void add_demo(CLI::App& program, Action& action);
+void add_doctor(CLI::App& program, Action& action);
 void add_fit(CLI::App& program, Action& action);
 void add_info(CLI::App& program, Action& action);
+void add_latency(CLI::App& program, Action& action);
 void add_ls(CLI::App& program, Action& action);
 void add_methods(CLI::App& program, Action& action);
 void add_replay(CLI::App& program, Action& action);
 void add_rm(CLI::App& program, Action& action);
 void add_sample(CLI::App& program, Action& action);
+void add_soak(CLI::App& program, Action& action);
 void add_solve(CLI::App& program, Action& action);
 
 /// Adds every verb, in the order in which the help lists them.

@@ -6,8 +6,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string_view>
 
+#include "support/page.hpp"
 #include "support/report_rows.hpp"
 #include "support/report_table.hpp"
 #include "support/report_template.hpp"
@@ -160,30 +160,10 @@ ordered_json report_json(const Measured& all) {
           {"dimensions", std::move(dimensions)}};
 }
 
-/// JSON as the content of a script element: nothing in it can end the element.
-std::string embeddable(const ordered_json& json) {
-  const std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-  std::string safe;
-  safe.reserve(text.size());
-  for (const char c : text) {
-    if (c == '<') {
-      safe += "\\u003c";
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
-}
-
 }  // namespace
 
 void write_report(const Report& report, Output& output) {
-  constexpr std::string_view kData = "@data@";
-  const std::string_view page = report_template();
-  const std::size_t at = page.find(kData);
-  output.write(page.substr(0, at));
-  output.write(embeddable(report_json(measure(report))));
-  output.write(page.substr(at + kData.size()));
+  write_page(report_template(), report_json(measure(report)), output);
 }
 
 }  // namespace splinecast::apps

@@ -4,8 +4,9 @@
 
 namespace splinecast::apps {
 
-/// The page of apps/page/ with the scripts and styles it uses; the report's JSON goes where it says
-/// `@data@`.
+/// The pages of apps/page/ with the scripts and styles they use: of `fit --report` and of `latency
+/// --report`. The JSON goes where they say `@data@`.
 [[nodiscard]] std::string_view report_template() noexcept;
+[[nodiscard]] std::string_view latency_template() noexcept;
 
 }  // namespace splinecast::apps

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +12,7 @@
 
 #include "splinecast/core/fit.hpp"
 #include "splinecast/core/measures.hpp"
+#include "support/browser.hpp"
 #include "support/mesh.hpp"
 #include "support/output.hpp"
 #include "support/process.hpp"
@@ -23,43 +23,16 @@ namespace {
 
 using core::Time;
 using nlohmann::json;
+using testing::data_of;
 using testing::Ended;
 using testing::run;
 using testing::TestFolder;
-
-constexpr const char* kChromium = "/usr/bin/chromium";
-
-bool has_chromium() { return access(kChromium, X_OK) == 0; }
-
-/// The text between two marks, from the first one on.
-std::string between(const std::string& text, const std::string& begin, const std::string& end) {
-  const std::size_t from = text.find(begin);
-  if (from == std::string::npos) return {};
-  const std::size_t first = from + begin.size();
-  return text.substr(first, text.find(end, first) - first);
-}
-
-/// What a page draws, out of the file.
-json data_of(const std::string& page) {
-  return json::parse(between(page, "id=\"data\">", "</script>"));
-}
 
 /// What report_facts.js notes of a page in a browser: as it opens, with the mouse on it, after a
 /// drag from 0.4 to 0.6 of the first velocity chart, and after a double click.
 json facts_of(const TestFolder& folder, const std::string& page,
               const std::string& hash = "draw=all") {
-  const std::string script =
-      testing::read_file(std::string(SPLINECAST_SOURCE) + "/tests/apps/report_facts.js");
-  const auto file = folder.write("facts.html", page + "<script>" + script + "</script>");
-  const Ended ended =
-      testing::Process(kChromium,
-                       {"--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
-                        "--window-size=1280,1600", "--user-data-dir=" + folder.path("profile"),
-                        "--timeout=60000", "--dump-dom", "file://" + file + "#" + hash})
-          .wait();
-  const std::string facts = between(ended.out, "<pre>FACTS", "FACTS</pre>");
-  EXPECT_FALSE(facts.empty()) << ended.err;
-  return facts.empty() ? json() : json::parse(facts);
+  return testing::facts_of(folder, page, "report_facts.js", hash);
 }
 
 /// Waypoints that all curves of a report share, and the page of that report.
@@ -126,7 +99,7 @@ TEST(Report, ShowsWhateverANameHoldsAsText) {
   ASSERT_EQ(run({"fit", file, "--report", folder.path("a.html")}).code, 0);
   const std::string page = testing::read_file(folder.path("a.html"));
   EXPECT_EQ(data_of(page).at("dimensions")[0].at("name"), "</script><b>x</b>");
-  if (!has_chromium()) GTEST_SKIP() << "no " << kChromium << " (Debian: chromium)";
+  REQUIRE_BROWSER();
   const json facts = facts_of(folder, page);
   ASSERT_EQ(facts.size(), 4U);
   EXPECT_EQ(facts[0].at("foreign"), 0);
@@ -135,7 +108,7 @@ TEST(Report, ShowsWhateverANameHoldsAsText) {
 }
 
 TEST(Report, EveryDimensionHasFourChartsWithUnitsWaypointsAndKnots) {
-  if (!has_chromium()) GTEST_SKIP() << "no " << kChromium << " (Debian: chromium)";
+  REQUIRE_BROWSER();
   const TestFolder folder;
   const auto file = folder.write("a.csv", "t_ns,x,y\n7,0,5\n1000000007,1,5\n3000000007,0,5\n");
   ASSERT_EQ(run({"fit", file, "--report", folder.path("a.html")}).code, 0);
@@ -162,7 +135,7 @@ TEST(Report, EveryDimensionHasFourChartsWithUnitsWaypointsAndKnots) {
 }
 
 TEST(Report, OverlaysCurvesAndItsTableHasTheirExactExtremes) {
-  if (!has_chromium()) GTEST_SKIP() << "no " << kChromium << " (Debian: chromium)";
+  REQUIRE_BROWSER();
   const TestFolder folder;
   const auto mesh = testing::random_mesh(4, 30, 2, 3);
   Recording recording(mesh.times, mesh.positions, 2);
@@ -197,7 +170,7 @@ TEST(Report, OverlaysCurvesAndItsTableHasTheirExactExtremes) {
 }
 
 TEST(Report, TheTableOfAParabolaOfTwoPiecesIsTheOneWorkedOutByHand) {
-  if (!has_chromium()) GTEST_SKIP() << "no " << kChromium << " (Debian: chromium)";
+  REQUIRE_BROWSER();
   const TestFolder folder;
   Recording recording({Time(0), Time(1'000'000'000), Time(2'000'000'000)}, {0, 1, 0}, 1);
   core::PiecewisePolynomial curve(1);
@@ -252,7 +225,7 @@ TEST(Report, KeepsThePeaksOfALongRecordingInASmallFile) {
     EXPECT_NEAR(*std::ranges::max_element(drawn), exact.greatest.value, tolerance);
     EXPECT_NEAR(*std::ranges::min_element(drawn), exact.least.value, tolerance);
   }
-  if (!has_chromium()) GTEST_SKIP() << "no " << kChromium << " (Debian: chromium)";
+  REQUIRE_BROWSER();
   const json facts = facts_of(folder, page);
   ASSERT_EQ(facts.size(), 4U);
   ASSERT_EQ(facts[0].at("notes").size(), 3U);
@@ -265,7 +238,7 @@ TEST(Report, KeepsThePeaksOfALongRecordingInASmallFile) {
 }
 
 TEST(Report, DraggingZoomsTheChartsOfADimensionAndADoubleClickShowsAllAgain) {
-  if (!has_chromium()) GTEST_SKIP() << "no " << kChromium << " (Debian: chromium)";
+  REQUIRE_BROWSER();
   const TestFolder folder;
   const auto mesh = testing::random_mesh(5, 40, 2, 3);
   Recording recording(mesh.times, mesh.positions, 2);
@@ -307,7 +280,7 @@ TEST(Report, OverlaysSeveralMethodsAndTakesUnitsFromTheColumnsNames) {
   EXPECT_EQ(data_of(testing::read_file(folder.path("b.html"))).at("dimensions")[2].at("unit"),
             "deg");
   EXPECT_EQ(run({"fit", file, "--unit", "deg", "--dt", "1"}).code, 2);
-  if (!has_chromium()) GTEST_SKIP() << "no " << kChromium << " (Debian: chromium)";
+  REQUIRE_BROWSER();
   const json facts = facts_of(folder, page);
   ASSERT_EQ(facts.size(), 4U);
   const std::string chart = facts[0].at("sections")[0].at("charts")[1].dump();
@@ -318,7 +291,7 @@ TEST(Report, OverlaysSeveralMethodsAndTakesUnitsFromTheColumnsNames) {
 }
 
 TEST(Report, OneWaypointIsAPointInEachChart) {
-  if (!has_chromium()) GTEST_SKIP() << "no " << kChromium << " (Debian: chromium)";
+  REQUIRE_BROWSER();
   const TestFolder folder;
   const auto file = folder.write("one.csv", "t_ns,x\n5,7\n");
   ASSERT_EQ(run({"fit", file, "--report", folder.path("a.html")}).code, 0);

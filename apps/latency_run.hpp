@@ -1,0 +1,35 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "latency_floor.hpp"
+#include "latency_iceoryx.hpp"
+#include "latency_options.hpp"
+#include "latency_stamps.hpp"
+#include "support/clock_measure.hpp"
+#include "support/environment.hpp"
+
+namespace splinecast::apps {
+
+/// What `latency` found.
+struct LatencyResult {
+  LatencyOptions options;
+  Environment environment;
+  ClockMeasure clock;
+  std::vector<std::string> warnings;  ///< what was not as asked for, or spoils the figures
+  bool interrupted = false;
+  std::vector<Latencies> stages;  ///< of the pipeline, in its order
+  LatencyFloor floor;
+  LatencyPeer iceoryx;
+  nlohmann::ordered_json processes;  ///< a list of `role` and what the kernel counted
+  nlohmann::ordered_json solver;     ///< its counters
+};
+
+/// Measures the floor, the pipeline and, unless told off, iceoryx, one after the other, in
+/// processes of their own on a stream of their own. Takes twice the warm-up and the duration.
+/// Throws Failure or TimeOut if the pipeline cannot be measured.
+[[nodiscard]] LatencyResult run_latency(const LatencyOptions& options);
+
+}  // namespace splinecast::apps
