@@ -71,10 +71,12 @@ std::size_t usable_cpus() {
 Usage usage_now() noexcept {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
+  // In the C library these are members of unions.  NOLINTBEGIN(*-union-access)
   return {.minor_faults = usage.ru_minflt,
           .major_faults = usage.ru_majflt,
           .voluntary_switches = usage.ru_nvcsw,
           .involuntary_switches = usage.ru_nivcsw};
+  // NOLINTEND(*-union-access)
 }
 
 nlohmann::ordered_json to_json(const Usage& before, const Usage& after) {
