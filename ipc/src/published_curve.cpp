@@ -292,13 +292,17 @@ void PublishedCurve::restore(const Head& head) noexcept {
   settled_written_ = window_.settled_segments();
 }
 
+namespace {
+
 /// Whether the segments of a head's run, which goes on, are the newest ones.
-bool PublishedCurve::describes_a_run(const Head& head) const noexcept {
+bool describes_a_run(const Head& head) noexcept {
   const Word segments = head.run_knots + (head.is_entered ? 1 : 0);
   if (head.newest == 0) return segments == 0;
   return head.run >= 1 && head.run <= head.newest && segments == head.newest - head.run + 1 &&
          head.run_knots <= segments;
 }
+
+}  // namespace
 
 void PublishedCurve::restore_run(const Head& head) noexcept {
   if (!describes_a_run(head)) {

@@ -103,7 +103,6 @@ class PublishedCurve {
   [[nodiscard]] Word segment_at(core::Time t) const noexcept;
   [[nodiscard]] SegmentOrigin origin_of(std::size_t segment) const noexcept;
   [[nodiscard]] core::Knot knot(Word number, Word r, std::span<double> values) noexcept;
-  [[nodiscard]] bool describes_a_run(const Head& head) const noexcept;
   [[nodiscard]] std::span<const core::StandingWaypoint> standing_before(Word number, core::Time t,
                                                                         Word r) noexcept;
   void write_segment(std::size_t i) noexcept;
