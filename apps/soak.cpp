@@ -35,7 +35,7 @@ constexpr Time kBetweenKills = seconds(2);
 constexpr Time kPatience = seconds(60);
 constexpr double kMegabyte = 1e6;
 /// What an allocator may still take after the warm-up, and files that are open for an instant.
-constexpr std::size_t kMemoryTolerance = 512 * 1024;
+constexpr std::size_t kMemoryTolerance = 512UL * 1024;
 constexpr std::size_t kDescriptorTolerance = 4;
 
 /// The processes of one role: what the largest of them takes.

@@ -120,6 +120,7 @@ nlohmann::json run_soak_reader(const std::vector<std::string>& streams) {
   raise_descriptor_limit();
   const ipc::MonotonicClock clock;
   std::vector<std::unique_ptr<WatchedStream>> watched;
+  watched.reserve(streams.size());
   for (const std::string& stream : streams) {
     watched.push_back(std::make_unique<WatchedStream>(stream));
   }
