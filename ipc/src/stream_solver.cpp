@@ -15,8 +15,6 @@ constexpr std::size_t kMaxBatch = 256;
 /// before them, the stop tail, a cut and a hold.
 constexpr std::size_t changed_besides(std::size_t settle) noexcept { return settle + 6; }
 
-constexpr core::Time kNothingChanged = core::Time::max();
-
 /// What an interval is refused for.
 Refusal to_refusal(AppendStatus status) noexcept {
   switch (status) {
