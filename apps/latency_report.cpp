@@ -156,6 +156,7 @@ std::string machine_text(const ordered_json& result) {
 
 std::vector<LatencySeries> series_of(const LatencyResult& result) {
   std::vector<const Latencies*> stages;
+  stages.reserve(result.stages.size() + 1);
   for (const Latencies& stage : result.stages) stages.push_back(&stage);
   if (result.iceoryx.seen) stages.push_back(&*result.iceoryx.seen);
   std::vector<LatencySeries> all;

@@ -31,6 +31,7 @@ std::vector<json> run_pipeline(const LatencyOptions& options, LatencyShared& sha
     children.emplace_back([&, r] { return run_latency_reader(options, stream, shared, r); }, true);
   }
   std::vector<json> returned;
+  returned.reserve(children.size());
   for (Child& child : children) returned.push_back(child.result());
   return returned;
 }
@@ -73,6 +74,7 @@ void measure_pipeline(LatencyResult& result) {
   const std::vector<json> returned = run_pipeline(result.options, shared);
   result.interrupted = returned.front()["interrupted"];
   std::vector<std::span<const SeenStamp>> seen;
+  seen.reserve(shared.seen.size());
   for (const auto& log : shared.seen) seen.push_back(log.entries());
   std::vector<ipc::Word> refused(shared.refused.entries().begin(), shared.refused.entries().end());
   std::ranges::sort(refused);
