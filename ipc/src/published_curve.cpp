@@ -4,6 +4,7 @@
 #include <utility>
 
 namespace splinecast::ipc {
+
 PublishedCurve::PublishedCurve(SegmentBoardWriter& board, const SegmentBoardReader& published,
                                const core::WindowOptions& options, core::DimensionKinds kinds)
     : board_(&board),
