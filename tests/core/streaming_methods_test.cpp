@@ -21,11 +21,7 @@ using testing::Trial;
 class StreamingMethods : public ::testing::TestWithParam<const Method*> {
  protected:
   [[nodiscard]] static const Method& method() { return *GetParam(); }
-  [[nodiscard]] static WindowOptions options() {
-    return {.interpolant = plain_options(method()).interpolant,
-            .settle = default_settle(method()),
-            .force_lag = true};
-  }
+  [[nodiscard]] static WindowOptions options() { return testing::plain_window(method()); }
 };
 
 std::vector<Condition> online_conditions() {

@@ -22,11 +22,7 @@ using testing::Trial;
 
 class MethodsThroughRegions : public ::testing::TestWithParam<const core::Method*> {
  protected:
-  [[nodiscard]] static core::WindowOptions options() {
-    return {.interpolant = testing::plain_options(*GetParam()).interpolant,
-            .settle = core::default_settle(*GetParam()),
-            .force_lag = true};
-  }
+  [[nodiscard]] static core::WindowOptions options() { return testing::plain_window(*GetParam()); }
 
   /// Expects every sample of a finished stream to have the bits of a curve.
   static void expect_same_bits(MemoryStream& stream, const Trial& trial,

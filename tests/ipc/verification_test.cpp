@@ -21,12 +21,6 @@ using core::Time;
 using testing::MemoryStream;
 using testing::Trial;
 
-core::WindowOptions options_of(const core::Method& method) {
-  return {.interpolant = testing::plain_options(method).interpolant,
-          .settle = core::default_settle(method),
-          .force_lag = true};
-}
-
 /// A recorded stream that has been played to its end, and what was collected of it.
 class Played {
  public:
@@ -93,7 +87,7 @@ class VerificationOfMethods : public ::testing::TestWithParam<const core::Method
 TEST_P(VerificationOfMethods, SolvesEverySettledSegmentAgainToItsBits) {
   for (const ConditionKind kind : {ConditionKind::own, ConditionKind::halt}) {
     for (const std::size_t knots : {1U, 2U, 3U, 150U}) {
-      core::WindowOptions how = options_of(*GetParam());
+      core::WindowOptions how = testing::plain_window(*GetParam());
       how.start = {kind, {}};
       const Played played(how, {kind, {}}, {}, knots);
       const Verification found = played.verify();
@@ -162,7 +156,7 @@ TEST(Verification, MissesAWaypointThatIsNotOnTheCurve) {
 /// Kills, starvation and replacement, with a local method, with smoothing, and without limits.
 TEST(Verification, HoldsInLiveWorldsOfOtherMethods) {
   for (const char* name : {"c2", "akima", "pchip", "bessel", "smoothing"}) {
-    core::WindowOptions window = options_of(*core::find_method(name));
+    core::WindowOptions window = testing::plain_window(*core::find_method(name));
     window.interpolant.lambda = name == std::string("smoothing") ? 1e-9 : 0;
     for (std::uint64_t seed = 1; seed <= 40 && !::testing::Test::HasFailure(); ++seed) {
       testing::LiveWorld world({.seed = seed,

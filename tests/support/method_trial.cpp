@@ -63,4 +63,10 @@ core::FitOptions plain_options(const core::Method& method) {
   return options;
 }
 
+core::WindowOptions plain_window(const core::Method& method) {
+  return {.interpolant = plain_options(method).interpolant,
+          .settle = core::default_settle(method),
+          .force_lag = true};
+}
+
 }  // namespace splinecast::testing

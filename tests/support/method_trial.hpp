@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "splinecast/core/fit.hpp"
+#include "splinecast/core/sliding_window.hpp"
 #include "support/mesh.hpp"
 
 namespace splinecast::testing {
@@ -36,5 +37,8 @@ core::FitOptions exact_options(const core::Method& method, const Trial& trial);
 
 /// The method's options, with a moderate λ for `smoothing`.
 core::FitOptions plain_options(const core::Method& method);
+
+/// The same for a window with the method's own settle lag, forced.
+core::WindowOptions plain_window(const core::Method& method);
 
 }  // namespace splinecast::testing
