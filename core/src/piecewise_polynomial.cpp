@@ -60,7 +60,7 @@ std::size_t PiecewisePolynomial::segment_at(Time t) const noexcept {
   return std::clamp<std::size_t>(knots_before, 1, segments()) - 1;
 }
 
-void PiecewisePolynomial::evaluate(Time t, StateRef out) const noexcept {
+void PiecewisePolynomial::evaluate(Time t, const StateRef& out) const noexcept {
   const std::size_t i = segment_at(t);
   core::evaluate(orders_[i], coefficients(i), to_seconds(t - breaks_[i]), out);
 }

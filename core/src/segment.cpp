@@ -13,12 +13,13 @@ template <typename Order>
 void evaluate_order(Order order, std::size_t dimensions, const double* __restrict c, double u,
                     double* __restrict p, double* __restrict v, double* __restrict a,
                     double* __restrict j) noexcept {
+  const int top = order - 1;
   for (std::size_t d = 0; d < dimensions; ++d) {
-    double position = 0;
-    double velocity = 0;
-    double acceleration = 0;
-    double jerk = 0;
-    for (int power = order - 1; power >= 0; --power) {
+    double position = c[static_cast<std::size_t>(top) * dimensions + d];
+    double velocity = top >= 1 ? top * position : 0;
+    double acceleration = top >= 2 ? top * (top - 1) * position : 0;
+    double jerk = top >= 3 ? top * (top - 1) * (top - 2) * position : 0;
+    for (int power = top - 1; power >= 0; --power) {
       const double coefficient = c[static_cast<std::size_t>(power) * dimensions + d];
       position = position * u + coefficient;
       if (power >= 1) velocity = velocity * u + power * coefficient;
@@ -82,7 +83,8 @@ void write_quintic(const Interval& i, Segment& out) noexcept {
 
 }  // namespace
 
-void evaluate(int order, std::span<const double> coefficients, double u, StateRef out) noexcept {
+void evaluate(int order, std::span<const double> coefficients, double u,
+              const StateRef& out) noexcept {
   const auto evaluate_as = [&](auto any_order) {
     evaluate_order(any_order, out.position.size(), coefficients.data(), u, out.position.data(),
                    out.velocity.data(), out.acceleration.data(), out.jerk.data());
@@ -98,12 +100,15 @@ void evaluate(int order, std::span<const double> coefficients, double u, StateRe
 
 void evaluate_derivative(int order, std::span<const double> coefficients, double u, int derivative,
                          std::span<double> out) noexcept {
-  std::ranges::fill(out, 0.0);
+  if (order <= derivative) std::ranges::fill(out, 0.0);
   for (int power = order - 1; power >= derivative; --power) {
     double factor = 1;  // exact: 15! < 2^53
     for (int k = 0; k < derivative; ++k) factor *= power - k;
     const double* row = coefficients.data() + static_cast<std::size_t>(power) * out.size();
-    for (std::size_t d = 0; d < out.size(); ++d) out[d] = out[d] * u + factor * row[d];
+    for (std::size_t d = 0; d < out.size(); ++d) {
+      const double term = factor * row[d];
+      out[d] = power == order - 1 ? term : out[d] * u + term;
+    }
   }
 }
 

@@ -19,7 +19,7 @@ double seconds_after(core::Time left, core::Time t) noexcept {
 }
 
 /// Sets velocity, acceleration and jerk to 0: at rest.
-void come_to_rest(core::StateRef out) noexcept {
+void come_to_rest(const core::StateRef& out) noexcept {
   std::ranges::fill(out.velocity, 0.0);
   std::ranges::fill(out.acceleration, 0.0);
   std::ranges::fill(out.jerk, 0.0);
@@ -33,7 +33,7 @@ Sampler::Sampler(const SegmentBoardReader& board, StreamClock clock, core::Dimen
       kinds_(std::move(kinds)),
       copies_{SegmentCopy(board.dimensions()), SegmentCopy(board.dimensions())} {}
 
-SampleStatus Sampler::sample(core::Time t, core::StateRef out) noexcept {
+SampleStatus Sampler::sample(core::Time t, const core::StateRef& out) noexcept {
   const SampleStatus status = preview(t, out);
   if (clock_ == StreamClock::recorded || !has_values(status)) return status;
   const bool is_revised = revised_;
@@ -56,14 +56,15 @@ bool Sampler::see(Word r) noexcept {
   return true;
 }
 
-SampleStatus Sampler::preview(core::Time t, core::StateRef out) noexcept {
+SampleStatus Sampler::preview(core::Time t, const core::StateRef& out) noexcept {
   for (int attempt = 0; attempt < kTries; ++attempt) {
     if (board_->retired()) return SampleStatus::retired;
     const Word r = board_->revision();
     if (r == 0) return SampleStatus::no_data;
     if (r != head_.revision && !see(r)) continue;
     if (head_.newest == 0) return SampleStatus::no_data;
-    const Found found = locate(t);
+    const bool is_at_hand = r == confirmed_ && spans(current(), t);
+    const Found found = is_at_hand ? Found::segment : locate(t);
     if (found == Found::segment) return evaluate(current(), t, out);
     if (found == Found::before_first) {
       const bool holds = clock_ == StreamClock::monotonic && head_.first == 1;
@@ -162,13 +163,13 @@ bool Sampler::number_by_cells(core::Time t, Word& number) const noexcept {
 }
 
 /// Evaluates a segment u seconds after its left end, in the form in which dimensions are read.
-void Sampler::read(const SegmentCopy& segment, double u, core::StateRef out) const noexcept {
+void Sampler::read(const SegmentCopy& segment, double u, const core::StateRef& out) const noexcept {
   core::evaluate(segment.order, segment.coefficients, u, out);
   if (!kinds_.all_linear()) kinds_.normalise(out);
 }
 
 SampleStatus Sampler::evaluate(const SegmentCopy& segment, core::Time t,
-                               core::StateRef out) const noexcept {
+                               const core::StateRef& out) const noexcept {
   const bool past_end = t > segment.right || segment.kind == core::SegmentKind::hold ||
                         (t == segment.right && segment.kind == core::SegmentKind::stop_tail);
   const core::Time at = past_end ? segment.right : t;
@@ -182,7 +183,7 @@ SampleStatus Sampler::evaluate(const SegmentCopy& segment, core::Time t,
 
 /// Before the first waypoint of a live stream the machine stands where it will start, unless it
 /// starts in motion.
-SampleStatus Sampler::hold_first(core::StateRef out) noexcept {
+SampleStatus Sampler::hold_first(const core::StateRef& out) noexcept {
   const SegmentCopy& first = current();
   const auto velocity =
       std::span(first.coefficients).subspan(out.velocity.size()).first(out.velocity.size());
@@ -194,7 +195,7 @@ SampleStatus Sampler::hold_first(core::StateRef out) noexcept {
 
 /// What a reader may still say when the writer has overtaken every try: a time inside its own copy
 /// and before the settled_until copied with it can no longer change.
-SampleStatus Sampler::from_own_copy(core::Time t, core::StateRef out) noexcept {
+SampleStatus Sampler::from_own_copy(core::Time t, const core::StateRef& out) noexcept {
   const SegmentCopy& own = current();
   if (own.tag == 0 || t < own.left || t >= own.right || t >= copied_settled_until_) {
     return SampleStatus::busy;

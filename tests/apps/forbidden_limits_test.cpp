@@ -159,7 +159,7 @@ TEST_F(ForbiddenLimits, AnotherTimeNamespacesClockIsRefusedForLiveStreams) {
     GTEST_SKIP() << "needs a kernel with time namespaces";
   }
   const std::vector<std::string> live{"replay",     file_,    "--stream", "a",
-                                      "--embedded", "--lead", "20"};
+                                      "--embedded", "--lead", "2000"};
   ASSERT_EQ(memory.run(live, here).code, 0);
   const std::vector<std::string> said{"stream 'a' runs on the clock of time namespace"};
   attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 1, said, elsewhere);

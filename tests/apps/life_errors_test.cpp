@@ -74,7 +74,9 @@ TEST_F(Life, ASolverThatTakesOverMayNotContradictHowALiveStreamIsSolved) {
   {
     Process solver({"solve", name(), "--freeze-ahead", "4", "--max-acceleration", "1e6,2e6",
                     "--history", "2", "--stop-time", "0.1"});
-    const Ended sent = run({"replay", file_, "--stream", name(), "--duration", "0.2"});
+    // So far ahead that a machine which stands still for a while makes no waypoint late.
+    const Ended sent =
+        run({"replay", file_, "--stream", name(), "--duration", "0.2", "--lead", "5000"});
     ASSERT_EQ(sent.code, 0) << sent.err;
     const auto live = info(name())["solver"];
     EXPECT_EQ(live["freeze_ahead_ns"], 4'000'000);
@@ -84,7 +86,7 @@ TEST_F(Life, ASolverThatTakesOverMayNotContradictHowALiveStreamIsSolved) {
     for (const char* counter : {"underruns", "deadline_misses", "late_commits", "withdrawn"}) {
       EXPECT_TRUE(live[counter].is_number()) << counter;
     }
-    EXPECT_TRUE(live["low_water_ns"].is_number());
+    EXPECT_TRUE(live.contains("low_water_ns"));  // null if one step of the solver took all
   }
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
       {{"--freeze-ahead", "5"}, "freeze-ahead in ns 4000000, not 5000000"},

@@ -205,7 +205,7 @@ TEST_F(Life, ALoopShiftsTimesByTheDurationPlusTheMedianInterval) {
 
 TEST_F(Life, ALiveStreamPlaysNowFromHaltToHalt) {
   Process solver(solve());
-  Process replaying({"replay", file_, "--stream", name(), "--duration", "1", "--lead", "300"});
+  Process replaying({"replay", file_, "--stream", name(), "--duration", "1", "--lead", "3000"});
   ipc::Reader reader(name(), core::Time(30'000'000'000));
   core::State state(reader.dimensions());
   while (reader.sample(core::Time(0), state) == ipc::SampleStatus::no_data) {
@@ -215,7 +215,7 @@ TEST_F(Life, ALiveStreamPlaysNowFromHaltToHalt) {
   EXPECT_EQ(reader.sample(core::Time(0), state), ipc::SampleStatus::holding);
   core::Time first{};
   ASSERT_TRUE(reader.first_time(first));
-  EXPECT_LT(first - now, core::Time(300'000'000));
+  EXPECT_LT(first - now, core::Time(3'000'000'000));
   ASSERT_EQ(replaying.wait().code, 0);
   ipc::Head head;
   ASSERT_TRUE(reader.head(head));

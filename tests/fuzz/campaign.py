@@ -10,8 +10,6 @@ input that did it is left in build/fuzz/found.
 """
 
 import json
-import os
-import platform
 import re
 import subprocess
 import sys
@@ -19,6 +17,9 @@ import time
 from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(PROJECT / "tests" / "campaign"))
+from page import this_machine  # noqa: E402
+
 BUILD = PROJECT / "build" / "fuzz"
 SEEDS = PROJECT / "tests" / "fuzz" / "seeds"
 REGIONS = ["reader", "writers", "roles"]
@@ -29,18 +30,12 @@ LIMITS = ["-timeout=10", "-max_len=65536", "-rss_limit_mb=2048"]
 BYTE_FLIP_SECONDS = 5
 
 
-def machine():
-    models = re.findall(r"^model name\s*: (.*)$", Path("/proc/cpuinfo").read_text(), re.MULTILINE)
-    return {"cpu": models[0] if models else platform.machine(), "cores": os.cpu_count(),
-            "kernel": platform.release()}
-
-
 def version():
     return re.search(r"VERSION (\S+)", (PROJECT / "CMakeLists.txt").read_text().split("project(")[1])[1]
 
 
 def result(attack, report, seconds, command):
-    return {"promise": PROMISE, "attack": attack, **report, "machine": machine(),
+    return {"promise": PROMISE, "attack": attack, **report, "machine": this_machine(),
             "seconds": round(seconds, 1), "command": command, "version": version()}
 
 

@@ -333,9 +333,9 @@ void LiveWorld::check_settled() {
 void LiveWorld::kill_solver() {
   ++solver_kills;
   if (happens(1000, milliseconds(1) / 2)) {
-    class Ended final : public ipc::Clock {
+    class StandingClock final : public ipc::Clock {
      public:
-      explicit Ended(Time now) : now_(now) {}
+      explicit StandingClock(Time now) : now_(now) {}
       [[nodiscard]] Time now() const noexcept override { return now_; }
 
      private:
@@ -346,7 +346,7 @@ void LiveWorld::kill_solver() {
                                      stream_.board.layout.bytes / sizeof(ipc::Word));
     const ipc::Word revision = words[at + ipc::kRevision];
     const ipc::Word tail = words[at + ipc::kTail];
-    stream_.solver.step(Ended(now_));
+    stream_.solver.step(StandingClock(now_));
     words[at + ipc::kRevision] = revision;
     words[at + ipc::kTail] = tail;
   }

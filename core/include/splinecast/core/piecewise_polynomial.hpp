@@ -59,7 +59,7 @@ class PiecewisePolynomial {
   [[nodiscard]] std::size_t segment_at(Time t) const noexcept;
 
   /// Evaluates at a time between the first and the last break. O(log n + order·D).
-  void evaluate(Time t, StateRef out) const noexcept;
+  void evaluate(Time t, const StateRef& out) const noexcept;
 
   /// Evaluates the r-th derivative, r ≥ 0, at a time between the first and the last break: D
   /// values, for r ≤ 3 those of `evaluate` to the bit. O(log n + order·D).

@@ -50,7 +50,8 @@ struct Segment {
 /// `coefficients` holds order·D values, 1 ≤ order ≤ kMaxPolynomialOrder; D is the size of each span
 /// of `out`. By Horner's rule, in the same operations everywhere: the bits depend on nothing but
 /// the arguments. O(order·D). Never throws or allocates; safe from any thread.
-void evaluate(int order, std::span<const double> coefficients, double u, StateRef out) noexcept;
+void evaluate(int order, std::span<const double> coefficients, double u,
+              const StateRef& out) noexcept;
 
 /// Evaluates the derivative-th derivative (≥ 0; 0 is the position) at u seconds after the left
 /// knot, in the operations, and hence to the bits, of `evaluate`. `out` takes D values. O(order·D).

@@ -42,7 +42,7 @@ class Reader {
   /// quaternion at unit length (core::angular_motion gives its ω and α). Wait-free: no system call,
   /// no allocation, no store to shared memory, whatever the writers do. O(D) where time advances,
   /// O(log n + D) at a jump. Where the status has no values, `out` is left as it was.
-  [[nodiscard]] SampleStatus sample(core::Time t, core::StateRef out) noexcept {
+  [[nodiscard]] SampleStatus sample(core::Time t, const core::StateRef& out) noexcept {
     return sampler_->sample(t, out);
   }
   [[nodiscard]] SampleStatus sample(core::Time t, core::State& out) noexcept {
@@ -51,7 +51,7 @@ class Reader {
 
   /// The same for a look ahead of what is settled, which does not count as executed: see
   /// Sampler::preview.
-  [[nodiscard]] SampleStatus preview(core::Time t, core::StateRef out) noexcept {
+  [[nodiscard]] SampleStatus preview(core::Time t, const core::StateRef& out) noexcept {
     return sampler_->preview(t, out);
   }
   [[nodiscard]] SampleStatus preview(core::Time t, core::State& out) noexcept {

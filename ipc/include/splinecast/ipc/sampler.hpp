@@ -56,10 +56,10 @@ class Sampler {
   /// before the latest time sampled, the next one is `revised`, once. That happens only if the
   /// solver was stopped between its last look at the clock and the commit, or if a time ahead of
   /// what is settled is sampled; use `preview` for that.
-  [[nodiscard]] SampleStatus sample(core::Time t, core::StateRef out) noexcept;
+  [[nodiscard]] SampleStatus sample(core::Time t, const core::StateRef& out) noexcept;
 
   /// The same for a look ahead: what it gives does not count as executed.
-  [[nodiscard]] SampleStatus preview(core::Time t, core::StateRef out) noexcept;
+  [[nodiscard]] SampleStatus preview(core::Time t, const core::StateRef& out) noexcept;
 
   /// The time before which what the last sample saw never changes, whatever its status.
   [[nodiscard]] core::Time settled_until() const noexcept { return head_.settled_until; }
@@ -85,13 +85,13 @@ class Sampler {
   [[nodiscard]] bool spans(const SegmentCopy& segment, core::Time t) const noexcept;
   [[nodiscard]] Word number_by_hint(core::Time t) const noexcept;
   [[nodiscard]] bool number_by_cells(core::Time t, Word& number) const noexcept;
-  void read(const SegmentCopy& segment, double u, core::StateRef out) const noexcept;
+  void read(const SegmentCopy& segment, double u, const core::StateRef& out) const noexcept;
   [[nodiscard]] SampleStatus evaluate(const SegmentCopy& segment, core::Time t,
-                                      core::StateRef out) const noexcept;
-  [[nodiscard]] SampleStatus hold_first(core::StateRef out) noexcept;
+                                      const core::StateRef& out) const noexcept;
+  [[nodiscard]] SampleStatus hold_first(const core::StateRef& out) noexcept;
   [[nodiscard]] bool see(Word r) noexcept;
   [[nodiscard]] bool copy_whole(Word number, Word r, SegmentCopy& out) const;
-  [[nodiscard]] SampleStatus from_own_copy(core::Time t, core::StateRef out) noexcept;
+  [[nodiscard]] SampleStatus from_own_copy(core::Time t, const core::StateRef& out) noexcept;
 
   const SegmentBoardReader* board_;
   StreamClock clock_;
