@@ -42,7 +42,8 @@ constexpr std::size_t kDescriptorTolerance = 4;
 struct Role {
   const char* name;
   std::deque<std::optional<Child>> processes{};
-  Flatness memory{kMemoryTolerance};
+  Flatness memory{kMemoryTolerance};    ///< its own; shared pages come as a board fills
+  Flatness mappings{kMemoryTolerance};  ///< those too
   Flatness descriptors{kDescriptorTolerance};
   ProcessUse now{};
 
@@ -52,16 +53,21 @@ struct Role {
     for (const auto& child : processes) {
       const auto use = process_use(child->pid());
       if (!use) continue;
-      now.resident_bytes = std::max(now.resident_bytes, use->resident_bytes);
+      now.private_bytes = std::max(now.private_bytes, use->private_bytes);
+      now.mapped_bytes = std::max(now.mapped_bytes, use->mapped_bytes);
       now.descriptors = std::max(now.descriptors, use->descriptors);
     }
-    memory.add(share, now.resident_bytes);
+    memory.add(share, now.private_bytes);
+    mappings.add(share, now.mapped_bytes);
     descriptors.add(share, now.descriptors);
   }
-  [[nodiscard]] bool has_grown() const { return memory.has_grown() || descriptors.has_grown(); }
+  [[nodiscard]] bool has_grown() const {
+    return memory.has_grown() || mappings.has_grown() || descriptors.has_grown();
+  }
   [[nodiscard]] json result() const {
     return {{"processes", processes.size()},
-            {"resident_bytes", {memory.first(), memory.second()}},
+            {"private_bytes", {memory.first(), memory.second()}},
+            {"mapped_bytes", {mappings.first(), mappings.second()}},
             {"descriptors", {descriptors.first(), descriptors.second()}},
             {"grown", has_grown()}};
   }
@@ -164,7 +170,7 @@ class Soak {
                                "producer MB, files", "reader MB, files"));
     }
     const auto use = [](const Role& role) {
-      return fmt::format("{:.2f} {:>6}", static_cast<double>(role.now.resident_bytes) / kMegabyte,
+      return fmt::format("{:.2f} {:>6}", static_cast<double>(role.now.private_bytes) / kMegabyte,
                          role.now.descriptors);
     };
     const json sum = counted();
@@ -240,8 +246,8 @@ std::string soak_summary(const json& found) {
     const json& of = found[name];
     return line(
         name, fmt::format("{} processes; {:.2f} then {:.2f} MB, {} then {} files{}",
-                          count(of, "processes"), of["resident_bytes"][0].get<double>() / kMegabyte,
-                          of["resident_bytes"][1].get<double>() / kMegabyte,
+                          count(of, "processes"), of["private_bytes"][0].get<double>() / kMegabyte,
+                          of["private_bytes"][1].get<double>() / kMegabyte,
                           of["descriptors"][0].get<int>(), of["descriptors"][1].get<int>(),
                           of["grown"].get<bool>() ? ": GROWN" : ""));
   };

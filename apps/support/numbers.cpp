@@ -4,7 +4,6 @@
 
 #include <charconv>
 #include <cstdint>
-#include <limits>
 
 namespace splinecast::apps {
 namespace {
@@ -17,18 +16,37 @@ struct Decimal {
   std::string_view whole;
   std::string_view fraction;
   int exponent = 0;
-
-  /// The digit that stands for 10^position; 0 where none is written.
-  [[nodiscard]] int digit(int position) const noexcept {
-    const int written = position - exponent;
-    const int from_point = static_cast<int>(whole.size()) - 1 - written;
-    if (written >= 0) {
-      return from_point >= 0 ? whole[static_cast<std::size_t>(from_point)] - '0' : 0;
-    }
-    const auto behind = static_cast<std::size_t>(-written - 1);
-    return behind < fraction.size() ? fraction[behind] - '0' : 0;
-  }
 };
+
+/// value · 10 + digit; false if that is too large.
+bool push_digit(std::int64_t& value, int digit) noexcept {
+  return !__builtin_mul_overflow(value, 10, &value) &&
+         !__builtin_add_overflow(value, digit, &value);
+}
+
+/// The nearest integer to a decimal number, halves away from zero, without its sign; nothing if it
+/// is too large.
+std::optional<std::int64_t> rounded(const Decimal& decimal) noexcept {
+  std::int64_t value = 0;
+  // The power of ten that the next digit stands for.
+  int power = static_cast<int>(decimal.whole.size()) + decimal.exponent - 1;
+  for (const std::string_view digits : {decimal.whole, decimal.fraction}) {
+    for (const char c : digits) {
+      const int digit = c - '0';
+      if (power < 0) {
+        const int carry = power == -1 && digit >= 5 ? 1 : 0;
+        if (__builtin_add_overflow(value, carry, &value)) return std::nullopt;
+        return value;
+      }
+      if (!push_digit(value, digit)) return std::nullopt;
+      --power;
+    }
+  }
+  for (; power >= 0 && value != 0; --power) {
+    if (!push_digit(value, 0)) return std::nullopt;
+  }
+  return value;
+}
 
 std::string_view take_digits(std::string_view& text) noexcept {
   std::size_t length = 0;
@@ -86,20 +104,9 @@ std::optional<core::Time> parse_time(std::string_view text, TimeUnit unit) noexc
   auto decimal = take_apart(trimmed(text));
   if (!decimal) return std::nullopt;
   decimal->exponent += static_cast<int>(unit);
-  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
-  constexpr std::int64_t kTen = 10;
-  std::int64_t value = 0;
-  const int highest = static_cast<int>(decimal->whole.size()) + decimal->exponent;
-  for (int position = highest - 1; position >= 0; --position) {
-    const int digit = decimal->digit(position);
-    if (value > (kMost - digit) / kTen) return std::nullopt;
-    value = kTen * value + digit;
-  }
-  if (decimal->digit(-1) >= 5) {  // rounds to the nearest nanosecond
-    if (value == kMost) return std::nullopt;
-    ++value;
-  }
-  return core::Time(decimal->negative ? -value : value);
+  const auto value = rounded(*decimal);
+  if (!value) return std::nullopt;
+  return core::Time(decimal->negative ? -*value : *value);
 }
 
 std::optional<double> parse_number(std::string_view text) noexcept {

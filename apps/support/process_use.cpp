@@ -21,14 +21,18 @@ constexpr double kSecondHalf = (1 + kWarmUp) / 2;
 std::optional<ProcessUse> process_use(pid_t pid) {
   const std::string folder = fmt::format("/proc/{}", pid);
   std::ifstream statm(folder + "/statm");
-  std::size_t size = 0;
+  std::size_t mapped = 0;
   std::size_t resident = 0;
-  if (!(statm >> size >> resident)) return std::nullopt;
+  std::size_t shared = 0;
+  if (!(statm >> mapped >> resident >> shared)) return std::nullopt;
   std::error_code error;
   const std::filesystem::directory_iterator files(folder + "/fd", error);
   if (error) return std::nullopt;
   const auto count = std::distance(begin(files), end(files));
-  return ProcessUse{.resident_bytes = resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)),
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  return ProcessUse{.mapped_bytes = mapped * page,
+                    .resident_bytes = resident * page,
+                    .private_bytes = (resident - std::min(shared, resident)) * page,
                     .descriptors = static_cast<std::size_t>(count)};
 }
 

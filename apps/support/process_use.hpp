@@ -11,7 +11,9 @@ namespace splinecast::apps {
 
 /// What a process has of the machine.
 struct ProcessUse {
-  std::size_t resident_bytes = 0;  ///< shared memory that it has mapped included
+  std::size_t mapped_bytes = 0;    ///< address space
+  std::size_t resident_bytes = 0;  ///< of that in memory, with what it shares with others
+  std::size_t private_bytes = 0;   ///< of that its own
   std::size_t descriptors = 0;     ///< open files
 };
 
