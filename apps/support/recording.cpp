@@ -88,14 +88,10 @@ void select_rows(WaypointTable& table, core::Time from, std::optional<core::Time
   const auto is_in = [&](core::Time t) {
     return t >= first && (!duration || t - first <= *duration);
   };
-  WaypointTable kept = table.without_rows();
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    if (is_in(table.times[i])) kept.append_row(table, i);
-  }
-  if (kept.size() == 0) {
+  table.keep_rows([&](std::size_t i) { return is_in(table.times[i]); });
+  if (table.size() == 0) {
     throw InputError(fmt::format("{}: no waypoint lies within --from and --duration", table.file));
   }
-  table = std::move(kept);
 }
 
 void change_rate(WaypointTable& table, double rate) {
@@ -120,19 +116,16 @@ core::Time median_interval(const WaypointTable& table) {
 }
 
 void drop_unfit_rows(WaypointTable& table, const ipc::IngestLimits& limits, RefusedRows* skipped) {
-  WaypointTable good = table.without_rows();
   RowCheck check(table, limits);
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    if (const auto objection = check.judge(i)) {
-      if (skipped == nullptr) throw InputError(objection->message);
-      skipped->add({.by = RefusedBy::file, .reason = objection->reason, .line = table.lines[i]},
-                   objection->message);
-      continue;
-    }
-    good.append_row(table, i);
-  }
-  if (good.size() == 0) throw InputError(fmt::format("{}: no waypoint can be sent", table.file));
-  table = std::move(good);
+  table.keep_rows([&](std::size_t i) {
+    const auto objection = check.judge(i);
+    if (!objection) return true;
+    if (skipped == nullptr) throw InputError(objection->message);
+    skipped->add({.by = RefusedBy::file, .reason = objection->reason, .line = table.lines[i]},
+                 objection->message);
+    return false;
+  });
+  if (table.size() == 0) throw InputError(fmt::format("{}: no waypoint can be sent", table.file));
 }
 
 }  // namespace splinecast::apps

@@ -289,21 +289,25 @@ core::Waypoint WaypointTable::waypoint(std::size_t i) const noexcept {
           .acceleration = row_of(accelerations, i, dimensions())};
 }
 
-WaypointTable WaypointTable::without_rows() const {
-  WaypointTable empty;
-  empty.file = file;
-  empty.names = names;
-  empty.kinds = kinds;
-  return empty;
-}
-
-void WaypointTable::append_row(const WaypointTable& from, std::size_t i) {
-  const core::Waypoint row = from.waypoint(i);
-  times.push_back(row.time);
-  lines.push_back(from.lines[i]);
-  positions.insert(positions.end(), row.position.begin(), row.position.end());
-  velocities.insert(velocities.end(), row.velocity.begin(), row.velocity.end());
-  accelerations.insert(accelerations.end(), row.acceleration.begin(), row.acceleration.end());
+void WaypointTable::keep_rows(const std::function<bool(std::size_t i)>& keeps) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (!keeps(i)) continue;
+    if (kept != i) {
+      times[kept] = times[i];
+      lines[kept] = lines[i];
+      for (auto* values : {&positions, &velocities, &accelerations}) {
+        std::ranges::copy(row_of(*values, i, dimensions()),
+                          values->begin() + static_cast<std::ptrdiff_t>(kept * dimensions()));
+      }
+    }
+    ++kept;
+  }
+  times.resize(kept);
+  lines.resize(kept);
+  for (auto* values : {&positions, &velocities, &accelerations}) {
+    if (!values->empty()) values->resize(kept * dimensions());
+  }
 }
 
 std::string WaypointTable::where(std::size_t i) const {

@@ -57,9 +57,9 @@ class WaypointTable {
             .accelerations = accelerations};
   }
 
-  /// A table of the same file and columns without rows, and row i of such a table for it.
-  [[nodiscard]] WaypointTable without_rows() const;
-  void append_row(const WaypointTable& from, std::size_t i);
+  /// Keeps the rows for which `keeps(i)` says so; it is asked about each in their order, and may
+  /// read row i then.
+  void keep_rows(const std::function<bool(std::size_t i)>& keeps);
 
   /// `file:line`, for messages.
   [[nodiscard]] std::string where(std::size_t i) const;

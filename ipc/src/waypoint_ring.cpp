@@ -33,7 +33,9 @@ bool fits(std::span<const double> values, std::size_t dimensions) noexcept {
 }  // namespace
 
 bool is_finite(std::span<const double> values) noexcept {
-  return std::ranges::all_of(values, core::is_usable);
+  bool all = true;  // each one looked at, without a branch: mostly all are
+  for (const double value : values) all = static_cast<bool>(all & core::is_usable(value));
+  return all;
 }
 
 WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLayout& layout,
@@ -219,7 +221,9 @@ void WaypointRingReader::copy(Word i, RingItem& out) const noexcept {
   out.condition = static_cast<core::ConditionKind>((kind >> kConditionShift) & kKindMask);
   out.count = static_cast<std::uint32_t>(kind >> kCountShift);
   out.time = to_time(load(words[kItemTime], std::memory_order_acquire));
-  for (std::size_t v = 0; v < out.values.size(); ++v) {
+  const bool is_bare = out.kind == ItemKind::waypoint && !out.has_velocity && !out.has_acceleration;
+  const std::size_t values = is_bare ? layout_.dimensions : out.values.size();
+  for (std::size_t v = 0; v < values; ++v) {
     out.values[v] = to_double(load(words[kItemValues + v], std::memory_order_acquire));
   }
 }

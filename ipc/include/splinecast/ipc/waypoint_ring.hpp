@@ -66,7 +66,7 @@ struct RingItem {
   core::ConditionKind condition{};  ///< of a finish
   std::uint32_t count = 0;          ///< of a replacement: waypoints that belong to it
   core::Time time{};
-  std::vector<double> values;  ///< positions, velocities, accelerations
+  std::vector<double> values;  ///< positions, velocities, accelerations: those that it has
 };
 
 /// The checks that a waypoint must pass, wherever it comes from.
