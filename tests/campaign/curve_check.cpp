@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "splinecast/core/segment.hpp"
 #include "support/output.hpp"
@@ -90,6 +91,7 @@ void CurveCheck::survey(core::Time from, core::Time to) {
     check_segment(segments[i]);
     if (i > 0) check_join(segments[i - 1], segments[i]);
   }
+  if (!segments.empty()) check_end(segments.back());
   facts_->segments += segments.size();
 }
 
@@ -143,6 +145,21 @@ void CurveCheck::check_join(const ipc::SegmentCopy& before, const ipc::SegmentCo
       differ(left_.velocity(), right_.velocity(), kVelocityRounding)) {
     found(facts_->stepped, fmt::format("segments {} and {} do not join at {}", before.number,
                                        after.number, after.left.count()));
+  }
+}
+
+/// The newest segment comes to rest, unless a recorded stream has been given another end.
+void CurveCheck::check_end(const ipc::SegmentCopy& segment) {
+  const ipc::Head& head = snapshot_.head();
+  if (segment.number != head.newest || (head.finished && !plan_->is_live())) return;
+  ++facts_->ends;
+  core::evaluate(segment.order, segment.coefficients,
+                 core::to_seconds(segment.right - segment.left), right_.ref());
+  const std::vector<double> rest(reader_->dimensions());
+  if (differ(right_.velocity(), rest, kVelocityRounding) ||
+      differ(right_.acceleration(), rest, kAccelerationRounding)) {
+    found(facts_->restless, fmt::format("the newest segment, {}, moves at its end {}",
+                                        segment.number, segment.right.count()));
   }
 }
 

@@ -23,13 +23,14 @@ class CurveCheck {
   ipc::SampleStatus peek(core::Time t);
 
   /// Copies all segments between two times: each is of one version, begins at its waypoint, joins
-  /// the one before, and is, once settled, the one that it must be.
+  /// the one before, and is, once settled, the one that it must be; the newest one ends at rest.
   void survey(core::Time from, core::Time to);
 
  private:
   void check_state(const core::State& state, core::Time t);
   void check_segment(const ipc::SegmentCopy& segment);
   void check_join(const ipc::SegmentCopy& before, const ipc::SegmentCopy& after);
+  void check_end(const ipc::SegmentCopy& segment);
   void check_reference(const ipc::SegmentCopy& segment);
   void check_steps(const apps::WatchReport& before, core::Time t);
   void found(std::atomic<std::uint64_t>& counter, const std::string& what);

@@ -117,7 +117,7 @@ Result run_every_store(const CampaignOptions& options) {
         {Step::make_ring, Step::append, Step::replace, Step::make_board, Step::publish,
          Step::publish_replacement, Step::sleep});
   measured.update(findings.killing());
-  return make_result(options, {1, 2, 5, 8},
+  return make_result(options, {1, 2, 4, 5, 8},
                      "SIGKILL before every single store of every step of producer, solver and rm",
                      findings.all_kills(), "kills", findings, measured,
                      core::to_seconds(clock.now() - begin));

@@ -26,17 +26,20 @@ void Findings::add(const Findings& other) {
     kills[role] += other.kills[role];
     recovery[role].add(other.recovery[role]);
   }
-  constexpr std::array kCounters{
-      &Findings::hangs,   &Findings::unusable,  &Findings::clean_ups, &Findings::lost,
-      &Findings::torn,    &Findings::stepped,   &Findings::changed,   &Findings::wrong,
-      &Findings::lives,   &Findings::waypoints, &Findings::refused,   &Findings::withdrawn,
-      &Findings::samples, &Findings::busy,      &Findings::segments,  &Findings::items};
+  constexpr std::array kCounters{&Findings::hangs,     &Findings::unusable, &Findings::clean_ups,
+                                 &Findings::lost,      &Findings::torn,     &Findings::stepped,
+                                 &Findings::changed,   &Findings::wrong,    &Findings::lives,
+                                 &Findings::waypoints, &Findings::refused,  &Findings::withdrawn,
+                                 &Findings::samples,   &Findings::busy,     &Findings::segments,
+                                 &Findings::items,     &Findings::restless, &Findings::ends};
   for (const auto counter : kCounters) this->*counter += other.*counter;
 }
 
 void Findings::add(const ReaderFacts& facts) {
   torn += facts.torn;
   stepped += facts.stepped;
+  restless += facts.restless;
+  ends += facts.ends;
   changed += facts.changed;
   wrong += facts.wrong;
   samples += facts.samples;
@@ -53,6 +56,7 @@ nlohmann::json Findings::found() const {
   return {{"torn reads", torn},
           {"settled samples changed", changed},
           {"steps", stepped},
+          {"curves that do not end at rest", restless},
           {"segments of another curve", wrong},
           {"waypoints lost", lost},
           {"hangs", hangs},
@@ -72,6 +76,7 @@ nlohmann::json Findings::work() const {
           {"samples", samples},
           {"busy samples", busy},
           {"segments read", segments},
+          {"ends of unfinished curves read", ends},
           {"ring items observed", items}};
 }
 

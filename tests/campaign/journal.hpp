@@ -37,6 +37,8 @@ struct ReaderFacts {
   std::atomic<std::uint64_t> items;         ///< of the ring, observed and checked
   std::atomic<std::uint64_t> torn;          ///< samples, segments or items mixed of two versions
   std::atomic<std::uint64_t> stepped;       ///< joins where the curve steps
+  std::atomic<std::uint64_t> ends;          ///< newest segments seen, behind which nothing stands
+  std::atomic<std::uint64_t> restless;      ///< those at whose end the curve moves
   std::atomic<std::uint64_t> changed;       ///< settled samples that read otherwise later
   std::atomic<std::uint64_t> wrong;         ///< settled segments that are not those they must be
 };

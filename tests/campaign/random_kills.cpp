@@ -78,7 +78,7 @@ Result run_random_kills(const CampaignOptions& options) {
   Findings findings;
   for (Victim& victim : victims) findings.add(victim.finish());
   return make_result(
-      options, {1, 2, 5, 8},
+      options, {1, 2, 4, 5, 8},
       "SIGKILL at random instants, also while starting, taking over and removing, of producers, "
       "solvers, readers and rm of two live and two recorded streams",
       findings.all_kills(), "kills", findings, findings.killing(),
