@@ -29,6 +29,7 @@ constexpr std::array kGroups = {
     "^publish/.*",
     "^(floor/ping|roundtrip/.*|iceoryx/.*)",
     "^(parse|replay)/.*",
+    "^streams:(10/idle|1000/idle|1000/busy:100Hz)/iterations",
 };
 
 /// Shows each run, and keeps it.

@@ -111,6 +111,7 @@ TEST_F(ForbiddenLimits, AFileSizeLimitIsRefusedAndNotDiedOf) {
 }
 
 TEST_F(ForbiddenLimits, ExhaustedDescriptorsAreRefusedByName) {
+  if (kSanitized) GTEST_SKIP() << "a sanitizer needs descriptors to look at memory";
   const PrivateSharedMemory memory("8m");
   int refused = 0;
   for (int descriptors = 4; descriptors < 12; ++descriptors) {
