@@ -61,7 +61,8 @@ class SoakProducer {
 
   /// To the first waypoint that may follow what stands.
   void skip_past(Time now) {
-    const bool is_late = producer_.earliest() > producer_.last_time();
+    // What was put off till later, and is due now, is sent now.
+    const bool is_late = producer_.earliest() > producer_.last_time() && next_ < now + kLead / 2;
     const Time earliest =
         producer_.continues() || sent_ > 0
             ? std::max(producer_.last_time() + interval_, is_late ? now + kCatchUp : Time::min())

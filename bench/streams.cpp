@@ -53,7 +53,10 @@ class ManyStreams {
     apps::raise_descriptor_limit();
     readers_.reserve(count);
     for (const std::string& stream : streams_) readers_.emplace_back(stream, kPatience);
-    while (!are_idle && !all_move()) apps::sleep_until(clock_.now() + milliseconds(10));
+    const Time end = clock_.now() + kPatience;  // the rows tell how many waypoints there are
+    while (!are_idle && !all_move() && clock_.now() < end) {
+      apps::sleep_until(clock_.now() + milliseconds(10));
+    }
   }
   ManyStreams(const ManyStreams&) = delete;
   ManyStreams& operator=(const ManyStreams&) = delete;
