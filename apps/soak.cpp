@@ -123,14 +123,14 @@ class Soak {
  private:
   [[nodiscard]] std::array<Role*, 3> roles() { return {&solver_, &producers_, &readers_}; }
 
-  json solve() const {
+  [[nodiscard]] json solve() const {
     const double kept = 1 + 1.2 * options_.rate;  // the history, the lead and some more
     const auto capacity = std::bit_ceil(static_cast<std::size_t>(2 * kept) + 64);
     return run_solve({.wanted = {streams_.front().substr(0, streams_.front().rfind('.')) + ".*"},
                       .solver = {.capacity = capacity},
                       .quiet = true});
   }
-  json produce(std::size_t group) const {
+  [[nodiscard]] json produce(std::size_t group) const {
     return run_soak_producers(groups_[group], options_.rate, start_);
   }
 

@@ -33,8 +33,9 @@ bool fits(std::span<const double> values, std::size_t dimensions) noexcept {
 }  // namespace
 
 bool is_finite(std::span<const double> values) noexcept {
-  bool all = true;  // each one looked at, without a branch: mostly all are
-  for (const double value : values) all = static_cast<bool>(all & core::is_usable(value));
+  // Each one is looked at: mostly all are, and so no branch is needed.
+  bool all = true;
+  for (const double value : values) all = core::is_usable(value) && all;
   return all;
 }
 
