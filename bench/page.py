@@ -148,8 +148,8 @@ def print_targets(runs):
     table(["subject", "against", "target", "median", "range", ""], rows)
     few = column(runs, "streams:10/idle", "core_percent")
     if few:
-        print(f"Ten idle streams take {number(statistics.median(few))} % of a core: that is what waking a thousand times a "
-              "second costs here, before any stream is looked at.\n")
+        print(f"Ten idle streams take {number(statistics.median(few))} % of a core: a thousand wake-ups a second, with "
+              "ten looks each.\n")
 
 
 def print_times(runs):

@@ -58,7 +58,7 @@ class WaypointTable {
   }
 
   /// Keeps the rows for which `keeps(i)` says so; it is asked about each in their order, and may
-  /// read row i then.
+  /// read row i then. If it throws, the table is of no further use.
   void keep_rows(const std::function<bool(std::size_t i)>& keeps);
 
   /// `file:line`, for messages.

@@ -63,6 +63,7 @@ SampleStatus Sampler::preview(core::Time t, const core::StateRef& out) noexcept 
     if (r == 0) return SampleStatus::no_data;
     if (r != head_.revision && !see(r)) continue;
     if (head_.newest == 0) return SampleStatus::no_data;
+    // Mostly so, and then there is nothing to look for.
     const bool is_at_hand = r == confirmed_ && spans(current(), t);
     const Found found = is_at_hand ? Found::segment : locate(t);
     if (found == Found::segment) return evaluate(current(), t, out);

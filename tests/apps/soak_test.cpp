@@ -10,9 +10,11 @@
 #include <string>
 
 #include "life.hpp"
+#include "soak.hpp"
 #include "splinecast/ipc/clock.hpp"
 #include "splinecast/ipc/names.hpp"
 #include "splinecast/ipc/producer.hpp"
+#include "support/child.hpp"
 #include "support/process_use.hpp"
 
 /// Many streams in few real processes.
@@ -96,6 +98,19 @@ TEST_F(Soak, ShowsATableAndRemovesItsStreams) {
   EXPECT_NE(ended.out.find("streams that lost one: 0"), std::string::npos) << ended.out;
   EXPECT_TRUE(std::ranges::none_of(
       ipc::stream_names(), [&](const std::string& stream) { return stream.starts_with(mine); }));
+}
+
+TEST_F(Life, AProducerOfSoakThatHasRunDryGoesOn) {
+  constexpr ipc::Word kMore = 20;
+  Process solver(solve());
+  const Child producer(
+      [this] { return run_soak_producers({name()}, 100, ipc::MonotonicClock().now()); }, true);
+  ASSERT_TRUE(await([this] { return field("solver", "interpolated") > kMore; }));
+  producer.signal(SIGSTOP);
+  ASSERT_TRUE(await([this] { return field("solver", "underruns") > 0; }));
+  const ipc::Word before = field("solver", "interpolated");
+  producer.signal(SIGCONT);
+  EXPECT_TRUE(await([&] { return field("solver", "interpolated") > before + kMore; }));
 }
 
 TEST(Flatness, GrowthOfTheSecondHalfBeyondTheToleranceIsToldAndWarmingUpIsNot) {
