@@ -178,11 +178,12 @@ PiecewisePolynomial c2_by_accelerations(const Waypoints& waypoints, const Condit
   PiecewisePolynomial curve(waypoints.dimensions);
   Segment segment(waypoints.dimensions);
   for (std::size_t i = 0; i < knots.newest(); ++i) {
-    build_segment(knots.interval(i), segment);
+    const Interval interval = knots.interval(i);
+    build_segment(interval, segment);
     if (segment.order == kCubicOrder) {
       write_cubic_part(system.at(i), system.at(i + 1), system.h(i), segment);
     }
-    write_acceleration_step(knots, i, false, segment.acceleration_step);
+    write_acceleration_step(knots, i, interval, false, segment.acceleration_step);
     curve.append(segment);
   }
   return curve;

@@ -1,19 +1,12 @@
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-
 namespace splinecast::core {
 
-/// What `back_substitute` does, in line: v = g − γ v_after for n dimensions; v overlaps neither.
-inline void back_substitute_row(double gamma, const double* __restrict g,
-                                const double* __restrict v_after, double* __restrict v,
-                                std::size_t n) noexcept {
-  if (gamma == 0) {
-    std::copy_n(g, n, v);  // −0 would else depend on the sign of v_after
-    return;
-  }
-  for (std::size_t d = 0; d < n; ++d) v[d] = g[d] - gamma * v_after[d];
+/// What `back_substitute` does to one dimension or several: g − γ v_after.
+template <typename Lane>
+[[nodiscard, gnu::always_inline]] inline Lane back_substituted(double gamma, Lane g,
+                                                               Lane v_after) noexcept {
+  return gamma == 0 ? g : g - gamma * v_after;  // −0 would else depend on the sign of v_after
 }
 
 }  // namespace splinecast::core

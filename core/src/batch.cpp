@@ -73,8 +73,9 @@ PiecewisePolynomial curve_of(const KnotRing& knots) {
   PiecewisePolynomial curve(knots.dimensions());
   Segment segment(knots.dimensions());
   for (std::size_t i = 0; i < knots.newest(); ++i) {
-    build_segment(knots.interval(i), segment);
-    write_acceleration_step(knots, i, false, segment.acceleration_step);
+    const Interval interval = knots.interval(i);
+    build_segment(interval, segment);
+    write_acceleration_step(knots, i, interval, false, segment.acceleration_step);
     curve.append(segment);
   }
   return curve;

@@ -4,8 +4,10 @@
 #include <array>
 #include <bit>
 
+#include "dimension_lanes.hpp"
 #include "smoothing_system.hpp"
 #include "splinecast/core/state.hpp"
+#include "vector_clones.hpp"
 
 namespace splinecast::core {
 namespace {
@@ -19,12 +21,15 @@ std::size_t values_kept(const Method& method) noexcept {
 
 }  // namespace
 
+SPLINECAST_VECTOR_CLONES
 void write_chord(std::span<const double> from, std::span<const double> to, double h,
                  std::span<double> slope) noexcept {
-  const double* __restrict const x0 = from.data();
-  const double* __restrict const x1 = to.data();
-  double* __restrict const m = slope.data();
-  for (std::size_t d = 0; d < slope.size(); ++d) m[d] = (x1[d] - x0[d]) / h;
+  for_lanes(slope.size(), [&](auto lane, std::size_t first) {
+    using Lane = typename decltype(lane)::type;
+    const auto x0 = load_lane<Lane>(from.data() + first);
+    const auto x1 = load_lane<Lane>(to.data() + first);
+    store_lane<Lane>(slope.data() + first, (x1 - x0) / h);
+  });
 }
 
 KnotRing::KnotRing(std::size_t dimensions, std::size_t capacity, const Method& method,
@@ -34,9 +39,9 @@ KnotRing::KnotRing(std::size_t dimensions, std::size_t capacity, const Method& m
       has_accelerations_(method.needs_acceleration()),
       halts_at_start_(halts_at_start),
       mask_(std::bit_ceil(capacity) - 1),
-      values_per_knot_(values_kept(method)),
+      knot_stride_(values_kept(method) * dimensions),
       rows_(mask_ + 1),
-      values_((mask_ + 1) * values_per_knot_ * dimensions) {}
+      values_((mask_ + 1) * knot_stride_) {}
 
 Neighbours KnotRing::neighbours(std::size_t i) const noexcept {
   return {.h_before = row(i - 1).h,
@@ -113,39 +118,11 @@ void KnotRing::restore(std::size_t first, std::span<const Knot> knots) noexcept 
   size_ = first + knots.size();
 }
 
-Knot KnotRing::knot(std::size_t i) const noexcept {
-  Knot knot{.time = row(i).time,
-            .prefix = row(i).prefix,
-            .newer_knots = row(i).newer_knots,
-            .waypoint = values(i, kWaypoint),
-            .g = values(i, kG),
-            .position = position(i),
-            .velocity = values(i, kVelocity),
-            .acceleration = {},
-            .residual = {}};
-  if (has_accelerations_) knot.acceleration = values(i, kAcceleration);
-  if (smooths_) knot.residual = values(i, kResidual);
-  return knot;
-}
-
-Interval KnotRing::interval(std::size_t i) const noexcept {
-  Interval interval{.left = row(i).time,
-                    .right = row(i + 1).time,
-                    .h = row(i).h,
-                    .x0 = position(i),
-                    .chord = chord(i),
-                    .v0 = values(i, kVelocity),
-                    .v1 = values(i + 1, kVelocity),
-                    .a0 = {},
-                    .a1 = {}};
-  if (has_accelerations_) {
-    interval.a0 = values(i, kAcceleration);
-    interval.a1 = values(i + 1, kAcceleration);
-  }
+/// At rest at both ends of a curve that halts there, whatever the knot velocities say.
+void KnotRing::halt(std::size_t i, Interval& interval) const noexcept {
   const auto zeros = std::span(kZeros).first(dimensions_);
   if (halts_at_start_ && i == 0) interval.a0 = zeros;
   if (halts_at_end_ && i + 1 == newest()) interval.a1 = zeros;
-  return interval;
 }
 
 void KnotRing::write_final_acceleration(std::span<double> acceleration) const noexcept {
@@ -158,17 +135,17 @@ void KnotRing::write_final_acceleration(std::span<double> acceleration) const no
   }
 }
 
-void write_acceleration_step(const KnotRing& knots, std::size_t i, bool held_before,
-                             std::span<double> step) noexcept {
+void write_acceleration_step(const KnotRing& knots, std::size_t i, const Interval& interval,
+                             bool held_before, std::span<double> step) noexcept {
   if (i == 0 && !held_before) {
     std::ranges::fill(step, 0.0);
     return;
   }
-  write_left_acceleration(knots.interval(i), step);
-  if (i == 0) return;
-  std::array<double, kMaxDimensions> before{};
-  write_right_acceleration(knots.interval(i - 1), std::span(before).first(step.size()));
-  for (std::size_t d = 0; d < step.size(); ++d) step[d] -= before[d];
+  if (i == 0) {
+    write_left_acceleration(interval, step);
+  } else {
+    write_acceleration_jump(knots.interval(i - 1), interval, step);
+  }
 }
 
 }  // namespace splinecast::core

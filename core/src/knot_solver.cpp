@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "back_substitution.hpp"
+#include "dimension_lanes.hpp"
 #include "knot_solvers.hpp"
+#include "vector_clones.hpp"
 
 namespace splinecast::core {
 
@@ -32,13 +34,28 @@ void solve_lone_knot(KnotRing& knots, const Condition& start) noexcept {
   }
 }
 
+SPLINECAST_VECTOR_CLONES
 void back_substitute_to(KnotRing& knots, std::size_t last) noexcept {
-  const double* v_after = knots.values(knots.newest(), KnotRing::kVelocity).data();
-  for (std::size_t i = knots.newest(); i-- > last;) {
-    double* const v = knots.values(i, KnotRing::kVelocity).data();
-    back_substitute_row(knots.row(i).prefix.gamma, knots.values(i, KnotRing::kG).data(), v_after, v,
-                        knots.dimensions());
-    v_after = v;
+  const std::size_t stride = knots.stride();
+  for (std::size_t after = knots.newest(); after > last;) {
+    const std::size_t count = std::min(after - last, knots.contiguous(after - 1));
+    const KnotRing::Row* const row = &knots.row(after - 1);
+    const double* const g = knots.values(after - 1, KnotRing::kG).data();
+    double* const velocity = knots.values(after - 1, KnotRing::kVelocity).data();
+    const double* const v_after = knots.values(after, KnotRing::kVelocity).data();
+    // Dimensions outside, so that the velocity of the row before stays in a register.
+    for_lanes(knots.dimensions(), [&](auto lane, std::size_t first) {
+      using Lane = typename decltype(lane)::type;
+      auto v = load_lane<Lane>(v_after + first);
+      const KnotRing::Row* at = row;
+      const double* g_at = g + first;
+      double* v_at = velocity + first;
+      for (std::size_t k = 0; k < count; ++k, --at, g_at -= stride, v_at -= stride) {
+        v = back_substituted(at->prefix.gamma, load_lane<Lane>(g_at), v);
+        store_lane<Lane>(v_at, v);
+      }
+    });
+    after -= count;
   }
 }
 

@@ -62,7 +62,10 @@ Time move_time_within(std::span<const double> limits, Time least,
 }
 
 double peak_acceleration(const Segment& segment, std::size_t dimensions, std::size_t d) noexcept {
-  const auto c = [&](std::size_t power) { return segment.coefficients[power * dimensions + d]; };
+  const auto c = [&](std::size_t power) {
+    const bool stands = power < static_cast<std::size_t>(segment.order);
+    return stands ? segment.coefficients[power * dimensions + d] : 0.0;
+  };
   const auto acceleration = [&](double u) {
     return std::abs(2 * c(2) + u * (6 * c(3) + u * (12 * c(4) + u * 20 * c(5))));
   };

@@ -4,33 +4,45 @@
 #include <array>
 #include <type_traits>
 
+#include "dimension_lanes.hpp"
+#include "vector_clones.hpp"
+
 namespace splinecast::core {
 namespace {
 
 /// Horner's rule for a polynomial and its first three derivatives at once. `Order` is an int, or an
 /// integral_constant, for which the loop over powers is unrolled.
 template <typename Order>
-void evaluate_order(Order order, std::size_t dimensions, const double* __restrict c, double u,
-                    double* __restrict p, double* __restrict v, double* __restrict a,
-                    double* __restrict j) noexcept {
+[[gnu::always_inline]] inline void evaluate_order(Order order, std::size_t dimensions,
+                                                  const double* coefficients, double u,
+                                                  const StateRef& out) noexcept {
   const int top = order - 1;
-  for (std::size_t d = 0; d < dimensions; ++d) {
-    double position = c[static_cast<std::size_t>(top) * dimensions + d];
-    double velocity = top >= 1 ? top * position : 0;
-    double acceleration = top >= 2 ? top * (top - 1) * position : 0;
-    double jerk = top >= 3 ? top * (top - 1) * (top - 2) * position : 0;
+  double* const position_out = out.position.data();
+  double* const velocity_out = out.velocity.data();
+  double* const acceleration_out = out.acceleration.data();
+  double* const jerk_out = out.jerk.data();
+  for_overlapping_lanes(dimensions, [&](auto lane, std::size_t first) {
+    using Lane = typename decltype(lane)::type;
+    const auto coefficient = [&](int power) __attribute__((always_inline)) {
+      return load_lane<Lane>(coefficients + static_cast<std::size_t>(power) * dimensions + first);
+    };
+    const auto factor = [](int product) { return static_cast<double>(product); };
+    Lane position = coefficient(top);
+    Lane velocity = factor(top >= 1 ? top : 0) * position;
+    Lane acceleration = factor(top >= 2 ? top * (top - 1) : 0) * position;
+    Lane jerk = factor(top >= 3 ? top * (top - 1) * (top - 2) : 0) * position;
     for (int power = top - 1; power >= 0; --power) {
-      const double coefficient = c[static_cast<std::size_t>(power) * dimensions + d];
-      position = position * u + coefficient;
-      if (power >= 1) velocity = velocity * u + power * coefficient;
-      if (power >= 2) acceleration = acceleration * u + power * (power - 1) * coefficient;
-      if (power >= 3) jerk = jerk * u + power * (power - 1) * (power - 2) * coefficient;
+      const Lane c = coefficient(power);
+      position = position * u + c;
+      if (power >= 1) velocity = velocity * u + factor(power) * c;
+      if (power >= 2) acceleration = acceleration * u + factor(power * (power - 1)) * c;
+      if (power >= 3) jerk = jerk * u + factor(power * (power - 1) * (power - 2)) * c;
     }
-    p[d] = position;
-    v[d] = velocity;
-    a[d] = acceleration;
-    j[d] = jerk;
-  }
+    store_lane(position_out + first, position);
+    store_lane(velocity_out + first, velocity);
+    store_lane(acceleration_out + first, acceleration);
+    store_lane(jerk_out + first, jerk);
+  });
 }
 
 /// The row of coefficients of one power.
@@ -38,19 +50,21 @@ std::span<double> power_of(Segment& segment, std::size_t power, std::size_t dime
   return std::span<double>(segment.coefficients).subspan(power * dimensions, dimensions);
 }
 
-void write_cubic(const Interval& i, Segment& out) noexcept {
+[[gnu::always_inline]] inline void write_cubic(const Interval& i, double* coefficients) noexcept {
   const std::size_t dimensions = i.x0.size();
   const double per_h = 1 / i.h;
   const double per_h2 = per_h * per_h;
-  const double* __restrict const m = i.chord.data();
-  const double* __restrict const v0 = i.v0.data();
-  const double* __restrict const v1 = i.v1.data();
-  double* __restrict const c2 = power_of(out, 2, dimensions).data();
-  double* __restrict const c3 = power_of(out, 3, dimensions).data();
-  for (std::size_t d = 0; d < dimensions; ++d) {
-    c2[d] = (3 * m[d] - 2 * v0[d] - v1[d]) * per_h;
-    c3[d] = (v0[d] + v1[d] - 2 * m[d]) * per_h2;
-  }
+  double* const c = coefficients;
+  for_overlapping_lanes(dimensions, [&](auto lane, std::size_t first) {
+    using Lane = typename decltype(lane)::type;
+    const auto m = load_lane<Lane>(i.chord.data() + first);
+    const auto v0 = load_lane<Lane>(i.v0.data() + first);
+    const auto v1 = load_lane<Lane>(i.v1.data() + first);
+    store_lane(c + first, load_lane<Lane>(i.x0.data() + first));
+    store_lane(c + dimensions + first, v0);
+    store_lane<Lane>(c + 2 * dimensions + first, (3.0 * m - 2.0 * v0 - v1) * per_h);
+    store_lane<Lane>(c + 3 * dimensions + first, (v0 + v1 - 2.0 * m) * per_h2);
+  });
 }
 
 /// The quintic with position, velocity and acceleration given at both ends; c0 and c1 stand.
@@ -83,18 +97,17 @@ void write_quintic(const Interval& i, Segment& out) noexcept {
 
 }  // namespace
 
+SPLINECAST_VECTOR_CLONES
 void evaluate(int order, std::span<const double> coefficients, double u,
               const StateRef& out) noexcept {
-  const auto evaluate_as = [&](auto any_order) {
-    evaluate_order(any_order, out.position.size(), coefficients.data(), u, out.position.data(),
-                   out.velocity.data(), out.acceleration.data(), out.jerk.data());
-  };
+  const std::size_t dimensions = out.position.size();
+  const double* const c = coefficients.data();
   if (order == kCubicOrder) {
-    evaluate_as(std::integral_constant<int, kCubicOrder>{});
+    evaluate_order(std::integral_constant<int, kCubicOrder>{}, dimensions, c, u, out);
   } else if (order == kMaxOrder) {
-    evaluate_as(std::integral_constant<int, kMaxOrder>{});
+    evaluate_order(std::integral_constant<int, kMaxOrder>{}, dimensions, c, u, out);
   } else {
-    evaluate_as(order);
+    evaluate_order(order, dimensions, c, u, out);
   }
 }
 
@@ -112,49 +125,83 @@ void evaluate_derivative(int order, std::span<const double> coefficients, double
   }
 }
 
+namespace {
+
+/// The one-sided accelerations of the cubic between two knots, with chord slope m.
+template <typename Lane>
+[[gnu::always_inline]] inline Lane left_acceleration(const Interval& i, std::size_t d) noexcept {
+  const auto m = load_lane<Lane>(i.chord.data() + d);
+  const auto v0 = load_lane<Lane>(i.v0.data() + d);
+  const auto v1 = load_lane<Lane>(i.v1.data() + d);
+  return (6.0 * m - 4.0 * v0 - 2.0 * v1) / i.h;
+}
+template <typename Lane>
+[[gnu::always_inline]] inline Lane right_acceleration(const Interval& i, std::size_t d) noexcept {
+  const auto m = load_lane<Lane>(i.chord.data() + d);
+  const auto v0 = load_lane<Lane>(i.v0.data() + d);
+  const auto v1 = load_lane<Lane>(i.v1.data() + d);
+  return (2.0 * v0 + 4.0 * v1 - 6.0 * m) / i.h;
+}
+
+}  // namespace
+
+SPLINECAST_VECTOR_CLONES
 void write_left_acceleration(const Interval& interval, std::span<double> out) noexcept {
   if (!interval.a0.empty()) {
     std::ranges::copy(interval.a0, out.begin());
     return;
   }
-  const double h = interval.h;
-  const double* __restrict const m = interval.chord.data();
-  const double* __restrict const v0 = interval.v0.data();
-  const double* __restrict const v1 = interval.v1.data();
-  double* __restrict const a = out.data();
-  for (std::size_t d = 0; d < out.size(); ++d) a[d] = (6 * m[d] - 4 * v0[d] - 2 * v1[d]) / h;
+  for_lanes(out.size(), [&](auto lane, std::size_t first) {
+    using Lane = typename decltype(lane)::type;
+    store_lane<Lane>(out.data() + first, left_acceleration<Lane>(interval, first));
+  });
 }
 
+SPLINECAST_VECTOR_CLONES
 void write_right_acceleration(const Interval& interval, std::span<double> out) noexcept {
   if (!interval.a1.empty()) {
     std::ranges::copy(interval.a1, out.begin());
     return;
   }
-  const double h = interval.h;
-  const double* __restrict const m = interval.chord.data();
-  const double* __restrict const v0 = interval.v0.data();
-  const double* __restrict const v1 = interval.v1.data();
-  double* __restrict const a = out.data();
-  for (std::size_t d = 0; d < out.size(); ++d) a[d] = (2 * v0[d] + 4 * v1[d] - 6 * m[d]) / h;
+  for_lanes(out.size(), [&](auto lane, std::size_t first) {
+    using Lane = typename decltype(lane)::type;
+    store_lane<Lane>(out.data() + first, right_acceleration<Lane>(interval, first));
+  });
 }
 
+SPLINECAST_VECTOR_CLONES
+void write_acceleration_jump(const Interval& before, const Interval& after,
+                             std::span<double> out) noexcept {
+  const double* const given_before = before.a1.empty() ? nullptr : before.a1.data();
+  const double* const given_after = after.a0.empty() ? nullptr : after.a0.data();
+  for_overlapping_lanes(out.size(), [&](auto lane, std::size_t first) {
+    using Lane = typename decltype(lane)::type;
+    const Lane left = given_before != nullptr ? load_lane<Lane>(given_before + first)
+                                              : right_acceleration<Lane>(before, first);
+    const Lane right = given_after != nullptr ? load_lane<Lane>(given_after + first)
+                                              : left_acceleration<Lane>(after, first);
+    store_lane<Lane>(out.data() + first, right - left);
+  });
+}
+
+SPLINECAST_VECTOR_CLONES
 void build_segment(const Interval& interval, Segment& out) noexcept {
-  const std::size_t dimensions = interval.x0.size();
   out.left = interval.left;
   out.right = interval.right;
   out.kind = SegmentKind::spline;
-  std::ranges::copy(interval.x0, power_of(out, 0, dimensions).begin());
-  std::ranges::copy(interval.v0, power_of(out, 1, dimensions).begin());
   if (interval.a0.empty() && interval.a1.empty()) {
     out.order = kCubicOrder;
-    write_cubic(interval, out);
-    std::ranges::fill(std::span(out.coefficients).subspan(kCubicOrder * dimensions), 0.0);
+    write_cubic(interval, out.coefficients.data());
   } else {
     out.order = kMaxOrder;
+    const std::size_t dimensions = interval.x0.size();
+    std::ranges::copy(interval.x0, power_of(out, 0, dimensions).begin());
+    std::ranges::copy(interval.v0, power_of(out, 1, dimensions).begin());
     write_quintic(interval, out);
   }
 }
 
+SPLINECAST_VECTOR_CLONES
 void build_stop_tail(Time from, Time stop_time, std::span<const double> position,
                      std::span<const double> velocity, std::span<const double> acceleration,
                      Segment& out) noexcept {
@@ -164,19 +211,20 @@ void build_stop_tail(Time from, Time stop_time, std::span<const double> position
   out.right = from + stop_time;
   out.order = kMaxOrder;
   out.kind = SegmentKind::stop_tail;
-  std::ranges::copy(position, power_of(out, 0, dimensions).begin());
-  std::ranges::copy(velocity, power_of(out, 1, dimensions).begin());
-  const auto c2 = power_of(out, 2, dimensions);
-  const auto c3 = power_of(out, 3, dimensions);
-  const auto c4 = power_of(out, 4, dimensions);
-  for (std::size_t d = 0; d < dimensions; ++d) {
-    const double jerk_scale = velocity[d] / (rest_after * rest_after);
-    const double snap_scale = acceleration[d] / rest_after;
-    c2[d] = acceleration[d] / 2;
-    c3[d] = -jerk_scale - 2 * snap_scale / 3;
-    c4[d] = (2 * jerk_scale + snap_scale) / (4 * rest_after);
-  }
-  std::ranges::fill(power_of(out, 5, dimensions), 0.0);
+  for_overlapping_lanes(dimensions, [&](auto lane, std::size_t first) {
+    using Lane = typename decltype(lane)::type;
+    const auto v = load_lane<Lane>(velocity.data() + first);
+    const auto a = load_lane<Lane>(acceleration.data() + first);
+    const Lane jerk_scale = v / (rest_after * rest_after);
+    const Lane snap_scale = a / rest_after;
+    double* const c = out.coefficients.data() + first;
+    store_lane(c, load_lane<Lane>(position.data() + first));
+    store_lane(c + dimensions, v);
+    store_lane<Lane>(c + 2 * dimensions, a / 2.0);
+    store_lane<Lane>(c + 3 * dimensions, -jerk_scale - 2.0 * snap_scale / 3.0);
+    store_lane<Lane>(c + 4 * dimensions, (2.0 * jerk_scale + snap_scale) / (4 * rest_after));
+    store_lane<Lane>(c + 5 * dimensions, Lane{});
+  });
 }
 
 void build_hold(Time from, Time to, std::span<const double> position, Segment& out) noexcept {
@@ -184,8 +232,9 @@ void build_hold(Time from, Time to, std::span<const double> position, Segment& o
   out.right = to;
   out.order = kCubicOrder;
   out.kind = SegmentKind::hold;
-  std::ranges::fill(out.coefficients, 0.0);
-  std::ranges::copy(position, power_of(out, 0, position.size()).begin());
+  const auto powers = std::span(out.coefficients).first(kCubicOrder * position.size());
+  std::ranges::fill(powers, 0.0);
+  std::ranges::copy(position, powers.begin());
 }
 
 }  // namespace splinecast::core

@@ -112,10 +112,6 @@ std::size_t SlidingWindow::oldest_segment() const noexcept {
   return is_entered_ && oldest > 0 ? oldest + 1 : oldest;
 }
 
-std::size_t SlidingWindow::newer_knots_seen(std::size_t i) const noexcept {
-  return knots_.row(i).newer_knots;
-}
-
 bool SlidingWindow::takes(const Waypoint& waypoint) const noexcept {
   const Method& method = *options_.interpolant.method;
   return (!method.needs_velocity() || !waypoint.velocity.empty()) &&
@@ -330,8 +326,9 @@ void SlidingWindow::segment(std::size_t i, Segment& out) const noexcept {
                     from.velocity, from.acceleration, out);
     std::ranges::fill(out.acceleration_step, 0.0);
   } else if (*left < knots_.newest()) {
-    build_segment(knots_.interval(*left), out);
-    write_step(*left, out);
+    const Interval interval = knots_.interval(*left);
+    build_segment(interval, out);
+    write_step(*left, interval, out);
   } else if (finished_) {
     build_hold(knots_.row(*left).time, knots_.row(*left).time, knots_.position(*left), out);
     std::ranges::fill(out.acceleration_step, 0.0);
@@ -342,12 +339,13 @@ void SlidingWindow::segment(std::size_t i, Segment& out) const noexcept {
 }
 
 /// The acceleration step at knot i, at which an interval begins.
-void SlidingWindow::write_step(std::size_t i, Segment& out) const noexcept {
+void SlidingWindow::write_step(std::size_t i, const Interval& interval,
+                               Segment& out) const noexcept {
   if (i > 0 || !is_entered_) {
-    write_acceleration_step(knots_, i, options_.held_before_start, out.acceleration_step);
+    write_acceleration_step(knots_, i, interval, options_.held_before_start, out.acceleration_step);
     return;
   }
-  write_left_acceleration(knots_.interval(0), out.acceleration_step);
+  write_left_acceleration(interval, out.acceleration_step);
   for (std::size_t d = 0; d < dimensions(); ++d) {
     out.acceleration_step[d] -= entry_.acceleration()[d];
   }

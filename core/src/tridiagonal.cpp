@@ -4,7 +4,9 @@
 #include <cstddef>
 
 #include "back_substitution.hpp"
+#include "dimension_lanes.hpp"
 #include "splinecast/core/slope_rule.hpp"
+#include "vector_clones.hpp"
 
 namespace splinecast::core {
 namespace {
@@ -74,19 +76,20 @@ double eliminate_first(const Condition& start, const EndIntervals& at,
   return row.inner / row.outer;
 }
 
+SPLINECAST_VECTOR_CLONES
 double eliminate_interior(const Neighbours& neighbours, double gamma_before,
                           std::span<const double> g_before, std::span<double> g) noexcept {
   const double before = neighbours.h_before;
   const double after = neighbours.h_after;
   const double pivot = 2 * (before + after) - after * gamma_before;
-  const double* __restrict const m_before = neighbours.chord_before.data();
-  const double* __restrict const m_after = neighbours.chord_after.data();
-  const double* __restrict const g_last = g_before.data();
-  double* __restrict const g_out = g.data();
-  for (std::size_t d = 0; d < g.size(); ++d) {
-    const double right_side = 3 * (after * m_before[d] + before * m_after[d]);
-    g_out[d] = (right_side - after * g_last[d]) / pivot;
-  }
+  for_lanes(g.size(), [&](auto lane, std::size_t first) {
+    using Lane = typename decltype(lane)::type;
+    const auto m_before = load_lane<Lane>(neighbours.chord_before.data() + first);
+    const auto m_after = load_lane<Lane>(neighbours.chord_after.data() + first);
+    const auto g_last = load_lane<Lane>(g_before.data() + first);
+    const Lane right_side = 3.0 * (after * m_before + before * m_after);
+    store_lane<Lane>(g.data() + first, (right_side - after * g_last) / pivot);
+  });
   return before / pivot;
 }
 
@@ -122,7 +125,7 @@ void solve_tail(Tail tail, const EndIntervals& at, double gamma_before,
 
 void back_substitute(double gamma, std::span<const double> g, std::span<const double> v_after,
                      std::span<double> v) noexcept {
-  back_substitute_row(gamma, g.data(), v_after.data(), v.data(), v.size());
+  for (std::size_t d = 0; d < v.size(); ++d) v[d] = back_substituted(gamma, g[d], v_after[d]);
 }
 
 }  // namespace splinecast::core

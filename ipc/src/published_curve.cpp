@@ -218,25 +218,19 @@ void PublishedCurve::write_segment(std::size_t i) noexcept {
   window_.segment(i, segment_);
   note_change(segment_.left);
   const auto left = window_.left_knot(i);
-  core::Knot knot{};
-  if (left) {
-    knot = window_.knot(*left);
-  } else {
-    std::ranges::copy(entry_step_, segment_.acceleration_step.begin());
-    knot.g = window_.entry().acceleration();
-    knot.newer_knots = window_.newer_knots_seen_by_entry();
-  }
-  board_->write(number_of(i), segment_, knot, origin_of(i));
-}
-
-SegmentOrigin PublishedCurve::origin_of(std::size_t segment) const noexcept {
-  const auto left = window_.left_knot(segment);
   const std::size_t right = left ? *left + 1 : 0;
-  if (right >= window_.knots()) return {};
-  SegmentOrigin origin{
-      .right_newer_knots = static_cast<std::uint32_t>(window_.newer_knots_seen(right)), .item = {}};
-  if (!left) origin.item = run_item_;
-  return origin;
+  SegmentOrigin origin{};
+  if (right < window_.knots()) origin.right_newer_knots = window_.newer_knots_seen(right);
+  if (left) {
+    board_->write(number_of(i), segment_, window_.knot(*left), origin);
+    return;
+  }
+  if (right < window_.knots()) origin.item = run_item_;
+  std::ranges::copy(entry_step_, segment_.acceleration_step.begin());
+  core::Knot knot{};
+  knot.g = window_.entry().acceleration();
+  knot.newer_knots = window_.newer_knots_seen_by_entry();
+  board_->write(number_of(i), segment_, knot, origin);
 }
 
 /// Writes a segment behind the newest one, which the window knows nothing of.

@@ -57,15 +57,23 @@ bool Sampler::see(Word r) noexcept {
 }
 
 SampleStatus Sampler::preview(core::Time t, const core::StateRef& out) noexcept {
+  if (board_->retired()) return SampleStatus::retired;
+  // Mostly nothing has been published since, and t lies in the segment used last.
+  const bool is_at_hand =
+      board_->revision() == confirmed_ && t >= at_hand_.left && t < at_hand_.right;
+  if (!is_at_hand) return look_up(t, out);
+  read(current(), seconds_after(at_hand_.left, t), out);
+  return t < at_hand_.settled_until ? SampleStatus::settled : SampleStatus::provisional;
+}
+
+SampleStatus Sampler::look_up(core::Time t, const core::StateRef& out) noexcept {
   for (int attempt = 0; attempt < kTries; ++attempt) {
     if (board_->retired()) return SampleStatus::retired;
     const Word r = board_->revision();
     if (r == 0) return SampleStatus::no_data;
     if (r != head_.revision && !see(r)) continue;
     if (head_.newest == 0) return SampleStatus::no_data;
-    // Mostly so, and then there is nothing to look for.
-    const bool is_at_hand = r == confirmed_ && spans(current(), t);
-    const Found found = is_at_hand ? Found::segment : locate(t);
+    const Found found = locate(t);
     if (found == Found::segment) return evaluate(current(), t, out);
     if (found == Found::before_first) {
       const bool holds = clock_ == StreamClock::monotonic && head_.first == 1;
@@ -113,6 +121,11 @@ bool Sampler::is_confirmed(Word r) noexcept {
 void Sampler::confirm() noexcept {
   confirmed_ = head_.revision;
   copied_settled_until_ = head_.settled_until;
+  const SegmentCopy& own = current();
+  const bool moves = own.kind == core::SegmentKind::spline || own.kind == core::SegmentKind::splice;
+  at_hand_ = {.left = own.left,
+              .right = moves ? own.right : own.left,
+              .settled_until = head_.finished ? core::Time::max() : head_.settled_until};
 }
 
 /// Makes segment `number` the current copy; keeps the one before if that fails.
@@ -129,16 +142,50 @@ bool Sampler::spans(const SegmentCopy& segment, core::Time t) const noexcept {
   return t >= segment.left && (t < segment.right || segment.number == head_.newest);
 }
 
+/// Where a time would lie if the knots came at an even pace: a segment of the head.
+Word Sampler::guess_by_pace(core::Time t) const noexcept {
+  const core::Time oldest = board_->left_hint(head_.first);
+  const double share =
+      seconds_after(oldest, t) / seconds_after(oldest, board_->left_hint(head_.newest));
+  const auto intervals = static_cast<double>(head_.newest - head_.first);
+  // Written so that what is no number, or not on the board, becomes an end of it.
+  if (!(share > 0)) return head_.first;
+  return share < 1 ? head_.first + static_cast<Word>(share * intervals) : head_.newest;
+}
+
 /// The last segment whose left end is at or before t, by the packed times; 0 if t is before all.
+/// From the guess in steps that double, then by halves: a look or two at an even pace, and never
+/// more than 2 log n.
 Word Sampler::number_by_hint(core::Time t) const noexcept {
   Word low = head_.first;
   Word high = head_.newest + 1;
+  const auto is_behind = [&](Word number) { return board_->left_hint(number) > t; };
+  const Word guess = guess_by_pace(t);
+  if (is_behind(guess)) {
+    high = guess;
+    for (Word step = 1; step <= high - low; step *= 2) {
+      if (!is_behind(high - step)) {
+        low = high - step + 1;
+        break;
+      }
+      high -= step;
+    }
+  } else {
+    low = guess + 1;
+    for (Word step = 1; step <= high - low; step *= 2) {
+      if (is_behind(low + step - 1)) {
+        high = low + step - 1;
+        break;
+      }
+      low += step;
+    }
+  }
   while (low < high) {
     const Word middle = low + (high - low) / 2;
-    if (board_->left_hint(middle) <= t) {
-      low = middle + 1;
-    } else {
+    if (is_behind(middle)) {
       high = middle;
+    } else {
+      low = middle + 1;
     }
   }
   return low == head_.first ? 0 : low - 1;

@@ -29,20 +29,23 @@ constexpr std::size_t kPrefixAfter = kResidualVector + 1;
 
 std::size_t control_words() noexcept { return kControlLines * kSeparation / sizeof(Word); }
 
-void put_values(Word* words, std::span<const double> values) noexcept {
-  for (const double value : values) put(*words++, to_word(value));
-}
-
-/// Largest magnitude of a coefficient. Values within ±core::kLargestValue at the shortest intervals
-/// make none so large, and within it no polynomial of ours leaves the range of a double.
-constexpr double kLargestCoefficient = 1e200;
+/// Largest sum of magnitudes of a segment's coefficients. Values within ±core::kLargestValue at the
+/// shortest intervals make none so large, and within it no polynomial of ours leaves the range of a
+/// double.
+constexpr double kLargestSum = 1e200;
 
 /// Whether a segment is one that a solver could have made: what is evaluated of it are numbers.
 bool is_sound(const SegmentCopy& segment, std::size_t values) noexcept {
-  bool are_numbers = true;  // all are looked at, so that the loop vectorises
-  for (std::size_t i = 0; i < values; ++i) {
-    are_numbers &= std::abs(segment.coefficients[i]) <= kLargestCoefficient;
+  // A sum is no less than the largest of them, and no number if one of them is none. Four sums, for
+  // vectors; orders are even, so that no more than two coefficients are left.
+  const double* const c = segment.coefficients.data();
+  std::array<double, 4> sums{};
+  std::size_t i = 0;
+  for (; i + 4 <= values; i += 4) {
+    for (std::size_t k = 0; k < 4; ++k) sums[k] += std::abs(c[i + k]);
   }
+  for (; i < values; ++i) sums[0] += std::abs(c[i]);
+  const bool are_numbers = sums[0] + sums[1] + (sums[2] + sums[3]) <= kLargestSum;
   const Word length = to_word(segment.right) - to_word(segment.left);
   return are_numbers && segment.left <= segment.right && length <= to_word(core::Time::max()) &&
          segment.kind <= core::SegmentKind::hold;
@@ -107,18 +110,18 @@ void SegmentBoardWriter::write(Word number, const core::Segment& segment, const 
   put(cell[kCellRightSeen], origin.right_newer_knots);
   put(cell[kCellItem], origin.item ? *origin.item + 1 : 0);
   Word* const vectors = cell + kCellCoefficients;
-  put_values(
+  store_values(
       vectors,
       std::span(segment.coefficients).first(static_cast<std::size_t>(segment.order) * dimensions));
-  put_values(vectors + kStepVector * dimensions, segment.acceleration_step);
-  put_values(vectors + kWaypointVector * dimensions, knot.waypoint);
-  put_values(vectors + kGVector * dimensions, knot.g);
+  store_values(vectors + kStepVector * dimensions, segment.acceleration_step);
+  store_values(vectors + kWaypointVector * dimensions, knot.waypoint);
+  store_values(vectors + kGVector * dimensions, knot.g);
   Word* const prefix = vectors + kPrefixAfter * dimensions;
   put(prefix[0], to_word(knot.prefix.gamma));
   // A hint only: readers confirm it in the cell, so no ordering is needed.
   store(times_[number & (layout_.capacity - 1)], to_word(segment.left), std::memory_order_relaxed);
   if (knot.residual.empty()) return;  // what follows only smoothing has
-  put_values(vectors + kResidualVector * dimensions, knot.residual);
+  store_values(vectors + kResidualVector * dimensions, knot.residual);
   put(prefix[1], to_word(knot.prefix.smoothing.pivot));
   put(prefix[2], to_word(knot.prefix.smoothing.lower1));
   put(prefix[3], to_word(knot.prefix.smoothing.lower2));
@@ -305,9 +308,7 @@ bool SegmentBoardReader::copy_segment(Word number, Word r, SegmentCopy& out) con
   out.origin = {.right_newer_knots = static_cast<std::uint32_t>(word(kCellRightSeen)), .item = {}};
   if (const Word item = word(kCellItem); item > 0) out.origin.item = item - 1;
   const std::size_t values = static_cast<std::size_t>(out.order) * layout_.dimensions;
-  for (std::size_t i = 0; i < values; ++i) {
-    out.coefficients[i] = to_double(word(kCellCoefficients + i));
-  }
+  load_values(std::span(out.coefficients).first(values), cell + kCellCoefficients);
   if (load(cell[kCellTag], std::memory_order_relaxed) != tags.of[c] || out.number != number ||
       !is_sound(out, values)) {
     return false;

@@ -20,12 +20,6 @@ std::size_t words_per_item(const RingLayout& layout) noexcept {
   return layout.stride / sizeof(Word);
 }
 
-void put_values(std::span<Word> words, std::span<const double> values) noexcept {
-  for (std::size_t d = 0; d < values.size(); ++d) {
-    store(words[d], to_word(values[d]), std::memory_order_release);
-  }
-}
-
 bool fits(std::span<const double> values, std::size_t dimensions) noexcept {
   return values.empty() || values.size() == dimensions;
 }
@@ -184,9 +178,9 @@ void WaypointRingWriter::put_item(Word index, Word kind_and_flags,
   store(words[kItemKind], kind_and_flags | flags, std::memory_order_release);
   store(words[kItemTime], to_word(values.time), std::memory_order_release);
   const auto rest = words.subspan(kItemValues);
-  put_values(rest, values.position);
-  put_values(rest.subspan(layout_.dimensions), values.velocity);
-  put_values(rest.subspan(2 * layout_.dimensions), values.acceleration);
+  store_values(rest.data(), values.position);
+  store_values(rest.data() + layout_.dimensions, values.velocity);
+  store_values(rest.data() + 2 * layout_.dimensions, values.acceleration);
 }
 
 void WaypointRingWriter::publish(Word items, core::Time last) noexcept {
@@ -224,9 +218,7 @@ void WaypointRingReader::copy(Word i, RingItem& out) const noexcept {
   out.time = to_time(load(words[kItemTime], std::memory_order_acquire));
   const bool is_bare = out.kind == ItemKind::waypoint && !out.has_velocity && !out.has_acceleration;
   const std::size_t values = is_bare ? layout_.dimensions : out.values.size();
-  for (std::size_t v = 0; v < values; ++v) {
-    out.values[v] = to_double(load(words[kItemValues + v], std::memory_order_acquire));
-  }
+  load_values(std::span(out.values).first(values), &words[kItemValues]);
 }
 
 ItemKind WaypointRingReader::kind(Word i) const noexcept {

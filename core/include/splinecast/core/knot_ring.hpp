@@ -110,6 +110,11 @@ class KnotRing {
     return {values_.data() + offset(i, which), dimensions_};
   }
 
+  /// How many knots up to i, itself included, lie one behind the other in memory: their rows, and
+  /// each of their values, `stride` doubles apart.
+  [[nodiscard]] std::size_t contiguous(std::size_t i) const noexcept { return (i & mask_) + 1; }
+  [[nodiscard]] std::size_t stride() const noexcept { return knot_stride_; }
+
   /// Where the curve passes knot i, and its chord slope from there to knot i+1.
   [[nodiscard]] std::span<const double> position(std::size_t i) const noexcept {
     return values(i, smooths_ ? kPosition : kWaypoint);
@@ -124,10 +129,32 @@ class KnotRing {
   [[nodiscard]] EndIntervals start_intervals() const noexcept;
   [[nodiscard]] EndIntervals end_intervals() const noexcept;
 
-  [[nodiscard]] Knot knot(std::size_t i) const noexcept;
+  [[nodiscard]] Knot knot(std::size_t i) const noexcept {
+    return {.time = row(i).time,
+            .prefix = row(i).prefix,
+            .newer_knots = row(i).newer_knots,
+            .waypoint = values(i, kWaypoint),
+            .g = values(i, kG),
+            .position = position(i),
+            .velocity = values(i, kVelocity),
+            .acceleration = has_accelerations_ ? values(i, kAcceleration) : kNone,
+            .residual = smooths_ ? values(i, kResidual) : kNone};
+  }
 
   /// The interval between knots i and i+1, both of which must still be kept.
-  [[nodiscard]] Interval interval(std::size_t i) const noexcept;
+  [[nodiscard]] Interval interval(std::size_t i) const noexcept {
+    Interval interval{.left = row(i).time,
+                      .right = row(i + 1).time,
+                      .h = row(i).h,
+                      .x0 = position(i),
+                      .chord = chord(i),
+                      .v0 = values(i, kVelocity),
+                      .v1 = values(i + 1, kVelocity),
+                      .a0 = has_accelerations_ ? values(i, kAcceleration) : kNone,
+                      .a1 = has_accelerations_ ? values(i + 1, kAcceleration) : kNone};
+    if (halts_at_start_ || halts_at_end_) halt(i, interval);
+    return interval;
+  }
 
   /// Writes the smoothed chord slope of interval i from the residuals at both its ends.
   void measure_smoothed(std::size_t i) noexcept;
@@ -136,8 +163,11 @@ class KnotRing {
   void write_final_acceleration(std::span<double> acceleration) const noexcept;
 
  private:
+  static constexpr std::span<const double> kNone{};
+
+  void halt(std::size_t i, Interval& interval) const noexcept;
   [[nodiscard]] std::size_t offset(std::size_t i, Value which) const noexcept {
-    return ((i & mask_) * values_per_knot_ + which) * dimensions_;
+    return (i & mask_) * knot_stride_ + which * dimensions_;
   }
   void place(std::size_t i, Time time, std::span<const double> waypoint) noexcept;
   void measure(std::size_t i) noexcept;
@@ -148,16 +178,17 @@ class KnotRing {
   bool halts_at_start_;
   bool halts_at_end_ = false;
   std::size_t mask_;
-  std::size_t values_per_knot_;
+  std::size_t knot_stride_;  ///< doubles of one knot
   std::size_t size_ = 0;
   ChordInterval before_;
   std::vector<Row> rows_;
   std::vector<double> values_;  ///< [knot & mask][which][dimension]
 };
 
-/// Writes the acceleration step at the left knot of interval i: a⁺ − a⁻. At knot 0 it is a⁺ if a
-/// hold stands before it (`held_before`), else 0, because nothing stands before.
-void write_acceleration_step(const KnotRing& knots, std::size_t i, bool held_before,
-                             std::span<double> step) noexcept;
+/// Writes the acceleration step at the left knot of interval i, which is `interval`: a⁺ − a⁻. At
+/// knot 0 it is a⁺ if a hold stands before it (`held_before`), else 0, because nothing stands
+/// before.
+void write_acceleration_step(const KnotRing& knots, std::size_t i, const Interval& interval,
+                             bool held_before, std::span<double> step) noexcept;
 
 }  // namespace splinecast::core

@@ -41,7 +41,7 @@ struct Segment {
   Time right{};
   int order = kCubicOrder;
   SegmentKind kind = SegmentKind::spline;
-  std::vector<double> coefficients;       ///< [power][dimension]; powers ≥ order are 0
+  std::vector<double> coefficients;       ///< [power][dimension]; powers ≥ order are of no use
   std::vector<double> acceleration_step;  ///< a⁺ − a⁻ at the left knot, per dimension
 };
 
@@ -80,6 +80,11 @@ void build_segment(const Interval& interval, Segment& out) noexcept;
 /// not overlap those of the interval.
 void write_left_acceleration(const Interval& interval, std::span<double> out) noexcept;
 void write_right_acceleration(const Interval& interval, std::span<double> out) noexcept;
+
+/// Writes by how much the acceleration jumps at the knot between two intervals: that at the left
+/// end of the one after it less that at the right end of the one before. D values, as above.
+void write_acceleration_jump(const Interval& before, const Interval& after,
+                             std::span<double> out) noexcept;
 
 /// Writes the stop tail behind a knot at time `from` with the given position, velocity and
 /// acceleration: it comes to rest after `stop_time` (> 0), its velocity being the cubic Hermite

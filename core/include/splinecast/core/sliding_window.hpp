@@ -139,7 +139,9 @@ class SlidingWindow {
   [[nodiscard]] Knot knot(std::size_t i) const noexcept { return knots_.knot(i); }
 
   /// How many newer knots knot i had seen when its velocity was last solved.
-  [[nodiscard]] std::size_t newer_knots_seen(std::size_t i) const noexcept;
+  [[nodiscard]] std::uint32_t newer_knots_seen(std::size_t i) const noexcept {
+    return knots_.row(i).newer_knots;
+  }
 
   /// How many knots stood behind knot 0 when the splice to it was last shaped.
   [[nodiscard]] std::uint32_t newer_knots_seen_by_entry() const noexcept {
@@ -173,7 +175,7 @@ class SlidingWindow {
   [[nodiscard]] bool is_start_open() const noexcept;
   [[nodiscard]] std::size_t settled_knot_segments() const noexcept;
   void write_stop_tail(Segment& out) const noexcept;
-  void write_step(std::size_t i, Segment& out) const noexcept;
+  void write_step(std::size_t i, const Interval& interval, Segment& out) const noexcept;
   [[nodiscard]] bool keeps_behind_newest(std::span<const Waypoint> waypoints) noexcept;
   [[nodiscard]] bool can_follow_first(std::span<const Waypoint> waypoints) noexcept;
   [[nodiscard]] bool can_shape_entry(std::span<const Waypoint> waypoints) noexcept;

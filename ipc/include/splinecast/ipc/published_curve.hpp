@@ -101,7 +101,6 @@ class PublishedCurve {
   [[nodiscard]] bool has_room_behind(Word number, std::size_t segments,
                                      core::Time keep) const noexcept;
   [[nodiscard]] Word segment_at(core::Time t) const noexcept;
-  [[nodiscard]] SegmentOrigin origin_of(std::size_t segment) const noexcept;
   [[nodiscard]] core::Knot knot(Word number, Word r, std::span<double> values) noexcept;
   [[nodiscard]] std::span<const core::StandingWaypoint> standing_before(Word number, core::Time t,
                                                                         Word r) noexcept;

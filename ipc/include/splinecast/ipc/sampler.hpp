@@ -83,11 +83,13 @@ class Sampler {
   [[nodiscard]] Found locate(core::Time t) noexcept;
   [[nodiscard]] bool take(Word number) noexcept;
   [[nodiscard]] bool spans(const SegmentCopy& segment, core::Time t) const noexcept;
+  [[nodiscard]] Word guess_by_pace(core::Time t) const noexcept;
   [[nodiscard]] Word number_by_hint(core::Time t) const noexcept;
   [[nodiscard]] bool number_by_cells(core::Time t, Word& number) const noexcept;
   void read(const SegmentCopy& segment, double u, const core::StateRef& out) const noexcept;
   [[nodiscard]] SampleStatus evaluate(const SegmentCopy& segment, core::Time t,
                                       const core::StateRef& out) const noexcept;
+  [[nodiscard]] SampleStatus look_up(core::Time t, const core::StateRef& out) noexcept;
   [[nodiscard]] SampleStatus hold_first(const core::StateRef& out) noexcept;
   [[nodiscard]] bool see(Word r) noexcept;
   [[nodiscard]] bool copy_whole(Word number, Word r, SegmentCopy& out) const;
@@ -102,6 +104,14 @@ class Sampler {
   bool revised_ = false;  ///< the curve before that time has been changed: not yet told
   Word confirmed_ = 0;    ///< revision that the current copy is known to be part of
   core::Time copied_settled_until_{};  ///< settled_until of that revision
+  /// What most samples need of the current copy, as confirmed: where on it the curve moves, and
+  /// until when it is settled. Nowhere, unless it lies between two waypoints.
+  struct AtHand {
+    core::Time left{};
+    core::Time right{};
+    core::Time settled_until{};
+  };
+  AtHand at_hand_;
   std::array<SegmentCopy, 2> copies_;  ///< the current one, and one to copy into
   std::size_t current_ = 0;
 };

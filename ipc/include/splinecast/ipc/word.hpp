@@ -53,6 +53,65 @@ inline void store(Word& word, Word value, std::memory_order order) noexcept {
   return core::Time(static_cast<std::int64_t>(word));
 }
 
+/// Calls `copy(to[i], from[i])` for each i < n, in any order: a load and a store each, and one jump
+/// for the last eight instead of a test for each.
+template <typename To, typename From, typename Copy>
+[[gnu::always_inline]] inline void copy_each(To* to, const From* from, std::size_t n,
+                                             const Copy& copy) noexcept {
+  for (; n > 8; n -= 8, to += 8, from += 8) {
+    copy(to[0], from[0]);
+    copy(to[1], from[1]);
+    copy(to[2], from[2]);
+    copy(to[3], from[3]);
+    copy(to[4], from[4]);
+    copy(to[5], from[5]);
+    copy(to[6], from[6]);
+    copy(to[7], from[7]);
+  }
+  switch (n) {
+    case 8:
+      copy(to[7], from[7]);
+      [[fallthrough]];
+    case 7:
+      copy(to[6], from[6]);
+      [[fallthrough]];
+    case 6:
+      copy(to[5], from[5]);
+      [[fallthrough]];
+    case 5:
+      copy(to[4], from[4]);
+      [[fallthrough]];
+    case 4:
+      copy(to[3], from[3]);
+      [[fallthrough]];
+    case 3:
+      copy(to[2], from[2]);
+      [[fallthrough]];
+    case 2:
+      copy(to[1], from[1]);
+      [[fallthrough]];
+    case 1:
+      copy(to[0], from[0]);
+      [[fallthrough]];
+    default:
+      break;
+  }
+}
+
+/// Stores values with release, each in a word of its own from `to` on.
+inline void store_values(Word* to, std::span<const double> values) noexcept {
+  copy_each(to, values.data(), values.size(), [](Word& word, double value) {
+    store(word, to_word(value), std::memory_order_release);
+  });
+}
+
+/// Loads values with acquire, each from a word of its own from `from` on.
+inline void load_values(std::span<double> values, const Word* from) noexcept {
+  copy_each(values.data(), from, values.size(), [](double& value, const Word& word) {
+    value = to_double(load(word, std::memory_order_acquire));
+  });
+}
+
 /// Views part of a region as words. `offset` is a multiple of 8 and lies, with `count` words,
 /// within the region: the caller has checked its layout.
 [[nodiscard]] inline std::span<Word> words_at(std::span<std::byte> region, std::size_t offset,

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <type_traits>
+
+namespace splinecast::core {
+
+/// Values of some dimensions side by side, for a vector register or two.
+using FourLanes [[gnu::vector_size(4 * sizeof(double))]] = double;
+using TwoLanes [[gnu::vector_size(2 * sizeof(double))]] = double;
+
+/// Calls `body(lane, first)` so that each dimension is covered once, four at a time, then two, then
+/// one: `decltype(lane)::type` is FourLanes, TwoLanes or double, and the body works on the
+/// dimensions from `first` on that it holds. There is no loop over a handful of values to set up,
+/// and each dimension goes through the same operations either way. What one body stores, the next
+/// one loads in the same pieces, so that a processor need not wait for the stores.
+template <typename Body>
+[[gnu::always_inline]] inline void for_lanes(std::size_t dimensions, const Body& body) noexcept {
+  std::size_t first = 0;
+  for (; first + 4 <= dimensions; first += 4) body(std::type_identity<FourLanes>{}, first);
+  if ((dimensions & 2) != 0) {
+    body(std::type_identity<TwoLanes>{}, first);
+    first += 2;
+  }
+  if ((dimensions & 1) != 0) body(std::type_identity<double>{}, first);
+}
+
+/// Likewise, but four at a time wherever there are so many: the last four overlap those before. For
+/// bodies that write nothing that they, or another body, read.
+template <typename Body>
+[[gnu::always_inline]] inline void for_overlapping_lanes(std::size_t dimensions,
+                                                         const Body& body) noexcept {
+  if (dimensions < 4) return for_lanes(dimensions, body);
+  std::size_t first = 0;
+  for (; first + 4 <= dimensions; first += 4) body(std::type_identity<FourLanes>{}, first);
+  if (first < dimensions) body(std::type_identity<FourLanes>{}, dimensions - 4);
+}
+
+/// What a body reads of an array, and writes to one.
+template <typename Lane>
+[[gnu::always_inline]] inline Lane load_lane(const double* from) noexcept {
+  Lane value;
+  std::memcpy(&value, from, sizeof(Lane));
+  return value;
+}
+template <typename Lane>
+[[gnu::always_inline]] inline void store_lane(double* to, Lane value) noexcept {
+  std::memcpy(to, &value, sizeof(Lane));
+}
+
+}  // namespace splinecast::core
