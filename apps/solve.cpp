@@ -110,7 +110,7 @@ int solve_many(const SolveOptions& options) {
   core::Time due = clock.now();
   while (!stop_requested()) {
     if (sweep.sweep(clock)) continue;
-    due = std::max(due + options.sweep, clock.now());
+    due = std::max(due + options.sweep * sweep.sweeps_to_next(), clock.now());
     sleep_until(due);
   }
   return announcer.has_lost() ? kFailed : kOk;
@@ -173,7 +173,9 @@ void add_solve(CLI::App& program, Action& action) {
           [options](const std::string& text) {
             options->sweep = positive_time("--sweep", text, TimeUnit::milliseconds);
           },
-          "Pause between looks at several streams (default 1)")
+          "Pause between looks at several streams (default 1); eight times as long for those on "
+          "which "
+          "nothing has happened for a second")
       ->type_name("MS");
   verb->add_flag("--quiet", options->quiet, "Say nothing of what becomes of the streams");
   add_access(*verb, options->solver.access);

@@ -48,6 +48,21 @@ std::optional<std::int64_t> rounded(const Decimal& decimal) noexcept {
   return value;
 }
 
+/// The usual text of a time, digits only, in one pass. Nothing for any other: it may still be one.
+std::optional<core::Time> parse_whole_time(std::string_view text, TimeUnit unit) noexcept {
+  constexpr std::size_t kSafeDigits = 18;
+  if (text.empty() || text.size() > kSafeDigits) return std::nullopt;
+  std::int64_t value = 0;
+  for (const char c : text) {
+    if (!is_digit(c)) return std::nullopt;
+    value = 10 * value + (c - '0');
+  }
+  for (int power = static_cast<int>(unit); power > 0; --power) {
+    if (!push_digit(value, 0)) return std::nullopt;
+  }
+  return core::Time(value);
+}
+
 std::string_view take_digits(std::string_view& text) noexcept {
   std::size_t length = 0;
   while (length < text.size() && is_digit(text[length])) ++length;
@@ -101,7 +116,9 @@ std::optional<TimeUnit> parse_time_unit(std::string_view text) noexcept {
 }
 
 std::optional<core::Time> parse_time(std::string_view text, TimeUnit unit) noexcept {
-  auto decimal = take_apart(trimmed(text));
+  text = trimmed(text);
+  if (const auto whole = parse_whole_time(text, unit)) return whole;
+  auto decimal = take_apart(text);
   if (!decimal) return std::nullopt;
   decimal->exponent += static_cast<int>(unit);
   const auto value = rounded(*decimal);
@@ -125,21 +142,6 @@ std::optional<std::uint64_t> parse_count(std::string_view text) noexcept {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return value;
-}
-
-std::string_view without_blanks(std::string_view text) noexcept {
-  const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-std::string_view trimmed(std::string_view text) noexcept {
-  text = without_blanks(text);
-  if (text.size() >= 2 && text.front() == '"' && text.back() == '"') {
-    text = text.substr(1, text.size() - 2);
-  }
-  return text;
 }
 
 }  // namespace splinecast::apps

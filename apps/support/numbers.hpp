@@ -26,10 +26,25 @@ enum class TimeUnit : int { nanoseconds = 0, microseconds = 3, milliseconds = 6,
 /// Reads a whole number of 0 or more; nothing for any other text.
 [[nodiscard]] std::optional<std::uint64_t> parse_count(std::string_view text) noexcept;
 
+/// Whether a character is one that fields may have around them.
+[[nodiscard]] constexpr bool is_blank(char c) noexcept {
+  return c == ' ' || c == '\t' || c == '\r';
+}
+
 /// Without the blanks around it.
-[[nodiscard]] std::string_view without_blanks(std::string_view text) noexcept;
+[[nodiscard]] constexpr std::string_view without_blanks(std::string_view text) noexcept {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
 
 /// Without the blanks, and then the double quotes, around it.
-[[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
+[[nodiscard]] constexpr std::string_view trimmed(std::string_view text) noexcept {
+  text = without_blanks(text);
+  if (text.size() >= 2 && text.front() == '"' && text.back() == '"') {
+    text = text.substr(1, text.size() - 2);
+  }
+  return text;
+}
 
 }  // namespace splinecast::apps

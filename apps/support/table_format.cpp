@@ -41,7 +41,8 @@ TableFormat tum_format(const TextFile& file, const Line& first, std::string_view
 
 /// Where the first field of a CSV line ends: at a comma that is not within double quotes.
 std::size_t end_of_field(std::string_view line) noexcept {
-  if (line.empty() || without_blanks(line).substr(0, 1) != "\"") return line.find(',');
+  const auto first = std::ranges::find_if_not(line, is_blank);
+  if (first == line.end() || *first != '"') return line.find(',');
   const std::size_t closing = line.find('"', line.find('"') + 1);
   return closing == std::string_view::npos ? line.find(',') : line.find(',', closing);
 }

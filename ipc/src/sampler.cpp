@@ -71,7 +71,10 @@ SampleStatus Sampler::look_up(core::Time t, const core::StateRef& out) noexcept 
     if (board_->retired()) return SampleStatus::retired;
     const Word r = board_->revision();
     if (r == 0) return SampleStatus::no_data;
-    if (r != head_.revision && !see(r)) continue;
+    if (r != head_.revision) {
+      board_->prefetch(r, current().number);
+      if (!see(r)) continue;
+    }
     if (head_.newest == 0) return SampleStatus::no_data;
     const Found found = locate(t);
     if (found == Found::segment) return evaluate(current(), t, out);

@@ -235,6 +235,18 @@ bool SegmentBoardReader::has_sane_bounds(std::span<const Word> words) const noex
          newest != kRetiredTag;
 }
 
+void SegmentBoardReader::prefetch(Word r, Word number) const noexcept {
+  const auto head = head_slot();
+  const auto own = slot(number);
+  const auto next = slot(number + 1);
+  for (std::size_t c = 0; c < 2; ++c) {
+    __builtin_prefetch(head.cell(c));
+    __builtin_prefetch(head.cell(c) + kHeadChanges + r % kHeadChangesKept);
+    __builtin_prefetch(own.cell(c));
+    __builtin_prefetch(next.cell(c));
+  }
+}
+
 bool SegmentBoardReader::copy_bounds(Word r, Word seen, Head& out) const noexcept {
   const auto view = head_slot();
   const Tags tags = view.tags(std::memory_order_acquire);

@@ -52,16 +52,28 @@ StreamSweep::StreamSweep(const std::vector<std::string>& wanted, SolverOptions o
 }
 
 bool StreamSweep::sweep(const Clock& clock) {
-  const core::Time now = clock.now();
+  now_ = clock.now();
+  const core::Time now = now_;
   // Not while streams are being taken up: that makes files, for which it would look each time.
   if (to_take_.empty() && now >= next_look_) {
     look_around();
     next_look_ = now + kLookAround;
   }
   if (!to_take_.empty()) take_next();
+  ++sweeps_;
+  const bool looks_at_all = all_quiet_;
+  const core::Time quiet_since = now - kQuietAfter;
   bool has_more = false;
+  all_quiet_ = true;
   for (std::size_t i = 0; i < watches_.size(); ++i) {
-    if (watches_[i].calls(now)) has_more = serve(i, clock) || has_more;
+    const Watch& watch = watches_[i];
+    const bool is_quiet = watch.active <= quiet_since && watch.solver.due() == core::Time::max();
+    const bool is_looked_at = !is_quiet || looks_at_all || (sweeps_ + i) % kQuietSweeps == 0;
+    all_quiet_ = all_quiet_ && is_quiet;
+    if (watch.solver.is_due(now) || (is_looked_at && watch.solver.calls())) {
+      has_more = serve(i, clock) || has_more;
+      all_quiet_ = false;
+    }
   }
   if (has_detached_) release_detached();
   return has_more || !to_take_.empty();
@@ -75,12 +87,12 @@ bool StreamSweep::serve(std::size_t index, const Clock& clock) {
     has_detached_ = true;
     return false;
   }
-  watches_[index] = served.solver->watch();
+  watches_[index] = {.solver = served.solver->watch(), .active = now_};
   if (!served.was_finished && served.solver->head().finished) {
     served.was_finished = true;
     tell_(SweepNews::finished, served.solver->stream(), served.solver.get(), {});
   }
-  return result.missed || watches_[index].has_items();
+  return result.missed || watches_[index].solver.has_items();
 }
 
 /// Streams that have been retired wait for a producer again.
@@ -191,7 +203,7 @@ bool StreamSweep::attach(const std::string& stream, Member& member) {
     return false;
   }
   served_.push_back({.solver = std::move(member.waiting)});
-  watches_.push_back(served_.back().solver->watch());
+  watches_.push_back({.solver = served_.back().solver->watch(), .active = now_});
   become(stream, member, State::solved, SweepNews::solving, served_.back().solver.get());
   return true;
 }

@@ -154,6 +154,45 @@ TEST(StreamSweep, AnIdleStreamCostsNoStep) {
   EXPECT_EQ(producer.consumed(), 1U);
 }
 
+TEST(StreamSweep, AStreamThatHasLongBeenQuietIsLookedAtInOneOfEightSweeps) {
+  const TestStream family;
+  const std::string quiet = family.name() + ".quiet";
+  const std::string busy = family.name() + ".busy";
+  Producer first = make(quiet);
+  Producer second = make(busy);
+  Told told({quiet, busy});
+  ASSERT_TRUE(told.await_news(SweepNews::solving, quiet));
+  ASSERT_TRUE(told.await_news(SweepNews::solving, busy));
+  SetClock clock;
+  int sent = 0;
+  const auto sweeps_to_take = [&](Producer& producer) {
+    append(producer, std::chrono::milliseconds(++sent));
+    int sweeps = 0;
+    while (!producer.wait_until_consumed(Time(0))) {
+      told.sweep.sweep(clock);
+      ++sweeps;
+    }
+    return sweeps;
+  };
+  EXPECT_EQ(sweeps_to_take(first), 1);
+  EXPECT_EQ(told.sweep.sweeps_to_next(), 1);
+
+  int most_sweeps = 0;
+  for (int round = 0; round < 2; ++round) {
+    clock.time += StreamSweep::kQuietAfter;
+    told.sweep.sweep(clock);
+    EXPECT_EQ(told.sweep.sweeps_to_next(), StreamSweep::kQuietSweeps);
+    EXPECT_EQ(sweeps_to_take(second), 1);  // all are looked at after the pause
+    EXPECT_EQ(told.sweep.sweeps_to_next(), 1);
+    EXPECT_EQ(sweeps_to_take(second), 1);
+    // In its turn, while the other one keeps the sweep awake; and from then on at once.
+    most_sweeps = std::max(most_sweeps, sweeps_to_take(first));
+    EXPECT_EQ(sweeps_to_take(first), 1);
+  }
+  EXPECT_GT(most_sweeps, 1);
+  EXPECT_LE(most_sweeps, StreamSweep::kQuietSweeps);
+}
+
 TEST(StreamSweep, ALiveStreamSettlesWithoutWaypointsUntilItRests) {
   const TestStream stream;
   SetClock clock;

@@ -187,6 +187,11 @@ class SegmentBoardReader {
     return load(control_[kSleeping], std::memory_order_seq_cst) != 0;
   }
 
+  /// Asks for the lines that a reader with a copy of segment `number` will load of a revision it has
+  /// not seen, all at once: each has to come from the writer's core, and would else be waited for
+  /// one after the other. Loads nothing.
+  void prefetch(Word r, Word number) const noexcept;
+
   /// Copies what lookups need of the head under r: revision, first, newest, settled_until,
   /// finished; and the earliest changed_from of the revisions after `seen` up to r, min() if there
   /// are more than are kept. The other members stay, and upon failure all of them.

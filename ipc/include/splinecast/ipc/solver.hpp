@@ -22,11 +22,17 @@ class SolverWatch {
     return load(polled_[kHead], std::memory_order_acquire) != seen_;
   }
 
-  /// Whether a step is of use at `now`: there are items, or a revision is due, or the stream has
+  /// Whether a step is of use at `now` whatever the ring holds: a revision is due.
+  [[nodiscard]] bool is_due(core::Time now) const noexcept { return due_ <= now; }
+
+  /// Whether a step is of use for what the producer has done: there are items, or the stream has
   /// been retired. Loads from one cache line.
-  [[nodiscard]] bool calls(core::Time now) const noexcept {
-    return has_items() || due_ <= now || load(polled_[kRetired], std::memory_order_acquire) != 0;
+  [[nodiscard]] bool calls() const noexcept {
+    return has_items() || load(polled_[kRetired], std::memory_order_acquire) != 0;
   }
+
+  /// When the next revision is due without items; max() for never.
+  [[nodiscard]] core::Time due() const noexcept { return due_; }
 
  private:
   std::span<const Word, 2> polled_;

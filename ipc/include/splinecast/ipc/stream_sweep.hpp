@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -27,11 +28,13 @@ enum class SweepNews : std::uint8_t {
 
 /// One thread's solvers of many streams, named, or found by patterns as they come and go.
 ///
-/// A sweep looks at one cache line of each stream and steps those that have something to do; the
-/// rest of its work, which takes system calls, is done every 50 ms, and then only if files have
-/// come or gone in the folder of shared memory or another process solves a wanted stream. At most
-/// one stream is taken up in a sweep, because that maps memory, and the others must not wait long.
-/// Allocates when streams come and go only.
+/// A sweep looks at one cache line of each stream and steps those that have something to do. Of the
+/// streams on which nothing has happened for a second it looks at one in eight, each in its turn,
+/// because what such a look costs is fetching that line and its page into caches that have long
+/// forgotten them. The rest of its work, which takes system calls, is done every 50 ms, and then
+/// only if files have come or gone in the folder of shared memory or another process solves a
+/// wanted stream. At most one stream is taken up in a sweep, because that maps memory, and the
+/// others must not wait long. Allocates when streams come and go only.
 class StreamSweep {
  public:
   /// Told at most once until something else becomes of the stream. `solver` is not null where the
@@ -47,6 +50,14 @@ class StreamSweep {
   /// Looks after every stream once. Returns whether one of them has more to do than was done:
   /// sweep again at once.
   bool sweep(const Clock& clock);
+
+  /// How many sweeps may be left out after the last one, in all: 1, or kQuietSweeps while nothing
+  /// happens on any stream. The next sweep then looks at all of them.
+  [[nodiscard]] int sweeps_to_next() const noexcept { return all_quiet_ ? kQuietSweeps : 1; }
+
+  /// A stream on which nothing has happened for so long is looked at in one of so many sweeps.
+  static constexpr core::Time kQuietAfter = std::chrono::seconds(1);
+  static constexpr int kQuietSweeps = 8;
 
   /// Streams that are solved here.
   [[nodiscard]] std::size_t solved() const noexcept { return served_.size(); }
@@ -66,6 +77,12 @@ class StreamSweep {
   struct Served {
     std::unique_ptr<Solver> solver;
     bool was_finished = false;
+  };
+
+  /// What a sweep reads of a stream that has nothing to do.
+  struct Watch {
+    SolverWatch solver;
+    core::Time active;  ///< when it was last stepped
   };
 
   bool serve(std::size_t index, const Clock& clock);
@@ -90,8 +107,11 @@ class StreamSweep {
   std::vector<std::string> to_take_;    ///< streams to try next, the first one last
   std::vector<std::string> elsewhere_;  ///< streams that others solve, those to look at next last
   std::size_t most_owned_;              ///< what RLIMIT_NOFILE allows
-  std::vector<SolverWatch> watches_;    ///< all that a sweep reads of an idle stream
+  std::vector<Watch> watches_;          ///< all that a sweep reads of an idle stream
   std::vector<Served> served_;          ///< likewise, index by index
+  core::Time now_{};                    ///< of this sweep
+  std::size_t sweeps_ = 0;
+  bool all_quiet_ = false;
   bool has_detached_ = false;
 };
 
