@@ -173,7 +173,7 @@ void add_solve(CLI::App& program, Action& action) {
           [options](const std::string& text) {
             options->sweep = positive_time("--sweep", text, TimeUnit::milliseconds);
           },
-          "Pause between looks at several streams (default 1); eight times as long for those on "
+          "Pause between looks at several streams (default 1); sixteen times as long for those on "
           "which "
           "nothing has happened for a second")
       ->type_name("MS");

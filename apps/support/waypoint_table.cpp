@@ -123,6 +123,12 @@ class TableReader {
 
   [[nodiscard]] std::size_t line() const { return line_.number; }
 
+  /// How many rows there are if all are as long as the first one, and a few more.
+  [[nodiscard]] std::size_t rows_expected() const {
+    const std::size_t length = format_.first_row.text.size() + 1;
+    return format_.first_row.number == 0 ? 0 : file_.text().size() * 17 / 16 / length + 1;
+  }
+
   [[nodiscard]] core::Time time(const std::vector<std::string_view>& fields) const {
     const auto time = parse_time(fields[roles_.time], roles_.unit);
     if (!time) fail(fields[roles_.time], roles_.time, "is not a time");
@@ -252,26 +258,40 @@ class TableReader {
   bool started_ = false;
 };
 
+/// Appends a row's numbers in some columns.
+void append_numbers(const TableReader& reader, const std::vector<std::string_view>& fields,
+                    const std::vector<std::size_t>& columns, std::vector<double>& values) {
+  for (const std::size_t column : columns) values.push_back(reader.number(fields, column));
+}
+
 void append_row(const TableReader& reader, const std::vector<std::string_view>& fields,
-                std::vector<double>& row, WaypointTable& table) {
+                WaypointTable& table) {
   reader.require_width(fields);
   const core::Time time = reader.time(fields);
   const Roles& roles = reader.roles();
-  row.clear();
-  for (const auto* columns : {&roles.positions, &roles.velocities, &roles.accelerations}) {
-    for (const std::size_t column : *columns) row.push_back(reader.number(fields, column));
-  }
-  // Only a row that was read to its end is taken over.
-  auto from = row.begin();
-  for (const auto& [columns, values] : {std::pair(&roles.positions, &table.positions),
-                                        std::pair(&roles.velocities, &table.velocities),
-                                        std::pair(&roles.accelerations, &table.accelerations)}) {
-    const auto to = from + static_cast<std::ptrdiff_t>(columns->size());
-    values->insert(values->end(), from, to);
-    from = to;
-  }
+  append_numbers(reader, fields, roles.positions, table.positions);
+  append_numbers(reader, fields, roles.velocities, table.velocities);
+  append_numbers(reader, fields, roles.accelerations, table.accelerations);
   table.times.push_back(time);
   table.lines.push_back(reader.line());
+}
+
+/// Drops what stands of a row that was not read to its end.
+void drop_unfinished_row(const Roles& roles, WaypointTable& table) {
+  table.positions.resize(table.size() * roles.positions.size());
+  table.velocities.resize(table.size() * roles.velocities.size());
+  table.accelerations.resize(table.size() * roles.accelerations.size());
+}
+
+/// Room for as many rows as there will be if they are about as long as the first one.
+void reserve(const TableReader& reader, WaypointTable& table) {
+  const std::size_t rows = reader.rows_expected();
+  const Roles& roles = reader.roles();
+  table.times.reserve(rows);
+  table.lines.reserve(rows);
+  table.positions.reserve(rows * roles.positions.size());
+  table.velocities.reserve(rows * roles.velocities.size());
+  table.accelerations.reserve(rows * roles.accelerations.size());
 }
 
 std::span<const double> row_of(const std::vector<double>& values, std::size_t i,
@@ -321,13 +341,14 @@ WaypointTable read_waypoints(const std::string& path, const TableOptions& option
   table.file = reader.name();
   table.names = reader.position_names();
   table.kinds = reader.kinds(options.kinds);
+  reserve(reader, table);
   std::vector<std::string_view> fields;
-  std::vector<double> row;
   while (reader.next(fields)) {
     try {
-      append_row(reader, fields, row, table);
+      append_row(reader, fields, table);
     } catch (const InputError& error) {
       if (!options.on_bad_row) throw;
+      drop_unfinished_row(reader.roles(), table);
       options.on_bad_row(reader.line(), error);
     }
   }

@@ -181,6 +181,15 @@ void PublishedCurve::enter(core::Time t) noexcept {
   settled_written_ = 0;
 }
 
+void PublishedCurve::prefetch() const noexcept {
+  for (const auto memory : window_.memory()) prefetch_lines(memory.data(), memory.size());
+  for (const auto* values : {&segment_.coefficients, &segment_.acceleration_step}) {
+    prefetch_lines(values->data(), values->size() * sizeof(double));
+  }
+  const std::size_t open = window_.segments() - std::min(window_.segments(), settled_written_);
+  for (std::size_t i = 0; i < open; ++i) board_->prefetch_tags(newest_ - i);
+}
+
 void PublishedCurve::append(const core::Waypoint& waypoint, Word item) noexcept {
   if (window_.knots() == 0) run_item_ = item;
   window_.append(waypoint);

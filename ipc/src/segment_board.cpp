@@ -90,7 +90,33 @@ SlotView<Word> SegmentBoardWriter::slot(Word number) const noexcept {
 
 SlotView<Word> SegmentBoardWriter::head_slot() const noexcept { return {head_.data(), kHeadWords}; }
 
+/// Asks for the lines of a slot that will soon be written: they were last touched when the board
+/// came round the time before, and would else be waited for one after the other.
+void SegmentBoardWriter::prefetch(Word number) const noexcept {
+  const SlotView<Word> at = slot(number);
+  prefetch_lines(at.words, 2 * at.cell_words * sizeof(Word));
+}
+
+void SegmentBoardWriter::prefetch_tags(Word number) const noexcept {
+  const SlotView<Word> at = slot(number);
+  for (std::size_t c = 0; c < 2; ++c) prefetch_lines(at.cell(c), sizeof(Word));
+}
+
+void SegmentBoardWriter::prefetch_head() const noexcept {
+  prefetch_lines(&control_[kRevision], sizeof(Word));
+  prefetch_lines(&control_[kTail], sizeof(Word));
+  const SlotView<Word> head = head_slot();
+  for (std::size_t c = 0; c < 2; ++c) {
+    prefetch_lines(head.cell(c), (kHeadReasons + kRefusalReasons) * sizeof(Word));
+    prefetch_lines(head.cell(c) + kHeadChanges + (revision_ + 1) % kHeadChangesKept, sizeof(Word));
+  }
+}
+
 Word* SegmentBoardWriter::claim(Word number) noexcept {
+  if (number > newest_claimed_) {
+    newest_claimed_ = number;
+    prefetch(number + 1);
+  }
   lowest_written_ = std::min(lowest_written_, number);
   highest_written_ = std::max(highest_written_, number);
   return claim_spare(slot(number), revision_ + 1);

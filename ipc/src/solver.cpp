@@ -334,6 +334,26 @@ void Solver::wait(core::Time timeout) noexcept {
   at.board.writer.store_sleeping(false);
 }
 
+namespace {
+
+template <typename Object>
+std::span<const std::byte> bytes_of(const Object& object) noexcept {
+  return std::as_bytes(std::span(&object, 1));
+}
+
+}  // namespace
+
+void SolverPlaces::prefetch() const noexcept {
+  for (const Bytes& object : objects_) prefetch_lines(object.data(), object.size());
+}
+
+SolverPlaces Solver::places() const noexcept {
+  const Attachment& at = *impl_->attachment;
+  return {at.solver,
+          {bytes_of(*this), bytes_of(*impl_), bytes_of(at.ring.ring), bytes_of(at.board.writer),
+           bytes_of(at.board.reader), bytes_of(at.solver)}};
+}
+
 SolverWatch Solver::watch() const noexcept {
   const Attachment& at = *impl_->attachment;
   return {at.ring.ring.polled(), at.solver.seen(), at.solver.due()};

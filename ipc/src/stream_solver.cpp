@@ -103,6 +103,13 @@ core::Time StreamSolver::due() const noexcept {
   return settles || waits ? head_.committed + live_->freeze_ahead / 2 : core::Time::max();
 }
 
+void StreamSolver::prefetch(bool has_items) const noexcept {
+  board_->prefetch_head();
+  if (!has_items) return;
+  ring_->prefetch(head_.consumed);
+  curve_.prefetch();
+}
+
 StepResult StreamSolver::step(const Clock& clock) noexcept {
   if (is_damaged()) return {.damaged = true};
   const core::Time now = live_ ? clock.now() : core::Time::min();

@@ -65,18 +65,32 @@ bool StreamSweep::sweep(const Clock& clock) {
   const core::Time quiet_since = now - kQuietAfter;
   bool has_more = false;
   all_quiet_ = true;
+  calling_.clear();
   for (std::size_t i = 0; i < watches_.size(); ++i) {
     const Watch& watch = watches_[i];
     const bool is_quiet = watch.active <= quiet_since && watch.solver.due() == core::Time::max();
     const bool is_looked_at = !is_quiet || looks_at_all || (sweeps_ + i) % kQuietSweeps == 0;
     all_quiet_ = all_quiet_ && is_quiet;
-    if (watch.solver.is_due(now) || (is_looked_at && watch.solver.calls())) {
-      has_more = serve(i, clock) || has_more;
-      all_quiet_ = false;
-    }
+    if (watch.solver.is_due(now) || (is_looked_at && watch.solver.calls())) calling_.push_back(i);
+  }
+  all_quiet_ = all_quiet_ && calling_.empty();
+  for (std::size_t k = 0; k < calling_.size(); ++k) {
+    prefetch_ahead(k);
+    has_more = serve(calling_[k], clock) || has_more;
   }
   if (has_detached_) release_detached();
   return has_more || !to_take_.empty();
+}
+
+/// While one stream is stepped, the memory of those after it comes into the caches: first what is
+/// known to lie where, then what that leads to.
+void StreamSweep::prefetch_ahead(std::size_t k) const noexcept {
+  constexpr std::size_t kObjectsAhead = 4;
+  constexpr std::size_t kBehindAhead = 2;
+  if (k + kObjectsAhead < calling_.size()) places_[calling_[k + kObjectsAhead]].prefetch();
+  if (k + kBehindAhead >= calling_.size()) return;
+  const std::size_t next = calling_[k + kBehindAhead];
+  places_[next].prefetch_behind(watches_[next].solver.has_items());
 }
 
 /// Steps one stream. Returns whether it has more to do.
@@ -106,6 +120,7 @@ void StreamSweep::release_detached() {
     to_take_.push_back(stream);
     served_.erase(served_.begin() + static_cast<std::ptrdiff_t>(i));
     watches_.erase(watches_.begin() + static_cast<std::ptrdiff_t>(i));
+    places_.erase(places_.begin() + static_cast<std::ptrdiff_t>(i));
   }
   has_detached_ = false;
 }
@@ -204,6 +219,7 @@ bool StreamSweep::attach(const std::string& stream, Member& member) {
   }
   served_.push_back({.solver = std::move(member.waiting)});
   watches_.push_back({.solver = served_.back().solver->watch(), .active = now_});
+  places_.push_back(served_.back().solver->places());
   become(stream, member, State::solved, SweepNews::solving, served_.back().solver.get());
   return true;
 }

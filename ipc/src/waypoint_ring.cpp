@@ -221,6 +221,11 @@ void WaypointRingReader::copy(Word i, RingItem& out) const noexcept {
   load_values(std::span(out.values).first(values), &words[kItemValues]);
 }
 
+void WaypointRingReader::prefetch(Word i) const noexcept {
+  const std::size_t stride = words_per_item(layout_);
+  prefetch_lines(&items_[(i & (layout_.capacity - 1)) * stride], stride * sizeof(Word));
+}
+
 ItemKind WaypointRingReader::kind(Word i) const noexcept {
   const Word& word = items_[(i & (layout_.capacity - 1)) * words_per_item(layout_) + kItemKind];
   return static_cast<ItemKind>(load(word, std::memory_order_acquire) & kKindMask);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -154,6 +155,11 @@ class KnotRing {
                       .a1 = has_accelerations_ ? values(i + 1, kAcceleration) : kNone};
     if (halts_at_start_ || halts_at_end_) halt(i, interval);
     return interval;
+  }
+
+  /// The memory that a solve goes through.
+  [[nodiscard]] std::array<std::span<const std::byte>, 2> memory() const noexcept {
+    return {std::as_bytes(std::span(rows_)), std::as_bytes(std::span(values_))};
   }
 
   /// Writes the smoothed chord slope of interval i from the residuals at both its ends.

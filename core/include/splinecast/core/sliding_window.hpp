@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -137,6 +138,11 @@ class SlidingWindow {
 
   /// What is kept of knot i, which must still be in the window: what `restore` needs.
   [[nodiscard]] Knot knot(std::size_t i) const noexcept { return knots_.knot(i); }
+
+  /// The memory that an append goes through besides this object, for whoever fetches it ahead.
+  [[nodiscard]] std::array<std::span<const std::byte>, 2> memory() const noexcept {
+    return knots_.memory();
+  }
 
   /// How many newer knots knot i had seen when its velocity was last solved.
   [[nodiscard]] std::uint32_t newer_knots_seen(std::size_t i) const noexcept {

@@ -90,6 +90,9 @@ class PublishedCurve {
   /// the stop tail runs, and from its end, or from `earliest`, a splice goes back to the waypoint.
   void finish(const core::Condition& end, core::Time earliest) noexcept;
 
+  /// Asks for what an append and a write after it will go through: O(K·D).
+  void prefetch() const noexcept;
+
   /// Writes what has been changed to the board, and to `head` all that it says of the curve.
   void write(Head& head) noexcept;
 

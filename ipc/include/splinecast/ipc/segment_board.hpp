@@ -92,6 +92,11 @@ class SegmentBoardWriter {
   /// Writes committed segment `number` again with another right end, for the next revision.
   void write_cut(Word number, core::Time right) noexcept;
 
+  /// Asks for the lines of the head that the next revision will store to.
+  void prefetch_head() const noexcept;
+  /// Likewise for the tags of a segment, on which it depends which cell that is.
+  void prefetch_tags(Word number) const noexcept;
+
   /// Takes back what has been written for the next revision, as a takeover does (T1).
   void discard() noexcept;
 
@@ -122,6 +127,7 @@ class SegmentBoardWriter {
   [[nodiscard]] SlotView<Word> slot(Word number) const noexcept;
   [[nodiscard]] SlotView<Word> head_slot() const noexcept;
   [[nodiscard]] Word* claim(Word number) noexcept;
+  void prefetch(Word number) const noexcept;
   void forget_written() noexcept;
 
   BoardLayout layout_;
@@ -134,6 +140,7 @@ class SegmentBoardWriter {
   std::array<Word, kHeadChangesKept> changes_{};
   Word lowest_written_ = std::numeric_limits<Word>::max();  ///< for the next revision
   Word highest_written_ = 0;
+  Word newest_claimed_ = 0;  ///< the segments behind it are in no cache
 };
 
 /// A reader's own copy of a segment. Allocates when made only.
@@ -187,9 +194,9 @@ class SegmentBoardReader {
     return load(control_[kSleeping], std::memory_order_seq_cst) != 0;
   }
 
-  /// Asks for the lines that a reader with a copy of segment `number` will load of a revision it has
-  /// not seen, all at once: each has to come from the writer's core, and would else be waited for
-  /// one after the other. Loads nothing.
+  /// Asks for the lines that a reader with a copy of segment `number` will load of a revision it
+  /// has not seen, all at once: each has to come from the writer's core, and would else be waited
+  /// for one after the other. Loads nothing.
   void prefetch(Word r, Word number) const noexcept;
 
   /// Copies what lookups need of the head under r: revision, first, newest, settled_until,

@@ -66,6 +66,10 @@ class StreamSolver {
   /// When the next step is due even if no item comes; max() for never.
   [[nodiscard]] core::Time due() const noexcept;
 
+  /// Asks for what the next step will go through besides this object, its ring's and its board's;
+  /// with items to take that is O(K·D), else the head alone.
+  void prefetch(bool has_items) const noexcept;
+
   /// The smallest board for a settle lag.
   [[nodiscard]] static std::size_t min_capacity(std::size_t settle) noexcept;
 

@@ -29,7 +29,7 @@ enum class SweepNews : std::uint8_t {
 /// One thread's solvers of many streams, named, or found by patterns as they come and go.
 ///
 /// A sweep looks at one cache line of each stream and steps those that have something to do. Of the
-/// streams on which nothing has happened for a second it looks at one in eight, each in its turn,
+/// streams on which nothing has happened for a second it looks at one in sixteen, each in its turn,
 /// because what such a look costs is fetching that line and its page into caches that have long
 /// forgotten them. The rest of its work, which takes system calls, is done every 50 ms, and then
 /// only if files have come or gone in the folder of shared memory or another process solves a
@@ -57,7 +57,7 @@ class StreamSweep {
 
   /// A stream on which nothing has happened for so long is looked at in one of so many sweeps.
   static constexpr core::Time kQuietAfter = std::chrono::seconds(1);
-  static constexpr int kQuietSweeps = 8;
+  static constexpr int kQuietSweeps = 16;
 
   /// Streams that are solved here.
   [[nodiscard]] std::size_t solved() const noexcept { return served_.size(); }
@@ -85,6 +85,7 @@ class StreamSweep {
     core::Time active;  ///< when it was last stepped
   };
 
+  void prefetch_ahead(std::size_t k) const noexcept;
   bool serve(std::size_t index, const Clock& clock);
   void release_detached();
   void look_around();
@@ -109,6 +110,8 @@ class StreamSweep {
   std::size_t most_owned_;              ///< what RLIMIT_NOFILE allows
   std::vector<Watch> watches_;          ///< all that a sweep reads of an idle stream
   std::vector<Served> served_;          ///< likewise, index by index
+  std::vector<SolverPlaces> places_;    ///< likewise
+  std::vector<std::size_t> calling_;    ///< of these, those that this sweep steps
   core::Time now_{};                    ///< of this sweep
   std::size_t sweeps_ = 0;
   bool all_quiet_ = false;

@@ -53,6 +53,13 @@ inline void store(Word& word, Word value, std::memory_order order) noexcept {
   return core::Time(static_cast<std::int64_t>(word));
 }
 
+/// Asks for the cache lines of some memory. Loads nothing.
+inline void prefetch_lines(const void* from, std::size_t bytes) noexcept {
+  constexpr std::size_t kLine = 64;
+  const auto* const first = static_cast<const std::byte*>(from);
+  for (std::size_t at = 0; at < bytes; at += kLine) __builtin_prefetch(first + at);
+}
+
 /// Calls `copy(to[i], from[i])` for each i < n, in any order: a load and a store each, and one jump
 /// for the last eight instead of a test for each.
 template <typename To, typename From, typename Copy>
