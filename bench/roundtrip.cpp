@@ -1,6 +1,7 @@
 #include <benchmark/benchmark.h>
 
 #include <array>
+#include <optional>
 #include <stdexcept>
 
 #include "bench_stream.hpp"
@@ -98,7 +99,7 @@ void floor_ping(benchmark::State& bench) {
 }
 
 /// The near core appends and publishes, a reader on the far one samples and acknowledges.
-void roundtrip_embedded(benchmark::State& bench) {
+void roundtrip_embedded(benchmark::State& bench, std::optional<std::size_t> settle) {
   const SharedLines lines;
   const StreamName stream;
   for (auto _ : bench) {
@@ -106,7 +107,7 @@ void roundtrip_embedded(benchmark::State& bench) {
         [&] {
           const Pinned pin(kNear);
           Appender appender(stream);
-          ipc::Solver solver(stream, {.wake = false});
+          ipc::Solver solver(stream, {.settle = settle, .wake = false});
           solver.attach();
           const ipc::MonotonicClock clock;
           const auto publish = [&](std::uint64_t i) {
@@ -176,7 +177,15 @@ void roundtrip_solver(benchmark::State& bench) {
 }
 
 BENCHMARK(floor_ping)->Name("floor/ping")->Iterations(1)->UseManualTime();
-BENCHMARK(roundtrip_embedded)->Name("roundtrip/embedded")->Iterations(1)->UseManualTime();
+BENCHMARK_CAPTURE(roundtrip_embedded, , std::nullopt)
+    ->Name("roundtrip/embedded")
+    ->Iterations(1)
+    ->UseManualTime();
+/// With the fewest segments changed by a waypoint: what is left is the way itself.
+BENCHMARK_CAPTURE(roundtrip_embedded, , 0)
+    ->Name("roundtrip/embedded/settle:0")
+    ->Iterations(1)
+    ->UseManualTime();
 BENCHMARK(roundtrip_solver)->Name("roundtrip/solver")->Iterations(1)->UseManualTime();
 
 }  // namespace

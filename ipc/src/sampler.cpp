@@ -31,10 +31,24 @@ Sampler::Sampler(const SegmentBoardReader& board, StreamClock clock, core::Dimen
     : board_(&board),
       clock_(clock),
       kinds_(std::move(kinds)),
+      all_linear_(kinds_.all_linear()),
       copies_{SegmentCopy(board.dimensions()), SegmentCopy(board.dimensions())} {}
 
+/// The sample at t. Mostly nothing has been published since the last one, and t lies in the segment
+/// used last: then there is nothing to look up.
+inline SampleStatus Sampler::find(core::Time t, const core::StateRef& out) noexcept {
+  if (board_->retired()) return SampleStatus::retired;
+  const bool is_at_hand =
+      board_->revision() == confirmed_ && t >= at_hand_.left && t < at_hand_.right;
+  if (!is_at_hand) return look_up(t, out);
+  const SegmentCopy& own = current();
+  core::evaluate(own.order, own.coefficients, seconds_after(at_hand_.left, t), out);
+  if (!all_linear_) kinds_.normalise(out);
+  return t < at_hand_.settled_until ? SampleStatus::settled : SampleStatus::provisional;
+}
+
 SampleStatus Sampler::sample(core::Time t, const core::StateRef& out) noexcept {
-  const SampleStatus status = preview(t, out);
+  const SampleStatus status = find(t, out);
   if (clock_ == StreamClock::recorded || !has_values(status)) return status;
   const bool is_revised = revised_;
   sampled_until_ = is_revised ? t : std::max(sampled_until_, t);
@@ -57,13 +71,7 @@ bool Sampler::see(Word r) noexcept {
 }
 
 SampleStatus Sampler::preview(core::Time t, const core::StateRef& out) noexcept {
-  if (board_->retired()) return SampleStatus::retired;
-  // Mostly nothing has been published since, and t lies in the segment used last.
-  const bool is_at_hand =
-      board_->revision() == confirmed_ && t >= at_hand_.left && t < at_hand_.right;
-  if (!is_at_hand) return look_up(t, out);
-  read(current(), seconds_after(at_hand_.left, t), out);
-  return t < at_hand_.settled_until ? SampleStatus::settled : SampleStatus::provisional;
+  return find(t, out);
 }
 
 SampleStatus Sampler::look_up(core::Time t, const core::StateRef& out) noexcept {

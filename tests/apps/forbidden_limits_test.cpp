@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <string>
 #include <vector>
 
@@ -91,6 +92,8 @@ TEST_F(ForbiddenLimits, LittleLockableMemoryIsSaidAndLivedWith) {
   attack(memory, replay({}, "60"), 0, {"4 interpolated", "not locked into memory (RLIMIT_MEMLOCK)"},
          little);
   solver.await_message("pages are not locked into memory (RLIMIT_MEMLOCK)");
+  solver.signal(SIGTERM);  // it says in its region when it sleeps
+  EXPECT_EQ(solver.wait().code, 0);
   attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"}, little);
 }
 

@@ -89,6 +89,7 @@ class Sampler {
   void read(const SegmentCopy& segment, double u, const core::StateRef& out) const noexcept;
   [[nodiscard]] SampleStatus evaluate(const SegmentCopy& segment, core::Time t,
                                       const core::StateRef& out) const noexcept;
+  [[nodiscard]] SampleStatus find(core::Time t, const core::StateRef& out) noexcept;
   [[nodiscard]] SampleStatus look_up(core::Time t, const core::StateRef& out) noexcept;
   [[nodiscard]] SampleStatus hold_first(const core::StateRef& out) noexcept;
   [[nodiscard]] bool see(Word r) noexcept;
@@ -98,6 +99,7 @@ class Sampler {
   const SegmentBoardReader* board_;
   StreamClock clock_;
   core::DimensionKinds kinds_;
+  bool all_linear_;
   Head head_;                                     ///< bounds under the revision last seen whole
   Word seen_ = 0;                                 ///< that revision
   core::Time sampled_until_ = core::Time::min();  ///< latest time sampled as executed
