@@ -21,6 +21,8 @@ namespace {
 /// Longest sleep on one stream; a signal that comes just before a sleep waits this long.
 constexpr core::Time kLongestWait = std::chrono::milliseconds(50);
 
+constexpr core::Time kLongestSweep = std::chrono::seconds(1);
+
 /// Tells what becomes of each stream.
 class Announcer {
  public:
@@ -106,11 +108,12 @@ int solve_many(const SolveOptions& options) {
   ipc::StreamSweep sweep(
       options.wanted, options.solver,
       [&announcer](ipc::SweepNews news, const std::string& stream, const ipc::Solver* solver,
-                   std::string_view why) { announcer.tell(news, stream, solver, why); });
+                   std::string_view why) { announcer.tell(news, stream, solver, why); },
+      options.sweep);
   core::Time due = clock.now();
   while (!stop_requested()) {
     if (sweep.sweep(clock)) continue;
-    due = std::max(due + options.sweep * sweep.sweeps_to_next(), clock.now());
+    due = std::max(due + sweep.next_pause(), clock.now());
     sleep_until(due);
   }
   return announcer.has_lost() ? kFailed : kOk;
@@ -172,10 +175,12 @@ void add_solve(CLI::App& program, Action& action) {
           "--sweep",
           [options](const std::string& text) {
             options->sweep = positive_time("--sweep", text, TimeUnit::milliseconds);
+            if (options->sweep <= kLongestSweep) return;
+            throw CLI::ValidationError("--sweep", fmt::format("'{}' is more than 1000 ms", text));
           },
-          "Pause between looks at several streams (default 1); sixteen times as long for those on "
-          "which "
-          "nothing has happened for a second")
+          "Pause between looks at several streams (default 1, at most 1000); 16 if that is longer "
+          "for "
+          "those on which nothing has happened for a second")
       ->type_name("MS");
   verb->add_flag("--quiet", options->quiet, "Say nothing of what becomes of the streams");
   add_access(*verb, options->solver.access);

@@ -19,7 +19,7 @@ SAMPLE = [
     (r"Sampler::", "looks whether there is a new revision, finds the segment, time within it, status"),
 ]
 PUBLISH = [
-    (r"SegmentBoardWriter::(write|claim|slot)", "writes the segments that the waypoint changes into spare cells"),
+    (r"SegmentBoardWriter::(write|claim|slot|prefetch)", "writes the segments that the waypoint changes into spare cells"),
     (r"build_segment|KnotRing::interval|write_cubic", "coefficients from knot velocities"),
     (r"acceleration|write_step", "the acceleration step published at each knot"),
     (r"PublishedCurve|KnotRing::knot|SlidingWindow::(segment|newer|left)", "which segments changed, and what goes with each"),
@@ -68,7 +68,8 @@ LINES_SAMPLE = """Cache lines of shared memory that it loads (64 bytes, 7 dimens
 the revision stands and the time lies in the segment used last. Another segment adds 6: the tags of its two cells, of
 which one is the first of the 5 lines (8 + 28 words) that hold a cubic. A new revision adds 5: the tags of the head's two
 cells with the bounds beside them, the `changed_from` of the revisions missed, and the tags of the own segment's two
-cells. It stores nothing.
+cells; these, and the tags of the next segment, it asks for at once before it waits for the first of them. It stores
+nothing.
 """
 
 LINES_PUBLISH = """Cache lines, K = 8, 7 dimensions: the producer stores 2 of the ring's item and 1 with `head`, and loads the 2 with
@@ -78,20 +79,45 @@ lines and 650 words in all, each word a store of its own, because readers may lo
 """
 
 
-LIMITS = """### What stands in the way of a target that is not reached
-
-- `sample` against GSL: the time that the target leaves beside the bare polynomial (`floor/eval`) is what status, lookup
-  and copy of the table above may take together.
-- `roundtrip/…`: a ping moves two lines. A publication stores some 650 words on about 105 lines before it commits, and
-  the reader then fetches the commit word, 3 lines of the head and 6 of a cell, one after the other as each says where
-  to look next: more than ten transfers where two are the floor. Most of the words are the K + 1 open segments, all of
-  which a waypoint changes; fewer would be published only with a smaller K.
-- `replay` parses, solves and publishes in one thread: its time is the sum of `parse`, of one append through the window
+# What stands in the way of a target, by the beginning of its subject's name; told where it is missed.
+LIMITS = {
+    "roundtrip/": """- `roundtrip/…`: a ping moves two lines. A round trip moves at least four, one after the other: the commit word (for
+  `solver` the ring's `head` before it), the head of the revision with the tags of the segments near by, the words of one
+  of them, and the acknowledgement. Before the commit, `publish` takes what the table of times says: some 650 words are
+  stored on about 105 lines, of which the reader's core has taken some meanwhile. Most of the words are the K + 1 open
+  segments, all of which a waypoint changes. `settle:0` shows what is left of the trip without them. iceoryx moves the
+  waypoint alone and solves nothing.
+""",
+    "streams:1000/busy": """- `streams:1000/busy`: 100,000 waypoints a second in a tenth of a core leave 1 µs for each; `publish` in the table of times
+  has everything in the caches, and here nothing is. By one trace of its loads and stores (valgrind's lackey, x86-64,
+  K = 8), a step with a waypoint goes through 208 lines of its stream's own, 118 of them in the regions, on some 20 pages:
+  13 kB, and a thousand streams make 13 MB of it. The streams are also published anew every half freeze-ahead, at sweeps
+  of 1 ms 300,000 times a second in all, which goes through 34 lines each. So 31 million lines a second come from
+  beyond this core's own caches, 3 ns each if a tenth of a core were to do. The solver fetches them ahead, several at
+  once.
+""",
+    "sample": """- `sample`: the time that the target leaves beside the bare polynomial (`floor/eval`) is what status, lookup and copy
+  of the table above may take together.
+""",
+    "append": """- `append`: K rows follow one another, each a multiplication and a subtraction behind the one before, and the first waits
+  for three divisions: chord slope, pivot, tail.
+""",
+    "parse": """- `parse`: half of it is the conversion of digits to doubles (fast_float), the rest finding lines and fields.
+""",
+    "replay": """- `replay` parses, solves and publishes in one thread: its time is the sum of `parse`, of one append through the window
   and of one settled segment written per waypoint; the revisions themselves are shared by 256 waypoints.
-"""
+""",
+}
 
 
-def write(binary):
+def write_limits(missed):
+    told = [text for name, text in LIMITS.items() if any(subject.startswith(name) for subject in missed)]
+    if told:
+        print("### What stands in the way of a target that is not reached\n")
+        print("".join(told))
+
+
+def write(binary, missed):
     print("## Where the time goes\n")
     print("Instructions as valgrind's callgrind counts them, per call.\n")
     print("### `sample/dims:7`\n")
@@ -102,4 +128,4 @@ def write(binary):
                       ["splinecast::ipc::Producer::append*", "splinecast::ipc::Solver::step*"]),
                 PUBLISH)
     print(LINES_PUBLISH)
-    print(LIMITS)
+    write_limits(missed)

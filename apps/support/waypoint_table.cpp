@@ -125,8 +125,9 @@ class TableReader {
 
   /// How many rows there are if all are as long as the first one, and a few more.
   [[nodiscard]] std::size_t rows_expected() const {
-    const std::size_t length = format_.first_row.text.size() + 1;
-    return format_.first_row.number == 0 ? 0 : file_.text().size() * 17 / 16 / length + 1;
+    if (format_.first_row.number == 0) return 0;
+    const std::size_t length = std::max(format_.first_row.text.size(), 2 * format_.names.size());
+    return file_.text().size() / (length + 1) + file_.text().size() / 16 / (length + 1) + 1;
   }
 
   [[nodiscard]] core::Time time(const std::vector<std::string_view>& fields) const {
@@ -283,9 +284,11 @@ void drop_unfinished_row(const Roles& roles, WaypointTable& table) {
   table.accelerations.resize(table.size() * roles.accelerations.size());
 }
 
-/// Room for as many rows as there will be if they are about as long as the first one.
+/// Room for as many rows as there will be if they are about as long as the first one, up to a
+/// size from which growing costs little beside them.
 void reserve(const TableReader& reader, WaypointTable& table) {
-  const std::size_t rows = reader.rows_expected();
+  constexpr std::size_t kMostRows = std::size_t{1} << 18U;
+  const std::size_t rows = std::min(reader.rows_expected(), kMostRows);
   const Roles& roles = reader.roles();
   table.times.reserve(rows);
   table.lines.reserve(rows);

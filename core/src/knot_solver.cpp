@@ -47,12 +47,10 @@ void back_substitute_to(KnotRing& knots, std::size_t last) noexcept {
     for_lanes(knots.dimensions(), [&](auto lane, std::size_t first) {
       using Lane = typename decltype(lane)::type;
       auto v = load_lane<Lane>(v_after + first);
-      const KnotRing::Row* at = row;
-      const double* g_at = g + first;
-      double* v_at = velocity + first;
-      for (std::size_t k = 0; k < count; ++k, --at, g_at -= stride, v_at -= stride) {
-        v = back_substituted(at->prefix.gamma, load_lane<Lane>(g_at), v);
-        store_lane<Lane>(v_at, v);
+      for (std::size_t k = 0; k < count; ++k) {
+        const double gamma = (row - k)->prefix.gamma;
+        v = back_substituted(gamma, load_lane<Lane>(g - k * stride + first), v);
+        store_lane<Lane>(velocity - k * stride + first, v);
       }
     });
     after -= count;

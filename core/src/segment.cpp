@@ -28,9 +28,9 @@ template <typename Order>
     };
     const auto factor = [](int product) { return static_cast<double>(product); };
     Lane position = coefficient(top);
-    Lane velocity = factor(top >= 1 ? top : 0) * position;
-    Lane acceleration = factor(top >= 2 ? top * (top - 1) : 0) * position;
-    Lane jerk = factor(top >= 3 ? top * (top - 1) * (top - 2) : 0) * position;
+    Lane velocity = top >= 1 ? factor(top) * position : Lane{};
+    Lane acceleration = top >= 2 ? factor(top * (top - 1)) * position : Lane{};
+    Lane jerk = top >= 3 ? factor(top * (top - 1) * (top - 2)) * position : Lane{};
     for (int power = top - 1; power >= 0; --power) {
       const Lane c = coefficient(power);
       position = position * u + c;

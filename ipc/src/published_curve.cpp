@@ -182,12 +182,19 @@ void PublishedCurve::enter(core::Time t) noexcept {
 }
 
 void PublishedCurve::prefetch() const noexcept {
-  for (const auto memory : window_.memory()) prefetch_lines(memory.data(), memory.size());
+  // Of long lags only the newest knots: more would push out of the caches what has just come.
+  constexpr std::size_t kMostKnots = 16;
+  const std::size_t knots = std::min(window_.options().settle + 3, kMostKnots);
+  for (std::size_t k = 0; k < knots; ++k) {
+    for (const auto memory : window_.memory(window_.knots() - k)) {
+      prefetch_lines(memory.data(), memory.size());
+    }
+  }
   for (const auto* values : {&segment_.coefficients, &segment_.acceleration_step}) {
     prefetch_lines(values->data(), values->size() * sizeof(double));
   }
   const std::size_t open = window_.segments() - std::min(window_.segments(), settled_written_);
-  for (std::size_t i = 0; i < open; ++i) board_->prefetch_tags(newest_ - i);
+  for (std::size_t i = 0; i < std::min(open, kMostKnots); ++i) board_->prefetch_tags(newest_ - i);
 }
 
 void PublishedCurve::append(const core::Waypoint& waypoint, Word item) noexcept {

@@ -95,6 +95,14 @@ SampleStatus Sampler::look_up(core::Time t, const core::StateRef& out) noexcept 
   return from_own_copy(t, out);
 }
 
+/// The segment of t if it is a copied one or, by its length, the next; else 0.
+Word Sampler::near(const SegmentCopy& copy, core::Time t) noexcept {
+  if (copy.tag == 0 || t < copy.left) return 0;
+  if (t < copy.right) return copy.number;
+  const Word length = to_word(copy.right) - to_word(copy.left);
+  return to_word(t) - to_word(copy.right) < length ? copy.number + 1 : 0;
+}
+
 /// Makes current() the segment of `t` under head_.revision.
 Sampler::Found Sampler::locate(core::Time t) noexcept {
   const Word r = head_.revision;
@@ -107,7 +115,13 @@ Sampler::Found Sampler::locate(core::Time t) noexcept {
       if (spans(current(), t)) return Found::segment;
     }
   }
-  Word number = number_by_hint(t);
+  // Mostly it has been written again, and it or the next one spans t: their tags are on their way.
+  Word number = near(last, t);
+  if (number >= head_.first && number <= head_.newest) {
+    if (!take(number)) return Found::torn;
+    if (spans(current(), t)) return Found::segment;
+  }
+  number = number_by_hint(t);
   if (number != 0) {
     if (!take(number)) return Found::torn;
     if (spans(current(), t)) return Found::segment;

@@ -32,10 +32,13 @@ std::size_t most_streams(std::size_t descriptors_each) {
 
 }  // namespace
 
-StreamSweep::StreamSweep(const std::vector<std::string>& wanted, SolverOptions options, Tell tell)
+StreamSweep::StreamSweep(const std::vector<std::string>& wanted, SolverOptions options, Tell tell,
+                         core::Time pause)
     : options_(std::move(options)),
       tell_(std::move(tell)),
-      most_owned_(most_streams(kDescriptorsPerStream)) {
+      most_owned_(most_streams(kDescriptorsPerStream)),
+      pause_(pause),
+      quiet_sweeps_(static_cast<std::size_t>(std::max<std::int64_t>(kQuietPause / pause, 1))) {
   for (const std::string& text : wanted) {
     if (is_pattern(text)) {
       patterns_.push_back(text);
@@ -51,6 +54,11 @@ StreamSweep::StreamSweep(const std::vector<std::string>& wanted, SolverOptions o
   }
 }
 
+core::Time StreamSweep::next_pause() const noexcept {
+  if (!all_quiet_) return pause_;
+  return std::max(pause_, std::min(kQuietPause, next_look_ - now_));
+}
+
 bool StreamSweep::sweep(const Clock& clock) {
   now_ = clock.now();
   const core::Time now = now_;
@@ -64,12 +72,12 @@ bool StreamSweep::sweep(const Clock& clock) {
   const bool looks_at_all = all_quiet_;
   const core::Time quiet_since = now - kQuietAfter;
   bool has_more = false;
-  all_quiet_ = true;
+  all_quiet_ = !watches_.empty();
   calling_.clear();
   for (std::size_t i = 0; i < watches_.size(); ++i) {
     const Watch& watch = watches_[i];
     const bool is_quiet = watch.active <= quiet_since && watch.solver.due() == core::Time::max();
-    const bool is_looked_at = !is_quiet || looks_at_all || (sweeps_ + i) % kQuietSweeps == 0;
+    const bool is_looked_at = !is_quiet || looks_at_all || (sweeps_ + i) % quiet_sweeps_ == 0;
     all_quiet_ = all_quiet_ && is_quiet;
     if (watch.solver.is_due(now) || (is_looked_at && watch.solver.calls())) calling_.push_back(i);
   }
@@ -88,7 +96,7 @@ void StreamSweep::prefetch_ahead(std::size_t k) const noexcept {
   constexpr std::size_t kObjectsAhead = 4;
   constexpr std::size_t kBehindAhead = 2;
   if (k + kObjectsAhead < calling_.size()) places_[calling_[k + kObjectsAhead]].prefetch();
-  if (k + kBehindAhead >= calling_.size()) return;
+  if (k < kBehindAhead || k + kBehindAhead >= calling_.size()) return;
   const std::size_t next = calling_[k + kBehindAhead];
   places_[next].prefetch_behind(watches_[next].solver.has_items());
 }
@@ -220,6 +228,7 @@ bool StreamSweep::attach(const std::string& stream, Member& member) {
   served_.push_back({.solver = std::move(member.waiting)});
   watches_.push_back({.solver = served_.back().solver->watch(), .active = now_});
   places_.push_back(served_.back().solver->places());
+  calling_.reserve(served_.capacity());
   become(stream, member, State::solved, SweepNews::solving, served_.back().solver.get());
   return true;
 }

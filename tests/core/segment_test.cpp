@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <vector>
 
 #include "splinecast/core/eigen.hpp"
@@ -46,6 +49,29 @@ struct Ends {
 void expect_near(std::span<const double> got, std::span<const double> wanted, double tolerance) {
   ASSERT_EQ(got.size(), wanted.size());
   for (std::size_t d = 0; d < got.size(); ++d) EXPECT_NEAR(got[d], wanted[d], tolerance) << d;
+}
+
+TEST(Segment, EvaluatesToTheBitsOfASingleDerivativeWhateverOrderAndDimensions) {
+  for (int order = 1; order <= kMaxOrder; ++order) {
+    for (std::size_t dimensions = 1; dimensions <= 9; ++dimensions) {
+      auto c = random_values(5, static_cast<std::size_t>(order) * dimensions);
+      c.back() = -3;  // of which 0 times is −0
+      State state(dimensions);
+      evaluate(order, c, 0.7, state.ref());
+      const StateRef whole = state.ref();
+      const std::array derivatives{whole.position, whole.velocity, whole.acceleration, whole.jerk};
+      std::vector<double> single(dimensions);
+      for (int r = 0; r < 4; ++r) {
+        evaluate_derivative(order, c, 0.7, r, single);
+        const auto& wanted = derivatives[static_cast<std::size_t>(r)];
+        for (std::size_t d = 0; d < dimensions; ++d) {
+          EXPECT_EQ(std::bit_cast<std::uint64_t>(wanted[d]),
+                    std::bit_cast<std::uint64_t>(single[d]))
+              << "order " << order << ", derivative " << r << ", dimension " << d;
+        }
+      }
+    }
+  }
 }
 
 TEST(Segment, EvaluatesEachDerivativeOfItsPolynomial) {

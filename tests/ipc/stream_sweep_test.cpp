@@ -175,22 +175,45 @@ TEST(StreamSweep, AStreamThatHasLongBeenQuietIsLookedAtInOneOfSomeSweeps) {
     return sweeps;
   };
   EXPECT_EQ(sweeps_to_take(first), 1);
-  EXPECT_EQ(told.sweep.sweeps_to_next(), 1);
+  constexpr Time kPause = std::chrono::milliseconds(1);
+  EXPECT_EQ(told.sweep.next_pause(), kPause);
 
   int most_sweeps = 0;
   for (int round = 0; round < 2; ++round) {
     clock.time += StreamSweep::kQuietAfter;
     told.sweep.sweep(clock);
-    EXPECT_EQ(told.sweep.sweeps_to_next(), StreamSweep::kQuietSweeps);
+    EXPECT_EQ(told.sweep.next_pause(), StreamSweep::kQuietPause);
     EXPECT_EQ(sweeps_to_take(second), 1);  // all are looked at after the pause
-    EXPECT_EQ(told.sweep.sweeps_to_next(), 1);
+    EXPECT_EQ(told.sweep.next_pause(), kPause);
     EXPECT_EQ(sweeps_to_take(second), 1);
     // In its turn, while the other one keeps the sweep awake; and from then on at once.
     most_sweeps = std::max(most_sweeps, sweeps_to_take(first));
     EXPECT_EQ(sweeps_to_take(first), 1);
   }
   EXPECT_GT(most_sweeps, 1);
-  EXPECT_LE(most_sweeps, StreamSweep::kQuietSweeps);
+  EXPECT_LE(most_sweeps, StreamSweep::kQuietPause / kPause);
+}
+
+TEST(StreamSweep, QuietStreamsDoNotMakeALongPauseLongerNorPutOffWhatIsElsewhere) {
+  const TestStream stream;
+  Producer producer = make(stream.name());
+  StreamSweep sweep(
+      {stream.name()}, Told::small(), [](auto&&...) {}, std::chrono::milliseconds(20));
+  SetClock clock;
+  EXPECT_TRUE(await([&] {
+    sweep.sweep(clock);
+    return sweep.solved() == 1;
+  }));
+  clock.time += StreamSweep::kQuietAfter;
+  sweep.sweep(clock);
+  EXPECT_EQ(sweep.next_pause(), std::chrono::milliseconds(20));
+  append(producer, Time(0));
+  sweep.sweep(clock);
+  EXPECT_EQ(producer.consumed(), 1U);
+
+  Told none({"no_" + stream.name() + ".*"});
+  none.sweep.sweep(clock);
+  EXPECT_EQ(none.sweep.next_pause(), std::chrono::milliseconds(1));
 }
 
 TEST(StreamSweep, ALiveStreamSettlesWithoutWaypointsUntilItRests) {

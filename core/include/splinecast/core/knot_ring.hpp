@@ -157,9 +157,10 @@ class KnotRing {
     return interval;
   }
 
-  /// The memory that a solve goes through.
-  [[nodiscard]] std::array<std::span<const std::byte>, 2> memory() const noexcept {
-    return {std::as_bytes(std::span(rows_)), std::as_bytes(std::span(values_))};
+  /// The memory of knot i, which need not have been pushed yet: its row and its values.
+  [[nodiscard]] std::array<std::span<const std::byte>, 2> memory(std::size_t i) const noexcept {
+    return {std::as_bytes(std::span(&row(i), 1)),
+            std::as_bytes(std::span(&values_[offset(i, kWaypoint)], knot_stride_))};
   }
 
   /// Writes the smoothed chord slope of interval i from the residuals at both its ends.

@@ -139,9 +139,9 @@ class SlidingWindow {
   /// What is kept of knot i, which must still be in the window: what `restore` needs.
   [[nodiscard]] Knot knot(std::size_t i) const noexcept { return knots_.knot(i); }
 
-  /// The memory that an append goes through besides this object, for whoever fetches it ahead.
-  [[nodiscard]] std::array<std::span<const std::byte>, 2> memory() const noexcept {
-    return knots_.memory();
+  /// The memory of knot i, which need not have come yet, for whoever fetches it ahead.
+  [[nodiscard]] std::array<std::span<const std::byte>, 2> memory(std::size_t i) const noexcept {
+    return knots_.memory(i);
   }
 
   /// How many newer knots knot i had seen when its velocity was last solved.

@@ -83,6 +83,7 @@ class Sampler {
   [[nodiscard]] Found locate(core::Time t) noexcept;
   [[nodiscard]] bool take(Word number) noexcept;
   [[nodiscard]] bool spans(const SegmentCopy& segment, core::Time t) const noexcept;
+  [[nodiscard]] static Word near(const SegmentCopy& copy, core::Time t) noexcept;
   [[nodiscard]] Word guess_by_pace(core::Time t) const noexcept;
   [[nodiscard]] Word number_by_hint(core::Time t) const noexcept;
   [[nodiscard]] bool number_by_cells(core::Time t, Word& number) const noexcept;

@@ -29,8 +29,8 @@ enum class SweepNews : std::uint8_t {
 /// One thread's solvers of many streams, named, or found by patterns as they come and go.
 ///
 /// A sweep looks at one cache line of each stream and steps those that have something to do. Of the
-/// streams on which nothing has happened for a second it looks at one in sixteen, each in its turn,
-/// because what such a look costs is fetching that line and its page into caches that have long
+/// streams on which nothing has happened for a second it looks at some, each in its turn every 16
+/// ms, because what such a look costs is fetching that line and its page into caches that have long
 /// forgotten them. The rest of its work, which takes system calls, is done every 50 ms, and then
 /// only if files have come or gone in the folder of shared memory or another process solves a
 /// wanted stream. At most one stream is taken up in a sweep, because that maps memory, and the
@@ -45,19 +45,21 @@ class StreamSweep {
   /// Each of `wanted` is a stream's name or a pattern, see is_pattern(). A named stream is solved
   /// by nobody else from now on, also while it has no producer. All are solved with these options.
   /// Throws BadRequest for options or names that cannot be; `tell` is called here already.
-  StreamSweep(const std::vector<std::string>& wanted, SolverOptions options, Tell tell);
+  /// `pause` is what lies between two sweeps.
+  StreamSweep(const std::vector<std::string>& wanted, SolverOptions options, Tell tell,
+              core::Time pause = std::chrono::milliseconds(1));
 
   /// Looks after every stream once. Returns whether one of them has more to do than was done:
   /// sweep again at once.
   bool sweep(const Clock& clock);
 
-  /// How many sweeps may be left out after the last one, in all: 1, or kQuietSweeps while nothing
+  /// How long to wait for the next sweep: `pause`, or kQuietPause if that is longer, while nothing
   /// happens on any stream. The next sweep then looks at all of them.
-  [[nodiscard]] int sweeps_to_next() const noexcept { return all_quiet_ ? kQuietSweeps : 1; }
+  [[nodiscard]] core::Time next_pause() const noexcept;
 
-  /// A stream on which nothing has happened for so long is looked at in one of so many sweeps.
+  /// A stream on which nothing has happened for so long is looked at once in so long.
   static constexpr core::Time kQuietAfter = std::chrono::seconds(1);
-  static constexpr int kQuietSweeps = 16;
+  static constexpr core::Time kQuietPause = std::chrono::milliseconds(16);
 
   /// Streams that are solved here.
   [[nodiscard]] std::size_t solved() const noexcept { return served_.size(); }
@@ -113,6 +115,8 @@ class StreamSweep {
   std::vector<SolverPlaces> places_;    ///< likewise
   std::vector<std::size_t> calling_;    ///< of these, those that this sweep steps
   core::Time now_{};                    ///< of this sweep
+  core::Time pause_;
+  std::size_t quiet_sweeps_;  ///< of so many, one looks at a quiet stream
   std::size_t sweeps_ = 0;
   bool all_quiet_ = false;
   bool has_detached_ = false;
