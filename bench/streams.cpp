@@ -88,7 +88,7 @@ class ManyStreams {
   }
 
  private:
-  static inline const std::string kPrefix = fmt::format("bench.{}.", getpid());
+  static inline const std::string kPrefix = fmt::format("bench.many.{}.", getpid());
 
   static std::vector<std::string> names(std::size_t count) {
     std::vector<std::string> all;
