@@ -178,7 +178,7 @@ void add_solve(CLI::App& program, Action& action) {
             if (options->sweep <= kLongestSweep) return;
             throw CLI::ValidationError("--sweep", fmt::format("'{}' is more than 1000 ms", text));
           },
-          "Pause between looks at several streams (default 1, at most 1000); 16 if that is longer "
+          "Pause between looks at several streams (default 1, at most 1000); 20 if that is longer "
           "for "
           "those on which nothing has happened for a second")
       ->type_name("MS");

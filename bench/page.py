@@ -155,7 +155,7 @@ def print_targets(runs):
     table(["subject", "against", "target", "median", "range", ""], rows)
     few = column(runs, "streams:10/idle", "core_percent")
     if few:
-        print(f"Ten idle streams take {number(statistics.median(few))} % of a core: a wake-up every 16 ms, with ten "
+        print(f"Ten idle streams take {number(statistics.median(few))} % of a core: a wake-up every 20 ms, with ten "
               "looks each.\n")
     return missed
 
@@ -230,7 +230,7 @@ and acknowledges on a cache line; `roundtrip/solver` appends on one core, solves
 with `settle:0` a waypoint changes the fewest segments; `replay` is CSV text to settled segments in shared memory, one
 thread; `streams:1000` is the CPU time of one process that solves a thousand streams of seven dimensions, with producers
 in another process: busy, it looks at them every millisecond; idle, nothing has happened on them for a second, and it
-looks every sixteen.
+looks every twenty.
 """
 
 

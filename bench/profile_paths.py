@@ -66,7 +66,8 @@ def write_table(functions, purposes):
 
 LINES_SAMPLE = """Cache lines of shared memory that it loads (64 bytes, 7 dimensions): one, with `revision` and `retired`, while
 the revision stands and the time lies in the segment used last. Another segment adds 6: the tags of its two cells, of
-which one is the first of the 5 lines (8 + 28 words) that hold a cubic. A new revision adds 5: the tags of the head's two
+which one is the first of the 5 lines (8 + 28 words) that hold a cubic; after a jump it asks for those of both cells at
+once. A new revision adds 5: the tags of the head's two
 cells with the bounds beside them, the `changed_from` of the revisions missed, and the tags of the own segment's two
 cells; these, and the tags of the next segment, it asks for at once before it waits for the first of them. It stores
 nothing.

@@ -123,6 +123,7 @@ Sampler::Found Sampler::locate(core::Time t) noexcept {
   }
   number = number_by_hint(t);
   if (number != 0) {
+    board_->prefetch_segment(number);
     if (!take(number)) return Found::torn;
     if (spans(current(), t)) return Found::segment;
   }

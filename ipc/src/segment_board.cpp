@@ -273,6 +273,12 @@ void SegmentBoardReader::prefetch(Word r, Word number) const noexcept {
   }
 }
 
+void SegmentBoardReader::prefetch_segment(Word number) const noexcept {
+  const auto at = slot(number);
+  const std::size_t words = kCellCoefficients + core::kCubicOrder * layout_.dimensions;
+  for (std::size_t c = 0; c < 2; ++c) prefetch_lines(at.cell(c), words * sizeof(Word));
+}
+
 bool SegmentBoardReader::copy_bounds(Word r, Word seen, Head& out) const noexcept {
   const auto view = head_slot();
   const Tags tags = view.tags(std::memory_order_acquire);

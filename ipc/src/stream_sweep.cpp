@@ -55,8 +55,7 @@ StreamSweep::StreamSweep(const std::vector<std::string>& wanted, SolverOptions o
 }
 
 core::Time StreamSweep::next_pause() const noexcept {
-  if (!all_quiet_) return pause_;
-  return std::max(pause_, std::min(kQuietPause, next_look_ - now_));
+  return all_quiet_ ? std::max(pause_, kQuietPause) : pause_;
 }
 
 bool StreamSweep::sweep(const Clock& clock) {

@@ -198,7 +198,7 @@ TEST(StreamSweep, QuietStreamsDoNotMakeALongPauseLongerNorPutOffWhatIsElsewhere)
   const TestStream stream;
   Producer producer = make(stream.name());
   StreamSweep sweep(
-      {stream.name()}, Told::small(), [](auto&&...) {}, std::chrono::milliseconds(20));
+      {stream.name()}, Told::small(), [](auto&&...) {}, std::chrono::milliseconds(30));
   SetClock clock;
   EXPECT_TRUE(await([&] {
     sweep.sweep(clock);
@@ -206,7 +206,7 @@ TEST(StreamSweep, QuietStreamsDoNotMakeALongPauseLongerNorPutOffWhatIsElsewhere)
   }));
   clock.time += StreamSweep::kQuietAfter;
   sweep.sweep(clock);
-  EXPECT_EQ(sweep.next_pause(), std::chrono::milliseconds(20));
+  EXPECT_EQ(sweep.next_pause(), std::chrono::milliseconds(30));
   append(producer, Time(0));
   sweep.sweep(clock);
   EXPECT_EQ(producer.consumed(), 1U);

@@ -199,6 +199,10 @@ class SegmentBoardReader {
   /// for one after the other. Loads nothing.
   void prefetch(Word r, Word number) const noexcept;
 
+  /// Likewise for a segment anywhere: the lines of both cells, because the tags, which say which
+  /// one counts, would else be waited for first.
+  void prefetch_segment(Word number) const noexcept;
+
   /// Copies what lookups need of the head under r: revision, first, newest, settled_until,
   /// finished; and the earliest changed_from of the revisions after `seen` up to r, min() if there
   /// are more than are kept. The other members stay, and upon failure all of them.

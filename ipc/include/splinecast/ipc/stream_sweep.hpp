@@ -29,7 +29,7 @@ enum class SweepNews : std::uint8_t {
 /// One thread's solvers of many streams, named, or found by patterns as they come and go.
 ///
 /// A sweep looks at one cache line of each stream and steps those that have something to do. Of the
-/// streams on which nothing has happened for a second it looks at some, each in its turn every 16
+/// streams on which nothing has happened for a second it looks at some, each in its turn every 20
 /// ms, because what such a look costs is fetching that line and its page into caches that have long
 /// forgotten them. The rest of its work, which takes system calls, is done every 50 ms, and then
 /// only if files have come or gone in the folder of shared memory or another process solves a
@@ -59,7 +59,7 @@ class StreamSweep {
 
   /// A stream on which nothing has happened for so long is looked at once in so long.
   static constexpr core::Time kQuietAfter = std::chrono::seconds(1);
-  static constexpr core::Time kQuietPause = std::chrono::milliseconds(16);
+  static constexpr core::Time kQuietPause = std::chrono::milliseconds(20);
 
   /// Streams that are solved here.
   [[nodiscard]] std::size_t solved() const noexcept { return served_.size(); }
