@@ -41,8 +41,8 @@ TableFormat tum_format(const TextFile& file, const Line& first, std::string_view
 
 /// Where the first field of a CSV line ends: at a comma that is not within double quotes.
 std::size_t end_of_field(std::string_view line) noexcept {
-  const auto first = std::ranges::find_if_not(line, is_blank);
-  if (first == line.end() || *first != '"') return line.find(',');
+  const std::size_t first = line.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos || line[first] != '"') return line.find(',');
   const std::size_t closing = line.find('"', line.find('"') + 1);
   return closing == std::string_view::npos ? line.find(',') : line.find(',', closing);
 }
