@@ -1,0 +1,231 @@
+#!/usr/bin/env python3
+"""Takes each correction out again and shows that its test then fails; writes tests/defects/README.md.
+
+    run.py [NAME ...]     all patches, or those named, for example 07: applies, builds, runs its tests, reports
+    run.py --page         writes the page from the patches and the results of the last run
+    run.py --check        exits 1 if a patch does not apply, or the page is not what patches and results make of it
+    run.py --tree FOLDER  where the copy of the sources and its build go (build/defects)
+
+A file tests/defects/NAME.patch, applied with patch -p1, takes one correction out. Above its diff are the lines
+
+    Defect:      what a user saw
+    Cause:       why
+    Correction:  what was changed
+    Test:        names of the tests that fail without it: of GoogleTest, or ctest:NAME
+
+The results of a run go to tests/defects/results.json. The sources are those of the last commit.
+"""
+
+import argparse
+import io
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tarfile
+import time
+from pathlib import Path
+
+DEFECTS = Path(__file__).resolve().parent
+PROJECT = DEFECTS.parent.parent
+PAGE = DEFECTS / "README.md"
+RESULTS = DEFECTS / "results.json"
+FIELDS = ["Defect", "Cause", "Correction", "Test"]
+TEST_SECONDS = 180
+HANG = "did not end"
+
+HEAD = """# Defects: each correction, and the test that fails without it
+
+`tests/defects/run.py` applies each patch in this folder, which takes one correction out again, builds, and runs the
+tests named here. Its last run: {failed} of {all} patches made their test fail, in {minutes} min.
+
+| number | defect | cause | correction | test | without the correction |
+|---|---|---|---|---|---|
+"""
+
+
+def read_patch(path):
+    """The fields above the diff of a patch."""
+    text = path.read_text(encoding="utf-8")
+    above = text.split("\n--- ", 1)[0].split("\ndiff --git ", 1)[0]
+    fields = dict.fromkeys(FIELDS, "")
+    field = None
+    for line in above.splitlines():
+        begins = re.match(r"(\w+):\s*(.*)", line)
+        if begins and begins.group(1) in fields:
+            field = begins.group(1)
+            line = begins.group(2)
+        if field:
+            fields[field] = f"{fields[field]} {line.strip()}".strip()
+    missing = [name for name in FIELDS if not fields[name]]
+    if missing:
+        sys.exit(f"{path}: lacks the field {', '.join(missing)}")
+    return fields
+
+
+def read_patches():
+    return {path.stem: read_patch(path) for path in sorted(DEFECTS.glob("*.patch"))}
+
+
+def patch(tree, name, *options):
+    """Applies a patch to a folder. Returns what patch says, or None where it applied."""
+    ended = subprocess.run(["patch", "-p1", "--force", "--no-backup-if-mismatch", "--reject-file=-", *options,
+                            "-i", str(DEFECTS / f"{name}.patch")], cwd=tree, text=True, check=False,
+                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    return None if ended.returncode == 0 else ended.stdout
+
+
+def copy_sources(tree):
+    """Makes a folder's files those of the last commit; what is the same stays untouched, for the build."""
+    archive = subprocess.run(["git", "archive", "HEAD"], cwd=PROJECT, check=True, stdout=subprocess.PIPE).stdout
+    with tarfile.open(fileobj=io.BytesIO(archive)) as files:
+        wanted = {member.name: member for member in files.getmembers() if member.isfile()}
+        for path in [p for p in tree.rglob("*") if p.is_file() and p.relative_to(tree).parts[0] != "build"]:
+            if str(path.relative_to(tree)) not in wanted:
+                path.unlink()
+        for name, member in wanted.items():
+            content = files.extractfile(member).read()
+            path = tree / name
+            if not path.exists() or path.read_bytes() != content:
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_bytes(content)
+            path.chmod(member.mode)
+
+
+def build(tree):
+    """Builds program and tests without optimisation. Returns the output where that failed."""
+    launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+    ended = subprocess.run(
+        ["cmake", "-G", "Ninja", "-S", ".", "-B", "build", "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O0 -g0",
+         "-DSPLINECAST_UNITY=OFF", "-DSPLINECAST_BUILD_BENCH=OFF", "-DSPLINECAST_WERROR=ON", *launcher],
+        cwd=tree, text=True, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    if ended.returncode == 0:
+        ended = subprocess.run(["ninja", "-C", "build"], cwd=tree, text=True, check=False,
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                               env={**os.environ, "CCACHE_BASEDIR": str(tree), "CCACHE_NOHASHDIR": "1"})
+    return ended.stdout if ended.returncode != 0 else None
+
+
+def run_test(tree, test):
+    """Whether a test passed, and why not."""
+    if test.startswith("ctest:"):
+        command = ["ctest", "--test-dir", "build", "--output-on-failure", "--no-tests=error",
+                   "-R", "^" + re.escape(test.removeprefix("ctest:")) + "$"]
+    else:
+        command = ["build/bin/splinecast_tests", f"--gtest_filter={test}"]
+    try:
+        ended = subprocess.run(command, cwd=tree, text=True, check=False, errors="replace", timeout=TEST_SECONDS,
+                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    except subprocess.TimeoutExpired:
+        return False, HANG
+    if "SKIPPED" in ended.stdout or "***Skipped" in ended.stdout:
+        sys.exit(f"{test}: skipped on this machine, so that it shows nothing")
+    if "[==========] 0 tests" in ended.stdout or "No tests were found" in ended.stdout:
+        sys.exit(f"{test}: there is no such test")
+    return ended.returncode == 0, why_failed(ended.stdout, ended.returncode)
+
+
+def why_failed(output, code):
+    """The first failure that a test reports, in a line."""
+    if code < 0:
+        return f"ended by signal {-code}"
+    lines = [line.strip() for line in output.splitlines()]
+    for i, line in enumerate(lines):
+        if re.search(r"(: Failure$|: error: |^Error|Errors? )", line):
+            return " ".join(part for part in lines[i + 1:i + 4] if part)[:200] or line[:200]
+    return f"exit code {code}"
+
+
+def take_out(tree, name, tests):
+    """Runs the tests of one correction without it."""
+    refused = patch(tree, name)
+    if refused is not None:
+        sys.exit(f"{name}.patch does not apply:\n{refused}")
+    try:
+        output = build(tree)
+        if output is not None:
+            sys.exit(f"without the correction of {name} the tree does not build:\n{output[-4000:]}")
+        return {test: run_test(tree, test) for test in tests}
+    finally:
+        patch(tree, name, "-R")
+
+
+def run(tree, names):
+    patches = read_patches()
+    names = names or list(patches)
+    tree.mkdir(parents=True, exist_ok=True)
+    copy_sources(tree)
+    begin = time.monotonic()
+    output = build(tree)
+    if output is not None:
+        sys.exit(output[-4000:])
+    results = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {"patches": {}}
+    all_fail = True
+    for name in names:
+        tests = patches[name]["Test"].split()
+        for test in tests:
+            passed, why = run_test(tree, test)
+            if not passed:
+                sys.exit(f"{test} fails with the correction of {name} in place: {why}")
+    for name in names:
+        without = take_out(tree, name, patches[name]["Test"].split())
+        results["patches"][name] = {test: "passes" if passed else why for test, (passed, why) in without.items()}
+        fails = not any(passed for passed, _ in without.values())
+        all_fail = all_fail and fails
+        print(f"{name}: {'fails' if fails else 'PASSES'} without the correction", flush=True)
+        for test, why in results["patches"][name].items():
+            print(f"    {test}: {why}", flush=True)
+    results["patches"] = {name: results["patches"][name] for name in patches if name in results["patches"]}
+    if len(names) == len(patches):
+        results["minutes"] = round((time.monotonic() - begin) / 60, 1)
+    RESULTS.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
+    PAGE.write_text(make_page(), encoding="utf-8")
+    sys.exit(0 if all_fail else 1)
+
+
+def cell(text):
+    return text.replace("|", r"\|").replace("\n", " ")
+
+
+def make_page():
+    patches = read_patches()
+    results = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {"patches": {}}
+    failed = sum(all(why != "passes" for why in results["patches"][name].values())
+                 for name in patches if name in results["patches"])
+    lines = [HEAD.format(failed=failed, all=len(patches), minutes=results.get("minutes", "-"))]
+    for name, fields in patches.items():
+        tests = "<br>".join(f"`{test}`" for test in fields["Test"].split())
+        without = "<br>".join(cell(why) for why in results["patches"].get(name, {"": "not run"}).values())
+        lines.append(f"| {name} | {cell(fields['Defect'])} | {cell(fields['Cause'])} "
+                     f"| {cell(fields['Correction'])} | {tests} | {without} |\n")
+    return "".join(lines)
+
+
+def check():
+    """Whether every patch still applies, and the page is up to date."""
+    refused = [f"{name}.patch does not apply:\n{said}" for name in read_patches()
+               if (said := patch(PROJECT, name, "--dry-run")) is not None]
+    if PAGE.read_text(encoding="utf-8") != make_page():
+        refused.append(f"{PAGE} is not what patches and results make of it: run run.py --page")
+    sys.exit("\n".join(refused) or 0)
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("names", nargs="*")
+    parser.add_argument("--page", action="store_true")
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--tree", type=Path, default=PROJECT / "build" / "defects")
+    arguments = parser.parse_args()
+    if arguments.check:
+        check()
+    elif arguments.page:
+        PAGE.write_text(make_page(), encoding="utf-8")
+    else:
+        run(arguments.tree.resolve(), arguments.names)
+
+
+if __name__ == "__main__":
+    main()
