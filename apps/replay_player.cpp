@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <deque>
 #include <optional>
@@ -206,7 +207,7 @@ class Replay {
     } else {
       note_refusal(next, waypoint.time, status);
     }
-    if (options_.rate) solve();
+    if (options_.rate || is_solver_due()) solve();
     look_for_refusals();
     if (next.row % 256 == 0 || options_.rate) {
       progress.show(fmt::format("{}: {} of {} waypoints", options_.stream, sent_, planned()));
@@ -254,14 +255,34 @@ class Replay {
     if (!options_.skip_bad && !stopped_) stopped_ = row.by;
   }
 
-  /// Sleeps until it is time to send: `lead` before a live waypoint's time, or, for a recorded
+  /// Waits until it is time to send: `lead` before a live waypoint's time, or, for a recorded
   /// stream, as long after the first one as it was recorded.
   bool pace(core::Time waypoint_time) {
     if (options_.clock == ipc::StreamClock::monotonic) {
-      return sleep_until(waypoint_time - options_.lead);
+      return wait_until(waypoint_time - options_.lead);
     }
     if (sent_ == 0) recorded_start_ = clock_.now() - waypoint_time;
-    return sleep_until(recorded_start_ + waypoint_time);
+    return wait_until(recorded_start_ + waypoint_time);
+  }
+
+  /// Sleeps until an instant, but steps the embedded solver each time it is due. Returns false if a
+  /// stop is requested.
+  bool wait_until(core::Time instant) {
+    if (!solver_) return sleep_until(instant);
+    for (core::Time now = clock_.now(); now < instant; now = clock_.now()) {
+      if (stop_requested()) return false;
+      solve();
+      solver_->wait(instant - now);
+    }
+    return !stop_requested();
+  }
+
+  [[nodiscard]] bool is_solver_due() const { return solver_ && solver_->due() <= clock_.now(); }
+
+  /// Longest that this process may block: an embedded solver must be stepped by its due time.
+  [[nodiscard]] core::Time slice() const {
+    if (!solver_) return kSlice;
+    return std::clamp(solver_->due() - clock_.now(), core::Time::zero(), kSlice);
   }
 
   /// Waits while the solver has something to do; false if a stop is requested. A solver that lives
@@ -283,10 +304,10 @@ class Replay {
     }
   }
   bool await_room() {
-    return await([this] { return producer_.wait_for_room(kSlice); });
+    return await([this] { return producer_.wait_for_room(slice()); });
   }
   bool await_consumption() {
-    return await([this] { return producer_.wait_until_consumed(kSlice); });
+    return await([this] { return producer_.wait_until_consumed(slice()); });
   }
 
   void finish() {

@@ -316,7 +316,12 @@ StepResult Solver::step(const Clock& clock) {
   return result;
 }
 
+core::Time Solver::due() const noexcept {
+  return attached() ? impl_->attachment->solver.due() : core::Time::max();
+}
+
 void Solver::wait(core::Time timeout) noexcept {
+  if (timeout <= core::Time::zero()) return;
   if (!attached()) {
     std::this_thread::sleep_for(std::min(timeout, kPoll));
     return;

@@ -68,6 +68,16 @@ class SolverWatch {
 /// Runs in a process of its own or inside the producer's: the same code and the same regions. One
 /// thread uses it; it has none of its own. While it lives, no other process can become the solver
 /// of the same stream.
+///
+/// The program that has the Solver must call `step` after each item that the producer appends, and,
+/// of a live stream, by `due()`, also while nothing is appended: `step` publishes how far the curve
+/// has settled, and readers whose time passes `settled_until` get provisional samples. A thread
+/// that does something else meanwhile, such as waiting for the next waypoint, waits like this:
+///
+///     while (clock.now() < next) {
+///       while (solver.step(clock).consumed > 0) {}
+///       solver.wait(next - clock.now());  // returns when the solver is due
+///     }
 class Solver {
  public:
   /// Becomes the stream's solver, whether or not the stream stands already. Throws StreamBusy if it
@@ -92,8 +102,14 @@ class Solver {
   /// Throws BadRegion if another process has written to the board.
   StepResult step(const Clock& clock);
 
-  /// Sleeps until there may be something to do, or for the timeout, or for 50 ms.
+  /// Sleeps until there may be something to do, at the latest until `due()`, or for the timeout, or
+  /// for 50 ms. Returns at once for a timeout that is not positive.
   void wait(core::Time timeout) noexcept;
+
+  /// When `step` must be called next even if no item comes, on CLOCK_MONOTONIC: at most half of
+  /// freeze-ahead after the last step of a live stream that moves. max() for never: a recorded
+  /// stream, one at rest, or not attached.
+  [[nodiscard]] core::Time due() const noexcept;
 
   /// What to look at before the next step; attached() only.
   [[nodiscard]] SolverWatch watch() const noexcept;

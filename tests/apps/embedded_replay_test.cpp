@@ -1,0 +1,63 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include "replay.hpp"
+#include "splinecast/ipc/clock.hpp"
+#include "splinecast/ipc/reader.hpp"
+#include "support/process.hpp"
+
+/// `replay --embedded` on a live stream, played by a thread of this process.
+namespace splinecast::apps {
+namespace {
+
+using core::Time;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// Three waypoints, 1 s apart.
+WaypointTable sparse_table() {
+  WaypointTable table;
+  table.file = "sparse";
+  table.names = {"x"};
+  table.times = {Time(0), seconds(1), seconds(2)};
+  table.lines = {2, 3, 4};
+  table.positions = {0, 1, 3};
+  return table;
+}
+
+TEST(EmbeddedReplay, SettlesTheCurveBetweenWaypointsThatAreFarApart) {
+  const testing::TestStream stream;
+  // Wide margins for a busy machine: the solver is due every 200 ms, 400 ms ahead.
+  const ReplayOptions options{
+      .stream = stream.name(),
+      .lead = milliseconds(1500),
+      .embedded = true,
+      .quiet = true,
+      .solver = {.freeze_ahead = milliseconds(400), .min_splice = milliseconds(5)}};
+  const WaypointTable table = sparse_table();
+  RefusedRows refused;
+  ReplayReport report;
+  std::thread replaying([&] { report = replay_table(table, options, refused); });
+  ipc::Reader reader(stream.name(), testing::kPatience);
+  core::State state(reader.dimensions());
+  const ipc::MonotonicClock clock;
+  ipc::Head head;
+  std::array<std::size_t, ipc::kSampleStatuses> count{};
+  const Time patience = clock.now() + testing::kPatience;
+  for (Time now = clock.now(); now < patience; now = clock.now()) {
+    const ipc::SampleStatus status = reader.sample(now, state);
+    ++count[static_cast<std::size_t>(status)];
+    if (reader.head(head) && head.finished && now > head.newest_knot) break;
+    std::this_thread::sleep_for(milliseconds(1));
+  }
+  replaying.join();
+  EXPECT_EQ(report.interpolated, 3U);
+  EXPECT_GT(count[static_cast<std::size_t>(ipc::SampleStatus::settled)], 100U);
+  EXPECT_EQ(count[static_cast<std::size_t>(ipc::SampleStatus::provisional)], 0U);
+}
+
+}  // namespace
+}  // namespace splinecast::apps
