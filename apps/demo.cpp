@@ -39,7 +39,8 @@ json replay_json(const ReplayReport& report) {
   return {{"sent", report.sent},
           {"interpolated", report.interpolated},
           {"refused", report.refused},
-          {"interrupted", report.interrupted}};
+          {"interrupted", report.interrupted},
+          {"exit_code", exit_code(report)}};
 }
 
 /// Sums and largest values over the readers.
@@ -143,7 +144,7 @@ int run_demo(const DemoOptions& options) {
   } else {
     print_report(summary(table, sent, read));
   }
-  return kOk;
+  return sent["exit_code"].get<int>();
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include "splinecast/ipc/reader.hpp"
 #include "splinecast/ipc/solver.hpp"
 #include "support/exit_codes.hpp"
-#include "support/refusal_watch.hpp"
 #include "support/signals.hpp"
 
 namespace splinecast::apps {
@@ -127,7 +126,6 @@ class LatencyProducer {
     }
     shared.appends.touch();
     if (!producer_.wait_for_solver(kLatencyPatience)) throw TimeOut("the solver did not come");
-    refusals_ = std::make_unique<RefusalWatch>(stream, producer_.stream_id(), ipc::Trust{});
   }
 
   json run(const std::vector<std::string>& warnings) {
@@ -146,7 +144,7 @@ class LatencyProducer {
     finish();
     found["interrupted"] = stop_requested();
     found["full"] = full_;
-    found["unnamed_refusals"] = refusals_->missed();
+    found["unnamed_refusals"] = unnamed_refusals_;
     if (solver_) found["solver"] = solver_->counters();
     return found;
   }
@@ -192,7 +190,9 @@ class LatencyProducer {
     const Time end = clock_.now() + kLatencyPatience;
     while (producer_.finish(halt) == ipc::AppendStatus::full) pass_time(end);
     while (producer_.consumed() < producer_.appended()) pass_time(end);
-    refusals_->look([&](const ipc::RefusedItem& refused) { push(shared_->refused, refused.item); });
+    const ipc::Refusals refusals = producer_.refusals();
+    unnamed_refusals_ = refusals.missed;
+    for (const ipc::ItemRefusal& refused : refusals.items) push(shared_->refused, refused.item);
   }
 
   void pass_time(Time end) {
@@ -209,7 +209,7 @@ class LatencyProducer {
   ipc::MonotonicClock clock_;
   ipc::Producer producer_;
   std::unique_ptr<LatencySolver> solver_;
-  std::unique_ptr<RefusalWatch> refusals_;
+  Word unnamed_refusals_ = 0;
   Time time_{};
   std::vector<double> position_;
   std::size_t full_ = 0;

@@ -13,8 +13,8 @@
 #include "splinecast/ipc/stream_files.hpp"
 #include "support/exit_codes.hpp"
 #include "support/output.hpp"
+#include "support/own_board.hpp"
 #include "support/recording.hpp"
-#include "support/refusal_watch.hpp"
 #include "support/signals.hpp"
 #include "support/stream_log.hpp"
 
@@ -99,8 +99,9 @@ class Replay {
       return false;
     }
     if (!await_consumption()) return false;
-    watch_.emplace(options_.stream, producer_.stream_id(), options_.trust);
-    before_ = watch_->head();
+    board_.emplace(options_.stream, producer_.stream_id(), options_.trust);
+    before_ = board_->head();
+    producer_.refusals(found_);
     if (options_.verify) begin_log();
     return true;
   }
@@ -146,7 +147,7 @@ class Replay {
     if (!solver_) return;
     solver_->attach();
     while (solver_->step(clock_).consumed > 0) {
-      if (watch_) look_for_refusals();
+      if (board_) look_for_refusals();
     }
   }
 
@@ -155,7 +156,8 @@ class Replay {
     const core::Time end = ipc::deadline(clock_, options_.wait);
     solve();
     while (!stop_requested()) {
-      if (producer_.wait_for_solver(kSlice)) return true;
+      solve();
+      if (producer_.wait_for_solver(slice())) return true;
       if (clock_.now() >= end) throw_no_solver(options_);
     }
     return false;
@@ -226,16 +228,17 @@ class Replay {
                      ipc::to_string(status), time.count()));
   }
 
-  /// What the solver refused stands on the board under its item's number, but not for ever: so this
-  /// is called with every waypoint, and costs next to nothing where nothing was published since.
+  /// The board keeps the last refusals only: so this is called with every waypoint, and costs next
+  /// to nothing where nothing was published since.
   void look_for_refusals() {
     if (log_) log_->look();
-    watch_->look([this](const ipc::RefusedItem& item) { note_refusal(item); });
-    const ipc::Word consumed = watch_->head().consumed;
-    for (; next_item_ < consumed && !in_ring_.empty(); ++next_item_) in_ring_.pop_front();
+    producer_.refusals(found_);
+    missed_ += found_.missed;
+    for (const ipc::ItemRefusal& refused : found_.items) note_refusal(refused);
+    for (; next_item_ < found_.consumed && !in_ring_.empty(); ++next_item_) in_ring_.pop_front();
   }
 
-  void note_refusal(const ipc::RefusedItem& refused) {
+  void note_refusal(const ipc::ItemRefusal& refused) {
     if (log_) log_->refused(refused.item);
     RefusedRow row{
         .by = RefusedBy::solver, .reason = ipc::to_string(refused.reason), .item = refused.item};
@@ -292,7 +295,7 @@ class Replay {
     core::Time end = ipc::deadline(clock_, options_.wait);
     for (;;) {
       solve();
-      if (watch_) look_for_refusals();
+      if (board_) look_for_refusals();
       if (wait()) return true;
       if (stop_requested()) return false;
       if (producer_.solver_alive()) {
@@ -319,8 +322,12 @@ class Replay {
 
   [[nodiscard]] ReplayReport report(bool complete) {
     look_for_refusals();
-    refused_.add_unnamed(watch_->missed());
-    const ipc::Head& now = watch_->head();
+    refused_.add_unnamed(missed_);
+    const ipc::Head now = board_->head();
+    // Also if none of them could be named.
+    if (now.refused > before_.refused && !options_.skip_bad && !stopped_) {
+      stopped_ = RefusedBy::solver;
+    }
     ReplayReport report{.sent = sent_,
                         .unsent = planned() - sent_ - refused_by_producer_,
                         .interpolated = now.knots - before_.knots,
@@ -341,10 +348,12 @@ class Replay {
   std::optional<ipc::Solver> solver_;  ///< first: if there is another one, nothing has been made
   ipc::Producer producer_;
   core::Time recorded_start_{};
-  std::optional<RefusalWatch> watch_;  ///< once there is a board
-  std::optional<StreamLog> log_;       ///< if it is to be verified
-  ipc::Head before_;                   ///< what a producer left whose stream is continued
-  std::deque<Sent> in_ring_;           ///< from item next_item_ on: not known to be consumed
+  std::optional<OwnBoard> board_;  ///< once there is one
+  ipc::Refusals found_;            ///< by the last look
+  ipc::Word missed_ = 0;
+  std::optional<StreamLog> log_;  ///< if it is to be verified
+  ipc::Head before_;              ///< what a producer left whose stream is continued
+  std::deque<Sent> in_ring_;      ///< from item next_item_ on: not known to be consumed
   ipc::Word next_item_ = 0;
   ipc::Word sent_ = 0;
   ipc::Word refused_by_producer_ = 0;

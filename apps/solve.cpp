@@ -6,7 +6,9 @@
 #include <chrono>
 #include <memory>
 #include <set>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "splinecast/ipc/stream_sweep.hpp"
 #include "support/descriptors.hpp"
@@ -61,6 +63,8 @@ class Announcer {
             "left out: RLIMIT_NOFILE allows {} file descriptors, a stream takes {} "
             "(ulimit -Hn)",
             descriptor_limit(), ipc::StreamSweep::kDescriptorsPerStream);
+      case ipc::SweepNews::refused:
+        return fmt::format("{}; more for this reason are counted only", why);
       case ipc::SweepNews::given_up:
         return fmt::format("given up: {}", why);
       case ipc::SweepNews::gone:
@@ -79,10 +83,13 @@ int solve_one(const SolveOptions& options) {
   const ipc::MonotonicClock clock;
   Announcer announcer(options.quiet, false);
   ipc::Solver solver(options.wanted.front(), options.solver);
-  const auto tell = [&](ipc::SweepNews news) { announcer.tell(news, solver.stream(), &solver); };
+  const auto tell = [&](ipc::SweepNews news, std::string_view why = {}) {
+    announcer.tell(news, solver.stream(), &solver, why);
+  };
   tell(ipc::SweepNews::waiting);
   bool was_attached = false;
   bool was_finished = false;
+  std::vector<ipc::ItemRefusal> refused;
   while (!stop_requested()) {
     if (!solver.attached()) {
       if (was_attached) tell(ipc::SweepNews::waiting);
@@ -91,6 +98,10 @@ int solve_one(const SolveOptions& options) {
       if (was_attached) tell(ipc::SweepNews::solving);
     }
     const ipc::StepResult result = solver.step(clock);
+    solver.first_refusals(refused);
+    for (const ipc::ItemRefusal& refusal : refused) {
+      tell(ipc::SweepNews::refused, to_string(refusal));
+    }
     if (solver.attached() && solver.head().finished && !was_finished) {
       was_finished = true;
       tell(ipc::SweepNews::finished);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/stream_files.hpp"
 #include "support/exit_codes.hpp"
 
 namespace splinecast::apps {
@@ -22,5 +24,24 @@ ipc::CheckedRegion<ipc::BoardLayout> open_own_board(const std::string& stream,
 OwnBoard::OwnBoard(const std::string& stream, std::uint64_t stream_id, const ipc::Trust& trust)
     : board_(open_own_board(stream, stream_id, trust)),
       reader_(board_.region.bytes(), board_.layout) {}
+
+void remove_board_without_ring(const std::string& stream, const ipc::Trust& trust) {
+  if (ipc::region_exists(stream, ipc::RegionKind::waypoints)) return;
+  try {
+    ipc::remove_stream(stream, trust);
+  } catch (const ipc::StreamError&) {
+    return;  // what failed before is what is told
+  }
+}
+
+ipc::Head OwnBoard::head() const {
+  constexpr int kTries = 1000;
+  ipc::Head head;
+  for (int attempt = 0; attempt < kTries; ++attempt) {
+    const ipc::Word r = reader_.revision();
+    if (r == 0 || reader_.copy_head(r, head)) return head;
+  }
+  throw Failure("the board has no head of its newest revision");
+}
 
 }  // namespace splinecast::apps

@@ -16,11 +16,17 @@ class OwnBoard {
   OwnBoard(const std::string& stream, std::uint64_t stream_id, const ipc::Trust& trust);
 
   [[nodiscard]] const ipc::RegionHeader& header() const noexcept { return board_.header; }
+  /// The newest head; that of revision 0 if there is none yet.
+  [[nodiscard]] ipc::Head head() const;
   [[nodiscard]] const ipc::SegmentBoardReader& reader() const noexcept { return reader_; }
 
  private:
   ipc::CheckedRegion<ipc::BoardLayout> board_;
   ipc::SegmentBoardReader reader_;
 };
+
+/// Removes the board that an embedded solver of this process made for a ring that has been
+/// withdrawn. Does nothing where there is a ring, or where the board is somebody else's by now.
+void remove_board_without_ring(const std::string& stream, const ipc::Trust& trust);
 
 }  // namespace splinecast::apps

@@ -36,12 +36,14 @@ struct SolverView {
 struct OwnedRing {
   Region region;
   RegionHeader header;
+  RingLayout layout;
   WaypointRingWriter writer;
 
-  OwnedRing(Region mapped, const RegionHeader& described, const RingLayout& layout)
+  OwnedRing(Region mapped, const RegionHeader& described, const RingLayout& of_it)
       : region(std::move(mapped)),
         header(described),
-        writer(region.bytes(), layout, ingest_limits(described)) {}
+        layout(of_it),
+        writer(region.bytes(), of_it, ingest_limits(described)) {}
 };
 
 OwnedRing make_ring(const std::string& stream, const ProducerOptions& options) {
@@ -129,6 +131,8 @@ struct Producer::Impl {
   OwnedRing ring;
   bool continues;
   std::optional<SolverView> solver;
+  WaypointRingReader sent;
+  RefusalReader refused;
   Head bounds;
   core::Time settled_until = core::Time::min();
 
@@ -137,7 +141,12 @@ struct Producer::Impl {
         options(std::move(how)),
         lock(stream, RegionKind::waypoints),
         ring(own_ring(stream, options, lock)),
-        continues(ring.writer.head() > 0) {}
+        continues(ring.writer.head() > 0),
+        sent(ring.region.bytes(), ring.layout),
+        refused(ring.writer.head()) {
+    if (continues) look_for_solver();
+    if (solver) refused.skip(solver->board);
+  }
 
   /// Looks for the solver's region until there is one for this very stream.
   void look_for_solver() noexcept {
@@ -150,6 +159,7 @@ struct Producer::Impl {
       auto [region, header, layout] = open_board(stream, false, options.trust);
       if (header.stream_id != ring.header.stream_id) return;
       solver.emplace(std::move(region), layout);
+      refused.restart();
     } catch (const std::exception&) {
       solver.reset();  // not there yet, or not ours: looked for again
     }
@@ -231,6 +241,22 @@ AppendStatus Producer::finish(const core::Condition& end) {
                      "' is not at rest: a live stream ends with rest or halt");
   }
   return impl_->appended(impl_->ring.writer.finish(end, impl_->solved()));
+}
+
+Refusals Producer::refusals() {
+  Refusals found;
+  refusals(found);
+  return found;
+}
+
+void Producer::refusals(Refusals& out) {
+  impl_->look_for_solver();
+  if (impl_->solver) {
+    impl_->refused.look(impl_->solver->board, impl_->sent, out);
+  } else {
+    out.items.clear();
+    out.missed = out.consumed = 0;
+  }
 }
 
 bool Producer::wait_for_solver(core::Time timeout) {

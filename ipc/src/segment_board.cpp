@@ -408,6 +408,22 @@ RefusedItem SegmentBoardReader::refusal(Word index) const noexcept {
   return {.item = word >> kRefusalItemShift, .reason = static_cast<Refusal>(word & kByteMask)};
 }
 
+std::size_t SegmentBoardReader::copy_refusals(const Head& head, Word from,
+                                              std::span<RefusedItem> out) const noexcept {
+  const Word wanted = head.refused - std::min(from, head.refused);
+  const std::size_t most = std::min<Word>({wanted, kRefusalsKept, out.size()});
+  Word next = head.consumed;  // the item before which this one must come
+  std::size_t count = 0;
+  for (; count < most; ++count) {
+    const RefusedItem item = refusal(head.refused - 1 - count);
+    if (item.item >= next) break;  // overwritten, and so are all before it
+    next = item.item;
+    out[count] = item;
+  }
+  std::ranges::reverse(out.first(count));
+  return count;
+}
+
 core::Knot SegmentBoardReader::knot(Word number, Word r, std::span<double> values) const noexcept {
   const std::size_t dimensions = layout_.dimensions;
   const auto view = slot(number);

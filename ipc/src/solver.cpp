@@ -1,5 +1,6 @@
 #include "splinecast/ipc/solver.hpp"
 
+#include <array>
 #include <bit>
 #include <chrono>
 #include <optional>
@@ -243,13 +244,21 @@ struct Attachment {
   RingView ring;
   OwnedBoard board;
   StreamSolver solver;
+  RefusalReader refusals;
+  Refusals refused;
+  Word refusals_seen;
+  std::array<bool, kRefusalReasons> told{};  ///< by Refusal
 
   Attachment(RingView producer, OwnedBoard own)
       : ring(std::move(producer)),
         board(std::move(own)),
         solver(ring.ring, board.writer, board.reader, window_options(board.header),
                ingest_limits(ring.header), dimension_kinds(ring.header),
-               live_options(board.header)) {}
+               live_options(board.header)),
+        refusals_seen(solver.head().refused) {
+    refusals.skip(board.reader);
+    refused.items.reserve(kRefusalsKept);
+  }
 };
 
 struct Solver::Impl {
@@ -362,6 +371,20 @@ SolverPlaces Solver::places() const noexcept {
 SolverWatch Solver::watch() const noexcept {
   const Attachment& at = *impl_->attachment;
   return {at.ring.ring.polled(), at.solver.seen(), at.solver.due()};
+}
+
+void Solver::first_refusals(std::vector<ItemRefusal>& out) {
+  out.clear();
+  if (!attached()) return;
+  Attachment& at = *impl_->attachment;
+  if (at.solver.head().refused == at.refusals_seen) return;
+  at.refusals_seen = at.solver.head().refused;
+  at.refusals.look(at.board.reader, at.ring.ring, at.refused);
+  for (const ItemRefusal& refusal : at.refused.items) {
+    bool& told = at.told[static_cast<std::size_t>(refusal.reason) % at.told.size()];
+    if (!told) out.push_back(refusal);
+    told = true;
+  }
 }
 
 const Head& Solver::head() const noexcept { return impl_->attachment->solver.head(); }

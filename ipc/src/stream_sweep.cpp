@@ -109,6 +109,10 @@ bool StreamSweep::serve(std::size_t index, const Clock& clock) {
     return false;
   }
   watches_[index] = {.solver = served.solver->watch(), .active = now_};
+  served.solver->first_refusals(refused_);
+  for (const ItemRefusal& refusal : refused_) {
+    tell_(SweepNews::refused, served.solver->stream(), served.solver.get(), to_string(refusal));
+  }
   if (!served.was_finished && served.solver->head().finished) {
     served.was_finished = true;
     tell_(SweepNews::finished, served.solver->stream(), served.solver.get(), {});

@@ -238,9 +238,20 @@ core::Time WaypointRingReader::time(Word i) const noexcept {
 
 bool WaypointRingReader::observe(Word i, RingItem& out) const noexcept {
   copy(i, out);
+  return is_kept(i);
+}
+
+std::optional<core::Time> WaypointRingReader::observe_time(Word i) const noexcept {
+  if (i >= head()) return std::nullopt;
+  const core::Time at = time(i);
+  return is_kept(i) ? std::optional(at) : std::nullopt;
+}
+
+/// O2, for what has been loaded of item i.
+bool WaypointRingReader::is_kept(Word i) const noexcept {
   const Word next = i + layout_.capacity;  // the item that comes into its place
   return load(control_[kHead], std::memory_order_relaxed) < next &&
-         load(control_[kClaimed], std::memory_order_relaxed) <= next;  // O2
+         load(control_[kClaimed], std::memory_order_relaxed) <= next;
 }
 
 Word WaypointRingReader::refused(AppendStatus status) const noexcept {

@@ -197,6 +197,24 @@ TEST_F(Ingest, WhatTheSolverRefusesIsNamedByItsLineThoughTheRingHadTakenIt) {
   expect_accounted_for(stopped, 150);
 }
 
+TEST_F(Ingest, TheSolverTellsTheFirstRefusalOfEachReasonAtOnce) {
+  const std::string told =
+      "'" + name() + "': item 20 refused: lag too short (time 400000000 ns); more for this reason";
+  for (const std::string& wanted : {name(), name() + "*"}) {
+    Process solver(
+        {"solve", wanted, "--method", "smoothing", "--lambda", "1e-3", "--settle", "20"});
+    EXPECT_EQ(replay(own_file("gaps.csv"), {"--on-error", "skip"}).code, 0);
+    solver.await_message("items refused");
+    solver.signal(SIGTERM);
+    const Ended ended = solver.wait();
+    const std::size_t first = ended.err.find(told);
+    EXPECT_NE(first, std::string::npos) << ended.err;
+    EXPECT_EQ(ended.err.find("lag too short", first + told.size()), std::string::npos) << ended.err;
+    EXPECT_LT(first, ended.err.find("items refused"));
+    EXPECT_EQ(run({"rm", name()}).code, 0);
+  }
+}
+
 TEST_F(Ingest, AProducerThatWakesLateIsToldWhatHasGoneBy) {
   const TestFolder folder;
   std::string rows = "t,x\n";

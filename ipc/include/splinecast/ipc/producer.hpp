@@ -5,6 +5,7 @@
 #include <string>
 
 #include "splinecast/core/waypoint.hpp"
+#include "splinecast/ipc/refusals.hpp"
 #include "splinecast/ipc/status.hpp"
 #include "splinecast/ipc/stream_options.hpp"
 
@@ -45,11 +46,22 @@ class Producer {
   /// min() of a recorded one, or while there is no solver.
   [[nodiscard]] core::Time earliest() noexcept;
 
-  /// Ends the stream at its last waypoint; a live one at rest there. If that knot is frozen
+  /// Ends the stream at its last waypoint; a live one at rest there. The last waypoint is the last
+  /// one that the solver does not refuse: see refusals(). If that knot is frozen
   /// already, the stop tail runs and a splice goes back to it. Throws std::invalid_argument if the
   /// condition's values do not fit the dimensions or ask for motion in a quaternion's, BadRequest
   /// if a stream cannot meet it; otherwise as append.
   [[nodiscard]] AppendStatus finish(const core::Condition& end);
+
+  /// What the solver has refused since the last call, of the items that this producer appended:
+  /// `accepted` says only that the ring has an item. All is known of an item once
+  /// `Refusals::consumed` is above its number. The board keeps the last 1,024 refusals; `missed`
+  /// counts those that were overwritten before, and is 0 as long as no more than 1,024 items are
+  /// consumed between two calls. O(1) if nothing was published since, else O(refusals); reads the
+  /// board only, no system call but the search for a solver, as in append. Allocates in the result
+  /// only: the second form reuses its memory. From the producer's thread.
+  [[nodiscard]] Refusals refusals();
+  void refusals(Refusals& out);
 
   /// Waits until a solver has taken the stream up. Returns false after the timeout.
   [[nodiscard]] bool wait_for_solver(core::Time timeout);

@@ -25,7 +25,9 @@
 ///   that a solver that dies between the two has its items consumed: the next one stores it anew.
 /// - Packed knot times: relaxed. They are a hint; the cell that they lead to decides.
 /// - Refusals: one word each, which is never torn, stored before W3 of the head that counts it and
-///   loaded after R1. A later one may stand in its place: of an item not consumed under that head.
+///   loaded after R1. A later refusal, committed or not, overwrites the oldest one first; it is of
+///   a later item. So a word is the refusal of its index iff its item comes before that of the next
+///   index, and the last one's before the items not consumed under that head.
 /// - `retired`: stored with release and loaded with acquire; nothing depends on more than the word.
 /// - What the writer loads of its own board is relaxed: it made these stores itself, or its
 ///   predecessor did, whose death the kernel told by giving the owner's lock away.
@@ -238,6 +240,12 @@ class SegmentBoardReader {
   /// The refusal noted at `index`, counted from 0 over the stream's life; only the last
   /// kRefusalsKept are there.
   [[nodiscard]] RefusedItem refusal(Word index) const noexcept;
+
+  /// Copies the refusals that `head` counts from `from` on, oldest first. Returns how many there
+  /// still are, at most out.size(): these are the last ones, and those before them have been
+  /// overwritten.
+  [[nodiscard]] std::size_t copy_refusals(const Head& head, Word from,
+                                          std::span<RefusedItem> out) const noexcept;
 
   /// What a new solver needs of a knot: copied into `values` (kKnotValues·D), which the returned
   /// spans view. Position, velocity and acceleration are those that its segment begins with; the

@@ -5,7 +5,9 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "splinecast/ipc/refusals.hpp"
 #include "splinecast/ipc/stream_options.hpp"
 #include "splinecast/ipc/stream_solver.hpp"
 
@@ -116,6 +118,11 @@ class Solver {
 
   /// Likewise where its memory lies.
   [[nodiscard]] SolverPlaces places() const noexcept;
+
+  /// Of each reason for which steps have refused items since this solver attached, the first
+  /// refusal, once: what has not been given yet is put into `out`, all else is taken out of it.
+  /// O(1) unless an item was refused since the last call.
+  void first_refusals(std::vector<ItemRefusal>& out);
 
   /// The head last committed; attached() only.
   [[nodiscard]] const Head& head() const noexcept;

@@ -22,6 +22,7 @@ enum class SweepNews : std::uint8_t {
   finished,        ///< its end has been solved
   elsewhere,       ///< another process solves it; taken over when that dies
   no_descriptors,  ///< RLIMIT_NOFILE leaves none for it; tried again when streams have come or gone
+  refused,         ///< an item was refused, the first one for its reason; told again for others
   given_up,        ///< it cannot be solved; not tried again until its name has gone
   gone,            ///< a stream that was found by a pattern stands no more
 };
@@ -38,7 +39,7 @@ enum class SweepNews : std::uint8_t {
 class StreamSweep {
  public:
   /// Told at most once until something else becomes of the stream. `solver` is not null where the
-  /// stream is solved here; `why` is for `given_up`.
+  /// stream is solved here; `why` is for `given_up` and `refused`.
   using Tell = std::function<void(SweepNews news, const std::string& stream, const Solver* solver,
                                   std::string_view why)>;
 
@@ -114,6 +115,7 @@ class StreamSweep {
   std::vector<Served> served_;          ///< likewise, index by index
   std::vector<SolverPlaces> places_;    ///< likewise
   std::vector<std::size_t> calling_;    ///< of these, those that this sweep steps
+  std::vector<ItemRefusal> refused_;    ///< scratch
   core::Time now_{};                    ///< of this sweep
   core::Time pause_;
   std::size_t quiet_sweeps_;  ///< of so many, one looks at a quiet stream

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -179,10 +180,16 @@ class WaypointRingReader {
   /// is, or may be, overwritten (O2); then `out` is of no use. Wait-free: O(D).
   [[nodiscard]] bool observe(Word i, RingItem& out) const noexcept;
 
+  /// The time of item i for such an observer; nothing if the item is, or may be, overwritten, or
+  /// has not been appended.
+  [[nodiscard]] std::optional<core::Time> observe_time(Word i) const noexcept;
+
   /// Items that the producer itself refused with this status.
   [[nodiscard]] Word refused(AppendStatus status) const noexcept;
 
  private:
+  [[nodiscard]] bool is_kept(Word i) const noexcept;
+
   RingLayout layout_;
   std::span<const Word> control_;
   std::span<const Word> items_;

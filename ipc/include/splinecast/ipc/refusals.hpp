@@ -1,0 +1,57 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "splinecast/core/time.hpp"
+#include "splinecast/ipc/segment_board.hpp"
+#include "splinecast/ipc/status.hpp"
+#include "splinecast/ipc/waypoint_ring.hpp"
+
+namespace splinecast::ipc {
+
+/// An item that the ring had accepted and the solver refused.
+struct ItemRefusal {
+  Word item = 0;                     ///< number of the item: Producer::appended() before its append
+  std::optional<core::Time> time{};  ///< of the item; unset if the ring has overwritten it
+  Refusal reason{};
+};
+
+/// `item 17 refused: too late (time 123 ns)`.
+[[nodiscard]] std::string to_string(const ItemRefusal& refusal);
+
+/// What a solver has refused since it was asked the last time.
+struct Refusals {
+  std::vector<ItemRefusal> items{};  ///< in the order of the ring; at most kRefusalsKept
+  Word missed = 0;    ///< further refusals, before these, that the board no longer has
+  Word consumed = 0;  ///< items below this number are decided: refused ones are told by now
+};
+
+/// Follows what a solver refuses, from its board. One thread uses it.
+class RefusalReader {
+ public:
+  /// Leaves out items below `first`.
+  explicit RefusalReader(Word first = 0) : first_(first), copied_(kRefusalsKept) {}
+
+  /// Leaves out what the board has counted so far.
+  void skip(const SegmentBoardReader& board) noexcept;
+
+  /// Begins with the first refusal of another board of the same stream.
+  void restart() noexcept;
+
+  /// Gives the refusals since the last look. `ring` is the ring of the board's stream. O(1) if
+  /// nothing was published since, else O(new refusals); no system call. Allocates only where
+  /// `out.items` has to grow. `missed` is 0 if fewer than kRefusalsKept items were consumed since.
+  void look(const SegmentBoardReader& board, const WaypointRingReader& ring, Refusals& out);
+
+ private:
+  void copy_head(const SegmentBoardReader& board) noexcept;
+
+  Head head_;      ///< as last seen
+  Word seen_ = 0;  ///< refusals told, over the stream's life
+  Word first_;
+  std::vector<RefusedItem> copied_;
+};
+
+}  // namespace splinecast::ipc
