@@ -197,10 +197,10 @@ class Replay {
     core::Waypoint waypoint = table_.waypoint(next.row);
     waypoint.time += offset;
     if (stop_requested() || (options_.rate && !pace(waypoint.time))) return false;
-    ipc::AppendStatus status = producer_.append(waypoint);
+    ipc::AppendStatus status = append(waypoint);
     while (status == ipc::AppendStatus::full) {
-      if (!await_room()) return false;
-      status = producer_.append(waypoint);
+      if (stop_requested() || !await_room()) return false;
+      status = append(waypoint);
     }
     if (status == ipc::AppendStatus::accepted) {
       ++sent_;
@@ -209,12 +209,26 @@ class Replay {
     } else {
       note_refusal(next, waypoint.time, status);
     }
-    if (options_.rate || is_solver_due()) solve();
-    look_for_refusals();
+    if (options_.rate || is_solver_due()) {
+      solve();
+      look_for_refusals();
+    }
     if (next.row % 256 == 0 || options_.rate) {
       progress.show(fmt::format("{}: {} of {} waypoints", options_.stream, sent_, planned()));
     }
     return !stopped_;
+  }
+
+  /// Appends a waypoint, once it is known of so many items before it what became of them that no
+  /// refusal can be overwritten unseen. (A ring of more items than the board keeps refusals may
+  /// hold more.)
+  ipc::AppendStatus append(const core::Waypoint& waypoint) {
+    look_for_refusals();
+    const bool is_behind = producer_.appended() - found_.consumed >= ipc::kRefusalsKept &&
+                           options_.capacity <= ipc::kRefusalsKept;
+    if (!is_behind) return producer_.append(waypoint);
+    (void)board_->head();  // throws if there is none: then nothing would become known any more
+    return ipc::AppendStatus::full;
   }
 
   /// What the append refused is not in the ring.

@@ -36,11 +36,8 @@ void inspect_spline(StreamInfo& info, const Trust& trust) {
     const Word r = board.revision();
     if (r == 0 || board.copy_head(r, info.head)) break;
   }
-  // The oldest half of the ring may be written again while it is read.
-  const Word kept = std::min<Word>(info.head.refused, kRefusalsKept / 2);
-  for (Word i = info.head.refused - kept; i < info.head.refused; ++i) {
-    info.refusals.push_back(board.refusal(i));
-  }
+  info.refusals.resize(kRefusalsKept);
+  info.refusals.resize(board.copy_refusals(info.head, 0, info.refusals));
 }
 
 /// A file under a region's name that this process may remove.

@@ -247,7 +247,7 @@ TEST_F(Ingest, EachOfManyRefusalsIsNamedAlsoInALoop) {
   const auto file = folder.write("a.csv", rows);
   Process solver({"solve", name(), "--method", "hermite"});
   const Ended ended =
-      replay(file, {"--on-error", "skip", "--json", "--loop", "2", "--capacity", "256"});
+      replay(file, {"--on-error", "skip", "--json", "--loop", "2"});  // with the default ring
   EXPECT_EQ(ended.code, 0);
   const auto report = json::parse(ended.out);
   EXPECT_EQ(report["refused_by_reason"]["lacks derivatives"], 5000);

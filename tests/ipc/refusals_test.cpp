@@ -5,6 +5,7 @@
 #include "splinecast/core/method.hpp"
 #include "splinecast/ipc/producer.hpp"
 #include "splinecast/ipc/solver.hpp"
+#include "splinecast/ipc/stream_files.hpp"
 #include "support/allocations.hpp"
 #include "support/memory_stream.hpp"
 #include "support/process.hpp"
@@ -128,6 +129,16 @@ TEST_F(ProducerRefusals, FirstOfEachReasonIsWhatTheSolverTells) {
   solve();
   solver_.first_refusals(told);
   EXPECT_TRUE(told.empty());
+}
+
+TEST_F(ProducerRefusals, AreAllInspectedThatTheBoardKeeps) {
+  Producer producer(stream_.name(), options());
+  append(producer, 1500);
+  solve();
+  const StreamInfo info = inspect(stream_.name());
+  ASSERT_EQ(info.refusals.size(), kRefusalsKept);
+  EXPECT_EQ(info.refusals.front().item, 1500 - kRefusalsKept);
+  EXPECT_EQ(info.refusals.back().item, 1499U);
 }
 
 TEST(RefusalsOfABoard, EndWhereALaterOneIsBeingWritten) {

@@ -21,7 +21,8 @@ struct StreamInfo {
   Word appended = 0;
   std::array<Word, kAppendStatuses> refused_by_producer{};  ///< by AppendStatus
   Head head;                                                ///< revision 0: nothing solved yet
-  std::vector<RefusedItem> refusals;  ///< the last refused items, oldest first
+  std::vector<RefusedItem> refusals;  ///< the last items refused, oldest first: kRefusalsKept,
+                                      ///< fewer if the solver has overwritten some meanwhile
 };
 
 /// Looks at a stream. Throws NoSuchStream if nothing of it stands, BadRegion if a region cannot
