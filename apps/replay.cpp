@@ -9,6 +9,7 @@
 #include "support/exit_codes.hpp"
 #include "support/options.hpp"
 #include "support/output.hpp"
+#include "support/recording.hpp"
 #include "support/signals.hpp"
 #include "support/stream_log.hpp"
 
@@ -150,6 +151,24 @@ void add_interval(CLI::App& verb, const std::string& name, core::Time& value,
 }
 
 }  // namespace
+
+void prepare_replay(WaypointTable& table, const ReplayOptions& options, RefusedRows& refused) {
+  select_rows(table, options.from.value_or(core::Time::zero()), options.duration);
+  change_rate(table, options.rate.value_or(1.0));
+  drop_unfit_rows(table, options.limits, options.skip_bad ? &refused : nullptr);
+  const core::Condition none;
+  core::require_values(options.start.value_or(none), table.dimensions());
+  core::require_values(options.end.value_or(none), table.dimensions());
+  core::DimensionKinds(table.kinds).require_end(options.end.value_or(none));
+  for (const auto& condition : {options.start, options.end}) {
+    if (condition && !core::is_online(condition->kind)) {
+      throw InputError(
+          fmt::format("condition '{}' needs all waypoints at once: a stream cannot "
+                      "meet it",
+                      core::to_string(*condition)));
+    }
+  }
+}
 
 int exit_code(const ReplayReport& report) {
   if (report.verification && report.verification->first) return kFellShort;

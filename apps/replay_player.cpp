@@ -8,6 +8,7 @@
 #include "replay.hpp"
 #include "splinecast/ipc/checked_region.hpp"
 #include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/old_motion.hpp"
 #include "splinecast/ipc/owner_lock.hpp"
 #include "splinecast/ipc/producer.hpp"
 #include "splinecast/ipc/stream_files.hpp"
@@ -32,8 +33,8 @@ constexpr core::Time kSlice = std::chrono::milliseconds(50);
                             options.stream, core::to_seconds(options.wait), options.stream));
 }
 
-/// A finished stream is made anew only once there is a solver for the new one: until then its curve
-/// can still be read. Returns false if a stop is requested meanwhile.
+/// A finished stream is made again only once there is a solver for the new one: until then its
+/// curve can still be read. Returns false if a stop is requested meanwhile.
 bool await_solver_of_finished(const ReplayOptions& options) {
   if (!ipc::region_exists(options.stream, ipc::RegionKind::spline)) return true;
   const ipc::MonotonicClock clock;
@@ -43,16 +44,6 @@ bool await_solver_of_finished(const ReplayOptions& options) {
     if (!sleep_until(clock.now() + std::chrono::milliseconds(2))) return false;
   }
   return true;
-}
-
-/// The board that an embedded solver made for a ring that has been withdrawn.
-void remove_board_without_ring(const ReplayOptions& options) {
-  if (ipc::region_exists(options.stream, ipc::RegionKind::waypoints)) return;
-  try {
-    ipc::remove_stream(options.stream, options.trust);
-  } catch (const ipc::StreamError&) {
-    return;  // it was not made, or is somebody else's by now; what failed before is what is told
-  }
 }
 
 /// A replay on its way: the producer, and the embedded solver if there is one.
@@ -153,14 +144,29 @@ class Replay {
 
   /// Waits for a solver; false if a stop is requested meanwhile.
   bool await_solver() {
-    const core::Time end = ipc::deadline(clock_, options_.wait);
-    solve();
+    const core::Time old = old_motion();
+    const core::Time end =
+        ipc::deadline(clock_, old + std::min(options_.wait, core::Time::max() - old));
     while (!stop_requested()) {
       solve();
       if (producer_.wait_for_solver(slice())) return true;
       if (clock_.now() >= end) throw_no_solver(options_);
     }
     return false;
+  }
+
+  /// How long the stream that was made again will still move: no solver takes it up before.
+  [[nodiscard]] core::Time old_motion() const {
+    const core::Time end =
+        ipc::end_of_old_motion(options_.stream, producer_.stream_id(), options_.trust);
+    const core::Time now = clock_.now();
+    ipc::require_near_end(options_.stream, end, now);
+    if (end <= now) return core::Time::zero();
+    if (!options_.quiet) {
+      say(fmt::format("'{}': waits {:.1f} s for the end of the motion before", options_.stream,
+                      core::to_seconds(end - now)));
+    }
+    return end - now;
   }
 
   void withdraw_if_new() noexcept {
@@ -376,24 +382,6 @@ class Replay {
 
 }  // namespace
 
-void prepare_replay(WaypointTable& table, const ReplayOptions& options, RefusedRows& refused) {
-  select_rows(table, options.from.value_or(core::Time::zero()), options.duration);
-  change_rate(table, options.rate.value_or(1.0));
-  drop_unfit_rows(table, options.limits, options.skip_bad ? &refused : nullptr);
-  const core::Condition none;
-  core::require_values(options.start.value_or(none), table.dimensions());
-  core::require_values(options.end.value_or(none), table.dimensions());
-  core::DimensionKinds(table.kinds).require_end(options.end.value_or(none));
-  for (const auto& condition : {options.start, options.end}) {
-    if (condition && !core::is_online(condition->kind)) {
-      throw InputError(
-          fmt::format("condition '{}' needs all waypoints at once: a stream cannot "
-                      "meet it",
-                      core::to_string(*condition)));
-    }
-  }
-}
-
 ReplayReport replay_table(const WaypointTable& table, const ReplayOptions& options,
                           RefusedRows& refused) {
   if (!options.embedded && !await_solver_of_finished(options)) {
@@ -403,7 +391,7 @@ ReplayReport replay_table(const WaypointTable& table, const ReplayOptions& optio
   try {
     return Replay(table, options, refused).run();
   } catch (...) {
-    if (options.embedded && !had_board) remove_board_without_ring(options);
+    if (options.embedded && !had_board) remove_board_without_ring(options.stream, options.trust);
     throw;
   }
 }

@@ -93,7 +93,7 @@ int solve_one(const SolveOptions& options) {
   while (!stop_requested()) {
     if (!solver.attached()) {
       if (was_attached) tell(ipc::SweepNews::waiting);
-      was_attached = solver.attach();
+      was_attached = solver.attach(clock);
       was_finished = false;
       if (was_attached) tell(ipc::SweepNews::solving);
     }

@@ -7,11 +7,13 @@
 #include <stdexcept>
 #include <thread>
 #include <utility>
+#include <variant>
 
 #include "splinecast/core/limits.hpp"
 #include "splinecast/ipc/checked_region.hpp"
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/futex.hpp"
+#include "splinecast/ipc/old_motion.hpp"
 #include "splinecast/ipc/owner_lock.hpp"
 
 namespace splinecast::ipc {
@@ -218,12 +220,23 @@ OwnedBoard make_board(const std::string& stream, const RegionHeader& ring_header
   return {std::move(region), header, layout, false};
 }
 
-OwnedBoard own_board(const std::string& stream, const RegionHeader& ring_header,
-                     const SolverOptions& options) {
+/// Until when nobody may take the name from a board of an earlier stream.
+struct Occupied {
+  core::Time until;
+};
+
+std::variant<OwnedBoard, Occupied> own_board(const std::string& stream,
+                                             const RegionHeader& ring_header,
+                                             const SolverOptions& options, const Clock& clock) {
   if (!region_exists(stream, RegionKind::spline)) return make_board(stream, ring_header, options);
   auto [region, header, layout] = open_board(stream, true, options.trust);
   OwnedBoard board(std::move(region), header, layout, true);
   if (header.stream_id != ring_header.stream_id || board.reader.retired()) {
+    // Readers follow the old curve to its end: they must not find another one in mid-motion.
+    const core::Time end = end_of_motion(header, board.reader);
+    const core::Time now = clock.now();
+    require_near_end(stream, end, now);
+    if (now < end) return Occupied{end};
     board.writer.retire();
     wake_all(board.writer.revision_word());
     unlink_region(stream, RegionKind::spline);
@@ -266,6 +279,7 @@ struct Solver::Impl {
   SolverOptions options;
   OwnerLock lock;
   std::unique_ptr<Attachment> attachment;
+  core::Time next_attach = core::Time::min();
 
   Impl(std::string name, const SolverOptions& how)
       : stream(std::move(name)),
@@ -293,16 +307,25 @@ Solver::~Solver() = default;
 
 void Solver::require(const SolverOptions& options) { require_options(options); }
 
-bool Solver::attach() {
+bool Solver::attach() { return attach(MonotonicClock()); }
+
+bool Solver::attach(const Clock& clock) {
   if (attached()) return true;
+  if (impl_->next_attach > core::Time::min() && clock.now() < impl_->next_attach) return false;
+  impl_->next_attach = core::Time::min();
   if (!region_exists(impl_->stream, RegionKind::waypoints)) return false;
   try {
     auto [region, header, layout] = open_ring(impl_->stream, false, impl_->options.trust);
     require_same_clock(header, impl_->stream);
     RingView ring(std::move(region), header, layout);
     if (ring.ring.retired()) return false;
-    OwnedBoard board = own_board(impl_->stream, header, impl_->options);
-    impl_->attachment = std::make_unique<Attachment>(std::move(ring), std::move(board));
+    auto board = own_board(impl_->stream, header, impl_->options, clock);
+    if (const auto* const occupied = std::get_if<Occupied>(&board)) {
+      impl_->next_attach = occupied->until;
+      return false;
+    }
+    impl_->attachment =
+        std::make_unique<Attachment>(std::move(ring), std::get<OwnedBoard>(std::move(board)));
     impl_->lock.keep_file();
   } catch (const NoSuchStream&) {
     return false;  // it went between the look and the opening
@@ -326,7 +349,8 @@ StepResult Solver::step(const Clock& clock) {
 }
 
 core::Time Solver::due() const noexcept {
-  return attached() ? impl_->attachment->solver.due() : core::Time::max();
+  if (attached()) return impl_->attachment->solver.due();
+  return impl_->next_attach > core::Time::min() ? impl_->next_attach : core::Time::max();
 }
 
 void Solver::wait(core::Time timeout) noexcept {

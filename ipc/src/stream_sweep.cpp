@@ -66,7 +66,7 @@ bool StreamSweep::sweep(const Clock& clock) {
     look_around();
     next_look_ = now + kLookAround;
   }
-  if (!to_take_.empty()) take_next();
+  if (!to_take_.empty()) take_next(clock);
   ++sweeps_;
   const bool looks_at_all = all_quiet_;
   const core::Time quiet_since = now - kQuietAfter;
@@ -138,6 +138,7 @@ void StreamSweep::release_detached() {
 
 void StreamSweep::look_around() {
   if (folder_.has_changed()) look_for_names();
+  note_ends_of_motion();
   if (to_take_.empty()) look_elsewhere();
 }
 
@@ -168,6 +169,18 @@ void StreamSweep::look_for_names() {
   std::ranges::reverse(to_take_);
 }
 
+/// Streams whose earlier motion has ended are tried again: nothing else tells.
+void StreamSweep::note_ends_of_motion() {
+  std::erase_if(moving_, [&](const std::string& stream) {
+    const auto found = members_.find(stream);
+    if (found == members_.end() || !found->second.waiting) return true;
+    const core::Time end = found->second.waiting->due();
+    if (end > now_) return end == core::Time::max();
+    to_take_.push_back(stream);
+    return true;
+  });
+}
+
 /// Looks whether streams of others have lost their solver, some each time.
 void StreamSweep::look_elsewhere() {
   if (elsewhere_.empty()) {
@@ -187,13 +200,13 @@ void StreamSweep::look_elsewhere() {
 }
 
 /// Takes up the next stream that can be.
-void StreamSweep::take_next() {
+void StreamSweep::take_next(const Clock& clock) {
   for (std::size_t tries = 0; tries < kTries && !to_take_.empty(); ++tries) {
     const std::string stream = std::move(to_take_.back());
     to_take_.pop_back();
     const auto found = members_.find(stream);
     if (found == members_.end() || found->second.state == State::solved) continue;
-    if (own(stream, found->second) && attach(stream, found->second)) return;
+    if (own(stream, found->second) && attach(stream, found->second, clock)) return;
   }
 }
 
@@ -217,9 +230,11 @@ bool StreamSweep::own(const std::string& stream, Member& member) {
 }
 
 /// Takes the stream up if it stands. Returns whether it did.
-bool StreamSweep::attach(const std::string& stream, Member& member) {
+bool StreamSweep::attach(const std::string& stream, Member& member, const Clock& clock) {
   try {
-    if (!member.waiting->attach()) {
+    if (!member.waiting->attach(clock)) {
+      const bool is_noted = std::ranges::find(moving_, stream) != moving_.end();
+      if (member.waiting->due() < core::Time::max() && !is_noted) moving_.push_back(stream);
       become(stream, member, State::waiting, SweepNews::waiting);
       return false;
     }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <string>
 #include <thread>
@@ -57,6 +58,37 @@ TEST(EmbeddedReplay, SettlesTheCurveBetweenWaypointsThatAreFarApart) {
   EXPECT_EQ(report.interpolated, 3U);
   EXPECT_GT(count[static_cast<std::size_t>(ipc::SampleStatus::settled)], 100U);
   EXPECT_EQ(count[static_cast<std::size_t>(ipc::SampleStatus::provisional)], 0U);
+}
+
+TEST(EmbeddedReplay, OntoAStreamThatStillMovesWaitsForItsEnd) {
+  const testing::TestStream stream;
+  const ReplayOptions options{
+      .stream = stream.name(), .lead = milliseconds(700), .embedded = true, .quiet = true};
+  WaypointTable table = sparse_table();
+  table.times = {Time(0), milliseconds(300), milliseconds(600)};
+  RefusedRows refused;
+  std::thread replaying([&] {
+    (void)replay_table(table, options, refused);
+    (void)replay_table(table, options, refused);
+  });
+  ipc::Reader reader(stream.name(), testing::kPatience);
+  core::State state(reader.dimensions());
+  const ipc::MonotonicClock clock;
+  const Time patience = clock.now() + testing::kPatience;
+  Time now = clock.now();
+  while (now < patience && reader.sample(now, state) != ipc::SampleStatus::retired) {
+    std::this_thread::sleep_for(milliseconds(1));
+    now = clock.now();
+  }
+  ipc::Head old;  // its mapping stays
+  EXPECT_TRUE(reader.head(old));
+  EXPECT_TRUE(old.finished);
+  EXPECT_GE(now, old.newest_knot);
+  replaying.join();
+  ipc::Head second;
+  ASSERT_TRUE(ipc::Reader(stream.name()).head(second));
+  EXPECT_EQ(second.knots, 3U);
+  EXPECT_GE(second.newest_knot, old.newest_knot + options.lead + milliseconds(600));
 }
 
 }  // namespace

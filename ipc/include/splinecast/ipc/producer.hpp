@@ -17,10 +17,11 @@ namespace splinecast::ipc {
 /// become the producer of the same stream.
 class Producer {
  public:
-  /// Makes the stream, or makes it anew if it stands finished, or continues it if its producer died
-  /// before finishing. Throws StreamBusy if it has a living producer, BadRequest if the options
-  /// contradict a stream that is continued, BadRegion if shared memory is full or what stands under
-  /// the name cannot be used.
+  /// Makes the stream, or makes it again if it is finished, or continues it if its producer died
+  /// before finishing. A solver takes a stream that was made again up once the old curve has come
+  /// to rest: wait_for_solver() before waypoints of a live one are given times. Throws StreamBusy
+  /// if it has a living producer, BadRequest if the options contradict a stream that is continued,
+  /// BadRegion if shared memory is full or what stands under the name cannot be used.
   Producer(std::string stream, ProducerOptions options);
   Producer(Producer&&) noexcept;
   Producer& operator=(Producer&&) noexcept;

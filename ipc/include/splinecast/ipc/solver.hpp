@@ -94,9 +94,13 @@ class Solver {
 
   /// Takes the stream up once its producer has made it: goes on with the board of a solver that
   /// died, retires the board of an earlier stream, or makes a new one. Returns false while there is
-  /// no stream. Throws BadRequest if the options contradict a board that is taken over, BadRegion
-  /// if a region cannot be used, gone on with or made. System calls; does nothing if attached.
+  /// no stream, and while the curve of an earlier live stream has not come to rest, which readers
+  /// still follow: due() is when it will have. Throws BadRequest if the options contradict a board
+  /// that is taken over, BadRegion if a region cannot be used, gone on with or made, or if that
+  /// curve moves for more than kLongestOldMotion. System calls; does nothing if attached. `clock`,
+  /// by default CLOCK_MONOTONIC, is the one that steps are given.
   bool attach();
+  bool attach(const Clock& clock);
   [[nodiscard]] bool attached() const noexcept;
 
   /// Takes what waypoints there are and publishes; detaches when the stream has been retired or
@@ -110,7 +114,7 @@ class Solver {
 
   /// When `step` must be called next even if no item comes, on CLOCK_MONOTONIC: at most half of
   /// freeze-ahead after the last step of a live stream that moves. max() for never: a recorded
-  /// stream, one at rest, or not attached.
+  /// stream, or one at rest. Not attached: when `attach` is to be tried again, if that is known.
   [[nodiscard]] core::Time due() const noexcept;
 
   /// What to look at before the next step; attached() only.

@@ -94,9 +94,10 @@ class StreamSweep {
   void look_around();
   void look_for_names();
   void look_elsewhere();
-  void take_next();
+  void take_next(const Clock& clock);
+  void note_ends_of_motion();
   bool own(const std::string& stream, Member& member);
-  bool attach(const std::string& stream, Member& member);
+  bool attach(const std::string& stream, Member& member, const Clock& clock);
   void become(const std::string& stream, Member& member, State state, SweepNews news,
               const Solver* solver = nullptr, std::string_view why = {});
   [[nodiscard]] std::size_t owned() const noexcept;
@@ -110,6 +111,7 @@ class StreamSweep {
   core::Time next_look_ = core::Time::min();
   std::vector<std::string> to_take_;    ///< streams to try next, the first one last
   std::vector<std::string> elsewhere_;  ///< streams that others solve, those to look at next last
+  std::vector<std::string> moving_;     ///< streams that wait for the end of an earlier motion
   std::size_t most_owned_;              ///< what RLIMIT_NOFILE allows
   std::vector<Watch> watches_;          ///< all that a sweep reads of an idle stream
   std::vector<Served> served_;          ///< likewise, index by index

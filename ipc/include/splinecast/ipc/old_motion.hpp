@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "splinecast/core/time.hpp"
+#include "splinecast/ipc/layout.hpp"
+#include "splinecast/ipc/segment_board.hpp"
+#include "splinecast/ipc/trust.hpp"
+
+namespace splinecast::ipc {
+
+/// The longest rest of a motion that a new stream of the same name waits for.
+inline constexpr core::Time kLongestOldMotion{3'600'000'000'000};
+
+/// When the curve that a live board has published comes to rest, on CLOCK_MONOTONIC; min() if
+/// nobody follows it: it is recorded, of another time namespace, retired, or has no curve.
+[[nodiscard]] core::Time end_of_motion(const RegionHeader& header,
+                                       const SegmentBoardReader& board) noexcept;
+
+/// Throws BadRegion if a motion ends more than kLongestOldMotion after now: no board of ours is to
+/// keep its name for that long.
+void require_near_end(const std::string& stream, core::Time end, core::Time now);
+
+/// end_of_motion() of the board under the stream's name if it is another stream's than the one with
+/// this id; min() if it is not, or if there is none that can be used. System calls.
+[[nodiscard]] core::Time end_of_old_motion(const std::string& stream, std::uint64_t stream_id,
+                                           const Trust& trust);
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,56 @@
+#include "splinecast/ipc/old_motion.hpp"
+
+#include "splinecast/ipc/checked_region.hpp"
+#include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/stream_options.hpp"
+#include "splinecast/ipc/waypoint_ring.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+constexpr int kHeadTries = 16;
+
+}  // namespace
+
+core::Time end_of_motion(const RegionHeader& header, const SegmentBoardReader& board) noexcept {
+  if (stream_clock(header) == StreamClock::recorded || header.time_namespace != time_namespace() ||
+      board.retired()) {
+    return core::Time::min();
+  }
+  // Tried again for an observer, whom the board's solver may overtake.
+  for (int attempt = 0; attempt < kHeadTries; ++attempt) {
+    const Word r = board.revision();
+    Head head;
+    core::Time left{};
+    core::Time right{};
+    if (r == 0) break;
+    if (!board.copy_head(r, head)) continue;
+    if (head.newest == 0) break;
+    if (board.copy_ends(head.newest, r, left, right)) {
+      return is_time_in_range(right) ? right : core::Time::min();
+    }
+  }
+  return core::Time::min();
+}
+
+void require_near_end(const std::string& stream, core::Time end, core::Time now) {
+  if (end <= now || end - now <= kLongestOldMotion) return;
+  throw BadRegion("stream '" + stream + "' was made again, but its old motion ends only at " +
+                  std::to_string(end.count()) + " ns, more than an hour from now; 'splinecast rm " +
+                  stream + "' removes it, once its writers have been stopped");
+}
+
+core::Time end_of_old_motion(const std::string& stream, std::uint64_t stream_id,
+                             const Trust& trust) {
+  try {
+    const auto peeked = peek_header(stream, RegionKind::spline, trust);
+    if (!peeked || peeked->stream_id == stream_id) return core::Time::min();
+    const auto [region, header, layout] = open_board(stream, false, trust);
+    if (header.stream_id == stream_id) return core::Time::min();
+    return end_of_motion(header, SegmentBoardReader(region.bytes(), layout));
+  } catch (const StreamError&) {
+    return core::Time::min();  // it went meanwhile, or no solver of ours can use it either
+  }
+}
+
+}  // namespace splinecast::ipc
