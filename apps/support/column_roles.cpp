@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <utility>
 
 #include "splinecast/core/state.hpp"
@@ -26,6 +28,36 @@ std::optional<std::size_t> index_of(std::string_view name, std::string_view word
   const bool has_digits =
       text && !text->empty() && text->find_first_not_of("0123456789") == std::string_view::npos;
   return has_digits ? parse_count(*text) : std::nullopt;
+}
+
+/// Whether a column named `<word>[…]` is meant to have an index there, but has none: `v[-1]`.
+bool has_bad_index(std::string_view name, std::string_view word) {
+  const auto text = in_brackets(name, word);
+  if (!text || index_of(name, word)) return false;
+  const std::string_view index = without_blanks(*text);
+  return index.empty() || index.find_first_of("0123456789+-.") == 0;
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+/// Whether a name could also be that of a time or of a derivative: `vx`, `acc_y`, `time_sync`.
+bool is_ambiguous(std::string_view name) {
+  constexpr std::array<std::string_view, 12> kWords{"vel",   "speed", "acc",   "jerk",
+                                                    "omega", "alpha", "gyro",  "dot",
+                                                    "rate",  "time",  "stamp", "sec"};
+  constexpr std::size_t kLongestSymbol = 3;  // v, vx, v_x
+  const std::string all = lower(name);
+  const std::string_view base =
+      without_blanks(std::string_view(all).substr(0, all.find_first_of(" [(")));
+  const bool is_symbol = base.size() <= kLongestSymbol && base.find_first_of("vaj") == 0;
+  return is_symbol || std::ranges::any_of(kWords, [&](std::string_view word) {
+           return base.find(word) != std::string_view::npos;
+         });
 }
 
 }  // namespace
@@ -65,6 +97,9 @@ void ColumnRoles::find_values(const std::vector<std::string>& selected, Lines re
   }
   roles_.velocities = derivative_columns("v", all);
   roles_.accelerations = derivative_columns("a", all);
+  if (!selected.empty()) return;
+  require_no_unused_derivative();
+  tell_roles();
 }
 
 void ColumnRoles::add_position(std::size_t c) {
@@ -113,6 +148,7 @@ ColumnRoles::Columns ColumnRoles::position_columns(bool is_selected, const Lines
       say(fmt::format("{}: column '{}' is not numeric and is left out", file_, name));
       continue;
     }
+    if (!is_selected) require_usable(c);
     columns.push_back(c);
     if (!is_selected && columns.size() > core::kMaxDimensions) break;
   }
@@ -136,6 +172,23 @@ std::vector<bool> ColumnRoles::numeric_columns(Lines rest) const {
     });
   } while (!open.empty() && rest.next_data(line));
   return is_numeric;
+}
+
+/// Throws for a column that would be a position by default, though its name says something else.
+void ColumnRoles::require_usable(std::size_t c) const {
+  const std::string& name = format_.names[c];
+  if (unit_of_time_column(name)) {
+    throw InputError(fmt::format(
+        "{}: column {}, '{}', is a second time column besides '{}': select the positions with "
+        "--columns",
+        file_, c + 1, name, format_.names[roles_.time]));
+  }
+  for (const std::string_view letter : {"v", "a"}) {
+    if (!has_bad_index(name, letter)) continue;
+    throw InputError(fmt::format("{}: column {}, '{}', is no {}: {}[i] has an index i of 0 to {}",
+                                 file_, c + 1, name, letter == "v" ? "velocity" : "acceleration",
+                                 letter, core::kMaxDimensions - 1));
+  }
 }
 
 /// j[i] beside p[i], v[i] and a[i], omega[i] and alpha[i] behind j[0]: samples that this program
@@ -167,6 +220,32 @@ ColumnRoles::Columns ColumnRoles::derivative_columns(std::string_view letter,
                                  columns.size(), letter, roles_.positions.size()));
   }
   return columns;
+}
+
+/// Throws for a velocity or an acceleration that goes with none of the positions.
+void ColumnRoles::require_no_unused_derivative() const {
+  for (std::size_t c = 0; c < format_.names.size(); ++c) {
+    const std::string& name = format_.names[c];
+    for (const auto& [letter, used] :
+         {std::pair("v", &roles_.velocities), std::pair("a", &roles_.accelerations)}) {
+      if (c == roles_.time || !index_of(name, letter)) continue;
+      if (std::ranges::find(*used, c) != used->end()) continue;
+      throw InputError(fmt::format("{}: column {}, '{}', goes with none of the {} positions ({})",
+                                   file_, c + 1, name, roles_.positions.size(),
+                                   names_of(roles_.positions)));
+    }
+  }
+}
+
+void ColumnRoles::tell_roles() const {
+  const bool is_clear = std::ranges::none_of(
+      roles_.positions, [&](std::size_t c) { return is_ambiguous(format_.names[c]); });
+  if (is_clear) return;
+  say(
+      fmt::format("{}: time: {}; positions: {}; velocities: {}; accelerations: {} (--columns "
+                  "selects other positions)",
+                  file_, format_.names[roles_.time], names_of(roles_.positions),
+                  names_of(roles_.velocities), names_of(roles_.accelerations)));
 }
 
 std::string ColumnRoles::names_of(const Columns& columns) const {

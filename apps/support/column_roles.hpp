@@ -30,8 +30,10 @@ class ColumnRoles {
   ColumnRoles(std::string file, const TableFormat& format, std::optional<TimeUnit> unit);
 
   /// Finds the columns of positions and given derivatives. `selected` names the positions in their
-  /// order; if it is empty, they are all numeric columns that are nothing else. `rest` is behind the
-  /// first row. Throws InputError for more than 64 positions, naming the first column beyond.
+  /// order; if it is empty, they are all numeric columns that are nothing else, and a message says
+  /// which columns became what if a name leaves that open. `rest` is behind the first row. Throws
+  /// InputError, naming the column, for one that looks like a time or a derivative but cannot be
+  /// used, and for more than 64 positions.
   void find_values(const std::vector<std::string>& selected, Lines rest);
 
   [[nodiscard]] const Roles& roles() const { return roles_; }
@@ -45,7 +47,10 @@ class ColumnRoles {
   [[nodiscard]] std::vector<bool> numeric_columns(Lines rest) const;
   [[nodiscard]] bool is_sampled(const std::string& name) const;
   [[nodiscard]] Columns derivative_columns(std::string_view letter, const Columns& all) const;
+  void require_usable(std::size_t c) const;
+  void require_no_unused_derivative() const;
   void add_position(std::size_t c);
+  void tell_roles() const;
   [[nodiscard]] std::string names_of(const Columns& columns) const;
   [[nodiscard]] std::string all_names() const;
 

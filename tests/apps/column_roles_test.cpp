@@ -45,6 +45,35 @@ class ColumnRolesTest : public ::testing::Test {
   std::string said_;  ///< on standard error, or by the error
 };
 
+TEST_F(ColumnRolesTest, WhatOnlyLooksLikeATimeOrADerivativeIsRefusedByItsName) {
+  expect_refused("t,x,v[-1]", "column 3, 'v[-1]', is no velocity: v[i] has an index i of 0 to 63");
+  expect_refused("t,x,v[18446744073709551616]",
+                 "column 3, 'v[18446744073709551616]', is no velocity");
+  expect_refused("t,a[],x", "column 2, 'a[]', is no acceleration");
+  expect_refused("t,x,a[1.5]", "column 3, 'a[1.5]', is no acceleration");
+  expect_refused("t,x,v[7]", "column 3, 'v[7]', goes with none of the 1 positions (x)");
+  expect_refused("t,x,v[0],v[1]", "column 4, 'v[1]', goes with none of the 1 positions (x)");
+  expect_refused("t_ns,x,time", "column 3, 'time', is a second time column besides 't_ns'");
+  EXPECT_EQ(read("t_ns,x,time,v[-1],v[7]", {"x"}).names, std::vector<std::string>{"x"});
+  EXPECT_EQ(read("t_ns,x,time", {"x", "time"}).dimensions(), 2U);
+}
+
+TEST_F(ColumnRolesTest, AreSaidWhereNamesLeaveThemOpen) {
+  EXPECT_EQ(read("t,x,vx,ax").names, (std::vector<std::string>{"x", "vx", "ax"}));
+  EXPECT_NE(said_.find("a.csv: time: t; positions: x, vx, ax; velocities: none; accelerations: "
+                       "none"),
+            std::string::npos)
+      << said_;
+  (void)read("t,q1 [rad],v[0],time_sync");
+  EXPECT_EQ(said_.find("is a second time"), std::string::npos);
+  for (const char* const clear : {"t,x,y,z", "t,q1 [rad],q2 [rad]", "t_ns,p[0],v[0],a[0],j[0]"}) {
+    (void)read(clear);
+    EXPECT_EQ(said_, "") << clear;
+  }
+  (void)read("t,x,vx", {"x"});
+  EXPECT_EQ(said_, "");
+}
+
 TEST_F(ColumnRolesTest, TooManyPositionsAreToldByTheFirstColumnBeyond) {
   std::string header = "t";
   for (int i = 0; i < 64; ++i) header += fmt::format(",x{}", i);
