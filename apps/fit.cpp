@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <memory>
 
@@ -78,7 +79,16 @@ bool only_reports(const FitOptions& options) {
          !options.dt;
 }
 
+/// The files that are written; an empty one is standard output.
+std::vector<std::string> outputs_of(const FitOptions& options) {
+  std::vector<std::string> outputs;
+  if (!options.report.empty()) outputs.push_back(options.report);
+  if (!only_reports(options)) outputs.push_back(options.output);
+  return outputs;
+}
+
 int run_fit(const FitOptions& options) {
+  require_separate(outputs_of(options), std::array{options.file, options.at});
   WaypointTable table = read_waypoints(options.file, options.table);
   require_spline_input(table);
   continue_waypoints(table);
@@ -93,7 +103,7 @@ int run_fit(const FitOptions& options) {
   require_inside(at, curve, options.at);
   if (!options.report.empty()) write_report_of(table, std::move(curves), options);
   if (only_reports(options)) return kOk;
-  Output output(options.output);  // after all input was read: it may be the same file
+  Output output(options.output);
   if (options.emit == Emit::samples) {
     emit_samples(curve, core::DimensionKinds(table.kinds), at, options.dt, output);
   } else {

@@ -36,7 +36,8 @@ class Sampling {
         times_(options.at.empty() ? std::vector<core::Time>{}
                                   : read_times(options.at, options.time_unit)),
         reader_(attach(options)),
-        output_(options.output),
+        // What is sampled as time goes on can be followed; what is not goes into the file at once.
+        output_(options.output, options.at.empty() ? Writing::growing : Writing::whole),
         state_(reader_.dimensions()),
         none_(reader_.dimensions()),
         writer_(output_, reader_.dimensions(), reader_.kinds(), true) {
@@ -207,6 +208,7 @@ void add_sample(CLI::App& program, Action& action) {
     }
     action = [options] {
       catch_stop_signals();
+      require_separate(std::array{options->output}, std::array{options->at});
       return Sampling(*options).run();
     };
   });

@@ -13,14 +13,9 @@
 
 namespace splinecast::apps {
 
-Output::Output(const std::string& path)
-    : name_(path.empty() ? "standard output" : path),
-      file_(path.empty() ? stdout : std::fopen(path.c_str(), "we")) {
-  if (file_ == nullptr) fail();
-}
-
-Output::~Output() {
-  if (file_ != nullptr && file_ != stdout) std::fclose(file_);
+Output::Output(const std::string& path, Writing writing)
+    : name_(path.empty() ? "standard output" : path), file_(stdout) {
+  if (!path.empty()) file_ = output_file_.emplace(path, writing).file();
 }
 
 void Output::write(std::string_view text) {
@@ -33,8 +28,7 @@ void Output::flush() {
 
 void Output::close() {
   flush();
-  if (file_ == stdout) return;
-  if (std::fclose(std::exchange(file_, nullptr)) != 0) fail();
+  if (output_file_ && !output_file_->commit()) fail();
 }
 
 void Output::fail() const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,17 +12,18 @@
 #include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/state.hpp"
 #include "splinecast/core/time.hpp"
+#include "support/output_file.hpp"
 
 namespace splinecast::apps {
 
-/// Where a verb's data goes: a file, or standard output for an empty path. Throws Failure if it
-/// cannot be written; `close` must be called for the last of it.
+/// Where a verb's data goes: a file, see OutputFile, or standard output for an empty path. Throws
+/// Failure if it cannot be written; without `close`, what was to be written whole is dropped.
 class Output {
  public:
-  explicit Output(const std::string& path);
+  explicit Output(const std::string& path, Writing writing = Writing::whole);
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
-  ~Output();
+  ~Output() = default;
 
   void write(std::string_view text);
   void flush();
@@ -30,6 +32,7 @@ class Output {
  private:
   [[noreturn]] void fail() const;
   std::string name_;
+  std::optional<OutputFile> output_file_;
   std::FILE* file_;
 };
 

@@ -141,16 +141,17 @@ TEST(Fit, OneWaypointHoldsAndTwoMakeALine) {
             "t_ns,p[0],v[0],a[0],j[0]\n0,0,2,0,0\n1000000000,2,2,0,0\n2000000000,4,2,0,0\n");
 }
 
-TEST(Fit, MayWriteOverItsInputButOnlyWhenAllIsWell) {
+TEST(Fit, WritesOverAnOldResultOnlyWhenAllIsWell) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", "t,x\n0,0\n1,1\n2,0\n");
   const auto at = folder.write("at.csv", "t\n0.5\n9\n");
-  EXPECT_EQ(run({"fit", file, "--at", at, "-o", at}).code, 2);
-  EXPECT_EQ(testing::read_file(at), "t\n0.5\n9\n");
-  EXPECT_EQ(run({"fit", file, "--at", file, "-o", file}).code, 0);
-  EXPECT_EQ(std::ranges::count(testing::read_file(file), '\n'), 4);
+  const auto old = folder.write("old.csv", "old");
+  EXPECT_EQ(run({"fit", file, "--at", at, "-o", old}).code, 2);
+  EXPECT_EQ(testing::read_file(old), "old");
+  EXPECT_EQ(run({"fit", file, "--at", file, "-o", old}).code, 0);
+  EXPECT_EQ(std::ranges::count(testing::read_file(old), '\n'), 4);
   EXPECT_EQ(run({"fit", at, "--emit", "pp", "-o", "/dev/full"}).code, 2);
-  EXPECT_EQ(run({"fit", file, "--columns", "p[0]", "--emit", "pp", "-o", "/dev/full"}).code, 1);
+  EXPECT_EQ(run({"fit", file, "--columns", "x", "--emit", "pp", "-o", "/dev/full"}).code, 1);
 }
 
 TEST(Fit, SaysWhatIsWrongAndExitsWith2) {
