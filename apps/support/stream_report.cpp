@@ -27,7 +27,7 @@ ordered_json kinds_json(const ipc::RegionHeader& header) {
 /// What both headers say; the producer's if it stands.
 ordered_json stream_json(const ipc::RegionHeader& header) {
   return {
-      {"stream_id", header.stream_id},
+      {"stream_id", std::to_string(header.stream_id)},  // 64 bits: more than a number of JSON has
       {"dimensions", header.dimensions},
       {"names", ipc::dimension_names(header)},
       {"kinds", kinds_json(header)},
