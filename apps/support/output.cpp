@@ -9,12 +9,13 @@
 #include <utility>
 
 #include "splinecast/ipc/clock.hpp"
+#include "splinecast/ipc/names.hpp"
 #include "support/exit_codes.hpp"
 
 namespace splinecast::apps {
 
 Output::Output(const std::string& path)
-    : name_(path.empty() ? "standard output" : path),
+    : name_(path.empty() ? "standard output" : ipc::printable(path)),
       file_(path.empty() ? stdout : std::fopen(path.c_str(), "we")) {
   if (file_ == nullptr) fail();
 }
@@ -100,6 +101,14 @@ void Progress::show(std::string_view text) {
   std::fflush(stderr);
 }
 
-void say(std::string_view text) { fmt::print(stderr, "splinecast: {}\n", text); }
+void say(std::string_view text) {
+  std::string lines = "splinecast: ";
+  for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+    lines += ipc::printable(text.substr(0, end)) + '\n';
+    text.remove_prefix(end + 1);
+  }
+  lines += ipc::printable(text) + '\n';
+  std::fputs(lines.c_str(), stderr);  // one that nobody can hear is no reason to end
+}
 
 }  // namespace splinecast::apps

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/owner_lock.hpp"
 
 namespace splinecast::ipc {
 namespace {

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/layout.hpp"
@@ -123,7 +124,8 @@ TEST(OwnerLock, AForkedChildDoesNotKeepIt) {
   if (owner == 0) {
     const OwnerLock lock(stream.name(), RegionKind::spline);
     const Region region = Region::create(kSize, {});
-    if (!region.link(stream.name(), RegionKind::spline) || !try_lock_region(region.descriptor())) {
+    if (!region.link(stream.name(), RegionKind::spline) ||
+        !RegionLock(region.descriptor()).hold()) {
       _exit(1);
     }
     const pid_t child = fork();

@@ -1,0 +1,137 @@
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/owner_lock.hpp"
+#include "splinecast/ipc/producer.hpp"
+#include "splinecast/ipc/reader.hpp"
+#include "splinecast/ipc/region.hpp"
+#include "splinecast/ipc/solver.hpp"
+#include "splinecast/ipc/stream_files.hpp"
+#include "support/few_descriptors.hpp"
+#include "support/process.hpp"
+
+/// What other processes of the machine do to a stream's files while they are opened and owned.
+namespace splinecast::ipc {
+namespace {
+
+using testing::FewDescriptors;
+using testing::TestStream;
+
+constexpr ProducerOptions kRecorded{
+    .dimensions = 1, .clock = StreamClock::recorded, .capacity = 64};
+
+/// A write lease on a file: who opens the file waits until the holder has given it back, up to 45
+/// s. This holder does so as soon as it is asked to.
+class Lease {
+ public:
+  explicit Lease(const std::string& path) {
+    struct sigaction action {};
+    action.sa_handler = [](int) { fcntl(held, F_SETLEASE, F_UNLCK); };
+    action.sa_flags = SA_RESTART;
+    sigaction(SIGIO, &action, &before_);
+    held = open(path.c_str(), O_RDWR);
+    is_held_ = fcntl(held, F_SETLEASE, F_WRLCK) == 0;
+  }
+  Lease(const Lease&) = delete;
+  Lease& operator=(const Lease&) = delete;
+  ~Lease() {
+    close(held);
+    sigaction(SIGIO, &before_, nullptr);
+  }
+  [[nodiscard]] bool is_held() const { return is_held_; }
+
+ private:
+  static inline int held = -1;
+  struct sigaction before_ {};
+  bool is_held_ = false;
+};
+
+TEST(HostileNeighbour, AnOpenWaitsForNoLease) {
+  const TestStream stream;
+  const Region region = Region::create(4 * kPage, {});
+  ASSERT_TRUE(region.link(stream.name(), RegionKind::waypoints));
+  // A lease is put on what lstat calls a regular file. It needs a file that nobody has open.
+  const std::string path = region_path(stream.name(), RegionKind::spline);
+  close(open(path.c_str(), O_CREAT | O_RDWR, 0600));
+  const auto refused = [&](const auto& look) {
+    const Lease lease(path);
+    if (!lease.is_held()) return false;
+    try {
+      look();
+    } catch (const BadRegion& error) {
+      return std::string(error.what()).find("temporarily unavailable") != std::string::npos;
+    }
+    return false;
+  };
+  const std::string& name = stream.name();
+  EXPECT_TRUE(refused([&] { (void)Region::open(name, RegionKind::spline, false); }));
+  EXPECT_TRUE(refused([&] { (void)Region::open(name, RegionKind::spline, true); }));
+  EXPECT_TRUE(refused([&] { (void)peek_header(name, RegionKind::spline, {}); }));
+  unlink(path.c_str());
+  const std::string lock = lock_path(name, RegionKind::spline);
+  close(open(lock.c_str(), O_CREAT | O_RDWR, 0600));
+  const Lease lease(lock);
+  ASSERT_TRUE(lease.is_held());
+  EXPECT_THROW(OwnerLock(name, RegionKind::spline), BadRegion);
+}
+
+TEST(HostileNeighbour, AFifoThatTakesTheRegionsPlaceWhileItIsOpenedHangsNobody) {
+  const TestStream stream;
+  const Region region = Region::create(4 * kPage, {});
+  ASSERT_TRUE(region.link(stream.name(), RegionKind::spline));
+  const std::string path = region_path(stream.name(), RegionKind::spline);
+  const std::string other = path + ".exchanged";
+  ASSERT_EQ(mkfifo(other.c_str(), 0600), 0);
+  std::atomic<bool> done = false;
+  std::thread exchanger([&] {
+    while (!done) renameat2(AT_FDCWD, path.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE);
+  });
+  // Lets go of who hangs in an open, and says so.
+  std::atomic<int> looks = 0;
+  std::atomic<bool> hung = false;
+  std::thread watchdog([&] {
+    for (int before = -1; !done && !hung; before = looks) {
+      std::this_thread::sleep_for(std::chrono::seconds(2));
+      hung = !done && looks == before;
+    }
+    while (!done)
+      close(open(other.c_str(), O_RDWR | O_NONBLOCK)),
+          close(open(path.c_str(), O_RDWR | O_NONBLOCK));
+  });
+  int regular = 0;
+  int refused = 0;
+  for (; !hung && looks < 1'000'000 && (looks < 20'000 || regular == 0 || refused == 0); ++looks) {
+    try {
+      (void)peek_header(stream.name(), RegionKind::spline, {});
+      ++regular;
+    } catch (const BadRegion&) {
+      ++refused;
+    }
+  }
+  done = true;
+  exchanger.join();
+  watchdog.join();
+  EXPECT_FALSE(hung) << "after " << looks << " looks";
+  EXPECT_GT(regular, 0);
+  EXPECT_GT(refused, 0);
+  unlink(path.c_str());
+  unlink(other.c_str());
+}
+
+}  // namespace
+}  // namespace splinecast::ipc
