@@ -133,5 +133,41 @@ TEST(HostileNeighbour, AFifoThatTakesTheRegionsPlaceWhileItIsOpenedHangsNobody) 
   unlink(other.c_str());
 }
 
+/// Whether this process has a file open, by its inode.
+bool has_open(const struct stat& file) {
+  constexpr int kDescriptors = 256;
+  for (int descriptor = 0; descriptor < kDescriptors; ++descriptor) {
+    struct stat status {};
+    if (fstat(descriptor, &status) == 0 && status.st_dev == file.st_dev &&
+        status.st_ino == file.st_ino) {
+      return true;
+    }
+  }
+  return false;
+}
+
+TEST(HostileNeighbour, AForkWhileALockIsOpenedLeavesTheChildNothing) {
+  const TestStream stream;
+  const std::string path = lock_path(stream.name(), RegionKind::spline);
+  close(open(path.c_str(), O_CREAT | O_RDWR, 0600));
+  struct stat file {};
+  ASSERT_EQ(stat(path.c_str(), &file), 0);
+  std::atomic<bool> done = false;
+  std::thread owner([&] {
+    while (!done) (void)OwnedDescriptor::open(path, O_RDWR);
+  });
+  int kept = 0;
+  for (int forks = 0; forks < 200; ++forks) {
+    const pid_t child = fork();
+    if (child == 0) _exit(has_open(file) ? 1 : 0);
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    kept += WEXITSTATUS(status);
+  }
+  done = true;
+  owner.join();
+  EXPECT_EQ(kept, 0);
+}
+
 }  // namespace
 }  // namespace splinecast::ipc
