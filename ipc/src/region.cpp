@@ -70,12 +70,24 @@ void require_file_size(std::size_t bytes) {
 /// Piece by piece, as a signal undoes the piece that it comes into: pieces that signals come into
 /// are halved, so that no rate of them lasts for ever.
 void reserve_pages(int descriptor, std::size_t bytes) {
+  constexpr int kTriesOfAPage = 1000;
   require_file_size(bytes);
-  const int error = posix_fallocate(descriptor, 0, static_cast<off_t>(bytes));
-  if (error == 0) return;
-  throw_failure("cannot reserve " + std::to_string(bytes) + " bytes of shared memory, " +
-                    free_bytes(descriptor) + " are free",
-                error);
+  std::size_t piece = bytes;
+  int tries = 0;
+  for (std::size_t at = 0; at < bytes;) {
+    const std::size_t size = std::min(piece, bytes - at);
+    const int error = posix_fallocate(descriptor, static_cast<off_t>(at), static_cast<off_t>(size));
+    if (error == 0) {
+      at += size;
+      tries = 0;
+    } else if (error == EINTR && (size > kPage || ++tries < kTriesOfAPage)) {
+      piece = std::max(size / 2, kPage);
+    } else {
+      throw_failure("cannot reserve " + std::to_string(bytes) + " bytes of shared memory, " +
+                        free_bytes(descriptor) + " are free",
+                    error);
+    }
+  }
 }
 
 /// Faults every page in now, so that no sample, append or solve ever does.

@@ -25,6 +25,28 @@
 #include "support/few_descriptors.hpp"
 #include "support/process.hpp"
 
+namespace {
+
+/// What signals do to posix_fallocate, as on kernels that any signal interrupts in it: pieces
+/// longer than some bytes are never finished, the others after so many tries.
+struct Interruptions {
+  std::size_t longest_whole = std::numeric_limits<std::size_t>::max();
+  int of_each = 0;
+  int tries = 0;
+};
+Interruptions interruptions;
+
+}  // namespace
+
+/// In place of the C library's.
+extern "C" int posix_fallocate(int descriptor, off_t offset, off_t length) {
+  const bool is_whole = static_cast<std::size_t>(length) <= interruptions.longest_whole &&
+                        interruptions.tries++ >= interruptions.of_each;
+  if (!is_whole) return EINTR;
+  interruptions.tries = 0;
+  return fallocate(descriptor, 0, offset, length) == 0 ? 0 : errno;
+}
+
 /// What other processes of the machine do to a stream's files while they are opened and owned.
 namespace splinecast::ipc {
 namespace {
@@ -131,6 +153,22 @@ TEST(HostileNeighbour, AFifoThatTakesTheRegionsPlaceWhileItIsOpenedHangsNobody) 
   EXPECT_GT(refused, 0);
   unlink(path.c_str());
   unlink(other.c_str());
+}
+
+TEST(HostileNeighbour, SignalsAtAHighRateKeepNobodyFromReservingPages) {
+  constexpr std::size_t kBytes = 100 * kPage;
+  {
+    const Interruptions few{.longest_whole = 2 * kPage, .of_each = 3};
+    interruptions = few;
+    const Region region = Region::create(kBytes, {});
+    EXPECT_EQ(region.bytes().size(), kBytes);
+    struct stat status {};
+    ASSERT_EQ(fstat(region.descriptor(), &status), 0);
+    EXPECT_GE(static_cast<std::size_t>(status.st_blocks) * 512, kBytes);
+  }
+  interruptions = {.longest_whole = 0, .of_each = std::numeric_limits<int>::max()};
+  EXPECT_THROW((void)Region::create(kBytes, {}), BadRegion);
+  interruptions = {};
 }
 
 /// Whether this process has a file open, by its inode.
