@@ -168,7 +168,7 @@ bool region_owner_lives(int descriptor) noexcept {
   if (lock.l_type == F_WRLCK) return true;
   RegionHeader header{};
   if (pread(descriptor, &header, sizeof header, 0) != sizeof header) return false;
-  return process_lives(0, core::Time(header.owner_since));
+  return process_lives(header.owner_pid, core::Time(header.owner_since));
 }
 
 }  // namespace splinecast::ipc

@@ -328,6 +328,7 @@ void Solver::wait(core::Time timeout) noexcept {
     return;
   }
   Attachment& at = *impl_->attachment;
+  (void)at.board.lock.hold();
   // The store and the load are seq_cst, as are the producer's store of head and load of sleeping:
   // either this load sees the new head, or the producer sees that somebody is to be woken.
   at.board.writer.store_sleeping(true);

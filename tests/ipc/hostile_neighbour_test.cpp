@@ -57,6 +57,30 @@ using testing::TestStream;
 constexpr ProducerOptions kRecorded{
     .dimensions = 1, .clock = StreamClock::recorded, .capacity = 64};
 
+Solver solve(const std::string& stream) {
+  Solver solver(stream, {.capacity = 64});
+  EXPECT_TRUE(solver.attach());
+  return solver;
+}
+
+/// Another open file of a region, as a reader has it.
+class OpenFile {
+ public:
+  explicit OpenFile(const std::string& path) : descriptor_(open(path.c_str(), O_RDONLY)) {}
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  ~OpenFile() { close(descriptor_); }
+  [[nodiscard]] int get() const { return descriptor_; }
+  [[nodiscard]] bool lock(short type) const {
+    struct flock whole {};
+    whole.l_type = type;
+    return fcntl(descriptor_, F_OFD_SETLK, &whole) == 0;
+  }
+
+ private:
+  int descriptor_;
+};
+
 /// A write lease on a file: who opens the file waits until the holder has given it back, up to 45
 /// s. This holder does so as soon as it is asked to.
 class Lease {
@@ -153,6 +177,51 @@ TEST(HostileNeighbour, AFifoThatTakesTheRegionsPlaceWhileItIsOpenedHangsNobody) 
   EXPECT_GT(refused, 0);
   unlink(path.c_str());
   unlink(other.c_str());
+}
+
+TEST(HostileNeighbour, AReadLockHidesNoNewOwnerFromThoseWhoCannotOpenItsLock) {
+  const TestStream stream;
+  const Producer producer(stream.name(), kRecorded);
+  { const Solver dead = solve(stream.name()); }
+  const std::string path = region_path(stream.name(), RegionKind::spline);
+  const OpenFile observer(path);
+  EXPECT_FALSE(region_owner_lives(observer.get()));
+  const OpenFile hostile(path);
+  ASSERT_TRUE(hostile.lock(F_RDLCK));
+  Solver next = solve(stream.name());
+  EXPECT_TRUE(next.took_over());
+  EXPECT_FALSE(is_region_locked(observer.get()));
+  EXPECT_TRUE(region_owner_lives(observer.get()));
+  EXPECT_FALSE(next.hold_region());
+  ASSERT_TRUE(hostile.lock(F_UNLCK));
+  next.wait(core::Time(0));
+  EXPECT_TRUE(is_region_locked(observer.get()));
+  EXPECT_FALSE(hostile.lock(F_RDLCK));
+}
+
+TEST(HostileNeighbour, ADeadOwnerIsDeadUnderAReadLockToo) {
+  const TestStream stream;
+  const Producer producer(stream.name(), kRecorded);
+  { const Solver dead = solve(stream.name()); }
+  const std::string path = region_path(stream.name(), RegionKind::spline);
+  const OpenFile hostile(path);
+  ASSERT_TRUE(hostile.lock(F_RDLCK));
+  const OpenFile observer(path);
+  const pid_t owner = fork();
+  if (owner == 0) {
+    const Solver solver = solve(stream.name());
+    raise(SIGSTOP);
+    _exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(owner, &status, WUNTRACED), owner);
+  ASSERT_TRUE(WIFSTOPPED(status));
+  EXPECT_TRUE(region_owner_lives(observer.get()));
+  kill(owner, SIGKILL);
+  // Before its parent has asked for its end it is a process yet, but a dead one.
+  EXPECT_TRUE(testing::await([&] { return !region_owner_lives(observer.get()); }));
+  waitpid(owner, &status, 0);
+  EXPECT_FALSE(region_owner_lives(observer.get()));
 }
 
 TEST(HostileNeighbour, SignalsAtAHighRateKeepNobodyFromReservingPages) {
