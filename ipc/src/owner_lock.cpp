@@ -75,6 +75,7 @@ void require_own_file(int descriptor, const std::string& path) {
 std::optional<OwnedDescriptor> open_to_query(const std::string& path) {
   OwnedDescriptor opened = OwnedDescriptor::open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK);
   if (opened.get() >= 0) return opened;
+  if (is_shortage(errno)) throw_failure("cannot look whether " + path + " is locked", errno);
   return std::nullopt;
 }
 

@@ -224,6 +224,23 @@ TEST(HostileNeighbour, ADeadOwnerIsDeadUnderAReadLockToo) {
   EXPECT_FALSE(region_owner_lives(observer.get()));
 }
 
+TEST(HostileNeighbour, WithoutFreeDescriptorsNobodyIsTakenForDead) {
+  const TestStream stream;
+  const Producer producer(stream.name(), kRecorded);
+  const Solver solver = solve(stream.name());
+  const Reader reader(stream.name(), core::Time(0));
+  const FewDescriptors none(0);
+  for (const RegionKind kind : {RegionKind::waypoints, RegionKind::spline}) {
+    EXPECT_THROW((void)is_owned(stream.name(), kind), OutOfResources);
+    EXPECT_THROW((void)owner_lives(stream.name(), kind), OutOfResources);
+    EXPECT_THROW(OwnerLock(stream.name(), kind), OutOfResources);
+  }
+  EXPECT_THROW((void)inspect(stream.name(), {}), OutOfResources);
+  EXPECT_TRUE(reader.alive().producer);
+  EXPECT_TRUE(reader.alive().solver);
+  EXPECT_TRUE(producer.solver_alive());
+}
+
 TEST(HostileNeighbour, SignalsAtAHighRateKeepNobodyFromReservingPages) {
   constexpr std::size_t kBytes = 100 * kPage;
   {
