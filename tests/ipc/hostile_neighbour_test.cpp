@@ -179,6 +179,24 @@ TEST(HostileNeighbour, AFifoThatTakesTheRegionsPlaceWhileItIsOpenedHangsNobody) 
   unlink(other.c_str());
 }
 
+TEST(HostileNeighbour, ASecondNameOfARegionMakesNoSecondOwner) {
+  const TestStream stream;
+  const TestStream second;
+  const Producer producer(stream.name(), kRecorded);
+  const Solver solver = solve(stream.name());
+  for (const RegionKind kind : {RegionKind::waypoints, RegionKind::spline}) {
+    ASSERT_EQ(
+        link(region_path(stream.name(), kind).c_str(), region_path(second.name(), kind).c_str()),
+        0);
+  }
+  EXPECT_THROW(solve(second.name()), StreamBusy);
+  EXPECT_THROW(Producer(second.name(), kRecorded), StreamBusy);
+  EXPECT_THROW(remove_stream(second.name(), {}), StreamBusy);
+  for (const RegionKind kind : {RegionKind::waypoints, RegionKind::spline}) {
+    unlink_region(second.name(), kind);
+  }
+}
+
 TEST(HostileNeighbour, AReadLockHidesNoNewOwnerFromThoseWhoCannotOpenItsLock) {
   const TestStream stream;
   const Producer producer(stream.name(), kRecorded);
