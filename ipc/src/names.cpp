@@ -42,7 +42,7 @@ std::string_view stream_of(std::string_view file) noexcept {
   for (const RegionKind kind : kKinds) {
     if (!file.ends_with(suffix(kind))) continue;
     file.remove_suffix(suffix(kind).size());
-    return file;
+    return is_stream_name(file) ? file : std::string_view();
   }
   return {};
 }

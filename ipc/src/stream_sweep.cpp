@@ -73,7 +73,11 @@ core::Time StreamSweep::next_pause() const noexcept {
 
 bool StreamSweep::sweep(const Clock& clock) {
   now_ = clock.now();
-  take_up();
+  try {
+    take_up();
+  } catch (const std::exception&) {
+    looks_again_ = true;  // the process lacks memory or descriptors; streams that are solved go on
+  }
   collect_calling();
   bool has_more = false;
   for (std::size_t k = 0; k < calling_.size(); ++k) {

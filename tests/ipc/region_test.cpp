@@ -192,5 +192,24 @@ TEST(Names, AreCheckedBeforeTheyBecomePaths) {
   EXPECT_NO_THROW(require_stream_name("arm-1.left_hand"));
 }
 
+TEST(Names, OfFilesThatAreNoStreamsAreNotListed) {
+  const TestStream stream;
+  const Region region = Region::create(kSize, {});
+  ASSERT_TRUE(region.link(stream.name(), RegionKind::spline));
+  const std::string begin = std::string(kSharedMemoryFolder) + "splinecast.";
+  const std::vector<std::string> invalid{
+      begin + stream.name() + " bad.waypoints", begin + stream.name() + "\033[2J\n.spline",
+      begin + "." + stream.name() + ".waypoints.lock",
+      begin + stream.name() + std::string(130, 'x') + ".spline.lock"};
+  for (const std::string& path : invalid) close(open(path.c_str(), O_CREAT | O_RDWR, 0600));
+  int listed = 0;
+  for (const std::string& name : stream_names()) {
+    EXPECT_NO_THROW(require_stream_name(name)) << name;
+    listed += name == stream.name() ? 1 : 0;
+  }
+  EXPECT_EQ(listed, 1);
+  for (const std::string& path : invalid) unlink(path.c_str());
+}
+
 }  // namespace
 }  // namespace splinecast::ipc
