@@ -128,7 +128,12 @@ void StreamSweep::prefetch_ahead(std::size_t k) const noexcept {
 /// Steps one stream. Returns whether it has more to do.
 bool StreamSweep::serve(std::size_t index, const Clock& clock) {
   Served& served = served_[index];
-  const StepResult result = served.solver->step(clock);
+  StepResult result;
+  try {
+    result = served.solver->step(clock);
+  } catch (const std::exception&) {
+    served.failure = std::current_exception();
+  }
   if (served.failure || !served.solver->attached()) {
     has_detached_ = true;
     return false;

@@ -64,6 +64,22 @@ class ForeignFile {
   std::string path_;
 };
 
+/// Overwrites a coefficient of every segment that a board holds.
+void damage(const std::string& stream) {
+  const auto header = peek_header(stream, RegionKind::spline, {});
+  ASSERT_TRUE(header);
+  const auto layout = checked_board_layout(*header, header->region_bytes);
+  const int board = open(region_path(stream, RegionKind::spline).c_str(), O_WRONLY | O_CLOEXEC);
+  const double none = std::nan("");
+  for (std::size_t slot = 0; slot < layout.capacity; ++slot) {
+    for (const std::size_t cell : {std::size_t{0}, layout.cell}) {
+      const std::size_t at = layout.slots + slot * layout.stride + cell + kCellCoefficients * 8;
+      ASSERT_EQ(pwrite(board, &none, sizeof none, static_cast<off_t>(at)), 8);
+    }
+  }
+  close(board);
+}
+
 TEST(StreamSweepErrors, FilesUnderNamesThatAreNoStreamsEndNoSweep) {
   const TestStream family;
   const std::string stream = family.name() + ".x";
@@ -83,6 +99,43 @@ TEST(StreamSweepErrors, FilesUnderNamesThatAreNoStreamsEndNoSweep) {
   EXPECT_TRUE(await_news(told, SweepNews::gone, stream));
   unlink_region(stream, RegionKind::spline);
   OwnerLock(stream, RegionKind::spline).remove_file();
+}
+
+TEST(StreamSweepErrors, AStepThatFailsGivesItsStreamUpAndTheOthersGoOn) {
+  const TestStream bad;
+  const TestStream good;
+  Producer of_bad = make_producer(bad.name());
+  Producer of_good = make_producer(good.name());
+  Told told({bad.name(), good.name()});
+  for (int i = 0; i < 12; ++i) append_at(of_bad, Time(10'000'000) * i);
+  ASSERT_TRUE(sweep_until(told.sweep, [&] { return of_bad.wait_until_consumed(Time(0)); }));
+  damage(bad.name());
+  ASSERT_EQ(of_bad.replace_from(Time(110'000'000), {}), AppendStatus::accepted);
+  ASSERT_TRUE(await_news(told, SweepNews::given_up, bad.name()));
+  EXPECT_NE(told.why.find("holds what its solver has not written"), std::string::npos) << told.why;
+  EXPECT_FALSE(is_owned(bad.name(), RegionKind::spline));
+  append_at(of_good, Time(0));
+  EXPECT_TRUE(sweep_until(told.sweep, [&] { return of_good.wait_until_consumed(Time(0)); }));
+  EXPECT_EQ(told.count(SweepNews::given_up, bad.name()), 1);
+}
+
+TEST(StreamSweepErrors, WhatTheOneWhoIsToldThrowsLosesNoStream) {
+  const TestStream family;
+  const std::string first = family.name() + ".1";
+  const std::string second = family.name() + ".2";
+  Producer of_first = make_producer(first);
+  Producer of_second = make_producer(second);
+  StreamSweep sweep({family.name() + ".*"}, Told::small(),
+                    [](auto&&...) { throw std::runtime_error("nobody hears"); });
+  EXPECT_TRUE(sweep_until(sweep, [&] { return sweep.solved() == 2; }));
+  of_first.withdraw();
+  of_second.withdraw();
+  EXPECT_TRUE(sweep_until(
+      sweep, [&] { return sweep.solved() == 0 && !is_owned(second, RegionKind::spline); }));
+  for (const std::string& stream : {first, second}) {
+    unlink_region(stream, RegionKind::spline);
+    OwnerLock(stream, RegionKind::spline).remove_file();
+  }
 }
 
 }  // namespace
