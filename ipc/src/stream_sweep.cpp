@@ -39,7 +39,8 @@ std::size_t most_streams(std::size_t descriptors_each) {
 
 /// Whether what failed may succeed later without other files under the stream's name.
 bool is_passing(const std::exception& error) noexcept {
-  return dynamic_cast<const StreamBusy*>(&error) != nullptr ||
+  return dynamic_cast<const OutOfResources*>(&error) != nullptr ||
+         dynamic_cast<const StreamBusy*>(&error) != nullptr ||
          dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
 }
 
@@ -218,7 +219,7 @@ void StreamSweep::look_for_names() {
 /// names than then: to whom it is told, it is another stream.
 bool StreamSweep::may_be_taken(const std::string& stream, Member& member, bool stands) const {
   if (!stands && !member.is_named) return false;
-  if (member.state == State::given_up && !stands && files_of(stream) != member.files) {
+  if (member.state == State::given_up && files_of(stream) != member.files) {
     member.state = State::unowned;
   }
   return member.state == State::unowned || member.state == State::waiting ||

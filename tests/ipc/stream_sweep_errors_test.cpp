@@ -138,5 +138,62 @@ TEST(StreamSweepErrors, WhatTheOneWhoIsToldThrowsLosesNoStream) {
   }
 }
 
+TEST(StreamSweepErrors, ANamedStreamThatWasGivenUpIsTriedAgainWhenItsNameHasComeAgain) {
+  const TestStream bad;
+  const TestStream other;
+  Producer before = make_producer(bad.name());
+  {
+    Solver solver(bad.name(), {.settle = 3, .capacity = 64});
+    ASSERT_TRUE(solver.attach());
+  }
+  Told told({bad.name(), other.name()}, {.settle = 4, .capacity = 64});
+  ASSERT_TRUE(await_news(told, SweepNews::given_up, bad.name()));
+  before.withdraw();
+  unlink_region(bad.name(), RegionKind::spline);
+  // Between two looks: the sweep need not see that the name was free.
+  Producer after = make_producer(bad.name());
+  append_at(after, Time(0));
+  EXPECT_TRUE(await_news(told, SweepNews::solving, bad.name()));
+  EXPECT_EQ(told.count(SweepNews::given_up, bad.name()), 1);
+}
+
+/// Sweeps with so few descriptors that one of two streams cannot be solved, and then with enough.
+void expect_postponed(Told& told, rlim_t free, const std::vector<std::string>& streams) {
+  const auto count = [&](SweepNews news) {
+    return told.count(news, streams[0]) + told.count(news, streams[1]);
+  };
+  const auto await_count = [&](SweepNews news, std::ptrdiff_t count_of_both) {
+    return sweep_until(told.sweep, [&] { return count(news) == count_of_both; });
+  };
+  {
+    const FewDescriptors few(free);
+    EXPECT_TRUE(await_count(SweepNews::postponed, 1));
+    EXPECT_EQ(count(SweepNews::solving), 1);
+    EXPECT_FALSE(await_count(SweepNews::postponed, 2));
+  }
+  EXPECT_TRUE(await_count(SweepNews::solving, 2));
+  EXPECT_EQ(count(SweepNews::postponed), 1);
+  EXPECT_EQ(count(SweepNews::given_up), 0);
+}
+
+TEST(StreamSweepErrors, ANamedStreamForWhichNoDescriptorsAreLeftIsTriedAgain) {
+  const TestStream first;
+  const TestStream second;
+  Told told({first.name(), second.name()});
+  Producer of_first = make_producer(first.name());
+  Producer of_second = make_producer(second.name());
+  expect_postponed(told, 1, {first.name(), second.name()});  // their locks are held already
+}
+
+TEST(StreamSweepErrors, AStreamOfAPatternForWhichNoDescriptorsAreLeftIsTriedAgain) {
+  const TestStream first;
+  const TestStream second;
+  Told told({"[" + first.name().substr(0, 1) + "]" + first.name().substr(1),
+             "[" + second.name().substr(0, 1) + "]" + second.name().substr(1)});
+  Producer of_first = make_producer(first.name());
+  Producer of_second = make_producer(second.name());
+  expect_postponed(told, 2, {first.name(), second.name()});
+}
+
 }  // namespace
 }  // namespace splinecast::ipc
