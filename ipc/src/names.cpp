@@ -87,7 +87,7 @@ std::string printable(std::string_view text) {
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::string out;
   while (!text.empty()) {
-    const std::size_t bytes = std::max<std::size_t>(printable_bytes(text), 1);
+    const std::size_t bytes = printable_bytes(text);
     if (bytes > 0) {
       out.append(text.substr(0, bytes));
     } else {

@@ -253,6 +253,9 @@ TEST_F(ForbiddenFiles, UnderNamesThatAreNoStreamsEndNoVerbAndAreNotPrinted) {
   attack_in_vain(memory, {"ls", "--json"}, 0, {"[]"});
   const auto doctor = attack_in_vain(memory, {"doctor"}, before, {"ok"});
   EXPECT_EQ(doctor.out.find('\033'), std::string::npos) << doctor.out;
+  attack_in_vain(memory, {"info", "a\033[2J"}, 2, {R"('a\x1b[2J' cannot name a stream)"});
+  attack_in_vain(memory, {"fit", "no\033[2J\nfile.csv", "--dt", "0.1"}, 2,
+                 {R"(no\x1b[2J\x0afile.csv: no such)"});
 }
 
 }  // namespace

@@ -211,5 +211,27 @@ TEST(Names, OfFilesThatAreNoStreamsAreNotListed) {
   for (const std::string& path : invalid) unlink(path.c_str());
 }
 
+TEST(Names, OfOthersArePrintedWithoutWhatATerminalObeys) {
+  EXPECT_EQ(printable("arm-1.left hand \u00e4\u20ac\U0001f916"),
+            "arm-1.left hand \u00e4\u20ac\U0001f916");
+  EXPECT_EQ(printable("a\033[2J\r\n\t\x7f"), R"(a\x1b[2J\x0d\x0a\x09\x7f)");
+  EXPECT_EQ(printable("\xc3"), R"(\xc3)");                                  // cut off
+  EXPECT_EQ(printable("\xc3("), R"(\xc3()");                                // no continuation
+  EXPECT_EQ(printable("\xc0\x80\xe0\x80\x8a"), R"(\xc0\x80\xe0\x80\x8a)");  // longer than need be
+  EXPECT_EQ(printable("\xed\xa0\x80"), R"(\xed\xa0\x80)");  // half of a surrogate pair
+  EXPECT_EQ(printable("\xf4\x90\x80\x80\xff"), R"(\xf4\x90\x80\x80\xff)");
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "2J"),
+            R"(\xc2\x9b)"
+            "2J");  // CSI in one character
+  EXPECT_EQ(printable("\u202e\u2028"), R"(\xe2\x80\xae\xe2\x80\xa8)");
+  try {
+    require_stream_name("a\033[2J");
+    FAIL();
+  } catch (const BadRequest& error) {
+    EXPECT_EQ(std::string(error.what()).find('\033'), std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace splinecast::ipc
