@@ -217,7 +217,7 @@ void StreamSweep::look_for_names() {
 
 /// Whether a stream is to be tried now. One that was given up is, once other files stand under its
 /// names than then: to whom it is told, it is another stream.
-bool StreamSweep::may_be_taken(const std::string& stream, Member& member, bool stands) const {
+bool StreamSweep::may_be_taken(const std::string& stream, Member& member, bool stands) {
   if (!stands && !member.is_named) return false;
   if (member.state == State::given_up && files_of(stream) != member.files) {
     member.state = State::unowned;

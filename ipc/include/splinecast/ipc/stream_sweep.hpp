@@ -112,7 +112,7 @@ class StreamSweep {
   void release(Served& served);
   void look_around();
   void look_for_names();
-  [[nodiscard]] bool may_be_taken(const std::string& stream, Member& member, bool stands) const;
+  [[nodiscard]] static bool may_be_taken(const std::string& stream, Member& member, bool stands);
   void look_elsewhere();
   void look_at_postponed();
   void hold_regions() noexcept;
