@@ -66,6 +66,11 @@ Finding finding_of(const LeftName& name) {
               .verdict = Verdict::note,
               .means = name.why + ": left alone",
               .mend = "that user's to remove; readers name the user with --owner"};
+    case NameState::unknown:
+      return {.check = check,
+              .verdict = Verdict::note,
+              .means = name.why + ": left alone",
+              .mend = "splinecast doctor, once that is no longer so"};
     case NameState::hostile:
       break;
   }
@@ -94,12 +99,14 @@ Finding clean(const LeftName& name) {
   }
 }
 
-/// The name's finding; nothing if it has gone meanwhile.
+/// What is found under a name; nothing if it has gone meanwhile.
 std::optional<LeftName> look(const std::string& stream) {
   try {
     return look_at_name(stream);
   } catch (const ipc::NoSuchStream&) {
     return std::nullopt;
+  } catch (const ipc::StreamError& error) {
+    return LeftName{.stream = stream, .state = NameState::unknown, .why = error.what()};
   }
 }
 
@@ -112,9 +119,18 @@ std::vector<LeftName> names_to_look_at(const DoctorOptions& options) {
   return names;
 }
 
+/// The header of a stream's ring; nothing if it cannot be read, as its name leads elsewhere by now.
+std::optional<ipc::RegionHeader> peek(const std::string& stream) {
+  try {
+    return ipc::peek_header(stream, ipc::RegionKind::waypoints, {});
+  } catch (const ipc::StreamError&) {
+    return std::nullopt;
+  }
+}
+
 /// What the clock of a live stream means here; nothing if there is nothing to say.
 std::optional<Finding> clock_finding(const std::string& stream) {
-  const auto header = ipc::peek_header(stream, ipc::RegionKind::waypoints, {});
+  const auto header = peek(stream);
   if (!header || header->magic != ipc::kMagic) return std::nullopt;
   try {
     ipc::require_same_clock(*header, stream);

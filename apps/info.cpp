@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "splinecast/ipc/clock.hpp"
+#include "splinecast/ipc/names.hpp"
 #include "splinecast/ipc/stream_files.hpp"
 #include "support/exit_codes.hpp"
 #include "support/options.hpp"
@@ -15,8 +16,9 @@ namespace {
 using nlohmann::ordered_json;
 
 std::string text_of(const ordered_json& value) {
-  return value.is_string() ? value.get<std::string>()
-                           : value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return ipc::printable(value.is_string()
+                            ? value.get<std::string>()
+                            : value.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
 }
 
 std::string table_of(const ordered_json& json, int indent) {

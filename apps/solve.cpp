@@ -33,8 +33,9 @@ class Announcer {
   void tell(ipc::SweepNews news, const std::string& stream, const ipc::Solver* solver,
             std::string_view why = {}) {
     using enum ipc::SweepNews;
-    const bool is_lost = news == no_descriptors || news == given_up;
-    has_lost_ = has_lost_ || is_lost;
+    const bool is_lost = news == no_descriptors || news == postponed || news == given_up;
+    if (is_lost) lost_.insert(stream);
+    if (news == solving) lost_.erase(stream);
     if (quiet_ && !is_lost) return;
     say(fmt::format("'{}': {}", stream, text(news, solver, why)));
     if (news == solving && !many_ && !solver->is_memory_locked()) {
@@ -42,8 +43,8 @@ class Announcer {
     }
   }
 
-  /// Whether a stream was not solved that was to be.
-  [[nodiscard]] bool has_lost() const { return has_lost_; }
+  /// Whether a stream is not solved that was to be.
+  [[nodiscard]] bool has_lost() const { return !lost_.empty(); }
 
  private:
   [[nodiscard]] static std::string text(ipc::SweepNews news, const ipc::Solver* solver,
@@ -65,6 +66,8 @@ class Announcer {
             descriptor_limit(), ipc::StreamSweep::kDescriptorsPerStream);
       case ipc::SweepNews::refused:
         return fmt::format("{}; more for this reason are counted only", why);
+      case ipc::SweepNews::postponed:
+        return fmt::format("put off, and tried again from time to time: {}", why);
       case ipc::SweepNews::given_up:
         return fmt::format("given up: {}", why);
       case ipc::SweepNews::gone:
@@ -75,7 +78,7 @@ class Announcer {
 
   bool quiet_;
   bool many_;
-  bool has_lost_ = false;
+  std::set<std::string> lost_;
 };
 
 /// Solves one stream; sleeps on its ring while there is nothing to do.

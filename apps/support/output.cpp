@@ -9,12 +9,13 @@
 #include <utility>
 
 #include "splinecast/ipc/clock.hpp"
+#include "splinecast/ipc/names.hpp"
 #include "support/exit_codes.hpp"
 
 namespace splinecast::apps {
 
 Output::Output(const std::string& path, Writing writing)
-    : name_(path.empty() ? "standard output" : path), file_(stdout) {
+    : name_(path.empty() ? "standard output" : ipc::printable(path)), file_(stdout) {
   if (!path.empty()) file_ = output_file_.emplace(path, writing).file();
 }
 
@@ -94,6 +95,14 @@ void Progress::show(std::string_view text) {
   std::fflush(stderr);
 }
 
-void say(std::string_view text) { fmt::print(stderr, "splinecast: {}\n", text); }
+void say(std::string_view text) {
+  std::string lines = "splinecast: ";
+  for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+    lines += ipc::printable(text.substr(0, end)) + '\n';
+    text.remove_prefix(end + 1);
+  }
+  lines += ipc::printable(text) + '\n';
+  std::fputs(lines.c_str(), stderr);  // one that nobody can hear is no reason to end
+}
 
 }  // namespace splinecast::apps

@@ -74,7 +74,8 @@ class Progress {
   core::Time next_{};
 };
 
-/// A message on stderr: `splinecast: …`.
+/// A message on stderr: `splinecast: …`. What its lines hold of other people's names and texts is
+/// printed as ipc::printable() has it.
 void say(std::string_view text);
 
 }  // namespace splinecast::apps

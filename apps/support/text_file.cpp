@@ -1,20 +1,36 @@
 #include "support/text_file.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
-#include <boost/interprocess/file_mapping.hpp>
+#include <array>
 #include <boost/interprocess/mapped_region.hpp>
-#include <filesystem>
-#include <fstream>
+#include <cerrno>
 #include <iostream>
 #include <iterator>
 #include <system_error>
 
+#include "splinecast/ipc/names.hpp"
+#include "splinecast/ipc/owned_descriptor.hpp"
 #include "support/exit_codes.hpp"
 
 namespace splinecast::apps {
 
 namespace bip = boost::interprocess;
+
+namespace {
+
+/// Lends a descriptor to boost::interprocess::mapped_region.
+struct DescriptorMapping {
+  int descriptor;
+  [[nodiscard]] bip::mapping_handle_t get_mapping_handle() const {
+    return bip::ipcdetail::mapping_handle_from_file_handle(descriptor);
+  }
+};
+
+}  // namespace
 
 struct TextFile::Storage {
   std::string read;
@@ -22,34 +38,48 @@ struct TextFile::Storage {
 };
 
 TextFile::TextFile(const std::string& path)
-    : name_(path == "-" ? "<stdin>" : path), storage_(std::make_unique<Storage>()) {
+    : name_(path == "-" ? "<stdin>" : ipc::printable(path)), storage_(std::make_unique<Storage>()) {
   if (path == "-") {
     storage_->read.assign(std::istreambuf_iterator<char>(std::cin), {});
     text_ = storage_->read;
     return;
   }
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) {
-    throw InputError(fmt::format("{}: no such file", path));
-  }
-  if (std::filesystem::is_directory(status)) {
-    throw InputError(fmt::format("{}: is a folder", path));
-  }
-  if (!std::filesystem::is_regular_file(status)) {  // a pipe: read to its end
-    std::ifstream pipe(path);
-    storage_->read.assign(std::istreambuf_iterator<char>(pipe), {});
+  // Opened before it is judged, so that what is judged is what is read.
+  const auto file = ipc::OwnedDescriptor::open(path, O_RDONLY);
+  struct stat status {};
+  if (file.get() < 0 || fstat(file.get(), &status) != 0) refuse(errno);
+  if (S_ISDIR(status.st_mode)) throw InputError(fmt::format("{}: is a folder", name_));
+  if (!S_ISREG(status.st_mode)) {  // a pipe: read to its end
+    storage_->read = read_to_end(file.get());
     text_ = storage_->read;
     return;
   }
-  if (std::filesystem::file_size(path, error) == 0) return;  // nothing can be mapped
+  if (status.st_size == 0) return;  // nothing can be mapped
   try {
-    const bip::file_mapping file(path.c_str(), bip::read_only);
-    storage_->mapped = bip::mapped_region(file, bip::read_only);
+    storage_->mapped = bip::mapped_region(DescriptorMapping{file.get()}, bip::read_only);
   } catch (const bip::interprocess_exception& refused) {
-    throw InputError(fmt::format("{}: cannot be read: {}", path, refused.what()));
+    throw InputError(fmt::format("{}: cannot be read: {}", name_, refused.what()));
   }
   text_ = {static_cast<const char*>(storage_->mapped.get_address()), storage_->mapped.get_size()};
+}
+
+void TextFile::refuse(int error) const {
+  if (error == ENOENT || error == ENOTDIR) {
+    throw InputError(fmt::format("{}: no such file", name_));
+  }
+  throw InputError(
+      fmt::format("{}: cannot be read: {}", name_, std::generic_category().message(error)));
+}
+
+std::string TextFile::read_to_end(int descriptor) const {
+  std::string text;
+  std::array<char, 65536> block{};
+  for (;;) {
+    const ssize_t bytes = read(descriptor, block.data(), block.size());
+    if (bytes == 0) return text;
+    if (bytes < 0 && errno != EINTR) refuse(errno);
+    if (bytes > 0) text.append(block.data(), static_cast<std::size_t>(bytes));
+  }
 }
 
 TextFile::TextFile(TextFile&&) noexcept = default;

@@ -21,6 +21,9 @@ class TextFile {
 
  private:
   struct Storage;
+  [[noreturn]] void refuse(int error) const;
+  [[nodiscard]] std::string read_to_end(int descriptor) const;
+
   std::string name_;
   std::unique_ptr<Storage> storage_;
   std::string_view text_;

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/owner_lock.hpp"
 
 namespace splinecast::ipc {
 namespace {
@@ -12,6 +13,10 @@ CheckedRegion<Layout> open_checked(std::string_view stream, RegionKind kind, boo
                                    const Trust& trust,
                                    Layout (*check)(const RegionHeader&, std::size_t)) {
   Region region = Region::open(stream, kind, writable, trust);
+  // A second name that somebody gave the file has a lock file of its own, which keeps nobody out.
+  if (writable && is_region_locked(region.descriptor())) {
+    throw StreamBusy(region_path(stream, kind) + " has a living " + std::string(owner_role(kind)));
+  }
   const RegionHeader header = copy_header(region.bytes());
   try {
     const Layout layout = check(header, region.bytes().size());

@@ -33,10 +33,17 @@ Registry& registry() {
 
 }  // namespace
 
-OwnedDescriptor::OwnedDescriptor(int descriptor) : descriptor_(descriptor) {
-  if (descriptor < 0) return;
-  const std::scoped_lock guard(registry().mutex);
-  registry().descriptors.push_back(descriptor);
+OwnedDescriptor OwnedDescriptor::open(const std::string& path, int flags, mode_t mode) {
+  Registry& owned = registry();
+  const std::scoped_lock guard(owned.mutex);
+  owned.descriptors.push_back(-1);
+  const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC, mode);
+  if (descriptor < 0) {
+    owned.descriptors.pop_back();
+  } else {
+    owned.descriptors.back() = descriptor;
+  }
+  return OwnedDescriptor(descriptor);
 }
 
 OwnedDescriptor::OwnedDescriptor(OwnedDescriptor&& other) noexcept

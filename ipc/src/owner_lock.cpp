@@ -7,13 +7,14 @@
 #include <cerrno>
 #include <chrono>
 #include <optional>
-#include <system_error>
 #include <thread>
 
+#include "process_life.hpp"
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/layout.hpp"
 #include "splinecast/ipc/mode_text.hpp"
 #include "splinecast/ipc/region.hpp"
+#include "system_failure.hpp"
 
 namespace splinecast::ipc {
 namespace {
@@ -21,6 +22,9 @@ namespace {
 /// How long a lock is tried for whose holder has no region locked: it may be an `rm` passing by.
 constexpr int kLockTries = 10;
 constexpr std::chrono::milliseconds kLockPoll{5};
+
+/// How often a lock file is opened that comes and goes under others' hands.
+constexpr int kOpenTries = 100;
 
 struct flock whole_file(short type) noexcept {
   struct flock lock {};
@@ -36,15 +40,16 @@ bool try_lock(int descriptor) noexcept {
 
 /// Opens the lock file, making it if there is none; says which in `made_file`. Without O_CREAT
 /// first, because kernels refuse that flag on other users' files in sticky folders.
-int open_lock_file(const std::string& path, bool& made_file) {
-  constexpr int kFlags = O_RDWR | O_CLOEXEC | O_NOFOLLOW;
-  for (;;) {
+OwnedDescriptor open_lock_file(const std::string& path, bool& made_file) {
+  constexpr int kFlags = O_RDWR | O_NOFOLLOW | O_NONBLOCK;
+  for (int tries = 1;; ++tries) {
     made_file = false;
-    const int existing = open(path.c_str(), kFlags);
-    if (existing >= 0 || errno != ENOENT) return existing;
-    const int made = open(path.c_str(), kFlags | O_CREAT | O_EXCL, S_IRUSR | S_IWUSR);
-    made_file = made >= 0;
-    if (made >= 0 || errno != EEXIST) return made;
+    OwnedDescriptor existing = OwnedDescriptor::open(path, kFlags);
+    if (existing.get() >= 0 || errno != ENOENT || tries == kOpenTries) return existing;
+    OwnedDescriptor made =
+        OwnedDescriptor::open(path, kFlags | O_CREAT | O_EXCL, S_IRUSR | S_IWUSR);
+    made_file = made.get() >= 0;
+    if (made_file || errno != EEXIST) return made;
   }
 }
 
@@ -58,25 +63,39 @@ bool is_named(int descriptor, const std::string& path) noexcept {
 
 void require_own_file(int descriptor, const std::string& path) {
   struct stat status {};
-  fstat(descriptor, &status);
+  if (fstat(descriptor, &status) != 0) throw_failure("cannot look at lock " + path, errno);
   if (!S_ISREG(status.st_mode) || status.st_uid != geteuid() || (status.st_mode & 077) != 0) {
     throw BadRegion("lock " + path + " is not a private file of this user (owner " +
                     std::to_string(status.st_uid) + ", mode " + mode_text(status.st_mode) + ")");
   }
 }
 
-/// Whether another open file holds the write lock of an owner on the file; nothing if this process
-/// may not open it.
-std::optional<bool> is_file_locked(const std::string& path) {
-  const int opened = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-  if (opened < 0) return std::nullopt;
-  const bool locked = is_region_locked(opened);
-  close(opened);
-  return locked;
+/// Opens a file to query its locks; nothing if this process may not. Throws OutOfResources where
+/// it cannot be known whether it may.
+std::optional<OwnedDescriptor> open_to_query(const std::string& path) {
+  OwnedDescriptor opened = OwnedDescriptor::open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK);
+  if (opened.get() >= 0) return opened;
+  if (is_shortage(errno)) throw_failure("cannot look whether " + path + " is locked", errno);
+  return std::nullopt;
+}
+
+/// Whether a file is one that OwnerLock takes, of this user or, as root sees it, of anybody.
+bool is_lock_file(int descriptor) noexcept {
+  struct stat status {};
+  return fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) &&
+         (status.st_uid == geteuid() || geteuid() == 0);
+}
+
+/// Whether the owner's lock is held; nothing if this process may not open its file.
+std::optional<bool> is_lock_held(std::string_view stream, RegionKind kind) {
+  const auto file = open_to_query(lock_path(stream, kind));
+  if (!file || !is_lock_file(file->get())) return std::nullopt;
+  return is_region_locked(file->get());
 }
 
 bool is_region_file_locked(std::string_view stream, RegionKind kind) {
-  return is_file_locked(region_path(stream, kind)).value_or(false);
+  const auto file = open_to_query(region_path(stream, kind));
+  return file && is_region_locked(file->get());
 }
 
 /// " (process N)", if the owner's region can be read.
@@ -94,14 +113,13 @@ std::string owner_process(std::string_view stream, RegionKind kind) {
 OwnerLock::OwnerLock(std::string_view stream, RegionKind kind)
     : stream_(stream), kind_(kind), path_(lock_path(stream, kind)), holder_(getpid()) {
   for (int attempt = 1;; ++attempt) {
-    const int descriptor = open_lock_file(path_, made_file_);
-    if (descriptor < 0) {
+    descriptor_ = open_lock_file(path_, made_file_);
+    if (descriptor_.get() < 0) {
       if (errno == EACCES) throw BadRegion("lock " + path_ + " belongs to another user");
-      throw BadRegion("cannot open lock " + path_ + ": " + std::generic_category().message(errno));
+      throw_failure("cannot open lock " + path_, errno);
     }
-    descriptor_ = OwnedDescriptor(descriptor);
-    require_own_file(descriptor, path_);
-    if (!try_lock(descriptor)) {
+    require_own_file(descriptor_.get(), path_);
+    if (!try_lock(descriptor_.get())) {
       if (attempt < kLockTries && !is_region_file_locked(stream, kind)) {
         std::this_thread::sleep_for(kLockPoll);
         continue;
@@ -110,7 +128,8 @@ OwnerLock::OwnerLock(std::string_view stream, RegionKind kind)
                        std::string(owner_role(kind)) + owner_process(stream, kind));
     }
     // A file that was unlinked after it was opened guards nothing any more.
-    if (is_named(descriptor, path_)) return;
+    if (is_named(descriptor_.get(), path_)) return;
+    if (attempt == kOpenTries) throw BadRegion("lock " + path_ + " is removed again and again");
   }
 }
 
@@ -123,20 +142,34 @@ void OwnerLock::remove_litter() noexcept {
 }
 
 bool is_owned(std::string_view stream, RegionKind kind) {
-  return is_file_locked(lock_path(stream, kind)).value_or(false);
+  return is_lock_held(stream, kind).value_or(false);
 }
 
 bool owner_lives(std::string_view stream, RegionKind kind) {
-  const auto owned = is_file_locked(lock_path(stream, kind));
-  return owned ? *owned : is_region_file_locked(stream, kind);
+  if (const auto held = is_lock_held(stream, kind)) return *held;
+  const auto region = open_to_query(region_path(stream, kind));
+  return region && region_owner_lives(region->get());
 }
 
-bool try_lock_region(int descriptor) noexcept { return try_lock(descriptor); }
+bool RegionLock::hold() noexcept {
+  is_held_ = is_held_ || try_lock(descriptor_);
+  return is_held_;
+}
 
 bool is_region_locked(int descriptor) noexcept {
   // A read lock conflicts with the owner's write lock only, not with other readers' queries.
   struct flock lock = whole_file(F_RDLCK);
   return fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+}
+
+bool region_owner_lives(int descriptor) noexcept {
+  // A write lock would conflict with either kind.
+  struct flock lock = whole_file(F_WRLCK);
+  if (fcntl(descriptor, F_OFD_GETLK, &lock) != 0 || lock.l_type == F_UNLCK) return false;
+  if (lock.l_type == F_WRLCK) return true;
+  RegionHeader header{};
+  if (pread(descriptor, &header, sizeof header, 0) != sizeof header) return false;
+  return process_lives(header.owner_pid, core::Time(header.owner_since));
 }
 
 }  // namespace splinecast::ipc

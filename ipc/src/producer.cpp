@@ -35,12 +35,14 @@ struct SolverView {
 /// A ring region, made or taken over, and its writer.
 struct OwnedRing {
   Region region;
+  RegionLock lock;
   RegionHeader header;
   RingLayout layout;
   WaypointRingWriter writer;
 
   OwnedRing(Region mapped, const RegionHeader& described, const RingLayout& of_it)
       : region(std::move(mapped)),
+        lock(region.descriptor()),
         header(described),
         layout(of_it),
         writer(region.bytes(), of_it, ingest_limits(described)) {}
@@ -60,11 +62,11 @@ OwnedRing make_ring(const std::string& stream, const ProducerOptions& options) {
   Region region = Region::create(layout.bytes, options.access);
   write_header(region.bytes(), header);
   enter_owner(region.bytes(), header);
-  try_lock_region(region.descriptor());
-  if (!region.link(stream, RegionKind::waypoints)) {
+  OwnedRing ring(std::move(region), header, layout);
+  if (!ring.region.link(stream, RegionKind::waypoints)) {
     throw BadRegion(region_path(stream, RegionKind::waypoints) + " came to be while it was made");
   }
-  return {std::move(region), header, layout};
+  return ring;
 }
 
 void require_no_contradiction(const std::string& stream, const RegionHeader& stands,
@@ -108,7 +110,6 @@ std::optional<OwnedRing> continue_ring(const std::string& stream, const Producer
   require_same_clock(header, stream);
   require_no_contradiction(stream, header, options);
   enter_owner(ring.region.bytes(), header);
-  try_lock_region(ring.region.descriptor());
   return ring;
 }
 
@@ -184,6 +185,7 @@ struct Producer::Impl {
     if (!solver) look_for_solver();
     if (status == AppendStatus::accepted && solver && solver->board.sleeping()) {
       wake_all(ring.writer.head_word());
+      (void)ring.lock.hold();
     }
     return status;
   }
@@ -195,6 +197,7 @@ struct Producer::Impl {
     const core::Time end = deadline(clock, timeout);
     for (;;) {
       look_for_solver();
+      (void)ring.lock.hold();
       const Word seen = solver ? solver->board.revision() : 0;
       if (done()) return true;
       const core::Time left = end - clock.now();
@@ -274,7 +277,13 @@ bool Producer::wait_until_consumed(core::Time timeout) {
   return impl_->wait(timeout, [this] { return impl_->consumed() == impl_->ring.writer.head(); });
 }
 
-bool Producer::solver_alive() const { return owner_lives(impl_->stream, RegionKind::spline); }
+bool Producer::solver_alive() const {
+  try {
+    return owner_lives(impl_->stream, RegionKind::spline);
+  } catch (const OutOfResources&) {
+    return true;
+  }
+}
 
 Word Producer::appended() const noexcept { return impl_->ring.writer.head(); }
 Word Producer::consumed() const noexcept { return impl_->consumed(); }

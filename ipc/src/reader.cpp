@@ -26,6 +26,8 @@ bool is_of_current_stream(const std::string& stream, const RegionHeader& header,
   try {
     const auto producers = peek_header(stream, RegionKind::waypoints, trust);
     return !producers || producers->stream_id == header.stream_id;
+  } catch (const OutOfResources&) {
+    throw;  // nothing is known
   } catch (const StreamError&) {
     return true;  // a reader need not be allowed to read what the producer writes
   }
@@ -119,10 +121,17 @@ WaitStatus Reader::wait(core::Time timeout) noexcept {
 }
 
 Alive Reader::alive() const noexcept {
-  return {.producer = owner_lives(impl_->stream, RegionKind::waypoints),
-          .solver = is_region_locked(impl_->region.descriptor()) ||
+  const auto may_live = [this](RegionKind kind) {
+    try {
+      return owner_lives(impl_->stream, kind);
+    } catch (const std::exception&) {
+      return true;
+    }
+  };
+  return {.producer = may_live(RegionKind::waypoints),
+          .solver = region_owner_lives(impl_->region.descriptor()) ||
                     (impl_->region.is_linked(impl_->stream, RegionKind::spline) &&
-                     owner_lives(impl_->stream, RegionKind::spline))};
+                     may_live(RegionKind::spline))};
 }
 
 const RegionHeader& Reader::header() const noexcept { return impl_->header; }

@@ -8,8 +8,8 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <boost/interprocess/mapped_region.hpp>
-#include <boost/interprocess/shared_memory_object.hpp>
 #include <cerrno>
 #include <system_error>
 #include <utility>
@@ -18,6 +18,7 @@
 #include "splinecast/ipc/layout.hpp"
 #include "splinecast/ipc/mode_text.hpp"
 #include "splinecast/ipc/owned_descriptor.hpp"
+#include "system_failure.hpp"
 
 namespace splinecast::ipc {
 namespace {
@@ -38,12 +39,6 @@ class DescriptorMapping {
   int descriptor_;
 };
 
-int duplicate(int descriptor) {
-  const int copy = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
-  if (copy < 0) throw BadRegion("no file descriptor for a region: " + error_text(errno));
-  return copy;
-}
-
 /// Bytes free in the file system of an open file.
 std::string free_bytes(int descriptor) {
   struct statvfs status {};
@@ -57,6 +52,8 @@ auto naming_what(const std::string& what, const Map& map) {
   try {
     return map();
   } catch (const bip::interprocess_exception& error) {
+    if (error.get_native_error() != 0)
+      throw_failure("cannot map " + what, error.get_native_error());
     throw BadRegion("cannot map " + what + ": " + error.what());
   }
 }
@@ -70,12 +67,27 @@ void require_file_size(std::size_t bytes) {
                   std::to_string(limit.rlim_cur) + " (RLIMIT_FSIZE)");
 }
 
+/// Piece by piece, as a signal undoes the piece that it comes into: pieces that signals come into
+/// are halved, so that no rate of them lasts for ever.
 void reserve_pages(int descriptor, std::size_t bytes) {
+  constexpr int kTriesOfAPage = 1000;
   require_file_size(bytes);
-  const int error = posix_fallocate(descriptor, 0, static_cast<off_t>(bytes));
-  if (error == 0) return;
-  throw BadRegion("cannot reserve " + std::to_string(bytes) + " bytes of shared memory, " +
-                  free_bytes(descriptor) + " are free: " + error_text(error));
+  std::size_t piece = bytes;
+  int tries = 0;
+  for (std::size_t at = 0; at < bytes;) {
+    const std::size_t size = std::min(piece, bytes - at);
+    const int error = posix_fallocate(descriptor, static_cast<off_t>(at), static_cast<off_t>(size));
+    if (error == 0) {
+      at += size;
+      tries = 0;
+    } else if (error == EINTR && (size > kPage || ++tries < kTriesOfAPage)) {
+      piece = std::max(size / 2, kPage);
+    } else {
+      throw_failure("cannot reserve " + std::to_string(bytes) + " bytes of shared memory, " +
+                        free_bytes(descriptor) + " are free",
+                    error);
+    }
+  }
 }
 
 /// Faults every page in now, so that no sample, append or solve ever does.
@@ -84,9 +96,9 @@ void populate(std::span<std::byte> bytes, bool writable, int descriptor) {
   if (madvise(bytes.data(), bytes.size(), advice) == 0) return;
   if (errno != EINVAL) {
     // A file with holes that there is no memory for: to touch them would be a SIGBUS.
-    throw BadRegion("cannot populate " + std::to_string(bytes.size()) +
-                    " bytes of shared memory, " + free_bytes(descriptor) +
-                    " are free: " + error_text(errno));
+    throw OutOfResources("cannot populate " + std::to_string(bytes.size()) +
+                         " bytes of shared memory, " + free_bytes(descriptor) +
+                         " are free: " + error_text(errno));
   }
   // A kernel before 5.14.
   for (std::size_t at = 0; at < bytes.size(); at += kPage) {
@@ -94,9 +106,7 @@ void populate(std::span<std::byte> bytes, bool writable, int descriptor) {
   }
 }
 
-void require_trusted(int descriptor, const std::string& path, const Trust& trust) {
-  struct stat status {};
-  if (fstat(descriptor, &status) != 0) throw BadRegion(path + ": " + error_text(errno));
+void require_trusted(const struct stat& status, const std::string& path, const Trust& trust) {
   if (!S_ISREG(status.st_mode)) throw BadRegion(path + " is no regular file");
   const bool is_ours = status.st_uid == geteuid() || status.st_uid == 0 ||
                        (trust.owner && status.st_uid == *trust.owner);
@@ -110,23 +120,32 @@ void require_trusted(int descriptor, const std::string& path, const Trust& trust
   }
 }
 
-bip::shared_memory_object open_shared_memory(std::string_view stream, RegionKind kind,
-                                             bool writable) {
-  const std::string name = region_name(stream, kind);
-  struct stat status {};
-  if (lstat(region_path(stream, kind).c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
-    // Said before opening: opening a FIFO would hang.
-    throw BadRegion(region_path(stream, kind) + " is no regular file");
-  }
-  try {
-    return {bip::open_only, name.c_str(), writable ? bip::read_write : bip::read_only};
-  } catch (const bip::interprocess_exception& error) {
-    if (error.get_error_code() == bip::not_found_error) {
+/// Opens the file first, so that what is judged is what is used: a name may lead elsewhere at each
+/// look. Never waits, for a FIFO's other end or a lease, which any user can put under a name.
+OwnedDescriptor open_region_file(std::string_view stream, RegionKind kind, bool writable) {
+  const std::string path = region_path(stream, kind);
+  const int access = writable ? O_RDWR : O_RDONLY;
+  OwnedDescriptor opened = OwnedDescriptor::open(path, access | O_NOFOLLOW | O_NONBLOCK);
+  if (opened.get() >= 0) return opened;
+  switch (const int error = errno; error) {
+    case ENOENT:
       throw NoSuchStream("there is no stream '" + std::string(stream) + "' with a " +
                          std::string(owner_role(kind)));
-    }
-    throw BadRegion("cannot open " + region_path(stream, kind) + ": " + error.what());
+    case ELOOP:   // a symbolic link
+    case ENXIO:   // a socket
+    case EISDIR:  // a folder, to be written
+      throw BadRegion(path + " is no regular file");
+    default:
+      throw_failure("cannot open " + path, error);
   }
+}
+
+/// The status of an open region's file. Throws BadRegion if the file is not to be trusted.
+struct stat trusted_status(int descriptor, const std::string& path, const Trust& trust) {
+  struct stat status {};
+  if (fstat(descriptor, &status) != 0) throw BadRegion(path + ": " + error_text(errno));
+  require_trusted(status, path, trust);
+  return status;
 }
 
 }  // namespace
@@ -137,11 +156,11 @@ struct Region::Mapping {
   bip::mapped_region region;
   bool memory_locked = false;
 
-  Mapping(int owned, bool writable)
-      : descriptor(owned),
-        region(DescriptorMapping(owned), writable ? bip::read_write : bip::read_only) {
+  Mapping(OwnedDescriptor opened, bool writable)
+      : descriptor(std::move(opened)),
+        region(DescriptorMapping(descriptor.get()), writable ? bip::read_write : bip::read_only) {
     const auto all = bytes();
-    populate(all, writable, owned);
+    populate(all, writable, descriptor.get());
     // After the mapping stands: MAP_LOCKED would make it fail where the limit is small.
     memory_locked = mlock(all.data(), all.size()) == 0;
     // A forked child must not be a second writer.
@@ -164,11 +183,8 @@ bool Region::is_memory_locked() const noexcept { return mapping_->memory_locked;
 
 Region Region::create(std::size_t bytes, const RegionAccess& access) {
   const std::string folder(kSharedMemoryFolder);
-  OwnedDescriptor descriptor(
-      ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR));
-  if (descriptor.get() < 0) {
-    throw BadRegion("cannot make shared memory in " + folder + ": " + error_text(errno));
-  }
+  OwnedDescriptor descriptor = OwnedDescriptor::open(folder, O_TMPFILE | O_RDWR, S_IRUSR | S_IWUSR);
+  if (descriptor.get() < 0) throw_failure("cannot make shared memory in " + folder, errno);
   reserve_pages(descriptor.get(), bytes);
   if (access.group && fchown(descriptor.get(), static_cast<uid_t>(-1), *access.group) != 0) {
     throw BadRegion("cannot give the region to group " + std::to_string(*access.group) + ": " +
@@ -178,23 +194,22 @@ Region Region::create(std::size_t bytes, const RegionAccess& access) {
     throw BadRegion("cannot set the region's mode: " + error_text(errno));
   }
   return Region(naming_what(std::to_string(bytes) + " bytes of shared memory", [&] {
-    return std::make_unique<Mapping>(duplicate(descriptor.get()), true);
+    return std::make_unique<Mapping>(std::move(descriptor), true);
   }));
 }
 
 Region Region::open(std::string_view stream, RegionKind kind, bool writable, const Trust& trust) {
-  const auto object = open_shared_memory(stream, kind, writable);
-  const int descriptor = object.get_mapping_handle().handle;
-  require_trusted(descriptor, region_path(stream, kind), trust);
-  struct stat status {};
-  fstat(descriptor, &status);
+  const std::string path = region_path(stream, kind);
+  OwnedDescriptor opened = open_region_file(stream, kind, writable);
+  const struct stat status = trusted_status(opened.get(), path, trust);
+  const std::string size = std::to_string(status.st_size);
   if (static_cast<std::size_t>(status.st_size) < kBodyOffset) {
-    throw BadRegion(region_path(stream, kind) + " has " + std::to_string(status.st_size) +
-                    " bytes, fewer than its first " + std::to_string(kBodyOffset));
+    throw BadRegion(path + " has " + size + " bytes, fewer than its first " +
+                    std::to_string(kBodyOffset));
   }
-  return Region(
-      naming_what(region_path(stream, kind) + " (" + std::to_string(status.st_size) + " bytes)",
-                  [&] { return std::make_unique<Mapping>(duplicate(descriptor), writable); }));
+  return Region(naming_what(path + " (" + size + " bytes)", [&] {
+    return std::make_unique<Mapping>(std::move(opened), writable);
+  }));
 }
 
 bool Region::link(std::string_view stream, RegionKind kind) const {
@@ -202,7 +217,7 @@ bool Region::link(std::string_view stream, RegionKind kind) const {
   const std::string path = region_path(stream, kind);
   if (linkat(AT_FDCWD, self.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0) return true;
   if (errno == EEXIST) return false;
-  throw BadRegion("cannot name the region " + path + ": " + error_text(errno));
+  throw_failure("cannot name the region " + path, errno);
 }
 
 bool Region::is_linked(std::string_view stream, RegionKind kind) const noexcept {
@@ -213,15 +228,20 @@ bool Region::is_linked(std::string_view stream, RegionKind kind) const noexcept 
          mapped.st_ino == named.st_ino;
 }
 
+RegionFile look_at_region(std::string_view stream, RegionKind kind, const Trust& trust) {
+  const OwnedDescriptor opened = open_region_file(stream, kind, false);
+  const struct stat status = trusted_status(opened.get(), region_path(stream, kind), trust);
+  RegionFile file{.bytes = static_cast<std::size_t>(status.st_size),
+                  .is_own = status.st_uid == geteuid()};
+  RegionHeader header{};
+  if (pread(opened.get(), &header, sizeof header, 0) == sizeof header) file.header = header;
+  return file;
+}
+
 std::optional<RegionHeader> peek_header(std::string_view stream, RegionKind kind,
                                         const Trust& trust) {
   try {
-    const auto object = open_shared_memory(stream, kind, false);
-    const int descriptor = object.get_mapping_handle().handle;
-    require_trusted(descriptor, region_path(stream, kind), trust);
-    RegionHeader header{};
-    const bool whole = pread(descriptor, &header, sizeof header, 0) == sizeof header;
-    return whole ? std::optional(header) : std::nullopt;
+    return look_at_region(stream, kind, trust).header;
   } catch (const NoSuchStream&) {
     return std::nullopt;
   }

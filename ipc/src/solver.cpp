@@ -188,6 +188,7 @@ struct RingView {
 /// The solver's own region, made or taken over.
 struct OwnedBoard {
   Region region;
+  RegionLock lock;
   RegionHeader header;
   bool taken_over;
   SegmentBoardWriter writer;
@@ -195,6 +196,7 @@ struct OwnedBoard {
 
   OwnedBoard(Region mapped, const RegionHeader& described, const BoardLayout& layout, bool old)
       : region(std::move(mapped)),
+        lock(region.descriptor()),
         header(described),
         taken_over(old),
         writer(region.bytes(), layout),
@@ -213,11 +215,11 @@ OwnedBoard make_board(const std::string& stream, const RegionHeader& ring_header
   Region region = Region::create(layout.bytes, options.access);
   write_header(region.bytes(), header);
   enter_owner(region.bytes(), header);
-  try_lock_region(region.descriptor());
-  if (!region.link(stream, RegionKind::spline)) {
+  OwnedBoard board(std::move(region), header, layout, false);
+  if (!board.region.link(stream, RegionKind::spline)) {
     throw BadRegion(region_path(stream, RegionKind::spline) + " came to be while it was made");
   }
-  return {std::move(region), header, layout, false};
+  return board;
 }
 
 /// Until when nobody may take the name from a board of an earlier stream.
@@ -246,7 +248,6 @@ std::variant<OwnedBoard, Occupied> own_board(const std::string& stream,
   require_no_contradiction(stream, header, options);
   enter_owner(board.region.bytes(), header);
   board.writer.store_sleeping(false);
-  try_lock_region(board.region.descriptor());
   return board;
 }
 
@@ -335,6 +336,8 @@ bool Solver::attach(const Clock& clock) {
 
 bool Solver::attached() const noexcept { return impl_->attachment != nullptr; }
 
+bool Solver::hold_region() noexcept { return !attached() || impl_->attachment->board.lock.hold(); }
+
 StepResult Solver::step(const Clock& clock) {
   if (!attached()) return {};
   Attachment& at = *impl_->attachment;
@@ -343,7 +346,10 @@ StepResult Solver::step(const Clock& clock) {
     throw BadRegion(region_path(impl_->stream, RegionKind::spline) +
                     " holds what its solver has not written");
   }
-  if (result.published && impl_->options.wake) wake_all(at.board.writer.revision_word());
+  if (result.published && impl_->options.wake) {
+    wake_all(at.board.writer.revision_word());
+    (void)at.board.lock.hold();
+  }
   if (result.consumed == 0 && !result.missed && at.ring.ring.retired()) impl_->attachment.reset();
   return result;
 }
@@ -360,6 +366,7 @@ void Solver::wait(core::Time timeout) noexcept {
     return;
   }
   Attachment& at = *impl_->attachment;
+  (void)at.board.lock.hold();
   // The store and the load are seq_cst, as are the producer's store of head and load of sleeping:
   // either this load sees the new head, or the producer sees that somebody is to be woken.
   at.board.writer.store_sleeping(true);

@@ -47,25 +47,17 @@ struct Removable {
   std::size_t control = 0;         ///< where its control lines are
 };
 
-bool is_own_file(const std::string& path) noexcept {
-  struct stat status {};
-  return lstat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == geteuid();
-}
-
 template <typename Layout>
 Removable as_removable(RegionKind kind, CheckedRegion<Layout> opened) {
   return {.kind = kind, .region = std::move(opened.region), .control = opened.layout.control};
 }
 
-/// Whether a file's header and size are those of a region. Throws BadRegion if it is not to be
-/// trusted.
-bool describes_region(const std::string& stream, RegionKind kind, const Trust& trust) {
-  const auto header = peek_header(stream, kind, trust);
-  if (!header) return false;
-  const std::size_t size = std::filesystem::file_size(region_path(stream, kind));
+/// Whether a file's header and size are those of a region.
+bool describes_region(const RegionFile& file, RegionKind kind) {
+  if (!file.header) return false;
   try {
-    if (kind == RegionKind::waypoints) checked_ring_layout(*header, size);
-    if (kind == RegionKind::spline) checked_board_layout(*header, size);
+    if (kind == RegionKind::waypoints) checked_ring_layout(*file.header, file.bytes);
+    if (kind == RegionKind::spline) checked_board_layout(*file.header, file.bytes);
     return true;
   } catch (const BadRegion&) {
     return false;
@@ -73,9 +65,8 @@ bool describes_region(const std::string& stream, RegionKind kind, const Trust& t
 }
 
 Removable removable(const std::string& stream, RegionKind kind, const Trust& trust) {
-  if (!describes_region(stream, kind, trust) && is_own_file(region_path(stream, kind))) {
-    return {.kind = kind};
-  }
+  const RegionFile file = look_at_region(stream, kind, trust);
+  if (file.is_own && !describes_region(file, kind)) return {.kind = kind};
   return kind == RegionKind::waypoints ? as_removable(kind, open_ring(stream, true, trust))
                                        : as_removable(kind, open_board(stream, true, trust));
 }

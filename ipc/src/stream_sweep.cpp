@@ -1,10 +1,13 @@
 #include "splinecast/ipc/stream_sweep.hpp"
 
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <new>
 #include <utility>
 
 #include "splinecast/ipc/errors.hpp"
@@ -20,6 +23,10 @@ constexpr core::Time kLookAround = std::chrono::milliseconds(50);
 /// When one of these has died, the rest follow at once: they were mostly the same process's.
 constexpr std::size_t kTries = 16;
 
+/// How often one of the streams is tried that lack memory or descriptors; as soon as one of them
+/// succeeds, some at each look.
+constexpr core::Time kRetry = std::chrono::milliseconds(100);
+
 /// Descriptors for all else that the process does.
 constexpr std::size_t kOtherDescriptors = 32;
 
@@ -28,6 +35,13 @@ std::size_t most_streams(std::size_t descriptors_each) {
   getrlimit(RLIMIT_NOFILE, &limit);
   const std::size_t all = limit.rlim_cur;
   return all > kOtherDescriptors ? (all - kOtherDescriptors) / descriptors_each : 0;
+}
+
+/// Whether what failed may succeed later without other files under the stream's name.
+bool is_passing(const std::exception& error) noexcept {
+  return dynamic_cast<const OutOfResources*>(&error) != nullptr ||
+         dynamic_cast<const StreamBusy*>(&error) != nullptr ||
+         dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
 }
 
 }  // namespace
@@ -60,17 +74,35 @@ core::Time StreamSweep::next_pause() const noexcept {
 
 bool StreamSweep::sweep(const Clock& clock) {
   now_ = clock.now();
-  const core::Time now = now_;
+  try {
+    take_up(clock);
+  } catch (const std::exception&) {
+    looks_again_ = true;  // the process lacks memory or descriptors; streams that are solved go on
+  }
+  collect_calling();
+  bool has_more = false;
+  for (std::size_t k = 0; k < calling_.size(); ++k) {
+    prefetch_ahead(k);
+    has_more = serve(calling_[k], clock) || has_more;
+  }
+  if (has_detached_) release_detached();
+  return has_more || !to_take_.empty();
+}
+
+void StreamSweep::take_up(const Clock& clock) {
   // Not while streams are being taken up: that makes files, for which it would look each time.
-  if (to_take_.empty() && now >= next_look_) {
+  if (to_take_.empty() && now_ >= next_look_) {
+    next_look_ = now_ + kLookAround;
     look_around();
-    next_look_ = now + kLookAround;
   }
   if (!to_take_.empty()) take_next(clock);
+}
+
+/// Notes which streams have something to do.
+void StreamSweep::collect_calling() {
   ++sweeps_;
   const bool looks_at_all = all_quiet_;
-  const core::Time quiet_since = now - kQuietAfter;
-  bool has_more = false;
+  const core::Time quiet_since = now_ - kQuietAfter;
   all_quiet_ = !watches_.empty();
   calling_.clear();
   for (std::size_t i = 0; i < watches_.size(); ++i) {
@@ -78,15 +110,9 @@ bool StreamSweep::sweep(const Clock& clock) {
     const bool is_quiet = watch.active <= quiet_since && watch.solver.due() == core::Time::max();
     const bool is_looked_at = !is_quiet || looks_at_all || (sweeps_ + i) % quiet_sweeps_ == 0;
     all_quiet_ = all_quiet_ && is_quiet;
-    if (watch.solver.is_due(now) || (is_looked_at && watch.solver.calls())) calling_.push_back(i);
+    if (watch.solver.is_due(now_) || (is_looked_at && watch.solver.calls())) calling_.push_back(i);
   }
   all_quiet_ = all_quiet_ && calling_.empty();
-  for (std::size_t k = 0; k < calling_.size(); ++k) {
-    prefetch_ahead(k);
-    has_more = serve(calling_[k], clock) || has_more;
-  }
-  if (has_detached_) release_detached();
-  return has_more || !to_take_.empty();
 }
 
 /// While one stream is stepped, the memory of those after it comes into the caches: first what is
@@ -103,43 +129,78 @@ void StreamSweep::prefetch_ahead(std::size_t k) const noexcept {
 /// Steps one stream. Returns whether it has more to do.
 bool StreamSweep::serve(std::size_t index, const Clock& clock) {
   Served& served = served_[index];
-  const StepResult result = served.solver->step(clock);
-  if (!served.solver->attached()) {
+  StepResult result;
+  try {
+    result = served.solver->step(clock);
+  } catch (const std::exception&) {
+    served.failure = std::current_exception();
+  }
+  if (served.failure || !served.solver->attached()) {
     has_detached_ = true;
     return false;
   }
   watches_[index] = {.solver = served.solver->watch(), .active = now_};
-  served.solver->first_refusals(refused_);
-  for (const ItemRefusal& refusal : refused_) {
-    tell_(SweepNews::refused, served.solver->stream(), served.solver.get(), to_string(refusal));
-  }
+  tell_first_refusals(*served.solver);
   if (!served.was_finished && served.solver->head().finished) {
     served.was_finished = true;
-    tell_(SweepNews::finished, served.solver->stream(), served.solver.get(), {});
+    tell(SweepNews::finished, served.solver->stream(), served.solver.get(), {});
   }
   return result.missed || watches_[index].solver.has_items();
 }
 
-/// Streams that have been retired wait for a producer again.
+void StreamSweep::tell_first_refusals(Solver& solver) noexcept {
+  try {
+    solver.first_refusals(refused_);
+    for (const ItemRefusal& refusal : refused_) {
+      tell_(SweepNews::refused, solver.stream(), &solver, to_string(refusal));
+    }
+  } catch (...) {
+    return;  // as in tell()
+  }
+}
+
 void StreamSweep::release_detached() {
   for (std::size_t i = served_.size(); i-- > 0;) {
-    if (served_[i].solver->attached()) continue;
-    const std::string stream = served_[i].solver->stream();
-    Member& member = members_[stream];
-    member.waiting = std::move(served_[i].solver);
-    become(stream, member, State::waiting, SweepNews::waiting);
-    to_take_.push_back(stream);
+    if (!served_[i].failure && served_[i].solver->attached()) continue;
+    release(served_[i]);
     served_.erase(served_.begin() + static_cast<std::ptrdiff_t>(i));
     watches_.erase(watches_.begin() + static_cast<std::ptrdiff_t>(i));
     places_.erase(places_.begin() + static_cast<std::ptrdiff_t>(i));
   }
   has_detached_ = false;
+  // Now, as a stream may already be there again.
+  looks_again_ = true;
+  next_look_ = now_;
+}
+
+/// A stream that has been retired waits for a producer again; one whose step failed is given up.
+void StreamSweep::release(Served& served) {
+  const auto found = members_.find(served.solver->stream());
+  auto& [stream, member] = *found;
+  if (!served.failure) {
+    member.waiting = std::move(served.solver);
+    become(stream, member, State::waiting, SweepNews::waiting);
+    return;
+  }
+  served.solver.reset();
+  try {
+    std::rethrow_exception(served.failure);
+  } catch (const std::exception& error) {
+    drop(stream, member, error);
+  }
 }
 
 void StreamSweep::look_around() {
-  if (folder_.has_changed()) look_for_names();
+  const bool has_changed = folder_.has_changed();
+  if (has_changed || looks_again_) {
+    looks_again_ = true;
+    look_for_names();
+    looks_again_ = false;
+  }
   note_ends_of_motion();
   if (to_take_.empty()) look_elsewhere();
+  if (to_take_.empty()) look_at_postponed();
+  if (is_any_unheld_) hold_regions();
 }
 
 /// Notes which streams are to be taken up, and forgets those that patterns found and that have
@@ -157,14 +218,12 @@ void StreamSweep::look_for_names() {
     const auto& [stream, member] = entry;
     const bool stands = std::ranges::binary_search(standing, stream);
     if (member.state == State::solved || stands || member.is_named) return false;
-    tell_(SweepNews::gone, stream, nullptr, {});
+    tell(SweepNews::gone, stream, nullptr, {});
     return true;
   });
   for (auto& [stream, member] : members_) {
     const bool stands = std::ranges::binary_search(standing, stream);
-    const bool may_be_taken = member.state == State::unowned || member.state == State::waiting ||
-                              member.state == State::no_descriptors;
-    if (may_be_taken && (stands || member.is_named)) to_take_.push_back(stream);
+    if (may_be_taken(stream, member, stands)) to_take_.push_back(stream);
   }
   std::ranges::reverse(to_take_);
 }
@@ -179,6 +238,29 @@ void StreamSweep::note_ends_of_motion() {
     to_take_.push_back(stream);
     return true;
   });
+}
+
+/// Whether a stream is to be tried now. One that was given up is, once other files stand under its
+/// names than then: to whom it is told, it is another stream.
+bool StreamSweep::may_be_taken(const std::string& stream, Member& member, bool stands) {
+  if (!stands && !member.is_named) return false;
+  if (member.state == State::given_up && files_of(stream) != member.files) {
+    member.state = State::unowned;
+  }
+  return member.state == State::unowned || member.state == State::waiting ||
+         member.state == State::no_descriptors;
+}
+
+StreamSweep::Files StreamSweep::files_of(const std::string& stream) {
+  const auto status_of = [](const std::string& path) {
+    struct stat status {};
+    if (lstat(path.c_str(), &status) != 0) status = {};
+    return status;
+  };
+  const auto lock = status_of(lock_path(stream, RegionKind::spline));
+  return {status_of(region_path(stream, RegionKind::waypoints)).st_ino,
+          status_of(region_path(stream, RegionKind::spline)).st_ino,
+          lock.st_uid != geteuid() ? lock.st_ino : 0};
 }
 
 /// Looks whether streams of others have lost their solver, some each time.
@@ -196,6 +278,28 @@ void StreamSweep::look_elsewhere() {
     if (is_owned(stream, RegionKind::spline)) continue;
     to_take_.push_back(stream);
     looks = 0;
+  }
+}
+
+/// Takes the next of the streams up again that lacked memory or descriptors.
+void StreamSweep::look_at_postponed() {
+  if (now_ < next_retry_) return;
+  next_retry_ = now_ + kRetry;
+  const auto is_postponed = [](const auto& entry) {
+    return entry.second.state == State::postponed;
+  };
+  auto next = std::find_if(members_.upper_bound(last_retried_), members_.end(), is_postponed);
+  if (next == members_.end()) next = std::ranges::find_if(members_, is_postponed);
+  if (next == members_.end()) return;
+  to_take_.push_back(next->first);
+  last_retried_ = next->first;
+}
+
+/// Boards whose region lock somebody kept from this process when it took them over.
+void StreamSweep::hold_regions() noexcept {
+  is_any_unheld_ = false;
+  for (const Served& served : served_) {
+    if (!served.solver->hold_region()) is_any_unheld_ = true;
   }
 }
 
@@ -218,13 +322,17 @@ bool StreamSweep::own(const std::string& stream, Member& member) {
     return false;
   }
   try {
+    // Before the lock, which makes a file: of what cannot be solved there may be many.
+    if (!member.is_named) (void)look_at_region(stream, RegionKind::waypoints, options_.trust);
     if (is_owned(stream, RegionKind::spline)) throw StreamBusy(stream);
     member.waiting = std::make_unique<Solver>(stream, options_);
     return true;
   } catch (const StreamBusy&) {
     become(stream, member, State::elsewhere, SweepNews::elsewhere);
+  } catch (const NoSuchStream&) {
+    looks_again_ = true;  // it has just gone
   } catch (const std::exception& error) {
-    become(stream, member, State::given_up, SweepNews::given_up, nullptr, error.what());
+    drop(stream, member, error);
   }
   return false;
 }
@@ -238,25 +346,60 @@ bool StreamSweep::attach(const std::string& stream, Member& member, const Clock&
       become(stream, member, State::waiting, SweepNews::waiting);
       return false;
     }
+    make_room();
   } catch (const std::exception& error) {
-    member.waiting.reset();
-    become(stream, member, State::given_up, SweepNews::given_up, nullptr, error.what());
+    drop(stream, member, error);
     return false;
   }
+  if (member.state == State::postponed) next_retry_ = now_;
   served_.push_back({.solver = std::move(member.waiting)});
   watches_.push_back({.solver = served_.back().solver->watch(), .active = now_});
   places_.push_back(served_.back().solver->places());
-  calling_.reserve(served_.capacity());
+  is_any_unheld_ = is_any_unheld_ || !served_.back().solver->hold_region();
   become(stream, member, State::solved, SweepNews::solving, served_.back().solver.get());
   return true;
 }
 
+/// Makes room for one more stream that is solved, so that taking it up cannot fail half-way.
+void StreamSweep::make_room() {
+  const std::size_t needed = served_.size() + 1;
+  if (calling_.capacity() >= needed) return;
+  const std::size_t room = 2 * needed;
+  served_.reserve(room);
+  watches_.reserve(room);
+  places_.reserve(room);
+  calling_.reserve(room);
+}
+
+/// Gives a stream up for a reason, or postpones it if that may pass. A named one stays this
+/// process's meanwhile.
+void StreamSweep::drop(const std::string& stream, Member& member, const std::exception& error) {
+  if (is_passing(error)) {
+    if (!member.is_named) member.waiting.reset();
+    next_retry_ = now_ + kRetry;
+    become(stream, member, State::postponed, SweepNews::postponed, nullptr, error.what());
+    return;
+  }
+  member.waiting.reset();
+  member.files = files_of(stream);
+  become(stream, member, State::given_up, SweepNews::given_up, nullptr, error.what());
+}
+
 /// Notes what has become of a stream, and tells it if that is news.
 void StreamSweep::become(const std::string& stream, Member& member, State state, SweepNews news,
-                         const Solver* solver, std::string_view why) {
+                         const Solver* solver, std::string_view why) noexcept {
   const bool is_news = member.state != state;
   member.state = state;
-  if (is_news) tell_(news, stream, solver, why);
+  if (is_news) tell(news, stream, solver, why);
+}
+
+void StreamSweep::tell(SweepNews news, const std::string& stream, const Solver* solver,
+                       std::string_view why) noexcept {
+  try {
+    tell_(news, stream, solver, why);
+  } catch (...) {
+    return;  // whether it is heard of changes nothing for the streams
+  }
 }
 
 std::size_t StreamSweep::owned() const noexcept {

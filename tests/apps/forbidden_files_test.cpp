@@ -240,5 +240,23 @@ TEST_F(ForbiddenFiles, ALockOfAnotherUserKeepsWritersOutByName) {
   });
 }
 
+TEST_F(ForbiddenFiles, UnderNamesThatAreNoStreamsEndNoVerbAndAreNotPrinted) {
+  const PrivateSharedMemory memory("8m");
+  const int before = memory.run({"doctor"}, {}).code;
+  for (const char* const name : {"splinecast.a bad.waypoints", "splinecast.a\033[2J\n.spline",
+                                 "splinecast..a.waypoints", "splinecast.\xff.spline.lock"}) {
+    const int file = open(memory.file(name).c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
+    ASSERT_GE(file, 0);
+    close(file);
+  }
+  attack_in_vain(memory, {"ls"}, 0, {"STREAM"});
+  attack_in_vain(memory, {"ls", "--json"}, 0, {"[]"});
+  const auto doctor = attack_in_vain(memory, {"doctor"}, before, {"ok"});
+  EXPECT_EQ(doctor.out.find('\033'), std::string::npos) << doctor.out;
+  attack_in_vain(memory, {"info", "a\033[2J"}, 2, {R"('a\x1b[2J' cannot name a stream)"});
+  attack_in_vain(memory, {"fit", "no\033[2J\nfile.csv", "--dt", "0.1"}, 2,
+                 {R"(no\x1b[2J\x0afile.csv: no such)"});
+}
+
 }  // namespace
 }  // namespace splinecast::apps

@@ -133,13 +133,11 @@ TEST_F(ForbiddenLimits, ExhaustedDescriptorsAreRefusedByName) {
   EXPECT_GT(refused, 0);
   ASSERT_EQ(memory.run(replay({"--embedded"}), {}).code, 0);
   const Confinement four{.limits = {"--nofile=4"}};
-  for (const std::vector<std::string>& verb :
-       std::vector<std::vector<std::string>>{{"sample", "a", "--rate", "10", "--count", "2"},
-                                             {"info", "a"},
-                                             {"solve", "a"},
-                                             {"rm", "a"}}) {
+  for (const std::vector<std::string>& verb : std::vector<std::vector<std::string>>{
+           {"sample", "a", "--rate", "10", "--count", "2"}, {"solve", "a"}, {"rm", "a"}}) {
     attack_in_vain(memory, verb, 1, {"Too many open files"}, four);
   }
+  attack_in_vain(memory, {"info", "a"}, 0, {"finished"}, four);  // it opens one file at a time
 }
 
 TEST_F(ForbiddenLimits, ExhaustedAddressSpaceIsRefusedWithTheBytesThatItLacks) {

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/layout.hpp"
@@ -123,7 +124,8 @@ TEST(OwnerLock, AForkedChildDoesNotKeepIt) {
   if (owner == 0) {
     const OwnerLock lock(stream.name(), RegionKind::spline);
     const Region region = Region::create(kSize, {});
-    if (!region.link(stream.name(), RegionKind::spline) || !try_lock_region(region.descriptor())) {
+    if (!region.link(stream.name(), RegionKind::spline) ||
+        !RegionLock(region.descriptor()).hold()) {
       _exit(1);
     }
     const pid_t child = fork();
@@ -188,6 +190,47 @@ TEST(Names, AreCheckedBeforeTheyBecomePaths) {
   }
   EXPECT_THROW(require_stream_name(std::string(129, 'a')), BadRequest);
   EXPECT_NO_THROW(require_stream_name("arm-1.left_hand"));
+}
+
+TEST(Names, OfFilesThatAreNoStreamsAreNotListed) {
+  const TestStream stream;
+  const Region region = Region::create(kSize, {});
+  ASSERT_TRUE(region.link(stream.name(), RegionKind::spline));
+  const std::string begin = std::string(kSharedMemoryFolder) + "splinecast.";
+  const std::vector<std::string> invalid{
+      begin + stream.name() + " bad.waypoints", begin + stream.name() + "\033[2J\n.spline",
+      begin + "." + stream.name() + ".waypoints.lock",
+      begin + stream.name() + std::string(130, 'x') + ".spline.lock"};
+  for (const std::string& path : invalid) close(open(path.c_str(), O_CREAT | O_RDWR, 0600));
+  int listed = 0;
+  for (const std::string& name : stream_names()) {
+    EXPECT_NO_THROW(require_stream_name(name)) << name;
+    listed += name == stream.name() ? 1 : 0;
+  }
+  EXPECT_EQ(listed, 1);
+  for (const std::string& path : invalid) unlink(path.c_str());
+}
+
+TEST(Names, OfOthersArePrintedWithoutWhatATerminalObeys) {
+  EXPECT_EQ(printable("arm-1.left hand \u00e4\u20ac\U0001f916"),
+            "arm-1.left hand \u00e4\u20ac\U0001f916");
+  EXPECT_EQ(printable("a\033[2J\r\n\t\x7f"), R"(a\x1b[2J\x0d\x0a\x09\x7f)");
+  EXPECT_EQ(printable("\xc3"), R"(\xc3)");                                  // cut off
+  EXPECT_EQ(printable("\xc3("), R"(\xc3()");                                // no continuation
+  EXPECT_EQ(printable("\xc0\x80\xe0\x80\x8a"), R"(\xc0\x80\xe0\x80\x8a)");  // longer than need be
+  EXPECT_EQ(printable("\xed\xa0\x80"), R"(\xed\xa0\x80)");  // half of a surrogate pair
+  EXPECT_EQ(printable("\xf4\x90\x80\x80\xff"), R"(\xf4\x90\x80\x80\xff)");
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "2J"),
+            R"(\xc2\x9b)"
+            "2J");  // CSI in one character
+  EXPECT_EQ(printable("\u202e\u2028"), R"(\xe2\x80\xae\xe2\x80\xa8)");
+  try {
+    require_stream_name("a\033[2J");
+    FAIL();
+  } catch (const BadRequest& error) {
+    EXPECT_EQ(std::string(error.what()).find('\033'), std::string::npos);
+  }
 }
 
 }  // namespace

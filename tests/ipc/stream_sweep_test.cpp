@@ -7,21 +7,23 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/owner_lock.hpp"
-#include "splinecast/ipc/producer.hpp"
-#include "support/process.hpp"
+#include "told.hpp"
 
 /// One thread's solvers of many streams, over real shared memory, within one process.
 namespace splinecast::ipc {
 namespace {
 
 using core::Time;
+using testing::append_at;
 using testing::await;
+using testing::make_producer;
+using testing::News;
 using testing::TestStream;
+using testing::Told;
 
 /// A clock that the test sets and that counts how often it is read.
 class SetClock final : public Clock {
@@ -34,46 +36,6 @@ class SetClock final : public Clock {
   mutable int reads = 0;
 };
 
-using News = std::vector<std::pair<SweepNews, std::string>>;
-
-/// A sweep whose news are kept.
-struct Told {
-  News news;
-  std::string why;
-  StreamSweep sweep;
-  MonotonicClock clock;
-
-  explicit Told(const std::vector<std::string>& wanted, const SolverOptions& options = small())
-      : sweep(wanted, options,
-              [this](SweepNews what, const std::string& stream, const Solver* /*solver*/,
-                     std::string_view reason) {
-                news.emplace_back(what, stream);
-                if (!reason.empty()) why = reason;
-              }) {}
-
-  static SolverOptions small() { return {.capacity = 64}; }
-
-  [[nodiscard]] std::ptrdiff_t count(SweepNews what, const std::string& stream) const {
-    return std::ranges::count(news, std::pair(what, stream));
-  }
-  /// Sweeps until that has been told.
-  bool await_news(SweepNews what, const std::string& stream) {
-    return await([&] {
-      sweep.sweep(clock);
-      return count(what, stream) > 0;
-    });
-  }
-};
-
-Producer make(const std::string& stream, StreamClock clock = StreamClock::recorded) {
-  return {stream, {.dimensions = 1, .clock = clock, .capacity = 64}};
-}
-
-void append(Producer& producer, Time t) {
-  const std::vector<double> x{1};
-  ASSERT_EQ(producer.append({.time = t, .position = x}), AppendStatus::accepted);
-}
-
 TEST(StreamSweep, APatternFindsStreamsAsTheyComeAndForgetsThoseThatGo) {
   const TestStream family;
   const std::string stream = family.name() + ".x";
@@ -81,10 +43,10 @@ TEST(StreamSweep, APatternFindsStreamsAsTheyComeAndForgetsThoseThatGo) {
   Told told({family.name() + ".*"});
   told.sweep.sweep(told.clock);
   EXPECT_TRUE(told.news.empty());
-  Producer unwanted = make(other.name());
+  Producer unwanted = make_producer(other.name());
   {
-    Producer producer = make(stream);
-    append(producer, Time(0));
+    Producer producer = make_producer(stream);
+    append_at(producer, Time(0));
     EXPECT_TRUE(told.await_news(SweepNews::solving, stream));
     EXPECT_TRUE(await([&] {
       told.sweep.sweep(told.clock);
@@ -97,7 +59,7 @@ TEST(StreamSweep, APatternFindsStreamsAsTheyComeAndForgetsThoseThatGo) {
   EXPECT_EQ(told.sweep.solved(), 0U);
   EXPECT_FALSE(is_owned(stream, RegionKind::spline));
   EXPECT_EQ(told.count(SweepNews::solving, other.name()), 0);
-  Producer again = make(stream);
+  Producer again = make_producer(stream);
   told.news.clear();
   EXPECT_TRUE(told.await_news(SweepNews::solving, stream));
   again.withdraw();
@@ -112,25 +74,25 @@ TEST(StreamSweep, ANamedStreamIsOwnedBeforeItsProducerComes) {
   EXPECT_EQ(told.count(SweepNews::waiting, stream.name()), 1);
   EXPECT_TRUE(is_owned(stream.name(), RegionKind::spline));
   EXPECT_THROW(Solver(stream.name(), {}), StreamBusy);
-  Producer producer = make(stream.name());
+  Producer producer = make_producer(stream.name());
   EXPECT_TRUE(told.await_news(SweepNews::solving, stream.name()));
   EXPECT_TRUE(producer.wait_for_solver(Time(1)));
 }
 
 TEST(StreamSweep, WhatAnotherSolvesIsLeftToItAndTakenOverWhenThatDies) {
   const TestStream stream;
-  Producer producer = make(stream.name());
+  Producer producer = make_producer(stream.name());
   std::optional<Solver> other(std::in_place, stream.name(), Told::small());
   ASSERT_TRUE(other->attach());
   const MonotonicClock clock;
-  append(producer, Time(0));
+  append_at(producer, Time(0));
   EXPECT_EQ(other->step(clock).consumed, 1U);
   Told told({stream.name()});
   for (int i = 0; i < 3; ++i) told.sweep.sweep(clock);
   EXPECT_EQ(told.news, (News{{SweepNews::elsewhere, stream.name()}}));
   other.reset();
   EXPECT_TRUE(told.await_news(SweepNews::solving, stream.name()));
-  append(producer, Time(10'000'000));
+  append_at(producer, Time(10'000'000));
   EXPECT_TRUE(await([&] {
     told.sweep.sweep(clock);
     return producer.consumed() == 2;
@@ -140,7 +102,7 @@ TEST(StreamSweep, WhatAnotherSolvesIsLeftToItAndTakenOverWhenThatDies) {
 
 TEST(StreamSweep, AnIdleStreamCostsNoStep) {
   const TestStream stream;
-  Producer producer = make(stream.name());
+  Producer producer = make_producer(stream.name());
   Told told({stream.name()});
   ASSERT_TRUE(told.await_news(SweepNews::solving, stream.name()));
   SetClock clock;
@@ -148,7 +110,7 @@ TEST(StreamSweep, AnIdleStreamCostsNoStep) {
   clock.reads = 0;
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(told.sweep.sweep(clock));
   EXPECT_EQ(clock.reads, 10);  // its own; a step that publishes reads the clock as well
-  append(producer, Time(0));
+  append_at(producer, Time(0));
   EXPECT_FALSE(told.sweep.sweep(clock));
   EXPECT_EQ(clock.reads, 12);
   EXPECT_EQ(producer.consumed(), 1U);
@@ -158,15 +120,15 @@ TEST(StreamSweep, AStreamThatHasLongBeenQuietIsLookedAtInOneOfSomeSweeps) {
   const TestStream family;
   const std::string quiet = family.name() + ".quiet";
   const std::string busy = family.name() + ".busy";
-  Producer first = make(quiet);
-  Producer second = make(busy);
+  Producer first = make_producer(quiet);
+  Producer second = make_producer(busy);
   Told told({quiet, busy});
   ASSERT_TRUE(told.await_news(SweepNews::solving, quiet));
   ASSERT_TRUE(told.await_news(SweepNews::solving, busy));
   SetClock clock;
   int sent = 0;
   const auto sweeps_to_take = [&](Producer& producer) {
-    append(producer, std::chrono::milliseconds(++sent));
+    append_at(producer, std::chrono::milliseconds(++sent));
     int sweeps = 0;
     while (!producer.wait_until_consumed(Time(0))) {
       told.sweep.sweep(clock);
@@ -196,7 +158,7 @@ TEST(StreamSweep, AStreamThatHasLongBeenQuietIsLookedAtInOneOfSomeSweeps) {
 
 TEST(StreamSweep, QuietStreamsDoNotMakeALongPauseLongerNorPutOffWhatIsElsewhere) {
   const TestStream stream;
-  Producer producer = make(stream.name());
+  Producer producer = make_producer(stream.name());
   StreamSweep sweep(
       {stream.name()}, Told::small(), [](auto&&...) {}, std::chrono::milliseconds(30));
   SetClock clock;
@@ -207,7 +169,7 @@ TEST(StreamSweep, QuietStreamsDoNotMakeALongPauseLongerNorPutOffWhatIsElsewhere)
   clock.time += StreamSweep::kQuietAfter;
   sweep.sweep(clock);
   EXPECT_EQ(sweep.next_pause(), std::chrono::milliseconds(30));
-  append(producer, Time(0));
+  append_at(producer, Time(0));
   sweep.sweep(clock);
   EXPECT_EQ(producer.consumed(), 1U);
 
@@ -219,12 +181,12 @@ TEST(StreamSweep, QuietStreamsDoNotMakeALongPauseLongerNorPutOffWhatIsElsewhere)
 TEST(StreamSweep, ALiveStreamSettlesWithoutWaypointsUntilItRests) {
   const TestStream stream;
   SetClock clock;
-  Producer producer = make(stream.name(), StreamClock::monotonic);
+  Producer producer = make_producer(stream.name(), StreamClock::monotonic);
   Told told({stream.name()});
   ASSERT_TRUE(told.await_news(SweepNews::solving, stream.name()));
   ASSERT_TRUE(producer.wait_for_solver(Time(1)));
-  append(producer, clock.time + std::chrono::milliseconds(50));
-  append(producer, clock.time + std::chrono::milliseconds(60));
+  append_at(producer, clock.time + std::chrono::milliseconds(50));
+  append_at(producer, clock.time + std::chrono::milliseconds(60));
   told.sweep.sweep(clock);
   Time settled = producer.earliest();
   const Time end = clock.time + std::chrono::seconds(1);
@@ -245,7 +207,7 @@ TEST(StreamSweep, MoreThanABatchIsSweptAgainAtOnce) {
   const TestStream stream;
   Producer producer(stream.name(),
                     {.dimensions = 1, .clock = StreamClock::recorded, .capacity = 256});
-  for (int i = 0; i < 256; ++i) append(producer, Time(1'000'000) * i);
+  for (int i = 0; i < 256; ++i) append_at(producer, Time(1'000'000) * i);
   Told told({stream.name()});
   ASSERT_TRUE(told.await_news(SweepNews::solving, stream.name()));
   while (told.sweep.sweep(told.clock)) {
@@ -257,13 +219,13 @@ TEST(StreamSweep, AFinishIsToldOnceAndANewStreamOfTheNameIsTakenUp) {
   const TestStream stream;
   Told told({stream.name()});
   {
-    Producer producer = make(stream.name());
-    append(producer, Time(0));
+    Producer producer = make_producer(stream.name());
+    append_at(producer, Time(0));
     ASSERT_EQ(producer.finish({}), AppendStatus::accepted);
     EXPECT_TRUE(told.await_news(SweepNews::finished, stream.name()));
   }
-  Producer again = make(stream.name());
-  append(again, Time(0));
+  Producer again = make_producer(stream.name());
+  append_at(again, Time(0));
   EXPECT_TRUE(await([&] {
     told.sweep.sweep(told.clock);
     return again.wait_until_consumed(Time(0));
@@ -275,8 +237,8 @@ TEST(StreamSweep, AFinishIsToldOnceAndANewStreamOfTheNameIsTakenUp) {
 TEST(StreamSweep, AStreamThatCannotBeSolvedIsGivenUpOnceAndTheOthersGoOn) {
   const TestStream bad;
   const TestStream good;
-  Producer of_bad = make(bad.name());
-  Producer of_good = make(good.name());
+  Producer of_bad = make_producer(bad.name());
+  Producer of_good = make_producer(good.name());
   {
     Solver before(bad.name(), {.settle = 3, .capacity = 64});
     ASSERT_TRUE(before.attach());
@@ -285,7 +247,7 @@ TEST(StreamSweep, AStreamThatCannotBeSolvedIsGivenUpOnceAndTheOthersGoOn) {
   EXPECT_TRUE(told.await_news(SweepNews::given_up, bad.name()));
   EXPECT_NE(told.why.find("settle lag 3, not 4"), std::string::npos) << told.why;
   EXPECT_TRUE(told.await_news(SweepNews::solving, good.name()));
-  Producer passing = make(good.name() + ".passing");  // the folder changes
+  Producer passing = make_producer(good.name() + ".passing");  // the folder changes
   told.sweep.sweep(told.clock);
   passing.withdraw();
   EXPECT_EQ(told.count(SweepNews::given_up, bad.name()), 1);
@@ -303,7 +265,7 @@ TEST(StreamSweep, StreamsBeyondTheDescriptorsAreLeftOutUntilOthersGo) {
   std::vector<Producer> producers;
   for (const char* const suffix : {".0", ".1", ".2"}) {
     names.push_back(family.name() + suffix);
-    producers.push_back(make(names.back()));
+    producers.push_back(make_producer(names.back()));
   }
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
@@ -342,7 +304,7 @@ TEST(FolderWatch, NoticesFilesThatComeAndGoAndThenFallsSilent) {
   const TestStream stream;
   // Others' files may come and go as well, but not all the time.
   EXPECT_TRUE(await([&] { return !watch.has_changed(); }));
-  Producer producer = make(stream.name());
+  Producer producer = make_producer(stream.name());
   EXPECT_TRUE(watch.has_changed());
   EXPECT_TRUE(await([&] { return !watch.has_changed(); }));
   producer.withdraw();

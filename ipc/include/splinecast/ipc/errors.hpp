@@ -31,6 +31,12 @@ class BadRegion : public StreamError {
   using StreamError::StreamError;
 };
 
+/// No memory, shared memory or file descriptors are left now: trying again later may succeed.
+class OutOfResources : public BadRegion {
+ public:
+  using BadRegion::BadRegion;
+};
+
 /// What was asked for cannot be, or contradicts the stream as it stands: a usage error.
 class BadRequest : public StreamError {
  public:

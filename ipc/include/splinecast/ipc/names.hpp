@@ -23,6 +23,10 @@ enum class RegionKind : std::uint64_t {
 /// begin with a dot.
 void require_stream_name(std::string_view stream);
 
+/// A text from elsewhere, such as a file's name, for a terminal or a log: control characters, line
+/// ends, escape sequences and what is not valid UTF-8 become `\xNN`, byte by byte.
+[[nodiscard]] std::string printable(std::string_view text);
+
 /// Name of a region as shared memory, `splinecast.<stream>.waypoints` or `….spline`.
 [[nodiscard]] std::string region_name(std::string_view stream, RegionKind kind);
 
@@ -37,7 +41,9 @@ void require_stream_name(std::string_view stream);
 /// Whether a stream's name matches a pattern (fnmatch).
 [[nodiscard]] bool matches(const std::string& pattern, const std::string& stream) noexcept;
 
-/// Names of all streams of which any region or lock stands on this host, sorted.
+/// Names of all streams of which any region or lock stands on this host, sorted. Files under what
+/// is no stream's name, which any user can put there, are not a stream's. Throws OutOfResources or
+/// BadRegion if the folder cannot be read.
 [[nodiscard]] std::vector<std::string> stream_names();
 
 }  // namespace splinecast::ipc

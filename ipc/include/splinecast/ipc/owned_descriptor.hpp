@@ -1,5 +1,9 @@
 #pragma once
 
+#include <sys/types.h>
+
+#include <string>
+
 namespace splinecast::ipc {
 
 /// A file descriptor that is closed on exec and in every child that this process forks, so that
@@ -7,7 +11,11 @@ namespace splinecast::ipc {
 class OwnedDescriptor {
  public:
   OwnedDescriptor() = default;
-  explicit OwnedDescriptor(int descriptor);
+
+  /// open(2) with O_CLOEXEC. No fork comes between the opening and the note that a child is to
+  /// close it. get() is −1 if that fails; errno says why.
+  [[nodiscard]] static OwnedDescriptor open(const std::string& path, int flags, mode_t mode = 0);
+
   OwnedDescriptor(OwnedDescriptor&& other) noexcept;
   OwnedDescriptor& operator=(OwnedDescriptor&& other) noexcept;
   OwnedDescriptor(const OwnedDescriptor&) = delete;
@@ -17,6 +25,7 @@ class OwnedDescriptor {
   [[nodiscard]] int get() const noexcept { return descriptor_; }
 
  private:
+  explicit OwnedDescriptor(int descriptor) noexcept : descriptor_(descriptor) {}
   void close() noexcept;
   int descriptor_ = -1;
 };

@@ -41,19 +41,37 @@ class OwnerLock {
 };
 
 /// Whether a process of this user holds the owner's lock, also one that has no region yet. System
-/// calls.
+/// calls. Throws OutOfResources where no descriptor is left to look with.
 [[nodiscard]] bool is_owned(std::string_view stream, RegionKind kind);
 
 /// Whether the process lives that owns a region of this kind: by the owner's lock, where this
 /// process may open its file, so that nobody else's locks on the region can hide an owner; else by
-/// the lock on the region. System calls. Throws BadRequest for what is no name.
+/// the region, see region_owner_lives(). System calls. Throws BadRequest for what is no name,
+/// OutOfResources where no descriptor is left to look with.
 [[nodiscard]] bool owner_lives(std::string_view stream, RegionKind kind);
 
-/// Puts a write lock on a region itself, best effort: readers, who cannot open the lock file,
-/// query it to learn whether the owner lives. One of them that holds a read lock prevents it.
-bool try_lock_region(int descriptor) noexcept;
+/// The write lock that an owner puts on its region itself, best effort: readers, who cannot open
+/// the lock file, query it to learn whether the owner lives. A reader that holds a read lock when
+/// the owner comes prevents it.
+class RegionLock {
+ public:
+  /// Of an open region, which keeps the descriptor.
+  explicit RegionLock(int descriptor) noexcept : descriptor_(descriptor) { (void)hold(); }
 
-/// Whether another open file holds that write lock.
+  /// Tries again unless the lock is held. Returns whether it is. A system call if it was not.
+  bool hold() noexcept;
+
+ private:
+  int descriptor_;
+  bool is_held_ = false;
+};
+
+/// Whether another open file holds an owner's write lock on this one.
 [[nodiscard]] bool is_region_locked(int descriptor) noexcept;
+
+/// Whether the owner of an open region lives, by its write lock. Where a read lock of somebody else
+/// keeps the owner from holding that, by the process that the header names: it exists, and has
+/// since it became the owner.
+[[nodiscard]] bool region_owner_lives(int descriptor) noexcept;
 
 }  // namespace splinecast::ipc

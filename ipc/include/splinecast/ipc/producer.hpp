@@ -72,7 +72,7 @@ class Producer {
   [[nodiscard]] bool wait_for_room(core::Time timeout);
   [[nodiscard]] bool wait_until_consumed(core::Time timeout);
 
-  /// Whether a solver process lives. System calls.
+  /// Whether a solver process lives; true where no descriptor is left to look with. System calls.
   [[nodiscard]] bool solver_alive() const;
 
   /// Items appended and, of these, consumed by the solver.

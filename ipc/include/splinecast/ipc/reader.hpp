@@ -80,7 +80,8 @@ class Reader {
   /// Sleeps until a revision that this reader has not seen, for programs that need not spin.
   [[nodiscard]] WaitStatus wait(core::Time timeout) noexcept;
 
-  /// Which writers live: system calls, so not inside a control loop.
+  /// Which writers live: system calls, so not inside a control loop. A writer of whom this cannot
+  /// be known, because no descriptor is left to look with, counts as alive.
   [[nodiscard]] Alive alive() const noexcept;
 
   /// What the stream's header says.

@@ -26,11 +26,12 @@ struct RegionAccess {
 class Region {
  public:
   /// Makes a region without a name, its pages reserved and populated, filled with zeros. Throws
-  /// BadRegion if shared memory has no room, naming the bytes needed and free.
+  /// OutOfResources if shared memory has no room, naming the bytes needed and free.
   [[nodiscard]] static Region create(std::size_t bytes, const RegionAccess& access);
 
   /// Maps an existing region; `writable` for its owner only. Populates its pages. Throws
-  /// NoSuchStream if there is none, BadRegion if it is not to be trusted.
+  /// NoSuchStream if there is none, BadRegion if it is not to be trusted. Never blocks, whatever
+  /// kind of file somebody puts under the name.
   [[nodiscard]] static Region open(std::string_view stream, RegionKind kind, bool writable,
                                    const Trust& trust = {});
 
@@ -63,8 +64,20 @@ class Region {
   std::unique_ptr<Mapping> mapping_;
 };
 
-/// Reads the header of a region without mapping it; nothing if there is no such region, or one too
-/// short. Throws BadRegion if it is not to be trusted.
+/// What a region's file tells without being mapped.
+struct RegionFile {
+  std::optional<RegionHeader> header{};  ///< none: the file is shorter than one
+  std::size_t bytes = 0;
+  bool is_own = false;  ///< of this user
+};
+
+/// Opens a region's file and looks at it. Throws NoSuchStream if there is none, BadRegion if it is
+/// not to be trusted.
+[[nodiscard]] RegionFile look_at_region(std::string_view stream, RegionKind kind,
+                                        const Trust& trust);
+
+/// The header of a region; nothing if there is no such region, or one too short. Throws BadRegion
+/// if it is not to be trusted.
 [[nodiscard]] std::optional<RegionHeader> peek_header(std::string_view stream, RegionKind kind,
                                                       const Trust& trust);
 

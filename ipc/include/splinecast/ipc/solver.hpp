@@ -103,6 +103,11 @@ class Solver {
   bool attach(const Clock& clock);
   [[nodiscard]] bool attached() const noexcept;
 
+  /// Takes the lock on the board by which other users see that its solver lives, if a lock of
+  /// theirs kept this solver from it before. wait(), and step() where it wakes readers, do so too.
+  /// Returns whether it is held. A system call if it was not.
+  bool hold_region() noexcept;
+
   /// Takes what waypoints there are and publishes; detaches when the stream has been retired or
   /// made anew. No system call but the clock's and, with SolverOptions::wake, one wake a revision.
   /// Throws BadRegion if another process has written to the board.

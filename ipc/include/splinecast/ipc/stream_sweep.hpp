@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <map>
 #include <memory>
@@ -23,7 +25,8 @@ enum class SweepNews : std::uint8_t {
   elsewhere,       ///< another process solves it; taken over when that dies
   no_descriptors,  ///< RLIMIT_NOFILE leaves none for it; tried again when streams have come or gone
   refused,         ///< an item was refused, the first one for its reason; told again for others
-  given_up,        ///< it cannot be solved; not tried again until its name has gone
+  postponed,       ///< memory or descriptors are lacking; tried again from time to time
+  given_up,        ///< it cannot be solved; tried again when other files stand under its name
   gone,            ///< a stream that was found by a pattern stands no more
 };
 
@@ -39,7 +42,8 @@ enum class SweepNews : std::uint8_t {
 class StreamSweep {
  public:
   /// Told at most once until something else becomes of the stream. `solver` is not null where the
-  /// stream is solved here; `why` is for `given_up` and `refused`.
+  /// stream is solved here; `why` is for `postponed`, `given_up` and `refused`. What it throws is
+  /// dropped.
   using Tell = std::function<void(SweepNews news, const std::string& stream, const Solver* solver,
                                   std::string_view why)>;
 
@@ -51,7 +55,7 @@ class StreamSweep {
               core::Time pause = std::chrono::milliseconds(1));
 
   /// Looks after every stream once. Returns whether one of them has more to do than was done:
-  /// sweep again at once.
+  /// sweep again at once. A stream that fails is given up or postponed; the others go on.
   bool sweep(const Clock& clock);
 
   /// How long to wait for the next sweep: `pause`, or kQuietPause if that is longer, while nothing
@@ -69,17 +73,30 @@ class StreamSweep {
   static constexpr std::size_t kDescriptorsPerStream = 2;
 
  private:
-  enum class State : std::uint8_t { unowned, waiting, solved, elsewhere, no_descriptors, given_up };
+  enum class State : std::uint8_t {
+    unowned,
+    waiting,
+    solved,
+    elsewhere,
+    no_descriptors,
+    postponed,
+    given_up
+  };
+
+  /// Inodes of the ring, of the board, and of a lock file that is another user's; 0 for none.
+  using Files = std::array<std::uint64_t, 3>;
 
   struct Member {
     bool is_named = false;
     State state = State::unowned;
     std::unique_ptr<Solver> waiting{};  ///< while there is no producer
+    Files files{};                      ///< given_up: those that stood then
   };
 
   struct Served {
     std::unique_ptr<Solver> solver;
     bool was_finished = false;
+    std::exception_ptr failure{};  ///< of a step
   };
 
   /// What a sweep reads of a stream that has nothing to do.
@@ -88,18 +105,30 @@ class StreamSweep {
     core::Time active;  ///< when it was last stepped
   };
 
+  static Files files_of(const std::string& stream);
+  void take_up(const Clock& clock);
+  void collect_calling();
   void prefetch_ahead(std::size_t k) const noexcept;
   bool serve(std::size_t index, const Clock& clock);
+  void tell_first_refusals(Solver& solver) noexcept;
   void release_detached();
+  void release(Served& served);
   void look_around();
   void look_for_names();
+  [[nodiscard]] static bool may_be_taken(const std::string& stream, Member& member, bool stands);
   void look_elsewhere();
+  void look_at_postponed();
+  void hold_regions() noexcept;
   void take_next(const Clock& clock);
   void note_ends_of_motion();
   bool own(const std::string& stream, Member& member);
   bool attach(const std::string& stream, Member& member, const Clock& clock);
+  void make_room();
+  void drop(const std::string& stream, Member& member, const std::exception& error);
   void become(const std::string& stream, Member& member, State state, SweepNews news,
-              const Solver* solver = nullptr, std::string_view why = {});
+              const Solver* solver = nullptr, std::string_view why = {}) noexcept;
+  void tell(SweepNews news, const std::string& stream, const Solver* solver,
+            std::string_view why) noexcept;
   [[nodiscard]] std::size_t owned() const noexcept;
   [[nodiscard]] bool is_wanted(const std::string& stream) const;
 
@@ -109,6 +138,10 @@ class StreamSweep {
   std::map<std::string, Member> members_;
   FolderWatch folder_;
   core::Time next_look_ = core::Time::min();
+  bool looks_again_ = false;  ///< the last look for names was not finished
+  core::Time next_retry_ = core::Time::min();
+  std::string last_retried_;            ///< of the postponed streams
+  bool is_any_unheld_ = false;          ///< whether a board may lack its region lock
   std::vector<std::string> to_take_;    ///< streams to try next, the first one last
   std::vector<std::string> elsewhere_;  ///< streams that others solve, those to look at next last
   std::vector<std::string> moving_;     ///< streams that wait for the end of an earlier motion
