@@ -74,7 +74,8 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, SegmentBoardWriter& b
       curve_(board, published, window, std::move(kinds)),
       max_batch_(std::min(kMaxBatch, board.capacity() / 2 - changed_besides(window.settle))),
       item_(ring.dimensions()),
-      followers_(kFollowers, RingItem(ring.dimensions())) {
+      followers_(kFollowers, RingItem(ring.dimensions())),
+      replacements_(ring) {
   if (board.capacity() < min_capacity(window.settle)) {
     throw std::invalid_argument("a board of " + std::to_string(board.capacity()) +
                                 " segments is too small for settle lag " +
@@ -175,26 +176,25 @@ Word StreamSolver::consume(core::Time now) noexcept {
 bool StreamSolver::has_room(core::Time keep) const noexcept {
   if (item_.kind != ItemKind::replace) return curve_.has_room(kAddedByItem, keep);
   if (curve_.has_changes()) return false;
-  return !curve_.has_begun() || curve_.has_room_to_enter(item_.time, kAddedByItem, keep);
+  // A stop costs one segment of the history at most: it does not wait for room.
+  return is_stop() || !curve_.has_begun() ||
+         curve_.has_room_to_enter(item_.time, kAddedByItem, keep);
 }
 
-/// Looks ahead for a replacement that withdraws waypoints before they are taken: the board may have
-/// no room for them yet.
+/// Whether the item at hand brings the curve to rest, instead of replacing it.
+bool StreamSolver::is_stop() const noexcept {
+  return item_.kind == ItemKind::replace && item_.count == 0;
+}
+
+/// Looks ahead for a replacement that is due and withdraws all that is queued before it: other
+/// replacements that are too late or lie ahead, and waypoints that the board may have no room for.
 void StreamSolver::withdraw() noexcept {
   if (!curve_.has_begun() || head_.finished) return;
-  const core::Time newest = curve_.newest_time();
-  scanned_ = std::max(scanned_, head_.consumed);
-  Word replacement = available_;
-  for (; scanned_ < available_; ++scanned_) {
-    if (ring_->kind(scanned_) != ItemKind::replace) continue;
-    replacement = scanned_;
-    break;
-  }
-  if (replacement == available_) return;
-  const core::Time t = ring_->time(replacement);
-  if (t < settled_until_ || t > newest) return;  // it waits for its turn
-  head_.withdrawn += replacement - head_.consumed;
-  head_.consumed = replacement;
+  replacements_.note(head_.consumed, available_);
+  const auto replacement = replacements_.due(settled_until_, curve_.newest_time());
+  if (!replacement) return;
+  head_.withdrawn += *replacement - head_.consumed;
+  head_.consumed = *replacement;
 }
 
 void StreamSolver::take(Word number) noexcept {
@@ -299,7 +299,11 @@ void StreamSolver::discard() noexcept {
 }
 
 void StreamSolver::take_replacement(Word number) noexcept {
-  const core::Time t = item_.time;
+  // A stop is never too late: it takes effect as soon as possible, in a revision of its own, which
+  // is committed sooner than a full batch.
+  const core::Time t =
+      is_stop() ? std::max({item_.time, settled_until_, curve_.earliest_entry()}) : item_.time;
+  if (is_stop()) batch_limit_ = 0;
   if (t < settled_until_ || !is_time_in_range(t) || !curve_.can_enter(t)) {
     refuse(number, Refusal::too_late);
     // All that belongs to it in one revision, so that no other solver takes it for something else.
@@ -311,7 +315,7 @@ void StreamSolver::take_replacement(Word number) noexcept {
   // One revision, as far as the board has room.
   batch_limit_ += std::min<Word>(item_.count, board_->capacity() / 2);
   // Where nothing moves any more and nothing is to come, there is nothing to withdraw.
-  if (item_.count == 0 && is_starved() && t >= curve_.newest_time()) return;
+  if (is_stop() && is_starved() && t >= curve_.newest_time()) return;
   curve_.enter(t);
   head_.starved = false;
   head_.newest_knot = t;
@@ -378,7 +382,6 @@ StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
     restore();
     head_.misses = misses;
     seen_ = head_.consumed;
-    scanned_ = head_.consumed;
     return {.missed = true};
   }
   board_->commit(head_);

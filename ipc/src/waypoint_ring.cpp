@@ -16,6 +16,9 @@ constexpr Word kHasAcceleration = 1U << 9;
 constexpr unsigned kConditionShift = 16;
 constexpr unsigned kCountShift = 32;
 
+/// Of a stop whose producer knows of nothing that has settled: before all that can follow it.
+constexpr core::Time kEarliestStop = -kLatestTime;
+
 std::size_t words_per_item(const RingLayout& layout) noexcept {
   return layout.stride / sizeof(Word);
 }
@@ -43,11 +46,13 @@ WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLa
   // Look back for the newest item that says from when on the next may be: behind the last waypoint
   // there may be a finish.
   const WaypointRingReader past(region, layout);
-  for (Word back = 1; back <= std::min<Word>(head_, layout.capacity) && !has_last_; ++back) {
+  bool is_found = false;
+  for (Word back = 1; back <= std::min<Word>(head_, layout.capacity) && !is_found; ++back) {
     const ItemKind kind = past.kind(head_ - back);
     finished_ = finished_ || kind == ItemKind::finish;
-    has_last_ = kind != ItemKind::finish;
+    is_found = kind != ItemKind::finish;
     last_time_ = past.time(head_ - back);
+    has_last_ = is_found && last_time_ != kEarliestStop;
   }
   if (!is_time_in_range(last_time_)) {
     throw BadRegion("the ring's last item has time " + std::to_string(last_time_.count()) +
@@ -114,6 +119,7 @@ AppendStatus WaypointRingWriter::check_replacement(core::Time t,
 AppendStatus WaypointRingWriter::replace_from(core::Time t,
                                               std::span<const core::Waypoint> waypoints,
                                               const Solved& solved) noexcept {
+  if (waypoints.empty()) return counted(stop_from(t, solved));
   const AppendStatus status = check_replacement(t, waypoints, solved);
   if (status != AppendStatus::accepted) return counted(status);
   claim(1 + waypoints.size());
@@ -122,8 +128,21 @@ AppendStatus WaypointRingWriter::replace_from(core::Time t,
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
     put_item(1 + i, static_cast<Word>(ItemKind::waypoint), waypoints[i]);
   }
-  publish(1 + waypoints.size(), waypoints.empty() ? t : waypoints.back().time);
+  publish(1 + waypoints.size(), waypoints.back().time);
   return status;
+}
+
+/// A stop is never too late: what has settled is where it takes effect.
+AppendStatus WaypointRingWriter::stop_from(core::Time t, const Solved& solved) noexcept {
+  if (finished_) return AppendStatus::finished;
+  const core::Time from = std::max({t, solved.settled_until, kEarliestStop});
+  if (!is_time_in_range(from)) return AppendStatus::too_far_apart;
+  if (!has_room(1, solved)) return AppendStatus::full;
+  claim(1);
+  put_item(0, static_cast<Word>(ItemKind::replace), {.time = from, .position = {}});
+  publish(1, from);
+  has_last_ = from != kEarliestStop;
+  return AppendStatus::accepted;
 }
 
 AppendStatus WaypointRingWriter::start_from(const core::Instant& state,
@@ -191,6 +210,7 @@ void WaypointRingWriter::publish(Word items, core::Time last) noexcept {
 }
 
 AppendStatus WaypointRingWriter::counted(AppendStatus status) noexcept {
+  if (status == AppendStatus::accepted) return status;
   Word& counter = control_[kProducerCounters + static_cast<std::size_t>(status)];
   store(counter, load(counter, std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   return status;
@@ -229,6 +249,12 @@ void WaypointRingReader::prefetch(Word i) const noexcept {
 ItemKind WaypointRingReader::kind(Word i) const noexcept {
   const Word& word = items_[(i & (layout_.capacity - 1)) * words_per_item(layout_) + kItemKind];
   return static_cast<ItemKind>(load(word, std::memory_order_acquire) & kKindMask);
+}
+
+bool WaypointRingReader::is_stop(Word i) const noexcept {
+  const Word& word = items_[(i & (layout_.capacity - 1)) * words_per_item(layout_) + kItemKind];
+  const Word kind = load(word, std::memory_order_acquire);
+  return (kind & kKindMask) == static_cast<Word>(ItemKind::replace) && kind >> kCountShift == 0;
 }
 
 core::Time WaypointRingReader::time(Word i) const noexcept {

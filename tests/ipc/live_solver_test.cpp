@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "splinecast/ipc/sampler.hpp"
-#include "support/memory_stream.hpp"
+#include "support/live_stream.hpp"
 
 namespace splinecast::ipc {
 namespace {
@@ -15,58 +15,7 @@ using core::Time;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// A live stream of one dimension in plain memory whose clock stands at 100 s. Its motion is
-/// sin(t), in seconds from there.
-struct Live : testing::MemoryStream {
-  static constexpr Time kNow = seconds(100);
-
-  explicit Live(core::WindowOptions how = {}, std::size_t capacity = 1024,
-                LiveOptions how_live = {})
-      : MemoryStream(1, from_halt(std::move(how)), 256, capacity, {}, {}, how_live),
-        sampler(board.reader, StreamClock::monotonic),
-        state(1) {
-    clock.time = kNow;
-  }
-
-  static core::WindowOptions from_halt(core::WindowOptions how) {
-    how.start = {.kind = core::ConditionKind::halt, .value = {}};
-    how.held_before_start = true;
-    return how;
-  }
-  static double x(Time t) { return std::sin(core::to_seconds(t - kNow)); }
-
-  AppendStatus put(Time t) {
-    const double position = x(t);
-    return ring.writer.append({.time = t, .position = std::span(&position, 1)}, solved());
-  }
-  WaypointRingWriter::Solved solved() { return {board.reader.tail(), solver.head().settled_until}; }
-  AppendStatus replace(Time t, const std::vector<Time>& times) {
-    std::vector<double> positions;
-    for (const Time at : times) positions.push_back(x(at));
-    std::vector<core::Waypoint> waypoints;
-    for (std::size_t i = 0; i < times.size(); ++i) {
-      waypoints.push_back({.time = times[i], .position = std::span(&positions[i], 1)});
-    }
-    return ring.writer.replace_from(t, waypoints, solved());
-  }
-  /// Appends waypoints every 10 ms from `from` to `to` after the start.
-  void put_all(int from_ms, int to_ms) {
-    for (int ms = from_ms; ms <= to_ms; ms += 10) {
-      ASSERT_EQ(put(kNow + milliseconds(ms)), AppendStatus::accepted) << ms;
-    }
-    drain();
-  }
-  double position_at(Time t) {
-    EXPECT_TRUE(has_values(sampler.preview(t, state.ref())));
-    return state.position()[0];
-  }
-  Word reason(Refusal refusal) const {
-    return solver.head().reasons[static_cast<std::size_t>(refusal)];
-  }
-
-  Sampler sampler;
-  core::State state;
-};
+using Live = testing::LiveStream;
 
 TEST(LiveSolver, SettlesByTimeAndSaysSoWithoutWaypointsUntilTheMotionEnds) {
   Live live;
@@ -136,7 +85,8 @@ TEST(LiveSolver, AReplacementByNothingIsAStopTailFromThere) {
 TEST(LiveSolver, AReplacementThatComesTooLateIsRefusedWithAllThatBelongsToIt) {
   Live live;
   live.put_all(50, 500);
-  EXPECT_EQ(live.replace(Live::kNow + milliseconds(4), {}), AppendStatus::too_late);
+  EXPECT_EQ(live.replace(Live::kNow + milliseconds(4), {Live::kNow + milliseconds(30)}),
+            AppendStatus::too_late);
   const Time t = Live::kNow + milliseconds(10);
   ASSERT_EQ(live.replace(t, {t + milliseconds(20), t + milliseconds(30)}), AppendStatus::accepted);
   ASSERT_EQ(live.put(Live::kNow + milliseconds(510)), AppendStatus::accepted);

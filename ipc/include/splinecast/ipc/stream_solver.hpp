@@ -8,6 +8,7 @@
 #include "splinecast/core/sliding_window.hpp"
 #include "splinecast/ipc/clock.hpp"
 #include "splinecast/ipc/published_curve.hpp"
+#include "splinecast/ipc/replacement_queue.hpp"
 #include "splinecast/ipc/segment_board.hpp"
 #include "splinecast/ipc/waypoint_ring.hpp"
 
@@ -38,6 +39,10 @@ struct LiveOptions {
 /// comes when the newest knot has been frozen is entered by a splice at settled_until, and so is
 /// what replaces the future. Directly before the commit the clock is read again: a revision that
 /// would change what may have been executed meanwhile is discarded, counted and made anew.
+///
+/// A stop, a replacement without waypoints, takes effect at settled_until of the first step that
+/// finds it in the ring, or at its own time if that is later: whatever is queued before it, and
+/// whether or not the board has room for that.
 class StreamSolver {
  public:
   /// `board` and `published` are the writing and the reading side of one board; with `ring` they
@@ -81,6 +86,7 @@ class StreamSolver {
   [[nodiscard]] Word reachable(Word head) const noexcept;
   [[nodiscard]] bool has_room(core::Time keep) const noexcept;
   void withdraw() noexcept;
+  [[nodiscard]] bool is_stop() const noexcept;
   void take(Word number) noexcept;
   void take_waypoint(Word number) noexcept;
   void take_replacement(Word number) noexcept;
@@ -114,7 +120,7 @@ class StreamSolver {
   Word seen_ = 0;
   Word batch_limit_ = 0;  ///< of this step
   Word available_ = 0;    ///< how far this step can take items
-  Word scanned_ = 0;      ///< items looked through for a replacement
+  ReplacementQueue replacements_;
 };
 
 }  // namespace splinecast::ipc

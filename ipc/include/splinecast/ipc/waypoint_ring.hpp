@@ -94,7 +94,8 @@ class WaypointRingWriter {
   [[nodiscard]] AppendStatus append(const core::Waypoint& waypoint, const Solved& solved) noexcept;
 
   /// Replaces all that lies behind t: `waypoints`, which may be none, must be later than it, and
-  /// together with the replacement itself fit into the ring. One store of `head` makes all of it
+  /// together with the replacement itself fit into the ring. Without waypoints it is a stop, and a
+  /// t that has settled means the earliest time possible. One store of `head` makes all of it
   /// visible. O(D) per waypoint.
   [[nodiscard]] AppendStatus replace_from(core::Time t, std::span<const core::Waypoint> waypoints,
                                           const Solved& solved) noexcept;
@@ -128,6 +129,7 @@ class WaypointRingWriter {
   [[nodiscard]] bool has_room(Word items, const Solved& solved) const noexcept {
     return head_ - solved.consumed + items <= layout_.capacity;
   }
+  [[nodiscard]] AppendStatus stop_from(core::Time t, const Solved& solved) noexcept;
   void claim(Word items) noexcept;
   void put_item(Word index, Word kind_and_flags, const core::Waypoint& values) noexcept;
   void publish(Word items, core::Time last) noexcept;
@@ -170,6 +172,8 @@ class WaypointRingReader {
 
   /// Kind and time of item i, of which the same holds.
   [[nodiscard]] ItemKind kind(Word i) const noexcept;
+  /// Whether it is a replacement without waypoints.
+  [[nodiscard]] bool is_stop(Word i) const noexcept;
   [[nodiscard]] core::Time time(Word i) const noexcept;
 
   /// Asks for the lines of item i.
