@@ -303,8 +303,8 @@ void StreamSolver::take_replacement(Word number) noexcept {
   // is committed sooner than a full batch.
   const core::Time t =
       is_stop() ? std::max({item_.time, settled_until_, curve_.earliest_entry()}) : item_.time;
-  if (is_stop()) batch_limit_ = 0;
-  if (t < settled_until_ || !is_time_in_range(t) || !curve_.can_enter(t)) {
+  const bool has_begun = curve_.has_begun();  // else there is nothing to replace
+  if (has_begun && (t < settled_until_ || !is_time_in_range(t) || !curve_.can_enter(t))) {
     refuse(number, Refusal::too_late);
     // All that belongs to it in one revision, so that no other solver takes it for something else.
     const Word end = head_.consumed + std::min<Word>(item_.count, available_ - head_.consumed);
@@ -313,7 +313,9 @@ void StreamSolver::take_replacement(Word number) noexcept {
   }
   ++head_.controls;
   // One revision, as far as the board has room.
-  batch_limit_ += std::min<Word>(item_.count, board_->capacity() / 2);
+  const Word followers = std::min<Word>(item_.count, board_->capacity() / 2);
+  batch_limit_ = is_stop() ? 0 : batch_limit_ + followers;
+  if (!has_begun) return;
   // Where nothing moves any more and nothing is to come, there is nothing to withdraw.
   if (is_stop() && is_starved() && t >= curve_.newest_time()) return;
   curve_.enter(t);

@@ -214,5 +214,32 @@ TEST(LiveSolver, AReaderFarBehindIsToldIfItSampledPastWhatWasSettled) {
   }
 }
 
+/// As a producer does that replaces the future with each chunk, the first one too.
+TEST(LiveSolver, AReplacementOnAStreamWithoutWaypointsStartsIt) {
+  for (const bool stops_first : {false, true}) {
+    Live live;
+    if (stops_first) {
+      ASSERT_EQ(live.replace(Live::kNow, {}), AppendStatus::accepted);
+      live.drain();
+      EXPECT_EQ(live.solver.head().newest, 0U);
+    }
+    Live appended;
+    std::vector<Time> times;
+    for (int ms = 50; ms <= 200; ms += 10) times.push_back(Live::kNow + milliseconds(ms));
+    ASSERT_EQ(live.replace(Live::kNow + milliseconds(40), times), AppendStatus::accepted);
+    live.drain();
+    appended.put_all(50, 200);
+    const Head& head = live.solver.head();
+    EXPECT_EQ(head.refused, 0U);
+    EXPECT_EQ(head.controls, stops_first ? 2U : 1U);
+    EXPECT_EQ(head.knots, times.size());
+    EXPECT_EQ(head.consumed, head.knots + head.controls);
+    for (int ms = 0; ms < 400; ++ms) {
+      const Time t = Live::kNow + milliseconds(ms);
+      EXPECT_EQ(live.position_at(t), appended.position_at(t)) << ms;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace splinecast::ipc

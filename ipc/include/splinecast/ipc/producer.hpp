@@ -33,13 +33,14 @@ class Producer {
   /// Replaces all that lies behind time t by these waypoints, from none upwards, as one revision:
   /// the curve goes on from its state at t by a splice, or, without a waypoint, comes to rest. With
   /// waypoints, `t` must not lie before earliest(), else `too_late`; the waypoints must be later
-  /// than it, and fewer than the ring has items. O(D) per waypoint; otherwise as append.
+  /// than it, and fewer than the ring has items. On a stream that has no waypoint yet they start
+  /// it, as appended ones do. O(D) per waypoint; otherwise as append.
   ///
   /// Without waypoints it is a stop, which is never too late: a t that has settled means as soon as
-  /// possible. The solver's next step carries it out at its settled_until, or at t if that is later,
-  /// whatever is queued before it; and that step comes after one sweep, or one wake, at most. A stop
-  /// at a t behind the newest knot waits for its turn, and at the latest for settled_until to reach
-  /// t.
+  /// possible. The solver's next step carries it out at its settled_until, or at t if that is
+  /// later, whatever is queued before it; and that step comes after one sweep, or one wake, at
+  /// most. A stop at a t behind the newest knot waits for its turn, and at the latest for
+  /// settled_until to reach t.
   [[nodiscard]] AppendStatus replace_from(core::Time t,
                                           std::span<const core::Waypoint> waypoints) noexcept;
 
