@@ -240,7 +240,8 @@ bool Producer::wait_for_solver(core::Time timeout) {
 bool Producer::wait_for_room(core::Time timeout) {
   return impl_->wait(timeout, [this] {
     const Word waiting = impl_->ring.writer.head() - impl_->consumed();
-    return waiting < impl_->ring.header.capacity;
+    const std::size_t capacity = impl_->ring.header.capacity;
+    return waiting + control_reserve(capacity) < capacity;
   });
 }
 

@@ -46,6 +46,7 @@ WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLa
   // Look back for the newest item that says from when on the next may be: behind the last waypoint
   // there may be a finish.
   const WaypointRingReader past(region, layout);
+  ends_with_stop_ = head_ > 0 && past.is_stop(head_ - 1);
   bool is_found = false;
   for (Word back = 1; back <= std::min<Word>(head_, layout.capacity) && !is_found; ++back) {
     const ItemKind kind = past.kind(head_ - back);
@@ -87,7 +88,7 @@ AppendStatus WaypointRingWriter::check(const core::Waypoint& waypoint,
   }
   if (status != AppendStatus::accepted) return status;
   if (waypoint.time < solved.settled_until) return AppendStatus::past;
-  return has_room(1, solved) ? AppendStatus::accepted : AppendStatus::full;
+  return has_room(1, solved, control_reserve(layout_.capacity)) ? AppendStatus::accepted : AppendStatus::full;
 }
 
 AppendStatus WaypointRingWriter::append(const core::Waypoint& waypoint,
@@ -105,7 +106,8 @@ AppendStatus WaypointRingWriter::check_replacement(core::Time t,
   if (finished_) return AppendStatus::finished;
   if (!is_time_in_range(t)) return AppendStatus::too_far_apart;
   if (t < solved.settled_until) return AppendStatus::too_late;
-  if (waypoints.size() >= layout_.capacity) return AppendStatus::too_many;
+  const std::size_t items = 1 + waypoints.size();
+  if (items + control_reserve(layout_.capacity) > layout_.capacity) return AppendStatus::too_many;
   core::Time before = t;
   for (const core::Waypoint& waypoint : waypoints) {
     AppendStatus status = check_form(waypoint);
@@ -113,7 +115,8 @@ AppendStatus WaypointRingWriter::check_replacement(core::Time t,
     if (status != AppendStatus::accepted) return status;
     before = waypoint.time;
   }
-  return has_room(1 + waypoints.size(), solved) ? AppendStatus::accepted : AppendStatus::full;
+  return has_room(items, solved, control_reserve(layout_.capacity)) ? AppendStatus::accepted
+                                                                    : AppendStatus::full;
 }
 
 AppendStatus WaypointRingWriter::replace_from(core::Time t,
@@ -137,12 +140,24 @@ AppendStatus WaypointRingWriter::stop_from(core::Time t, const Solved& solved) n
   if (finished_) return AppendStatus::finished;
   const core::Time from = std::max({t, solved.settled_until, kEarliestStop});
   if (!is_time_in_range(from)) return AppendStatus::too_far_apart;
-  if (!has_room(1, solved)) return AppendStatus::full;
+  if (repeats_stop(from, solved)) return AppendStatus::accepted;
+  // Stops ahead leave an item to one that cannot wait, and all of them one to the finish.
+  const bool is_ahead = from > solved.settled_until;
+  const std::size_t others = control_reserve(layout_.capacity) / 2;
+  if (!has_room(1, solved, is_ahead ? others : std::min<std::size_t>(others, 1))) {
+    return AppendStatus::full;
+  }
   claim(1);
   put_item(0, static_cast<Word>(ItemKind::replace), {.time = from, .position = {}});
   publish(1, from);
   has_last_ = from != kEarliestStop;
+  ends_with_stop_ = true;
   return AppendStatus::accepted;
+}
+
+/// Whether a stop would change nothing: the newest item is one, and waits.
+bool WaypointRingWriter::repeats_stop(core::Time from, const Solved& solved) const noexcept {
+  return ends_with_stop_ && solved.consumed < head_ && from >= last_time_;
 }
 
 AppendStatus WaypointRingWriter::start_from(const core::Instant& state,
@@ -164,7 +179,7 @@ AppendStatus WaypointRingWriter::start_from(const core::Instant& state,
 
 AppendStatus WaypointRingWriter::finish(const core::Condition& end, const Solved& solved) noexcept {
   if (finished_) return AppendStatus::finished;
-  if (!has_room(1, solved)) return AppendStatus::full;
+  if (!has_room(1, solved, 0)) return AppendStatus::full;
   const Word kind = static_cast<Word>(ItemKind::finish) | static_cast<Word>(end.kind)
                                                               << kConditionShift;
   const bool is_velocity = end.kind == core::ConditionKind::velocity;
@@ -205,6 +220,7 @@ void WaypointRingWriter::put_item(Word index, Word kind_and_flags,
 void WaypointRingWriter::publish(Word items, core::Time last) noexcept {
   head_ += items;
   has_last_ = true;
+  ends_with_stop_ = false;
   last_time_ = last;
   store(control_[kHead], head_, std::memory_order_seq_cst);  // P2
 }

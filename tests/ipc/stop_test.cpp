@@ -126,6 +126,16 @@ TEST(Stop, BeforeAStreamThatStartsInMotionTakesEffectAtItsStart) {
             SampleStatus::holding);
 }
 
+TEST(Stop, FindsRoomInAFullRingAndTakesEffectInTheNextStep) {
+  Live live;
+  live.put_all(50, 100);
+  int ms = 110;
+  while (live.put(Live::kNow + milliseconds(ms)) == AppendStatus::accepted) ms += 10;
+  EXPECT_EQ(live.put(Live::kNow + milliseconds(ms)), AppendStatus::full);
+  live.clock.time += milliseconds(3);
+  expect_immediate_stop(live);
+}
+
 /// The bound that replace_from states, among replacements that come too late, replacements ahead,
 /// waypoints under back-pressure and a solver that is stopped meanwhile.
 TEST(Stop, TakesEffectAtTheNextSettledTimeWhateverIsQueued) {

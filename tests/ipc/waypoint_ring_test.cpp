@@ -147,5 +147,63 @@ TEST(WaypointRing, ANewWriterGoesOnBehindTheLastWaypoint) {
   EXPECT_TRUE(WaypointRingWriter(ring.bytes.span(), ring.layout, {}).finished());
 }
 
+/// Fills a ring of this capacity with waypoints, every 10 ms. Returns how many it took.
+Word fill(MemoryRing& ring) {
+  while (append(ring, static_cast<std::int64_t>(ring.writer.head() + 1) * 10 * kMillisecond, {0}) ==
+         AppendStatus::accepted) {
+  }
+  return ring.writer.head();
+}
+
+TEST(WaypointRing, KeepsRoomForStopsAndAFinish) {
+  MemoryRing ring(1, 64);
+  ASSERT_EQ(fill(ring), 60U);
+  const std::vector<double> x{0};
+  const core::Waypoint waypoint{.time = 10'000 * kMillisecond, .position = x};
+  const auto stop = [&](Time t) { return ring.writer.replace_from(t, {}, {0, 5 * kMillisecond}); };
+  const auto replace = ring.writer.replace_from(9'000 * kMillisecond, {&waypoint, 1}, {});
+  EXPECT_EQ(replace, AppendStatus::full);
+  // Each earlier than the one before, so that it says something new.
+  EXPECT_EQ(stop(300 * kMillisecond), AppendStatus::accepted);
+  EXPECT_EQ(stop(200 * kMillisecond), AppendStatus::accepted);
+  EXPECT_EQ(stop(100 * kMillisecond), AppendStatus::full);  // the last two are for what cannot wait
+  EXPECT_EQ(stop(Time(0)), AppendStatus::accepted);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(stop(Time(i)), AppendStatus::accepted);
+  EXPECT_EQ(ring.writer.head(), 63U);
+  EXPECT_EQ(ring.writer.finish({}, {}), AppendStatus::accepted);
+  EXPECT_EQ(ring.writer.head(), 64U);
+}
+
+TEST(WaypointRing, AStopThatRepeatsOneThatWaitsTakesNoItem) {
+  MemoryRing ring(1, 64);
+  ASSERT_EQ(append(ring, 10 * kMillisecond, {0}), AppendStatus::accepted);
+  const auto stop = [&](Time t, Word consumed) {
+    EXPECT_EQ(ring.writer.replace_from(t, {}, {consumed}), AppendStatus::accepted);
+    return ring.writer.head();
+  };
+  EXPECT_EQ(stop(5 * kMillisecond, 0), 2U);
+  EXPECT_EQ(stop(5 * kMillisecond, 1), 2U);
+  EXPECT_EQ(stop(7 * kMillisecond, 1), 2U);
+  EXPECT_EQ(stop(4 * kMillisecond, 1), 3U);  // earlier
+  EXPECT_EQ(stop(4 * kMillisecond, 3), 4U);  // the one before has been taken
+  ASSERT_EQ(append(ring, 20 * kMillisecond, {0}, 3), AppendStatus::accepted);
+  EXPECT_EQ(stop(20 * kMillisecond, 3), 6U);  // a waypoint lies between
+  ring.writer = WaypointRingWriter(ring.bytes.span(), ring.layout, {});
+  EXPECT_EQ(stop(20 * kMillisecond, 3), 6U);  // also of the producer before
+}
+
+TEST(WaypointRing, AReplacementThatLeavesNoRoomForAStopIsTooLong) {
+  MemoryRing ring(1, 64);
+  const std::vector<double> x{0};
+  std::vector<core::Waypoint> waypoints;
+  for (int i = 1; i <= 60; ++i) {
+    waypoints.push_back({.time = i * kMillisecond, .position = x});
+  }
+  EXPECT_EQ(ring.writer.replace_from(Time(0), waypoints, {}), AppendStatus::too_many);
+  waypoints.pop_back();
+  EXPECT_EQ(ring.writer.replace_from(Time(0), waypoints, {}), AppendStatus::accepted);
+  EXPECT_EQ(ring.writer.replace_from(Time(-1), {}, {}), AppendStatus::accepted);
+}
+
 }  // namespace
 }  // namespace splinecast::ipc

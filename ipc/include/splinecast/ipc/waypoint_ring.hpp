@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -75,6 +76,14 @@ struct IngestLimits {
   core::Time max_interval{3'600'000'000'000};  ///< 1 h
 };
 
+/// Items that waypoints leave free in a ring, for stops and a finish: these must not wait until the
+/// board has room for what is queued before them.
+[[nodiscard]] constexpr std::size_t control_reserve(std::size_t capacity) noexcept {
+  constexpr std::size_t kMost = 4;
+  constexpr std::size_t kShare = 16;
+  return std::min(kMost, capacity / kShare);
+}
+
 /// The producer's side. One thread of one process uses it. No function blocks or allocates.
 class WaypointRingWriter {
  public:
@@ -90,13 +99,15 @@ class WaypointRingWriter {
     core::Time settled_until = core::Time::min();
   };
 
-  /// Appends a waypoint if its form is right and there is room. O(D), wait-free.
+  /// Appends a waypoint if its form is right and there is room besides control_reserve. O(D),
+  /// wait-free.
   [[nodiscard]] AppendStatus append(const core::Waypoint& waypoint, const Solved& solved) noexcept;
 
   /// Replaces all that lies behind t: `waypoints`, which may be none, must be later than it, and
-  /// together with the replacement itself fit into the ring. Without waypoints it is a stop, and a
-  /// t that has settled means the earliest time possible. One store of `head` makes all of it
-  /// visible. O(D) per waypoint.
+  /// together with the replacement itself fit into the ring besides control_reserve. One store of
+  /// `head` makes all of it visible. O(D) per waypoint. Without waypoints it is a stop, for which
+  /// there is the reserve. A t that has settled means the earliest time possible; a stop that
+  /// repeats the newest item, a stop that still waits, at the same time or later takes no item.
   [[nodiscard]] AppendStatus replace_from(core::Time t, std::span<const core::Waypoint> waypoints,
                                           const Solved& solved) noexcept;
 
@@ -126,9 +137,10 @@ class WaypointRingWriter {
   [[nodiscard]] AppendStatus check_replacement(core::Time t,
                                                std::span<const core::Waypoint> waypoints,
                                                const Solved& solved) const noexcept;
-  [[nodiscard]] bool has_room(Word items, const Solved& solved) const noexcept {
-    return head_ - solved.consumed + items <= layout_.capacity;
+  [[nodiscard]] bool has_room(Word items, const Solved& solved, std::size_t free) const noexcept {
+    return head_ - solved.consumed + items + free <= layout_.capacity;
   }
+  [[nodiscard]] bool repeats_stop(core::Time from, const Solved& solved) const noexcept;
   [[nodiscard]] AppendStatus stop_from(core::Time t, const Solved& solved) noexcept;
   void claim(Word items) noexcept;
   void put_item(Word index, Word kind_and_flags, const core::Waypoint& values) noexcept;
@@ -142,6 +154,7 @@ class WaypointRingWriter {
   Word head_ = 0;
   bool finished_ = false;
   bool has_last_ = false;
+  bool ends_with_stop_ = false;  ///< the newest item is a stop
   core::Time last_time_{};
 };
 
