@@ -80,15 +80,22 @@ AppendStatus WaypointRingWriter::check(const core::Waypoint& waypoint,
   AppendStatus status = check_form(waypoint);
   if (status == AppendStatus::accepted && has_last_) {
     status = judge_interval(waypoint.time - last_time_, limits_);
-    // However long a live stream has paused, it may go on.
-    if (status == AppendStatus::too_far_apart && solved.settled_until > last_time_ &&
-        waypoint.time - solved.settled_until <= limits_.max_interval) {
+    if (status == AppendStatus::too_far_apart && follows_pause(waypoint.time, solved)) {
       status = AppendStatus::accepted;
     }
   }
   if (status != AppendStatus::accepted) return status;
   if (waypoint.time < solved.settled_until) return AppendStatus::past;
-  return has_room(1, solved, control_reserve(layout_.capacity)) ? AppendStatus::accepted : AppendStatus::full;
+  return has_room(1, solved, control_reserve(layout_.capacity)) ? AppendStatus::accepted
+                                                                : AppendStatus::full;
+}
+
+/// However long a live stream has paused, it may go on: its time does, also while nothing moves.
+bool WaypointRingWriter::follows_pause(core::Time time, const Solved& solved) const noexcept {
+  const auto follows = [&](core::Time since) {
+    return since > last_time_ && time - since <= limits_.max_interval;
+  };
+  return follows(solved.settled_until) || (solved.clock != nullptr && follows(solved.clock->now()));
 }
 
 AppendStatus WaypointRingWriter::append(const core::Waypoint& waypoint,
@@ -106,6 +113,7 @@ AppendStatus WaypointRingWriter::check_replacement(core::Time t,
   if (finished_) return AppendStatus::finished;
   if (!is_time_in_range(t)) return AppendStatus::too_far_apart;
   if (t < solved.settled_until) return AppendStatus::too_late;
+  if (solved.clock != nullptr && t < solved.clock->now()) return AppendStatus::too_late;
   const std::size_t items = 1 + waypoints.size();
   if (items + control_reserve(layout_.capacity) > layout_.capacity) return AppendStatus::too_many;
   core::Time before = t;

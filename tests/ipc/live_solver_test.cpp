@@ -241,5 +241,28 @@ TEST(LiveSolver, AReplacementOnAStreamWithoutWaypointsStartsIt) {
   }
 }
 
+TEST(LiveSolver, AStreamThatHasRestedLongerThanTheMostIntervalGoesOn) {
+  for (const bool replaces : {false, true}) {
+    Live live;
+    live.put_all(50, 200);
+    live.clock.time = Live::kNow + std::chrono::hours(2);
+    live.drain();
+    live.solver.step(live.clock);
+    const Time t = live.clock.time + milliseconds(500);
+    EXPECT_EQ(live.put(t + std::chrono::hours(1)), AppendStatus::too_far_apart);
+    if (replaces) {
+      const Time from = live.clock.time + milliseconds(20);
+      EXPECT_EQ(live.replace(live.clock.time - Time(1), {t}), AppendStatus::too_late);
+      ASSERT_EQ(live.replace(from, {t}), AppendStatus::accepted);
+    } else {
+      ASSERT_EQ(live.put(t), AppendStatus::accepted);
+    }
+    live.drain();
+    EXPECT_EQ(live.solver.head().refused, 0U);
+    EXPECT_EQ(live.solver.head().newest_knot, t);
+    EXPECT_NEAR(live.position_at(t), Live::x(t), 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace splinecast::ipc

@@ -38,7 +38,7 @@ struct LiveStream : MemoryStream {
     return ring.writer.append({.time = t, .position = std::span(&position, 1)}, solved());
   }
   ipc::WaypointRingWriter::Solved solved() {
-    return {board.reader.tail(), solver.head().settled_until};
+    return {board.reader.tail(), solver.head().settled_until, &clock};
   }
   ipc::AppendStatus replace(Time t, const std::vector<Time>& times) {
     std::vector<double> positions;

@@ -9,15 +9,14 @@ namespace splinecast::ipc {
 /// What `append` answers. Only `accepted` changes anything.
 enum class AppendStatus : std::uint8_t {
   accepted,
-  full,           ///< the ring has no room until the solver consumes; try again. It keeps some for
-                  ///< stops and a finish
-  past,           ///< the time lies before what has settled; live streams only
-  duplicate,      ///< the time is that of the waypoint before
-  out_of_order,   ///< the time is earlier than that of the waypoint before
-  not_finite,     ///< a value is infinite, not a number, or beyond ±core::kLargestValue
-  too_close,      ///< less than the least interval after the waypoint before
-  too_far_apart,  ///< more than the most interval after the waypoint before (on a live stream:
-                  ///< after it and after what has settled), or beyond ±2⁶² ns
+  full,             ///< the ring has no room until the solver consumes; try again
+  past,             ///< the time lies before what has settled; live streams only
+  duplicate,        ///< the time is that of the waypoint before
+  out_of_order,     ///< the time is earlier than that of the waypoint before
+  not_finite,       ///< a value is infinite, not a number, or beyond ±core::kLargestValue
+  too_close,        ///< less than the least interval after the waypoint before
+  too_far_apart,    ///< more than the most interval after the waypoint before (on a live stream:
+                    ///< after it, after what has settled and after now), or beyond ±2⁶² ns
   wrong_dimension,  ///< a span does not have one value per dimension
   too_late,         ///< a replacement from a time that has settled: see Producer::earliest()
   too_many,         ///< a replacement that no ring of this size has room for

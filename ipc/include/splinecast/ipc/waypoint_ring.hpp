@@ -9,6 +9,7 @@
 #include "splinecast/core/condition.hpp"
 #include "splinecast/core/splice.hpp"
 #include "splinecast/core/waypoint.hpp"
+#include "splinecast/ipc/clock.hpp"
 #include "splinecast/ipc/layout.hpp"
 #include "splinecast/ipc/status.hpp"
 
@@ -93,10 +94,12 @@ class WaypointRingWriter {
                      const IngestLimits& limits);
 
   /// What is known of the solver: items that it has taken, and the time before which it changes
-  /// nothing any more; min() on a recorded stream.
+  /// nothing any more, as last published; min() on a recorded stream. At rest nothing is published:
+  /// then a live stream's clock says how long it has paused.
   struct Solved {
     Word consumed = 0;
     core::Time settled_until = core::Time::min();
+    const Clock* clock = nullptr;  ///< of a live stream
   };
 
   /// Appends a waypoint if its form is right and there is room besides control_reserve. O(D),
@@ -141,6 +144,7 @@ class WaypointRingWriter {
     return head_ - solved.consumed + items + free <= layout_.capacity;
   }
   [[nodiscard]] bool repeats_stop(core::Time from, const Solved& solved) const noexcept;
+  [[nodiscard]] bool follows_pause(core::Time time, const Solved& solved) const noexcept;
   [[nodiscard]] AppendStatus stop_from(core::Time t, const Solved& solved) noexcept;
   void claim(Word items) noexcept;
   void put_item(Word index, Word kind_and_flags, const core::Waypoint& values) noexcept;
