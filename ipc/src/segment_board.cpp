@@ -231,6 +231,19 @@ void SegmentBoardWriter::commit(Head& head) noexcept {
   forget_written();
 }
 
+void SegmentBoardWriter::store_checked(bool is_late) noexcept {
+  if (is_late) store(control_[kLate], revision_, std::memory_order_relaxed);
+  store(control_[kChecked], revision_, std::memory_order_release);
+}
+
+bool SegmentBoardWriter::is_checked() const noexcept {
+  return load(control_[kChecked], std::memory_order_relaxed) == revision_;
+}
+
+bool SegmentBoardWriter::is_late() const noexcept {
+  return revision_ > 0 && load(control_[kLate], std::memory_order_relaxed) == revision_;
+}
+
 SegmentBoardReader::SegmentBoardReader(std::span<const std::byte> region,
                                        const BoardLayout& layout) noexcept
     : layout_(layout),
@@ -326,7 +339,8 @@ bool SegmentBoardReader::copy_head(Word r, Head& out) const noexcept {
   out.low_water = to_time(word(kHeadLowWater));
   out.underruns = word(kHeadUnderruns);
   out.misses = word(kHeadMisses);
-  out.revisions = word(kHeadRevisions);
+  const bool is_late = r > 0 && load(control_[kLate], std::memory_order_relaxed) == r;
+  out.revisions = word(kHeadRevisions) + (is_late ? 1 : 0);
   out.withdrawn = word(kHeadWithdrawn);
   out.controls = word(kHeadControls);
   for (std::size_t i = 0; i < kRefusalReasons; ++i) out.reasons[i] = word(kHeadReasons + i);

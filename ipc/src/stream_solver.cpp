@@ -114,6 +114,7 @@ void StreamSolver::prefetch(bool has_items) const noexcept {
 StepResult StreamSolver::step(const Clock& clock) noexcept {
   if (is_damaged()) return {.damaged = true};
   const core::Time now = live_ ? clock.now() : core::Time::min();
+  if (live_ && !board_->is_checked()) check_commit(now);
   freeze(now);
   const Word consumed = consume(now);
   if (is_damaged()) return {.damaged = true};
@@ -366,6 +367,14 @@ void StreamSolver::refuse(Word number, Refusal reason) noexcept {
   ++head_.reasons[static_cast<std::size_t>(reason)];
 }
 
+/// Stopped between the look at the clock and the commit: readers find out by changed_from. Stored
+/// at once, because what comes next may be discarded, may never come, or may be another solver's.
+void StreamSolver::check_commit(core::Time now) noexcept {
+  const bool is_late = head_.changed_from <= now && head_.changed_from < core::Time::max();
+  if (is_late && !board_->is_late()) ++head_.revisions;
+  board_->store_checked(is_late);
+}
+
 StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   head_.changed_from = core::Time::max();
   const bool was_curve = head_.newest > 0;
@@ -389,10 +398,8 @@ StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   board_->commit(head_);
   board_->store_tail(head_.consumed);
   curve_.committed();
-  // Stopped between the look at the clock and the commit: readers find out by changed_from.
-  if (live_ && head_.changed_from < core::Time::max() && head_.changed_from <= clock.now()) {
-    ++head_.revisions;
-  }
+  const bool changes = head_.changed_from < core::Time::max();
+  if (live_) check_commit(changes ? clock.now() : head_.committed);
   return {.consumed = consumed, .published = true};
 }
 

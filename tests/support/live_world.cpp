@@ -341,10 +341,11 @@ void LiveWorld::kill_solver() {
     const auto words = ipc::words_at(stream_.board.bytes.span(), 0,
                                      stream_.board.layout.bytes / sizeof(ipc::Word));
     const ipc::Word revision = words[at + ipc::kRevision];
-    const ipc::Word tail = words[at + ipc::kTail];
+    const auto line = words.subspan(at + ipc::kTail, 3);  // stored behind the commit
+    const std::vector<ipc::Word> behind(line.begin(), line.end());
     stream_.solver.step(StandingClock(now_));
     words[at + ipc::kRevision] = revision;
-    words[at + ipc::kTail] = tail;
+    std::ranges::copy(behind, line.begin());
   }
   stream_.replace_solver();
 }

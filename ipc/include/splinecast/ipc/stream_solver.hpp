@@ -100,6 +100,7 @@ class StreamSolver {
   [[nodiscard]] std::optional<Refusal> judge_time(core::Time time) const noexcept;
   void refuse(Word number, Refusal reason) noexcept;
   void discard() noexcept;
+  void check_commit(core::Time now) noexcept;
   StepResult publish(const Clock& clock, Word consumed) noexcept;
 
   const WaypointRingReader* ring_;
