@@ -36,6 +36,29 @@ bool is_finite(std::span<const double> values) noexcept {
   return all;
 }
 
+bool is_finite(const core::Waypoint& waypoint) noexcept {
+  return is_finite(waypoint.position) && is_finite(waypoint.velocity) &&
+         is_finite(waypoint.acceleration);
+}
+
+core::Waypoint RingItem::waypoint() const noexcept {
+  const std::size_t dimensions = values.size() / 3;
+  const auto all = std::span<const double>(values);
+  core::Waypoint waypoint{.time = time, .position = all.first(dimensions)};
+  if (has_velocity) waypoint.velocity = all.subspan(dimensions, dimensions);
+  if (has_acceleration) waypoint.acceleration = all.last(dimensions);
+  return waypoint;
+}
+
+core::WaypointValues RingItem::waypoint_values() noexcept {
+  const std::size_t dimensions = values.size() / 3;
+  const auto all = std::span(values);
+  core::WaypointValues waypoint{.position = all.first(dimensions)};
+  if (has_velocity) waypoint.velocity = all.subspan(dimensions, dimensions);
+  if (has_acceleration) waypoint.acceleration = all.last(dimensions);
+  return waypoint;
+}
+
 WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLayout& layout,
                                        const IngestLimits& limits)
     : layout_(layout),
@@ -68,10 +91,7 @@ AppendStatus WaypointRingWriter::check_form(const core::Waypoint& waypoint) cons
       !fits(waypoint.acceleration, dimensions)) {
     return AppendStatus::wrong_dimension;
   }
-  if (!is_finite(waypoint.position) || !is_finite(waypoint.velocity) ||
-      !is_finite(waypoint.acceleration)) {
-    return AppendStatus::not_finite;
-  }
+  if (!is_finite(waypoint)) return AppendStatus::not_finite;
   return is_time_in_range(waypoint.time) ? AppendStatus::accepted : AppendStatus::too_far_apart;
 }
 

@@ -92,6 +92,10 @@ class SegmentBoardWriter {
   void write(Word number, const core::Segment& segment, const core::Knot& knot,
              const SegmentOrigin& origin = {}) noexcept;
 
+  /// Whether all that was written for the next revision is what readers, and a solver that takes
+  /// over, accept: finite values, and coefficients within their bound. Else it must be discarded.
+  [[nodiscard]] bool is_sound() const noexcept { return is_sound_; }
+
   /// Writes committed segment `number` again with another right end, for the next revision.
   void write_cut(Word number, core::Time right) noexcept;
 
@@ -151,6 +155,7 @@ class SegmentBoardWriter {
   std::array<Word, kHeadChangesKept> changes_{};
   Word lowest_written_ = std::numeric_limits<Word>::max();  ///< for the next revision
   Word highest_written_ = 0;
+  bool is_sound_ = true;     ///< what has been written for the next revision
   Word newest_claimed_ = 0;  ///< the segments behind it are in no cache
 };
 

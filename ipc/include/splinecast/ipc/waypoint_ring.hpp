@@ -69,6 +69,11 @@ struct RingItem {
   std::uint32_t count = 0;          ///< of a replacement: waypoints that belong to it
   core::Time time{};
   std::vector<double> values;  ///< positions, velocities, accelerations: those that it has
+
+  /// The waypoint that it is, or the state; and the values of that, to be moved. Both view
+  /// `values`.
+  [[nodiscard]] core::Waypoint waypoint() const noexcept;
+  [[nodiscard]] core::WaypointValues waypoint_values() noexcept;
 };
 
 /// The checks that a waypoint must pass, wherever it comes from.
@@ -227,5 +232,6 @@ inline constexpr core::Time kLatestTime{std::int64_t{1} << 62U};
 
 /// Whether all values are numbers within ±core::kLargestValue.
 [[nodiscard]] bool is_finite(std::span<const double> values) noexcept;
+[[nodiscard]] bool is_finite(const core::Waypoint& waypoint) noexcept;
 
 }  // namespace splinecast::ipc
