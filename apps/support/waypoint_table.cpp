@@ -134,7 +134,7 @@ class TableReader {
     const auto time = parse_time(fields[roles_.time], roles_.unit);
     if (!time) fail(fields[roles_.time], roles_.time, "is not a time");
     if (!ipc::is_time_in_range(*time)) {
-      fail(fields[roles_.time], roles_.time, "lies beyond ±2^62 ns, about 146 years");
+      fail(fields[roles_.time], roles_.time, "lies beyond ±(2^62 − 1) ns, about 146 years");
     }
     return *time;
   }

@@ -80,7 +80,7 @@ WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLa
   }
   if (!is_time_in_range(last_time_)) {
     throw BadRegion("the ring's last item has time " + std::to_string(last_time_.count()) +
-                    " ns, beyond 2^62 ns");
+                    " ns, not within 2^62 ns of 0");
   }
 }
 

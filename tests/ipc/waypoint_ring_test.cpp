@@ -66,6 +66,25 @@ TEST(WaypointRing, RefusesBadFormWithTheReasonAndCountsIt) {
   EXPECT_EQ(ring.reader.refused(AppendStatus::too_far_apart), 1U);
 }
 
+TEST(WaypointRing, TheEarliestAndTheLatestTimeAreInOrder) {
+  MemoryRing ring(1, 8);
+  EXPECT_EQ(append(ring, -kLatestTime - Time(1), {0}), AppendStatus::too_far_apart);
+  EXPECT_EQ(append(ring, -kLatestTime, {0}), AppendStatus::accepted);
+  EXPECT_EQ(append(ring, kLatestTime + Time(1), {0}), AppendStatus::too_far_apart);
+  EXPECT_EQ(append(ring, kLatestTime, {0}), AppendStatus::too_far_apart);
+  const IngestLimits any{.min_interval = Time(1), .max_interval = Time::max()};
+  testing::MemoryStream stream(1, {}, 8, 64, any);
+  stream.ring.writer = WaypointRingWriter(stream.ring.bytes.span(), stream.ring.layout, any);
+  const std::vector<double> x{0, 1};
+  EXPECT_EQ(stream.append(-kLatestTime, std::span(x).first(1)), AppendStatus::accepted);
+  EXPECT_EQ(stream.append(kLatestTime, std::span(x).last(1)), AppendStatus::accepted);
+  stream.drain();
+  EXPECT_EQ(stream.solver.head().knots, 2U);
+  SegmentCopy segment(1);
+  ASSERT_TRUE(stream.board.reader.copy_segment(1, stream.board.reader.revision(), segment));
+  EXPECT_NEAR(segment.coefficients[1] * 2 * core::to_seconds(kLatestTime), 1, 1e-12);  // velocity
+}
+
 TEST(WaypointRing, IsFullUntilTheSolverConsumesAndLosesNothing) {
   MemoryRing ring(1, 4);
   RingItem item(1);

@@ -16,7 +16,7 @@ enum class AppendStatus : std::uint8_t {
   not_finite,       ///< a value is infinite, not a number, or beyond ±core::kLargestValue
   too_close,        ///< less than the least interval after the waypoint before
   too_far_apart,    ///< more than the most interval after the waypoint before (on a live stream:
-                    ///< after it, after what has settled and after now), or beyond ±2⁶² ns
+                    ///< after it, after what has settled and after now), or not within ±2⁶² ns
   wrong_dimension,  ///< a span does not have one value per dimension
   too_late,         ///< a replacement from a time that has settled: see Producer::earliest()
   too_many,         ///< a replacement that no ring of this size has room for

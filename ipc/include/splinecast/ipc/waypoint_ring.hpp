@@ -215,7 +215,8 @@ class WaypointRingReader {
 };
 
 /// The earliest and latest times: the difference of any two fits into 64 bits.
-inline constexpr core::Time kLatestTime{std::int64_t{1} << 62U};
+inline constexpr core::Time kLatestTime{(std::int64_t{1} << 62U) - 1};
+static_assert(kLatestTime - -kLatestTime > core::Time::zero());
 [[nodiscard]] constexpr bool is_time_in_range(core::Time time) noexcept {
   return time >= -kLatestTime && time <= kLatestTime;
 }
