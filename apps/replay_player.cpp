@@ -101,11 +101,14 @@ class Replay {
 
   /// Sends all loops; false if a stop is requested or a refused row stops it.
   bool play(core::Time base) {
-    const core::Time shift = table_.times.back() - table_.times.front() + median_interval(table_);
+    const core::Time shift =
+        core::saturated_sum(table_.times.back() - table_.times.front(), median_interval(table_));
     Progress progress;
     next_item_ = producer_.appended();
     for (std::size_t loop = 0; loop < options_.loops; ++loop) {
-      const core::Time offset = base - table_.times.front() + shift * static_cast<int>(loop);
+      const core::Time offset =
+          core::saturated_sum(base - table_.times.front(),
+                              core::saturated_product(shift, static_cast<std::int64_t>(loop)));
       for (std::size_t i = 0; i < table_.size(); ++i) {
         if (!send({.row = i, .loop = loop}, offset, progress)) return false;
       }
@@ -201,7 +204,7 @@ class Replay {
   /// Sends a row at its time. Returns false if a stop is requested or a refused row stops it.
   bool send(const Sent& next, core::Time offset, Progress& progress) {
     core::Waypoint waypoint = table_.waypoint(next.row);
-    waypoint.time += offset;
+    waypoint.time = core::saturated_sum(waypoint.time, offset);
     if (stop_requested() || (options_.rate && !pace(waypoint.time))) return false;
     ipc::AppendStatus status = append(waypoint);
     while (status == ipc::AppendStatus::full) {

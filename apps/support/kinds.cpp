@@ -155,11 +155,14 @@ std::optional<std::string> zero_quaternion(const WaypointTable& table,
                                            const core::DimensionKinds& kinds, std::size_t i) {
   const auto position = table.waypoint(i).position;
   if (kinds.takes(position)) return std::nullopt;
-  for (const auto& [first, w_first] : kinds.quaternions()) {
+  for (const core::QuaternionDimensions& quaternion : kinds.quaternions()) {
+    if (core::DimensionKinds::takes(position, quaternion)) continue;
+    const std::size_t first = quaternion.first;
     const auto four = position.subspan(first, kQuaternionSize);
-    if (std::ranges::any_of(four, [](double value) { return value != 0; })) continue;
-    return fmt::format("columns '{}' to '{}': a quaternion of length 0", table.names[first],
-                       table.names[first + kQuaternionSize - 1]);
+    const bool is_zero = std::ranges::all_of(four, [](double value) { return value == 0; });
+    return fmt::format("columns '{}' to '{}': a quaternion of length {}", table.names[first],
+                       table.names[first + kQuaternionSize - 1],
+                       is_zero ? "0" : "beyond 1e-100 to 1e100");
   }
   return std::nullopt;
 }

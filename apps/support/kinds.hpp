@@ -27,7 +27,8 @@ struct ColumnNames {
                                                          const ColumnNames& columns,
                                                          const std::vector<KindOption>& asked);
 
-/// What is wrong with the quaternions of row i, naming its columns; nothing if none has length 0.
+/// What is wrong with the quaternions of row i, naming its columns; nothing if a rotation can be
+/// made of each.
 [[nodiscard]] std::optional<std::string> zero_quaternion(const WaypointTable& table,
                                                          const core::DimensionKinds& kinds,
                                                          std::size_t i);

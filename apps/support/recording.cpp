@@ -84,7 +84,7 @@ class RowCheck {
 }  // namespace
 
 void select_rows(WaypointTable& table, core::Time from, std::optional<core::Time> duration) {
-  const core::Time first = table.times.front() + from;
+  const core::Time first = core::saturated_sum(table.times.front(), from);
   const auto is_in = [&](core::Time t) {
     return t >= first && (!duration || t - first <= *duration);
   };
@@ -98,7 +98,9 @@ void change_rate(WaypointTable& table, double rate) {
   if (rate == 1.0) return;
   const core::Time first = table.times.front();
   for (core::Time& t : table.times) {
-    t = first + core::Time(std::llround(static_cast<double>((t - first).count()) / rate));
+    constexpr double kMost = 9.2e18;  // what llround can return; no stream takes so late a time
+    const double since = std::min(static_cast<double>((t - first).count()) / rate, kMost);
+    t = core::saturated_sum(first, core::Time(std::llround(since)));
   }
   for (double& v : table.velocities) v *= rate;
   for (double& a : table.accelerations) a *= rate * rate;

@@ -80,7 +80,7 @@ class TableReader {
     const auto time = parse_time(fields[roles().time], roles().unit);
     if (!time) fail(fields[roles().time], roles().time, "is not a time");
     if (!ipc::is_time_in_range(*time)) {
-      fail(fields[roles().time], roles().time, "lies beyond ±2^62 ns, about 146 years");
+      fail(fields[roles().time], roles().time, "lies beyond ±(2^62 − 1) ns, about 146 years");
     }
     return *time;
   }

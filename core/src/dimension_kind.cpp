@@ -75,12 +75,15 @@ double length(const Quaternion& q) noexcept {
   return largest * std::sqrt(dot(unit, unit));
 }
 
-/// Divides a quaternion and its derivatives by its length. Returns whether that could be done: not
-/// for what no curve between rotations comes to, a length of 0, next to 0, or beyond all numbers.
+/// Whether a rotation can be made of a quaternion of this length: not of what no curve between
+/// rotations comes to, 0, next to 0, or beyond all numbers.
+bool is_length(double n) noexcept { return n > 1 / kLargestValue && n < kLargestValue; }
+
+/// Divides a quaternion and its derivatives by its length. Returns whether that could be done.
 template <typename... Derivatives>
 bool to_unit_length(Quaternion& q, Derivatives&... derivatives) noexcept {
   const double n = length(q);
-  if (!(n > 1 / kLargestValue && n < kLargestValue)) return false;
+  if (!is_length(n)) return false;
   const double inverse = 1 / n;  // one division: this is in the way of every sample
   const auto shorten = [inverse](Quaternion& values) {
     for (double& value : values) value *= inverse;
@@ -194,8 +197,13 @@ DimensionKinds::DimensionKinds(std::span<const Dimension> dimensions) {
 
 bool DimensionKinds::takes(std::span<const double> position) const noexcept {
   return std::ranges::all_of(quaternions_, [&](const QuaternionDimensions& quaternion) {
-    return length(load(position, quaternion.first)) > 0;
+    return takes(position, quaternion);
   });
+}
+
+bool DimensionKinds::takes(std::span<const double> position,
+                           const QuaternionDimensions& quaternion) noexcept {
+  return is_length(length(load(position, quaternion.first)));
 }
 
 void DimensionKinds::continue_from(std::span<const double> previous,
@@ -238,6 +246,7 @@ void DimensionKinds::normalise_quaternions(std::span<double> position, std::span
     Quaternion a = load(acceleration, first);
     if (!to_unit_length(q, v, a)) continue;
     keep_unit_length(q, v, a);
+    if (!are_finite(v) || !are_finite(a)) continue;
     store(q, position, first);
     store(v, velocity, first);
     store(a, acceleration, first);

@@ -9,6 +9,8 @@ namespace {
 
 /// Longest time that limits can ask for, s: beyond it they are out of all proportion.
 constexpr double kLongest = 1e6;
+/// Shortest time that is told apart, s: a velocity next to 0 is brought to rest within it.
+constexpr double kShortest = 1e-9;
 /// Leaves rounding in a coefficient out of account.
 constexpr double kRounding = 1 + 1e-9;
 
@@ -22,12 +24,18 @@ double stop_tail_peak(double v, double a, double time) noexcept {
   return std::max(std::abs(a), std::abs(w * (s * s - s) + a * (1 - 4 * s + 3 * s * s)));
 }
 
+/// The number of tries is fixed: arithmetic need not make progress. Without rounding four are
+/// enough.
 double stop_seconds(double v, double a, double limit) noexcept {
   constexpr double kLonger = 1.1;
+  constexpr int kTries = 32;
   const double allowed = std::max(limit, std::abs(a)) * kRounding;
-  double time = 1.5 * std::abs(v) / limit;
-  while (time > 0 && time < kLongest && stop_tail_peak(v, a, time) > allowed) time *= kLonger;
-  return time;
+  double time = std::max(1.5 * std::abs(v) / limit, kShortest);
+  for (int i = 0; i < kTries && time < kLongest; ++i) {
+    if (stop_tail_peak(v, a, time) <= allowed) return time;
+    time *= kLonger;
+  }
+  return kLongest;
 }
 
 Time at_least(Time least, double seconds) noexcept {

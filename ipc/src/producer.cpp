@@ -136,6 +136,7 @@ struct Producer::Impl {
   RefusalReader refused;
   Head bounds;
   core::Time settled_until = core::Time::min();
+  MonotonicClock clock;
 
   Impl(std::string name, ProducerOptions how)
       : stream(std::move(name)),
@@ -172,7 +173,9 @@ struct Producer::Impl {
   [[nodiscard]] WaypointRingWriter::Solved solved() noexcept {
     if (!solver) look_for_solver();
     WaypointRingWriter::Solved known{.consumed = consumed()};
-    if (!solver || stream_clock(ring.header) == StreamClock::recorded) return known;
+    if (stream_clock(ring.header) == StreamClock::recorded) return known;
+    known.clock = &clock;
+    if (!solver) return known;
     const Word r = solver->board.revision();
     // A head that is overtaken is one that settles later still: what it said before holds.
     if (r > 0 && solver->board.copy_bounds(r, r, bounds)) settled_until = bounds.settled_until;
@@ -193,7 +196,6 @@ struct Producer::Impl {
   /// Waits until `done()`, or for the timeout, with the solver's revision as the word to watch.
   template <typename Done>
   bool wait(core::Time timeout, const Done& done) {
-    const MonotonicClock clock;
     const core::Time end = deadline(clock, timeout);
     for (;;) {
       look_for_solver();
@@ -269,7 +271,8 @@ bool Producer::wait_for_solver(core::Time timeout) {
 bool Producer::wait_for_room(core::Time timeout) {
   return impl_->wait(timeout, [this] {
     const Word waiting = impl_->ring.writer.head() - impl_->consumed();
-    return waiting < impl_->ring.header.capacity;
+    const std::size_t capacity = impl_->ring.header.capacity;
+    return waiting + control_reserve(capacity) < capacity;
   });
 }
 

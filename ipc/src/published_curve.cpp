@@ -86,11 +86,13 @@ bool PublishedCurve::has_room_behind(Word number, std::size_t segments,
   return !is_there || right <= keep;
 }
 
-bool PublishedCurve::can_enter(core::Time t) const noexcept {
+core::Time PublishedCurve::earliest_entry() const noexcept {
   core::Time left{};
-  core::Time right{};
-  if (newest_ == 0 || !published_->copy_ends(first_, board_->revision(), left, right)) return false;
-  return t >= left || (first_ == 1 && !window_.is_entered() && window_.options().held_before_start);
+  if (newest_ == 0 || !published_->copy_left(first_, board_->revision(), left)) {
+    return core::Time::max();
+  }
+  const bool is_held = first_ == 1 && !window_.is_entered() && window_.options().held_before_start;
+  return is_held ? core::Time::min() : left;
 }
 
 /// The last committed segment whose left end is at or before t; else the first one.

@@ -34,21 +34,34 @@ std::size_t control_words() noexcept { return kControlLines * kSeparation / size
 /// double.
 constexpr double kLargestSum = 1e200;
 
-/// Whether a segment is one that a solver could have made: what is evaluated of it are numbers.
-bool is_sound(const SegmentCopy& segment, std::size_t values) noexcept {
-  // A sum is no less than the largest of them, and no number if one of them is none. Four sums, for
-  // vectors; orders are even, so that no more than two coefficients are left.
-  const double* const c = segment.coefficients.data();
+/// A sum of magnitudes: no less than the largest of them, and no number if one of them is none.
+/// Four sums, for vectors.
+double magnitude(std::span<const double> values) noexcept {
   std::array<double, 4> sums{};
   std::size_t i = 0;
-  for (; i + 4 <= values; i += 4) {
-    for (std::size_t k = 0; k < 4; ++k) sums[k] += std::abs(c[i + k]);
+  for (; i + 4 <= values.size(); i += 4) {
+    for (std::size_t k = 0; k < 4; ++k) sums[k] += std::abs(values[i + k]);
   }
-  for (; i < values; ++i) sums[0] += std::abs(c[i]);
-  const bool are_numbers = sums[0] + sums[1] + (sums[2] + sums[3]) <= kLargestSum;
+  for (; i < values.size(); ++i) sums[0] += std::abs(values[i]);
+  return sums[0] + sums[1] + (sums[2] + sums[3]);
+}
+
+/// Whether a segment is one that a solver could have made: what is evaluated of it are numbers.
+bool is_sound(const SegmentCopy& segment, std::size_t values) noexcept {
   const Word length = to_word(segment.right) - to_word(segment.left);
-  return are_numbers && segment.left <= segment.right && length <= to_word(core::Time::max()) &&
+  return magnitude(std::span(segment.coefficients).first(values)) <= kLargestSum &&
+         segment.left <= segment.right && length <= to_word(core::Time::max()) &&
          segment.kind <= core::SegmentKind::hold;
+}
+
+/// Whether a segment is one that readers accept, and its left knot one to go on from.
+bool is_sound(std::span<const double> coefficients, const core::Segment& segment,
+              const core::Knot& knot) noexcept {
+  const core::SmoothingRow& row = knot.prefix.smoothing;
+  const std::array prefix{knot.prefix.gamma, row.pivot, row.lower1, row.lower2};
+  return magnitude(coefficients) <= kLargestSum &&
+         std::isfinite(magnitude(segment.acceleration_step) + magnitude(knot.waypoint) +
+                       magnitude(knot.g) + magnitude(knot.residual) + magnitude(prefix));
 }
 
 /// The members of a head that lookups need, out of its words 1 … kBoundsWords.
@@ -125,6 +138,9 @@ Word* SegmentBoardWriter::claim(Word number) noexcept {
 void SegmentBoardWriter::write(Word number, const core::Segment& segment, const core::Knot& knot,
                                const SegmentOrigin& origin) noexcept {
   const std::size_t dimensions = layout_.dimensions;
+  const auto coefficients =
+      std::span(segment.coefficients).first(static_cast<std::size_t>(segment.order) * dimensions);
+  is_sound_ = is_sound_ && ipc::is_sound(coefficients, segment, knot);
   Word* const cell = claim(number);
   put(cell[kCellNumber], number);
   put(cell[kCellLeft], to_word(segment.left));
@@ -136,9 +152,7 @@ void SegmentBoardWriter::write(Word number, const core::Segment& segment, const 
   put(cell[kCellRightSeen], origin.right_newer_knots);
   put(cell[kCellItem], origin.item ? *origin.item + 1 : 0);
   Word* const vectors = cell + kCellCoefficients;
-  store_values(
-      vectors,
-      std::span(segment.coefficients).first(static_cast<std::size_t>(segment.order) * dimensions));
+  store_values(vectors, coefficients);
   store_values(vectors + kStepVector * dimensions, segment.acceleration_step);
   store_values(vectors + kWaypointVector * dimensions, knot.waypoint);
   store_values(vectors + kGVector * dimensions, knot.g);
@@ -181,6 +195,7 @@ void SegmentBoardWriter::discard() noexcept {
 void SegmentBoardWriter::forget_written() noexcept {
   lowest_written_ = std::numeric_limits<Word>::max();
   highest_written_ = 0;
+  is_sound_ = true;
 }
 
 void SegmentBoardWriter::write_refusal(Word index, const RefusedItem& refusal) noexcept {
@@ -229,6 +244,19 @@ void SegmentBoardWriter::commit(Head& head) noexcept {
   store(control_[kRevision], r, std::memory_order_release);  // W3
   revision_ = r;
   forget_written();
+}
+
+void SegmentBoardWriter::store_checked(bool is_late) noexcept {
+  if (is_late) store(control_[kLate], revision_, std::memory_order_relaxed);
+  store(control_[kChecked], revision_, std::memory_order_release);
+}
+
+bool SegmentBoardWriter::is_checked() const noexcept {
+  return load(control_[kChecked], std::memory_order_relaxed) == revision_;
+}
+
+bool SegmentBoardWriter::is_late() const noexcept {
+  return revision_ > 0 && load(control_[kLate], std::memory_order_relaxed) == revision_;
 }
 
 SegmentBoardReader::SegmentBoardReader(std::span<const std::byte> region,
@@ -326,7 +354,8 @@ bool SegmentBoardReader::copy_head(Word r, Head& out) const noexcept {
   out.low_water = to_time(word(kHeadLowWater));
   out.underruns = word(kHeadUnderruns);
   out.misses = word(kHeadMisses);
-  out.revisions = word(kHeadRevisions);
+  const bool is_late = r > 0 && load(control_[kLate], std::memory_order_relaxed) == r;
+  out.revisions = word(kHeadRevisions) + (is_late ? 1 : 0);
   out.withdrawn = word(kHeadWithdrawn);
   out.controls = word(kHeadControls);
   for (std::size_t i = 0; i < kRefusalReasons; ++i) out.reasons[i] = word(kHeadReasons + i);

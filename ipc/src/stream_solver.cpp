@@ -18,38 +18,6 @@ constexpr std::size_t kMaxBatch = 256;
 /// before them, the stop tail, a cut and a hold.
 constexpr std::size_t changed_besides(std::size_t settle) noexcept { return settle + 6; }
 
-/// What an interval is refused for.
-Refusal to_refusal(AppendStatus status) noexcept {
-  switch (status) {
-    case AppendStatus::duplicate:
-      return Refusal::duplicate;
-    case AppendStatus::out_of_order:
-      return Refusal::out_of_order;
-    case AppendStatus::too_close:
-      return Refusal::too_close;
-    default:
-      return Refusal::too_far_apart;
-  }
-}
-
-core::Waypoint waypoint_of(const RingItem& item) noexcept {
-  const std::size_t dimensions = item.values.size() / 3;
-  const auto values = std::span<const double>(item.values);
-  core::Waypoint waypoint{.time = item.time, .position = values.first(dimensions)};
-  if (item.has_velocity) waypoint.velocity = values.subspan(dimensions, dimensions);
-  if (item.has_acceleration) waypoint.acceleration = values.last(dimensions);
-  return waypoint;
-}
-
-core::WaypointValues values_of(RingItem& item) noexcept {
-  const std::size_t dimensions = item.values.size() / 3;
-  const auto values = std::span(item.values);
-  core::WaypointValues all{.position = values.first(dimensions)};
-  if (item.has_velocity) all.velocity = values.subspan(dimensions, dimensions);
-  if (item.has_acceleration) all.acceleration = values.last(dimensions);
-  return all;
-}
-
 /// No stream lives to see so many revisions.
 constexpr Word kMostRevisions = Word{1} << 62U;
 
@@ -74,13 +42,15 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, SegmentBoardWriter& b
       curve_(board, published, window, std::move(kinds)),
       max_batch_(std::min(kMaxBatch, board.capacity() / 2 - changed_besides(window.settle))),
       item_(ring.dimensions()),
-      followers_(kFollowers, RingItem(ring.dimensions())) {
+      followers_(kFollowers, RingItem(ring.dimensions())),
+      replacements_(ring) {
   if (board.capacity() < min_capacity(window.settle)) {
     throw std::invalid_argument("a board of " + std::to_string(board.capacity()) +
                                 " segments is too small for settle lag " +
                                 std::to_string(window.settle));
   }
   end_.value.reserve(ring.dimensions());
+  most_items_ = max_batch_;
   restore();
   if (is_damaged() || board.revision() > kMostRevisions) {
     throw BadRegion("the board holds no curve that a solver could go on with at its revision " +
@@ -113,11 +83,44 @@ void StreamSolver::prefetch(bool has_items) const noexcept {
 StepResult StreamSolver::step(const Clock& clock) noexcept {
   if (is_damaged()) return {.damaged = true};
   const core::Time now = live_ ? clock.now() : core::Time::min();
+  if (live_ && !board_->is_checked()) check_commit(now);
+  // Each try has half the items of the one before, and the last one refuses the only one.
+  constexpr int kMostTries = 12;
+  static_assert(kMaxBatch < 1U << (kMostTries - 2));
+  for (int i = 0; i < kMostTries; ++i) {
+    const StepResult result = make_revision(clock, now);
+    if (board_->is_sound()) return result;
+    suspect_items();
+    if (is_damaged()) return {.damaged = true};
+  }
+  return {};
+}
+
+/// Makes a revision of the next items and publishes it, unless it is unsound.
+StepResult StreamSolver::make_revision(const Clock& clock, core::Time now) noexcept {
   freeze(now);
   const Word consumed = consume(now);
   if (is_damaged()) return {.damaged = true};
   if (consumed == 0 && (!live_ || now < due())) return {};
   return publish(clock, consumed);
+}
+
+/// Drops a revision that was not committed.
+void StreamSolver::take_back(Word misses) noexcept {
+  board_->discard();
+  restore();
+  head_.misses = misses;
+  seen_ = head_.consumed;
+}
+
+/// Drops an unsound revision, and takes fewer items next: in the end the offending one alone.
+void StreamSolver::suspect_items() noexcept {
+  if (batch_ > 1) {
+    most_items_ = std::min<Word>(batch_, max_batch_) / 2;
+  } else {
+    unsound_item_ = head_.consumed - 1;
+  }
+  take_back(head_.misses);
 }
 
 /// Fixes what this step leaves alone.
@@ -155,15 +158,14 @@ Word StreamSolver::consume(core::Time now) noexcept {
   const Word before = head_.consumed;
   const core::Time keep = live_ ? now - live_->history : core::Time::max();
   withdraw();
-  Word batch = 0;
   bool is_blocked = false;
-  batch_limit_ = max_batch_;
-  while (head_.consumed < available_ && batch < batch_limit_ && !is_damaged()) {
+  batch_limit_ = most_items_;
+  for (batch_ = 0; head_.consumed < available_ && batch_ < batch_limit_ && !is_damaged();) {
     ring_->copy(head_.consumed, item_);
     is_blocked = !has_room(keep);
     if (is_blocked) break;
     take(head_.consumed++);
-    ++batch;
+    ++batch_;
   }
   const bool waits = is_blocked && !curve_.has_changes();
   seen_ = waits || available_ == before ? head : head_.consumed;
@@ -175,30 +177,28 @@ Word StreamSolver::consume(core::Time now) noexcept {
 bool StreamSolver::has_room(core::Time keep) const noexcept {
   if (item_.kind != ItemKind::replace) return curve_.has_room(kAddedByItem, keep);
   if (curve_.has_changes()) return false;
-  return !curve_.has_begun() || curve_.has_room_to_enter(item_.time, kAddedByItem, keep);
+  // A stop costs one segment of the history at most: it does not wait for room.
+  return is_stop() || !curve_.has_begun() ||
+         curve_.has_room_to_enter(item_.time, kAddedByItem, keep);
 }
 
-/// Looks ahead for a replacement that withdraws waypoints before they are taken: the board may have
-/// no room for them yet.
+/// Looks ahead for a replacement that is due and withdraws all that is queued before it: other
+/// replacements that are too late or lie ahead, and waypoints that the board may have no room for.
 void StreamSolver::withdraw() noexcept {
   if (!curve_.has_begun() || head_.finished) return;
-  const core::Time newest = curve_.newest_time();
-  scanned_ = std::max(scanned_, head_.consumed);
-  Word replacement = available_;
-  for (; scanned_ < available_; ++scanned_) {
-    if (ring_->kind(scanned_) != ItemKind::replace) continue;
-    replacement = scanned_;
-    break;
-  }
-  if (replacement == available_) return;
-  const core::Time t = ring_->time(replacement);
-  if (t < settled_until_ || t > newest) return;  // it waits for its turn
-  head_.withdrawn += replacement - head_.consumed;
-  head_.consumed = replacement;
+  replacements_.note(head_.consumed, available_);
+  const auto replacement = replacements_.due(settled_until_, curve_.newest_time());
+  if (!replacement) return;
+  head_.withdrawn += *replacement - head_.consumed;
+  head_.consumed = *replacement;
 }
 
 void StreamSolver::take(Word number) noexcept {
   if (head_.finished) return refuse(number, Refusal::after_finish);
+  if (number == unsound_item_) {
+    return item_.kind == ItemKind::replace ? refuse_replacement(number, Refusal::not_finite)
+                                           : refuse(number, Refusal::not_finite);
+  }
   switch (item_.kind) {
     case ItemKind::waypoint:
       return take_waypoint(number);
@@ -214,19 +214,11 @@ void StreamSolver::take(Word number) noexcept {
 
 /// The producer has checked most of this; but what another process wrote is never trusted.
 std::optional<Refusal> StreamSolver::has_right_form(const core::Waypoint& waypoint) const noexcept {
-  if (!is_finite(waypoint.position) || !is_finite(waypoint.velocity) ||
-      !is_finite(waypoint.acceleration)) {
-    return Refusal::not_finite;
-  }
+  if (!is_finite(waypoint)) return Refusal::not_finite;
   if (!curve_.kinds().takes(waypoint.position)) return Refusal::zero_quaternion;
   if (!curve_.window().takes(waypoint)) return Refusal::lacks_derivatives;
   if (!is_time_in_range(waypoint.time)) return Refusal::too_far_apart;
   return std::nullopt;
-}
-
-std::optional<Refusal> StreamSolver::judge(const core::Waypoint& waypoint) const noexcept {
-  const auto refusal = has_right_form(waypoint);
-  return refusal ? refusal : judge_time(waypoint.time);
 }
 
 std::optional<Refusal> StreamSolver::judge_time(core::Time time) const noexcept {
@@ -252,16 +244,18 @@ std::optional<Refusal> StreamSolver::judge_time(core::Time time) const noexcept 
 }
 
 void StreamSolver::take_waypoint(Word number) noexcept {
-  const core::Waypoint waypoint = waypoint_of(item_);
-  if (const auto refusal = judge(waypoint)) return refuse(number, *refusal);
+  const core::Waypoint waypoint = item_.waypoint();
+  if (const auto refusal = has_right_form(waypoint)) return refuse(number, *refusal);
+  if (const auto refusal = judge_time(waypoint.time)) return refuse(number, *refusal);
   const bool starved = is_starved();
   if (starved) curve_.enter(settled_until_);
   // What `waypoint` looks at.
-  curve_.kinds().continue_from(curve_.newest_position(), values_of(item_));
-  if (!can_append(number)) {
+  curve_.kinds().continue_from(curve_.newest_position(), item_.waypoint_values());
+  const bool stays_finite = is_finite(waypoint);
+  if (!stays_finite || !can_append(number)) {
     // It cannot be reached with the acceleration allowed. The curve stays as it was committed.
     if (starved) discard();
-    return refuse(number, Refusal::too_late);
+    return refuse(number, stays_finite ? Refusal::too_late : Refusal::not_finite);
   }
   curve_.append(waypoint, number);
   head_.starved = false;
@@ -273,17 +267,18 @@ void StreamSolver::take_waypoint(Word number) noexcept {
 bool StreamSolver::can_append(Word number) noexcept {
   if (curve_.window().options().max_acceleration.empty()) return true;
   const Word available = reachable(ring_->head());
-  std::array<core::Waypoint, 1 + kFollowers> first{waypoint_of(item_)};
+  std::array<core::Waypoint, 1 + kFollowers> first{item_.waypoint()};
   std::size_t count = 1;
   while (count < first.size() && number + count < available) {
     RingItem& item = followers_[count - 1];
     ring_->copy(number + count, item);
-    const core::Waypoint next = waypoint_of(item);
+    const core::Waypoint next = item.waypoint();
     const bool follows =
         item.kind == ItemKind::waypoint && has_right_form(next) == std::nullopt &&
         judge_interval(next.time - first[count - 1].time, limits_) == AppendStatus::accepted;
     if (!follows) break;
-    curve_.kinds().continue_from(first[count - 1].position, values_of(item));
+    curve_.kinds().continue_from(first[count - 1].position, item.waypoint_values());
+    if (!is_finite(next)) break;
     first[count++] = next;
   }
   return curve_.can_append(std::span(first).first(count));
@@ -299,30 +294,39 @@ void StreamSolver::discard() noexcept {
 }
 
 void StreamSolver::take_replacement(Word number) noexcept {
-  const core::Time t = item_.time;
-  if (t < settled_until_ || !is_time_in_range(t) || !curve_.can_enter(t)) {
-    refuse(number, Refusal::too_late);
-    // All that belongs to it in one revision, so that no other solver takes it for something else.
-    const Word end = head_.consumed + std::min<Word>(item_.count, available_ - head_.consumed);
-    while (head_.consumed < end) refuse(head_.consumed++, Refusal::too_late);
-    return;
+  // A stop is never too late: it takes effect as soon as possible, in a revision of its own, which
+  // is committed sooner than a full batch.
+  const core::Time t =
+      is_stop() ? std::max({item_.time, settled_until_, curve_.earliest_entry()}) : item_.time;
+  const bool has_begun = curve_.has_begun();  // else there is nothing to replace
+  if (has_begun && (t < settled_until_ || !is_time_in_range(t) || !curve_.can_enter(t))) {
+    return refuse_replacement(number, Refusal::too_late);
   }
   ++head_.controls;
   // One revision, as far as the board has room.
-  batch_limit_ += std::min<Word>(item_.count, board_->capacity() / 2);
+  const bool may_follow = most_items_ == max_batch_;
+  const Word followers = may_follow ? std::min<Word>(item_.count, board_->capacity() / 2) : 0;
+  batch_limit_ = is_stop() ? 0 : batch_limit_ + followers;
+  if (!has_begun) return;
   // Where nothing moves any more and nothing is to come, there is nothing to withdraw.
-  if (item_.count == 0 && is_starved() && t >= curve_.newest_time()) return;
+  if (is_stop() && is_starved() && t >= curve_.newest_time()) return;
   curve_.enter(t);
   head_.starved = false;
   head_.newest_knot = t;
 }
 
+/// All that belongs to it in one revision, so that no other solver takes it for something else.
+void StreamSolver::refuse_replacement(Word number, Refusal reason) noexcept {
+  refuse(number, reason);
+  const Word end = head_.consumed + std::min<Word>(item_.count, available_ - head_.consumed);
+  while (head_.consumed < end) refuse(head_.consumed++, reason);
+}
+
 void StreamSolver::take_start_state(Word number) noexcept {
-  const core::Waypoint state = waypoint_of(item_);
+  const core::Waypoint state = item_.waypoint();
   if (curve_.has_begun()) return refuse(number, Refusal::already_started);
-  if (!is_finite(state.position) || !is_finite(state.velocity) || !is_finite(state.acceleration)) {
-    return refuse(number, Refusal::not_finite);
-  }
+  if (!is_finite(state)) return refuse(number, Refusal::not_finite);
+  if (!curve_.kinds().takes(state.position)) return refuse(number, Refusal::zero_quaternion);
   if (state.velocity.empty() || state.acceleration.empty()) {
     return refuse(number, Refusal::lacks_derivatives);
   }
@@ -360,10 +364,19 @@ void StreamSolver::refuse(Word number, Refusal reason) noexcept {
   ++head_.reasons[static_cast<std::size_t>(reason)];
 }
 
+/// Stopped between the look at the clock and the commit: readers find out by changed_from. Stored
+/// at once, because what comes next may be discarded, may never come, or may be another solver's.
+void StreamSolver::check_commit(core::Time now) noexcept {
+  const bool is_late = head_.changed_from <= now && head_.changed_from < core::Time::max();
+  if (is_late && !board_->is_late()) ++head_.revisions;
+  board_->store_checked(is_late);
+}
+
 StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   head_.changed_from = core::Time::max();
   const bool was_curve = head_.newest > 0;
   curve_.write(head_);
+  if (!board_->is_sound()) return {};
   if (live_ && (was_curve || head_.newest > 0)) {
     // What is finished changes no more: it has settled to its end.
     head_.settled_until =
@@ -373,21 +386,15 @@ StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   }
   head_.committed = clock.now();
   if (live_ && head_.changed_from <= head_.committed) {
-    const Word misses = head_.misses + 1;
-    board_->discard();
-    restore();
-    head_.misses = misses;
-    seen_ = head_.consumed;
-    scanned_ = head_.consumed;
+    take_back(head_.misses + 1);
     return {.missed = true};
   }
   board_->commit(head_);
   board_->store_tail(head_.consumed);
   curve_.committed();
-  // Stopped between the look at the clock and the commit: readers find out by changed_from.
-  if (live_ && head_.changed_from < core::Time::max() && head_.changed_from <= clock.now()) {
-    ++head_.revisions;
-  }
+  most_items_ = std::min<Word>(2 * most_items_, max_batch_);
+  const bool changes = head_.changed_from < core::Time::max();
+  if (live_) check_commit(changes ? clock.now() : head_.committed);
   return {.consumed = consumed, .published = true};
 }
 

@@ -16,6 +16,9 @@ constexpr Word kHasAcceleration = 1U << 9;
 constexpr unsigned kConditionShift = 16;
 constexpr unsigned kCountShift = 32;
 
+/// Of a stop whose producer knows of nothing that has settled: before all that can follow it.
+constexpr core::Time kEarliestStop = -kLatestTime;
+
 std::size_t words_per_item(const RingLayout& layout) noexcept {
   return layout.stride / sizeof(Word);
 }
@@ -33,6 +36,29 @@ bool is_finite(std::span<const double> values) noexcept {
   return all;
 }
 
+bool is_finite(const core::Waypoint& waypoint) noexcept {
+  return is_finite(waypoint.position) && is_finite(waypoint.velocity) &&
+         is_finite(waypoint.acceleration);
+}
+
+core::Waypoint RingItem::waypoint() const noexcept {
+  const std::size_t dimensions = values.size() / 3;
+  const auto all = std::span<const double>(values);
+  core::Waypoint waypoint{.time = time, .position = all.first(dimensions)};
+  if (has_velocity) waypoint.velocity = all.subspan(dimensions, dimensions);
+  if (has_acceleration) waypoint.acceleration = all.last(dimensions);
+  return waypoint;
+}
+
+core::WaypointValues RingItem::waypoint_values() noexcept {
+  const std::size_t dimensions = values.size() / 3;
+  const auto all = std::span(values);
+  core::WaypointValues waypoint{.position = all.first(dimensions)};
+  if (has_velocity) waypoint.velocity = all.subspan(dimensions, dimensions);
+  if (has_acceleration) waypoint.acceleration = all.last(dimensions);
+  return waypoint;
+}
+
 WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLayout& layout,
                                        const IngestLimits& limits)
     : layout_(layout),
@@ -43,15 +69,18 @@ WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLa
   // Look back for the newest item that says from when on the next may be: behind the last waypoint
   // there may be a finish.
   const WaypointRingReader past(region, layout);
-  for (Word back = 1; back <= std::min<Word>(head_, layout.capacity) && !has_last_; ++back) {
+  ends_with_stop_ = head_ > 0 && past.is_stop(head_ - 1);
+  bool is_found = false;
+  for (Word back = 1; back <= std::min<Word>(head_, layout.capacity) && !is_found; ++back) {
     const ItemKind kind = past.kind(head_ - back);
     finished_ = finished_ || kind == ItemKind::finish;
-    has_last_ = kind != ItemKind::finish;
+    is_found = kind != ItemKind::finish;
     last_time_ = past.time(head_ - back);
+    has_last_ = is_found && last_time_ != kEarliestStop;
   }
   if (!is_time_in_range(last_time_)) {
     throw BadRegion("the ring's last item has time " + std::to_string(last_time_.count()) +
-                    " ns, beyond 2^62 ns");
+                    " ns, not within 2^62 ns of 0");
   }
 }
 
@@ -62,10 +91,7 @@ AppendStatus WaypointRingWriter::check_form(const core::Waypoint& waypoint) cons
       !fits(waypoint.acceleration, dimensions)) {
     return AppendStatus::wrong_dimension;
   }
-  if (!is_finite(waypoint.position) || !is_finite(waypoint.velocity) ||
-      !is_finite(waypoint.acceleration)) {
-    return AppendStatus::not_finite;
-  }
+  if (!is_finite(waypoint)) return AppendStatus::not_finite;
   return is_time_in_range(waypoint.time) ? AppendStatus::accepted : AppendStatus::too_far_apart;
 }
 
@@ -74,15 +100,22 @@ AppendStatus WaypointRingWriter::check(const core::Waypoint& waypoint,
   AppendStatus status = check_form(waypoint);
   if (status == AppendStatus::accepted && has_last_) {
     status = judge_interval(waypoint.time - last_time_, limits_);
-    // However long a live stream has paused, it may go on.
-    if (status == AppendStatus::too_far_apart && solved.settled_until > last_time_ &&
-        waypoint.time - solved.settled_until <= limits_.max_interval) {
+    if (status == AppendStatus::too_far_apart && follows_pause(waypoint.time, solved)) {
       status = AppendStatus::accepted;
     }
   }
   if (status != AppendStatus::accepted) return status;
   if (waypoint.time < solved.settled_until) return AppendStatus::past;
-  return has_room(1, solved) ? AppendStatus::accepted : AppendStatus::full;
+  return has_room(1, solved, control_reserve(layout_.capacity)) ? AppendStatus::accepted
+                                                                : AppendStatus::full;
+}
+
+/// However long a live stream has paused, it may go on: its time does, also while nothing moves.
+bool WaypointRingWriter::follows_pause(core::Time time, const Solved& solved) const noexcept {
+  const auto follows = [&](core::Time since) {
+    return since > last_time_ && time - since <= limits_.max_interval;
+  };
+  return follows(solved.settled_until) || (solved.clock != nullptr && follows(solved.clock->now()));
 }
 
 AppendStatus WaypointRingWriter::append(const core::Waypoint& waypoint,
@@ -100,7 +133,9 @@ AppendStatus WaypointRingWriter::check_replacement(core::Time t,
   if (finished_) return AppendStatus::finished;
   if (!is_time_in_range(t)) return AppendStatus::too_far_apart;
   if (t < solved.settled_until) return AppendStatus::too_late;
-  if (waypoints.size() >= layout_.capacity) return AppendStatus::too_many;
+  if (solved.clock != nullptr && t < solved.clock->now()) return AppendStatus::too_late;
+  const std::size_t items = 1 + waypoints.size();
+  if (items + control_reserve(layout_.capacity) > layout_.capacity) return AppendStatus::too_many;
   core::Time before = t;
   for (const core::Waypoint& waypoint : waypoints) {
     AppendStatus status = check_form(waypoint);
@@ -108,12 +143,14 @@ AppendStatus WaypointRingWriter::check_replacement(core::Time t,
     if (status != AppendStatus::accepted) return status;
     before = waypoint.time;
   }
-  return has_room(1 + waypoints.size(), solved) ? AppendStatus::accepted : AppendStatus::full;
+  return has_room(items, solved, control_reserve(layout_.capacity)) ? AppendStatus::accepted
+                                                                    : AppendStatus::full;
 }
 
 AppendStatus WaypointRingWriter::replace_from(core::Time t,
                                               std::span<const core::Waypoint> waypoints,
                                               const Solved& solved) noexcept {
+  if (waypoints.empty()) return counted(stop_from(t, solved));
   const AppendStatus status = check_replacement(t, waypoints, solved);
   if (status != AppendStatus::accepted) return counted(status);
   claim(1 + waypoints.size());
@@ -122,8 +159,33 @@ AppendStatus WaypointRingWriter::replace_from(core::Time t,
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
     put_item(1 + i, static_cast<Word>(ItemKind::waypoint), waypoints[i]);
   }
-  publish(1 + waypoints.size(), waypoints.empty() ? t : waypoints.back().time);
+  publish(1 + waypoints.size(), waypoints.back().time);
   return status;
+}
+
+/// A stop is never too late: what has settled is where it takes effect.
+AppendStatus WaypointRingWriter::stop_from(core::Time t, const Solved& solved) noexcept {
+  if (finished_) return AppendStatus::finished;
+  const core::Time from = std::max({t, solved.settled_until, kEarliestStop});
+  if (!is_time_in_range(from)) return AppendStatus::too_far_apart;
+  if (repeats_stop(from, solved)) return AppendStatus::accepted;
+  // Stops ahead leave an item to one that cannot wait, and all of them one to the finish.
+  const bool is_ahead = from > solved.settled_until;
+  const std::size_t others = control_reserve(layout_.capacity) / 2;
+  if (!has_room(1, solved, is_ahead ? others : std::min<std::size_t>(others, 1))) {
+    return AppendStatus::full;
+  }
+  claim(1);
+  put_item(0, static_cast<Word>(ItemKind::replace), {.time = from, .position = {}});
+  publish(1, from);
+  has_last_ = from != kEarliestStop;
+  ends_with_stop_ = true;
+  return AppendStatus::accepted;
+}
+
+/// Whether a stop would change nothing: the newest item is one, and waits.
+bool WaypointRingWriter::repeats_stop(core::Time from, const Solved& solved) const noexcept {
+  return ends_with_stop_ && solved.consumed < head_ && from >= last_time_;
 }
 
 AppendStatus WaypointRingWriter::start_from(const core::Instant& state,
@@ -145,7 +207,7 @@ AppendStatus WaypointRingWriter::start_from(const core::Instant& state,
 
 AppendStatus WaypointRingWriter::finish(const core::Condition& end, const Solved& solved) noexcept {
   if (finished_) return AppendStatus::finished;
-  if (!has_room(1, solved)) return AppendStatus::full;
+  if (!has_room(1, solved, 0)) return AppendStatus::full;
   const Word kind = static_cast<Word>(ItemKind::finish) | static_cast<Word>(end.kind)
                                                               << kConditionShift;
   const bool is_velocity = end.kind == core::ConditionKind::velocity;
@@ -186,11 +248,13 @@ void WaypointRingWriter::put_item(Word index, Word kind_and_flags,
 void WaypointRingWriter::publish(Word items, core::Time last) noexcept {
   head_ += items;
   has_last_ = true;
+  ends_with_stop_ = false;
   last_time_ = last;
   store(control_[kHead], head_, std::memory_order_seq_cst);  // P2
 }
 
 AppendStatus WaypointRingWriter::counted(AppendStatus status) noexcept {
+  if (status == AppendStatus::accepted) return status;
   Word& counter = control_[kProducerCounters + static_cast<std::size_t>(status)];
   store(counter, load(counter, std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   return status;
@@ -229,6 +293,12 @@ void WaypointRingReader::prefetch(Word i) const noexcept {
 ItemKind WaypointRingReader::kind(Word i) const noexcept {
   const Word& word = items_[(i & (layout_.capacity - 1)) * words_per_item(layout_) + kItemKind];
   return static_cast<ItemKind>(load(word, std::memory_order_acquire) & kKindMask);
+}
+
+bool WaypointRingReader::is_stop(Word i) const noexcept {
+  const Word& word = items_[(i & (layout_.capacity - 1)) * words_per_item(layout_) + kItemKind];
+  const Word kind = load(word, std::memory_order_acquire);
+  return (kind & kKindMask) == static_cast<Word>(ItemKind::replace) && kind >> kCountShift == 0;
 }
 
 core::Time WaypointRingReader::time(Word i) const noexcept {

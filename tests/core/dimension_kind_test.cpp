@@ -125,12 +125,15 @@ TEST(DimensionKinds, TheFirstWaypointKeepsItsSignAndItsTurn) {
   EXPECT_EQ(first, (std::vector<double>{0, 0, 0, -1, 7}));
 }
 
-TEST(DimensionKinds, OnlyAQuaternionOfLengthZeroIsNotTaken) {
+TEST(DimensionKinds, AQuaternionOfLengthZeroOrNextToItIsNotTaken) {
   const auto kinds = kinds_of({kLinear, kQuaternion, kQuaternion, kQuaternion, kQuaternion});
-  EXPECT_TRUE(kinds.takes(std::vector<double>{0, 0, 0, 1e-200, 0}));
+  EXPECT_TRUE(kinds.takes(std::vector<double>{0, 0, 0, 1e-99, 0}));
+  for (const double length : {1e-101, 1e-200, 1e-310, 1e101}) {
+    EXPECT_FALSE(kinds.takes(std::vector<double>{0, 0, 0, length, 0})) << length;
+  }
   EXPECT_FALSE(kinds.takes(std::vector<double>{1, 0, 0, 0, 0}));
   EXPECT_TRUE(DimensionKinds().takes(std::vector<double>{0, 0, 0, 0}));
-  std::vector<double> tiny{5, 0, 0, 3e-200, -4e-200};
+  std::vector<double> tiny{5, 0, 0, 3e-99, -4e-99};
   kinds.continue_from({}, {.position = tiny});
   EXPECT_NEAR(tiny[3], 0.6, 1e-15);
   EXPECT_NEAR(tiny[4], -0.8, 1e-15);

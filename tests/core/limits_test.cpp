@@ -1,12 +1,18 @@
 #include "splinecast/core/limits.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
 #include <random>
 #include <vector>
 
+#include "splinecast/core/sliding_window.hpp"
 #include "splinecast/core/splice.hpp"
 
 namespace splinecast::core {
@@ -41,6 +47,52 @@ TEST(Limits, AStopTailKeepsItsLimitOrWhatItBeginsWithAndTakesNoLongerThanItMust)
     if (a[0] == 0) {
       EXPECT_NEAR(to_seconds(time), std::max(1.5 * std::abs(v[0]) / limit[0], 1e-3), 2e-9);
     }
+  }
+}
+
+/// Whether `run` comes to its end, in a process that is killed after 20 s.
+template <typename Run>
+void expect_an_end(const Run& run) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        alarm(20);
+        run();
+        std::_Exit(0);
+      },
+      ::testing::ExitedWithCode(0), "");
+}
+
+TEST(Limits, AStopFromAnyVelocityIsFoundInABoundedNumberOfTries) {
+  expect_an_end([] {
+    constexpr double kTiny = std::numeric_limits<double>::denorm_min();
+    const std::array values{0.0, kTiny, -3 * kTiny, 1e-310, 1e-300, -1e-100, 1.0, 1e100, -1e200};
+    for (const double v : values) {
+      for (const double a : values) {
+        for (const double limit : {kTiny, 1e-310, 1e-100, 1e-3, 10.0, 1e100}) {
+          const Time time =
+              stop_time_within(std::array{limit}, kLeastStopTime, std::array{v}, std::array{a});
+          if (time < kLeastStopTime || to_seconds(time) > 1e6) std::_Exit(1);
+        }
+      }
+    }
+  });
+}
+
+/// Its velocities decay by 0.27 a knot until they are denormal.
+TEST(Limits, AWindowGoesOnThroughOnePositionRepeated) {
+  for (const Tail tail : {Tail::natural, Tail::parabolic, Tail::bessel}) {
+    expect_an_end([tail] {
+      WindowOptions options{.tail = tail, .max_acceleration = {10}};
+      SlidingWindow window(1, options);
+      Segment last(1);
+      for (int i = 0; i < 2000; ++i) {
+        const double x = i < 20 ? std::sin(i) : 0;
+        window.append({.time = std::chrono::milliseconds(10 * i), .position = {&x, 1}});
+        window.segment(window.segments() - 1, last);
+        if (last.kind != SegmentKind::stop_tail) std::_Exit(1);
+      }
+    });
   }
 }
 

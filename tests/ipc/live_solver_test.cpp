@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "splinecast/ipc/sampler.hpp"
-#include "support/memory_stream.hpp"
+#include "support/live_stream.hpp"
 
 namespace splinecast::ipc {
 namespace {
@@ -15,58 +15,7 @@ using core::Time;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// A live stream of one dimension in plain memory whose clock stands at 100 s. Its motion is
-/// sin(t), in seconds from there.
-struct Live : testing::MemoryStream {
-  static constexpr Time kNow = seconds(100);
-
-  explicit Live(core::WindowOptions how = {}, std::size_t capacity = 1024,
-                LiveOptions how_live = {})
-      : MemoryStream(1, from_halt(std::move(how)), 256, capacity, {}, {}, how_live),
-        sampler(board.reader, StreamClock::monotonic),
-        state(1) {
-    clock.time = kNow;
-  }
-
-  static core::WindowOptions from_halt(core::WindowOptions how) {
-    how.start = {.kind = core::ConditionKind::halt, .value = {}};
-    how.held_before_start = true;
-    return how;
-  }
-  static double x(Time t) { return std::sin(core::to_seconds(t - kNow)); }
-
-  AppendStatus put(Time t) {
-    const double position = x(t);
-    return ring.writer.append({.time = t, .position = std::span(&position, 1)}, solved());
-  }
-  WaypointRingWriter::Solved solved() { return {board.reader.tail(), solver.head().settled_until}; }
-  AppendStatus replace(Time t, const std::vector<Time>& times) {
-    std::vector<double> positions;
-    for (const Time at : times) positions.push_back(x(at));
-    std::vector<core::Waypoint> waypoints;
-    for (std::size_t i = 0; i < times.size(); ++i) {
-      waypoints.push_back({.time = times[i], .position = std::span(&positions[i], 1)});
-    }
-    return ring.writer.replace_from(t, waypoints, solved());
-  }
-  /// Appends waypoints every 10 ms from `from` to `to` after the start.
-  void put_all(int from_ms, int to_ms) {
-    for (int ms = from_ms; ms <= to_ms; ms += 10) {
-      ASSERT_EQ(put(kNow + milliseconds(ms)), AppendStatus::accepted) << ms;
-    }
-    drain();
-  }
-  double position_at(Time t) {
-    EXPECT_TRUE(has_values(sampler.preview(t, state.ref())));
-    return state.position()[0];
-  }
-  Word reason(Refusal refusal) const {
-    return solver.head().reasons[static_cast<std::size_t>(refusal)];
-  }
-
-  Sampler sampler;
-  core::State state;
-};
+using Live = testing::LiveStream;
 
 TEST(LiveSolver, SettlesByTimeAndSaysSoWithoutWaypointsUntilTheMotionEnds) {
   Live live;
@@ -136,7 +85,8 @@ TEST(LiveSolver, AReplacementByNothingIsAStopTailFromThere) {
 TEST(LiveSolver, AReplacementThatComesTooLateIsRefusedWithAllThatBelongsToIt) {
   Live live;
   live.put_all(50, 500);
-  EXPECT_EQ(live.replace(Live::kNow + milliseconds(4), {}), AppendStatus::too_late);
+  EXPECT_EQ(live.replace(Live::kNow + milliseconds(4), {Live::kNow + milliseconds(30)}),
+            AppendStatus::too_late);
   const Time t = Live::kNow + milliseconds(10);
   ASSERT_EQ(live.replace(t, {t + milliseconds(20), t + milliseconds(30)}), AppendStatus::accepted);
   ASSERT_EQ(live.put(Live::kNow + milliseconds(510)), AppendStatus::accepted);
@@ -261,6 +211,56 @@ TEST(LiveSolver, AReaderFarBehindIsToldIfItSampledPastWhatWasSettled) {
     for (int i = 0; i < 100; ++i) live.put_all(110 + 10 * i, 110 + 10 * i);
     EXPECT_EQ(live.sampler.sample(settled, live.state.ref()),
               past ? SampleStatus::revised : SampleStatus::settled);
+  }
+}
+
+/// As a producer does that replaces the future with each chunk, the first one too.
+TEST(LiveSolver, AReplacementOnAStreamWithoutWaypointsStartsIt) {
+  for (const bool stops_first : {false, true}) {
+    Live live;
+    if (stops_first) {
+      ASSERT_EQ(live.replace(Live::kNow, {}), AppendStatus::accepted);
+      live.drain();
+      EXPECT_EQ(live.solver.head().newest, 0U);
+    }
+    Live appended;
+    std::vector<Time> times;
+    for (int ms = 50; ms <= 200; ms += 10) times.push_back(Live::kNow + milliseconds(ms));
+    ASSERT_EQ(live.replace(Live::kNow + milliseconds(40), times), AppendStatus::accepted);
+    live.drain();
+    appended.put_all(50, 200);
+    const Head& head = live.solver.head();
+    EXPECT_EQ(head.refused, 0U);
+    EXPECT_EQ(head.controls, stops_first ? 2U : 1U);
+    EXPECT_EQ(head.knots, times.size());
+    EXPECT_EQ(head.consumed, head.knots + head.controls);
+    for (int ms = 0; ms < 400; ++ms) {
+      const Time t = Live::kNow + milliseconds(ms);
+      EXPECT_EQ(live.position_at(t), appended.position_at(t)) << ms;
+    }
+  }
+}
+
+TEST(LiveSolver, AStreamThatHasRestedLongerThanTheMostIntervalGoesOn) {
+  for (const bool replaces : {false, true}) {
+    Live live;
+    live.put_all(50, 200);
+    live.clock.time = Live::kNow + std::chrono::hours(2);
+    live.drain();
+    live.solver.step(live.clock);
+    const Time t = live.clock.time + milliseconds(500);
+    EXPECT_EQ(live.put(t + std::chrono::hours(1)), AppendStatus::too_far_apart);
+    if (replaces) {
+      const Time from = live.clock.time + milliseconds(20);
+      EXPECT_EQ(live.replace(live.clock.time - Time(1), {t}), AppendStatus::too_late);
+      ASSERT_EQ(live.replace(from, {t}), AppendStatus::accepted);
+    } else {
+      ASSERT_EQ(live.put(t), AppendStatus::accepted);
+    }
+    live.drain();
+    EXPECT_EQ(live.solver.head().refused, 0U);
+    EXPECT_EQ(live.solver.head().newest_knot, t);
+    EXPECT_NEAR(live.position_at(t), Live::x(t), 1e-12);
   }
 }
 

@@ -56,6 +56,19 @@ TEST(Roles, AWaypointTravelsFromProducerToReader) {
   EXPECT_EQ(reader.clock(), StreamClock::recorded);
 }
 
+TEST(Roles, AProducerGoesOnAfterAPauseLongerThanTheMostInterval) {
+  const TestStream stream;
+  constexpr Time kMost{30'000'000};
+  Producer producer(stream.name(), {.dimensions = 1, .limits = {.max_interval = kMost}});
+  const MonotonicClock clock;
+  const std::vector<double> x{1};
+  const Time first = clock.now();
+  ASSERT_EQ(producer.append({first, x, {}, {}}), AppendStatus::accepted);
+  EXPECT_EQ(producer.append({first + 1000 * kMost, x, {}, {}}), AppendStatus::too_far_apart);
+  while (clock.now() <= first + 2 * kMost) std::this_thread::yield();
+  EXPECT_EQ(producer.append({first + 2 * kMost, x, {}, {}}), AppendStatus::accepted);
+}
+
 TEST(Roles, TheDescriptionTravelsWithTheStream) {
   const TestStream stream;
   auto options = recorded(2);

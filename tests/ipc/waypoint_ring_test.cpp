@@ -66,6 +66,25 @@ TEST(WaypointRing, RefusesBadFormWithTheReasonAndCountsIt) {
   EXPECT_EQ(ring.reader.refused(AppendStatus::too_far_apart), 1U);
 }
 
+TEST(WaypointRing, TheEarliestAndTheLatestTimeAreInOrder) {
+  MemoryRing ring(1, 8);
+  EXPECT_EQ(append(ring, -kLatestTime - Time(1), {0}), AppendStatus::too_far_apart);
+  EXPECT_EQ(append(ring, -kLatestTime, {0}), AppendStatus::accepted);
+  EXPECT_EQ(append(ring, kLatestTime + Time(1), {0}), AppendStatus::too_far_apart);
+  EXPECT_EQ(append(ring, kLatestTime, {0}), AppendStatus::too_far_apart);
+  const IngestLimits any{.min_interval = Time(1), .max_interval = Time::max()};
+  testing::MemoryStream stream(1, {}, 8, 64, any);
+  stream.ring.writer = WaypointRingWriter(stream.ring.bytes.span(), stream.ring.layout, any);
+  const std::vector<double> x{0, 1};
+  EXPECT_EQ(stream.append(-kLatestTime, std::span(x).first(1)), AppendStatus::accepted);
+  EXPECT_EQ(stream.append(kLatestTime, std::span(x).last(1)), AppendStatus::accepted);
+  stream.drain();
+  EXPECT_EQ(stream.solver.head().knots, 2U);
+  SegmentCopy segment(1);
+  ASSERT_TRUE(stream.board.reader.copy_segment(1, stream.board.reader.revision(), segment));
+  EXPECT_NEAR(segment.coefficients[1] * 2 * core::to_seconds(kLatestTime), 1, 1e-12);  // velocity
+}
+
 TEST(WaypointRing, IsFullUntilTheSolverConsumesAndLosesNothing) {
   MemoryRing ring(1, 4);
   RingItem item(1);
@@ -145,6 +164,64 @@ TEST(WaypointRing, ANewWriterGoesOnBehindTheLastWaypoint) {
   EXPECT_EQ(next.append({3 * kMillisecond, x, {}, {}}, {}), AppendStatus::duplicate);
   EXPECT_EQ(next.finish({}, {}), AppendStatus::accepted);
   EXPECT_TRUE(WaypointRingWriter(ring.bytes.span(), ring.layout, {}).finished());
+}
+
+/// Fills a ring of this capacity with waypoints, every 10 ms. Returns how many it took.
+Word fill(MemoryRing& ring) {
+  while (append(ring, static_cast<std::int64_t>(ring.writer.head() + 1) * 10 * kMillisecond, {0}) ==
+         AppendStatus::accepted) {
+  }
+  return ring.writer.head();
+}
+
+TEST(WaypointRing, KeepsRoomForStopsAndAFinish) {
+  MemoryRing ring(1, 64);
+  ASSERT_EQ(fill(ring), 60U);
+  const std::vector<double> x{0};
+  const core::Waypoint waypoint{.time = 10'000 * kMillisecond, .position = x};
+  const auto stop = [&](Time t) { return ring.writer.replace_from(t, {}, {0, 5 * kMillisecond}); };
+  const auto replace = ring.writer.replace_from(9'000 * kMillisecond, {&waypoint, 1}, {});
+  EXPECT_EQ(replace, AppendStatus::full);
+  // Each earlier than the one before, so that it says something new.
+  EXPECT_EQ(stop(300 * kMillisecond), AppendStatus::accepted);
+  EXPECT_EQ(stop(200 * kMillisecond), AppendStatus::accepted);
+  EXPECT_EQ(stop(100 * kMillisecond), AppendStatus::full);  // the last two are for what cannot wait
+  EXPECT_EQ(stop(Time(0)), AppendStatus::accepted);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(stop(Time(i)), AppendStatus::accepted);
+  EXPECT_EQ(ring.writer.head(), 63U);
+  EXPECT_EQ(ring.writer.finish({}, {}), AppendStatus::accepted);
+  EXPECT_EQ(ring.writer.head(), 64U);
+}
+
+TEST(WaypointRing, AStopThatRepeatsOneThatWaitsTakesNoItem) {
+  MemoryRing ring(1, 64);
+  ASSERT_EQ(append(ring, 10 * kMillisecond, {0}), AppendStatus::accepted);
+  const auto stop = [&](Time t, Word consumed) {
+    EXPECT_EQ(ring.writer.replace_from(t, {}, {consumed}), AppendStatus::accepted);
+    return ring.writer.head();
+  };
+  EXPECT_EQ(stop(5 * kMillisecond, 0), 2U);
+  EXPECT_EQ(stop(5 * kMillisecond, 1), 2U);
+  EXPECT_EQ(stop(7 * kMillisecond, 1), 2U);
+  EXPECT_EQ(stop(4 * kMillisecond, 1), 3U);  // earlier
+  EXPECT_EQ(stop(4 * kMillisecond, 3), 4U);  // the one before has been taken
+  ASSERT_EQ(append(ring, 20 * kMillisecond, {0}, 3), AppendStatus::accepted);
+  EXPECT_EQ(stop(20 * kMillisecond, 3), 6U);  // a waypoint lies between
+  ring.writer = WaypointRingWriter(ring.bytes.span(), ring.layout, {});
+  EXPECT_EQ(stop(20 * kMillisecond, 3), 6U);  // also of the producer before
+}
+
+TEST(WaypointRing, AReplacementThatLeavesNoRoomForAStopIsTooLong) {
+  MemoryRing ring(1, 64);
+  const std::vector<double> x{0};
+  std::vector<core::Waypoint> waypoints;
+  for (int i = 1; i <= 60; ++i) {
+    waypoints.push_back({.time = i * kMillisecond, .position = x});
+  }
+  EXPECT_EQ(ring.writer.replace_from(Time(0), waypoints, {}), AppendStatus::too_many);
+  waypoints.pop_back();
+  EXPECT_EQ(ring.writer.replace_from(Time(0), waypoints, {}), AppendStatus::accepted);
+  EXPECT_EQ(ring.writer.replace_from(Time(-1), {}, {}), AppendStatus::accepted);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ using std::chrono::milliseconds;
 
 namespace {
 
-constexpr Time kStart = std::chrono::seconds(1000);
+constexpr Time kStart = Motion::kStart;
 constexpr Time kTick = milliseconds(1);
 constexpr Time kInterval = milliseconds(10);
 /// At a depth of one knot every waypoint comes when the one before it has been frozen: each is
@@ -25,41 +25,10 @@ constexpr Time kLeastLead = milliseconds(16);
 /// How far ahead a producer sends its waypoints after the machine has stopped, so that with the
 /// acceleration allowed it can catch up with the motion.
 constexpr Time kCatchUp = milliseconds(600);
-/// When the motion starts, s.
-constexpr double kFirst = 0.1;
 /// Waypoints closer than this leave a frozen velocity no time to be made good.
 constexpr ipc::IngestLimits kLimits{.min_interval = milliseconds(5)};
 
 }  // namespace
-
-Motion::Motion(std::uint64_t seed, std::size_t dimensions) {
-  std::mt19937_64 random(seed * 977 + 1);
-  std::uniform_real_distribution<double> unit(0, 1);
-  for (std::size_t i = 0; i < 2 * dimensions; ++i) {
-    // At rest where the stream starts.
-    const double frequency = 3 + 3 * unit(random);
-    terms_.push_back({0.2 + unit(random), frequency, std::acos(0.0) - frequency * kFirst});
-  }
-}
-
-std::vector<double> Motion::at(Time t, int derivative) const {
-  std::vector<double> x(dimensions());
-  const double s = core::to_seconds(t - kStart);
-  for (std::size_t i = 0; i < terms_.size(); ++i) {
-    const Term& term = terms_[i];
-    x[i / 2] += term.amplitude * std::pow(term.frequency, derivative) *
-                std::sin(term.frequency * s + term.phase + derivative * std::acos(0.0));
-  }
-  return x;
-}
-
-std::vector<double> Motion::peak_acceleration() const {
-  std::vector<double> peak(dimensions());
-  for (std::size_t i = 0; i < terms_.size(); ++i) {
-    peak[i / 2] += terms_[i].amplitude * terms_[i].frequency * terms_[i].frequency;
-  }
-  return peak;
-}
 
 /// The world's clock. Armed, it lets time pass behind the next look at it: the process that looked
 /// is stopped there, and the world goes on without it.
@@ -260,10 +229,16 @@ void LiveWorld::send(Time t, std::vector<double> x) {
 void LiveWorld::replace() {
   const Time t = now_ + between(6'000, 120'000);
   const auto count = std::uniform_int_distribution<std::size_t>(0, 30)(random_);
+  if (replace_from(t, count) == ipc::AppendStatus::accepted) ++replaced;
+}
+
+/// Replaces what lies behind t by `count` waypoints of the motion, or by nothing.
+ipc::AppendStatus LiveWorld::replace_from(Time t, std::size_t count) {
   std::vector<std::vector<double>> positions;
   std::vector<core::Waypoint> waypoints;
   std::vector<Sent> sent_now;
   const ipc::Word item = stream_.ring.writer.head();
+  const ipc::Word taken = stream_.board.reader.tail();
   for (std::size_t i = 0; i < count; ++i) {
     const Time at = t + kInterval * (static_cast<int>(i) + 1) + between(0, 2'000);
     positions.push_back(motion_.at(at));
@@ -272,16 +247,37 @@ void LiveWorld::replace() {
   for (std::size_t i = 0; i < count; ++i) {
     waypoints.push_back({.time = sent_now[i].time, .position = positions[i]});
   }
-  const auto status = stream_.ring.writer.replace_from(
-      t, waypoints, {stream_.board.reader.tail(), sampler_.settled_until()});
-  if (status != ipc::AppendStatus::accepted) return;
-  ++replaced;
+  const auto status =
+      stream_.ring.writer.replace_from(t, waypoints, {taken, sampler_.settled_until()});
+  if (status != ipc::AppendStatus::accepted) return status;
   sent += count;
-  // What it withdraws need not be passed through; if the solver refuses it, it may be.
-  std::erase_if(on_the_way_, [t](const Sent& waypoint) { return waypoint.time >= t; });
+  // What it withdraws need not be passed through: what lies behind t, and, if it takes effect
+  // before its turn, what has not been taken yet. If the solver refuses it, it may be.
+  std::erase_if(on_the_way_, [t, taken](const Sent& waypoint) {
+    return waypoint.time >= t || waypoint.item >= taken;
+  });
   on_the_way_.insert(on_the_way_.end(), sent_now.begin(), sent_now.end());
   if (count < 3) lead_ = kCatchUp;
   next_waypoint_ = (count == 0 ? t : sent_now.back().time) + kInterval;
+  return status;
+}
+
+void LiveWorld::stop_behind_misses() {
+  step_solver();
+  silent_until_ = now_ + milliseconds(200);
+  const Time settled = head().settled_until;
+  (void)replace_from(settled, 3);
+  (void)replace_from(std::max(settled, head().newest_knot) + milliseconds(300), 3);
+  advance_to(now_ + milliseconds(20));
+  ASSERT_EQ(replace_from(settled, 0), ipc::AppendStatus::accepted);
+  const ipc::Word stop = stream_.ring.writer.head();
+  const bool was_finished = head().finished;
+  step_solver();
+  EXPECT_FALSE(was_finished);
+  EXPECT_EQ(head().consumed, stop) << "seed " << options_.seed;
+  EXPECT_LE(head().newest_knot, head().settled_until) << "seed " << options_.seed;
+  ++stops;
+  next_waypoint_ = now_ + kCatchUp;
 }
 
 /// Every waypoint whose time has come is passed through, or has been refused by its number.
@@ -345,10 +341,11 @@ void LiveWorld::kill_solver() {
     const auto words = ipc::words_at(stream_.board.bytes.span(), 0,
                                      stream_.board.layout.bytes / sizeof(ipc::Word));
     const ipc::Word revision = words[at + ipc::kRevision];
-    const ipc::Word tail = words[at + ipc::kTail];
+    const auto line = words.subspan(at + ipc::kTail, 3);  // stored behind the commit
+    const std::vector<ipc::Word> behind(line.begin(), line.end());
     stream_.solver.step(StandingClock(now_));
     words[at + ipc::kRevision] = revision;
-    words[at + ipc::kTail] = tail;
+    std::ranges::copy(behind, line.begin());
   }
   stream_.replace_solver();
 }

@@ -14,25 +14,9 @@
 #include "splinecast/ipc/verification.hpp"
 #include "support/curve_watch.hpp"
 #include "support/memory_stream.hpp"
+#include "support/motion.hpp"
 
 namespace splinecast::testing {
-
-/// The motion that a world's producer sends: a sum of two sines per dimension.
-class Motion {
- public:
-  Motion(std::uint64_t seed, std::size_t dimensions);
-  [[nodiscard]] std::size_t dimensions() const { return terms_.size() / 2; }
-  /// The derivative-th derivative at t.
-  [[nodiscard]] std::vector<double> at(core::Time t, int derivative = 0) const;
-  /// A bound of the acceleration, per dimension.
-  [[nodiscard]] std::vector<double> peak_acceleration() const;
-
- private:
-  struct Term {
-    double amplitude, frequency, phase;
-  };
-  std::vector<Term> terms_;
-};
 
 /// What happens in a world, per second of its time. Instants are random.
 struct WorldOptions {
@@ -60,6 +44,10 @@ class LiveWorld {
   /// Lets it go on for so long.
   void run(core::Time duration);
 
+  /// Sends replacements that come too late or lie ahead while the solver is stopped, then a stop,
+  /// and expects that the next step brings the curve to rest from settled_until on.
+  void stop_behind_misses();
+
   /// Finishes the stream, lets it come to rest and checks that it ends at its last waypoint.
   void finish();
 
@@ -76,6 +64,7 @@ class LiveWorld {
   std::uint64_t sent = 0;          ///< waypoints that the ring accepted
   std::uint64_t interpolated = 0;  ///< of these, found on the curve at their time
   std::uint64_t starved = 0, replaced = 0, solver_kills = 0, producer_kills = 0, pauses = 0;
+  std::uint64_t stops = 0;
 
  private:
   class WorldClock;
@@ -83,6 +72,7 @@ class LiveWorld {
   void tick();
   void produce();
   void replace();
+  ipc::AppendStatus replace_from(core::Time t, std::size_t count);
   void send(core::Time t, std::vector<double> x);
   void run_quietly(core::Time duration);
   void expect_passed();

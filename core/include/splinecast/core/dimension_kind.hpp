@@ -79,14 +79,18 @@ class DimensionKinds {
     return quaternions_;
   }
 
-  /// Whether no quaternion of a position has length 0, of which no rotation can be made.
+  /// Whether every quaternion of a position, or this one, has a length of which a rotation can be
+  /// made: neither 0 nor beyond 1e-100 to 1e100.
   [[nodiscard]] bool takes(std::span<const double> position) const noexcept;
+  [[nodiscard]] static bool takes(std::span<const double> position,
+                                  const QuaternionDimensions& quaternion) noexcept;
 
   /// Moves a waypoint to the representative nearest to `previous`, the position before it on the
   /// curve: a wrapping value by whole periods, to within half of one; a quaternion to unit length,
   /// with the sign that has no negative dot product with the one before. Given derivatives of a
   /// quaternion are scaled with it. An empty `previous` says that there is none: then values keep
-  /// their sign and period. Values must be usable, and such as `takes` accepts.
+  /// their sign and period. Values must be usable, and such as `takes` accepts; the derivatives of
+  /// a short quaternion may leave the range of what is usable.
   void continue_from(std::span<const double> previous,
                      const WaypointValues& waypoint) const noexcept;
 

@@ -15,4 +15,18 @@ using Time = std::chrono::nanoseconds;
   return static_cast<double>(difference.count()) / 1e9;
 }
 
+/// a + b, or the last time there is in that direction.
+[[nodiscard]] constexpr Time saturated_sum(Time a, Time b) noexcept {
+  std::int64_t sum = 0;
+  if (!__builtin_add_overflow(a.count(), b.count(), &sum)) return Time(sum);
+  return b < Time::zero() ? Time::min() : Time::max();
+}
+
+/// factor · a, likewise; the factor is not negative.
+[[nodiscard]] constexpr Time saturated_product(Time a, std::int64_t factor) noexcept {
+  std::int64_t product = 0;
+  if (!__builtin_mul_overflow(a.count(), factor, &product)) return Time(product);
+  return a < Time::zero() ? Time::min() : Time::max();
+}
+
 }  // namespace splinecast::core

@@ -96,6 +96,9 @@ inline constexpr std::size_t kHead = 0;      ///< waypoints: items appended
 inline constexpr std::size_t kRetired = 1;   ///< both: not 0 once the region is of no more use
 inline constexpr std::size_t kClaimed = 2;   ///< waypoints: items up to which a replacement writes
 inline constexpr std::size_t kTail = kSeparation / sizeof(Word);  ///< spline: items consumed
+inline constexpr std::size_t kLate = kTail + 1;  ///< spline: last revision committed too late
+inline constexpr std::size_t kChecked =
+    kTail + 2;  ///< spline: last revision of which that is known
 inline constexpr std::size_t kSleeping = 2 * kSeparation / sizeof(Word);  ///< spline: solver sleeps
 inline constexpr std::size_t kProducerCounters = kSeparation / sizeof(Word);  ///< waypoints
 

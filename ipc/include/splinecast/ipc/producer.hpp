@@ -33,9 +33,17 @@ class Producer {
   [[nodiscard]] AppendStatus append(const core::Waypoint& waypoint) noexcept;
 
   /// Replaces all that lies behind time t by these waypoints, from none upwards, as one revision:
-  /// the curve goes on from its state at t by a splice, or, without a waypoint, comes to rest. `t`
-  /// must not lie before earliest(), else `too_late`; the waypoints must be later than it, and
-  /// fewer than the ring has items. O(D) per waypoint; otherwise as append.
+  /// the curve goes on from its state at t by a splice, or, without a waypoint, comes to rest. With
+  /// waypoints, `t` must not lie before earliest(), else `too_late`; the waypoints must be later
+  /// than it, and fit into the ring besides what it keeps free for stops. On a stream that has no
+  /// waypoint yet they start it, as appended ones do. O(D) per waypoint; otherwise as append.
+  ///
+  /// Without waypoints it is a stop, which is never too late: a t that has settled means as soon as
+  /// possible. The solver's next step carries it out at its settled_until, or at t if that is
+  /// later, whatever is queued before it; and that step comes after one sweep, or one wake, at
+  /// most. A stop at a t behind the newest knot waits for its turn, and at the latest for
+  /// settled_until to reach t. The ring keeps room for stops and for `finish`: a ring that is full
+  /// of waypoints takes them.
   [[nodiscard]] AppendStatus replace_from(core::Time t,
                                           std::span<const core::Waypoint> waypoints) noexcept;
 
@@ -67,8 +75,8 @@ class Producer {
   /// Waits until a solver has taken the stream up. Returns false after the timeout.
   [[nodiscard]] bool wait_for_solver(core::Time timeout);
 
-  /// Waits until the ring has room, or until the solver has consumed everything. Returns false
-  /// after the timeout. Look at solver_alive() before waiting again.
+  /// Waits until the ring has room for a waypoint, or until the solver has consumed everything.
+  /// Returns false after the timeout. Look at solver_alive() before waiting again.
   [[nodiscard]] bool wait_for_room(core::Time timeout);
   [[nodiscard]] bool wait_until_consumed(core::Time timeout);
 

@@ -71,8 +71,12 @@ class PublishedCurve {
   /// Begins the curve in a given state, instead of with a waypoint.
   void begin(const core::Instant& state) noexcept;
 
+  /// The first time at which the committed curve can be entered: where it begins; min() if it is
+  /// held before, max() if there is none.
+  [[nodiscard]] core::Time earliest_entry() const noexcept;
+
   /// Whether there is a committed curve at t; before the start of a stream that is held there is.
-  [[nodiscard]] bool can_enter(core::Time t) const noexcept;
+  [[nodiscard]] bool can_enter(core::Time t) const noexcept { return t >= earliest_entry(); }
 
   /// Cuts the committed curve at t and begins a run that goes on from there. There must be no
   /// uncommitted changes, and a curve at t.

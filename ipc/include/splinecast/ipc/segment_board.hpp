@@ -23,6 +23,9 @@
 /// - `tail` and `sleeping`: S3, P3 and the sleep of waypoint_ring.hpp. `tail` follows the commit,
 /// so
 ///   that a solver that dies between the two has its items consumed: the next one stores it anew.
+/// - `late` and `checked`, which are stored behind the commit, when it is known whether it came too
+///   late: the first, if it did, before the second. Of a revision whose writer died between these
+///   its successor finds out. Relaxed for others: each is a number of its own.
 /// - Packed knot times: relaxed. They are a hint; the cell that they lead to decides.
 /// - Refusals: one word each, which is never torn, stored before W3 of the head that counts it and
 ///   loaded after R1. A later refusal, committed or not, overwrites the oldest one first; it is of
@@ -53,10 +56,10 @@ struct Head {
   core::Time low_water = core::Time::max();  ///< least depth so far; max() before there was any
   Word underruns = 0;                        ///< times that a live stream has starved
   Word misses = 0;                           ///< revisions discarded because they came too late
-  Word revisions = 0;                        ///< revisions committed too late: readers are told
-  Word withdrawn = 0;                        ///< items that a replacement withdrew unread
-  Word controls = 0;  ///< replacements, start states and finishes carried out
-  Word refused = 0;   ///< items refused
+  Word revisions = 0;  ///< revisions committed too late, this one too: readers are told
+  Word withdrawn = 0;  ///< items that a replacement withdrew unread
+  Word controls = 0;   ///< replacements, start states and finishes carried out
+  Word refused = 0;    ///< items refused
   std::array<Word, kRefusalReasons> reasons{};  ///< of these, by Refusal
 };
 
@@ -91,6 +94,10 @@ class SegmentBoardWriter {
   void write(Word number, const core::Segment& segment, const core::Knot& knot,
              const SegmentOrigin& origin = {}) noexcept;
 
+  /// Whether all that was written for the next revision is what readers, and a solver that takes
+  /// over, accept: finite values, and coefficients within their bound. Else it must be discarded.
+  [[nodiscard]] bool is_sound() const noexcept { return is_sound_; }
+
   /// Writes committed segment `number` again with another right end, for the next revision.
   void write_cut(Word number, core::Time right) noexcept;
 
@@ -113,6 +120,14 @@ class SegmentBoardWriter {
   void store_tail(Word consumed) noexcept {
     store(control_[kTail], consumed, std::memory_order_release);
   }
+
+  /// Notes, behind the commit, that the newest revision was compared with the clock, and whether it
+  /// came too late.
+  void store_checked(bool is_late) noexcept;
+
+  /// Whether the newest revision has been compared so, and whether it was found to be too late.
+  [[nodiscard]] bool is_checked() const noexcept;
+  [[nodiscard]] bool is_late() const noexcept;
 
   /// For a solver about to sleep, or awake again: seq_cst, see waypoint_ring.hpp.
   void store_sleeping(bool sleeping) noexcept {
@@ -142,6 +157,7 @@ class SegmentBoardWriter {
   std::array<Word, kHeadChangesKept> changes_{};
   Word lowest_written_ = std::numeric_limits<Word>::max();  ///< for the next revision
   Word highest_written_ = 0;
+  bool is_sound_ = true;     ///< what has been written for the next revision
   Word newest_claimed_ = 0;  ///< the segments behind it are in no cache
 };
 

@@ -16,10 +16,10 @@ enum class AppendStatus : std::uint8_t {
   not_finite,       ///< a value is infinite, not a number, or beyond ±core::kLargestValue
   too_close,        ///< less than the least interval after the waypoint before
   too_far_apart,    ///< more than the most interval after the waypoint before (on a live stream:
-                    ///< after it and after what has settled), or beyond ±2⁶² ns
+                    ///< after it, after what has settled and after now), or not within ±2⁶² ns
   wrong_dimension,  ///< a span does not have one value per dimension
   too_late,         ///< a replacement from a time that has settled: see Producer::earliest()
-  too_many,         ///< a replacement longer than the ring
+  too_many,         ///< a replacement that no ring of this size has room for
   already_started,  ///< a start state behind the first waypoint
   finished,         ///< the stream has been finished
 };
@@ -30,7 +30,7 @@ enum class Refusal : std::uint8_t {
   past = 1,  ///< before what has settled; live streams only
   duplicate = 2,
   out_of_order = 3,
-  not_finite = 4,
+  not_finite = 4,  ///< a value is not usable, or the curve would have one that is not finite
   too_close = 5,
   too_far_apart = 6,
   too_late = 7,  ///< it cannot be reached in time, or with the acceleration allowed; or it belongs
@@ -40,7 +40,7 @@ enum class Refusal : std::uint8_t {
   unknown_kind = 10,
   lacks_derivatives = 11,  ///< the method needs a velocity, or acceleration, that is not given
   lag_too_short = 12,      ///< the settle lag is too short for λ with waypoints so close
-  zero_quaternion = 13,    ///< a quaternion has length 0, of which no rotation can be made
+  zero_quaternion = 13,    ///< a quaternion has length 0, or one beyond 1e-100 to 1e100
 };
 inline constexpr std::uint8_t kRefusals = 14;
 
@@ -63,6 +63,9 @@ inline constexpr std::size_t kSampleStatuses = 9;
 [[nodiscard]] constexpr bool has_values(SampleStatus status) noexcept {
   return status <= SampleStatus::revised;
 }
+
+/// What the solver refuses a waypoint for whose interval is none.
+[[nodiscard]] Refusal to_refusal(AppendStatus interval) noexcept;
 
 /// In words, as files and messages have them: `before history`, `out of order`, …
 [[nodiscard]] std::string_view to_string(AppendStatus status) noexcept;

@@ -8,6 +8,7 @@
 #include "splinecast/core/sliding_window.hpp"
 #include "splinecast/ipc/clock.hpp"
 #include "splinecast/ipc/published_curve.hpp"
+#include "splinecast/ipc/replacement_queue.hpp"
 #include "splinecast/ipc/segment_board.hpp"
 #include "splinecast/ipc/waypoint_ring.hpp"
 
@@ -38,6 +39,14 @@ struct LiveOptions {
 /// comes when the newest knot has been frozen is entered by a splice at settled_until, and so is
 /// what replaces the future. Directly before the commit the clock is read again: a revision that
 /// would change what may have been executed meanwhile is discarded, counted and made anew.
+///
+/// What is published is finite: a revision with a value that is no number, or beyond what readers
+/// accept, is discarded and made again with fewer items, until the one that it comes from is alone
+/// and is refused.
+///
+/// A stop, a replacement without waypoints, takes effect at settled_until of the first step that
+/// finds it in the ring, or at its own time if that is later: whatever is queued before it, and
+/// whether or not the board has room for that.
 class StreamSolver {
  public:
   /// `board` and `published` are the writing and the reading side of one board; with `ring` they
@@ -76,24 +85,32 @@ class StreamSolver {
  private:
   void restore();
   void freeze(core::Time now) noexcept;
+  [[nodiscard]] StepResult make_revision(const Clock& clock, core::Time now) noexcept;
+  void take_back(Word misses) noexcept;
+  void suspect_items() noexcept;
   [[nodiscard]] Word consume(core::Time now) noexcept;
   [[nodiscard]] bool is_damaged() const noexcept { return lacks_head_ || curve_.is_damaged(); }
   [[nodiscard]] Word reachable(Word head) const noexcept;
   [[nodiscard]] bool has_room(core::Time keep) const noexcept;
   void withdraw() noexcept;
+  /// Whether the item at hand brings the curve to rest, instead of replacing it.
+  [[nodiscard]] bool is_stop() const noexcept {
+    return item_.kind == ItemKind::replace && item_.count == 0;
+  }
   void take(Word number) noexcept;
   void take_waypoint(Word number) noexcept;
   void take_replacement(Word number) noexcept;
+  void refuse_replacement(Word number, Refusal reason) noexcept;
   void take_start_state(Word number) noexcept;
   void take_finish(Word number) noexcept;
   [[nodiscard]] bool is_starved() const noexcept;
   [[nodiscard]] bool can_append(Word number) noexcept;
   [[nodiscard]] std::optional<Refusal> has_right_form(
       const core::Waypoint& waypoint) const noexcept;
-  [[nodiscard]] std::optional<Refusal> judge(const core::Waypoint& waypoint) const noexcept;
   [[nodiscard]] std::optional<Refusal> judge_time(core::Time time) const noexcept;
   void refuse(Word number, Refusal reason) noexcept;
   void discard() noexcept;
+  void check_commit(core::Time now) noexcept;
   StepResult publish(const Clock& clock, Word consumed) noexcept;
 
   const WaypointRingReader* ring_;
@@ -112,9 +129,13 @@ class StreamSolver {
   std::vector<RingItem> followers_;
   core::Condition end_;
   Word seen_ = 0;
-  Word batch_limit_ = 0;  ///< of this step
-  Word available_ = 0;    ///< how far this step can take items
-  Word scanned_ = 0;      ///< items looked through for a replacement
+  Word batch_ = 0;        ///< items taken for this revision, one by one
+  Word batch_limit_ = 0;  ///< of this revision
+  Word most_items_ =
+      0;  ///< of a revision, at this time: max_batch_, or fewer behind an unsound one
+  std::optional<Word> unsound_item_{};  ///< the item that alone makes a revision unsound
+  Word available_ = 0;                  ///< how far this step can take items
+  ReplacementQueue replacements_;
 };
 
 }  // namespace splinecast::ipc

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -9,6 +10,7 @@
 #include "splinecast/core/condition.hpp"
 #include "splinecast/core/splice.hpp"
 #include "splinecast/core/waypoint.hpp"
+#include "splinecast/ipc/clock.hpp"
 #include "splinecast/ipc/layout.hpp"
 #include "splinecast/ipc/status.hpp"
 
@@ -68,6 +70,11 @@ struct RingItem {
   std::uint32_t count = 0;          ///< of a replacement: waypoints that belong to it
   core::Time time{};
   std::vector<double> values;  ///< positions, velocities, accelerations: those that it has
+
+  /// The waypoint that it is, or the state; and the values of that, to be moved. Both view
+  /// `values`.
+  [[nodiscard]] core::Waypoint waypoint() const noexcept;
+  [[nodiscard]] core::WaypointValues waypoint_values() noexcept;
 };
 
 /// The checks that a waypoint must pass, wherever it comes from.
@@ -75,6 +82,14 @@ struct IngestLimits {
   core::Time min_interval{1'000};              ///< 1 µs
   core::Time max_interval{3'600'000'000'000};  ///< 1 h
 };
+
+/// Items that waypoints leave free in a ring, for stops and a finish: these must not wait until the
+/// board has room for what is queued before them.
+[[nodiscard]] constexpr std::size_t control_reserve(std::size_t capacity) noexcept {
+  constexpr std::size_t kMost = 4;
+  constexpr std::size_t kShare = 16;
+  return std::min(kMost, capacity / kShare);
+}
 
 /// The producer's side. One thread of one process uses it. No function blocks or allocates.
 class WaypointRingWriter {
@@ -85,18 +100,23 @@ class WaypointRingWriter {
                      const IngestLimits& limits);
 
   /// What is known of the solver: items that it has taken, and the time before which it changes
-  /// nothing any more; min() on a recorded stream.
+  /// nothing any more, as last published; min() on a recorded stream. At rest nothing is published:
+  /// then a live stream's clock says how long it has paused.
   struct Solved {
     Word consumed = 0;
     core::Time settled_until = core::Time::min();
+    const Clock* clock = nullptr;  ///< of a live stream
   };
 
-  /// Appends a waypoint if its form is right and there is room. O(D), wait-free.
+  /// Appends a waypoint if its form is right and there is room besides control_reserve. O(D),
+  /// wait-free.
   [[nodiscard]] AppendStatus append(const core::Waypoint& waypoint, const Solved& solved) noexcept;
 
   /// Replaces all that lies behind t: `waypoints`, which may be none, must be later than it, and
-  /// together with the replacement itself fit into the ring. One store of `head` makes all of it
-  /// visible. O(D) per waypoint.
+  /// together with the replacement itself fit into the ring besides control_reserve. One store of
+  /// `head` makes all of it visible. O(D) per waypoint. Without waypoints it is a stop, for which
+  /// there is the reserve. A t that has settled means the earliest time possible; a stop that
+  /// repeats the newest item, a stop that still waits, at the same time or later takes no item.
   [[nodiscard]] AppendStatus replace_from(core::Time t, std::span<const core::Waypoint> waypoints,
                                           const Solved& solved) noexcept;
 
@@ -126,9 +146,12 @@ class WaypointRingWriter {
   [[nodiscard]] AppendStatus check_replacement(core::Time t,
                                                std::span<const core::Waypoint> waypoints,
                                                const Solved& solved) const noexcept;
-  [[nodiscard]] bool has_room(Word items, const Solved& solved) const noexcept {
-    return head_ - solved.consumed + items <= layout_.capacity;
+  [[nodiscard]] bool has_room(Word items, const Solved& solved, std::size_t free) const noexcept {
+    return head_ - solved.consumed + items + free <= layout_.capacity;
   }
+  [[nodiscard]] bool repeats_stop(core::Time from, const Solved& solved) const noexcept;
+  [[nodiscard]] bool follows_pause(core::Time time, const Solved& solved) const noexcept;
+  [[nodiscard]] AppendStatus stop_from(core::Time t, const Solved& solved) noexcept;
   void claim(Word items) noexcept;
   void put_item(Word index, Word kind_and_flags, const core::Waypoint& values) noexcept;
   void publish(Word items, core::Time last) noexcept;
@@ -141,6 +164,7 @@ class WaypointRingWriter {
   Word head_ = 0;
   bool finished_ = false;
   bool has_last_ = false;
+  bool ends_with_stop_ = false;  ///< the newest item is a stop
   core::Time last_time_{};
 };
 
@@ -171,6 +195,8 @@ class WaypointRingReader {
 
   /// Kind and time of item i, of which the same holds.
   [[nodiscard]] ItemKind kind(Word i) const noexcept;
+  /// Whether it is a replacement without waypoints.
+  [[nodiscard]] bool is_stop(Word i) const noexcept;
   [[nodiscard]] core::Time time(Word i) const noexcept;
 
   /// Asks for the lines of item i.
@@ -196,7 +222,8 @@ class WaypointRingReader {
 };
 
 /// The earliest and latest times: the difference of any two fits into 64 bits.
-inline constexpr core::Time kLatestTime{std::int64_t{1} << 62U};
+inline constexpr core::Time kLatestTime{(std::int64_t{1} << 62U) - 1};
+static_assert(kLatestTime - -kLatestTime > core::Time::zero());
 [[nodiscard]] constexpr bool is_time_in_range(core::Time time) noexcept {
   return time >= -kLatestTime && time <= kLatestTime;
 }
@@ -213,5 +240,6 @@ inline constexpr core::Time kLatestTime{std::int64_t{1} << 62U};
 
 /// Whether all values are numbers within ±core::kLargestValue.
 [[nodiscard]] bool is_finite(std::span<const double> values) noexcept;
+[[nodiscard]] bool is_finite(const core::Waypoint& waypoint) noexcept;
 
 }  // namespace splinecast::ipc
