@@ -34,9 +34,17 @@ Sampler::Sampler(const SegmentBoardReader& board, StreamClock clock, core::Dimen
       all_linear_(kinds_.all_linear()),
       copies_{SegmentCopy(board.dimensions()), SegmentCopy(board.dimensions())} {}
 
+/// Whether each span has one value per dimension.
+inline bool Sampler::fits(const core::StateRef& out) const noexcept {
+  const std::size_t wanted = board_->dimensions();
+  return ((out.position.size() ^ wanted) | (out.velocity.size() ^ wanted) |
+          (out.acceleration.size() ^ wanted) | (out.jerk.size() ^ wanted)) == 0;
+}
+
 /// The sample at t. Mostly nothing has been published since the last one, and t lies in the segment
 /// used last: then there is nothing to look up.
 inline SampleStatus Sampler::find(core::Time t, const core::StateRef& out) noexcept {
+  if (!fits(out)) return SampleStatus::wrong_dimension;
   if (board_->retired()) return SampleStatus::retired;
   const bool is_at_hand =
       board_->revision() == confirmed_ && t >= at_hand_.left && t < at_hand_.right;
@@ -289,6 +297,7 @@ bool Sampler::copy_whole(Word number, Word r, SegmentCopy& out) const {
 
 SampleStatus Sampler::snapshot(core::Time from, core::Time to, Snapshot& out) {
   out.size_ = 0;
+  if (out.dimensions() != board_->dimensions()) return SampleStatus::wrong_dimension;
   for (int attempt = 0; attempt < kTries; ++attempt) {
     if (board_->retired()) return SampleStatus::retired;
     const Word r = board_->revision();

@@ -48,9 +48,10 @@ class Sampler {
   Sampler(const SegmentBoardReader& board, StreamClock clock, core::DimensionKinds kinds = {});
 
   /// Evaluates the curve at `t`, in the form in which its dimensions are read, into `out`, whose
-  /// spans have one value per dimension. Wait-free: no system call, no allocation; O(D) where `t`
-  /// lies in the segment used last or the next one, O(log n + D) elsewhere; a bounded number of
-  /// tries. Where the status has no values, `out` is left as it was.
+  /// spans have one value per dimension: else it returns `wrong_dimension`. Wait-free: no system
+  /// call, no allocation; O(D) where `t` lies in the segment used last or the next one, O(log n +
+  /// D) elsewhere; a bounded number of tries. Where the status has no values, `out` is left as it
+  /// was.
   ///
   /// On a live stream a sample counts as executed: if a revision since then changed the curve
   /// before the latest time sampled, the next one is `revised`, once. That happens only if the
@@ -66,8 +67,8 @@ class Sampler {
 
   /// Copies every segment that has a part between `from` and `to` (inclusive), all under one
   /// revision. Returns `settled` or `provisional` for the whole; `before_history`, `no_data`,
-  /// `busy` or `retired` leave `out` without segments. The segments are the curve as it was solved,
-  /// before core::DimensionKinds::normalise. Allocates if `out` must grow.
+  /// `busy`, `retired` or `wrong_dimension` leave `out` without segments. The segments are the
+  /// curve as it was solved, before core::DimensionKinds::normalise. Allocates if `out` must grow.
   [[nodiscard]] SampleStatus snapshot(core::Time from, core::Time to, Snapshot& out);
 
   /// The revision that the last sample saw; 0 before the first.
@@ -94,6 +95,7 @@ class Sampler {
   [[nodiscard]] SampleStatus look_up(core::Time t, const core::StateRef& out) noexcept;
   [[nodiscard]] SampleStatus hold_first(const core::StateRef& out) noexcept;
   [[nodiscard]] bool see(Word r) noexcept;
+  [[nodiscard]] bool fits(const core::StateRef& out) const noexcept;
   [[nodiscard]] bool copy_whole(Word number, Word r, SegmentCopy& out) const;
   [[nodiscard]] SampleStatus from_own_copy(core::Time t, const core::StateRef& out) noexcept;
 
