@@ -43,6 +43,9 @@ class Snapshot {
 /// never.
 class Sampler {
  public:
+  /// How many segments a sample compares at most after missing many revisions.
+  static constexpr int kMostCompared = 16;
+
   /// `board` is read as often as sampled; `clock` says whether a hold stands before the first
   /// waypoint; `kinds` are those of the board's dimensions.
   Sampler(const SegmentBoardReader& board, StreamClock clock, core::DimensionKinds kinds = {});
@@ -57,6 +60,14 @@ class Sampler {
   /// before the latest time sampled, the next one is `revised`, once. That happens only if the
   /// solver was stopped between its last look at the clock and the commit, or if a time ahead of
   /// what is settled is sampled; use `preview` for that.
+  ///
+  /// The board keeps which time each of the last kHeadChangesKept revisions changed the curve from.
+  /// A reader that has missed more compares the curve itself. Revisions change nothing before the
+  /// settled_until that it saw last; where it has sampled from there on, it looks whether the
+  /// segments are those of the revision that it saw last, by their tags, or have the bits of its
+  /// own copy, and whether rest goes on as a hold. If so, the sample is not `revised`. If they
+  /// differ, or cannot be compared because the board no longer keeps them or there are more than
+  /// kMostCompared, it is: a change is never missed.
   [[nodiscard]] SampleStatus sample(core::Time t, const core::StateRef& out) noexcept;
 
   /// The same for a look ahead: what it gives does not count as executed.
@@ -77,6 +88,8 @@ class Sampler {
  private:
   /// Result of looking a time up under one revision.
   enum class Found { segment, before_first, torn };
+  /// What a comparison with the curve seen before has found.
+  enum class Compared { same, changed, torn };
 
   [[nodiscard]] SegmentCopy& current() noexcept { return copies_[current_]; }
   [[nodiscard]] bool is_confirmed(Word r) noexcept;
@@ -95,6 +108,10 @@ class Sampler {
   [[nodiscard]] SampleStatus look_up(core::Time t, const core::StateRef& out) noexcept;
   [[nodiscard]] SampleStatus hold_first(const core::StateRef& out) noexcept;
   [[nodiscard]] bool see(Word r) noexcept;
+  [[nodiscard]] bool see_after_gap(Word r) noexcept;
+  [[nodiscard]] Compared compare_with(const Head& before) noexcept;
+  [[nodiscard]] Compared compare_rest(SegmentCopy& last) noexcept;
+  [[nodiscard]] bool is_unchanged(const SegmentCopy& segment, const Head& before) noexcept;
   [[nodiscard]] bool fits(const core::StateRef& out) const noexcept;
   [[nodiscard]] bool copy_whole(Word number, Word r, SegmentCopy& out) const;
   [[nodiscard]] SampleStatus from_own_copy(core::Time t, const core::StateRef& out) noexcept;
