@@ -311,7 +311,7 @@ StepResult Solver::step(const Clock& clock) {
     throw BadRegion(region_path(impl_->stream, RegionKind::spline) +
                     " holds what its solver has not written");
   }
-  if (result.published && impl_->options.wake) wake_all(at.board.writer.revision_word());
+  if (result.published && impl_->options.wake) wake_some(at.board.writer.revision_word());
   if (result.consumed == 0 && !result.missed && at.ring.ring.retired()) impl_->attachment.reset();
   return result;
 }
