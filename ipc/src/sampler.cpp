@@ -354,6 +354,8 @@ bool Sampler::copy_whole(Word number, Word r, SegmentCopy& out) const {
   if (!board_->copy_segment(number, r, out)) return false;
   out.acceleration_step.resize(board_->dimensions());
   board_->copy_step(out, out.acceleration_step);
+  kinds_.normalise_step(std::span(out.coefficients).first(board_->dimensions()),
+                        out.acceleration_step);
   return board_->is_current(out, r) && std::ranges::all_of(out.acceleration_step, [](double step) {
            return std::isfinite(step);
          });

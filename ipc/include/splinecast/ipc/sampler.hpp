@@ -79,8 +79,12 @@ class Sampler {
   /// Copies every segment that has a part between `from` and `to` (inclusive), all under one
   /// revision. Returns `settled` or `provisional` for the whole; `before_history`, `no_data`,
   /// `busy`, `retired` or `wrong_dimension` leave `out` without segments. The segments are the
-  /// curve as it was solved, before core::DimensionKinds::normalise. Allocates if `out` must grow.
+  /// curve as it was solved, before core::DimensionKinds::normalise; their acceleration steps are
+  /// those of what readers see. Allocates if `out` must grow.
   [[nodiscard]] SampleStatus snapshot(core::Time from, core::Time to, Snapshot& out);
+
+  /// The kinds of the board's dimensions.
+  [[nodiscard]] const core::DimensionKinds& kinds() const noexcept { return kinds_; }
 
   /// The revision that the last sample saw; 0 before the first.
   [[nodiscard]] Word revision_seen() const noexcept { return head_.revision; }

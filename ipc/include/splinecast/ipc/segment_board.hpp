@@ -159,7 +159,8 @@ struct SegmentCopy {
   SegmentOrigin origin{};
   bool has_waypoint = false;         ///< whether its left end is a waypoint
   std::vector<double> coefficients;  ///< [power][dimension]; of these the first `order` powers
-  std::vector<double> acceleration_step{};  ///< a⁺ − a⁻ at the left end; in a snapshot only
+  std::vector<double> acceleration_step{};  ///< a⁺ − a⁻ at the left end: in a snapshot as readers
+                                            ///< see it, of a SettledSegments as solved
   std::vector<double>
       waypoint{};  ///< position of the waypoint at the left end; of a SettledSegments
 };
