@@ -61,6 +61,7 @@ void write_report_of(const WaypointTable& table, std::vector<ReportCurve> curves
                 .names = {},
                 .units = {},
                 .waypoints = table.waypoints(),
+                .kinds = table.kinds,
                 .curves = std::move(curves)};
   for (std::size_t d = 0; d < table.dimensions(); ++d) {
     auto [name, unit] = name_and_unit(table.names[d]);

@@ -71,10 +71,16 @@ void CurveWatch::check_joins(core::Time from, core::Time to) {
   for (std::size_t i = 1; i < segments.size(); ++i) check_join(segments[i - 1], segments[i]);
 }
 
+/// As readers see it, but that a wrapping position is left as it is: read, it steps by a period.
+void CurveWatch::evaluate(const ipc::SegmentCopy& segment, double u, core::State& out) const {
+  const core::StateRef ref = out.ref();
+  core::evaluate(segment.order, segment.coefficients, u, ref);
+  sampler_->kinds().normalise_quaternions(ref.position, ref.velocity, ref.acceleration);
+}
+
 void CurveWatch::check_join(const ipc::SegmentCopy& before, const ipc::SegmentCopy& after) {
-  core::evaluate(before.order, before.coefficients, core::to_seconds(before.right - before.left),
-                 left_.ref());
-  core::evaluate(after.order, after.coefficients, 0, right_.ref());
+  evaluate(before, core::to_seconds(before.right - before.left), left_);
+  evaluate(after, 0, right_);
   ++report_.knots;
   for (std::size_t d = 0; d < now_.dimensions(); ++d) {
     const double step = right_.acceleration()[d] - left_.acceleration()[d];

@@ -51,6 +51,7 @@ class CurveWatch {
 
   void read_again(std::size_t back);
   void check_joins(core::Time from, core::Time to);
+  void evaluate(const ipc::SegmentCopy& segment, double u, core::State& out) const;
   void check_join(const ipc::SegmentCopy& before, const ipc::SegmentCopy& after);
 
   ipc::Sampler* sampler_;

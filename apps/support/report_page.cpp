@@ -46,7 +46,7 @@ Measured measure(const Report& report) {
   all.report = &report;
   all.origin = breaks_of(report.curves).front();
   for (const ReportCurve& curve : report.curves) {
-    all.tables.push_back(table_of(curve.curve, report.waypoints));
+    all.tables.push_back(table_of(curve.curve, report.waypoints, report.kinds));
   }
   all.rows = rows_of(report.curves, all.tables);
   all.intervals = intervals_of(report.waypoints.times);

@@ -18,10 +18,11 @@ struct ReportCurve {
 /// What a report shows: curves through, or near, the same waypoints.
 struct Report {
   std::string title;
-  std::vector<std::string> names;   ///< of the dimensions
-  std::vector<std::string> units;   ///< of the positions, one per dimension; "" for an unknown one
-  core::Waypoints waypoints;        ///< at least one
-  std::vector<ReportCurve> curves;  ///< at least one, of as many dimensions; none empty
+  std::vector<std::string> names;  ///< of the dimensions
+  std::vector<std::string> units;  ///< of the positions, one per dimension; "" for an unknown one
+  core::Waypoints waypoints;       ///< at least one
+  std::vector<core::Dimension> kinds{};  ///< of the dimensions; none: all linear
+  std::vector<ReportCurve> curves;       ///< at least one, of as many dimensions; none empty
 };
 
 /// Writes a report as one HTML file that needs nothing else, no network either: for each dimension

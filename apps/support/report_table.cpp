@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "splinecast/core/segment.hpp"
+
 namespace splinecast::apps {
 namespace {
 
@@ -10,13 +12,32 @@ void consider(core::Extremum& largest, core::Time time, double value) {
   if (std::abs(value) > std::abs(largest.value)) largest = {.time = time, .value = value};
 }
 
-void measure_steps(const core::PiecewisePolynomial& curve, ReportTable& table) {
-  std::vector<double> jump(curve.dimensions());
+/// The kinds, but that nothing wraps: read, a wrapping position steps by a period.
+core::DimensionKinds only_quaternions(std::span<const core::Dimension> kinds) {
+  std::vector<core::Dimension> all(kinds.begin(), kinds.end());
+  for (core::Dimension& dimension : all) {
+    if (dimension.kind == core::DimensionKind::wrap) dimension = {};
+  }
+  return core::DimensionKinds(all);
+}
+
+void measure_steps(const core::PiecewisePolynomial& curve, const core::DimensionKinds& quaternions,
+                   ReportTable& table) {
+  const std::size_t dimensions = curve.dimensions();
+  core::State left(dimensions);
+  core::State right(dimensions);
+  const auto evaluate = [&](std::size_t segment, double u, core::State& out) {
+    core::evaluate(curve.order_of(segment), curve.coefficients(segment), u, out.ref());
+    quaternions.normalise(out.ref());
+  };
   for (std::size_t i = 1; i < curve.segments(); ++i) {
+    evaluate(i - 1, curve.seconds(i - 1), left);
+    evaluate(i, 0, right);
     for (std::size_t r = 0; r < kDerivatives; ++r) {
-      curve.jump(i, static_cast<int>(r), jump);
-      for (std::size_t d = 0; d < jump.size(); ++d) {
-        consider(table.rows[d * kDerivatives + r].step, curve.left_of(i), jump[d]);
+      for (std::size_t d = 0; d < dimensions; ++d) {
+        const std::size_t at = r * dimensions + d;
+        consider(table.rows[d * kDerivatives + r].step, curve.left_of(i),
+                 right.values()[at] - left.values()[at]);
       }
     }
   }
@@ -37,7 +58,8 @@ void measure_distances(const core::PiecewisePolynomial& curve, const core::Waypo
 
 }  // namespace
 
-ReportTable table_of(const core::PiecewisePolynomial& curve, const core::Waypoints& waypoints) {
+ReportTable table_of(const core::PiecewisePolynomial& curve, const core::Waypoints& waypoints,
+                     std::span<const core::Dimension> kinds) {
   const core::Extremum none{.time = curve.breaks().front(), .value = 0};
   ReportTable table;
   for (std::size_t d = 0; d < curve.dimensions(); ++d) {
@@ -47,7 +69,7 @@ ReportTable table_of(const core::PiecewisePolynomial& curve, const core::Waypoin
     }
   }
   table.distance.assign(curve.dimensions(), none);
-  measure_steps(curve, table);
+  measure_steps(curve, only_quaternions(kinds), table);
   measure_distances(curve, waypoints, table);
   return table;
 }

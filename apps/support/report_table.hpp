@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
+#include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/measures.hpp"
 #include "splinecast/core/waypoint.hpp"
 
@@ -23,8 +25,10 @@ struct ReportTable {
   std::vector<core::Extremum> distance;  ///< per dimension, largest from a waypoint
 };
 
-/// Measures a curve. Waypoints outside its time are not looked at.
+/// Measures a curve. Waypoints outside its time are not looked at. The steps of a quaternion are
+/// those of what readers see, at unit length.
 [[nodiscard]] ReportTable table_of(const core::PiecewisePolynomial& curve,
-                                   const core::Waypoints& waypoints);
+                                   const core::Waypoints& waypoints,
+                                   std::span<const core::Dimension> kinds);
 
 }  // namespace splinecast::apps

@@ -253,6 +253,18 @@ void DimensionKinds::normalise_quaternions(std::span<double> position, std::span
   }
 }
 
+void DimensionKinds::normalise_step(std::span<const double> position,
+                                    std::span<double> step) const noexcept {
+  for (const auto& [first, w_first] : quaternions_) {
+    Quaternion q = load(position, first);
+    Quaternion s = load(step, first);
+    if (!to_unit_length(q, s)) continue;
+    // Of r = q/|q| only r'' = (q'' − (r·q'') r)/|q| + … has q'' in it.
+    subtract(s, dot(q, s), q);
+    store(s, step, first);
+  }
+}
+
 void DimensionKinds::require_end(const Condition& end) const {
   if (end.value.empty()) return;
   for (const QuaternionDimensions& quaternion : quaternions_) {

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "knot_solvers.hpp"
 
@@ -91,16 +93,23 @@ class LocalSolver final : public KnotSolver {
     const int last = std::min(after, std::max(rule_->ahead, 2));
     for (int k = first; k < last; ++k) {
       const std::size_t interval = i + static_cast<std::size_t>(k);
-      out.set(k, knots.row(interval).h, knots.chord(interval)[d]);
+      const double h = knots.row(interval).h;
+      const double x = std::max(std::abs(knots.position(interval)[d]),
+                                std::abs(knots.position(interval + 1)[d]));
+      out.set(k, h, knots.chord(interval)[d], std::numeric_limits<double>::epsilon() * x / h);
     }
     for (int k = after; k < rule_->ahead; ++k) {
-      const double inner = k - 2 >= -before ? out.m(k - 2) : out.m(k - 1);
-      out.set(k, out.h(k - 1), 2 * out.m(k - 1) - inner);
+      extend(out, k, k - 1, k - 2 >= -before ? k - 2 : k - 1);
     }
     for (int k = -before - 1; k >= -rule_->behind; --k) {
-      const double inner = k + 2 < after ? out.m(k + 2) : out.m(k + 1);
-      out.set(k, out.h(k + 1), 2 * out.m(k + 1) - inner);
+      extend(out, k, k + 1, k + 2 < after ? k + 2 : k + 1);
     }
+  }
+
+  /// Sets interval k so that the chord slopes go on as from interval `inner` to `next`.
+  static void extend(Stencil& out, int k, int next, int inner) noexcept {
+    out.set(k, out.h(next), 2 * out.m(next) - out.m(inner),
+            2 * out.rounding(next) + out.rounding(inner));
   }
 
   const SlopeRule* rule_;

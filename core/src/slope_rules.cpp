@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "splinecast/core/slope_rule.hpp"
 
@@ -17,15 +16,28 @@ double bessel(const Stencil& s) noexcept {
 
 double bessel_end(const EndStencil& s) noexcept { return parabola_end_slope(s); }
 
+/// The share of weights that sum up to `sum`, where rounding may have changed them by `rounding`: 0
+/// where they are nothing else, 1 to the last bit where they are 3,000 times as much. Smooth
+/// between, because any threshold is crossed by rounding somewhere.
+double share_of_weights(double sum, double rounding) noexcept {
+  constexpr double kLarge = 32;
+  const double z = sum / (kLarge * rounding);
+  const double z2 = z * z;
+  const double z4 = z2 * z2;
+  const double z8 = z4 * z4;  // finite: sums are at most a few 1/ε times their rounding
+  return z8 / (1 + z8);
+}
+
 /// The mean of the neighbouring chord slopes, each weighted by the other side's unsteadiness; with
 /// no weights but what rounding leaves of chord slopes, `without_weights`.
 double weighted(const Stencil& s, double before, double after, double without_weights) noexcept {
-  constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
   const double sum = after + before;
-  double steepest = 0;
-  for (int k = -2; k < 2; ++k) steepest = std::max(steepest, std::abs(s.m(k)));
-  if (sum <= kRounding * steepest) return without_weights;
-  return after / sum * s.m(-1) + before / sum * s.m(0);
+  double rounding = 0;
+  for (int k = -2; k < 2; ++k) rounding += s.rounding(k);
+  if (sum == 0 || rounding == 0) return without_weights;
+  const double share = share_of_weights(sum, rounding);
+  const double mean = after / sum * s.m(-1) + before / sum * s.m(0);
+  return share * mean + (1 - share) * without_weights;
 }
 
 /// doc 003 eq 4-12.

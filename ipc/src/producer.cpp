@@ -205,7 +205,7 @@ struct Producer::Impl {
       const core::Time left = end - clock.now();
       if (left <= core::Time::zero()) return false;
       if (solver) {
-        wait_while_equal(solver->board.revision_word(), seen, std::min(left, kSlice));
+        (void)wait_for_change(solver->board.revision_word(), seen, std::min(left, kSlice));
       } else {
         std::this_thread::sleep_for(std::min(left, kPoll));
       }

@@ -15,7 +15,8 @@ namespace splinecast::ipc {
 namespace {
 
 constexpr core::Time kPoll = std::chrono::milliseconds(2);
-/// A wait is cut into slices, in case a solver dies between its commit and its wake.
+/// A wait is cut into slices, in case a solver dies between its commit and its wake, or a woken
+/// thread before it has woken the others.
 constexpr core::Time kSlice = std::chrono::milliseconds(50);
 constexpr int kHeadTries = 16;
 
@@ -116,7 +117,7 @@ WaitStatus Reader::wait(core::Time timeout) noexcept {
     }
     const core::Time left = end - clock.now();
     if (left <= core::Time::zero()) return WaitStatus::timed_out;
-    wait_while_equal(impl_->board.revision_word(), revision, std::min(left, kSlice));
+    (void)wait_for_change(impl_->board.revision_word(), revision, std::min(left, kSlice));
   }
 }
 

@@ -34,9 +34,17 @@ Sampler::Sampler(const SegmentBoardReader& board, StreamClock clock, core::Dimen
       all_linear_(kinds_.all_linear()),
       copies_{SegmentCopy(board.dimensions()), SegmentCopy(board.dimensions())} {}
 
+/// Whether each span has one value per dimension.
+inline bool Sampler::fits(const core::StateRef& out) const noexcept {
+  const std::size_t wanted = board_->dimensions();
+  return ((out.position.size() ^ wanted) | (out.velocity.size() ^ wanted) |
+          (out.acceleration.size() ^ wanted) | (out.jerk.size() ^ wanted)) == 0;
+}
+
 /// The sample at t. Mostly nothing has been published since the last one, and t lies in the segment
 /// used last: then there is nothing to look up.
 inline SampleStatus Sampler::find(core::Time t, const core::StateRef& out) noexcept {
+  if (!fits(out)) return SampleStatus::wrong_dimension;
   if (board_->retired()) return SampleStatus::retired;
   const bool is_at_hand =
       board_->revision() == confirmed_ && t >= at_hand_.left && t < at_hand_.right;
@@ -57,17 +65,81 @@ SampleStatus Sampler::sample(core::Time t, const core::StateRef& out) noexcept {
 }
 
 /// Takes the bounds of a revision over, and whether it, or one before it that this reader has not
-/// seen, changed the curve before a time that this reader has sampled. If more have passed than are
-/// kept, what was settled at the last look has stood.
+/// seen, changed the curve before a time that this reader has sampled.
 bool Sampler::see(Word r) noexcept {
   const Word seen = seen_;
-  const core::Time settled_until = head_.settled_until;
+  if (seen > 0 && r - seen > kHeadChangesKept) return see_after_gap(r);
   if (!board_->copy_bounds(r, seen, head_)) return false;
   seen_ = r;
-  const core::Time changed_from =
-      head_.changed_from == core::Time::min() ? settled_until : head_.changed_from;
-  revised_ = revised_ || (seen > 0 && sampled_until_ >= changed_from);
+  revised_ = revised_ || (seen > 0 && sampled_until_ >= head_.changed_from);
   return true;
+}
+
+/// The same where more revisions have been missed than the board keeps the changes of.
+bool Sampler::see_after_gap(Word r) noexcept {
+  const Head before = head_;
+  if (!board_->copy_bounds(r, seen_, head_)) return false;
+  if (!revised_ && sampled_until_ >= before.settled_until) {
+    const Compared compared = compare_with(before);
+    if (compared == Compared::torn) {
+      head_ = before;
+      return false;
+    }
+    revised_ = compared == Compared::changed;
+  }
+  seen_ = r;
+  return true;
+}
+
+/// Whether the curve under head_ is that under `before`, from what was settled then to the latest
+/// time sampled.
+Sampler::Compared Sampler::compare_with(const Head& before) noexcept {
+  Word number = 0;
+  if (head_.newest == 0) return Compared::changed;
+  if (!number_by_cells(before.settled_until, number)) return Compared::torn;
+  number = std::min(number, before.newest);
+  if (number < head_.first) return Compared::changed;
+  SegmentCopy& now = copies_[1 - current_];
+  for (int compared = 0; compared < kMostCompared; ++compared, ++number) {
+    if (!board_->copy_segment(number, head_.revision, now)) return Compared::torn;
+    if (!is_unchanged(now, before)) return Compared::changed;
+    if (sampled_until_ < now.right) return Compared::same;
+    if (number == before.newest) {
+      return number == head_.newest ? Compared::same : compare_rest(now);
+    }
+    if (number == head_.newest) return Compared::changed;  // the stop tail has been dropped
+  }
+  return Compared::changed;
+}
+
+/// Whether a segment is, as far as it has been sampled, what it was under `before`.
+bool Sampler::is_unchanged(const SegmentCopy& segment, const Head& before) noexcept {
+  if (segment.tag <= before.revision) return true;
+  const SegmentCopy& own = current();
+  if (confirmed_ != before.revision || own.tag == 0 || own.number != segment.number) return false;
+  const bool ends_alike =
+      segment.right == own.right || sampled_until_ < std::min(segment.right, own.right);
+  const std::size_t values = static_cast<std::size_t>(own.order) * board_->dimensions();
+  return ends_alike && segment.left == own.left && segment.order == own.order &&
+         segment.kind == own.kind &&
+         std::ranges::equal(std::span(segment.coefficients).first(values),
+                            std::span(own.coefficients).first(values));
+}
+
+/// Whether the curve still rests behind `last`, which was the newest segment, until after the
+/// latest time sampled. Copies the segment behind it in its place.
+Sampler::Compared Sampler::compare_rest(SegmentCopy& last) noexcept {
+  std::array<double, core::kMaxDimensions> values{};
+  const auto rest = std::span(values).first(board_->dimensions());
+  const core::Time right = last.right;
+  core::evaluate_derivative(last.order, last.coefficients, seconds_after(last.left, right), 0,
+                            rest);
+  SegmentCopy& next = last;
+  if (!board_->copy_segment(last.number + 1, head_.revision, next)) return Compared::torn;
+  const bool rests = next.kind == core::SegmentKind::hold && next.left == right &&
+                     sampled_until_ < next.right &&
+                     std::ranges::equal(std::span(next.coefficients).first(rest.size()), rest);
+  return rests ? Compared::same : Compared::changed;
 }
 
 SampleStatus Sampler::preview(core::Time t, const core::StateRef& out) noexcept {
@@ -282,6 +354,8 @@ bool Sampler::copy_whole(Word number, Word r, SegmentCopy& out) const {
   if (!board_->copy_segment(number, r, out)) return false;
   out.acceleration_step.resize(board_->dimensions());
   board_->copy_step(out, out.acceleration_step);
+  kinds_.normalise_step(std::span(out.coefficients).first(board_->dimensions()),
+                        out.acceleration_step);
   return board_->is_current(out, r) && std::ranges::all_of(out.acceleration_step, [](double step) {
            return std::isfinite(step);
          });
@@ -289,6 +363,7 @@ bool Sampler::copy_whole(Word number, Word r, SegmentCopy& out) const {
 
 SampleStatus Sampler::snapshot(core::Time from, core::Time to, Snapshot& out) {
   out.size_ = 0;
+  if (out.dimensions() != board_->dimensions()) return SampleStatus::wrong_dimension;
   for (int attempt = 0; attempt < kTries; ++attempt) {
     if (board_->retired()) return SampleStatus::retired;
     const Word r = board_->revision();

@@ -387,13 +387,12 @@ bool SegmentBoardReader::copy_segment(Word number, Word r, SegmentCopy& out) con
     return false;
   }
   out.tag = tags.of[c];
+  out.cell = c;
   return true;
 }
 
 bool SegmentBoardReader::is_current(const SegmentCopy& copy, Word r) const noexcept {
-  if (copy.tag == 0) return false;
-  const Tags tags = slot(copy.number).tags(std::memory_order_acquire);
-  return tags.of[tags.newest(r)] == copy.tag;
+  return copy.tag != 0 && is_newest(slot(copy.number), copy.cell, copy.tag, r);
 }
 
 bool SegmentBoardReader::copy_left(Word number, Word r, core::Time& left) const noexcept {
@@ -423,9 +422,7 @@ void SegmentBoardReader::copy_waypoint(const SegmentCopy& copy,
 
 void SegmentBoardReader::copy_vector(const SegmentCopy& copy, std::size_t vector,
                                      std::span<double> out) const noexcept {
-  const auto view = slot(copy.number);
-  const Tags tags = view.tags(std::memory_order_acquire);
-  const Word* const cell = view.cell(tags.of[1] == copy.tag ? 1 : 0);
+  const Word* const cell = slot(copy.number).cell(copy.cell);
   const Word* const words = cell + kCellCoefficients + vector * layout_.dimensions;
   for (std::size_t d = 0; d < out.size(); ++d) {
     out[d] = to_double(load(words[d], std::memory_order_acquire));

@@ -347,7 +347,7 @@ StepResult Solver::step(const Clock& clock) {
                     " holds what its solver has not written");
   }
   if (result.published && impl_->options.wake) {
-    wake_all(at.board.writer.revision_word());
+    wake_some(at.board.writer.revision_word());
     (void)at.board.lock.hold();
   }
   if (result.consumed == 0 && !result.missed && at.ring.ring.retired()) impl_->attachment.reset();

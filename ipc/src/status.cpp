@@ -99,6 +99,8 @@ std::string_view to_string(SampleStatus status) noexcept {
       return "busy";
     case SampleStatus::retired:
       return "retired";
+    case SampleStatus::wrong_dimension:
+      return "wrong dimension";
   }
   return "unknown";
 }

@@ -17,6 +17,8 @@
 #include "support/output.hpp"
 #include "support/process.hpp"
 #include "support/recordings.hpp"
+#include "support/report_table.hpp"
+#include "support/rotation.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -68,6 +70,41 @@ class Recording {
   std::vector<double> positions_;
   Report report_;
 };
+
+TEST(Report, StepsOfAQuaternionAreThoseOfItsUnitLength) {
+  const testing::Coning coning;
+  std::vector<Time> times;
+  std::vector<double> positions;
+  for (int i = 0; i < 50; ++i) {
+    times.emplace_back(10'000'000LL * i);
+    const auto q = coning.quaternion(0.01 * i);
+    positions.insert(positions.end(), q.begin(), q.end());
+  }
+  const core::Waypoints waypoints{.dimensions = 4, .times = times, .positions = positions};
+  core::FitOptions options;
+  options.interpolant.method = core::find_method("pchip");
+  const auto curve = core::fit(waypoints, options);
+  const std::vector<core::Dimension> kinds(4, {.kind = core::DimensionKind::quaternion});
+  const core::DimensionKinds quaternion{kinds};
+  std::array<double, 4> largest{};
+  core::State left(4);
+  core::State right(4);
+  for (std::size_t i = 1; i < curve.segments(); ++i) {
+    core::evaluate(4, curve.coefficients(i - 1), curve.seconds(i - 1), left.ref());
+    core::evaluate(4, curve.coefficients(i), 0, right.ref());
+    quaternion.normalise(left.ref());
+    quaternion.normalise(right.ref());
+    for (std::size_t d = 0; d < 4; ++d) {
+      const double step = right.acceleration()[d] - left.acceleration()[d];
+      largest[d] = std::max(largest[d], std::abs(step));
+    }
+  }
+  const ReportTable table = table_of(curve, waypoints, kinds);
+  for (std::size_t d = 0; d < 4; ++d) {
+    EXPECT_GT(largest[d], 0.1);
+    EXPECT_EQ(std::abs(table.rows[d * kDerivatives + 2].step.value), largest[d]) << d;
+  }
+}
 
 TEST(Report, AloneItWritesNoSamplesAndBesidesThemItChangesNone) {
   const TestFolder folder;

@@ -45,7 +45,7 @@ def attack_model():
         text, good, seconds = run([str(CAMPAIGN.parent / "model" / "run.sh"), build])
     if not good:
         sys.exit(text)
-    held = {model: int(states) for model, states in re.findall(r"(\w+): holds in (\d+) states", text)}
+    held = {model: int(states) for model, states in re.findall(r"(?m)^(.+): holds in (\d+) states", text)}
     write("model", {
         "promise": [1, 3, 5, 8],
         "attack": "models of the publication and the ring's hand-over, writers dying at any store and taken "

@@ -43,8 +43,9 @@ core::DimensionKinds pose_kinds() {
 class ConingStream {
  public:
   /// With `flips`, every waypoint has a random sign and length; the solver is replaced half-way.
-  explicit ConingStream(bool flips)
-      : stream_(5, {.settle = kSettle}, 64, 1024, {}, pose_kinds()),
+  explicit ConingStream(bool flips, std::string_view method = "c2")
+      : stream_(5, {.interpolant = {.method = core::find_method(method)}, .settle = kSettle}, 64,
+                1024, {}, pose_kinds()),
         sampler_(stream_.board.reader, StreamClock::recorded, pose_kinds()) {
     std::mt19937_64 random(7);  // NOLINT(*-msc51-cpp): the same flips in every run
     for (int i = 0; i < kWaypoints; ++i) {
@@ -67,6 +68,7 @@ class ConingStream {
     return state;
   }
   [[nodiscard]] const testing::Coning& coning() const { return coning_; }
+  [[nodiscard]] Sampler& sampler() { return sampler_; }
 
  private:
   testing::Coning coning_;
@@ -77,6 +79,40 @@ class ConingStream {
 core::AngularMotion motion_of(const core::State& state) {
   return core::angular_motion({.first = 1}, state.position(), state.velocity(),
                               state.acceleration());
+}
+
+/// What readers see of a segment at u seconds.
+core::State seen_at(const SegmentCopy& segment, double u) {
+  core::State state(5);
+  core::evaluate(segment.order, segment.coefficients, u, state.ref());
+  pose_kinds().normalise(state.ref());
+  return state;
+}
+
+TEST(QuaternionStream, AccelerationStepsOfASnapshotAreThoseThatReadersSee) {
+  for (const std::string_view method : {"c2", "akima", "pchip", "bessel"}) {
+    ConingStream stream(true, method);
+    Snapshot snapshot(5);
+    ASSERT_EQ(stream.sampler().snapshot(100 * kPeriod, 200 * kPeriod, snapshot),
+              SampleStatus::settled);
+    double largest = 0;
+    double off = 0;
+    for (std::size_t i = 1; i < snapshot.segments().size(); ++i) {
+      const SegmentCopy& before = snapshot.segments()[i - 1];
+      const SegmentCopy& after = snapshot.segments()[i];
+      const core::State left = seen_at(before, core::to_seconds(before.right - before.left));
+      const core::State right = seen_at(after, 0);
+      for (std::size_t d = 0; d < 5; ++d) {
+        const double seen = right.acceleration()[d] - left.acceleration()[d];
+        largest = std::max(largest, std::abs(seen));
+        off = std::max(off, std::abs(seen - after.acceleration_step[d]));
+      }
+    }
+    EXPECT_LT(off, 1e-9) << method << ", of steps up to " << largest;
+    if (method != "c2") {
+      EXPECT_GT(largest, 1e-3) << method;
+    }
+  }
 }
 
 double length_of(std::span<const double> q) {

@@ -264,5 +264,77 @@ TEST(LiveSolver, AStreamThatHasRestedLongerThanTheMostIntervalGoesOn) {
   }
 }
 
+/// What a reader is told that samples once, and again when more revisions have passed than the
+/// board keeps the changes of.
+struct Gap {
+  Live live;
+
+  void rest(int newest_ms, int now_ms) {
+    live.put_all(newest_ms - 50, newest_ms);
+    run_to(now_ms);
+  }
+  void run_to(int ms) {
+    while (live.clock.time < Live::kNow + milliseconds(ms)) {
+      live.clock.time += milliseconds(1);
+      live.solver.step(live.clock);
+    }
+  }
+  SampleStatus sample(int ms) {
+    return live.sampler.sample(Live::kNow + milliseconds(ms), live.state.ref());
+  }
+  /// Goes on for 100 revisions and more.
+  void move_on(int from_ms) {
+    const Word revision = live.board.reader.revision();
+    for (int ms = from_ms; ms < from_ms + 1000; ms += 10) {
+      ASSERT_EQ(live.put(Live::kNow + milliseconds(ms)), AppendStatus::accepted) << ms;
+      live.solver.step(live.clock);
+      live.clock.time += milliseconds(10);
+    }
+    ASSERT_GT(live.board.reader.revision(), revision + kHeadChangesKept);
+  }
+};
+
+TEST(LiveSolver, AReaderFarBehindIsNotToldOfARestThatWentOn) {
+  Gap gap;
+  gap.rest(100, 500);
+  ASSERT_EQ(gap.sample(500), SampleStatus::holding);
+  gap.move_on(600);
+  EXPECT_EQ(gap.sample(1400), SampleStatus::settled);
+}
+
+TEST(LiveSolver, AReaderFarBehindIsNotToldOfAStopThatWasCutBehindItsSample) {
+  Gap gap;
+  gap.rest(100, 90);
+  const Time settled_until = gap.live.sampler.settled_until();
+  ASSERT_EQ(gap.sample(130), SampleStatus::stopping);
+  ASSERT_GE(Live::kNow + milliseconds(130), settled_until);
+  gap.run_to(135);
+  gap.move_on(200);
+  EXPECT_EQ(gap.sample(1000), SampleStatus::settled);
+}
+
+TEST(LiveSolver, AReaderFarBehindIsToldOfALateCommitIntoItsRest) {
+  Gap gap;
+  gap.rest(100, 500);
+  ASSERT_EQ(gap.sample(506), SampleStatus::holding);
+  ASSERT_EQ(gap.live.put(Live::kNow + milliseconds(600)), AppendStatus::accepted);
+  // Stopped between the look at the clock and the commit, until after the start of the entry.
+  gap.live.solver.step(RunningClock(gap.live.clock.time, std::chrono::microseconds(2600)));
+  ASSERT_EQ(gap.live.solver.head().revisions, 1U);
+  gap.run_to(510);
+  gap.move_on(610);
+  EXPECT_EQ(gap.sample(1400), SampleStatus::revised);
+  EXPECT_EQ(gap.sample(1400), SampleStatus::settled);
+}
+
+TEST(LiveSolver, AReaderFarBehindIsToldThatItsStopWasCutBeforeItsSample) {
+  Gap gap;
+  gap.rest(100, 90);
+  ASSERT_EQ(gap.sample(150), SampleStatus::stopping);
+  gap.run_to(135);
+  gap.move_on(200);
+  EXPECT_EQ(gap.sample(1000), SampleStatus::revised);
+}
+
 }  // namespace
 }  // namespace splinecast::ipc

@@ -136,6 +136,54 @@ TEST(Sampler, ASnapshotIsTheCurveOfOneRevision) {
   EXPECT_TRUE(snapshot.segments().empty());
 }
 
+TEST(Sampler, SpansOfAnotherSizeGetNoValuesAndStayAsTheyWere) {
+  const Mesh mesh = random_mesh(7, 20, 3, 2);
+  Stream stream(3);
+  stream.send(mesh, 0, mesh.size());
+  stream.finish();
+  Sampler sampler(stream.board.reader, StreamClock::recorded);
+  const Time t = mesh.times[10] + Time(1);
+  // Guarded on both sides: a value written outside of a span is seen as well.
+  std::vector<double> memory(4 * core::kMaxDimensions + 8, 42.0);
+  for (std::size_t part = 0; part < 4; ++part) {
+    for (const std::size_t size : {0U, 1U, 2U, 4U, 64U}) {
+      std::array<std::span<double>, 4> spans;
+      for (std::size_t i = 0; i < 4; ++i) {
+        spans[i] = std::span(memory).subspan(4 + i * core::kMaxDimensions, i == part ? size : 3);
+      }
+      const core::StateRef out{spans[0], spans[1], spans[2], spans[3]};
+      EXPECT_EQ(sampler.sample(t, out), SampleStatus::wrong_dimension) << part << ' ' << size;
+      EXPECT_EQ(sampler.preview(t, out), SampleStatus::wrong_dimension) << part << ' ' << size;
+    }
+  }
+  EXPECT_TRUE(std::ranges::all_of(memory, [](double value) { return value == 42; }));
+  EXPECT_FALSE(has_values(SampleStatus::wrong_dimension));
+  EXPECT_EQ(to_string(SampleStatus::wrong_dimension), "wrong dimension");
+  core::State state(3);
+  EXPECT_EQ(sampler.sample(t, state.ref()), SampleStatus::settled);
+}
+
+TEST(Sampler, AStateOrSnapshotOfAnotherStreamIsRefused) {
+  const Mesh mesh = random_mesh(8, 20, 3, 2);
+  Stream stream(3);
+  stream.send(mesh, 0, mesh.size());
+  stream.finish();
+  const Mesh wider_mesh = random_mesh(9, 20, 5, 2);
+  Stream wider(5);
+  wider.send(wider_mesh, 0, wider_mesh.size());
+  wider.finish();
+  core::State state(3);
+  Snapshot snapshot(3);
+  Sampler sampler(stream.board.reader, StreamClock::recorded);
+  ASSERT_EQ(sampler.sample(mesh.times[5], state.ref()), SampleStatus::settled);
+  ASSERT_EQ(sampler.snapshot(mesh.times[5], mesh.times[8], snapshot), SampleStatus::settled);
+  sampler = Sampler(wider.board.reader, StreamClock::recorded);
+  EXPECT_EQ(sampler.sample(wider_mesh.times[5], state.ref()), SampleStatus::wrong_dimension);
+  EXPECT_EQ(sampler.snapshot(wider_mesh.times[5], wider_mesh.times[8], snapshot),
+            SampleStatus::wrong_dimension);
+  EXPECT_TRUE(snapshot.segments().empty());
+}
+
 TEST(Sampler, SamplingAllocatesNothing) {
   const Mesh mesh = random_mesh(5, 100, 7, 3);
   Stream stream(7);

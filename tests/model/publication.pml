@@ -10,7 +10,11 @@
  * holds, whole; and whatever a dead writer left can be read, at the first try.
  *
  * Each of these flags makes a mutant that must fail: COMMIT_FIRST, TAG_LAST, LIVE_CELL, NO_RETIRE,
- * NO_RECHECK, KEEP_UNSEEN. */
+ * NO_RECHECK. Those that begin with KEEP weaken the check of a kept copy: KEEP_UNSEEN has none,
+ * KEEP_AT_ONCE finds the newest cell from both tags as seen once, KEEP_OWN looks at the copy's own
+ * tag alone, KEEP_OWN_FIRST at it before the other one, KEEP_PART keeps the first word and copies
+ * the second one again. All but KEEP_UNSEEN and KEEP_OWN need several revisions of one slot:
+ * one slot and LAST=5 have them in few states. */
 
 #ifndef LAST
 #define LAST 3 /* the last revision */
@@ -18,7 +22,9 @@
 #ifndef LIVES
 #define LIVES 2 /* writers, one after the other */
 #endif
-#define SLOTS 2
+#ifndef SLOTS
+#define SLOTS 2 /* 1 or 2 */
+#endif
 #define TRIES 2 /* of the reader, before the one at the end */
 #define RETIRED 255
 
@@ -43,13 +49,17 @@ byte holds[SLOTS * (LAST + 1)];
 #define TARGET(s, r) ((s) * 2 + 1 - NEWEST(tag[(s) * 2], tag[(s) * 2 + 1], r))
 #endif
 
+#define HOLD(r, s, value) \
+  holds[(r) * SLOTS + (s)] = (changes[s] -> value : holds[((r) - 1) * SLOTS + (s)])
+#if SLOTS == 2
+#define HOLD_SECOND(r, value) HOLD(r, 1, value)
+#else
+#define HOLD_SECOND(r, value) skip
+#endif
+
 #define COMMIT(r, value) \
   if \
-  :: d_step { \
-       revision = r; \
-       holds[r * 2] = (changes[0] -> value : holds[(r - 1) * 2]); \
-       holds[r * 2 + 1] = (changes[1] -> value : holds[(r - 1) * 2 + 1]); \
-     } \
+  :: d_step { revision = r; HOLD(r, 0, value); HOLD_SECOND(r, value); } \
   :: goto died \
   fi
 
@@ -71,9 +81,14 @@ next_life:
   :: revision < LAST ->
      d_step { r = revision + 1; value = 10 * life + r; }
      if /* the slots that this revision changes; the first one, all */
+#if SLOTS == 2
      :: r > 1 -> changes[0] = true; changes[1] = false
      :: r > 1 -> changes[0] = false; changes[1] = true
      :: changes[0] = true; changes[1] = true
+#else
+     :: r > 1 -> changes[0] = false
+     :: changes[0] = true
+#endif
      fi;
 #ifdef COMMIT_FIRST
      COMMIT(r, value);
@@ -109,9 +124,32 @@ ended:
   over = true
 }
 
+/* K1 and K2: goes to the next slot if the copy kept of this one, made from cell c, is what r holds. */
+#define OTHER_IS_OLD(other, s, r) (other > r || other < kept_tag[s])
+#if defined KEEP_UNSEEN
+#define KEEP(s, c, r, t0, t1) goto next_slot
+#elif defined KEEP_PART
+#define KEEP(s, c, r, t0, t1) skip
+#elif defined KEEP_AT_ONCE
+#define KEEP(s, c, r, t0, t1) \
+  t0 = tag[(s) * 2]; t1 = tag[(s) * 2 + 1]; \
+  if :: (NEWEST(t0, t1, r) -> t1 : t0) == kept_tag[s] -> goto next_slot :: else fi
+#elif defined KEEP_OWN
+#define KEEP(s, c, r, t0, t1) \
+  if :: tag[(s) * 2 + c] == kept_tag[s] -> goto next_slot :: else fi
+#elif defined KEEP_OWN_FIRST
+#define KEEP(s, c, r, t0, t1) \
+  t1 = tag[(s) * 2 + c]; t0 = tag[(s) * 2 + 1 - c]; \
+  if :: OTHER_IS_OLD(t0, s, r) && t1 == kept_tag[s] -> goto next_slot :: else fi
+#else
+#define KEEP(s, c, r, t0, t1) \
+  t0 = tag[(s) * 2 + 1 - c]; t1 = tag[(s) * 2 + c]; \
+  if :: OTHER_IS_OLD(t0, s, r) && t1 == kept_tag[s] -> goto next_slot :: else fi
+#endif
+
 proctype Reader() {
   byte try, r, s, c, t0, t1;
-  byte kept_tag[SLOTS], kept0[SLOTS], kept1[SLOTS];
+  byte kept_tag[SLOTS], kept_cell[SLOTS], kept0[SLOTS], kept1[SLOTS];
   bool whole, last;
 
   do
@@ -122,31 +160,32 @@ proctype Reader() {
      s = 0;
      do
      :: s < SLOTS && whole ->
-#ifdef KEEP_UNSEEN
         if
-        :: kept_tag[s] != 0 -> goto next_slot
+        :: kept_tag[s] != 0 -> KEEP(s, kept_cell[s], r, t0, t1)
         :: else
         fi;
-#endif
         t0 = tag[s * 2]; /* R2 */
         t1 = tag[s * 2 + 1];
         c = NEWEST(t0, t1, r);
         if
-        :: kept_tag[s] != 0 && (c -> t1 : t0) == kept_tag[s] -> goto next_slot /* it stands */
-        :: else
-        fi;
-        if
         :: t0 > r && t1 > r -> whole = false; goto next_slot
         :: else
         fi;
-        kept_tag[s] = 0;
+#ifdef KEEP_PART
+        if
+        :: kept_tag[s] == 0 -> kept0[s] = word0[s * 2 + c]
+        :: else
+        fi;
+#else
         kept0[s] = word0[s * 2 + c]; /* R3 */
+#endif
+        kept_tag[s] = 0;
         kept1[s] = word1[s * 2 + c];
 #ifndef NO_RECHECK
         whole = (tag[s * 2 + c] == (c -> t1 : t0)); /* R4 */
 #endif
         if
-        :: whole -> kept_tag[s] = (c -> t1 : t0)
+        :: whole -> kept_tag[s] = (c -> t1 : t0); kept_cell[s] = c
         :: else
         fi;
 next_slot:
@@ -164,7 +203,7 @@ next_slot:
      d_step {
        do
        :: s < SLOTS && whole ->
-          assert(kept0[s] == holds[r * 2 + s] && kept1[s] == holds[r * 2 + s]);
+          assert(kept0[s] == holds[r * SLOTS + s] && kept1[s] == holds[r * SLOTS + s]);
           s++
        :: else -> break
        od;

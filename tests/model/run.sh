@@ -38,8 +38,13 @@ fails() {  # model, mutant, flags…
 mkdir -p "$build"
 cd "$build"
 holds publication "$@"
-for mutant in COMMIT_FIRST TAG_LAST LIVE_CELL NO_RETIRE NO_RECHECK KEEP_UNSEEN; do
+for mutant in COMMIT_FIRST TAG_LAST LIVE_CELL NO_RETIRE NO_RECHECK KEEP_UNSEEN KEEP_OWN; do
   fails publication "$mutant" "$@"
+done
+# Kept copies: one slot, and revisions enough for two to pass between the loads of two tags.
+holds publication -DSLOTS=1 -DLAST=5
+for mutant in KEEP_AT_ONCE KEEP_OWN KEEP_OWN_FIRST KEEP_PART; do
+  fails publication "$mutant" -DSLOTS=1 -DLAST=5
 done
 holds waypoint_ring "$@"
 for mutant in HEAD_FIRST TAIL_FIRST OBSERVER_LE NO_CLAIM NO_SECOND_LOOK NO_WAKE; do

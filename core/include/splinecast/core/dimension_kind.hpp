@@ -104,6 +104,11 @@ class DimensionKinds {
   void normalise_quaternions(std::span<double> position, std::span<double> velocity,
                              std::span<double> acceleration) const noexcept;
 
+  /// Turns the acceleration step of a curve where it passes `position` into that of what
+  /// `normalise` gives, which is what readers see: of q/|q|. The curve's position and velocity do
+  /// not step there.
+  void normalise_step(std::span<const double> position, std::span<double> step) const noexcept;
+
   /// Throws std::invalid_argument if an end condition asks for a velocity or an acceleration other
   /// than 0 in a quaternion's dimensions: which sign the curve has there depends on all waypoints.
   void require_end(const Condition& end) const;

@@ -23,9 +23,13 @@ class Stencil {
   /// Length in seconds and chord slope of interval k, −behind ≤ k < ahead of the rule.
   [[nodiscard]] double h(int k) const noexcept { return h_[index(k)]; }
   [[nodiscard]] double m(int k) const noexcept { return m_[index(k)]; }
-  void set(int k, double h, double m) noexcept {
+  /// By how much rounding may have changed the chord slope of interval k, to a factor of about 3:
+  /// ε·|x|/h, with the greater of the positions at its ends.
+  [[nodiscard]] double rounding(int k) const noexcept { return rounding_[index(k)]; }
+  void set(int k, double h, double m, double rounding) noexcept {
     h_[index(k)] = h;
     m_[index(k)] = m;
+    rounding_[index(k)] = rounding;
   }
 
   /// Seconds that count as much as one unit of position.
@@ -40,6 +44,7 @@ class Stencil {
   double time_scale_;
   std::array<double, kIntervals> h_{};
   std::array<double, kIntervals> m_{};
+  std::array<double, kIntervals> rounding_{};
 };
 
 /// The two intervals at an end in one dimension, looking inwards: the end interval, then the next.

@@ -32,6 +32,15 @@
 /// R3 word[c].load(acquire), each. Pairs with W2, and keeps R4 behind R3.
 /// R4 tag[c].load(relaxed), directly after the copy: still the tag of R2, or the copy is thrown
 ///    away. Relaxed is enough: R3 has ordered it, and nothing after it depends on it.
+/// K1 A copy made under an older revision may be used under r without copying it again. First the
+///    tag of the other cell, load(acquire), must not lie in (copy's tag, r].
+/// K2 Then the tag of the copy's own cell, load(relaxed), must still be the copy's. Let q be the
+///    first revision up to r that wrote the slot after the copy was made. It wrote the other cell,
+///    and R1 has made that visible: K1 finds q, and the copy is not kept, or a later tag above r. A
+///    later revision writes the other cell only after one in between has written the copy's own
+///    cell; that store precedes the later tag, which K1 acquired (W1, T1), so K2 sees it. Neither
+///    both tags compared as if seen at one instant, nor the own tag before the other one is enough:
+///    two revisions may pass between the two loads.
 /// T1 takeover: the new writer overwrites every tag above the commit word with kRetiredTag
 ///    (release) before it writes anything: a half-written cell of the dead writer must never come
 ///    to be the newest when the numbers reach its tag. Release for the same reason as W1. The same
@@ -84,6 +93,16 @@ struct SlotView {
 
 /// W2 for one word.
 inline void put(Word& word, Word value) noexcept { store(word, value, std::memory_order_release); }
+
+/// K1 and K2: whether what was copied from cell `c`, with `tag`, is what the slot holds under
+/// revision `r` ≥ `tag` too. Two loads. Where words of that cell were loaded (acquire) before the
+/// call, true also says that these are of the revision `tag` (R4).
+[[nodiscard]] inline bool is_newest(const SlotView<const Word>& slot, std::size_t c, Word tag,
+                                    Word r) noexcept {
+  const Word other = load(slot.cell(1 - c)[0], std::memory_order_acquire);
+  if (other > tag && other <= r) return false;
+  return load(slot.cell(c)[0], std::memory_order_relaxed) == tag;
+}
 
 /// T1 for one slot: retires what no commit has made visible.
 inline void retire_uncommitted(const SlotView<Word>& slot, Word committed) noexcept {

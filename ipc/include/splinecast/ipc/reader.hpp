@@ -41,7 +41,8 @@ class Reader {
   /// `out`, one value per dimension in each span; a wrapping position within half a period of 0, a
   /// quaternion at unit length (core::angular_motion gives its ω and α). Wait-free: no system call,
   /// no allocation, no store to shared memory, whatever the writers do. O(D) where time advances,
-  /// O(log n + D) at a jump. Where the status has no values, `out` is left as it was.
+  /// O(log n + D) at a jump. Where the status has no values, `out` is left as it was; where a span
+  /// has another size, as after attaching to a stream of other dimensions, it is `wrong_dimension`.
   [[nodiscard]] SampleStatus sample(core::Time t, const core::StateRef& out) noexcept {
     return sampler_->sample(t, out);
   }

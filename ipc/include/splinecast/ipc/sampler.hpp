@@ -43,19 +43,31 @@ class Snapshot {
 /// never.
 class Sampler {
  public:
+  /// How many segments a sample compares at most after missing many revisions.
+  static constexpr int kMostCompared = 16;
+
   /// `board` is read as often as sampled; `clock` says whether a hold stands before the first
   /// waypoint; `kinds` are those of the board's dimensions.
   Sampler(const SegmentBoardReader& board, StreamClock clock, core::DimensionKinds kinds = {});
 
   /// Evaluates the curve at `t`, in the form in which its dimensions are read, into `out`, whose
-  /// spans have one value per dimension. Wait-free: no system call, no allocation; O(D) where `t`
-  /// lies in the segment used last or the next one, O(log n + D) elsewhere; a bounded number of
-  /// tries. Where the status has no values, `out` is left as it was.
+  /// spans have one value per dimension: else it returns `wrong_dimension`. Wait-free: no system
+  /// call, no allocation; O(D) where `t` lies in the segment used last or the next one, O(log n +
+  /// D) elsewhere; a bounded number of tries. Where the status has no values, `out` is left as it
+  /// was.
   ///
   /// On a live stream a sample counts as executed: if a revision since then changed the curve
   /// before the latest time sampled, the next one is `revised`, once. That happens only if the
   /// solver was stopped between its last look at the clock and the commit, or if a time ahead of
   /// what is settled is sampled; use `preview` for that.
+  ///
+  /// The board keeps which time each of the last kHeadChangesKept revisions changed the curve from.
+  /// A reader that has missed more compares the curve itself. Revisions change nothing before the
+  /// settled_until that it saw last; where it has sampled from there on, it looks whether the
+  /// segments are those of the revision that it saw last, by their tags, or have the bits of its
+  /// own copy, and whether rest goes on as a hold. If so, the sample is not `revised`. If they
+  /// differ, or cannot be compared because the board no longer keeps them or there are more than
+  /// kMostCompared, it is: a change is never missed.
   [[nodiscard]] SampleStatus sample(core::Time t, const core::StateRef& out) noexcept;
 
   /// The same for a look ahead: what it gives does not count as executed.
@@ -66,9 +78,13 @@ class Sampler {
 
   /// Copies every segment that has a part between `from` and `to` (inclusive), all under one
   /// revision. Returns `settled` or `provisional` for the whole; `before_history`, `no_data`,
-  /// `busy` or `retired` leave `out` without segments. The segments are the curve as it was solved,
-  /// before core::DimensionKinds::normalise. Allocates if `out` must grow.
+  /// `busy`, `retired` or `wrong_dimension` leave `out` without segments. The segments are the
+  /// curve as it was solved, before core::DimensionKinds::normalise; their acceleration steps are
+  /// those of what readers see. Allocates if `out` must grow.
   [[nodiscard]] SampleStatus snapshot(core::Time from, core::Time to, Snapshot& out);
+
+  /// The kinds of the board's dimensions.
+  [[nodiscard]] const core::DimensionKinds& kinds() const noexcept { return kinds_; }
 
   /// The revision that the last sample saw; 0 before the first.
   [[nodiscard]] Word revision_seen() const noexcept { return head_.revision; }
@@ -76,6 +92,8 @@ class Sampler {
  private:
   /// Result of looking a time up under one revision.
   enum class Found { segment, before_first, torn };
+  /// What a comparison with the curve seen before has found.
+  enum class Compared { same, changed, torn };
 
   [[nodiscard]] SegmentCopy& current() noexcept { return copies_[current_]; }
   [[nodiscard]] bool is_confirmed(Word r) noexcept;
@@ -94,6 +112,11 @@ class Sampler {
   [[nodiscard]] SampleStatus look_up(core::Time t, const core::StateRef& out) noexcept;
   [[nodiscard]] SampleStatus hold_first(const core::StateRef& out) noexcept;
   [[nodiscard]] bool see(Word r) noexcept;
+  [[nodiscard]] bool see_after_gap(Word r) noexcept;
+  [[nodiscard]] Compared compare_with(const Head& before) noexcept;
+  [[nodiscard]] Compared compare_rest(SegmentCopy& last) noexcept;
+  [[nodiscard]] bool is_unchanged(const SegmentCopy& segment, const Head& before) noexcept;
+  [[nodiscard]] bool fits(const core::StateRef& out) const noexcept;
   [[nodiscard]] bool copy_whole(Word number, Word r, SegmentCopy& out) const;
   [[nodiscard]] SampleStatus from_own_copy(core::Time t, const core::StateRef& out) noexcept;
 

@@ -166,7 +166,8 @@ struct SegmentCopy {
   explicit SegmentCopy(std::size_t dimensions)
       : coefficients(static_cast<std::size_t>(core::kMaxOrder) * dimensions) {}
 
-  Word tag = 0;  ///< revision that wrote it; 0: nothing copied
+  Word tag = 0;          ///< revision that wrote it; 0: nothing copied
+  std::size_t cell = 0;  ///< of its slot, 0 or 1: where it was copied from
   Word number = 0;
   core::Time left{};
   core::Time right{};
@@ -176,7 +177,8 @@ struct SegmentCopy {
   SegmentOrigin origin{};
   bool has_waypoint = false;         ///< whether its left end is a waypoint
   std::vector<double> coefficients;  ///< [power][dimension]; of these the first `order` powers
-  std::vector<double> acceleration_step{};  ///< a⁺ − a⁻ at the left end; in a snapshot only
+  std::vector<double> acceleration_step{};  ///< a⁺ − a⁻ at the left end: in a snapshot as readers
+                                            ///< see it, of a SettledSegments as solved
   std::vector<double>
       waypoint{};  ///< position of the waypoint at the left end; of a SettledSegments
 };
@@ -232,8 +234,8 @@ class SegmentBoardReader {
   /// Copies segment `number` under r. Upon failure `out.tag` is 0 and the rest of no use.
   [[nodiscard]] bool copy_segment(Word number, Word r, SegmentCopy& out) const noexcept;
 
-  /// Whether a copy is what the board holds under r too: no words are copied again. R1 has made all
-  /// tags up to r visible, so that a newer cell cannot be missed; the acquire of R2 is R4's here.
+  /// Whether a copy is what the board holds under r too: no words are copied again. K1 and K2; r is
+  /// no older than the revision that the copy was made under.
   [[nodiscard]] bool is_current(const SegmentCopy& copy, Word r) const noexcept;
 
   /// Copies the left end, or both ends, of segment `number` under r.

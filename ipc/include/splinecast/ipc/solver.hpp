@@ -109,8 +109,9 @@ class Solver {
   bool hold_region() noexcept;
 
   /// Takes what waypoints there are and publishes; detaches when the stream has been retired or
-  /// made anew. No system call but the clock's and, with SolverOptions::wake, one wake a revision.
-  /// Throws BadRegion if another process has written to the board.
+  /// made anew. No system call but the clock's and, with SolverOptions::wake, one wake a revision,
+  /// of bounded cost however many readers wait (wake_some). Throws BadRegion if another process has
+  /// written to the board.
   StepResult step(const Clock& clock);
 
   /// Sleeps until there may be something to do, at the latest until `due()`, or for the timeout, or

@@ -46,18 +46,19 @@ inline constexpr std::uint8_t kRefusals = 14;
 
 /// What a sample is worth.
 enum class SampleStatus : std::uint8_t {
-  settled,         ///< final: every reader, now or later, gets these bits
-  provisional,     ///< a newer waypoint may still change it
-  stopping,        ///< in the stop tail behind the newest waypoint
-  holding,         ///< at rest: past the end, or before the first waypoint of a live stream
-  revised,         ///< the curve has been changed before a time that this reader had sampled
-  before_history,  ///< older than what the board keeps, or before a recorded stream; no values
-  no_data,         ///< no waypoint has been solved yet; no values
-  busy,            ///< the writer overtook every try; no values, try again
-  retired,         ///< the region is of no more use: attach again; no values
+  settled,          ///< final: every reader, now or later, gets these bits
+  provisional,      ///< a newer waypoint may still change it
+  stopping,         ///< in the stop tail behind the newest waypoint
+  holding,          ///< at rest: past the end, or before the first waypoint of a live stream
+  revised,          ///< the curve has been changed before a time that this reader had sampled
+  before_history,   ///< older than what the board keeps, or before a recorded stream; no values
+  no_data,          ///< no waypoint has been solved yet; no values
+  busy,             ///< the writer overtook every try; no values, try again
+  retired,          ///< the region is of no more use: attach again; no values
+  wrong_dimension,  ///< a span, or the snapshot, does not have one value per dimension; no values
 };
 
-inline constexpr std::size_t kSampleStatuses = 9;
+inline constexpr std::size_t kSampleStatuses = 10;
 
 /// Whether a sample of this status has values.
 [[nodiscard]] constexpr bool has_values(SampleStatus status) noexcept {

@@ -47,7 +47,8 @@ struct SolverOptions {
   std::optional<core::Time> history{};       ///< live: what ended less than this ago is kept; 1 s
   std::optional<core::Time> min_splice{};    ///< live: shortest splice; default as freeze_ahead
   std::optional<std::size_t> capacity{};     ///< segments of history; default 4,096
-  bool wake = true;                          ///< wake waiting readers: one system call a revision
+  bool wake = true;  ///< wake waiting readers: one system call a revision, which wakes
+                     ///< at most kWokenAtOnce threads
   RegionAccess access{};
   Trust trust{};
 };
