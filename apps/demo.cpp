@@ -13,6 +13,7 @@
 #include "solve.hpp"
 #include "support/child.hpp"
 #include "support/exit_codes.hpp"
+#include "support/judgement.hpp"
 #include "support/options.hpp"
 #include "support/output.hpp"
 #include "support/pick_and_place.hpp"
@@ -105,9 +106,10 @@ std::string summary(const WaypointTable& table, const json& sent, const json& re
 int run_chaos_demo(const DemoOptions& options, const std::string& stream) {
   catch_stop_signals();
   const StreamRemover remover({stream});
-  const json found = run_chaos(stream, options.seconds.value_or(kDefaultLength), options.json);
-  print_report(options.json ? found.dump(2) + "\n" : chaos_summary(found));
-  return found["sound"].get<bool>() ? kOk : kFellShort;
+  const auto run = [&] {
+    return run_chaos(stream, options.seconds.value_or(kDefaultLength), options.json);
+  };
+  return print_judgement(run, options.json, chaos_summary, kFellShort);
 }
 
 int run_demo(const DemoOptions& options) {
@@ -123,12 +125,12 @@ int run_demo(const DemoOptions& options) {
 
   catch_stop_signals();
   const StreamRemover remover({stream});
-  Child solver([&] { return json(run_solve({.wanted = {stream}, .quiet = true})); }, true);
+  Child solver([&] { return json(run_solve({.wanted = {stream}, .quiet = true})); });
   std::vector<Child> readers;
   for (std::size_t r = 0; r < kReaders; ++r) {
-    readers.emplace_back([&] { return run_demo_reader(stream); }, false);
+    readers.emplace_back([&] { return run_demo_reader(stream); });
   }
-  Child producer([&] { return replay_json(replay_table(table, replay, refused)); }, false);
+  Child producer([&] { return replay_json(replay_table(table, replay, refused)); });
 
   const json sent = producer.result();
   std::vector<json> seen;
@@ -138,11 +140,15 @@ int run_demo(const DemoOptions& options) {
   solver.result();
   const json read = merged(seen);
   if (options.json) {
-    const json all{{"waypoints", sent}, {"readers", seen}, {"all_readers", read}};
+    const json all{{"interrupted", stop_requested()},
+                   {"waypoints", sent},
+                   {"readers", seen},
+                   {"all_readers", read}};
     print_report(all.dump(2) + "\n");
   } else {
     print_report(summary(table, sent, read));
   }
+  if (stop_requested()) throw Interrupted("interrupted");
   return kOk;
 }
 

@@ -99,7 +99,7 @@ int run_latency_command(const LatencyCommand& command) {
     output.close();
   }
   print_report(command.json ? json.dump(2) + "\n" : latency_text(json, isatty(STDOUT_FILENO) == 1));
-  return result.interrupted ? kFailed : kOk;
+  return result.interrupted ? kInterrupted : kOk;
 }
 
 ordered_json read_result(const std::string& file) {

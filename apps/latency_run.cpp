@@ -23,12 +23,12 @@ std::vector<json> run_pipeline(const LatencyOptions& options, LatencyShared& sha
   const std::string stream = fmt::format("latency.{}", getpid());
   const StreamRemover remover({stream});
   std::vector<Child> children;
-  children.emplace_back([&] { return run_latency_producer(options, stream, shared); }, true);
+  children.emplace_back([&] { return run_latency_producer(options, stream, shared); });
   if (!options.embedded) {
-    children.emplace_back([&] { return run_latency_solver(options, stream, shared); }, true);
+    children.emplace_back([&] { return run_latency_solver(options, stream, shared); });
   }
   for (std::size_t r = 0; r < options.readers; ++r) {
-    children.emplace_back([&, r] { return run_latency_reader(options, stream, shared, r); }, true);
+    children.emplace_back([&, r] { return run_latency_reader(options, stream, shared, r); });
   }
   std::vector<json> returned;
   returned.reserve(children.size());
@@ -82,6 +82,7 @@ void measure_pipeline(LatencyResult& result) {
   result.stages = latencies_of(shared.appends.entries(), shared.revisions.entries(), seen, refused,
                                result.options.measured(start));
   if (result.stages.front().intended.count() + result.stages.front().missing == 0) {
+    if (stop_requested()) throw Interrupted("interrupted before the warm-up was over");
     throw Failure("nothing was measured: the warm-up was not over");
   }
   note_processes(returned, result);
@@ -102,7 +103,7 @@ LatencyResult run_latency(const LatencyOptions& options) {
                        .iceoryx = {},
                        .processes = {},
                        .solver = {}};
-  if (stop_requested()) throw Failure("interrupted before it began");
+  if (stop_requested()) throw Interrupted("interrupted before it began");
   measure_pipeline(result);
   if (!options.iceoryx) {
     result.iceoryx.reason = "told off";
@@ -110,7 +111,9 @@ LatencyResult run_latency(const LatencyOptions& options) {
     result.iceoryx.reason = "interrupted";
   } else {
     result.iceoryx = measure_iceoryx(options);
+    if (stop_requested()) result.iceoryx = {.seen = std::nullopt, .reason = "interrupted"};
   }
+  result.interrupted = result.interrupted || stop_requested();
   return result;
 }
 

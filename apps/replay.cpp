@@ -67,7 +67,6 @@ std::string in_words(const ReplayReport& report, const RefusedRows& refused) {
 }
 
 int run_replay(ReplayOptions options) {
-  catch_stop_signals();
   RefusedRows refused;
   if (options.skip_bad) {
     options.table.on_bad_row = [&refused](std::size_t line, const InputError& error) {
@@ -76,6 +75,7 @@ int run_replay(ReplayOptions options) {
   }
   WaypointTable table = read_waypoints(options.file, options.table);
   prepare_replay(table, options, refused);
+  catch_stop_signals();  // until here nothing was made that would have to be ended
   const ReplayReport report = replay_table(table, options, refused);
   const ipc::Word skipped = refused.count(RefusedBy::file) + refused.count(RefusedBy::producer);
   if (options.json) {
@@ -153,8 +153,8 @@ void add_interval(CLI::App& verb, const std::string& name, core::Time& value,
 
 int exit_code(const ReplayReport& report) {
   if (report.verification && report.verification->first) return kFellShort;
-  if (!report.stopped) return kOk;
-  return *report.stopped == RefusedBy::solver ? kFailed : kBadUsageOrInput;
+  if (report.stopped) return *report.stopped == RefusedBy::solver ? kFailed : kBadUsageOrInput;
+  return report.interrupted ? kInterrupted : kOk;
 }
 
 void add_replay(CLI::App& program, Action& action) {

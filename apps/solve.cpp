@@ -122,7 +122,6 @@ int solve_many(const SolveOptions& options) {
 }  // namespace
 
 int run_solve(const SolveOptions& options) {
-  catch_stop_signals();
   const bool is_one = options.wanted.size() == 1 && !ipc::is_pattern(options.wanted.front());
   return is_one ? solve_one(options) : solve_many(options);
 }
@@ -190,7 +189,10 @@ void add_solve(CLI::App& program, Action& action) {
     if (distinct.size() != options->wanted.size()) {
       throw CLI::ValidationError("STREAM", "a stream is named twice");
     }
-    action = [options] { return run_solve(*options); };
+    action = [options] {
+      catch_stop_signals();
+      return run_solve(*options);
+    };
   });
 }
 

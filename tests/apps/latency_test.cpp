@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -198,10 +199,26 @@ TEST(Latency, AStopEndsItEarlyWithWhatThereIs) {
   }));
   measuring.signal(SIGTERM);
   const Ended ended = measuring.wait();
-  EXPECT_EQ(ended.code, 1) << ended.err;
+  EXPECT_EQ(ended.code, 130) << ended.err;
   const json result = json::parse(ended.out);
   EXPECT_EQ(result.at("interrupted"), true);
   EXPECT_GT(find_series(result, "append", "intended")->at("count").get<int>(), 10);
+}
+
+TEST(Latency, AStopInItsLastPartInterruptsItToo) {
+  testing::Process measuring({"latency", "--duration", "3", "--warmup", "0", "--json"});
+  const std::string name = "latency." + std::to_string(measuring.pid());
+  ASSERT_TRUE(testing::await([&] { return testing::info(name).is_object(); }));
+  ASSERT_TRUE(testing::await([&] { return !testing::info(name).is_object(); }));
+  measuring.signal(SIGINT);
+  const Ended ended = measuring.wait();
+  const json result = json::parse(ended.out, nullptr, false);
+  if (ended.code == 0 && result.at("not_measured").contains("iceoryx")) {
+    GTEST_SKIP() << "iceoryx: " << result["not_measured"]["iceoryx"];
+  }
+  EXPECT_EQ(ended.code, 130) << ended.err;
+  EXPECT_EQ(result.at("interrupted"), true);
+  EXPECT_EQ(result.at("not_measured").at("iceoryx"), "interrupted");
 }
 
 TEST(Latency, MeasuresIceoryxOrSaysWhyNot) {

@@ -116,7 +116,7 @@ TEST_F(Life, AnInterruptedReplayFinishesItsStream) {
   ASSERT_TRUE(await([&] { return field("solver", "interpolated") > 20; }));
   replaying.signal(SIGINT);
   const Ended ended = replaying.wait();
-  EXPECT_EQ(ended.code, 0);
+  EXPECT_EQ(ended.code, 130);
   EXPECT_NE(ended.err.find("interrupted"), std::string::npos) << ended.err;
   EXPECT_TRUE(await([&] { return info(name())["state"] == "finished"; }));
 }

@@ -265,7 +265,7 @@ TEST_F(Life, ASignalStopsAReplayThatNeverWaits) {
   ASSERT_TRUE(await([&] { return field("solver", "interpolated") > 2000; }));
   replaying.signal(SIGTERM);
   const Ended ended = replaying.wait();
-  EXPECT_EQ(ended.code, 0);
+  EXPECT_EQ(ended.code, 130);
   EXPECT_NE(ended.err.find("interrupted"), std::string::npos) << ended.err;
 }
 
@@ -278,7 +278,7 @@ TEST_F(Life, ASignalToTheDemoStopsItAndItCleansUp) {
            now["solver"]["interpolated"] > 10;
   }));
   demo.signal(SIGTERM);
-  EXPECT_EQ(demo.wait().code, 0);
+  EXPECT_EQ(demo.wait().code, 130);
   EXPECT_EQ(info(stream), nlohmann::json());
 }
 
