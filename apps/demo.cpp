@@ -27,6 +27,10 @@ using nlohmann::json;
 
 constexpr std::size_t kReaders = 2;
 constexpr core::Time kDefaultLength = std::chrono::seconds(10);
+// Its waypoints, and what readers note, are kept in memory.
+constexpr core::Time kShortest = std::chrono::milliseconds(100);
+constexpr core::Time kLongest = std::chrono::hours(1);
+constexpr core::Time kLongestChaos = std::chrono::hours(24);
 
 struct DemoOptions {
   std::string file;
@@ -161,8 +165,10 @@ void add_demo(CLI::App& program, Action& action) {
   verb->add_option("--file", options->file,
                    "Waypoint file to play (default: a pick-and-place of seven joints)")
       ->type_name("FILE");
-  add_seconds(*verb, "--seconds", options->seconds,
-              "How much to play (default 10, or the whole file)");
+  add_seconds(
+      *verb, "--seconds", options->seconds,
+      "How much to play, 0.1 to 86400, without --chaos 3600 (default 10, or the whole file)",
+      {kShortest, kLongestChaos});
   verb->add_flag(
           "--chaos", options->chaos,
           "Kill, stop and starve everybody meanwhile, and show that no reader notices; exits "
@@ -170,7 +176,14 @@ void add_demo(CLI::App& program, Action& action) {
       ->excludes("--file");
   verb->add_flag("--json", options->json, "As JSON");
   add_table_options(*verb, options->table);
-  verb->callback([&action, options] { action = [options] { return run_demo(*options); }; });
+  verb->callback([&action, options] {
+    if (options->seconds && *options->seconds > kLongest && !options->chaos) {
+      throw CLI::ValidationError(
+          "--seconds", fmt::format("'{}' is no time from 0.1 to 3600 s, the most without --chaos",
+                                   core::to_seconds(*options->seconds)));
+    }
+    action = [options] { return run_demo(*options); };
+  });
 }
 
 }  // namespace splinecast::apps

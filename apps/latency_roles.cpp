@@ -241,6 +241,13 @@ Time Meeting::begin(std::size_t count) {
   return start;
 }
 
+double bytes_noted(const LatencyOptions& options) {
+  const auto revisions = static_cast<double>(most_revisions(options));
+  return static_cast<double>(options.schedule({}).count * sizeof(AppendStamp)) +
+         revisions * sizeof(RevisionStamp) +
+         revisions * static_cast<double>(options.readers * sizeof(SeenStamp));
+}
+
 LatencyShared::LatencyShared(const LatencyOptions& options)
     : appends(options.schedule({}).count),
       revisions(most_revisions(options)),

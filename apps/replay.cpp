@@ -108,12 +108,13 @@ void add_playback_options(CLI::App& verb, ReplayOptions& options) {
             if (text == "max") {
               options.rate.reset();
             } else {
-              options.rate = positive_number("--rate", text);
+              options.rate = number_within("--rate", text);
             }
           },
           "Play R times as fast as recorded (default 1), or as fast as it goes: max")
       ->type_name("R|max");
-  add_count(verb, "--loop", options.loops, "Play the recording N times (default 1)");
+  add_count(verb, "--loop", options.loops, "Play the recording N times (default 1)",
+            {1, 1'000'000'000});
   add_seconds(verb, "--from", options.from, "Begin this long after the first waypoint");
   add_seconds(verb, "--duration", options.duration, "Play only so much of the recording");
   verb.add_option_function<std::string>(
@@ -143,7 +144,7 @@ void add_interval(CLI::App& verb, const std::string& name, core::Time& value,
   verb.add_option_function<std::string>(
           name,
           [&value, name](const std::string& text) {
-            value = positive_time(name, text, TimeUnit::seconds);
+            value = time_within(name, text, TimeUnit::seconds);
           },
           help)
       ->type_name("SECONDS");

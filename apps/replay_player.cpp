@@ -11,6 +11,7 @@
 #include "splinecast/ipc/producer.hpp"
 #include "splinecast/ipc/stream_files.hpp"
 #include "support/exit_codes.hpp"
+#include "support/options.hpp"
 #include "support/output.hpp"
 #include "support/recording.hpp"
 #include "support/refusal_watch.hpp"
@@ -52,6 +53,16 @@ void remove_board_without_ring(const ReplayOptions& options) {
   } catch (const ipc::StreamError&) {
     return;  // it was not made, or is somebody else's by now; what failed before is what is told
   }
+}
+
+/// All loops together may not take longer than times can say.
+void require_loops(const WaypointTable& table, std::size_t loops) {
+  if (loops == 1) return;
+  const core::Time once = table.times.back() - table.times.front() + median_interval(table);
+  const double seconds = static_cast<double>(loops) * core::to_seconds(once);
+  if (seconds <= core::to_seconds(kLongestTime)) return;
+  throw InputError(fmt::format("{}: --loop {} takes {} s; the most is {} s", table.file, loops,
+                               seconds, core::to_seconds(kLongestTime)));
 }
 
 /// A replay on its way: the producer, and the embedded solver if there is one.
@@ -336,6 +347,7 @@ void prepare_replay(WaypointTable& table, const ReplayOptions& options, RefusedR
   select_rows(table, options.from.value_or(core::Time::zero()), options.duration);
   change_rate(table, options.rate.value_or(1.0));
   drop_unfit_rows(table, options.limits, options.skip_bad ? &refused : nullptr);
+  require_loops(table, options.loops);
   const core::Condition none;
   core::require_values(options.start.value_or(none), table.dimensions());
   core::require_values(options.end.value_or(none), table.dimensions());

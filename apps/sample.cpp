@@ -56,7 +56,8 @@ class Sampling {
     if (!options_.at.empty()) {
       return std::ranges::all_of(times_, [this](core::Time t) { return write(t); });
     }
-    return reader_.clock() == ipc::StreamClock::monotonic ? follow_live() : step_through_recording();
+    return reader_.clock() == ipc::StreamClock::monotonic ? follow_live()
+                                                          : step_through_recording();
   }
 
   static void fill_with_nan(core::State& state) {
@@ -110,7 +111,8 @@ class Sampling {
   }
 
   /// A recorded stream is sampled where it is final, as long as it goes on: what is not settled yet
-  /// is waited for, until nothing new has come for --wait. Nothing if a stop is requested meanwhile.
+  /// is waited for, until nothing new has come for --wait. Nothing if a stop is requested
+  /// meanwhile.
   std::optional<ipc::SampleStatus> sample(core::Time t) {
     core::Time end = ipc::deadline(clock_, options_.wait);
     for (;;) {
@@ -169,10 +171,21 @@ class Sampling {
   bool patient_ = true;  ///< whether what is not settled is still waited for
 };
 
+/// The last sample's time must be one.
+void require_span(const SampleOptions& options) {
+  if (options.count == 0) return;  // --at
+  const double seconds = static_cast<double>(options.count - 1) / options.rate;
+  const double most = core::to_seconds(kLongestTime);
+  if (seconds <= most) return;
+  throw CLI::ValidationError(
+      "--count", fmt::format("{} samples at {} Hz take {} s; the most is {} s", options.count,
+                             options.rate, seconds, most));
+}
+
 int run_sample(const SampleOptions& options) {
   // Before the output is opened; a signal may end the process meanwhile, wherever it waits.
-  auto times = options.at.empty() ? std::vector<core::Time>{}
-                                  : read_times(options.at, options.time_unit);
+  auto times =
+      options.at.empty() ? std::vector<core::Time>{} : read_times(options.at, options.time_unit);
   catch_stop_signals();
   return Sampling(options, std::move(times)).run();
 }
@@ -187,7 +200,7 @@ void add_sample(CLI::App& program, Action& action) {
                  ->type_name("FILE");
   auto* rate = verb->add_option_function<std::string>(
       "--rate",
-      [options](const std::string& text) { options->rate = positive_number("--rate", text); },
+      [options](const std::string& text) { options->rate = number_within("--rate", text); },
       "Samples a second");
   rate->type_name("HZ");
   add_count(*verb, "--count", options->count, "Number of samples");
@@ -205,6 +218,7 @@ void add_sample(CLI::App& program, Action& action) {
     if (at->empty() && rate->empty()) {
       throw CLI::ValidationError("sample", "needs --at, or --rate with --count");
     }
+    require_span(*options);
     action = [options] { return run_sample(*options); };
   });
 }

@@ -33,6 +33,10 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr std::size_t kMostProducers = 4;  ///< processes
+/// About what a process can open (RLIMIT_NOFILE, two descriptors a stream).
+constexpr std::size_t kMostStreams = 10'000;
+constexpr std::size_t kMostReaders = 64;  ///< processes
+constexpr double kMostRate = 1000;
 constexpr Time kBetweenKills = seconds(2);
 constexpr Time kPatience = seconds(60);
 constexpr double kMegabyte = 1e6;
@@ -297,13 +301,14 @@ void add_soak(CLI::App& program, Action& action) {
       "soak",
       "Run many streams at once for long, kill producers meanwhile, and see that nothing "
       "grows and nothing is lost; exits with 1 if something does");
-  add_count(*verb, "--streams", options->streams, "Streams at once (default 100)");
-  add_seconds(*verb, "--seconds", options->seconds, "How long (default 60)");
-  verb->add_option("--rate", options->rate, "Waypoints a second and stream (default 100)")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->type_name("HZ");
+  add_count(*verb, "--streams", options->streams, "Streams at once, 1 to 10000 (default 100)",
+            {1, kMostStreams});
+  add_seconds(*verb, "--seconds", options->seconds, "How long, from 1 on (default 60)",
+              {seconds(1), kLongestTime});
+  add_rate(*verb, "--rate", options->rate, "Waypoints a second and stream (default 100)",
+           {1, kMostRate});
   add_count(*verb, "--readers", options->readers,
-            "Processes that each read all streams (default 2)");
+            "Processes that each read all streams, 1 to 64 (default 2)", {1, kMostReaders});
   verb->add_flag("--json", options->json, "As JSON, and no table");
   verb->callback([&action, options] {
     action = [options] {

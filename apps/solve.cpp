@@ -21,7 +21,7 @@ namespace {
 /// Longest sleep on one stream; a signal that comes just before a sleep waits this long.
 constexpr core::Time kLongestWait = std::chrono::milliseconds(50);
 
-constexpr core::Time kLongestSweep = std::chrono::seconds(1);
+constexpr TimeRange kSweeps{core::Time(1), std::chrono::seconds(1)};
 
 /// Tells what becomes of each stream.
 class Announcer {
@@ -133,7 +133,7 @@ void add_live_options(CLI::App& verb, ipc::SolverOptions& options) {
   verb.add_option_function<std::string>(
           "--freeze-ahead",
           [&options](const std::string& text) {
-            options.freeze_ahead = positive_time("--freeze-ahead", text, TimeUnit::milliseconds);
+            options.freeze_ahead = time_within("--freeze-ahead", text, TimeUnit::milliseconds);
           },
           "Leave alone what lies this long ahead of now (default 5)")
       ->type_name("MS");
@@ -173,9 +173,7 @@ void add_solve(CLI::App& program, Action& action) {
   verb->add_option_function<std::string>(
           "--sweep",
           [options](const std::string& text) {
-            options->sweep = positive_time("--sweep", text, TimeUnit::milliseconds);
-            if (options->sweep <= kLongestSweep) return;
-            throw CLI::ValidationError("--sweep", fmt::format("'{}' is more than 1000 ms", text));
+            options->sweep = time_within("--sweep", text, TimeUnit::milliseconds, kSweeps);
           },
           "Pause between looks at several streams (default 1, at most 1000); 20 if that is longer "
           "for "

@@ -94,7 +94,7 @@ TEST_F(Life, ASolverThatTakesOverMayNotContradictHowALiveStreamIsSolved) {
       {{"--history", "1"}, "history in ns 2000000000, not 1000000000"},
       {{"--max-acceleration", "-1"}, "must be positive"},
       {{"--max-acceleration", "1,x"}, "is no list of numbers"},
-      {{"--freeze-ahead", "0"}, "'0' is no positive time"}};
+      {{"--freeze-ahead", "0"}, "'0' is no time from 1e-06 to"}};
   for (const auto& [arguments, message] : cases) {
     std::vector<std::string> solve{"solve", name()};
     solve.insert(solve.end(), arguments.begin(), arguments.end());
