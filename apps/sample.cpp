@@ -75,6 +75,7 @@ class Sampling {
     const core::Time start = clock_.now();
     for (std::size_t k = 0; k < options_.count; ++k) {
       const core::Time t = start + period_times(k);
+      if (clock_.now() < t) output_.flush();  // whoever reads it has each line before the next
       if (!sleep_until(t) || !write(t)) return false;
     }
     return true;
@@ -129,6 +130,7 @@ class Sampling {
         continue;
       }
       if (!patient_ || is_final(status)) return status;
+      output_.flush();
       if (reader_.wait(std::chrono::milliseconds(20)) == ipc::WaitStatus::advanced) {
         end = ipc::deadline(clock_, options_.wait);
       } else if (clock_.now() >= end) {

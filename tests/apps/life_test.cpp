@@ -269,6 +269,14 @@ TEST_F(Life, ASignalStopsAReplayThatNeverWaits) {
   EXPECT_NE(ended.err.find("interrupted"), std::string::npos) << ended.err;
 }
 
+TEST_F(Life, ALiveStreamsSamplesAreWrittenWhenTheyAreThere) {
+  Process solver(solve());
+  Process replaying({"replay", file_, "--stream", name(), "--loop", "1000"});
+  ASSERT_TRUE(await([&] { return field("solver", "interpolated") > 0; }));
+  Process sampling({"sample", name(), "--rate", "0.0001", "--count", "2"});
+  sampling.await_lines(2);  // the header and the first one; the next one comes in hours
+}
+
 TEST_F(Life, ASignalToTheDemoStopsItAndItCleansUp) {
   Process demo({"demo", "--seconds", "1000"});
   const std::string stream = "demo." + std::to_string(demo.pid());
