@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "latency_roles.hpp"
 #include "support/child.hpp"
@@ -92,6 +93,20 @@ void measure_pipeline(LatencyResult& result) {
 
 }  // namespace
 
+std::string throttling_warning(const LatencyOptions& options, const Environment& environment) {
+  if (!options.fifo || !options.spin) return {};
+  const auto stopped = throttled_time(environment);
+  if (!stopped) {
+    return "whether the kernel throttles SCHED_FIFO processes that spin is unknown "
+           "(/proc/sys/kernel/sched_rt_runtime_us)";
+  }
+  if (*stopped == core::Time::zero()) return {};
+  return fmt::format(
+      "the kernel stops SCHED_FIFO processes that spin for {:g} ms of each {} us "
+      "(sched_rt_runtime_us is {}), which is in the figures; see 'splinecast doctor'",
+      core::to_seconds(*stopped) * 1e3, environment.rt_period, environment.rt_runtime);
+}
+
 LatencyResult run_latency(const LatencyOptions& options) {
   catch_stop_signals();
   LatencyResult result{.options = options,
@@ -104,6 +119,9 @@ LatencyResult run_latency(const LatencyOptions& options) {
                        .processes = {},
                        .solver = {}};
   if (stop_requested()) throw Interrupted("interrupted before it began");
+  if (auto warning = throttling_warning(options, result.environment); !warning.empty()) {
+    result.warnings.push_back(std::move(warning));
+  }
   measure_pipeline(result);
   if (!options.iceoryx) {
     result.iceoryx.reason = "told off";

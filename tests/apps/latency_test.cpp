@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "latency_run.hpp"
 #include "support/browser.hpp"
 #include "support/process.hpp"
 #include "support/process_settings.hpp"
@@ -154,6 +155,25 @@ TEST(Latency, WritesPercentileTextOfEachStage) {
     EXPECT_TRUE(text.starts_with("       Value     Percentile TotalCount 1/(1-Percentile)\n\n"));
     EXPECT_NE(text.find("Total count    =          200]"), std::string::npos) << text;
   }
+}
+
+TEST(Latency, WarnsOfTheKernelsThrottlingWhereFifoProcessesSpin) {
+  Environment environment;
+  environment.rt_runtime = "950000";
+  environment.rt_period = "1000000";
+  LatencyOptions options;
+  options.fifo = true;
+  EXPECT_EQ(throttling_warning(options, environment), "");  // they sleep
+  options.spin = true;
+  EXPECT_NE(throttling_warning(options, environment).find("for 50 ms of each 1000000 us"),
+            std::string::npos);
+  environment.rt_runtime = "";
+  EXPECT_NE(throttling_warning(options, environment).find("is unknown"), std::string::npos);
+  environment.rt_runtime = "-1";
+  EXPECT_EQ(throttling_warning(options, environment), "");
+  options.fifo = false;
+  environment.rt_runtime = "950000";
+  EXPECT_EQ(throttling_warning(options, environment), "");
 }
 
 TEST(Latency, RefusesWhatCannotBeMeasured) {
