@@ -13,6 +13,7 @@
 #include "solve.hpp"
 #include "support/child.hpp"
 #include "support/exit_codes.hpp"
+#include "support/judgement.hpp"
 #include "support/options.hpp"
 #include "support/output.hpp"
 #include "support/pick_and_place.hpp"
@@ -26,6 +27,10 @@ using nlohmann::json;
 
 constexpr std::size_t kReaders = 2;
 constexpr core::Time kDefaultLength = std::chrono::seconds(10);
+// Its waypoints, and what readers note, are kept in memory.
+constexpr core::Time kShortest = std::chrono::milliseconds(100);
+constexpr core::Time kLongest = std::chrono::hours(1);
+constexpr core::Time kLongestChaos = std::chrono::hours(24);
 
 struct DemoOptions {
   std::string file;
@@ -106,9 +111,10 @@ std::string summary(const WaypointTable& table, const json& sent, const json& re
 int run_chaos_demo(const DemoOptions& options, const std::string& stream) {
   catch_stop_signals();
   const StreamRemover remover({stream});
-  const json found = run_chaos(stream, options.seconds.value_or(kDefaultLength), options.json);
-  print_report(options.json ? found.dump(2) + "\n" : chaos_summary(found));
-  return found["sound"].get<bool>() ? kOk : kFellShort;
+  const auto run = [&] {
+    return run_chaos(stream, options.seconds.value_or(kDefaultLength), options.json);
+  };
+  return print_judgement(run, options.json, chaos_summary, kFellShort);
 }
 
 int run_demo(const DemoOptions& options) {
@@ -124,12 +130,12 @@ int run_demo(const DemoOptions& options) {
 
   catch_stop_signals();
   const StreamRemover remover({stream});
-  Child solver([&] { return json(run_solve({.wanted = {stream}, .quiet = true})); }, true);
+  Child solver([&] { return json(run_solve({.wanted = {stream}, .quiet = true})); });
   std::vector<Child> readers;
   for (std::size_t r = 0; r < kReaders; ++r) {
-    readers.emplace_back([&] { return run_demo_reader(stream); }, false);
+    readers.emplace_back([&] { return run_demo_reader(stream); });
   }
-  Child producer([&] { return replay_json(replay_table(table, replay, refused)); }, false);
+  Child producer([&] { return replay_json(replay_table(table, replay, refused)); });
 
   const json sent = producer.result();
   std::vector<json> seen;
@@ -139,11 +145,15 @@ int run_demo(const DemoOptions& options) {
   solver.result();
   const json read = merged(seen);
   if (options.json) {
-    const json all{{"waypoints", sent}, {"readers", seen}, {"all_readers", read}};
+    const json all{{"interrupted", stop_requested()},
+                   {"waypoints", sent},
+                   {"readers", seen},
+                   {"all_readers", read}};
     print_report(all.dump(2) + "\n");
   } else {
     print_report(summary(table, sent, read));
   }
+  if (stop_requested()) throw Interrupted("interrupted");
   return sent["exit_code"].get<int>();
 }
 
@@ -156,8 +166,10 @@ void add_demo(CLI::App& program, Action& action) {
   verb->add_option("--file", options->file,
                    "Waypoint file to play (default: a pick-and-place of seven joints)")
       ->type_name("FILE");
-  add_seconds(*verb, "--seconds", options->seconds,
-              "How much to play (default 10, or the whole file)");
+  add_seconds(
+      *verb, "--seconds", options->seconds,
+      "How much to play, 0.1 to 86400, without --chaos 3600 (default 10, or the whole file)",
+      {kShortest, kLongestChaos});
   verb->add_flag(
           "--chaos", options->chaos,
           "Kill, stop and starve everybody meanwhile, and show that no reader notices; exits "
@@ -165,7 +177,14 @@ void add_demo(CLI::App& program, Action& action) {
       ->excludes("--file");
   verb->add_flag("--json", options->json, "As JSON");
   add_table_options(*verb, options->table);
-  verb->callback([&action, options] { action = [options] { return run_demo(*options); }; });
+  verb->callback([&action, options] {
+    if (options->seconds && *options->seconds > kLongest && !options->chaos) {
+      throw CLI::ValidationError(
+          "--seconds", fmt::format("'{}' is no time from 0.1 to 3600 s, the most without --chaos",
+                                   core::to_seconds(*options->seconds)));
+    }
+    action = [options] { return run_demo(*options); };
+  });
 }
 
 }  // namespace splinecast::apps

@@ -15,9 +15,11 @@
 #include "solve.hpp"
 #include "splinecast/ipc/reader.hpp"
 #include "splinecast/ipc/stream_files.hpp"
+#include "support/attach.hpp"
 #include "support/child.hpp"
 #include "support/curve_watch.hpp"
 #include "support/joint_motion.hpp"
+#include "support/judgement.hpp"
 #include "support/output.hpp"
 #include "support/recovery.hpp"
 #include "support/signals.hpp"
@@ -55,7 +57,7 @@ json to_json(const WatchReport& report) {
 
 /// Samples as a controller until the stream has ended.
 json run_chaos_reader(const std::string& stream) {
-  ipc::Reader reader(stream, kPatience);
+  ipc::Reader reader = attach_reader(stream, kPatience);
   CurveWatch watch(reader.sampler(), reader.dimensions());
   const ipc::MonotonicClock clock;
   ipc::Head head;
@@ -77,9 +79,8 @@ class Chaos {
         random_(std::random_device()()) {
     start_solver();
     start_producer();
-    for (int r = 0; r < 2; ++r)
-      readers_.emplace_back([&] { return run_chaos_reader(stream_); }, true);
-    reader_.emplace(stream_, kPatience);
+    for (int r = 0; r < 2; ++r) readers_.emplace_back([&] { return run_chaos_reader(stream_); });
+    reader_.emplace(attach_reader(stream_, kPatience));
     watch_.emplace(reader_->sampler(), reader_->dimensions());
   }
 
@@ -101,17 +102,14 @@ class Chaos {
   void start_solver() {
     std::vector<double> limits = JointMotion::peak_acceleration();
     for (double& limit : limits) limit *= 10;
-    solver_.emplace(
-        [this, limits] {
-          return json(
-              run_solve({.wanted = {stream_},
-                         .solver = {.stop_time = milliseconds(250), .max_acceleration = limits},
-                         .quiet = true}));
-        },
-        true);
+    solver_.emplace([this, limits] {
+      return json(run_solve({.wanted = {stream_},
+                             .solver = {.stop_time = milliseconds(250), .max_acceleration = limits},
+                             .quiet = true}));
+    });
   }
   void start_producer() {
-    producer_.emplace([this] { return run_chaos_producer(stream_, start_); }, true);
+    producer_.emplace([this] { return run_chaos_producer(stream_, start_); });
   }
   bool happens(double per_second) {
     return std::uniform_real_distribution<double>(0, 1)(random_) <
@@ -165,15 +163,15 @@ class Chaos {
            producer_down_.result()["kills"].get<std::size_t>();
   }
 
-  /// Lets the producer end the stream; everybody must see it come to rest.
+  /// Lets the producer end the stream; everybody must see it come to rest, unless interrupted.
   json finish() {
     if (resumes_) solver_->signal(SIGCONT);
     producer_->stop();
     const json sent = producer_->result();
     const Time end = ipc::deadline(clock_, kPatience);
     auto status = ipc::SampleStatus::no_data;
-    for (Time due = clock_.now(); clock_.now() < end; due = clock_.now() + kTick) {
-      sleep_until(due);
+    for (Time due = clock_.now(); clock_.now() < end && sleep_until(due);
+         due = clock_.now() + kTick) {
       status = watch_->tick(clock_.now());
       if (reader_->head(head_) && head_.finished && status == ipc::SampleStatus::holding) break;
     }
@@ -181,19 +179,19 @@ class Chaos {
     for (Child& reader : readers_) seen.push_back(reader.result());
     solver_->stop();
     solver_->result();
+    (void)reader_->head(head_);
     const ipc::StreamInfo info = ipc::inspect(stream_);
     const ipc::Word lost =
         info.appended - (head_.knots + head_.refused + head_.withdrawn + head_.controls);
     const bool all_sound =
         std::ranges::all_of(seen, [](const json& one) { return one["sound"].get<bool>(); });
-    return {
-        {"sound", all_sound && lost == 0 && head_.finished},
+    json found = {
         {"lost", lost},
         {"items", info.appended},
         {"interpolated", head_.knots},
         {"refused", head_.refused},
         {"withdrawn", head_.withdrawn},
-        {"replacements", head_.controls - 1},
+        {"replacements", std::max<ipc::Word>(head_.controls, 1) - 1},
         {"underruns", head_.underruns},
         {"deadline_misses", head_.misses},
         {"late_commits", head_.revisions},
@@ -202,6 +200,8 @@ class Chaos {
         {"producer", producer_down_.result()},
         {"readers", seen},
         {"peak_acceleration_of_the_motion", std::ranges::max(JointMotion::peak_acceleration())}};
+    add_judgement(found, all_sound && lost == 0 && head_.finished);
+    return found;
   }
 
   std::string stream_;
@@ -251,10 +251,10 @@ std::string chaos_summary(const json& found) {
       line("pauses of the solver, to 200 ms", fmt::format("{}", count("pauses"))) +
       line("ran dry, and recovered", fmt::format("{}", count("underruns"))) +
       line("futures replaced", fmt::format("{}", count("replacements"))) +
-      line(
-          "waypoints",
-          fmt::format("{} interpolated, {} refused with a reason, {} withdrawn, {} lost",
-                      count("interpolated"), count("refused"), count("withdrawn"), count("lost"))) +
+      line("waypoints",
+           fmt::format("{} interpolated, {} refused with a reason, {} withdrawn, {} {}",
+                       count("interpolated"), count("refused"), count("withdrawn"), count("lost"),
+                       found["judged"].get<bool>() ? "lost" : "not consumed")) +
       line("samples that read otherwise later",
            fmt::format("{:.0f} of {:.0f}", most("changed"), most("samples"))) +
       line("largest step at a join", fmt::format("position {:.1e}, velocity {:.1e}",
@@ -263,7 +263,8 @@ std::string chaos_summary(const json& found) {
            fmt::format("{:.1f} at most; the motion's own is {:.1f}", most("acceleration"),
                        found["peak_acceleration_of_the_motion"].get<double>())) +
       line("deadlines missed", fmt::format("{}; committed too late: {}", count("deadline_misses"),
-                                           count("late_commits")));
+                                           count("late_commits"))) +
+      line("sound", judgement(found));
   return text;
 }
 

@@ -8,6 +8,7 @@
 
 #include "splinecast/core/segment.hpp"
 #include "splinecast/ipc/reader.hpp"
+#include "support/attach.hpp"
 #include "support/signals.hpp"
 
 namespace splinecast::apps {
@@ -44,7 +45,7 @@ double percentile(std::vector<double>& values, double fraction) {
 class DemoReader {
  public:
   explicit DemoReader(const std::string& stream)
-      : reader_(stream, kWait),
+      : reader_(attach_reader(stream, kWait)),
         kinds_(reader_.kinds()),
         snapshot_(reader_.dimensions()),
         now_(reader_.dimensions()),

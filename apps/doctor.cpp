@@ -36,6 +36,8 @@ std::string_view to_string(Verdict verdict) noexcept {
       return "ok";
     case Verdict::note:
       return "note";
+    case Verdict::unknown:
+      return "unknown";
     case Verdict::problem:
       break;
   }

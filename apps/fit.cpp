@@ -74,6 +74,15 @@ void write_report_of(const WaypointTable& table, std::vector<ReportCurve> curves
   output.close();
 }
 
+/// The samples that --dt asks for can be written in a lifetime.
+void require_samples(const core::PiecewisePolynomial& curve, core::Time dt) {
+  constexpr std::int64_t kMost = 1'000'000'000;
+  const std::int64_t samples = (curve.breaks().back() - curve.breaks().front()) / dt;
+  if (samples <= kMost) return;
+  throw InputError(fmt::format("--dt {} makes {} samples; the most is {}", core::to_seconds(dt),
+                               samples, kMost));
+}
+
 /// Whether all that is asked for is a report.
 bool only_reports(const FitOptions& options) {
   return !options.report.empty() && options.emit == Emit::samples && options.at.empty() &&
@@ -102,6 +111,7 @@ int run_fit(const FitOptions& options) {
   const auto at = options.at.empty() ? std::vector<core::Time>{}
                                      : read_times(options.at, options.table.time_unit);
   require_inside(at, curve, options.at);
+  if (options.dt) require_samples(curve, *options.dt);
   if (!options.report.empty()) write_report_of(table, std::move(curves), options);
   if (only_reports(options)) return kOk;
   Output output(options.output);
@@ -145,9 +155,6 @@ void require_consistent(const FitOptions& options) {
     }
   } else if (!options.at.empty() || options.dt) {
     refuse("--at, --dt", "go with --emit samples only");
-  }
-  if (options.dt && *options.dt <= core::Time::zero()) {
-    refuse("--dt", "must be at least a nanosecond");
   }
 }
 
@@ -203,7 +210,8 @@ void add_fit(CLI::App& program, Action& action) {
   add_curve(*verb, options->curve);
   auto* at = verb->add_option("--at", options->at, "File with a time column: where to sample")
                  ->type_name("FILE");
-  add_seconds(*verb, "--dt", options->dt, "Sample this often, from the first waypoint on");
+  add_seconds(*verb, "--dt", options->dt, "Sample this often, from the first waypoint on",
+              kPositiveTime);
   verb->get_option("--dt")->excludes(at);
   add_emit(*verb, options->emit);
   verb->add_option("-o,--output", options->output, "File to write (default: standard output)")

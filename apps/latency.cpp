@@ -10,6 +10,7 @@
 #include "latency_compare.hpp"
 #include "latency_page.hpp"
 #include "latency_report.hpp"
+#include "latency_roles.hpp"
 #include "latency_run.hpp"
 #include "splinecast/core/state.hpp"
 #include "support/exit_codes.hpp"
@@ -26,6 +27,10 @@ using nlohmann::ordered_json;
 constexpr double kMostRate = 100'000;
 /// Waypoints of one measurement: their stamps are kept in memory, some 100 bytes each.
 constexpr double kMostWaypoints = 1e7;
+/// Revisions that only settle are noted too, 400 a second and more.
+constexpr double kMostNoted = 2e9;
+constexpr core::Time kLongestRun = std::chrono::hours(4);
+constexpr core::Time kLongestLead = std::chrono::minutes(1);  ///< the board holds it
 constexpr int kMostCpus = 1024;
 constexpr double kDefaultThreshold = 20;  // percent
 constexpr double kDefaultFloor = 1;       // µs
@@ -66,11 +71,17 @@ void require_cpu_each(const LatencyOptions& options) {
 }
 
 void require_measurable(const LatencyOptions& options) {
-  if (options.duration <= core::Time::zero()) throw InputError("--duration must be above 0");
   const double waypoints = options.rate * core::to_seconds(options.warmup + options.duration);
   if (waypoints > kMostWaypoints) {
     throw InputError(fmt::format("{:.0f} waypoints are more than {:.0f}, the most of a measurement",
                                  waypoints, kMostWaypoints));
+  }
+  const double bytes = bytes_noted(options);
+  if (bytes > kMostNoted) {
+    throw InputError(fmt::format(
+        "{} s with {} readers would note {:.0f} bytes; the most is {:.0f}: choose a "
+        "shorter --duration",
+        core::to_seconds(options.warmup + options.duration), options.readers, bytes, kMostNoted));
   }
   require_cpu_each(options);
 }
@@ -99,7 +110,7 @@ int run_latency_command(const LatencyCommand& command) {
     output.close();
   }
   print_report(command.json ? json.dump(2) + "\n" : latency_text(json, isatty(STDOUT_FILENO) == 1));
-  return result.interrupted ? kFailed : kOk;
+  return result.interrupted ? kInterrupted : kOk;
 }
 
 ordered_json read_result(const std::string& file) {
@@ -141,17 +152,18 @@ void add_cpu(CLI::App& verb, const std::string& name, std::optional<int>& cpu,
 
 /// What is sent, and how.
 void add_work(CLI::App& verb, LatencyOptions& options) {
-  verb.add_option("--rate", options.rate, "Waypoints a second (default 1000)")
-      ->check(CLI::Range(1.0, kMostRate))
-      ->type_name("HZ");
-  add_seconds(verb, "--duration", options.duration, "How long to measure (default 10)");
-  add_seconds(verb, "--warmup", options.warmup, "How long to run before that (default 1)");
+  add_rate(verb, "--rate", options.rate, "Waypoints a second (default 1000)", {1, kMostRate});
+  add_seconds(verb, "--duration", options.duration, "How long to measure (default 10)",
+              {core::Time(1), kLongestRun});
+  add_seconds(verb, "--warmup", options.warmup, "How long to run before that (default 1)",
+              {core::Time::zero(), kLongestRun});
   add_milliseconds(verb, "--lead", options.lead,
-                   "How far ahead of now waypoints are sent (default 200)");
+                   "How far ahead of now waypoints are sent, at most 60000 (default 200)",
+                   {core::Time::zero(), kLongestLead});
   verb.add_option_function<std::string>(
           "--deadline",
           [&options](const std::string& text) {
-            options.deadline = positive_time("--deadline", text, TimeUnit::milliseconds);
+            options.deadline = time_within("--deadline", text, TimeUnit::milliseconds);
           },
           "A latency beyond this is a missed deadline (default: a period)")
       ->type_name("MS");
@@ -204,14 +216,20 @@ void add_compare(CLI::App& verb, const std::shared_ptr<CompareCommand>& command)
   compare->add_option("A", command->a, "The result to compare with")->required();
   compare->add_option("B", command->b, "The result that may be slower")->required();
   compare
-      ->add_option("--threshold", command->threshold,
-                   "Percent that a percentile may be longer (default 20)")
-      ->check(CLI::Range(0.0, 1e6))
+      ->add_option_function<std::string>(
+          "--threshold",
+          [command](const std::string& text) {
+            command->threshold = number_within("--threshold", text, {0, 1e6});
+          },
+          "Percent that a percentile may be longer (default 20)")
       ->type_name("PERCENT");
   compare
-      ->add_option("--least", command->floor_us,
-                   "Microseconds that it must be longer besides (default 1)")
-      ->check(CLI::Range(0.0, 1e9))
+      ->add_option_function<std::string>(
+          "--least",
+          [command](const std::string& text) {
+            command->floor_us = number_within("--least", text, {0, 1e9});
+          },
+          "Microseconds that it must be longer besides (default 1)")
       ->type_name("US");
   compare->add_flag("--json", command->json, "As JSON");
 }

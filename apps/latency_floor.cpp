@@ -75,20 +75,16 @@ LatencyFloor measure_floor(const LatencyOptions& options) {
   const Shared<Lines> lines;
   SharedLog<Time> trips(kTrips);
   // What does not take effect is told where the pipeline's own processes are set up so.
-  Child other(
-      [&] {
-        (void)adopt(options.settings(second), {});
-        pong(*lines);
-        return nlohmann::json();
-      },
-      true);
-  Child asking(
-      [&] {
-        (void)adopt(options.settings(first), {});
-        ping(*lines, trips);
-        return nlohmann::json();
-      },
-      true);
+  Child other([&] {
+    (void)adopt(options.settings(second), {});
+    pong(*lines);
+    return nlohmann::json();
+  });
+  Child asking([&] {
+    (void)adopt(options.settings(first), {});
+    ping(*lines, trips);
+    return nlohmann::json();
+  });
   asking.result();
   other.result();
   LatencyFloor floor;

@@ -200,18 +200,14 @@ LatencyPeer measure_iceoryx(const LatencyOptions& options) {
   const pid_t parent = getpid();
   try {
     const Roudi roudi;
-    Child subscriber(
-        [&] {
-          run_subscriber(options, parent, shared);
-          return nlohmann::json();
-        },
-        true);
-    Child publisher(
-        [&] {
-          run_publisher(options, parent, shared);
-          return nlohmann::json();
-        },
-        true);
+    Child subscriber([&] {
+      run_subscriber(options, parent, shared);
+      return nlohmann::json();
+    });
+    Child publisher([&] {
+      run_publisher(options, parent, shared);
+      return nlohmann::json();
+    });
     publisher.result();
     subscriber.result();
   } catch (const std::exception& error) {

@@ -11,6 +11,7 @@
 #include "splinecast/ipc/producer.hpp"
 #include "splinecast/ipc/reader.hpp"
 #include "splinecast/ipc/solver.hpp"
+#include "support/attach.hpp"
 #include "support/exit_codes.hpp"
 #include "support/signals.hpp"
 
@@ -232,12 +233,19 @@ Time Meeting::begin(std::size_t count) {
   const Time end = clock.now() + kLatencyPatience;
   while (ready.load(std::memory_order_relaxed) < count) {
     if (clock.now() > end) throw TimeOut("a process of the measurement did not come");
-    if (!sleep_until(clock.now() + kTick)) throw Failure("interrupted before it began");
+    if (!sleep_until(clock.now() + kTick)) throw Interrupted("interrupted before it began");
   }
   constexpr Time kRunUp = milliseconds(20);
   const Time start = clock.now() + kRunUp;
   start_ns.store(start.count(), std::memory_order_relaxed);
   return start;
+}
+
+double bytes_noted(const LatencyOptions& options) {
+  const auto revisions = static_cast<double>(most_revisions(options));
+  return static_cast<double>(options.schedule({}).count * sizeof(AppendStamp)) +
+         revisions * sizeof(RevisionStamp) +
+         revisions * static_cast<double>(options.readers * sizeof(SeenStamp));
 }
 
 LatencyShared::LatencyShared(const LatencyOptions& options)
@@ -289,7 +297,7 @@ json run_latency_reader(const LatencyOptions& options, const std::string& stream
   MeasuredUsage usage(*shared.meeting, options.warmup);
   SharedLog<SeenStamp>& log = shared.seen[index];
   log.touch();
-  ipc::Reader reader(stream, kLatencyPatience);
+  ipc::Reader reader = attach_reader(stream, kLatencyPatience);
   core::State state(reader.dimensions());
   if (!shared.meeting->await_start()) throw TimeOut("the producer did not start");
   const ipc::MonotonicClock clock;

@@ -41,6 +41,9 @@ struct LatencyShared {
   std::vector<SharedLog<SeenStamp>> seen;  ///< per reader
 };
 
+/// How many bytes LatencyShared takes, all of which are touched.
+[[nodiscard]] double bytes_noted(const LatencyOptions& options);
+
 /// Counts of the kernel over the time that is measured.
 class MeasuredUsage {
  public:

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "latency_roles.hpp"
 #include "support/child.hpp"
@@ -23,12 +24,12 @@ std::vector<json> run_pipeline(const LatencyOptions& options, LatencyShared& sha
   const std::string stream = fmt::format("latency.{}", getpid());
   const StreamRemover remover({stream});
   std::vector<Child> children;
-  children.emplace_back([&] { return run_latency_producer(options, stream, shared); }, true);
+  children.emplace_back([&] { return run_latency_producer(options, stream, shared); });
   if (!options.embedded) {
-    children.emplace_back([&] { return run_latency_solver(options, stream, shared); }, true);
+    children.emplace_back([&] { return run_latency_solver(options, stream, shared); });
   }
   for (std::size_t r = 0; r < options.readers; ++r) {
-    children.emplace_back([&, r] { return run_latency_reader(options, stream, shared, r); }, true);
+    children.emplace_back([&, r] { return run_latency_reader(options, stream, shared, r); });
   }
   std::vector<json> returned;
   returned.reserve(children.size());
@@ -82,6 +83,7 @@ void measure_pipeline(LatencyResult& result) {
   result.stages = latencies_of(shared.appends.entries(), shared.revisions.entries(), seen, refused,
                                result.options.measured(start));
   if (result.stages.front().intended.count() + result.stages.front().missing == 0) {
+    if (stop_requested()) throw Interrupted("interrupted before the warm-up was over");
     throw Failure("nothing was measured: the warm-up was not over");
   }
   note_processes(returned, result);
@@ -90,6 +92,20 @@ void measure_pipeline(LatencyResult& result) {
 }
 
 }  // namespace
+
+std::string throttling_warning(const LatencyOptions& options, const Environment& environment) {
+  if (!options.fifo || !options.spin) return {};
+  const auto stopped = throttled_time(environment);
+  if (!stopped) {
+    return "whether the kernel throttles SCHED_FIFO processes that spin is unknown "
+           "(/proc/sys/kernel/sched_rt_runtime_us)";
+  }
+  if (*stopped == core::Time::zero()) return {};
+  return fmt::format(
+      "the kernel stops SCHED_FIFO processes that spin for {:g} ms of each {} us "
+      "(sched_rt_runtime_us is {}), which is in the figures; see 'splinecast doctor'",
+      core::to_seconds(*stopped) * 1e3, environment.rt_period, environment.rt_runtime);
+}
 
 LatencyResult run_latency(const LatencyOptions& options) {
   catch_stop_signals();
@@ -102,7 +118,10 @@ LatencyResult run_latency(const LatencyOptions& options) {
                        .iceoryx = {},
                        .processes = {},
                        .solver = {}};
-  if (stop_requested()) throw Failure("interrupted before it began");
+  if (stop_requested()) throw Interrupted("interrupted before it began");
+  if (auto warning = throttling_warning(options, result.environment); !warning.empty()) {
+    result.warnings.push_back(std::move(warning));
+  }
   measure_pipeline(result);
   if (!options.iceoryx) {
     result.iceoryx.reason = "told off";
@@ -110,7 +129,9 @@ LatencyResult run_latency(const LatencyOptions& options) {
     result.iceoryx.reason = "interrupted";
   } else {
     result.iceoryx = measure_iceoryx(options);
+    if (stop_requested()) result.iceoryx = {.seen = std::nullopt, .reason = "interrupted"};
   }
+  result.interrupted = result.interrupted || stop_requested();
   return result;
 }
 

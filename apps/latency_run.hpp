@@ -27,6 +27,11 @@ struct LatencyResult {
   nlohmann::ordered_json solver;     ///< its counters
 };
 
+/// That SCHED_FIFO processes which spin are stopped by the kernel, or may be, so that the figures
+/// hold it; empty if they are not, or do not spin.
+[[nodiscard]] std::string throttling_warning(const LatencyOptions& options,
+                                             const Environment& environment);
+
 /// Measures the floor, the pipeline and, unless told off, iceoryx, one after the other, in
 /// processes of their own on a stream of their own. Takes twice the warm-up and the duration.
 /// Throws Failure or TimeOut if the pipeline cannot be measured.

@@ -68,7 +68,6 @@ std::string in_words(const ReplayReport& report, const RefusedRows& refused) {
 }
 
 int run_replay(ReplayOptions options) {
-  catch_stop_signals();
   RefusedRows refused;
   if (options.skip_bad) {
     options.table.on_bad_row = [&refused](std::size_t line, const InputError& error) {
@@ -77,6 +76,7 @@ int run_replay(ReplayOptions options) {
   }
   WaypointTable table = read_waypoints(options.file, options.table);
   prepare_replay(table, options, refused);
+  catch_stop_signals();  // until here nothing was made that would have to be ended
   const ReplayReport report = replay_table(table, options, refused);
   const ipc::Word skipped = refused.count(RefusedBy::file) + refused.count(RefusedBy::producer);
   if (options.json) {
@@ -109,12 +109,13 @@ void add_playback_options(CLI::App& verb, ReplayOptions& options) {
             if (text == "max") {
               options.rate.reset();
             } else {
-              options.rate = positive_number("--rate", text);
+              options.rate = number_within("--rate", text);
             }
           },
           "Play R times as fast as recorded (default 1), or as fast as it goes: max")
       ->type_name("R|max");
-  add_count(verb, "--loop", options.loops, "Play the recording N times (default 1)");
+  add_count(verb, "--loop", options.loops, "Play the recording N times (default 1)",
+            {1, 1'000'000'000});
   add_seconds(verb, "--from", options.from, "Begin this long after the first waypoint");
   add_seconds(verb, "--duration", options.duration, "Play only so much of the recording");
   verb.add_option_function<std::string>(
@@ -144,10 +145,20 @@ void add_interval(CLI::App& verb, const std::string& name, core::Time& value,
   verb.add_option_function<std::string>(
           name,
           [&value, name](const std::string& text) {
-            value = positive_time(name, text, TimeUnit::seconds);
+            value = time_within(name, text, TimeUnit::seconds);
           },
           help)
       ->type_name("SECONDS");
+}
+
+/// All loops together may not take longer than times can say.
+void require_loops(const WaypointTable& table, std::size_t loops) {
+  if (loops == 1) return;
+  const core::Time once = table.times.back() - table.times.front() + median_interval(table);
+  const double seconds = static_cast<double>(loops) * core::to_seconds(once);
+  if (seconds <= core::to_seconds(kLongestTime)) return;
+  throw InputError(fmt::format("{}: --loop {} takes {} s; the most is {} s", table.file, loops,
+                               seconds, core::to_seconds(kLongestTime)));
 }
 
 }  // namespace
@@ -156,6 +167,7 @@ void prepare_replay(WaypointTable& table, const ReplayOptions& options, RefusedR
   select_rows(table, options.from.value_or(core::Time::zero()), options.duration);
   change_rate(table, options.rate.value_or(1.0));
   drop_unfit_rows(table, options.limits, options.skip_bad ? &refused : nullptr);
+  require_loops(table, options.loops);
   const core::Condition none;
   core::require_values(options.start.value_or(none), table.dimensions());
   core::require_values(options.end.value_or(none), table.dimensions());
@@ -172,8 +184,8 @@ void prepare_replay(WaypointTable& table, const ReplayOptions& options, RefusedR
 
 int exit_code(const ReplayReport& report) {
   if (report.verification && report.verification->first) return kFellShort;
-  if (!report.stopped) return kOk;
-  return *report.stopped == RefusedBy::solver ? kFailed : kBadUsageOrInput;
+  if (report.stopped) return *report.stopped == RefusedBy::solver ? kFailed : kBadUsageOrInput;
+  return report.interrupted ? kInterrupted : kOk;
 }
 
 void add_replay(CLI::App& program, Action& action) {

@@ -50,7 +50,8 @@ struct ReplayReport {
   std::optional<ipc::Verification> verification{};  ///< if one was asked for
 };
 
-/// How a replay ends: kFellShort if what was solved again differs, else by who stopped it.
+/// How a replay ends: kFellShort if what was solved again differs, else by who stopped it, else
+/// kInterrupted if a signal did.
 [[nodiscard]] int exit_code(const ReplayReport& report);
 
 /// Makes a file's table what is to be sent: the rows and the rate asked for. Rows that cannot be

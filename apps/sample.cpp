@@ -9,6 +9,7 @@
 
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/reader.hpp"
+#include "support/attach.hpp"
 #include "support/exit_codes.hpp"
 #include "support/options.hpp"
 #include "support/output.hpp"
@@ -31,11 +32,10 @@ struct SampleOptions {
 /// Samples one stream to a file, attaching again when it is made anew.
 class Sampling {
  public:
-  explicit Sampling(const SampleOptions& options)
+  Sampling(const SampleOptions& options, std::vector<core::Time> times)
       : options_(options),
-        times_(options.at.empty() ? std::vector<core::Time>{}
-                                  : read_times(options.at, options.time_unit)),
-        reader_(attach(options)),
+        times_(std::move(times)),
+        reader_(attach_reader(options.stream, options.wait, options.trust)),
         // What is sampled as time goes on can be followed; what is not goes into the file at once.
         output_(options.output, options.at.empty() ? Writing::growing : Writing::whole),
         state_(reader_.dimensions()),
@@ -45,35 +45,20 @@ class Sampling {
   }
 
   int run() {
-    if (!options_.at.empty()) {
-      for (const core::Time t : times_) {
-        if (stop_requested()) break;
-        write(t);
-      }
-    } else if (reader_.clock() == ipc::StreamClock::monotonic) {
-      follow_live();
-    } else {
-      step_through_recording();
-    }
+    const bool is_complete = write_all();
     output_.close();
+    if (!is_complete) throw Interrupted("interrupted");
     return kOk;
   }
 
  private:
-  /// Waits for the stream in slices, so that a stop ends the wait.
-  static ipc::Reader attach(const SampleOptions& options) {
-    constexpr core::Time kSlice = std::chrono::milliseconds(50);
-    const ipc::MonotonicClock clock;
-    const core::Time end = ipc::deadline(clock, options.wait);
-    for (;;) {
-      const core::Time left = std::max(end - clock.now(), core::Time::zero());
-      try {
-        return ipc::Reader(options.stream, std::min(kSlice, left), options.trust);
-      } catch (const ipc::NoSuchStream&) {
-        if (stop_requested()) throw Failure("interrupted before the stream was there");
-        if (clock.now() >= end) throw;
-      }
+  /// Returns false if a stop is requested before that, as those it calls do.
+  bool write_all() {
+    if (!options_.at.empty()) {
+      return std::ranges::all_of(times_, [this](core::Time t) { return write(t); });
     }
+    return reader_.clock() == ipc::StreamClock::monotonic ? follow_live()
+                                                          : step_through_recording();
   }
 
   static void fill_with_nan(core::State& state) {
@@ -87,20 +72,22 @@ class Sampling {
     return core::Time(std::llround(static_cast<double>(k) * 1e9 / options_.rate));
   }
 
-  void follow_live() {
+  bool follow_live() {
     const core::Time start = clock_.now();
     for (std::size_t k = 0; k < options_.count; ++k) {
       const core::Time t = start + period_times(k);
-      if (!sleep_until(t)) return;
-      write(t);
+      if (clock_.now() < t) output_.flush();  // whoever reads it has each line before the next
+      if (!sleep_until(t) || !write(t)) return false;
     }
+    return true;
   }
 
-  void step_through_recording() {
+  bool step_through_recording() {
     const core::Time start = first_knot();
-    for (std::size_t k = 0; k < options_.count && !stop_requested(); ++k) {
-      write(start + period_times(k));
+    for (std::size_t k = 0; k < options_.count; ++k) {
+      if (!write(start + period_times(k))) return false;
     }
+    return true;
   }
 
   /// Time of the oldest knot that the board keeps.
@@ -109,24 +96,32 @@ class Sampling {
     for (;;) {
       core::Time first{};
       if (reader_.first_time(first)) return first;
-      if (clock_.now() >= end || stop_requested()) {
+      if (stop_requested()) throw Interrupted("interrupted");
+      if (clock_.now() >= end) {
         throw TimeOut(fmt::format("stream '{}' has no waypoints", options_.stream));
       }
       (void)reader_.wait(std::chrono::milliseconds(50));
     }
   }
 
-  void write(core::Time t) {
+  bool write(core::Time t) {
+    if (stop_requested()) return false;
     const auto status = sample(t);
-    writer_.write(t, ipc::has_values(status) ? state_ : none_, ipc::to_string(status));
+    if (!status) return false;
+    writer_.write(t, ipc::has_values(*status) ? state_ : none_, ipc::to_string(*status));
+    return true;
   }
 
   /// A recorded stream is sampled where it is final, as long as it goes on: what is not settled yet
-  /// is waited for, until nothing new has come for --wait.
-  ipc::SampleStatus sample(core::Time t) {
+  /// is waited for, until nothing new has come for --wait. Nothing if a stop is requested
+  /// meanwhile.
+  std::optional<ipc::SampleStatus> sample(core::Time t) {
     core::Time end = ipc::deadline(clock_, options_.wait);
     for (;;) {
       const auto status = reader_.sample(t, state_);
+      const bool has_answered =
+          status != ipc::SampleStatus::retired && status != ipc::SampleStatus::busy;
+      if (stop_requested() && !(has_answered && is_final(status))) return std::nullopt;
       if (status == ipc::SampleStatus::retired) {
         reattach();
         continue;
@@ -135,7 +130,8 @@ class Sampling {
         (void)reader_.wait(std::chrono::milliseconds(1));
         continue;
       }
-      if (!patient_ || stop_requested() || is_final(status)) return status;
+      if (!patient_ || is_final(status)) return status;
+      output_.flush();
       if (reader_.wait(std::chrono::milliseconds(20)) == ipc::WaitStatus::advanced) {
         end = ipc::deadline(clock_, options_.wait);
       } else if (clock_.now() >= end) {
@@ -157,7 +153,7 @@ class Sampling {
 
   void reattach() {
     const auto dimensions = ipc::dimensions_of(reader_.header());
-    reader_ = attach(options_);
+    reader_ = attach_reader(options_.stream, options_.wait, options_.trust);
     if (reader_.dimensions() != dimensions.size()) {
       throw Failure(fmt::format("stream '{}' was made anew with {} dimensions, not {}",
                                 options_.stream, reader_.dimensions(), dimensions.size()));
@@ -168,7 +164,7 @@ class Sampling {
   }
 
   const SampleOptions& options_;
-  std::vector<core::Time> times_;  ///< of --at; read before the output is opened
+  std::vector<core::Time> times_;  ///< of --at
   ipc::MonotonicClock clock_;
   ipc::Reader reader_;
   Output output_;
@@ -177,6 +173,26 @@ class Sampling {
   SampleWriter writer_;
   bool patient_ = true;  ///< whether what is not settled is still waited for
 };
+
+/// The last sample's time must be one.
+void require_span(const SampleOptions& options) {
+  if (options.count == 0) return;  // --at
+  const double seconds = static_cast<double>(options.count - 1) / options.rate;
+  const double most = core::to_seconds(kLongestTime);
+  if (seconds <= most) return;
+  throw CLI::ValidationError(
+      "--count", fmt::format("{} samples at {} Hz take {} s; the most is {} s", options.count,
+                             options.rate, seconds, most));
+}
+
+int run_sample(const SampleOptions& options) {
+  require_separate(std::array{options.output}, std::array{options.at});
+  // Before the output is opened; a signal may end the process meanwhile, wherever it waits.
+  auto times =
+      options.at.empty() ? std::vector<core::Time>{} : read_times(options.at, options.time_unit);
+  catch_stop_signals();
+  return Sampling(options, std::move(times)).run();
+}
 
 }  // namespace
 
@@ -188,7 +204,7 @@ void add_sample(CLI::App& program, Action& action) {
                  ->type_name("FILE");
   auto* rate = verb->add_option_function<std::string>(
       "--rate",
-      [options](const std::string& text) { options->rate = positive_number("--rate", text); },
+      [options](const std::string& text) { options->rate = number_within("--rate", text); },
       "Samples a second");
   rate->type_name("HZ");
   add_count(*verb, "--count", options->count, "Number of samples");
@@ -206,11 +222,8 @@ void add_sample(CLI::App& program, Action& action) {
     if (at->empty() && rate->empty()) {
       throw CLI::ValidationError("sample", "needs --at, or --rate with --count");
     }
-    action = [options] {
-      catch_stop_signals();
-      require_separate(std::array{options->output}, std::array{options->at});
-      return Sampling(*options).run();
-    };
+    require_span(*options);
+    action = [options] { return run_sample(*options); };
   });
 }
 

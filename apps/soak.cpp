@@ -13,9 +13,11 @@
 #include "solve.hpp"
 #include "splinecast/ipc/reader.hpp"
 #include "splinecast/ipc/stream_files.hpp"
+#include "support/attach.hpp"
 #include "support/child.hpp"
 #include "support/descriptors.hpp"
 #include "support/exit_codes.hpp"
+#include "support/judgement.hpp"
 #include "support/options.hpp"
 #include "support/output.hpp"
 #include "support/process_use.hpp"
@@ -31,6 +33,10 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr std::size_t kMostProducers = 4;  ///< processes
+/// About what a process can open (RLIMIT_NOFILE, two descriptors a stream).
+constexpr std::size_t kMostStreams = 10'000;
+constexpr std::size_t kMostReaders = 64;  ///< processes
+constexpr double kMostRate = 1000;
 constexpr Time kBetweenKills = seconds(2);
 constexpr Time kPatience = seconds(60);
 constexpr double kMegabyte = 1e6;
@@ -80,20 +86,17 @@ class Soak {
         streams_(std::move(streams)),
         start_(clock_.now() + seconds(1)),
         groups_(std::min(kMostProducers, streams_.size())) {
-    solver_.processes.emplace_back(
-        std::in_place, [this] { return solve(); }, true);
+    solver_.processes.emplace_back(std::in_place, [this] { return solve(); });
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       for (std::size_t i = g; i < streams_.size(); i += groups_.size()) {
         groups_[g].push_back(streams_[i]);
       }
-      producers_.processes.emplace_back(
-          std::in_place, [this, g] { return produce(g); }, true);
+      producers_.processes.emplace_back(std::in_place, [this, g] { return produce(g); });
     }
     for (std::size_t r = 0; r < options.readers; ++r) {
-      readers_.processes.emplace_back(
-          std::in_place, [this] { return run_soak_reader(streams_); }, true);
+      readers_.processes.emplace_back(std::in_place, [this] { return run_soak_reader(streams_); });
     }
-    for (const std::string& stream : streams_) heads_.emplace_back(stream, kPatience);
+    for (const std::string& stream : streams_) heads_.push_back(attach_reader(stream, kPatience));
   }
 
   json run() {
@@ -116,7 +119,7 @@ class Soak {
       kill_a_producer();
       next_kill = now + kBetweenKills;
     }
-    const double took = core::to_seconds(clock_.now() - begin);
+    const double took = core::to_seconds(std::max(clock_.now() - begin, Time(1)));
     return finish(took, core::to_seconds(cpu_time(solver_.processes.front()->pid())) / took);
   }
 
@@ -139,7 +142,7 @@ class Soak {
     const std::size_t group = kills_++ % groups_.size();
     std::optional<Child>& producer = producers_.processes[group];
     producer.reset();  // SIGKILL
-    producer.emplace([this, group] { return produce(group); }, true);
+    producer.emplace([this, group] { return produce(group); });
   }
 
   /// What all streams' heads count.
@@ -192,7 +195,7 @@ class Soak {
       found[role->name] = role->result();
       is_flat = is_flat && !role->has_grown();
     }
-    for (const auto& producer : producers_.processes) producer->stop();
+    for (auto& producer : producers_.processes) producer->stop();
     for (auto& producer : producers_.processes) (void)producer->result();
     json seen = json::array();
     for (auto& reader : readers_.processes) {
@@ -219,7 +222,7 @@ class Soak {
     found["unfinished_streams"] = unfinished;
     const bool is_sound = std::ranges::all_of(
         seen, [](const json& one) { return one["unsound_streams"] == 0 && one["samples"] > 0; });
-    found["sound"] = is_flat && is_sound && has_solved && lossy == 0 && unfinished == 0;
+    add_judgement(found, is_flat && is_sound && has_solved && lossy == 0 && unfinished == 0);
     return found;
   }
 
@@ -277,14 +280,12 @@ std::string soak_summary(const json& found) {
                                      count(sum, "late_commits"))) +
          line("samples", fmt::format("{}; {} read otherwise later; streams with a step: {}",
                                      samples, changed, unsound)) +
-         role("solver") + role("producers") + role("readers") +
-         line("sound", found["sound"].get<bool>() ? "yes" : "NO");
+         role("solver") + role("producers") + role("readers") + line("sound", judgement(found));
 }
 
 }  // namespace
 
 json run_soak(const SoakOptions& options) {
-  catch_stop_signals();
   raise_descriptor_limit();
   std::vector<std::string> streams;
   for (std::size_t i = 0; i < options.streams; ++i) {
@@ -300,19 +301,20 @@ void add_soak(CLI::App& program, Action& action) {
       "soak",
       "Run many streams at once for long, kill producers meanwhile, and see that nothing "
       "grows and nothing is lost; exits with 1 if something does");
-  add_count(*verb, "--streams", options->streams, "Streams at once (default 100)");
-  add_seconds(*verb, "--seconds", options->seconds, "How long (default 60)");
-  verb->add_option("--rate", options->rate, "Waypoints a second and stream (default 100)")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->type_name("HZ");
+  add_count(*verb, "--streams", options->streams, "Streams at once, 1 to 10000 (default 100)",
+            {1, kMostStreams});
+  add_seconds(*verb, "--seconds", options->seconds, "How long, from 1 on (default 60)",
+              {seconds(1), kLongestTime});
+  add_rate(*verb, "--rate", options->rate, "Waypoints a second and stream (default 100)",
+           {1, kMostRate});
   add_count(*verb, "--readers", options->readers,
-            "Processes that each read all streams (default 2)");
+            "Processes that each read all streams, 1 to 64 (default 2)", {1, kMostReaders});
   verb->add_flag("--json", options->json, "As JSON, and no table");
   verb->callback([&action, options] {
     action = [options] {
-      const json found = run_soak(*options);
-      print_report(options->json ? found.dump(2) + "\n" : soak_summary(found));
-      return found["sound"].get<bool>() ? kOk : kFailed;
+      catch_stop_signals();
+      return print_judgement([&] { return run_soak(*options); }, options->json, soak_summary,
+                             kFailed);
     };
   });
 }

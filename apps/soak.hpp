@@ -30,7 +30,9 @@ nlohmann::json run_soak_reader(const std::vector<std::string>& streams);
 
 /// Many streams at once in real processes: one that solves, some that produce, of which one is
 /// killed every two seconds and comes back, and some that read. Returns what was done and found;
-/// `sound` is whether nothing grew, was lost, stepped or changed. Prints a table unless
+/// `sound` is whether nothing grew, was lost, stepped or changed; null, and `judged` false, if a
+/// stop was requested before the end. Throws Interrupted if it came before there is anything to
+/// tell. Prints a table unless
 /// options.json is set.
 nlohmann::json run_soak(const SoakOptions& options);
 

@@ -6,6 +6,7 @@
 #include "soak.hpp"
 #include "splinecast/ipc/producer.hpp"
 #include "splinecast/ipc/reader.hpp"
+#include "support/attach.hpp"
 #include "support/curve_watch.hpp"
 #include "support/descriptors.hpp"
 #include "support/joint_motion.hpp"
@@ -80,7 +81,7 @@ class SoakProducer {
 /// One stream as a reader process sees it.
 struct WatchedStream {
   explicit WatchedStream(const std::string& stream)
-      : reader(stream, kPatience), watch(reader.sampler(), reader.dimensions()) {}
+      : reader(attach_reader(stream, kPatience)), watch(reader.sampler(), reader.dimensions()) {}
 
   ipc::Reader reader;
   CurveWatch watch;

@@ -23,7 +23,7 @@ namespace {
 /// Longest sleep on one stream; a signal that comes just before a sleep waits this long.
 constexpr core::Time kLongestWait = std::chrono::milliseconds(50);
 
-constexpr core::Time kLongestSweep = std::chrono::seconds(1);
+constexpr TimeRange kSweeps{core::Time(1), std::chrono::seconds(1)};
 
 /// Tells what becomes of each stream.
 class Announcer {
@@ -136,7 +136,6 @@ int solve_many(const SolveOptions& options) {
 }  // namespace
 
 int run_solve(const SolveOptions& options) {
-  catch_stop_signals();
   const bool is_one = options.wanted.size() == 1 && !ipc::is_pattern(options.wanted.front());
   return is_one ? solve_one(options) : solve_many(options);
 }
@@ -148,7 +147,7 @@ void add_live_options(CLI::App& verb, ipc::SolverOptions& options) {
   verb.add_option_function<std::string>(
           "--freeze-ahead",
           [&options](const std::string& text) {
-            options.freeze_ahead = positive_time("--freeze-ahead", text, TimeUnit::milliseconds);
+            options.freeze_ahead = time_within("--freeze-ahead", text, TimeUnit::milliseconds);
           },
           "Leave alone what lies this long ahead of now (default 5)")
       ->type_name("MS");
@@ -188,9 +187,7 @@ void add_solve(CLI::App& program, Action& action) {
   verb->add_option_function<std::string>(
           "--sweep",
           [options](const std::string& text) {
-            options->sweep = positive_time("--sweep", text, TimeUnit::milliseconds);
-            if (options->sweep <= kLongestSweep) return;
-            throw CLI::ValidationError("--sweep", fmt::format("'{}' is more than 1000 ms", text));
+            options->sweep = time_within("--sweep", text, TimeUnit::milliseconds, kSweeps);
           },
           "Pause between looks at several streams (default 1, at most 1000); 20 if that is longer "
           "for "
@@ -204,7 +201,10 @@ void add_solve(CLI::App& program, Action& action) {
     if (distinct.size() != options->wanted.size()) {
       throw CLI::ValidationError("STREAM", "a stream is named twice");
     }
-    action = [options] { return run_solve(*options); };
+    action = [options] {
+      catch_stop_signals();
+      return run_solve(*options);
+    };
   });
 }
 

@@ -15,7 +15,8 @@ struct SolveOptions {
   bool quiet = false;
 };
 
-/// Solves until a stop is requested. Returns the exit code.
+/// Solves until a stop is requested (see signals.hpp), which is its normal end. Returns the exit
+/// code.
 int run_solve(const SolveOptions& options);
 
 }  // namespace splinecast::apps

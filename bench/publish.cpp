@@ -59,7 +59,7 @@ void publish(benchmark::State& bench) {
   append();
   const SharedLines ready;
   std::optional<apps::Child> polling;
-  if (readers > 0) polling.emplace([&] { return poll_with(readers, stream, ready); }, true);
+  if (readers > 0) polling.emplace([&] { return poll_with(readers, stream, ready); });
   while (ready[0].load() < readers) std::this_thread::yield();
   for (auto _ : bench) append();
   if (polling) {

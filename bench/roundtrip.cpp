@@ -74,24 +74,20 @@ bool await_waypoint(ipc::Reader& reader, core::State& state, std::uint64_t i) {
 void floor_ping(benchmark::State& bench) {
   const SharedLines lines;
   for (auto _ : bench) {
-    apps::Child far(
-        [&]() -> nlohmann::json {
-          const Pinned pin(kFar);
-          for (std::uint64_t i = 2; await(lines[kThere], i); ++i) {
-            lines[kBack].store(i, std::memory_order_release);
-          }
-          return nullptr;
-        },
-        true);
-    apps::Child near(
-        [&] {
-          const Pinned pin(kNear);
-          return measure([&](std::uint64_t i) {
-            lines[kThere].store(i, std::memory_order_release);
-            return await(lines[kBack], i);
-          });
-        },
-        true);
+    apps::Child far([&]() -> nlohmann::json {
+      const Pinned pin(kFar);
+      for (std::uint64_t i = 2; await(lines[kThere], i); ++i) {
+        lines[kBack].store(i, std::memory_order_release);
+      }
+      return nullptr;
+    });
+    apps::Child near([&] {
+      const Pinned pin(kNear);
+      return measure([&](std::uint64_t i) {
+        lines[kThere].store(i, std::memory_order_release);
+        return await(lines[kBack], i);
+      });
+    });
     report(bench, near.result());
     far.stop();
     far.result();
@@ -103,37 +99,33 @@ void roundtrip_embedded(benchmark::State& bench, std::optional<std::size_t> sett
   const SharedLines lines;
   const StreamName stream;
   for (auto _ : bench) {
-    apps::Child near(
-        [&] {
-          const Pinned pin(kNear);
-          Appender appender(stream);
-          ipc::Solver solver(stream, {.settle = settle, .wake = false});
-          solver.attach();
-          const ipc::MonotonicClock clock;
-          const auto publish = [&](std::uint64_t i) {
-            appender.append(i);
-            solver.step(clock);
-          };
-          publish(1);
-          await(lines[kFarIsReady], 1);
-          return measure([&](std::uint64_t i) {
-            publish(i);
-            return await(lines[kBack], i);
-          });
-        },
-        true);
-    apps::Child far(
-        [&]() -> nlohmann::json {
-          const Pinned pin(kFar);
-          ipc::Reader reader(stream, kPatience);
-          core::State state(kTripDimensions);
-          lines[kFarIsReady].store(1, std::memory_order_release);
-          for (std::uint64_t i = 2; await_waypoint(reader, state, i); ++i) {
-            lines[kBack].store(i, std::memory_order_release);
-          }
-          return nullptr;
-        },
-        true);
+    apps::Child near([&] {
+      const Pinned pin(kNear);
+      Appender appender(stream);
+      ipc::Solver solver(stream, {.settle = settle, .wake = false});
+      solver.attach();
+      const ipc::MonotonicClock clock;
+      const auto publish = [&](std::uint64_t i) {
+        appender.append(i);
+        solver.step(clock);
+      };
+      publish(1);
+      await(lines[kFarIsReady], 1);
+      return measure([&](std::uint64_t i) {
+        publish(i);
+        return await(lines[kBack], i);
+      });
+    });
+    apps::Child far([&]() -> nlohmann::json {
+      const Pinned pin(kFar);
+      ipc::Reader reader(stream, kPatience);
+      core::State state(kTripDimensions);
+      lines[kFarIsReady].store(1, std::memory_order_release);
+      for (std::uint64_t i = 2; await_waypoint(reader, state, i); ++i) {
+        lines[kBack].store(i, std::memory_order_release);
+      }
+      return nullptr;
+    });
     report(bench, near.result());
     far.stop();
     far.result();
@@ -144,32 +136,28 @@ void roundtrip_embedded(benchmark::State& bench, std::optional<std::size_t> sett
 void roundtrip_solver(benchmark::State& bench) {
   const StreamName stream;
   for (auto _ : bench) {
-    apps::Child near(
-        [&] {
-          const Pinned pin(kNear);
-          Appender appender(stream);
-          appender.append(1);
-          ipc::Reader reader(stream, kPatience);
-          core::State state(kTripDimensions);
-          if (!appender.producer().wait_until_consumed(kPatience)) {
-            throw std::runtime_error("the solver of the round trips did not come");
-          }
-          return measure([&](std::uint64_t i) {
-            appender.append(i);
-            return await_waypoint(reader, state, i);
-          });
-        },
-        true);
-    apps::Child far(
-        [&]() -> nlohmann::json {
-          const Pinned pin(kFar);
-          ipc::Solver solver(stream, {.wake = false});
-          while (!solver.attach() && !apps::stop_requested()) solver.wait(core::Time(1'000'000));
-          const ipc::MonotonicClock clock;
-          while (!apps::stop_requested()) solver.step(clock);
-          return nullptr;
-        },
-        true);
+    apps::Child near([&] {
+      const Pinned pin(kNear);
+      Appender appender(stream);
+      appender.append(1);
+      ipc::Reader reader(stream, kPatience);
+      core::State state(kTripDimensions);
+      if (!appender.producer().wait_until_consumed(kPatience)) {
+        throw std::runtime_error("the solver of the round trips did not come");
+      }
+      return measure([&](std::uint64_t i) {
+        appender.append(i);
+        return await_waypoint(reader, state, i);
+      });
+    });
+    apps::Child far([&]() -> nlohmann::json {
+      const Pinned pin(kFar);
+      ipc::Solver solver(stream, {.wake = false});
+      while (!solver.attach() && !apps::stop_requested()) solver.wait(core::Time(1'000'000));
+      const ipc::MonotonicClock clock;
+      while (!apps::stop_requested()) solver.step(clock);
+      return nullptr;
+    });
     report(bench, near.result());
     far.stop();
     far.result();

@@ -95,7 +95,7 @@ void sample_written(benchmark::State& bench, std::int64_t rate) {
   const StreamName stream;
   const SharedLines lines;
   for (auto _ : bench) {
-    apps::Child writer([&] { return write_stream(stream, rate, lines[0]); }, true);
+    apps::Child writer([&] { return write_stream(stream, rate, lines[0]); });
     await(lines[0], 1);
     report(bench, sample_all(stream));
     writer.stop();

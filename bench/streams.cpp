@@ -39,18 +39,14 @@ class ManyStreams {
   ManyStreams(std::size_t count, bool are_idle, const ipc::SolverOptions& options)
       : streams_(names(count)),
         remover_(streams_),
-        solver_(
-            [&] {
-              return nlohmann::json(
-                  apps::run_solve({.wanted = {kPrefix + "*"}, .solver = options, .quiet = true}));
-            },
-            true),
-        producers_(
-            [&] {
-              const Time begin = clock_.now() + (are_idle ? seconds(1'000'000) : seconds(1));
-              return apps::run_soak_producers(streams_, kRate, begin);
-            },
-            true) {
+        solver_([&] {
+          return nlohmann::json(
+              apps::run_solve({.wanted = {kPrefix + "*"}, .solver = options, .quiet = true}));
+        }),
+        producers_([&] {
+          const Time begin = clock_.now() + (are_idle ? seconds(1'000'000) : seconds(1));
+          return apps::run_soak_producers(streams_, kRate, begin);
+        }) {
     apps::raise_descriptor_limit();
     readers_.reserve(count);
     for (const std::string& stream : streams_) readers_.emplace_back(stream, kPatience);

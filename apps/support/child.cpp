@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <exception>
 #include <string>
@@ -21,12 +22,18 @@
 namespace splinecast::apps {
 namespace {
 
-[[noreturn]] void run_child(const std::function<nlohmann::json()>& run, int pipe) {
+/// How long after a signal to the parent its children may take to end in order. Less than the
+/// parent's own time, so that it can still clean up.
+constexpr core::Time kGrace = std::chrono::seconds(3);
+
+[[noreturn]] void run_child(const std::function<nlohmann::json()>& run, int pipe, pid_t parent) {
   int code = kOk;
   try {
-    catch_stop_signals();
+    catch_stop_signals_as_child_of(parent);
     const std::string text = run().dump();
     if (write(pipe, text.data(), text.size()) != static_cast<ssize_t>(text.size())) code = kFailed;
+  } catch (const Interrupted&) {
+    code = kInterrupted;  // the parent says so
   } catch (const std::exception& error) {
     say(error.what());
     code = kFailed;
@@ -36,7 +43,7 @@ namespace {
 
 }  // namespace
 
-Child::Child(const std::function<nlohmann::json()>& run, bool in_background) {
+Child::Child(const std::function<nlohmann::json()>& run) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) throw Failure("no pipe for a child process");
   std::fflush(nullptr);
@@ -46,16 +53,18 @@ Child::Child(const std::function<nlohmann::json()>& run, bool in_background) {
   if (pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != parent) _exit(kFailed);
-    if (in_background) setpgid(0, 0);
+    setpgid(0, 0);
     close(ends[0]);
-    run_child(run, ends[1]);
+    run_child(run, ends[1], parent);
   }
   close(ends[1]);
   pipe_ = ends[0];
 }
 
 Child::Child(Child&& other) noexcept
-    : pid_(std::exchange(other.pid_, -1)), pipe_(std::exchange(other.pipe_, -1)) {}
+    : pid_(std::exchange(other.pid_, -1)),
+      pipe_(std::exchange(other.pipe_, -1)),
+      told_to_end_(other.told_to_end_) {}
 
 Child::~Child() {
   if (pipe_ >= 0) close(pipe_);
@@ -69,6 +78,7 @@ nlohmann::json Child::result() {
   std::array<char, 4096> buffer{};
   for (;;) {
     if (stop_requested()) stop();
+    if (time_since_stop() > kGrace) signal(SIGKILL);
     constexpr int kSliceMilliseconds = 100;
     pollfd ready{.fd = pipe_, .events = POLLIN, .revents = 0};
     if (poll(&ready, 1, kSliceMilliseconds) <= 0) continue;
@@ -82,6 +92,7 @@ nlohmann::json Child::result() {
   }
   pid_ = -1;
   if (!WIFEXITED(status) || WEXITSTATUS(status) != kOk) {
+    if (stop_requested()) throw Interrupted("interrupted");
     throw Failure(fmt::format("a child process ended with {} {}",
                               WIFSIGNALED(status) ? "signal" : "code",
                               WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status)));
@@ -100,6 +111,8 @@ void Child::signal(int number) const noexcept {
   if (pid_ > 0) kill(pid_, number);
 }
 
-void Child::stop() const noexcept { signal(SIGTERM); }
+void Child::stop() noexcept {
+  if (!std::exchange(told_to_end_, true)) signal(SIGTERM);  // a second one would kill it
+}
 
 }  // namespace splinecast::apps

@@ -12,8 +12,8 @@ namespace splinecast::apps {
 /// with its parent.
 class Child {
  public:
-  /// Forks at once. With `in_background` the child does not get the terminal's Ctrl-C.
-  Child(const std::function<nlohmann::json()>& run, bool in_background);
+  /// Forks at once. The child does not get the terminal's Ctrl-C: its parent passes a stop on.
+  explicit Child(const std::function<nlohmann::json()>& run);
   Child(Child&& other) noexcept;
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
@@ -21,8 +21,9 @@ class Child {
   /// Kills it if it has not been waited for.
   ~Child();
 
-  /// Waits for the child's end and returns its result; passes a stop that is requested meanwhile on
-  /// to it. Throws Failure if it failed or was killed.
+  /// Waits for the child's end and returns its result. A stop that is requested meanwhile is passed
+  /// on to it, and kills it 3 s later if it still runs. Throws Failure if it failed or was killed,
+  /// Interrupted if a stop was requested.
   nlohmann::json result();
 
   /// Whether it has ended, and then how: its exit code, or minus the number of the signal that
@@ -34,12 +35,13 @@ class Child {
   /// Sends it a signal; to kill it, destroy this object.
   void signal(int number) const noexcept;
 
-  /// Asks the child to end (SIGTERM).
-  void stop() const noexcept;
+  /// Asks the child to end (SIGTERM); only the first call does anything.
+  void stop() noexcept;
 
  private:
   pid_t pid_ = -1;
   int pipe_ = -1;
+  bool told_to_end_ = false;
 };
 
 }  // namespace splinecast::apps

@@ -87,7 +87,16 @@ Environment read_environment(const fs::path& root) {
           .preemption = preemption(root),
           .hypervisor = hypervisor(root),
           .clock = first_line(clock),
-          .rt_runtime = first_line(root / "proc/sys/kernel/sched_rt_runtime_us")};
+          .rt_runtime = first_line(root / "proc/sys/kernel/sched_rt_runtime_us"),
+          .rt_period = first_line(root / "proc/sys/kernel/sched_rt_period_us")};
+}
+
+std::optional<core::Time> throttled_time(const Environment& environment) {
+  if (environment.rt_runtime == "-1") return core::Time::zero();
+  const auto runtime = parse_time(environment.rt_runtime, TimeUnit::microseconds);
+  const auto period = parse_time(environment.rt_period, TimeUnit::microseconds);
+  if (!runtime || !period) return std::nullopt;
+  return std::max(*period - *runtime, core::Time::zero());
 }
 
 nlohmann::ordered_json to_json(const Environment& environment) {
@@ -95,7 +104,8 @@ nlohmann::ordered_json to_json(const Environment& environment) {
           {"online", environment.online},         {"isolated", environment.isolated},
           {"governor", environment.governor},     {"kernel", environment.kernel},
           {"preemption", environment.preemption}, {"hypervisor", environment.hypervisor},
-          {"clock", environment.clock},           {"rt_runtime_us", environment.rt_runtime}};
+          {"clock", environment.clock},           {"rt_runtime_us", environment.rt_runtime},
+          {"rt_period_us", environment.rt_period}};
 }
 
 }  // namespace splinecast::apps

@@ -2,7 +2,10 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+
+#include "splinecast/core/time.hpp"
 
 namespace splinecast::apps {
 
@@ -19,9 +22,14 @@ struct Environment {
   std::string hypervisor;  ///< what the machine is virtual under: maker and product, else
                            ///< `unknown`; empty on bare metal
   std::string clock;       ///< the kernel's clock source, such as `tsc`
-  std::string rt_runtime;  ///< microseconds of each period (1 s by default) that SCHED_FIFO may
-                           ///< take in all; -1: no limit
+  std::string rt_runtime;  ///< microseconds of each period that SCHED_FIFO may take of a CPU; -1:
+                           ///< no limit
+  std::string rt_period;   ///< the period, in microseconds
 };
+
+/// How long in each period the kernel stops SCHED_FIFO processes that would take a whole CPU, so
+/// that others run. Zero if it does not; nothing if the machine does not say.
+[[nodiscard]] std::optional<core::Time> throttled_time(const Environment& environment);
 
 /// Reads it from /proc and /sys under `root`. Never throws for a file that is missing.
 [[nodiscard]] Environment read_environment(const std::filesystem::path& root = "/");

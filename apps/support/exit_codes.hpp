@@ -10,6 +10,7 @@ inline constexpr int kFailed = 1;
 inline constexpr int kBadUsageOrInput = 2;
 inline constexpr int kFellShort = 3;
 inline constexpr int kNoStreamOrTimeOut = 4;
+inline constexpr int kInterrupted = 130;  ///< as a shell reports SIGINT
 
 /// Wrong usage or wrong input: exit code 2.
 class InputError : public std::runtime_error {
@@ -25,6 +26,12 @@ class Failure : public std::runtime_error {
 
 /// Whoever read the output has had enough of it (`| head`): exit code 1, without a message.
 class ClosedPipe : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A signal came before the work was done: exit code 130.
+class Interrupted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };

@@ -9,6 +9,7 @@ enum class Verdict {
   ok,
   note,     ///< everything works, but something could be better, or should be known
   problem,  ///< something does not work
+  unknown,  ///< it cannot be known, for the reason given
 };
 
 /// What a check found.

@@ -23,6 +23,9 @@ int run_guarded(const std::function<int()>& action) {
     return kBadUsageOrInput;
   } catch (const ClosedPipe&) {
     return kFailed;
+  } catch (const Interrupted& error) {
+    say(error.what());
+    return kInterrupted;
   } catch (const TimeOut& error) {
     say(error.what());
     return kNoStreamOrTimeOut;

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "support/numbers.hpp"
+#include "support/unread.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -23,8 +24,6 @@ constexpr std::uint64_t kFirstTimeNamespace = 0xEFFFFFFA;
 constexpr uid_t kFirstOrdinaryUser = 1000;
 /// What a container runtime gives /dev/shm unless it is asked for more.
 constexpr std::uint64_t kContainersRoom = std::uint64_t{64} << 20U;
-/// A share of the CPUs' time below which steal is noise.
-constexpr double kLeastSteal = 0.01;
 
 std::string mebibytes(double bytes) { return fmt::format("{:.1f} MiB", bytes / (1 << 20)); }
 
@@ -74,12 +73,13 @@ std::string setting(const std::string& text, std::string_view key) {
   return value;
 }
 
-/// The choice in brackets of a file such as `always [never]`.
-std::string chosen(const std::string& text) {
-  const std::size_t open = text.find('[');
-  const std::size_t close = text.find(']', open);
-  if (open == std::string::npos || close == std::string::npos) return {};
-  return text.substr(open + 1, close - open - 1);
+constexpr const char* kMounts = "/proc/self/mounts";
+constexpr const char* kStatus = "/proc/self/status";
+constexpr const char* kLogind = "/etc/systemd/logind.conf";
+
+bool is_contained(const MachineFacts& facts) {
+  return facts.in_container ||
+         (facts.pid_namespace != 0 && facts.pid_namespace != kFirstPidNamespace);
 }
 
 }  // namespace
@@ -87,7 +87,9 @@ std::string chosen(const std::string& text) {
 Finding check_shared_memory(const MachineFacts& facts) {
   const Mount mount = shared_memory_mount(facts.mounts);
   const std::string check = "/dev/shm";
-  if (mount.type != "tmpfs") {
+  const std::string why = unread(facts, {kMounts});
+  if (!why.empty() && facts.may_write_shared) return unknown(check, why);
+  if (why.empty() && mount.type != "tmpfs") {
     return {.check = check,
             .verdict = Verdict::problem,
             .means = mount.type.empty() ? "is not mounted: there is no shared memory"
@@ -111,7 +113,8 @@ Finding check_shared_memory(const MachineFacts& facts) {
 
 Finding check_room(const MachineFacts& facts, std::size_t needed) {
   const std::string check = "room in /dev/shm";
-  const Room room = facts.room.value_or(Room{.total = 0, .free = 0});
+  if (!facts.room) return unknown(check, "the kernel does not say (statvfs)");
+  const Room room = *facts.room;
   const std::string means =
       fmt::format("{} in all, {} free", mebibytes(static_cast<double>(room.total)),
                   mebibytes(static_cast<double>(room.free)));
@@ -142,6 +145,10 @@ Finding check_locked_memory(const MachineFacts& facts, std::size_t needed) {
                                         mebibytes(static_cast<double>(facts.lockable)),
                                         mebibytes(static_cast<double>(needed)));
   if (facts.lockable >= needed) return {.check = check, .means = means};
+  // CAP_IPC_LOCK would do.
+  if (const auto why = unread(facts, {kStatus}); !why.empty()) {
+    return unknown(check, means + "; " + why);
+  }
   return {.check = check,
           .verdict = Verdict::note,
           .means = means + ": everything works, but their pages may be swapped out",
@@ -160,6 +167,10 @@ Finding check_priority(const MachineFacts& facts) {
             .means = fmt::format("this user may use SCHED_FIFO up to {} (RLIMIT_RTPRIO)",
                                  facts.priority)};
   }
+  // CAP_SYS_NICE would do.
+  if (const auto why = unread(facts, {kStatus}); !why.empty()) {
+    return unknown(check, "RLIMIT_RTPRIO is 0; " + why);
+  }
   return {.check = check,
           .verdict = Verdict::note,
           .means = "RLIMIT_RTPRIO is 0: solver and readers share the CPUs with everything else",
@@ -170,12 +181,16 @@ Finding check_priority(const MachineFacts& facts) {
 
 Finding check_remove_ipc(const MachineFacts& facts) {
   const std::string check = "RemoveIPC";
+  if (!facts.runs_systemd && is_contained(facts)) {
+    return unknown(check, "in a container it is the host that may run systemd");
+  }
   if (!facts.runs_systemd) {
     return {.check = check, .means = "no systemd: nobody removes a user's shared memory"};
   }
   if (facts.user < kFirstOrdinaryUser) {
     return {.check = check, .means = "does not concern a user of the system"};
   }
+  if (const auto why = unread(facts, {kLogind}); !why.empty()) return unknown(check, why);
   const std::string value = setting(facts.logind, "RemoveIPC");
   constexpr std::array<std::string_view, 5> kNo{"no", "false", "off", "0", "n"};
   if (std::ranges::find(kNo, value) != kNo.end()) {
@@ -191,6 +206,9 @@ Finding check_remove_ipc(const MachineFacts& facts) {
 
 Finding check_container(const MachineFacts& facts) {
   const std::string check = "container";
+  if (!facts.in_container && facts.pid_namespace == 0) {
+    return unknown(check, "/proc/self/ns/pid cannot be read");
+  }
   if (!facts.in_container && facts.pid_namespace == kFirstPidNamespace) {
     return {.check = check, .means = "none: all processes of this host see the same streams"};
   }
@@ -205,6 +223,9 @@ Finding check_container(const MachineFacts& facts) {
 
 Finding check_time_namespace(const MachineFacts& facts) {
   const std::string check = "time namespace";
+  if (facts.time_namespace == 0 && facts.pid_namespace == 0) {
+    return unknown(check, "/proc/self/ns/time cannot be read");
+  }
   if (facts.time_namespace == 0 || facts.time_namespace == kFirstTimeNamespace) {
     return {.check = check, .means = "that of the host: its clock is everybody's"};
   }
@@ -221,102 +242,13 @@ Finding check_time_namespace(const MachineFacts& facts) {
           .mend = "run producer, solver and readers in one time namespace"};
 }
 
-Finding check_clock(const MachineFacts& facts) {
-  const std::string check = "clock";
-  const std::string& source = facts.environment.clock;
-  const std::string means =
-      fmt::format("{}, {} ns a reading", source.empty() ? std::string("unknown source") : source,
-                  facts.clock_cost.count());
-  // Those that are read without a system call.
-  constexpr std::array<std::string_view, 4> kFast{"tsc", "kvm-clock", "arch_sys_counter",
-                                                  "hyperv_clocksource_tsc_page"};
-  if (source.empty() || std::ranges::find(kFast, source) != kFast.end()) {
-    return {.check = check, .means = means};
-  }
-  return {.check = check,
-          .verdict = Verdict::note,
-          .means = means + ": each reading of it is a system call",
-          .mend =
-              "find out why the kernel gave tsc up (dmesg | grep -i tsc); tsc=reliable on its "
-              "command line, if the machine's is"};
-}
-
-Finding check_governor(const MachineFacts& facts) {
-  const std::string& governor = facts.environment.governor;
-  if (governor.empty() || governor == "performance") {
-    return {.check = "cpu governor",
-            .means = governor.empty() ? "the kernel does not scale the CPUs' frequency" : governor};
-  }
-  return {.check = "cpu governor",
-          .verdict = Verdict::note,
-          .means = governor + ": a CPU that has slept begins slowly",
-          .mend = "cpupower frequency-set -g performance"};
-}
-
-Finding check_isolated_cpus(const MachineFacts& facts) {
-  const std::string& isolated = facts.environment.isolated;
-  if (!isolated.empty()) return {.check = "isolated cpus", .means = isolated};
-  return {.check = "isolated cpus",
-          .verdict = Verdict::note,
-          .means = "none: any process may delay a controller",
-          .mend = "isolcpus=LIST on the kernel's command line, and pin to these (taskset -c LIST)"};
-}
-
-Finding check_preemption(const MachineFacts& facts) {
-  const std::string& preemption = facts.environment.preemption;
-  if (preemption == "PREEMPT_RT") return {.check = "kernel preemption", .means = preemption};
-  return {.check = "kernel preemption",
-          .verdict = Verdict::note,
-          .means = (preemption.empty() ? std::string("unknown") : preemption) +
-                   ": the kernel may hold a real-time process up for milliseconds",
-          .mend = "apt-get install linux-image-rt-amd64"};
-}
-
-Finding check_huge_pages(const MachineFacts& facts) {
-  const std::string choice = chosen(facts.shared_huge_pages);
-  if (choice.empty() || choice == "never" || choice == "deny" || choice == "advise") {
-    return {.check = "huge pages",
-            .means = "shared memory has none: no page of a stream is moved into one"};
-  }
-  return {.check = "huge pages",
-          .verdict = Verdict::note,
-          .means = choice + " for shared memory: the kernel may stop a process to gather them",
-          .mend = "echo never > /sys/kernel/mm/transparent_hugepage/shmem_enabled"};
-}
-
-Finding check_steal(const MachineFacts& facts) {
-  const std::string& hypervisor = facts.environment.hypervisor;
-  std::istringstream fields(facts.cpu_times);
-  std::string cpu;
-  fields >> cpu;
-  // user, nice, system, idle, iowait, irq, softirq, steal
-  constexpr int kSteal = 7;
-  double total = 0;
-  double steal = 0;
-  double ticks = 0;
-  for (int i = 0; i <= kSteal && fields >> ticks; ++i) {
-    total += ticks;
-    if (i == kSteal) steal = ticks;
-  }
-  const double share = total > 0 ? steal / total : 0;
-  const std::string means = hypervisor.empty()
-                                ? std::string("none")
-                                : fmt::format("{}; {:.2f} % of the CPUs' time stolen since boot",
-                                              hypervisor, 100 * share);
-  if (share < kLeastSteal) return {.check = "hypervisor", .means = means};
-  return {.check = "hypervisor",
-          .verdict = Verdict::note,
-          .means = means + ": others use the CPUs while a deadline passes",
-          .mend = "give the machine CPUs of its own"};
-}
-
 std::vector<Finding> check_machine(const MachineFacts& facts, std::size_t needed) {
   return {
       check_shared_memory(facts),  check_room(facts, needed), check_locked_memory(facts, needed),
       check_priority(facts),       check_remove_ipc(facts),   check_container(facts),
       check_time_namespace(facts), check_clock(facts),        check_governor(facts),
-      check_isolated_cpus(facts),  check_preemption(facts),   check_huge_pages(facts),
-      check_steal(facts)};
+      check_isolated_cpus(facts),  check_preemption(facts),   check_throttling(facts),
+      check_huge_pages(facts),     check_steal(facts)};
 }
 
 }  // namespace splinecast::apps

@@ -21,6 +21,7 @@ namespace splinecast::apps {
 [[nodiscard]] Finding check_governor(const MachineFacts& facts);
 [[nodiscard]] Finding check_isolated_cpus(const MachineFacts& facts);
 [[nodiscard]] Finding check_preemption(const MachineFacts& facts);
+[[nodiscard]] Finding check_throttling(const MachineFacts& facts);
 [[nodiscard]] Finding check_huge_pages(const MachineFacts& facts);
 [[nodiscard]] Finding check_steal(const MachineFacts& facts);
 

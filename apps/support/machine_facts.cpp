@@ -1,10 +1,12 @@
 #include "support/machine_facts.hpp"
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -21,6 +23,39 @@ std::string text_of(const fs::path& file) {
   std::ostringstream text;
   text << std::ifstream(file).rdbuf();
   return text.str();
+}
+
+/// 0 if the file can be read, else the error number.
+int error_of_reading(const fs::path& file) {
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  char first = 0;
+  const bool is_read = descriptor >= 0 && read(descriptor, &first, 1) >= 0;
+  const int error = errno;
+  if (descriptor >= 0) close(descriptor);
+  return is_read ? 0 : error;
+}
+
+/// What cannot be read of what is judged, also of the environment's files. A file that a kernel may
+/// lack counts only where its folder cannot be seen either.
+std::map<std::string, std::string> unread_files(const fs::path& root) {
+  std::map<std::string, std::string> unread;
+  const auto look = [&](const char* file, bool may_lack) {
+    const int error = error_of_reading(root / file);
+    if (error == 0 || (may_lack && error == ENOENT)) return;
+    unread["/" + std::string(file)] = std::generic_category().message(error);
+  };
+  for (const char* const file :
+       {"proc/self/mounts", "proc/self/status", "proc/stat", "proc/cpuinfo",
+        "proc/sys/kernel/version", "proc/sys/kernel/sched_rt_runtime_us",
+        "proc/sys/kernel/sched_rt_period_us", "sys/devices/system/cpu/isolated",
+        "sys/devices/system/clocksource/clocksource0/current_clocksource"}) {
+    look(file, false);
+  }
+  std::error_code none;
+  look("etc/systemd/logind.conf", true);
+  look("sys/kernel/mm/transparent_hugepage/shmem_enabled",
+       fs::exists(root / "sys/kernel/mm", none));
+  return unread;
 }
 
 /// logind.conf, then its drop-ins by name; a drop-in in /etc hides those of its name elsewhere.
@@ -69,6 +104,7 @@ MachineFacts read_machine(const fs::path& root) {
   const fs::path self = root / "proc/self";
   return {
       .environment = read_environment(root),
+      .unread = unread_files(root),
       .mounts = text_of(self / "mounts"),
       .room = room_of(shared),
       .may_write_shared = access(shared.c_str(), W_OK | X_OK) == 0,

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -20,23 +21,24 @@ struct Room {
   std::uint64_t free;
 };
 
-/// What the documented limits of a machine are judged by, as it was read: texts of files as they
-/// stand (empty where there is none) and what the kernel tells this process. So that a judgement
-/// can be tried on any machine's facts.
+/// What the documented limits of a machine are judged by, as it was read: texts of files (empty
+/// where there is none, and where `unread` has its path) and what the kernel tells this process. So
+/// that a judgement can be tried on any machine's facts.
 struct MachineFacts {
   Environment environment;
-  std::string mounts;               ///< /proc/self/mounts
-  std::optional<Room> room{};       ///< of /dev/shm, for this user
-  bool may_write_shared = true;     ///< whether this user may make files in /dev/shm
-  rlim_t lockable = RLIM_INFINITY;  ///< RLIMIT_MEMLOCK, bytes
-  rlim_t priority = 0;              ///< RLIMIT_RTPRIO
-  std::string status;               ///< /proc/self/status: capabilities
-  uid_t user = 0;                   ///< effective
-  std::string logind;               ///< logind.conf and its drop-ins, in the order they count
+  std::map<std::string, std::string> unread{};  ///< files that cannot be read, and why
+  std::string mounts;                           ///< /proc/self/mounts
+  std::optional<Room> room{};                   ///< of /dev/shm, for this user
+  bool may_write_shared = true;                 ///< whether this user may make files in /dev/shm
+  rlim_t lockable = RLIM_INFINITY;              ///< RLIMIT_MEMLOCK, bytes
+  rlim_t priority = 0;                          ///< RLIMIT_RTPRIO
+  std::string status;                           ///< /proc/self/status: capabilities
+  uid_t user = 0;                               ///< effective
+  std::string logind;  ///< logind.conf and its drop-ins, in the order they count
   bool runs_systemd = false;
   bool in_container = false;         ///< a container's mark stands in the file system
-  std::uint64_t pid_namespace = 0;   ///< inode, as all namespaces
-  std::uint64_t time_namespace = 0;  ///< 0: a kernel without time namespaces
+  std::uint64_t pid_namespace = 0;   ///< inode, as all namespaces; 0: not known
+  std::uint64_t time_namespace = 0;  ///< 0: a kernel without time namespaces, or not known
   std::string clock_offsets;         ///< /proc/self/timens_offsets
   std::string shared_huge_pages;     ///< …/transparent_hugepage/shmem_enabled
   std::string cpu_times;             ///< /proc/stat

@@ -15,36 +15,30 @@
 namespace splinecast::apps {
 namespace {
 
-core::Time time_of(const std::string& name, const std::string& text, TimeUnit unit) {
-  const auto time = parse_time(text, unit);
-  constexpr core::Time kLongest = std::chrono::hours(24 * 366 * 100);
-  if (!time || *time < core::Time::zero() || *time > kLongest) {
-    throw CLI::ValidationError(name, fmt::format("'{}' is no time from 0 to 100 years", text));
-  }
-  return *time;
-}
-
 /// An option that takes a time; `Target` is a time, or an optional one.
 template <typename Target>
 void add_time(CLI::App& verb, const std::string& name, Target& value, TimeUnit unit,
-              const std::string& help) {
+              const std::string& help, const TimeRange& range) {
   verb.add_option_function<std::string>(
           name,
-          [&value, name, unit](const std::string& text) { value = time_of(name, text, unit); },
+          [&value, name, unit, range](const std::string& text) {
+            value = time_within(name, text, unit, range);
+          },
           help)
       ->type_name(unit == TimeUnit::seconds ? "SECONDS" : "MS");
 }
 
 /// An option that takes a count; `Target` is a number, or an optional one.
 template <typename Target>
-void add_number(CLI::App& verb, const std::string& name, Target& value, const std::string& help) {
+void add_number(CLI::App& verb, const std::string& name, Target& value, const std::string& help,
+                const CountRange& range) {
   verb.add_option_function<std::string>(
           name,
-          [&value, name](const std::string& text) {
+          [&value, name, range](const std::string& text) {
             const auto count = parse_count(text);
-            if (!count || *count == 0) {
-              throw CLI::ValidationError(name,
-                                         fmt::format("'{}' is no whole number of 1 or more", text));
+            if (!count || *count < range.least || *count > range.most) {
+              throw CLI::ValidationError(name, fmt::format("'{}' is no whole number from {} to {}",
+                                                           text, range.least, range.most));
             }
             value = *count;
           },
@@ -131,7 +125,7 @@ void add_time_scale(CLI::App& verb, std::optional<double>& time_scale) {
   verb.add_option_function<std::string>(
           "--time-scale",
           [&time_scale](const std::string& text) {
-            time_scale = positive_number("--time-scale", text);
+            time_scale = number_within("--time-scale", text);
           },
           "For rounded: seconds that count as one unit of position (default 1)")
       ->type_name("SECONDS");
@@ -205,42 +199,58 @@ void add_settle(CLI::App& verb, std::optional<std::size_t>& value) {
 }
 
 void add_seconds(CLI::App& verb, const std::string& name, std::optional<core::Time>& value,
-                 const std::string& help) {
-  add_time(verb, name, value, TimeUnit::seconds, help);
+                 const std::string& help, const TimeRange& range) {
+  add_time(verb, name, value, TimeUnit::seconds, help, range);
 }
 
 void add_seconds(CLI::App& verb, const std::string& name, core::Time& value,
-                 const std::string& help) {
-  add_time(verb, name, value, TimeUnit::seconds, help);
+                 const std::string& help, const TimeRange& range) {
+  add_time(verb, name, value, TimeUnit::seconds, help, range);
 }
 
 void add_milliseconds(CLI::App& verb, const std::string& name, core::Time& value,
-                      const std::string& help) {
-  add_time(verb, name, value, TimeUnit::milliseconds, help);
+                      const std::string& help, const TimeRange& range) {
+  add_time(verb, name, value, TimeUnit::milliseconds, help, range);
 }
 
-void add_count(CLI::App& verb, const std::string& name, std::size_t& value,
-               const std::string& help) {
-  add_number(verb, name, value, help);
+void add_count(CLI::App& verb, const std::string& name, std::size_t& value, const std::string& help,
+               const CountRange& range) {
+  add_number(verb, name, value, help, range);
 }
 
 void add_count(CLI::App& verb, const std::string& name, std::optional<std::size_t>& value,
-               const std::string& help) {
-  add_number(verb, name, value, help);
+               const std::string& help, const CountRange& range) {
+  add_number(verb, name, value, help, range);
 }
 
-core::Time positive_time(const std::string& name, const std::string& text, TimeUnit unit) {
+void add_rate(CLI::App& verb, const std::string& name, double& value, const std::string& help,
+              const NumberRange& range) {
+  verb.add_option_function<std::string>(
+          name,
+          [&value, name, range](const std::string& text) {
+            value = number_within(name, text, range);
+          },
+          help)
+      ->type_name("HZ");
+}
+
+core::Time time_within(const std::string& name, const std::string& text, TimeUnit unit,
+                       const TimeRange& range) {
   const auto time = parse_time(text, unit);
-  if (time && *time > core::Time::zero()) return *time;
-  throw CLI::ValidationError(name, fmt::format("'{}' is no positive time", text));
+  if (time && *time >= range.least && *time <= range.most) return *time;
+  const bool is_seconds = unit == TimeUnit::seconds;
+  const double scale = is_seconds ? 1 : 1e3;
+  throw CLI::ValidationError(
+      name, fmt::format("'{}' is no time from {:.15g} to {:.15g} {}", text,
+                        core::to_seconds(range.least) * scale, core::to_seconds(range.most) * scale,
+                        is_seconds ? "s" : "ms"));
 }
 
-double positive_number(const std::string& name, const std::string& text) {
+double number_within(const std::string& name, const std::string& text, const NumberRange& range) {
   const auto number = parse_number(text);
-  constexpr double kLeast = 1e-6;
-  constexpr double kMost = 1e9;
-  if (number && *number >= kLeast && *number <= kMost) return *number;
-  throw CLI::ValidationError(name, fmt::format("'{}' is no number from 1e-6 to 1e9", text));
+  if (number && *number >= range.least && *number <= range.most) return *number;
+  throw CLI::ValidationError(
+      name, fmt::format("'{}' is no number from {} to {}", text, range.least, range.most));
 }
 
 void add_access(CLI::App& verb, ipc::RegionAccess& access) {

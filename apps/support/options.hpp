@@ -1,6 +1,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -49,31 +51,53 @@ void add_force_lag(CLI::App& verb, bool& force_lag);
 void add_lambda(CLI::App& verb, std::optional<double>& lambda, bool* automatic);
 void add_time_scale(CLI::App& verb, std::optional<double>& time_scale);
 
-/// An option that takes a condition, a tail, a settle lag, or a time of 0 or more in seconds or
-/// milliseconds.
+/// The longest time that an option takes: two of them can still be added to a time of a stream.
+inline constexpr core::Time kLongestTime = std::chrono::hours(24 * 366 * 100);
+
+/// The least and the largest value of an option.
+template <typename T>
+struct OptionRange {
+  T least;
+  T most;
+};
+using TimeRange = OptionRange<core::Time>;
+using NumberRange = OptionRange<double>;
+using CountRange = OptionRange<std::size_t>;
+
+inline constexpr TimeRange kAnyTime{core::Time::zero(), kLongestTime};
+inline constexpr TimeRange kPositiveTime{core::Time(1), kLongestTime};
+/// Factors and rates of which times can still be made.
+inline constexpr NumberRange kPositiveNumber{1e-6, 1e9};
+inline constexpr CountRange kAnyCount{1, std::size_t{1} << 53U};
+
+/// An option that takes a condition, a tail, a settle lag, or a time in seconds or milliseconds.
 void add_condition(CLI::App& verb, const std::string& name, std::optional<core::Condition>& value,
                    const std::string& help);
 void add_tail(CLI::App& verb, std::optional<core::Tail>& value);
 void add_settle(CLI::App& verb, std::optional<std::size_t>& value);
 void add_seconds(CLI::App& verb, const std::string& name, std::optional<core::Time>& value,
-                 const std::string& help);
+                 const std::string& help, const TimeRange& range = kAnyTime);
 void add_seconds(CLI::App& verb, const std::string& name, core::Time& value,
-                 const std::string& help);
+                 const std::string& help, const TimeRange& range = kAnyTime);
 void add_milliseconds(CLI::App& verb, const std::string& name, core::Time& value,
-                      const std::string& help);
+                      const std::string& help, const TimeRange& range = kAnyTime);
 
-/// An option that takes a whole number of 1 or more.
-void add_count(CLI::App& verb, const std::string& name, std::size_t& value,
-               const std::string& help);
+/// An option that takes a whole number.
+void add_count(CLI::App& verb, const std::string& name, std::size_t& value, const std::string& help,
+               const CountRange& range = kAnyCount);
 void add_count(CLI::App& verb, const std::string& name, std::optional<std::size_t>& value,
-               const std::string& help);
+               const std::string& help, const CountRange& range = kAnyCount);
 
-/// A number between 1e-6 and 1e9, of which times can still be made; else CLI::ValidationError.
-[[nodiscard]] double positive_number(const std::string& name, const std::string& text);
+/// An option that takes a number a second.
+void add_rate(CLI::App& verb, const std::string& name, double& value, const std::string& help,
+              const NumberRange& range);
 
-/// A time above 0; else CLI::ValidationError.
-[[nodiscard]] core::Time positive_time(const std::string& name, const std::string& text,
-                                       TimeUnit unit);
+/// The number, or the time, that a text says; CLI::ValidationError, which names the value and the
+/// range, for any other text.
+[[nodiscard]] double number_within(const std::string& name, const std::string& text,
+                                   const NumberRange& range = kPositiveNumber);
+[[nodiscard]] core::Time time_within(const std::string& name, const std::string& text,
+                                     TimeUnit unit, const TimeRange& range = kPositiveTime);
 
 /// `--mode` and `--group` of the regions to be made.
 void add_access(CLI::App& verb, ipc::RegionAccess& access);

@@ -1,5 +1,6 @@
 #include "support/output.hpp"
 
+#include <stdio_ext.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -11,6 +12,7 @@
 #include "splinecast/ipc/clock.hpp"
 #include "splinecast/ipc/names.hpp"
 #include "support/exit_codes.hpp"
+#include "support/signals.hpp"
 
 namespace splinecast::apps {
 
@@ -34,6 +36,11 @@ void Output::close() {
 
 void Output::fail() const {
   if (errno == EPIPE) throw ClosedPipe("standard output was closed");
+  if (errno == EINTR && stop_requested()) {
+    if (file_ != nullptr)
+      __fpurge(file_);  // what a reader does not take would keep the process at its end
+    throw Interrupted(fmt::format("{}: interrupted", name_));
+  }
   throw Failure(
       fmt::format("{}: cannot be written: {}", name_, std::generic_category().message(errno)));
 }

@@ -15,6 +15,7 @@
 #include "splinecast/ipc/status.hpp"
 #include "support/exit_codes.hpp"
 #include "support/kinds.hpp"
+#include "support/options.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -97,6 +98,11 @@ void select_rows(WaypointTable& table, core::Time from, std::optional<core::Time
 void change_rate(WaypointTable& table, double rate) {
   if (rate == 1.0) return;
   const core::Time first = table.times.front();
+  const double seconds = core::to_seconds(table.times.back() - first) / rate;
+  if (seconds > core::to_seconds(kLongestTime)) {
+    throw InputError(fmt::format("{}: at --rate {} it takes {} s; the most is {} s", table.file,
+                                 rate, seconds, core::to_seconds(kLongestTime)));
+  }
   for (core::Time& t : table.times) {
     constexpr double kMost = 9.2e18;  // what llround can return; no stream takes so late a time
     const double since = std::min(static_cast<double>((t - first).count()) / rate, kMost);

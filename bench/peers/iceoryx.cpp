@@ -72,16 +72,14 @@ class Side {
 
 /// The daemon that the two sides need; it ends with this process.
 [[nodiscard]] apps::Child start_daemon() {
-  return apps::Child(
-      []() -> nlohmann::json {
-        const int nowhere = open("/dev/null", O_WRONLY);  // it tells of its start on any log level
-        dup2(nowhere, STDOUT_FILENO);
-        dup2(nowhere, STDERR_FILENO);
-        execl(SPLINECAST_ROUDI, SPLINECAST_ROUDI, "--log-level", "off", "--monitoring-mode", "off",
-              nullptr);
-        throw std::runtime_error(SPLINECAST_ROUDI " does not start");
-      },
-      true);
+  return apps::Child([]() -> nlohmann::json {
+    const int nowhere = open("/dev/null", O_WRONLY);  // it tells of its start on any log level
+    dup2(nowhere, STDOUT_FILENO);
+    dup2(nowhere, STDERR_FILENO);
+    execl(SPLINECAST_ROUDI, SPLINECAST_ROUDI, "--log-level", "off", "--monitoring-mode", "off",
+          nullptr);
+    throw std::runtime_error(SPLINECAST_ROUDI " does not start");
+  });
 }
 
 nlohmann::json answer(const SharedLines& lines) {
@@ -100,20 +98,18 @@ void roundtrip(benchmark::State& bench) {
   const apps::Child daemon = start_daemon();
   for (auto _ : bench) {
     const SharedLines lines;
-    apps::Child far([&] { return answer(lines); }, true);
-    apps::Child near(
-        [&] {
-          const Pinned pin(kNear);
-          Side side("splinecast_bench_near", "there", "back");
-          while (!side.is_connected() && !apps::stop_requested()) {
-          }
-          await(lines[kFarIsReady], 1);
-          return measure([&](std::uint64_t i) {
-            side.send(i);
-            return side.await(i);
-          });
-        },
-        true);
+    apps::Child far([&] { return answer(lines); });
+    apps::Child near([&] {
+      const Pinned pin(kNear);
+      Side side("splinecast_bench_near", "there", "back");
+      while (!side.is_connected() && !apps::stop_requested()) {
+      }
+      await(lines[kFarIsReady], 1);
+      return measure([&](std::uint64_t i) {
+        side.send(i);
+        return side.await(i);
+      });
+    });
     report(bench, near.result());
     far.stop();
     far.result();

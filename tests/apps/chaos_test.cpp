@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <nlohmann/json.hpp>
+#include <string>
 
+#include "splinecast/ipc/clock.hpp"
 #include "support/process.hpp"
 
 namespace splinecast::apps {
@@ -17,6 +20,7 @@ TEST(Chaos, NoReaderNoticesThatEverybodyIsKilledAndStarved) {
   const testing::Ended ended = testing::run({"demo", "--chaos", "--seconds", "8", "--json"});
   ASSERT_EQ(ended.code, 0) << ended.out << ended.err;
   const auto found = nlohmann::json::parse(ended.out);
+  EXPECT_TRUE(found["judged"].get<bool>());
   EXPECT_TRUE(found["sound"].get<bool>());
   EXPECT_EQ(found["lost"], 0);
   EXPECT_GT(found["interpolated"].get<int>(), kLeast);
@@ -31,6 +35,27 @@ TEST(Chaos, NoReaderNoticesThatEverybodyIsKilledAndStarved) {
     EXPECT_LT(reader["acceleration"].get<double>(),
               10.01 * found["peak_acceleration_of_the_motion"].get<double>());
   }
+}
+
+TEST(Chaos, IsNotJudgedIfItIsInterruptedAndNoReaderSpins) {
+  constexpr int kMoving = 200;  // waypoints until the motion has begun: it takes time to end
+  const ipc::MonotonicClock clock;
+  const core::Time begin = clock.now();
+  testing::Process demo({"demo", "--chaos", "--seconds", "1000", "--json"});
+  const std::string stream = "demo." + std::to_string(demo.pid());
+  ASSERT_TRUE(testing::await([&] {
+    const auto now = testing::info(stream);
+    return now.is_object() && now["solver"].is_object() && now["solver"]["interpolated"] > kMoving;
+  }));
+  demo.signal(SIGINT);
+  const testing::Ended ended = demo.wait();
+  const auto milliseconds = (clock.now() - begin).count() / 1'000'000;
+  EXPECT_EQ(ended.code, 130) << ended.err;
+  const auto found = nlohmann::json::parse(ended.out, nullptr, false);
+  ASSERT_TRUE(found.is_object()) << ended.out << ended.err;
+  EXPECT_FALSE(found["judged"].get<bool>());
+  EXPECT_TRUE(found["sound"].is_null());
+  for (const auto& reader : found["readers"]) EXPECT_LE(reader["samples"], milliseconds + 100);
 }
 
 }  // namespace

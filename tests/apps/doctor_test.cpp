@@ -26,6 +26,8 @@ Environment good_environment() {
   environment.governor = "performance";
   environment.preemption = "PREEMPT_RT";
   environment.clock = "tsc";
+  environment.rt_runtime = "-1";
+  environment.rt_period = "1000000";
   return environment;
 }
 
@@ -79,7 +81,6 @@ TEST(Doctor, FindsEachLimitByItself) {
        [](auto& m) { m.may_write_shared = false; }},
       {"room in /dev/shm", Verdict::problem, "needs about 16.0 MiB",
        [](auto& m) { m.room->free = kNeeded - 1; }},
-      {"room in /dev/shm", Verdict::problem, "0.0 MiB in all", [](auto& m) { m.room.reset(); }},
       {"room in /dev/shm", Verdict::note, "64.0 MiB in all",
        [](auto& m) { m.room = Room{.total = 64 << 20U, .free = 64 << 20U}; }},
       {"locked memory", Verdict::note, "RLIMIT_MEMLOCK is 0.1 MiB",
@@ -103,6 +104,8 @@ TEST(Doctor, FindsEachLimitByItself) {
       {"isolated cpus", Verdict::note, "none", [](auto& m) { m.environment.isolated = ""; }},
       {"kernel preemption", Verdict::note, "PREEMPT_DYNAMIC",
        [](auto& m) { m.environment.preemption = "PREEMPT_DYNAMIC"; }},
+      {"real-time throttling", Verdict::note, "stopped for 50 ms of each 1000000 us",
+       [](auto& m) { m.environment.rt_runtime = "950000"; }},
       {"huge pages", Verdict::note, "always for shared memory",
        [](auto& m) { m.shared_huge_pages = "[always] within_size advise never\n"; }},
       {"hypervisor", Verdict::note, "KVM; 10.00 % of the CPUs' time stolen",
@@ -124,6 +127,134 @@ TEST(Doctor, FindsEachLimitByItself) {
       EXPECT_FALSE(finding.mend.empty()) << finding.means;
     }
   }
+}
+
+/// What cannot be known is not `ok`, and nothing else changes.
+TEST(Doctor, SaysUnknownAndWhyWhereNothingCanBeKnown) {
+  const auto hide = [](const char* file) {
+    return [file](auto& m) { m.unread[file] = "Permission denied"; };
+  };
+  const std::vector<Case> cases{
+      {"/dev/shm",
+       {},
+       "/proc/self/mounts: Permission denied",
+       [&](auto& m) {
+         m.mounts = "";
+         hide("/proc/self/mounts")(m);
+       }},
+      {"room in /dev/shm", {}, "does not say", [](auto& m) { m.room.reset(); }},
+      {"locked memory",
+       {},
+       "/proc/self/status: Permission denied",
+       [&](auto& m) {
+         m.lockable = 0;
+         m.status = "";
+         hide("/proc/self/status")(m);
+       }},
+      {"real-time priority",
+       {},
+       "/proc/self/status: Permission denied",
+       [&](auto& m) {
+         m.priority = 0;
+         m.status = "";
+         hide("/proc/self/status")(m);
+       }},
+      {"RemoveIPC",
+       {},
+       "/etc/systemd/logind.conf: Permission denied",
+       hide("/etc/systemd/logind.conf")},
+      {"clock",
+       {},
+       "current_clocksource: Permission denied",
+       [&](auto& m) {
+         m.environment.clock = "";
+         hide("/sys/devices/system/clocksource/clocksource0/current_clocksource")(m);
+       }},
+      {"cpu governor",
+       {},
+       "under the hypervisor",
+       [](auto& m) {
+         m.environment.governor = "";
+         m.environment.hypervisor = "KVM";
+       }},
+      {"isolated cpus",
+       {},
+       "isolated: Permission denied",
+       [&](auto& m) {
+         m.environment.isolated = "";
+         hide("/sys/devices/system/cpu/isolated")(m);
+       }},
+      {"kernel preemption",
+       {},
+       "/proc/sys/kernel/version: Permission denied",
+       [&](auto& m) {
+         m.environment.preemption = "";
+         hide("/proc/sys/kernel/version")(m);
+       }},
+      {"real-time throttling",
+       {},
+       "sched_rt_runtime_us: Permission denied",
+       [&](auto& m) {
+         m.environment.rt_runtime = "";
+         hide("/proc/sys/kernel/sched_rt_runtime_us")(m);
+       }},
+      {"huge pages",
+       {},
+       "shmem_enabled: Permission denied",
+       [&](auto& m) {
+         m.shared_huge_pages = "";
+         hide("/sys/kernel/mm/transparent_hugepage/shmem_enabled")(m);
+       }},
+      {"hypervisor",
+       {},
+       "/proc/stat: Permission denied",
+       [&](auto& m) {
+         m.cpu_times = "";
+         hide("/proc/stat")(m);
+       }},
+  };
+  for (const Case& one : cases) {
+    MachineFacts machine = good_machine();
+    one.change(machine);
+    for (const Finding& finding : check_machine(machine, kNeeded)) {
+      const bool is_it = finding.check == one.check;
+      EXPECT_EQ(finding.verdict, is_it ? Verdict::unknown : Verdict::ok)
+          << finding.check << ": " << finding.means;
+      if (is_it) {
+        EXPECT_NE(finding.means.find(one.means), std::string::npos) << finding.means;
+      }
+    }
+  }
+}
+
+TEST(Doctor, InAContainerTheHostsSystemdIsUnknown) {
+  MachineFacts machine = good_machine();
+  machine.runs_systemd = false;
+  EXPECT_EQ(check_remove_ipc(machine).verdict, Verdict::ok);
+  machine.in_container = true;
+  EXPECT_EQ(check_remove_ipc(machine).verdict, Verdict::unknown);
+  machine.in_container = false;
+  machine.pid_namespace = 0;
+  machine.time_namespace = 0;
+  EXPECT_EQ(check_container(machine).verdict, Verdict::unknown);
+  EXPECT_EQ(check_time_namespace(machine).verdict, Verdict::unknown);
+}
+
+/// Nothing can be read: of what files say, nothing is `ok`.
+TEST(Doctor, KnowsNothingOfAMachineWithoutProcAndSys) {
+  const testing::TestFolder root;
+  const MachineFacts facts = read_machine(root.path(""));
+  EXPECT_EQ(facts.unread.at("/proc/stat"), "No such file or directory");
+  for (const auto check :
+       {check_clock, check_governor, check_isolated_cpus, check_preemption, check_throttling,
+        check_huge_pages, check_steal, check_container, check_time_namespace}) {
+    const Finding finding = check(facts);
+    EXPECT_EQ(finding.verdict, Verdict::unknown) << finding.check << ": " << finding.means;
+    EXPECT_FALSE(finding.means.empty());
+  }
+  EXPECT_EQ(check_room(facts, kNeeded).verdict, Verdict::unknown);
+  std::filesystem::create_directories(root.path("proc/stat"));  // it opens, but cannot be read
+  EXPECT_EQ(read_machine(root.path("")).unread.at("/proc/stat"), "Is a directory");
 }
 
 TEST(Doctor, WhatRootMayOrAnotherMachineLacksIsNoLimit) {

@@ -33,6 +33,7 @@ TEST(Environment, NamesWhatAMachineSaysOfItself) {
   machine.say("proc/sys/kernel/osrelease", "6.1.0-rt");
   machine.say("proc/sys/kernel/version", "#1 SMP PREEMPT_DYNAMIC Debian 6.1.0");
   machine.say("proc/sys/kernel/sched_rt_runtime_us", "950000");
+  machine.say("proc/sys/kernel/sched_rt_period_us", "1000000");
   machine.say("sys/class/dmi/id/sys_vendor", "Maker");
   machine.say("sys/class/dmi/id/product_name", "Cloud");
   machine.say("sys/devices/system/cpu/online", "0-3");
@@ -52,6 +53,7 @@ TEST(Environment, NamesWhatAMachineSaysOfItself) {
   EXPECT_EQ(found.hypervisor, "Maker Cloud");
   EXPECT_EQ(found.clock, "tsc");
   EXPECT_EQ(found.rt_runtime, "950000");
+  EXPECT_EQ(found.rt_period, "1000000");
   EXPECT_EQ(to_json(found).at("governor"), "performance,powersave");
 }
 
@@ -60,9 +62,22 @@ TEST(Environment, LeavesEmptyWhatAMachineDoesNotSay) {
   EXPECT_FALSE(found.version.empty());
   for (const std::string& text :
        {found.cpu, found.online, found.isolated, found.governor, found.kernel, found.preemption,
-        found.hypervisor, found.clock, found.rt_runtime}) {
+        found.hypervisor, found.clock, found.rt_runtime, found.rt_period}) {
     EXPECT_EQ(text, "");
   }
+}
+
+TEST(Environment, KnowsWhetherRealTimeProcessesAreThrottled) {
+  Environment environment;
+  EXPECT_FALSE(throttled_time(environment));
+  environment.rt_period = "1000000";
+  EXPECT_FALSE(throttled_time(environment));
+  environment.rt_runtime = "950000";
+  EXPECT_EQ(throttled_time(environment), std::chrono::milliseconds(50));
+  environment.rt_runtime = "1000000";
+  EXPECT_EQ(throttled_time(environment), core::Time::zero());
+  environment.rt_runtime = "-1";
+  EXPECT_EQ(throttled_time(environment), core::Time::zero());
 }
 
 TEST(Environment, TellsBareMetalFromWhatIsVirtualAndPreemptionFromNone) {

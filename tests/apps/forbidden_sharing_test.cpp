@@ -108,7 +108,7 @@ while True: signal.pause()
   next.await_message("taken over");
   attack(memory, {"info", "a", "--json"}, 0, {"\"state\": \"running\""}, writer_);
   producer.signal(SIGINT);  // it finishes the stream, for which it needs a living solver
-  judge(producer.wait(), "replay", 0, {"interrupted"});
+  judge(producer.wait(), "replay", 130, {"interrupted"});
   next.await_message("finished");
 }
 

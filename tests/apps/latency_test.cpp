@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "latency_run.hpp"
 #include "support/browser.hpp"
 #include "support/process.hpp"
 #include "support/process_settings.hpp"
@@ -155,6 +157,25 @@ TEST(Latency, WritesPercentileTextOfEachStage) {
   }
 }
 
+TEST(Latency, WarnsOfTheKernelsThrottlingWhereFifoProcessesSpin) {
+  Environment environment;
+  environment.rt_runtime = "950000";
+  environment.rt_period = "1000000";
+  LatencyOptions options;
+  options.fifo = true;
+  EXPECT_EQ(throttling_warning(options, environment), "");  // they sleep
+  options.spin = true;
+  EXPECT_NE(throttling_warning(options, environment).find("for 50 ms of each 1000000 us"),
+            std::string::npos);
+  environment.rt_runtime = "";
+  EXPECT_NE(throttling_warning(options, environment).find("is unknown"), std::string::npos);
+  environment.rt_runtime = "-1";
+  EXPECT_EQ(throttling_warning(options, environment), "");
+  options.fifo = false;
+  environment.rt_runtime = "950000";
+  EXPECT_EQ(throttling_warning(options, environment), "");
+}
+
 TEST(Latency, RefusesWhatCannotBeMeasured) {
   const std::vector<std::vector<std::string>> wrong{
       {"--rate", "0"},
@@ -198,10 +219,26 @@ TEST(Latency, AStopEndsItEarlyWithWhatThereIs) {
   }));
   measuring.signal(SIGTERM);
   const Ended ended = measuring.wait();
-  EXPECT_EQ(ended.code, 1) << ended.err;
+  EXPECT_EQ(ended.code, 130) << ended.err;
   const json result = json::parse(ended.out);
   EXPECT_EQ(result.at("interrupted"), true);
   EXPECT_GT(find_series(result, "append", "intended")->at("count").get<int>(), 10);
+}
+
+TEST(Latency, AStopInItsLastPartInterruptsItToo) {
+  testing::Process measuring({"latency", "--duration", "3", "--warmup", "0", "--json"});
+  const std::string name = "latency." + std::to_string(measuring.pid());
+  ASSERT_TRUE(testing::await([&] { return testing::info(name).is_object(); }));
+  ASSERT_TRUE(testing::await([&] { return !testing::info(name).is_object(); }));
+  measuring.signal(SIGINT);
+  const Ended ended = measuring.wait();
+  const json result = json::parse(ended.out, nullptr, false);
+  if (ended.code == 0 && result.at("not_measured").contains("iceoryx")) {
+    GTEST_SKIP() << "iceoryx: " << result["not_measured"]["iceoryx"];
+  }
+  EXPECT_EQ(ended.code, 130) << ended.err;
+  EXPECT_EQ(result.at("interrupted"), true);
+  EXPECT_EQ(result.at("not_measured").at("iceoryx"), "interrupted");
 }
 
 TEST(Latency, MeasuresIceoryxOrSaysWhyNot) {

@@ -265,8 +265,16 @@ TEST_F(Life, ASignalStopsAReplayThatNeverWaits) {
   ASSERT_TRUE(await([&] { return field("solver", "interpolated") > 2000; }));
   replaying.signal(SIGTERM);
   const Ended ended = replaying.wait();
-  EXPECT_EQ(ended.code, 0);
+  EXPECT_EQ(ended.code, 130);
   EXPECT_NE(ended.err.find("interrupted"), std::string::npos) << ended.err;
+}
+
+TEST_F(Life, ALiveStreamsSamplesAreWrittenWhenTheyAreThere) {
+  Process solver(solve());
+  Process replaying({"replay", file_, "--stream", name(), "--loop", "1000"});
+  ASSERT_TRUE(await([&] { return field("solver", "interpolated") > 0; }));
+  Process sampling({"sample", name(), "--rate", "0.0001", "--count", "2"});
+  sampling.await_lines(2);  // the header and the first one; the next one comes in hours
 }
 
 TEST_F(Life, ASignalToTheDemoStopsItAndItCleansUp) {
@@ -278,7 +286,7 @@ TEST_F(Life, ASignalToTheDemoStopsItAndItCleansUp) {
            now["solver"]["interpolated"] > 10;
   }));
   demo.signal(SIGTERM);
-  EXPECT_EQ(demo.wait().code, 0);
+  EXPECT_EQ(demo.wait().code, 130);
   EXPECT_EQ(info(stream), nlohmann::json());
 }
 

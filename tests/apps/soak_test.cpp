@@ -100,11 +100,33 @@ TEST_F(Soak, ShowsATableAndRemovesItsStreams) {
       ipc::stream_names(), [&](const std::string& stream) { return stream.starts_with(mine); }));
 }
 
+TEST_F(Soak, IsNotJudgedIfItIsInterrupted) {
+  for (const char* const form : {"--json", "--readers=1"}) {
+    Process soaking({"soak", "--streams", "3", "--seconds", "1000", form});
+    const std::string stream = "soak." + std::to_string(soaking.pid()) + ".2";
+    ASSERT_TRUE(await([&] {
+      const auto now = testing::info(stream);
+      return now.is_object() && now["solver"].is_object() && now["solver"]["interpolated"] > 10;
+    }));
+    soaking.signal(SIGTERM);
+    const testing::Ended ended = soaking.wait();
+    EXPECT_EQ(ended.code, 130) << ended.err;
+    if (std::string(form) == "--json") {
+      const auto found = nlohmann::json::parse(ended.out, nullptr, false);
+      ASSERT_TRUE(found.is_object()) << ended.out << ended.err;
+      EXPECT_FALSE(found["judged"].get<bool>());
+      EXPECT_TRUE(found["sound"].is_null());
+    } else {
+      EXPECT_NE(ended.out.find("not judged"), std::string::npos) << ended.out;
+    }
+  }
+}
+
 TEST_F(Life, AProducerOfSoakThatHasRunDryGoesOn) {
   constexpr ipc::Word kMore = 20;
   Process solver(solve());
   const Child producer(
-      [this] { return run_soak_producers({name()}, 100, ipc::MonotonicClock().now()); }, true);
+      [this] { return run_soak_producers({name()}, 100, ipc::MonotonicClock().now()); });
   ASSERT_TRUE(await([this] { return field("solver", "interpolated") > kMore; }));
   producer.signal(SIGSTOP);
   ASSERT_TRUE(await([this] { return field("solver", "underruns") > 0; }));

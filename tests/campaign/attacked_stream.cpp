@@ -40,31 +40,25 @@ AttackedStream::~AttackedStream() {
 }
 
 void AttackedStream::start_solver() {
-  solver_.emplace(
-      [this] {
-        run_solver(plan_, *journal_);
-        return nullptr;
-      },
-      true);
+  solver_.emplace([this] {
+    run_solver(plan_, *journal_);
+    return nullptr;
+  });
 }
 void AttackedStream::start_producer() {
-  producer_.emplace(
-      [this] {
-        run_producer(plan_, *journal_);
-        return nullptr;
-      },
-      true);
+  producer_.emplace([this] {
+    run_producer(plan_, *journal_);
+    return nullptr;
+  });
 }
 void AttackedStream::start_reader(std::size_t which) {
   ReaderFacts& facts = journal_->readers[which];
   facts.life_samples = 0;
   readers_[which].moved = clock_.now();
-  readers_[which].child.emplace(
-      [this, &facts] {
-        run_reader(plan_, facts);
-        return nullptr;
-      },
-      true);
+  readers_[which].child.emplace([this, &facts] {
+    run_reader(plan_, facts);
+    return nullptr;
+  });
 }
 
 void AttackedStream::tick() {
@@ -255,12 +249,10 @@ void AttackedStream::count_items() {
 void AttackedStream::remove_at_end() {
   if (solver_) kill(Role::solver);
   std::optional<apps::Child> remover;
-  remover.emplace(
-      [this] {
-        run_remover(plan_, *journal_);
-        return nullptr;
-      },
-      true);
+  remover.emplace([this] {
+    run_remover(plan_, *journal_);
+    return nullptr;
+  });
   const core::Time end = clock_.now() + *removal_;
   removal_.reset();
   std::optional<int> code;

@@ -117,14 +117,13 @@ TEST(StreamSweep, AnIdleStreamCostsNoStep) {
 }
 
 TEST(StreamSweep, AStreamThatHasLongBeenQuietIsLookedAtInOneOfSomeSweeps) {
-  const TestStream family;
-  const std::string quiet = family.name() + ".quiet";
-  const std::string busy = family.name() + ".busy";
-  Producer first = make_producer(quiet);
-  Producer second = make_producer(busy);
-  Told told({quiet, busy});
-  ASSERT_TRUE(told.await_news(SweepNews::solving, quiet));
-  ASSERT_TRUE(told.await_news(SweepNews::solving, busy));
+  const TestStream quiet;
+  const TestStream busy;
+  Producer first = make_producer(quiet.name());
+  Producer second = make_producer(busy.name());
+  Told told({quiet.name(), busy.name()});
+  ASSERT_TRUE(told.await_news(SweepNews::solving, quiet.name()));
+  ASSERT_TRUE(told.await_news(SweepNews::solving, busy.name()));
   SetClock clock;
   int sent = 0;
   const auto sweeps_to_take = [&](Producer& producer) {

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <csignal>
@@ -103,10 +104,19 @@ bool Process::read_some() {
 }
 
 void Process::await_message(const std::string& text) {
+  await_until([&] { return err_text_.find(text) != std::string::npos; }, text);
+}
+
+void Process::await_lines(std::ptrdiff_t count) {
+  await_until([&] { return std::ranges::count(out_text_, '\n') >= count; },
+              std::to_string(count) + " lines");
+}
+
+void Process::await_until(const std::function<bool()>& is_there, const std::string& wanted) {
   const auto end = steady_clock::now() + kPatience;
-  while (err_text_.find(text) == std::string::npos) {
+  while (!is_there()) {
     if (!read_some() || steady_clock::now() > end) {
-      FAIL() << "never said '" << text << "' but '" << err_text_ << "'";
+      FAIL() << "never said '" << wanted << "' but '" << err_text_ << out_text_ << "'";
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <cstddef>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -41,11 +42,15 @@ class Process {
   /// silent.
   void await_message(const std::string& text);
 
+  /// Waits until standard output has so many lines. Fails the test likewise.
+  void await_lines(std::ptrdiff_t count);
+
   /// Waits for its end.
   Ended wait();
 
  private:
   bool read_some();
+  void await_until(const std::function<bool()>& is_there, const std::string& wanted);
 
   pid_t pid_ = -1;
   int out_ = -1;
