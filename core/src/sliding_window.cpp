@@ -198,7 +198,7 @@ void SlidingWindow::enter(const Instant& from, std::span<const StandingWaypoint>
   entry_newer_knots_ = 0;
   knots_.clear(false);
   // Given velocities are kept: the start condition was that of the first run.
-  if (options_.interpolant.method->needs_velocity()) solver_->start_as_first();
+  if (options_.interpolant.method->needs_velocity()) solver_->start_as_given();
 }
 
 void SlidingWindow::freeze(Time t) noexcept {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "splinecast/core/limits.hpp"
@@ -153,6 +154,32 @@ TEST(EnteredRun, AWaypointThatNoSpliceReachesWithinTheLimitsIsNotTaken) {
   EXPECT_FALSE(run.window.can_append(std::span(waypoints).first(1)));
   EXPECT_EQ(run.window.segments(), 1U);
   EXPECT_EQ(run.segment(0).kind, SegmentKind::stop_tail);
+}
+
+constexpr std::array kGiven{1.5, -0.5};
+constexpr std::array kBent{3.0, 7.0};
+
+/// A window whose streams start from a halt, entered at the parabola's state.
+Entered entered_by(std::string_view method, WindowOptions how = {}) {
+  how.interpolant = {.method = find_method(method), .lambda = 1e-6};
+  how.settle = std::max(how.settle, default_settle(*how.interpolant.method));
+  how.start = {.kind = ConditionKind::halt, .value = {}};
+  return Entered(Time(0), how);
+}
+
+void append_given(SlidingWindow& window, Time t) {
+  const auto x = parabola(t, 0);
+  window.append({.time = t, .position = x, .velocity = kGiven, .acceleration = kBent});
+}
+
+TEST(EnteredRun, KeepsTheVelocityThatItsFirstWaypointGives) {
+  for (const auto* method : {"hermite", "quintic"}) {
+    Entered run = entered_by(method, {.settle = 1});
+    for (int i = 1; i <= 3; ++i) {
+      append_given(run.window, 10 * i * kMillisecond);
+      EXPECT_TRUE(std::ranges::equal(run.window.knot(0).velocity, kGiven)) << method << i;
+    }
+  }
 }
 
 }  // namespace
