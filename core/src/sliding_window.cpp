@@ -150,7 +150,7 @@ template void SlidingWindow::solve(const Tail&, std::size_t) noexcept;
 /// is the one that the splice ends with.
 void SlidingWindow::start_with_entry() noexcept {
   const Method& method = *options_.interpolant.method;
-  if (method.needs_acceleration() && method.order == 0) {
+  if (method.needs_acceleration()) {
     entry_.take(knots_.values(0, KnotRing::kVelocity), knots_.values(0, KnotRing::kAcceleration));
   }
   if (method.needs_velocity()) return;

@@ -182,5 +182,11 @@ TEST(EnteredRun, KeepsTheVelocityThatItsFirstWaypointGives) {
   }
 }
 
+TEST(EnteredRun, EndsItsSpliceWithTheAccelerationThatItsFirstWaypointGives) {
+  Entered run = entered_by("quintic", {.settle = 1});
+  append_given(run.window, 10 * kMillisecond);
+  EXPECT_TRUE(std::ranges::equal(run.window.entry().acceleration(), kBent));
+}
+
 }  // namespace
 }  // namespace splinecast::core
