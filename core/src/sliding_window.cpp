@@ -172,7 +172,7 @@ bool SlidingWindow::push_into_entry(const Waypoint& waypoint) noexcept {
   const std::size_t newest = knots_.newest();
   solve(options_.tail, is_start_open() ? 0 : newest - std::min(newest, options_.settle));
   // With K = 0 the splice is shaped by knots behind which its own right knot is not solved again.
-  if (shapes && newest == 0) entry_newer_knots_ = 0;
+  if (shapes) entry_newer_knots_ = static_cast<std::uint32_t>(newest);
   return shapes;
 }
 

@@ -188,5 +188,11 @@ TEST(EnteredRun, EndsItsSpliceWithTheAccelerationThatItsFirstWaypointGives) {
   EXPECT_TRUE(std::ranges::equal(run.window.entry().acceleration(), kBent));
 }
 
+TEST(EnteredRun, SaysByHowManyKnotsItsSpliceWasShapedAlsoWithoutALag) {
+  Entered run(Time(0), {.settle = 0});
+  for (int i = 1; i <= 4; ++i) run.append(10 * i * kMillisecond);
+  EXPECT_EQ(run.window.newer_knots_seen_by_entry(), 2U);
+}
+
 }  // namespace
 }  // namespace splinecast::core
