@@ -78,7 +78,7 @@ bool SlidingWindow::can_shape_entry(std::span<const Waypoint> waypoints) noexcep
   start_with_entry();
   solve(options_.tail, 0);
   entry_.take(std::span(v).first(dimensions()), std::span(a).first(dimensions()));
-  if (before > kKnotsThatShapeTheEntry) restore_first_knots();
+  restore_first_knots();
   entry_newer_knots_ = entry_newer_knots;
   return keeps;
 }

@@ -194,5 +194,50 @@ TEST(EnteredRun, SaysByHowManyKnotsItsSpliceWasShapedAlsoWithoutALag) {
   EXPECT_EQ(run.window.newer_knots_seen_by_entry(), 2U);
 }
 
+/// The bits of all that is kept of a window's knots.
+std::vector<double> kept_of(const SlidingWindow& window) {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < window.knots(); ++i) {
+    const Knot knot = window.knot(i);
+    all.push_back(knot.newer_knots);
+    for (const auto values : {knot.position, knot.velocity, knot.acceleration, knot.residual}) {
+      all.insert(all.end(), values.begin(), values.end());
+    }
+  }
+  all.push_back(window.newer_knots_seen_by_entry());
+  return all;
+}
+
+/// A waypoint that is tried for its accelerations leaves no trace, taken or refused.
+void expect_no_trace(SlidingWindow& window, std::string_view what) {
+  const std::vector<double> before = kept_of(window);
+  const std::array far{1e6, -1e6};
+  const std::array near{1.0, 2.0};
+  std::vector<Waypoint> tried;
+  for (int i = 0; i < 3; ++i) {
+    tried.push_back({.time = (35 + 10 * i) * kMillisecond,
+                     .position = i == 1 ? far : near,
+                     .velocity = kGiven,
+                     .acceleration = kBent});
+  }
+  (void)window.can_append(tried);
+  EXPECT_EQ(kept_of(window), before) << what;
+}
+
+TEST(EnteredRun, IsAsItWasAfterAWaypointWasTried) {
+  const std::vector<double> limits{1e5, 1e5};
+  for (const auto* method : {"c2", "hermite", "quintic", "pchip", "smoothing"}) {
+    Entered run = entered_by(method, {.settle = 1, .max_acceleration = limits});
+    for (int i = 1; i <= 2; ++i) {
+      append_given(run.window, 10 * i * kMillisecond);
+      expect_no_trace(run.window, method);
+    }
+  }
+  Entered run(Time(0), {.settle = 0, .max_acceleration = limits});
+  run.append(10 * kMillisecond);
+  run.append(20 * kMillisecond);
+  expect_no_trace(run.window, "c2 without a lag");
+}
+
 }  // namespace
 }  // namespace splinecast::core
