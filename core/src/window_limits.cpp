@@ -51,6 +51,7 @@ bool SlidingWindow::can_follow_first(std::span<const Waypoint> waypoints) noexce
   const bool keeps = keeps_behind_newest(waypoints);
   knots_.pop();
   solver_->push(knots_, first);
+  solve(options_.tail, 0);
   return keeps;
 }
 

@@ -239,5 +239,17 @@ TEST(EnteredRun, IsAsItWasAfterAWaypointWasTried) {
   expect_no_trace(run.window, "c2 without a lag");
 }
 
+TEST(FirstRun, OfOneKnotIsAsItWasAfterAWaypointWasTried) {
+  for (const auto* method : {"c2", "hermite", "pchip", "smoothing"}) {
+    WindowOptions how{.interpolant = {.method = find_method(method), .lambda = 1e-6},
+                      .start = {.kind = ConditionKind::halt, .value = {}},
+                      .max_acceleration = {1e3, 1e3}};
+    how.settle = default_settle(*how.interpolant.method);
+    SlidingWindow window(2, how);
+    append_given(window, 10 * kMillisecond);
+    expect_no_trace(window, method);
+  }
+}
+
 }  // namespace
 }  // namespace splinecast::core
