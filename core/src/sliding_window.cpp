@@ -11,10 +11,6 @@
 namespace splinecast::core {
 namespace {
 
-constexpr std::size_t kKnotsThatShapeTheEntry = 3;
-/// Of an acceleration limit, when a waypoint is judged: those behind it still move the curve.
-constexpr double kShareOfLimit = 0.9;
-
 void require_lag(const WindowOptions& options) {
   const Method& method = *options.interpolant.method;
   const std::size_t least = method.converges() ? 0 : method.look_ahead;
@@ -147,82 +143,17 @@ void SlidingWindow::solve(const auto& closing, std::size_t last) noexcept {
   entry_newer_knots_ = static_cast<std::uint32_t>(newest);
 }
 
-bool SlidingWindow::can_append(std::span<const Waypoint> waypoints) noexcept {
-  const auto& limits = options_.max_acceleration;
-  const std::size_t before = knots();
-  if (limits.empty()) return true;
-  if (is_entry_open() && before < kKnotsThatShapeTheEntry) return can_shape_entry(waypoints);
-  const bool starts = !is_entered_ && before == 1;
-  const bool goes_on = before > 0 && frozen_ == before;
-  if (starts) return can_follow_first(waypoints);
-  return !goes_on || keeps_behind_newest(waypoints);
-}
+/// For the trials of window_limits.cpp.
+template void SlidingWindow::solve(const Tail&, std::size_t) noexcept;
 
-/// Whether the interval to the first of these waypoints keeps within the limits: tried, and taken
-/// back.
-bool SlidingWindow::keeps_behind_newest(std::span<const Waypoint> waypoints) noexcept {
-  const std::size_t before = knots();
-  for (const Waypoint& waypoint : waypoints) (void)push_into_entry(waypoint);
-  build_segment(knots_.interval(before - 1), splice_);
-  while (knots() > before) knots_.pop();
-  return acceleration_excess(options_.max_acceleration, splice_) <= kShareOfLimit;
-}
-
-/// The same behind the only knot of a curve, which what follows it also shapes.
-bool SlidingWindow::can_follow_first(std::span<const Waypoint> waypoints) noexcept {
-  const Knot knot = knots_.knot(0);
-  std::array<double, 3 * kMaxDimensions> values{};
-  const auto copy = [&](std::size_t part, std::span<const double> from) {
-    const auto to = std::span(values).subspan(part * kMaxDimensions, from.size());
-    std::ranges::copy(from, to.begin());
-    return to;
-  };
-  const Waypoint first{.time = knot.time,
-                       .position = copy(0, knot.waypoint),
-                       .velocity = copy(1, knot.velocity),
-                       .acceleration = copy(2, knot.acceleration)};
-  const bool keeps = keeps_behind_newest(waypoints);
-  knots_.pop();
-  solver_->push(knots_, first);
-  return keeps;
-}
-
-/// Whether waypoints leave an open entry within the limits: tried, and taken back.
-bool SlidingWindow::can_shape_entry(std::span<const Waypoint> waypoints) noexcept {
-  std::array<double, kMaxDimensions> v{};
-  std::array<double, kMaxDimensions> a{};
-  std::ranges::copy(entry_.velocity(), v.begin());
-  std::ranges::copy(entry_.acceleration(), a.begin());
-  const std::size_t before = knots();
-  bool keeps = true;
-  for (const Waypoint& waypoint : waypoints) {
-    if (knots() == kKnotsThatShapeTheEntry) break;
-    append(waypoint);
-    // Also alone: those that follow the first one may be refused.
-    entry_.write_splice(knots_, splice_);
-    if (before == 0) keeps = keeps && keeps_within(options_.max_acceleration, splice_);
-  }
-  if (before > 0) keeps = entry_excess() <= kShareOfLimit;
-  while (knots() > before) knots_.pop();
-  if (before == 0) return keeps;
-  entry_.take(std::span(v).first(dimensions()), std::span(a).first(dimensions()));
-  start_with_entry();
-  solve(options_.tail, 0);
-  entry_.take(std::span(v).first(dimensions()), std::span(a).first(dimensions()));
-  return keeps;
-}
-
-/// The largest ratio of acceleration to limit in the splice and in the first interval behind it.
-double SlidingWindow::entry_excess() noexcept {
-  build_segment(knots_.interval(0), splice_);
-  const double behind = acceleration_excess(options_.max_acceleration, splice_);
-  entry_.write_splice(knots_, splice_);
-  return std::max(behind, acceleration_excess(options_.max_acceleration, splice_));
-}
-
-/// Makes the entry's velocity that of knot 0, unless the waypoint gives one.
+/// Makes the entry's velocity that of knot 0, unless the waypoint gives one; a given acceleration
+/// is the one that the splice ends with.
 void SlidingWindow::start_with_entry() noexcept {
-  if (options_.interpolant.method->needs_velocity()) return;
+  const Method& method = *options_.interpolant.method;
+  if (method.needs_acceleration()) {
+    entry_.take(knots_.values(0, KnotRing::kVelocity), knots_.values(0, KnotRing::kAcceleration));
+  }
+  if (method.needs_velocity()) return;
   solver_->start_with(entry_.velocity());
   solver_->eliminate_again(knots_);
   if (knots() == 1) {
@@ -240,6 +171,8 @@ bool SlidingWindow::push_into_entry(const Waypoint& waypoint) noexcept {
   }
   const std::size_t newest = knots_.newest();
   solve(options_.tail, is_start_open() ? 0 : newest - std::min(newest, options_.settle));
+  // With K = 0 the splice is shaped by knots behind which its own right knot is not solved again.
+  if (shapes) entry_newer_knots_ = static_cast<std::uint32_t>(newest);
   return shapes;
 }
 
@@ -257,19 +190,6 @@ void SlidingWindow::append(const Waypoint& waypoint) noexcept {
   }
 }
 
-/// Of the velocity that the entry has and the one that it had, takes that with the smaller
-/// accelerations around the first knot.
-void SlidingWindow::take_better_entry() noexcept {
-  const double excess = entry_excess();
-  const auto exchange = [this] {
-    entry_.swap_velocities();
-    start_with_entry();
-    solve(options_.tail, 0);
-  };
-  exchange();
-  if (entry_excess() > excess) exchange();
-}
-
 void SlidingWindow::enter(const Instant& from, std::span<const StandingWaypoint> before) noexcept {
   entry_.begin(from, before);
   is_entered_ = true;
@@ -277,6 +197,8 @@ void SlidingWindow::enter(const Instant& from, std::span<const StandingWaypoint>
   finished_ = false;
   entry_newer_knots_ = 0;
   knots_.clear(false);
+  // Given velocities are kept: the start condition was that of the first run.
+  if (options_.interpolant.method->needs_velocity()) solver_->start_as_given();
 }
 
 void SlidingWindow::freeze(Time t) noexcept {

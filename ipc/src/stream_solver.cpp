@@ -139,7 +139,8 @@ void StreamSolver::freeze(core::Time now) noexcept {
 
 /// Whether nothing of the run may be changed any more, so that what follows must be spliced.
 bool StreamSolver::is_starved() const noexcept {
-  if (!live_ || !curve_.has_begun()) return false;
+  // What has not been committed has not settled: a first waypoint that comes in this step.
+  if (!live_ || head_.newest == 0) return false;
   return curve_.window().knots() > 0 ? settled_until_ >= curve_.newest_time()
                                      : settled_until_ > curve_.newest_time();
 }

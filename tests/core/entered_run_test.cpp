@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "splinecast/core/limits.hpp"
@@ -153,6 +154,101 @@ TEST(EnteredRun, AWaypointThatNoSpliceReachesWithinTheLimitsIsNotTaken) {
   EXPECT_FALSE(run.window.can_append(std::span(waypoints).first(1)));
   EXPECT_EQ(run.window.segments(), 1U);
   EXPECT_EQ(run.segment(0).kind, SegmentKind::stop_tail);
+}
+
+constexpr std::array kGiven{1.5, -0.5};
+constexpr std::array kBent{3.0, 7.0};
+
+/// A window whose streams start from a halt, entered at the parabola's state.
+Entered entered_by(std::string_view method, WindowOptions how = {}) {
+  how.interpolant = {.method = find_method(method), .lambda = 1e-6};
+  how.settle = std::max(how.settle, default_settle(*how.interpolant.method));
+  how.start = {.kind = ConditionKind::halt, .value = {}};
+  return Entered(Time(0), how);
+}
+
+void append_given(SlidingWindow& window, Time t) {
+  const auto x = parabola(t, 0);
+  window.append({.time = t, .position = x, .velocity = kGiven, .acceleration = kBent});
+}
+
+TEST(EnteredRun, KeepsTheVelocityThatItsFirstWaypointGives) {
+  for (const auto* method : {"hermite", "quintic"}) {
+    Entered run = entered_by(method, {.settle = 1});
+    for (int i = 1; i <= 3; ++i) {
+      append_given(run.window, 10 * i * kMillisecond);
+      EXPECT_TRUE(std::ranges::equal(run.window.knot(0).velocity, kGiven)) << method << i;
+    }
+  }
+}
+
+TEST(EnteredRun, EndsItsSpliceWithTheAccelerationThatItsFirstWaypointGives) {
+  Entered run = entered_by("quintic", {.settle = 1});
+  append_given(run.window, 10 * kMillisecond);
+  EXPECT_TRUE(std::ranges::equal(run.window.entry().acceleration(), kBent));
+}
+
+TEST(EnteredRun, SaysByHowManyKnotsItsSpliceWasShapedAlsoWithoutALag) {
+  Entered run(Time(0), {.settle = 0});
+  for (int i = 1; i <= 4; ++i) run.append(10 * i * kMillisecond);
+  EXPECT_EQ(run.window.newer_knots_seen_by_entry(), 2U);
+}
+
+/// The bits of all that is kept of a window's knots.
+std::vector<double> kept_of(const SlidingWindow& window) {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < window.knots(); ++i) {
+    const Knot knot = window.knot(i);
+    all.push_back(knot.newer_knots);
+    for (const auto values : {knot.position, knot.velocity, knot.acceleration, knot.residual}) {
+      all.insert(all.end(), values.begin(), values.end());
+    }
+  }
+  all.push_back(window.newer_knots_seen_by_entry());
+  return all;
+}
+
+/// A waypoint that is tried for its accelerations leaves no trace, taken or refused.
+void expect_no_trace(SlidingWindow& window, std::string_view what) {
+  const std::vector<double> before = kept_of(window);
+  const std::array far{1e6, -1e6};
+  const std::array near{1.0, 2.0};
+  std::vector<Waypoint> tried;
+  for (int i = 0; i < 3; ++i) {
+    tried.push_back({.time = (35 + 10 * i) * kMillisecond,
+                     .position = i == 1 ? far : near,
+                     .velocity = kGiven,
+                     .acceleration = kBent});
+  }
+  (void)window.can_append(tried);
+  EXPECT_EQ(kept_of(window), before) << what;
+}
+
+TEST(EnteredRun, IsAsItWasAfterAWaypointWasTried) {
+  const std::vector<double> limits{1e5, 1e5};
+  for (const auto* method : {"c2", "hermite", "quintic", "pchip", "smoothing"}) {
+    Entered run = entered_by(method, {.settle = 1, .max_acceleration = limits});
+    for (int i = 1; i <= 2; ++i) {
+      append_given(run.window, 10 * i * kMillisecond);
+      expect_no_trace(run.window, method);
+    }
+  }
+  Entered run(Time(0), {.settle = 0, .max_acceleration = limits});
+  run.append(10 * kMillisecond);
+  run.append(20 * kMillisecond);
+  expect_no_trace(run.window, "c2 without a lag");
+}
+
+TEST(FirstRun, OfOneKnotIsAsItWasAfterAWaypointWasTried) {
+  for (const auto* method : {"c2", "hermite", "pchip", "smoothing"}) {
+    WindowOptions how{.interpolant = {.method = find_method(method), .lambda = 1e-6},
+                      .start = {.kind = ConditionKind::halt, .value = {}},
+                      .max_acceleration = {1e3, 1e3}};
+    how.settle = default_settle(*how.interpolant.method);
+    SlidingWindow window(2, how);
+    append_given(window, 10 * kMillisecond);
+    expect_no_trace(window, method);
+  }
 }
 
 }  // namespace

@@ -37,6 +37,9 @@ class KnotSolver {
   /// Takes the start condition again that it was made with.
   void start_as_first() noexcept { start_with(first_start_.kind, first_start_.value); }
 
+  /// Makes what the method itself does the start condition.
+  void start_as_given() noexcept { start_with(ConditionKind::own, {}); }
+
   /// Makes a velocity the start condition of the run that stands, or begins.
   void start_with(std::span<const double> velocity) noexcept {
     start_with(ConditionKind::velocity, velocity);

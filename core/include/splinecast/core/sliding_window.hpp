@@ -173,6 +173,8 @@ class SlidingWindow {
   void restore_entered(const Entry& entry, std::size_t first, std::span<const Knot> knots) noexcept;
 
  private:
+  static constexpr std::size_t kKnotsThatShapeTheEntry = 3;
+
   /// How many knots before the newest one an append or the finish may change. With K = 0 an append
   /// leaves the newest knot's velocity alone, but `finish` may change it.
   [[nodiscard]] std::size_t reach() const noexcept {
@@ -185,6 +187,8 @@ class SlidingWindow {
   [[nodiscard]] bool keeps_behind_newest(std::span<const Waypoint> waypoints) noexcept;
   [[nodiscard]] bool can_follow_first(std::span<const Waypoint> waypoints) noexcept;
   [[nodiscard]] bool can_shape_entry(std::span<const Waypoint> waypoints) noexcept;
+  void keep_first_knots() noexcept;
+  void restore_first_knots() noexcept;
   void take_better_entry() noexcept;
   [[nodiscard]] double entry_excess() noexcept;
   [[nodiscard]] bool is_entry_open() const noexcept { return is_entered_ && frozen_ == 0; }
@@ -201,6 +205,9 @@ class SlidingWindow {
   std::unique_ptr<KnotSolver> solver_;
   RunEntry entry_;
   Segment splice_;  ///< scratch
+  /// Of a trial, the knots that stood before it: at most two.
+  std::array<std::array<double, kMaxDimensions>, 2> kept_velocities_{};
+  std::array<std::uint32_t, 2> kept_newer_knots_{};
   bool is_entered_ = false;
   std::uint32_t entry_newer_knots_ = 0;
   std::size_t frozen_ = 0;
