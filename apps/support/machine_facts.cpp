@@ -42,7 +42,7 @@ std::map<std::string, std::string> unread_files(const fs::path& root) {
   const auto look = [&](const char* file, bool may_lack) {
     const int error = error_of_reading(root / file);
     if (error == 0 || (may_lack && error == ENOENT)) return;
-    unread["/" + std::string(file)] = std::generic_category().message(error);
+    unread[fs::path("/") / file] = std::generic_category().message(error);
   };
   for (const char* const file :
        {"proc/self/mounts", "proc/self/status", "proc/stat", "proc/cpuinfo",

@@ -66,10 +66,11 @@ void expect_an_end(const Run& run) {
 TEST(Limits, AStopFromAnyVelocityIsFoundInABoundedNumberOfTries) {
   expect_an_end([] {
     constexpr double kTiny = std::numeric_limits<double>::denorm_min();
-    const std::array values{0.0, kTiny, -3 * kTiny, 1e-310, 1e-300, -1e-100, 1.0, 1e100, -1e200};
+    const std::array values{0.0,    kTiny,   3 * kTiny, -17 * kTiny, 1e-310,
+                            1e-300, -1e-100, 1.0,       1e100,       -1e200};
     for (const double v : values) {
       for (const double a : values) {
-        for (const double limit : {kTiny, 1e-310, 1e-100, 1e-3, 10.0, 1e100}) {
+        for (const double limit : {kTiny, 1e-310, 1e-100, 1e-3, 4.0, 10.0, 1e100}) {
           const Time time =
               stop_time_within(std::array{limit}, kLeastStopTime, std::array{v}, std::array{a});
           if (time < kLeastStopTime || to_seconds(time) > 1e6) std::_Exit(1);
