@@ -7,17 +7,14 @@ TornPublication::TornPublication(MemoryBoard& board)
       words_(ipc::words_at(board.bytes.span(), 0, board.layout.bytes / sizeof(ipc::Word))),
       before_(words_.begin(), words_.end()) {}
 
-void TornPublication::take_back_commit() {
-  const std::size_t control = layout_->control / sizeof(ipc::Word);
-  take_back_word(control + ipc::kRevision);
-  take_back_behind_commit();
-}
+void TornPublication::take_back_commit() { take_back_control(0); }
 
-void TornPublication::take_back_behind_commit() {
+void TornPublication::take_back_rest() { take_back_control(ipc::kRevision + 1); }
+
+void TornPublication::take_back_control(std::size_t first) {
   const std::size_t control = layout_->control / sizeof(ipc::Word);
-  for (const std::size_t word : {ipc::kTail, ipc::kLate, ipc::kChecked}) {
-    take_back_word(control + word);
-  }
+  const std::size_t count = ipc::kControlLines * ipc::kSeparation / sizeof(ipc::Word);
+  for (std::size_t i = first; i < count; ++i) take_back_word(control + i);
 }
 
 void TornPublication::take_back(const std::function<bool()>& is_stored) {

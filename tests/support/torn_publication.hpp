@@ -18,15 +18,16 @@ class TornPublication {
   /// After the step: all words of the revision are stored, its commit is not.
   void take_back_commit();
 
-  /// After the step: the revision is committed, nothing that follows a commit is stored: the count
-  /// of consumed items, and whether the commit came too late.
-  void take_back_behind_commit();
+  /// After the step: the revision is committed, what is stored behind it in the control lines is
+  /// not.
+  void take_back_rest();
 
   /// After the step: the commit and every word for which `is_stored` is false are taken back. Tags
   /// stay: a cell's tag is stored before its words.
   void take_back(const std::function<bool()>& is_stored);
 
  private:
+  void take_back_control(std::size_t first);
   void take_back_word(std::size_t i) { words_[i] = before_[i]; }
 
   const ipc::BoardLayout* layout_;

@@ -8,8 +8,6 @@ namespace splinecast::campaign {
 inline constexpr bool kStopsAtOnce = false;
 /// Waypoints are withdrawn in the revision that carries their replacement out.
 inline constexpr bool kWithdrawsOnlyWhatIsReplaced = false;
-/// A reader more than 64 revisions behind says `revised` only if what it sampled has changed.
-inline constexpr bool kFarBehindIsExact = false;
 /// `late_commits` counts every late commit while the solver lives.
 inline constexpr bool kLateCommitsAreKept = false;
 /// Values of 1e-300 to 1e90, and smoothing of any λ, are published as numbers or refused.

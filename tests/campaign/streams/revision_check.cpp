@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "campaign/streams/corrected.hpp"
 #include "splinecast/ipc/verification.hpp"
@@ -250,21 +252,33 @@ void RevisionCheck::check_end() {
   }
 }
 
+/// A stop that lies behind the newest knot waits until the curve comes there; any other one takes
+/// effect in the first step.
 void RevisionCheck::check_stop() {
   if (!due_stop_) return;
   const Stop stop = *due_stop_;
-  due_stop_.reset();
   const bool is_last = stream_->ring.reader.head() == stop.item + 1;
-  if (!kStopsAtOnce || !is_last || head_.finished || head_.newest == 0) return;
-  core::Time left{};
-  core::Time right{};
-  if (!stream_->board.reader.copy_ends(head_.newest, head_.revision, left, right)) return;
-  const core::Time from = std::max(stop.time, head_.settled_until);
+  if (!kStopsAtOnce || !is_last || head_.finished) return due_stop_.reset();
+  // The first waypoint comes before the stop: that takes effect one step later.
+  if (head_.newest == 0) return;
+  if (!had_curve_ && head_.consumed <= stop.item) return;
+  const core::Time effect = std::max(stop.time, stop.effect.value_or(head_.settled_until));
+  due_stop_->effect = effect;
+  const bool is_taken = head_.consumed > stop.item;
+  if (!is_taken && head_.settled_until <= effect) return;
+  due_stop_.reset();
+  if (!stream_->board.reader.copy_segment(head_.newest, head_.revision, copy_)) return;
+  const auto above = std::span(copy_.coefficients)
+                         .first(static_cast<std::size_t>(copy_.order) * plan_->dimensions.size())
+                         .subspan(plan_->dimensions.size());
+  const bool moves = std::ranges::any_of(above, [](double c) { return c != 0; });
+  const bool starts_later = copy_.number == 1;  // it comes to rest from the start of the motion
+  if (!moves || starts_later) return;
   const bool has_limits = !plan_->window.max_acceleration.empty();
-  const bool is_late = left > from || (!has_limits && right > from + plan_->window.stop_time);
-  if (is_late) {
-    breach(Breach::stop_late, fmt::format("item {} from {}: the curve ends at {}", stop.item,
-                                          stop.time.count(), right.count()));
+  if (copy_.left > effect || (!has_limits && copy_.right > effect + plan_->window.stop_time)) {
+    breach(Breach::stop_late,
+           fmt::format("item {} from {}, due at {}: the curve ends at {}", stop.item,
+                       stop.time.count(), effect.count(), copy_.right.count()));
   }
 }
 

@@ -33,6 +33,7 @@ class RevisionCheck {
 
   /// Before a step begins.
   void begin_step() {
+    had_curve_ = head_.newest > 0;
     if (accepted_stop_) due_stop_ = std::exchange(accepted_stop_, std::nullopt);
   }
 
@@ -55,6 +56,7 @@ class RevisionCheck {
   struct Stop {
     ipc::Word item = 0;
     core::Time time{};
+    std::optional<core::Time> effect{};  ///< from when on the curve comes to rest, once known
   };
 
   void check_counts(const ipc::Head& before);
@@ -84,6 +86,7 @@ class RevisionCheck {
   core::Time end_{};
   std::optional<Stop> accepted_stop_;
   std::optional<Stop> due_stop_;
+  bool had_curve_ = false;  ///< before the step
 };
 
 }  // namespace splinecast::campaign

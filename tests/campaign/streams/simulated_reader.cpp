@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 
-#include "campaign/streams/corrected.hpp"
 #include "splinecast/ipc/layout.hpp"
 
 namespace splinecast::campaign {
@@ -88,10 +87,15 @@ bool SimulatedReader::is_open_start(core::Time t) const {
 /// Whether one of the revisions that have come since allows for the status `revised`.
 void SimulatedReader::note_revisions(ipc::Word seen) {
   const ipc::Word r = sampler_.revision_seen();
-  if (r == seen || seen == 0) return;
-  const bool is_far_behind = r - seen > ipc::kHeadChangesKept;
-  may_be_revised_ = may_be_revised_ || (is_far_behind && !kFarBehindIsExact) ||
-                    sampled_until_ >= log_->earliest(seen, r);
+  if (r == seen) return;
+  if (seen == 0) {
+    settled_until_seen_ = sampler_.settled_until();
+    return;
+  }
+  // A reader that is far behind may be careful about what had not settled when it was sampled.
+  const bool is_careful = r - seen > ipc::kHeadChangesKept && sampled_until_ >= settled_until_seen_;
+  may_be_revised_ = may_be_revised_ || is_careful || sampled_until_ >= log_->earliest(seen, r);
+  settled_until_seen_ = sampler_.settled_until();
 }
 
 void SimulatedReader::judge_revised(core::Time t, bool is_revised) {

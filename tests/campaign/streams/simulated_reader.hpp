@@ -58,6 +58,7 @@ class SimulatedReader {
   core::State again_;
   SampleMemory executed_;  ///< since the last `revised`
   core::Time sampled_until_ = core::Time::min();
+  core::Time settled_until_seen_ = core::Time::min();  ///< under the revision seen last
   bool may_be_revised_ = false;
   bool has_read_ = false;
 };

@@ -54,9 +54,10 @@ class SimulatedStream {
   core::Time next_seldom_{};
   core::Time next_look_{};
   core::Time next_step_{};
-  core::Time pace_{};           ///< between two steps of the solver
-  core::Time kept_up_until_{};  ///< up to which the last steps have settled the curve
-  bool was_in_time_ = true;     ///< the last revision was committed when its step began
+  core::Time pace_{};            ///< between two steps of the solver
+  core::Time kept_up_until_{};   ///< up to which the last steps have settled the curve
+  bool has_taken_over_ = false;  ///< no revision has been committed since
+  bool was_in_time_ = true;      ///< the last revision was committed when its step began
 };
 
 }  // namespace splinecast::campaign
