@@ -158,7 +158,7 @@ Word StreamSolver::consume(core::Time now) noexcept {
   available_ = reachable(head);
   const Word before = head_.consumed;
   const core::Time keep = live_ ? now - live_->history : core::Time::max();
-  withdraw();
+  withdraw(keep);
   bool is_blocked = false;
   batch_limit_ = most_items_;
   for (batch_ = 0; head_.consumed < available_ && batch_ < batch_limit_ && !is_damaged();) {
@@ -185,11 +185,15 @@ bool StreamSolver::has_room(core::Time keep) const noexcept {
 
 /// Looks ahead for a replacement that is due and withdraws all that is queued before it: other
 /// replacements that are too late or lie ahead, and waypoints that the board may have no room for.
-void StreamSolver::withdraw() noexcept {
+/// Nothing is withdrawn for a replacement that has to wait for room itself: it may come too late.
+void StreamSolver::withdraw(core::Time keep) noexcept {
   if (!curve_.has_begun() || head_.finished) return;
   replacements_.note(head_.consumed, available_);
-  const auto replacement = replacements_.due(settled_until_, curve_.newest_time());
+  const core::Time earliest = std::max(settled_until_, curve_.earliest_entry());
+  const auto replacement = replacements_.due(earliest, curve_.newest_time());
   if (!replacement) return;
+  ring_->copy(*replacement, item_);
+  if (!has_room(keep)) return;
   head_.withdrawn += *replacement - head_.consumed;
   head_.consumed = *replacement;
 }

@@ -92,7 +92,7 @@ class StreamSolver {
   [[nodiscard]] bool is_damaged() const noexcept { return lacks_head_ || curve_.is_damaged(); }
   [[nodiscard]] Word reachable(Word head) const noexcept;
   [[nodiscard]] bool has_room(core::Time keep) const noexcept;
-  void withdraw() noexcept;
+  void withdraw(core::Time keep) noexcept;
   /// Whether the item at hand brings the curve to rest, instead of replacing it.
   [[nodiscard]] bool is_stop() const noexcept {
     return item_.kind == ItemKind::replace && item_.count == 0;
