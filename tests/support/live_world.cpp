@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "splinecast/core/segment.hpp"
+#include "support/torn_publication.hpp"
 
 namespace splinecast::testing {
 
@@ -61,27 +62,6 @@ std::vector<double> Motion::peak_acceleration() const {
   return peak;
 }
 
-/// The world's clock. Armed, it lets time pass behind the next look at it: the process that looked
-/// is stopped there, and the world goes on without it.
-class LiveWorld::WorldClock final : public ipc::Clock {
- public:
-  explicit WorldClock(LiveWorld& world) : world_(&world) {}
-  [[nodiscard]] Time now() const noexcept override {
-    const Time seen = world_->now_;
-    if (armed_ > 0 && --armed_ == 0) world_->advance_to(seen + pause_);
-    return seen;
-  }
-  void stop_behind_look(int look, Time pause) {
-    armed_ = look;
-    pause_ = pause;
-  }
-
- private:
-  LiveWorld* world_;
-  mutable int armed_ = 0;
-  Time pause_{};
-};
-
 namespace {
 
 core::WindowOptions window_of(const WorldOptions& options, const Motion& motion) {
@@ -101,7 +81,7 @@ LiveWorld::LiveWorld(const WorldOptions& options)
     : options_(options),
       random_(options.seed),
       motion_(options.seed, options.dimensions),
-      clock_(std::make_unique<WorldClock>(*this)),
+      clock_(now_, [this](Time t) { advance_to(t); }),
       stream_(options.dimensions, window_of(options, motion_), 256, 1024, kLimits, {},
               ipc::LiveOptions{}),
       sampler_(stream_.board.reader, ipc::StreamClock::monotonic),
@@ -112,8 +92,7 @@ LiveWorld::LiveWorld(const WorldOptions& options)
       next_tick_(kStart),
       next_waypoint_(kStart + milliseconds(100)),
       lead_(milliseconds(80)) {
-  stream_.ring.writer =
-      ipc::WaypointRingWriter(stream_.ring.bytes.span(), stream_.ring.layout, kLimits);
+  stream_.replace_producer();
   if (!options.starts_in_motion) return;
   const Time t = kStart + milliseconds(50);
   const auto x = motion_.at(t);
@@ -121,8 +100,6 @@ LiveWorld::LiveWorld(const WorldOptions& options)
   const auto a = motion_.at(t, 2);
   EXPECT_EQ(stream_.ring.writer.start_from({t, x, v, a}, {}), ipc::AppendStatus::accepted);
 }
-
-LiveWorld::~LiveWorld() = default;
 
 double LiveWorld::ideal_peak() const { return std::ranges::max(motion_.peak_acceleration()); }
 
@@ -141,16 +118,16 @@ void LiveWorld::run(Time duration) {
     if (happens(options_.pauses, microseconds(500))) {
       ++pauses;
       // Between two steps, behind the first look at the clock, or directly before the commit.
-      const int look = std::uniform_int_distribution<int>(0, 2)(random_);
+      const auto look = std::uniform_int_distribution<std::size_t>(0, 2)(random_);
       const Time pause = between(1'000, 200'000);
       if (look == 0) {
         advance_to(now_ + pause);
       } else {
-        clock_->stop_behind_look(look, pause);
+        clock_.stop_behind_reading(look, pause);
       }
     }
     step_solver();
-    clock_->stop_behind_look(0, {});
+    clock_.restart();
     if (happens(options_.solver_kills, microseconds(500))) kill_solver();
     advance_to(now_ + between(100, 900));
   }
@@ -159,7 +136,7 @@ void LiveWorld::run(Time duration) {
 void LiveWorld::step_solver() {
   note_items();
   const auto before = stream_.solver.head().misses;
-  const auto result = stream_.solver.step(*clock_);
+  const auto result = stream_.solver.step(clock_);
   EXPECT_EQ(stream_.solver.head().misses, before + (result.missed ? 1 : 0));
   note_items();
   collected_.look();
@@ -168,27 +145,14 @@ void LiveWorld::step_solver() {
 
 /// What the ring holds, before it is overwritten, and what has been refused of it.
 void LiveWorld::note_items() {
-  ipc::RingItem item(options_.dimensions);
-  while (items_.size() < stream_.ring.writer.head()) {
-    stream_.ring.reader.copy(items_.size(), item);
-    const auto values = std::span<const double>(item.values);
-    const std::size_t n = options_.dimensions;
-    items_.add(item.kind,
-               {.time = item.time,
-                .position = values.first(n),
-                .velocity = item.has_velocity ? values.subspan(n, n) : values.first(0),
-                .acceleration = item.has_acceleration ? values.last(n) : values.first(0)});
-  }
-  const ipc::Head& head = stream_.solver.head();
-  for (; refusals_noted_ < head.refused; ++refusals_noted_) {
-    items_.refuse(stream_.board.reader.refusal(refusals_noted_).item);
-  }
+  items_.note_items(stream_.ring.reader);
+  items_.note_refusals(stream_.board.reader, stream_.solver.head().refused);
 }
 
 ipc::Verification LiveWorld::verify() const {
   return ipc::verify({.window = stream_.window,
                       .kinds = stream_.kinds,
-                      .items = items_,
+                      .items = items_.items(),
                       .segments = collected_.segments(),
                       .head = collected_.head(),
                       .end = {.kind = core::ConditionKind::halt, .value = {}}});
@@ -213,8 +177,7 @@ void LiveWorld::tick() {
 void LiveWorld::produce() {
   if (happens(options_.producer_kills, kTick)) {
     ++producer_kills;
-    stream_.ring.writer =
-        ipc::WaypointRingWriter(stream_.ring.bytes.span(), stream_.ring.layout, kLimits);
+    stream_.replace_producer();
   }
   if (now_ < silent_until_) return;
   if (happens(options_.starvations, kTick)) {
@@ -333,22 +296,10 @@ void LiveWorld::check_settled() {
 void LiveWorld::kill_solver() {
   ++solver_kills;
   if (happens(1000, milliseconds(1) / 2)) {
-    class StandingClock final : public ipc::Clock {
-     public:
-      explicit StandingClock(Time now) : now_(now) {}
-      [[nodiscard]] Time now() const noexcept override { return now_; }
-
-     private:
-      Time now_;
-    };
-    const std::size_t at = stream_.board.layout.control / sizeof(ipc::Word);
-    const auto words = ipc::words_at(stream_.board.bytes.span(), 0,
-                                     stream_.board.layout.bytes / sizeof(ipc::Word));
-    const ipc::Word revision = words[at + ipc::kRevision];
-    const ipc::Word tail = words[at + ipc::kTail];
-    stream_.solver.step(StandingClock(now_));
-    words[at + ipc::kRevision] = revision;
-    words[at + ipc::kTail] = tail;
+    TornPublication torn(stream_.board);
+    stream_.clock.time = now_;
+    stream_.solver.step(stream_.clock);
+    torn.take_back_commit();
   }
   stream_.replace_solver();
 }

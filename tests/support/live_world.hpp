@@ -8,12 +8,13 @@
 #include <random>
 #include <vector>
 
-#include "splinecast/ipc/sent_items.hpp"
 #include "splinecast/ipc/settled_segments.hpp"
 #include "splinecast/ipc/stream_solver.hpp"
 #include "splinecast/ipc/verification.hpp"
 #include "support/curve_watch.hpp"
+#include "support/item_record.hpp"
 #include "support/memory_stream.hpp"
+#include "support/simulated_clock.hpp"
 
 namespace splinecast::testing {
 
@@ -55,7 +56,6 @@ struct WorldOptions {
 class LiveWorld {
  public:
   explicit LiveWorld(const WorldOptions& options);
-  ~LiveWorld();
 
   /// Lets it go on for so long.
   void run(core::Time duration);
@@ -78,7 +78,6 @@ class LiveWorld {
   std::uint64_t starved = 0, replaced = 0, solver_kills = 0, producer_kills = 0, pauses = 0;
 
  private:
-  class WorldClock;
   void advance_to(core::Time t);
   void tick();
   void produce();
@@ -96,13 +95,12 @@ class LiveWorld {
   WorldOptions options_;
   std::mt19937_64 random_;
   Motion motion_;
-  std::unique_ptr<WorldClock> clock_;
+  SimulatedClock clock_;
   MemoryStream stream_;
   ipc::Sampler sampler_;
   apps::CurveWatch watch_;
-  ipc::SentItems items_;
+  ItemRecord items_;
   ipc::SettledSegments collected_;
-  ipc::Word refusals_noted_ = 0;
   core::Time now_{};
   core::Time next_tick_{};
   core::Time next_waypoint_{};  ///< time of the next waypoint

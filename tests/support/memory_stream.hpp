@@ -118,6 +118,10 @@ struct MemoryStream {
     while (solver.step(clock).consumed > 0) {
     }
   }
+  /// What happens when the producer is killed and another one comes.
+  void replace_producer() {
+    ring.writer = ipc::WaypointRingWriter(ring.bytes.span(), ring.layout, limits);
+  }
   /// What happens when the solver is killed and another one comes.
   void replace_solver() {
     board.replace_writer();
