@@ -7,8 +7,8 @@
 
 #include "campaign/findings.hpp"
 
-/// The campaigns: each attacks streams of its own name with real processes over real shared memory
-/// and returns its result, as the head of page.py says, and whether no promise was broken.
+/// The campaigns: each attacks streams of its own, mostly with real processes over real shared
+/// memory, and returns its result, as the head of page.py says, and whether no promise was broken.
 namespace splinecast::campaign {
 
 struct Result {
@@ -20,7 +20,8 @@ struct CampaignOptions {
   std::string command;  ///< that runs it again
   std::uint64_t kills = 300;
   std::uint64_t seed = 1;
-  double seconds = 2;  ///< of each part of the stress
+  double seconds = 2;      ///< of each part of the stress; of the streams all of them
+  std::uint64_t runs = 0;  ///< of simulated streams; 0: as many as the seconds allow
 };
 
 /// Kills at random instants until there were so many kills: two live streams and two recorded ones,
@@ -35,11 +36,22 @@ struct CampaignOptions {
 /// and 16 readers that read all they can.
 [[nodiscard]] Result run_stress(const CampaignOptions& options);
 
+/// Simulated live streams, one per seed from `seed` on: producer, clock, deaths and hold-ups are
+/// random, ring, board, solver and samplers the real ones in plain memory. Without a number of runs
+/// it fails as well if something of what it is to try never happened.
+[[nodiscard]] Result run_streams(const CampaignOptions& options);
+
 /// A result in the form of the page, of this machine and version.
 [[nodiscard]] Result make_result(const CampaignOptions& options, nlohmann::json promises,
                                  const std::string& attack, std::uint64_t count,
                                  const std::string& unit, const Findings& findings,
                                  nlohmann::json measured, double seconds);
+
+/// What a result says of this machine.
+[[nodiscard]] nlohmann::json this_machine();
+
+/// What was built and how: commit, compiler, flags.
+[[nodiscard]] std::string this_build();
 
 /// A stream name of this process.
 [[nodiscard]] std::string campaign_stream(const std::string& what);

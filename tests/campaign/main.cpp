@@ -31,8 +31,7 @@ int report(const Result& result, const std::string& path) {
 }
 
 int run_program(int argc, char** argv) {
-  CLI::App program("Kills and stresses streams of its own and counts what breaks",
-                   "splinecast_campaign");
+  CLI::App program("Attacks streams of its own and counts what breaks", "splinecast_campaign");
   program.require_subcommand(1);
   CampaignOptions options{.command = joined(argc, argv)};
   std::string path;
@@ -48,7 +47,14 @@ int run_program(int argc, char** argv) {
   stress->add_option("--seconds", options.seconds, "For each number of readers")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  for (CLI::App* verb : {kill, stress}) {
+  auto* streams = program.add_subcommand("streams", "Simulated live streams, one per seed");
+  streams->add_option("--seconds", options.seconds, "How long")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  streams->add_option("--seed", options.seed, "Of the first stream; the next has the next one")
+      ->capture_default_str();
+  streams->add_option("--runs", options.runs, "So many streams instead");
+  for (CLI::App* verb : {kill, stress, streams}) {
     verb->add_option("--json", path, "File for the result; else standard output");
     verb->add_option("--command", options.command, "What the result says that runs it again");
   }
@@ -59,7 +65,8 @@ int run_program(int argc, char** argv) {
   }
   return apps::run_guarded([&] {
     apps::catch_stop_signals();
-    const Result result = *stress       ? run_stress(options)
+    const Result result = *streams      ? run_streams(options)
+                          : *stress     ? run_stress(options)
                           : every_store ? run_every_store(options)
                                         : run_random_kills(options);
     return report(result, path);

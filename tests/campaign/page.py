@@ -20,6 +20,7 @@ Each file tests/campaign/results/*.json holds one result, or a list of them. A r
     seconds   how long the attack took, a number
     command   what runs it again, as typed at the project's top
     version   of splinecast
+    build     of what, how: commit, compiler, flags; a text that may be missing
 
 tests/campaign/bugs.json holds a list of the bugs that attacks have found, each an object of texts:
 what (was wrong), found_by (which attack), mended (how).
@@ -86,10 +87,12 @@ def faults(result, promises):
         "command": is_text,
         "version": is_text,
     }
+    may_be = {"build": is_text}
     if not isinstance(result, dict):
         return ["result"]
     wrong = [key for key, check in checks.items() if key not in result or not check(result[key])]
-    return wrong + sorted(result.keys() - checks.keys())
+    wrong += [key for key, check in may_be.items() if key in result and not check(result[key])]
+    return wrong + sorted(result.keys() - checks.keys() - may_be.keys())
 
 
 def read_promises():
@@ -151,11 +154,12 @@ def attack_rows(results, machines):
     lines = ["| attack | how often | found | measured | run |", "|---|---|---|---|---|"]
     for result in results:
         machine = machines.index(machine_text(result["machine"])) + 1
+        build = f", build {cell(result['build'])}" if "build" in result else ""
         lines.append(
             f"| {cell(result['attack'])} | {to_text(result['count'])} {cell(result['unit'])} "
             f"| {counters(result['found'])} | {counters(result['measured'])} "
             f"| `{cell(result['command'])}`: {duration(result['seconds'])} on machine {machine}, "
-            f"version {cell(result['version'])} |")
+            f"version {cell(result['version'])}{build} |")
     return lines
 
 

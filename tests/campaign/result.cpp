@@ -12,20 +12,32 @@
 namespace splinecast::campaign {
 namespace {
 
-/// What page.py says of this machine.
-nlohmann::json this_machine() {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(
-      popen(SPLINECAST_SOURCE "/tests/campaign/page.py --machine", "r"), &pclose);
+/// What a command prints.
+std::string output_of(const std::string& command) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "r"), &pclose);
   std::string text;
   std::array<char, 256> buffer{};
   while (pipe && std::fgets(buffer.data(), buffer.size(), pipe.get()) != nullptr) {
     text += buffer.data();
   }
+  return text;
+}
+
+}  // namespace
+
+nlohmann::json this_machine() {
+  const std::string text = output_of(SPLINECAST_SOURCE "/tests/campaign/page.py --machine");
   if (text.empty()) throw apps::Failure("page.py --machine says nothing");
   return nlohmann::json::parse(text);
 }
 
-}  // namespace
+std::string this_build() {
+  std::string commit =
+      output_of("git -C " SPLINECAST_SOURCE " describe --always --dirty --abbrev=12 2>/dev/null");
+  while (!commit.empty() && commit.back() == '\n') commit.pop_back();
+  if (commit.empty()) commit = "unknown commit";
+  return commit + ", " SPLINECAST_BUILD;
+}
 
 std::string campaign_stream(const std::string& what) {
   return "campaign." + std::to_string(getpid()) + "." + what;

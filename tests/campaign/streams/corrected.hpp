@@ -1,0 +1,18 @@
+#pragma once
+
+/// What is checked, or tried, only once the solver or the readers are corrected: each of these is a
+/// defect that this campaign finds otherwise.
+namespace splinecast::campaign {
+
+/// A stop takes effect at settled_until, one step later at most, whatever is queued before it.
+inline constexpr bool kStopsAtOnce = false;
+/// Waypoints are withdrawn in the revision that carries their replacement out.
+inline constexpr bool kWithdrawsOnlyWhatIsReplaced = false;
+/// `late_commits` counts every late commit while the solver lives.
+inline constexpr bool kLateCommitsAreKept = false;
+/// Values of 1e-300 to 1e90, and smoothing of any λ, are published as numbers or refused.
+inline constexpr bool kTakesAnyMagnitude = false;
+/// A stop from velocities of a few ulp, under limits, is found in a bounded number of steps.
+inline constexpr bool kStopsFromDenormals = false;
+
+}  // namespace splinecast::campaign

@@ -1,0 +1,315 @@
+#include "campaign/streams/revision_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "campaign/streams/corrected.hpp"
+#include "splinecast/ipc/verification.hpp"
+
+namespace splinecast::campaign {
+
+using ipc::Head;
+using ipc::ItemKind;
+using ipc::Word;
+
+RevisionCheck::RevisionCheck(const StreamPlan& plan, testing::MemoryStream& stream,
+                             StreamFindings& findings)
+    : plan_(&plan),
+      stream_(&stream),
+      findings_(&findings),
+      rules_(plan.kinds, plan.dimensions.size()),
+      items_(plan.dimensions.size()),
+      settled_(stream.board.reader),
+      copy_(plan.dimensions.size()) {}
+
+void RevisionCheck::breach(Breach breach, const std::string& what) {
+  findings_->breach(breach, fmt::format("{}, revision {}", what, head_.revision));
+}
+
+void RevisionCheck::look(core::Time now) {
+  const auto& board = stream_->board.reader;
+  const Word r = board.revision();
+  if (r == head_.revision) return;
+  const Head before = head_;
+  if (!board.copy_head(r, head_)) {
+    return findings_->breach(Breach::board_refused, fmt::format("no head of revision {}", r));
+  }
+  items_.note_refusals(board, head_.refused);
+  findings_->count(Event::revisions);
+  if (getenv("WFD")) {
+    fmt::print(stderr,
+               "rev {} now {} consumed {}..{} knots {} refused {} withdrawn {} controls {} newest "
+               "{} run {} knots {} frozen {} ent {} settled {} changed {} fin {} first {}\n",
+               r, now.count(), before.consumed, head_.consumed, head_.knots - before.knots,
+               head_.refused - before.refused, head_.withdrawn - before.withdrawn,
+               head_.controls - before.controls, head_.newest, head_.run, head_.run_knots,
+               head_.run_frozen, head_.is_entered, head_.settled_until.count(),
+               head_.changed_from.count(), head_.finished, head_.first);
+    for (Word i = before.consumed; i < head_.consumed; ++i) {
+      const auto w = items_.items().waypoint(i);
+      fmt::print(stderr, "   item {} kind {} t {} taken {} x {} v {} a {}\n", i,
+                 (int)items_.items().kind(i), w.time.count(),
+                 items_.items().is_taken(i, items_.items().kind(i)),
+                 w.position.empty() ? 0.0 : w.position[0],
+                 w.velocity.empty() ? -0.0 : w.velocity[0],
+                 w.acceleration.empty() ? 0.0 : w.acceleration[0]);
+    }
+    for (Word n = head_.run; n <= head_.newest; ++n) {
+      ipc::SegmentCopy c(plan_->dimensions.size());
+      (void)board.copy_segment(n, r, c);
+      const std::size_t D = plan_->dimensions.size();
+      fmt::print(stderr, "      seg {} {}..{} kind {} order {} wp {} c {} {} {} {}\n", n,
+                 c.left.count(), c.right.count(), (int)c.kind, c.order, c.has_waypoint,
+                 c.coefficients[0], c.coefficients[D], c.coefficients[2 * D],
+                 c.coefficients[3 * D]);
+    }
+  }
+  check_counts(before);
+  check_settled_until(before, now);
+  take_items(before);
+  check_end();
+  check_verifiable();
+  count_events(before);
+  settled_.look();
+  check_settled_segments();
+}
+
+void RevisionCheck::check_counts(const Head& before) {
+  const bool adds_up =
+      head_.consumed == head_.knots + head_.refused + head_.withdrawn + head_.controls &&
+      head_.refused == std::reduce(head_.reasons.begin(), head_.reasons.end()) &&
+      head_.consumed >= before.consumed && head_.consumed <= stream_->ring.reader.head();
+  if (!adds_up) {
+    breach(
+        Breach::items_lost,
+        fmt::format("consumed {}, interpolated {}, refused {}, withdrawn {}, controls {}",
+                    head_.consumed, head_.knots, head_.refused, head_.withdrawn, head_.controls));
+  }
+  if (head_.consumed - before.consumed > plan_->ring_capacity) {
+    breach(Breach::unbounded_step,
+           fmt::format("{} items in one step", head_.consumed - before.consumed));
+  }
+  for (std::size_t i = 0; i < ipc::kRefusals; ++i) {
+    for (Word n = before.reasons[i]; n < head_.reasons[i]; ++n) {
+      findings_->count(static_cast<ipc::Refusal>(i));
+    }
+  }
+}
+
+void RevisionCheck::check_settled_until(const Head& before, core::Time now) {
+  const bool had_curve = before.newest > 0;
+  const bool is_back = had_curve && head_.settled_until < before.settled_until;
+  const bool is_late =
+      head_.newest > 0 && !head_.finished && head_.settled_until < now + plan_->live.freeze_ahead;
+  if (is_back || is_late) {
+    breach(Breach::settled_back,
+           fmt::format("settled until {}, before {}, step began at {}", head_.settled_until.count(),
+                       before.settled_until.count(), now.count()));
+  }
+}
+
+void RevisionCheck::count_events(const Head& before) {
+  findings_->count(Event::starvations, head_.underruns - before.underruns);
+  findings_->count(Event::withdrawals, head_.withdrawn - before.withdrawn);
+  findings_->count(Event::waypoints_interpolated, head_.knots - before.knots);
+  findings_->count(Event::deadline_misses, head_.misses - before.misses);
+  if (!head_.finished || before.finished) return;
+  findings_->count(Event::finishes);
+  const bool goes_back = head_.run_knots > 0 && head_.run_frozen == head_.run_knots &&
+                         copy_.kind == core::SegmentKind::splice;
+  if (goes_back) findings_->count(Event::returns_after_finish);
+}
+
+/// A board that has overwritten the waypoints before a splice shapes it without them, of which its
+/// segments say nothing.
+void RevisionCheck::check_verifiable() {
+  constexpr Word kLookBack = 16;
+  constexpr Word kKnotsThatShape = 3;
+  const bool is_short = head_.first > 1 && head_.run < head_.first + kLookBack;
+  if (head_.is_entered && head_.run_knots <= kKnotsThatShape && is_short) is_verifiable_ = false;
+}
+
+/// What became of the items that this revision consumed.
+void RevisionCheck::take_items(const Head& before) {
+  const auto& items = items_.items();
+  const bool withdraws = head_.withdrawn > before.withdrawn;
+  for (Word item = before.consumed; item < head_.consumed; ++item) {
+    const core::Time t = items.waypoint(item).time;
+    if (items.is_taken(item, ItemKind::waypoint)) pending_.push_back({.item = item, .time = t});
+    if (!items.is_taken(item, ItemKind::replace)) continue;
+    findings_->count(Event::replacements);
+    // Entered where it begins, a curve in motion begins with quaternions at unit length, and
+    // without a negative 0: neither is recorded.
+    is_verifiable_ = is_verifiable_ && head_.run > 1;
+    if (t < end_) findings_->count(Event::cuts);
+    std::erase_if(pending_, [t](const Pending& waypoint) { return waypoint.time >= t; });
+    if (withdraws) forget_from(before.consumed);
+  }
+  const bool is_replaced = head_.controls > before.controls;
+  if (!withdraws || is_replaced) return check_passed(before);
+  if (kWithdrawsOnlyWhatIsReplaced) {
+    breach(Breach::items_lost, fmt::format("{} items withdrawn, and nothing in their place",
+                                           head_.withdrawn - before.withdrawn));
+  }
+  // The replacement waits for room on the board, or is refused.
+  forget_from(before.consumed);
+  is_verifiable_ = false;
+  check_passed(before);
+}
+
+/// Waypoints from an item on may have been withdrawn before they were taken, each or none.
+void RevisionCheck::forget_from(Word item) {
+  std::erase_if(pending_, [item](const Pending& waypoint) { return waypoint.item >= item; });
+}
+
+/// Whether the waypoints that were interpolated just now lie on the curve: from the newest on, back
+/// along the segments.
+void RevisionCheck::check_passed(const Head& before) {
+  if (plan_->window.interpolant.method->family == core::Family::smoothing) return;
+  const auto& board = stream_->board.reader;
+  Word number = head_.newest;
+  bool has_copy = false;
+  for (auto waypoint = pending_.rbegin();
+       waypoint != pending_.rend() && waypoint->item >= before.consumed; ++waypoint) {
+    core::Time left{};
+    while (number > head_.first && board.copy_left(number, head_.revision, left) &&
+           left > waypoint->time) {
+      --number;
+      has_copy = false;
+    }
+    has_copy = has_copy || board.copy_segment(number, head_.revision, copy_);
+    const bool at_end = waypoint->time != copy_.left;
+    const core::Waypoint sent = items_.items().waypoint(waypoint->item);
+    const bool is_there = has_copy && (!at_end || waypoint->time == copy_.right);
+    if (is_there && rules_.passes(copy_, at_end, sent.position, plan_->dimensions)) continue;
+    breach(Breach::waypoint_missed,
+           fmt::format("item {} at {}, segment {} from {} to {}", waypoint->item,
+                       waypoint->time.count(), number, copy_.left.count(), copy_.right.count()));
+    return;
+  }
+}
+
+void RevisionCheck::check_settled_segments() {
+  const auto segments = settled_.segments();
+  for (; joined_ < segments.size(); ++joined_) {
+    const ipc::SegmentCopy& segment = segments[joined_];
+    if (segment.kind == core::SegmentKind::splice) findings_->count(Event::splices);
+    const Word expected = joined_ > 0 ? segments[joined_ - 1].number + 1 : 1;
+    if (segment.number != expected) {
+      has_gap_ = true;
+      std::erase_if(pending_, [&](const Pending& p) { return p.time < segment.left; });
+    } else if (joined_ > 0) {
+      const auto step = rules_.step(segments[joined_ - 1], segment);
+      findings_->count(Event::knots_compared);
+      const auto tell = [&](Breach what, double size) {
+        breach(what, fmt::format("{} times what rounding leaves, at {}, before segment {}", size,
+                                 segment.left.count(), segment.number));
+      };
+      if (segments[joined_ - 1].right != segment.left) {
+        tell(Breach::position_step, 0);
+      }
+      if (step.position > 1) tell(Breach::position_step, step.position);
+      if (step.velocity > 1) tell(Breach::velocity_step, step.velocity);
+    }
+    check_waypoint_at(segment);
+  }
+  if (head_.finished && !segments.empty()) check_last_waypoint(segments.back());
+}
+
+/// Waypoints up to the left end of a settled segment are where they were sent to.
+void RevisionCheck::check_waypoint_at(const ipc::SegmentCopy& segment) {
+  const bool smooths = plan_->window.interpolant.method->family == core::Family::smoothing;
+  while (!pending_.empty() && pending_.front().time <= segment.left) {
+    const Pending waypoint = pending_.front();
+    pending_.pop_front();
+    const auto sent = items_.items().waypoint(waypoint.item);
+    if (waypoint.time == segment.left &&
+        (smooths || rules_.passes(segment, false, sent.position, plan_->dimensions))) {
+      continue;
+    }
+    breach(Breach::waypoint_missed,
+           fmt::format("item {} at {} when it had settled, segment {} from {}", waypoint.item,
+                       waypoint.time.count(), segment.number, segment.left.count()));
+  }
+}
+
+void RevisionCheck::check_last_waypoint(const ipc::SegmentCopy& segment) {
+  const bool smooths = plan_->window.interpolant.method->family == core::Family::smoothing;
+  while (!pending_.empty()) {
+    const Pending waypoint = pending_.front();
+    pending_.pop_front();
+    const auto sent = items_.items().waypoint(waypoint.item);
+    if (waypoint.time == segment.right &&
+        (smooths || rules_.passes(segment, true, sent.position, plan_->dimensions))) {
+      continue;
+    }
+    breach(Breach::waypoint_missed, fmt::format("item {} at {} in the finished curve",
+                                                waypoint.item, waypoint.time.count()));
+  }
+}
+
+void RevisionCheck::check_end() {
+  if (head_.newest == 0) return;
+  if (!stream_->board.reader.copy_segment(head_.newest, head_.revision, copy_)) {
+    return breach(Breach::no_answer, fmt::format("no segment {}", head_.newest));
+  }
+  end_ = copy_.right;
+  const bool is_open = !head_.finished;
+  const bool is_stop = copy_.kind == core::SegmentKind::stop_tail;
+  const bool halts = is_stop || copy_.kind != core::SegmentKind::spline ||
+                     plan_->end.kind == core::ConditionKind::halt;
+  const bool rests = halts || plan_->end.kind == core::ConditionKind::rest;
+  if ((is_open && !is_stop) || (rests && !rules_.ends_at_rest(copy_, halts))) {
+    breach(Breach::not_at_rest, fmt::format("segment {}", copy_.number));
+  }
+}
+
+/// A stop takes effect in the first step, but for one behind the newest knot: that waits until the
+/// curve comes there or its time comes, and one step more at most.
+void RevisionCheck::check_stop() {
+  if (!due_stop_) return;
+  const Stop stop = *due_stop_;
+  const bool is_last = stream_->ring.reader.head() == stop.item + 1;
+  if (!kStopsAtOnce || !is_last || head_.finished) return due_stop_.reset();
+  // The first waypoint comes before the stop: that takes effect one step later.
+  if (head_.newest == 0) return;
+  if (!had_curve_ && head_.consumed <= stop.item) return;
+  const bool is_due = head_.settled_until > stop.time;
+  if (head_.consumed <= stop.item && (!is_due || due_stop_->steps_due++ == 0)) return;
+  const core::Time effect = std::max(stop.time, head_.settled_until);
+  due_stop_.reset();
+  if (!stream_->board.reader.copy_segment(head_.newest, head_.revision, copy_)) return;
+  const auto above = std::span(copy_.coefficients)
+                         .first(static_cast<std::size_t>(copy_.order) * plan_->dimensions.size())
+                         .subspan(plan_->dimensions.size());
+  const bool moves = std::ranges::any_of(above, [](double c) { return c != 0; });
+  const bool starts_later = copy_.number == 1;  // it comes to rest from the start of the motion
+  if (head_.consumed > stop.item && (!moves || starts_later)) return;
+  const bool has_limits = !plan_->window.max_acceleration.empty();
+  if (copy_.left > effect || (!has_limits && copy_.right > effect + plan_->window.stop_time)) {
+    breach(Breach::stop_late,
+           fmt::format("item {} from {}, due at {}: the curve ends at {}", stop.item,
+                       stop.time.count(), effect.count(), copy_.right.count()));
+  }
+}
+
+void RevisionCheck::verify() {
+  if (has_gap_ || !is_verifiable_ || settled_.segments().empty()) return;
+  const auto found = ipc::verify({.window = plan_->window,
+                                  .kinds = plan_->kinds,
+                                  .items = items_.items(),
+                                  .segments = settled_.segments(),
+                                  .head = settled_.head(),
+                                  .end = plan_->end});
+  findings_->count(Event::segments_verified, found.equal);
+  if (!found.first) return;
+  breach(Breach::not_verified,
+         fmt::format("segment {} at {}: {}: published {}, solved {}", found.first->segment,
+                     found.first->left.count(), found.first->what, found.first->published,
+                     found.first->solved));
+}
+
+}  // namespace splinecast::campaign

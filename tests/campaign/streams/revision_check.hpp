@@ -1,0 +1,93 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <utility>
+
+#include "campaign/streams/curve_rules.hpp"
+#include "campaign/streams/stream_findings.hpp"
+#include "splinecast/ipc/settled_segments.hpp"
+#include "support/item_record.hpp"
+#include "support/memory_stream.hpp"
+
+namespace splinecast::campaign {
+
+/// Checks every revision of a simulated stream: what became of the items, where the waypoints are,
+/// that the curve goes on without a step and ends at rest. Keeps what a verification needs.
+class RevisionCheck {
+ public:
+  RevisionCheck(const StreamPlan& plan, testing::MemoryStream& stream, StreamFindings& findings);
+
+  /// Notes what the producer has appended: after each of its calls.
+  void note_items() { items_.note_items(stream_->ring.reader); }
+
+  /// Checks the newest revision, if it is a new one: after each step of a solver, which read the
+  /// clock as `now` first.
+  void look(core::Time now);
+
+  /// A stop that the ring has accepted as this item: takes effect in the step that begins next.
+  void expect_stop(ipc::Word item, core::Time t) {
+    accepted_stop_ = Stop{.item = item, .time = t};
+    findings_->count(Event::stops);
+  }
+
+  /// Before a step begins.
+  void begin_step() {
+    had_curve_ = head_.newest > 0;
+    if (accepted_stop_) due_stop_ = std::exchange(accepted_stop_, std::nullopt);
+  }
+
+  /// After a step that was not discarded: the curve comes to rest from the stop on.
+  void check_stop();
+
+  /// Solves everything that has settled again, if nothing of it was lost.
+  void verify();
+
+  /// The newest revision's head, and when its curve has come to rest.
+  [[nodiscard]] const ipc::Head& head() const noexcept { return head_; }
+  [[nodiscard]] core::Time end_of_motion() const noexcept { return end_; }
+  [[nodiscard]] const ipc::SentItems& items() const noexcept { return items_.items(); }
+
+ private:
+  struct Pending {
+    ipc::Word item = 0;
+    core::Time time{};
+  };
+  struct Stop {
+    ipc::Word item = 0;
+    core::Time time{};
+    int steps_due = 0;  ///< in which it was not taken although its time had come
+  };
+
+  void check_counts(const ipc::Head& before);
+  void check_settled_until(const ipc::Head& before, core::Time now);
+  void count_events(const ipc::Head& before);
+  void take_items(const ipc::Head& before);
+  void forget_from(ipc::Word item);
+  void check_passed(const ipc::Head& before);
+  void check_settled_segments();
+  void check_waypoint_at(const ipc::SegmentCopy& segment);
+  void check_last_waypoint(const ipc::SegmentCopy& segment);
+  void check_end();
+  void check_verifiable();
+  void breach(Breach breach, const std::string& what);
+
+  const StreamPlan* plan_;
+  testing::MemoryStream* stream_;
+  StreamFindings* findings_;
+  CurveRules rules_;
+  testing::ItemRecord items_;
+  ipc::SettledSegments settled_;
+  std::size_t joined_ = 0;  ///< settled segments that have been checked
+  bool has_gap_ = false;    ///< a settled segment was overwritten before it was seen
+  bool is_verifiable_ = true;
+  std::deque<Pending> pending_;  ///< interpolated waypoints that have not settled, by time
+  ipc::SegmentCopy copy_;
+  ipc::Head head_;
+  core::Time end_{};
+  std::optional<Stop> accepted_stop_;
+  std::optional<Stop> due_stop_;
+  bool had_curve_ = false;  ///< before the step
+};
+
+}  // namespace splinecast::campaign

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "campaign/streams/revision_check.hpp"
+#include "campaign/streams/waypoint_source.hpp"
+
+namespace splinecast::campaign {
+
+/// The producer of a simulated stream: sends waypoints in time or not, falls silent, replaces the
+/// future, makes mistakes, dies, and finishes.
+class SimulatedProducer {
+ public:
+  SimulatedProducer(const StreamPlan& plan, testing::MemoryStream& stream, RevisionCheck& check,
+                    StreamFindings& findings, Random& random);
+
+  /// When it wants to act next.
+  [[nodiscard]] core::Time next() const noexcept { return next_; }
+
+  void act(core::Time now);
+
+  [[nodiscard]] bool has_finished() const { return stream_->ring.writer.finished(); }
+
+ private:
+  enum class Phase { steady, jittered, late, silent, burst };
+
+  void start(core::Time now);
+  void change_phase(core::Time now);
+  void send_due(core::Time now);
+  void send_next();
+  void do_something_else(core::Time now);
+  void replace(core::Time now);
+  void stop(core::Time now);
+  [[nodiscard]] core::Time replacement_time(core::Time now);
+  void make_mistake(core::Time now);
+  void replace_too_many(core::Time now);
+  void die(core::Time now);
+  void finish(core::Time now);
+  void observe();
+  [[nodiscard]] ipc::WaypointRingWriter::Solved solved();
+  ipc::AppendStatus answered(ipc::AppendStatus status);
+
+  const StreamPlan* plan_;
+  testing::MemoryStream* stream_;
+  RevisionCheck* check_;
+  StreamFindings* findings_;
+  Random* random_;
+  WaypointSource source_;
+  ipc::RingItem observed_;
+  Phase phase_ = Phase::steady;
+  core::Time phase_end_{};
+  core::Time next_{};
+  core::Time next_waypoint_{};
+  core::Time lead_{};
+  core::Time last_sent_{};  ///< time of the last waypoint that was accepted
+  bool is_full_ = false;
+  bool has_started_ = false;
+};
+
+}  // namespace splinecast::campaign

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <vector>
+
+#include "campaign/streams/revision_log.hpp"
+#include "campaign/streams/stream_findings.hpp"
+#include "splinecast/ipc/sampler.hpp"
+
+namespace splinecast::campaign {
+
+/// Samples to be taken again later: a bounded random choice of what was offered.
+class SampleMemory {
+ public:
+  SampleMemory(std::size_t size, std::size_t dimensions);
+
+  struct Seen {
+    core::Time time{};
+    std::vector<double> values;
+  };
+  void offer(core::Time t, const core::State& state, Random& random);
+  void clear() noexcept { used_ = 0; }
+  [[nodiscard]] std::span<const Seen> seen() const { return std::span(seen_).first(used_); }
+
+ private:
+  std::vector<Seen> seen_;
+  std::size_t used_ = 0;
+};
+
+/// One reader of a simulated stream, which checks what it is told.
+class SimulatedReader {
+ public:
+  SimulatedReader(const ipc::SegmentBoardReader& board, const StreamPlan& plan, RevisionLog& log,
+                  StreamFindings& findings, Random& random);
+
+  /// Samples as a controller does. What is settled goes to `settled`.
+  ipc::SampleStatus sample(core::Time t, SampleMemory& settled);
+
+  /// Looks ahead or back.
+  ipc::SampleStatus preview(core::Time t, SampleMemory& settled);
+
+  [[nodiscard]] core::Time settled_until() const noexcept { return sampler_.settled_until(); }
+  /// Whether a sample has had values.
+  [[nodiscard]] bool has_read() const noexcept { return has_read_; }
+
+ private:
+  [[nodiscard]] bool is_open_start(core::Time t) const;
+  void judge_revised(core::Time t, bool is_revised);
+  void note_revisions(ipc::Word seen);
+  void read_executed_again();
+  void check_values(core::Time t, ipc::SampleStatus status, SampleMemory& settled);
+
+  const StreamPlan* plan_;
+  StreamFindings* findings_;
+  Random* random_;
+  RevisionLog* log_;
+  ipc::Sampler sampler_;
+  core::State state_;
+  core::State again_;
+  SampleMemory executed_;  ///< since the last `revised`
+  core::Time sampled_until_ = core::Time::min();
+  core::Time settled_until_seen_ = core::Time::min();  ///< under the revision seen last
+  bool may_be_revised_ = false;
+  bool has_read_ = false;
+};
+
+/// Takes settled samples again with a reader that has seen nothing before.
+void read_settled_again(const ipc::SegmentBoardReader& board, const StreamPlan& plan,
+                        const SampleMemory& settled, StreamFindings& findings);
+
+}  // namespace splinecast::campaign

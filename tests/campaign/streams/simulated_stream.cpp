@@ -1,0 +1,248 @@
+#include "campaign/streams/simulated_stream.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "campaign/streams/corrected.hpp"
+#include "support/torn_publication.hpp"
+
+namespace splinecast::campaign {
+namespace {
+
+using core::Time;
+
+constexpr std::size_t kSettledKept = 48;
+/// Readings of the clock in one step.
+constexpr std::size_t kMostReadings = 4;
+/// Steps that may be discarded one after the other when nothing holds the solver up.
+constexpr int kMostMisses = 20;
+/// After its producer's end a stream is watched for so long at most.
+constexpr Time kLongestRest = std::chrono::seconds(20);
+
+}  // namespace
+
+SimulatedStream::SimulatedStream(const StreamPlan& plan, StreamFindings& findings, Random& random)
+    : plan_(plan),
+      findings_(&findings),
+      random_(&random),
+      now_(plan.begin),
+      clock_(now_, [this](Time t) { advance_to(t); }),
+      stream_(plan.dimensions.size(), plan.window, plan.ring_capacity, plan.board_capacity,
+              plan.ingest, plan.kinds, plan.live),
+      check_(plan_, stream_, findings),
+      log_(stream_.board.reader),
+      producer_(plan_, stream_, check_, findings, random),
+      settled_(kSettledKept, plan.dimensions.size()),
+      controller_(stream_.board.reader, plan_, log_, findings, random),
+      seldom_(stream_.board.reader, plan_, log_, findings, random),
+      eager_(stream_.board.reader, plan_, log_, findings, random),
+      previewer_(stream_.board.reader, plan_, log_, findings, random),
+      next_tick_(now_),
+      next_seldom_(now_),
+      next_look_(now_),
+      next_step_(now_),
+      pace_(random.part(plan.live.freeze_ahead, 0.05, 0.5)) {
+  stream_.replace_producer();
+}
+
+bool SimulatedStream::is_over() const {
+  if (findings_->stream_failed()) return true;
+  const Time end = plan_.begin + plan_.length;
+  const bool rests = check_.head().finished && now_ > check_.end_of_motion();
+  return rests || now_ > end + kLongestRest;
+}
+
+void SimulatedStream::run() {
+  findings_->begin_stream(plan_);
+  while (!is_over()) {
+    advance_to(next_step_);
+    work();
+    schedule_solver();
+  }
+  read_settled_again(stream_.board.reader, plan_, settled_, *findings_);
+  if (!findings_->stream_failed()) check_.verify();
+  findings_->count_simulated(now_ - plan_.begin);
+}
+
+/// All but the solver goes on until t.
+void SimulatedStream::advance_to(Time t) {
+  while (!findings_->stream_failed()) {
+    const Time next = std::min({producer_.next(), next_tick_, next_seldom_, next_look_});
+    if (next > t) break;
+    now_ = std::max(now_, next);
+    if (producer_.next() == next) {
+      producer_.act(now_);
+    } else if (next_tick_ == next) {
+      read_now();
+    } else if (next_seldom_ == next) {
+      read_seldom();
+    } else {
+      look_around();
+    }
+  }
+  now_ = std::max(now_, t);
+}
+
+void SimulatedStream::read_now() {
+  next_tick_ = now_ + plan_.tick;
+  (void)log_.catch_up();
+  const bool had_values = controller_.has_read();
+  const auto status = controller_.sample(now_, settled_);
+  if (had_values && !ipc::has_values(status) && status != ipc::SampleStatus::busy) {
+    findings_->breach(Breach::no_answer,
+                      fmt::format("{} at now, {}", ipc::to_string(status), now_.count()));
+  }
+  check_kept_up(status);
+}
+
+/// What a controller reads at now has settled, or rests, if the solver has been stepped in time.
+void SimulatedStream::check_kept_up(ipc::SampleStatus status) {
+  const bool is_unsettled =
+      status == ipc::SampleStatus::provisional || status == ipc::SampleStatus::stopping;
+  if (!is_unsettled || now_ >= kept_up_until_ || now_ < controller_.settled_until()) return;
+  findings_->breach(Breach::unsettled_at_now, fmt::format("{}, settled until {}", now_.count(),
+                                                          controller_.settled_until().count()));
+}
+
+void SimulatedStream::read_seldom() {
+  next_seldom_ = now_ + random_->part(plan_.live.freeze_ahead, 20, 120);
+  (void)log_.catch_up();
+  (void)seldom_.sample(now_, settled_);
+}
+
+void SimulatedStream::look_around() {
+  next_look_ = now_ + random_->part(plan_.tick, 2, 20);
+  (void)log_.catch_up();
+  const Time ahead = plan_.live.freeze_ahead + plan_.interval * 10;
+  const Time t = random_->between(now_ - plan_.live.history - ahead, now_ + ahead);
+  (void)previewer_.preview(t, settled_);
+  if (random_->chance(0.2)) (void)eager_.sample(random_->between(now_, now_ + ahead), settled_);
+  if (random_->chance(0.05)) (void)eager_.preview(t, settled_);
+  if (random_->chance(0.003)) {
+    read_settled_again(stream_.board.reader, plan_, settled_, *findings_);
+  }
+}
+
+void SimulatedStream::work() {
+  if (findings_->stream_failed()) return;
+  if (random_->chance(plan_.step_trouble)) return step_in_trouble();
+  step();
+}
+
+/// Steps until a revision is not discarded: nothing holds the solver up but what was arranged.
+void SimulatedStream::step() {
+  check_.begin_step();
+  for (int tries = 0; tries < kMostMisses; ++tries) {
+    const ipc::Word misses = stream_.solver.head().misses;
+    const ipc::Word late = stream_.solver.head().revisions;
+    const auto result = stream_.solver.step(clock_);
+    check_step(result, misses, late);
+    clock_.restart();
+    if (!result.missed) return check_.check_stop();
+  }
+  findings_->breach(Breach::unbounded_step,
+                    fmt::format("{} steps discarded at {}", kMostMisses, now_.count()));
+}
+
+void SimulatedStream::check_step(const ipc::StepResult& result, ipc::Word misses, ipc::Word late) {
+  const Time began = clock_.first_reading();
+  if (result.damaged) findings_->breach(Breach::board_refused, "damaged in a step");
+  if (clock_.readings() > kMostReadings) {
+    findings_->breach(Breach::unbounded_step, fmt::format("{} readings", clock_.readings()));
+  }
+  if (stream_.solver.head().misses != misses + (result.missed ? 1 : 0)) {
+    findings_->breach(Breach::miscounted, fmt::format("{} misses", misses));
+  }
+  check_.note_items();
+  if (!log_.catch_up()) findings_->breach(Breach::board_refused, "revisions skipped");
+  check_.look(began);
+  const Time committed = clock_.left_reading(2);
+  if (result.published) {
+    const bool is_late =
+        check_.head().changed_from < Time::max() && check_.head().changed_from <= committed;
+    if (is_late) findings_->count(Event::late_commits);
+    was_in_time_ = committed == began;
+    const bool is_counted = stream_.solver.head().revisions == late + (is_late ? 1 : 0);
+    // A solver that takes over may count a commit of the one before it.
+    const bool takes_over = std::exchange(has_taken_over_, false);
+    if (kLateCommitsAreKept && !takes_over && !is_counted) {
+      findings_->breach(Breach::miscounted, fmt::format("{} late commits", late));
+    }
+  }
+  const bool keeps_up = !result.missed && was_in_time_ && check_.head().newest > 0;
+  kept_up_until_ = keeps_up ? began + plan_.live.freeze_ahead / 2 : Time::min();
+}
+
+/// Held up between two steps or within one, taken over, or both.
+void SimulatedStream::step_in_trouble() {
+  const Time pause = random_->part(plan_.live.freeze_ahead, 0.1,
+                                   random_->chance(0.2) ? random_->log_uniform(1, 200) : 3);
+  const std::size_t what = random_->below(6);
+  if (what <= 1) {
+    findings_->count(Event::solver_hold_ups);
+    clock_.stop_behind_reading(what + 1, pause);
+    step();
+  } else if (what == 2) {
+    findings_->count(Event::solver_hold_ups);
+    advance_to(now_ + pause);
+    step();
+  } else if (what == 3) {
+    clock_.stop_behind_reading(3, pause);
+    step();
+  } else if (what == 4) {
+    step_and_die();
+  } else {
+    replace_solver();
+    step();
+  }
+}
+
+/// Dies within a step, with any part of the revision stored. Readers go on meanwhile.
+void SimulatedStream::step_and_die() {
+  testing::TornPublication torn(stream_.board);
+  stream_.clock.time = now_;
+  (void)stream_.solver.step(stream_.clock);
+  const std::size_t how = random_->below(3);
+  if (how == 0) {
+    torn.take_back_commit();
+  } else if (how == 1) {
+    torn.take_back_rest();
+    check_.look(now_);
+  } else {
+    const double share = random_->unit();
+    torn.take_back([&] { return random_->chance(share); });
+  }
+  (void)log_.catch_up();
+  findings_->count(Event::torn_takeovers);
+  kept_up_until_ = Time::min();
+  if (random_->chance(0.7)) {
+    advance_to(now_ + random_->part(plan_.live.freeze_ahead, 0, random_->log_uniform(1, 100)));
+  }
+  replace_solver();
+  step();
+}
+
+void SimulatedStream::replace_solver() {
+  findings_->count(Event::takeovers);
+  has_taken_over_ = true;
+  try {
+    stream_.replace_solver();
+  } catch (const std::exception& error) {
+    findings_->breach(Breach::board_refused, error.what());
+  }
+}
+
+/// When the solver looks again: at its pace, but not where it has nothing to do.
+void SimulatedStream::schedule_solver() {
+  if (random_->chance(0.01)) pace_ = random_->part(plan_.live.freeze_ahead, 0.02, 0.6);
+  next_step_ = now_ + pace_;
+  const bool has_items = stream_.ring.reader.head() != stream_.solver.seen();
+  const Time wakes = has_items ? now_ : producer_.next();
+  next_step_ = std::max(next_step_, std::min(stream_.solver.due(), wakes));
+  next_step_ = std::min(next_step_, now_ + kLongestRest);
+}
+
+}  // namespace splinecast::campaign

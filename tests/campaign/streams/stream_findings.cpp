@@ -1,0 +1,169 @@
+#include "campaign/streams/stream_findings.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/output.hpp"
+
+namespace splinecast::campaign {
+namespace {
+
+constexpr std::array<std::string_view, kBreaches> kBreachNames{
+    "settled samples changed",
+    "position steps",
+    "velocity steps",
+    "samples that are no numbers",
+    "curves that do not end at rest",
+    "samples at now without an answer",
+    "items lost",
+    "waypoints missed",
+    "settled times that went back or came late",
+    "samples at now that had not settled",
+    "revised although nothing changed",
+    "changes not told",
+    "late commits or misses miscounted",
+    "stops that came late",
+    "unbounded steps",
+    "boards refused",
+    "ring items torn",
+    "curves not verified"};
+
+constexpr std::array<std::string_view, kEvents> kEventNames{"streams",
+                                                            "revisions",
+                                                            "starvations",
+                                                            "splices",
+                                                            "replacements",
+                                                            "cuts",
+                                                            "stops",
+                                                            "waypoints withdrawn",
+                                                            "deadline misses",
+                                                            "late commits",
+                                                            "takeovers",
+                                                            "takeovers of a torn publication",
+                                                            "continuations by a new producer",
+                                                            "producers that died within a call",
+                                                            "starts in motion",
+                                                            "finishes",
+                                                            "returns after a finish",
+                                                            "solvers held up",
+                                                            "waypoints interpolated",
+                                                            "knots compared",
+                                                            "settled samples read again",
+                                                            "ring items observed",
+                                                            "segments verified"};
+
+/// Refusals that a producer that is no attacker can come by.
+constexpr std::array kRefusalsToSee{
+    ipc::Refusal::past,          ipc::Refusal::duplicate,       ipc::Refusal::out_of_order,
+    ipc::Refusal::too_close,     ipc::Refusal::too_far_apart,   ipc::Refusal::too_late,
+    ipc::Refusal::lag_too_short, ipc::Refusal::zero_quaternion, ipc::Refusal::lacks_derivatives};
+/// Statuses of samples, but for those that take another process at the same time.
+constexpr std::array kStatusesToSee{
+    ipc::SampleStatus::settled,       ipc::SampleStatus::provisional, ipc::SampleStatus::stopping,
+    ipc::SampleStatus::holding,       ipc::SampleStatus::revised,     ipc::SampleStatus::no_data,
+    ipc::SampleStatus::before_history};
+
+constexpr std::array<std::string_view, kLimitClasses> kLimitNames{"no", "generous", "tight"};
+
+/// Breaches of one campaign that are told one by one.
+constexpr std::uint64_t kTold = 100;
+
+template <std::size_t N>
+std::uint64_t sum(const std::array<std::uint64_t, N>& counters) {
+  std::uint64_t all = 0;
+  for (const std::uint64_t count : counters) all += count;
+  return all;
+}
+
+}  // namespace
+
+std::string_view to_string(Breach breach) noexcept {
+  return kBreachNames[static_cast<std::size_t>(breach)];
+}
+
+std::string_view to_string(Event event) noexcept {
+  return kEventNames[static_cast<std::size_t>(event)];
+}
+
+void StreamFindings::begin_stream(const StreamPlan& plan) {
+  seed_ = plan.seed;
+  stream_failed_ = false;
+  description_ =
+      fmt::format("{}, lag {}, {} dimensions, {} limits", plan.window.interpolant.method->name,
+                  plan.window.settle, plan.dimensions.size(),
+                  kLimitNames[static_cast<std::size_t>(plan.limit_class)]);
+  count(Event::streams);
+  ++methods_[std::string(plan.window.interpolant.method->name)];
+  ++limits_[static_cast<std::size_t>(plan.limit_class)];
+  for (const core::Dimension& dimension : plan.dimensions) {
+    ++kinds_[static_cast<std::size_t>(dimension.kind)];
+  }
+}
+
+void StreamFindings::breach(Breach breach, const std::string& what) {
+  ++breaches_[static_cast<std::size_t>(breach)];
+  stream_failed_ = true;
+  if (sum(breaches_) <= kTold) {
+    apps::say(fmt::format("seed {} ({}): {}: {}", seed_, description_, to_string(breach), what));
+  }
+}
+
+nlohmann::json StreamFindings::found() const {
+  nlohmann::json all = nlohmann::json::object();
+  for (std::size_t i = 0; i < kBreaches; ++i) all[std::string(kBreachNames[i])] = breaches_[i];
+  return all;
+}
+
+/// The counters that a campaign is to see above 0.
+std::map<std::string, std::uint64_t> StreamFindings::required() const {
+  std::map<std::string, std::uint64_t> all;
+  for (std::size_t i = 0; i < kEvents; ++i) all.emplace(kEventNames[i], events_[i]);
+  for (const ipc::SampleStatus status : kStatusesToSee) {
+    all.emplace(fmt::format("samples {}", ipc::to_string(status)),
+                statuses_[static_cast<std::size_t>(status)]);
+  }
+  for (const ipc::Refusal refusal : kRefusalsToSee) {
+    all.emplace(fmt::format("refused as {}", ipc::to_string(refusal)),
+                refusals_[static_cast<std::size_t>(refusal)]);
+  }
+  for (std::size_t i = 0; i < ipc::kAppendStatuses; ++i) {
+    all.emplace(fmt::format("calls {}", ipc::to_string(static_cast<ipc::AppendStatus>(i))),
+                answers_[i]);
+  }
+  for (const core::Method* method : streaming_methods()) {
+    const auto found = methods_.find(std::string(method->name));
+    all.emplace(fmt::format("streams of {}", method->name),
+                found == methods_.end() ? 0 : found->second);
+  }
+  constexpr std::array kKinds{"linear", "wrap", "quaternion", "quaternion-wxyz"};
+  for (std::size_t i = 0; i < kKinds.size(); ++i) {
+    all.emplace(fmt::format("dimensions {}", kKinds[i]), kinds_[i]);
+  }
+  for (std::size_t i = 0; i < kLimitNames.size(); ++i) {
+    all.emplace(fmt::format("streams with {} limits", kLimitNames[i]), limits_[i]);
+  }
+  return all;
+}
+
+nlohmann::json StreamFindings::coverage() const {
+  nlohmann::json all = required();
+  all["simulated seconds"] = simulated_;
+  all["samples"] = sum(statuses_);
+  all["refusals"] = sum(refusals_);
+  for (std::size_t i = 0; i < refusals_.size(); ++i) {
+    if (refusals_[i] == 0) continue;
+    all[fmt::format("refused as {}", ipc::to_string(static_cast<ipc::Refusal>(i)))] = refusals_[i];
+  }
+  return all;
+}
+
+std::vector<std::string> StreamFindings::not_covered() const {
+  std::vector<std::string> names;
+  for (const auto& [name, count] : required()) {
+    if (count == 0) names.push_back(name);
+  }
+  return names;
+}
+
+}  // namespace splinecast::campaign

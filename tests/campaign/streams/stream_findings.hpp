@@ -1,0 +1,118 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "campaign/streams/stream_plan.hpp"
+#include "splinecast/ipc/status.hpp"
+
+namespace splinecast::campaign {
+
+/// A promise that a simulated stream can break.
+enum class Breach : std::uint8_t {
+  settled_changed,   ///< a settled sample read otherwise later
+  position_step,     ///< where two settled segments meet
+  velocity_step,     ///< likewise
+  not_finite,        ///< a sample with values that are no numbers
+  not_at_rest,       ///< the newest segment moves at its end
+  no_answer,         ///< a sample at now without values although nobody overtook the reader
+  items_lost,        ///< consumed ≠ interpolated + refused + withdrawn + controls
+  waypoint_missed,   ///< an interpolated waypoint that the curve does not pass through
+  settled_back,      ///< settled_until went back, or less than freeze-ahead was settled
+  unsettled_at_now,  ///< a solver in time, and a sample at now that has not settled
+  false_revised,     ///< `revised` although nothing that was sampled has changed
+  change_not_told,   ///< what was sampled has changed, without `revised`
+  miscounted,        ///< a late commit or a deadline miss that was not counted
+  stop_late,         ///< a stop did not take effect in the step after it
+  unbounded_step,    ///< more clock readings or items than a step may take
+  board_refused,     ///< a solver found damage on a board that only solvers had written
+  ring_torn,         ///< an item of the ring is not the one that was sent
+  not_verified,      ///< solved again, the curve has other bits
+};
+inline constexpr std::size_t kBreaches = 18;
+[[nodiscard]] std::string_view to_string(Breach breach) noexcept;
+
+/// What happened to simulated streams: each is to happen in a campaign.
+enum class Event : std::uint8_t {
+  streams,
+  revisions,
+  starvations,
+  splices,
+  replacements,
+  cuts,
+  stops,
+  withdrawals,
+  deadline_misses,
+  late_commits,
+  takeovers,
+  torn_takeovers,
+  producer_continuations,
+  torn_appends,
+  starts_in_motion,
+  finishes,
+  returns_after_finish,
+  solver_hold_ups,
+  waypoints_interpolated,
+  knots_compared,
+  settled_samples_read_again,
+  items_observed,
+  segments_verified,
+};
+inline constexpr std::size_t kEvents = 23;
+[[nodiscard]] std::string_view to_string(Event event) noexcept;
+
+/// What simulated streams did and broke, summed over all of them.
+class StreamFindings {
+ public:
+  /// The stream that is being simulated from now on.
+  void begin_stream(const StreamPlan& plan);
+  [[nodiscard]] std::uint64_t seed() const noexcept { return seed_; }
+
+  void count(Event event, std::uint64_t times = 1) noexcept {
+    events_[static_cast<std::size_t>(event)] += times;
+  }
+  void count(ipc::SampleStatus status) noexcept { ++statuses_[static_cast<std::size_t>(status)]; }
+  void count(ipc::AppendStatus status) noexcept { ++answers_[static_cast<std::size_t>(status)]; }
+  void count(ipc::Refusal refusal) noexcept { ++refusals_[static_cast<std::size_t>(refusal)]; }
+  void count_simulated(core::Time time) noexcept { simulated_ += core::to_seconds(time); }
+
+  /// Counts a breach, says on standard error what it is and of which seed; the stream has failed.
+  void breach(Breach breach, const std::string& what);
+  [[nodiscard]] bool stream_failed() const noexcept { return stream_failed_; }
+
+  /// Seconds of simulated time, and streams.
+  [[nodiscard]] double simulated() const noexcept { return simulated_; }
+  [[nodiscard]] std::uint64_t streams() const noexcept {
+    return events_[static_cast<std::size_t>(Event::streams)];
+  }
+
+  /// Breaches by name, with `extra`, more counters of the same kind.
+  [[nodiscard]] nlohmann::json found() const;
+  /// Everything that was counted, by name.
+  [[nodiscard]] nlohmann::json coverage() const;
+  /// The counters that are 0 but must not be.
+  [[nodiscard]] std::vector<std::string> not_covered() const;
+
+ private:
+  [[nodiscard]] std::map<std::string, std::uint64_t> required() const;
+
+  std::uint64_t seed_ = 0;
+  std::string description_;  ///< of the stream, for messages
+  bool stream_failed_ = false;
+  double simulated_ = 0;
+  std::array<std::uint64_t, kBreaches> breaches_{};
+  std::array<std::uint64_t, kEvents> events_{};
+  std::array<std::uint64_t, ipc::kSampleStatuses> statuses_{};
+  std::array<std::uint64_t, ipc::kAppendStatuses> answers_{};
+  std::array<std::uint64_t, 64> refusals_{};
+  std::array<std::uint64_t, core::kDimensionKinds> kinds_{};
+  std::array<std::uint64_t, kLimitClasses> limits_{};
+  std::map<std::string, std::uint64_t> methods_;
+};
+
+}  // namespace splinecast::campaign

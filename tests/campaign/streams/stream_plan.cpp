@@ -1,0 +1,187 @@
+#include "campaign/streams/stream_plan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "campaign/streams/corrected.hpp"
+#include "splinecast/core/limits.hpp"
+#include "splinecast/core/smoothing_rows.hpp"
+
+namespace splinecast::campaign {
+namespace {
+
+using core::Time;
+using std::chrono::hours;
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+using std::chrono::seconds;
+
+constexpr std::size_t kMostDimensions = 9;
+constexpr double kShareOfQuaternions = 0.3;
+constexpr double kShareOfWraps = 0.3;
+
+Time log_between(Random& random, Time low, Time high) {
+  return Time(static_cast<std::int64_t>(
+      random.log_uniform(static_cast<double>(low.count()), static_cast<double>(high.count()))));
+}
+
+std::vector<core::Dimension> make_dimensions(Random& random) {
+  const std::size_t count = 1 + random.below(kMostDimensions);
+  const bool all_linear = random.chance(0.5);
+  std::vector<core::Dimension> dimensions;
+  while (dimensions.size() < count) {
+    if (all_linear) {
+      dimensions.push_back({});
+    } else if (count - dimensions.size() >= core::kQuaternionSize &&
+               random.chance(kShareOfQuaternions)) {
+      const auto kind = random.chance(0.5) ? core::DimensionKind::quaternion
+                                           : core::DimensionKind::quaternion_wxyz;
+      dimensions.insert(dimensions.end(), core::kQuaternionSize, {.kind = kind});
+    } else if (random.chance(kShareOfWraps)) {
+      constexpr std::array kPeriods{1.0, 6.283185307179586, 360.0, 1e-6};
+      dimensions.push_back(
+          {.kind = core::DimensionKind::wrap, .period = kPeriods[random.below(kPeriods.size())]});
+    } else {
+      dimensions.push_back({});
+    }
+  }
+  return dimensions;
+}
+
+core::Interpolant make_interpolant(std::uint64_t seed, Time interval, Random& random) {
+  const auto& methods = streaming_methods();
+  core::Interpolant interpolant{.method = methods[seed % methods.size()]};
+  interpolant.time_scale = random.log_uniform(1e-3, 1e3);
+  const double h = core::to_seconds(interval);
+  interpolant.lambda = random.chance(0.1) ? 0 : h * h * h * random.log_uniform(1e-3, 1e3);
+  return interpolant;
+}
+
+std::size_t make_settle(const core::Interpolant& interpolant, Random& random, bool& forced) {
+  const core::Method& method = *interpolant.method;
+  if (random.chance(0.4)) return core::default_settle(method);
+  if (method.family == core::Family::smoothing) {
+    forced = kTakesAnyMagnitude && random.chance(0.3);
+    const auto least = static_cast<std::size_t>(core::smoothing_lag(0, 1));
+    return forced ? random.below(core::kMaxSettle + 1)
+                  : least + random.below(core::kMaxSettle + 1 - least);
+  }
+  if (method.converges()) return random.below(17);
+  return method.look_ahead + random.below(4);
+}
+
+core::Condition make_start(Random& random) {
+  constexpr std::array kKinds{core::ConditionKind::rest, core::ConditionKind::natural,
+                              core::ConditionKind::own};
+  if (random.chance(0.8)) return {.kind = core::ConditionKind::halt, .value = {}};
+  return {.kind = kKinds[random.below(kKinds.size())], .value = {}};
+}
+
+/// An end condition; where it has values they are small, and 0 in quaternions.
+core::Condition make_end(const StreamPlan& plan, Random& random) {
+  constexpr std::array kKinds{core::ConditionKind::rest, core::ConditionKind::natural,
+                              core::ConditionKind::own, core::ConditionKind::velocity,
+                              core::ConditionKind::acceleration};
+  if (random.chance(0.6)) return {.kind = core::ConditionKind::halt, .value = {}};
+  core::Condition end{.kind = kKinds[random.below(kKinds.size())], .value = {}};
+  if (end.kind < core::ConditionKind::velocity || end.kind > core::ConditionKind::acceleration) {
+    return end;
+  }
+  for (const core::Dimension& dimension : plan.dimensions) {
+    const bool turns = dimension.kind >= core::DimensionKind::quaternion;
+    end.value.push_back(turns ? 0 : plan.magnitude * random.uniform(-1, 1));
+  }
+  return end;
+}
+
+/// Limits of so many times the accelerations of the motion; some dimensions may have none.
+std::vector<double> make_limits(const StreamPlan& plan, double times, Random& random) {
+  std::vector<double> limits;
+  for (const core::Dimension& dimension : plan.dimensions) {
+    double size = plan.magnitude;
+    if (dimension.kind == core::DimensionKind::wrap) size = dimension.period;
+    if (dimension.kind >= core::DimensionKind::quaternion) size = 1;
+    const double limit = size * plan.frequency * plan.frequency * times;
+    limits.push_back(random.chance(0.1) ? 0 : std::clamp(limit, 1e-90, 1e90));
+  }
+  return limits;
+}
+
+core::WindowOptions make_window(const StreamPlan& plan, Random& random) {
+  core::WindowOptions window{.interpolant = make_interpolant(plan.seed, plan.interval, random)};
+  window.settle = make_settle(window.interpolant, random, window.force_lag);
+  constexpr std::array kTails{core::Tail::bessel, core::Tail::parabolic, core::Tail::natural,
+                              core::Tail::rest};
+  window.tail = kTails[random.below(kTails.size())];
+  window.start = make_start(random);
+  window.held_before_start = true;
+  window.stop_time = log_between(random, milliseconds(5), seconds(1));
+  if (plan.limit_class == LimitClass::none) return window;
+  const bool is_tight = plan.limit_class == LimitClass::tight;
+  window.stop_time = core::kLeastStopTime;
+  window.max_acceleration = make_limits(
+      plan, is_tight ? random.log_uniform(0.5, 20) : random.log_uniform(100, 1e5), random);
+  return window;
+}
+
+void choose_times(StreamPlan& plan, Random& random) {
+  plan.begin = random.chance(0.1) ? Time(hours(24 * 365 * 50)) : Time(seconds(1000));
+  plan.interval = log_between(random, microseconds(100), seconds(1));
+  plan.length =
+      std::max<Time>(plan.interval * (30 + static_cast<int>(random.below(400))), milliseconds(50));
+  plan.tick = milliseconds(1);
+  if (plan.length < seconds(2)) plan.tick = log_between(random, microseconds(50), milliseconds(2));
+  const Time least = std::max<Time>(microseconds(500), plan.length / 20'000);
+  plan.live.freeze_ahead = log_between(random, least, std::max<Time>(least, milliseconds(50)));
+  plan.live.min_splice =
+      random.chance(0.5) ? plan.live.freeze_ahead : random.part(plan.live.freeze_ahead, 0.3, 3);
+  plan.live.history =
+      random.chance(0.2) ? Time(0) : log_between(random, milliseconds(5), seconds(1));
+  if (random.chance(0.3)) plan.ingest.min_interval = random.part(plan.interval, 0.1, 1);
+  if (random.chance(0.3)) plan.ingest.max_interval = random.part(plan.interval, 2, 30);
+}
+
+void choose_motion(StreamPlan& plan, Random& random) {
+  plan.frequency = 1 / (core::to_seconds(plan.interval) * random.uniform(2, 30));
+  plan.magnitude = random.log_uniform(1e-3, 1e3);
+  if (random.chance(0.2)) plan.magnitude = random.log_uniform(1e-12, 1e12);
+  if (kTakesAnyMagnitude && random.chance(0.2)) plan.magnitude = random.log_uniform(1e-300, 1e90);
+  if (random.chance(0.3)) plan.offset = random.uniform(-1000, 1000);
+}
+
+}  // namespace
+
+const std::vector<const core::Method*>& streaming_methods() {
+  static const std::vector<const core::Method*> kMethods = [] {
+    std::vector<const core::Method*> found;
+    for (const core::Method& method : core::methods()) {
+      if (method.streams()) found.push_back(&method);
+    }
+    return found;
+  }();
+  return kMethods;
+}
+
+StreamPlan make_plan(std::uint64_t seed, Random& random) {
+  StreamPlan plan{.seed = seed, .dimensions = make_dimensions(random)};
+  plan.kinds = core::DimensionKinds(plan.dimensions);
+  choose_times(plan, random);
+  choose_motion(plan, random);
+  const double limits = random.unit();
+  plan.limit_class = limits < 0.5    ? LimitClass::none
+                     : limits < 0.75 ? LimitClass::generous
+                                     : LimitClass::tight;
+  plan.window = make_window(plan, random);
+  plan.ring_capacity = std::size_t{2} << random.below(8);
+  const std::size_t least = ipc::StreamSolver::min_capacity(plan.window.settle);
+  plan.board_capacity = std::bit_ceil(least) << random.below(5);
+  plan.step_trouble = random.chance(0.3) ? 0 : random.log_uniform(1e-3, 0.1);
+  plan.starts_in_motion = random.chance(0.3);
+  plan.end = make_end(plan, random);
+  return plan;
+}
+
+}  // namespace splinecast::campaign

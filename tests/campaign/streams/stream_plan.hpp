@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "campaign/streams/random.hpp"
+#include "splinecast/core/dimension_kind.hpp"
+#include "splinecast/core/sliding_window.hpp"
+#include "splinecast/ipc/stream_solver.hpp"
+#include "splinecast/ipc/waypoint_ring.hpp"
+
+namespace splinecast::campaign {
+
+/// What acceleration limits a stream has, next to its motion's own accelerations.
+enum class LimitClass : std::uint8_t { none, generous, tight };
+inline constexpr std::size_t kLimitClasses = 3;
+
+/// Everything that is fixed about one simulated live stream.
+struct StreamPlan {
+  std::uint64_t seed = 0;
+  std::vector<core::Dimension> dimensions{};
+  core::DimensionKinds kinds{};
+  core::WindowOptions window{};
+  LimitClass limit_class = LimitClass::none;
+  ipc::LiveOptions live{};
+  ipc::IngestLimits ingest{};
+  std::size_t ring_capacity = 0;
+  std::size_t board_capacity = 0;
+  core::Time begin{};       ///< the clock when the stream is made
+  core::Time interval{};    ///< between two waypoints
+  core::Time length{};      ///< until its producer finishes
+  core::Time tick{};        ///< of the controller
+  double frequency = 0;     ///< of the motion, rad/s
+  double magnitude = 1;     ///< of positions
+  double offset = 0;        ///< of positions, in magnitudes
+  double step_trouble = 0;  ///< share of the solver's steps in which something goes wrong
+  bool starts_in_motion = false;
+  core::Condition end{};  ///< that it is finished with
+};
+
+/// The plan of a seed; `random` is of that seed, too.
+[[nodiscard]] StreamPlan make_plan(std::uint64_t seed, Random& random);
+
+/// The methods that a live stream can have.
+[[nodiscard]] const std::vector<const core::Method*>& streaming_methods();
+
+}  // namespace splinecast::campaign

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "campaign/streams/stream_plan.hpp"
+#include "splinecast/core/waypoint.hpp"
+
+namespace splinecast::campaign {
+
+/// The values of a simulated producer's waypoints: a smooth motion, or something else for a while.
+class WaypointSource {
+ public:
+  WaypointSource(const StreamPlan& plan, Random& random);
+
+  /// Decides what comes from now on.
+  void change_mode();
+
+  /// The waypoint at t, with derivatives if the method takes them; a view until the next call.
+  [[nodiscard]] core::Waypoint at(core::Time t);
+
+  /// The state of the smooth motion at t, with all derivatives; a view until the next call.
+  [[nodiscard]] core::Waypoint smooth_at(core::Time t);
+
+ private:
+  enum class Mode { smooth, quantised, repeated, noisy };
+  struct Wave {
+    double amplitude = 0;
+    double frequency = 0;
+    double phase = 0;
+    double offset = 0;
+  };
+  struct Values {
+    double x = 0, v = 0, a = 0;
+  };
+  [[nodiscard]] static Values wave_at(const Wave& wave, double s);
+  void write_motion(core::Time t);
+  void write_quaternion(std::size_t d, const Values& angle);
+  void spoil();
+  [[nodiscard]] core::Waypoint view(core::Time t, bool with_derivatives) const;
+
+  const StreamPlan* plan_;
+  Random* random_;
+  Mode mode_ = Mode::smooth;
+  double grid_ = 1;  ///< of quantised values, in amplitudes
+  std::vector<Wave> waves_;
+  std::vector<double> position_, velocity_, acceleration_;
+};
+
+}  // namespace splinecast::campaign
