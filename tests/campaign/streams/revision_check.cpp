@@ -71,6 +71,7 @@ void RevisionCheck::look(core::Time now) {
   check_settled_until(before, now);
   take_items(before);
   check_end();
+  check_verifiable();
   count_events(before);
   settled_.look();
   check_settled_segments();
@@ -122,26 +123,40 @@ void RevisionCheck::count_events(const Head& before) {
   if (goes_back) findings_->count(Event::returns_after_finish);
 }
 
+/// A board that has overwritten the waypoints before a splice shapes it without them, of which its
+/// segments say nothing.
+void RevisionCheck::check_verifiable() {
+  constexpr Word kLookBack = 16;
+  constexpr Word kKnotsThatShape = 3;
+  const bool is_short = head_.first > 1 && head_.run < head_.first + kLookBack;
+  if (head_.is_entered && head_.run_knots <= kKnotsThatShape && is_short) is_verifiable_ = false;
+}
+
 /// What became of the items that this revision consumed.
 void RevisionCheck::take_items(const Head& before) {
   const auto& items = items_.items();
   const bool withdraws = head_.withdrawn > before.withdrawn;
-  bool is_replaced = false;
   for (Word item = before.consumed; item < head_.consumed; ++item) {
     const core::Time t = items.waypoint(item).time;
     if (items.is_taken(item, ItemKind::waypoint)) pending_.push_back({.item = item, .time = t});
     if (!items.is_taken(item, ItemKind::replace)) continue;
     findings_->count(Event::replacements);
+    // Entered where it begins, a curve in motion begins with quaternions at unit length, and
+    // without a negative 0: neither is recorded.
+    is_verifiable_ = is_verifiable_ && head_.run > 1;
     if (t < end_) findings_->count(Event::cuts);
     std::erase_if(pending_, [t](const Pending& waypoint) { return waypoint.time >= t; });
     if (withdraws) forget_from(before.consumed);
-    is_replaced = true;
   }
-  // The replacement itself may have to wait for room on the board.
+  const bool is_replaced = head_.controls > before.controls;
   if (!withdraws || is_replaced) return check_passed(before);
+  if (kWithdrawsOnlyWhatIsReplaced) {
+    breach(Breach::items_lost, fmt::format("{} items withdrawn, and nothing in their place",
+                                           head_.withdrawn - before.withdrawn));
+  }
+  // The replacement waits for room on the board, or is refused.
   forget_from(before.consumed);
-  // Refused later, it leaves waypoints that nobody can tell apart from lost ones.
-  is_verifiable_ = is_verifiable_ && kWithdrawsOnlyWhatIsReplaced;
+  is_verifiable_ = false;
   check_passed(before);
 }
 
@@ -252,8 +267,8 @@ void RevisionCheck::check_end() {
   }
 }
 
-/// A stop that lies behind the newest knot waits until the curve comes there; any other one takes
-/// effect in the first step.
+/// A stop takes effect in the first step, but for one behind the newest knot: that waits until the
+/// curve comes there or its time comes, and one step more at most.
 void RevisionCheck::check_stop() {
   if (!due_stop_) return;
   const Stop stop = *due_stop_;
@@ -262,10 +277,9 @@ void RevisionCheck::check_stop() {
   // The first waypoint comes before the stop: that takes effect one step later.
   if (head_.newest == 0) return;
   if (!had_curve_ && head_.consumed <= stop.item) return;
-  const core::Time effect = std::max(stop.time, stop.effect.value_or(head_.settled_until));
-  due_stop_->effect = effect;
-  const bool is_taken = head_.consumed > stop.item;
-  if (!is_taken && head_.settled_until <= effect) return;
+  const bool is_due = head_.settled_until > stop.time;
+  if (head_.consumed <= stop.item && (!is_due || due_stop_->steps_due++ == 0)) return;
+  const core::Time effect = std::max(stop.time, head_.settled_until);
   due_stop_.reset();
   if (!stream_->board.reader.copy_segment(head_.newest, head_.revision, copy_)) return;
   const auto above = std::span(copy_.coefficients)
@@ -273,7 +287,7 @@ void RevisionCheck::check_stop() {
                          .subspan(plan_->dimensions.size());
   const bool moves = std::ranges::any_of(above, [](double c) { return c != 0; });
   const bool starts_later = copy_.number == 1;  // it comes to rest from the start of the motion
-  if (!moves || starts_later) return;
+  if (head_.consumed > stop.item && (!moves || starts_later)) return;
   const bool has_limits = !plan_->window.max_acceleration.empty();
   if (copy_.left > effect || (!has_limits && copy_.right > effect + plan_->window.stop_time)) {
     breach(Breach::stop_late,

@@ -56,7 +56,7 @@ class RevisionCheck {
   struct Stop {
     ipc::Word item = 0;
     core::Time time{};
-    std::optional<core::Time> effect{};  ///< from when on the curve comes to rest, once known
+    int steps_due = 0;  ///< in which it was not taken although its time had come
   };
 
   void check_counts(const ipc::Head& before);
@@ -69,6 +69,7 @@ class RevisionCheck {
   void check_waypoint_at(const ipc::SegmentCopy& segment);
   void check_last_waypoint(const ipc::SegmentCopy& segment);
   void check_end();
+  void check_verifiable();
   void breach(Breach breach, const std::string& what);
 
   const StreamPlan* plan_;
