@@ -118,6 +118,7 @@ std::span<const core::StandingWaypoint> PublishedCurve::standing_before(Word num
   const std::size_t size = SegmentBoardReader::kKnotValues * window_.dimensions();
   return find_standing(
       standing_, number, std::max<Word>(first_, 1), t, [&](Word candidate, std::size_t found) {
+        if (candidate > newest_) return core::StandingWaypoint{t, {}};  // a hold, not committed
         const auto values = std::span(standing_values_).subspan(found * size, size);
         const core::Knot read = knot(candidate, r, values);
         return core::StandingWaypoint{read.time, read.waypoint};
@@ -179,7 +180,7 @@ void PublishedCurve::enter(core::Time t) noexcept {
                  .position = state_.position(),
                  .velocity = state_.velocity(),
                  .acceleration = state_.acceleration()},
-                standing_before(std::min(run_ - 1, newest_), t, r));
+                standing_before(run_ - 1, t, r));
   settled_written_ = 0;
 }
 
