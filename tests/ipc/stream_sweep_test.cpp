@@ -205,8 +205,8 @@ TEST(StreamSweep, ALiveStreamSettlesWithoutWaypointsUntilItRests) {
 TEST(StreamSweep, MoreThanABatchIsSweptAgainAtOnce) {
   const TestStream stream;
   Producer producer(stream.name(),
-                    {.dimensions = 1, .clock = StreamClock::recorded, .capacity = 256});
-  for (int i = 0; i < 256; ++i) append_at(producer, Time(1'000'000) * i);
+                    {.dimensions = 1, .clock = StreamClock::recorded, .capacity = 512});
+  for (int i = 0; i < 300; ++i) append_at(producer, Time(1'000'000) * i);
   Told told({stream.name()});
   ASSERT_TRUE(told.await_news(SweepNews::solving, stream.name()));
   while (told.sweep.sweep(told.clock)) {
