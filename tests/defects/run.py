@@ -33,6 +33,7 @@ PROJECT = DEFECTS.parent.parent
 PAGE = DEFECTS / "README.md"
 RESULTS = DEFECTS / "results.json"
 FIELDS = ["Defect", "Cause", "Correction", "Test"]
+TARGETS = ["splinecast_program", "splinecast_tests", "splinecast_byteflip"]
 TEST_SECONDS = 180
 HANG = "did not end"
 
@@ -102,10 +103,14 @@ def build(tree):
          "-DSPLINECAST_UNITY=OFF", "-DSPLINECAST_BUILD_BENCH=OFF", "-DSPLINECAST_WERROR=ON", *launcher],
         cwd=tree, text=True, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     if ended.returncode == 0:
-        ended = subprocess.run(["ninja", "-C", "build"], cwd=tree, text=True, check=False,
+        ended = subprocess.run(["ninja", "-C", "build", *TARGETS], cwd=tree, text=True, check=False,
                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                env={**os.environ, "CCACHE_BASEDIR": str(tree), "CCACHE_NOHASHDIR": "1"})
     return ended.stdout if ended.returncode != 0 else None
+
+
+class Unusable(Exception):
+    """A patch or test that shows nothing."""
 
 
 def run_test(tree, test):
@@ -121,9 +126,9 @@ def run_test(tree, test):
     except subprocess.TimeoutExpired:
         return False, HANG
     if "SKIPPED" in ended.stdout or "***Skipped" in ended.stdout:
-        sys.exit(f"{test}: skipped on this machine, so that it shows nothing")
+        raise Unusable(f"{test} is skipped on this machine")
     if "[==========] 0 tests" in ended.stdout or "No tests were found" in ended.stdout:
-        sys.exit(f"{test}: there is no such test")
+        raise Unusable(f"there is no test {test}")
     return ended.returncode == 0, why_failed(ended.stdout, ended.returncode)
 
 
@@ -142,47 +147,70 @@ def take_out(tree, name, tests):
     """Runs the tests of one correction without it."""
     refused = patch(tree, name)
     if refused is not None:
-        sys.exit(f"{name}.patch does not apply:\n{refused}")
+        raise Unusable(f"{name}.patch does not apply:\n{refused}")
     try:
         output = build(tree)
         if output is not None:
-            sys.exit(f"without the correction of {name} the tree does not build:\n{output[-4000:]}")
+            raise Unusable(f"without the correction the tree does not build:\n{output[-4000:]}")
         return {test: run_test(tree, test) for test in tests}
     finally:
         patch(tree, name, "-R")
 
 
+def fails_as_it_is(tree, tests):
+    """Of these tests, those that show nothing, as they do not pass with all corrections in place."""
+    found = set()
+    for test in tests:
+        try:
+            passed, why = run_test(tree, test)
+        except Unusable as error:
+            passed, why = False, error
+        if not passed:
+            print(f"{test}: does not pass with all corrections in place: {why}", file=sys.stderr, flush=True)
+            found.add(test)
+    return found
+
+
+def outcome(tree, name, tests, unusable):
+    """What each test of a correction says without it: "passes", or why it fails."""
+    try:
+        without = take_out(tree, name, tests)
+    except Unusable as error:
+        print(f"{name}: {error}", file=sys.stderr, flush=True)
+        return {test: "passes" for test in tests}
+    return {test: "passes" if passed or test in unusable else why for test, (passed, why) in without.items()}
+
+
 def run(tree, names):
     patches = read_patches()
-    names = names or list(patches)
+    tests = {name: patches[name]["Test"].split() for name in names or patches}
     tree.mkdir(parents=True, exist_ok=True)
     copy_sources(tree)
     begin = time.monotonic()
     output = build(tree)
     if output is not None:
         sys.exit(output[-4000:])
-    results = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {"patches": {}}
+    unusable = fails_as_it_is(tree, sorted(set(sum(tests.values(), []))))
+    results = read_results()
+    results["patches"] = {name: results["patches"][name] for name in patches if name in results["patches"]}
     all_fail = True
-    for name in names:
-        tests = patches[name]["Test"].split()
-        for test in tests:
-            passed, why = run_test(tree, test)
-            if not passed:
-                sys.exit(f"{test} fails with the correction of {name} in place: {why}")
-    for name in names:
-        without = take_out(tree, name, patches[name]["Test"].split())
-        results["patches"][name] = {test: "passes" if passed else why for test, (passed, why) in without.items()}
-        fails = not any(passed for passed, _ in without.values())
+    for name in tests:
+        found = outcome(tree, name, tests[name], unusable)
+        fails = "passes" not in found.values()
         all_fail = all_fail and fails
         print(f"{name}: {'fails' if fails else 'PASSES'} without the correction", flush=True)
-        for test, why in results["patches"][name].items():
+        for test, why in found.items():
             print(f"    {test}: {why}", flush=True)
-    results["patches"] = {name: results["patches"][name] for name in patches if name in results["patches"]}
-    if len(names) == len(patches):
-        results["minutes"] = round((time.monotonic() - begin) / 60, 1)
-    RESULTS.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
+        results["patches"][name] = found
+        if not names:
+            results["minutes"] = round((time.monotonic() - begin) / 60, 1)
+        RESULTS.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
     PAGE.write_text(make_page(), encoding="utf-8")
     sys.exit(0 if all_fail else 1)
+
+
+def read_results():
+    return json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {"patches": {}}
 
 
 def cell(text):
@@ -191,7 +219,7 @@ def cell(text):
 
 def make_page():
     patches = read_patches()
-    results = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {"patches": {}}
+    results = read_results()
     failed = sum(all(why != "passes" for why in results["patches"][name].values())
                  for name in patches if name in results["patches"])
     lines = [HEAD.format(failed=failed, all=len(patches), minutes=results.get("minutes", "-"))]

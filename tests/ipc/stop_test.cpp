@@ -68,6 +68,25 @@ TEST(Stop, DoesNotWaitForRoomOnTheBoard) {
   expect_immediate_stop(live);
 }
 
+/// Waypoints are withdrawn in the revision that replaces them, also if that must wait for room.
+TEST(Stop, OrReplacementThatWaitsForRoomWithdrawsNothing) {
+  for (int before_newest = 1; before_newest < 40; before_newest += 5) {
+    Live live({.settle = 2}, 64, {.history = seconds(10)});
+    live.put_all(50, 2000);
+    const Time newest = live.solver.head().newest_knot;
+    const Time t = newest - milliseconds(before_newest);
+    ASSERT_EQ(live.replace(t, {newest + milliseconds(50)}), AppendStatus::accepted);
+    Head before = live.solver.head();
+    for (; live.clock.time < newest + seconds(1); live.clock.time += milliseconds(1)) {
+      live.solver.step(live.clock);
+      const Head& head = live.solver.head();
+      ASSERT_EQ(head.withdrawn > before.withdrawn, head.controls > before.controls);
+      before = head;
+    }
+    expect_balance(before);
+  }
+}
+
 TEST(Stop, AtATimeAheadTakesEffectThereAtTheLatest) {
   Live live({.settle = 2}, 64, {.history = seconds(10)});
   live.put_all(50, 2000);
