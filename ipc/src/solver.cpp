@@ -360,13 +360,13 @@ core::Time Solver::due() const noexcept {
 }
 
 void Solver::wait(core::Time timeout) noexcept {
-  if (timeout <= core::Time::zero()) return;
   if (!attached()) {
     std::this_thread::sleep_for(std::min(timeout, kPoll));
     return;
   }
   Attachment& at = *impl_->attachment;
   (void)at.board.lock.hold();
+  if (timeout <= core::Time::zero()) return;
   // The store and the load are seq_cst, as are the producer's store of head and load of sleeping:
   // either this load sees the new head, or the producer sees that somebody is to be woken.
   at.board.writer.store_sleeping(true);
