@@ -27,8 +27,8 @@ struct LatencyResult {
   nlohmann::ordered_json solver;     ///< its counters
 };
 
-/// That SCHED_FIFO processes which spin are stopped by the kernel, or may be, so that the figures
-/// hold it; empty if they are not, or do not spin.
+/// A warning that the kernel stops spinning SCHED_FIFO processes, or may do so, which the figures
+/// then include; empty if it does not, or if none spin.
 [[nodiscard]] std::string throttling_warning(const LatencyOptions& options,
                                              const Environment& environment);
 

@@ -158,7 +158,8 @@ class Replay {
     return false;
   }
 
-  /// How long the stream that was made again will still move: no solver takes it up before.
+  /// How long the old motion of a stream that was made again still lasts: no solver takes the
+  /// stream up before its end.
   [[nodiscard]] core::Time old_motion() const {
     const core::Time end =
         ipc::end_of_old_motion(options_.stream, producer_.stream_id(), options_.trust);
@@ -166,7 +167,7 @@ class Replay {
     ipc::require_near_end(options_.stream, end, now);
     if (end <= now) return core::Time::zero();
     if (!options_.quiet) {
-      say(fmt::format("'{}': waits {:.1f} s for the end of the motion before", options_.stream,
+      say(fmt::format("'{}': waits {:.1f} s for the end of the earlier motion", options_.stream,
                       core::to_seconds(end - now)));
     }
     return end - now;
@@ -228,9 +229,9 @@ class Replay {
     return !stopped_;
   }
 
-  /// Appends a waypoint, once it is known of so many items before it what became of them that no
-  /// refusal can be overwritten unseen. (A ring of more items than the board keeps refusals may
-  /// hold more.)
+  /// Appends a waypoint unless so many items before it are undecided that a refusal could be
+  /// overwritten unseen. (In a ring of more items than the board keeps refusals, there may be
+  /// more.)
   ipc::AppendStatus append(const core::Waypoint& waypoint) {
     look_for_refusals();
     const bool is_behind = producer_.appended() - found_.consumed >= ipc::kRefusalsKept &&

@@ -36,7 +36,7 @@ class Sampling {
       : options_(options),
         times_(std::move(times)),
         reader_(attach_reader(options.stream, options.wait, options.trust)),
-        // What is sampled as time goes on can be followed; what is not goes into the file at once.
+        // Samples at a rate can be followed in the file; those of --at are written as a whole.
         output_(options.output, options.at.empty() ? Writing::growing : Writing::whole),
         state_(reader_.dimensions()),
         none_(reader_.dimensions()),
@@ -174,7 +174,7 @@ class Sampling {
   bool patient_ = true;  ///< whether what is not settled is still waited for
 };
 
-/// The last sample's time must be one.
+/// The last sample's time must be in range.
 void require_span(const SampleOptions& options) {
   if (options.count == 0) return;  // --at
   const double seconds = static_cast<double>(options.count - 1) / options.rate;

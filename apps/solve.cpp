@@ -43,7 +43,7 @@ class Announcer {
     }
   }
 
-  /// Whether a stream is not solved that was to be.
+  /// Whether a stream that should be solved is not.
   [[nodiscard]] bool has_lost() const { return !lost_.empty(); }
 
  private:

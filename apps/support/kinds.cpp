@@ -162,7 +162,7 @@ std::optional<std::string> zero_quaternion(const WaypointTable& table,
     const bool is_zero = std::ranges::all_of(four, [](double value) { return value == 0; });
     return fmt::format("columns '{}' to '{}': a quaternion of length {}", table.names[first],
                        table.names[first + kQuaternionSize - 1],
-                       is_zero ? "0" : "beyond 1e-100 to 1e100");
+                       is_zero ? "0" : "outside 1e-100 to 1e100");
   }
   return std::nullopt;
 }

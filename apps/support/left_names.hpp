@@ -23,7 +23,7 @@ struct LeftName {
 };
 
 /// Looks at the files under a stream's names, without opening any that is not this user's. System
-/// calls. Throws BadRequest for what is no name, NoSuchStream if nothing stands, OutOfResources
+/// calls. Throws BadRequest for an invalid name, NoSuchStream if there is nothing, OutOfResources
 /// where no descriptor is left to look with.
 [[nodiscard]] LeftName look_at_name(const std::string& stream);
 

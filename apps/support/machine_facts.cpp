@@ -35,8 +35,8 @@ int error_of_reading(const fs::path& file) {
   return is_read ? 0 : error;
 }
 
-/// What cannot be read of what is judged, also of the environment's files. A file that a kernel may
-/// lack counts only where its folder cannot be seen either.
+/// The files to be judged that cannot be read, also those of the environment. A file that a kernel
+/// may lack counts only where its folder cannot be seen either.
 std::map<std::string, std::string> unread_files(const fs::path& root) {
   std::map<std::string, std::string> unread;
   const auto look = [&](const char* file, bool may_lack) {

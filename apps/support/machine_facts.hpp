@@ -21,9 +21,8 @@ struct Room {
   std::uint64_t free;
 };
 
-/// What the documented limits of a machine are judged by, as it was read: texts of files (empty
-/// where there is none, and where `unread` has its path) and what the kernel tells this process. So
-/// that a judgement can be tried on any machine's facts.
+/// What a machine is judged by: texts of files (empty where there is none, and where `unread` has
+/// its path) and what the kernel tells this process. Tests can make up the facts of any machine.
 struct MachineFacts {
   Environment environment;
   std::map<std::string, std::string> unread{};  ///< files that cannot be read, and why

@@ -38,7 +38,7 @@ void Output::fail() const {
   if (errno == EPIPE) throw ClosedPipe("standard output was closed");
   if (errno == EINTR && stop_requested()) {
     if (file_ != nullptr)
-      __fpurge(file_);  // what a reader does not take would keep the process at its end
+      __fpurge(file_);  // else output that nobody reads would block the process at exit
     throw Interrupted(fmt::format("{}: interrupted", name_));
   }
   throw Failure(
@@ -109,7 +109,7 @@ void say(std::string_view text) {
     text.remove_prefix(end + 1);
   }
   lines += ipc::printable(text) + '\n';
-  std::fputs(lines.c_str(), stderr);  // one that nobody can hear is no reason to end
+  std::fputs(lines.c_str(), stderr);  // a message that cannot be written is no reason to end
 }
 
 }  // namespace splinecast::apps

@@ -38,7 +38,7 @@ bool is_same(const std::optional<struct stat>& a, const std::optional<struct sta
   return a && b && a->st_dev == b->st_dev && a->st_ino == b->st_ino;
 }
 
-/// Where links lead to what this process has open, and to devices: nothing there is replaced.
+/// The folders of devices and of links to open files: nothing there is replaced.
 bool is_special(const std::string& file) {
   return file.starts_with("/dev/") || file.starts_with("/proc/");
 }
@@ -58,7 +58,7 @@ std::string behind_links(const std::string& path) {
   fail(path);
 }
 
-/// Of files that need not be there yet.
+/// Also for files that do not exist yet.
 bool is_same_path(const std::string& a, const std::string& b) {
   std::error_code error;
   if (a.empty() || b.empty() || is_special(a)) return false;
@@ -127,7 +127,7 @@ int OutputFile::open_replacement() {
       fchmod(descriptor, old.st_mode & kPermissions) == 0) {
     return descriptor;
   }
-  // It would come to belong to somebody else: its bytes are replaced instead.
+  // A new file would have another owner: the bytes of the old one are replaced instead.
   if (is_named_) unlink(temporary_.c_str());
   is_named_ = false;
   temporary_.clear();

@@ -7,7 +7,7 @@
 
 namespace splinecast::apps {
 
-/// How a file comes to its name.
+/// When a file gets its name.
 enum class Writing : std::uint8_t {
   whole,    ///< at once when it is complete: until then, and upon failure, the old file stays
   growing,  ///< as it is written, to be followed meanwhile

@@ -73,7 +73,7 @@ class Side {
 /// The daemon that the two sides need; it ends with this process.
 [[nodiscard]] apps::Child start_daemon() {
   return apps::Child([]() -> nlohmann::json {
-    const int nowhere = open("/dev/null", O_WRONLY);  // it tells of its start on any log level
+    const int nowhere = open("/dev/null", O_WRONLY);  // it reports its start on any log level
     dup2(nowhere, STDOUT_FILENO);
     dup2(nowhere, STDERR_FILENO);
     execl(SPLINECAST_ROUDI, SPLINECAST_ROUDI, "--log-level", "off", "--monitoring-mode", "off",

@@ -75,8 +75,8 @@ double length(const Quaternion& q) noexcept {
   return largest * std::sqrt(dot(unit, unit));
 }
 
-/// Whether a rotation can be made of a quaternion of this length: not of what no curve between
-/// rotations comes to, 0, next to 0, or beyond all numbers.
+/// Whether a quaternion of this length gives a rotation. Lengths that no curve between rotations
+/// reaches do not: 0, next to 0, or too large.
 bool is_length(double n) noexcept { return n > 1 / kLargestValue && n < kLargestValue; }
 
 /// Divides a quaternion and its derivatives by its length. Returns whether that could be done.

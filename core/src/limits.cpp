@@ -9,7 +9,7 @@ namespace {
 
 /// Longest time that limits can ask for, s: beyond it they are out of all proportion.
 constexpr double kLongest = 1e6;
-/// Shortest time that is told apart, s: a velocity next to 0 is brought to rest within it.
+/// Shortest time that is distinguished, s: a velocity next to 0 is brought to rest within it.
 constexpr double kShortest = 1e-9;
 /// Leaves rounding in a coefficient out of account.
 constexpr double kRounding = 1 + 1e-9;

@@ -106,7 +106,7 @@ class LocalSolver final : public KnotSolver {
     }
   }
 
-  /// Sets interval k so that the chord slopes go on as from interval `inner` to `next`.
+  /// Extrapolates the chord slopes of the intervals `inner` and `next` to interval k.
   static void extend(Stencil& out, int k, int next, int inner) noexcept {
     out.set(k, out.h(next), 2 * out.m(next) - out.m(inner),
             2 * out.rounding(next) + out.rounding(inner));

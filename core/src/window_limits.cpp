@@ -9,7 +9,8 @@
 namespace splinecast::core {
 namespace {
 
-/// Of an acceleration limit, when a waypoint is judged: those behind it still move the curve.
+/// The share of an acceleration limit that a new waypoint may use: later ones still change the
+/// curve.
 constexpr double kShareOfLimit = 0.9;
 
 }  // namespace
@@ -84,8 +85,8 @@ bool SlidingWindow::can_shape_entry(std::span<const Waypoint> waypoints) noexcep
   return keeps;
 }
 
-/// Of the knots that a trial solves again, what does not follow from the others: with a short lag
-/// their velocities are those of an earlier solve.
+/// Keeps what a second solve would not restore of the knots that a trial solves again: with a short
+/// lag their velocities are those of an earlier solve.
 void SlidingWindow::keep_first_knots() noexcept {
   for (std::size_t i = 0; i < knots(); ++i) {
     std::ranges::copy(knots_.values(i, KnotRing::kVelocity), kept_velocities_[i].begin());
@@ -109,7 +110,7 @@ double SlidingWindow::entry_excess() noexcept {
   return std::max(behind, acceleration_excess(options_.max_acceleration, splice_));
 }
 
-/// Of the velocity that the entry has and the one that it had, takes that with the smaller
+/// Compares the entry's present velocity with its earlier one, and takes the one with the smaller
 /// accelerations around the first knot.
 void SlidingWindow::take_better_entry() noexcept {
   const double excess = entry_excess();

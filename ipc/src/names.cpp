@@ -63,8 +63,8 @@ std::size_t printable_bytes(std::string_view text) noexcept {
   constexpr std::array<char32_t, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};
   const bool is_character =
       point >= kLeast[length] && point <= 0x10ffff && (point < 0xd800 || point > 0xdfff);
-  // U+0080 to U+009F are control characters; U+2028 and 2029 are line ends; the rest of these turn
-  // the direction of the text around.
+  // U+0080 to U+009F are control characters; U+2028 and 2029 are line ends; the others change the
+  // direction of the text.
   const bool is_control =
       point < 0xa0 || (point >= 0x2028 && point <= 0x202e) || (point >= 0x2066 && point <= 0x2069);
   return is_character && !is_control ? length : 0;

@@ -17,7 +17,7 @@ core::Time end_of_motion(const RegionHeader& header, const SegmentBoardReader& b
       board.retired()) {
     return core::Time::min();
   }
-  // Tried again for an observer, whom the board's solver may overtake.
+  // Tries again, because the board's solver may overtake an observer.
   for (int attempt = 0; attempt < kHeadTries; ++attempt) {
     const Word r = board.revision();
     Head head;

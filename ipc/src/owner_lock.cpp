@@ -23,7 +23,7 @@ namespace {
 constexpr int kLockTries = 10;
 constexpr std::chrono::milliseconds kLockPoll{5};
 
-/// How often a lock file is opened that comes and goes under others' hands.
+/// How often opening a lock file is tried while others keep removing it.
 constexpr int kOpenTries = 100;
 
 struct flock whole_file(short type) noexcept {

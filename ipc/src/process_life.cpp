@@ -72,7 +72,7 @@ bool process_lives(std::uint64_t pid, core::Time since) noexcept {
   const auto stat = read_stat(pid);
   if (!stat) return true;
   if (stat->state == 'Z' || stat->state == 'X') return false;
-  // As ages: CLOCK_BOOTTIME goes on while the machine is suspended.
+  // Compares ages, because only CLOCK_BOOTTIME runs while the machine is suspended.
   const core::Time now = now_by(CLOCK_MONOTONIC);
   const core::Time owned = now - std::clamp(since, core::Time::zero(), now);
   return now_by(CLOCK_BOOTTIME) - stat->started >= owned;

@@ -120,8 +120,9 @@ void require_trusted(const struct stat& status, const std::string& path, const T
   }
 }
 
-/// Opens the file first, so that what is judged is what is used: a name may lead elsewhere at each
-/// look. Never waits, for a FIFO's other end or a lease, which any user can put under a name.
+/// Opens the file first and then checks the descriptor, because the name may lead to another file
+/// each time. Never waits for a FIFO's other end or for a lease, which any user can put under a
+/// name.
 OwnedDescriptor open_region_file(std::string_view stream, RegionKind kind, bool writable) {
   const std::string path = region_path(stream, kind);
   const int access = writable ? O_RDWR : O_RDONLY;

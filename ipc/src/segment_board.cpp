@@ -34,8 +34,8 @@ std::size_t control_words() noexcept { return kControlLines * kSeparation / size
 /// double.
 constexpr double kLargestSum = 1e200;
 
-/// A sum of magnitudes: no less than the largest of them, and no number if one of them is none.
-/// Four sums, for vectors.
+/// A sum of magnitudes: at least the largest of them, and NaN if one of them is NaN. Four sums, for
+/// vectors.
 double magnitude(std::span<const double> values) noexcept {
   std::array<double, 4> sums{};
   std::size_t i = 0;
@@ -46,7 +46,7 @@ double magnitude(std::span<const double> values) noexcept {
   return sums[0] + sums[1] + (sums[2] + sums[3]);
 }
 
-/// Whether a segment is one that a solver could have made: what is evaluated of it are numbers.
+/// Whether a solver could have made a segment: evaluating it gives numbers.
 bool is_sound(const SegmentCopy& segment, std::size_t values) noexcept {
   const Word length = to_word(segment.right) - to_word(segment.left);
   return magnitude(std::span(segment.coefficients).first(values)) <= kLargestSum &&
@@ -54,7 +54,7 @@ bool is_sound(const SegmentCopy& segment, std::size_t values) noexcept {
          segment.kind <= core::SegmentKind::hold;
 }
 
-/// Whether a segment is one that readers accept, and its left knot one to go on from.
+/// Whether readers accept a segment, and a solver can continue from its left knot.
 bool is_sound(std::span<const double> coefficients, const core::Segment& segment,
               const core::Knot& knot) noexcept {
   const core::SmoothingRow& row = knot.prefix.smoothing;

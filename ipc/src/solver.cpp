@@ -222,7 +222,7 @@ OwnedBoard make_board(const std::string& stream, const RegionHeader& ring_header
   return board;
 }
 
-/// Until when nobody may take the name from a board of an earlier stream.
+/// The board of an earlier stream keeps the name until then.
 struct Occupied {
   core::Time until;
 };

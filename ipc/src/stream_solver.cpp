@@ -84,7 +84,7 @@ StepResult StreamSolver::step(const Clock& clock) noexcept {
   if (is_damaged()) return {.damaged = true};
   const core::Time now = live_ ? clock.now() : core::Time::min();
   if (live_ && !board_->is_checked()) check_commit(now);
-  // Each try has half the items of the one before, and the last one refuses the only one.
+  // Each try takes half the items of the one before; the last try takes one item and refuses it.
   constexpr int kMostTries = 12;
   static_assert(kMaxBatch < 1U << (kMostTries - 2));
   for (int i = 0; i < kMostTries; ++i) {
@@ -320,7 +320,8 @@ void StreamSolver::take_replacement(Word number) noexcept {
   head_.newest_knot = t;
 }
 
-/// All that belongs to it in one revision, so that no other solver takes it for something else.
+/// Refuses a replacement, and in the same revision its waypoints, so that no other solver takes
+/// them for appended ones.
 void StreamSolver::refuse_replacement(Word number, Refusal reason) noexcept {
   refuse(number, reason);
   const Word end = head_.consumed + std::min<Word>(item_.count, available_ - head_.consumed);
@@ -369,8 +370,9 @@ void StreamSolver::refuse(Word number, Refusal reason) noexcept {
   ++head_.reasons[static_cast<std::size_t>(reason)];
 }
 
-/// Stopped between the look at the clock and the commit: readers find out by changed_from. Stored
-/// at once, because what comes next may be discarded, may never come, or may be another solver's.
+/// A commit is late if the process was stopped between reading the clock and the commit; readers
+/// find out by changed_from. Stored at once: the next revision may be discarded, may never come, or
+/// may be another solver's.
 void StreamSolver::check_commit(core::Time now) noexcept {
   const bool is_late = head_.changed_from <= now && head_.changed_from < core::Time::max();
   if (is_late && !board_->is_late()) ++head_.revisions;

@@ -23,8 +23,8 @@ constexpr core::Time kLookAround = std::chrono::milliseconds(50);
 /// When one of these has died, the rest follow at once: they were mostly the same process's.
 constexpr std::size_t kTries = 16;
 
-/// How often one of the streams is tried that lack memory or descriptors; as soon as one of them
-/// succeeds, some at each look.
+/// How often one of the streams that lack memory or descriptors is tried again; once one has
+/// succeeded, the next look tries another.
 constexpr core::Time kRetry = std::chrono::milliseconds(100);
 
 /// Descriptors for all else that the process does.
@@ -240,8 +240,8 @@ void StreamSweep::note_ends_of_motion() {
   });
 }
 
-/// Whether a stream is to be tried now. One that was given up is, once other files stand under its
-/// names than then: to whom it is told, it is another stream.
+/// Whether a stream is to be tried now. One that was given up is tried once other files exist under
+/// its names: then it is reported as another stream.
 bool StreamSweep::may_be_taken(const std::string& stream, Member& member, bool stands) {
   if (!stands && !member.is_named) return false;
   if (member.state == State::given_up && files_of(stream) != member.files) {
@@ -281,7 +281,7 @@ void StreamSweep::look_elsewhere() {
   }
 }
 
-/// Takes the next of the streams up again that lacked memory or descriptors.
+/// Takes up again the next of the streams that lacked memory or descriptors.
 void StreamSweep::look_at_postponed() {
   if (now_ < next_retry_) return;
   next_retry_ = now_ + kRetry;
@@ -322,7 +322,8 @@ bool StreamSweep::own(const std::string& stream, Member& member) {
     return false;
   }
   try {
-    // Before the lock, which makes a file: of what cannot be solved there may be many.
+    // Looks before it locks, because the lock makes a file and there may be many streams that
+    // cannot be solved.
     if (!member.is_named) (void)look_at_region(stream, RegionKind::waypoints, options_.trust);
     if (is_owned(stream, RegionKind::spline)) throw StreamBusy(stream);
     member.waiting = std::make_unique<Solver>(stream, options_);
@@ -371,8 +372,8 @@ void StreamSweep::make_room() {
   calling_.reserve(room);
 }
 
-/// Gives a stream up for a reason, or postpones it if that may pass. A named one stays this
-/// process's meanwhile.
+/// Gives a stream up for a reason, or postpones it if that may pass. A named one that is postponed
+/// keeps its lock.
 void StreamSweep::drop(const std::string& stream, Member& member, const std::exception& error) {
   if (is_passing(error)) {
     if (!member.is_named) member.waiting.reset();
@@ -398,7 +399,7 @@ void StreamSweep::tell(SweepNews news, const std::string& stream, const Solver* 
   try {
     tell_(news, stream, solver, why);
   } catch (...) {
-    return;  // whether it is heard of changes nothing for the streams
+    return;  // a message that fails changes nothing for the streams
   }
 }
 

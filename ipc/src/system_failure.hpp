@@ -8,7 +8,7 @@
 
 namespace splinecast::ipc {
 
-/// Whether a system call failed for want of what other processes may give back.
+/// Whether a system call failed because resources are lacking that other processes may give back.
 inline bool is_shortage(int error) noexcept {
   return error == ENOMEM || error == ENOSPC || error == EMFILE || error == ENFILE ||
          error == EDQUOT;

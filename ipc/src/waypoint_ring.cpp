@@ -16,7 +16,7 @@ constexpr Word kHasAcceleration = 1U << 9;
 constexpr unsigned kConditionShift = 16;
 constexpr unsigned kCountShift = 32;
 
-/// Of a stop whose producer knows of nothing that has settled: before all that can follow it.
+/// The time of a stop if the producer knows no settled time: before every waypoint that can follow.
 constexpr core::Time kEarliestStop = -kLatestTime;
 
 std::size_t words_per_item(const RingLayout& layout) noexcept {
@@ -110,7 +110,7 @@ AppendStatus WaypointRingWriter::check(const core::Waypoint& waypoint,
                                                                 : AppendStatus::full;
 }
 
-/// However long a live stream has paused, it may go on: its time does, also while nothing moves.
+/// A live stream may continue after a pause of any length: its clock runs also while nothing moves.
 bool WaypointRingWriter::follows_pause(core::Time time, const Solved& solved) const noexcept {
   const auto follows = [&](core::Time since) {
     return since > last_time_ && time - since <= limits_.max_interval;
@@ -163,13 +163,13 @@ AppendStatus WaypointRingWriter::replace_from(core::Time t,
   return status;
 }
 
-/// A stop is never too late: what has settled is where it takes effect.
+/// A stop is never too late: if t has settled, it takes effect where the settled part ends.
 AppendStatus WaypointRingWriter::stop_from(core::Time t, const Solved& solved) noexcept {
   if (finished_) return AppendStatus::finished;
   const core::Time from = std::max({t, solved.settled_until, kEarliestStop});
   if (!is_time_in_range(from)) return AppendStatus::too_far_apart;
   if (repeats_stop(from, solved)) return AppendStatus::accepted;
-  // Stops ahead leave an item to one that cannot wait, and all of them one to the finish.
+  // Stops ahead leave an item for a stop that takes effect at once; all stops leave one for finish.
   const bool is_ahead = from > solved.settled_until;
   const std::size_t others = control_reserve(layout_.capacity) / 2;
   if (!has_room(1, solved, is_ahead ? others : std::min<std::size_t>(others, 1))) {

@@ -5,7 +5,7 @@
 
 In a mount namespace with a /dev/shm of its own. As root, the streams are one unprivileged user's and
 the attacks another's, who is in the group that may read the streams; else both are the same user,
-whom the attacks then spare the files of. Exit code 1 if something was found or a kind of attack was
+whose own files the attacks then spare. Exit code 1 if something was found or a kind of attack was
 not carried out, 77 if there can be no such namespace here. The attacks: hostile_user_attacks.py.
 """
 
@@ -27,10 +27,10 @@ from page import this_machine
 CAMPAIGN = Path(__file__).resolve().parent
 VICTIM, ATTACKER, TEAM = 12345, 23456, 54321
 STREAMS = ["arm.left", "arm.right", "base"]
-# Generous: machines that run tests are busy. What these bounds find is what never ends.
+# Generous: machines that run tests are busy. These bounds find what never ends.
 UNSERVED = 10.0  # seconds without a new settled knot
 HANG = 30.0
-SPARE = 30.0  # that recordings are longer than the attack
+SPARE = 30.0  # by which recordings are longer than the attack
 SKIPPED = 77
 
 
@@ -110,7 +110,7 @@ class Victim:
                 self.count("samples")
 
     def watch(self, stream):
-        """Looks whether the stream goes on settling."""
+        """Checks that the stream keeps settling."""
         settled, since, is_told = None, time.monotonic(), False
         while not self.ended.is_set():
             text = self.run("info", stream, "--json")
@@ -133,7 +133,7 @@ class Victim:
             time.sleep(0.2)
 
     def come_and_go(self, recording):
-        """Streams that begin in the midst of it, are served and removed."""
+        """Streams that begin during the attack, are served and removed."""
         for number in range(1 << 30):
             if self.ended.is_set():
                 return

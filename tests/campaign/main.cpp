@@ -53,7 +53,7 @@ int run_program(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   streams->add_option("--seed", options.seed, "Of the first stream; the next has the next one")
       ->capture_default_str();
-  streams->add_option("--runs", options.runs, "So many streams instead");
+  streams->add_option("--runs", options.runs, "Number of streams to simulate instead");
   for (CLI::App* verb : {kill, stress, streams}) {
     verb->add_option("--json", path, "File for the result; else standard output");
     verb->add_option("--command", options.command, "What the result says that runs it again");

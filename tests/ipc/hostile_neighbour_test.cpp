@@ -27,8 +27,8 @@
 
 namespace {
 
-/// What signals do to posix_fallocate, as on kernels that any signal interrupts in it: pieces
-/// longer than some bytes are never finished, the others after so many tries.
+/// What signals do to posix_fallocate on kernels where any signal interrupts it: pieces longer than
+/// `longest_whole` bytes are never finished, the others after `of_each` interruptions.
 struct Interruptions {
   std::size_t longest_whole = std::numeric_limits<std::size_t>::max();
   int of_each = 0;
@@ -81,8 +81,8 @@ class OpenFile {
   int descriptor_;
 };
 
-/// A write lease on a file: who opens the file waits until the holder has given it back, up to 45
-/// s. This holder does so as soon as it is asked to.
+/// A write lease on a file: a process that opens the file waits until the holder has given it back,
+/// up to 45 s. This holder does so as soon as it is asked to.
 class Lease {
  public:
   explicit Lease(const std::string& path) {
@@ -147,7 +147,7 @@ TEST(HostileNeighbour, AFifoThatTakesTheRegionsPlaceWhileItIsOpenedHangsNobody) 
   std::thread exchanger([&] {
     while (!done) renameat2(AT_FDCWD, path.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE);
   });
-  // Lets go of who hangs in an open, and says so.
+  // Frees a thread that hangs in an open, and notes that it hung.
   std::atomic<int> looks = 0;
   std::atomic<bool> hung = false;
   std::thread watchdog([&] {
@@ -236,7 +236,7 @@ TEST(HostileNeighbour, ADeadOwnerIsDeadUnderAReadLockToo) {
   ASSERT_TRUE(WIFSTOPPED(status));
   EXPECT_TRUE(region_owner_lives(observer.get()));
   kill(owner, SIGKILL);
-  // Before its parent has asked for its end it is a process yet, but a dead one.
+  // Until its parent waits for it, it is a zombie: its id exists, but it is dead.
   EXPECT_TRUE(testing::await([&] { return !region_owner_lives(observer.get()); }));
   waitpid(owner, &status, 0);
   EXPECT_FALSE(region_owner_lives(observer.get()));

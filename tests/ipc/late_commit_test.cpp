@@ -13,7 +13,8 @@ using core::Time;
 using std::chrono::milliseconds;
 using Live = testing::LiveStream;
 
-/// The process is stopped for so long behind the look with this number, counted from 1.
+/// The process is stopped for `pause` after reading the clock for the `look`-th time, counted from
+/// 1.
 class StoppedClock final : public Clock {
  public:
   StoppedClock(Time now, int look, Time pause) : now_(now), look_(look), pause_(pause) {}

@@ -10,7 +10,7 @@
 #include "support/memory_stream.hpp"
 #include "support/process.hpp"
 
-/// What producers, and whoever inspects a stream, learn of the items that its solver refuses.
+/// What producers, and programs that inspect a stream, learn of the items that its solver refuses.
 namespace splinecast::ipc {
 namespace {
 

@@ -15,7 +15,7 @@ namespace splinecast::testing {
 
 using News = std::vector<std::pair<ipc::SweepNews, std::string>>;
 
-/// A sweep whose news are kept.
+/// A sweep that keeps the news it tells.
 struct Told {
   News news;
   std::string why;

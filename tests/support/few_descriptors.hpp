@@ -5,7 +5,7 @@
 
 namespace splinecast::testing {
 
-/// Leaves this process only so many free file descriptors while it lives.
+/// Leaves this process only `free` file descriptors while it lives.
 class FewDescriptors {
  public:
   explicit FewDescriptors(rlim_t free) {

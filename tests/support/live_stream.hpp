@@ -12,7 +12,7 @@
 
 namespace splinecast::testing {
 
-/// A live stream of one dimension in plain memory whose clock stands at 100 s. Its motion is
+/// A live stream of one dimension in plain memory whose clock begins at 100 s. Its motion is
 /// sin(t), in seconds from there.
 struct LiveStream : MemoryStream {
   using Time = core::Time;

@@ -42,7 +42,7 @@ class Process {
   /// silent.
   void await_message(const std::string& text);
 
-  /// Waits until standard output has so many lines. Fails the test likewise.
+  /// Waits until standard output has `count` lines. Fails the test likewise.
   void await_lines(std::ptrdiff_t count);
 
   /// Waits for its end.

@@ -32,7 +32,7 @@ class SimulatedClock final : public ipc::Clock {
     stop_behind_ = 0;
   }
 
-  /// Stops whoever makes the n-th reading from now on, directly behind it.
+  /// Stops the process that makes the n-th reading from now on, directly after it.
   void stop_behind_reading(std::size_t n, core::Time pause) {
     restart();
     stop_behind_ = n;
@@ -42,8 +42,8 @@ class SimulatedClock final : public ipc::Clock {
   [[nodiscard]] std::size_t readings() const noexcept { return readings_; }
   /// What the first of these readings gave.
   [[nodiscard]] core::Time first_reading() const noexcept { return first_; }
-  /// The world's time when whoever made the n-th reading, n ≤ kKept, went on; of the last one made
-  /// if there were fewer.
+  /// The world's time when the process that made the n-th reading, n ≤ kKept, continued; of the
+  /// last reading if there were fewer.
   [[nodiscard]] core::Time left_reading(std::size_t n) const noexcept {
     return left_[std::max<std::size_t>(1, std::min(n, readings_)) - 1];
   }

@@ -8,8 +8,8 @@
 
 namespace splinecast::testing {
 
-/// The board's bytes before a step of its solver, for a solver that dies within that step: what it
-/// had not yet stored is taken back.
+/// Keeps the board's bytes from before a step of its solver and simulates a death within that step:
+/// takes back what the solver had not yet stored.
 class TornPublication {
  public:
   /// Keeps the words of a board, before the step.

@@ -1,7 +1,7 @@
 #pragma once
 
-/// What is checked, or tried, only once the solver or the readers are corrected: each of these is a
-/// defect that this campaign finds otherwise.
+/// Promises of the solver and the readers that can be left out of this campaign: with false, it
+/// neither checks one nor provokes the defect.
 namespace splinecast::campaign {
 
 /// A stop takes effect at settled_until, one step later at most, whatever is queued before it.

@@ -9,7 +9,7 @@
 namespace splinecast::campaign {
 namespace {
 
-/// Shorter quaternions amplify rounding out of all proportion when they are brought to length 1.
+/// Shorter quaternions amplify rounding too much when they are brought to length 1.
 constexpr double kShortest = 1e-3;
 
 double length_of(const ipc::SegmentCopy& segment) {

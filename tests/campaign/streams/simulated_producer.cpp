@@ -185,7 +185,7 @@ void SimulatedProducer::replace(Time now) {
   if (status != AppendStatus::accepted) return;
   const Time last = std::exchange(last_sent_, at);
   next_waypoint_ = (count == 0 ? t : at) + plan_->interval;
-  // As one does who takes the replacement for refused.
+  // As a producer does that takes the replacement for refused.
   if (last > at && random_->chance(kSendsAgain)) next_waypoint_ = last;
   if (count == 0) check_->expect_stop(stream_->ring.writer.head() - 1, t);
 }

@@ -76,8 +76,8 @@ SampleStatus SimulatedReader::preview(core::Time t, SampleMemory& settled) {
   return status;
 }
 
-/// Before a start of which the first waypoint alone does not decide: where it is, if a method
-/// smooths, and whether it is at rest.
+/// Whether t is before a start that the first waypoint alone does not fix: its position, if the
+/// method smooths, and whether it is at rest.
 bool SimulatedReader::is_open_start(core::Time t) const {
   const bool is_fixed = core::is_at_rest(plan_->window.start.kind) &&
                         plan_->window.interpolant.method->family != core::Family::smoothing;

@@ -19,7 +19,7 @@ constexpr std::size_t kSettledKept = 48;
 constexpr std::size_t kMostReadings = 4;
 /// Steps that may be discarded one after the other when nothing holds the solver up.
 constexpr int kMostMisses = 20;
-/// After its producer's end a stream is watched for so long at most.
+/// How long a stream is watched after its producer's end, at most.
 constexpr Time kLongestRest = std::chrono::seconds(20);
 
 }  // namespace

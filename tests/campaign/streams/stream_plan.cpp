@@ -97,7 +97,7 @@ core::Condition make_end(const StreamPlan& plan, Random& random) {
   return end;
 }
 
-/// Limits of so many times the accelerations of the motion; some dimensions may have none.
+/// Limits of `times` times the accelerations of the motion; some dimensions may have none.
 std::vector<double> make_limits(const StreamPlan& plan, double times, Random& random) {
   std::vector<double> limits;
   for (const core::Dimension& dimension : plan.dimensions) {

@@ -79,8 +79,8 @@ class DimensionKinds {
     return quaternions_;
   }
 
-  /// Whether every quaternion of a position, or this one, has a length of which a rotation can be
-  /// made: neither 0 nor beyond 1e-100 to 1e100.
+  /// Whether every quaternion of a position, or this one, has a length that gives a rotation:
+  /// between 1e-100 and 1e100.
   [[nodiscard]] bool takes(std::span<const double> position) const noexcept;
   [[nodiscard]] static bool takes(std::span<const double> position,
                                   const QuaternionDimensions& quaternion) noexcept;

@@ -205,7 +205,7 @@ class SlidingWindow {
   std::unique_ptr<KnotSolver> solver_;
   RunEntry entry_;
   Segment splice_;  ///< scratch
-  /// Of a trial, the knots that stood before it: at most two.
+  /// What the knots held before a trial; at most two.
   std::array<std::array<double, kMaxDimensions>, 2> kept_velocities_{};
   std::array<std::uint32_t, 2> kept_newer_knots_{};
   bool is_entered_ = false;

@@ -16,19 +16,19 @@ void wait_while_equal(const Word& word, Word seen, core::Time timeout) noexcept;
 /// (about 4 µs each): not for a writer that any number of readers may wait for.
 void wake_all(const Word& word) noexcept;
 
-/// How many threads one wake of a waited-for revision wakes.
+/// The largest number of threads that one call wakes for a revision.
 inline constexpr int kWokenAtOnce = 8;
 
 /// Wakes at most kWokenAtOnce threads that wait on `revision`: one system call of bounded cost,
 /// however many wait. Those that wait by `wait_for_change` wake the others. Returns how many.
 int wake_some(const Word& revision) noexcept;
 
-/// As wait_while_equal, on the commit word of a board. Whoever is woken then wakes up to
+/// As wait_while_equal, on the commit word of a board. A thread that is woken then wakes up to
 /// kWokenAtOnce others that still wait for a revision before the present one, and so on: all are
 /// woken in a logarithmic number of rounds, with one system call each, and nobody twice for one
 /// revision. A thread that waits on the word in another way, or dies when woken, wakes nobody, and
-/// those behind it sleep on: so give a timeout that bounds what this costs. Returns whether it was
-/// woken, by a revision or by somebody who only pretends.
+/// those behind it sleep until their timeout: choose one that bounds this delay. Returns whether it
+/// was woken, by a revision or spuriously by another process.
 bool wait_for_change(const Word& revision, Word seen, core::Time timeout) noexcept;
 
 }  // namespace splinecast::ipc

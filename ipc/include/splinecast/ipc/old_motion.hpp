@@ -10,7 +10,7 @@
 
 namespace splinecast::ipc {
 
-/// The longest rest of a motion that a new stream of the same name waits for.
+/// The longest time that a new stream waits for the motion of an earlier one of its name to end.
 inline constexpr core::Time kLongestOldMotion{3'600'000'000'000};
 
 /// When the curve that a live board has published comes to rest, on CLOCK_MONOTONIC; min() if
@@ -18,8 +18,8 @@ inline constexpr core::Time kLongestOldMotion{3'600'000'000'000};
 [[nodiscard]] core::Time end_of_motion(const RegionHeader& header,
                                        const SegmentBoardReader& board) noexcept;
 
-/// Throws BadRegion if a motion ends more than kLongestOldMotion after now: no board of ours is to
-/// keep its name for that long.
+/// Throws BadRegion if a motion ends more than kLongestOldMotion after now: no board may keep its
+/// name for that long.
 void require_near_end(const std::string& stream, core::Time end, core::Time now);
 
 /// end_of_motion() of the board under the stream's name if it is another stream's than the one with

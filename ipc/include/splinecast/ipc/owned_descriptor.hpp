@@ -12,8 +12,8 @@ class OwnedDescriptor {
  public:
   OwnedDescriptor() = default;
 
-  /// open(2) with O_CLOEXEC. No fork comes between the opening and the note that a child is to
-  /// close it. get() is −1 if that fails; errno says why.
+  /// open(2) with O_CLOEXEC. No fork can come between the opening and the registration for closing
+  /// in children. get() is −1 if the opening fails; errno says why.
   [[nodiscard]] static OwnedDescriptor open(const std::string& path, int flags, mode_t mode = 0);
 
   OwnedDescriptor(OwnedDescriptor&& other) noexcept;

@@ -46,7 +46,7 @@ class OwnerLock {
 
 /// Whether the process lives that owns a region of this kind: by the owner's lock, where this
 /// process may open its file, so that nobody else's locks on the region can hide an owner; else by
-/// the region, see region_owner_lives(). System calls. Throws BadRequest for what is no name,
+/// the region, see region_owner_lives(). System calls. Throws BadRequest for an invalid name,
 /// OutOfResources where no descriptor is left to look with.
 [[nodiscard]] bool owner_lives(std::string_view stream, RegionKind kind);
 
@@ -69,9 +69,9 @@ class RegionLock {
 /// Whether another open file holds an owner's write lock on this one.
 [[nodiscard]] bool is_region_locked(int descriptor) noexcept;
 
-/// Whether the owner of an open region lives, by its write lock. Where a read lock of somebody else
-/// keeps the owner from holding that, by the process that the header names: it exists, and has
-/// since it became the owner.
+/// Whether the owner of an open region lives, by its write lock. Where a read lock of another
+/// process prevents that one, by the process that the header names, which must exist and have
+/// existed since it became the owner.
 [[nodiscard]] bool region_owner_lives(int descriptor) noexcept;
 
 }  // namespace splinecast::ipc

@@ -18,10 +18,10 @@ namespace splinecast::ipc {
 class Producer {
  public:
   /// Makes the stream, or makes it again if it is finished, or continues it if its producer died
-  /// before finishing. A solver takes a stream that was made again up once the old curve has come
-  /// to rest: wait_for_solver() before waypoints of a live one are given times. Throws StreamBusy
-  /// if it has a living producer, BadRequest if the options contradict a stream that is continued,
-  /// BadRegion if shared memory is full or what stands under the name cannot be used.
+  /// before finishing. A solver takes up a stream that was made again once the old curve has come
+  /// to rest: on a live one, call wait_for_solver() before choosing times for waypoints. Throws
+  /// StreamBusy if it has a living producer, BadRequest if the options contradict a stream that is
+  /// continued, BadRegion if shared memory is full or the files of that name cannot be used.
   Producer(std::string stream, ProducerOptions options);
   Producer(Producer&&) noexcept;
   Producer& operator=(Producer&&) noexcept;

@@ -36,11 +36,11 @@
 ///    tag of the other cell, load(acquire), must not lie in (copy's tag, r].
 /// K2 Then the tag of the copy's own cell, load(relaxed), must still be the copy's. Let q be the
 ///    first revision up to r that wrote the slot after the copy was made. It wrote the other cell,
-///    and R1 has made that visible: K1 finds q, and the copy is not kept, or a later tag above r. A
-///    later revision writes the other cell only after one in between has written the copy's own
-///    cell; that store precedes the later tag, which K1 acquired (W1, T1), so K2 sees it. Neither
-///    both tags compared as if seen at one instant, nor the own tag before the other one is enough:
-///    two revisions may pass between the two loads.
+///    and R1 has made that visible: K1 finds q, and the copy is not kept, or finds a later tag
+///    above r. A later revision writes the other cell only after one in between has written the
+///    copy's own cell; that store precedes the later tag, which K1 acquired (W1, T1), so K2 sees
+///    it. It is not enough to compare both tags as if they had been loaded at one instant, nor to
+///    load the own tag before the other one: two revisions may pass between the two loads.
 /// T1 takeover: the new writer overwrites every tag above the commit word with kRetiredTag
 ///    (release) before it writes anything: a half-written cell of the dead writer must never come
 ///    to be the newest when the numbers reach its tag. Release for the same reason as W1. The same

@@ -65,7 +65,7 @@ class Sampler {
   /// A reader that has missed more compares the curve itself. Revisions change nothing before the
   /// settled_until that it saw last; where it has sampled from there on, it looks whether the
   /// segments are those of the revision that it saw last, by their tags, or have the bits of its
-  /// own copy, and whether rest goes on as a hold. If so, the sample is not `revised`. If they
+  /// own copy, and whether a rest continues as a hold. If so, the sample is not `revised`. If they
   /// differ, or cannot be compared because the board no longer keeps them or there are more than
   /// kMostCompared, it is: a change is never missed.
   [[nodiscard]] SampleStatus sample(core::Time t, const core::StateRef& out) noexcept;

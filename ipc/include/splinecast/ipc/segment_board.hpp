@@ -22,15 +22,15 @@
 ///
 /// - `tail` and `sleeping`: S3, P3 and the sleep of waypoint_ring.hpp. `tail` follows the commit,
 /// so
-///   that a solver that dies between the two has its items consumed: the next one stores it anew.
-/// - `late` and `checked`, which are stored behind the commit, when it is known whether it came too
-///   late: the first, if it did, before the second. Of a revision whose writer died between these
-///   its successor finds out. Relaxed for others: each is a number of its own.
+///   that a solver that dies between the two has its items consumed: the next one stores it again.
+/// - `late` and `checked`, which are stored after the commit, when it is known whether it came too
+///   late: first `late`, if it did, then `checked`. If a writer dies before `checked`, its
+///   successor decides about that revision. Others load them relaxed: each is a number of its own.
 /// - Packed knot times: relaxed. They are a hint; the cell that they lead to decides.
 /// - Refusals: one word each, which is never torn, stored before W3 of the head that counts it and
 ///   loaded after R1. A later refusal, committed or not, overwrites the oldest one first; it is of
 ///   a later item. So a word is the refusal of its index iff its item comes before that of the next
-///   index, and the last one's before the items not consumed under that head.
+///   index; the last one's item must come before the first item not consumed under that head.
 /// - `retired`: stored with release and loaded with acquire; nothing depends on more than the word.
 /// - What the writer loads of its own board is relaxed: it made these stores itself, or its
 ///   predecessor did, whose death the kernel told by giving the owner's lock away.

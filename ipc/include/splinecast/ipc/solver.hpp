@@ -72,9 +72,10 @@ class SolverWatch {
 /// of the same stream.
 ///
 /// The program that has the Solver must call `step` after each item that the producer appends, and,
-/// of a live stream, by `due()`, also while nothing is appended: `step` publishes how far the curve
-/// has settled, and readers whose time passes `settled_until` get provisional samples. A thread
-/// that does something else meanwhile, such as waiting for the next waypoint, waits like this:
+/// for a live stream, no later than `due()`, also while nothing is appended: `step` publishes how
+/// far the curve has settled, and readers whose time passes `settled_until` get provisional
+/// samples. A thread that does something else meanwhile, such as waiting for the next waypoint,
+/// waits like this:
 ///
 ///     while (clock.now() < next) {
 ///       while (solver.step(clock).consumed > 0) {}
@@ -96,9 +97,9 @@ class Solver {
   /// died, retires the board of an earlier stream, or makes a new one. Returns false while there is
   /// no stream, and while the curve of an earlier live stream has not come to rest, which readers
   /// still follow: due() is when it will have. Throws BadRequest if the options contradict a board
-  /// that is taken over, BadRegion if a region cannot be used, gone on with or made, or if that
-  /// curve moves for more than kLongestOldMotion. System calls; does nothing if attached. `clock`,
-  /// by default CLOCK_MONOTONIC, is the one that steps are given.
+  /// that is taken over, BadRegion if a region cannot be used, continued or made, or if that curve
+  /// moves for more than kLongestOldMotion. System calls; does nothing if attached. `clock`, by
+  /// default CLOCK_MONOTONIC, is the one that steps are given.
   bool attach();
   bool attach(const Clock& clock);
   [[nodiscard]] bool attached() const noexcept;
@@ -109,7 +110,7 @@ class Solver {
   bool hold_region() noexcept;
 
   /// Takes what waypoints there are and publishes; detaches when the stream has been retired or
-  /// made anew. No system call but the clock's and, with SolverOptions::wake, one wake a revision,
+  /// made again. No system call but the clock's and, with SolverOptions::wake, one wake a revision,
   /// of bounded cost however many readers wait (wake_some). Throws BadRegion if another process has
   /// written to the board.
   StepResult step(const Clock& clock);
@@ -129,9 +130,9 @@ class Solver {
   /// Likewise where its memory lies.
   [[nodiscard]] SolverPlaces places() const noexcept;
 
-  /// Of each reason for which steps have refused items since this solver attached, the first
-  /// refusal, once: what has not been given yet is put into `out`, all else is taken out of it.
-  /// O(1) unless an item was refused since the last call.
+  /// Replaces the contents of `out` by the first refusal for each reason since this solver
+  /// attached, except those that an earlier call has given. O(1) unless an item was refused since
+  /// the last call.
   void first_refusals(std::vector<ItemRefusal>& out);
 
   /// The head last committed; attached() only.

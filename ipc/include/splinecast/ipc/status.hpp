@@ -40,7 +40,7 @@ enum class Refusal : std::uint8_t {
   unknown_kind = 10,
   lacks_derivatives = 11,  ///< the method needs a velocity, or acceleration, that is not given
   lag_too_short = 12,      ///< the settle lag is too short for λ with waypoints so close
-  zero_quaternion = 13,    ///< a quaternion has length 0, or one beyond 1e-100 to 1e100
+  zero_quaternion = 13,    ///< a quaternion has length 0, or one outside 1e-100 to 1e100
 };
 inline constexpr std::uint8_t kRefusals = 14;
 
@@ -54,7 +54,7 @@ enum class SampleStatus : std::uint8_t {
   before_history,   ///< older than what the board keeps, or before a recorded stream; no values
   no_data,          ///< no waypoint has been solved yet; no values
   busy,             ///< the writer overtook every try; no values, try again
-  retired,          ///< the region is of no more use: attach again; no values
+  retired,          ///< the stream was removed or made again: attach again; no values
   wrong_dimension,  ///< a span, or the snapshot, does not have one value per dimension; no values
 };
 
@@ -65,7 +65,7 @@ inline constexpr std::size_t kSampleStatuses = 10;
   return status <= SampleStatus::revised;
 }
 
-/// What the solver refuses a waypoint for whose interval is none.
+/// The solver's reason for refusing a waypoint whose interval has this status.
 [[nodiscard]] Refusal to_refusal(AppendStatus interval) noexcept;
 
 /// In words, as files and messages have them: `before history`, `out of order`, …

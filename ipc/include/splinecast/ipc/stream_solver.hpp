@@ -45,8 +45,8 @@ struct LiveOptions {
 /// and is refused.
 ///
 /// A stop, a replacement without waypoints, takes effect at settled_until of the first step that
-/// finds it in the ring, or at its own time if that is later: whatever is queued before it, and
-/// whether or not the board has room for that.
+/// finds it in the ring, or at its own time if that is later: whatever is queued before it, whether
+/// or not the board has room for those items.
 class StreamSolver {
  public:
   /// `board` and `published` are the writing and the reading side of one board; with `ring` they
@@ -93,7 +93,7 @@ class StreamSolver {
   [[nodiscard]] Word reachable(Word head) const noexcept;
   [[nodiscard]] bool has_room(core::Time keep) const noexcept;
   void withdraw(core::Time keep) noexcept;
-  /// Whether the item at hand brings the curve to rest, instead of replacing it.
+  /// Whether the current item is a stop: a replacement without waypoints.
   [[nodiscard]] bool is_stop() const noexcept {
     return item_.kind == ItemKind::replace && item_.count == 0;
   }

@@ -24,9 +24,9 @@ enum class SweepNews : std::uint8_t {
   finished,        ///< its end has been solved
   elsewhere,       ///< another process solves it; taken over when that dies
   no_descriptors,  ///< RLIMIT_NOFILE leaves none for it; tried again when streams have come or gone
-  refused,         ///< an item was refused, the first one for its reason; told again for others
+  refused,         ///< an item was refused, the first one for its reason
   postponed,       ///< memory or descriptors are lacking; tried again from time to time
-  given_up,        ///< it cannot be solved; tried again when other files stand under its name
+  given_up,        ///< it cannot be solved; tried again when other files exist under its name
   gone,            ///< a stream that was found by a pattern stands no more
 };
 
@@ -55,7 +55,7 @@ class StreamSweep {
               core::Time pause = std::chrono::milliseconds(1));
 
   /// Looks after every stream once. Returns whether one of them has more to do than was done:
-  /// sweep again at once. A stream that fails is given up or postponed; the others go on.
+  /// sweep again at once. A stream that fails is given up or postponed; the others continue.
   bool sweep(const Clock& clock);
 
   /// How long to wait for the next sweep: `pause`, or kQuietPause if that is longer, while nothing
@@ -90,7 +90,7 @@ class StreamSweep {
     bool is_named = false;
     State state = State::unowned;
     std::unique_ptr<Solver> waiting{};  ///< while there is no producer
-    Files files{};                      ///< given_up: those that stood then
+    Files files{};                      ///< given_up: those that existed then
   };
 
   struct Served {

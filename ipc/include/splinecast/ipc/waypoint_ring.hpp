@@ -71,8 +71,7 @@ struct RingItem {
   core::Time time{};
   std::vector<double> values;  ///< positions, velocities, accelerations: those that it has
 
-  /// The waypoint that it is, or the state; and the values of that, to be moved. Both view
-  /// `values`.
+  /// The item's waypoint or state; and its values, which may be changed. Both view `values`.
   [[nodiscard]] core::Waypoint waypoint() const noexcept;
   [[nodiscard]] core::WaypointValues waypoint_values() noexcept;
 };
@@ -99,8 +98,8 @@ class WaypointRingWriter {
   WaypointRingWriter(std::span<std::byte> region, const RingLayout& layout,
                      const IngestLimits& limits);
 
-  /// What is known of the solver: items that it has taken, and the time before which it changes
-  /// nothing any more, as last published; min() on a recorded stream. At rest nothing is published:
+  /// What is known of the solver: items that it has taken, and the time before which it no longer
+  /// changes anything, as last published; min() on a recorded stream. At rest nothing is published:
   /// then a live stream's clock says how long it has paused.
   struct Solved {
     Word consumed = 0;
