@@ -145,7 +145,7 @@ def why_failed(output, code):
 
 def take_out(tree, name, tests):
     """Runs the tests of one correction without it."""
-    refused = patch(tree, name)
+    refused = patch(tree, name, "--dry-run") or patch(tree, name)
     if refused is not None:
         raise Unusable(f"{name}.patch does not apply:\n{refused}")
     try:

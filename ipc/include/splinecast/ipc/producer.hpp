@@ -42,8 +42,8 @@ class Producer {
   /// possible. The solver's next step carries it out at its settled_until, or at t if that is
   /// later, whatever is queued before it; and that step comes after one sweep, or one wake, at
   /// most. A stop at a t behind the newest knot waits for its turn, and at the latest for
-  /// settled_until to reach t. The ring keeps room for stops and for `finish`: a ring that is full
-  /// of waypoints takes them.
+  /// settled_until to reach t. A ring of 16 items or more keeps room for stops and for `finish`:
+  /// when it is full of waypoints it takes them.
   [[nodiscard]] AppendStatus replace_from(core::Time t,
                                           std::span<const core::Waypoint> waypoints) noexcept;
 
@@ -65,7 +65,7 @@ class Producer {
   /// What the solver has refused since the last call, of the items that this producer appended:
   /// `accepted` says only that the ring has an item. All is known of an item once
   /// `Refusals::consumed` is above its number. The board keeps the last 1,024 refusals; `missed`
-  /// counts those that were overwritten before, and is 0 as long as no more than 1,024 items are
+  /// counts those that were overwritten before, and is 0 as long as at most 1,024 items are
   /// consumed between two calls. O(1) if nothing was published since, else O(refusals); reads the
   /// board only, no system call but the search for a solver, as in append. Allocates in the result
   /// only: the second form reuses its memory. From the producer's thread.

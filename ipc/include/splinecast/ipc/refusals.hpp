@@ -42,7 +42,7 @@ class RefusalReader {
 
   /// Gives the refusals since the last look. `ring` is the ring of the board's stream. O(1) if
   /// nothing was published since, else O(new refusals); no system call. Allocates only where
-  /// `out.items` has to grow. `missed` is 0 if fewer than kRefusalsKept items were consumed since.
+  /// `out.items` has to grow. `missed` is 0 if at most kRefusalsKept items were consumed since.
   void look(const SegmentBoardReader& board, const WaypointRingReader& ring, Refusals& out);
 
  private:
