@@ -97,6 +97,7 @@ Sampler::Compared Sampler::compare_with(const Head& before) noexcept {
   Word number = 0;
   if (head_.newest == 0) return Compared::changed;
   if (!number_by_cells(before.settled_until, number)) return Compared::torn;
+  if (number == 0 && head_.first == 1) number = 1;  // the machine is held before it
   number = std::min(number, before.newest);
   if (number < head_.first) return Compared::changed;
   SegmentCopy& now = copies_[1 - current_];

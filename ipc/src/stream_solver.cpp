@@ -115,6 +115,7 @@ void StreamSolver::take_back(Word misses) noexcept {
 
 /// Drops an unsound revision, and takes fewer items next: in the end the offending one alone.
 void StreamSolver::suspect_items() noexcept {
+  suspected_ = std::max(suspected_, head_.consumed);
   if (batch_ > 1) {
     most_items_ = std::min<Word>(batch_, max_batch_) / 2;
   } else {
@@ -309,7 +310,7 @@ void StreamSolver::take_replacement(Word number) noexcept {
   }
   ++head_.controls;
   // One revision, as far as the board has room.
-  const bool may_follow = most_items_ == max_batch_;
+  const bool may_follow = number >= suspected_;
   const Word followers = may_follow ? std::min<Word>(item_.count, board_->capacity() / 2) : 0;
   batch_limit_ = is_stop() ? 0 : batch_limit_ + followers;
   if (!has_begun) return;
@@ -387,7 +388,8 @@ StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   if (live_ && (was_curve || head_.newest > 0)) {
     // What is finished changes no more: it has settled to its end.
     head_.settled_until =
-        head_.finished ? std::max(settled_until_, curve_.end_of_motion()) : settled_until_;
+        head_.finished ? std::min(std::max(settled_until_, curve_.end_of_motion()), kLatestTime)
+                       : settled_until_;
   } else if (head_.newest > 0) {
     head_.settled_until = curve_.settled_until();
   }

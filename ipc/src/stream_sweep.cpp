@@ -94,6 +94,9 @@ void StreamSweep::take_up(const Clock& clock) {
   if (to_take_.empty() && now_ >= next_look_) {
     next_look_ = now_ + kLookAround;
     look_around();
+    // However many files others make there, the looks take a bounded share of the time.
+    constexpr int kShare = 20;
+    next_look_ = std::max(next_look_, clock.now() + kShare * (clock.now() - now_));
   }
   if (!to_take_.empty()) take_next(clock);
 }

@@ -303,6 +303,16 @@ TEST(LiveSolver, AReaderFarBehindIsNotToldOfARestThatWentOn) {
   EXPECT_EQ(gap.sample(1400), SampleStatus::settled);
 }
 
+TEST(LiveSolver, AReaderFarBehindIsNotToldOfAStartThatIsStillAhead) {
+  Gap gap;
+  gap.live.put_all(900, 1000);
+  ASSERT_EQ(gap.sample(20), SampleStatus::holding);
+  const Word revision = gap.live.board.reader.revision();
+  gap.run_to(500);
+  ASSERT_GT(gap.live.board.reader.revision(), revision + kHeadChangesKept);
+  EXPECT_EQ(gap.sample(500), SampleStatus::holding);
+}
+
 TEST(LiveSolver, AReaderFarBehindIsNotToldOfAStopThatWasCutBehindItsSample) {
   Gap gap;
   gap.rest(100, 90);

@@ -87,6 +87,18 @@ TEST(Stop, OrReplacementThatWaitsForRoomWithdrawsNothing) {
   }
 }
 
+TEST(Stop, AtTheEndOfTimeLeavesABoardThatCanBeReadBehindAFinish) {
+  Live live;
+  live.put_all(50, 100);
+  ASSERT_EQ(live.replace(kLatestTime, {}), AppendStatus::accepted);
+  live.drain();
+  live.finish({.kind = core::ConditionKind::halt, .value = {}});
+  EXPECT_TRUE(live.solver.head().finished);
+  Sampler later(live.board.reader, StreamClock::monotonic);
+  EXPECT_EQ(later.sample(Live::kNow + milliseconds(80), live.state.ref()), SampleStatus::settled);
+  EXPECT_NO_THROW(live.replace_solver());
+}
+
 TEST(Stop, AtATimeAheadTakesEffectThereAtTheLatest) {
   Live live({.settle = 2}, 64, {.history = seconds(10)});
   live.put_all(50, 2000);
