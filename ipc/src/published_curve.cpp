@@ -174,8 +174,10 @@ void PublishedCurve::enter(core::Time t) noexcept {
     run_ = cut;  // the run takes its place, and begins with the same step
     published_->copy_step(copy_, entry_step_);
   }
-  const core::StateRef state = state_.ref();
-  kinds_.normalise_quaternions(state.position, state.velocity, state.acceleration);
+  if (run_ > 1) {  // the first segment keeps its bits: readers are held there before it
+    const core::StateRef state = state_.ref();
+    kinds_.normalise_quaternions(state.position, state.velocity, state.acceleration);
+  }
   window_.enter({.time = t,
                  .position = state_.position(),
                  .velocity = state_.velocity(),

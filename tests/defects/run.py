@@ -33,7 +33,7 @@ PROJECT = DEFECTS.parent.parent
 PAGE = DEFECTS / "README.md"
 RESULTS = DEFECTS / "results.json"
 FIELDS = ["Defect", "Cause", "Correction", "Test"]
-TARGETS = ["splinecast_program", "splinecast_tests", "splinecast_byteflip"]
+TARGETS = ["splinecast_program", "splinecast_tests", "splinecast_byteflip", "splinecast_campaign"]
 TEST_SECONDS = 180
 HANG = "did not end"
 
