@@ -174,9 +174,12 @@ void PublishedCurve::enter(core::Time t) noexcept {
     run_ = cut;  // the run takes its place, and begins with the same step
     published_->copy_step(copy_, entry_step_);
   }
-  if (run_ > 1) {  // the first segment keeps its bits: readers are held there before it
-    const core::StateRef state = state_.ref();
+  const core::StateRef state = state_.ref();
+  if (run_ > 1) {
     kinds_.normalise_quaternions(state.position, state.velocity, state.acceleration);
+  } else {  // the first segment keeps its bits: readers are held there before it
+    std::ranges::copy(std::span(copy_.coefficients).first(state.position.size()),
+                      state.position.begin());
   }
   window_.enter({.time = t,
                  .position = state_.position(),

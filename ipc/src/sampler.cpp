@@ -335,8 +335,10 @@ SampleStatus Sampler::hold_first(const core::StateRef& out) noexcept {
   const auto velocity =
       std::span(first.coefficients).subspan(out.velocity.size()).first(out.velocity.size());
   if (std::ranges::any_of(velocity, [](double v) { return v != 0; })) return SampleStatus::no_data;
-  read(first, 0, out);
+  // Not evaluated: other coefficients, which may still change, would decide on the sign of a 0.
+  std::ranges::copy(std::span(first.coefficients).first(out.position.size()), out.position.begin());
   come_to_rest(out);
+  if (!kinds_.all_linear()) kinds_.normalise(out);
   return SampleStatus::holding;
 }
 
