@@ -131,7 +131,7 @@ class StreamSolver {
   Word seen_ = 0;
   Word batch_ = 0;        ///< items taken for this revision, one by one
   Word batch_limit_ = 0;  ///< of this revision
-  Word suspected_ = 0;  ///< items before this one were in a revision that was not finite
+  Word suspected_ = 0;    ///< items before this one were in a revision that was not finite
   Word most_items_ =
       0;  ///< of a revision, at this time: max_batch_, or fewer behind an unsound one
   std::optional<Word> unsound_item_{};  ///< the item that alone makes a revision unsound
