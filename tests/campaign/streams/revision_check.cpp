@@ -6,7 +6,6 @@
 #include <numeric>
 #include <utility>
 
-#include "campaign/streams/corrected.hpp"
 #include "splinecast/ipc/verification.hpp"
 
 namespace splinecast::campaign {
@@ -150,14 +149,8 @@ void RevisionCheck::take_items(const Head& before) {
   }
   const bool is_replaced = head_.controls > before.controls;
   if (!withdraws || is_replaced) return check_passed(before);
-  if (kWithdrawsOnlyWhatIsReplaced) {
-    breach(Breach::items_lost, fmt::format("{} items withdrawn, and nothing in their place",
-                                           head_.withdrawn - before.withdrawn));
-  }
-  // The replacement waits for room on the board, or is refused.
-  forget_from(before.consumed);
-  is_verifiable_ = false;
-  check_passed(before);
+  breach(Breach::items_lost, fmt::format("{} items withdrawn, and nothing in their place",
+                                         head_.withdrawn - before.withdrawn));
 }
 
 /// Waypoints from an item on may have been withdrawn before they were taken, each or none.
@@ -273,7 +266,7 @@ void RevisionCheck::check_stop() {
   if (!due_stop_) return;
   const Stop stop = *due_stop_;
   const bool is_last = stream_->ring.reader.head() == stop.item + 1;
-  if (!kStopsAtOnce || !is_last || head_.finished) return due_stop_.reset();
+  if (!is_last || head_.finished) return due_stop_.reset();
   // The first waypoint comes before the stop: that takes effect one step later.
   if (head_.newest == 0) return;
   if (!had_curve_ && head_.consumed <= stop.item) return;

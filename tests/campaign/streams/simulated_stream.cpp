@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "campaign/streams/corrected.hpp"
 #include "support/torn_publication.hpp"
 
 namespace splinecast::campaign {
@@ -168,7 +167,7 @@ void SimulatedStream::check_step(const ipc::StepResult& result, ipc::Word misses
     const bool is_counted = stream_.solver.head().revisions == late + (is_late ? 1 : 0);
     // A solver that takes over may count a commit of the one before it.
     const bool takes_over = std::exchange(has_taken_over_, false);
-    if (kLateCommitsAreKept && !takes_over && !is_counted) {
+    if (!takes_over && !is_counted) {
       findings_->breach(Breach::miscounted, fmt::format("{} late commits", late));
     }
   }

@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 
-#include "campaign/streams/corrected.hpp"
 #include "splinecast/core/limits.hpp"
 #include "splinecast/core/smoothing_rows.hpp"
 
@@ -64,7 +63,7 @@ std::size_t make_settle(const core::Interpolant& interpolant, Random& random, bo
   const core::Method& method = *interpolant.method;
   if (random.chance(0.4)) return core::default_settle(method);
   if (method.family == core::Family::smoothing) {
-    forced = kTakesAnyMagnitude && random.chance(0.3);
+    forced = random.chance(0.3);
     const auto least = static_cast<std::size_t>(core::smoothing_lag(0, 1));
     return forced ? random.below(core::kMaxSettle + 1)
                   : least + random.below(core::kMaxSettle + 1 - least);
@@ -148,7 +147,7 @@ void choose_motion(StreamPlan& plan, Random& random) {
   plan.frequency = 1 / (core::to_seconds(plan.interval) * random.uniform(2, 30));
   plan.magnitude = random.log_uniform(1e-3, 1e3);
   if (random.chance(0.2)) plan.magnitude = random.log_uniform(1e-12, 1e12);
-  if (kTakesAnyMagnitude && random.chance(0.2)) plan.magnitude = random.log_uniform(1e-300, 1e90);
+  if (random.chance(0.2)) plan.magnitude = random.log_uniform(1e-300, 1e90);
   if (random.chance(0.3)) plan.offset = random.uniform(-1000, 1000);
 }
 

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "campaign/streams/corrected.hpp"
-
 namespace splinecast::campaign {
 namespace {
 
@@ -42,8 +40,6 @@ void WaypointSource::change_mode() {
   constexpr std::array kModes{Mode::smooth, Mode::smooth, Mode::quantised, Mode::repeated,
                               Mode::noisy};
   mode_ = kModes[random_->below(kModes.size())];
-  const bool may_repeat = kStopsFromDenormals || plan_->window.max_acceleration.empty();
-  if (mode_ == Mode::repeated && !may_repeat) mode_ = Mode::smooth;
   grid_ = random_->log_uniform(1e-3, 1);
 }
 
