@@ -50,7 +50,7 @@ std::size_t bytes_of_default_stream() {
   constexpr std::size_t kRing = 1024;
   constexpr std::size_t kBoard = 4096;
   return ipc::RingLayout::of(kDimensions, kRing, ipc::kHeaderBytes).bytes +
-         ipc::BoardLayout::of(kDimensions, kBoard, ipc::kHeaderBytes).bytes;
+         ipc::BoardLayout::of(kDimensions, kBoard, ipc::kHeaderBytes, false).bytes;
 }
 
 Finding finding_of(const LeftName& name) {

@@ -5,36 +5,51 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 namespace splinecast::bench {
 namespace {
 
-/// Groups of benchmarks whose times are compared, as regular expressions over their names.
-constexpr std::array kGroups = {
-    "^(floor/eval|sample|gsl/sample)/dims:1$",
-    "^(floor/eval|sample|gsl/sample)/dims:3$",
-    "^(floor/eval|sample|gsl/sample)/dims:6$",
-    "^(floor/eval|sample|gsl/sample)/dims:7$",
-    "^(floor/eval|sample|gsl/sample)/dims:16$",
-    "^(floor/eval|sample|gsl/sample)/dims:32$",
-    "^sample/dims:7/writer:.*",
-    "^(sample_random|gsl/sample_random)/dims:7$",
-    "^(append|gsl/append|makima/append)/dims:1(/|$)",
-    "^(append|gsl/append|makima/append)/dims:3(/|$)",
-    "^(append|gsl/append|makima/append)/dims:6(/|$)",
-    "^(append|gsl/append|makima/append)/dims:7(/|$)",
-    "^(append|gsl/append|makima/append)/dims:16(/|$)",
-    "^(append|gsl/append|makima/append)/dims:32(/|$)",
-    "^publish/.*",
-    "^(floor/ping|roundtrip/.*|iceoryx/.*)",
-    "^(parse|replay)/.*",
+/// What is run in alternation, as a regular expression over names, and in how many blocks at most.
+struct Group {
+  const char* names;
+  int most_blocks = std::numeric_limits<int>::max();
 };
 
-/// What takes seconds a run; its times are compared with nothing, and three blocks are enough.
-constexpr const char* kStreams = "^streams:(10/idle|1000/idle|1000/busy:100Hz)/iterations";
-constexpr int kStreamBlocks = 3;
+/// A ratio is taken within a group: a benchmark that is compared with several others is in several.
+constexpr std::array kGroups = {
+    Group{"^(floor/eval|sample|gsl/sample)/dims:1$"},
+    Group{"^(floor/eval|sample|gsl/sample)/dims:3$"},
+    Group{"^(floor/eval|sample|gsl/sample)/dims:6$"},
+    Group{"^(floor/eval|sample|gsl/sample)/dims:7$|^sample_many/dims:7/"},
+    Group{"^(floor/eval|sample|gsl/sample)/dims:16$"},
+    Group{"^(floor/eval|sample|gsl/sample)/dims:32$"},
+    Group{"^(floor/ping|sample/dims:7/writer:.*)/iterations"},
+    Group{"^(sample_random|gsl/sample_random)/dims:7$"},
+    Group{"^(append|gsl/append|makima/append)/dims:1(/|$)"},
+    Group{"^(append|gsl/append|makima/append)/dims:3(/|$)"},
+    Group{"^(append|gsl/append|makima/append)/dims:6(/|$)"},
+    Group{"^(append|gsl/append|makima/append)/dims:7(/|$)"},
+    Group{"^(append|gsl/append|makima/append)/dims:16(/|$)"},
+    Group{"^(append|gsl/append|makima/append)/dims:32(/|$)"},
+    Group{"^(append/dims:7/settle:8$|floor/ping/|publish/dims:7/readers:0$)"},
+    Group{"^publish/dims:7/readers:(0|1)$"},
+    Group{"^publish/dims:7/readers:(0|16)$"},
+    Group{"^publish/dims:7/readers:(0|64)$"},
+    Group{"^publish/dims:(1|3|6|16|32)/"},
+    Group{"^(floor/ping|roundtrip/.*)/iterations"},
+    Group{"^(roundtrip/(embedded|solver)|iceoryx/.*)/iterations"},
+    Group{"^(parse|replay)/"},
+    Group{"^attach/"},
+    Group{"^sample/dims:7/beside:"},
+    Group{"^board/", 1},
+    // These take seconds a run.
+    Group{"^streams:1000/busy:100Hz/iterations", 9},
+    Group{"^streams:(10|1000)/idle/iterations", 3},
+    Group{"^idle_append/", 3},
+};
 
 /// Shows each run, and keeps it.
 class Keeper final : public benchmark::ConsoleReporter {
@@ -52,6 +67,7 @@ class Keeper final : public benchmark::ConsoleReporter {
       if (run.error_occurred) throw std::runtime_error(run.error_message);
       const double unit = benchmark::GetTimeUnitMultiplier(run.time_unit) / 1e9;
       nlohmann::json kept = {{"name", run.run_name.function_name + tail_of(run)},
+                             {"group", group},
                              {"block", block},
                              {"iterations", run.iterations},
                              {"real_ns", run.GetAdjustedRealTime() / unit},
@@ -61,6 +77,7 @@ class Keeper final : public benchmark::ConsoleReporter {
     }
   }
 
+  std::size_t group = 0;
   int block = 0;
 
  private:
@@ -86,13 +103,15 @@ nlohmann::json machine() {
 void run_blocks(int blocks, const std::string& out) {
   nlohmann::json runs = nlohmann::json::array();
   Keeper keeper(runs);
-  const auto run = [&](const char* group, int times) {
+  for (keeper.group = 0; keeper.group < kGroups.size(); ++keeper.group) {
+    const Group& group = kGroups[keeper.group];
+    const int times = std::min(blocks, group.most_blocks);
     for (keeper.block = 0; keeper.block < times; ++keeper.block) {
-      benchmark::RunSpecifiedBenchmarks(&keeper, group);
+      if (benchmark::RunSpecifiedBenchmarks(&keeper, group.names) == 0) {
+        throw std::logic_error(std::string("no benchmark has a name like ") + group.names);
+      }
     }
-  };
-  for (const char* const group : kGroups) run(group, blocks);
-  run(kStreams, std::min(blocks, kStreamBlocks));
+  }
   std::ofstream file(out);
   file << nlohmann::json{{"machine", machine()}, {"blocks", blocks}, {"runs", runs}}.dump(1)
        << '\n';

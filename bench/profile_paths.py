@@ -1,83 +1,101 @@
-"""The profile of the two hot paths: instructions as callgrind counts them, and cache lines.
+"""The profile of the hot paths: instructions as callgrind counts them, and cache lines.
+
+    profile_paths.py SPLINECAST_BENCH    lists the functions of each path: instructions per call, purpose, name;
+                                         "(no pattern)" marks those that count as the rest
 
 Instructions are repeatable for one binary, whatever else the machine does.
 """
 
 import re
 import subprocess
+import sys
 import tempfile
 from collections import defaultdict
 
-# Of the benchmark `counted/…`, which runs so often.
+# Of the benchmarks `counted/…`, which run so often.
 CALLS = 10_000
 
-# What a function is for; the first expression that is found in its name counts.
-SAMPLE = [
-    (r"core::evaluate", "the polynomial and three derivatives, 7 dimensions"),
-    (r"copy_segment", "copies the next segment out of shared memory, once every 10 samples"),
-    (r"copy_bounds|see\(", "takes over the bounds of a revision"),
-    (r"Sampler::", "looks whether there is a new revision, finds the segment, time within it, status"),
-]
-PUBLISH = [
-    (r"SegmentBoardWriter::(write|claim|slot|prefetch)", "writes the segments that the waypoint changes into spare cells"),
-    (r"build_segment|KnotRing::interval|write_cubic", "coefficients from knot velocities"),
-    (r"acceleration|write_step", "the acceleration step published at each knot"),
-    (r"PublishedCurve|KnotRing::knot|SlidingWindow::(segment|newer|left)", "which segments changed, and what goes with each"),
-    (r"back_substitute|solve|eliminate|close|TridiagonalSolver|SlidingWindow|KnotRing|write_chord|end_intervals",
-     "the window: forward row, tail, K backward rows"),
-    (r"stop_tail|stop_time", "the stop tail"),
-    (r"SegmentBoardWriter::commit", "the head, and the commit"),
-    (r"Waypoint|Producer|is_finite|judge_interval", "the ring: checks, one item in, one item out"),
-    (r"StreamSolver|Solver::step|Quaternion|DimensionKinds", "the step: what to take, whether to"),
-]
+# What no pattern names.
+REST = "copies and fills of the C library, and the rest"
 
 
-def count(binary, benchmark, toggles):
-    """Instructions a call, by function."""
-    with tempfile.TemporaryDirectory() as folder:
-        out = f"{folder}/callgrind.out"
-        subprocess.run(
-            ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}"]
-            + [f"--toggle-collect={toggle}" for toggle in toggles]
-            + [binary, f"--benchmark_filter=^{benchmark}/"],
-            check=True, capture_output=True)
-        text = subprocess.run(["callgrind_annotate", "--threshold=100", out], check=True,
-                              capture_output=True, text=True).stdout
-    functions = defaultdict(float)
-    for line in text.splitlines():
-        found = re.match(r"\s*([\d,]+) \([ \d.]+%\)\s+\S*?:(.*?)( \[.*)?$", line)
-        if found:
-            functions[found[2]] += int(found[1].replace(",", "")) / CALLS
-    return functions
+class Path:
+    """A path that is counted: `benchmark` runs it, `entries` are the functions in which it is counted.
+
+    `purposes` says what a function is for: (expression, purpose), the first expression found in its name counts.
+    `lines` is a text on the cache lines that the path touches.
+    """
+
+    def __init__(self, title, benchmark, entries, purposes, lines):
+        self.title, self.benchmark, self.entries = title, benchmark, entries
+        self.purposes, self.lines = purposes, lines
+
+    def purpose(self, function):
+        """What a function is for; nothing if no pattern names it."""
+        return next((purpose for pattern, purpose in self.purposes if re.search(pattern, function)), None)
+
+    def count(self, binary):
+        """Instructions a call, by function, most first."""
+        with tempfile.TemporaryDirectory() as folder:
+            out = f"{folder}/callgrind.out"
+            subprocess.run(
+                ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}"]
+                + [f"--toggle-collect={entry}" for entry in self.entries]
+                + [binary, f"--benchmark_filter=^{self.benchmark}/"],
+                check=True, capture_output=True)
+            text = subprocess.run(["callgrind_annotate", "--threshold=100", out], check=True,
+                                  capture_output=True, text=True).stdout
+        functions = defaultdict(float)
+        for line in text.splitlines():
+            found = re.match(r"\s*([\d,]+) \([ \d.]+%\)\s+\S*?:(.*?)( \[.*)?$", line)
+            if found:
+                functions[found[2]] += int(found[1].replace(",", "")) / CALLS
+        return dict(sorted(functions.items(), key=lambda item: -item[1]))
 
 
-def write_table(functions, purposes):
-    groups = defaultdict(float)
-    for name, instructions in functions.items():
-        what = next((what for pattern, what in purposes if re.search(pattern, name)),
-                    "copies and fills of the C library, and the rest")
-        groups[what] += instructions
-    total = sum(groups.values())
-    print("| instructions | share | what for |\n|---|---|---|")
-    for what, instructions in sorted(groups.items(), key=lambda group: -group[1]):
-        print(f"| {instructions:,.0f} | {instructions / total:.0%} | {what} |")
-    print(f"| **{total:,.0f}** | | in all |\n")
-
-
-LINES_SAMPLE = """Cache lines of shared memory that it loads (64 bytes, 7 dimensions): one, with `revision` and `retired`, while
+PATHS = [
+    Path(
+        title="`sample/dims:7`",
+        benchmark="counted/sample",
+        entries=["splinecast::ipc::Sampler::sample*"],
+        purposes=[
+            (r"core::evaluate", "the polynomial and three derivatives, 7 dimensions"),
+            (r"copy_segment", "copies the next segment out of shared memory, once every 10 samples"),
+            (r"copy_bounds|see\(", "takes over the bounds of a revision"),
+            (r"Sampler::", "looks whether there is a new revision, finds the segment, time within it, status"),
+        ],
+        lines="""Cache lines of shared memory that it loads (64 bytes, 7 dimensions): one, with `revision` and `retired`, while
 the revision stands and the time lies in the segment used last. Another segment adds 6: the tags of its two cells, of
 which one is the first of the 5 lines (8 + 28 words) that hold a cubic; after a jump it asks for those of both cells at
 once. A new revision adds 5: the tags of the head's two
 cells with the bounds beside them, the `changed_from` of the revisions missed, and the tags of the own segment's two
 cells; these, and the tags of the next segment, it asks for at once before it waits for the first of them. It stores
 nothing.
-"""
-
-LINES_PUBLISH = """Cache lines, K = 8, 7 dimensions: the producer stores 2 of the ring's item and 1 with `head`, and loads the 2 with
+""",
+    ),
+    Path(
+        title="`publish/dims:7`, K = 8: one append, solved and published",
+        benchmark="counted/publish",
+        entries=["splinecast::ipc::Producer::append*", "splinecast::ipc::Solver::step*"],
+        purposes=[
+            (r"SegmentBoardWriter::(write|claim|slot|prefetch)", "writes the segments that the waypoint changes into spare cells"),
+            (r"build_segment|KnotRing::interval|write_cubic", "coefficients from knot velocities"),
+            (r"acceleration|write_step", "the acceleration step published at each knot"),
+            (r"PublishedCurve|KnotRing::knot|SlidingWindow::(segment|newer|left)", "which segments changed, and what goes with each"),
+            (r"back_substitute|solve|eliminate|close|TridiagonalSolver|SlidingWindow|KnotRing|write_chord|end_intervals",
+             "the window: forward row, tail, K backward rows"),
+            (r"stop_tail|stop_time", "the stop tail"),
+            (r"SegmentBoardWriter::commit", "the head, and the commit"),
+            (r"Waypoint|Producer|is_finite|judge_interval", "the ring: checks, one item in, one item out"),
+            (r"StreamSolver|Solver::step|Quaternion|DimensionKinds", "the step: what to take, whether to"),
+        ],
+        lines="""Cache lines, K = 8, 7 dimensions: the producer stores 2 of the ring's item and 1 with `head`, and loads the 2 with
 `tail` and `sleeping`; the solver loads 3 of the ring and stores, for each of the K + 2 segments that a waypoint changes,
 9 of a cell (10 of the stop tail's) and 1 in ten of the packed times; of the head 6 or 7, `revision` and `tail`: about 105
 lines and 650 words in all, each word a store of its own, because readers may look at any time.
-"""
+""",
+    ),
+]
 
 
 # What stands in the way of a target, by the beginning of its subject's name; told where it is missed.
@@ -118,15 +136,33 @@ def write_limits(missed):
         print("".join(told))
 
 
+def write_table(path, functions):
+    groups = defaultdict(float)
+    for function, instructions in functions.items():
+        groups[path.purpose(function) or REST] += instructions
+    total = sum(groups.values())
+    print("| instructions | share | what for |\n|---|---|---|")
+    for purpose, instructions in sorted(groups.items(), key=lambda group: -group[1]):
+        print(f"| {instructions:,.0f} | {instructions / total:.0%} | {purpose} |")
+    print(f"| **{total:,.0f}** | | in all |\n")
+
+
 def write(binary, missed):
     print("## Where the time goes\n")
     print("Instructions as valgrind's callgrind counts them, per call.\n")
-    print("### `sample/dims:7`\n")
-    write_table(count(binary, "counted/sample", ["splinecast::ipc::Sampler::sample*"]), SAMPLE)
-    print(LINES_SAMPLE)
-    print("### `publish/dims:7`, K = 8: one append, solved and published\n")
-    write_table(count(binary, "counted/publish",
-                      ["splinecast::ipc::Producer::append*", "splinecast::ipc::Solver::step*"]),
-                PUBLISH)
-    print(LINES_PUBLISH)
+    for path in PATHS:
+        print(f"### {path.title}\n")
+        write_table(path, path.count(binary))
+        print(path.lines)
     write_limits(missed)
+
+
+def list_functions(binary):
+    for path in PATHS:
+        print(path.title)
+        for function, instructions in path.count(binary).items():
+            print(f"{instructions:10,.1f}  {path.purpose(function) or '(no pattern)'}: {function}")
+
+
+if __name__ == "__main__":
+    list_functions(sys.argv[1])

@@ -1,117 +1,118 @@
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
+#include <chrono>
+#include <ctime>
 #include <optional>
 #include <stdexcept>
 
 #include "bench_stream.hpp"
-#include "splinecast/ipc/producer.hpp"
 #include "splinecast/ipc/reader.hpp"
-#include "splinecast/ipc/solver.hpp"
 #include "support/child.hpp"
-#include "support/signals.hpp"
 #include "trips.hpp"
+#include "writer.hpp"
 
 namespace splinecast::bench {
 namespace {
 
-constexpr std::size_t kDimensions = 7;
-constexpr std::size_t kKnots = 4096;
 constexpr std::size_t kSamples = 2'000'000;
-constexpr core::Time kStep{1'000'000};
+/// First samples of a new revision that a run needs at least.
+constexpr std::size_t kFirstSamples = 100;
 constexpr core::Time kPatience{10'000'000'000};
 
-/// Publishes a stream of kKnots waypoints, and then goes on at a rate, or not at all.
-nlohmann::json write_stream(const std::string& stream, std::int64_t rate,
-                            std::atomic<std::uint64_t>& ready) {
-  const Pinned pin(kFar);
-  Feed feed(kDimensions);
-  ipc::Producer producer(
-      stream, {.dimensions = kDimensions, .clock = ipc::StreamClock::recorded, .start = {}});
-  ipc::Solver solver(stream, {.capacity = 2 * kKnots, .wake = false});
-  solver.attach();
-  const ipc::MonotonicClock clock;
-  const auto publish = [&] {
-    if (producer.append(feed.next()) != ipc::AppendStatus::accepted) {
-      throw std::runtime_error("a waypoint was refused");
-    }
-    solver.step(clock);
-  };
-  for (std::size_t i = 0; i < kKnots; ++i) publish();
-  ready.store(1, std::memory_order_release);
-  const core::Time period = rate > 0 ? core::Time(1'000'000'000 / rate) : kPatience;
-  core::Time next = clock.now() + period;
-  for (; apps::sleep_until(next); next += period) publish();
-  return nullptr;
-}
-
-/// What reading the clock twice costs: taken off each sample.
-core::Time clock_cost() {
-  const ipc::MonotonicClock clock;
-  constexpr std::size_t kPairs = 10'001;
-  Trips pairs(kPairs);
-  for (std::size_t i = 0; i < kPairs; ++i) {
-    const core::Time start = clock.now();
-    pairs.add(clock.now() - start);
-  }
-  return core::Time(static_cast<std::int64_t>(pairs.quantile(0.5)));
-}
-
 /// Samples at 1 kHz steps, again and again, from 20 s before what is settled to behind the newest
-/// knot; each sample is timed alone.
-nlohmann::json sample_all(const std::string& stream) {
-  ipc::Reader reader(stream, kPatience);
-  core::State state(kDimensions);
+/// knot.
+class Walk {
+ public:
+  explicit Walk(const std::string& stream) : reader_(stream, kPatience) {
+    (void)reader_.sample(core::Time{}, state_);  // what is settled is known by now
+  }
+
+  /// Goes on to the time of the next sample.
+  void step() {
+    t_ += core::Time(1'000'000);
+    if (t_ < end_) return;
+    t_ = reader_.settled_until() - core::Time(20'000'000'000);
+    end_ = reader_.settled_until() + core::Time(100'000'000);
+  }
+  [[nodiscard]] ipc::SampleStatus sample() { return reader_.sample(t_, state_); }
+  [[nodiscard]] ipc::Word revision_seen() { return reader_.sampler().revision_seen(); }
+
+ private:
+  ipc::Reader reader_;
+  core::State state_{kWrittenDimensions};
+  core::Time t_{};
+  core::Time end_{};
+};
+
+void require_values(ipc::SampleStatus status) {
+  if (!ipc::has_values(status)) throw std::runtime_error("a sample had no values");
+}
+
+/// CPU time of this thread.
+core::Time cpu_now() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec);
+}
+
+/// CPU time of a sample [ns], the mean of many: the clock is too coarse for a single one.
+double mean_time(Walk& walk) {
+  const core::Time start = cpu_now();
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    walk.step();
+    require_values(walk.sample());
+  }
+  return static_cast<double>((cpu_now() - start).count()) / kSamples;
+}
+
+/// Times every sample alone. Of a stream `is_written` meanwhile those are reported as well that
+/// found a new revision.
+nlohmann::json time_alone(Walk& walk, bool is_written) {
   const ipc::MonotonicClock clock;
   const core::Time cost = clock_cost();
   Trips all(kSamples);
-  Trips first_of_revision(kSamples);
-  (void)reader.sample(core::Time{}, state);  // what is settled is known by now
-  core::Time t{};
-  core::Time last{};
-  for (std::size_t i = 0; i < kSamples; ++i, t += kStep) {
-    if (t >= last) {
-      t = reader.settled_until() - core::Time(20'000'000'000);
-      last = reader.settled_until() + core::Time(100'000'000);
-    }
-    const ipc::Word seen = reader.sampler().revision_seen();
+  Trips first_of_revision(kFirstSamples);
+  while (all.size() < kSamples || (is_written && first_of_revision.size() < kFirstSamples)) {
+    walk.step();
+    const ipc::Word seen = walk.revision_seen();
     const core::Time start = clock.now();
-    const ipc::SampleStatus status = reader.sample(t, state);
+    const ipc::SampleStatus status = walk.sample();
     const core::Time took = clock.now() - start - cost;
-    if (!ipc::has_values(status)) throw std::runtime_error("a sample had no values");
-    all.add(took);
-    if (reader.sampler().revision_seen() != seen) first_of_revision.add(took);
+    require_values(status);
+    if (all.size() < kSamples) all.add(took);
+    if (walk.revision_seen() != seen) first_of_revision.add(took);
   }
   nlohmann::json summary = all.summary();
-  if (!first_of_revision.empty()) {
-    summary["new_revision_p50_ns"] = first_of_revision.quantile(0.5);
-  }
+  if (is_written) summary["new_revision_p50_ns"] = first_of_revision.quantile(0.5);
   return summary;
 }
 
 /// A sample while another process publishes.
-void sample_written(benchmark::State& bench, std::int64_t rate) {
+void sample_written(benchmark::State& bench, std::optional<core::Time> interval) {
   const Pinned pin(kNear);
   const StreamName stream;
   const SharedLines lines;
   for (auto _ : bench) {
-    apps::Child writer([&] { return write_stream(stream, rate, lines[0]); });
+    apps::Child writer([&] { return write_stream(stream, 2 * kWrittenKnots, interval, lines[0]); });
     await(lines[0], 1);
-    report(bench, sample_all(stream));
+    Walk walk(stream);
+    const double mean = mean_time(walk);
+    report(bench, time_alone(walk, interval.has_value()));
+    bench.counters["mean_ns"] = mean;
     writer.stop();
     writer.result();
   }
 }
 
-BENCHMARK_CAPTURE(sample_written, quiet, 0)
+BENCHMARK_CAPTURE(sample_written, quiet, std::nullopt)
     ->Name("sample/dims:7/writer:quiet")
     ->Iterations(1)
     ->UseManualTime();
-BENCHMARK_CAPTURE(sample_written, slow, 100)
+BENCHMARK_CAPTURE(sample_written, slow, core::Time(10'000'000))
     ->Name("sample/dims:7/writer:100Hz")
     ->Iterations(1)
     ->UseManualTime();
-BENCHMARK_CAPTURE(sample_written, fast, 1000)
+BENCHMARK_CAPTURE(sample_written, fast, core::Time(1'000'000))
     ->Name("sample/dims:7/writer:1kHz")
     ->Iterations(1)
     ->UseManualTime();

@@ -1,21 +1,15 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "soak.hpp"
-#include "solve.hpp"
-#include "splinecast/ipc/reader.hpp"
+#include "solved_streams.hpp"
 #include "splinecast/ipc/stream_sweep.hpp"
-#include "support/child.hpp"
-#include "support/descriptors.hpp"
 #include "support/process_use.hpp"
 #include "support/signals.hpp"
-#include "support/stream_remover.hpp"
 
 /// What many streams of seven dimensions cost the one process that solves them. The time of these
 /// rows is the CPU time that this process takes for a second: 10 ms are 1 % of a core.
@@ -27,29 +21,19 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr double kRate = 100;
-/// Holds a second of history at 100 Hz and the lead.
-constexpr std::size_t kCapacity = 256;
 constexpr Time kPatience = seconds(60);
 constexpr Time kWindow = seconds(1);
 
-/// Streams, their solver and their producers, each of the two a process of its own.
+/// Streams that one process solves, and their producers in another one.
 class ManyStreams {
  public:
   /// Their motion begins in a second, or, if they are idle, never.
   ManyStreams(std::size_t count, bool are_idle, const ipc::SolverOptions& options)
-      : streams_(names(count)),
-        remover_(streams_),
-        solver_([&] {
-          return nlohmann::json(
-              apps::run_solve({.wanted = {kPrefix + "*"}, .solver = options, .quiet = true}));
-        }),
-        producers_([&] {
+      : solved_(count, options), producers_([&] {
           const Time begin = clock_.now() + (are_idle ? seconds(1'000'000) : seconds(1));
-          return apps::run_soak_producers(streams_, kRate, begin);
+          return apps::run_soak_producers(solved_.streams(), kRate, begin);
         }) {
-    apps::raise_descriptor_limit();
-    readers_.reserve(count);
-    for (const std::string& stream : streams_) readers_.emplace_back(stream, kPatience);
+    readers_ = solved_.attach_readers(kPatience);
     const Time end = clock_.now() + kPatience;  // the rows tell how many waypoints there are
     while (!are_idle && !all_move() && clock_.now() < end) {
       apps::sleep_until(clock_.now() + milliseconds(10));
@@ -60,11 +44,9 @@ class ManyStreams {
   ~ManyStreams() {
     producers_.stop();
     (void)producers_.result();
-    solver_.stop();
-    (void)solver_.result();
   }
 
-  [[nodiscard]] pid_t solver() const { return solver_.pid(); }
+  [[nodiscard]] pid_t solver() const { return solved_.solver(); }
   [[nodiscard]] std::vector<ipc::Reader>& readers() { return readers_; }
 
   /// Waypoints that the solver has taken so far, and deadlines that it has missed.
@@ -84,13 +66,6 @@ class ManyStreams {
   }
 
  private:
-  static inline const std::string kPrefix = fmt::format("bench.many.{}.", getpid());
-
-  static std::vector<std::string> names(std::size_t count) {
-    std::vector<std::string> all;
-    for (std::size_t i = 0; i < count; ++i) all.push_back(kPrefix + std::to_string(i));
-    return all;
-  }
   /// Whether every stream has what it needs to move.
   [[nodiscard]] bool all_move() const {
     ipc::Head head;
@@ -101,9 +76,7 @@ class ManyStreams {
   }
 
   ipc::MonotonicClock clock_;
-  std::vector<std::string> streams_;
-  apps::StreamRemover remover_;
-  apps::Child solver_;
+  SolvedStreams solved_;
   apps::Child producers_;
   std::vector<ipc::Reader> readers_;
 };
@@ -117,7 +90,7 @@ struct Row {
 };
 
 ipc::SolverOptions options_of(const Row& row) {
-  return {.freeze_ahead = row.freeze_ahead, .capacity = kCapacity, .wake = row.wakes};
+  return {.freeze_ahead = row.freeze_ahead, .capacity = kBusyCapacity, .wake = row.wakes};
 }
 
 /// The solver's own CPU clock, over a second each; of idle streams once they have been quiet for so

@@ -33,8 +33,8 @@ class Trips {
  public:
   explicit Trips(std::size_t count) { ns_.reserve(count); }
   void add(core::Time trip) { ns_.push_back(trip.count()); }
-  [[nodiscard]] bool empty() const { return ns_.empty(); }
-  /// The value that a share q of the trips does not exceed.
+  [[nodiscard]] std::size_t size() const { return ns_.size(); }
+  /// The value that a share q of the trips does not exceed; there must be some.
   [[nodiscard]] double quantile(double q);
   /// p50 and p99, for `report`.
   [[nodiscard]] nlohmann::json summary();
@@ -42,6 +42,9 @@ class Trips {
  private:
   std::vector<std::int64_t> ns_;
 };
+
+/// What reading the clock twice costs: to be taken off what is timed alone.
+[[nodiscard]] core::Time clock_cost();
 
 /// Makes p50 the benchmark's time and p99 a counter. The benchmark has one iteration, which has
 /// run.

@@ -38,8 +38,8 @@ ipc::Head OwnBoard::head() const {
   constexpr int kTries = 1000;
   ipc::Head head;
   for (int attempt = 0; attempt < kTries; ++attempt) {
-    const ipc::Word r = reader_.revision();
-    if (r == 0 || reader_.copy_head(r, head)) return head;
+    const ipc::Look look = reader_.look();
+    if (look.revision == 0 || reader_.copy_head(look, head)) return head;
   }
   throw Failure("the board has no head of its newest revision");
 }

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "splinecast/ipc/checked_region.hpp"
-#include "splinecast/ipc/segment_board.hpp"
+#include "splinecast/ipc/knot_board.hpp"
 
 namespace splinecast::apps {
 
@@ -18,11 +18,11 @@ class OwnBoard {
   [[nodiscard]] const ipc::RegionHeader& header() const noexcept { return board_.header; }
   /// The newest head; that of revision 0 if there is none yet.
   [[nodiscard]] ipc::Head head() const;
-  [[nodiscard]] const ipc::SegmentBoardReader& reader() const noexcept { return reader_; }
+  [[nodiscard]] const ipc::KnotBoardReader& reader() const noexcept { return reader_; }
 
  private:
   ipc::CheckedRegion<ipc::BoardLayout> board_;
-  ipc::SegmentBoardReader reader_;
+  ipc::KnotBoardReader reader_;
 };
 
 /// Removes the board that an embedded solver of this process made for a ring that has been

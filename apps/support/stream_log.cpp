@@ -10,7 +10,7 @@ using nlohmann::ordered_json;
 
 StreamLog::StreamLog(const std::string& stream, std::uint64_t stream_id, const ipc::Trust& trust)
     : board_(stream, stream_id, trust),
-      settled_(board_.reader()),
+      settled_(board_.reader(), ipc::stream_clock(board_.header()) == ipc::StreamClock::monotonic),
       items_(board_.reader().dimensions()) {}
 
 ipc::Verification StreamLog::verify(const core::Condition& end) {

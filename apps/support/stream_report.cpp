@@ -74,6 +74,16 @@ ordered_json depth(const ipc::StreamInfo& info) {
   return std::max(left, core::Time::zero()).count();
 }
 
+/// How long the solver's steps took, from reading the clock to the commit: pairs of the least time
+/// in ns and how many took so long, up to twice that; those that none took are left out.
+ordered_json step_times_json(const ipc::StreamInfo& info) {
+  ordered_json list = ordered_json::array();
+  for (std::size_t i = 0; i < info.step_times.size(); ++i) {
+    if (info.step_times[i] > 0) list.push_back({std::uint64_t{1} << i, info.step_times[i]});
+  }
+  return list;
+}
+
 ordered_json solver_json(const ipc::StreamInfo& info) {
   const bool has_low_water = info.head.low_water < core::Time::max();
   const ipc::Head& head = info.head;
@@ -118,6 +128,7 @@ ordered_json solver_json(const ipc::StreamInfo& info) {
       {"deadline_misses", head.misses},
       {"late_commits", head.revisions},
       {"finished", head.finished},
+      {"step_times_ns", step_times_json(info)},
   };
 }
 

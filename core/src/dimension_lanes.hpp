@@ -10,6 +10,9 @@ namespace splinecast::core {
 using FourLanes [[gnu::vector_size(4 * sizeof(double))]] = double;
 using TwoLanes [[gnu::vector_size(2 * sizeof(double))]] = double;
 
+template <typename Lane>
+inline constexpr std::size_t kWidth = sizeof(Lane) / sizeof(double);
+
 /// Calls `body(lane, first)` so that each dimension is covered once, four at a time, then two, then
 /// one: `decltype(lane)::type` is FourLanes, TwoLanes or double, and the body works on the
 /// dimensions from `first` on that it holds. There is no loop over a handful of values to set up,
@@ -37,6 +40,20 @@ template <typename Body>
   if (first < dimensions) body(std::type_identity<FourLanes>{}, dimensions - 4);
 }
 
+/// Calls `body(lane, groups, first)` so that arrays whose length has been padded to 2 or to a
+/// multiple of 4 are covered once, without a remainder: `decltype(groups)::value` lanes of the type
+/// `decltype(lane)::type` begin at `first`, one behind the other. Two at once where there are so
+/// many: what all dimensions share is then loaded half as often.
+template <typename Body>
+[[gnu::always_inline]] inline void for_padded_lanes(std::size_t padded, const Body& body) noexcept {
+  using One = std::integral_constant<std::size_t, 1>;
+  using Two = std::integral_constant<std::size_t, 2>;
+  if (padded == 2) return body(std::type_identity<TwoLanes>{}, One{}, 0);
+  std::size_t first = 0;
+  for (; first + 8 <= padded; first += 8) body(std::type_identity<FourLanes>{}, Two{}, first);
+  if (first < padded) body(std::type_identity<FourLanes>{}, One{}, first);
+}
+
 /// What a body reads of an array, and writes to one.
 template <typename Lane>
 [[gnu::always_inline]] inline Lane load_lane(const double* from) noexcept {
@@ -47,6 +64,20 @@ template <typename Lane>
 template <typename Lane>
 [[gnu::always_inline]] inline void store_lane(double* to, Lane value) noexcept {
   std::memcpy(to, &value, sizeof(Lane));
+}
+
+/// A lane of an array that ends after `count` (≥ 1) values, which may be fewer than the lane's:
+/// zeros stand for the others.
+template <typename Lane>
+[[gnu::always_inline]] inline Lane load_first_of_lane(const double* from,
+                                                      std::size_t count) noexcept {
+  if (count >= kWidth<Lane>) return load_lane<Lane>(from);
+  if constexpr (kWidth<Lane> == 2) return Lane{from[0]};
+  if constexpr (kWidth<Lane> == 4) {
+    if (count == 3) return Lane{from[0], from[1], from[2]};
+    if (count == 2) return Lane{from[0], from[1]};
+    return Lane{from[0]};
+  }
 }
 
 }  // namespace splinecast::core

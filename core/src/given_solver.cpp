@@ -25,7 +25,7 @@ class GivenSolver final : public KnotSolver {
     if (n == 0) impose(knots, start(), 0);
     std::ranges::copy(knots.values(n, KnotRing::kVelocity), knots.values(n, KnotRing::kG).begin());
     if (n == 1 && !has_accelerations_ && start().kind != ConditionKind::own) {
-      knots.row(0).prefix.gamma =
+      knots.gamma(0) =
           eliminate_first(start(), knots.start_intervals(), knots.values(0, KnotRing::kG));
     }
   }

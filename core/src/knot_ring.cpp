@@ -19,6 +19,11 @@ std::size_t values_kept(const Method& method) noexcept {
   return method.needs_acceleration() ? KnotRing::kAcceleration + 1 : KnotRing::kVelocity + 1;
 }
 
+/// Up to whole vector registers: see for_padded_lanes.
+std::size_t padded(std::size_t dimensions) noexcept {
+  return dimensions <= 2 ? 2 : (dimensions + 3) / 4 * 4;
+}
+
 }  // namespace
 
 SPLINECAST_VECTOR_CLONES
@@ -39,9 +44,13 @@ KnotRing::KnotRing(std::size_t dimensions, std::size_t capacity, const Method& m
       has_accelerations_(method.needs_acceleration()),
       halts_at_start_(halts_at_start),
       mask_(std::bit_ceil(capacity) - 1),
-      knot_stride_(values_kept(method) * dimensions),
+      stride_(padded(dimensions)),
+      kinds_(values_kept(method)),
       rows_(mask_ + 1),
-      values_((mask_ + 1) * knot_stride_) {}
+      gammas_(mask_ + 1),
+      values_((mask_ + 1) * kinds_ * stride_),
+      newer_knots_(mask_ + 1),
+      smoothing_(smooths_ ? mask_ + 1 : 0) {}
 
 Neighbours KnotRing::neighbours(std::size_t i) const noexcept {
   return {.h_before = row(i - 1).h,
@@ -72,14 +81,7 @@ EndIntervals KnotRing::end_intervals() const noexcept {
   return at;
 }
 
-void KnotRing::place(std::size_t i, Time time, std::span<const double> waypoint) noexcept {
-  row(i) = {.time = time, .h = 0, .prefix = {}, .newer_knots = 0};
-  std::ranges::copy(waypoint, values(i, kWaypoint).begin());
-}
-
-/// Length and chord slope of interval i.
-void KnotRing::measure(std::size_t i) noexcept {
-  row(i).h = to_seconds(row(i + 1).time - row(i).time);
+void KnotRing::measure_chord(std::size_t i) noexcept {
   write_chord(values(i, kWaypoint), values(i + 1, kWaypoint), row(i).h, values(i, kChord));
 }
 
@@ -92,30 +94,34 @@ void KnotRing::measure_smoothed(std::size_t i) noexcept {
 }
 
 void KnotRing::push(Time time, std::span<const double> waypoint) noexcept {
-  const std::size_t i = size_++;
-  place(i, time, waypoint);
-  if (i > 0) measure(i - 1);
+  push(time);
+  std::ranges::copy(waypoint, values(newest(), kWaypoint).begin());
+  if (newest() > 0) measure_chord(newest() - 1);
 }
 
 void KnotRing::restore(std::size_t first, std::span<const Knot> knots) noexcept {
   for (std::size_t k = 0; k < knots.size(); ++k) {
     const Knot& knot = knots[k];
     const std::size_t i = first + k;
-    place(i, knot.time, knot.waypoint);
-    row(i).prefix = knot.prefix;
-    row(i).newer_knots = knot.newer_knots;
+    place(i, knot.time);
+    gamma(i) = knot.prefix.gamma;
+    newer_knots_[i & mask_] = knot.newer_knots;
+    std::ranges::copy(knot.waypoint, values(i, kWaypoint).begin());
     std::ranges::copy(knot.g, values(i, kG).begin());
     std::ranges::copy(knot.velocity, values(i, kVelocity).begin());
     if (has_accelerations_) std::ranges::copy(knot.acceleration, values(i, kAcceleration).begin());
     if (smooths_) {
+      smoothing(i) = knot.prefix.smoothing;
       std::ranges::copy(knot.position, values(i, kPosition).begin());
       std::ranges::copy(knot.residual, values(i, kResidual).begin());
     }
     if (k == 0) continue;
-    measure(i - 1);
+    row(i - 1).h = to_seconds(knot.time - row(i - 1).time);
+    measure_chord(i - 1);
     if (smooths_) measure_smoothed(i - 1);
   }
   size_ = first + knots.size();
+  first_solved_ = size_;
 }
 
 /// At rest at both ends of a curve that halts there, whatever the knot velocities say.

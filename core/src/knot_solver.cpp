@@ -1,6 +1,7 @@
 #include "splinecast/core/knot_solver.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "back_substitution.hpp"
 #include "dimension_lanes.hpp"
@@ -36,38 +37,30 @@ void solve_lone_knot(KnotRing& knots, const Condition& start) noexcept {
 
 SPLINECAST_VECTOR_CLONES
 void back_substitute_to(KnotRing& knots, std::size_t last) noexcept {
-  const std::size_t stride = knots.stride();
-  for (std::size_t after = knots.newest(); after > last;) {
-    const std::size_t count = std::min(after - last, knots.contiguous(after - 1));
-    const KnotRing::Row* const row = &knots.row(after - 1);
-    const double* const g = knots.values(after - 1, KnotRing::kG).data();
-    double* const velocity = knots.values(after - 1, KnotRing::kVelocity).data();
-    const double* const v_after = knots.values(after, KnotRing::kVelocity).data();
-    // Dimensions outside, so that the velocity of the row before stays in a register.
-    for_lanes(knots.dimensions(), [&](auto lane, std::size_t first) {
-      using Lane = typename decltype(lane)::type;
-      auto v = load_lane<Lane>(v_after + first);
-      for (std::size_t k = 0; k < count; ++k) {
-        const double gamma = (row - k)->prefix.gamma;
-        v = back_substituted(gamma, load_lane<Lane>(g - k * stride + first), v);
-        store_lane<Lane>(velocity - k * stride + first, v);
-      }
-    });
-    after -= count;
-  }
+  const RowsBehind rows(knots, last);
+  const double* const newest = knots.values(knots.newest(), KnotRing::kVelocity).data();
+  const auto body = [&](auto lane, auto groups, std::size_t first) __attribute__((always_inline)) {
+    using Lane = typename decltype(lane)::type;
+    std::array<Lane, decltype(groups)::value> v;
+    for (std::size_t k = 0; k < v.size(); ++k) {
+      v[k] = load_lane<Lane>(newest + first + k * kWidth<Lane>);
+    }
+    rows.solve<false>(first, v);
+  };
+  for_padded_lanes(knots.stride(), body);
 }
 
 void close(KnotRing& knots, const Condition& end) noexcept {
   const std::size_t n = knots.newest();
   if (end.kind == ConditionKind::halt) knots.halt_at_end();
-  solve_last(end, knots.end_intervals(), knots.row(n - 1).prefix.gamma,
-             knots.values(n - 1, KnotRing::kG), knots.values(n, KnotRing::kVelocity));
+  solve_last(end, knots.end_intervals(), knots.gamma(n - 1), knots.values(n - 1, KnotRing::kG),
+             knots.values(n, KnotRing::kVelocity));
 }
 
 void close(KnotRing& knots, Tail tail) noexcept {
   const std::size_t n = knots.newest();
-  solve_tail(tail, knots.end_intervals(), knots.row(n - 1).prefix.gamma,
-             knots.values(n - 1, KnotRing::kG), knots.values(n, KnotRing::kVelocity));
+  solve_tail(tail, knots.end_intervals(), knots.gamma(n - 1), knots.values(n - 1, KnotRing::kG),
+             knots.values(n, KnotRing::kVelocity));
 }
 
 }  // namespace splinecast::core

@@ -58,7 +58,7 @@ class LocalSolver final : public KnotSolver {
     if (start().kind == ConditionKind::own) {
       write_own_end(knots, 0, knots.start_intervals(), g);
     } else {
-      knots.row(0).prefix.gamma = eliminate_first(start(), knots.start_intervals(), g);
+      knots.gamma(0) = eliminate_first(start(), knots.start_intervals(), g);
     }
   }
 

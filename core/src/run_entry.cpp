@@ -9,6 +9,7 @@ RunEntry::RunEntry(std::size_t dimensions)
 
 void RunEntry::begin(const Instant& from, std::span<const StandingWaypoint> before) noexcept {
   time_ = from.time;
+  h_before_ = 0;
   std::ranges::copy(from.position, values(kPosition).begin());
   std::ranges::copy(from.velocity, values(kVelocity).begin());
   std::ranges::copy(from.acceleration, values(kAcceleration).begin());
@@ -28,10 +29,10 @@ void RunEntry::begin(const Instant& from, std::span<const StandingWaypoint> befo
 void RunEntry::update(KnotRing& knots) noexcept {
   RunStart at;
   if (standing_ > 0) {
-    const double h = to_seconds(knots.row(0).time - before_);
-    write_chord(values(kBefore), knots.values(0, KnotRing::kWaypoint), h, values(kChord));
-    at.before = {.h = h, .chord = values(kChord)};
-    knots.lead_in(at.before);
+    h_before_ = to_seconds(knots.row(0).time - before_);
+    write_chord(values(kBefore), knots.values(0, KnotRing::kWaypoint), h_before_, values(kChord));
+    at.before = {.h = h_before_, .chord = values(kChord)};
+    lead_in(knots);
   }
   if (standing_ > 1) at.before2 = {.h = to_seconds(before_ - before2_), .chord = values(kChord2)};
   const auto after = [&knots](std::size_t i) {

@@ -99,6 +99,18 @@ std::size_t SlidingWindow::settled_segments() const noexcept {
   return settled > 0 || frozen_ > 0 ? settled + 1 : 0;
 }
 
+std::size_t SlidingWindow::settled_knots() const noexcept {
+  if (finished_) return knots();
+  const std::size_t segments = settled_knot_segments();
+  return segments > 0 ? segments + 1 : frozen_;
+}
+
+SegmentForm SlidingWindow::form(std::size_t i) const noexcept {
+  if (i < knots_.newest()) return knots_.form(i);
+  if (!finished_) return SegmentForm::stop;
+  return knots() == 1 && !is_entered_ ? SegmentForm::hold : SegmentForm::none;
+}
+
 std::size_t SlidingWindow::oldest_knot() const noexcept {
   return knots() - std::min(knots(), reach() + 2);
 }
@@ -123,27 +135,19 @@ bool SlidingWindow::lag_suffices(Time time) const noexcept {
          smoothing_lag(options_.interpolant.lambda, ahead / static_cast<double>(lag));
 }
 
-/// An exact method's slope at the start may look one knot further than the slopes within: knot 0
-/// stays open as long as its segment does.
-bool SlidingWindow::is_start_open() const noexcept {
-  return !options_.interpolant.method->converges() && knots_.newest() <= reach() + 1;
-}
-
 void SlidingWindow::solve(const auto& closing, std::size_t last) noexcept {
   const std::size_t newest = knots_.newest();
   // A finish changes the newest knot even where it has been frozen as a knot to pass through.
   const std::size_t first = std::min(std::max(last, frozen_), newest);
   solver_->solve(knots_, closing, first);
-  for (std::size_t i = first; i <= newest; ++i) {
-    knots_.row(i).newer_knots = static_cast<std::uint32_t>(newest - i);
-  }
+  knots_.mark_solved(first);
   // Until both its knots have converged, the first interval shapes the splice before it.
   if (!is_entry_open() || first > 1) return;
   entry_.take_acceleration(knots_);
   entry_newer_knots_ = static_cast<std::uint32_t>(newest);
 }
 
-/// For the trials of window_limits.cpp.
+/// For window_limits.cpp.
 template void SlidingWindow::solve(const Tail&, std::size_t) noexcept;
 
 /// Makes the entry's velocity that of knot 0, unless the waypoint gives one; a given acceleration
@@ -170,14 +174,22 @@ bool SlidingWindow::push_into_entry(const Waypoint& waypoint) noexcept {
     start_with_entry();
   }
   const std::size_t newest = knots_.newest();
-  solve(options_.tail, is_start_open() ? 0 : newest - std::min(newest, options_.settle));
+  solve(options_.tail, first_to_solve(newest));
   // With K = 0 the splice is shaped by knots behind which its own right knot is not solved again.
   if (shapes) entry_newer_knots_ = static_cast<std::uint32_t>(newest);
   return shapes;
 }
 
 void SlidingWindow::append(const Waypoint& waypoint) noexcept {
-  const bool is_limited = !options_.max_acceleration.empty() && is_entry_open();
+  if (is_entry_open()) return append_to_entry(waypoint);
+  const std::size_t first = first_to_solve(knots());
+  solver_->append(knots_, waypoint, options_.tail, first);
+  knots_.mark_solved(first);
+}
+
+/// The same while the splice of the entry is open: see can_append for what limits ask of it.
+void SlidingWindow::append_to_entry(const Waypoint& waypoint) noexcept {
+  const bool is_limited = !options_.max_acceleration.empty();
   if (is_limited) entry_.keep();
   const bool shapes = push_into_entry(waypoint);
   if (!is_limited || knots() == 1) return;
@@ -222,7 +234,7 @@ void SlidingWindow::finish(const Condition& end) noexcept {
   const std::size_t newest = knots_.newest();
   if (newest == 0 && is_entered_) return rest_at_only_knot();
   // Until K knots have followed it, knot 0 too is still open.
-  const bool from_start = newest < options_.settle || is_start_open();
+  const bool from_start = newest < options_.settle || is_start_open(newest);
   const bool is_halt =
       end.kind == ConditionKind::own && options_.interpolant.method->family == Family::tridiagonal;
   solve(is_halt ? Condition{.kind = ConditionKind::halt, .value = {}} : end,
@@ -279,18 +291,37 @@ Time SlidingWindow::stop_time(std::span<const double> velocity,
   return stop_time_within(options_.max_acceleration, options_.stop_time, velocity, acceleration);
 }
 
-void SlidingWindow::write_stop_tail(Segment& out) const noexcept {
-  const std::size_t n = knots_.newest();
-  const Knot knot = knots_.knot(n);
-  std::array<double, kMaxDimensions> values{};
-  const auto acceleration = std::span(values).first(dimensions());
-  if (n == 0 && is_entered_) {
+Time SlidingWindow::write_stop(std::span<double> acceleration) const noexcept {
+  const bool follows_splice = knots() == 1 && is_entered_;
+  if (knots() == 0) {
+    std::ranges::copy(entry_.state().acceleration, acceleration.begin());
+    return stop_time(entry_.state().velocity, acceleration);
+  }
+  if (follows_splice) {
     std::ranges::copy(entry_.acceleration(), acceleration.begin());
   } else {
     knots_.write_final_acceleration(acceleration);
   }
-  build_stop_tail(knot.time, stop_time(knot.velocity, acceleration), knot.position, knot.velocity,
-                  acceleration, out);
+  return stop_time(knots_.values(knots_.newest(), KnotRing::kVelocity), acceleration);
+}
+
+void SlidingWindow::write_stop_tail(Segment& out) const noexcept {
+  const Knot knot = knots_.knot(knots_.newest());
+  std::array<double, kMaxDimensions> values{};
+  const auto acceleration = std::span(values).first(dimensions());
+  const Time length = write_stop(acceleration);
+  build_stop_tail(knot.time, length, knot.position, knot.velocity, acceleration, out);
+}
+
+void SlidingWindow::assign(const SlidingWindow& other) noexcept {
+  knots_ = other.knots_;
+  entry_ = other.entry_;
+  if (other.is_entered_) entry_.lead_in(knots_);
+  solver_->start_as(*other.solver_);
+  is_entered_ = other.is_entered_;
+  entry_newer_knots_ = other.entry_newer_knots_;
+  frozen_ = other.frozen_;
+  finished_ = other.finished_;
 }
 
 void SlidingWindow::restore(std::size_t first, std::span<const Knot> knots) noexcept {

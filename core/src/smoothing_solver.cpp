@@ -53,10 +53,9 @@ class SmoothingSolver final : public KnotSolver {
   void eliminate(KnotRing& knots, std::size_t i) const noexcept {
     const std::size_t before2 = i > 1 ? i - 2 : 0;  // row 1 has none: row 0 stands in, as none too
     const SmoothingIntervals at = smoothing_intervals(knots, i);
-    const SmoothingRow row =
-        factor_smoothing(lambda_, at, roughness_row<double>(at),
-                         knots.row(before2).prefix.smoothing, knots.row(i - 1).prefix.smoothing);
-    knots.row(i).prefix.smoothing = row;
+    const SmoothingRow row = factor_smoothing(lambda_, at, roughness_row<double>(at),
+                                              knots.smoothing(before2), knots.smoothing(i - 1));
+    knots.smoothing(i) = row;
     const auto chord_before = knots.values(i - 1, KnotRing::kChord);
     const auto chord_after = knots.values(i, KnotRing::kChord);
     const auto z_before2 = knots.values(before2, KnotRing::kG);
@@ -71,9 +70,7 @@ class SmoothingSolver final : public KnotSolver {
   static void write_accelerations(KnotRing& knots, std::size_t last) noexcept {
     const std::size_t n = knots.newest();
     const auto a = [&](std::size_t i) { return knots.values(i, KnotRing::kAcceleration); };
-    const auto row = [&](std::size_t i) {
-      return i < n ? knots.row(i).prefix.smoothing : SmoothingRow{};
-    };
+    const auto row = [&](std::size_t i) { return i < n ? knots.smoothing(i) : SmoothingRow{}; };
     std::ranges::fill(a(n), 0.0);
     for (std::size_t i = n; i-- > std::max<std::size_t>(last, 1);) {
       const auto z = knots.values(i, KnotRing::kG);

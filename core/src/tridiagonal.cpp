@@ -5,7 +5,7 @@
 
 #include "back_substitution.hpp"
 #include "dimension_lanes.hpp"
-#include "splinecast/core/slope_rule.hpp"
+#include "tridiagonal_rows.hpp"
 #include "vector_clones.hpp"
 
 namespace splinecast::core {
@@ -79,18 +79,14 @@ double eliminate_first(const Condition& start, const EndIntervals& at,
 SPLINECAST_VECTOR_CLONES
 double eliminate_interior(const Neighbours& neighbours, double gamma_before,
                           std::span<const double> g_before, std::span<double> g) noexcept {
-  const double before = neighbours.h_before;
-  const double after = neighbours.h_after;
-  const double pivot = 2 * (before + after) - after * gamma_before;
+  const InteriorRow row(neighbours.h_before, neighbours.h_after, gamma_before);
   for_lanes(g.size(), [&](auto lane, std::size_t first) {
     using Lane = typename decltype(lane)::type;
-    const auto m_before = load_lane<Lane>(neighbours.chord_before.data() + first);
-    const auto m_after = load_lane<Lane>(neighbours.chord_after.data() + first);
-    const auto g_last = load_lane<Lane>(g_before.data() + first);
-    const Lane right_side = 3.0 * (after * m_before + before * m_after);
-    store_lane<Lane>(g.data() + first, (right_side - after * g_last) / pivot);
+    store_lane(g.data() + first, row.g(load_lane<Lane>(neighbours.chord_before.data() + first),
+                                       load_lane<Lane>(neighbours.chord_after.data() + first),
+                                       load_lane<Lane>(g_before.data() + first)));
   });
-  return before / pivot;
+  return row.gamma();
 }
 
 void solve_last(const Condition& end, const EndIntervals& at, double gamma_before,
@@ -100,26 +96,15 @@ void solve_last(const Condition& end, const EndIntervals& at, double gamma_befor
 
 void solve_tail(Tail tail, const EndIntervals& at, double gamma_before,
                 std::span<const double> g_before, std::span<double> v) noexcept {
-  switch (tail) {
-    case Tail::bessel:
-      if (at.h_next > 0) {
-        for (std::size_t d = 0; d < v.size(); ++d) {
-          v[d] = parabola_end_slope({at.h, at.chord[d], at.h_next, at.chord_next[d]});
-        }
-      } else {
-        std::ranges::copy(at.chord, v.begin());
-      }
-      break;
-    case Tail::parabolic:
-      solve_end_row({.inner = 1, .outer = 1, .slope = 2, .scale = 0, .value = {}}, at.chord,
-                    gamma_before, g_before, v);
-      break;
-    case Tail::natural:
-      solve_last({.kind = ConditionKind::natural, .value = {}}, at, gamma_before, g_before, v);
-      break;
-    case Tail::rest:
-      std::ranges::fill(v, 0.0);
-      break;
+  const bool has_next = at.h_next > 0;
+  if (tail == Tail::bessel && !has_next) {
+    std::ranges::copy(at.chord, v.begin());
+    return;
+  }
+  const TailRow row(tail, at.h, at.h_next, gamma_before);
+  const auto chord_next = has_next ? at.chord_next : at.chord;
+  for (std::size_t d = 0; d < v.size(); ++d) {
+    v[d] = row.velocity(at.chord[d], chord_next[d], g_before[d]);
   }
 }
 

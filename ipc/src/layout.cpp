@@ -3,7 +3,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <initializer_list>
 #include <stdexcept>
 #include <string>
 
@@ -48,25 +47,40 @@ void require_dimension_kinds(const RegionHeader& header) {
   }
 }
 
+/// Two versions of splinecast that meet at one stream: which they are, and how to go on.
+void require_this_layout(const RegionHeader& header) {
+  const std::uint32_t version = header.mark.version;
+  if (version != kLayoutVersion) {
+    throw BadRegion("region has layout version " + std::to_string(version) +
+                    ", this splinecast has version " + std::to_string(kLayoutVersion) +
+                    "; use one splinecast for all processes of the stream, or stop those of the "
+                    "other version and remove its regions with `splinecast rm`");
+  }
+  if (header.layout_hash == layout_hash()) return;
+  throw BadRegion("region has layout version " + std::to_string(version) + " with hash " +
+                  std::to_string(header.layout_hash) + ", this splinecast has version " +
+                  std::to_string(kLayoutVersion) + " with hash " + std::to_string(layout_hash()) +
+                  "; use one build for all processes of the stream, or stop those of the other one "
+                  "and remove its regions with `splinecast rm`");
+}
+
 /// What both kinds of region share.
 void require_common(const RegionHeader& header, RegionKind kind, std::size_t real_bytes,
                     std::size_t max_capacity) {
-  require(header.byte_order != kOtherByteOrder, "byte order", header.byte_order, kByteOrder);
+  const std::uint32_t order = header.mark.byte_order;
+  require(order != kOtherByteOrder, "byte order", order, kByteOrder);
   require(header.magic == kMagic, "magic number", header.magic, kMagic);
-  require(header.byte_order == kByteOrder, "byte order", header.byte_order, kByteOrder);
-  require(header.layout_version == kLayoutVersion, "layout version", header.layout_version,
-          kLayoutVersion);
-  require(header.layout_hash == layout_hash(), "layout hash", header.layout_hash, layout_hash());
+  require(order == kByteOrder, "byte order", order, kByteOrder);
+  require_this_layout(header);
   require(header.kind == static_cast<std::uint64_t>(kind), "kind", header.kind,
           static_cast<std::uint64_t>(kind));
   require_range("dimensions", header.dimensions, core::kMinDimensions, core::kMaxDimensions);
   require_dimension_kinds(header);
-  require(header.order == core::kMaxOrder, "order", header.order, core::kMaxOrder);
   require_range("capacity", header.capacity, 2, max_capacity);
   require(std::has_single_bit(header.capacity), "capacity", header.capacity,
           std::bit_ceil(header.capacity));
   require_range("control offset", header.control, kHeaderBytes,
-                kHeaderBytes + kControlPositions * kSeparation);
+                kHeaderBytes + (kControlPositions - 1) * kSeparation);
   require(header.control % kSeparation == 0, "control offset", header.control,
           round_up(header.control, kSeparation));
   require_range("clock", header.clock, 0, 1);
@@ -106,46 +120,10 @@ void require_curve(const RegionHeader& header) {
 
 }  // namespace
 
-std::uint64_t layout_hash() noexcept {
-  // FNV-1a over every number that fixes where a word lies.
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const std::uint64_t value : std::initializer_list<std::uint64_t>{sizeof(RegionHeader),
-                                                                        kHeaderBytes,
-                                                                        kBodyOffset,
-                                                                        kSeparation,
-                                                                        kCacheLine,
-                                                                        kControlLines,
-                                                                        kRevision,
-                                                                        kRetired,
-                                                                        kClaimed,
-                                                                        kTail,
-                                                                        kSleeping,
-                                                                        kProducerCounters,
-                                                                        kItemValues,
-                                                                        kCellShape,
-                                                                        kCellRightSeen,
-                                                                        kCellItem,
-                                                                        kCellCoefficients,
-                                                                        kCellExtraWords,
-                                                                        kHeadWords,
-                                                                        kHeadRun,
-                                                                        kHeadRunFrozen,
-                                                                        kHeadReasons,
-                                                                        kHeadChanges,
-                                                                        kHeadChangesKept,
-                                                                        kRefusalsKept,
-                                                                        kNameBytes,
-                                                                        kUnitBytes,
-                                                                        core::kMaxOrder,
-                                                                        core::kMaxDimensions}) {
-    hash = (hash ^ value) * 0x100000001b3;
-  }
-  return hash;
-}
-
 RingLayout RingLayout::of(std::size_t dimensions, std::size_t capacity,
                           std::size_t control) noexcept {
-  const std::size_t stride = round_up((kItemValues + 3 * dimensions) * sizeof(Word), kCacheLine);
+  const std::size_t stride =
+      round_up(size_of(kItemFields).of(dimensions) * sizeof(Word), kCacheLine);
   return {.dimensions = dimensions,
           .capacity = capacity,
           .control = control,
@@ -154,26 +132,43 @@ RingLayout RingLayout::of(std::size_t dimensions, std::size_t capacity,
           .bytes = round_up(kBodyOffset + capacity * stride, kPage)};
 }
 
-BoardLayout BoardLayout::of(std::size_t dimensions, std::size_t capacity,
-                            std::size_t control) noexcept {
-  const std::size_t vectors = core::kMaxOrder + 4;  // coefficients, step, waypoint, g, residual
-  const std::size_t cell = round_up(
-      (kCellCoefficients + vectors * dimensions + kCellExtraWords) * sizeof(Word), kCacheLine);
-  BoardLayout layout{.dimensions = dimensions,
-                     .capacity = capacity,
-                     .control = control,
-                     .head = kBodyOffset,
-                     .refusals = 0,
-                     .times = 0,
-                     .slots = 0,
-                     .cell = cell,
-                     .stride = 2 * cell,
-                     .bytes = 0};
-  layout.refusals = layout.head + 2 * kHeadWords * sizeof(Word);
-  layout.times = layout.refusals + kRefusalsKept * sizeof(Word);
+BoardLayout BoardLayout::of(std::size_t dimensions, std::size_t capacity, std::size_t control,
+                            bool smooths) noexcept {
+  // The last field of a cell and of a row is of `smoothing` only.
+  const auto lines = [&](std::span<const Field> fields) {
+    const Extent size = smooths ? size_of(fields) : fields.back().offset;
+    return round_up(size.of(dimensions) * sizeof(Word), kCacheLine);
+  };
+  BoardLayout layout{
+      .dimensions = dimensions,
+      .capacity = capacity,
+      .control = control,
+      .smooths = smooths,
+      .refusals = kBodyOffset,
+      .times = kBodyOffset + word_of(kBodyFields, "times") * sizeof(Word),
+      .slots = 0,
+      .cell = lines(kCellFields),
+      .nodes = 0,
+      .node = round_up(size_of(kNodeFields).of(dimensions) * sizeof(Word), kCacheLine),
+      .beside = 0,
+      .beside_bytes = round_up(size_of(kBesideFields).of(dimensions) * sizeof(Word), kCacheLine),
+      .rows = 0,
+      .row = lines(kRowFields),
+      .stride = 0,
+      .bytes = 0};
   layout.slots = round_up(layout.times + capacity * sizeof(Word), kPage);
+  layout.nodes = 2 * layout.cell;
+  layout.beside = layout.nodes + 2 * layout.node;
+  layout.rows = layout.beside + 2 * layout.beside_bytes;
+  layout.stride = layout.rows + 2 * layout.row;
   layout.bytes = round_up(layout.slots + capacity * layout.stride, kPage);
   return layout;
+}
+
+RegionHeader decode_header(std::span<const Word> words) noexcept {
+  RegionHeader header{};
+  decode(kHeaderRows, words.data(), header);
+  return header;
 }
 
 RegionHeader copy_header(std::span<const std::byte> region) {
@@ -181,13 +176,21 @@ RegionHeader copy_header(std::span<const std::byte> region) {
     throw BadRegion("region has " + std::to_string(region.size()) +
                     " bytes, fewer than its first " + std::to_string(kBodyOffset));
   }
-  constexpr std::size_t kWords = sizeof(RegionHeader) / sizeof(Word);
-  std::array<Word, kWords> copy{};
-  const auto words = words_at(region, 0, kWords);
-  for (std::size_t i = 0; i < kWords; ++i) copy[i] = load(words[i], std::memory_order_relaxed);
-  RegionHeader header{};
-  std::memcpy(&header, copy.data(), sizeof header);
-  return header;
+  std::array<Word, kHeaderWords> copy{};
+  const auto words = words_at(region, 0, kHeaderWords);
+  for (std::size_t i = 0; i < copy.size(); ++i) copy[i] = load(words[i], std::memory_order_relaxed);
+  return decode_header(copy);
+}
+
+void write_header(std::span<std::byte> region, const RegionHeader& header) noexcept {
+  std::array<Word, kHeaderWords> words{};
+  encode(kHeaderRows, header, words.data());
+  std::memcpy(region.data(), words.data(), sizeof words);
+}
+
+bool smooths(const RegionHeader& header) noexcept {
+  const core::Method* const method = core::find_method(header.method);
+  return method != nullptr && method->family == core::Family::smoothing;
 }
 
 std::vector<core::Dimension> dimensions_of(const RegionHeader& header) {
@@ -209,8 +212,9 @@ RingLayout checked_ring_layout(const RegionHeader& header, std::size_t real_byte
 
 BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_bytes) {
   require_common(header, RegionKind::spline, real_bytes, kMaxBoardCapacity);
-  const auto layout = BoardLayout::of(header.dimensions, header.capacity, header.control);
   require_curve(header);
+  const auto layout =
+      BoardLayout::of(header.dimensions, header.capacity, header.control, smooths(header));
   require_range("tail", header.tail, 0, static_cast<std::uint64_t>(core::Tail::rest));
   require_range("freeze-ahead", static_cast<std::uint64_t>(header.freeze_ahead), 1,
                 kLongestNanoseconds);

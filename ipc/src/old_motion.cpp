@@ -1,5 +1,6 @@
 #include "splinecast/ipc/old_motion.hpp"
 
+#include "splinecast/ipc/board_segment.hpp"
 #include "splinecast/ipc/checked_region.hpp"
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/stream_options.hpp"
@@ -12,23 +13,20 @@ constexpr int kHeadTries = 16;
 
 }  // namespace
 
-core::Time end_of_motion(const RegionHeader& header, const SegmentBoardReader& board) noexcept {
+core::Time end_of_motion(const RegionHeader& header, const KnotBoardReader& board) noexcept {
   if (stream_clock(header) == StreamClock::recorded || header.time_namespace != time_namespace() ||
       board.retired()) {
     return core::Time::min();
   }
+  BoardSegment last(board.dimensions(), board.smooths());
   // Tries again, because the board's solver may overtake an observer.
   for (int attempt = 0; attempt < kHeadTries; ++attempt) {
-    const Word r = board.revision();
+    const Look look = board.look();
     Head head;
-    core::Time left{};
-    core::Time right{};
-    if (r == 0) break;
-    if (!board.copy_head(r, head)) continue;
+    if (look.revision == 0) break;
+    if (!board.copy_head(look, head)) continue;
     if (head.newest == 0) break;
-    if (board.copy_ends(head.newest, r, left, right)) {
-      return is_time_in_range(right) ? right : core::Time::min();
-    }
+    if (last.take_last(board, head)) return last.right();
   }
   return core::Time::min();
 }
@@ -47,7 +45,7 @@ core::Time end_of_old_motion(const std::string& stream, std::uint64_t stream_id,
     if (!peeked || peeked->stream_id == stream_id) return core::Time::min();
     const auto [region, header, layout] = open_board(stream, false, trust);
     if (header.stream_id == stream_id) return core::Time::min();
-    return end_of_motion(header, SegmentBoardReader(region.bytes(), layout));
+    return end_of_motion(header, KnotBoardReader(region.bytes(), layout));
   } catch (const StreamError&) {
     return core::Time::min();  // it went meanwhile, or no solver of ours can use it either
   }

@@ -167,8 +167,9 @@ bool region_owner_lives(int descriptor) noexcept {
   struct flock lock = whole_file(F_WRLCK);
   if (fcntl(descriptor, F_OFD_GETLK, &lock) != 0 || lock.l_type == F_UNLCK) return false;
   if (lock.l_type == F_WRLCK) return true;
-  RegionHeader header{};
-  if (pread(descriptor, &header, sizeof header, 0) != sizeof header) return false;
+  std::array<Word, kHeaderWords> words{};
+  if (pread(descriptor, words.data(), sizeof words, 0) != sizeof words) return false;
+  const RegionHeader header = decode_header(words);
   return process_lives(header.owner_pid, core::Time(header.owner_since));
 }
 

@@ -9,8 +9,8 @@
 #include "splinecast/ipc/checked_region.hpp"
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/futex.hpp"
+#include "splinecast/ipc/knot_board.hpp"
 #include "splinecast/ipc/owner_lock.hpp"
-#include "splinecast/ipc/segment_board.hpp"
 #include "splinecast/ipc/stream_files.hpp"
 
 namespace splinecast::ipc {
@@ -24,7 +24,7 @@ constexpr core::Time kPoll = std::chrono::milliseconds(2);
 /// The solver's region as the producer sees it: where the ring's tail comes from.
 struct SolverView {
   Region region;
-  SegmentBoardReader board;
+  KnotBoardReader board;
 
   SolverView(Region mapped, const BoardLayout& layout)
       : region(std::move(mapped)), board(region.bytes(), layout) {
@@ -134,7 +134,6 @@ struct Producer::Impl {
   std::optional<SolverView> solver;
   WaypointRingReader sent;
   RefusalReader refused;
-  Head bounds;
   core::Time settled_until = core::Time::min();
   MonotonicClock clock;
 
@@ -176,9 +175,9 @@ struct Producer::Impl {
     if (stream_clock(ring.header) == StreamClock::recorded) return known;
     known.clock = &clock;
     if (!solver) return known;
-    const Word r = solver->board.revision();
-    // A head that is overtaken is one that settles later still: what it said before holds.
-    if (r > 0 && solver->board.copy_bounds(r, r, bounds)) settled_until = bounds.settled_until;
+    const Look look = solver->board.look();
+    const bool is_time = is_time_in_range(look.settled_until);
+    if (look.revision > 0 && is_time) settled_until = look.settled_until;
     known.settled_until = settled_until;
     return known;
   }

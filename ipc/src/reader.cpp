@@ -40,7 +40,7 @@ struct Reader::Impl {
   std::string stream;
   Region region;
   RegionHeader header;
-  SegmentBoardReader board;
+  KnotBoardReader board;
   Sampler sampler;
   Word seen = 0;
 
@@ -89,9 +89,9 @@ Reader::~Reader() = default;
 
 bool Reader::head(Head& out) const noexcept {
   for (int attempt = 0; attempt < kHeadTries; ++attempt) {
-    const Word r = impl_->board.revision();
-    if (r == 0) return false;
-    if (impl_->board.copy_head(r, out)) return true;
+    const Look look = impl_->board.look();
+    if (look.revision == 0) return false;
+    if (impl_->board.copy_head(look, out)) return true;
   }
   return false;
 }
@@ -99,7 +99,8 @@ bool Reader::head(Head& out) const noexcept {
 bool Reader::first_time(core::Time& out) const noexcept {
   Head bounds;
   for (int attempt = 0; attempt < kHeadTries && head(bounds) && bounds.newest != 0; ++attempt) {
-    if (impl_->board.copy_left(bounds.first, bounds.revision, out)) return true;
+    core::SegmentForm form{};
+    if (impl_->board.copy_time(bounds.first, bounds.revision, out, form)) return true;
   }
   return false;
 }

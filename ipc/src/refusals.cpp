@@ -17,7 +17,7 @@ std::string to_string(const ItemRefusal& refusal) {
   return text;
 }
 
-void RefusalReader::skip(const SegmentBoardReader& board) noexcept {
+void RefusalReader::skip(const KnotBoardReader& board) noexcept {
   copy_head(board);
   seen_ = head_.refused;
 }
@@ -27,14 +27,14 @@ void RefusalReader::restart() noexcept {
   seen_ = 0;
 }
 
-void RefusalReader::copy_head(const SegmentBoardReader& board) noexcept {
+void RefusalReader::copy_head(const KnotBoardReader& board) noexcept {
   for (int attempt = 0; attempt < kHeadTries; ++attempt) {
-    const Word r = board.revision();
-    if (r == head_.revision || board.copy_head(r, head_)) return;
+    const Look look = board.look();
+    if (look.revision == head_.revision || board.copy_head(look, head_)) return;
   }
 }
 
-void RefusalReader::look(const SegmentBoardReader& board, const WaypointRingReader& ring,
+void RefusalReader::look(const KnotBoardReader& board, const WaypointRingReader& ring,
                          Refusals& out) {
   copy_head(board);
   out.items.clear();

@@ -234,8 +234,10 @@ RegionFile look_at_region(std::string_view stream, RegionKind kind, const Trust&
   const struct stat status = trusted_status(opened.get(), region_path(stream, kind), trust);
   RegionFile file{.bytes = static_cast<std::size_t>(status.st_size),
                   .is_own = status.st_uid == geteuid()};
-  RegionHeader header{};
-  if (pread(opened.get(), &header, sizeof header, 0) == sizeof header) file.header = header;
+  std::array<Word, kHeaderWords> words{};
+  if (pread(opened.get(), words.data(), sizeof words, 0) == sizeof words) {
+    file.header = decode_header(words);
+  }
   return file;
 }
 

@@ -7,7 +7,7 @@
 
 namespace splinecast::ipc {
 
-void evaluate_at_cut(const SegmentCopy& segment, core::Time t, core::State& out) noexcept {
+void evaluate_at_cut(const CutSegment& segment, core::Time t, core::State& out) noexcept {
   const core::Time at = std::clamp(t, segment.left, segment.right);
   core::evaluate(segment.order, segment.coefficients, core::to_seconds(at - segment.left),
                  out.ref());

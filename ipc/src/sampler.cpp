@@ -18,6 +18,26 @@ double seconds_after(core::Time left, core::Time t) noexcept {
   return core::to_seconds(to_time(to_word(t) - to_word(left)));
 }
 
+/// Copies the derivatives asked for, one behind the other.
+void copy_asked(const core::State& state, core::Derivatives asked, std::span<double> out) noexcept {
+  using core::Derivatives;
+  const std::array<std::pair<Derivatives, std::span<const double>>, 4> parts{
+      {{Derivatives::position, state.position()},
+       {Derivatives::velocity, state.velocity()},
+       {Derivatives::acceleration, state.acceleration()},
+       {Derivatives::jerk, state.jerk()}}};
+  for (const auto& [derivative, values] : parts) {
+    if (!core::contains(asked, derivative)) continue;
+    std::ranges::copy(values, out.begin());
+    out = out.subspan(values.size());
+  }
+}
+
+/// Takes values from others, one by one.
+void subtract(std::span<double> from, std::span<const double> values) noexcept {
+  for (std::size_t d = 0; d < from.size(); ++d) from[d] -= values[d];
+}
+
 /// Sets velocity, acceleration and jerk to 0: at rest.
 void come_to_rest(const core::StateRef& out) noexcept {
   std::ranges::fill(out.velocity, 0.0);
@@ -27,12 +47,16 @@ void come_to_rest(const core::StateRef& out) noexcept {
 
 }  // namespace
 
-Sampler::Sampler(const SegmentBoardReader& board, StreamClock clock, core::DimensionKinds kinds)
+Sampler::Sampler(const KnotBoardReader& board, StreamClock clock, core::DimensionKinds kinds)
     : board_(&board),
       clock_(clock),
       kinds_(std::move(kinds)),
       all_linear_(kinds_.all_linear()),
-      copies_{SegmentCopy(board.dimensions()), SegmentCopy(board.dimensions())} {}
+      copies_{BoardSegment(board.dimensions(), board.smooths()),
+              BoardSegment(board.dimensions(), board.smooths())},
+      state_(board.dimensions()),
+      start_acceleration_(board.dimensions()),
+      end_acceleration_(board.dimensions()) {}
 
 /// Whether each span has one value per dimension.
 inline bool Sampler::fits(const core::StateRef& out) const noexcept {
@@ -46,13 +70,16 @@ inline bool Sampler::fits(const core::StateRef& out) const noexcept {
 inline SampleStatus Sampler::find(core::Time t, const core::StateRef& out) noexcept {
   if (!fits(out)) return SampleStatus::wrong_dimension;
   if (board_->retired()) return SampleStatus::retired;
-  const bool is_at_hand =
-      board_->revision() == confirmed_ && t >= at_hand_.left && t < at_hand_.right;
+  const Look look = board_->look();
+  const bool is_at_hand = look.revision == confirmed_ && t >= at_hand_.left && t < at_hand_.right;
   if (!is_at_hand) return look_up(t, out);
-  const SegmentCopy& own = current();
-  core::evaluate(own.order, own.coefficients, seconds_after(at_hand_.left, t), out);
+  head_.settled_until = look.settled_until;
+  copied_settled_until_ = look.settled_until;
+  const BoardSegment& own = current();
+  core::evaluate(own.order(), own.coefficients(), seconds_after(at_hand_.left, t), out);
   if (!all_linear_) kinds_.normalise(out);
-  return t < at_hand_.settled_until ? SampleStatus::settled : SampleStatus::provisional;
+  return at_hand_.is_finished || t < look.settled_until ? SampleStatus::settled
+                                                        : SampleStatus::provisional;
 }
 
 SampleStatus Sampler::sample(core::Time t, const core::StateRef& out) noexcept {
@@ -66,28 +93,22 @@ SampleStatus Sampler::sample(core::Time t, const core::StateRef& out) noexcept {
 
 /// Takes the bounds of a revision over, and whether it, or one before it that this reader has not
 /// seen, changed the curve before a time that this reader has sampled.
-bool Sampler::see(Word r) noexcept {
-  const Word seen = seen_;
-  if (seen > 0 && r - seen > kHeadChangesKept) return see_after_gap(r);
-  if (!board_->copy_bounds(r, seen, head_)) return false;
-  seen_ = r;
-  revised_ = revised_ || (seen > 0 && sampled_until_ >= head_.changed_from);
-  return true;
-}
-
-/// The same where more revisions have been missed than the board keeps the changes of.
-bool Sampler::see_after_gap(Word r) noexcept {
+bool Sampler::see(const Look& look) noexcept {
   const Head before = head_;
-  if (!board_->copy_bounds(r, seen_, head_)) return false;
-  if (!revised_ && sampled_until_ >= before.settled_until) {
-    const Compared compared = compare_with(before);
-    if (compared == Compared::torn) {
-      head_ = before;
-      return false;
-    }
-    revised_ = compared == Compared::changed;
+  if (!board_->copy_bounds(look, before.revision, head_)) return false;
+  if (revised_ || before.revision == 0 || sampled_until_ < head_.changed_from) return true;
+  if (head_.changed_from > core::Time::min()) {
+    revised_ = true;
+    return true;
   }
-  seen_ = r;
+  // More revisions have been missed than the board keeps the changes of.
+  if (sampled_until_ < before.settled_until) return true;
+  const Compared compared = compare_with(before);
+  if (compared == Compared::torn) {
+    head_ = before;
+    return false;
+  }
+  revised_ = compared == Compared::changed;
   return true;
 }
 
@@ -100,46 +121,48 @@ Sampler::Compared Sampler::compare_with(const Head& before) noexcept {
   if (number == 0 && head_.first == 1) number = 1;  // the machine is held before it
   number = std::min(number, before.newest);
   if (number < head_.first) return Compared::changed;
-  SegmentCopy& now = copies_[1 - current_];
-  for (int compared = 0; compared < kMostCompared; ++compared, ++number) {
-    if (!board_->copy_segment(number, head_.revision, now)) return Compared::torn;
-    if (!is_unchanged(now, before)) return Compared::changed;
-    if (sampled_until_ < now.right) return Compared::same;
-    if (number == before.newest) {
-      return number == head_.newest ? Compared::same : compare_rest(now);
-    }
-    if (number == head_.newest) return Compared::changed;  // the stop tail has been dropped
+  BoardSegment& now = copies_[1 - current_];
+  for (int compared = 0; compared < kMostCompared; ++compared) {
+    const BoardSegment::Taken taken = now.take(*board_, head_, number);
+    if (taken == BoardSegment::Taken::torn) return Compared::torn;
+    if (taken == BoardSegment::Taken::none || !is_unchanged(now, before)) return Compared::changed;
+    if (sampled_until_ < now.right()) return Compared::same;
+    const bool is_last = now.is_last(head_);
+    if (number == before.newest) return is_last ? Compared::same : compare_rest(now);
+    if (is_last) return Compared::changed;  // the stop has been dropped
+    number = now.next();
   }
   return Compared::changed;
 }
 
 /// Whether a segment is, as far as it has been sampled, what it was under `before`.
-bool Sampler::is_unchanged(const SegmentCopy& segment, const Head& before) noexcept {
-  if (segment.tag <= before.revision) return true;
-  const SegmentCopy& own = current();
-  if (confirmed_ != before.revision || own.tag == 0 || own.number != segment.number) return false;
+bool Sampler::is_unchanged(const BoardSegment& segment, const Head& before) noexcept {
+  const BoardSegment& own = current();
+  const bool is_known = confirmed_ == before.revision && own.is_there();
+  if (segment.changed_by(is_known ? &own : nullptr) <= before.revision) return true;
+  if (!is_known || own.number() != segment.number()) return false;
   const bool ends_alike =
-      segment.right == own.right || sampled_until_ < std::min(segment.right, own.right);
-  const std::size_t values = static_cast<std::size_t>(own.order) * board_->dimensions();
-  return ends_alike && segment.left == own.left && segment.order == own.order &&
-         segment.kind == own.kind &&
-         std::ranges::equal(std::span(segment.coefficients).first(values),
-                            std::span(own.coefficients).first(values));
+      segment.right() == own.right() || sampled_until_ < std::min(segment.right(), own.right());
+  const std::size_t values = static_cast<std::size_t>(own.order()) * board_->dimensions();
+  return ends_alike && segment.left() == own.left() && segment.order() == own.order() &&
+         segment.kind() == own.kind() &&
+         std::ranges::equal(segment.coefficients().first(values), own.coefficients().first(values));
 }
 
 /// Whether the curve still rests behind `last`, which was the newest segment, until after the
 /// latest time sampled. Copies the segment behind it in its place.
-Sampler::Compared Sampler::compare_rest(SegmentCopy& last) noexcept {
-  std::array<double, core::kMaxDimensions> values{};
-  const auto rest = std::span(values).first(board_->dimensions());
-  const core::Time right = last.right;
-  core::evaluate_derivative(last.order, last.coefficients, seconds_after(last.left, right), 0,
+Sampler::Compared Sampler::compare_rest(BoardSegment& last) noexcept {
+  const auto rest = state_.ref().position;
+  const core::Time right = last.right();
+  core::evaluate_derivative(last.order(), last.coefficients(), seconds_after(last.left(), right), 0,
                             rest);
-  SegmentCopy& next = last;
-  if (!board_->copy_segment(last.number + 1, head_.revision, next)) return Compared::torn;
-  const bool rests = next.kind == core::SegmentKind::hold && next.left == right &&
-                     sampled_until_ < next.right &&
-                     std::ranges::equal(std::span(next.coefficients).first(rest.size()), rest);
+  BoardSegment& next = last;
+  const BoardSegment::Taken taken = next.take(*board_, head_, last.next());
+  if (taken == BoardSegment::Taken::torn) return Compared::torn;
+  const bool rests = taken == BoardSegment::Taken::whole &&
+                     next.kind() == core::SegmentKind::hold && next.left() == right &&
+                     sampled_until_ < next.right() &&
+                     std::ranges::equal(next.coefficients().first(rest.size()), rest);
   return rests ? Compared::same : Compared::changed;
 }
 
@@ -147,16 +170,26 @@ SampleStatus Sampler::preview(core::Time t, const core::StateRef& out) noexcept 
   return find(t, out);
 }
 
+/// Makes head_ that of the newest revision. Returns `settled` if there is a curve, `busy` if the
+/// writer has gone on meanwhile, else why there is none.
+SampleStatus Sampler::see_newest() noexcept {
+  if (board_->retired()) return SampleStatus::retired;
+  const Look look = board_->look();
+  if (look.revision == 0) return SampleStatus::no_data;
+  if (look.revision == head_.revision) {
+    head_.settled_until = look.settled_until;
+  } else {
+    board_->prefetch(look.revision, current().number());
+    if (!see(look)) return SampleStatus::busy;
+  }
+  return head_.newest == 0 ? SampleStatus::no_data : SampleStatus::settled;
+}
+
 SampleStatus Sampler::look_up(core::Time t, const core::StateRef& out) noexcept {
   for (int attempt = 0; attempt < kTries; ++attempt) {
-    if (board_->retired()) return SampleStatus::retired;
-    const Word r = board_->revision();
-    if (r == 0) return SampleStatus::no_data;
-    if (r != head_.revision) {
-      board_->prefetch(r, current().number);
-      if (!see(r)) continue;
-    }
-    if (head_.newest == 0) return SampleStatus::no_data;
+    const SampleStatus seen = see_newest();
+    if (seen == SampleStatus::busy) continue;
+    if (seen != SampleStatus::settled) return seen;
     const Found found = locate(t);
     if (found == Found::segment) return evaluate(current(), t, out);
     if (found == Found::before_first) {
@@ -168,28 +201,26 @@ SampleStatus Sampler::look_up(core::Time t, const core::StateRef& out) noexcept 
   return from_own_copy(t, out);
 }
 
-/// The segment of t if it is a copied one or, by its length, the next; else 0.
-Word Sampler::near(const SegmentCopy& copy, core::Time t) noexcept {
-  if (copy.tag == 0 || t < copy.left) return 0;
-  if (t < copy.right) return copy.number;
-  const Word length = to_word(copy.right) - to_word(copy.left);
-  return to_word(t) - to_word(copy.right) < length ? copy.number + 1 : 0;
+/// The segment of t if it is the copied one or, by its length, the next; else 0.
+Word Sampler::near(const BoardSegment& copy, core::Time t) noexcept {
+  if (!copy.is_there() || t < copy.left()) return 0;
+  if (t < copy.right()) return copy.number();
+  const Word length = to_word(copy.right()) - to_word(copy.left());
+  return to_word(t) - to_word(copy.right()) < length ? copy.next() : 0;
 }
 
 /// Makes current() the segment of `t` under head_.revision.
 Sampler::Found Sampler::locate(core::Time t) noexcept {
-  const Word r = head_.revision;
-  const SegmentCopy& last = current();
-  if (is_confirmed(r)) {
+  const BoardSegment& last = current();
+  if (is_confirmed()) {
     if (spans(last, t)) return Found::segment;
-    const Word next = last.number + 1;
-    if (t >= last.right && next <= head_.newest) {
-      if (!take(next)) return Found::torn;
+    if (t >= last.right() && last.next() <= head_.newest) {
+      if (!take(last.next())) return Found::torn;
       if (spans(current(), t)) return Found::segment;
     }
   }
   // Mostly it has been written again, and it or the next one spans t: their tags are on their way.
-  Word number = near(last, t);
+  Word number = near(current(), t);
   if (number >= head_.first && number <= head_.newest) {
     if (!take(number)) return Found::torn;
     if (spans(current(), t)) return Found::segment;
@@ -200,19 +231,17 @@ Sampler::Found Sampler::locate(core::Time t) noexcept {
     if (!take(number)) return Found::torn;
     if (spans(current(), t)) return Found::segment;
   }
-  // The hint failed: a writer died between, or is at work. The cells decide.
+  // The hint failed: a writer is at work. The knots decide.
   if (!number_by_cells(t, number)) return Found::torn;
   if (number == 0) return Found::before_first;
   if (!take(number)) return Found::torn;
   return spans(current(), t) ? Found::segment : Found::torn;
 }
 
-/// Whether the current copy is what revision r holds, without copying it again.
-bool Sampler::is_confirmed(Word r) noexcept {
-  if (confirmed_ == r) return true;
-  const SegmentCopy& last = current();
-  const bool stands = last.tag != 0 && last.number >= head_.first && last.number <= head_.newest &&
-                      board_->is_current(last, r);
+/// Whether the current copy is what the head's revision holds, without copying it again.
+bool Sampler::is_confirmed() noexcept {
+  if (confirmed_ == head_.revision) return true;
+  const bool stands = current().is_current(*board_, head_);
   if (stands) confirm();
   return stands;
 }
@@ -220,45 +249,51 @@ bool Sampler::is_confirmed(Word r) noexcept {
 void Sampler::confirm() noexcept {
   confirmed_ = head_.revision;
   copied_settled_until_ = head_.settled_until;
-  const SegmentCopy& own = current();
-  const bool moves = own.kind == core::SegmentKind::spline || own.kind == core::SegmentKind::splice;
-  at_hand_ = {.left = own.left,
-              .right = moves ? own.right : own.left,
-              .settled_until = head_.finished ? core::Time::max() : head_.settled_until};
+  const BoardSegment& own = current();
+  const bool moves =
+      own.kind() == core::SegmentKind::spline || own.kind() == core::SegmentKind::splice;
+  at_hand_ = {
+      .left = own.left(), .right = moves ? own.right() : own.left(), .is_finished = head_.finished};
 }
 
-/// Makes segment `number` the current copy; keeps the one before if that fails.
+/// Makes the segment that begins at knot `number`, or at the one before if none begins there, the
+/// current copy; keeps the one before if that fails.
 bool Sampler::take(Word number) noexcept {
-  if (!board_->copy_segment(number, head_.revision, copies_[1 - current_])) return false;
+  BoardSegment& copy = copies_[1 - current_];
+  BoardSegment::Taken taken = copy.take(*board_, head_, number, &current());
+  if (taken == BoardSegment::Taken::none && number > head_.first) {
+    taken = copy.take(*board_, head_, number - 1, &current());
+  }
+  if (taken != BoardSegment::Taken::whole) return false;
   current_ = 1 - current_;
   confirm();
   return true;
 }
 
 /// Whether a time belongs to a segment: a time on a knot to the one on its right; all times behind
-/// the newest segment to that one.
-bool Sampler::spans(const SegmentCopy& segment, core::Time t) const noexcept {
-  return t >= segment.left && (t < segment.right || segment.number == head_.newest);
+/// the last segment to that one.
+bool Sampler::spans(const BoardSegment& segment, core::Time t) const noexcept {
+  return t >= segment.left() && (t < segment.right() || segment.is_last(head_));
 }
 
 /// Where a time would lie if the knots came at an even pace: a segment of the head.
 Word Sampler::guess_by_pace(core::Time t) const noexcept {
-  const core::Time oldest = board_->left_hint(head_.first);
+  const core::Time oldest = board_->time_hint(head_.first);
   const double share =
-      seconds_after(oldest, t) / seconds_after(oldest, board_->left_hint(head_.newest));
+      seconds_after(oldest, t) / seconds_after(oldest, board_->time_hint(head_.newest));
   const auto intervals = static_cast<double>(head_.newest - head_.first);
   // Written so that what is no number, or not on the board, becomes an end of it.
   if (!(share > 0)) return head_.first;
   return share < 1 ? head_.first + static_cast<Word>(share * intervals) : head_.newest;
 }
 
-/// The last segment whose left end is at or before t, by the packed times; 0 if t is before all.
-/// From the guess in steps that double, then by halves: a look or two at an even pace, and never
-/// more than 2 log n.
+/// The last knot at or before whose time a segment begins, by the packed times; 0 if t is before
+/// all. From the guess in steps that double, then by halves: a look or two at an even pace, and
+/// never more than 2 log n.
 Word Sampler::number_by_hint(core::Time t) const noexcept {
   Word low = head_.first;
   Word high = head_.newest + 1;
-  const auto is_behind = [&](Word number) { return board_->left_hint(number) > t; };
+  const auto is_behind = [&](Word number) { return board_->time_hint(number) > t; };
   const Word guess = guess_by_pace(t);
   if (is_behind(guess)) {
     high = guess;
@@ -290,78 +325,198 @@ Word Sampler::number_by_hint(core::Time t) const noexcept {
   return low == head_.first ? 0 : low - 1;
 }
 
-/// The same by the cells, under the revision of the head. Returns false if a cell was written
+/// When the segment at knot `number` begins, or, where none does, the next one; at the end of a
+/// finished curve, when that ends. Returns false if a knot was written meanwhile.
+bool Sampler::begin_of(Word number, core::Time& begin, bool& is_end) const noexcept {
+  core::SegmentForm form{};
+  if (!board_->copy_time(number, head_.revision, begin, form)) return false;
+  is_end = form == core::SegmentForm::none;
+  if (!is_end || number == head_.newest) return true;
+  return board_->copy_time(number + 1, head_.revision, begin, form);
+}
+
+/// The same by the knots, under the revision of the head. Returns false if one was written
 /// meanwhile.
 bool Sampler::number_by_cells(core::Time t, Word& number) const noexcept {
   Word low = head_.first;
   Word high = head_.newest + 1;
+  bool is_end = false;
   while (low < high) {
     const Word middle = low + (high - low) / 2;
-    core::Time left{};
-    if (!board_->copy_left(middle, head_.revision, left)) return false;
-    if (left <= t) {
+    core::Time begin{};
+    if (!begin_of(middle, begin, is_end)) return false;
+    if (begin <= t) {
       low = middle + 1;
     } else {
       high = middle;
     }
   }
   number = low == head_.first ? 0 : low - 1;
+  if (number > head_.first && number == head_.newest) {
+    core::Time begin{};
+    if (!begin_of(number, begin, is_end)) return false;
+    if (is_end) --number;
+  }
   return true;
 }
 
 /// Evaluates a segment u seconds after its left end, in the form in which dimensions are read.
-void Sampler::read(const SegmentCopy& segment, double u, const core::StateRef& out) const noexcept {
-  core::evaluate(segment.order, segment.coefficients, u, out);
-  if (!kinds_.all_linear()) kinds_.normalise(out);
+void Sampler::read(const BoardSegment& segment, double u,
+                   const core::StateRef& out) const noexcept {
+  core::evaluate(segment.order(), segment.coefficients(), u, out);
+  if (!all_linear_) kinds_.normalise(out);
 }
 
-SampleStatus Sampler::evaluate(const SegmentCopy& segment, core::Time t,
+SampleStatus Sampler::evaluate(const BoardSegment& segment, core::Time t,
                                const core::StateRef& out) const noexcept {
-  const bool past_end = t > segment.right || segment.kind == core::SegmentKind::hold ||
-                        (t == segment.right && segment.kind == core::SegmentKind::stop_tail);
-  const core::Time at = past_end ? segment.right : t;
-  read(segment, seconds_after(segment.left, at), out);
+  const core::Time right = segment.right();
+  const bool past_end = t > right || segment.kind() == core::SegmentKind::hold ||
+                        (t == right && segment.kind() == core::SegmentKind::stop_tail);
+  const core::Time at = past_end ? right : t;
+  read(segment, seconds_after(segment.left(), at), out);
   if (past_end) come_to_rest(out);
-  if (head_.finished && t <= segment.right) return SampleStatus::settled;
+  if (head_.finished && t <= right) return SampleStatus::settled;
   if (past_end) return SampleStatus::holding;
-  if (segment.kind == core::SegmentKind::stop_tail) return SampleStatus::stopping;
+  if (segment.kind() == core::SegmentKind::stop_tail) return SampleStatus::stopping;
   return t < head_.settled_until ? SampleStatus::settled : SampleStatus::provisional;
 }
 
 /// Before the first waypoint of a live stream the machine stands where it will start, unless it
 /// starts in motion.
 SampleStatus Sampler::hold_first(const core::StateRef& out) noexcept {
-  const SegmentCopy& first = current();
-  const auto velocity =
-      std::span(first.coefficients).subspan(out.velocity.size()).first(out.velocity.size());
+  const std::size_t dimensions = board_->dimensions();
+  const auto velocity = current().coefficients().subspan(dimensions, dimensions);
   if (std::ranges::any_of(velocity, [](double v) { return v != 0; })) return SampleStatus::no_data;
   // Not evaluated: other coefficients, which may still change, would decide on the sign of a 0.
-  std::ranges::copy(std::span(first.coefficients).first(out.position.size()), out.position.begin());
+  std::ranges::copy(current().coefficients().first(dimensions), out.position.begin());
   come_to_rest(out);
-  if (!kinds_.all_linear()) kinds_.normalise(out);
+  if (!all_linear_) kinds_.normalise(out);
   return SampleStatus::holding;
 }
 
 /// What a reader may still say when the writer has overtaken every try: a time inside its own copy
 /// and before the settled_until copied with it can no longer change.
 SampleStatus Sampler::from_own_copy(core::Time t, const core::StateRef& out) noexcept {
-  const SegmentCopy& own = current();
-  if (own.tag == 0 || t < own.left || t >= own.right || t >= copied_settled_until_) {
+  const BoardSegment& own = current();
+  if (!own.is_there() || t < own.left() || t >= own.right() || t >= copied_settled_until_) {
     return SampleStatus::busy;
   }
-  read(own, seconds_after(own.left, t), out);
+  read(own, seconds_after(own.left(), t), out);
   return SampleStatus::settled;
 }
 
-bool Sampler::copy_whole(Word number, Word r, SegmentCopy& out) const {
-  if (!board_->copy_segment(number, r, out)) return false;
-  out.acceleration_step.resize(board_->dimensions());
-  board_->copy_step(out, out.acceleration_step);
-  kinds_.normalise_step(std::span(out.coefficients).first(board_->dimensions()),
-                        out.acceleration_step);
-  return board_->is_current(out, r) && std::ranges::all_of(out.acceleration_step, [](double step) {
-           return std::isfinite(step);
-         });
+Word Sampler::sample_many(std::span<const core::Time> times, const SampleBlock& out) noexcept {
+  const std::size_t values = core::count(out.derivatives) * board_->dimensions();
+  const bool fits = out.status.size() == times.size() && out.values.size() == times.size() * values;
+  SampleStatus seen = fits ? SampleStatus::busy : SampleStatus::wrong_dimension;
+  for (int attempt = 0; attempt < kTries && seen == SampleStatus::busy; ++attempt) {
+    seen = see_newest();
+    if (seen != SampleStatus::settled) continue;
+    if (evaluate_many(times, out)) return head_.revision;
+    seen = SampleStatus::busy;
+  }
+  std::ranges::fill(out.status, seen);
+  return 0;
+}
+
+/// Evaluates all times under head_.revision. Returns false if the writer has gone on meanwhile.
+bool Sampler::evaluate_many(std::span<const core::Time> times, const SampleBlock& out) noexcept {
+  const std::size_t dimensions = board_->dimensions();
+  const std::size_t stride = core::count(out.derivatives) * dimensions;
+  for (std::size_t i = 0; i < times.size();) {
+    const Found found = locate(times[i]);
+    if (found == Found::torn) return false;
+    if (found == Found::segment) {
+      const std::size_t evaluated = evaluate_moving(times, i, out);
+      i += evaluated;
+      if (evaluated > 0) continue;
+      out.status[i] = evaluate(current(), times[i], state_.ref());
+    } else if (clock_ != StreamClock::monotonic || head_.first != 1) {
+      out.status[i] = SampleStatus::before_history;
+    } else if (take(head_.first)) {
+      out.status[i] = hold_first(state_.ref());
+    } else {
+      return false;
+    }
+    if (has_values(out.status[i])) {
+      copy_asked(state_, out.derivatives, out.values.subspan(i * stride, stride));
+    }
+    ++i;
+  }
+  return true;
+}
+
+/// Evaluates as many of the times from `first` on as lie on the current copy, where it moves and
+/// needs no more than its polynomial. Returns how many.
+std::size_t Sampler::evaluate_moving(std::span<const core::Time> times, std::size_t first,
+                                     const SampleBlock& out) noexcept {
+  if (!all_linear_) return 0;
+  const BoardSegment& own = current();
+  const std::size_t stride = core::count(out.derivatives) * board_->dimensions();
+  std::array<double, 16> u{};
+  std::size_t n = 0;
+  while (n < u.size() && first + n < times.size()) {
+    const core::Time t = times[first + n];
+    if (t < at_hand_.left || t >= at_hand_.right) break;
+    u[n] = seconds_after(own.left(), t);
+    out.status[first + n] = at_hand_.is_finished || t < head_.settled_until
+                                ? SampleStatus::settled
+                                : SampleStatus::provisional;
+    ++n;
+  }
+  core::evaluate_many(own.order(), own.coefficients(), board_->dimensions(), std::span(u).first(n),
+                      out.derivatives, out.values.subspan(first * stride, n * stride), stride);
+  return n;
+}
+
+/// Copies the segments from one to another under head_.revision, with their acceleration steps.
+bool Sampler::copy_segments(Word oldest, Word newest, Snapshot& out) {
+  BoardSegment& copy = copies_[1 - current_];
+  std::size_t count = 0;
+  // The newest first: they are the ones that the writer will overwrite first.
+  for (Word number = newest;;) {
+    if (copy.take(*board_, head_, number) != BoardSegment::Taken::whole) return false;
+    if (out.segments_.size() == count) out.segments_.emplace_back();
+    SegmentCopy& segment = out.segments_[count];
+    copy.copy_to(segment);
+    segment.acceleration_step.resize(board_->dimensions());
+    copy.write_accelerations(segment.acceleration_step, end_acceleration_);
+    if (count > 0) subtract(out.segments_[count - 1].acceleration_step, end_acceleration_);
+    ++count;
+    if (number == oldest) break;
+    const auto before = segment_before(*board_, head_, number);
+    if (!before || *before < oldest) return false;
+    number = *before;
+  }
+  if (!finish_oldest_step(out.segments_[count - 1])) return false;
+  for (SegmentCopy& segment : std::span(out.segments_).first(count)) {
+    if (segment.acceleration_step.empty()) continue;
+    kinds_.normalise_step(std::span(segment.coefficients).first(board_->dimensions()),
+                          segment.acceleration_step);
+  }
+  std::reverse(out.segments_.begin(), out.segments_.begin() + static_cast<std::ptrdiff_t>(count));
+  out.size_ = count;
+  return true;
+}
+
+/// Makes the acceleration at the left end of a snapshot's oldest segment the step there.
+bool Sampler::finish_oldest_step(SegmentCopy& oldest) {
+  if (oldest.number == 1) {
+    const bool is_held = clock_ == StreamClock::monotonic && oldest.has_waypoint;
+    if (!is_held) std::ranges::fill(oldest.acceleration_step, 0.0);  // nothing stands before it
+    return true;
+  }
+  const auto before = segment_before(*board_, head_, oldest.number);
+  if (!before) return false;
+  if (*before == 0) {
+    oldest.acceleration_step.clear();
+    return true;
+  }
+  BoardSegment& copy = copies_[1 - current_];
+  if (copy.take(*board_, head_, *before) != BoardSegment::Taken::whole) return false;
+  copy.write_accelerations(start_acceleration_, end_acceleration_);
+  subtract(oldest.acceleration_step, end_acceleration_);
+  return true;
 }
 
 SampleStatus Sampler::snapshot(core::Time from, core::Time to, Snapshot& out) {
@@ -369,21 +524,19 @@ SampleStatus Sampler::snapshot(core::Time from, core::Time to, Snapshot& out) {
   if (out.dimensions() != board_->dimensions()) return SampleStatus::wrong_dimension;
   for (int attempt = 0; attempt < kTries; ++attempt) {
     if (board_->retired()) return SampleStatus::retired;
-    const Word r = board_->revision();
-    if (r == 0) return SampleStatus::no_data;
-    if ((r != head_.revision && !see(r)) || !board_->copy_head(r, out.head_)) continue;
+    const Look look = board_->look();
+    if (look.revision == 0) return SampleStatus::no_data;
+    head_.settled_until =
+        look.revision == head_.revision ? look.settled_until : head_.settled_until;
+    if ((look.revision != head_.revision && !see(look)) || !board_->copy_head(look, out.head_)) {
+      continue;
+    }
     if (head_.newest == 0) return SampleStatus::no_data;
     Word oldest = 0;
     Word newest = 0;
     if (!number_by_cells(from, oldest) || !number_by_cells(to, newest)) continue;
     if (oldest == 0) return SampleStatus::before_history;
-    const std::size_t count = newest >= oldest ? newest - oldest + 1 : 0;
-    while (out.segments_.size() < count) out.segments_.emplace_back(board_->dimensions());
-    // The newest first: it is the one that the writer will overwrite first.
-    std::size_t left = count;
-    while (left > 0 && copy_whole(oldest + left - 1, r, out.segments_[left - 1])) --left;
-    if (left > 0) continue;
-    out.size_ = count;
+    if (newest >= oldest && !copy_segments(oldest, newest, out)) continue;
     return head_.finished || to < head_.settled_until ? SampleStatus::settled
                                                       : SampleStatus::provisional;
   }

@@ -191,8 +191,8 @@ struct OwnedBoard {
   RegionLock lock;
   RegionHeader header;
   bool taken_over;
-  SegmentBoardWriter writer;
-  SegmentBoardReader reader;
+  KnotBoardWriter writer;
+  KnotBoardReader reader;
 
   OwnedBoard(Region mapped, const RegionHeader& described, const BoardLayout& layout, bool old)
       : region(std::move(mapped)),
@@ -208,7 +208,8 @@ OwnedBoard make_board(const std::string& stream, const RegionHeader& ring_header
   RegionHeader header = ring_header;
   header.kind = static_cast<std::uint64_t>(RegionKind::spline);
   write_options(options, header);
-  const auto layout = BoardLayout::of(header.dimensions, header.capacity, header.control);
+  const auto layout =
+      BoardLayout::of(header.dimensions, header.capacity, header.control, smooths(header));
   header.stride = layout.stride;
   header.region_bytes = layout.bytes;
   header.epoch = 0;
@@ -377,26 +378,6 @@ void Solver::wait(core::Time timeout) noexcept {
     wait_while_equal(at.ring.ring.head_word(), head, std::min({timeout, kSlice, due - now}));
   }
   at.board.writer.store_sleeping(false);
-}
-
-namespace {
-
-template <typename Object>
-std::span<const std::byte> bytes_of(const Object& object) noexcept {
-  return std::as_bytes(std::span(&object, 1));
-}
-
-}  // namespace
-
-void SolverPlaces::prefetch() const noexcept {
-  for (const Bytes& object : objects_) prefetch_lines(object.data(), object.size());
-}
-
-SolverPlaces Solver::places() const noexcept {
-  const Attachment& at = *impl_->attachment;
-  return {at.solver,
-          {bytes_of(*this), bytes_of(*impl_), bytes_of(at.ring.ring), bytes_of(at.board.writer),
-           bytes_of(at.board.reader), bytes_of(at.solver)}};
 }
 
 SolverWatch Solver::watch() const noexcept {

@@ -31,11 +31,12 @@ void inspect_waypoints(StreamInfo& info, const Trust& trust) {
 void inspect_spline(StreamInfo& info, const Trust& trust) {
   const auto [region, header, layout] = open_board(info.stream, false, trust);
   info.spline = header;
-  const SegmentBoardReader board(region.bytes(), layout);
+  const KnotBoardReader board(region.bytes(), layout);
   for (int attempt = 0; attempt < kHeadTries; ++attempt) {
-    const Word r = board.revision();
-    if (r == 0 || board.copy_head(r, info.head)) break;
+    const Look look = board.look();
+    if (look.revision == 0 || board.copy_head(look, info.head)) break;
   }
+  info.step_times = board.step_times();
   info.refusals.resize(kRefusalsKept);
   info.refusals.resize(board.copy_refusals(info.head, 0, info.refusals));
 }

@@ -55,8 +55,8 @@ void put_kinds(const ProducerOptions& options, RegionHeader& header) {
   }
 }
 
-Word& header_word(std::span<std::byte> region, std::size_t offset) noexcept {
-  return words_at(region, offset, 1)[0];
+void store_header_word(std::span<std::byte> region, std::size_t word, Word value) noexcept {
+  store(words_at(region, word * sizeof(Word), 1)[0], value, std::memory_order_relaxed);
 }
 
 }  // namespace
@@ -79,15 +79,13 @@ RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id
   }
   RegionHeader header{};
   header.magic = kMagic;
-  header.layout_version = kLayoutVersion;
-  header.byte_order = kByteOrder;
+  header.mark = {};
   header.layout_hash = layout_hash();
   header.stream_id = stream_id;
   header.dimensions = options.dimensions;
-  header.order = core::kMaxOrder;
   header.clock = static_cast<std::uint64_t>(options.clock);
   header.time_namespace = options.clock == StreamClock::monotonic ? time_namespace() : 0;
-  header.control = kHeaderBytes + stream_id % (kControlPositions + 1) * kSeparation;
+  header.control = kHeaderBytes + stream_id % kControlPositions * kSeparation;
   header.min_interval = options.limits.min_interval.count();
   header.max_interval = options.limits.max_interval.count();
   header.start_kind = static_cast<std::uint64_t>(options.start.kind);
@@ -172,17 +170,10 @@ void require_same_stream(const RegionHeader& ring, const RegionHeader& board) {
   require(start_condition(ring) == start_condition(board), "the start condition");
 }
 
-void write_header(std::span<std::byte> region, const RegionHeader& header) noexcept {
-  std::memcpy(region.data(), &header, sizeof header);
-}
-
 void enter_owner(std::span<std::byte> region, const RegionHeader& before) noexcept {
-  store(header_word(region, offsetof(RegionHeader, owner_pid)), static_cast<Word>(getpid()),
-        std::memory_order_relaxed);
-  store(header_word(region, offsetof(RegionHeader, owner_since)), to_word(MonotonicClock().now()),
-        std::memory_order_relaxed);
-  store(header_word(region, offsetof(RegionHeader, epoch)), before.epoch + 1,
-        std::memory_order_relaxed);
+  store_header_word(region, word_of(kHeaderFields, "process id"), static_cast<Word>(getpid()));
+  store_header_word(region, word_of(kHeaderFields, "since"), to_word(MonotonicClock().now()));
+  store_header_word(region, word_of(kHeaderFields, "epoch"), before.epoch + 1);
 }
 
 }  // namespace splinecast::ipc

@@ -14,14 +14,14 @@ namespace {
 /// Most items of one revision: bounds how long a step takes.
 constexpr std::size_t kMaxBatch = 256;
 
-/// Segments that a revision may change besides one per item: those of the open knots, the one
-/// before them, the stop tail, a cut and a hold.
+/// Knots that a revision may write besides one per item: the open ones, the one before them, those
+/// at a cut, and those of a way back.
 constexpr std::size_t changed_besides(std::size_t settle) noexcept { return settle + 6; }
 
-/// No stream lives to see so many revisions.
-constexpr Word kMostRevisions = Word{1} << 62U;
+/// On a recorded stream, which needs no clock to begin with, one step in so many is timed.
+constexpr Word kTimedEvery = 16;
 
-/// Segments that one item may add: a hold, a splice, and what goes back at a finish.
+/// Knots that one item may add: those at a cut, its own, and those of a way back.
 constexpr std::size_t kAddedByItem = 4;
 
 }  // namespace
@@ -30,8 +30,8 @@ std::size_t StreamSolver::min_capacity(std::size_t settle) noexcept {
   return 2 * changed_besides(settle) + 2;
 }
 
-StreamSolver::StreamSolver(const WaypointRingReader& ring, SegmentBoardWriter& board,
-                           const SegmentBoardReader& published, const core::WindowOptions& window,
+StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& board,
+                           const KnotBoardReader& published, const core::WindowOptions& window,
                            const IngestLimits& limits, core::DimensionKinds kinds,
                            const std::optional<LiveOptions>& live)
     : ring_(&ring),
@@ -46,23 +46,25 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, SegmentBoardWriter& b
       replacements_(ring) {
   if (board.capacity() < min_capacity(window.settle)) {
     throw std::invalid_argument("a board of " + std::to_string(board.capacity()) +
-                                " segments is too small for settle lag " +
+                                " knots is too small for settle lag " +
                                 std::to_string(window.settle));
   }
   end_.value.reserve(ring.dimensions());
   most_items_ = max_batch_;
   restore();
-  if (is_damaged() || board.revision() > kMostRevisions) {
+  if (is_damaged() || board.revision() >= kLastRevision) {
     throw BadRegion("the board holds no curve that a solver could go on with at its revision " +
                     std::to_string(board.revision()));
   }
-  board_->store_tail(head_.consumed);  // its last writer may have died between commit and tail
+  // The last writer may have died between its commit and what follows it.
+  board_->store_tail(head_.consumed);
+  if (!live_ && curve_.has_begun() && !head_.finished) store_settled(curve_.settled_until());
 }
 
 void StreamSolver::restore() {
   head_ = {};
-  const Word r = board_->revision();
-  lacks_head_ = r > 0 && !published_->copy_head(r, head_);  // nobody else writes
+  const Look look = published_->look();
+  lacks_head_ = look.revision > 0 && !published_->copy_head(look, head_);  // nobody else writes
   curve_.restore(head_);
 }
 
@@ -70,19 +72,14 @@ core::Time StreamSolver::due() const noexcept {
   const bool settles =
       live_ && !head_.finished && head_.newest > 0 && head_.settled_until < curve_.end_of_motion();
   const bool waits = live_ && seen_ != head_.consumed;
-  return settles || waits ? head_.committed + live_->freeze_ahead / 2 : core::Time::max();
-}
-
-void StreamSolver::prefetch(bool has_items) const noexcept {
-  board_->prefetch_head();
-  if (!has_items) return;
-  ring_->prefetch(head_.consumed);
-  curve_.prefetch();
+  return settles || waits ? settled_at_ + live_->freeze_ahead / 2 : core::Time::max();
 }
 
 StepResult StreamSolver::step(const Clock& clock) noexcept {
   if (is_damaged()) return {.damaged = true};
-  const core::Time now = live_ ? clock.now() : core::Time::min();
+  is_timed_ = live_ || board_->revision() % kTimedEvery == 0;
+  if (is_timed_) started_ = clock.now();
+  const core::Time now = live_ ? started_ : core::Time::min();
   if (live_ && !board_->is_checked()) check_commit(now);
   // Each try takes half the items of the one before; the last try takes one item and refuses it.
   constexpr int kMostTries = 12;
@@ -101,8 +98,17 @@ StepResult StreamSolver::make_revision(const Clock& clock, core::Time now) noexc
   freeze(now);
   const Word consumed = consume(now);
   if (is_damaged()) return {.damaged = true};
-  if (consumed == 0 && (!live_ || now < due())) return {};
-  return publish(clock, consumed);
+  if (consumed > 0 || has_starved_) return publish(clock, consumed);
+  if (!live_ || now < due()) return {};
+  settled_at_ = now;
+  // Nothing else has changed: one word says so, and readers keep what they have copied.
+  if (head_.newest > 0) store_settled(settled_until_);
+  return {};
+}
+
+void StreamSolver::store_settled(core::Time t) noexcept {
+  head_.settled_until = std::max(head_.settled_until, t);
+  board_->store_settled(head_.settled_until);
 }
 
 /// Drops a revision that was not committed.
@@ -127,6 +133,7 @@ void StreamSolver::suspect_items() noexcept {
 /// Fixes what this step leaves alone.
 void StreamSolver::freeze(core::Time now) noexcept {
   settled_until_ = head_.settled_until;
+  has_starved_ = false;
   if (!live_) return;
   settled_until_ = std::max(settled_until_, now + live_->freeze_ahead);
   if (!curve_.has_begun() || head_.finished) return;
@@ -134,6 +141,7 @@ void StreamSolver::freeze(core::Time now) noexcept {
   head_.low_water =
       std::min(head_.low_water, std::max(core::Time::zero(), curve_.newest_time() - now));
   if (head_.starved || !is_starved()) return;
+  has_starved_ = true;
   head_.starved = true;
   ++head_.underruns;
 }
@@ -190,6 +198,7 @@ bool StreamSolver::has_room(core::Time keep) const noexcept {
 void StreamSolver::withdraw(core::Time keep) noexcept {
   if (!curve_.has_begun() || head_.finished) return;
   replacements_.note(head_.consumed, available_);
+  if (replacements_.empty()) return;
   const core::Time earliest = std::max(settled_until_, curve_.earliest_entry());
   const auto replacement = replacements_.due(earliest, curve_.newest_time());
   if (!replacement) return;
@@ -254,15 +263,12 @@ void StreamSolver::take_waypoint(Word number) noexcept {
   if (const auto refusal = has_right_form(waypoint)) return refuse(number, *refusal);
   if (const auto refusal = judge_time(waypoint.time)) return refuse(number, *refusal);
   const bool starved = is_starved();
-  if (starved) curve_.enter(settled_until_);
-  // What `waypoint` looks at.
-  curve_.kinds().continue_from(curve_.newest_position(), item_.waypoint_values());
-  const bool stays_finite = is_finite(waypoint);
-  if (!stays_finite || !can_append(number)) {
-    // It cannot be reached with the acceleration allowed. The curve stays as it was committed.
-    if (starved) discard();
-    return refuse(number, stays_finite ? Refusal::too_late : Refusal::not_finite);
-  }
+  const auto before = starved ? curve_.plan_entry(settled_until_) : curve_.newest_position();
+  curve_.kinds().continue_from(before, item_.waypoint_values());  // what `waypoint` looks at
+  if (!is_finite(waypoint)) return refuse(number, Refusal::not_finite);
+  // It may be out of reach with the acceleration allowed.
+  if (!can_follow(number, starved)) return refuse(number, Refusal::too_late);
+  if (starved) curve_.enter_as_planned();
   curve_.append(waypoint, number);
   head_.starved = false;
   ++head_.knots;
@@ -270,7 +276,7 @@ void StreamSolver::take_waypoint(Word number) noexcept {
 }
 
 /// Whether the waypoint at hand is one that limits allow for; those that wait behind it count.
-bool StreamSolver::can_append(Word number) noexcept {
+bool StreamSolver::can_follow(Word number, bool starved) noexcept {
   if (curve_.window().options().max_acceleration.empty()) return true;
   const Word available = reachable(ring_->head());
   std::array<core::Waypoint, 1 + kFollowers> first{item_.waypoint()};
@@ -287,16 +293,8 @@ bool StreamSolver::can_append(Word number) noexcept {
     if (!is_finite(next)) break;
     first[count++] = next;
   }
-  return curve_.can_append(std::span(first).first(count));
-}
-
-/// Drops what this step has made of the curve, which is nothing but an entry.
-void StreamSolver::discard() noexcept {
-  Head committed;
-  lacks_head_ = !published_->copy_head(board_->revision(), committed);
-  if (lacks_head_) return;
-  curve_.discard(committed);
-  curve_.freeze(settled_until_);
+  const auto waypoints = std::span(first).first(count);
+  return starved ? curve_.can_enter_with(waypoints) : curve_.can_append(waypoints);
 }
 
 void StreamSolver::take_replacement(Word number) noexcept {
@@ -316,7 +314,8 @@ void StreamSolver::take_replacement(Word number) noexcept {
   if (!has_begun) return;
   // Where nothing moves any more and nothing is to come, there is nothing to withdraw.
   if (is_stop() && is_starved() && t >= curve_.newest_time()) return;
-  curve_.enter(t);
+  curve_.plan_entry(t);
+  curve_.enter_as_planned();
   head_.starved = false;
   head_.newest_knot = t;
 }
@@ -380,27 +379,29 @@ void StreamSolver::check_commit(core::Time now) noexcept {
   board_->store_checked(is_late);
 }
 
+/// Up to where the curve that has been committed never changes.
+core::Time StreamSolver::settled_by_commit() const noexcept {
+  if (!live_) return curve_.settled_until();
+  // What is finished changes no more: it has settled to its end.
+  return head_.finished ? std::min(std::max(settled_until_, curve_.end_of_motion()), kLatestTime)
+                        : settled_until_;
+}
+
 StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   head_.changed_from = core::Time::max();
-  const bool was_curve = head_.newest > 0;
   curve_.write(head_);
   if (!board_->is_sound()) return {};
-  if (live_ && (was_curve || head_.newest > 0)) {
-    // What is finished changes no more: it has settled to its end.
-    head_.settled_until =
-        head_.finished ? std::min(std::max(settled_until_, curve_.end_of_motion()), kLatestTime)
-                       : settled_until_;
-  } else if (head_.newest > 0) {
-    head_.settled_until = curve_.settled_until();
-  }
   head_.committed = clock.now();
   if (live_ && head_.changed_from <= head_.committed) {
     take_back(head_.misses + 1);
     return {.missed = true};
   }
   board_->commit(head_);
+  settled_at_ = started_;
+  if (head_.newest > 0) store_settled(settled_by_commit());
   board_->store_tail(head_.consumed);
-  curve_.committed();
+  if (is_timed_) board_->count_step(head_.committed - started_);
+  curve_.committed(head_);
   most_items_ = std::min<Word>(2 * most_items_, max_batch_);
   const bool changes = head_.changed_from < core::Time::max();
   if (live_) check_commit(changes ? clock.now() : head_.committed);

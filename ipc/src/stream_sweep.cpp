@@ -81,10 +81,7 @@ bool StreamSweep::sweep(const Clock& clock) {
   }
   collect_calling();
   bool has_more = false;
-  for (std::size_t k = 0; k < calling_.size(); ++k) {
-    prefetch_ahead(k);
-    has_more = serve(calling_[k], clock) || has_more;
-  }
+  for (const std::size_t index : calling_) has_more = serve(index, clock) || has_more;
   if (has_detached_) release_detached();
   return has_more || !to_take_.empty();
 }
@@ -116,17 +113,6 @@ void StreamSweep::collect_calling() {
     if (watch.solver.is_due(now_) || (is_looked_at && watch.solver.calls())) calling_.push_back(i);
   }
   all_quiet_ = all_quiet_ && calling_.empty();
-}
-
-/// While one stream is stepped, the memory of those after it comes into the caches: first what is
-/// known to lie where, then what that leads to.
-void StreamSweep::prefetch_ahead(std::size_t k) const noexcept {
-  constexpr std::size_t kObjectsAhead = 4;
-  constexpr std::size_t kBehindAhead = 2;
-  if (k + kObjectsAhead < calling_.size()) places_[calling_[k + kObjectsAhead]].prefetch();
-  if (k < kBehindAhead || k + kBehindAhead >= calling_.size()) return;
-  const std::size_t next = calling_[k + kBehindAhead];
-  places_[next].prefetch_behind(watches_[next].solver.has_items());
 }
 
 /// Steps one stream. Returns whether it has more to do.
@@ -168,7 +154,6 @@ void StreamSweep::release_detached() {
     release(served_[i]);
     served_.erase(served_.begin() + static_cast<std::ptrdiff_t>(i));
     watches_.erase(watches_.begin() + static_cast<std::ptrdiff_t>(i));
-    places_.erase(places_.begin() + static_cast<std::ptrdiff_t>(i));
   }
   has_detached_ = false;
   // Now, as a stream may already be there again.
@@ -358,7 +343,6 @@ bool StreamSweep::attach(const std::string& stream, Member& member, const Clock&
   if (member.state == State::postponed) next_retry_ = now_;
   served_.push_back({.solver = std::move(member.waiting)});
   watches_.push_back({.solver = served_.back().solver->watch(), .active = now_});
-  places_.push_back(served_.back().solver->places());
   is_any_unheld_ = is_any_unheld_ || !served_.back().solver->hold_region();
   become(stream, member, State::solved, SweepNews::solving, served_.back().solver.get());
   return true;
@@ -371,7 +355,6 @@ void StreamSweep::make_room() {
   const std::size_t room = 2 * needed;
   served_.reserve(room);
   watches_.reserve(room);
-  places_.reserve(room);
   calling_.reserve(room);
 }
 

@@ -52,7 +52,6 @@ class Resolver {
         window_(record.items.dimensions(), record.window),
         solved_(record.items.dimensions()),
         state_(record.items.dimensions()),
-        before_(record.items.dimensions()),
         values_(3 * record.items.dimensions()) {}
 
   Verification run() {
@@ -90,7 +89,7 @@ class Resolver {
   /// Whether a segment takes up where the one before it ends.
   bool follows(std::size_t i) {
     const SegmentCopy& segment = segments_[i];
-    const Word number = i > 0 ? segments_[i - 1].number + 1 : 1;
+    const Word number = i > 0 ? segments_[i - 1].next : 1;
     if (segment.number != number) {
       return differ(i, "number: segments between were lost before they were collected",
                     std::to_string(segment.number), std::to_string(number));
@@ -100,12 +99,11 @@ class Resolver {
   }
 
   void solve_hold(std::size_t i) {
-    evaluate_at_cut(segments_[i - 1], segments_[i].left, state_);
+    evaluate_at_cut(cut_of(segments_[i - 1]), segments_[i].left, state_);
     core::build_hold(segments_[i].left, segments_[i].right, state_.position(), solved_);
-    std::ranges::fill(solved_.acceleration_step, 0.0);
     if (segments_[i].left != natural_right_) {
       (void)differ(i, "left end", text(segments_[i].left), text(natural_right_));
-    } else if (compare(i, true)) {
+    } else if (compare(i)) {
       advance();
     }
   }
@@ -119,8 +117,7 @@ class Resolver {
     const auto way = way_back(window_, knot, solved_, state_);
     if (!way) return (void)differ(i, "kind", text(segments_[i].kind), "none: at rest there");
     build_way_back(*way, segments_[i].left, state_.position(), knot.position, solved_);
-    std::ranges::fill(solved_.acceleration_step, 0.0);
-    if (compare(i, true)) advance();
+    if (compare(i)) advance();
   }
 
   void solve_run(std::size_t i) {
@@ -237,22 +234,33 @@ class Resolver {
     } else if (begins_on_knot_) {
       take_state_of(segment);
     } else {
-      before_ = segments_[i - 1];
-      before_.right = natural_right_;
-      evaluate_at_cut(before_, segment.left, state_);
+      CutSegment before = cut_of(segments_[i - 1]);
+      before.right = natural_right_;
+      evaluate_at_cut(before, segment.left, state_);
       normalise();
       for (int n = 1; n < kNormalisations && !is_state_of(segment); ++n) normalise();
     }
-    const auto standing =
-        find_standing(standing_, i, 1, segment.left, [&](Word number, std::size_t) {
-          const SegmentCopy& at = segments_[number - 1];
-          return core::StandingWaypoint{at.left, at.waypoint};
-        });
     window_.enter({.time = segment.left,
                    .position = state_.position(),
                    .velocity = state_.velocity(),
                    .acceleration = state_.acceleration()},
-                  standing);
+                  standing_before(i));
+  }
+
+  [[nodiscard]] static CutSegment cut_of(const SegmentCopy& segment) noexcept {
+    return {segment.left, segment.right, segment.order, segment.coefficients};
+  }
+
+  /// The last waypoints before segment i, oldest first.
+  [[nodiscard]] std::span<const core::StandingWaypoint> standing_before(std::size_t i) noexcept {
+    std::size_t found = 0;
+    for (int k = 0; k < kStandingLookBack && i > 0 && found < standing_.size(); ++k) {
+      const SegmentCopy& at = segments_[--i];
+      if (!at.has_waypoint) continue;
+      ++found;
+      standing_[standing_.size() - found] = {at.left, at.waypoint};
+    }
+    return std::span(standing_).last(found);
   }
 
   void normalise() noexcept {
@@ -302,9 +310,7 @@ class Resolver {
                     text(segments_[run.first + s].kind), "none");
     }
     window_.segment(s, solved_);
-    const bool is_entry = s == 0 && run.is_entered;
-    if (is_entry) std::ranges::fill(solved_.acceleration_step, 0.0);
-    if (!compare(run.first + s, !(is_entry && begins_on_knot_))) return false;
+    if (!compare(run.first + s)) return false;
     const auto left = window_.left_knot(s);
     const SegmentCopy& published = segments_[run.first + s];
     if (!left || same_bits(window_.knot(*left).waypoint, published.waypoint)) return true;
@@ -319,7 +325,7 @@ class Resolver {
     return may_be_cut && segments_[i].right > solved_.left && segments_[i].right < solved_.right;
   }
 
-  bool compare(std::size_t i, bool with_step) {
+  bool compare(std::size_t i) {
     const SegmentCopy& published = segments_[i];
     if (published.left != solved_.left) {
       return differ(i, "left end", text(published.left), text(solved_.left));
@@ -333,9 +339,7 @@ class Resolver {
     }
     const std::size_t count = static_cast<std::size_t>(solved_.order) * window_.dimensions();
     return compare(i, "coefficient", std::span(published.coefficients).first(count),
-                   solved_.coefficients) &&
-           (!with_step || compare(i, "acceleration step", published.acceleration_step,
-                                  solved_.acceleration_step));
+                   solved_.coefficients);
   }
 
   /// Compares values [power][dimension].
@@ -375,7 +379,6 @@ class Resolver {
   core::SlidingWindow window_;
   core::Segment solved_;
   core::State state_;
-  SegmentCopy before_;
   std::vector<double> values_;
   StandingWaypoints standing_{};
   core::Time natural_right_{};  ///< of the segment before, had it not been cut

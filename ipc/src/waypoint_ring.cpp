@@ -63,7 +63,7 @@ WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLa
                                        const IngestLimits& limits)
     : layout_(layout),
       limits_(limits),
-      control_(words_at(region, layout.control, kControlLines * kSeparation / sizeof(Word))),
+      control_(words_at(region, layout.control, kRingControlWords)),
       items_(words_at(region, layout.items, layout.capacity * words_per_item(layout))),
       head_(load(control_[kHead], std::memory_order_relaxed)) {
   // Look back for the newest item that says from when on the next may be: behind the last waypoint
@@ -267,7 +267,7 @@ void WaypointRingWriter::retire() noexcept {
 WaypointRingReader::WaypointRingReader(std::span<const std::byte> region,
                                        const RingLayout& layout) noexcept
     : layout_(layout),
-      control_(words_at(region, layout.control, kControlLines * kSeparation / sizeof(Word))),
+      control_(words_at(region, layout.control, kRingControlWords)),
       items_(words_at(region, layout.items, layout.capacity * words_per_item(layout))) {}
 
 void WaypointRingReader::copy(Word i, RingItem& out) const noexcept {
@@ -283,11 +283,6 @@ void WaypointRingReader::copy(Word i, RingItem& out) const noexcept {
   const bool is_bare = out.kind == ItemKind::waypoint && !out.has_velocity && !out.has_acceleration;
   const std::size_t values = is_bare ? layout_.dimensions : out.values.size();
   load_values(std::span(out.values).first(values), &words[kItemValues]);
-}
-
-void WaypointRingReader::prefetch(Word i) const noexcept {
-  const std::size_t stride = words_per_item(layout_);
-  prefetch_lines(&items_[(i & (layout_.capacity - 1)) * stride], stride * sizeof(Word));
 }
 
 ItemKind WaypointRingReader::kind(Word i) const noexcept {

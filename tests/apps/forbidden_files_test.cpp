@@ -3,8 +3,10 @@
 #include <unistd.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "forbidden.hpp"
@@ -71,6 +73,12 @@ Obstacle instead(const std::function<int(const Path&)>& make) {
           .said = {"is no regular file"}};
 }
 
+consteval std::size_t header_offset(std::string_view field) {
+  return ipc::word_of(ipc::kHeaderFields, field) * sizeof(ipc::Word);
+}
+constexpr std::size_t kMark = header_offset("layout version, byte order");
+const std::string kVersion = std::to_string(ipc::kLayoutVersion);
+
 const std::vector<Obstacle>& obstacles() {
   static const std::vector<Obstacle> all{
       sized(0, {"has 0 bytes"}),
@@ -78,11 +86,15 @@ const std::vector<Obstacle>& obstacles() {
       sized(16384, {"size 16384"}),
       sized(64 << 20, {"size 67108864"}),
       patched(0, 7, {"magic number"}),
-      patched(offsetof(ipc::RegionHeader, layout_version), ipc::kLayoutVersion + 1,
-              {"layout version", std::to_string(ipc::kLayoutVersion + 1)}),
-      patched(offsetof(ipc::RegionHeader, layout_hash), 7, {"layout hash"}),
-      patched(offsetof(ipc::RegionHeader, byte_order), 0x04030201, {"byte order 67305985"}),
-      patched(offsetof(ipc::RegionHeader, dimensions), 65, {"dimensions 65"}),
+      patched(kMark, 9,
+              {"layout version 9", "this splinecast has version " + kVersion, "`splinecast rm`"}),
+      patched(header_offset("layout hash"), 7,
+              {"layout version " + kVersion + " with hash",
+               "this splinecast has version " + kVersion + " with hash " +
+                   std::to_string(ipc::layout_hash()),
+               "`splinecast rm`"}),
+      patched(kMark + sizeof(std::uint32_t), 0x04030201, {"byte order 67305985"}),
+      patched(header_offset("dimensions"), 65, {"dimensions 65"}),
       with_mode(0660, {"may be written by others", "0660"}),
       with_mode(0602, {"may be written by others", "0602"}),
       instead([](const Path& path) { return mkfifo(path.c_str(), 0600); }),

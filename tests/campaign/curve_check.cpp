@@ -98,7 +98,8 @@ void CurveCheck::survey(core::Time from, core::Time to) {
 void CurveCheck::check_segment(const ipc::SegmentCopy& segment) {
   const auto powers = std::span(segment.coefficients)
                           .first(static_cast<std::size_t>(segment.order) * Payload::kDimensions);
-  if (!Payload::is_whole(powers) || !Payload::is_whole(segment.acceleration_step)) {
+  const auto& step = segment.acceleration_step;
+  if (!Payload::is_whole(powers) || (!step.empty() && !Payload::is_whole(step))) {
     found(facts_->torn, fmt::format("segment {} is torn", segment.number));
   }
   if (segment.has_waypoint) {

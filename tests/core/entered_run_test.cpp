@@ -147,11 +147,12 @@ TEST(EnteredRun, AWaypointThatNoSpliceReachesWithinTheLimitsIsNotTaken) {
                                   {.time = 80 * kMillisecond, .position = third}};
   const std::vector<double> far{near[0] + 1, near[1]};
   const Waypoint off_the_way{.time = 40 * kMillisecond, .position = far};
-  EXPECT_FALSE(run.window.can_append(std::span(&off_the_way, 1)));
+  SlidingWindow trial(2, run.window.options());
+  EXPECT_FALSE(run.window.can_append(std::span(&off_the_way, 1), trial));
   EXPECT_EQ(run.window.knots(), 0U);
   // The first one alone would be reached at rest, which is too hard; with those behind it it is
   // not.
-  EXPECT_FALSE(run.window.can_append(std::span(waypoints).first(1)));
+  EXPECT_FALSE(run.window.can_append(std::span(waypoints).first(1), trial));
   EXPECT_EQ(run.window.segments(), 1U);
   EXPECT_EQ(run.segment(0).kind, SegmentKind::stop_tail);
 }
@@ -220,8 +221,34 @@ void expect_no_trace(SlidingWindow& window, std::string_view what) {
                      .velocity = kGiven,
                      .acceleration = kBent});
   }
-  (void)window.can_append(tried);
+  SlidingWindow trial(2, window.options());
+  (void)window.can_append(tried, trial);
   EXPECT_EQ(kept_of(window), before) << what;
+}
+
+TEST(SlidingWindow, GoesOnFromAnAssignedStateBitForBit) {
+  constexpr std::array kBefore{-20 * kMillisecond, -10 * kMillisecond};
+  for (const auto* method : {"c2", "hermite", "quintic", "pchip", "smoothing"}) {
+    for (const std::size_t frozen : std::array<std::size_t, 3>{0, 1, 3}) {
+      WindowOptions how =
+          entered_by(method, {.settle = 1, .max_acceleration = {10, 20}}).window.options();
+      Entered run(Time(0), how, kBefore);
+      SlidingWindow assigned(2, how);
+      append_given(assigned, 3 * kMillisecond);  // a state of its own, which goes
+      for (int i = 1; i <= 6; ++i) {
+        assigned.assign(run.window);
+        EXPECT_EQ(kept_of(assigned), kept_of(run.window)) << method << i;
+        append_given(assigned, 10 * i * kMillisecond);
+        append_given(run.window, 10 * i * kMillisecond);
+        EXPECT_EQ(kept_of(assigned), kept_of(run.window)) << method << i;
+        assigned.freeze_knots(1);
+        run.window.freeze_knots(frozen);
+      }
+      assigned.assign(run.window);
+      EXPECT_EQ(assigned.frozen_knots(), run.window.frozen_knots());
+      EXPECT_EQ(assigned.settled_segments(), run.window.settled_segments());
+    }
+  }
 }
 
 TEST(EnteredRun, IsAsItWasAfterAWaypointWasTried) {

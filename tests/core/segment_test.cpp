@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -72,6 +73,68 @@ TEST(Segment, EvaluatesToTheBitsOfASingleDerivativeWhateverOrderAndDimensions) {
       }
     }
   }
+}
+
+constexpr std::array kEach{Derivatives::position, Derivatives::velocity, Derivatives::acceleration,
+                           Derivatives::jerk};
+
+/// What evaluate_many writes where each time has `gap` doubles more than it needs.
+std::vector<double> written_by_many(int order, std::span<const double> c, std::size_t dimensions,
+                                    std::span<const double> u, Derivatives which, std::size_t gap) {
+  constexpr double kUntouched = -77;
+  const std::size_t stride = count(which) * dimensions + gap;
+  std::vector<double> out(u.size() * stride, kUntouched);
+  evaluate_many(order, c, dimensions, u, which, out, stride);
+  return out;
+}
+
+std::vector<double> written_by_evaluate(int order, std::span<const double> c,
+                                        std::size_t dimensions, std::span<const double> u,
+                                        Derivatives which, std::size_t gap) {
+  std::vector<double> out;
+  State state(dimensions);
+  const StateRef ref = state.ref();
+  const std::array derivatives{ref.position, ref.velocity, ref.acceleration, ref.jerk};
+  for (const double at : u) {
+    evaluate(order, c, at, ref);
+    for (std::size_t r = 0; r < kEach.size(); ++r) {
+      if (!contains(which, kEach[r])) continue;
+      out.insert(out.end(), derivatives[r].begin(), derivatives[r].end());
+    }
+    out.insert(out.end(), gap, -77);
+  }
+  return out;
+}
+
+TEST(Segment, EvaluatesManyTimesToTheBitsOfOne) {
+  for (int order = 1; order <= kMaxOrder + 1; ++order) {
+    for (const std::size_t dimensions : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 64U}) {
+      auto c = random_values(5, static_cast<std::size_t>(order) * dimensions);
+      c.back() = -3;  // of which 0 times is −0
+      for (const std::size_t times : {0U, 1U, 2U, 23U, 24U, 25U, 60U}) {
+        auto u = random_values(6, times);
+        if (times > 1) u[1] = 0;
+        for (int set = 0; set <= 15; ++set) {
+          const auto which = static_cast<Derivatives>(set);
+          const auto got = written_by_many(order, c, dimensions, u, which, 3);
+          const auto wanted = written_by_evaluate(order, c, dimensions, u, which, 3);
+          ASSERT_TRUE(std::ranges::equal(got, wanted, {}, std::bit_cast<std::uint64_t, double>,
+                                         std::bit_cast<std::uint64_t, double>))
+              << "order " << order << ", dimensions " << dimensions << ", times " << times
+              << ", set " << set;
+        }
+      }
+    }
+  }
+}
+
+TEST(Derivatives, AreASet) {
+  constexpr Derivatives kBoth = Derivatives::position | Derivatives::jerk;
+  EXPECT_EQ(count(kBoth), 2U);
+  EXPECT_TRUE(contains(kBoth, Derivatives::jerk));
+  EXPECT_FALSE(contains(kBoth, Derivatives::velocity | Derivatives::jerk));
+  EXPECT_EQ(count(Derivatives::none), 0U);
+  EXPECT_EQ(kEach[0] | kEach[1] | kEach[2] | kEach[3], Derivatives::all);
 }
 
 TEST(Segment, EvaluatesEachDerivativeOfItsPolynomial) {

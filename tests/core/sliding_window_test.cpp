@@ -225,7 +225,8 @@ TEST(SlidingWindow, AWaypointThatLimitsRefuseLeavesNoTraceOnTheOneBefore) {
   };
   window.append(waypoint(0));
   const std::vector<Waypoint> far{waypoint(1), waypoint(2)};
-  EXPECT_FALSE(window.can_append(far));
+  SlidingWindow trial(1, how);
+  EXPECT_FALSE(window.can_append(far, trial));
   ASSERT_EQ(window.knots(), 1U);
   EXPECT_EQ(window.knot(0).velocity[0], 0.0);
   EXPECT_EQ(window.newer_knots_seen(0), 0U);

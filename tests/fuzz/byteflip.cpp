@@ -53,10 +53,9 @@ class Victim {
   }
   [[nodiscard]] bool is_there() const { return !bytes_.empty(); }
 
-  /// Flips one bit, or all of a byte's, in the header, the control lines and head, or anywhere.
+  /// Flips one bit, or all of a byte's, in the header and the control block, or anywhere.
   void flip(std::mt19937_64& random) {
-    constexpr std::size_t kFront = ipc::kBodyOffset + 2 * ipc::kHeadWords * sizeof(ipc::Word);
-    const std::size_t limit = random() % 4 == 0 ? kFront : bytes_.size();
+    const std::size_t limit = random() % 4 == 0 ? ipc::kBodyOffset : bytes_.size();
     const std::size_t at = random() % std::min(limit, bytes_.size());
     const auto bits = static_cast<std::uint8_t>(random() % 2 == 0 ? 1U << random() % 8 : random());
     std::atomic_ref(bytes_[at]).fetch_xor(bits, std::memory_order_relaxed);

@@ -3,6 +3,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <random>
@@ -53,6 +54,7 @@ class FlipReader {
       count(random_() % 2 == 0 ? reader.sample(clock_.now(), state) : reader.preview(t, state),
             state);
       if (i % 64 == 0) take_snapshot(reader, snapshot);
+      if (i % 16 == 0) look_ahead(reader);
       if (i % 256 == 0) (void)reader.wait(1ms);
     }
     look();
@@ -66,6 +68,25 @@ class FlipReader {
     const bool are_numbers =
         std::ranges::all_of(state.values(), [](double value) { return std::isfinite(value); });
     if (!are_numbers) ++counters_->not_numbers;
+  }
+
+  void look_ahead(ipc::Reader& reader) {
+    std::array<Time, 16> times{};
+    for (Time t = clock_.now() - kLead; Time & time : times) time = t += kLead / 4;
+    std::array<ipc::SampleStatus, times.size()> statuses{};
+    const std::size_t stride = reader.dimensions();
+    std::vector<double> values(times.size() * stride);
+    (void)reader.sampler().sample_many(
+        times, {.values = values, .status = statuses, .derivatives = core::Derivatives::position});
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      ++counters_->samples;
+      if (!ipc::has_values(statuses[i])) continue;
+      ++counters_->with_values;
+      const auto at = std::span(values).subspan(i * stride, stride);
+      const bool are_numbers =
+          std::ranges::all_of(at, [](double value) { return std::isfinite(value); });
+      if (!are_numbers) ++counters_->not_numbers;
+    }
   }
 
   void take_snapshot(ipc::Reader& reader, ipc::Snapshot& snapshot) {

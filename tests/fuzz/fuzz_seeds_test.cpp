@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "fuzz/region_targets.hpp"
 #include "fuzz/seed_streams.hpp"
 #include "fuzz/text_targets.hpp"
+#include "splinecast/ipc/board_segment.hpp"
 #include "support/process.hpp"
 
 /// The fuzzers' targets, over what fuzzers have found and over mutations of whole streams, in every
@@ -59,6 +61,26 @@ TEST(FuzzSeeds, MutatedStreamsAreReadRefusedOrContinued) {
       }
     }
   }
+}
+
+TEST(FuzzSeeds, HaveSegmentsOfEveryFormAndNoneOfThemIsDamaged) {
+  std::set<core::SegmentForm> forms;
+  for (const Seed& seed : make_seeds()) {
+    const auto region = std::as_bytes(std::span(seed.image.board));
+    const auto layout = ipc::checked_board_layout(ipc::copy_header(region), region.size());
+    const ipc::KnotBoardReader board(region, layout);
+    ipc::Head head;
+    if (!board.copy_head(board.look(), head)) continue;
+    ipc::KnotCopy knot(board.dimensions(), board.smooths());
+    ipc::BoardSegment segment(board.dimensions(), board.smooths());
+    for (ipc::Word number = head.first; number > 0 && number <= head.newest; ++number) {
+      ASSERT_TRUE(board.copy_knot(number, head.revision, knot)) << seed.name << ' ' << number;
+      forms.insert(knot.note.form);
+      EXPECT_NE(segment.take(board, head, number), ipc::BoardSegment::Taken::torn)
+          << seed.name << ' ' << number;
+    }
+  }
+  EXPECT_EQ(forms.size(), static_cast<std::size_t>(core::kSegmentForms));
 }
 
 TEST(FuzzSeeds, AnImageIsWrittenAndReadAsItIs) {

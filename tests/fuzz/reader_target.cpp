@@ -1,7 +1,11 @@
+#include <array>
+#include <vector>
+
 #include "fuzz/guarded_bytes.hpp"
 #include "fuzz/region_targets.hpp"
 #include "fuzz/sampling.hpp"
 #include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/old_motion.hpp"
 #include "splinecast/ipc/settled_segments.hpp"
 #include "splinecast/ipc/stream_options.hpp"
 
@@ -11,22 +15,40 @@ namespace {
 constexpr int kMostActions = 64;
 
 /// Looks at all of a board that `info` and a producer look at.
-void look_around(const ipc::SegmentBoardReader& board) {
+void look_around(const ipc::KnotBoardReader& board) {
   ipc::Head head;
-  const ipc::Word r = board.revision();
-  (void)board.copy_head(r, head);
-  for (const ipc::Word seen : {r, r - 1, r - ipc::kHeadChangesKept, ipc::Word{0}}) {
-    (void)board.copy_bounds(r, seen, head);
+  const ipc::Look look = board.look();
+  const ipc::Word r = look.revision;
+  (void)board.copy_head(look, head);
+  for (const ipc::Word seen : {r, r - 1, r - ipc::kChangesKept, ipc::Word{0}}) {
+    (void)board.copy_bounds(look, seen, head);
   }
-  for (ipc::Word i = 0; i < 3; ++i) (void)board.refusal(head.refused - i);
+  std::array<ipc::RefusedItem, 3> refused{};
+  require(board.copy_refusals(head, 0, refused) <= refused.size(), "refusals fit where they go");
+  (void)ipc::segment_before(board, head, head.newest);
+  (void)board.step_times();
   (void)(board.tail() + (board.sleeping() ? 1U : 0U));
 }
 
-void play(Script& script, GuardedBytes& bytes, const ipc::SegmentBoardReader& board,
+/// Looks ahead at a few times, mostly one behind the other.
+void look_ahead(Script& script, Sampling& sampling) {
+  std::vector<core::Time> times(script.byte() % 40);
+  core::Time t = sampling.pick(script);
+  const auto step = static_cast<ipc::Word>(script.byte()) << script.byte() % 32U;
+  for (core::Time& time : times) {
+    time = t;
+    t = ipc::to_time(ipc::to_word(t) + step);
+  }
+  if (!times.empty() && script.byte() % 4 == 0) times.back() = sampling.pick(script);
+  const auto asked = 1 + script.byte() % static_cast<int>(core::Derivatives::all);
+  sampling.sample_many(times, static_cast<core::Derivatives>(asked));
+}
+
+void play(Script& script, GuardedBytes& bytes, const ipc::KnotBoardReader& board,
           Sampling& sampling) {
   ipc::SettledSegments settled(board);
   for (int i = 0; i < kMostActions && !script.has_ended(); ++i) {
-    switch (script.byte() % 8) {
+    switch (script.byte() % 9) {
       case 0:
         sampling.snapshot(sampling.pick(script), sampling.pick(script));
         break;
@@ -46,6 +68,9 @@ void play(Script& script, GuardedBytes& bytes, const ipc::SegmentBoardReader& bo
         break;
       }
       case 5:
+        look_ahead(script, sampling);
+        break;
+      case 6:
         sampling.sample(sampling.pick(script), true);
         break;
       default:
@@ -62,10 +87,11 @@ void try_reader(const StreamImage& image) {
   try {
     const ipc::RegionHeader header = ipc::copy_header(bytes.span());
     const auto layout = ipc::checked_board_layout(header, bytes.span().size());
-    const ipc::SegmentBoardReader board(bytes.span(), layout);
+    const ipc::KnotBoardReader board(bytes.span(), layout);
     ipc::Sampler sampler(board, ipc::stream_clock(header), ipc::dimension_kinds(header));
     Sampling sampling(board, sampler);
     look_around(board);
+    (void)ipc::end_of_motion(header, board);
     sampling.tour();
     Script script(image.script);
     play(script, bytes, board, sampling);

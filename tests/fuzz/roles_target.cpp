@@ -39,8 +39,7 @@ class Files {
 
  private:
   void write(ipc::RegionKind kind, std::vector<ipc::Word> words) const {
-    constexpr std::size_t kNamespaceWord =
-        offsetof(ipc::RegionHeader, time_namespace) / sizeof(ipc::Word);
+    constexpr std::size_t kNamespaceWord = ipc::word_of(ipc::kHeaderFields, "time namespace");
     // A live seed was made elsewhere, and says `here` where its clock's namespace stands.
     if (words.size() > kNamespaceWord && words[kNamespaceWord] == kHere) {
       words[kNamespaceWord] = ipc::time_namespace();

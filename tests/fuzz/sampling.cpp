@@ -14,24 +14,38 @@ bool are_numbers(std::span<const double> values) {
 
 }  // namespace
 
-Sampling::Sampling(const ipc::SegmentBoardReader& board, ipc::Sampler& sampler)
+Sampling::Sampling(const ipc::KnotBoardReader& board, ipc::Sampler& sampler)
     : board_(&board),
       sampler_(&sampler),
       state_(board.dimensions()),
-      snapshot_(board.dimensions()) {}
+      snapshot_(board.dimensions()),
+      segment_(board.dimensions(), board.smooths()) {}
+
+bool Sampling::find_marks(const ipc::Head& head, ipc::Word number, Marks& marks) {
+  using Taken = ipc::BoardSegment::Taken;
+  if (segment_.take(*board_, head, number) != Taken::whole) return false;
+  const auto used = static_cast<std::size_t>(segment_.order()) * board_->dimensions();
+  require(are_numbers(segment_.coefficients().first(used)), "a segment's coefficients are numbers");
+  require(segment_.left() <= segment_.right() && segment_.right() <= segment_.natural_right(),
+          "a segment does not end before it begins");
+  const core::Time left = segment_.left();
+  const core::Time right = segment_.right();
+  marks = {left, right, segment_.natural_right(),
+           ipc::to_time(ipc::to_word(left) / 2 + ipc::to_word(right) / 2)};
+  return true;
+}
 
 void Sampling::tour() {
   constexpr ipc::Word kMost = 24;
   ipc::Head head;
-  if (board_->copy_head(board_->revision(), head) && head.newest > 0) {
+  if (board_->copy_head(board_->look(), head) && head.newest > 0) {
     const ipc::Word oldest = std::max(head.first, head.newest - std::min(head.newest, kMost));
     for (ipc::Word number = oldest; number <= head.newest; ++number) {
-      core::Time left{};
-      core::Time right{};
-      if (!board_->copy_ends(number, head.revision, left, right)) continue;
-      const core::Time middle = ipc::to_time(ipc::to_word(left) / 2 + ipc::to_word(right) / 2);
-      const core::Time before = ipc::to_time(ipc::to_word(left) - 1);
-      for (const core::Time t : std::array{left, middle, right, before}) sample(t, false);
+      Marks marks{};
+      if (!find_marks(head, number, marks)) continue;
+      for (const core::Time t : marks) sample(t, false);
+      sample(ipc::to_time(ipc::to_word(marks[0]) - 1), false);
+      sample_many(marks, core::Derivatives::all);
     }
     snapshot(head.settled_until, head.newest_knot);
   }
@@ -57,6 +71,28 @@ void Sampling::sample(core::Time t, bool preview) {
   }
 }
 
+void Sampling::sample_many(std::span<const core::Time> times, core::Derivatives asked) {
+  const std::size_t stride = core::count(asked) * board_->dimensions();
+  values_.assign(times.size() * stride, std::numeric_limits<double>::quiet_NaN());
+  statuses_.assign(times.size(), ipc::SampleStatus::wrong_dimension);
+  const ipc::Word r =
+      sampler_->sample_many(times, {.values = values_, .status = statuses_, .derivatives = asked});
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const auto values = std::span(values_).subspan(i * stride, stride);
+    require(statuses_[i] < ipc::SampleStatus::wrong_dimension, "each time has a status");
+    if (r > 0 && ipc::has_values(statuses_[i])) {
+      require(are_numbers(values), "a time with values has numbers in all of them");
+    } else {
+      require(!ipc::has_values(statuses_[i]), "without a revision no time has values");
+    }
+  }
+  if (times.empty()) return;
+  const ipc::SampleBlock too_few{.values = std::span(values_).first(values_.size() - 1),
+                                 .status = statuses_,
+                                 .derivatives = asked};
+  require(sampler_->sample_many(times, too_few) == 0, "a block of another size gets no values");
+}
+
 void Sampling::snapshot(core::Time from, core::Time to) {
   const auto status = sampler_->snapshot(from, to, snapshot_);
   if (!ipc::has_values(status)) {
@@ -74,13 +110,12 @@ void Sampling::snapshot(core::Time from, core::Time to) {
 }
 
 core::Time Sampling::pick(Script& script) {
-  core::Time left{};
-  core::Time right{};
+  Marks marks{};
   ipc::Head head;
-  if (board_->copy_head(board_->revision(), head) && head.newest > 0) {
-    (void)board_->copy_ends(head.newest - script.byte() % head.newest, head.revision, left, right);
+  if (board_->copy_head(board_->look(), head) && head.newest > 0) {
+    (void)find_marks(head, head.newest - script.byte() % head.newest, marks);
   }
-  return script.near(script.byte() % 2 == 0 ? left : right);
+  return script.near(marks[script.byte() % marks.size()]);
 }
 
 }  // namespace splinecast::fuzz

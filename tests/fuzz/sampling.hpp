@@ -1,6 +1,11 @@
 #pragma once
 
+#include <array>
+#include <span>
+#include <vector>
+
 #include "fuzz/script.hpp"
+#include "splinecast/ipc/board_segment.hpp"
 #include "splinecast/ipc/sampler.hpp"
 
 namespace splinecast::fuzz {
@@ -8,7 +13,7 @@ namespace splinecast::fuzz {
 /// Samples a board and checks each answer.
 class Sampling {
  public:
-  Sampling(const ipc::SegmentBoardReader& board, ipc::Sampler& sampler);
+  Sampling(const ipc::KnotBoardReader& board, ipc::Sampler& sampler);
 
   /// At the ends of the segments that the board keeps, beside and between them, and at the ends of
   /// time.
@@ -17,6 +22,9 @@ class Sampling {
   /// Once at t, as executed or not. With values, none may be infinite or no number.
   void sample(core::Time t, bool preview);
 
+  /// At these times under one revision, with these derivatives.
+  void sample_many(std::span<const core::Time> times, core::Derivatives asked);
+
   /// Segments between two times.
   void snapshot(core::Time from, core::Time to);
 
@@ -24,10 +32,17 @@ class Sampling {
   [[nodiscard]] core::Time pick(Script& script);
 
  private:
-  const ipc::SegmentBoardReader* board_;
+  /// The ends of a segment, and where it would end had it not been cut, and the middle.
+  using Marks = std::array<core::Time, 4>;
+  [[nodiscard]] bool find_marks(const ipc::Head& head, ipc::Word number, Marks& marks);
+
+  const ipc::KnotBoardReader* board_;
   ipc::Sampler* sampler_;
   core::State state_;
   ipc::Snapshot snapshot_;
+  ipc::BoardSegment segment_;
+  std::vector<double> values_;
+  std::vector<ipc::SampleStatus> statuses_;
 };
 
 }  // namespace splinecast::fuzz

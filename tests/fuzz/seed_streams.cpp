@@ -28,23 +28,23 @@ std::vector<Word> words_of(const std::string& stream, RegionKind kind) {
   const auto region = ipc::Region::open(stream, kind, false);
   const auto from = ipc::words_at(region.bytes(), 0, region.bytes().size() / sizeof(Word));
   std::vector<Word> words(from.begin(), from.end());
-  const auto field = [&](std::size_t offset) -> Word& { return words[offset / sizeof(Word)]; };
   constexpr Word kStream = 7;
   constexpr std::size_t kControl = ipc::kHeaderBytes + kStream * ipc::kSeparation;
-  const auto page =
-      std::span(words).subspan(ipc::kHeaderBytes / sizeof(Word), ipc::kPage / sizeof(Word));
-  const auto lines =
-      std::span(words).subspan(field(offsetof(ipc::RegionHeader, control)) / sizeof(Word),
-                               ipc::kControlLines * ipc::kSeparation / sizeof(Word));
-  const std::vector<Word> control(lines.begin(), lines.end());
-  std::ranges::fill(page, 0);
+  constexpr std::size_t kControlOffset = ipc::word_of(ipc::kHeaderFields, "control offset");
+  const auto area = std::span(words)
+                        .first(ipc::kBodyOffset / sizeof(Word))
+                        .subspan(ipc::kHeaderBytes / sizeof(Word));
+  const auto block =
+      std::span(words).subspan(words[kControlOffset] / sizeof(Word), ipc::kBoardControlWords);
+  const std::vector<Word> control(block.begin(), block.end());
+  std::ranges::fill(area, 0);
   std::ranges::copy(control, words.begin() + kControl / sizeof(Word));
-  field(offsetof(ipc::RegionHeader, control)) = kControl;
-  field(offsetof(ipc::RegionHeader, stream_id)) = kStream;
-  field(offsetof(ipc::RegionHeader, owner_pid)) = 1;
-  field(offsetof(ipc::RegionHeader, owner_since)) = 0;
-  const bool is_live = field(offsetof(ipc::RegionHeader, clock)) != 0;
-  field(offsetof(ipc::RegionHeader, time_namespace)) = is_live ? kHere : 0;
+  words[kControlOffset] = kControl;
+  words[ipc::word_of(ipc::kHeaderFields, "stream id")] = kStream;
+  words[ipc::word_of(ipc::kHeaderFields, "process id")] = 1;
+  words[ipc::word_of(ipc::kHeaderFields, "since")] = 0;
+  const bool is_live = words[ipc::word_of(ipc::kHeaderFields, "clock")] != 0;
+  words[ipc::word_of(ipc::kHeaderFields, "time namespace")] = is_live ? kHere : 0;
   return words;
 }
 
@@ -162,6 +162,8 @@ std::vector<Plan> plans() {
   limited.max_acceleration = {5.0, 0.0};
   auto smoothing = with("smoothing", 16, 64);
   smoothing.lambda = 1e-9;
+  auto live_smoothing = with("smoothing", 16, 64);
+  live_smoothing.lambda = 1e-9;
   auto kinds = recorded(5);
   kinds.kinds.assign(5, {.kind = core::DimensionKind::quaternion});
   kinds.kinds[0] = {.kind = core::DimensionKind::wrap, .period = 1.5};
@@ -182,6 +184,11 @@ std::vector<Plan> plans() {
          r.send(kBegin);  // refused: out of order
          r.finish();
        }},
+      {"two_waypoints", live(2), with("c2", 2, 32),
+       [](Recorder& r) {
+         r.send_many(kBegin + 2 * kTick, 2);
+         r.finish();
+       }},
       {"live_running", live(2), limited, [](Recorder& r) { r.send_many(kBegin + 2 * kTick, 10); }},
       {"live_starved", live(1), with("c2", 2, 32), starve},
       {"live_entered", live(1), with("makima", 2, 32),
@@ -195,6 +202,21 @@ std::vector<Plan> plans() {
          r.send_many(kBegin + 3 * kTick, 6);
          r.replace_from(kBegin + 6 * kTick, kBegin + 9 * kTick);
          r.replace_from(kBegin + 8 * kTick, kBegin);
+       }},
+      {"live_cut", live(2), with("c2", 3, 32),
+       [](Recorder& r) {
+         r.send_many(kBegin + 2 * kTick, 8);
+         r.replace_from(kBegin + 8 * kTick + kTick / 2, kBegin + 10 * kTick);  // within a segment
+         r.replace_from(kBegin + 9 * kTick, kBegin);                           // within a splice
+         r.replace_from(kBegin + 10 * kTick, kBegin + 12 * kTick);             // within the stop
+         r.send_many(kBegin + 13 * kTick, 3);
+         r.finish();
+       }},
+      {"smoothing_cut", live(1), live_smoothing,
+       [starve](Recorder& r) {
+         starve(r);
+         r.send_many(r.clock.time + 2 * kTick, 6);
+         r.replace_from(r.clock.time + 4 * kTick + kTick / 4, r.clock.time + 6 * kTick);
        }},
       {"live_way_back", live(1), with("pchip", 1, 16),
        [starve](Recorder& r) {

@@ -4,6 +4,9 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <optional>
+
+#include "splinecast/ipc/publication.hpp"
 
 namespace splinecast::fuzz {
 namespace {
@@ -109,21 +112,112 @@ struct Range {
   std::size_t end;
 };
 
+constexpr std::size_t kWord = sizeof(Word);
+constexpr Range kFixed{0, ipc::word_of(ipc::kHeaderFields, "start value")};
+constexpr Range kPerDimension{kFixed.end, ipc::kHeaderWords};
+constexpr std::size_t kBody = ipc::kBodyOffset / kWord;
+
+/// `count` words of the control block from `first` on, where the header says that it lies.
+Range control_of(std::span<const Word> region, std::size_t first, std::size_t count) {
+  constexpr std::size_t kOffset = ipc::word_of(ipc::kHeaderFields, "control offset");
+  const std::size_t begin = region[kOffset] % ipc::kBodyOffset / kWord + first;
+  return {begin, begin + count};
+}
+
+/// The layout of a board's image, as far as its header is sound.
+std::optional<ipc::BoardLayout> layout_of(std::span<const Word> region) {
+  if (region.size() < kBody) return std::nullopt;
+  const ipc::RegionHeader header = ipc::decode_header(region);
+  const bool has_size = header.dimensions >= 1 && header.dimensions <= core::kMaxDimensions &&
+                        header.capacity >= 1 && header.capacity <= kMaxWords;
+  if (!has_size) return std::nullopt;
+  const auto layout = ipc::BoardLayout::of(header.dimensions, header.capacity, header.control,
+                                           ipc::smooths(header));
+  if (layout.bytes > region.size_bytes()) return std::nullopt;
+  return layout;
+}
+
+/// A part of a knot's slot: a tag, the rest of a cell, a node, what is beside a cell, a row.
+Range part_of_slot(const ipc::BoardLayout& layout, std::mt19937_64& random) {
+  const std::size_t slot = layout.slots + below(layout.capacity, random) * layout.stride;
+  const std::size_t which = below(2, random);
+  const auto part = [&](std::size_t offset, std::size_t bytes) {
+    const std::size_t begin = (slot + offset + which * bytes) / kWord;
+    return Range{begin, begin + bytes / kWord};
+  };
+  switch (below(4, random)) {
+    case 0:
+      return part(0, layout.cell);
+    case 1:
+      return part(layout.nodes, layout.node);
+    case 2:
+      return part(layout.beside, layout.beside_bytes);
+    default:
+      return part(layout.rows, layout.row);
+  }
+}
+
 /// A part of a region in which a word is to be changed. Most of a header's words lie in its first
 /// 256 bytes; most of what a region holds is not 0.
-Range part_of(std::span<const Word> region, std::mt19937_64& random) {
-  constexpr std::size_t kWord = sizeof(Word);
-  constexpr Range kFixed{0, 256 / kWord};
-  constexpr Range kPerDimension{256 / kWord, sizeof(ipc::RegionHeader) / kWord};
-  constexpr Range kControl{ipc::kHeaderBytes / kWord, ipc::kBodyOffset / kWord};
-  constexpr Range kBoardHead{ipc::kBodyOffset / kWord,
-                             ipc::kBodyOffset / kWord + 2 * ipc::kHeadWords};
-  constexpr std::array<Range, 4> kParts{kFixed, kPerDimension, kControl, kBoardHead};
-  const std::size_t choice = below(kParts.size() + 4, random);
-  Range part{0, region.size()};
-  if (choice < kParts.size()) part = kParts[choice];
-  if (choice > kParts.size()) part.begin = kBoardHead.begin;
-  return part.begin < part.end && part.end <= region.size() ? part : Range{0, region.size()};
+Range part_of(std::span<const Word> region, bool is_board, std::mt19937_64& random) {
+  const auto board = is_board ? layout_of(region) : std::nullopt;
+  switch (below(board ? 10 : 5, random)) {
+    case 0:
+      return kFixed;
+    case 1:
+      return kPerDimension;
+    case 2:
+      return control_of(region, 0, ipc::kRingControlWords);
+    case 3:
+      return {kBody, region.size()};
+    case 4:
+      return {0, region.size()};
+    case 5:
+      return control_of(region, ipc::kHeadSlot, 2 * ipc::kHeadWords);
+    case 6:
+      return control_of(region, ipc::kChanges, ipc::kChangesKept);
+    case 7:
+      return {board->times / kWord, board->times / kWord + board->capacity};
+    default:
+      return part_of_slot(*board, random);
+  }
+}
+
+/// A tag as no writer would have stored it here: another revision, near the committed one, another
+/// form or note, the other node or row.
+Word other_tag(Word tag, Word committed, std::mt19937_64& random) {
+  constexpr unsigned kNoteBits = ipc::kTagRevisionShift;
+  constexpr Word kNote = (Word{1} << kNoteBits) - 1;
+  switch (below(7, random)) {
+    case 0:
+      return (committed + 2 - below(5, random)) << kNoteBits | (tag & kNote);
+    case 1:
+      return tag ^ Word { 1 } << below(kNoteBits, random);
+    case 2:
+      return tag ^ below(16, random) << 1U;  // the form
+    case 3:
+      return tag ^ (random() & kNote);
+    case 4:
+      return ipc::kRetiredTag;
+    case 5:
+      return tag & kNote;
+    default:
+      return tag + (Word{1} << kNoteBits);
+  }
+}
+
+/// Changes a tag of the head or of a knot.
+void mutate_tag(std::vector<Word>& board, std::mt19937_64& random) {
+  const auto layout = layout_of(board);
+  if (!layout) return;
+  const Range control = control_of(board, 0, ipc::kBoardControlWords);
+  const std::size_t cell = below(2, random);
+  std::size_t at = control.begin + ipc::kHeadSlot + cell * ipc::kHeadWords;
+  if (below(8, random) != 0) {
+    const std::size_t slot = below(layout->capacity, random);
+    at = (layout->slots + slot * layout->stride + cell * layout->cell) / kWord;
+  }
+  if (at < board.size()) board[at] = other_tag(board[at], board[control.begin], random);
 }
 
 /// A word in a part, most often one that is not 0, as the parts are mostly empty.
@@ -138,10 +232,13 @@ std::size_t word_in(std::span<const Word> region, const Range& part, std::mt1993
   return part.begin + begin;
 }
 
-void mutate_region(std::vector<Word>& region, std::mt19937_64& random) {
+void mutate_region(std::vector<Word>& region, bool is_board, std::mt19937_64& random) {
   if (below(200, random) == 0) region.resize(below(kMaxWords, random));  // another file size
   if (region.empty()) return;
-  const std::size_t at = word_in(region, part_of(region, random), random);
+  Range part{0, region.size()};
+  if (region.size() > kBody) part = part_of(region, is_board, random);
+  part.end = std::min(part.end, region.size());
+  const std::size_t at = word_in(region, part, random);
   const std::size_t run = below(16, random) == 0 ? below(64, random) : 1;
   const Word value = interesting(random, region[at], region);
   for (std::size_t i = at; i < std::min(at + run, region.size()); ++i) region[i] = value;
@@ -205,15 +302,18 @@ std::vector<std::uint8_t> encode(const StreamImage& image) {
 
 void mutate(StreamImage& image, std::mt19937_64& random) {
   for (std::size_t count = 1 + below(4, random); count > 0; --count) {
-    switch (below(4, random)) {
+    switch (below(5, random)) {
       case 0:
         mutate_script(image.script, random);
         break;
       case 1:
-        mutate_region(image.ring, random);
+        mutate_region(image.ring, false, random);
+        break;
+      case 2:
+        mutate_tag(image.board, random);
         break;
       default:
-        mutate_region(image.board, random);
+        mutate_region(image.board, true, random);
     }
   }
 }

@@ -34,8 +34,9 @@ inline constexpr std::size_t kMaxWords = std::size_t{1} << 15U;
 [[nodiscard]] std::vector<std::uint8_t> encode(const StreamImage& image);
 
 /// Changes a few words of the regions, or bytes of the script, at random: of the header, control
-/// lines, head, tags, cells, times, items or anywhere, to a number that is likely to be of interest
-/// there. Equal generators change the same.
+/// block, head, ring of changes, packed times, a knot's cells, nodes and rows and what is beside,
+/// items or anywhere, to a number that is likely to be of interest there; of tags the revision, the
+/// form, the other bits. Equal generators change the same.
 void mutate(StreamImage& image, std::mt19937_64& random);
 
 }  // namespace splinecast::fuzz

@@ -91,11 +91,9 @@ class Stream {
 
   [[nodiscard]] ipc::WaypointRingWriter::Solved solved() {
     ipc::WaypointRingWriter::Solved known{.consumed = published_.tail()};
-    ipc::Head bounds;
-    const ipc::Word r = published_.revision();
-    if (ipc::live_options(board_header_) && r > 0 && published_.copy_bounds(r, r, bounds)) {
-      known.settled_until = bounds.settled_until;
-    }
+    const ipc::Look look = published_.look();
+    const bool is_known = look.revision > 0 && ipc::is_time_in_range(look.settled_until);
+    if (ipc::live_options(board_header_) && is_known) known.settled_until = look.settled_until;
     return known;
   }
 
@@ -154,8 +152,8 @@ class Stream {
   ipc::RingLayout ring_layout_;
   ipc::BoardLayout board_layout_;
   ipc::WaypointRingReader ring_;
-  ipc::SegmentBoardReader published_;
-  std::optional<ipc::SegmentBoardWriter> board_;
+  ipc::KnotBoardReader published_;
+  std::optional<ipc::KnotBoardWriter> board_;
   std::optional<ipc::StreamSolver> solver_;
   std::optional<ipc::WaypointRingWriter> producer_;
   ipc::Sampler sampler_;

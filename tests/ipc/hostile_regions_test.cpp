@@ -7,6 +7,7 @@
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/sampler.hpp"
 #include "splinecast/ipc/stream_options.hpp"
+#include "support/board_words.hpp"
 #include "support/memory_stream.hpp"
 
 /// What fuzzers have found in regions that hold what no role of ours writes: case by case.
@@ -14,11 +15,13 @@ namespace splinecast::ipc {
 namespace {
 
 using core::Time;
+using testing::head_word;
 using testing::MemoryRing;
 using testing::MemoryStream;
 
 constexpr Word kLargestWord = std::numeric_limits<Word>::max();
 constexpr Time kTick{10'000'000};
+constexpr Word kWaypointBit = Word{1} << 5U;  // of a tag
 
 /// A recorded stream of one dimension with twelve waypoints, solved.
 struct SolvedStream : MemoryStream {
@@ -35,18 +38,38 @@ Word& word_of(testing::RegionBytes& bytes, std::size_t offset) {
   return words_at(bytes.span(), offset, 1)[0];
 }
 
-/// Word `word` of the cells of segment `number`, both.
+/// A word of a part of a knot's slot, in both places.
+using Offset = std::size_t (*)(const BoardLayout&, Word number, std::size_t c);
+void set_both(MemoryStream& stream, Offset offset, Word number, std::size_t word, Word value) {
+  for (const std::size_t c : {0U, 1U}) {
+    word_of(stream.board.bytes, offset(stream.board.layout, number, c) + word * sizeof(Word)) =
+        value;
+  }
+}
+
 void set_cells(MemoryStream& stream, Word number, std::size_t word, Word value) {
-  const BoardLayout& layout = stream.board.layout;
-  const std::size_t slot = layout.slots + number % layout.capacity * layout.stride;
-  for (const std::size_t cell : {std::size_t{0}, layout.cell}) {
-    word_of(stream.board.bytes, slot + cell + word * sizeof(Word)) = value;
+  set_both(stream, testing::cell_offset, number, word, value);
+}
+
+void set_nodes(MemoryStream& stream, Word number, std::size_t word, Word value) {
+  set_both(stream, testing::node_offset, number, word, value);
+}
+
+void set_rows(MemoryStream& stream, Word number, std::size_t word, Word value) {
+  set_both(stream, testing::row_offset, number, word, value);
+}
+
+/// Changes bits of both tags of a knot.
+void flip_tag_bits(MemoryStream& stream, Word number, Word bits) {
+  for (const std::size_t c : {0U, 1U}) {
+    word_of(stream.board.bytes, testing::cell_offset(stream.board.layout, number, c)) ^= bits;
   }
 }
 
 void set_head(MemoryStream& stream, std::size_t word, Word value) {
-  for (const std::size_t cell : {std::size_t{0}, kHeadWords}) {
-    word_of(stream.board.bytes, stream.board.layout.head + (cell + word) * sizeof(Word)) = value;
+  for (const std::size_t c : {0U, 1U}) {
+    word_of(stream.board.bytes,
+            testing::head_offset(stream.board.layout, c) + word * sizeof(Word)) = value;
   }
 }
 
@@ -54,25 +77,54 @@ void set_control(testing::RegionBytes& bytes, std::size_t word, Word value) {
   word_of(bytes, kHeaderBytes + word * sizeof(Word)) = value;
 }
 
-TEST(HostileRegions, ACoefficientThatIsNoNumberIsNeverEvaluated) {
+TEST(HostileRegions, AKnotThatIsNoNumberIsNeverEvaluated) {
   for (const double value : {std::nan(""), std::numeric_limits<double>::infinity(), -1e300}) {
-    SolvedStream stream;
-    set_cells(stream, 3, kCellCoefficients + 1, to_word(value));
-    Sampler sampler(stream.board.reader, StreamClock::recorded);
-    core::State state(1);
-    EXPECT_EQ(sampler.sample(2 * kTick + Time(1), state.ref()), SampleStatus::busy);
-    EXPECT_EQ(sampler.sample(4 * kTick + Time(1), state.ref()), SampleStatus::provisional);
-    Snapshot snapshot(1);
-    EXPECT_EQ(sampler.snapshot(Time(0), 4 * kTick, snapshot), SampleStatus::busy);
+    for (const bool is_velocity : {false, true}) {
+      SolvedStream stream;
+      if (is_velocity) {
+        set_cells(stream, 3, kCellVelocity, to_word(value));
+      } else {
+        set_nodes(stream, 3, kNodePosition, to_word(value));
+      }
+      Sampler sampler(stream.board.reader, StreamClock::recorded);
+      core::State state(1);
+      // Both segments at the knot are made of it.
+      EXPECT_EQ(sampler.sample(kTick + Time(1), state.ref()), SampleStatus::busy);
+      EXPECT_EQ(sampler.sample(2 * kTick + Time(1), state.ref()), SampleStatus::busy);
+      EXPECT_EQ(sampler.sample(4 * kTick + Time(1), state.ref()), SampleStatus::provisional);
+      Snapshot snapshot(1);
+      EXPECT_EQ(sampler.snapshot(Time(0), 4 * kTick, snapshot), SampleStatus::busy);
+    }
   }
 }
 
 TEST(HostileRegions, ASegmentThatEndsBeforeItBeginsIsNeverEvaluated) {
-  SolvedStream stream;
-  set_cells(stream, 3, kCellRight, to_word(Time::min()));
-  Sampler sampler(stream.board.reader, StreamClock::recorded);
-  core::State state(1);
-  EXPECT_EQ(sampler.sample(2 * kTick, state.ref()), SampleStatus::busy);
+  for (const Time time : {Time::min(), 3 * kTick, 4 * kTick, kLatestTime + Time(1), Time::max()}) {
+    SolvedStream stream;
+    set_nodes(stream, 3, kNodeTime, to_word(time));
+    Sampler sampler(stream.board.reader, StreamClock::recorded);
+    core::State state(1);
+    EXPECT_EQ(sampler.sample(2 * kTick, state.ref()), SampleStatus::busy) << time.count();
+  }
+}
+
+TEST(HostileRegions, AFormThatNoKnotOfThisStreamHasIsNeverEvaluated) {
+  constexpr unsigned kFormShift = 1;
+  constexpr Word kCubic = static_cast<Word>(core::SegmentForm::cubic);
+  for (Word form = 0; form < 16; ++form) {
+    const auto known = static_cast<core::SegmentForm>(form);
+    const bool is_made_of_the_same =
+        known == core::SegmentForm::cubic || known == core::SegmentForm::halt_left ||
+        known == core::SegmentForm::halt_right || known == core::SegmentForm::halt_both ||
+        known == core::SegmentForm::hold;
+    if (is_made_of_the_same) continue;
+    SolvedStream stream;
+    flip_tag_bits(stream, 3, (kCubic ^ form) << kFormShift);
+    Sampler sampler(stream.board.reader, StreamClock::recorded);
+    core::State state(1);
+    // Where none begins, the segment before it would end behind its own right knot.
+    EXPECT_EQ(sampler.sample(2 * kTick + Time(1), state.ref()), SampleStatus::busy) << form;
+  }
 }
 
 TEST(HostileRegions, ADerivativeOutOfAllProportionLeavesAQuaternionOfNumbers) {
@@ -90,7 +142,8 @@ TEST(HostileRegions, TheLastOfAllRevisionsIsReadInBoundedTime) {
   SolvedStream stream;
   set_control(stream.board.bytes, kRevision, kLargestWord);
   Head head;
-  EXPECT_TRUE(stream.board.reader.copy_bounds(kLargestWord, kLargestWord, head));
+  EXPECT_TRUE(stream.board.reader.copy_bounds({.settled_until = {}, .revision = kLargestWord},
+                                              kLargestWord, head));
   Sampler sampler(stream.board.reader, StreamClock::recorded);
   core::State state(1);
   EXPECT_EQ(sampler.sample(kTick, state.ref()), SampleStatus::settled);
@@ -100,11 +153,11 @@ TEST(HostileRegions, TheLastOfAllRevisionsIsReadInBoundedTime) {
 TEST(HostileRegions, AHeadThatIsNoneLeavesWhatWasCopiedBefore) {
   SolvedStream stream;
   Head head;
-  const Word r = stream.board.reader.revision();
-  ASSERT_TRUE(stream.board.reader.copy_head(r, head));
-  set_head(stream, kHeadNewestKnot, to_word(Time::max()));
-  set_head(stream, kHeadRefused, kLargestWord);
-  EXPECT_FALSE(stream.board.reader.copy_head(r, head));
+  const Look look = stream.board.reader.look();
+  ASSERT_TRUE(stream.board.reader.copy_head(look, head));
+  set_head(stream, head_word("newest time"), to_word(Time::max()));
+  set_head(stream, head_word("refused"), kLargestWord);
+  EXPECT_FALSE(stream.board.reader.copy_head(look, head));
   EXPECT_EQ(head.newest_knot, 11 * kTick);
   EXPECT_EQ(head.refused, 0U);
 }
@@ -153,14 +206,18 @@ TEST(HostileRegions, ASolverDoesNotGoOnFromWhatIsNoCurve) {
     damage(stream);
     EXPECT_THROW(stream.replace_solver(), BadRegion);
   };
-  refuses([](MemoryStream& s) { set_head(s, kHeadRunKnots, kLargestWord); });
-  refuses([](MemoryStream& s) { set_head(s, kHeadRun, 0); });
-  refuses([](MemoryStream& s) { set_head(s, kHeadNewest, kLargestWord); });
-  refuses([](MemoryStream& s) { set_head(s, kHeadSettledUntil, to_word(Time::max())); });
-  refuses([](MemoryStream& s) { set_cells(s, 12, kCellNumber, 5); });
-  refuses([](MemoryStream& s) { set_cells(s, 12, kCellLeft, 0); });
-  refuses([](MemoryStream& s) { set_cells(s, 12, kCellCoefficients, to_word(std::nan(""))); });
-  refuses([](MemoryStream& s) { set_cells(s, 12, kCellShape, 4); });  // no waypoint at its left
+  refuses([](MemoryStream& s) { set_head(s, head_word("knots of the run"), kLargestWord); });
+  refuses([](MemoryStream& s) { set_head(s, head_word("run"), 0); });
+  refuses([](MemoryStream& s) { set_head(s, head_word("newest"), kLargestWord); });
+  refuses([](MemoryStream& s) { set_head(s, head_word("stop"), to_word(Time::max())); });
+  refuses([](MemoryStream& s) { set_control(s.board.bytes, kSettledUntil, to_word(Time::max())); });
+  refuses([](MemoryStream& s) { set_nodes(s, 12, kNodeTime, 0); });
+  refuses([](MemoryStream& s) { set_nodes(s, 12, kNodePosition, to_word(std::nan(""))); });
+  refuses([](MemoryStream& s) { set_cells(s, 11, kCellVelocity, to_word(std::nan(""))); });
+  refuses([](MemoryStream& s) { set_rows(s, 12, kRowGamma, to_word(std::nan(""))); });
+  refuses([](MemoryStream& s) { set_rows(s, 12, kRowG, to_word(std::nan(""))); });
+  refuses([](MemoryStream& s) { flip_tag_bits(s, 11, kWaypointBit); });  // no waypoint stands there
+  refuses([](MemoryStream& s) { set_cells(s, 12, kCellTag, kRetiredTag); });
 }
 
 TEST(HostileRegions, ASolverStopsWhenItsOwnBoardHoldsWhatItHasNotWritten) {
@@ -168,7 +225,7 @@ TEST(HostileRegions, ASolverStopsWhenItsOwnBoardHoldsWhatItHasNotWritten) {
   ASSERT_EQ(stream.ring.writer.replace_from(11 * kTick, {}, {stream.board.reader.tail()}),
             AppendStatus::accepted);
   for (Word number = 1; number <= 12; ++number) {
-    set_cells(stream, number, kCellCoefficients, to_word(std::nan("")));
+    set_cells(stream, number, kCellVelocity, to_word(std::nan("")));
   }
   EXPECT_TRUE(stream.solver.step(stream.clock).damaged);
   const Word revision = stream.board.reader.revision();

@@ -1,5 +1,5 @@
 /// Between any two loads of a reader, a writer may publish. Here it does so between the loads of
-/// the two tags of a slot: with 64 dimensions the cells of a slot lie on different pages, and the
+/// the two tags of a slot: with 64 dimensions the cells of one slot lie on different pages, and the
 /// first access to one of them lets the writer act.
 
 #include <gtest/gtest.h>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "splinecast/ipc/sampler.hpp"
+#include "support/board_words.hpp"
 #include "support/memory_stream.hpp"
 #include "support/trapped_page.hpp"
 
@@ -18,61 +19,64 @@ using testing::MemoryBoard;
 using testing::TrappedPage;
 
 constexpr std::size_t kDimensions = core::kMaxDimensions;
-const Time kLeft{100};
-const Time kRight{200};
+constexpr Time kInterval{100};
 
-/// A board with one segment, all of whose coefficients are the revision that wrote it.
+/// The knot between whose cells a page ends; no other knot has a cell on these two pages.
+constexpr Word kKnot = 7;
+constexpr Word kFirst = kKnot - 2;
+constexpr Word kNewest = kKnot + 1;
+
+Time time_of(Word number) { return kInterval * static_cast<int>(number); }
+
+/// A board of knots all of whose velocities are the revision that wrote them.
 struct Board : MemoryBoard {
-  Board() : MemoryBoard(kDimensions, 4) {}
+  Board() : MemoryBoard(kDimensions, 16) {}
 
-  void write(Word revision) {
-    core::Segment segment(kDimensions);
-    segment.left = kLeft;
-    segment.right = kRight;
-    segment.order = core::kCubicOrder;
-    std::ranges::fill(segment.coefficients, static_cast<double>(revision));
+  void write() {
     const std::vector<double> zeros(kDimensions);
-    writer.write(1, segment,
-                 {.time = {},
-                  .prefix = {},
-                  .newer_knots = 0,
-                  .waypoint = zeros,
-                  .g = zeros,
-                  .position = zeros,
-                  .velocity = zeros,
-                  .acceleration = {},
-                  .residual = {}});
+    const std::vector<double> velocity(kDimensions, static_cast<double>(writer.revision() + 1));
+    for (Word number = kFirst; number <= kNewest; ++number) {
+      const bool is_newest = number == kNewest;
+      writer.write(number,
+                   {.is_new = writer.revision() == 0,
+                    .note = {.form = is_newest ? core::SegmentForm::none : core::SegmentForm::cubic,
+                             .is_waypoint = true},
+                    .time = time_of(number),
+                    .begins = time_of(number),
+                    .position = zeros,
+                    .velocity = velocity});
+    }
   }
   void commit() {
-    Head head{.first = 1, .newest = 1, .settled_until = kLeft};
+    Head head{.first = kFirst, .newest = kNewest};
     writer.commit(head);
   }
-  void publish(Word revision) {
-    write(revision);
+  void publish() {
+    write();
     commit();
   }
-  /// The tag of a cell of the segment's slot.
+  Look look() { return reader.look(); }
+  /// The tag of a cell of the knot's slot.
   void* tag(std::size_t cell) {
-    return bytes.span().data() + layout.slots + layout.stride + cell * layout.cell;
+    return bytes.span().data() + testing::cell_offset(layout, kKnot, cell);
   }
 };
 
-/// One segment published under `copied` and again under r = `copied` + 1, which a reader sees. At
-/// the first access to cell `trapped` the writer publishes r + 1 and begins r + 2.
+/// Knots published under revisions up to `copied` and again under r = `copied` + 1, which a reader
+/// sees. At the first access to cell `trapped` the writer publishes r + 1 and begins r + 2.
 class Interleaving {
  public:
-  Interleaving(Word copied, std::size_t trapped) : copied_(copied), trapped_(trapped) {
-    for (Word r = 1; r <= copied; ++r) board.publish(r);
+  Interleaving(Word copied, std::size_t trapped) : trapped_(trapped) {
+    for (Word r = 1; r <= copied; ++r) board.publish();
   }
 
-  /// What `look` gives under r; the revision that it takes the segment's values to be of, 0 if
-  /// none.
+  /// What `look` gives under r; the revision that it takes the values to be of, 0 if none.
   template <typename Look>
   Word run(const Look& look) {
-    board.publish(copied_ + 1);
+    board.publish();
     const TrappedPage page(board.tag(trapped_), [&] {
-      board.publish(copied_ + 2);
-      board.write(copied_ + 3);
+      board.publish();
+      board.write();
     });
     const Word seen = look();
     has_acted = page.has_acted();
@@ -83,7 +87,6 @@ class Interleaving {
   bool has_acted = false;
 
  private:
-  Word copied_;
   std::size_t trapped_;
 };
 
@@ -98,11 +101,19 @@ void for_each_interleaving(const Test& test) {
   }
 }
 
+TEST(KeptCopy, TheCellsOfTheKnotLieOnDifferentPages) {
+  const Board board;
+  const auto page_of = [&](std::size_t c) {
+    return testing::cell_offset(board.layout, kKnot, c) / kPage;
+  };
+  EXPECT_NE(page_of(0), page_of(1));
+}
+
 TEST(KeptCopy, IsNotCurrentWhenTwoRevisionsPassBetweenTheLoadsOfTheTags) {
   for_each_interleaving([](Word copied, std::size_t trapped) {
     Interleaving at(copied, trapped);
-    SegmentCopy copy(kDimensions);
-    ASSERT_TRUE(at.board.reader.copy_segment(1, copied, copy));
+    KnotCopy copy(kDimensions, false);
+    ASSERT_TRUE(at.board.reader.copy_knot(kKnot, copied, copy));
     const Word seen =
         at.run([&] { return at.board.reader.is_current(copy, copied + 1) ? copy.tag : 0; });
     EXPECT_EQ(seen, 0U);
@@ -113,21 +124,22 @@ TEST(KeptCopy, IsNotCurrentWhenTwoRevisionsPassBetweenTheLoadsOfTheTags) {
 
 TEST(KeptCopy, IsOfTheRevisionAskedForOrNoneWhenTwoRevisionsPassBetweenTheTags) {
   for_each_interleaving([](Word copied, std::size_t trapped) {
-    Interleaving segments(copied, trapped);
-    SegmentCopy copy(kDimensions);
-    const Word segment = segments.run([&] {
-      return segments.board.reader.copy_segment(1, copied + 1, copy)
-                 ? static_cast<Word>(copy.coefficients[0])
+    Interleaving knots(copied, trapped);
+    KnotCopy copy(kDimensions, false);
+    const Word knot = knots.run([&] {
+      return knots.board.reader.copy_knot(kKnot, copied + 1, copy)
+                 ? static_cast<Word>(copy.velocity()[0])
                  : 0;
     });
-    EXPECT_TRUE(segments.has_acted);
-    EXPECT_EQ(segment, 0U);
-    Interleaving ends(copied, trapped);
-    Time left{};
-    Time right{};
-    EXPECT_FALSE(ends.run([&] {
-      return static_cast<Word>(ends.board.reader.copy_ends(1, copied + 1, left, right));
-    })) << right.count();
+    EXPECT_TRUE(knots.has_acted);
+    EXPECT_EQ(knot, 0U);
+    EXPECT_FALSE(copy.is_there());
+    Interleaving times(copied, trapped);
+    Time time{};
+    core::SegmentForm form{};
+    EXPECT_FALSE(times.run([&] {
+      return static_cast<Word>(times.board.reader.copy_time(kKnot, copied + 1, time, form));
+    })) << time.count();
   });
 }
 
@@ -136,14 +148,50 @@ TEST(KeptCopy, ASampleIsNeverOfARevisionOlderThanItsBounds) {
     Interleaving at(copied, trapped);
     Sampler sampler(at.board.reader, StreamClock::recorded);
     core::State state(kDimensions);
-    ASSERT_TRUE(has_values(sampler.sample(kLeft, state.ref())));
-    ASSERT_EQ(state.position()[0], static_cast<double>(copied));
+    const Time t = time_of(kKnot);
+    ASSERT_TRUE(has_values(sampler.sample(t, state.ref())));
+    ASSERT_EQ(state.velocity()[0], static_cast<double>(copied));
     const Word seen = at.run([&] {
-      EXPECT_TRUE(has_values(sampler.sample(kLeft, state.ref())));
-      return static_cast<Word>(state.position()[0]);
+      EXPECT_TRUE(has_values(sampler.sample(t, state.ref())));
+      return static_cast<Word>(state.velocity()[0]);
     });
     EXPECT_TRUE(at.has_acted);
     EXPECT_EQ(seen, sampler.revision_seen());
+  });
+}
+
+TEST(KeptCopy, ASegmentIsMadeOfTwoKnotsOfOneRevisionWhereverTheWriterActs) {
+  for_each_interleaving([](Word copied, std::size_t trapped) {
+    for (const Word number : {kKnot - 1, kKnot}) {
+      Interleaving at(copied, trapped);
+      BoardSegment segment(kDimensions, false);
+      Head head;
+      const Word seen = at.run([&] {
+        EXPECT_TRUE(at.board.reader.copy_bounds(at.board.look(), 0, head));
+        return static_cast<Word>(segment.take(at.board.reader, head, number));
+      });
+      EXPECT_TRUE(at.has_acted);
+      EXPECT_EQ(seen, static_cast<Word>(BoardSegment::Taken::torn));
+      EXPECT_FALSE(segment.is_there());
+    }
+  });
+}
+
+/// The writer acts after the first of the times has been evaluated: all are evaluated again.
+TEST(KeptCopy, ManySamplesAreOfOneRevisionThoughTheWriterActsBetweenThem) {
+  for_each_interleaving([](Word copied, std::size_t trapped) {
+    Interleaving at(copied, trapped);
+    Sampler sampler(at.board.reader, StreamClock::recorded);
+    const std::vector<Time> times{time_of(kFirst), time_of(kKnot), time_of(kFirst)};
+    std::vector<double> values(times.size() * kDimensions);
+    std::vector<SampleStatus> status(times.size(), SampleStatus::busy);
+    const SampleBlock out{values, status, core::Derivatives::velocity};
+    ASSERT_EQ(sampler.sample_many(times, out), copied);
+    const Word seen = at.run([&] { return sampler.sample_many(times, out); });
+    EXPECT_TRUE(at.has_acted);
+    EXPECT_EQ(seen, copied + 2);
+    for (const double value : values) EXPECT_EQ(value, static_cast<double>(seen));
+    for (const SampleStatus each : status) EXPECT_TRUE(has_values(each));
   });
 }
 

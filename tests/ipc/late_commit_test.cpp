@@ -36,11 +36,11 @@ constexpr Time kPause = milliseconds(50);
 /// What a reader finds on the board.
 Word late_commits(const Live& live) {
   Head head;
-  EXPECT_TRUE(live.board.reader.copy_head(live.board.reader.revision(), head));
+  EXPECT_TRUE(live.board.reader.copy_head(live.board.reader.look(), head));
   return head.revisions;
 }
 
-/// The words of line 1 that a solver stores behind a commit.
+/// The words that a solver stores behind a commit, when it has looked at the clock.
 std::span<Word> words_behind_commit(Live& live) {
   return words_at(live.board.bytes.span(), live.board.layout.control, kChecked + 1).subspan(kLate);
 }

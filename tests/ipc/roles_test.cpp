@@ -94,8 +94,8 @@ TEST(Roles, ASleepingSolverIsWokenByAnAppend) {
     // Appends only once the solver says that it sleeps.
     const Region region = Region::open(stream.name(), RegionKind::spline, false);
     const RegionHeader header = copy_header(region.bytes());
-    const SegmentBoardReader board(region.bytes(),
-                                   checked_board_layout(header, region.bytes().size()));
+    const KnotBoardReader board(region.bytes(),
+                                checked_board_layout(header, region.bytes().size()));
     while (!board.sleeping()) std::this_thread::yield();
     EXPECT_EQ(producer.append({Time(0), x, {}, {}}), AppendStatus::accepted);
   });

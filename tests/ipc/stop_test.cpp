@@ -100,6 +100,21 @@ TEST(Stop, AtTheEndOfTimeLeavesABoardThatCanBeReadBehindAFinish) {
   EXPECT_NO_THROW(live.replace_solver());
 }
 
+TEST(Stop, ThatIsCutAtTheEndOfTimeLeavesABoardThatCanBeRead) {
+  Live live;
+  live.put_all(50, 100);
+  const Time t = kLatestTime - live.window.stop_time / 2;
+  ASSERT_EQ(live.replace(t, {}), AppendStatus::accepted);
+  live.drain();
+  ASSERT_EQ(live.replace(kLatestTime, {}), AppendStatus::accepted);  // within the stop
+  live.drain();
+  Sampler later(live.board.reader, StreamClock::monotonic);
+  for (const Time at : {t - Time(1), t, t + Time(1), kLatestTime}) {
+    EXPECT_TRUE(has_values(later.sample(at, live.state.ref())));
+  }
+  EXPECT_NO_THROW(live.replace_solver());
+}
+
 TEST(Stop, AtATimeAheadTakesEffectThereAtTheLatest) {
   Live live({.settle = 2}, 64, {.history = seconds(10)});
   live.put_all(50, 2000);

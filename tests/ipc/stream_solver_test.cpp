@@ -105,7 +105,8 @@ TEST(StreamSolver, TellsTheProducerWhatItConsumedAndReadersWhatChanged) {
     const auto result = stream.solver.step(stream.clock);
     EXPECT_EQ(result.consumed, 1U);
     Head head;
-    ASSERT_TRUE(stream.board.reader.copy_head(i + 1, head));
+    ASSERT_TRUE(stream.board.reader.copy_head(stream.board.reader.look(), head));
+    EXPECT_EQ(head.revision, i + 1);
     EXPECT_EQ(head.consumed, i + 1);
     EXPECT_EQ(stream.board.reader.tail(), i + 1);
     EXPECT_EQ(head.newest, i + 1);
@@ -123,13 +124,13 @@ TEST(StreamSolver, KeepsAsMuchHistoryAsTheBoardHolds) {
   stream.send(mesh, 0, mesh.size());
   stream.finish();
   const Head& head = stream.solver.head();
-  EXPECT_EQ(head.newest, 499U);
-  EXPECT_EQ(head.newest - head.first + 1, 64U);
+  EXPECT_EQ(head.newest, 500U);
+  EXPECT_EQ(head.newest - head.first + 1, 64U);  // knots: a segment fewer
   Sampler sampler(stream.board.reader, StreamClock::recorded);
   core::State state(1);
-  EXPECT_EQ(sampler.sample(mesh.times[499 - 64] - Time(1), state.ref()),
+  EXPECT_EQ(sampler.sample(mesh.times[500 - 64] - Time(1), state.ref()),
             SampleStatus::before_history);
-  EXPECT_EQ(sampler.sample(mesh.times[499 - 64], state.ref()), SampleStatus::settled);
+  EXPECT_EQ(sampler.sample(mesh.times[500 - 64], state.ref()), SampleStatus::settled);
 }
 
 TEST(StreamSolver, AFinishOfItsOwnGivesNoSegmentBackThatTheBoardHasLost) {
@@ -141,7 +142,7 @@ TEST(StreamSolver, AFinishOfItsOwnGivesNoSegmentBackThatTheBoardHasLost) {
     EXPECT_EQ(stream.solver.head().first, 269U);
     if (takes_over) stream.replace_solver();
     stream.finish();
-    EXPECT_EQ(stream.solver.head().newest, 299U);
+    EXPECT_EQ(stream.solver.head().newest, 300U);
     EXPECT_EQ(stream.solver.head().first, 269U);
     Sampler sampler(stream.board.reader, StreamClock::recorded);
     core::State state(1);

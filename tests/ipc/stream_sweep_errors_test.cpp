@@ -12,7 +12,7 @@
 #include "splinecast/ipc/layout.hpp"
 #include "splinecast/ipc/owner_lock.hpp"
 #include "splinecast/ipc/region.hpp"
-#include "splinecast/ipc/segment_board.hpp"
+#include "support/board_words.hpp"
 #include "support/few_descriptors.hpp"
 #include "told.hpp"
 
@@ -64,16 +64,16 @@ class ForeignFile {
   std::string path_;
 };
 
-/// Overwrites a coefficient of every segment that a board holds.
+/// Overwrites a velocity of every knot that a board holds.
 void damage(const std::string& stream) {
   const auto header = peek_header(stream, RegionKind::spline, {});
   ASSERT_TRUE(header);
   const auto layout = checked_board_layout(*header, header->region_bytes);
   const int board = open(region_path(stream, RegionKind::spline).c_str(), O_WRONLY | O_CLOEXEC);
   const double none = std::nan("");
-  for (std::size_t slot = 0; slot < layout.capacity; ++slot) {
-    for (const std::size_t cell : {std::size_t{0}, layout.cell}) {
-      const std::size_t at = layout.slots + slot * layout.stride + cell + kCellCoefficients * 8;
+  for (Word number = 0; number < layout.capacity; ++number) {
+    for (const std::size_t c : {0U, 1U}) {
+      const std::size_t at = testing::cell_offset(layout, number, c) + kCellVelocity * sizeof(Word);
       ASSERT_EQ(pwrite(board, &none, sizeof none, static_cast<off_t>(at)), 8);
     }
   }

@@ -13,8 +13,8 @@
 
 #include "splinecast/ipc/checked_region.hpp"
 #include "splinecast/ipc/futex.hpp"
+#include "splinecast/ipc/knot_board.hpp"
 #include "splinecast/ipc/producer.hpp"
-#include "splinecast/ipc/segment_board.hpp"
 #include "splinecast/ipc/solver.hpp"
 #include "support/process.hpp"
 
@@ -109,7 +109,7 @@ TEST(Wake, AStepWakesAFewHoweverManyThreadsAreParkedOnItsBoard) {
   ASSERT_TRUE(solver.attach());
   // As any process maps it that may read it.
   const auto [region, header, layout] = open_board(stream.name(), false, {});
-  const SegmentBoardReader board(region.bytes(), layout);
+  const KnotBoardReader board(region.bytes(), layout);
   const Waiters waiters(kParked, [&board] { park(board.revision_word(), 0); });
   const double x = 1;
   ASSERT_EQ(producer.append({.time = {}, .position = std::span(&x, 1)}), AppendStatus::accepted);

@@ -80,9 +80,9 @@ TEST(WaypointRing, TheEarliestAndTheLatestTimeAreInOrder) {
   EXPECT_EQ(stream.append(kLatestTime, std::span(x).last(1)), AppendStatus::accepted);
   stream.drain();
   EXPECT_EQ(stream.solver.head().knots, 2U);
-  SegmentCopy segment(1);
-  ASSERT_TRUE(stream.board.reader.copy_segment(1, stream.board.reader.revision(), segment));
-  EXPECT_NEAR(segment.coefficients[1] * 2 * core::to_seconds(kLatestTime), 1, 1e-12);  // velocity
+  KnotCopy knot(1, false);
+  ASSERT_TRUE(stream.board.reader.copy_knot(1, stream.board.reader.revision(), knot));
+  EXPECT_NEAR(knot.velocity()[0] * 2 * core::to_seconds(kLatestTime), 1, 1e-12);
 }
 
 TEST(WaypointRing, IsFullUntilTheSolverConsumesAndLosesNothing) {

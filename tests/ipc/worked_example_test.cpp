@@ -21,7 +21,7 @@ struct Example {
   RegionHeader ring_header = header(RegionKind::waypoints, 4);
   RegionHeader board_header = header(RegionKind::spline, 32);
   RingLayout ring_layout = RingLayout::of(1, 4, ring_header.control);
-  BoardLayout board_layout = BoardLayout::of(1, 32, board_header.control);
+  BoardLayout board_layout = BoardLayout::of(1, 32, board_header.control, false);
   RegionBytes waypoints{ring_layout.bytes};
   RegionBytes spline{board_layout.bytes};
 
@@ -34,8 +34,8 @@ struct Example {
     write_header(spline.span(), board_header);
     WaypointRingWriter producer(waypoints.span(), ring_layout, {});
     const WaypointRingReader ring(waypoints.span(), ring_layout);
-    SegmentBoardWriter board(spline.span(), board_layout);
-    const SegmentBoardReader published(spline.span(), board_layout);
+    KnotBoardWriter board(spline.span(), board_layout);
+    const KnotBoardReader published(spline.span(), board_layout);
     StreamSolver solver(ring, board, published, {}, {});
     testing::FixedClock clock;
     clock.time = Time(5);

@@ -1,20 +1,60 @@
-/* The publication of ipc/publication.hpp: slots of two cells, a commit word, a writer that dies at any
- * store and is taken over, and a reader that keeps what it copied. Steps interleave one load or store at a
- * time, in program order: this checks the algorithm, not its memory orderings.
+/* The publication of ipc/publication.hpp: slots of two cells and two nodes, the ring of changes, the commit
+ * word and the settled word; a writer that dies before any of its stores and is taken over; a reader that
+ * keeps what it copied.
  *
- * One reader stands for any number: readers store nothing, so that none can disturb another. A revision
- * changes any choice of slots. A revision that its own writer discards is the case of a writer that dies
- * before the commit.
+ * A tag is 2 · revision + the node that goes with the cell. A revision leaves a slot alone, solves its knot
+ * again (stores a tag and a cell) or puts a new knot there (stores a tag, a node and a cell). Revision 0
+ * holds zeros. With two slots the reader needs both under one revision, as a segment needs its two knots.
  *
- * Held: what a reader accepts under revision r, copied now or kept from before, is in every slot what r
- * holds, whole; and whatever a dead writer left can be read, at the first try.
+ * With CHANGES=N, slot 0 is the head: every revision writes it, and it has no knot. The word of revision r
+ * in the ring of changes is word r mod N.
  *
- * Each of these flags makes a mutant that must fail: COMMIT_FIRST, TAG_LAST, LIVE_CELL, NO_RETIRE,
- * NO_RECHECK. Those that begin with KEEP weaken the check of a kept copy: KEEP_UNSEEN has none,
- * KEEP_AT_ONCE finds the newest cell from both tags as seen once, KEEP_OWN looks at the copy's own
- * tag alone, KEEP_OWN_FIRST at it before the other one, KEEP_PART keeps the first word and copies
- * the second one again. All but KEEP_UNSEEN and KEEP_OWN need several revisions of one slot:
- * one slot and LAST=5 have them in few states. */
+ * With SETTLED (not together with CHANGES), knot s is the curve at time s. The settled word S promises that
+ * no later revision changes a slot s < S.
+ *
+ * Held, whatever each revision does:
+ * - what a reader accepts under revision r, copied now or kept from before, is what r holds;
+ * - what a dead writer left can be read, at the first try;
+ * - the changes that a reader counts are those of the revisions that it missed;
+ * - what a reader calls settled is changed by no revision after the one that it reads.
+ *
+ * One word stands for all words of a cell, and one for all of a node: which copies are accepted does not
+ * depend on these words, so each of them must be right on its own. One reader stands for any number:
+ * readers store nothing. A writer that discards its revision does what the successor does of a writer that
+ * died just before the commit: it counts as one of LIVES.
+ *
+ * This checks the algorithm, not its memory orderings: the steps of writer and reader interleave one load
+ * or store at a time, each thread in program order (sequential consistency). A release or acquire that is
+ * missing never shows here, nor in a test on x86. The orderings have been checked apart, with litmus
+ * programs of the same protocol: those of slots and commit word under the memory models RC11 and IMM, those
+ * of the ring of changes and the settled word under RC11. publication.hpp argues each of them.
+ *
+ * Each of these flags makes a mutant that must fail:
+ * COMMIT_FIRST       stores the commit word before the slots
+ * TAG_LAST           stores the tag after node and cell
+ * CELL_FIRST         stores the cell before the tag
+ * NODE_FIRST         stores the node before the tag
+ * NODE_IN_PLACE      puts a new knot into the node of the newest cell
+ * NODE_OF_DEAD       goes by the node of the greatest tag, committed or not
+ * LIVE_CELL          writes the newest cell, not the spare one
+ * NO_RETIRE          the successor leaves tags that no commit has made visible
+ * RETIRE_WITH_ZERO   the successor makes them the oldest tags, not the newest
+ * DISCARD_IN_PLACE   a writer that discards its revision leaves its tags
+ * NO_RECHECK         the reader does not load the tag again after the copy
+ * KEEP_UNSEEN        uses a kept copy without a look
+ * KEEP_OWN           looks only at the tag of the copy's own cell
+ * KEEP_OWN_FIRST     looks at it before the tag of the other cell
+ * KEEP_AT_ONCE       finds the newest cell from both tags in storage order, as if loaded at one instant
+ * KEEP_NODE          copies only the cell again where the new tag has the same node bit
+ * CHANGE_FIRST       stores the word of the ring before the tag of the head
+ * CHANGES_LIMIT=N    counts the changes if the greatest tag is at most N, not N - 1, above the revision seen:
+ *                    fails where a writer has died and its tag has been retired
+ * CHANGES_UNTAGGED   counts them also if both tags are retired: fails where a successor dies as well, and is
+ *                    taken over, between the loads of the tags
+ * TAGS_BEFORE_WORDS  loads the tags of the head before the words of the ring
+ * SETTLED_EARLY      stores the settled word of a revision before its commit
+ * SETTLED_LATE       the reader loads the settled word after the commit word
+ * SETTLED_FORGOTTEN  the successor does not go on from the settled word that it finds */
 
 #ifndef LAST
 #define LAST 3 /* the last revision */
@@ -23,99 +63,215 @@
 #define LIVES 2 /* writers, one after the other */
 #endif
 #ifndef SLOTS
-#define SLOTS 2 /* 1 or 2 */
+#define SLOTS 1 /* 1 or 2 */
 #endif
+#ifndef TRIES
 #define TRIES 2 /* of the reader, before the one at the end */
-#define RETIRED 255
+#endif
+#define NONE 255 /* no tag */
+#ifdef RETIRE_WITH_ZERO
+#define RETIRED 0
+#else
+#define RETIRED 254
+#endif
 
 byte revision;
-byte tag[4];   /* [slot · 2 + cell] */
-byte word0[4]; /* two words of each cell */
-byte word1[4];
-bool over;     /* no writer lives, and none will come */
+byte tag[2 * SLOTS]; /* [2 · slot + cell] */
+byte cell[2 * SLOTS];
+byte node[2 * SLOTS]; /* [2 · slot + node] */
+#ifdef CHANGES
+byte change[CHANGES];
+#ifndef CHANGES_LIMIT
+#define CHANGES_LIMIT (CHANGES - 1)
+#endif
+#endif
+#ifdef SETTLED
+byte settled;
+#endif
+bool over; /* no writer lives, and none will come */
 
-/* What revision r holds in a slot, noted at its commit: [r · 2 + slot]. No reader acts on it. */
-byte holds[SLOTS * (LAST + 1)];
+/* What the committed revision holds, and what readers were told. Nobody acts on it. */
+byte held_cell[SLOTS];
+byte held_node[SLOTS];
+#ifdef CHANGES
+byte held_change[LAST + 1]; /* of each revision */
+#endif
+#ifdef SETTLED
+byte promised; /* the greatest settled word that a reader has gone by */
+#endif
 
 /* The cell that is newest under r, of a slot whose tags are t0 and t1. */
-#define NEWEST(t0, t1, r) (((t1) <= (r) && ((t0) > (r) || (t1) > (t0))) -> 1 : 0)
+#define NEWEST(t0, t1, r) (((t1) / 2 <= (r) && ((t0) / 2 > (r) || (t1) > (t0))) -> 1 : 0)
 
 /* One store; the writer may die before it. */
 #define STORE(word, value) if :: word = value :: goto died fi
 
+mtype = { leave, again, fresh }
+
 #ifdef LIVE_CELL
-#define TARGET(s, r) ((s) * 2 + NEWEST(tag[(s) * 2], tag[(s) * 2 + 1], r))
+#define TARGET live
 #else
-#define TARGET(s, r) ((s) * 2 + 1 - NEWEST(tag[(s) * 2], tag[(s) * 2 + 1], r))
+#define TARGET (1 - live)
+#endif
+#ifdef NODE_OF_DEAD
+#define CURRENT (tag[2 * s] > tag[2 * s + 1] -> tag[2 * s] : tag[2 * s + 1])
+#else
+#define CURRENT tag[2 * s + live]
+#endif
+#ifdef NODE_IN_PLACE
+#define NODE_OF_NEXT (CURRENT % 2)
+#else
+#define NODE_OF_NEXT (plan[s] == fresh -> 1 - CURRENT % 2 : CURRENT % 2)
 #endif
 
-#define HOLD(r, s, value) \
-  holds[(r) * SLOTS + (s)] = (changes[s] -> value : holds[((r) - 1) * SLOTS + (s)])
-#if SLOTS == 2
-#define HOLD_SECOND(r, value) HOLD(r, 1, value)
+#ifdef SETTLED_FORGOTTEN
+#define FROZEN (life > 1 -> 0 : settled)
+#elif defined SETTLED
+#define FROZEN settled
 #else
-#define HOLD_SECOND(r, value) skip
+#define FROZEN 0
 #endif
 
-#define COMMIT(r, value) \
+#define STORE_TAG STORE(tag[2 * s + c], 2 * r + m) /* W1 */
+#define STORE_NODE \
   if \
-  :: d_step { revision = r; HOLD(r, 0, value); HOLD_SECOND(r, value); } \
+  :: plan[s] == fresh -> STORE(node[2 * s + m], value) /* W2 */ \
+  :: else \
+  fi
+#ifdef CHANGES
+#define IS_HEAD(s) (s == 0)
+#define STORE_CHANGE \
+  if \
+  :: IS_HEAD(s) -> STORE(change[r % CHANGES], value) /* C1 */ \
+  :: else \
+  fi
+#else
+#define IS_HEAD(s) false
+#define STORE_CHANGE skip
+#endif
+#define STORE_CELL STORE(cell[2 * s + c], value) /* W2 */
+
+#ifdef CHANGES
+#define HOLD_CHANGE held_change[r] = value
+#else
+#define HOLD_CHANGE skip
+#endif
+#ifdef SETTLED
+#define ASSERT_NOT_PROMISED assert(s >= promised)
+#else
+#define ASSERT_NOT_PROMISED skip
+#endif
+#ifdef DISCARD_IN_PLACE
+#define DISCARD :: life < LIVES -> life++; goto next_revision
+#else
+#define DISCARD
+#endif
+
+/* Forgets a revision that is committed or lost: fewer states. */
+#define FORGET s = 0; c = 0; m = 0; r = 0; value = 0; plan[0] = leave; plan[SLOTS - 1] = leave
+#ifdef COMMIT_FIRST
+#define COMMITTED s = 0
+#else
+#define COMMITTED FORGET
+#endif
+#define COMMIT \
+  if \
+  :: d_step { \
+       revision = r; \
+       HOLD_CHANGE; \
+       s = 0; \
+       do \
+       :: s < SLOTS && plan[s] == leave -> s++ \
+       :: s < SLOTS && plan[s] != leave -> \
+          ASSERT_NOT_PROMISED; \
+          held_cell[s] = value; \
+          held_node[s] = (plan[s] == fresh -> value : held_node[s]); \
+          s++ \
+       :: s == SLOTS -> break \
+       od; \
+       COMMITTED; \
+     } \
   :: goto died \
+  DISCARD \
   fi
 
 proctype Writer() {
-  byte life, r, s, c, value;
-  bool changes[SLOTS];
+  byte life, r, s, c, m, live, value;
+  mtype plan[SLOTS];
 
 next_life:
   life++;
-  s = 0;
 #ifndef NO_RETIRE
-  do /* T1: what no commit has made visible is retired */
-  :: s < 2 * SLOTS && tag[s] > revision && tag[s] != RETIRED -> STORE(tag[s], RETIRED); s++
-  :: s < 2 * SLOTS && !(tag[s] > revision && tag[s] != RETIRED) -> s++
-  :: s == 2 * SLOTS -> break
+  do /* T1 */
+  :: s < 2 * SLOTS ->
+     if
+     :: tag[s] / 2 > revision && tag[s] != RETIRED -> STORE(tag[s], RETIRED); s++
+     :: else -> s++
+     fi
+  :: else -> break
   od;
 #endif
+next_revision:
   do
-  :: revision < LAST ->
-     d_step { r = revision + 1; value = 10 * life + r; }
-     if /* the slots that this revision changes; the first one, all */
-#if SLOTS == 2
-     :: r > 1 -> changes[0] = true; changes[1] = false
-     :: r > 1 -> changes[0] = false; changes[1] = true
-     :: changes[0] = true; changes[1] = true
-#else
-     :: r > 1 -> changes[0] = false
-     :: changes[0] = true
+#ifdef SETTLED
+  :: FROZEN < SLOTS -> STORE(settled, FROZEN + 1) /* S1: of this revision, or later */
 #endif
-     fi;
+  :: atomic {
+       revision < LAST ->
+       r = revision + 1;
+       value = 10 * life + r;
+       s = 0;
+       do
+       :: s < SLOTS ->
+          if
+          :: s >= FROZEN -> plan[s] = again
+          :: !IS_HEAD(s) -> plan[s] = leave
+          :: !IS_HEAD(s) && s >= FROZEN -> plan[s] = fresh
+          fi;
+          s++
+       :: s == SLOTS -> s = 0; break
+       od
+     };
 #ifdef COMMIT_FIRST
-     COMMIT(r, value);
+     COMMIT;
 #endif
-     s = 0;
      do
-     :: s < SLOTS && !changes[s] -> s++
-     :: s < SLOTS && changes[s] ->
-        c = TARGET(s, r - 1);
-#ifndef TAG_LAST
-        STORE(tag[c], r); /* W1 */
-#endif
-        STORE(word0[c], value); /* W2 */
-        STORE(word1[c], value);
-#ifdef TAG_LAST
-        STORE(tag[c], r);
+     :: s < SLOTS && plan[s] == leave -> s++
+     :: atomic {
+          s < SLOTS && plan[s] != leave ->
+          live = NEWEST(tag[2 * s], tag[2 * s + 1], r - 1); /* W0 */
+          m = NODE_OF_NEXT;
+          c = TARGET;
+          live = 0
+        };
+#if defined TAG_LAST
+        STORE_NODE; STORE_CELL; STORE_TAG;
+#elif defined CELL_FIRST
+        STORE_CELL; STORE_TAG; STORE_NODE;
+#elif defined CHANGE_FIRST
+        STORE_CHANGE; STORE_TAG; STORE_NODE; STORE_CELL;
+#elif defined NODE_FIRST
+        STORE_NODE; STORE_TAG; STORE_CELL;
+#else
+        STORE_TAG;
+        STORE_CHANGE;
+        STORE_NODE;
+        STORE_CELL;
 #endif
         s++
      :: s == SLOTS -> break
      od;
+#ifdef SETTLED_EARLY
+     STORE(settled, SLOTS);
+#endif
 #ifndef COMMIT_FIRST
-     COMMIT(r, value); /* W3 */
+     COMMIT /* W3 */
 #endif
   :: revision == LAST -> break
   od;
   goto ended;
 died:
+  atomic { FORGET };
   if
   :: life < LIVES -> goto next_life
   :: life == LIVES
@@ -124,90 +280,164 @@ ended:
   over = true
 }
 
-/* K1 and K2: goes to the next slot if the copy kept of this one, made from cell c, is what r holds. */
-#define OTHER_IS_OLD(other, s, r) (other > r || other < kept_tag[s])
-#if defined KEEP_UNSEEN
-#define KEEP(s, c, r, t0, t1) goto next_slot
-#elif defined KEEP_PART
-#define KEEP(s, c, r, t0, t1) skip
-#elif defined KEEP_AT_ONCE
-#define KEEP(s, c, r, t0, t1) \
-  t0 = tag[(s) * 2]; t1 = tag[(s) * 2 + 1]; \
-  if :: (NEWEST(t0, t1, r) -> t1 : t0) == kept_tag[s] -> goto next_slot :: else fi
-#elif defined KEEP_OWN
-#define KEEP(s, c, r, t0, t1) \
-  if :: tag[(s) * 2 + c] == kept_tag[s] -> goto next_slot :: else fi
-#elif defined KEEP_OWN_FIRST
-#define KEEP(s, c, r, t0, t1) \
-  t1 = tag[(s) * 2 + c]; t0 = tag[(s) * 2 + 1 - c]; \
-  if :: OTHER_IS_OLD(t0, s, r) && t1 == kept_tag[s] -> goto next_slot :: else fi
+/* Goes to the next slot if the copy kept of this one is what r holds, else drops it. */
+#ifdef KEEP_NODE
+#define DROP skip
 #else
-#define KEEP(s, c, r, t0, t1) \
-  t0 = tag[(s) * 2 + 1 - c]; t1 = tag[(s) * 2 + c]; \
-  if :: OTHER_IS_OLD(t0, s, r) && t1 == kept_tag[s] -> goto next_slot :: else fi
+#define DROP atomic { t0 = 0; t1 = 0; kept_tag[s] = NONE; kept_cell[s] = 0; kept_node[s] = 0 }
 #endif
+#define KEEP_IF(is_current) if :: is_current -> goto next_slot :: else -> DROP fi
+#define OTHER_IS_OLD(other) (other / 2 > r || other < kept_tag[s])
+#if defined KEEP_UNSEEN
+#define KEEP KEEP_IF(true)
+#elif defined KEEP_OWN
+#define KEEP t1 = tag[2 * s + c]; KEEP_IF(t1 == kept_tag[s])
+#elif defined KEEP_AT_ONCE
+#define KEEP t0 = tag[2 * s]; t1 = tag[2 * s + 1]; KEEP_IF((NEWEST(t0, t1, r) -> t1 : t0) == kept_tag[s])
+#elif defined KEEP_OWN_FIRST
+#define KEEP \
+  t1 = tag[2 * s + c]; t0 = tag[2 * s + 1 - c]; KEEP_IF(OTHER_IS_OLD(t0) && t1 == kept_tag[s])
+#else
+#define KEEP /* K1 and K2 */ \
+  t0 = tag[2 * s + 1 - c]; t1 = tag[2 * s + c]; KEEP_IF(OTHER_IS_OLD(t0) && t1 == kept_tag[s])
+#endif
+
+/* The revision of the greatest tag of the head that is not retired; if there is none, one too high to count. */
+#ifdef CHANGES_UNTAGGED
+#define UNTAGGED 0
+#else
+#define UNTAGGED NONE
+#endif
+#define GREATEST(t0, t1) \
+  (t0 == RETIRED && t1 == RETIRED -> UNTAGGED : \
+   (t1 == RETIRED || t0 != RETIRED && t0 > t1 -> t0 / 2 : t1 / 2))
 
 proctype Reader() {
   byte try, r, s, c, t0, t1;
-  byte kept_tag[SLOTS], kept_cell[SLOTS], kept0[SLOTS], kept1[SLOTS];
+  byte kept_tag[SLOTS], kept_cell_index[SLOTS], kept_cell[SLOTS], kept_node[SLOTS];
+  byte r_cell[SLOTS], r_node[SLOTS]; /* what r holds */
   bool whole, last;
+#ifdef CHANGES
+  byte seen, q;
+  bool right; /* the words are those of the revisions missed */
+#endif
+#ifdef SETTLED
+  byte calls_settled;
+#endif
 
+  atomic {
+    do
+    :: s < SLOTS -> kept_tag[s] = NONE; s++
+    :: else -> break
+    od
+  };
   do
-  :: try < TRIES || over ->
-     last = over; /* no writer stores during this try */
-     r = revision; /* R1 */
-     whole = (r > 0);
-     s = 0;
+  :: atomic {
+       try < TRIES || over ->
+#if defined SETTLED && !defined SETTLED_LATE
+       calls_settled = settled; /* S2 */
+#endif
+       last = over /* no writer stores during this try */
+     };
+     d_step {
+       r = revision; /* R1 */
+       whole = true;
+       s = 0;
+       do
+       :: s < SLOTS -> r_cell[s] = held_cell[s]; r_node[s] = held_node[s]; s++
+       :: s == SLOTS -> break
+       od;
+       s = 0;
+     };
+#ifdef SETTLED
+     d_step {
+#ifdef SETTLED_LATE
+       calls_settled = settled;
+#endif
+       do
+       :: s < calls_settled -> assert(held_cell[s] == r_cell[s] && held_node[s] == r_node[s]); s++
+       :: else -> break
+       od;
+       promised = (calls_settled > promised -> calls_settled : promised);
+       calls_settled = 0;
+       s = 0;
+     };
+#endif
+#ifdef CHANGES
+#ifdef TAGS_BEFORE_WORDS
+     t0 = tag[0];
+     t1 = tag[1];
+#endif
+     atomic { q = seen + 1; right = true };
+     do
+     :: q <= r -> right = right && change[q % CHANGES] == held_change[q]; q++ /* C2 */
+     :: else -> break
+     od;
+#ifndef TAGS_BEFORE_WORDS
+     t0 = tag[0]; /* C3 */
+     t1 = tag[1];
+#endif
+     atomic {
+       t0 = GREATEST(t0, t1);
+       assert(right || t0 > seen + CHANGES_LIMIT);
+       assert(!last || t0 <= seen + CHANGES_LIMIT || r + 1 > seen + CHANGES_LIMIT); /* else useless */
+       seen = r;
+       q = 0;
+       right = false;
+       t0 = 0;
+       t1 = 0
+     };
+#endif
      do
      :: s < SLOTS && whole ->
+        c = kept_cell_index[s];
         if
-        :: kept_tag[s] != 0 -> KEEP(s, kept_cell[s], r, t0, t1)
+        :: kept_tag[s] != NONE -> KEEP
         :: else
         fi;
-        t0 = tag[s * 2]; /* R2 */
-        t1 = tag[s * 2 + 1];
-        c = NEWEST(t0, t1, r);
+        t0 = tag[2 * s]; /* R2 */
+        t1 = tag[2 * s + 1];
+        d_step { c = NEWEST(t0, t1, r); t0 = (c -> t1 : t0); t1 = 0 };
         if
-        :: t0 > r && t1 > r -> whole = false; goto next_slot
+        :: t0 / 2 > r -> whole = false; goto next_slot
         :: else
         fi;
-#ifdef KEEP_PART
+        kept_cell[s] = cell[2 * s + c]; /* R3 */
+#ifdef KEEP_NODE
         if
-        :: kept_tag[s] == 0 -> kept0[s] = word0[s * 2 + c]
+        :: kept_tag[s] == NONE || kept_tag[s] % 2 != t0 % 2 -> kept_node[s] = node[2 * s + t0 % 2]
         :: else
         fi;
 #else
-        kept0[s] = word0[s * 2 + c]; /* R3 */
+        kept_node[s] = node[2 * s + t0 % 2];
 #endif
-        kept_tag[s] = 0;
-        kept1[s] = word1[s * 2 + c];
+        kept_tag[s] = t0;
+        kept_cell_index[s] = c;
 #ifndef NO_RECHECK
-        whole = (tag[s * 2 + c] == (c -> t1 : t0)); /* R4 */
+        whole = (tag[2 * s + c] == t0); /* R4 */
 #endif
-        if
-        :: whole -> kept_tag[s] = (c -> t1 : t0); kept_cell[s] = c
-        :: else
-        fi;
 next_slot:
         atomic { /* forgets what it needs no more: fewer states */
+          if
+          :: !whole -> kept_tag[s] = NONE; kept_cell_index[s] = 0; kept_cell[s] = 0; kept_node[s] = 0
+          :: whole
+          fi;
           t0 = 0;
           t1 = 0;
           c = 0;
-          kept0[s] = (whole -> kept0[s] : 0);
-          kept1[s] = (whole -> kept1[s] : 0);
+          assert(!whole || kept_cell[s] == r_cell[s] && kept_node[s] == r_node[s]);
+          r_cell[s] = 0;
+          r_node[s] = 0;
           s++
         }
      :: else -> break
      od;
-     s = 0;
-     d_step {
-       do
-       :: s < SLOTS && whole ->
-          assert(kept0[s] == holds[r * SLOTS + s] && kept1[s] == holds[r * SLOTS + s]);
-          s++
-       :: else -> break
-       od;
-       assert(!last || whole || r == 0);
+     atomic {
+       assert(!last || whole);
+       r_cell[SLOTS - 1] = 0;
+       r_node[SLOTS - 1] = 0;
+       s = 0;
+       r = 0;
        try = (try < TRIES -> try + 1 : try);
      };
      if

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Checks the models of this folder exhaustively with spin, and that each mutant of them is caught.
-#   run.sh BUILD [DEFINE…]   DEFINE is given to every model: -DLAST=4 -DLIVES=3 for larger bounds
-# Says of each how many states were stored. Exits with 77 if spin or cc is missing.
+#   run.sh BUILD [DEFINE…]   DEFINE is given to every search that sets no bound itself: -DLAST=4 -DLIVES=3
+# Prints how many states each search stored. Exits with 77 if spin or cc is missing.
 set -euo pipefail
 source=$(cd "$(dirname "$0")" && pwd)
 build=$1
@@ -11,9 +11,10 @@ for tool in spin cc; do
 done
 
 # Searches all states of a model, stopping at the first error; leaves what was found in pan.log.
+level=-O1
 search() {  # model, flags…
   spin "${@:2}" -a "$source/$1.pml" >spin.log || { cat spin.log; exit 1; }
-  cc -O1 -w -DSAFETY -o pan pan.c
+  cc "$level" -w -DSAFETY -o pan pan.c
   ./pan -m100000 >pan.log
   if grep -q 'Search not completed\|max search depth too small' pan.log && grep -q 'errors: 0' pan.log; then
     echo "$*: the search is not complete"
@@ -30,7 +31,7 @@ holds() {  # model, flags…
 }
 
 fails() {  # model, mutant, flags…
-  search "$1" "-D$2" "${@:3}"
+  level=-O0 search "$1" "-D$2" "${@:3}"  # compiles faster; most fail after few states
   grep -q 'assertion violated' pan.log || { cat pan.log; echo "$1: the mutant $2 is not caught"; exit 1; }
   echo "$1 -D$2: caught after $(states) states"
 }
@@ -38,13 +39,29 @@ fails() {  # model, mutant, flags…
 mkdir -p "$build"
 cd "$build"
 holds publication "$@"
-for mutant in COMMIT_FIRST TAG_LAST LIVE_CELL NO_RETIRE NO_RECHECK KEEP_UNSEEN KEEP_OWN; do
+for mutant in COMMIT_FIRST TAG_LAST CELL_FIRST NODE_FIRST NODE_IN_PLACE NODE_OF_DEAD LIVE_CELL NO_RETIRE \
+              RETIRE_WITH_ZERO DISCARD_IN_PLACE NO_RECHECK KEEP_UNSEEN KEEP_OWN KEEP_NODE; do
   fails publication "$mutant" "$@"
 done
-# Kept copies: one slot, and revisions enough for two to pass between the loads of two tags.
-holds publication -DSLOTS=1 -DLAST=5
-for mutant in KEEP_AT_ONCE KEEP_OWN KEEP_OWN_FIRST KEEP_PART; do
-  fails publication "$mutant" -DSLOTS=1 -DLAST=5
+holds publication -DLIVES=3  # a successor that dies too
+holds publication -DSLOTS=2 -DLAST=2 -DTRIES=1
+# Kept copies: revisions enough for two to pass between the loads of two tags.
+holds publication -DLAST=4
+holds publication -DLAST=5 -DLIVES=1
+for mutant in KEEP_OWN_FIRST KEEP_AT_ONCE; do
+  fails publication "$mutant" -DLAST=4
+done
+# The ring of changes, and the settled word.
+holds publication -DCHANGES=3 -DLAST=5
+holds publication -DCHANGES=2 -DLAST=5 -DLIVES=3 -DTRIES=1
+fails publication CHANGE_FIRST -DCHANGES=3 -DLAST=5
+fails publication CHANGES_LIMIT=2 -DCHANGES=2
+fails publication CHANGES_UNTAGGED -DCHANGES=2 -DLAST=5 -DLIVES=3 -DTRIES=1
+fails publication TAGS_BEFORE_WORDS -DCHANGES=2
+holds publication -DSETTLED "$@"
+holds publication -DSETTLED -DSLOTS=2 -DLAST=2 -DTRIES=1 -DLIVES=1
+for mutant in SETTLED_EARLY SETTLED_LATE SETTLED_FORGOTTEN; do
+  fails publication "$mutant" -DSETTLED "$@"
 done
 holds waypoint_ring "$@"
 for mutant in HEAD_FIRST TAIL_FIRST OBSERVER_LE NO_CLAIM NO_SECOND_LOOK NO_WAKE; do

@@ -25,6 +25,12 @@ const std::map<std::string, std::function<const ipc::Word*(MemoryStream&)>>& wor
       return word_at(stream.board.bytes.span(), stream.board.layout.*part, word);
     };
   };
+  const auto of_slot = [](std::size_t ipc::BoardLayout::*part, std::size_t word) {
+    return [part, word](MemoryStream& stream) {
+      const ipc::BoardLayout& layout = stream.board.layout;
+      return word_at(stream.board.bytes.span(), layout.slots + layout.*part, word);
+    };
+  };
   const auto of_ring = [](std::size_t ipc::RingLayout::*part, std::size_t word) {
     return [part, word](MemoryStream& stream) {
       return word_at(stream.ring.bytes.span(), stream.ring.layout.*part, word);
@@ -33,8 +39,14 @@ const std::map<std::string, std::function<const ipc::Word*(MemoryStream&)>>& wor
   static const std::map<std::string, std::function<const ipc::Word*(MemoryStream&)>> all{
       {"none", [](MemoryStream&) { return nullptr; }},
       {"tag", of_board(&ipc::BoardLayout::slots, ipc::kCellTag)},
-      {"coefficient", of_board(&ipc::BoardLayout::slots, ipc::kCellCoefficients)},
-      {"head-slot", of_board(&ipc::BoardLayout::head, ipc::kHeadNewest)},
+      {"velocity", of_board(&ipc::BoardLayout::slots, ipc::kCellVelocity)},
+      {"node", of_slot(&ipc::BoardLayout::nodes, ipc::kNodePosition)},
+      {"acceleration", of_slot(&ipc::BoardLayout::beside, ipc::kBesideAcceleration)},
+      {"head-tag", of_board(&ipc::BoardLayout::control, ipc::kHeadSlot)},
+      {"head-slot", of_board(&ipc::BoardLayout::control,
+                             ipc::kHeadSlot + ipc::word_of(ipc::kHeadFields, "newest"))},
+      {"changed-from", of_board(&ipc::BoardLayout::control, ipc::kChanges)},
+      {"settled-until", of_board(&ipc::BoardLayout::control, ipc::kSettledUntil)},
       {"knot-time", of_board(&ipc::BoardLayout::times, 0)},
       {"revision", of_board(&ipc::BoardLayout::control, ipc::kRevision)},
       {"tail", of_board(&ipc::BoardLayout::control, ipc::kTail)},

@@ -79,8 +79,9 @@ class PublicationWatch {
   [[nodiscard]] ipc::Word revision() const { return board_.revision(); }
 
   [[nodiscard]] bool is_midway() {
-    const ipc::Word r = board_.revision();
-    if (r == 0 || !board_.copy_bounds(r, r, head_)) return false;
+    const ipc::Look look = board_.look();
+    const ipc::Word r = look.revision;
+    if (r == 0 || !board_.copy_bounds(look, r, head_)) return false;
     const ipc::Word first = head_.newest > kChanged ? head_.newest - kChanged : 1;
     for (ipc::Word number = first; number <= head_.newest + 1; ++number) {
       const auto words = ipc::words_at(std::span<const std::byte>(region_.bytes()),
@@ -88,18 +89,18 @@ class PublicationWatch {
                                        layout_.stride / sizeof(ipc::Word));
       const ipc::SlotView<const ipc::Word> slot{words.data(), layout_.cell / sizeof(ipc::Word)};
       for (const ipc::Word tag : slot.tags(std::memory_order_relaxed).of) {
-        if (tag == r + 1) return true;
+        if (ipc::revision_of(tag) == r + 1) return true;
       }
     }
     return false;
   }
 
  private:
-  static constexpr ipc::Word kChanged = 16;  ///< segments back that a revision may change
+  static constexpr ipc::Word kChanged = 16;  ///< knots back that a revision may change
 
   ipc::Region region_;
   ipc::BoardLayout layout_;
-  ipc::SegmentBoardReader board_;
+  ipc::KnotBoardReader board_;
   ipc::Head head_;
 };
 

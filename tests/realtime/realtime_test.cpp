@@ -3,6 +3,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <random>
@@ -24,6 +25,7 @@ using namespace std::chrono_literals;
 constexpr std::size_t kDimensions = 7;
 constexpr std::uint64_t kWarmUp = 2'000;
 constexpr std::uint64_t kRounds = 20'000;
+constexpr std::size_t kHorizon = 40;  ///< times of a look ahead
 const ipc::SolverOptions kSolving{.history = Time::zero(), .wake = false};
 
 void expect_undisturbed(const ConfinedEnd& end) {
@@ -74,6 +76,15 @@ TEST_F(RealTime, SamplingMakesNoSystemCallNoAllocationAndNoPageFault) {
         ipc::Reader reader(stream.name(), 60s);
         core::State state(kDimensions);
         std::mt19937_64 random(1);
+        std::array<Time, kHorizon> times{};
+        std::array<ipc::SampleStatus, kHorizon> statuses{};
+        std::vector<double> values(kHorizon * state.values().size());
+        const auto look_ahead = [&](Time now) {
+          for (std::size_t i = 0; i < kHorizon; ++i) {
+            times[i] = now + static_cast<std::int64_t>(i) * Sending::kInterval / 2;
+          }
+          (void)reader.sampler().sample_many(times, {.values = values, .status = statuses});
+        };
         const auto round = [&] {
           const Time now = clock.now();
           const Time jump =
@@ -82,6 +93,7 @@ TEST_F(RealTime, SamplingMakesNoSystemCallNoAllocationAndNoPageFault) {
               random() % 4 == 0 ? reader.preview(now + jump, state) : reader.sample(now, state);
           if (ipc::has_values(status)) ++process.page().answered;
           if (status == ipc::SampleStatus::busy) ++process.page().busy;
+          if (random() % 16 == 0) look_ahead(now);
           ++process.page().rounds;
         };
         for (std::uint64_t i = 0; i < kWarmUp; ++i) round();

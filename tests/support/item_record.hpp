@@ -1,6 +1,6 @@
 #pragma once
 
-#include "splinecast/ipc/segment_board.hpp"
+#include "splinecast/ipc/knot_board.hpp"
 #include "splinecast/ipc/sent_items.hpp"
 #include "splinecast/ipc/waypoint_ring.hpp"
 
@@ -27,7 +27,7 @@ class ItemRecord {
   }
 
   /// Notes the first `refused` refusals of the stream, as far as they are not noted yet.
-  void note_refusals(const ipc::SegmentBoardReader& board, ipc::Word refused) {
+  void note_refusals(const ipc::KnotBoardReader& board, ipc::Word refused) {
     for (; refusals_ < refused; ++refusals_) items_.refuse(board.refusal(refusals_).item);
   }
 

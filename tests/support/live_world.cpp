@@ -266,16 +266,18 @@ void LiveWorld::expect_passed() {
 /// Segments that end at or before settled_until, as they are published: no revision changes one.
 void LiveWorld::check_settled() {
   const auto& board = stream_.board.reader;
-  const ipc::Word r = board.revision();
   const ipc::Head& head = stream_.solver.head();
-  ipc::SegmentCopy copy(options_.dimensions);
+  ipc::BoardSegment segment(options_.dimensions, board.smooths());
+  ipc::SegmentCopy copy;
   constexpr ipc::Word kBack = 40;
   const ipc::Word oldest = std::max(head.first, head.newest - std::min(head.newest, kBack));
   for (ipc::Word n = oldest; n <= head.newest && n > 0; ++n) {
-    ASSERT_TRUE(board.copy_segment(n, r, copy));
-    if (copy.right > head.settled_until) break;
+    const auto taken = segment.take(board, head, n);
+    ASSERT_NE(taken, ipc::BoardSegment::Taken::torn);
+    if (taken == ipc::BoardSegment::Taken::none) continue;
+    if (segment.right() > head.settled_until) break;
+    segment.copy_to(copy);
     std::vector<double> words = copy.coefficients;
-    if (copy.order == core::kCubicOrder) words.resize(core::kCubicOrder * options_.dimensions);
     words.push_back(static_cast<double>((copy.left - kStart).count()));
     words.push_back(static_cast<double>((copy.right - kStart).count()));
     const auto at = settled_.try_emplace(n, words).first;

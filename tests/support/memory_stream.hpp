@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "splinecast/ipc/knot_board.hpp"
 #include "splinecast/ipc/layout.hpp"
-#include "splinecast/ipc/segment_board.hpp"
 #include "splinecast/ipc/stream_solver.hpp"
 #include "splinecast/ipc/waypoint_ring.hpp"
 #include "support/mesh.hpp"
@@ -51,17 +51,17 @@ struct MemoryRing {
 struct MemoryBoard {
   ipc::BoardLayout layout;
   RegionBytes bytes;
-  ipc::SegmentBoardWriter writer;
-  ipc::SegmentBoardReader reader;
+  ipc::KnotBoardWriter writer;
+  ipc::KnotBoardReader reader;
 
-  MemoryBoard(std::size_t dimensions, std::size_t capacity)
-      : layout(ipc::BoardLayout::of(dimensions, capacity, ipc::kHeaderBytes)),
+  MemoryBoard(std::size_t dimensions, std::size_t capacity, bool smooths = false)
+      : layout(ipc::BoardLayout::of(dimensions, capacity, ipc::kHeaderBytes, smooths)),
         bytes(layout.bytes),
         writer(bytes.span(), layout),
         reader(bytes.span(), layout) {}
 
   /// A writer that finds what the one before it left.
-  void replace_writer() { writer = ipc::SegmentBoardWriter(bytes.span(), layout); }
+  void replace_writer() { writer = ipc::KnotBoardWriter(bytes.span(), layout); }
 };
 
 /// A clock that stands where it is set.
@@ -88,7 +88,8 @@ struct MemoryStream {
                         core::DimensionKinds dimension_kinds = {},
                         std::optional<ipc::LiveOptions> how_live = {})
       : ring(dimensions, ring_capacity),
-        board(dimensions, board_capacity),
+        board(dimensions, board_capacity,
+              how.interpolant.method->family == core::Family::smoothing),
         window(how),
         limits(solver_limits),
         kinds(std::move(dimension_kinds)),

@@ -117,9 +117,7 @@ class Threads {
   /// What the producer knows of the solver.
   ipc::WaypointRingWriter::Solved solved() {
     const Word consumed = stream_.board.reader.tail();
-    const Word r = stream_.board.reader.revision();
-    if (r > 0) (void)stream_.board.reader.copy_bounds(r, r, bounds_);
-    return {.consumed = consumed, .settled_until = bounds_.settled_until};
+    return {.consumed = consumed, .settled_until = stream_.board.reader.look().settled_until};
   }
 
   void replace(const ipc::WaypointRingWriter::Solved& known, std::size_t count, Time& next) {
@@ -218,7 +216,6 @@ class Threads {
   ThreadedOptions options_;
   MemoryStream stream_;
   AtomicClock clock_;
-  ipc::Head bounds_{};  ///< the producer's, of the revision that it saw last
   ThreadedCounts counts_;
   std::atomic<bool> is_over_{false};
   std::atomic<std::uint64_t> samples_{0}, busy_{0}, snapshots_{0}, observed_{0}, overwritten_{0};

@@ -13,17 +13,18 @@ void TornPublication::take_back_rest() { take_back_control(ipc::kRevision + 1); 
 
 void TornPublication::take_back_control(std::size_t first) {
   const std::size_t control = layout_->control / sizeof(ipc::Word);
-  const std::size_t count = ipc::kControlLines * ipc::kSeparation / sizeof(ipc::Word);
-  for (std::size_t i = first; i < count; ++i) take_back_word(control + i);
+  for (std::size_t i = first; i < ipc::kHeadSlot; ++i) take_back_word(control + i);
 }
 
 void TornPublication::take_back(const std::function<bool()>& is_stored) {
   take_back_commit();
   const std::size_t slots = layout_->slots / sizeof(ipc::Word);
-  const std::size_t head = layout_->head / sizeof(ipc::Word);
+  const std::size_t stride = layout_->stride / sizeof(ipc::Word);
+  const std::size_t head = layout_->control / sizeof(ipc::Word) + ipc::kHeadSlot;
   const auto is_tag = [&](std::size_t i) {
-    if (i >= slots) return (i - slots) % (layout_->cell / sizeof(ipc::Word)) == 0;
-    return i == head || i == head + ipc::kHeadWords;
+    if (i < slots) return i == head || i == head + ipc::kHeadWords;
+    const std::size_t word = (i - slots) % stride;
+    return word == 0 || word == layout_->cell / sizeof(ipc::Word);
   };
   for (std::size_t i = head; i < words_.size(); ++i) {
     if (words_[i] != before_[i] && !is_tag(i) && !is_stored()) take_back_word(i);

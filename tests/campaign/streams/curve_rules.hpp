@@ -4,7 +4,7 @@
 
 #include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/state.hpp"
-#include "splinecast/ipc/segment_board.hpp"
+#include "splinecast/ipc/board_segment.hpp"
 
 namespace splinecast::campaign {
 

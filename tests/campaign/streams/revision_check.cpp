@@ -21,53 +21,31 @@ RevisionCheck::RevisionCheck(const StreamPlan& plan, testing::MemoryStream& stre
       findings_(&findings),
       rules_(plan.kinds, plan.dimensions.size()),
       items_(plan.dimensions.size()),
-      settled_(stream.board.reader),
-      copy_(plan.dimensions.size()) {}
+      settled_(stream.board.reader, true),
+      board_segment_(plan.dimensions.size(), stream.board.reader.smooths()) {}
 
 void RevisionCheck::breach(Breach breach, const std::string& what) {
   findings_->breach(breach, fmt::format("{}, revision {}", what, head_.revision));
 }
 
-void RevisionCheck::look(core::Time now) {
+void RevisionCheck::look(core::Time now, bool is_complete) {
   const auto& board = stream_->board.reader;
-  const Word r = board.revision();
-  if (r == head_.revision) return;
+  const ipc::Look look = board.look();
   const Head before = head_;
-  if (!board.copy_head(r, head_)) {
-    return findings_->breach(Breach::board_refused, fmt::format("no head of revision {}", r));
+  if (!board.copy_head(look, head_)) {
+    if (look.revision == 0) return;
+    return findings_->breach(Breach::board_refused,
+                             fmt::format("no head of revision {}", look.revision));
+  }
+  // A solver that dies behind its commit has not said how far that settles the curve.
+  check_settled_until(before, is_complete ? now : core::Time::min() / 2);
+  if (look.revision == before.revision) {
+    settled_.look();
+    return check_settled_segments();
   }
   items_.note_refusals(board, head_.refused);
   findings_->count(Event::revisions);
-  if (getenv("WFD")) {
-    fmt::print(stderr,
-               "rev {} now {} consumed {}..{} knots {} refused {} withdrawn {} controls {} newest "
-               "{} run {} knots {} frozen {} ent {} settled {} changed {} fin {} first {}\n",
-               r, now.count(), before.consumed, head_.consumed, head_.knots - before.knots,
-               head_.refused - before.refused, head_.withdrawn - before.withdrawn,
-               head_.controls - before.controls, head_.newest, head_.run, head_.run_knots,
-               head_.run_frozen, head_.is_entered, head_.settled_until.count(),
-               head_.changed_from.count(), head_.finished, head_.first);
-    for (Word i = before.consumed; i < head_.consumed; ++i) {
-      const auto w = items_.items().waypoint(i);
-      fmt::print(stderr, "   item {} kind {} t {} taken {} x {} v {} a {}\n", i,
-                 (int)items_.items().kind(i), w.time.count(),
-                 items_.items().is_taken(i, items_.items().kind(i)),
-                 w.position.empty() ? 0.0 : w.position[0],
-                 w.velocity.empty() ? -0.0 : w.velocity[0],
-                 w.acceleration.empty() ? 0.0 : w.acceleration[0]);
-    }
-    for (Word n = head_.run; n <= head_.newest; ++n) {
-      ipc::SegmentCopy c(plan_->dimensions.size());
-      (void)board.copy_segment(n, r, c);
-      const std::size_t D = plan_->dimensions.size();
-      fmt::print(stderr, "      seg {} {}..{} kind {} order {} wp {} c {} {} {} {}\n", n,
-                 c.left.count(), c.right.count(), (int)c.kind, c.order, c.has_waypoint,
-                 c.coefficients[0], c.coefficients[D], c.coefficients[2 * D],
-                 c.coefficients[3 * D]);
-    }
-  }
   check_counts(before);
-  check_settled_until(before, now);
   take_items(before);
   check_end();
   check_verifiable();
@@ -98,16 +76,29 @@ void RevisionCheck::check_counts(const Head& before) {
   }
 }
 
+/// What is settled never shrinks; a revision settles what lies freeze_ahead before it.
 void RevisionCheck::check_settled_until(const Head& before, core::Time now) {
   const bool had_curve = before.newest > 0;
   const bool is_back = had_curve && head_.settled_until < before.settled_until;
-  const bool is_late =
-      head_.newest > 0 && !head_.finished && head_.settled_until < now + plan_->live.freeze_ahead;
+  const bool is_late = head_.revision != before.revision && head_.newest > 0 && !head_.finished &&
+                       head_.settled_until < now + plan_->live.freeze_ahead;
   if (is_back || is_late) {
     breach(Breach::settled_back,
            fmt::format("settled until {}, before {}, step began at {}", head_.settled_until.count(),
                        before.settled_until.count(), now.count()));
   }
+}
+
+/// Copies the segment at knot `number`, or at the one before if none begins there.
+bool RevisionCheck::copy(Word number) {
+  const auto& board = stream_->board.reader;
+  auto taken = board_segment_.take(board, head_, number);
+  if (taken == ipc::BoardSegment::Taken::none && number > head_.first) {
+    taken = board_segment_.take(board, head_, number - 1);
+  }
+  if (taken != ipc::BoardSegment::Taken::whole) return false;
+  board_segment_.copy_to(copy_);
+  return true;
 }
 
 void RevisionCheck::count_events(const Head& before) {
@@ -162,25 +153,20 @@ void RevisionCheck::forget_from(Word item) {
 /// along the segments.
 void RevisionCheck::check_passed(const Head& before) {
   if (plan_->window.interpolant.method->family == core::Family::smoothing) return;
-  const auto& board = stream_->board.reader;
-  Word number = head_.newest;
-  bool has_copy = false;
+  bool has_copy = copy(head_.newest);
   for (auto waypoint = pending_.rbegin();
        waypoint != pending_.rend() && waypoint->item >= before.consumed; ++waypoint) {
-    core::Time left{};
-    while (number > head_.first && board.copy_left(number, head_.revision, left) &&
-           left > waypoint->time) {
-      --number;
-      has_copy = false;
+    while (has_copy && copy_.left > waypoint->time && copy_.number > head_.first) {
+      has_copy = copy(copy_.number - 1);
     }
-    has_copy = has_copy || board.copy_segment(number, head_.revision, copy_);
     const bool at_end = waypoint->time != copy_.left;
     const core::Waypoint sent = items_.items().waypoint(waypoint->item);
     const bool is_there = has_copy && (!at_end || waypoint->time == copy_.right);
     if (is_there && rules_.passes(copy_, at_end, sent.position, plan_->dimensions)) continue;
-    breach(Breach::waypoint_missed,
-           fmt::format("item {} at {}, segment {} from {} to {}", waypoint->item,
-                       waypoint->time.count(), number, copy_.left.count(), copy_.right.count()));
+    breach(
+        Breach::waypoint_missed,
+        fmt::format("item {} at {}, segment {} from {} to {}", waypoint->item,
+                    waypoint->time.count(), copy_.number, copy_.left.count(), copy_.right.count()));
     return;
   }
 }
@@ -190,7 +176,7 @@ void RevisionCheck::check_settled_segments() {
   for (; joined_ < segments.size(); ++joined_) {
     const ipc::SegmentCopy& segment = segments[joined_];
     if (segment.kind == core::SegmentKind::splice) findings_->count(Event::splices);
-    const Word expected = joined_ > 0 ? segments[joined_ - 1].number + 1 : 1;
+    const Word expected = joined_ > 0 ? segments[joined_ - 1].next : 1;
     if (segment.number != expected) {
       has_gap_ = true;
       std::erase_if(pending_, [&](const Pending& p) { return p.time < segment.left; });
@@ -246,7 +232,7 @@ void RevisionCheck::check_last_waypoint(const ipc::SegmentCopy& segment) {
 
 void RevisionCheck::check_end() {
   if (head_.newest == 0) return;
-  if (!stream_->board.reader.copy_segment(head_.newest, head_.revision, copy_)) {
+  if (!copy(head_.newest)) {
     return breach(Breach::no_answer, fmt::format("no segment {}", head_.newest));
   }
   end_ = copy_.right;
@@ -274,7 +260,7 @@ void RevisionCheck::check_stop() {
   if (head_.consumed <= stop.item && (!is_due || due_stop_->steps_due++ == 0)) return;
   const core::Time effect = std::max(stop.time, head_.settled_until);
   due_stop_.reset();
-  if (!stream_->board.reader.copy_segment(head_.newest, head_.revision, copy_)) return;
+  if (!copy(head_.newest)) return;
   const auto above = std::span(copy_.coefficients)
                          .first(static_cast<std::size_t>(copy_.order) * plan_->dimensions.size())
                          .subspan(plan_->dimensions.size());

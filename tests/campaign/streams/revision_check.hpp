@@ -23,7 +23,7 @@ class RevisionCheck {
 
   /// Checks the newest revision, if it is a new one: after each step of a solver, which read the
   /// clock as `now` first.
-  void look(core::Time now);
+  void look(core::Time now, bool is_complete = true);
 
   /// A stop that the ring has accepted as this item: takes effect in the step that begins next.
   void expect_stop(ipc::Word item, core::Time t) {
@@ -60,6 +60,7 @@ class RevisionCheck {
   };
 
   void check_counts(const ipc::Head& before);
+  [[nodiscard]] bool copy(ipc::Word number);
   void check_settled_until(const ipc::Head& before, core::Time now);
   void count_events(const ipc::Head& before);
   void take_items(const ipc::Head& before);
@@ -82,6 +83,7 @@ class RevisionCheck {
   bool has_gap_ = false;    ///< a settled segment was overwritten before it was seen
   bool is_verifiable_ = true;
   std::deque<Pending> pending_;  ///< interpolated waypoints that have not settled, by time
+  ipc::BoardSegment board_segment_;
   ipc::SegmentCopy copy_;
   ipc::Head head_;
   core::Time end_{};

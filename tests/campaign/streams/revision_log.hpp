@@ -3,23 +3,24 @@
 #include <algorithm>
 #include <vector>
 
-#include "splinecast/ipc/segment_board.hpp"
+#include "splinecast/ipc/knot_board.hpp"
 
 namespace splinecast::campaign {
 
 /// From when on each revision of a board changed the curve: what readers must be told, and no more.
 class RevisionLog {
  public:
-  explicit RevisionLog(const ipc::SegmentBoardReader& board) : board_(&board) {}
+  explicit RevisionLog(const ipc::KnotBoardReader& board) : board_(&board) {}
 
   /// Takes a new revision in; to be called after each. Returns whether none was missed.
   bool catch_up() {
-    const ipc::Word r = board_->revision();
-    if (r == changed_from_.size()) return true;
+    const ipc::Look look = board_->look();
+    if (look.revision == changed_from_.size()) return true;
     ipc::Head head;
-    if (r != changed_from_.size() + 1 || !board_->copy_head(r, head)) return false;
+    if (look.revision != changed_from_.size() + 1 || !board_->copy_head(look, head)) return false;
     changed_from_.push_back(head.changed_from);
-    if (head.first == 1) (void)board_->copy_left(1, r, start_);
+    core::SegmentForm form{};
+    if (head.first == 1) (void)board_->copy_time(1, look.revision, start_, form);
     return true;
   }
 
@@ -36,7 +37,7 @@ class RevisionLog {
   }
 
  private:
-  const ipc::SegmentBoardReader* board_;
+  const ipc::KnotBoardReader* board_;
   std::vector<core::Time> changed_from_;
   core::Time start_ = core::Time::max();
 };

@@ -44,7 +44,7 @@ void SampleMemory::offer(core::Time t, const core::State& state, Random& random)
   std::ranges::copy(state.values(), seen.values.begin());
 }
 
-SimulatedReader::SimulatedReader(const ipc::SegmentBoardReader& board, const StreamPlan& plan,
+SimulatedReader::SimulatedReader(const ipc::KnotBoardReader& board, const StreamPlan& plan,
                                  RevisionLog& log, StreamFindings& findings, Random& random)
     : plan_(&plan),
       findings_(&findings),
@@ -93,7 +93,7 @@ void SimulatedReader::note_revisions(ipc::Word seen) {
     return;
   }
   // A reader that is far behind may be careful about what had not settled when it was sampled.
-  const bool is_careful = r - seen > ipc::kHeadChangesKept && sampled_until_ >= settled_until_seen_;
+  const bool is_careful = r - seen >= ipc::kChangesKept && sampled_until_ >= settled_until_seen_;
   may_be_revised_ = may_be_revised_ || is_careful || sampled_until_ >= log_->earliest(seen, r);
   settled_until_seen_ = sampler_.settled_until();
 }
@@ -139,7 +139,7 @@ void SimulatedReader::check_values(core::Time t, SampleStatus status, SampleMemo
   if (t < sampler_.settled_until() && !is_open_start(t)) settled.offer(t, state_, *random_);
 }
 
-void read_settled_again(const ipc::SegmentBoardReader& board, const StreamPlan& plan,
+void read_settled_again(const ipc::KnotBoardReader& board, const StreamPlan& plan,
                         const SampleMemory& settled, StreamFindings& findings) {
   ipc::Sampler fresh(board, ipc::StreamClock::monotonic, plan.kinds);
   core::State state(plan.dimensions.size());

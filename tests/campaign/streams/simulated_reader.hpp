@@ -29,7 +29,7 @@ class SampleMemory {
 /// One reader of a simulated stream, which checks what it is told.
 class SimulatedReader {
  public:
-  SimulatedReader(const ipc::SegmentBoardReader& board, const StreamPlan& plan, RevisionLog& log,
+  SimulatedReader(const ipc::KnotBoardReader& board, const StreamPlan& plan, RevisionLog& log,
                   StreamFindings& findings, Random& random);
 
   /// Samples as a controller does. What is settled goes to `settled`.
@@ -64,7 +64,7 @@ class SimulatedReader {
 };
 
 /// Takes settled samples again with a reader that has seen nothing before.
-void read_settled_again(const ipc::SegmentBoardReader& board, const StreamPlan& plan,
+void read_settled_again(const ipc::KnotBoardReader& board, const StreamPlan& plan,
                         const SampleMemory& settled, StreamFindings& findings);
 
 }  // namespace splinecast::campaign

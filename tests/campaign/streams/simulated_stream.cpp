@@ -209,7 +209,7 @@ void SimulatedStream::step_and_die() {
     torn.take_back_commit();
   } else if (how == 1) {
     torn.take_back_rest();
-    check_.look(now_);
+    check_.look(now_, false);
   } else {
     const double share = random_->unit();
     torn.take_back([&] { return random_->chance(share); });

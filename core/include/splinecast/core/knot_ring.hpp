@@ -1,11 +1,13 @@
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <new>
 #include <span>
 #include <vector>
 
+#include "splinecast/core/knot_segment.hpp"
 #include "splinecast/core/method.hpp"
 #include "splinecast/core/segment.hpp"
 #include "splinecast/core/smoothing_rows.hpp"
@@ -43,9 +45,30 @@ struct Knot {
   std::span<const double> residual;      ///< waypoint − position; empty unless the method smooths
 };
 
+/// Allocates arrays that begin on a cache line.
+template <typename T>
+struct LineAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t kLine{64};
+
+  LineAllocator() = default;
+  template <typename U>
+  LineAllocator(const LineAllocator<U>& /*other*/) noexcept {}  // NOLINT(*-explicit-*)
+
+  [[nodiscard]] T* allocate(std::size_t count) {
+    return static_cast<T*>(::operator new(count * sizeof(T), kLine));
+  }
+  void deallocate(T* memory, std::size_t /*count*/) noexcept { ::operator delete(memory, kLine); }
+  friend bool operator==(LineAllocator /*a*/, LineAllocator /*b*/) noexcept { return true; }
+};
+
 /// The last knots of a curve and their elimination prefix, in a ring of fixed capacity; what fills
 /// it is a KnotSolver. Knots are numbered from 0 in the order they were pushed. Allocates when made
 /// only. Not thread-safe: one thread uses it.
+///
+/// There is one array for each kind of value, so that an append, which looks at many knots but at
+/// few kinds of values, goes through few cache lines. Values are padded up to whole vector
+/// registers with zeros, or with what the same formulas make of zeros.
 class KnotRing {
  public:
   /// What is kept of a knot besides its row: D values each.
@@ -62,8 +85,6 @@ class KnotRing {
   struct Row {
     Time time{};
     double h = 0;  ///< seconds from this knot to the next, once there is one
-    Prefix prefix{};
-    std::uint32_t newer_knots = 0;  ///< that it had seen when its velocity was last solved
   };
 
   /// Keeps at least the last `capacity` knots (≥ 3) of `dimensions` values each, with what the
@@ -79,9 +100,28 @@ class KnotRing {
   /// Appends a knot and measures the interval before it: O(D). It must be later than the newest.
   void push(Time time, std::span<const double> waypoint) noexcept;
 
-  /// Takes the newest knot back. What a solver has written of the others since it was pushed
-  /// stands.
-  void pop() noexcept { --size_; }
+  /// Appends a knot and measures the length of the interval before it; waypoint and chord slope are
+  /// left to the caller.
+  void push(Time time) noexcept {
+    const std::size_t i = size_++;
+    place(i, time);
+    if (i > 0) row(i - 1).h = to_seconds(time - row(i - 1).time);
+  }
+
+  /// Tells that knots `first` to the newest have been solved.
+  void mark_solved(std::size_t first) noexcept {
+    for (; first_solved_ < first; ++first_solved_) {
+      newer_knots_[first_solved_ & mask_] = newer_knots(first_solved_);
+    }
+    first_solved_ = first;
+    newest_solved_ = newest();
+  }
+
+  /// How many newer knots knot i had seen when its velocity was last solved.
+  [[nodiscard]] std::uint32_t newer_knots(std::size_t i) const noexcept {
+    return i < first_solved_ ? newer_knots_[i & mask_]
+                             : static_cast<std::uint32_t>(newest_solved_ - i);
+  }
 
   /// Forgets all knots and takes up again where another ring stood: `first` is the number of the
   /// oldest knot given, and `knots` are consecutive up to the newest one.
@@ -90,6 +130,7 @@ class KnotRing {
   /// Forgets all knots, for a run that begins with or without a halt.
   void clear(bool halts_at_start) noexcept {
     size_ = 0;
+    first_solved_ = 0;
     halts_at_start_ = halts_at_start;
     halts_at_end_ = false;
     before_ = {};
@@ -104,6 +145,13 @@ class KnotRing {
 
   [[nodiscard]] Row& row(std::size_t i) noexcept { return rows_[i & mask_]; }
   [[nodiscard]] const Row& row(std::size_t i) const noexcept { return rows_[i & mask_]; }
+  [[nodiscard]] double& gamma(std::size_t i) noexcept { return gammas_[i & mask_]; }
+  [[nodiscard]] double gamma(std::size_t i) const noexcept { return gammas_[i & mask_]; }
+  /// Of a method that smooths.
+  [[nodiscard]] SmoothingRow& smoothing(std::size_t i) noexcept { return smoothing_[i & mask_]; }
+  [[nodiscard]] const SmoothingRow& smoothing(std::size_t i) const noexcept {
+    return smoothing_[i & mask_];
+  }
   [[nodiscard]] std::span<double> values(std::size_t i, Value which) noexcept {
     return {values_.data() + offset(i, which), dimensions_};
   }
@@ -111,10 +159,18 @@ class KnotRing {
     return {values_.data() + offset(i, which), dimensions_};
   }
 
-  /// How many knots up to i, itself included, lie one behind the other in memory: their rows, and
-  /// each of their values, `stride` doubles apart.
+  /// The arrays themselves, `slots()` knots long: the values of knot i begin at place_of(i), its γ
+  /// is the one of its slot. A knot's `stride()` values are D, and padding up to a multiple of 4,
+  /// of 2 where D ≤ 2.
+  [[nodiscard]] double* array(Value which) noexcept {
+    return values_.data() + which * slots() * stride_;
+  }
+  [[nodiscard]] const double* array_of_gamma() const noexcept { return gammas_.data(); }
+  [[nodiscard]] std::size_t slots() const noexcept { return mask_ + 1; }
+  [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
+  [[nodiscard]] std::size_t place_of(std::size_t i) const noexcept { return (i & mask_) * stride_; }
+  /// How many knots up to i, itself included, lie one behind the other in the arrays.
   [[nodiscard]] std::size_t contiguous(std::size_t i) const noexcept { return (i & mask_) + 1; }
-  [[nodiscard]] std::size_t stride() const noexcept { return knot_stride_; }
 
   /// Where the curve passes knot i, and its chord slope from there to knot i+1.
   [[nodiscard]] std::span<const double> position(std::size_t i) const noexcept {
@@ -132,8 +188,8 @@ class KnotRing {
 
   [[nodiscard]] Knot knot(std::size_t i) const noexcept {
     return {.time = row(i).time,
-            .prefix = row(i).prefix,
-            .newer_knots = row(i).newer_knots,
+            .prefix = {.gamma = gamma(i), .smoothing = smooths_ ? smoothing(i) : SmoothingRow{}},
+            .newer_knots = newer_knots(i),
             .waypoint = values(i, kWaypoint),
             .g = values(i, kG),
             .position = position(i),
@@ -157,10 +213,13 @@ class KnotRing {
     return interval;
   }
 
-  /// The memory of knot i, which need not have been pushed yet: its row and its values.
-  [[nodiscard]] std::array<std::span<const std::byte>, 2> memory(std::size_t i) const noexcept {
-    return {std::as_bytes(std::span(&row(i), 1)),
-            std::as_bytes(std::span(&values_[offset(i, kWaypoint)], knot_stride_))};
+  /// The form of that interval's segment.
+  [[nodiscard]] SegmentForm form(std::size_t i) const noexcept {
+    if (has_accelerations_) return SegmentForm::quintic;
+    const bool halts_left = halts_at_start_ && i == 0;
+    const bool halts_right = halts_at_end_ && i + 1 == newest();
+    if (halts_left) return halts_right ? SegmentForm::halt_both : SegmentForm::halt_left;
+    return halts_right ? SegmentForm::halt_right : SegmentForm::cubic;
   }
 
   /// Writes the smoothed chord slope of interval i from the residuals at both its ends.
@@ -171,13 +230,19 @@ class KnotRing {
 
  private:
   static constexpr std::span<const double> kNone{};
+  template <typename T>
+  using LineVector = std::vector<T, LineAllocator<T>>;
 
   void halt(std::size_t i, Interval& interval) const noexcept;
   [[nodiscard]] std::size_t offset(std::size_t i, Value which) const noexcept {
-    return (i & mask_) * knot_stride_ + which * dimensions_;
+    return which * slots() * stride_ + place_of(i);
   }
-  void place(std::size_t i, Time time, std::span<const double> waypoint) noexcept;
-  void measure(std::size_t i) noexcept;
+  void place(std::size_t i, Time time) noexcept {
+    row(i) = {.time = time, .h = 0};
+    gamma(i) = 0;
+    if (smooths_) smoothing(i) = {};
+  }
+  void measure_chord(std::size_t i) noexcept;
 
   std::size_t dimensions_;
   bool smooths_;
@@ -185,11 +250,17 @@ class KnotRing {
   bool halts_at_start_;
   bool halts_at_end_ = false;
   std::size_t mask_;
-  std::size_t knot_stride_;  ///< doubles of one knot
+  std::size_t stride_;
+  std::size_t kinds_;  ///< of values that are kept
   std::size_t size_ = 0;
+  std::size_t first_solved_ = 0;   ///< the knots from here on were last solved together
+  std::size_t newest_solved_ = 0;  ///< the newest one then
+  LineVector<Row> rows_;           ///< [knot & mask], as all arrays
+  LineVector<double> gammas_;
+  LineVector<double> values_;              ///< [which][knot & mask][dimension, then padding]
+  LineVector<std::uint32_t> newer_knots_;  ///< of knots before first_solved_
+  LineVector<SmoothingRow> smoothing_;     ///< empty unless the method smooths
   ChordInterval before_;
-  std::vector<Row> rows_;
-  std::vector<double> values_;  ///< [knot & mask][which][dimension]
 };
 
 /// Writes the acceleration step at the left knot of interval i, which is `interval`: a⁺ − a⁻. At

@@ -45,8 +45,20 @@ class KnotSolver {
     start_with(ConditionKind::velocity, velocity);
   }
 
+  /// Takes the start condition of another solver.
+  void start_as(const KnotSolver& other) noexcept {
+    start_with(other.start_.kind, other.start_.value);
+  }
+
   /// Solves knots `last` to the newest while the stream goes on: O(D) per knot.
   virtual void solve(KnotRing& knots, Tail tail, std::size_t last) const noexcept = 0;
+
+  /// Both: `push`, then `solve` with a tail.
+  virtual void append(KnotRing& knots, const Waypoint& waypoint, Tail tail,
+                      std::size_t last) const noexcept {
+    push(knots, waypoint);
+    solve(knots, tail, last);
+  }
 
   /// Solves knots `last` to the newest, with the end condition there.
   virtual void solve(KnotRing& knots, const Condition& end, std::size_t last) const noexcept = 0;

@@ -32,6 +32,11 @@ class RunEntry {
   /// the one before.
   void update(KnotRing& knots) noexcept;
 
+  /// Tells the knots of the interval before knot 0, as `update` has found it.
+  void lead_in(KnotRing& knots) const noexcept {
+    if (standing_ > 0) knots.lead_in({.h = h_before_, .chord = values(kChord)});
+  }
+
   /// The velocity of knot 0 as the waypoints have it.
   [[nodiscard]] std::span<const double> velocity() const noexcept { return values(kKnotVelocity); }
 
@@ -92,6 +97,7 @@ class RunEntry {
   std::size_t standing_ = 0;  ///< waypoints before, at most two
   Time before_{};
   Time before2_{};
+  double h_before_ = 0;  ///< seconds from the waypoint before knot 0 to it, once it has come
   std::vector<double> values_;
 };
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "splinecast/core/derivatives.hpp"
 #include "splinecast/core/state.hpp"
 #include "splinecast/core/time.hpp"
 
@@ -58,6 +59,18 @@ void evaluate(int order, std::span<const double> coefficients, double u,
 /// Never throws or allocates; safe from any thread.
 void evaluate_derivative(int order, std::span<const double> coefficients, double u, int derivative,
                          std::span<double> out) noexcept;
+
+/// Evaluates the derivatives asked for at many times, in the operations, and hence to the bits, of
+/// `evaluate`.
+///
+/// `coefficients` holds order·dimensions values, 1 ≤ order ≤ kMaxPolynomialOrder; `u` seconds after
+/// the left knot. Writes [time][derivative asked for][dimension], `stride` doubles from one time to
+/// the next: at least count(which)·dimensions, which `out` must have behind the last one. What lies
+/// between is left alone. O(order·dimensions) each. Never throws or allocates; safe from any
+/// thread.
+void evaluate_many(int order, std::span<const double> coefficients, std::size_t dimensions,
+                   std::span<const double> u, Derivatives which, std::span<double> out,
+                   std::size_t stride) noexcept;
 
 /// An interval between two knots together with what the solve found at them. Spans hold one value
 /// per dimension. A view: it owns nothing.

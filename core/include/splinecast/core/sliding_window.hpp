@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <memory>
@@ -9,6 +10,7 @@
 
 #include "splinecast/core/condition.hpp"
 #include "splinecast/core/knot_ring.hpp"
+#include "splinecast/core/knot_segment.hpp"
 #include "splinecast/core/knot_solver.hpp"
 #include "splinecast/core/method.hpp"
 #include "splinecast/core/run_entry.hpp"
@@ -76,6 +78,17 @@ class SlidingWindow {
   /// Number of leading segments that nothing changes any more.
   [[nodiscard]] std::size_t settled_segments() const noexcept;
 
+  /// Number of leading knots of this run at which nothing changes any more.
+  [[nodiscard]] std::size_t settled_knots() const noexcept;
+
+  /// The form of the segment that begins at knot i, which must still be in the window.
+  [[nodiscard]] SegmentForm form(std::size_t i) const noexcept;
+
+  /// Writes the acceleration with which the stop begins, D values, and returns how long it takes.
+  /// It begins at the newest knot, or at the state that this run was entered from; there must be
+  /// one, and the stream must not be finished. O(D).
+  Time write_stop(std::span<double> acceleration) const noexcept;
+
   /// The oldest segment that can still be asked for.
   [[nodiscard]] std::size_t oldest_segment() const noexcept;
 
@@ -130,8 +143,17 @@ class SlidingWindow {
   /// Whether the acceleration limits allow for the first of these waypoints to come next, if the
   /// others follow it: the splice to it must keep within them, the splice that it shapes, or,
   /// behind the first knot of a curve or one that has been frozen, the interval to it. True without
-  /// limits. O(K·D) each.
-  [[nodiscard]] bool can_append(std::span<const Waypoint> waypoints) noexcept;
+  /// limits. O(K·D) each. `trial` is a window that was made with the same options: where the limits
+  /// make it necessary, it takes this one's state and appends the waypoints.
+  [[nodiscard]] bool can_append(std::span<const Waypoint> waypoints,
+                                SlidingWindow& trial) const noexcept;
+
+  /// Takes the state of a window that was made with the same options. Allocates nothing: O(K·D).
+  void assign(const SlidingWindow& other) noexcept;
+
+  /// Appends waypoints to an open entry. Returns whether they leave it within the limits: for a
+  /// trial.
+  [[nodiscard]] bool keeps_in_entry(std::span<const Waypoint> waypoints) noexcept;
 
   /// The entry of this run, if it was entered.
   [[nodiscard]] const RunEntry& entry() const noexcept { return entry_; }
@@ -139,14 +161,15 @@ class SlidingWindow {
   /// What is kept of knot i, which must still be in the window: what `restore` needs.
   [[nodiscard]] Knot knot(std::size_t i) const noexcept { return knots_.knot(i); }
 
-  /// The memory of knot i, which need not have come yet, for whoever fetches it ahead.
-  [[nodiscard]] std::array<std::span<const std::byte>, 2> memory(std::size_t i) const noexcept {
-    return knots_.memory(i);
+  /// Time and velocity of knot i, as above.
+  [[nodiscard]] Time time(std::size_t i) const noexcept { return knots_.row(i).time; }
+  [[nodiscard]] std::span<const double> velocity(std::size_t i) const noexcept {
+    return knots_.values(i, KnotRing::kVelocity);
   }
 
   /// How many newer knots knot i had seen when its velocity was last solved.
   [[nodiscard]] std::uint32_t newer_knots_seen(std::size_t i) const noexcept {
-    return knots_.row(i).newer_knots;
+    return knots_.newer_knots(i);
   }
 
   /// How many knots stood behind knot 0 when the splice to it was last shaped.
@@ -180,20 +203,26 @@ class SlidingWindow {
   [[nodiscard]] std::size_t reach() const noexcept {
     return options_.settle > 0 ? options_.settle : 1;
   }
-  [[nodiscard]] bool is_start_open() const noexcept;
+  /// An exact method's slope at the start may look one knot further than the slopes within: knot 0
+  /// stays open as long as its segment does.
+  [[nodiscard]] bool is_start_open(std::size_t newest) const noexcept {
+    return newest <= reach() + 1 && !options_.interpolant.method->converges();
+  }
+  /// The first knot that an append solves whose own knot is `newest`.
+  [[nodiscard]] std::size_t first_to_solve(std::size_t newest) const noexcept {
+    const std::size_t last = is_start_open(newest) ? 0 : newest - std::min(newest, options_.settle);
+    return std::min(std::max(last, frozen_), newest);
+  }
   [[nodiscard]] std::size_t settled_knot_segments() const noexcept;
   void write_stop_tail(Segment& out) const noexcept;
   void write_step(std::size_t i, const Interval& interval, Segment& out) const noexcept;
   [[nodiscard]] bool keeps_behind_newest(std::span<const Waypoint> waypoints) noexcept;
-  [[nodiscard]] bool can_follow_first(std::span<const Waypoint> waypoints) noexcept;
-  [[nodiscard]] bool can_shape_entry(std::span<const Waypoint> waypoints) noexcept;
-  void keep_first_knots() noexcept;
-  void restore_first_knots() noexcept;
   void take_better_entry() noexcept;
   [[nodiscard]] double entry_excess() noexcept;
   [[nodiscard]] bool is_entry_open() const noexcept { return is_entered_ && frozen_ == 0; }
   void solve(const auto& closing, std::size_t last) noexcept;
   [[nodiscard]] bool push_into_entry(const Waypoint& waypoint) noexcept;
+  void append_to_entry(const Waypoint& waypoint) noexcept;
   void start_with_entry() noexcept;
   void rest_at_only_knot() noexcept;
   [[nodiscard]] std::size_t oldest_knot() const noexcept;
@@ -205,9 +234,6 @@ class SlidingWindow {
   std::unique_ptr<KnotSolver> solver_;
   RunEntry entry_;
   Segment splice_;  ///< scratch
-  /// What the knots held before a trial; at most two.
-  std::array<std::array<double, kMaxDimensions>, 2> kept_velocities_{};
-  std::array<std::uint32_t, 2> kept_newer_knots_{};
   bool is_entered_ = false;
   std::uint32_t entry_newer_knots_ = 0;
   std::size_t frozen_ = 0;

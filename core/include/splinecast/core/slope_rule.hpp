@@ -53,9 +53,15 @@ struct EndStencil {
   double h1, m1;
 };
 
+/// How much the slope at the end of the parabola through the three end knots differs from the chord
+/// slope there, as a share of the change of the chord slope.
+[[nodiscard]] constexpr double parabola_weight(double h0, double h1) noexcept {
+  return h0 / (h1 + h0);
+}
+
 /// The slope at the end of the parabola through the three end knots.
 [[nodiscard]] constexpr double parabola_end_slope(const EndStencil& s) noexcept {
-  return s.m0 + s.h0 / (s.h1 + s.h0) * (s.m0 - s.m1);
+  return s.m0 + parabola_weight(s.h0, s.h1) * (s.m0 - s.m1);
 }
 
 /// A local method. A rule is odd and time-symmetric, so that one end formula serves both ends.

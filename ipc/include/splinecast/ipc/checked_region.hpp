@@ -18,7 +18,7 @@ struct CheckedRegion {
   Layout layout;
 };
 
-/// Maps a stream's waypoint ring or its segment board; `writable` for its owner only. Populates its
+/// Maps a stream's waypoint ring or its knot board; `writable` for its owner only. Populates its
 /// pages. Throws NoSuchStream if there is none; BadRegion, naming the file and the offending value,
 /// if it is not to be trusted or not such a region.
 [[nodiscard]] CheckedRegion<RingLayout> open_ring(std::string_view stream, bool writable,

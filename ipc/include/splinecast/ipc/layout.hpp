@@ -5,20 +5,22 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "splinecast/core/dimension_kind.hpp"
-#include "splinecast/core/segment.hpp"
 #include "splinecast/core/state.hpp"
+#include "splinecast/core/time.hpp"
+#include "splinecast/ipc/layout_table.hpp"
 #include "splinecast/ipc/names.hpp"
 #include "splinecast/ipc/word.hpp"
 
-/// Where every word of the two regions lies. README.md of this folder describes the same bytes in
-/// words; the static_asserts below hold both to it.
+/// Where every word of the two regions lies: the tables below. layout.md of this folder is the same
+/// in words, and is made from them. Whoever adds, moves or changes a row adds 1 to kLayoutVersion.
 namespace splinecast::ipc {
 
 inline constexpr std::uint64_t kMagic = 0x54534143'4e4c5053;  // "SPLNCAST" in memory order
-inline constexpr std::uint32_t kLayoutVersion = 3;
+inline constexpr std::uint32_t kLayoutVersion = 4;
 inline constexpr std::uint32_t kByteOrder = 0x01020304;
 
 /// What different processes write, or poll, lies this far apart: two cache lines, because adjacent
@@ -30,23 +32,27 @@ inline constexpr std::size_t kPage = 4096;
 inline constexpr std::size_t kNameBytes = 32;
 inline constexpr std::size_t kUnitBytes = 16;
 
-/// The first bytes of both regions. Everything but epoch, owner_pid and owner_since is written
-/// before the region gets its name, and never again.
+/// The two numbers of the header's second word, which no layout moves: every version finds out by
+/// them that another one has made a region.
+struct LayoutMark {
+  std::uint32_t version = kLayoutVersion;
+  std::uint32_t byte_order = kByteOrder;
+};
+
+/// The first words of both regions, as kHeaderRows places them.
 struct RegionHeader {
   std::uint64_t magic;
-  std::uint32_t layout_version;
-  std::uint32_t byte_order;
+  LayoutMark mark;
   std::uint64_t layout_hash;
   std::uint64_t kind;            ///< RegionKind
   std::uint64_t region_bytes;    ///< size of the whole region
   std::uint64_t stream_id;       ///< random; the same in both regions of a stream
   std::uint64_t dimensions;      ///< 1 … 64
-  std::uint64_t order;           ///< coefficients stored per dimension: 6
-  std::uint64_t capacity;        ///< ring items or segment slots, a power of two
+  std::uint64_t capacity;        ///< ring items or knot slots, a power of two
   std::uint64_t clock;           ///< StreamClock
   std::uint64_t time_namespace;  ///< inode of the time namespace of a live stream's clock
-  std::uint64_t control;         ///< offset of the control lines
-  std::uint64_t stride;          ///< bytes from one ring item or segment slot to the next
+  std::uint64_t control;         ///< offset of the control block, in bytes
+  std::uint64_t stride;          ///< bytes from one ring item or knot slot to the next
   std::int64_t min_interval;     ///< ns between waypoints
   std::int64_t max_interval;
   std::uint64_t start_kind;  ///< core::ConditionKind at the first waypoint
@@ -63,94 +69,338 @@ struct RegionHeader {
   std::int64_t freeze_ahead;  ///< ns that a live stream settles ahead of now
   std::int64_t history;       ///< ns before now that a live stream keeps
   std::int64_t min_splice;    ///< ns: length of the shortest splice
-  std::array<std::uint64_t, 3> reserved;
   std::array<double, core::kMaxDimensions> start_value;
   std::array<std::uint64_t, core::kMaxDimensions> dimension_kind;  ///< core::DimensionKind
   std::array<double, core::kMaxDimensions> period;                 ///< of `wrap`; else 0
   std::array<std::array<char, kNameBytes>, core::kMaxDimensions> name;
   std::array<std::array<char, kUnitBytes>, core::kMaxDimensions> unit;
   std::array<double, core::kMaxDimensions> max_acceleration;  ///< 0: no limit
-  std::array<std::uint64_t, 192> reserved_to_end;
 };
-static_assert(sizeof(RegionHeader) == 2 * kPage - 1280);
-inline constexpr std::size_t kHeaderBytes = 2 * kPage;
-static_assert(offsetof(RegionHeader, epoch) == 160);
-static_assert(offsetof(RegionHeader, start_value) == 256);
-static_assert(offsetof(RegionHeader, dimension_kind) == 768);
-static_assert(offsetof(RegionHeader, period) == 1280);
-static_assert(offsetof(RegionHeader, name) == 1792);
-static_assert(offsetof(RegionHeader, unit) == 3840);
-static_assert(offsetof(RegionHeader, freeze_ahead) == 208);
-static_assert(offsetof(RegionHeader, max_acceleration) == 4864);
 
-/// The page behind the header holds four control lines, kSeparation apart. They begin at an offset
-/// that differs from stream to stream, so that a sweep over many streams does not hit one cache
-/// set.
-inline constexpr std::size_t kControlLines = 4;
-inline constexpr std::size_t kControlPositions = kPage / kSeparation - kControlLines;
-inline constexpr std::size_t kBodyOffset = kHeaderBytes + kPage;
+inline constexpr std::tuple kHeaderRows{
+    MemberRow<&RegionHeader::magic>{"magic", FieldWriter::maker, "the characters `SPLNCAST`"},
+    MemberRow<&RegionHeader::mark>{"layout version, byte order", FieldWriter::maker,
+                                   "32 bits each: 4 and `0x01020304`"},
+    MemberRow<&RegionHeader::layout_hash>{"layout hash", FieldWriter::maker,
+                                          "FNV-1a over the fields of this page"},
+    MemberRow<&RegionHeader::kind>{"kind", FieldWriter::maker, "1 waypoints, 2 spline"},
+    MemberRow<&RegionHeader::region_bytes>{"region bytes", FieldWriter::maker, "size of the file"},
+    MemberRow<&RegionHeader::stream_id>{"stream id", FieldWriter::maker,
+                                        "random, not 0; the same in both regions"},
+    MemberRow<&RegionHeader::dimensions>{"dimensions", FieldWriter::maker, "D, 1 to 64"},
+    MemberRow<&RegionHeader::capacity>{"capacity", FieldWriter::maker,
+                                       "ring items or knot slots; a power of two"},
+    MemberRow<&RegionHeader::clock>{"clock", FieldWriter::maker, "0 recorded, 1 CLOCK_MONOTONIC"},
+    MemberRow<&RegionHeader::time_namespace>{"time namespace", FieldWriter::maker,
+                                             "inode of `/proc/self/ns/time` on a live stream"},
+    MemberRow<&RegionHeader::control>{"control offset", FieldWriter::maker,
+                                      "where the control block begins, in bytes"},
+    MemberRow<&RegionHeader::stride>{"stride", FieldWriter::maker,
+                                     "bytes from one item or slot to the next"},
+    MemberRow<&RegionHeader::min_interval>{"least interval", FieldWriter::maker,
+                                           "between waypoints, ns"},
+    MemberRow<&RegionHeader::max_interval>{"most interval", FieldWriter::maker, "ns"},
+    MemberRow<&RegionHeader::start_kind>{
+        "start condition", FieldWriter::maker,
+        "0 natural, 1 rest, 2 halt, 3 velocity, 4 acceleration, 7 the method's own"},
+    MemberRow<&RegionHeader::method>{
+        "method", FieldWriter::maker,
+        "0 c2, 1 hermite, 2 quintic, 4 smoothing, 16 bessel, 17 akima, 18 makima, 19 pchip, 20 "
+        "rounded (spline region, as all up to the stop time)"},
+    MemberRow<&RegionHeader::settle>{"settle lag", FieldWriter::maker, "K"},
+    MemberRow<&RegionHeader::tail>{"tail", FieldWriter::maker,
+                                   "0 bessel, 1 parabolic, 2 natural, 3 rest"},
+    MemberRow<&RegionHeader::stop_time>{"stop time", FieldWriter::maker, "ns"},
+    MemberRow<&RegionHeader::epoch>{"epoch", FieldWriter::owner,
+                                    "number of the owner's life, from 1"},
+    MemberRow<&RegionHeader::owner_pid>{"process id", FieldWriter::owner, "of the owner"},
+    MemberRow<&RegionHeader::owner_since>{"since", FieldWriter::owner,
+                                          "CLOCK_MONOTONIC at which it became the owner"},
+    MemberRow<&RegionHeader::lambda>{"lambda", FieldWriter::maker,
+                                     "double, s³: of `smoothing` (spline region, as all below)"},
+    MemberRow<&RegionHeader::time_scale>{"time scale", FieldWriter::maker,
+                                         "double, s: of `rounded`"},
+    MemberRow<&RegionHeader::force_lag>{"lag forced", FieldWriter::maker,
+                                        "1: a settle lag too short for λ is taken"},
+    MemberRow<&RegionHeader::freeze_ahead>{"freeze-ahead", FieldWriter::maker,
+                                           "ns, of a live stream"},
+    MemberRow<&RegionHeader::history>{"history", FieldWriter::maker, "ns, of a live stream"},
+    MemberRow<&RegionHeader::min_splice>{"shortest splice", FieldWriter::maker,
+                                         "ns, of a live stream"},
+    padding(4),
+    MemberRow<&RegionHeader::start_value>{"start value", FieldWriter::maker,
+                                          "a double per dimension: of the start condition"},
+    MemberRow<&RegionHeader::dimension_kind>{
+        "dimension kind", FieldWriter::maker,
+        "a word per dimension: 0 linear, 1 wrap, 2 quaternion as x y z w, 3 quaternion as w x y z; "
+        "all four dimensions of a quaternion have the same"},
+    MemberRow<&RegionHeader::period>{
+        "period", FieldWriter::maker,
+        "a double per dimension: of one that wraps, in its unit, 1e-100 to 1e100; else 0"},
+    MemberRow<&RegionHeader::name>{"name", FieldWriter::maker,
+                                   "32 bytes per dimension, zero-terminated"},
+    MemberRow<&RegionHeader::unit>{"unit", FieldWriter::maker,
+                                   "16 bytes per dimension, zero-terminated"},
+    MemberRow<&RegionHeader::max_acceleration>{
+        "acceleration limit", FieldWriter::maker,
+        "a double per dimension, 0 for none (spline region)"}};
+inline constexpr auto kHeaderFields = place(kHeaderRows);
+inline constexpr std::size_t kHeaderWords = size_of(kHeaderFields).words;
 
-/// Words of the control lines, in words from the control offset.
-inline constexpr std::size_t kRevision = 0;  ///< spline: the commit word
-inline constexpr std::size_t kHead = 0;      ///< waypoints: items appended
-inline constexpr std::size_t kRetired = 1;   ///< both: not 0 once the region is of no more use
-inline constexpr std::size_t kClaimed = 2;   ///< waypoints: items up to which a replacement writes
-inline constexpr std::size_t kTail = kSeparation / sizeof(Word);  ///< spline: items consumed
-inline constexpr std::size_t kLate = kTail + 1;  ///< spline: last revision committed too late
-inline constexpr std::size_t kChecked =
-    kTail + 2;  ///< spline: last revision of which that is known
-inline constexpr std::size_t kSleeping = 2 * kSeparation / sizeof(Word);  ///< spline: solver sleeps
-inline constexpr std::size_t kProducerCounters = kSeparation / sizeof(Word);  ///< waypoints
+/// Where the parts of a region lie that all regions have.
+inline constexpr std::tuple kRegionRows{
+    FieldRow{"header",
+             {.words = 2 * kPage / sizeof(Word)},
+             FieldWriter::maker,
+             "see below; the rest is 0"},
+    FieldRow{"control area",
+             {.words = 2 * kPage / sizeof(Word)},
+             FieldWriter::owner,
+             "the control block lies in it, at 8192 + 128 · (stream id mod 50), so that those of "
+             "many streams do not fall into one cache set"},
+    FieldRow{"body",
+             {},
+             FieldWriter::owner,
+             "ring items; or the refusals, times and slots of a "
+             "board"}};
+inline constexpr auto kRegionFields = place(kRegionRows);
+inline constexpr std::size_t kHeaderBytes = word_of(kRegionFields, "control area") * sizeof(Word);
+inline constexpr std::size_t kBodyOffset = word_of(kRegionFields, "body") * sizeof(Word);
+static_assert(kHeaderWords * sizeof(Word) <= kHeaderBytes);
+
+/// The control block of a waypoints region.
+inline constexpr std::size_t kLineWords = kSeparation / sizeof(Word);
+inline constexpr std::size_t kProducerRefusals = 16;
+inline constexpr std::tuple kRingControlRows{
+    FieldRow{"head", {.words = 1}, FieldWriter::owner, "items appended"},
+    FieldRow{"retired", {.words = 1}, FieldWriter::owner, "not 0 once the region is of no use"},
+    FieldRow{"claimed",
+             {.words = 1},
+             FieldWriter::owner,
+             "how far the last replacement writes, stored before its items"},
+    padding(kLineWords - 3),
+    FieldRow{"refused",
+             {.words = kProducerRefusals},
+             FieldWriter::owner,
+             "items refused by the producer, a word per reason"}};
+inline constexpr auto kRingControlFields = place(kRingControlRows);
+inline constexpr std::size_t kRingControlWords = size_of(kRingControlFields).words;
+inline constexpr std::size_t kHead = word_of(kRingControlFields, "head");
+inline constexpr std::size_t kClaimed = word_of(kRingControlFields, "claimed");
+inline constexpr std::size_t kProducerCounters = word_of(kRingControlFields, "refused");
 
 /// Ring items: kind and flags, time, then position, velocity and acceleration of D words each.
-inline constexpr std::size_t kItemKind = 0;
-inline constexpr std::size_t kItemTime = 1;
-inline constexpr std::size_t kItemValues = 2;
+inline constexpr std::tuple kItemRows{
+    FieldRow{"kind",
+             {.words = 1},
+             FieldWriter::owner,
+             "kind (bits 0–7: 1 waypoint, 2 replace, 3 start state, 4 finish), velocity given (bit "
+             "8), acceleration given (bit 9), end condition of a finish (bits 16–23), waypoints "
+             "that follow a replace and belong to it (bits 32–63)"},
+    FieldRow{"time", {.words = 1}, FieldWriter::owner, "ns"},
+    FieldRow{"position", {.per_dimension = 1}, FieldWriter::owner, "doubles"},
+    FieldRow{"velocity", {.per_dimension = 1}, FieldWriter::owner, "doubles, where given"},
+    FieldRow{"acceleration", {.per_dimension = 1}, FieldWriter::owner, "doubles, where given"}};
+inline constexpr auto kItemFields = place(kItemRows);
+inline constexpr std::size_t kItemKind = word_of(kItemFields, "kind");
+inline constexpr std::size_t kItemTime = word_of(kItemFields, "time");
+inline constexpr std::size_t kItemValues = word_of(kItemFields, "position");
 
-/// Words of a segment's cell before its coefficients; the tag must come first.
-inline constexpr std::size_t kCellTag = 0;
-inline constexpr std::size_t kCellNumber = 1;
-inline constexpr std::size_t kCellLeft = 2;
-inline constexpr std::size_t kCellRight = 3;
-inline constexpr std::size_t kCellShape = 4;  ///< order | kind << 8 | newer knots seen << 16 |
-                                              ///< (1 << 48 if a waypoint stands at the left end)
-inline constexpr std::size_t kCellRightSeen = 5;  ///< newer knots that its right knot had seen
-inline constexpr std::size_t kCellItem = 6;  ///< of a splice: item of the run's first waypoint + 1
-inline constexpr std::size_t kCellCoefficients = 8;
-inline constexpr std::size_t kCellExtraWords = 4;  ///< γ, and the smoothing row: pivot, L1, L2
-
-/// Words of a head cell.
-inline constexpr std::size_t kHeadFirst = 1;
-inline constexpr std::size_t kHeadNewest = 2;
-inline constexpr std::size_t kHeadSettledUntil = 3;
-inline constexpr std::size_t kHeadFlags =
-    4;  ///< bit 0: finished, 1: the run was entered, 2: starved
-inline constexpr std::size_t kHeadChangedFrom = 5;
-inline constexpr std::size_t kHeadConsumed = 6;
-inline constexpr std::size_t kHeadKnots = 7;
-inline constexpr std::size_t kHeadNewestKnot = 8;
-inline constexpr std::size_t kHeadCommitted = 9;
-inline constexpr std::size_t kHeadRefused = 10;
-inline constexpr std::size_t kHeadRun = 11;  ///< number of the first segment of the run
-inline constexpr std::size_t kHeadRunKnots = 12;
-inline constexpr std::size_t kHeadLowWater = 13;
-inline constexpr std::size_t kHeadUnderruns = 14;
-inline constexpr std::size_t kHeadMisses = 15;
-inline constexpr std::size_t kHeadRevisions = 16;
-inline constexpr std::size_t kHeadWithdrawn = 17;
-inline constexpr std::size_t kHeadControls = 18;
-inline constexpr std::size_t kHeadRunFrozen = 19;
-inline constexpr std::size_t kHeadReasons = 24;  ///< a counter per Refusal
 inline constexpr std::size_t kRefusalReasons = 16;
-inline constexpr std::size_t kHeadChanges = 40;  ///< changed_from of revision r at r mod 64
-inline constexpr std::size_t kHeadChangesKept = 64;
-inline constexpr std::size_t kHeadWords = kHeadChanges + kHeadChangesKept;
 
-/// The ring of refusals beside the head: item number << 8 | reason.
+/// What holds for a whole revision.
+struct Head {
+  Word revision = 0;  ///< the revision that this head is of; 0: none yet
+  Word first = 0;     ///< oldest knot on the board; a segment begins there
+  Word newest = 0;    ///< newest knot; 0: none. Of a stream that goes on its stop begins there
+  core::Time stop{};  ///< length of the stop, if that is the newest segment
+  bool finished = false;
+  Word run = 1;              ///< first knot of the run
+  Word run_knots = 0;        ///< waypoints of the run
+  Word consumed = 0;         ///< ring items taken
+  Word knots = 0;            ///< waypoints interpolated, replaced ones too
+  core::Time newest_knot{};  ///< time of the newest waypoint, or of the state that a run begins in
+  core::Time committed{};    ///< the solver's clock at the commit
+  Word run_frozen = 0;       ///< waypoints of the run that were frozen when this revision was made
+  bool is_entered = false;   ///< the run begins in a given state
+  bool starved = false;      ///< a live stream's settled time has passed its newest knot
+  core::Time low_water = core::Time::max();  ///< least depth so far; max() before there was any
+  Word underruns = 0;                        ///< times that a live stream has starved
+  Word misses = 0;                           ///< revisions discarded because they came too late
+  Word revisions = 0;  ///< revisions committed too late, this one too: readers are told
+  Word withdrawn = 0;  ///< items that a replacement withdrew unread
+  Word controls = 0;   ///< replacements, start states and finishes carried out
+  Word refused = 0;    ///< items refused
+  std::array<Word, kRefusalReasons> reasons{};  ///< of these, by Refusal
+  core::Time settled_until{};  ///< no time before it ever changes; not of the revision alone
+  core::Time changed_from{};   ///< earliest time whose curve this revision changed
+};
+
+/// A cell of the head's slot. What lookups need comes first, in one cache line; what changes rarely
+/// last: a revision stores what is not in the cell already.
+inline constexpr std::tuple kHeadRows{
+    FieldRow{"tag", {.words = 1}, FieldWriter::owner, "revision · 65,536"},
+    MemberRow<&Head::first>{"first", FieldWriter::owner,
+                            "oldest knot on the board; a segment begins there"},
+    MemberRow<&Head::newest>{"newest", FieldWriter::owner, "newest knot; 0: none"},
+    MemberRow<&Head::stop>{"stop", FieldWriter::owner,
+                           "ns: length of the stop, while it is the newest segment"},
+    MemberRow<&Head::finished>{"finished", FieldWriter::owner, "1: nothing follows"},
+    MemberRow<&Head::run>{"run", FieldWriter::owner, "first knot of the run"},
+    MemberRow<&Head::run_knots>{"knots of the run", FieldWriter::owner, "its waypoints"},
+    MemberRow<&Head::consumed>{"consumed", FieldWriter::owner, "items taken"},
+    MemberRow<&Head::knots>{"knots", FieldWriter::owner, "waypoints interpolated"},
+    MemberRow<&Head::newest_knot>{"newest time", FieldWriter::owner,
+                                  "time of the newest waypoint, or of the state that a run begins "
+                                  "in, ns"},
+    MemberRow<&Head::committed>{"committed", FieldWriter::owner,
+                                "the solver's clock at the commit, ns"},
+    MemberRow<&Head::run_frozen>{"frozen", FieldWriter::owner,
+                                 "waypoints of the run that were frozen when this revision was "
+                                 "made"},
+    MemberRow<&Head::is_entered>{"entered", FieldWriter::owner,
+                                 "1: the run begins in a given state"},
+    MemberRow<&Head::starved>{"starved", FieldWriter::owner,
+                              "1: the settled time of a live stream has passed its newest knot"},
+    MemberRow<&Head::low_water>{"least depth", FieldWriter::owner, "so far, ns"},
+    MemberRow<&Head::underruns>{"underruns", FieldWriter::owner, "times starved"},
+    MemberRow<&Head::misses>{"misses", FieldWriter::owner, "revisions discarded as too late"},
+    MemberRow<&Head::revisions>{"late revisions", FieldWriter::owner,
+                                "revisions before this one that were committed too late"},
+    MemberRow<&Head::withdrawn>{"withdrawn", FieldWriter::owner, "items withdrawn unread"},
+    MemberRow<&Head::controls>{"controls", FieldWriter::owner,
+                               "replacements, start states and finishes carried out"},
+    MemberRow<&Head::refused>{"refused", FieldWriter::owner, "items refused"},
+    MemberRow<&Head::reasons>{"reasons", FieldWriter::owner, "items refused, by reason"},
+    padding(3)};
+inline constexpr auto kHeadFields = place(kHeadRows);
+inline constexpr std::size_t kHeadWords = size_of(kHeadFields).words;
+static_assert(kHeadWords % (kCacheLine / sizeof(Word)) == 0);
+
+inline constexpr std::size_t kChangesKept = 64;
+inline constexpr std::size_t kStepBuckets = 40;
+
+/// The control block of a spline region.
+inline constexpr std::tuple kBoardControlRows{
+    FieldRow{
+        "revision", {.words = 1}, FieldWriter::owner, "the commit word, and what readers wait on"},
+    FieldRow{"retired", {.words = 1}, FieldWriter::owner, "not 0 once the region is of no use"},
+    FieldRow{"settled until",
+             {.words = 1},
+             FieldWriter::owner,
+             "ns: no revision after the one that stood when it was stored changes anything before"},
+    padding(kLineWords - 3),
+    FieldRow{"tail", {.words = 1}, FieldWriter::owner, "items consumed, a copy for the producer"},
+    FieldRow{"late",
+             {.words = 1},
+             FieldWriter::owner,
+             "the last revision that was committed too late, on a live stream"},
+    FieldRow{"checked",
+             {.words = 1},
+             FieldWriter::owner,
+             "the last revision whose commit was compared with the clock, on a live stream"},
+    padding(kLineWords - 3),
+    FieldRow{"sleeping", {.words = 1}, FieldWriter::owner, "the solver waits on `head`"},
+    padding(kLineWords - 1),
+    FieldRow{"head, cell 0", {.words = kHeadWords}, FieldWriter::owner, "see below"},
+    FieldRow{"head, cell 1", {.words = kHeadWords}, FieldWriter::owner, "see below"},
+    FieldRow{"changed from",
+             {.words = kChangesKept},
+             FieldWriter::owner,
+             "ns: earliest time whose curve revision r changed, at r mod 64"},
+    FieldRow{"step times",
+             {.words = kStepBuckets},
+             FieldWriter::owner,
+             "how many of the solver's steps took 2ⁱ to 2ⁱ⁺¹ ns, at i; the last one counts all "
+             "that took longer"}};
+inline constexpr auto kBoardControlFields = place(kBoardControlRows);
+inline constexpr std::size_t kBoardControlWords = size_of(kBoardControlFields).words;
+inline constexpr std::size_t kRevision = word_of(kBoardControlFields, "revision");
+inline constexpr std::size_t kRetired = word_of(kBoardControlFields, "retired");
+inline constexpr std::size_t kSettledUntil = word_of(kBoardControlFields, "settled until");
+inline constexpr std::size_t kTail = word_of(kBoardControlFields, "tail");
+inline constexpr std::size_t kLate = word_of(kBoardControlFields, "late");
+inline constexpr std::size_t kChecked = word_of(kBoardControlFields, "checked");
+inline constexpr std::size_t kSleeping = word_of(kBoardControlFields, "sleeping");
+inline constexpr std::size_t kHeadSlot = word_of(kBoardControlFields, "head, cell 0");
+inline constexpr std::size_t kChanges = word_of(kBoardControlFields, "changed from");
+inline constexpr std::size_t kStepTimes = word_of(kBoardControlFields, "step times");
+static_assert(word_of(kRingControlFields, "retired") == kRetired);
+static_assert(kRevision == 0 && kHead == 0);  // what waiting processes watch
+
+/// How many positions the control block may have within the control area.
+inline constexpr std::size_t kControlPositions =
+    (kBodyOffset - kHeaderBytes - kBoardControlWords * sizeof(Word)) / kSeparation + 1;
+static_assert(kRingControlWords <= kBoardControlWords);
+
+/// The parts of a knot's slot. Each lies there twice, beginning on a cache line.
+inline constexpr std::tuple kCellRows{
+    FieldRow{"tag",
+             {.words = 1},
+             FieldWriter::owner,
+             "0 never written; else revision (bits 16–63; all ones: retired), the node that it "
+             "refers to (bit 0), the form of the segment that begins here (bits 1–4: 0 none, 1 "
+             "cubic, 2 cubic with acceleration 0 at the left end, 3 at the right end, 4 at both, 5 "
+             "quintic, 6 splice, 7 stop, 8 hold), a waypoint stands here (bit 5), the acceleration "
+             "beside is that with which the segment that ends here arrives (bit 6), or the one "
+             "that begins here starts (bit 7), how many newer knots it had seen when it was solved "
+             "(bits 8–14), the row that it refers to (bit 15)"},
+    FieldRow{"velocity", {.per_dimension = 1}, FieldWriter::owner, "doubles"},
+    FieldRow{"residual",
+             {.per_dimension = 1},
+             FieldWriter::owner,
+             "doubles, of `smoothing` only: waypoint less position"}};
+inline constexpr auto kCellFields = place(kCellRows);
+inline constexpr std::size_t kCellTag = word_of(kCellFields, "tag");
+inline constexpr std::size_t kCellVelocity = word_of(kCellFields, "velocity");
+
+inline constexpr std::tuple kNodeRows{FieldRow{"time", {.words = 1}, FieldWriter::owner, "ns"},
+                                      FieldRow{"position",
+                                               {.per_dimension = 1},
+                                               FieldWriter::owner,
+                                               "doubles: of the waypoint, else of the curve"}};
+inline constexpr auto kNodeFields = place(kNodeRows);
+inline constexpr std::size_t kNodeTime = word_of(kNodeFields, "time");
+inline constexpr std::size_t kNodePosition = word_of(kNodeFields, "position");
+
+inline constexpr std::tuple kBesideRows{
+    FieldRow{"item",
+             {.words = 1},
+             FieldWriter::owner,
+             "of a splice: number of the item that is the run's first waypoint, plus 1; else 0"},
+    FieldRow{"acceleration",
+             {.per_dimension = 1},
+             FieldWriter::owner,
+             "doubles, where the tag says so"}};
+inline constexpr auto kBesideFields = place(kBesideRows);
+inline constexpr std::size_t kBesideItem = word_of(kBesideFields, "item");
+inline constexpr std::size_t kBesideAcceleration = word_of(kBesideFields, "acceleration");
+
+inline constexpr std::tuple kRowRows{
+    FieldRow{"gamma", {.words = 1}, FieldWriter::owner, "double: γ of the knot's eliminated row"},
+    FieldRow{"g", {.per_dimension = 1}, FieldWriter::owner, "doubles: its right side"},
+    FieldRow{"factors",
+             {.words = 3},
+             FieldWriter::owner,
+             "doubles, of `smoothing` only: the row of LDLᵀ: D, L with the knot before, L with the "
+             "one before that"}};
+inline constexpr auto kRowFields = place(kRowRows);
+inline constexpr std::size_t kRowGamma = word_of(kRowFields, "gamma");
+inline constexpr std::size_t kRowG = word_of(kRowFields, "g");
+
+/// The ring of refusals.
 inline constexpr std::size_t kRefusalsKept = 1024;
-
-/// Identifies all of the above; other numbers are another layout.
-[[nodiscard]] std::uint64_t layout_hash() noexcept;
+inline constexpr std::tuple kBodyRows{
+    FieldRow{"refusals",
+             {.words = kRefusalsKept},
+             FieldWriter::owner,
+             "the last 1,024: item number · 256 + reason"},
+    FieldRow{"times",
+             {},
+             FieldWriter::owner,
+             "a word per slot: ns at which the segment of the slot's knot begins, or, where none "
+             "begins, the one of the next knot at which one does: a hint"}};
+inline constexpr auto kBodyFields = place(kBodyRows);
 
 /// Offsets of a waypoint ring, derived from what its header fixes; all in bytes.
 struct RingLayout {
@@ -165,21 +415,27 @@ struct RingLayout {
                                      std::size_t control) noexcept;
 };
 
-/// Offsets of a segment board.
+/// Offsets of a knot board, in bytes; those of a slot's parts from its beginning.
 struct BoardLayout {
   std::size_t dimensions;
   std::size_t capacity;
   std::size_t control;
-  std::size_t head;      ///< two cells of kHeadWords words
+  bool smooths;          ///< cells have residuals, rows have factors
   std::size_t refusals;  ///< kRefusalsKept words
-  std::size_t times;     ///< packed knot times: capacity words
-  std::size_t slots;     ///< capacity slots of two cells
-  std::size_t cell;      ///< bytes of a cell
-  std::size_t stride;    ///< bytes of a slot
+  std::size_t times;     ///< packed times: capacity words
+  std::size_t slots;     ///< capacity slots
+  std::size_t cell;      ///< bytes of a cell; cells begin a slot
+  std::size_t nodes;
+  std::size_t node;  ///< bytes of a node
+  std::size_t beside;
+  std::size_t beside_bytes;
+  std::size_t rows;
+  std::size_t row;     ///< bytes of a row
+  std::size_t stride;  ///< bytes of a slot
   std::size_t bytes;
 
   [[nodiscard]] static BoardLayout of(std::size_t dimensions, std::size_t capacity,
-                                      std::size_t control) noexcept;
+                                      std::size_t control, bool smooths) noexcept;
 };
 
 /// Largest capacities, so that every size and index computed from a header fits.
@@ -188,6 +444,9 @@ inline constexpr std::size_t kMaxBoardCapacity = std::size_t{1} << 22;
 
 /// Longest stop tail: so short that a stop, and the way back behind it, can be added to any time.
 inline constexpr core::Time kLongestStop{std::int64_t{1} << 60};
+
+/// Whether a header's method smooths: then its board's cells and rows have more words.
+[[nodiscard]] bool smooths(const RegionHeader& header) noexcept;
 
 /// Copies a header out of a region, word by word: what a process checks is what it then uses,
 /// whatever happens to the region meanwhile. Its loads are relaxed: the header was written before
@@ -199,6 +458,12 @@ inline constexpr core::Time kLongestStop{std::int64_t{1} << 60};
 /// this kind, layout, byte order and real size. Returns its layout.
 RingLayout checked_ring_layout(const RegionHeader& header, std::size_t real_bytes);
 BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_bytes);
+
+/// The same from words that have been copied already, at least kHeaderWords of them.
+[[nodiscard]] RegionHeader decode_header(std::span<const Word> words) noexcept;
+
+/// Writes a header into a region that has no name yet.
+void write_header(std::span<std::byte> region, const RegionHeader& header) noexcept;
 
 /// The kinds of a header's dimensions, one each; the header's numbers must be kinds.
 [[nodiscard]] std::vector<core::Dimension> dimensions_of(const RegionHeader& header);

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "splinecast/core/time.hpp"
+#include "splinecast/ipc/knot_board.hpp"
 #include "splinecast/ipc/layout.hpp"
-#include "splinecast/ipc/segment_board.hpp"
 #include "splinecast/ipc/trust.hpp"
 
 namespace splinecast::ipc {
@@ -16,7 +16,7 @@ inline constexpr core::Time kLongestOldMotion{3'600'000'000'000};
 /// When the curve that a live board has published comes to rest, on CLOCK_MONOTONIC; min() if
 /// nobody follows it: it is recorded, of another time namespace, retired, or has no curve.
 [[nodiscard]] core::Time end_of_motion(const RegionHeader& header,
-                                       const SegmentBoardReader& board) noexcept;
+                                       const KnotBoardReader& board) noexcept;
 
 /// Throws BadRegion if a motion ends more than kLongestOldMotion after now: no board may keep its
 /// name for that long.

@@ -1,29 +1,32 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/sliding_window.hpp"
+#include "splinecast/ipc/board_segment.hpp"
+#include "splinecast/ipc/knot_board.hpp"
 #include "splinecast/ipc/run_edges.hpp"
-#include "splinecast/ipc/segment_board.hpp"
 
 namespace splinecast::ipc {
 
-/// The curve of one stream: the window that is being solved and the board that its segments are
+/// The curve of one stream: the window that is being solved and the board that its knots are
 /// published on. Knows neither ring nor clock; what a waypoint must be like is checked before.
 ///
-/// Segments lie on the board under consecutive numbers, run after run: the first segment of a run
-/// has the number `Head::run`. A run is entered by cutting the published curve. The board is the
-/// only memory of what came before: a solver that takes over, and one that has discarded a
-/// revision, both go on from what has been committed.
+/// Knots lie on the board under consecutive numbers, run after run: `Head::run` is the first knot
+/// of a run, its first waypoint or the state that it was entered from. A run is entered by cutting
+/// the published curve: the segment that is cut keeps both its knots, and no segment begins at the
+/// right one any more. The board is the only memory of what came before: a solver that takes over,
+/// and one that has discarded a revision, both go on from what has been committed.
 ///
 /// Allocates when made only; one thread uses it.
 class PublishedCurve {
  public:
   /// Both are sides of one board, and outlive the curve. Throws std::invalid_argument for window
   /// options out of range.
-  PublishedCurve(SegmentBoardWriter& board, const SegmentBoardReader& published,
+  PublishedCurve(KnotBoardWriter& board, const KnotBoardReader& published,
                  const core::WindowOptions& options, core::DimensionKinds kinds);
 
   /// Whether what was read back from the board was nothing that this class had written: then the
@@ -32,9 +35,6 @@ class PublishedCurve {
 
   /// Goes on from what has been committed, of which `head` is the head. O(K·D).
   void restore(const Head& head) noexcept;
-
-  /// Takes back what has been changed since the last commit; `head` is that commit's.
-  void discard(const Head& head) noexcept;
 
   [[nodiscard]] const core::SlidingWindow& window() const noexcept { return window_; }
   [[nodiscard]] const core::DimensionKinds& kinds() const noexcept { return kinds_; }
@@ -62,10 +62,10 @@ class PublishedCurve {
   /// Keeps everything up to the right end of the segment that contains t as it has been committed.
   void freeze(core::Time t) noexcept;
 
-  /// Whether the board can take so many more segments without losing one that ends after `keep`;
+  /// Whether the board can take so many more knots without losing a segment that ends after `keep`;
   /// likewise where the committed curve is cut at t first.
-  [[nodiscard]] bool has_room(std::size_t segments, core::Time keep) const noexcept;
-  [[nodiscard]] bool has_room_to_enter(core::Time t, std::size_t segments,
+  [[nodiscard]] bool has_room(std::size_t knots, core::Time keep) const noexcept;
+  [[nodiscard]] bool has_room_to_enter(core::Time t, std::size_t knots,
                                        core::Time keep) const noexcept;
 
   /// Begins the curve in a given state, instead of with a waypoint.
@@ -78,13 +78,19 @@ class PublishedCurve {
   /// Whether there is a committed curve at t; before the start of a stream that is held there is.
   [[nodiscard]] bool can_enter(core::Time t) const noexcept { return t >= earliest_entry(); }
 
-  /// Cuts the committed curve at t and begins a run that goes on from there. There must be no
-  /// uncommitted changes, and a curve at t.
-  void enter(core::Time t) noexcept;
+  /// Finds the state that a run entered at t goes on from, and returns its position. There must be
+  /// no uncommitted changes, and a curve at t. Changes nothing.
+  std::span<const double> plan_entry(core::Time t) noexcept;
+
+  /// Whether acceleration limits allow for the first of these waypoints to be entered from there.
+  [[nodiscard]] bool can_enter_with(std::span<const core::Waypoint> waypoints) noexcept;
+
+  /// Cuts the committed curve there and begins a run that goes on.
+  void enter_as_planned() noexcept;
 
   /// Whether acceleration limits allow for the first of these waypoints: see SlidingWindow.
   [[nodiscard]] bool can_append(std::span<const core::Waypoint> waypoints) noexcept {
-    return window_.can_append(waypoints);
+    return !trial_ || window_.can_append(waypoints, *trial_);
   }
 
   /// Appends a waypoint to the run: the ring's item of this number.
@@ -94,49 +100,83 @@ class PublishedCurve {
   /// the stop tail runs, and from its end, or from `earliest`, a splice goes back to the waypoint.
   void finish(const core::Condition& end, core::Time earliest) noexcept;
 
-  /// Asks for what an append and a write after it will go through: O(K·D).
-  void prefetch() const noexcept;
-
   /// Writes what has been changed to the board, and to `head` all that it says of the curve.
   void write(Head& head) noexcept;
 
-  /// After the commit.
-  void committed() noexcept { has_changes_ = false; }
+  /// After the commit of that head.
+  void committed(const Head& head) noexcept;
 
  private:
-  [[nodiscard]] Word number_of(std::size_t segment) const noexcept { return run_ + segment; }
-  [[nodiscard]] bool has_room_behind(Word number, std::size_t segments,
+  /// Number of knot i of the run.
+  [[nodiscard]] Word number_of(std::size_t knot) const noexcept {
+    return run_ + (window_.is_entered() ? 1 : 0) + knot;
+  }
+  [[nodiscard]] bool has_room_behind(Word number, std::size_t knots,
                                      core::Time keep) const noexcept;
   [[nodiscard]] Word segment_at(core::Time t) const noexcept;
-  [[nodiscard]] core::Knot knot(Word number, Word r, std::span<double> values) noexcept;
-  [[nodiscard]] std::span<const core::StandingWaypoint> standing_before(Word number, core::Time t,
-                                                                        Word r) noexcept;
-  void write_segment(std::size_t i) noexcept;
-  void write_besides(const core::Segment& segment) noexcept;
+  [[nodiscard]] bool read_knot(Word number, KnotCopy& out) noexcept;
+  [[nodiscard]] bool read_segment(Word number) noexcept;
+  [[nodiscard]] std::span<const core::StandingWaypoint> standing_before(Word number, bool is_held,
+                                                                        core::Time t) noexcept;
+  /// What a run is entered behind.
+  struct Way {
+    core::Time time{};
+    Word cut = 0;              ///< segment before the run; 0: nothing stands there
+    Word run = 0;              ///< number of the knot that the run begins at
+    bool ends = false;         ///< that segment ends at its natural end
+    bool is_held = false;      ///< a hold follows it
+    bool keeps_right = false;  ///< it keeps its right knot, where no segment begins any more
+    std::span<const core::StandingWaypoint> standing{};
+  };
+  [[nodiscard]] Way way_at(core::Time t) noexcept;
+  [[nodiscard]] core::Instant state_on(const Way& way) const noexcept;
+  void cut(const Way& way) noexcept;
+  /// Whether the run began in a state, and the splice from there may still change.
+  [[nodiscard]] bool is_entry_open() const noexcept {
+    return window_.is_entered() && kept_ == 0 && open_ == 0;
+  }
+  void write_given(Word number, core::SegmentForm form, core::Time time,
+                   std::span<const double> position, core::Time begins = {}) noexcept;
+  void write_entry() noexcept;
+  [[nodiscard]] std::size_t plain_knots() const noexcept;
+  void write_knot(std::size_t i) noexcept;
   void note_change(core::Time from) noexcept;
-  void restore_run(const Head& head) noexcept;
+  void keep_settled() noexcept;
+  void restore_run() noexcept;
+  [[nodiscard]] core::Knot restore_knot(Word number, std::span<double> values) noexcept;
+  [[nodiscard]] core::SlidingWindow::Entry restore_entry() noexcept;
   void return_to(const core::Knot& knot, core::Time earliest) noexcept;
 
-  SegmentBoardWriter* board_;
-  const SegmentBoardReader* published_;
+  KnotBoardWriter* board_;
+  const KnotBoardReader* published_;
   core::SlidingWindow window_;
+  std::optional<core::SlidingWindow> trial_;  ///< for what the limits ask; none without limits
   core::DimensionKinds kinds_;
-  core::Segment segment_;  ///< scratch
-  SegmentCopy copy_;       ///< scratch
-  core::State state_;      ///< scratch
+  std::size_t look_ahead_;  ///< how many rows before the newest knot an append may change
+  bool has_plain_knots_;    ///< the method changes the velocities of knots and no more
+  Head head_;               ///< last committed
+  core::Segment segment_;   ///< scratch
+  BoardSegment read_;       ///< scratch
+  KnotCopy knot_;           ///< scratch
+  core::State state_;       ///< that a run is entered from
+  Way way_;                 ///< as planned
   std::vector<core::Knot> knots_;
   std::vector<double> knot_values_;
+  std::vector<double> entry_values_;
   StandingWaypoints standing_{};
   std::vector<double> standing_values_;
-  std::vector<double> entry_step_;  ///< acceleration step at the left end of the run's splice
   Word run_ = 1;
   Word run_item_ = 0;  ///< item of the run's first waypoint
   Word first_ = 0;
   Word newest_ = 0;
   core::Time end_{};
+  core::Time stop_{};  ///< length of the stop, if the newest segment is one
   core::Time changed_from_ = core::Time::max();
-  std::size_t settled_written_ = 0;  ///< leading segments of the run that are on the board for good
-  std::size_t besides_ = 0;          ///< segments behind the run's: a return to the last waypoint
+  std::size_t committed_knots_ = 0;  ///< knots of the run that the board holds
+  std::size_t kept_ = 0;             ///< leading knots of the run that nothing has changed since
+  std::size_t open_ = 0;             ///< leading knots of the run that are written for good
+  bool is_entry_new_ = false;        ///< the run begins in a state that the board does not hold yet
+  std::size_t besides_ = 0;          ///< knots behind the run's: a return to the last waypoint
   bool has_changes_ = false;
   bool is_damaged_ = false;
 };

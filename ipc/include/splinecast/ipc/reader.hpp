@@ -59,6 +59,12 @@ class Reader {
     return preview(t, out.ref());
   }
 
+  /// Evaluates the curve at many times, all of one revision, which it returns: for controllers that
+  /// look ahead. See Sampler::sample_many.
+  Word sample_many(std::span<const core::Time> times, const SampleBlock& out) noexcept {
+    return sampler_->sample_many(times, out);
+  }
+
   /// What `sample` asks: for code that works on streams in plain memory as well.
   [[nodiscard]] Sampler& sampler() noexcept { return *sampler_; }
 

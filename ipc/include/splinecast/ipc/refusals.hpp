@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "splinecast/core/time.hpp"
-#include "splinecast/ipc/segment_board.hpp"
+#include "splinecast/ipc/knot_board.hpp"
 #include "splinecast/ipc/status.hpp"
 #include "splinecast/ipc/waypoint_ring.hpp"
 
@@ -35,7 +35,7 @@ class RefusalReader {
   explicit RefusalReader(Word first = 0) : first_(first), copied_(kRefusalsKept) {}
 
   /// Leaves out what the board has counted so far.
-  void skip(const SegmentBoardReader& board) noexcept;
+  void skip(const KnotBoardReader& board) noexcept;
 
   /// Begins with the first refusal of another board of the same stream.
   void restart() noexcept;
@@ -43,10 +43,10 @@ class RefusalReader {
   /// Gives the refusals since the last look. `ring` is the ring of the board's stream. O(1) if
   /// nothing was published since, else O(new refusals); no system call. Allocates only where
   /// `out.items` has to grow. `missed` is 0 if at most kRefusalsKept items were consumed since.
-  void look(const SegmentBoardReader& board, const WaypointRingReader& ring, Refusals& out);
+  void look(const KnotBoardReader& board, const WaypointRingReader& ring, Refusals& out);
 
  private:
-  void copy_head(const SegmentBoardReader& board) noexcept;
+  void copy_head(const KnotBoardReader& board) noexcept;
 
   Head head_;      ///< as last seen
   Word seen_ = 0;  ///< refusals told, over the stream's life

@@ -19,6 +19,9 @@ class ReplacementQueue {
   /// which have been committed. O(1) per item.
   void note(Word consumed, Word available) noexcept;
 
+  /// Whether none waits.
+  [[nodiscard]] bool empty() const noexcept { return first_ == items_.size(); }
+
   /// The replacement to carry out next, before all that is queued before it: of those that apply
   /// to a curve that is settled until `settled_until` and whose newest knot is at `newest`, the
   /// last one of those with the earliest effect. A replacement with waypoints takes effect at its

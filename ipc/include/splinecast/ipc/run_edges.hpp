@@ -9,7 +9,7 @@
 #include "splinecast/core/segment.hpp"
 #include "splinecast/core/sliding_window.hpp"
 #include "splinecast/core/state.hpp"
-#include "splinecast/ipc/segment_board.hpp"
+#include "splinecast/ipc/word.hpp"
 
 /// Where runs of a published curve meet: what the next one goes on from, and the way back at the
 /// end. Formulas only, so that whoever solves a curve again takes the ones that it was solved by.
@@ -19,27 +19,21 @@ namespace splinecast::ipc {
 /// The waypoints that stand before a run: those that count.
 using StandingWaypoints = std::array<core::StandingWaypoint, 2>;
 
-/// Finds the last waypoints on the curve at segments `number` down to `oldest` (≥ 1), not later
-/// than t; oldest first, in `out`. `waypoint_at(n, found)` gives the left end of segment n and its
-/// waypoint, empty if none stands there; the `found`-th one must outlive the use of the result.
-template <typename WaypointAt>
-[[nodiscard]] std::span<const core::StandingWaypoint> find_standing(
-    StandingWaypoints& out, Word number, Word oldest, core::Time t,
-    const WaypointAt& waypoint_at) noexcept {
-  constexpr Word kLookBack = 16;  // cuts and holds lie between
-  std::size_t found = 0;
-  for (Word k = 0; k < kLookBack && found < out.size() && number >= oldest + k; ++k) {
-    const core::StandingWaypoint at = waypoint_at(number - k, found);
-    if (at.position.empty() || at.time > t) continue;
-    ++found;
-    out[out.size() - found] = at;
-  }
-  return std::span(out).last(found);
-}
+/// Segments behind a run's beginning that are looked at for standing waypoints: those of entries,
+/// stops and holds lie between.
+inline constexpr int kStandingLookBack = 16;
+
+/// Where a segment that is to be cut begins and ends, and its polynomial.
+struct CutSegment {
+  core::Time left{};
+  core::Time right{};
+  int order = core::kCubicOrder;
+  std::span<const double> coefficients{};
+};
 
 /// Evaluates a segment where a run is to begin at t: at rest behind the segment's end, and before
 /// its beginning, where the machine stands until then. O(D).
-void evaluate_at_cut(const SegmentCopy& segment, core::Time t, core::State& out) noexcept;
+void evaluate_at_cut(const CutSegment& segment, core::Time t, core::State& out) noexcept;
 
 /// How a stream that is finished after its newest knot had been frozen goes back to it.
 struct WayBack {

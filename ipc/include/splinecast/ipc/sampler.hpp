@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <vector>
 
+#include "splinecast/core/derivatives.hpp"
 #include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/state.hpp"
 #include "splinecast/core/time.hpp"
+#include "splinecast/ipc/board_segment.hpp"
 #include "splinecast/ipc/clock.hpp"
-#include "splinecast/ipc/segment_board.hpp"
+#include "splinecast/ipc/knot_board.hpp"
 #include "splinecast/ipc/status.hpp"
 
 namespace splinecast::ipc {
@@ -35,12 +37,20 @@ class Snapshot {
   std::vector<SegmentCopy> segments_;
 };
 
-/// The reader without its region: looks a time up on a segment board and evaluates the curve.
+/// Where `sample_many` writes: N times, D dimensions, and as many derivatives as are asked for.
+struct SampleBlock {
+  std::span<double> values;        ///< [time][derivative asked for, position first][dimension]
+  std::span<SampleStatus> status;  ///< one per time; those without values leave theirs undefined
+  core::Derivatives derivatives = core::Derivatives::all;
+};
+
+/// The reader without its region: looks a time up on a knot board and evaluates the curve.
 ///
-/// It keeps its own copy of the segment it used last, with the tag of the revision that wrote it.
-/// While that tag stands, the next sample copies nothing. One thread uses a sampler; any number of
-/// samplers, in any processes, read one board. Allocates when made only; stores to shared memory
-/// never.
+/// It keeps its own copy of the segment it used last: the knots, with the tags of the revisions
+/// that wrote them, and the polynomial made from them. While those tags stand, the next sample
+/// copies nothing; where time passes the right knot, it copies one knot. One thread uses a sampler;
+/// any number of samplers, in any processes, read one board. Allocates when made only; stores to
+/// shared memory never.
 class Sampler {
  public:
   /// How many segments a sample compares at most after missing many revisions.
@@ -48,7 +58,7 @@ class Sampler {
 
   /// `board` is read as often as sampled; `clock` says whether a hold stands before the first
   /// waypoint; `kinds` are those of the board's dimensions.
-  Sampler(const SegmentBoardReader& board, StreamClock clock, core::DimensionKinds kinds = {});
+  Sampler(const KnotBoardReader& board, StreamClock clock, core::DimensionKinds kinds = {});
 
   /// Evaluates the curve at `t`, in the form in which its dimensions are read, into `out`, whose
   /// spans have one value per dimension: else it returns `wrong_dimension`. Wait-free: no system
@@ -61,7 +71,7 @@ class Sampler {
   /// solver was stopped between its last look at the clock and the commit, or if a time ahead of
   /// what is settled is sampled; use `preview` for that.
   ///
-  /// The board keeps which time each of the last kHeadChangesKept revisions changed the curve from.
+  /// The board keeps which time each of the last kChangesKept revisions changed the curve from.
   /// A reader that has missed more compares the curve itself. Revisions change nothing before the
   /// settled_until that it saw last; where it has sampled from there on, it looks whether the
   /// segments are those of the revision that it saw last, by their tags, or have the bits of its
@@ -73,6 +83,15 @@ class Sampler {
   /// The same for a look ahead: what it gives does not count as executed.
   [[nodiscard]] SampleStatus preview(core::Time t, const core::StateRef& out) noexcept;
 
+  /// Evaluates the curve at any number of times, increasing or not, all of *one* revision: for
+  /// controllers that look ahead, whose horizon must not mix two. Returns that revision, which is
+  /// 0 where there was none to be had: then every status says why, and none has values. A look
+  /// ahead, which does not count as executed. Wait-free, like `sample`: a bounded number of tries,
+  /// each O(N·D) where the times follow each other, and O(N·(log n + D)) at most. A writer that
+  /// publishes faster than a try takes leaves `busy`. Where the block's sizes are not those of the
+  /// times and of the curve it is `wrong_dimension`.
+  Word sample_many(std::span<const core::Time> times, const SampleBlock& out) noexcept;
+
   /// The time before which what the last sample saw never changes, whatever its status.
   [[nodiscard]] core::Time settled_until() const noexcept { return head_.settled_until; }
 
@@ -80,7 +99,8 @@ class Sampler {
   /// revision. Returns `settled` or `provisional` for the whole; `before_history`, `no_data`,
   /// `busy`, `retired` or `wrong_dimension` leave `out` without segments. The segments are the
   /// curve as it was solved, before core::DimensionKinds::normalise; their acceleration steps are
-  /// those of what readers see. Allocates if `out` must grow.
+  /// those of what readers see. The step at the left end of the oldest segment on the board is not
+  /// known (empty): begin one segment earlier. Allocates if `out` must grow.
   [[nodiscard]] SampleStatus snapshot(core::Time from, core::Time to, Snapshot& out);
 
   /// The kinds of the board's dimensions.
@@ -95,51 +115,59 @@ class Sampler {
   /// What a comparison with the curve seen before has found.
   enum class Compared { same, changed, torn };
 
-  [[nodiscard]] SegmentCopy& current() noexcept { return copies_[current_]; }
-  [[nodiscard]] bool is_confirmed(Word r) noexcept;
+  [[nodiscard]] BoardSegment& current() noexcept { return copies_[current_]; }
+  [[nodiscard]] bool is_confirmed() noexcept;
   void confirm() noexcept;
   [[nodiscard]] Found locate(core::Time t) noexcept;
   [[nodiscard]] bool take(Word number) noexcept;
-  [[nodiscard]] bool spans(const SegmentCopy& segment, core::Time t) const noexcept;
-  [[nodiscard]] static Word near(const SegmentCopy& copy, core::Time t) noexcept;
+  [[nodiscard]] bool spans(const BoardSegment& segment, core::Time t) const noexcept;
+  [[nodiscard]] static Word near(const BoardSegment& copy, core::Time t) noexcept;
   [[nodiscard]] Word guess_by_pace(core::Time t) const noexcept;
   [[nodiscard]] Word number_by_hint(core::Time t) const noexcept;
+  [[nodiscard]] bool begin_of(Word number, core::Time& begin, bool& is_end) const noexcept;
   [[nodiscard]] bool number_by_cells(core::Time t, Word& number) const noexcept;
-  void read(const SegmentCopy& segment, double u, const core::StateRef& out) const noexcept;
-  [[nodiscard]] SampleStatus evaluate(const SegmentCopy& segment, core::Time t,
+  void read(const BoardSegment& segment, double u, const core::StateRef& out) const noexcept;
+  [[nodiscard]] SampleStatus evaluate(const BoardSegment& segment, core::Time t,
                                       const core::StateRef& out) const noexcept;
   [[nodiscard]] SampleStatus find(core::Time t, const core::StateRef& out) noexcept;
   [[nodiscard]] SampleStatus look_up(core::Time t, const core::StateRef& out) noexcept;
   [[nodiscard]] SampleStatus hold_first(const core::StateRef& out) noexcept;
-  [[nodiscard]] bool see(Word r) noexcept;
-  [[nodiscard]] bool see_after_gap(Word r) noexcept;
+  [[nodiscard]] bool see(const Look& look) noexcept;
   [[nodiscard]] Compared compare_with(const Head& before) noexcept;
-  [[nodiscard]] Compared compare_rest(SegmentCopy& last) noexcept;
-  [[nodiscard]] bool is_unchanged(const SegmentCopy& segment, const Head& before) noexcept;
+  [[nodiscard]] Compared compare_rest(BoardSegment& last) noexcept;
+  [[nodiscard]] bool is_unchanged(const BoardSegment& segment, const Head& before) noexcept;
   [[nodiscard]] bool fits(const core::StateRef& out) const noexcept;
-  [[nodiscard]] bool copy_whole(Word number, Word r, SegmentCopy& out) const;
+  [[nodiscard]] bool copy_segments(Word oldest, Word newest, Snapshot& out);
+  [[nodiscard]] bool finish_oldest_step(SegmentCopy& oldest);
   [[nodiscard]] SampleStatus from_own_copy(core::Time t, const core::StateRef& out) noexcept;
+  [[nodiscard]] SampleStatus see_newest() noexcept;
+  [[nodiscard]] bool evaluate_many(std::span<const core::Time> times,
+                                   const SampleBlock& out) noexcept;
+  [[nodiscard]] std::size_t evaluate_moving(std::span<const core::Time> times, std::size_t first,
+                                            const SampleBlock& out) noexcept;
 
-  const SegmentBoardReader* board_;
+  const KnotBoardReader* board_;
   StreamClock clock_;
   core::DimensionKinds kinds_;
   bool all_linear_;
   Head head_;                                     ///< bounds under the revision last seen whole
-  Word seen_ = 0;                                 ///< that revision
   core::Time sampled_until_ = core::Time::min();  ///< latest time sampled as executed
   bool revised_ = false;  ///< the curve before that time has been changed: not yet told
   Word confirmed_ = 0;    ///< revision that the current copy is known to be part of
   core::Time copied_settled_until_{};  ///< settled_until of that revision
   /// What most samples need of the current copy, as confirmed: where on it the curve moves, and
-  /// until when it is settled. Nowhere, unless it lies between two waypoints.
+  /// whether all of it is settled. Nowhere, unless it lies between two waypoints.
   struct AtHand {
     core::Time left{};
     core::Time right{};
-    core::Time settled_until{};
+    bool is_finished = false;
   };
   AtHand at_hand_;
-  std::array<SegmentCopy, 2> copies_;  ///< the current one, and one to copy into
+  std::array<BoardSegment, 2> copies_;  ///< the current one, and one to copy into
   std::size_t current_ = 0;
+  core::State state_;                       ///< scratch
+  std::vector<double> start_acceleration_;  ///< scratch
+  std::vector<double> end_acceleration_;    ///< scratch
 };
 
 }  // namespace splinecast::ipc

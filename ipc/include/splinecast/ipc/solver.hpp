@@ -13,27 +13,6 @@
 
 namespace splinecast::ipc {
 
-/// The memory that a step of a solver goes through, for whoever looks after many: where nothing of
-/// it is in a cache, a step mostly waits for one line after the other. Made when a stream is taken
-/// up, and of no use once its solver has detached.
-class SolverPlaces {
- public:
-  /// Asks for the solver's own objects.
-  void prefetch() const noexcept;
-  /// Asks for what they lead to, which must have arrived: what the next revision will be written
-  /// to and from.
-  void prefetch_behind(bool has_items) const noexcept { solver_->prefetch(has_items); }
-
- private:
-  friend class Solver;
-  using Bytes = std::span<const std::byte>;
-  SolverPlaces(const StreamSolver& solver, const std::array<Bytes, 6>& objects) noexcept
-      : solver_(&solver), objects_(objects) {}
-
-  const StreamSolver* solver_;
-  std::array<Bytes, 6> objects_;
-};
-
 /// Where to look whether a step of a solver would be of use; for whoever looks after many. Made
 /// anew after each step, and of no use once its solver has detached.
 class SolverWatch {
@@ -126,9 +105,6 @@ class Solver {
 
   /// What to look at before the next step; attached() only.
   [[nodiscard]] SolverWatch watch() const noexcept;
-
-  /// Likewise where its memory lies.
-  [[nodiscard]] SolverPlaces places() const noexcept;
 
   /// Replaces the contents of `out` by the first refusal for each reason since this solver
   /// attached, except those that an earlier call has given. O(1) unless an item was refused since

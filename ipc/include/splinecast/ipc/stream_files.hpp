@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "splinecast/ipc/segment_board.hpp"
+#include "splinecast/ipc/knot_board.hpp"
 #include "splinecast/ipc/status.hpp"
 #include "splinecast/ipc/stream_options.hpp"
 
@@ -21,6 +21,7 @@ struct StreamInfo {
   Word appended = 0;
   std::array<Word, kAppendStatuses> refused_by_producer{};  ///< by AppendStatus
   Head head;                                                ///< revision 0: nothing solved yet
+  std::array<Word, kStepBuckets> step_times{};  ///< steps of the solver that took 2ⁱ to 2ⁱ⁺¹ ns
   std::vector<RefusedItem> refusals;  ///< the last items refused, oldest first: kRefusalsKept,
                                       ///< fewer if the solver has overwritten some meanwhile
 };

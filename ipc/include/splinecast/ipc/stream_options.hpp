@@ -77,9 +77,6 @@ void require_same_clock(const RegionHeader& header, const std::string& stream);
 /// ring does: stream id, dimensions, their kinds, clock and start.
 void require_same_stream(const RegionHeader& ring, const RegionHeader& board);
 
-/// Writes a header to the beginning of a region that has no name yet.
-void write_header(std::span<std::byte> region, const RegionHeader& header) noexcept;
-
 /// Enters this process as the region's owner and counts its epoch up. Relaxed, like copy_header:
 /// the three words are for people, and a copy made meanwhile may hold some of the owner before.
 void enter_owner(std::span<std::byte> region, const RegionHeader& before) noexcept;

@@ -7,9 +7,9 @@
 #include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/sliding_window.hpp"
 #include "splinecast/ipc/clock.hpp"
+#include "splinecast/ipc/knot_board.hpp"
 #include "splinecast/ipc/published_curve.hpp"
 #include "splinecast/ipc/replacement_queue.hpp"
-#include "splinecast/ipc/segment_board.hpp"
 #include "splinecast/ipc/waypoint_ring.hpp"
 
 namespace splinecast::ipc {
@@ -29,8 +29,8 @@ struct LiveOptions {
   core::Time min_splice{5'000'000};    ///< length of the shortest splice
 };
 
-/// The solver without its regions: takes items from a ring, solves the window, publishes segments
-/// on a board. Without a thread or a clock of its own, so that simulated time, fuzzers and
+/// The solver without its regions: takes items from a ring, solves the window, publishes knots on a
+/// board. Without a thread or a clock of its own, so that simulated time, fuzzers and
 /// ThreadSanitizer drive the code that runs for real. Allocates when made only; `step` never blocks
 /// and makes no system call but the clock's.
 ///
@@ -54,15 +54,15 @@ class StreamSolver {
   /// stream. Goes on where the board says that a solver before it stood. Throws
   /// std::invalid_argument for window options out of range or a board too small for them, BadRegion
   /// if the board holds no curve that a solver can go on with.
-  StreamSolver(const WaypointRingReader& ring, SegmentBoardWriter& board,
-               const SegmentBoardReader& published, const core::WindowOptions& window,
+  StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& board,
+               const KnotBoardReader& published, const core::WindowOptions& window,
                const IngestLimits& limits, core::DimensionKinds kinds = {},
                const std::optional<LiveOptions>& live = std::nullopt);
 
   /// Takes what the ring holds, up to a bounded batch, and publishes the result as one revision; on
-  /// a live stream also publishes how far the curve is settled, when that is due. O(batch·K·D).
-  /// Whatever the ring holds, a step takes a bounded time and no more items than the ring has; what
-  /// is no item is refused. What it reads back of the board is checked as well.
+  /// a live stream also says how far the curve is settled, when that is due, which is no revision.
+  /// O(batch·K·D). Whatever the ring holds, a step takes a bounded time and no more items than the
+  /// ring has; what is no item is refused. What it reads back of the board is checked as well.
   StepResult step(const Clock& clock) noexcept;
 
   /// The head last committed.
@@ -74,10 +74,6 @@ class StreamSolver {
 
   /// When the next step is due even if no item comes; max() for never.
   [[nodiscard]] core::Time due() const noexcept;
-
-  /// Asks for what the next step will go through besides this object, its ring's and its board's;
-  /// with items to take that is O(K·D), else the head alone.
-  void prefetch(bool has_items) const noexcept;
 
   /// The smallest board for a settle lag.
   [[nodiscard]] static std::size_t min_capacity(std::size_t settle) noexcept;
@@ -104,18 +100,19 @@ class StreamSolver {
   void take_start_state(Word number) noexcept;
   void take_finish(Word number) noexcept;
   [[nodiscard]] bool is_starved() const noexcept;
-  [[nodiscard]] bool can_append(Word number) noexcept;
+  [[nodiscard]] bool can_follow(Word number, bool starved) noexcept;
   [[nodiscard]] std::optional<Refusal> has_right_form(
       const core::Waypoint& waypoint) const noexcept;
   [[nodiscard]] std::optional<Refusal> judge_time(core::Time time) const noexcept;
   void refuse(Word number, Refusal reason) noexcept;
-  void discard() noexcept;
   void check_commit(core::Time now) noexcept;
+  void store_settled(core::Time t) noexcept;
+  [[nodiscard]] core::Time settled_by_commit() const noexcept;
   StepResult publish(const Clock& clock, Word consumed) noexcept;
 
   const WaypointRingReader* ring_;
-  SegmentBoardWriter* board_;
-  const SegmentBoardReader* published_;
+  KnotBoardWriter* board_;
+  const KnotBoardReader* published_;
   IngestLimits limits_;
   std::optional<LiveOptions> live_;
   PublishedCurve curve_;
@@ -123,6 +120,10 @@ class StreamSolver {
   Head head_;
   bool lacks_head_ = false;  ///< the board has none of its revision: somebody else wrote to it
   core::Time settled_until_ = core::Time::min();  ///< what this step leaves alone lies before it
+  bool is_timed_ = false;                         ///< this step
+  core::Time started_{};                          ///< the clock when it began, if it is timed
+  core::Time settled_at_ = core::Time::min();     ///< the clock when settled_until was last stored
+  bool has_starved_ = false;                      ///< in this step
   /// Waypoints behind the first one of a run that shape its splice.
   static constexpr std::size_t kFollowers = 2;
   RingItem item_;

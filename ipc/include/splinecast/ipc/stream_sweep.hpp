@@ -108,7 +108,6 @@ class StreamSweep {
   static Files files_of(const std::string& stream);
   void take_up(const Clock& clock);
   void collect_calling();
-  void prefetch_ahead(std::size_t k) const noexcept;
   bool serve(std::size_t index, const Clock& clock);
   void tell_first_refusals(Solver& solver) noexcept;
   void release_detached();
@@ -148,7 +147,6 @@ class StreamSweep {
   std::size_t most_owned_;              ///< what RLIMIT_NOFILE allows
   std::vector<Watch> watches_;          ///< all that a sweep reads of an idle stream
   std::vector<Served> served_;          ///< likewise, index by index
-  std::vector<SolverPlaces> places_;    ///< likewise
   std::vector<std::size_t> calling_;    ///< of these, those that this sweep steps
   std::vector<ItemRefusal> refused_;    ///< scratch
   core::Time now_{};                    ///< of this sweep

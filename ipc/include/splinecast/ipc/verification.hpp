@@ -8,7 +8,7 @@
 #include "splinecast/core/condition.hpp"
 #include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/sliding_window.hpp"
-#include "splinecast/ipc/segment_board.hpp"
+#include "splinecast/ipc/board_segment.hpp"
 #include "splinecast/ipc/sent_items.hpp"
 
 namespace splinecast::ipc {
@@ -18,7 +18,7 @@ struct StreamRecord {
   core::WindowOptions window;
   core::DimensionKinds kinds;
   const SentItems& items;
-  std::span<const SegmentCopy> segments;  ///< settled ones from number 1, with step and waypoint
+  std::span<const SegmentCopy> segments;  ///< settled ones from number 1
   Head head;                              ///< the last one
   core::Condition end;                    ///< that the stream was finished with
 };
@@ -41,8 +41,8 @@ struct Verification {
 /// Solves a stream again from its items, with the decisions that its segments record (how many
 /// newer knots each knot had seen when it was last solved, where each run was entered, what was
 /// frozen at the finish) and compares every segment bit by bit: ends, order, kind, coefficients,
-/// acceleration step, the waypoint at its left end. Whatever the record holds, it returns; of an
-/// unfinished stream items behind the last segment are not missed. O(segments·K·D).
+/// the waypoint at its left end. Whatever the record holds, it returns; of an unfinished stream
+/// items behind the last segment are not missed. O(segments·K·D).
 ///
 /// A run that begins on a knot replaces the segment behind it, of which nothing else is left: there
 /// the state that it began with is taken from its splice.

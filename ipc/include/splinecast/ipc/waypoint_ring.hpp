@@ -198,9 +198,6 @@ class WaypointRingReader {
   [[nodiscard]] bool is_stop(Word i) const noexcept;
   [[nodiscard]] core::Time time(Word i) const noexcept;
 
-  /// Asks for the lines of item i.
-  void prefetch(Word i) const noexcept;
-
   /// Copies item i for an observer whom the producer does not wait for. Returns false if the item
   /// is, or may be, overwritten (O2); then `out` is of no use. Wait-free: O(D).
   [[nodiscard]] bool observe(Word i, RingItem& out) const noexcept;

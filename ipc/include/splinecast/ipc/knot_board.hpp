@@ -1,0 +1,347 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "splinecast/core/knot_ring.hpp"
+#include "splinecast/core/knot_segment.hpp"
+#include "splinecast/ipc/layout.hpp"
+#include "splinecast/ipc/publication.hpp"
+#include "splinecast/ipc/status.hpp"
+
+/// The knot board: the knots of a stream and the head that goes with each revision, over a span of
+/// bytes. One solver writes it, by publication.hpp; anybody reads. Knots are numbered from 1; knot
+/// n lies in slot n modulo the capacity, and there is no number in the slot: under revision r the
+/// head says which knots stand, and each slot belongs to one of them.
+///
+/// Segment n begins at knot n. It is made from knots n and n + 1 and ends where the next segment
+/// begins: at knot n + 1, or, where that knot is one at which none begins, at the one behind it. So
+/// a segment that was cut keeps both its knots, and its bits.
+///
+/// Orderings of the words outside the slots; those of the slots, of `settled until` and of the ring
+/// of changes are publication.hpp's:
+///
+/// - `tail` and `sleeping`: S3, P3 and the sleep of waypoint_ring.hpp. `tail` follows the commit,
+///   so that a solver that dies between the two has its items consumed: the next one stores it
+///   again.
+/// - `late` and `checked`, which are stored after the commit, when it is known whether it came too
+///   late: first `late`, if it did, then `checked`. If a writer dies before `checked`, its
+///   successor decides about that revision. Others load them relaxed: each is a number of its own.
+/// - Packed times: relaxed. They are a hint; the knot that they lead to decides.
+/// - Step times: relaxed. Each is a number of its own.
+/// - Refusals: one word each, which is never torn, stored before W3 of the head that counts it and
+///   loaded after R1. A later refusal, committed or not, overwrites the oldest one first; it is of
+///   a later item. So a word is the refusal of its index iff its item comes before that of the next
+///   index; the last one's item must come before the first item not consumed under that head.
+/// - `retired`: stored with release and loaded with acquire; nothing depends on more than the word.
+/// - What the writer loads of its own board is relaxed: it made these stores itself, or its
+///   predecessor did, whose death the kernel told by giving the owner's lock away.
+namespace splinecast::ipc {
+
+/// An item that the solver refused.
+struct RefusedItem {
+  Word item = 0;
+  Refusal reason{};
+};
+
+/// What goes with a knot besides its values.
+struct KnotNote {
+  core::SegmentForm form{};     ///< of the segment that begins here
+  bool is_waypoint = false;     ///< whether a waypoint stands here
+  bool arrives = false;         ///< the acceleration is that of the segment that ends here,
+  bool starts = false;          ///< of the one that begins here, or of both
+  std::uint32_t newer_knots{};  ///< that it had seen when it was solved: 0 … 127
+};
+
+/// A knot as a revision writes it. Spans hold one value per dimension.
+struct KnotRecord {
+  bool is_new = false;  ///< the knot comes to stand in its slot; else only its cell is written
+  KnotNote note;
+  core::Time time{};                       ///< of a new knot
+  core::Time begins{};                     ///< when the next segment begins, if none begins here
+  std::span<const double> position;        ///< of a new knot: its waypoint, else of the curve
+  std::span<const double> velocity;        ///<
+  std::span<const double> acceleration{};  ///< iff the note says that there is one
+  std::span<const double> residual{};      ///< iff the board smooths
+  Word item = 0;                           ///< of a splice: the run's first waypoint's, plus 1
+  const core::Prefix* prefix = nullptr;    ///< with `g`: the knot's row, where it has changed
+  std::span<const double> g{};
+};
+
+/// The solver's side. One thread of one process uses it; no function but the constructor allocates,
+/// and none blocks.
+class KnotBoardWriter {
+ public:
+  /// `region` holds a board of this layout and outlives the writer. Retires whatever a writer
+  /// before this one had not committed (T1), and makes the packed times those of the committed
+  /// knots again.
+  KnotBoardWriter(std::span<std::byte> region, const BoardLayout& layout);
+
+  [[nodiscard]] std::size_t capacity() const noexcept { return layout_.capacity; }
+
+  /// The last revision that was committed.
+  [[nodiscard]] Word revision() const noexcept { return revision_; }
+
+  /// Writes a knot for the next revision: at most once each. O(D).
+  void write(Word number, const KnotRecord& knot) noexcept;
+
+  /// Writes a committed knot between two others again of which only the velocity has changed: most
+  /// of what an append does. It is a waypoint at which a cubic begins. O(D).
+  void write_velocity(Word number, std::uint32_t newer_knots,
+                      std::span<const double> velocity) noexcept;
+
+  /// Writes a committed knot again with another form, and, where that is `none`, with the time at
+  /// which the next segment begins. Else nothing changes; readers see that its segment has. O(D).
+  void write_form(Word number, core::SegmentForm form, core::Time begins = {}) noexcept;
+
+  /// The form of a knot's segment, as the next revision will have it.
+  [[nodiscard]] core::SegmentForm form(Word number) const noexcept;
+
+  /// Whether all that was written for the next revision is what readers, and a solver that takes
+  /// over, accept: finite values within bounds. Else it must be discarded.
+  [[nodiscard]] bool is_sound() const noexcept { return is_sound_; }
+
+  /// Takes back what has been written for the next revision, as a takeover does (T1).
+  void discard() noexcept;
+
+  /// Notes a refusal for the next revision: the `index`-th of the stream, counted from 0.
+  void write_refusal(Word index, const RefusedItem& refusal) noexcept;
+
+  /// Makes what has been written visible, as the revision after the last one: W3. Sets
+  /// head.revision.
+  void commit(Head& head) noexcept;
+
+  /// Promises that no later revision changes anything before t: S1. Stores nothing where that has
+  /// been said already.
+  void store_settled(core::Time t) noexcept {
+    const Word word = to_word(t);
+    if (word == settled_) return;
+    settled_ = word;
+    store(control_[kSettledUntil], word, std::memory_order_release);
+  }
+
+  /// Items that the producer may overwrite: after the commit that consumed them, S3.
+  void store_tail(Word consumed) noexcept {
+    store(control_[kTail], consumed, std::memory_order_release);
+  }
+
+  /// Counts a step of so many nanoseconds.
+  void count_step(core::Time length) noexcept;
+
+  /// Notes, behind the commit, that the newest revision was compared with the clock, and whether it
+  /// came too late.
+  void store_checked(bool is_late) noexcept;
+
+  /// Whether the newest revision has been compared so, and whether it was found to be too late.
+  [[nodiscard]] bool is_checked() const noexcept;
+  [[nodiscard]] bool is_late() const noexcept;
+
+  /// For a solver about to sleep, or awake again: seq_cst, see waypoint_ring.hpp.
+  void store_sleeping(bool sleeping) noexcept {
+    store(control_[kSleeping], sleeping ? 1 : 0, std::memory_order_seq_cst);
+  }
+
+  /// Says that the region is of no more use.
+  void retire() noexcept { store(control_[kRetired], 1, std::memory_order_release); }
+
+  /// The word that waiting readers watch.
+  [[nodiscard]] const Word& revision_word() const noexcept { return control_[kRevision]; }
+
+ private:
+  /// What this writer knows of a slot without looking: which cell is the newest committed one, and
+  /// which node and row that one names.
+  struct SlotState {
+    std::uint8_t cell = 0;
+    std::uint8_t node = 0;
+    std::uint8_t row = 0;
+    std::uint8_t is_written = 0;  ///< for the next revision, which then names these:
+    std::uint8_t next_node = 0;
+    std::uint8_t next_row = 0;
+  };
+  /// A packed time that has been stored to for the next revision, and what it was before.
+  struct HeldTime {
+    std::size_t index;
+    Word time;
+  };
+
+  [[nodiscard]] std::size_t index_of(Word number) const noexcept {
+    return number & (layout_.capacity - 1);
+  }
+  [[nodiscard]] Word* slot(Word number) const noexcept;
+  [[nodiscard]] SlotView<Word> cells(Word number) const noexcept;
+  [[nodiscard]] SlotView<Word> head_cells() const noexcept;
+  [[nodiscard]] Word* claim(std::size_t index, Word note, bool is_new, bool has_row) noexcept;
+  void note_time(Word number, core::Time time) noexcept;
+  void read_state() noexcept;
+  void restore_times() noexcept;
+  void forget_written() noexcept;
+
+  BoardLayout layout_;
+  std::span<Word> control_;
+  std::span<Word> refusals_;
+  std::span<Word> times_;
+  std::span<Word> slots_;
+  Word revision_;
+  Word settled_;
+  std::size_t head_cell_ = 0;                           ///< the newest committed one
+  std::array<std::array<Word, kHeadWords>, 2> head_{};  ///< what both cells hold
+  std::vector<SlotState> states_;
+  std::vector<std::uint32_t> written_;  ///< slots, for the next revision
+  std::vector<HeldTime> held_times_;
+  bool is_sound_ = true;  ///< what has been written for the next revision
+};
+
+/// What a reader saw of the commit word and of the settled word, in this order of loads: S2, R1.
+struct Look {
+  core::Time settled_until{};
+  Word revision = 0;
+};
+
+/// A reader's own copy of a knot. Allocates when made only.
+class KnotCopy {
+ public:
+  KnotCopy(std::size_t dimensions, bool smooths)
+      : dimensions_(dimensions), smooths_(smooths), values_(4 * dimensions) {}
+
+  [[nodiscard]] bool is_there() const noexcept { return tag != 0; }
+  [[nodiscard]] std::span<const double> waypoint() const noexcept { return values(0); }
+  [[nodiscard]] std::span<const double> velocity() const noexcept { return values(1); }
+  [[nodiscard]] std::span<const double> acceleration() const noexcept {
+    return note.arrives || note.starts ? values(2) : std::span<const double>{};
+  }
+  [[nodiscard]] std::span<const double> residual() const noexcept {
+    return smooths_ ? values(3) : std::span<const double>{};
+  }
+  [[nodiscard]] core::SegmentEnd end() const noexcept {
+    return {time, waypoint(), velocity(), acceleration(), residual()};
+  }
+
+  Word tag = 0;          ///< of the cell that it was copied from; 0: nothing copied
+  std::size_t cell = 0;  ///< of its slot, 0 or 1
+  Word number = 0;
+  core::Time time{};
+  KnotNote note;
+  Word item = 0;  ///< of a splice: the run's first waypoint's, plus 1
+
+ private:
+  friend class KnotBoardReader;
+  [[nodiscard]] std::span<const double> values(std::size_t which) const noexcept {
+    return {values_.data() + which * dimensions_, dimensions_};
+  }
+
+  std::size_t dimensions_;
+  bool smooths_;
+  std::vector<double> values_;  ///< waypoint, velocity, acceleration, residual
+};
+
+/// A reader's side; no function blocks, allocates or stores. Every copy is taken under a revision
+/// `r` that the caller has loaded, and fails if the writer has gone on too far meanwhile, or if
+/// what lies there is nothing that a solver writes: whatever the bytes are, each call takes a
+/// bounded number of steps within the region.
+class KnotBoardReader {
+ public:
+  /// `region` holds a board of this layout and outlives the reader.
+  KnotBoardReader(std::span<const std::byte> region, const BoardLayout& layout) noexcept;
+
+  [[nodiscard]] std::size_t dimensions() const noexcept { return layout_.dimensions; }
+  [[nodiscard]] std::size_t capacity() const noexcept { return layout_.capacity; }
+  [[nodiscard]] bool smooths() const noexcept { return layout_.smooths; }
+
+  /// S2 and R1: how far the curve is settled, and the newest revision; 0: none yet.
+  [[nodiscard]] Look look() const noexcept {
+    const core::Time settled = to_time(load(control_[kSettledUntil], std::memory_order_acquire));
+    return {settled, load(control_[kRevision], std::memory_order_acquire)};
+  }
+  [[nodiscard]] Word revision() const noexcept {
+    return load(control_[kRevision], std::memory_order_acquire);
+  }
+  [[nodiscard]] const Word& revision_word() const noexcept { return control_[kRevision]; }
+  [[nodiscard]] bool retired() const noexcept {
+    return load(control_[kRetired], std::memory_order_acquire) != 0;
+  }
+
+  /// Items consumed, which the producer may overwrite: P3.
+  [[nodiscard]] Word tail() const noexcept {
+    return load(control_[kTail], std::memory_order_acquire);
+  }
+  /// Whether the solver sleeps; seq_cst, see waypoint_ring.hpp.
+  [[nodiscard]] bool sleeping() const noexcept {
+    return load(control_[kSleeping], std::memory_order_seq_cst) != 0;
+  }
+
+  /// How many of the solver's steps took 2ⁱ to 2ⁱ⁺¹ ns, at i.
+  [[nodiscard]] std::array<Word, kStepBuckets> step_times() const noexcept;
+
+  /// Asks for the lines that a reader with a copy of segment `number` will load of a revision it
+  /// has not seen, all at once: each has to come from the writer's core, and would else be waited
+  /// for one after the other. Loads nothing.
+  void prefetch(Word r, Word number) const noexcept;
+
+  /// Likewise for a segment anywhere: its knots' cells and nodes, of both revisions each, because
+  /// the tags, which say which ones count, would else be waited for first.
+  void prefetch_segment(Word number) const noexcept;
+
+  /// Copies what lookups need of the head under a look's revision: revision, first, newest, stop,
+  /// finished, settled_until; and the earliest changed_from of the revisions after `seen` up to
+  /// that one, min() if that many are not kept. The other members stay, and upon failure all of
+  /// them.
+  [[nodiscard]] bool copy_bounds(const Look& look, Word seen, Head& out) const noexcept;
+
+  /// Copies the whole head. Upon failure `out` stays as it is.
+  [[nodiscard]] bool copy_head(const Look& look, Head& out) const noexcept;
+
+  /// Copies knot `number` under r: it must stand on the board then. Upon failure `out.tag` is 0 and
+  /// the rest of no use. O(D).
+  [[nodiscard]] bool copy_knot(Word number, Word r, KnotCopy& out) const noexcept;
+
+  /// Whether a copy is what the board holds under r too: no words are copied again. K1 and K2; r is
+  /// no older than the revision that the copy was made under, and the knot stands under r.
+  [[nodiscard]] bool is_current(const KnotCopy& copy, Word r) const noexcept {
+    return copy.tag != 0 && is_newest(cells(copy.number), copy.cell, copy.tag, r);
+  }
+
+  /// Copies a knot's time and the form of the segment that begins there, under r.
+  [[nodiscard]] bool copy_time(Word number, Word r, core::Time& time,
+                               core::SegmentForm& form) const noexcept;
+
+  /// When the segment of knot `number` begins, from the packed times: a hint, to be confirmed.
+  [[nodiscard]] core::Time time_hint(Word number) const noexcept {
+    return to_time(load(times_[number & (layout_.capacity - 1)], std::memory_order_relaxed));
+  }
+
+  /// The refusal noted at `index`, counted from 0 over the stream's life; only the last
+  /// kRefusalsKept are there.
+  [[nodiscard]] RefusedItem refusal(Word index) const noexcept;
+
+  /// Copies the refusals that `head` counts from `from` on, oldest first. Returns how many there
+  /// still are, at most out.size(): these are the last ones, and those before them have been
+  /// overwritten.
+  [[nodiscard]] std::size_t copy_refusals(const Head& head, Word from,
+                                          std::span<RefusedItem> out) const noexcept;
+
+  /// Copies the row of a knot that has been copied, into `g`, and returns its scalars. For the one
+  /// writer only, who races with nobody.
+  [[nodiscard]] core::Prefix copy_row(const KnotCopy& knot, std::span<double> g) const noexcept;
+
+ private:
+  [[nodiscard]] const Word* slot(Word number) const noexcept;
+  [[nodiscard]] SlotView<const Word> cells(Word number) const noexcept {
+    return {slot(number), layout_.cell / sizeof(Word)};
+  }
+  [[nodiscard]] SlotView<const Word> head_cells() const noexcept {
+    return {control_.data() + kHeadSlot, kHeadWords};
+  }
+  [[nodiscard]] core::Time earliest_change(Word seen, Word r) const noexcept;
+
+  BoardLayout layout_;
+  std::span<const Word> control_;
+  std::span<const Word> refusals_;
+  std::span<const Word> times_;
+  std::span<const Word> slots_;
+};
+
+}  // namespace splinecast::ipc

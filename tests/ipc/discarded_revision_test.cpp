@@ -1,0 +1,295 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "splinecast/ipc/published_curve.hpp"
+#include "splinecast/ipc/settled_segments.hpp"
+#include "support/memory_stream.hpp"
+#include "support/method_trial.hpp"
+
+/// A revision that is discarded, because it came too late or its solver died, leaves no trace in
+/// what this solver or a later one computes: the curve has the bits of an undisturbed one.
+namespace splinecast::ipc {
+namespace {
+
+using core::Time;
+using std::chrono::milliseconds;
+using testing::Trial;
+
+constexpr std::size_t kDimensions = 2;
+constexpr std::size_t kFirstKnots = 20;  ///< of the run that a replacement cuts
+constexpr std::size_t kKnots = 40;
+constexpr Time kTick = milliseconds(10);
+
+/// A solver held up for hours between its first look at the clock and the one before the commit.
+class HeldUpClock final : public Clock {
+ public:
+  explicit HeldUpClock(Time now) : now_(now) {}
+  [[nodiscard]] Time now() const noexcept override {
+    return looks_++ == 0 ? now_ : now_ + std::chrono::hours(9);
+  }
+
+ private:
+  Time now_;
+  mutable int looks_ = 0;
+};
+
+enum class Disturbance { none, missed, missed_and_taken_over };
+
+/// A live stream whose revisions are all made as late as its disturbance says, and then in time.
+class Stream {
+ public:
+  Stream(const core::WindowOptions& how, Disturbance disturbance)
+      : disturbance_(disturbance),
+        stream_(kDimensions, how, 64, 256, {}, {}, LiveOptions{.history = std::chrono::hours(1)}),
+        trial_(testing::random_trial(5, kKnots, kDimensions, 4)) {
+    Time t = 3 * kTick;
+    for (Time& time : trial_.mesh.times) time = t += kTick;
+  }
+
+  /// Appends waypoints one by one, replaces the future with a run of `entered` waypoints, goes on,
+  /// and finishes. Returns all segments.
+  std::vector<SegmentCopy> play(std::size_t entered) {
+    const core::Waypoints waypoints = trial_.waypoints();
+    for (std::size_t i = 0; i < kFirstKnots; ++i) append(waypoints[i]);
+    std::vector<core::Waypoint> replacing;
+    for (std::size_t i = 0; i < entered; ++i) replacing.push_back(waypoints[kFirstKnots + i]);
+    const Time from = trial_.mesh.times[kFirstKnots - 1] - kTick / 2;
+    EXPECT_EQ(stream_.ring.writer.replace_from(from, replacing, solved()), AppendStatus::accepted);
+    step();
+    for (std::size_t i = kFirstKnots + entered; i < kKnots; ++i) append(waypoints[i]);
+    EXPECT_EQ(stream_.ring.writer.finish({core::ConditionKind::own, {}}, solved()),
+              AppendStatus::accepted);
+    step();
+    EXPECT_TRUE(stream_.solver.head().finished);
+    EXPECT_EQ(stream_.solver.head().refused, 0U);
+    EXPECT_EQ(stream_.solver.head().knots, kKnots);
+    SettledSegments settled(stream_.board.reader, true);
+    settled.look();
+    return {settled.segments().begin(), settled.segments().end()};
+  }
+
+ private:
+  [[nodiscard]] WaypointRingWriter::Solved solved() {
+    return {stream_.board.reader.tail(), stream_.board.reader.look().settled_until, &stream_.clock};
+  }
+  void append(const core::Waypoint& waypoint) {
+    EXPECT_EQ(stream_.ring.writer.append(waypoint, solved()), AppendStatus::accepted);
+    step();
+    stream_.clock.time += kTick;
+  }
+  void step() {
+    // Early enough for the waypoints to be ahead of what settles; then the clock follows them.
+    if (disturbance_ != Disturbance::none) {
+      EXPECT_TRUE(stream_.solver.step(HeldUpClock(stream_.clock.time)).missed);
+      if (disturbance_ == Disturbance::missed_and_taken_over) stream_.replace_solver();
+    }
+    EXPECT_TRUE(stream_.solver.step(stream_.clock).published);
+  }
+
+  Disturbance disturbance_;
+  testing::MemoryStream stream_;
+  Trial trial_;
+};
+
+void expect_same(const std::vector<SegmentCopy>& got, const std::vector<SegmentCopy>& wanted) {
+  ASSERT_EQ(got.size(), wanted.size());
+  for (std::size_t i = 0; i < got.size(); ++i) {
+    ASSERT_EQ(got[i].number, wanted[i].number) << i;
+    ASSERT_EQ(got[i].left, wanted[i].left) << i;
+    ASSERT_EQ(got[i].right, wanted[i].right) << i;
+    ASSERT_EQ(got[i].kind, wanted[i].kind) << i;
+    ASSERT_EQ(got[i].coefficients, wanted[i].coefficients) << i;
+    ASSERT_EQ(got[i].acceleration_step, wanted[i].acceleration_step) << i;
+    ASSERT_EQ(got[i].newer_knots, wanted[i].newer_knots) << i;
+    ASSERT_EQ(got[i].origin.item, wanted[i].origin.item) << i;
+  }
+}
+
+class DiscardedRevision : public ::testing::TestWithParam<const core::Method*> {
+ protected:
+  static core::WindowOptions options(std::size_t settle, core::Tail tail = core::Tail::bessel) {
+    core::WindowOptions how = testing::plain_window(*GetParam());
+    how.settle = std::max(settle, GetParam()->converges() ? 0 : GetParam()->look_ahead);
+    how.tail = tail;
+    how.held_before_start = true;
+    return how;
+  }
+  static void expect_no_trace(const core::WindowOptions& how, std::size_t entered) {
+    SCOPED_TRACE(::testing::Message()
+                 << "lag " << how.settle << ", tail " << static_cast<int>(how.tail) << ", "
+                 << entered << " knots entered");
+    const auto wanted = Stream(how, Disturbance::none).play(entered);
+    expect_same(Stream(how, Disturbance::missed).play(entered), wanted);
+    expect_same(Stream(how, Disturbance::missed_and_taken_over).play(entered), wanted);
+  }
+};
+
+TEST_P(DiscardedRevision, LeavesNoTraceWhateverTheLag) {
+  for (const std::size_t settle : {0U, 1U, 2U, 3U, 8U, 64U}) expect_no_trace(options(settle), 3);
+}
+
+TEST_P(DiscardedRevision, LeavesNoTraceWhateverTheTail) {
+  for (const core::Tail tail :
+       {core::Tail::bessel, core::Tail::parabolic, core::Tail::natural, core::Tail::rest}) {
+    expect_no_trace(options(4, tail), 2);
+  }
+}
+
+TEST_P(DiscardedRevision, LeavesNoTraceInRunsOfOneToFiveKnots) {
+  for (std::size_t entered = 1; entered <= 5; ++entered) {
+    for (const std::size_t settle : {0U, 2U, 8U}) expect_no_trace(options(settle), entered);
+  }
+}
+
+/// A curve and its board, without a solver: what is discarded may be anything, whatever follows.
+class Curve {
+ public:
+  explicit Curve(const core::WindowOptions& how)
+      : how_(how),
+        board_(kDimensions, 64, how.interpolant.method->family == core::Family::smoothing) {
+    take_over();
+  }
+
+  /// Publishes waypoints `from` to `to` of a trial, in one revision; first the curve is cut at
+  /// `entry`, if there is one.
+  void publish(const Trial& trial, std::size_t from, std::size_t to, std::optional<Time> entry) {
+    change(trial, from, to, entry);
+    curve_->write(head_);
+    ASSERT_TRUE(board_.writer.is_sound());
+    board_.writer.commit(head_);
+    curve_->committed(head_);
+  }
+  void finish() {
+    curve_->finish({core::ConditionKind::halt, {}}, Time::min());
+    head_.finished = true;
+    publish({}, 0, 0, std::nullopt);
+  }
+
+  /// The same, or a finish, discarded: by its own writer, or by the next one.
+  void disturb(const Trial& other, std::size_t from, std::size_t to, std::optional<Time> entry,
+               bool finishes, bool takes_over) {
+    change(other, from, to, entry);
+    if (finishes) curve_->finish({core::ConditionKind::halt, {}}, Time::min());
+    Head dropped = head_;
+    curve_->write(dropped);
+    if (takes_over) {
+      take_over();
+    } else {
+      board_.writer.discard();
+      curve_->restore(head_);
+    }
+    ASSERT_FALSE(curve_->is_damaged());
+  }
+
+  /// Everything that the board holds.
+  [[nodiscard]] std::vector<SegmentCopy> segments() const {
+    std::vector<SegmentCopy> all;
+    BoardSegment segment(kDimensions, board_.reader.smooths());
+    for (Word n = head_.first; n <= head_.newest && n > 0;) {
+      const auto taken = segment.take(board_.reader, head_, n);
+      if (taken == BoardSegment::Taken::none && n == head_.newest) break;
+      EXPECT_EQ(taken, BoardSegment::Taken::whole) << n;
+      if (taken != BoardSegment::Taken::whole) break;
+      segment.copy_to(all.emplace_back());
+      n = segment.next();
+    }
+    return all;
+  }
+
+ private:
+  void take_over() {
+    board_.replace_writer();
+    curve_.emplace(board_.writer, board_.reader, how_, core::DimensionKinds());
+    curve_->restore(head_);
+  }
+  void change(const Trial& trial, std::size_t from, std::size_t to, std::optional<Time> entry) {
+    if (entry) {
+      curve_->plan_entry(*entry);
+      curve_->enter_as_planned();
+    }
+    for (std::size_t i = from; i < to; ++i) curve_->append(trial.waypoints()[i], i);
+  }
+
+  core::WindowOptions how_;
+  testing::MemoryBoard board_;
+  std::optional<PublishedCurve> curve_;
+  Head head_;
+};
+
+/// A time at which the curve is cut: in the last interval before waypoint `from`.
+Time before_waypoint(const Trial& trial, std::size_t from) {
+  return trial.mesh.times[from - 1] - (trial.mesh.times[from - 1] - trial.mesh.times[from - 2]) / 3;
+}
+
+/// Publishes waypoints in revisions of one to three, enters runs of one to five knots, and
+/// finishes; beside it the same with revisions of other waypoints that are discarded.
+void expect_no_trace_of_others(const core::WindowOptions& how, std::uint64_t seed) {
+  SCOPED_TRACE(::testing::Message() << "lag " << how.settle << ", seed " << seed);
+  const Trial trial = testing::random_trial(seed, kKnots, kDimensions, 4);
+  Trial other = testing::random_trial(seed + 1000, kKnots, kDimensions, 4);
+  for (std::size_t i = 0; i < kKnots; ++i) other.mesh.times[i] = trial.mesh.times[i] + Time(1);
+  std::mt19937_64 random(seed);
+  Curve disturbed(how);
+  Curve undisturbed(how);
+  std::size_t since_entry = 0;
+  for (std::size_t next = 0; next < kKnots;) {
+    std::size_t count = 1 + random() % 3;
+    std::optional<Time> entry;
+    if (next > 3 && since_entry > random() % 6) {
+      entry = before_waypoint(trial, next);
+      count = 1 + random() % 5;
+      since_entry = 0;
+    }
+    const std::size_t to = std::min(next + count, kKnots);
+    for (int times = static_cast<int>(random() % 3); times > 0; --times) {
+      const std::size_t end = std::min<std::size_t>(next + 1 + random() % 4, kKnots);
+      const bool enters = next > 3 && random() % 3 == 0;
+      disturbed.disturb(other, next, end,
+                        enters ? std::optional(before_waypoint(trial, next)) : std::nullopt,
+                        random() % 4 == 0, random() % 2 == 0);
+    }
+    disturbed.publish(trial, next, to, entry);
+    undisturbed.publish(trial, next, to, entry);
+    expect_same(disturbed.segments(), undisturbed.segments());
+    if (::testing::Test::HasFatalFailure()) return;
+    since_entry += to - next;
+    next = to;
+  }
+  disturbed.disturb(other, 0, 0, std::nullopt, true, true);
+  disturbed.finish();
+  undisturbed.finish();
+  expect_same(disturbed.segments(), undisturbed.segments());
+}
+
+TEST_P(DiscardedRevision, OfOtherWaypointsLeavesNoTrace) {
+  std::uint64_t seed = 1;
+  for (const core::Tail tail :
+       {core::Tail::bessel, core::Tail::parabolic, core::Tail::natural, core::Tail::rest}) {
+    for (const std::size_t settle : {0U, 1U, 2U, 3U, 8U, 20U}) {
+      for (int round = 0; round < 3; ++round) {
+        expect_no_trace_of_others(options(settle, tail), seed++);
+        if (HasFatalFailure()) return;
+      }
+    }
+  }
+}
+
+std::vector<const core::Method*> streaming_methods() {
+  std::vector<const core::Method*> all;
+  for (const core::Method& method : core::methods()) {
+    if (method.streams()) all.push_back(&method);
+  }
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, DiscardedRevision, ::testing::ValuesIn(streaming_methods()),
+                         [](const auto& tested) { return std::string(tested.param->name); });
+
+}  // namespace
+}  // namespace splinecast::ipc
