@@ -231,9 +231,12 @@ Time before_waypoint(const Trial& trial, std::size_t from) {
 /// finishes; beside it the same with revisions of other waypoints that are discarded.
 void expect_no_trace_of_others(const core::WindowOptions& how, std::uint64_t seed) {
   SCOPED_TRACE(::testing::Message() << "lag " << how.settle << ", seed " << seed);
-  const Trial trial = testing::random_trial(seed, kKnots, kDimensions, 4);
-  Trial other = testing::random_trial(seed + 1000, kKnots, kDimensions, 4);
-  for (std::size_t i = 0; i < kKnots; ++i) other.mesh.times[i] = trial.mesh.times[i] + Time(1);
+  constexpr std::size_t kMore = 3;  // behind the last one that is published
+  const Trial trial = testing::random_trial(seed, kKnots + kMore, kDimensions, 4);
+  Trial other = testing::random_trial(seed + 1000, kKnots + kMore, kDimensions, 4);
+  for (std::size_t i = 0; i < kKnots + kMore; ++i) {
+    other.mesh.times[i] = trial.mesh.times[i] + Time(1);
+  }
   std::mt19937_64 random(seed);
   Curve disturbed(how);
   Curve undisturbed(how);
@@ -261,7 +264,8 @@ void expect_no_trace_of_others(const core::WindowOptions& how, std::uint64_t see
     since_entry += to - next;
     next = to;
   }
-  disturbed.disturb(other, 0, 0, std::nullopt, true, true);
+  const std::size_t more = 1 + random() % kMore;
+  disturbed.disturb(other, kKnots, kKnots + more, std::nullopt, random() % 2 == 0, true);
   disturbed.finish();
   undisturbed.finish();
   expect_same(disturbed.segments(), undisturbed.segments());
