@@ -4,7 +4,6 @@
 #include <bit>
 #include <cstring>
 #include <limits>
-#include <optional>
 
 #include "splinecast/ipc/publication.hpp"
 
@@ -124,17 +123,16 @@ Range control_of(std::span<const Word> region, std::size_t first, std::size_t co
   return {begin, begin + count};
 }
 
-/// The layout of a board's image, as far as its header is sound.
-std::optional<ipc::BoardLayout> layout_of(std::span<const Word> region) {
-  if (region.size() < kBody) return std::nullopt;
+/// The layout of a board's image; of no slots where its header is not sound.
+ipc::BoardLayout layout_of(std::span<const Word> region) {
+  if (region.size() < kBody) return {};
   const ipc::RegionHeader header = ipc::decode_header(region);
   const bool has_size = header.dimensions >= 1 && header.dimensions <= core::kMaxDimensions &&
                         header.capacity >= 1 && header.capacity <= kMaxWords;
-  if (!has_size) return std::nullopt;
+  if (!has_size) return {};
   const auto layout = ipc::BoardLayout::of(header.dimensions, header.capacity, header.control,
                                            ipc::smooths(header));
-  if (layout.bytes > region.size_bytes()) return std::nullopt;
-  return layout;
+  return layout.bytes > region.size_bytes() ? ipc::BoardLayout{} : layout;
 }
 
 /// A part of a knot's slot: a tag, the rest of a cell, a node, what is beside a cell, a row.
@@ -160,8 +158,8 @@ Range part_of_slot(const ipc::BoardLayout& layout, std::mt19937_64& random) {
 /// A part of a region in which a word is to be changed. Most of a header's words lie in its first
 /// 256 bytes; most of what a region holds is not 0.
 Range part_of(std::span<const Word> region, bool is_board, std::mt19937_64& random) {
-  const auto board = is_board ? layout_of(region) : std::nullopt;
-  switch (below(board ? 10 : 5, random)) {
+  const ipc::BoardLayout board = is_board ? layout_of(region) : ipc::BoardLayout{};
+  switch (below(board.capacity > 0 ? 10 : 5, random)) {
     case 0:
       return kFixed;
     case 1:
@@ -177,9 +175,9 @@ Range part_of(std::span<const Word> region, bool is_board, std::mt19937_64& rand
     case 6:
       return control_of(region, ipc::kChanges, ipc::kChangesKept);
     case 7:
-      return {board->times / kWord, board->times / kWord + board->capacity};
+      return {board.times / kWord, board.times / kWord + board.capacity};
     default:
-      return part_of_slot(*board, random);
+      return part_of_slot(board, random);
   }
 }
 
@@ -208,14 +206,14 @@ Word other_tag(Word tag, Word committed, std::mt19937_64& random) {
 
 /// Changes a tag of the head or of a knot.
 void mutate_tag(std::vector<Word>& board, std::mt19937_64& random) {
-  const auto layout = layout_of(board);
-  if (!layout) return;
+  const ipc::BoardLayout layout = layout_of(board);
+  if (layout.capacity == 0) return;
   const Range control = control_of(board, 0, ipc::kBoardControlWords);
   const std::size_t cell = below(2, random);
   std::size_t at = control.begin + ipc::kHeadSlot + cell * ipc::kHeadWords;
   if (below(8, random) != 0) {
-    const std::size_t slot = below(layout->capacity, random);
-    at = (layout->slots + slot * layout->stride + cell * layout->cell) / kWord;
+    const std::size_t slot = below(layout.capacity, random);
+    at = (layout.slots + slot * layout.stride + cell * layout.cell) / kWord;
   }
   if (at < board.size()) board[at] = other_tag(board[at], board[control.begin], random);
 }
