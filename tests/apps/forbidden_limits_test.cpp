@@ -38,7 +38,7 @@ void fill(const PrivateSharedMemory& memory, std::uint64_t left) {
 TEST_F(ForbiddenLimits, FullSharedMemoryIsRefusedWithNeededAndFreeBytes) {
   const PrivateSharedMemory memory("8m");
   fill(memory, 4096);
-  const std::vector<std::string> ring{"cannot reserve 77824 bytes", "4096 are free"};
+  const std::vector<std::string> ring{"cannot reserve 81920 bytes", "4096 are free"};
   attack_in_vain(memory, replay(), 1, ring);
   attack_in_vain(memory, replay({"--embedded"}), 1, ring);
   attack_in_vain(memory, {"demo", "--seconds", "0.2"}, 1, {"cannot reserve", "4096 are free"});
@@ -101,8 +101,8 @@ TEST_F(ForbiddenLimits, AFileSizeLimitIsRefusedAndNotDiedOf) {
   const Confinement little{.limits = {"--fsize=65536"}};
   const PrivateSharedMemory memory("8m");
   const std::string limit = "65536 (RLIMIT_FSIZE)";
-  attack_in_vain(memory, replay(), 1, {"cannot reserve 77824 bytes", limit}, little);
-  attack_in_vain(memory, replay({"--embedded"}), 1, {"cannot reserve 77824 bytes", limit}, little);
+  attack_in_vain(memory, replay(), 1, {"cannot reserve 81920 bytes", limit}, little);
+  attack_in_vain(memory, replay({"--embedded"}), 1, {"cannot reserve 81920 bytes", limit}, little);
   attack_in_vain(memory, {"demo", "--seconds", "0.2"}, 1, {limit}, little);
   ASSERT_EQ(memory.run(replay({"--embedded"}), {}).code, 0);
   attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"}, little);
