@@ -60,17 +60,16 @@ PATHS = [
         entries=["splinecast::ipc::Sampler::sample*"],
         purposes=[
             (r"core::evaluate", "the polynomial and three derivatives, 7 dimensions"),
-            (r"copy_segment", "copies the next segment out of shared memory, once every 10 samples"),
+            (r"KnotBoardReader|KnotCopy|fetch|load_values", "copies the next knot out of shared memory, once every 10 samples"),
+            (r"BoardSegment|build_segment|write_chord|magnitude|Between", "makes the segment of its knots, once every 10 samples"),
             (r"copy_bounds|see\(", "takes over the bounds of a revision"),
             (r"Sampler::", "looks whether there is a new revision, finds the segment, time within it, status"),
         ],
-        lines="""Cache lines of shared memory that it loads (64 bytes, 7 dimensions): one, with `revision` and `retired`, while
-the revision stands and the time lies in the segment used last. Another segment adds 6: the tags of its two cells, of
-which one is the first of the 5 lines (8 + 28 words) that hold a cubic; after a jump it asks for those of both cells at
-once. A new revision adds 5: the tags of the head's two
-cells with the bounds beside them, the `changed_from` of the revisions missed, and the tags of the own segment's two
-cells; these, and the tags of the next segment, it asks for at once before it waits for the first of them. It stores
-nothing.
+        lines="""Cache lines of shared memory that it loads (64 bytes, 7 dimensions): one, with `revision`, `retired` and
+`settled until`, while the revision stands and the time lies in the segment used last. The next segment adds 3: the two
+cells of its right knot, whose tags are in the same lines as the velocities, and a node. A new revision adds 7: the tags of
+the head's two cells with the bounds beside them, the `changed from` of the revisions missed, and the cells of the segment's
+two knots; these it asks for at once before it waits for the first of them. It stores nothing.
 """,
     ),
     Path(
@@ -78,21 +77,20 @@ nothing.
         benchmark="counted/publish",
         entries=["splinecast::ipc::Producer::append*", "splinecast::ipc::Solver::step*"],
         purposes=[
-            (r"SegmentBoardWriter::(write|claim|slot|prefetch)", "writes the segments that the waypoint changes into spare cells"),
-            (r"build_segment|KnotRing::interval|write_cubic", "coefficients from knot velocities"),
-            (r"acceleration|write_step", "the acceleration step published at each knot"),
-            (r"PublishedCurve|KnotRing::knot|SlidingWindow::(segment|newer|left)", "which segments changed, and what goes with each"),
-            (r"back_substitute|solve|eliminate|close|TridiagonalSolver|SlidingWindow|KnotRing|write_chord|end_intervals",
+            (r"KnotBoardWriter::commit", "the head, and the commit"),
+            (r"KnotBoardWriter|magnitude|store_summed", "writes the knots that the waypoint changes into spare cells"),
+            (r"acceleration", "the acceleration that the stop begins with"),
+            (r"PublishedCurve|KnotRing::knot|SlidingWindow::(segment|newer|left)", "which knots changed, and what goes with each"),
+            (r"append_behind|back_substitute|solve|eliminate|close|TridiagonalSolver|SlidingWindow|KnotRing|write_chord|end_intervals",
              "the window: forward row, tail, K backward rows"),
             (r"stop_tail|stop_time", "the stop tail"),
-            (r"SegmentBoardWriter::commit", "the head, and the commit"),
             (r"Waypoint|Producer|is_finite|judge_interval", "the ring: checks, one item in, one item out"),
             (r"StreamSolver|Solver::step|Quaternion|DimensionKinds", "the step: what to take, whether to"),
         ],
         lines="""Cache lines, K = 8, 7 dimensions: the producer stores 2 of the ring's item and 1 with `head`, and loads the 2 with
-`tail` and `sleeping`; the solver loads 3 of the ring and stores, for each of the K + 2 segments that a waypoint changes,
-9 of a cell (10 of the stop tail's) and 1 in ten of the packed times; of the head 6 or 7, `revision` and `tail`: about 105
-lines and 650 words in all, each word a store of its own, because readers may look at any time.
+`tail` and `sleeping`; the solver loads 3 of the ring and stores one cell for each of the K + 1 knots that a waypoint
+solves, a node, a row, the acceleration of the stop, 1 in eight of the packed times, 2 of the head, `changed from`,
+`revision` with `settled until`, and `tail`: about 17 lines and 110 words.
 """,
     ),
 ]
@@ -101,19 +99,15 @@ lines and 650 words in all, each word a store of its own, because readers may lo
 # What stands in the way of a target, by the beginning of its subject's name; told where it is missed.
 LIMITS = {
     "roundtrip/": """- `roundtrip/…`: a ping moves two lines. A round trip moves at least four, one after the other: the commit word (for
-  `solver` the ring's `head` before it), the head of the revision with the tags of the segments near by, the words of one
-  of them, and the acknowledgement. Before the commit, `publish` takes what the table of times says: some 650 words are
-  stored on about 105 lines, of which the reader's core has taken some meanwhile. Most of the words are the K + 1 open
-  segments, all of which a waypoint changes. `settle:0` shows what is left of the trip without them. iceoryx moves the
-  waypoint alone and solves nothing.
+  `solver` the ring's `head` before it), the bounds with the tags of the knots near by, and the acknowledgement; and before
+  the commit, `publish` takes what the table of times says. iceoryx moves the waypoint alone and solves nothing.
+""",
+    "publish": """- `publish`: the instructions above. About 470 of them are the window's own; the rest is what a step asks and writes besides.
 """,
     "streams:1000/busy": """- `streams:1000/busy`: 100,000 waypoints a second in a tenth of a core leave 1 µs for each; `publish` in the table of times
-  has everything in the caches, and here nothing is. By one trace of its loads and stores (valgrind's lackey, x86-64,
-  K = 8), a step with a waypoint goes through 208 lines of its stream's own, 118 of them in the regions, on some 20 pages:
-  13 kB, and a thousand streams make 13 MB of it. The streams are also published anew every half freeze-ahead, at sweeps
-  of 1 ms 300,000 times a second in all, which goes through 34 lines each. So 31 million lines a second come from
-  beyond this core's own caches, 3 ns each if a tenth of a core were to do. The solver fetches them ahead, several at
-  once.
+  has everything in the caches, and here nothing is.
+""",
+    "sample_many": """- `sample_many`: the polynomials of a horizon are made anew in each call, one for five times here.
 """,
     "sample": """- `sample`: the time that the target leaves beside the bare polynomial (`floor/eval`) is what status, lookup and copy
   of the table above may take together.
