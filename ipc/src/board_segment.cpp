@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
+#include "splinecast/core/magnitude.hpp"
 #include "splinecast/core/state.hpp"
 
 namespace splinecast::ipc {
@@ -12,18 +12,6 @@ namespace {
 /// Largest sum of magnitudes of a segment's coefficients: within it no polynomial of ours leaves
 /// the range of a double. What KnotBoardWriter accepts makes none so large.
 constexpr double kLargestSum = 1e200;
-
-/// A sum of magnitudes: at least the largest of them, and NaN if one of them is NaN. Four sums, for
-/// vectors.
-double magnitude(std::span<const double> values) noexcept {
-  std::array<double, 4> sums{};
-  std::size_t i = 0;
-  for (; i + 4 <= values.size(); i += 4) {
-    for (std::size_t k = 0; k < 4; ++k) sums[k] += std::abs(values[i + k]);
-  }
-  for (; i < values.size(); ++i) sums[0] += std::abs(values[i]);
-  return sums[0] + sums[1] + (sums[2] + sums[3]);
-}
 
 /// Whether the note of a knot has the acceleration that a form needs there.
 bool has_start(core::SegmentForm form, const KnotNote& note) noexcept {
@@ -105,7 +93,7 @@ bool BoardSegment::build(const Head& head) noexcept {
   core::build_segment(form, left_.end(), right, segment_);
   const std::size_t values =
       static_cast<std::size_t>(segment_.order) * segment_.acceleration_step.size();
-  return magnitude(std::span(segment_.coefficients).first(values)) <= kLargestSum;
+  return core::magnitude_of(std::span(segment_.coefficients).first(values)) <= kLargestSum;
 }
 
 bool BoardSegment::is_current(const KnotBoardReader& board, const Head& head) const noexcept {

@@ -3,35 +3,13 @@
 #include <cmath>
 
 #include "knot_tag.hpp"
+#include "splinecast/core/magnitude.hpp"
 #include "splinecast/ipc/knot_board.hpp"
 
 namespace splinecast::ipc {
 namespace {
 
 constexpr unsigned kRefusalItemShift = 8;
-
-/// Largest sum of magnitudes of what is kept of a knot. Values within ±core::kLargestValue at the
-/// shortest intervals make none so large, and within it every segment stays within what readers
-/// accept, whatever the interval.
-constexpr double kLargestSum = 1e150;
-
-/// A sum of magnitudes: at least the largest of them, and NaN if one of them is NaN. Four sums, for
-/// vectors.
-double magnitude(std::span<const double> values) noexcept {
-  std::array<double, 4> sums{};
-  std::size_t i = 0;
-  for (; i + 4 <= values.size(); i += 4) {
-    for (std::size_t k = 0; k < 4; ++k) sums[k] += std::abs(values[i + k]);
-  }
-  for (; i < values.size(); ++i) sums[0] += std::abs(values[i]);
-  return sums[0] + sums[1] + (sums[2] + sums[3]);
-}
-
-bool is_sound(const KnotRecord& knot) noexcept {
-  return magnitude(knot.position) + magnitude(knot.velocity) + magnitude(knot.acceleration) +
-             magnitude(knot.residual) <=
-         kLargestSum;
-}
 
 }  // namespace
 
@@ -40,11 +18,17 @@ KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout&
       control_(words_at(region, layout.control, kBoardControlWords)),
       refusals_(words_at(region, layout.refusals, kRefusalsKept)),
       times_(words_at(region, layout.times, layout.capacity)),
-      slots_(words_at(region, layout.slots, layout.capacity * layout.stride / sizeof(Word))),
       revision_(load(control_[kRevision], std::memory_order_relaxed)),
       settled_(load(control_[kSettledUntil], std::memory_order_relaxed)),
-      states_(layout.capacity) {
-  written_.reserve(layout.capacity);
+      states_(layout.capacity),
+      written_(layout.capacity),
+      at_{.words =
+              words_at(region, layout.slots, layout.capacity * layout.stride / sizeof(Word)).data(),
+          .mask = layout.capacity - 1,
+          .slot_words = layout.stride / sizeof(Word),
+          .cell_words = layout.cell / sizeof(Word),
+          .states = states_.data(),
+          .written = written_.data()} {
   held_times_.reserve(layout.capacity);
   retire_uncommitted(head_cells(), revision_);
   for (Word number = 0; number < layout_.capacity; ++number) {
@@ -52,14 +36,6 @@ KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout&
   }
   read_state();
   restore_times();
-}
-
-Word* KnotBoardWriter::slot(Word number) const noexcept {
-  return slots_.data() + index_of(number) * (layout_.stride / sizeof(Word));
-}
-
-SlotView<Word> KnotBoardWriter::cells(Word number) const noexcept {
-  return {slot(number), layout_.cell / sizeof(Word)};
 }
 
 SlotView<Word> KnotBoardWriter::head_cells() const noexcept {
@@ -77,9 +53,7 @@ void KnotBoardWriter::read_state() noexcept {
   for (Word number = 0; number < layout_.capacity; ++number) {
     const Tags tags = cells(number).tags(std::memory_order_relaxed);
     const std::size_t c = tags.newest(revision_);
-    states_[number] = {.cell = static_cast<std::uint8_t>(c),
-                       .node = static_cast<std::uint8_t>(node_of(tags.of[c])),
-                       .row = static_cast<std::uint8_t>(row_of(tags.of[c]))};
+    states_[number] = static_cast<SlotState>(tags.of[c] & kTagPartsMask) | (c == 0 ? 0 : kCellBit);
   }
 }
 
@@ -91,10 +65,10 @@ void KnotBoardWriter::restore_times() noexcept {
   if (head.newest == 0 || head.newest - head.first >= layout_.capacity) return;
   Word begins = 0;
   for (Word number = head.newest; number >= head.first && number > 0; --number) {
-    const SlotState state = states_[index_of(number)];
-    const Word tag = load(cells(number).cell(state.cell)[kCellTag], std::memory_order_relaxed);
+    const std::size_t c = (states_[index_of(number)] & kCellBit) != 0 ? 1 : 0;
+    const Word tag = load(cells(number).cell(c)[kCellTag], std::memory_order_relaxed);
     const Word* const node =
-        slot(number) + (layout_.nodes + state.node * layout_.node) / sizeof(Word);
+        slot(number) + (layout_.nodes + node_of(tag) * layout_.node) / sizeof(Word);
     const bool is_end = note_of(tag).form == core::SegmentForm::none && number < head.newest;
     if (!is_end) begins = load(node[kNodeTime], std::memory_order_relaxed);
     Word& hint = times_[index_of(number)];
@@ -104,24 +78,35 @@ void KnotBoardWriter::restore_times() noexcept {
   }
 }
 
+/// What a slot will be once the next revision is committed, for which it has been written.
+KnotBoardWriter::SlotState KnotBoardWriter::next_state(const Slots& slots,
+                                                       std::size_t index) noexcept {
+  std::size_t i = slots.written_count - 1;
+  while (slots.written[i].index != index) --i;
+  return slots.written[i].next;
+}
+
 /// W1: claims the spare cell of a slot. A node or row is never stored to while a cell with a
 /// standing tag names it: the committed cell names the other one, and this is the spare's.
-inline Word* KnotBoardWriter::claim(std::size_t index, Word note, bool is_new,
-                                    bool has_row) noexcept {
-  SlotState& state = states_[index];
-  if (state.is_written == 0) {
-    state.is_written = 1;
-    written_.push_back(static_cast<std::uint32_t>(index));
+/// `changed`: whether node and row are other ones than the committed cell's.
+inline KnotBoardWriter::Claimed KnotBoardWriter::claim(Slots& slots, Word number, Word tag,
+                                                       SlotState changed) noexcept {
+  const std::size_t index = number & slots.mask;
+  const SlotState state = slots.states[index];
+  const SlotState next = (state & ~kWrittenBit) ^ (kCellBit | changed);
+  slots.states[index] = state | kWrittenBit;
+  std::size_t place = slots.written_count;
+  if ((state & kWrittenBit) != 0) {
+    do --place;
+    while (slots.written[place].index != index);
+  } else {
+    ++slots.written_count;
   }
-  state.next_node = state.node ^ static_cast<std::uint8_t>(is_new);
-  state.next_row = state.row ^ static_cast<std::uint8_t>(is_new || has_row);
-  const std::size_t spare = 1U - state.cell;
-  Word* const cell = slots_.data() + index * (layout_.stride / sizeof(Word)) +
-                     spare * (layout_.cell / sizeof(Word));
-  const Word tag = (revision_ + 1) << kTagRevisionShift | note | state.next_node |
-                   static_cast<Word>(state.next_row) << kTagRowBit;
-  store(cell[kCellTag], tag, std::memory_order_release);
-  return cell;
+  slots.written[place] = {static_cast<std::uint32_t>(index), next};
+  Word* const slot = slots.slot(index);
+  Word* const cell = (next & kCellBit) != 0 ? slot + slots.cell_words : slot;
+  store(cell[kCellTag], tag | (next & kTagPartsMask), std::memory_order_release);
+  return {slot, cell, next};
 }
 
 void KnotBoardWriter::note_time(Word number, core::Time time) noexcept {
@@ -131,83 +116,98 @@ void KnotBoardWriter::note_time(Word number, core::Time time) noexcept {
   store(hint, to_word(time), std::memory_order_relaxed);
 }
 
-void KnotBoardWriter::write_velocity(Word number, std::uint32_t newer_knots,
-                                     std::span<const double> velocity) noexcept {
+void KnotBoardWriter::write_velocities(Word first, std::uint32_t newer_knots,
+                                       const core::KnotVelocities& velocities) noexcept {
   constexpr Word kNote =
       static_cast<Word>(core::SegmentForm::cubic) << kTagFormShift | Word{1} << kTagWaypointBit;
-  const Word note = kNote | static_cast<Word>(newer_knots & kTagNewerMask) << kTagNewerShift;
-  Word* const cell = claim(index_of(number), note, false, false);
-  store_values(cell + kCellVelocity, velocity);
-  double sum = 0;
-  for (const double v : velocity) sum += std::abs(v);
-  is_sound_ = is_sound_ && sum <= kLargestSum;
+  const Word tag = next_tag() | kNote;
+  const std::size_t dimensions = layout_.dimensions;
+  const double* values = velocities.values;
+  // What is stored could else be taken for a change of what is known of the slots.
+  Slots slots = at_;
+  for (std::size_t i = 0; i < velocities.count; ++i, values += velocities.stride) {
+    const Word newer = (newer_knots - i) & kTagNewerMask;
+    const Claimed claimed = claim(slots, first + i, tag | newer << kTagNewerShift, 0);
+    store_values(claimed.cell + kCellVelocity, {values, dimensions});
+  }
+  at_.written_count = slots.written_count;
+  written_sum_ += core::magnitude_of({velocities.values, velocities.count * velocities.stride});
 }
 
 void KnotBoardWriter::write(Word number, const KnotRecord& knot) noexcept {
-  is_sound_ = is_sound_ && ipc::is_sound(knot);
+  double sum = 0;
   const bool has_row = knot.prefix != nullptr;
-  Word* const cell = claim(index_of(number), pack_note(knot.note), knot.is_new, has_row);
-  const SlotState state = states_[index_of(number)];
-  Word* const at = slot(number);
+  const SlotState changed = static_cast<SlotState>((knot.is_new ? kTagNodeMask : 0) |
+                                                   (knot.is_new || has_row ? kTagRowMask : 0));
+  const Claimed claimed = claim(at_, number, next_tag() | pack_note(knot.note), changed);
   if (knot.is_new) {
-    Word* const node = at + (layout_.nodes + state.next_node * layout_.node) / sizeof(Word);
+    Word* const node =
+        claimed.slot + (layout_.nodes + node_of(claimed.next) * layout_.node) / sizeof(Word);
     put(node[kNodeTime], to_word(knot.time));
-    store_values(node + kNodePosition, knot.position);
+    store_summed(node + kNodePosition, knot.position, sum);
   }
-  store_values(cell + kCellVelocity, knot.velocity);
-  store_values(cell + kCellVelocity + layout_.dimensions, knot.residual);
+  store_summed(claimed.cell + kCellVelocity, knot.velocity, sum);
+  if (!knot.residual.empty()) {
+    store_summed(claimed.cell + kCellVelocity + layout_.dimensions, knot.residual, sum);
+  }
   if (!knot.acceleration.empty()) {
-    const std::size_t spare = 1 - state.cell;
-    Word* const beside = at + (layout_.beside + spare * layout_.beside_bytes) / sizeof(Word);
+    Word* const beside =
+        claimed.slot +
+        (layout_.beside + claimed.which_cell() * layout_.beside_bytes) / sizeof(Word);
     put(beside[kBesideItem], knot.item);
-    store_values(beside + kBesideAcceleration, knot.acceleration);
+    store_summed(beside + kBesideAcceleration, knot.acceleration, sum);
   }
+  written_sum_ += sum;
   const bool is_end = knot.note.form == core::SegmentForm::none;
   if (knot.is_new || is_end) note_time(number, is_end ? knot.begins : knot.time);
   if (!has_row) return;
   // Only writers read it; the lock that one takes over from the other orders their accesses.
-  Word* const row = at + (layout_.rows + state.next_row * layout_.row) / sizeof(Word);
-  const core::SmoothingRow& factors = knot.prefix->smoothing;
-  is_sound_ = is_sound_ && std::isfinite(magnitude(knot.g) + knot.prefix->gamma);
+  Word* const row =
+      claimed.slot + (layout_.rows + row_of(claimed.next) * layout_.row) / sizeof(Word);
   put(row[kRowGamma], to_word(knot.prefix->gamma));
-  store_values(row + kRowG, knot.g);
-  if (!layout_.smooths) return;
-  const std::array<double, 3> scalars{factors.pivot, factors.lower1, factors.lower2};
-  is_sound_ = is_sound_ && std::isfinite(magnitude(scalars));
-  store_values(row + kRowG + layout_.dimensions, scalars);
+  double row_sum = std::abs(knot.prefix->gamma);
+  store_summed(row + kRowG, knot.g, row_sum);
+  if (layout_.smooths) {
+    const core::SmoothingRow& factors = knot.prefix->smoothing;
+    const std::array scalars{factors.pivot, factors.lower1, factors.lower2};
+    store_summed(row + kRowG + layout_.dimensions, scalars, row_sum);
+  }
+  row_sum_ += row_sum;
 }
 
 void KnotBoardWriter::write_form(Word number, core::SegmentForm form, core::Time begins) noexcept {
-  const SlotState before = states_[index_of(number)];
-  const Word* const committed = cells(number).cell(before.cell);
+  const std::size_t c = (states_[index_of(number)] & kCellBit) != 0 ? 1 : 0;
+  const Word* const committed = cells(number).cell(c);
   KnotNote note = note_of(load(committed[kCellTag], std::memory_order_relaxed));
   note.form = form;
-  Word* const cell = claim(index_of(number), pack_note(note), false, false);
-  for (std::size_t i = kCellVelocity; i < layout_.cell / sizeof(Word); ++i) {
-    put(cell[i], load(committed[i], std::memory_order_relaxed));
+  const Claimed claimed = claim(at_, number, next_tag() | pack_note(note), 0);
+  for (std::size_t i = kCellVelocity; i < at_.cell_words; ++i) {
+    put(claimed.cell[i], load(committed[i], std::memory_order_relaxed));
   }
   if (note.arrives || note.starts) {
-    Word* const beside = slot(number) + layout_.beside / sizeof(Word);
+    Word* const beside = claimed.slot + layout_.beside / sizeof(Word);
     const std::size_t words = layout_.beside_bytes / sizeof(Word);
     for (std::size_t i = 0; i < words; ++i) {
-      put(beside[(1 - before.cell) * words + i],
-          load(beside[before.cell * words + i], std::memory_order_relaxed));
+      put(beside[claimed.which_cell() * words + i],
+          load(beside[c * words + i], std::memory_order_relaxed));
     }
   }
   if (form == core::SegmentForm::none) note_time(number, begins);
 }
 
 core::SegmentForm KnotBoardWriter::form(Word number) const noexcept {
-  const SlotState state = states_[index_of(number)];
-  const std::size_t c = state.is_written != 0 ? 1 - state.cell : state.cell;
+  const SlotState committed = states_[index_of(number)];
+  const SlotState state =
+      (committed & kWrittenBit) != 0 ? next_state(at_, index_of(number)) : committed;
+  const std::size_t c = (state & kCellBit) != 0 ? 1 : 0;
   return note_of(load(cells(number).cell(c)[kCellTag], std::memory_order_relaxed)).form;
 }
 
 void KnotBoardWriter::discard() noexcept {
   retire_uncommitted(head_cells(), revision_);
-  for (const std::size_t index : written_) {
-    retire_uncommitted(cells(index), revision_);
-    states_[index].is_written = 0;
+  for (const WrittenSlot& slot : written()) {
+    retire_uncommitted(cells(slot.index), revision_);
+    states_[slot.index] &= ~kWrittenBit;
   }
   // The oldest last: a time may have been stored to twice.
   for (std::size_t i = held_times_.size(); i-- > 0;) {
@@ -217,9 +217,10 @@ void KnotBoardWriter::discard() noexcept {
 }
 
 void KnotBoardWriter::forget_written() noexcept {
-  written_.clear();
+  at_.written_count = 0;
   held_times_.clear();
-  is_sound_ = true;
+  written_sum_ = 0;
+  row_sum_ = 0;
 }
 
 void KnotBoardWriter::write_refusal(Word index, const RefusedItem& refusal) noexcept {
@@ -233,37 +234,18 @@ void KnotBoardWriter::commit(Head& head) noexcept {
   head.revision = r;
   const std::size_t spare = 1 - head_cell_;
   std::array<Word, kHeadWords>& held = head_[spare];
-  std::array<Word, kHeadWords> words;
-  words.fill(0);
-  encode(kHeadRows, head, words.data());
-  words[0] = r << kTagRevisionShift;
   Word* const cell = head_cells().cell(spare);
-  store(cell[0], words[0], std::memory_order_release);                     // W1
+  held[0] = r << kTagRevisionShift;
+  store(cell[0], held[0], std::memory_order_release);                      // W1
   put(control_[kChanges + r % kChangesKept], to_word(head.changed_from));  // C1
   // What the cell holds already stands: it was stored before this revision's tag was, by this
   // writer or by one whose lock it has taken over, and whoever acquires that tag sees it.
-  const auto put_changed = [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) {
-      if (words[i] == held[i]) continue;
-      held[i] = words[i];
-      put(cell[i], words[i]);
-    }
-  };
-  constexpr std::size_t kOften = 2 * kCacheLine / sizeof(Word);
-  put_changed(1, kOften);
-  Word differs = 0;
-  for (std::size_t i = kOften; i < kHeadWords; ++i) differs |= words[i] ^ held[i];
-  if (differs != 0) put_changed(kOften, kHeadWords);
+  encode_changes(kHeadRows, head, held.data(),
+                 [cell](std::size_t i, Word word) { put(cell[i], word); });
   store(control_[kRevision], r, std::memory_order_release);  // W3
   revision_ = r;
   head_cell_ = spare;
-  for (const std::size_t index : written_) {
-    SlotState& state = states_[index];
-    state.cell ^= 1;
-    state.node = state.next_node;
-    state.row = state.next_row;
-    state.is_written = 0;
-  }
+  for (const WrittenSlot& slot : written()) states_[slot.index] = slot.next;
   forget_written();
 }
 

@@ -13,6 +13,9 @@ inline constexpr unsigned kTagStartsBit = 7;
 inline constexpr unsigned kTagNewerShift = 8;
 inline constexpr Word kTagNewerMask = 127;
 inline constexpr unsigned kTagRowBit = 15;
+inline constexpr Word kTagNodeMask = 1;
+inline constexpr Word kTagRowMask = Word{1} << kTagRowBit;
+inline constexpr Word kTagPartsMask = kTagNodeMask | kTagRowMask;
 inline constexpr Word kTagNoteMask = ((Word{1} << kTagRowBit) - 1) & ~Word{1};
 
 [[nodiscard]] inline Word pack_note(const KnotNote& note) noexcept {

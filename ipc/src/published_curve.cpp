@@ -289,10 +289,11 @@ void PublishedCurve::append(const core::Waypoint& waypoint, Word item) noexcept 
   window_.append(waypoint);
   has_changes_ = true;
   // What has settled leaves the window and is written once, with its last value.
-  while (open_ < window_.settled_knots()) {
-    if (is_entry_open()) write_entry();
-    write_knot(open_++);
-  }
+  const std::size_t settled = window_.settled_knots();
+  if (open_ >= settled) return;
+  if (is_entry_open()) write_entry();
+  write_knots(open_, settled);
+  open_ = settled;
 }
 
 void PublishedCurve::finish(const core::Condition& end, core::Time earliest) noexcept {
@@ -356,6 +357,20 @@ std::size_t PublishedCurve::plain_knots() const noexcept {
   return is_plain ? committed_knots_ - look_ahead_ : 0;
 }
 
+/// Writes knots of the run as the window has them now, from `first` to the one before `end`.
+void PublishedCurve::write_knots(std::size_t first, std::size_t end) noexcept {
+  const std::size_t plain_end = std::min(plain_knots(), end);
+  std::size_t i = first;
+  for (; i < std::min(std::max<std::size_t>(kept_, 1), end); ++i) write_knot(i);
+  if (i < plain_end) note_change(window_.time(i - 1));
+  while (i < plain_end) {
+    const auto velocities = window_.velocities(i, plain_end - i);
+    board_->write_velocities(number_of(i), window_.newer_knots_seen(i), velocities);
+    i += velocities.count;
+  }
+  for (; i < end; ++i) write_knot(i);
+}
+
 /// Writes knot i of the run as the window has it now.
 void PublishedCurve::write_knot(std::size_t i) noexcept {
   const core::Knot knot = window_.knot(i);
@@ -394,7 +409,7 @@ void PublishedCurve::write_knot(std::size_t i) noexcept {
   board_->write(number_of(i), record);
   const bool was_stop = i + 1 == committed_knots_ && !is_newest;
   if (i >= kept_) {
-    note_change(i > 0 ? window_.knot(i - 1).time : knot.time);
+    note_change(i > 0 ? window_.time(i - 1) : knot.time);
   } else if (was_stop || window_.finished()) {
     note_change(knot.time);
   }
@@ -410,15 +425,7 @@ void PublishedCurve::write(Head& head) noexcept {
   if (knots == 0 && !is_entered) return;
   if (besides_ == 0) {
     if (is_entry_open()) write_entry();
-    const std::size_t plain = plain_knots();
-    for (std::size_t i = open_; i < knots; ++i) {
-      if (i >= kept_ && i > 0 && i < plain) {
-        board_->write_velocity(number_of(i), window_.newer_knots_seen(i), window_.velocity(i));
-        note_change(window_.time(i - 1));
-      } else {
-        write_knot(i);
-      }
-    }
+    write_knots(open_, knots);
     newest_ = knots > 0 ? number_of(knots - 1) : run_;
     if (knots == 0) {
       stop_ = window_.write_stop(segment_.acceleration_step);
@@ -434,14 +441,17 @@ void PublishedCurve::write(Head& head) noexcept {
   head.changed_from = std::min(head.changed_from, changed_from_);
   changed_from_ = core::Time::max();
   // Never back: a replacement drops knots, but the slots that they took are not given back.
-  first_ = std::max<Word>({first_, 1, newest_ - std::min<Word>(newest_, board_->capacity()) + 1});
+  const Word kept = newest_ - std::min<Word>(newest_, board_->capacity()) + 1;
+  if (kept > first_) {
+    first_ = kept;
+    // A segment begins at the first knot: where none does, the one before has been lost.
+    if (first_ < newest_ && board_->form(first_) == SegmentForm::none) ++first_;
+  }
   head.newest = newest_;
   head.stop = stop_;
   head.run = run_;
   head.run_knots = knots;
   head.is_entered = is_entered;
-  // A segment begins at the first knot: where none does, the one before has been lost.
-  if (first_ < newest_ && board_->form(first_) == SegmentForm::none) ++first_;
   head.first = first_;
 }
 

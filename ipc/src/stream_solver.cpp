@@ -264,8 +264,10 @@ void StreamSolver::take_waypoint(Word number) noexcept {
   if (const auto refusal = judge_time(waypoint.time)) return refuse(number, *refusal);
   const bool starved = is_starved();
   const auto before = starved ? curve_.plan_entry(settled_until_) : curve_.newest_position();
-  curve_.kinds().continue_from(before, item_.waypoint_values());  // what `waypoint` looks at
-  if (!is_finite(waypoint)) return refuse(number, Refusal::not_finite);
+  if (!curve_.kinds().all_linear()) {
+    curve_.kinds().continue_from(before, item_.waypoint_values());  // what `waypoint` looks at
+    if (!is_finite(waypoint)) return refuse(number, Refusal::not_finite);
+  }
   // It may be out of reach with the acceleration allowed.
   if (!can_follow(number, starved)) return refuse(number, Refusal::too_late);
   if (starved) curve_.enter_as_planned();
@@ -391,7 +393,8 @@ StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   head_.changed_from = core::Time::max();
   curve_.write(head_);
   if (!board_->is_sound()) return {};
-  head_.committed = clock.now();
+  // Nothing is compared with the commit time of a recorded stream.
+  head_.committed = is_timed_ ? clock.now() : std::max(head_.committed, clock.about_now());
   if (live_ && head_.changed_from <= head_.committed) {
     take_back(head_.misses + 1);
     return {.missed = true};

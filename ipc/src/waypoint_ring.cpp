@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "splinecast/core/magnitude.hpp"
 #include "splinecast/ipc/errors.hpp"
 
 namespace splinecast::ipc {
@@ -30,15 +31,15 @@ bool fits(std::span<const double> values, std::size_t dimensions) noexcept {
 }  // namespace
 
 bool is_finite(std::span<const double> values) noexcept {
-  // Each one is looked at: mostly all are, and so no branch is needed.
-  bool all = true;
-  for (const double value : values) all = core::is_usable(value) && all;
-  return all;
+  // Mostly even their sum is usable.
+  return core::is_usable(core::magnitude_of(values)) ||
+         std::ranges::all_of(values, core::is_usable);
 }
 
 bool is_finite(const core::Waypoint& waypoint) noexcept {
-  return is_finite(waypoint.position) && is_finite(waypoint.velocity) &&
-         is_finite(waypoint.acceleration);
+  return is_finite(waypoint.position) &&
+         (waypoint.velocity.empty() || is_finite(waypoint.velocity)) &&
+         (waypoint.acceleration.empty() || is_finite(waypoint.acceleration));
 }
 
 core::Waypoint RingItem::waypoint() const noexcept {

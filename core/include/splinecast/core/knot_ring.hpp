@@ -45,6 +45,13 @@ struct Knot {
   std::span<const double> residual;      ///< waypoint − position; empty unless the method smooths
 };
 
+/// Velocities of consecutive knots: D values each, `stride` values from one knot to the next.
+struct KnotVelocities {
+  const double* values = nullptr;
+  std::size_t stride = 0;
+  std::size_t count = 0;
+};
+
 /// Allocates arrays that begin on a cache line.
 template <typename T>
 struct LineAllocator {
@@ -171,6 +178,13 @@ class KnotRing {
   [[nodiscard]] std::size_t place_of(std::size_t i) const noexcept { return (i & mask_) * stride_; }
   /// How many knots up to i, itself included, lie one behind the other in the arrays.
   [[nodiscard]] std::size_t contiguous(std::size_t i) const noexcept { return (i & mask_) + 1; }
+
+  /// The velocities of up to `count` knots from i on that lie one behind the other.
+  [[nodiscard]] KnotVelocities velocities(std::size_t i, std::size_t count) const noexcept {
+    return {.values = values_.data() + offset(i, kVelocity),
+            .stride = stride_,
+            .count = std::min(count, slots() - (i & mask_))};
+  }
 
   /// Where the curve passes knot i, and its chord slope from there to knot i+1.
   [[nodiscard]] std::span<const double> position(std::size_t i) const noexcept {

@@ -161,10 +161,12 @@ class SlidingWindow {
   /// What is kept of knot i, which must still be in the window: what `restore` needs.
   [[nodiscard]] Knot knot(std::size_t i) const noexcept { return knots_.knot(i); }
 
-  /// Time and velocity of knot i, as above.
+  /// Time of knot i, as above.
   [[nodiscard]] Time time(std::size_t i) const noexcept { return knots_.row(i).time; }
-  [[nodiscard]] std::span<const double> velocity(std::size_t i) const noexcept {
-    return knots_.values(i, KnotRing::kVelocity);
+
+  /// Velocities of up to `count` knots from i on, as above: at least that of the first.
+  [[nodiscard]] KnotVelocities velocities(std::size_t i, std::size_t count) const noexcept {
+    return knots_.velocities(i, count);
   }
 
   /// How many newer knots knot i had seen when its velocity was last solved.

@@ -23,6 +23,9 @@ class Clock {
   virtual ~Clock() = default;
 
   [[nodiscard]] virtual core::Time now() const noexcept = 0;
+
+  /// The same to within some milliseconds, never later: cheaper where that is enough.
+  [[nodiscard]] virtual core::Time about_now() const noexcept { return now(); }
 };
 
 /// The instant when a timeout that begins now has passed; the end of time for very long ones.
@@ -34,9 +37,15 @@ class Clock {
 /// CLOCK_MONOTONIC.
 class MonotonicClock final : public Clock {
  public:
-  [[nodiscard]] core::Time now() const noexcept override {
+  [[nodiscard]] core::Time now() const noexcept override { return read(CLOCK_MONOTONIC); }
+  [[nodiscard]] core::Time about_now() const noexcept override {
+    return read(CLOCK_MONOTONIC_COARSE);
+  }
+
+ private:
+  [[nodiscard]] static core::Time read(clockid_t clock) noexcept {
     timespec time{};
-    clock_gettime(CLOCK_MONOTONIC, &time);
+    clock_gettime(clock, &time);
     return core::Time(std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec);
   }
 };

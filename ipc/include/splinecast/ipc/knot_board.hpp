@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -80,6 +81,11 @@ class KnotBoardWriter {
   /// before this one had not committed (T1), and makes the packed times those of the committed
   /// knots again.
   KnotBoardWriter(std::span<std::byte> region, const BoardLayout& layout);
+  KnotBoardWriter(const KnotBoardWriter&) = delete;
+  KnotBoardWriter& operator=(const KnotBoardWriter&) = delete;
+  KnotBoardWriter(KnotBoardWriter&&) noexcept = default;
+  KnotBoardWriter& operator=(KnotBoardWriter&&) noexcept = default;
+  ~KnotBoardWriter() = default;
 
   [[nodiscard]] std::size_t capacity() const noexcept { return layout_.capacity; }
 
@@ -89,10 +95,12 @@ class KnotBoardWriter {
   /// Writes a knot for the next revision: at most once each. O(D).
   void write(Word number, const KnotRecord& knot) noexcept;
 
-  /// Writes a committed knot between two others again of which only the velocity has changed: most
-  /// of what an append does. It is a waypoint at which a cubic begins. O(D).
-  void write_velocity(Word number, std::uint32_t newer_knots,
-                      std::span<const double> velocity) noexcept;
+  /// Writes committed knots between others again of which only the velocities have changed: most
+  /// of what an append does. They are consecutive, beginning with `first`, waypoints at which
+  /// cubics begin, and were solved together: the first one had seen so many newer knots, each other
+  /// one fewer. O(D) each.
+  void write_velocities(Word first, std::uint32_t newer_knots,
+                        const core::KnotVelocities& velocities) noexcept;
 
   /// Writes a committed knot again with another form, and, where that is `none`, with the time at
   /// which the next segment begins. Else nothing changes; readers see that its segment has. O(D).
@@ -103,7 +111,9 @@ class KnotBoardWriter {
 
   /// Whether all that was written for the next revision is what readers, and a solver that takes
   /// over, accept: finite values within bounds. Else it must be discarded.
-  [[nodiscard]] bool is_sound() const noexcept { return is_sound_; }
+  [[nodiscard]] bool is_sound() const noexcept {
+    return written_sum_ <= kLargestSum && std::isfinite(row_sum_);
+  }
 
   /// Takes back what has been written for the next revision, as a takeover does (T1).
   void discard() noexcept;
@@ -152,15 +162,47 @@ class KnotBoardWriter {
   [[nodiscard]] const Word& revision_word() const noexcept { return control_[kRevision]; }
 
  private:
-  /// What this writer knows of a slot without looking: which cell is the newest committed one, and
-  /// which node and row that one names.
-  struct SlotState {
-    std::uint8_t cell = 0;
-    std::uint8_t node = 0;
-    std::uint8_t row = 0;
-    std::uint8_t is_written = 0;  ///< for the next revision, which then names these:
-    std::uint8_t next_node = 0;
-    std::uint8_t next_row = 0;
+  /// Largest sum of magnitudes of what one revision writes. Values within ±core::kLargestValue at
+  /// the shortest intervals make none so large, and within it every segment stays within what
+  /// readers accept, whatever the interval.
+  static constexpr double kLargestSum = 1e150;
+
+  /// What this writer knows of a slot without looking: the node and the row that the newest
+  /// committed cell names, as in its tag; which cell that is; and whether the slot has been written
+  /// for the next revision.
+  using SlotState = std::uint32_t;
+  static constexpr SlotState kCellBit = 1U << 16;
+  static constexpr SlotState kWrittenBit = 1U << 17;
+
+  /// A slot that has been written for the next revision, and its state when that is committed.
+  struct WrittenSlot {
+    std::uint32_t index;
+    SlotState next;
+  };
+
+  /// Where the slots lie, and what is known of them.
+  struct Slots {
+    Word* words;
+    std::size_t mask;
+    std::size_t slot_words;
+    std::size_t cell_words;
+    SlotState* states;
+    WrittenSlot* written;           ///< each once
+    std::size_t written_count = 0;  ///< at most as many as there are slots
+
+    [[nodiscard]] Word* slot(std::size_t index) const noexcept {
+      return words + index * slot_words;
+    }
+  };
+
+  /// A slot whose spare cell has been claimed for the next revision.
+  struct Claimed {
+    Word* slot;
+    Word* cell;
+    SlotState next;
+
+    /// Which one of the two parts of each kind is written.
+    [[nodiscard]] std::size_t which_cell() const noexcept { return (next & kCellBit) != 0 ? 1 : 0; }
   };
   /// A packed time that has been stored to for the next revision, and what it was before.
   struct HeldTime {
@@ -168,13 +210,19 @@ class KnotBoardWriter {
     Word time;
   };
 
-  [[nodiscard]] std::size_t index_of(Word number) const noexcept {
-    return number & (layout_.capacity - 1);
+  [[nodiscard]] std::size_t index_of(Word number) const noexcept { return number & at_.mask; }
+  [[nodiscard]] Word* slot(Word number) const noexcept { return at_.slot(index_of(number)); }
+  [[nodiscard]] SlotView<Word> cells(Word number) const noexcept {
+    return {slot(number), at_.cell_words};
   }
-  [[nodiscard]] Word* slot(Word number) const noexcept;
-  [[nodiscard]] SlotView<Word> cells(Word number) const noexcept;
   [[nodiscard]] SlotView<Word> head_cells() const noexcept;
-  [[nodiscard]] Word* claim(std::size_t index, Word note, bool is_new, bool has_row) noexcept;
+  [[nodiscard]] static Claimed claim(Slots& slots, Word number, Word tag,
+                                     SlotState changed) noexcept;
+  [[nodiscard]] static SlotState next_state(const Slots& slots, std::size_t index) noexcept;
+  [[nodiscard]] Word next_tag() const noexcept { return (revision_ + 1) << kTagRevisionShift; }
+  [[nodiscard]] std::span<const WrittenSlot> written() const noexcept {
+    return std::span(written_).first(at_.written_count);
+  }
   void note_time(Word number, core::Time time) noexcept;
   void read_state() noexcept;
   void restore_times() noexcept;
@@ -184,15 +232,16 @@ class KnotBoardWriter {
   std::span<Word> control_;
   std::span<Word> refusals_;
   std::span<Word> times_;
-  std::span<Word> slots_;
   Word revision_;
   Word settled_;
   std::size_t head_cell_ = 0;                           ///< the newest committed one
   std::array<std::array<Word, kHeadWords>, 2> head_{};  ///< what both cells hold
   std::vector<SlotState> states_;
-  std::vector<std::uint32_t> written_;  ///< slots, for the next revision
+  std::vector<WrittenSlot> written_;
+  Slots at_;  ///< in the region and in these
   std::vector<HeldTime> held_times_;
-  bool is_sound_ = true;  ///< what has been written for the next revision
+  double written_sum_ = 0;  ///< of the magnitudes of what readers see of the next revision
+  double row_sum_ = 0;      ///< of those of its rows
 };
 
 /// What a reader saw of the commit word and of the settled word, in this order of loads: S2, R1.

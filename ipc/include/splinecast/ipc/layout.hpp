@@ -220,7 +220,7 @@ struct Head {
   Word consumed = 0;         ///< ring items taken
   Word knots = 0;            ///< waypoints interpolated, replaced ones too
   core::Time newest_knot{};  ///< time of the newest waypoint, or of the state that a run begins in
-  core::Time committed{};    ///< the solver's clock at the commit
+  core::Time committed{};    ///< the solver's clock at the commit; of a recorded stream, roughly
   Word run_frozen = 0;       ///< waypoints of the run that were frozen when this revision was made
   bool is_entered = false;   ///< the run begins in a given state
   bool starved = false;      ///< a live stream's settled time has passed its newest knot
@@ -254,7 +254,8 @@ inline constexpr std::tuple kHeadRows{
                                   "time of the newest waypoint, or of the state that a run begins "
                                   "in, ns"},
     MemberRow<&Head::committed>{"committed", FieldWriter::owner,
-                                "the solver's clock at the commit, ns"},
+                                "the solver's clock at the commit, ns; of a recorded stream to "
+                                "within some milliseconds"},
     MemberRow<&Head::run_frozen>{"frozen", FieldWriter::owner,
                                  "waypoints of the run that were frozen when this revision was "
                                  "made"},

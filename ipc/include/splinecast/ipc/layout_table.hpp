@@ -146,6 +146,34 @@ void encode_row(const FieldRow& row, const Struct& /*from*/, Word*& to) noexcept
   to += row.size.words;
 }
 
+/// Calls `changed(index, word)` where a word is not the one held, and holds it.
+inline void take_word(Word word, std::size_t index, Word* held, const auto& changed) noexcept {
+  if (word == held[index]) return;
+  held[index] = word;
+  changed(index, word);
+}
+
+template <auto Member, typename Struct>
+[[gnu::always_inline]] inline void encode_changed_row(const MemberRow<Member>& /*row*/,
+                                                      const Struct& from, Word* held,
+                                                      std::size_t& at,
+                                                      const auto& changed) noexcept {
+  using Of = MemberOf<Member>;
+  if constexpr (Of::is_flag) {
+    take_word(from.*Member ? 1 : 0, at, held, changed);
+  } else {
+    std::array<Word, Of::words> words;
+    std::memcpy(words.data(), &(from.*Member), sizeof(from.*Member));
+    for (std::size_t i = 0; i < words.size(); ++i) take_word(words[i], at + i, held, changed);
+  }
+  at += Of::words;
+}
+template <typename Struct>
+void encode_changed_row(const FieldRow& row, const Struct& /*from*/, Word* /*held*/,
+                        std::size_t& at, const auto& /*changed*/) noexcept {
+  at += row.size.words;
+}
+
 template <auto Member, typename Struct>
 void decode_row(const MemberRow<Member>& /*row*/, const Word*& from, Struct& to) noexcept {
   using Of = MemberOf<Member>;
@@ -168,6 +196,16 @@ void decode_row(const FieldRow& row, const Word*& from, Struct& /*to*/) noexcept
 template <typename Rows, typename Struct>
 void encode(const Rows& rows, const Struct& from, Word* to) noexcept {
   std::apply([&](const auto&... row) { (detail::encode_row(row, from, to), ...); }, rows);
+}
+/// The same, where `held` are the words as they were: only those that differ are written, and
+/// `changed(index, word)` is called for each of them.
+template <typename Rows, typename Struct>
+void encode_changes(const Rows& rows, const Struct& from, Word* held,
+                    const auto& changed) noexcept {
+  std::size_t at = 0;
+  std::apply(
+      [&](const auto&... row) { (detail::encode_changed_row(row, from, held, at, changed), ...); },
+      rows);
 }
 template <typename Rows, typename Struct>
 void decode(const Rows& rows, const Word* from, Struct& to) noexcept {

@@ -139,6 +139,7 @@ class PublishedCurve {
                    std::span<const double> position, core::Time begins = {}) noexcept;
   void write_entry() noexcept;
   [[nodiscard]] std::size_t plain_knots() const noexcept;
+  void write_knots(std::size_t first, std::size_t end) noexcept;
   void write_knot(std::size_t i) noexcept;
   void note_change(core::Time from) noexcept;
   void keep_settled() noexcept;

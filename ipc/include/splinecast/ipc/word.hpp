@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -110,6 +111,16 @@ inline void store_values(Word* to, std::span<const double> values) noexcept {
   copy_each(to, values.data(), values.size(), [](Word& word, double value) {
     store(word, to_word(value), std::memory_order_release);
   });
+}
+
+/// The same, and adds their magnitudes to a sum: see core::Magnitude.
+inline void store_summed(Word* to, std::span<const double> values, double& sum) noexcept {
+  double own = sum;
+  copy_each(to, values.data(), values.size(), [&own](Word& word, double value) {
+    store(word, to_word(value), std::memory_order_release);
+    own += std::abs(value);
+  });
+  sum = own;
 }
 
 /// Loads values with acquire, each from a word of its own from `from` on.
