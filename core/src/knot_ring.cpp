@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 
+#include "cubic.hpp"
 #include "dimension_lanes.hpp"
 #include "smoothing_system.hpp"
 #include "splinecast/core/state.hpp"
@@ -33,7 +34,7 @@ void write_chord(std::span<const double> from, std::span<const double> to, doubl
     using Lane = typename decltype(lane)::type;
     const auto x0 = load_lane<Lane>(from.data() + first);
     const auto x1 = load_lane<Lane>(to.data() + first);
-    store_lane<Lane>(slope.data() + first, (x1 - x0) / h);
+    store_lane<Lane>(slope.data() + first, chord_slope(x0, x1, h));
   });
 }
 

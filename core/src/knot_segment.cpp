@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 
+#include "cubic.hpp"
+#include "dimension_lanes.hpp"
 #include "smoothing_system.hpp"
 #include "splinecast/core/knot_ring.hpp"
 #include "splinecast/core/splice.hpp"
 #include "splinecast/core/state.hpp"
+#include "vector_clones.hpp"
 
 namespace splinecast::core {
 namespace {
@@ -55,6 +58,25 @@ struct Between {
   }
 };
 
+/// The cubic between two knots that the curve passes: what build_segment makes of them, in one go.
+SPLINECAST_VECTOR_CLONES
+void build_cubic(const SegmentEnd& left, const SegmentEnd& right, Segment& out) noexcept {
+  const double h = to_seconds(right.time - left.time);
+  const std::size_t dimensions = left.waypoint.size();
+  const CubicWriter cubic(h, dimensions, out.coefficients.data());
+  out.left = left.time;
+  out.right = right.time;
+  out.kind = SegmentKind::spline;
+  out.order = kCubicOrder;
+  for_overlapping_lanes(dimensions, [&](auto lane, std::size_t first) {
+    using Lane = typename decltype(lane)::type;
+    const auto x0 = load_lane<Lane>(left.waypoint.data() + first);
+    const auto x1 = load_lane<Lane>(right.waypoint.data() + first);
+    cubic.write(first, x0, chord_slope(x0, x1, h), load_lane<Lane>(left.velocity.data() + first),
+                load_lane<Lane>(right.velocity.data() + first));
+  });
+}
+
 }  // namespace
 
 void write_position(const SegmentEnd& knot, std::span<double> position) noexcept {
@@ -66,6 +88,7 @@ void write_position(const SegmentEnd& knot, std::span<double> position) noexcept
 
 void build_segment(SegmentForm form, const SegmentEnd& left, const SegmentEnd& right,
                    Segment& out) noexcept {
+  if (form == SegmentForm::cubic && left.residual.empty()) return build_cubic(left, right, out);
   const bool is_between_knots =
       form != SegmentForm::splice && form != SegmentForm::stop && form != SegmentForm::hold;
   if (is_between_knots) return build_segment(Between(form, left, right).interval, out);

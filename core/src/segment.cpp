@@ -4,6 +4,7 @@
 #include <array>
 #include <type_traits>
 
+#include "cubic.hpp"
 #include "dimension_lanes.hpp"
 #include "vector_clones.hpp"
 
@@ -51,19 +52,12 @@ std::span<double> power_of(Segment& segment, std::size_t power, std::size_t dime
 }
 
 [[gnu::always_inline]] inline void write_cubic(const Interval& i, double* coefficients) noexcept {
-  const std::size_t dimensions = i.x0.size();
-  const double per_h = 1 / i.h;
-  const double per_h2 = per_h * per_h;
-  double* const c = coefficients;
-  for_overlapping_lanes(dimensions, [&](auto lane, std::size_t first) {
+  const CubicWriter cubic(i.h, i.x0.size(), coefficients);
+  for_overlapping_lanes(i.x0.size(), [&](auto lane, std::size_t first) {
     using Lane = typename decltype(lane)::type;
-    const auto m = load_lane<Lane>(i.chord.data() + first);
-    const auto v0 = load_lane<Lane>(i.v0.data() + first);
-    const auto v1 = load_lane<Lane>(i.v1.data() + first);
-    store_lane(c + first, load_lane<Lane>(i.x0.data() + first));
-    store_lane(c + dimensions + first, v0);
-    store_lane<Lane>(c + 2 * dimensions + first, (3.0 * m - 2.0 * v0 - v1) * per_h);
-    store_lane<Lane>(c + 3 * dimensions + first, (v0 + v1 - 2.0 * m) * per_h2);
+    cubic.write(first, load_lane<Lane>(i.x0.data() + first),
+                load_lane<Lane>(i.chord.data() + first), load_lane<Lane>(i.v0.data() + first),
+                load_lane<Lane>(i.v1.data() + first));
   });
 }
 

@@ -30,12 +30,13 @@ BoardSegment::BoardSegment(std::size_t dimensions, bool smooths)
       after_(dimensions, smooths) {}
 
 /// A knot that `near` has copied, if that copy still stands, else the board's.
-bool BoardSegment::fetch(const KnotBoardReader& board, Word number, Word r,
-                         const BoardSegment* near, KnotCopy& out) const noexcept {
+inline bool BoardSegment::fetch(const KnotBoardReader& board, Word number, Word r,
+                                const BoardSegment* near, KnotCopy& out) const noexcept {
   if (near != nullptr) {
-    for (const KnotCopy* const knot : {&near->left_, &near->right_}) {
-      if (knot->number != number || !board.is_current(*knot, r)) continue;
-      out = *knot;
+    // Mostly the left knot is asked for of the segment before, or the right one of the same.
+    for (const KnotCopy* const knot : {&near->right_, &near->left_}) {
+      if (!board.is_current(*knot, number, r)) continue;
+      out.assign(*knot);
       return true;
     }
   }

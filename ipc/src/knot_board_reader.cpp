@@ -35,15 +35,12 @@ bool has_sane_bounds(const Head& head, std::size_t capacity) noexcept {
 KnotBoardReader::KnotBoardReader(std::span<const std::byte> region,
                                  const BoardLayout& layout) noexcept
     : layout_(layout),
+      slot_words_(layout.stride / sizeof(Word)),
+      cell_words_(layout.cell / sizeof(Word)),
       control_(words_at(region, layout.control, kBoardControlWords)),
       refusals_(words_at(region, layout.refusals, kRefusalsKept)),
       times_(words_at(region, layout.times, layout.capacity)),
       slots_(words_at(region, layout.slots, layout.capacity * layout.stride / sizeof(Word))) {}
-
-const Word* KnotBoardReader::slot(Word number) const noexcept {
-  const std::size_t index = number & (layout_.capacity - 1);
-  return slots_.data() + index * (layout_.stride / sizeof(Word));
-}
 
 std::array<Word, kStepBuckets> KnotBoardReader::step_times() const noexcept {
   std::array<Word, kStepBuckets> counts{};
@@ -150,13 +147,13 @@ bool KnotBoardReader::copy_head(const Look& look, Head& out) const noexcept {
 
 bool KnotBoardReader::copy_knot(Word number, Word r, KnotCopy& out) const noexcept {
   out.tag = 0;
-  const auto view = cells(number);
+  const Word* const at = slot(number);
+  const SlotView<const Word> view{at, cell_words_};
   const Tags tags = view.tags(std::memory_order_acquire);  // R2
-  if (!tags.holds_any(r)) return false;
   const std::size_t c = tags.newest(r);
   const Word tag = tags.of[c];
+  if (tag == 0 || revision_of(tag) > r) return false;
   const Word* const cell = view.cell(c);
-  const Word* const at = slot(number);
   const Word* const node = at + (layout_.nodes + node_of(tag) * layout_.node) / sizeof(Word);
   const std::size_t dimensions = layout_.dimensions;
   const auto values = std::span(out.values_);

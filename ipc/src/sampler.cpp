@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "splinecast/core/segment.hpp"
@@ -52,11 +53,13 @@ Sampler::Sampler(const KnotBoardReader& board, StreamClock clock, core::Dimensio
       clock_(clock),
       kinds_(std::move(kinds)),
       all_linear_(kinds_.all_linear()),
-      copies_{BoardSegment(board.dimensions(), board.smooths()),
-              BoardSegment(board.dimensions(), board.smooths())},
+      copies_(kSegmentsKept + 1, Kept{BoardSegment(board.dimensions(), board.smooths())}),
+      current_(copies_.data()),
       state_(board.dimensions()),
       start_acceleration_(board.dimensions()),
-      end_acceleration_(board.dimensions()) {}
+      end_acceleration_(board.dimensions()) {
+  std::iota(places_.begin(), places_.end(), std::uint8_t{0});
+}
 
 /// Whether each span has one value per dimension.
 inline bool Sampler::fits(const core::StateRef& out) const noexcept {
@@ -72,7 +75,7 @@ inline SampleStatus Sampler::find(core::Time t, const core::StateRef& out) noexc
   if (board_->retired()) return SampleStatus::retired;
   const Look look = board_->look();
   const bool is_at_hand = look.revision == confirmed_ && t >= at_hand_.left && t < at_hand_.right;
-  if (!is_at_hand) return look_up(t, out);
+  if (!is_at_hand && (look.revision != confirmed_ || !goes_on(t))) return look_up(t, out);
   head_.settled_until = look.settled_until;
   copied_settled_until_ = look.settled_until;
   const BoardSegment& own = current();
@@ -89,6 +92,14 @@ SampleStatus Sampler::sample(core::Time t, const core::StateRef& out) noexcept {
   sampled_until_ = is_revised ? t : std::max(sampled_until_, t);
   revised_ = false;
   return is_revised ? SampleStatus::revised : status;
+}
+
+/// Likewise where t lies in the segment behind: mostly of the same revision, as times advance.
+bool Sampler::goes_on(core::Time t) noexcept {
+  if (confirmed_ != head_.revision || !current().is_there() || t < current().right()) return false;
+  const Word next = current().next();
+  if (next > head_.newest || !take(next)) return false;
+  return t >= at_hand_.left && t < at_hand_.right;
 }
 
 /// Takes the bounds of a revision over, and whether it, or one before it that this reader has not
@@ -121,7 +132,7 @@ Sampler::Compared Sampler::compare_with(const Head& before) noexcept {
   if (number == 0 && head_.first == 1) number = 1;  // the machine is held before it
   number = std::min(number, before.newest);
   if (number < head_.first) return Compared::changed;
-  BoardSegment& now = copies_[1 - current_];
+  BoardSegment& now = spare();
   for (int compared = 0; compared < kMostCompared; ++compared) {
     const BoardSegment::Taken taken = now.take(*board_, head_, number);
     if (taken == BoardSegment::Taken::torn) return Compared::torn;
@@ -246,7 +257,14 @@ bool Sampler::is_confirmed() noexcept {
   return stands;
 }
 
+/// Makes a copy that the head's revision holds the current one.
+void Sampler::confirm(Kept& copy) noexcept {
+  current_ = &copy;
+  confirm();
+}
+
 void Sampler::confirm() noexcept {
+  current_->known_by = head_.revision;
   confirmed_ = head_.revision;
   copied_settled_until_ = head_.settled_until;
   const BoardSegment& own = current();
@@ -259,14 +277,23 @@ void Sampler::confirm() noexcept {
 /// Makes the segment that begins at knot `number`, or at the one before if none begins there, the
 /// current copy; keeps the one before if that fails.
 bool Sampler::take(Word number) noexcept {
-  BoardSegment& copy = copies_[1 - current_];
+  Kept& kept = copies_[place_of(number)];
+  const bool is_kept = kept.segment.is_there() && kept.segment.number() == number;
+  if (is_kept && (kept.known_by == head_.revision || kept.segment.is_current(*board_, head_))) {
+    confirm(kept);
+    return true;
+  }
+  BoardSegment& copy = spare();
   BoardSegment::Taken taken = copy.take(*board_, head_, number, &current());
   if (taken == BoardSegment::Taken::none && number > head_.first) {
     taken = copy.take(*board_, head_, number - 1, &current());
   }
   if (taken != BoardSegment::Taken::whole) return false;
-  current_ = 1 - current_;
-  confirm();
+  std::uint8_t& place = place_of(copy.number());
+  const std::size_t freed = place;
+  place = static_cast<std::uint8_t>(spare_);
+  confirm(copies_[spare_]);
+  spare_ = freed;
   return true;
 }
 
@@ -424,10 +451,11 @@ bool Sampler::evaluate_many(std::span<const core::Time> times, const SampleBlock
   const std::size_t dimensions = board_->dimensions();
   const std::size_t stride = core::count(out.derivatives) * dimensions;
   for (std::size_t i = 0; i < times.size();) {
-    const Found found = locate(times[i]);
+    const bool goes_on_there = goes_on(times[i]);
+    const Found found = goes_on_there ? Found::segment : locate(times[i]);
     if (found == Found::torn) return false;
     if (found == Found::segment) {
-      const std::size_t evaluated = evaluate_moving(times, i, out);
+      const std::size_t evaluated = evaluate_moving(times, i, stride, out);
       i += evaluated;
       if (evaluated > 0) continue;
       out.status[i] = evaluate(current(), times[i], state_.ref());
@@ -449,19 +477,17 @@ bool Sampler::evaluate_many(std::span<const core::Time> times, const SampleBlock
 /// Evaluates as many of the times from `first` on as lie on the current copy, where it moves and
 /// needs no more than its polynomial. Returns how many.
 std::size_t Sampler::evaluate_moving(std::span<const core::Time> times, std::size_t first,
-                                     const SampleBlock& out) noexcept {
+                                     std::size_t stride, const SampleBlock& out) noexcept {
   if (!all_linear_) return 0;
   const BoardSegment& own = current();
-  const std::size_t stride = core::count(out.derivatives) * board_->dimensions();
-  std::array<double, 16> u{};
+  const core::Time settled_until = at_hand_.is_finished ? core::Time::max() : head_.settled_until;
+  std::array<double, 16> u;  // not cleared first: that would take as long as the lookup
   std::size_t n = 0;
   while (n < u.size() && first + n < times.size()) {
     const core::Time t = times[first + n];
     if (t < at_hand_.left || t >= at_hand_.right) break;
-    u[n] = seconds_after(own.left(), t);
-    out.status[first + n] = at_hand_.is_finished || t < head_.settled_until
-                                ? SampleStatus::settled
-                                : SampleStatus::provisional;
+    u[n] = seconds_after(at_hand_.left, t);
+    out.status[first + n] = t < settled_until ? SampleStatus::settled : SampleStatus::provisional;
     ++n;
   }
   core::evaluate_many(own.order(), own.coefficients(), board_->dimensions(), std::span(u).first(n),
@@ -471,7 +497,7 @@ std::size_t Sampler::evaluate_moving(std::span<const core::Time> times, std::siz
 
 /// Copies the segments from one to another under head_.revision, with their acceleration steps.
 bool Sampler::copy_segments(Word oldest, Word newest, Snapshot& out) {
-  BoardSegment& copy = copies_[1 - current_];
+  BoardSegment& copy = spare();
   std::size_t count = 0;
   // The newest first: they are the ones that the writer will overwrite first.
   for (Word number = newest;;) {
@@ -512,7 +538,7 @@ bool Sampler::finish_oldest_step(SegmentCopy& oldest) {
     oldest.acceleration_step.clear();
     return true;
   }
-  BoardSegment& copy = copies_[1 - current_];
+  BoardSegment& copy = spare();
   if (copy.take(*board_, head_, *before) != BoardSegment::Taken::whole) return false;
   copy.write_accelerations(start_acceleration_, end_acceleration_);
   subtract(oldest.acceleration_step, end_acceleration_);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <span>
 #include <vector>
@@ -254,7 +255,19 @@ struct Look {
 class KnotCopy {
  public:
   KnotCopy(std::size_t dimensions, bool smooths)
-      : dimensions_(dimensions), smooths_(smooths), values_(4 * dimensions) {}
+      : dimensions_(dimensions), smooths_(smooths), values_((smooths ? 4 : 3) * dimensions) {}
+
+  /// Takes over another copy of a knot of the same board: O(D).
+  void assign(const KnotCopy& other) noexcept {
+    tag = other.tag;
+    cell = other.cell;
+    number = other.number;
+    time = other.time;
+    note = other.note;
+    item = other.item;
+    const std::size_t used = smooths_ ? 4 : note.arrives || note.starts ? 3 : 2;
+    std::memcpy(values_.data(), other.values_.data(), used * dimensions_ * sizeof(double));
+  }
 
   [[nodiscard]] bool is_there() const noexcept { return tag != 0; }
   [[nodiscard]] std::span<const double> waypoint() const noexcept { return values(0); }
@@ -353,6 +366,11 @@ class KnotBoardReader {
     return copy.tag != 0 && is_newest(cells(copy.number), copy.cell, copy.tag, r);
   }
 
+  /// The same where `copy` may be of another knot.
+  [[nodiscard]] bool is_current(const KnotCopy& copy, Word number, Word r) const noexcept {
+    return copy.number == number && is_current(copy, r);
+  }
+
   /// Copies a knot's time and the form of the segment that begins there, under r.
   [[nodiscard]] bool copy_time(Word number, Word r, core::Time& time,
                                core::SegmentForm& form) const noexcept;
@@ -377,9 +395,11 @@ class KnotBoardReader {
   [[nodiscard]] core::Prefix copy_row(const KnotCopy& knot, std::span<double> g) const noexcept;
 
  private:
-  [[nodiscard]] const Word* slot(Word number) const noexcept;
+  [[nodiscard]] const Word* slot(Word number) const noexcept {
+    return slots_.data() + (number & (layout_.capacity - 1)) * slot_words_;
+  }
   [[nodiscard]] SlotView<const Word> cells(Word number) const noexcept {
-    return {slot(number), layout_.cell / sizeof(Word)};
+    return {slot(number), cell_words_};
   }
   [[nodiscard]] SlotView<const Word> head_cells() const noexcept {
     return {control_.data() + kHeadSlot, kHeadWords};
@@ -387,6 +407,8 @@ class KnotBoardReader {
   [[nodiscard]] core::Time earliest_change(Word seen, Word r) const noexcept;
 
   BoardLayout layout_;
+  std::size_t slot_words_;
+  std::size_t cell_words_;
   std::span<const Word> control_;
   std::span<const Word> refusals_;
   std::span<const Word> times_;

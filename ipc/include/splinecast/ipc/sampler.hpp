@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "splinecast/core/derivatives.hpp"
@@ -46,19 +47,27 @@ struct SampleBlock {
 
 /// The reader without its region: looks a time up on a knot board and evaluates the curve.
 ///
-/// It keeps its own copy of the segment it used last: the knots, with the tags of the revisions
-/// that wrote them, and the polynomial made from them. While those tags stand, the next sample
-/// copies nothing; where time passes the right knot, it copies one knot. One thread uses a sampler;
-/// any number of samplers, in any processes, read one board. Allocates when made only; stores to
-/// shared memory never.
+/// It keeps its own copies of the segments it used last: the knots, with the tags of the revisions
+/// that wrote them, and the polynomials made from them. While those tags stand, a sample of one of
+/// them copies nothing; where time passes the right knot of the newest one, it copies one knot. One
+/// thread uses a sampler; any number of samplers, in any processes, read one board. Allocates when
+/// made only: 18 D doubles for each of kSegmentsKept segments. Stores to shared memory never.
 class Sampler {
  public:
+  /// How many segments it keeps copies of: the horizon of a controller that looks ahead, mostly.
+  static constexpr std::size_t kSegmentsKept = 16;
+
   /// How many segments a sample compares at most after missing many revisions.
   static constexpr int kMostCompared = 16;
 
   /// `board` is read as often as sampled; `clock` says whether a hold stands before the first
   /// waypoint; `kinds` are those of the board's dimensions.
   Sampler(const KnotBoardReader& board, StreamClock clock, core::DimensionKinds kinds = {});
+  Sampler(const Sampler&) = delete;
+  Sampler& operator=(const Sampler&) = delete;
+  Sampler(Sampler&&) noexcept = default;
+  Sampler& operator=(Sampler&&) noexcept = default;
+  ~Sampler() = default;
 
   /// Evaluates the curve at `t`, in the form in which its dimensions are read, into `out`, whose
   /// spans have one value per dimension: else it returns `wrong_dimension`. Wait-free: no system
@@ -115,9 +124,22 @@ class Sampler {
   /// What a comparison with the curve seen before has found.
   enum class Compared { same, changed, torn };
 
-  [[nodiscard]] BoardSegment& current() noexcept { return copies_[current_]; }
+  /// A copy of a segment, and the newest revision that it is known to be part of.
+  struct Kept {
+    BoardSegment segment;
+    Word known_by = 0;
+  };
+  [[nodiscard]] const BoardSegment& current() const noexcept { return current_->segment; }
+  /// One that is not kept, to copy into.
+  [[nodiscard]] BoardSegment& spare() noexcept { return copies_[spare_].segment; }
+  /// Which copy segment `number` is, if it is kept.
+  [[nodiscard]] std::uint8_t& place_of(Word number) noexcept {
+    return places_[number % kSegmentsKept];
+  }
   [[nodiscard]] bool is_confirmed() noexcept;
+  [[nodiscard]] bool goes_on(core::Time t) noexcept;
   void confirm() noexcept;
+  void confirm(Kept& copy) noexcept;
   [[nodiscard]] Found locate(core::Time t) noexcept;
   [[nodiscard]] bool take(Word number) noexcept;
   [[nodiscard]] bool spans(const BoardSegment& segment, core::Time t) const noexcept;
@@ -144,7 +166,7 @@ class Sampler {
   [[nodiscard]] bool evaluate_many(std::span<const core::Time> times,
                                    const SampleBlock& out) noexcept;
   [[nodiscard]] std::size_t evaluate_moving(std::span<const core::Time> times, std::size_t first,
-                                            const SampleBlock& out) noexcept;
+                                            std::size_t stride, const SampleBlock& out) noexcept;
 
   const KnotBoardReader* board_;
   StreamClock clock_;
@@ -153,7 +175,7 @@ class Sampler {
   Head head_;                                     ///< bounds under the revision last seen whole
   core::Time sampled_until_ = core::Time::min();  ///< latest time sampled as executed
   bool revised_ = false;  ///< the curve before that time has been changed: not yet told
-  Word confirmed_ = 0;    ///< revision that the current copy is known to be part of
+  Word confirmed_ = 0;    ///< current_->known_by
   core::Time copied_settled_until_{};  ///< settled_until of that revision
   /// What most samples need of the current copy, as confirmed: where on it the curve moves, and
   /// whether all of it is settled. Nowhere, unless it lies between two waypoints.
@@ -163,8 +185,10 @@ class Sampler {
     bool is_finished = false;
   };
   AtHand at_hand_;
-  std::array<BoardSegment, 2> copies_;  ///< the current one, and one to copy into
-  std::size_t current_ = 0;
+  std::vector<Kept> copies_;                          ///< kSegmentsKept of them, and a spare one
+  std::array<std::uint8_t, kSegmentsKept> places_{};  ///< which copy, by number mod kSegmentsKept
+  std::size_t spare_ = kSegmentsKept;
+  Kept* current_;                           ///< the one used last
   core::State state_;                       ///< scratch
   std::vector<double> start_acceleration_;  ///< scratch
   std::vector<double> end_acceleration_;    ///< scratch
