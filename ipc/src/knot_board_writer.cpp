@@ -20,6 +20,8 @@ KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout&
       times_(words_at(region, layout.times, layout.capacity)),
       revision_(load(control_[kRevision], std::memory_order_relaxed)),
       settled_(load(control_[kSettledUntil], std::memory_order_relaxed)),
+      late_(load(control_[kLate], std::memory_order_relaxed)),
+      checked_(load(control_[kChecked], std::memory_order_relaxed)),
       states_(layout.capacity),
       written_(layout.capacity),
       at_{.words =
@@ -257,16 +259,12 @@ void KnotBoardWriter::count_step(core::Time length) noexcept {
 }
 
 void KnotBoardWriter::store_checked(bool is_late) noexcept {
-  if (is_late) store(control_[kLate], revision_, std::memory_order_relaxed);
+  if (is_late) {
+    late_ = revision_;
+    store(control_[kLate], revision_, std::memory_order_relaxed);
+  }
+  checked_ = revision_;
   store(control_[kChecked], revision_, std::memory_order_release);
-}
-
-bool KnotBoardWriter::is_checked() const noexcept {
-  return load(control_[kChecked], std::memory_order_relaxed) == revision_;
-}
-
-bool KnotBoardWriter::is_late() const noexcept {
-  return revision_ > 0 && load(control_[kLate], std::memory_order_relaxed) == revision_;
 }
 
 }  // namespace splinecast::ipc

@@ -382,7 +382,7 @@ void Solver::wait(core::Time timeout) noexcept {
 
 SolverWatch Solver::watch() const noexcept {
   const Attachment& at = *impl_->attachment;
-  return {at.ring.ring.polled(), at.solver.seen(), at.solver.due()};
+  return {at.ring.ring.polled(), at.solver.seen(), at.solver.due(), at.solver.settled_raise()};
 }
 
 void Solver::first_refusals(std::vector<ItemRefusal>& out) {

@@ -75,8 +75,16 @@ core::Time StreamSolver::due() const noexcept {
   return settles || waits ? settled_at_ + live_->freeze_ahead / 2 : core::Time::max();
 }
 
+SettledRaise StreamSolver::settled_raise() const noexcept {
+  const bool settles = live_ && !head_.finished && !head_.starved && head_.newest > 0;
+  if (!settles || seen_ != head_.consumed) return {};
+  const core::Time limit = std::min(curve_.newest_time(), curve_.end_of_motion());
+  return {board_->settled_word(), head_.settled_until, live_->freeze_ahead, limit};
+}
+
 StepResult StreamSolver::step(const Clock& clock) noexcept {
   if (is_damaged()) return {.damaged = true};
+  if (live_) head_.settled_until = std::max(head_.settled_until, board_->take_up_settled());
   is_timed_ = live_ || board_->revision() % kTimedEvery == 0;
   if (is_timed_) started_ = clock.now();
   const core::Time now = live_ ? started_ : core::Time::min();

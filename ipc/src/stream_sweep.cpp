@@ -106,11 +106,13 @@ void StreamSweep::collect_calling() {
   all_quiet_ = !watches_.empty();
   calling_.clear();
   for (std::size_t i = 0; i < watches_.size(); ++i) {
-    const Watch& watch = watches_[i];
+    Watch& watch = watches_[i];
     const bool is_quiet = watch.active <= quiet_since && watch.solver.due() == core::Time::max();
     const bool is_looked_at = !is_quiet || looks_at_all || (sweeps_ + i) % quiet_sweeps_ == 0;
     all_quiet_ = all_quiet_ && is_quiet;
-    if (watch.solver.is_due(now_) || (is_looked_at && watch.solver.calls())) calling_.push_back(i);
+    const bool calls = is_looked_at && watch.solver.calls();
+    const bool needs_step = calls || (watch.solver.is_due(now_) && !watch.solver.settle(now_));
+    if (needs_step) calling_.push_back(i);
   }
   all_quiet_ = all_quiet_ && calling_.empty();
 }

@@ -135,6 +135,13 @@ class KnotBoardWriter {
     store(control_[kSettledUntil], word, std::memory_order_release);
   }
 
+  /// The word that this stores to, for SettledRaise; and what stands there, also by that.
+  [[nodiscard]] Word& settled_word() noexcept { return control_[kSettledUntil]; }
+  [[nodiscard]] core::Time take_up_settled() noexcept {
+    settled_ = load(control_[kSettledUntil], std::memory_order_relaxed);
+    return to_time(settled_);
+  }
+
   /// Items that the producer may overwrite: after the commit that consumed them, S3.
   void store_tail(Word consumed) noexcept {
     store(control_[kTail], consumed, std::memory_order_release);
@@ -148,8 +155,8 @@ class KnotBoardWriter {
   void store_checked(bool is_late) noexcept;
 
   /// Whether the newest revision has been compared so, and whether it was found to be too late.
-  [[nodiscard]] bool is_checked() const noexcept;
-  [[nodiscard]] bool is_late() const noexcept;
+  [[nodiscard]] bool is_checked() const noexcept { return checked_ == revision_; }
+  [[nodiscard]] bool is_late() const noexcept { return revision_ > 0 && late_ == revision_; }
 
   /// For a solver about to sleep, or awake again: seq_cst, see waypoint_ring.hpp.
   void store_sleeping(bool sleeping) noexcept {
@@ -235,6 +242,8 @@ class KnotBoardWriter {
   std::span<Word> times_;
   Word revision_;
   Word settled_;
+  Word late_;
+  Word checked_;
   std::size_t head_cell_ = 0;                           ///< the newest committed one
   std::array<std::array<Word, kHeadWords>, 2> head_{};  ///< what both cells hold
   std::vector<SlotState> states_;

@@ -17,8 +17,9 @@ namespace splinecast::ipc {
 /// anew after each step, and of no use once its solver has detached.
 class SolverWatch {
  public:
-  SolverWatch(std::span<const Word, 2> polled, Word seen, core::Time due) noexcept
-      : polled_(polled), seen_(seen), due_(due) {}
+  SolverWatch(std::span<const Word, 2> polled, Word seen, core::Time due,
+              const SettledRaise& raise) noexcept
+      : polled_(polled), seen_(seen), due_(due), raise_(raise) {}
 
   /// Whether the ring holds what the last step has not seen. One load of a word that only the
   /// producer writes.
@@ -28,6 +29,14 @@ class SolverWatch {
 
   /// Whether a step is of use at `now` whatever the ring holds: a revision is due.
   [[nodiscard]] bool is_due(core::Time now) const noexcept { return due_ <= now; }
+
+  /// Does what is due at `now` where that is no more than to say how far the curve is settled.
+  /// Returns whether it was; else a step does it. Stores one word.
+  bool settle(core::Time now) noexcept {
+    if (!raise_.raise(now)) return false;
+    due_ = now + raise_.interval();
+    return true;
+  }
 
   /// Whether a step is of use for what the producer has done: there are items, or the stream has
   /// been retired. Loads from one cache line.
@@ -42,6 +51,7 @@ class SolverWatch {
   std::span<const Word, 2> polled_;
   Word seen_;
   core::Time due_;
+  SettledRaise raise_;
 };
 
 /// The role that turns waypoints into segments: the one writer of a stream's segment board.

@@ -10,6 +10,7 @@
 #include "splinecast/ipc/knot_board.hpp"
 #include "splinecast/ipc/published_curve.hpp"
 #include "splinecast/ipc/replacement_queue.hpp"
+#include "splinecast/ipc/settled_raise.hpp"
 #include "splinecast/ipc/waypoint_ring.hpp"
 
 namespace splinecast::ipc {
@@ -74,6 +75,9 @@ class StreamSolver {
 
   /// When the next step is due even if no item comes; max() for never.
   [[nodiscard]] core::Time due() const noexcept;
+
+  /// What can be done without a step until the next one is of use for more.
+  [[nodiscard]] SettledRaise settled_raise() const noexcept;
 
   /// The smallest board for a settle lag.
   [[nodiscard]] static std::size_t min_capacity(std::size_t settle) noexcept;
