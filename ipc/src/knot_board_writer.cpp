@@ -111,6 +111,29 @@ inline KnotBoardWriter::Claimed KnotBoardWriter::claim(Slots& slots, Word number
   return {slot, cell, next};
 }
 
+void KnotBoardWriter::prefetch(Word first, Word newest) const noexcept {
+  const std::size_t cell_bytes = layout_.cell;
+  for (Word number = first; number <= newest; ++number) {
+    const std::size_t index = index_of(number);
+    const std::size_t spare = (states_[index] & kCellBit) != 0 ? 0 : at_.cell_words;
+    const Word* const cell = at_.slot(index) + spare;
+    for (std::size_t at = 0; at < cell_bytes; at += kCacheLine) {
+      __builtin_prefetch(cell + at / sizeof(Word), 1);
+    }
+  }
+  const Word* const slot = at_.slot(index_of(newest));
+  prefetch_lines(slot + layout_.nodes / sizeof(Word), layout_.stride - layout_.nodes);
+  __builtin_prefetch(&times_[index_of(newest)], 1);
+  const Word* const head = head_cells().cell(1 - head_cell_);
+  __builtin_prefetch(head, 1);
+  __builtin_prefetch(head + kCacheLine / sizeof(Word), 1);
+  __builtin_prefetch(&control_[kRevision], 1);
+  __builtin_prefetch(&control_[kTail], 1);
+  __builtin_prefetch(&control_[kChanges + (revision_ + 1) % kChangesKept], 1);
+  __builtin_prefetch(written_.data(), 1);
+  __builtin_prefetch(held_times_.data(), 1);
+}
+
 void KnotBoardWriter::note_time(Word number, core::Time time) noexcept {
   Word& hint = times_[index_of(number)];
   held_times_.push_back({index_of(number), load(hint, std::memory_order_relaxed)});

@@ -56,6 +56,11 @@ PublishedCurve::PublishedCurve(KnotBoardWriter& board, const KnotBoardReader& pu
   if (!options.max_acceleration.empty()) trial_.emplace(published.dimensions(), options);
 }
 
+void PublishedCurve::prefetch() const noexcept {
+  window_.prefetch();
+  board_->prefetch(number_of(open_), newest_ + 1);
+}
+
 core::Time PublishedCurve::newest_time() const noexcept {
   if (window_.knots() > 0) return window_.knot(window_.knots() - 1).time;
   return window_.entry().time();

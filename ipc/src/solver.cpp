@@ -380,6 +380,20 @@ void Solver::wait(core::Time timeout) noexcept {
   at.board.writer.store_sleeping(false);
 }
 
+void Solver::prefetch(Stage stage) const noexcept {
+  if (stage == Stage::self) return prefetch_lines(impl_.get(), sizeof(Impl));
+  if (!attached()) return;
+  const Attachment& at = *impl_->attachment;
+  if (stage == Stage::parts) {
+    prefetch_lines(&at.ring.ring, sizeof(at.ring.ring));
+    prefetch_lines(&at.board.writer, sizeof(at.board.writer));
+    prefetch_lines(&at.board.reader, sizeof(at.board.reader));
+    prefetch_lines(&at.solver, sizeof(at.solver));
+  } else {
+    at.solver.prefetch();
+  }
+}
+
 SolverWatch Solver::watch() const noexcept {
   const Attachment& at = *impl_->attachment;
   return {at.ring.ring.polled(), at.solver.seen(), at.solver.due(), at.solver.settled_raise()};

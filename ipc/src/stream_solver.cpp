@@ -75,6 +75,11 @@ core::Time StreamSolver::due() const noexcept {
   return settles || waits ? settled_at_ + live_->freeze_ahead / 2 : core::Time::max();
 }
 
+void StreamSolver::prefetch() const noexcept {
+  ring_->prefetch(head_.consumed);
+  curve_.prefetch();
+}
+
 SettledRaise StreamSolver::settled_raise() const noexcept {
   const bool settles = live_ && !head_.finished && !head_.starved && head_.newest > 0;
   if (!settles || seen_ != head_.consumed) return {};

@@ -81,7 +81,10 @@ bool StreamSweep::sweep(const Clock& clock) {
   }
   collect_calling();
   bool has_more = false;
-  for (const std::size_t index : calling_) has_more = serve(index, clock) || has_more;
+  for (std::size_t i = 0; i < calling_.size(); ++i) {
+    prefetch_behind(i);
+    has_more = serve(calling_[i], clock) || has_more;
+  }
   if (has_detached_) release_detached();
   return has_more || !to_take_.empty();
 }
@@ -115,6 +118,19 @@ void StreamSweep::collect_calling() {
     if (needs_step) calling_.push_back(i);
   }
   all_quiet_ = all_quiet_ && calling_.empty();
+}
+
+/// Asks for what the steps behind the i-th calling stream's go through, while that one is stepped:
+/// of many streams nothing stays in the caches from one step to the next.
+void StreamSweep::prefetch_behind(std::size_t i) const noexcept {
+  const auto ask = [&](std::size_t ahead, Solver::Stage stage) {
+    if (i + ahead >= calling_.size()) return;
+    served_[calling_[i + ahead]].solver->prefetch(stage);
+  };
+  if (i + 4 < calling_.size()) __builtin_prefetch(served_[calling_[i + 4]].solver.get());
+  ask(3, Solver::Stage::self);
+  ask(2, Solver::Stage::parts);
+  ask(1, Solver::Stage::stream);
 }
 
 /// Steps one stream. Returns whether it has more to do.

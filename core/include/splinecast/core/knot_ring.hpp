@@ -150,6 +150,23 @@ class KnotRing {
   /// Makes the acceleration at the newest knot 0, whatever the knot velocities say.
   void halt_at_end() noexcept { halts_at_end_ = true; }
 
+  /// Asks for the rows and velocities of knots `first` to the one before `end`. Loads nothing.
+  void prefetch(std::size_t first, std::size_t end) const noexcept {
+    for (std::size_t i = first; i < end; ++i) {
+      __builtin_prefetch(&values_[offset(i, kG)], 1);
+      __builtin_prefetch(&values_[offset(i, kVelocity)], 1);
+    }
+    const std::size_t newest = end - 1;
+    for (const std::size_t i : {newest, newest - 1}) {
+      __builtin_prefetch(&values_[offset(i, kWaypoint)], 1);
+      __builtin_prefetch(&values_[offset(i, kChord)], 1);
+      __builtin_prefetch(&rows_[i & mask_], 1);
+      __builtin_prefetch(&newer_knots_[i & mask_], 1);
+    }
+    __builtin_prefetch(&gammas_[first & mask_], 1);
+    __builtin_prefetch(&gammas_[newest & mask_], 1);
+  }
+
   [[nodiscard]] Row& row(std::size_t i) noexcept { return rows_[i & mask_]; }
   [[nodiscard]] const Row& row(std::size_t i) const noexcept { return rows_[i & mask_]; }
   [[nodiscard]] double& gamma(std::size_t i) noexcept { return gammas_[i & mask_]; }

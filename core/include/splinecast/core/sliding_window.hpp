@@ -158,6 +158,12 @@ class SlidingWindow {
   /// The entry of this run, if it was entered.
   [[nodiscard]] const RunEntry& entry() const noexcept { return entry_; }
 
+  /// Asks for the memory that an append goes through. Loads nothing.
+  void prefetch() const noexcept {
+    __builtin_prefetch(solver_.get());
+    knots_.prefetch(knots() - std::min(knots(), options_.settle), knots() + 1);
+  }
+
   /// What is kept of knot i, which must still be in the window: what `restore` needs.
   [[nodiscard]] Knot knot(std::size_t i) const noexcept { return knots_.knot(i); }
 

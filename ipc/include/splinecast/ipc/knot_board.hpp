@@ -93,6 +93,9 @@ class KnotBoardWriter {
   /// The last revision that was committed.
   [[nodiscard]] Word revision() const noexcept { return revision_; }
 
+  /// Asks for the lines that a revision of knots `first` to `newest` writes, where `newest` is new.
+  void prefetch(Word first, Word newest) const noexcept;
+
   /// Writes a knot for the next revision: at most once each. O(D).
   void write(Word number, const KnotRecord& knot) noexcept;
 

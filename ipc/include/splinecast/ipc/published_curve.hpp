@@ -36,6 +36,9 @@ class PublishedCurve {
   /// Goes on from what has been committed, of which `head` is the head. O(K·D).
   void restore(const Head& head) noexcept;
 
+  /// Asks for the memory outside this object that the next append goes through. Loads nothing.
+  void prefetch() const noexcept;
+
   [[nodiscard]] const core::SlidingWindow& window() const noexcept { return window_; }
   [[nodiscard]] const core::DimensionKinds& kinds() const noexcept { return kinds_; }
 

@@ -113,6 +113,12 @@ class Solver {
   /// stream, or one at rest. Not attached: when `attach` is to be tried again, if that is known.
   [[nodiscard]] core::Time due() const noexcept;
 
+  /// Asks for the memory that a step goes through, for whoever steps many solvers in turn: first
+  /// this object's, then, called again when that has come, what lies behind it, then the stream's.
+  /// Loads what the call before has asked for.
+  enum class Stage { self, parts, stream };
+  void prefetch(Stage stage) const noexcept;
+
   /// What to look at before the next step; attached() only.
   [[nodiscard]] SolverWatch watch() const noexcept;
 

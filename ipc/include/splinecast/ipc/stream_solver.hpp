@@ -76,6 +76,10 @@ class StreamSolver {
   /// When the next step is due even if no item comes; max() for never.
   [[nodiscard]] core::Time due() const noexcept;
 
+  /// Asks for the memory outside this object that the next step goes through if it takes one
+  /// waypoint. Loads nothing of that.
+  void prefetch() const noexcept;
+
   /// What can be done without a step until the next one is of use for more.
   [[nodiscard]] SettledRaise settled_raise() const noexcept;
 

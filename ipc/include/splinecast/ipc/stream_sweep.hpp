@@ -108,6 +108,7 @@ class StreamSweep {
   static Files files_of(const std::string& stream);
   void take_up(const Clock& clock);
   void collect_calling();
+  void prefetch_behind(std::size_t i) const noexcept;
   bool serve(std::size_t index, const Clock& clock);
   void tell_first_refusals(Solver& solver) noexcept;
   void release_detached();

@@ -189,6 +189,12 @@ class WaypointRingReader {
   /// which nothing happens.
   [[nodiscard]] std::span<const Word, 2> polled() const noexcept { return control_.first<2>(); }
 
+  /// Asks for the lines of item i. Loads nothing.
+  void prefetch(Word i) const noexcept {
+    prefetch_lines(&items_[(i & (layout_.capacity - 1)) * (layout_.stride / sizeof(Word))],
+                   layout_.stride / 2);
+  }
+
   /// Copies item i < head(), of which the consumer has not yet stored a tail beyond it.
   void copy(Word i, RingItem& out) const noexcept;
 
