@@ -40,6 +40,38 @@ TEST(LiveSolver, SettlesByTimeAndSaysSoWithoutWaypointsOrRevisionsUntilTheMotion
             SampleStatus::holding);
 }
 
+TEST(LiveSolver, ItsNextStepTakesUpWhatHasBeenRaisedWithoutOne) {
+  Live live;
+  live.put_all(50, 200);
+  const auto settled = [&] { return live.board.reader.look().settled_until; };
+  SettledRaise raise = live.solver.settled_raise();
+  EXPECT_TRUE(raise.raise(Live::kNow + milliseconds(20)));
+  EXPECT_EQ(settled(), Live::kNow + milliseconds(25));
+  EXPECT_TRUE(raise.raise(Live::kNow + milliseconds(10)));  // never back
+  EXPECT_EQ(settled(), Live::kNow + milliseconds(25));
+  live.clock.time += milliseconds(15);
+  const Time early = settled() - Time(1);
+  ASSERT_EQ(live.replace(settled(), {settled() + milliseconds(20)}), AppendStatus::accepted);
+  live.drain();
+  EXPECT_EQ(live.solver.head().controls, 1U);
+  EXPECT_GT(live.solver.head().changed_from, early);
+  EXPECT_EQ(settled(), Live::kNow + milliseconds(25));
+}
+
+TEST(LiveSolver, NothingIsRaisedWhereAStepHasMoreToDo) {
+  Live live;
+  EXPECT_FALSE(live.solver.settled_raise().raise(Live::kNow));  // there is no curve
+  live.put_all(50, 200);
+  const Time newest = live.solver.head().newest_knot;
+  SettledRaise raise = live.solver.settled_raise();
+  EXPECT_TRUE(raise.raise(newest - milliseconds(5) - Time(1)));
+  EXPECT_FALSE(raise.raise(newest - milliseconds(5)));  // there it starves
+  live.clock.time = newest - milliseconds(5);
+  EXPECT_TRUE(live.solver.step(live.clock).published);
+  EXPECT_TRUE(live.solver.head().starved);
+  EXPECT_FALSE(live.solver.settled_raise().raise(live.clock.time + milliseconds(1)));
+}
+
 TEST(LiveSolver, ASolverThatTakesOverGoesOnFromTheSettledTimeThatWasToldLast) {
   Live live;
   live.put_all(50, 200);

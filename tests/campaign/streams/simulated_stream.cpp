@@ -128,7 +128,19 @@ void SimulatedStream::look_around() {
 void SimulatedStream::work() {
   if (findings_->stream_failed()) return;
   if (random_->chance(plan_.step_trouble)) return step_in_trouble();
+  if (random_->chance(0.5) && settle_without_step()) return;
   step();
+}
+
+/// What a sweep of many streams does in place of a step that would do no more. Returns whether it
+/// was of use.
+bool SimulatedStream::settle_without_step() {
+  const bool has_items = stream_.ring.reader.head() != stream_.solver.seen();
+  if (has_items || !stream_.solver.settled_raise().raise(now_)) return false;
+  findings_->count(Event::settled_raises);
+  check_.look(now_);
+  if (was_in_time_) kept_up_until_ = now_ + plan_.live.freeze_ahead / 2;
+  return true;
 }
 
 /// Steps until a revision is not discarded: nothing holds the solver up but what was arranged.

@@ -29,6 +29,7 @@ class SimulatedStream {
 
   [[nodiscard]] bool is_over() const;
   void work();
+  [[nodiscard]] bool settle_without_step();
   void step();
   void step_in_trouble();
   void step_and_die();

@@ -57,13 +57,14 @@ enum class Event : std::uint8_t {
   finishes,
   returns_after_finish,
   solver_hold_ups,
+  settled_raises,
   waypoints_interpolated,
   knots_compared,
   settled_samples_read_again,
   items_observed,
   segments_verified,
 };
-inline constexpr std::size_t kEvents = 23;
+inline constexpr std::size_t kEvents = 24;
 [[nodiscard]] std::string_view to_string(Event event) noexcept;
 
 /// What simulated streams did and broke, summed over all of them.
