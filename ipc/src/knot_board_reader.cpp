@@ -52,12 +52,13 @@ std::array<Word, kStepBuckets> KnotBoardReader::step_times() const noexcept {
 
 void KnotBoardReader::prefetch(Word r, Word number) const noexcept {
   const auto head = head_cells();
-  const auto own = cells(number);
-  const auto next = cells(number + 1);
-  for (std::size_t c = 0; c < 2; ++c) {
-    __builtin_prefetch(head.cell(c));
-    __builtin_prefetch(own.cell(c));
-    __builtin_prefetch(next.cell(c));
+  for (std::size_t c = 0; c < 2; ++c) __builtin_prefetch(head.cell(c));
+  for (const Word knot : {number, number + 1}) {
+    const Word* const at = slot(knot);
+    for (std::size_t c = 0; c < 2; ++c) {
+      __builtin_prefetch(at + c * cell_words_);
+      __builtin_prefetch(at + (layout_.nodes + c * layout_.node) / sizeof(Word));
+    }
   }
   __builtin_prefetch(&control_[kChanges + r % kChangesKept]);
 }

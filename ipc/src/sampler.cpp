@@ -181,16 +181,17 @@ SampleStatus Sampler::preview(core::Time t, const core::StateRef& out) noexcept 
   return find(t, out);
 }
 
-/// Makes head_ that of the newest revision. Returns `settled` if there is a curve, `busy` if the
-/// writer has gone on meanwhile, else why there is none.
-SampleStatus Sampler::see_newest() noexcept {
+/// Makes head_ that of the newest revision, of which t is asked for next. Returns `settled` if
+/// there is a curve, `busy` if the writer has gone on meanwhile, else why there is none.
+SampleStatus Sampler::see_newest(core::Time t) noexcept {
   if (board_->retired()) return SampleStatus::retired;
   const Look look = board_->look();
   if (look.revision == 0) return SampleStatus::no_data;
   if (look.revision == head_.revision) {
     head_.settled_until = look.settled_until;
   } else {
-    board_->prefetch(look.revision, current().number());
+    const Word likely = near(current(), t);
+    board_->prefetch(look.revision, likely != 0 ? likely : current().number());
     if (!see(look)) return SampleStatus::busy;
   }
   return head_.newest == 0 ? SampleStatus::no_data : SampleStatus::settled;
@@ -198,7 +199,7 @@ SampleStatus Sampler::see_newest() noexcept {
 
 SampleStatus Sampler::look_up(core::Time t, const core::StateRef& out) noexcept {
   for (int attempt = 0; attempt < kTries; ++attempt) {
-    const SampleStatus seen = see_newest();
+    const SampleStatus seen = see_newest(t);
     if (seen == SampleStatus::busy) continue;
     if (seen != SampleStatus::settled) return seen;
     const Found found = locate(t);
@@ -437,7 +438,7 @@ Word Sampler::sample_many(std::span<const core::Time> times, const SampleBlock& 
   const bool fits = out.status.size() == times.size() && out.values.size() == times.size() * values;
   SampleStatus seen = fits ? SampleStatus::busy : SampleStatus::wrong_dimension;
   for (int attempt = 0; attempt < kTries && seen == SampleStatus::busy; ++attempt) {
-    seen = see_newest();
+    seen = see_newest(times.empty() ? core::Time{} : times.front());
     if (seen != SampleStatus::settled) continue;
     if (evaluate_many(times, out)) return head_.revision;
     seen = SampleStatus::busy;

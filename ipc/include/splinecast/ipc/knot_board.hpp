@@ -350,8 +350,8 @@ class KnotBoardReader {
   /// How many of the solver's steps took 2ⁱ to 2ⁱ⁺¹ ns, at i.
   [[nodiscard]] std::array<Word, kStepBuckets> step_times() const noexcept;
 
-  /// Asks for the lines that a reader with a copy of segment `number` will load of a revision it
-  /// has not seen, all at once: each has to come from the writer's core, and would else be waited
+  /// Asks for the lines that a reader will load to get segment `number` of a revision that it has
+  /// not seen, all at once: each may have to come from the writer's core, and would else be waited
   /// for one after the other. Loads nothing.
   void prefetch(Word r, Word number) const noexcept;
 

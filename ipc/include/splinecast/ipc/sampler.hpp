@@ -162,7 +162,7 @@ class Sampler {
   [[nodiscard]] bool copy_segments(Word oldest, Word newest, Snapshot& out);
   [[nodiscard]] bool finish_oldest_step(SegmentCopy& oldest);
   [[nodiscard]] SampleStatus from_own_copy(core::Time t, const core::StateRef& out) noexcept;
-  [[nodiscard]] SampleStatus see_newest() noexcept;
+  [[nodiscard]] SampleStatus see_newest(core::Time t) noexcept;
   [[nodiscard]] bool evaluate_many(std::span<const core::Time> times,
                                    const SampleBlock& out) noexcept;
   [[nodiscard]] std::size_t evaluate_moving(std::span<const core::Time> times, std::size_t first,
