@@ -61,7 +61,7 @@ PATHS = [
         purposes=[
             (r"core::evaluate", "the polynomial and three derivatives, 7 dimensions"),
             (r"KnotBoardReader|KnotCopy|fetch|load_values", "copies the next knot out of shared memory, once every 10 samples"),
-            (r"BoardSegment|build_segment|write_chord|magnitude|Between", "makes the segment of its knots, once every 10 samples"),
+            (r"BoardSegment|build_segment|build_cubic|magnitude", "makes the segment of its knots, once every 10 samples"),
             (r"copy_bounds|see\(", "takes over the bounds of a revision"),
             (r"Sampler::", "looks whether there is a new revision, finds the segment, time within it, status"),
         ],
@@ -78,7 +78,7 @@ two knots; these it asks for at once before it waits for the first of them. It s
         entries=["splinecast::ipc::Producer::append*", "splinecast::ipc::Solver::step*"],
         purposes=[
             (r"KnotBoardWriter::commit", "the head, and the commit"),
-            (r"KnotBoardWriter|magnitude|store_summed", "writes the knots that the waypoint changes into spare cells"),
+            (r"KnotBoardWriter|magnitude", "writes the knots that the waypoint changes into spare cells"),
             (r"acceleration", "the acceleration that the stop begins with"),
             (r"PublishedCurve|KnotRing::knot|SlidingWindow::(segment|newer|left)", "which knots changed, and what goes with each"),
             (r"append_behind|back_substitute|solve|eliminate|close|TridiagonalSolver|SlidingWindow|KnotRing|write_chord|end_intervals",
