@@ -21,14 +21,18 @@ class CubicWriter {
       : per_h_(1 / h), per_h2_(per_h_ * per_h_), dimensions_(dimensions), c_(coefficients) {}
 
   /// Writes [power][dimension] of the dimensions from `first` on: from position x and velocity v0
-  /// at the left end, v1 at the right one, and the slope m of the chord.
+  /// at the left end, v1 at the right one, and the slope m of the chord. Returns the sums of their
+  /// magnitudes.
   template <typename Lane>
-  [[gnu::always_inline]] void write(std::size_t first, Lane x, Lane m, Lane v0,
+  [[gnu::always_inline]] Lane write(std::size_t first, Lane x, Lane m, Lane v0,
                                     Lane v1) const noexcept {
+    const Lane c2 = (3.0 * m - 2.0 * v0 - v1) * per_h_;
+    const Lane c3 = (v0 + v1 - 2.0 * m) * per_h2_;
     store_lane(c_ + first, x);
     store_lane(c_ + dimensions_ + first, v0);
-    store_lane<Lane>(c_ + 2 * dimensions_ + first, (3.0 * m - 2.0 * v0 - v1) * per_h_);
-    store_lane<Lane>(c_ + 3 * dimensions_ + first, (v0 + v1 - 2.0 * m) * per_h2_);
+    store_lane(c_ + 2 * dimensions_ + first, c2);
+    store_lane(c_ + 3 * dimensions_ + first, c3);
+    return without_sign(x) + without_sign(v0) + (without_sign(c2) + without_sign(c3));
   }
 
  private:

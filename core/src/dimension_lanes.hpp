@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 
 namespace splinecast::core {
@@ -64,6 +66,24 @@ template <typename Lane>
 template <typename Lane>
 [[gnu::always_inline]] inline void store_lane(double* to, Lane value) noexcept {
   std::memcpy(to, &value, sizeof(Lane));
+}
+
+/// Magnitudes, and the sum of what a lane holds.
+template <typename Lane>
+[[gnu::always_inline]] inline Lane without_sign(Lane values) noexcept {
+  if constexpr (std::is_same_v<Lane, double>) {
+    return std::abs(values);
+  } else {
+    using Bits [[gnu::vector_size(sizeof(Lane))]] = long long;
+    return reinterpret_cast<Lane>(reinterpret_cast<Bits>(values) &
+                                  std::numeric_limits<long long>::max());
+  }
+}
+template <typename Lane>
+[[gnu::always_inline]] inline double sum_of_lane(Lane values) noexcept {
+  if constexpr (kWidth<Lane> == 4) return values[0] + values[1] + (values[2] + values[3]);
+  if constexpr (kWidth<Lane> == 2) return values[0] + values[1];
+  if constexpr (kWidth<Lane> == 1) return values;
 }
 
 /// A lane of an array that ends after `count` (≥ 1) values, which may be fewer than the lane's:

@@ -58,25 +58,6 @@ struct Between {
   }
 };
 
-/// The cubic between two knots that the curve passes: what build_segment makes of them, in one go.
-SPLINECAST_VECTOR_CLONES
-void build_cubic(const SegmentEnd& left, const SegmentEnd& right, Segment& out) noexcept {
-  const double h = to_seconds(right.time - left.time);
-  const std::size_t dimensions = left.waypoint.size();
-  const CubicWriter cubic(h, dimensions, out.coefficients.data());
-  out.left = left.time;
-  out.right = right.time;
-  out.kind = SegmentKind::spline;
-  out.order = kCubicOrder;
-  for_overlapping_lanes(dimensions, [&](auto lane, std::size_t first) {
-    using Lane = typename decltype(lane)::type;
-    const auto x0 = load_lane<Lane>(left.waypoint.data() + first);
-    const auto x1 = load_lane<Lane>(right.waypoint.data() + first);
-    cubic.write(first, x0, chord_slope(x0, x1, h), load_lane<Lane>(left.velocity.data() + first),
-                load_lane<Lane>(right.velocity.data() + first));
-  });
-}
-
 }  // namespace
 
 void write_position(const SegmentEnd& knot, std::span<double> position) noexcept {
@@ -86,9 +67,40 @@ void write_position(const SegmentEnd& knot, std::span<double> position) noexcept
   }
 }
 
+SPLINECAST_VECTOR_CLONES
+double build_cubic(const CubicEnds& ends, Segment& out) noexcept {
+  const double h = to_seconds(ends.right - ends.left);
+  const std::size_t dimensions = out.acceleration_step.size();
+  const CubicWriter cubic(h, dimensions, out.coefficients.data());
+  out.left = ends.left;
+  out.right = ends.right;
+  out.kind = SegmentKind::spline;
+  out.order = kCubicOrder;
+  double sum = 0;
+  for_overlapping_lanes(dimensions, [&](auto lane, std::size_t first) {
+    using Lane = typename decltype(lane)::type;
+    const auto x0 = load_lane<Lane>(ends.left_position + first);
+    const auto x1 = load_lane<Lane>(ends.right_position + first);
+    const Lane written =
+        cubic.write(first, x0, chord_slope(x0, x1, h), load_lane<Lane>(ends.left_velocity + first),
+                    load_lane<Lane>(ends.right_velocity + first));
+    sum += sum_of_lane(written);
+  });
+  return sum;
+}
+
 void build_segment(SegmentForm form, const SegmentEnd& left, const SegmentEnd& right,
                    Segment& out) noexcept {
-  if (form == SegmentForm::cubic && left.residual.empty()) return build_cubic(left, right, out);
+  if (form == SegmentForm::cubic && left.residual.empty()) {
+    (void)build_cubic({.left = left.time,
+                       .right = right.time,
+                       .left_position = left.waypoint.data(),
+                       .right_position = right.waypoint.data(),
+                       .left_velocity = left.velocity.data(),
+                       .right_velocity = right.velocity.data()},
+                      out);
+    return;
+  }
   const bool is_between_knots =
       form != SegmentForm::splice && form != SegmentForm::stop && form != SegmentForm::hold;
   if (is_between_knots) return build_segment(Between(form, left, right).interval, out);

@@ -55,9 +55,9 @@ std::span<double> power_of(Segment& segment, std::size_t power, std::size_t dime
   const CubicWriter cubic(i.h, i.x0.size(), coefficients);
   for_overlapping_lanes(i.x0.size(), [&](auto lane, std::size_t first) {
     using Lane = typename decltype(lane)::type;
-    cubic.write(first, load_lane<Lane>(i.x0.data() + first),
-                load_lane<Lane>(i.chord.data() + first), load_lane<Lane>(i.v0.data() + first),
-                load_lane<Lane>(i.v1.data() + first));
+    (void)cubic.write(first, load_lane<Lane>(i.x0.data() + first),
+                      load_lane<Lane>(i.chord.data() + first), load_lane<Lane>(i.v0.data() + first),
+                      load_lane<Lane>(i.v1.data() + first));
   });
 }
 

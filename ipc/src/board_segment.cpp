@@ -66,9 +66,26 @@ bool BoardSegment::take_last(const KnotBoardReader& board, const Head& head) noe
   return taken == Taken::whole;
 }
 
+/// Mostly: a cubic between two waypoints, neither cut nor smoothed.
+inline bool BoardSegment::build_cubic() noexcept {
+  const Word length = to_word(right_.time) - to_word(left_.time);
+  if (right_.time <= left_.time || length > to_word(core::Time::max())) return false;
+  next_ = left_.number + 1;
+  right_end_ = right_.time;
+  return core::build_cubic({.left = left_.time,
+                            .right = right_.time,
+                            .left_position = left_.waypoint().data(),
+                            .right_position = right_.waypoint().data(),
+                            .left_velocity = left_.velocity().data(),
+                            .right_velocity = right_.velocity().data()},
+                           segment_) <= kLargestSum;
+}
+
 bool BoardSegment::build(const Head& head) noexcept {
   using core::SegmentForm;
   const SegmentForm form = left_.note.form;
+  const bool is_plain = right_.is_there() && !after_.is_there() && left_.residual().empty();
+  if (form == SegmentForm::cubic && is_plain) return build_cubic();
   if (!has_start(form, left_.note)) return false;
   core::SegmentEnd right = right_.end();
   next_ = left_.number + 1;

@@ -71,7 +71,6 @@ inline bool Sampler::fits(const core::StateRef& out) const noexcept {
 /// The sample at t. Mostly nothing has been published since the last one, and t lies in the segment
 /// used last: then there is nothing to look up.
 inline SampleStatus Sampler::find(core::Time t, const core::StateRef& out) noexcept {
-  if (!fits(out)) return SampleStatus::wrong_dimension;
   if (board_->retired()) return SampleStatus::retired;
   const Look look = board_->look();
   const bool is_at_hand = look.revision == confirmed_ && t >= at_hand_.left && t < at_hand_.right;
@@ -85,13 +84,23 @@ inline SampleStatus Sampler::find(core::Time t, const core::StateRef& out) noexc
                                                         : SampleStatus::provisional;
 }
 
-SampleStatus Sampler::sample(core::Time t, const core::StateRef& out) noexcept {
+/// A sample that counts as executed.
+inline SampleStatus Sampler::execute(core::Time t, const core::StateRef& out) noexcept {
   const SampleStatus status = find(t, out);
   if (clock_ == StreamClock::recorded || !has_values(status)) return status;
   const bool is_revised = revised_;
   sampled_until_ = is_revised ? t : std::max(sampled_until_, t);
   revised_ = false;
   return is_revised ? SampleStatus::revised : status;
+}
+
+SampleStatus Sampler::sample(core::Time t, const core::StateRef& out) noexcept {
+  return fits(out) ? execute(t, out) : SampleStatus::wrong_dimension;
+}
+
+SampleStatus Sampler::sample(core::Time t, core::State& out) noexcept {
+  const bool fits = out.dimensions() == board_->dimensions();
+  return fits ? execute(t, out.ref()) : SampleStatus::wrong_dimension;
 }
 
 /// Likewise where t lies in the segment behind: mostly of the same revision, as times advance.
@@ -178,7 +187,7 @@ Sampler::Compared Sampler::compare_rest(BoardSegment& last) noexcept {
 }
 
 SampleStatus Sampler::preview(core::Time t, const core::StateRef& out) noexcept {
-  return find(t, out);
+  return fits(out) ? find(t, out) : SampleStatus::wrong_dimension;
 }
 
 /// Makes head_ that of the newest revision, of which t is asked for next. Returns `settled` if

@@ -47,6 +47,21 @@ struct SegmentEnd {
 void build_segment(SegmentForm form, const SegmentEnd& left, const SegmentEnd& right,
                    Segment& out) noexcept;
 
+/// What a cubic is made of where the curve passes both knots: D values each, and right > left.
+struct CubicEnds {
+  Time left{};
+  Time right{};
+  const double* left_position;
+  const double* right_position;
+  const double* left_velocity;
+  const double* right_velocity;
+};
+
+/// The same for the form `cubic` without residuals, which most segments are. Returns a sum of the
+/// magnitudes of the coefficients, of which some may count twice: at least the largest of them, and
+/// NaN if one of them is NaN. O(D).
+double build_cubic(const CubicEnds& ends, Segment& out) noexcept;
+
 /// Writes the accelerations with which such a segment starts and arrives, `start` and `end`; at
 /// natural ends, that is where nothing cuts it. O(D).
 void write_end_accelerations(SegmentForm form, const SegmentEnd& left, const SegmentEnd& right,

@@ -92,6 +92,7 @@ class BoardSegment {
   [[nodiscard]] bool fetch(const KnotBoardReader& board, Word number, Word r,
                            const BoardSegment* near, KnotCopy& out) const noexcept;
   [[nodiscard]] bool build(const Head& head) noexcept;
+  [[nodiscard]] bool build_cubic() noexcept;
   [[nodiscard]] bool arrives_alike(const KnotCopy& knot) const noexcept;
 
   core::Segment segment_;  ///< with its natural right end

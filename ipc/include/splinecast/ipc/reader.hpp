@@ -47,7 +47,7 @@ class Reader {
     return sampler_->sample(t, out);
   }
   [[nodiscard]] SampleStatus sample(core::Time t, core::State& out) noexcept {
-    return sample(t, out.ref());
+    return sampler_->sample(t, out);
   }
 
   /// The same for a look ahead of what is settled, which does not count as executed: see

@@ -88,6 +88,7 @@ class Sampler {
   /// differ, or cannot be compared because the board no longer keeps them or there are more than
   /// kMostCompared, it is: a change is never missed.
   [[nodiscard]] SampleStatus sample(core::Time t, const core::StateRef& out) noexcept;
+  [[nodiscard]] SampleStatus sample(core::Time t, core::State& out) noexcept;
 
   /// The same for a look ahead: what it gives does not count as executed.
   [[nodiscard]] SampleStatus preview(core::Time t, const core::StateRef& out) noexcept;
@@ -151,6 +152,7 @@ class Sampler {
   void read(const BoardSegment& segment, double u, const core::StateRef& out) const noexcept;
   [[nodiscard]] SampleStatus evaluate(const BoardSegment& segment, core::Time t,
                                       const core::StateRef& out) const noexcept;
+  [[nodiscard]] SampleStatus execute(core::Time t, const core::StateRef& out) noexcept;
   [[nodiscard]] SampleStatus find(core::Time t, const core::StateRef& out) noexcept;
   [[nodiscard]] SampleStatus look_up(core::Time t, const core::StateRef& out) noexcept;
   [[nodiscard]] SampleStatus hold_first(const core::StateRef& out) noexcept;
