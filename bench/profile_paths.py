@@ -113,7 +113,8 @@ LIMITS = {
     "sample_random": """- `sample_random`: 65,536 slots take 33 MB, on 8,192 pages; a sample loads two of them, up to eight lines, after a line of
   the packed times. GSL's tables take 8 MB.
 """,
-    "sample_many": """- `sample_many`: the polynomials of a horizon are made anew in each call, one for five times here.
+    "sample_many": """- `sample_many`: the copies of a horizon are kept from call to call. Of some 130 instructions per time 67 evaluate; the rest
+  find the segment, five times to each, and tell the time within it and the status.
 """,
     "sample": """- `sample`: the time that the target leaves beside the bare polynomial (`floor/eval`) is what status, lookup and copy
   of the table above may take together.
