@@ -69,7 +69,7 @@ PATHS = [
 `settled until`, while the revision stands and the time lies in the segment used last. The next segment adds 3: the two
 cells of its right knot, whose tags are in the same lines as the velocities, and a node. A new revision adds 7: the tags of
 the head's two cells with the bounds beside them, the `changed from` of the revisions missed, and the cells of the segment's
-two knots; these it asks for at once before it waits for the first of them. It stores nothing.
+two knots, and where these were written again their nodes; all of it is asked for at once before the first is waited for. It stores nothing.
 """,
     ),
     Path(
