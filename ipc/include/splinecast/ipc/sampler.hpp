@@ -51,8 +51,8 @@ struct SampleBlock {
 /// that wrote them, and the polynomials made from them. While those tags stand, a sample of one of
 /// them copies nothing; where time passes the right knot of the newest one, it copies one knot. One
 /// thread uses a sampler; any number of samplers, in any processes, read one board. Stores to
-/// shared memory never. Allocates when made only: 16 D doubles, or 19 D of a curve that is smoothed,
-/// for each of kSegmentsKept + 1 segments.
+/// shared memory never. Allocates when made only: 16 D doubles, or 19 D of a curve that is
+/// smoothed, for each of kSegmentsKept + 1 segments.
 class Sampler {
  public:
   /// How many segments it keeps copies of: the horizon of a controller that looks ahead, mostly.
