@@ -24,8 +24,8 @@ class CubicWriter {
   /// at the left end, v1 at the right one, and the slope m of the chord. Returns the sums of their
   /// magnitudes.
   template <typename Lane>
-  [[gnu::always_inline]] Lane write(std::size_t first, Lane x, Lane m, Lane v0,
-                                    Lane v1) const noexcept {
+  [[nodiscard, gnu::always_inline]] Lane write(std::size_t first, Lane x, Lane m, Lane v0,
+                                               Lane v1) const noexcept {
     const Lane c2 = (3.0 * m - 2.0 * v0 - v1) * per_h_;
     const Lane c3 = (v0 + v1 - 2.0 * m) * per_h2_;
     store_lane(c_ + first, x);

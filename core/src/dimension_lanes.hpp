@@ -75,8 +75,9 @@ template <typename Lane>
     return std::abs(values);
   } else {
     using Bits [[gnu::vector_size(sizeof(Lane))]] = long long;
-    return reinterpret_cast<Lane>(reinterpret_cast<Bits>(values) &
-                                  std::numeric_limits<long long>::max());
+    const Bits bits = reinterpret_cast<Bits>(values);  // NOLINT(*-reinterpret-cast)
+    return reinterpret_cast<Lane>(                     // NOLINT(*-reinterpret-cast)
+        bits & std::numeric_limits<long long>::max());
   }
 }
 template <typename Lane>

@@ -22,6 +22,7 @@ struct Between {
   std::array<double, kMaxDimensions> position;
   Interval interval;
 
+  // NOLINTNEXTLINE(*-member-init): what is not written is not read
   Between(SegmentForm form, const SegmentEnd& left, const SegmentEnd& right) noexcept {
     const std::size_t dimensions = left.waypoint.size();
     const auto m = std::span(chord).first(dimensions);
@@ -104,7 +105,7 @@ void build_segment(SegmentForm form, const SegmentEnd& left, const SegmentEnd& r
   const bool is_between_knots =
       form != SegmentForm::splice && form != SegmentForm::stop && form != SegmentForm::hold;
   if (is_between_knots) return build_segment(Between(form, left, right).interval, out);
-  std::array<double, kMaxDimensions> from_values;
+  std::array<double, kMaxDimensions> from_values;  // NOLINT(*-member-init)
   const auto from = std::span(from_values).first(left.waypoint.size());
   write_position(left, from);
   if (form == SegmentForm::hold) return build_hold(left.time, right.time, from, out);
@@ -112,7 +113,7 @@ void build_segment(SegmentForm form, const SegmentEnd& left, const SegmentEnd& r
     return build_stop_tail(left.time, right.time - left.time, from, left.velocity,
                            left.acceleration, out);
   }
-  std::array<double, kMaxDimensions> to_values;
+  std::array<double, kMaxDimensions> to_values;  // NOLINT(*-member-init)
   const auto to = std::span(to_values).first(left.waypoint.size());
   write_position(right, to);
   build_splice({left.time, from, left.velocity, left.acceleration},

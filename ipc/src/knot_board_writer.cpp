@@ -162,8 +162,8 @@ void KnotBoardWriter::write_velocities(Word first, std::uint32_t newer_knots,
 void KnotBoardWriter::write(Word number, const KnotRecord& knot) noexcept {
   double sum = 0;
   const bool has_row = knot.prefix != nullptr;
-  const SlotState changed = static_cast<SlotState>((knot.is_new ? kTagNodeMask : 0) |
-                                                   (knot.is_new || has_row ? kTagRowMask : 0));
+  const auto changed = static_cast<SlotState>((knot.is_new ? kTagNodeMask : 0) |
+                                              (knot.is_new || has_row ? kTagRowMask : 0));
   const Claimed claimed = claim(at_, number, next_tag() | pack_note(knot.note), changed);
   if (knot.is_new) {
     Word* const node =

@@ -491,7 +491,8 @@ std::size_t Sampler::evaluate_moving(std::span<const core::Time> times, std::siz
   if (!all_linear_) return 0;
   const BoardSegment& own = current();
   const core::Time settled_until = at_hand_.is_finished ? core::Time::max() : head_.settled_until;
-  std::array<double, 16> u;  // not cleared first: that would take as long as the lookup
+  // Not cleared first: that would take as long as the lookup.
+  std::array<double, 16> u;  // NOLINT(*-member-init)
   std::size_t n = 0;
   while (n < u.size() && first + n < times.size()) {
     const core::Time t = times[first + n];

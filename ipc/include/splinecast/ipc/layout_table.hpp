@@ -162,7 +162,7 @@ template <auto Member, typename Struct>
   if constexpr (Of::is_flag) {
     take_word(from.*Member ? 1 : 0, at, held, changed);
   } else {
-    std::array<Word, Of::words> words;
+    std::array<Word, Of::words> words{};
     std::memcpy(words.data(), &(from.*Member), sizeof(from.*Member));
     for (std::size_t i = 0; i < words.size(); ++i) take_word(words[i], at + i, held, changed);
   }
