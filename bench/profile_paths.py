@@ -106,12 +106,12 @@ LIMITS = {
   the commit take about 2,200 of them, more than four times the window alone, before anything is asked or counted: each
   word of shared memory is stored by an instruction of its own, 63 of velocities alone, each behind a load.
 """,
-    "streams:1000/busy": """- `streams:1000/busy`: 100,000 waypoints a second in a tenth of a core leave 1 µs for each. A step goes through about 120
+    "streams:1000/busy": """- `streams:1000/busy`: 100,000 waypoints a second in a tenth of a core leave 1 µs for each. A step asks for about 120
   cache lines: 65 of the solver's own state, 30 of the window, 25 shared ones. Of a thousand streams that is 8 MB, more
-  than the second-level cache holds; they are asked for while the step before is made, which leaves some 12 ns for each.
+  than the second-level cache holds; they are asked for while the step before is made.
 """,
     "sample_random": """- `sample_random`: 65,536 slots take 33 MB, on 8,192 pages; a sample loads two of them, up to eight lines, after a line of
-  the packed times. GSL's tables take 8 MB.
+  the packed times.
 """,
     "sample_many": """- `sample_many`: the copies of a horizon are kept from call to call. Of some 130 instructions per time 67 evaluate; the rest
   find the segment, five times to each, and tell the time within it and the status.

@@ -22,7 +22,7 @@ struct Between {
   std::array<double, kMaxDimensions> position;
   Interval interval;
 
-  // NOLINTNEXTLINE(*-member-init): what is not written is not read
+  // NOLINTNEXTLINE(*-member-init): the arrays are written before they are read
   Between(SegmentForm form, const SegmentEnd& left, const SegmentEnd& right) noexcept {
     const std::size_t dimensions = left.waypoint.size();
     const auto m = std::span(chord).first(dimensions);

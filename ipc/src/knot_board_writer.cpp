@@ -80,12 +80,12 @@ void KnotBoardWriter::restore_times() noexcept {
   }
 }
 
-/// What a slot will be once the next revision is committed, for which it has been written.
-KnotBoardWriter::SlotState KnotBoardWriter::next_state(const Slots& slots,
-                                                       std::size_t index) noexcept {
+/// The entry of a slot that has been written for the next revision.
+KnotBoardWriter::WrittenSlot& KnotBoardWriter::written_slot(const Slots& slots,
+                                                            std::size_t index) noexcept {
   std::size_t i = slots.written_count - 1;
   while (slots.written[i].index != index) --i;
-  return slots.written[i].next;
+  return slots.written[i];
 }
 
 /// W1: claims the spare cell of a slot. A node or row is never stored to while a cell with a
@@ -97,14 +97,10 @@ inline KnotBoardWriter::Claimed KnotBoardWriter::claim(Slots& slots, Word number
   const SlotState state = slots.states[index];
   const SlotState next = (state & ~kWrittenBit) ^ (kCellBit | changed);
   slots.states[index] = state | kWrittenBit;
-  std::size_t place = slots.written_count;
-  if ((state & kWrittenBit) != 0) {
-    do --place;
-    while (slots.written[place].index != index);
-  } else {
-    ++slots.written_count;
-  }
-  slots.written[place] = {static_cast<std::uint32_t>(index), next};
+  const bool is_written = (state & kWrittenBit) != 0;
+  WrittenSlot& written =
+      is_written ? written_slot(slots, index) : slots.written[slots.written_count++];
+  written = {static_cast<std::uint32_t>(index), next};
   Word* const slot = slots.slot(index);
   Word* const cell = (next & kCellBit) != 0 ? slot + slots.cell_words : slot;
   store(cell[kCellTag], tag | (next & kTagPartsMask), std::memory_order_release);
@@ -148,7 +144,7 @@ void KnotBoardWriter::write_velocities(Word first, std::uint32_t newer_knots,
   const Word tag = next_tag() | kNote;
   const std::size_t dimensions = layout_.dimensions;
   const double* values = velocities.values;
-  // What is stored could else be taken for a change of what is known of the slots.
+  // A copy: else the compiler loads these members again after each store to shared memory.
   Slots slots = at_;
   for (std::size_t i = 0; i < velocities.count; ++i, values += velocities.stride) {
     const Word newer = (newer_knots - i) & kTagNewerMask;
@@ -223,7 +219,7 @@ void KnotBoardWriter::write_form(Word number, core::SegmentForm form, core::Time
 core::SegmentForm KnotBoardWriter::form(Word number) const noexcept {
   const SlotState committed = states_[index_of(number)];
   const SlotState state =
-      (committed & kWrittenBit) != 0 ? next_state(at_, index_of(number)) : committed;
+      (committed & kWrittenBit) != 0 ? written_slot(at_, index_of(number)).next : committed;
   const std::size_t c = (state & kCellBit) != 0 ? 1 : 0;
   return note_of(load(cells(number).cell(c)[kCellTag], std::memory_order_relaxed)).form;
 }

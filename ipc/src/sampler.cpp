@@ -103,7 +103,8 @@ SampleStatus Sampler::sample(core::Time t, core::State& out) noexcept {
   return fits ? execute(t, out.ref()) : SampleStatus::wrong_dimension;
 }
 
-/// Likewise where t lies in the segment behind: mostly of the same revision, as times advance.
+/// Makes the next segment of the same revision the current one if t may lie there. Returns whether
+/// t lies where it moves.
 bool Sampler::goes_on(core::Time t) noexcept {
   if (confirmed_ != head_.revision || !current().is_there() || t < current().right()) return false;
   const Word next = current().next();
@@ -190,8 +191,8 @@ SampleStatus Sampler::preview(core::Time t, const core::StateRef& out) noexcept 
   return fits(out) ? find(t, out) : SampleStatus::wrong_dimension;
 }
 
-/// Makes head_ that of the newest revision, of which t is asked for next. Returns `settled` if
-/// there is a curve, `busy` if the writer has gone on meanwhile, else why there is none.
+/// Makes head_ that of the newest revision; t is the time that will be looked up in it. Returns
+/// `settled` if there is a curve, `busy` if the writer has gone on, else the reason for none.
 SampleStatus Sampler::see_newest(core::Time t) noexcept {
   if (board_->retired()) return SampleStatus::retired;
   const Look look = board_->look();
@@ -461,8 +462,7 @@ bool Sampler::evaluate_many(std::span<const core::Time> times, const SampleBlock
   const std::size_t dimensions = board_->dimensions();
   const std::size_t stride = core::count(out.derivatives) * dimensions;
   for (std::size_t i = 0; i < times.size();) {
-    const bool goes_on_there = goes_on(times[i]);
-    const Found found = goes_on_there ? Found::segment : locate(times[i]);
+    const Found found = goes_on(times[i]) ? Found::segment : locate(times[i]);
     if (found == Found::torn) return false;
     if (found == Found::segment) {
       const std::size_t evaluated = evaluate_moving(times, i, stride, out);

@@ -99,10 +99,10 @@ class KnotBoardWriter {
   /// Writes a knot for the next revision: at most once each. O(D).
   void write(Word number, const KnotRecord& knot) noexcept;
 
-  /// Writes committed knots between others again of which only the velocities have changed: most
-  /// of what an append does. They are consecutive, beginning with `first`, waypoints at which
-  /// cubics begin, and were solved together: the first one had seen so many newer knots, each other
-  /// one fewer. O(D) each.
+  /// Writes consecutive committed knots again, from `first` on, of which only the velocities have
+  /// changed: most of what an append does. At each of them stands a waypoint, and a cubic begins.
+  /// They were solved together: `newer_knots` is how many newer knots the first one had seen. O(D)
+  /// each.
   void write_velocities(Word first, std::uint32_t newer_knots,
                         const core::KnotVelocities& velocities) noexcept;
 
@@ -138,8 +138,10 @@ class KnotBoardWriter {
     store(control_[kSettledUntil], word, std::memory_order_release);
   }
 
-  /// The word that this stores to, for SettledRaise; and what stands there, also by that.
+  /// The settled word itself, for SettledRaise.
   [[nodiscard]] Word& settled_word() noexcept { return control_[kSettledUntil]; }
+
+  /// Loads the settled word, which a SettledRaise may have raised.
   [[nodiscard]] core::Time take_up_settled() noexcept {
     settled_ = load(control_[kSettledUntil], std::memory_order_relaxed);
     return to_time(settled_);
@@ -229,7 +231,7 @@ class KnotBoardWriter {
   [[nodiscard]] SlotView<Word> head_cells() const noexcept;
   [[nodiscard]] static Claimed claim(Slots& slots, Word number, Word tag,
                                      SlotState changed) noexcept;
-  [[nodiscard]] static SlotState next_state(const Slots& slots, std::size_t index) noexcept;
+  [[nodiscard]] static WrittenSlot& written_slot(const Slots& slots, std::size_t index) noexcept;
   [[nodiscard]] Word next_tag() const noexcept { return (revision_ + 1) << kTagRevisionShift; }
   [[nodiscard]] std::span<const WrittenSlot> written() const noexcept {
     return std::span(written_).first(at_.written_count);

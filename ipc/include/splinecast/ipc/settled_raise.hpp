@@ -6,9 +6,9 @@
 namespace splinecast::ipc {
 
 /// Raises a live stream's settled word between two steps of its solver, where a step would do no
-/// more than that: S1 of publication.hpp. Of a thousand streams at 100 Hz three steps out of four
-/// are of that kind, and a step looks at far more memory. Made by the solver after each step, and
-/// of use until its next one, which takes up what has been stored; used by the solver's thread.
+/// more than that: S1 of publication.hpp. A step uses far more memory. The solver makes it after
+/// each step; it is valid until the next one, which takes up what has been stored. Used by the
+/// solver's thread.
 class SettledRaise {
  public:
   /// Raises nothing.

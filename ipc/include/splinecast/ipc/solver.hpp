@@ -30,8 +30,8 @@ class SolverWatch {
   /// Whether a step is of use at `now` whatever the ring holds: a revision is due.
   [[nodiscard]] bool is_due(core::Time now) const noexcept { return due_ <= now; }
 
-  /// Does what is due at `now` where that is no more than to say how far the curve is settled.
-  /// Returns whether it was; else a step does it. Stores one word.
+  /// Raises the stream's settled time if nothing else is due at `now`. Returns whether that was so;
+  /// else the stream needs a step. Stores at most one word.
   bool settle(core::Time now) noexcept {
     if (!raise_.raise(now)) return false;
     due_ = now + raise_.interval();
@@ -113,10 +113,11 @@ class Solver {
   /// stream, or one at rest. Not attached: when `attach` is to be tried again, if that is known.
   [[nodiscard]] core::Time due() const noexcept;
 
-  /// Asks for the memory that a step goes through, for whoever steps many solvers in turn: first
-  /// this object's, then, called again when that has come, what lies behind it, then the stream's.
-  /// Loads what the call before has asked for.
+  /// What `prefetch` asks for: this object, the parts that it points to, or the stream's memory.
+  /// Each stage loads what the one before has asked for.
   enum class Stage { self, parts, stream };
+
+  /// Asks for memory that the next step uses, for a program that steps many solvers in turn.
   void prefetch(Stage stage) const noexcept;
 
   /// What to look at before the next step; attached() only.

@@ -113,7 +113,7 @@ inline void store_values(Word* to, std::span<const double> values) noexcept {
   });
 }
 
-/// The same, and adds their magnitudes to a sum: see core::Magnitude.
+/// The same, and adds their magnitudes to a sum: see core::magnitude_of.
 inline void store_summed(Word* to, std::span<const double> values, double& sum) noexcept {
   double own = sum;
   copy_each(to, values.data(), values.size(), [&own](Word& word, double value) {
