@@ -103,9 +103,10 @@ class Chaos {
     std::vector<double> limits = JointMotion::peak_acceleration();
     for (double& limit : limits) limit *= 10;
     solver_.emplace([this, limits] {
-      return json(run_solve({.wanted = {stream_},
-                             .solver = {.stop_time = milliseconds(250), .max_acceleration = limits},
-                             .quiet = true}));
+      return json(run_solve(
+          {.wanted = {stream_},
+           .solver = {.stop_time = milliseconds(250), .limits = {{.acceleration = limits}}},
+           .quiet = true}));
     });
   }
   void start_producer() {

@@ -156,8 +156,10 @@ void add_live_options(CLI::App& verb, ipc::SolverOptions& options) {
   verb.add_option_function<std::string>(
           "--max-acceleration",
           [&options](const std::string& text) {
-            options.max_acceleration = core::parse_values(text);
-            if (options.max_acceleration) return;
+            if (auto values = core::parse_values(text)) {
+              options.limits = {.acceleration = std::move(*values)};
+              return;
+            }
             throw CLI::ValidationError(
                 "--max-acceleration",
                 fmt::format("'{}' is no list of numbers such as 10 or 10,10,5", text));

@@ -5,6 +5,7 @@
 
 #include "splinecast/core/condition.hpp"
 #include "splinecast/ipc/clock.hpp"
+#include "splinecast/ipc/header_limits.hpp"
 #include "splinecast/ipc/status.hpp"
 
 namespace splinecast::apps {
@@ -64,7 +65,7 @@ ordered_json refusals_json(const ipc::StreamInfo& info) {
 }
 
 ordered_json limits_json(const ipc::RegionHeader& header) {
-  return ipc::window_options(header).max_acceleration;
+  return ipc::motion_limits(header).acceleration;
 }
 
 /// Time from now to the newest knot; null where that means nothing.

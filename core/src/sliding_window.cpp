@@ -47,16 +47,7 @@ WindowOptions checked(WindowOptions options, std::size_t dimensions) {
     throw std::invalid_argument("dimensions must be 1 to 64, not " + std::to_string(dimensions));
   }
   require_streaming(options);
-  for (const double limit : options.max_acceleration) {
-    if (is_usable(limit) && limit >= 0) continue;
-    throw std::invalid_argument("acceleration limit must be positive, or 0 for none, not " +
-                                std::to_string(limit));
-  }
-  if (!options.max_acceleration.empty() && options.max_acceleration.size() != dimensions) {
-    throw std::invalid_argument(std::to_string(options.max_acceleration.size()) +
-                                " acceleration limits for " + std::to_string(dimensions) +
-                                " dimensions");
-  }
+  require_limits(options.limits, dimensions);
   if (options.stop_time <= Time::zero()) {
     throw std::invalid_argument("stop time must be positive, not " +
                                 std::to_string(options.stop_time.count()) + " ns");
@@ -189,12 +180,12 @@ void SlidingWindow::append(const Waypoint& waypoint) noexcept {
 
 /// The same while the splice of the entry is open: see can_append for what limits ask of it.
 void SlidingWindow::append_to_entry(const Waypoint& waypoint) noexcept {
-  const bool is_limited = !options_.max_acceleration.empty();
+  const bool is_limited = !options_.limits.acceleration.empty();
   if (is_limited) entry_.keep();
   const bool shapes = push_into_entry(waypoint);
   if (!is_limited || knots() == 1) return;
   entry_.write_splice(knots_, splice_);
-  if (keeps_within(options_.max_acceleration, splice_)) return;
+  if (keeps_within(options_.limits.acceleration, splice_)) return;
   if (shapes) {
     take_better_entry();
   } else {
@@ -287,8 +278,8 @@ void SlidingWindow::write_step(std::size_t i, const Interval& interval,
 
 Time SlidingWindow::stop_time(std::span<const double> velocity,
                               std::span<const double> acceleration) const noexcept {
-  if (options_.max_acceleration.empty()) return options_.stop_time;
-  return stop_time_within(options_.max_acceleration, options_.stop_time, velocity, acceleration);
+  if (options_.limits.acceleration.empty()) return options_.stop_time;
+  return stop_time_within(options_.limits.acceleration, options_.stop_time, velocity, acceleration);
 }
 
 Time SlidingWindow::write_stop(std::span<double> acceleration) const noexcept {

@@ -16,7 +16,7 @@ constexpr double kShareOfLimit = 0.9;
 
 bool SlidingWindow::can_append(std::span<const Waypoint> waypoints,
                                SlidingWindow& trial) const noexcept {
-  if (options_.max_acceleration.empty()) return true;
+  if (options_.limits.acceleration.empty()) return true;
   const bool shapes = is_entry_open() && knots() < kKnotsThatShapeTheEntry;
   const bool starts = !is_entered_ && knots() == 1;
   const bool goes_on = knots() > 0 && frozen_ == knots();
@@ -30,7 +30,7 @@ bool SlidingWindow::keeps_behind_newest(std::span<const Waypoint> waypoints) noe
   const std::size_t before = knots();
   for (const Waypoint& waypoint : waypoints) (void)push_into_entry(waypoint);
   build_segment(knots_.interval(before - 1), splice_);
-  return acceleration_excess(options_.max_acceleration, splice_) <= kShareOfLimit;
+  return acceleration_excess(options_.limits.acceleration, splice_) <= kShareOfLimit;
 }
 
 bool SlidingWindow::keeps_in_entry(std::span<const Waypoint> waypoints) noexcept {
@@ -42,7 +42,7 @@ bool SlidingWindow::keeps_in_entry(std::span<const Waypoint> waypoints) noexcept
     if (!is_first) continue;
     // Also alone: those that follow the first one may be refused.
     entry_.write_splice(knots_, splice_);
-    keeps = keeps && keeps_within(options_.max_acceleration, splice_);
+    keeps = keeps && keeps_within(options_.limits.acceleration, splice_);
   }
   return is_first ? keeps : entry_excess() <= kShareOfLimit;
 }
@@ -50,9 +50,9 @@ bool SlidingWindow::keeps_in_entry(std::span<const Waypoint> waypoints) noexcept
 /// The largest ratio of acceleration to limit in the splice and in the first interval behind it.
 double SlidingWindow::entry_excess() noexcept {
   build_segment(knots_.interval(0), splice_);
-  const double behind = acceleration_excess(options_.max_acceleration, splice_);
+  const double behind = acceleration_excess(options_.limits.acceleration, splice_);
   entry_.write_splice(knots_, splice_);
-  return std::max(behind, acceleration_excess(options_.max_acceleration, splice_));
+  return std::max(behind, acceleration_excess(options_.limits.acceleration, splice_));
 }
 
 /// Compares the entry's present velocity with its earlier one, and takes the one with the smaller

@@ -10,6 +10,7 @@
 #include "splinecast/core/method.hpp"
 #include "splinecast/core/sliding_window.hpp"
 #include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/header_limits.hpp"
 
 namespace splinecast::ipc {
 namespace {
@@ -118,6 +119,14 @@ void require_curve(const RegionHeader& header) {
                 core::kMaxSettle);
 }
 
+void require_motion_limits(const RegionHeader& header) {
+  try {
+    core::require_limits(motion_limits(header), dimensions_of(header));
+  } catch (const std::invalid_argument& error) {
+    throw BadRegion(std::string("region has bad limits: ") + error.what());
+  }
+}
+
 }  // namespace
 
 RingLayout RingLayout::of(std::size_t dimensions, std::size_t capacity,
@@ -221,11 +230,9 @@ BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_by
   require_range("history", static_cast<std::uint64_t>(header.history), 0, kLongestNanoseconds);
   require_range("shortest splice", static_cast<std::uint64_t>(header.min_splice), 1,
                 kLongestNanoseconds);
-  for (std::size_t d = 0; d < header.dimensions; ++d) {
-    const double limit = header.max_acceleration[d];
-    if (core::is_usable(limit) && limit >= 0) continue;
-    throw BadRegion("region has acceleration limit " + std::to_string(limit));
-  }
+  require_range("word for what is beyond limits", header.beyond, 0,
+                static_cast<std::uint64_t>(core::Beyond::refuse));
+  require_motion_limits(header);
   require_range("stop time", static_cast<std::uint64_t>(header.stop_time), 1,
                 static_cast<std::uint64_t>(kLongestStop.count()));
   require(header.stride == layout.stride, "slot size", header.stride, layout.stride);

@@ -53,7 +53,7 @@ PublishedCurve::PublishedCurve(KnotBoardWriter& board, const KnotBoardReader& pu
       entry_values_(kKnotValues * published.dimensions()),
       standing_values_(published.dimensions() * standing_.size()) {
   knots_.reserve(window_.knots_to_restore());
-  if (!options.max_acceleration.empty()) trial_.emplace(published.dimensions(), options);
+  if (!options.limits.acceleration.empty()) trial_.emplace(published.dimensions(), options);
 }
 
 void PublishedCurve::prefetch() const noexcept {

@@ -30,9 +30,9 @@ std::optional<WayBack> way_back(const core::SlidingWindow& window, const core::K
   const core::WindowOptions& options = window.options();
   const core::Time least = options.stop_time;
   // Without limits a little slower than the stop: the same way at the same peak acceleration.
-  const core::Time duration = options.max_acceleration.empty()
+  const core::Time duration = options.limits.acceleration.empty()
                                   ? least + least / 2
-                                  : core::move_time_within(options.max_acceleration, least,
+                                  : core::move_time_within(options.limits.acceleration, least,
                                                            std::span(distance).first(dimensions));
   return WayBack{.rest = scratch.right, .duration = duration};
 }

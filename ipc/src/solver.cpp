@@ -13,6 +13,7 @@
 #include "splinecast/ipc/checked_region.hpp"
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/futex.hpp"
+#include "splinecast/ipc/header_limits.hpp"
 #include "splinecast/ipc/old_motion.hpp"
 #include "splinecast/ipc/owner_lock.hpp"
 
@@ -42,14 +43,35 @@ const core::Method& method_of(const SolverOptions& options) {
 }
 
 /// One limit per dimension, or one for all.
-void write_limits(const std::vector<double>& limits, RegionHeader& header) {
-  if (limits.size() != 1 && limits.size() != header.dimensions) {
-    throw BadRequest(std::to_string(limits.size()) + " acceleration limits for " +
-                     std::to_string(header.dimensions) + " dimensions");
+void write_limits(const core::MotionLimits& limits, RegionHeader& header) {
+  try {
+    put_limits(core::spread(limits, header.dimensions), header);
+  } catch (const std::invalid_argument& error) {
+    throw BadRequest(error.what());
   }
-  for (std::size_t d = 0; d < header.dimensions; ++d) {
-    header.max_acceleration[d] = limits[limits.size() == 1 ? 0 : d];
-  }
+}
+
+/// Limits that are asked for must be those of the board; a kind of which none is given may be any.
+void require_same_limits(const std::string& stream, const RegionHeader& stands,
+                         const core::MotionLimits& limits) {
+  RegionHeader wanted = stands;
+  write_limits(limits, wanted);
+  const auto compare = [&](const char* what, bool is_given, auto row) {
+    for (std::size_t d = 0; is_given && d < stands.dimensions; ++d) {
+      require_same(stream, what, std::optional((wanted.*row)[d]), (stands.*row)[d],
+                   std::to_string((wanted.*row)[d]), std::to_string((stands.*row)[d]));
+    }
+  };
+  const bool has_bounds = !limits.lower.empty() || !limits.upper.empty();
+  compare("velocity limit", !limits.velocity.empty(), &RegionHeader::max_velocity);
+  compare("acceleration limit", !limits.acceleration.empty(), &RegionHeader::max_acceleration);
+  compare("jerk limit", !limits.jerk.empty(), &RegionHeader::max_jerk);
+  compare("lower bound", has_bounds, &RegionHeader::lower_bound);
+  compare("upper bound", has_bounds, &RegionHeader::upper_bound);
+}
+
+bool limits_acceleration(const SolverOptions& options) noexcept {
+  return options.limits && !options.limits->acceleration.empty();
 }
 
 void require_no_contradiction(const std::string& stream, const RegionHeader& stands,
@@ -81,14 +103,11 @@ void require_no_contradiction(const std::string& stream, const RegionHeader& sta
   require_same_time("freeze-ahead in ns", options.freeze_ahead, stands.freeze_ahead);
   require_same_time("history in ns", options.history, stands.history);
   require_same_time("shortest splice in ns", options.min_splice, stands.min_splice);
-  if (options.max_acceleration) {
-    RegionHeader wanted = stands;
-    write_limits(*options.max_acceleration, wanted);
-    for (std::size_t d = 0; d < stands.dimensions; ++d) {
-      require_same(stream, "acceleration limit", std::optional(wanted.max_acceleration[d]),
-                   stands.max_acceleration[d], number(wanted.max_acceleration[d]),
-                   number(stands.max_acceleration[d]));
-    }
+  if (options.limits) require_same_limits(stream, stands, *options.limits);
+  if (options.beyond) {
+    require_same<std::uint64_t>(stream, "what is done beyond limits (0 report, 1 refuse)",
+                                static_cast<std::uint64_t>(*options.beyond), stands.beyond,
+                                number(static_cast<int>(*options.beyond)), number(stands.beyond));
   }
   if (options.capacity) {
     require_same<std::size_t>(stream, "capacity", std::bit_ceil(*options.capacity), stands.capacity,
@@ -105,9 +124,11 @@ void write_options(const SolverOptions& options, RegionHeader& header) {
   header.settle = options.settle.value_or(core::default_settle(method));
   header.tail = static_cast<std::uint64_t>(options.tail.value_or(core::Tail::bessel));
   header.stop_time =
-      options.stop_time.value_or(options.max_acceleration ? core::kLeastStopTime : kDefaultStopTime)
+      options.stop_time
+          .value_or(limits_acceleration(options) ? core::kLeastStopTime : kDefaultStopTime)
           .count();
-  if (options.max_acceleration) write_limits(*options.max_acceleration, header);
+  if (options.limits) write_limits(*options.limits, header);
+  header.beyond = static_cast<std::uint64_t>(options.beyond.value_or(core::Beyond::report));
   const LiveOptions live;
   const core::Time freeze_ahead = options.freeze_ahead.value_or(live.freeze_ahead);
   header.freeze_ahead = freeze_ahead.count();
@@ -133,11 +154,6 @@ void require_options(const SolverOptions& options) {
   require_time("freeze-ahead", options.freeze_ahead, core::Time(1), kLongestFreeze);
   require_time("history", options.history, core::Time::zero(), kLongestHistory);
   require_time("shortest splice", options.min_splice, core::Time(1), kLongestFreeze);
-  for (const double limit : options.max_acceleration.value_or(std::vector<double>{})) {
-    if (core::is_usable(limit) && limit >= 0) continue;
-    throw BadRequest("acceleration limit must be positive, or 0 for none, not " +
-                     std::to_string(limit));
-  }
   const core::Method& method = method_of(options);
   if (method.family == core::Family::smoothing && !options.lambda) {
     throw BadRequest("method smoothing needs a lambda: online it cannot be chosen");
@@ -156,11 +172,14 @@ void require_options(const SolverOptions& options) {
     throw BadRequest("method " + std::string(method.name) + " has a tail of its own, not '" +
                      std::string(core::to_string(*options.tail)) + "'");
   }
+  // How many dimensions there will be is not known yet, nor their kinds.
+  SolverOptions curve = options;
+  curve.limits.reset();
   RegionHeader header{};
-  header.dimensions = options.max_acceleration ? options.max_acceleration->size() : 1;
-  write_options(options, header);
-  header.dimensions = 1;  // how many there will be is not known yet
+  header.dimensions = 1;
+  write_options(curve, header);
   try {
+    if (options.limits) core::require_limits(*options.limits);
     (void)core::SlidingWindow(1, window_options(header));
   } catch (const std::invalid_argument& error) {
     throw BadRequest(error.what());

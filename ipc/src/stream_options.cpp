@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "splinecast/ipc/errors.hpp"
+#include "splinecast/ipc/header_limits.hpp"
 
 namespace splinecast::ipc {
 namespace {
@@ -135,8 +136,6 @@ std::optional<LiveOptions> live_options(const RegionHeader& header) noexcept {
 }
 
 core::WindowOptions window_options(const RegionHeader& header) {
-  const auto limits = std::span(header.max_acceleration).first(header.dimensions);
-  const bool has_limits = std::ranges::any_of(limits, [](double a) { return a > 0; });
   return {.interpolant = {.method = core::find_method(header.method),
                           .lambda = header.lambda,
                           .time_scale = header.time_scale},
@@ -144,8 +143,7 @@ core::WindowOptions window_options(const RegionHeader& header) {
           .tail = static_cast<core::Tail>(header.tail),
           .start = start_condition(header),
           .stop_time = core::Time(header.stop_time),
-          .max_acceleration = has_limits ? std::vector<double>(limits.begin(), limits.end())
-                                         : std::vector<double>(),
+          .limits = motion_limits(header),
           .held_before_start = stream_clock(header) == StreamClock::monotonic,
           .force_lag = header.force_lag != 0};
 }

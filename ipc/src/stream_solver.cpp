@@ -292,7 +292,7 @@ void StreamSolver::take_waypoint(Word number) noexcept {
 
 /// Whether the waypoint at hand is one that limits allow for; those that wait behind it count.
 bool StreamSolver::can_follow(Word number, bool starved) noexcept {
-  if (curve_.window().options().max_acceleration.empty()) return true;
+  if (curve_.window().options().limits.acceleration.empty()) return true;
   const Word available = reachable(ring_->head());
   std::array<core::Waypoint, 1 + kFollowers> first{item_.waypoint()};
   std::size_t count = 1;

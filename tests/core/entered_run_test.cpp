@@ -138,7 +138,7 @@ TEST(EnteredRun, GoesOnBitForBitWhereAWindowStoodThatDied) {
 }
 
 TEST(EnteredRun, AWaypointThatNoSpliceReachesWithinTheLimitsIsNotTaken) {
-  Entered run(5 * kMillisecond, {.max_acceleration = {10, 20}});
+  Entered run(5 * kMillisecond, {.limits = {.acceleration = {10, 20}}});
   const auto near = parabola(40 * kMillisecond, 0);
   const auto next = parabola(60 * kMillisecond, 0);
   const auto third = parabola(80 * kMillisecond, 0);
@@ -231,7 +231,7 @@ TEST(SlidingWindow, GoesOnFromAnAssignedStateBitForBit) {
   for (const auto* method : {"c2", "hermite", "quintic", "pchip", "smoothing"}) {
     for (const std::size_t frozen : std::array<std::size_t, 3>{0, 1, 3}) {
       WindowOptions how =
-          entered_by(method, {.settle = 1, .max_acceleration = {10, 20}}).window.options();
+          entered_by(method, {.settle = 1, .limits = {.acceleration = {10, 20}}}).window.options();
       Entered run(Time(0), how, kBefore);
       SlidingWindow assigned(2, how);
       append_given(assigned, 3 * kMillisecond);  // a state of its own, which goes
@@ -254,13 +254,13 @@ TEST(SlidingWindow, GoesOnFromAnAssignedStateBitForBit) {
 TEST(EnteredRun, IsAsItWasAfterAWaypointWasTried) {
   const std::vector<double> limits{1e5, 1e5};
   for (const auto* method : {"c2", "hermite", "quintic", "pchip", "smoothing"}) {
-    Entered run = entered_by(method, {.settle = 1, .max_acceleration = limits});
+    Entered run = entered_by(method, {.settle = 1, .limits = {.acceleration = limits}});
     for (int i = 1; i <= 2; ++i) {
       append_given(run.window, 10 * i * kMillisecond);
       expect_no_trace(run.window, method);
     }
   }
-  Entered run(Time(0), {.settle = 0, .max_acceleration = limits});
+  Entered run(Time(0), {.settle = 0, .limits = {.acceleration = limits}});
   run.append(10 * kMillisecond);
   run.append(20 * kMillisecond);
   expect_no_trace(run.window, "c2 without a lag");
@@ -270,7 +270,7 @@ TEST(FirstRun, OfOneKnotIsAsItWasAfterAWaypointWasTried) {
   for (const auto* method : {"c2", "hermite", "pchip", "smoothing"}) {
     WindowOptions how{.interpolant = {.method = find_method(method), .lambda = 1e-6},
                       .start = {.kind = ConditionKind::halt, .value = {}},
-                      .max_acceleration = {1e3, 1e3}};
+                      .limits = {.acceleration = {1e3, 1e3}}};
     how.settle = default_settle(*how.interpolant.method);
     SlidingWindow window(2, how);
     append_given(window, 10 * kMillisecond);

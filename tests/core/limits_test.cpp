@@ -84,7 +84,7 @@ TEST(Limits, AStopFromAnyVelocityIsFoundInABoundedNumberOfTries) {
 TEST(Limits, AWindowGoesOnThroughOnePositionRepeated) {
   for (const Tail tail : {Tail::natural, Tail::parabolic, Tail::bessel}) {
     expect_an_end([tail] {
-      WindowOptions options{.tail = tail, .max_acceleration = {10}};
+      WindowOptions options{.tail = tail, .limits = {.acceleration = {10}}};
       SlidingWindow window(1, options);
       Segment last(1);
       for (int i = 0; i < 2000; ++i) {

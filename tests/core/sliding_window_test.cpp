@@ -216,7 +216,7 @@ TEST(SlidingWindow, ARestoredWindowGoesOnBitForBit) {
 
 TEST(SlidingWindow, AWaypointThatLimitsRefuseLeavesNoTraceOnTheOneBefore) {
   WindowOptions how = options(8, Tail::bessel);
-  how.max_acceleration = {1};
+  how.limits.acceleration = {1};
   SlidingWindow window(1, how);
   const std::vector<double> x{0, 100, -100};
   const auto waypoint = [&](std::size_t i) {

@@ -159,7 +159,7 @@ struct Plan {
 
 std::vector<Plan> plans() {
   auto limited = with("c2", 2, 32);
-  limited.max_acceleration = {5.0, 0.0};
+  limited.limits = {.acceleration = {5.0, 0.0}};
   auto smoothing = with("smoothing", 16, 64);
   smoothing.lambda = 1e-9;
   auto live_smoothing = with("smoothing", 16, 64);

@@ -188,7 +188,7 @@ core::WindowOptions window_of(const core::Method& method, Extremes& extremes) {
     how.settle = 10;
     how.force_lag = true;
   }
-  if (extremes.pick(2) == 0) how.max_acceleration = {1e-100, 0, 10, 1e100, 1};
+  if (extremes.pick(2) == 0) how.limits.acceleration = {1e-100, 0, 10, 1e100, 1};
   how.stop_time = extremes.pick(2) == 0 ? Time(1) : milliseconds(250);
   return how;
 }

@@ -34,8 +34,8 @@ core::WindowOptions window_of(const WorldOptions& options, const Motion& motion)
   window.start = {.kind = core::ConditionKind::halt, .value = {}};
   window.held_before_start = true;
   if (options.has_limits) {
-    window.max_acceleration = motion.peak_acceleration();
-    for (double& limit : window.max_acceleration) limit *= 10;
+    window.limits.acceleration = motion.peak_acceleration();
+    for (double& limit : window.limits.acceleration) limit *= 10;
   }
   return window;
 }

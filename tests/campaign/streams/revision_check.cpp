@@ -267,7 +267,7 @@ void RevisionCheck::check_stop() {
   const bool moves = std::ranges::any_of(above, [](double c) { return c != 0; });
   const bool starts_later = copy_.number == 1;  // it comes to rest from the start of the motion
   if (head_.consumed > stop.item && (!moves || starts_later)) return;
-  const bool has_limits = !plan_->window.max_acceleration.empty();
+  const bool has_limits = !plan_->window.limits.acceleration.empty();
   if (copy_.left > effect || (!has_limits && copy_.right > effect + plan_->window.stop_time)) {
     breach(Breach::stop_late,
            fmt::format("item {} from {}, due at {}: the curve ends at {}", stop.item,

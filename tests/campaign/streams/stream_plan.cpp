@@ -121,7 +121,7 @@ core::WindowOptions make_window(const StreamPlan& plan, Random& random) {
   if (plan.limit_class == LimitClass::none) return window;
   const bool is_tight = plan.limit_class == LimitClass::tight;
   window.stop_time = core::kLeastStopTime;
-  window.max_acceleration = make_limits(
+  window.limits.acceleration = make_limits(
       plan, is_tight ? random.log_uniform(0.5, 20) : random.log_uniform(100, 1e5), random);
   return window;
 }

@@ -12,6 +12,7 @@
 #include "splinecast/core/knot_ring.hpp"
 #include "splinecast/core/knot_segment.hpp"
 #include "splinecast/core/knot_solver.hpp"
+#include "splinecast/core/limits.hpp"
 #include "splinecast/core/method.hpp"
 #include "splinecast/core/run_entry.hpp"
 #include "splinecast/core/segment.hpp"
@@ -33,11 +34,10 @@ struct WindowOptions {
   Tail tail = Tail::bessel;  ///< condition at the newest knot while the stream goes on; `hermite`,
                              ///< `quintic` and `smoothing` have one of their own
   Condition start{.kind = ConditionKind::own, .value = {}};  ///< condition at knot 0
-  Time stop_time{250'000'000};  ///< length of the stop tail, > 0; with limits the least length
-  std::vector<double> max_acceleration{};  ///< limits of stop tails and splices, one value per
-                                           ///< dimension, 0 for none; empty: no limits
-  bool held_before_start = false;          ///< a hold stands before knot 0, as on a live stream
-  bool force_lag = false;                  ///< take a lag that is too short for λ
+  Time stop_time{250'000'000};     ///< length of the stop tail, > 0; with limits the least length
+  MotionLimits limits{};           ///< stop tails and splices keep those of acceleration
+  bool held_before_start = false;  ///< a hold stands before knot 0, as on a live stream
+  bool force_lag = false;          ///< take a lag that is too short for λ
 };
 
 /// The online spline: the knots that an append still changes, and the segments at them.

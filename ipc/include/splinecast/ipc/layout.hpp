@@ -20,7 +20,7 @@
 namespace splinecast::ipc {
 
 inline constexpr std::uint64_t kMagic = 0x54534143'4e4c5053;  // "SPLNCAST" in memory order
-inline constexpr std::uint32_t kLayoutVersion = 4;
+inline constexpr std::uint32_t kLayoutVersion = 5;
 inline constexpr std::uint32_t kByteOrder = 0x01020304;
 
 /// What different processes write, or poll, lies this far apart: two cache lines, because adjacent
@@ -74,13 +74,18 @@ struct RegionHeader {
   std::array<double, core::kMaxDimensions> period;                 ///< of `wrap`; else 0
   std::array<std::array<char, kNameBytes>, core::kMaxDimensions> name;
   std::array<std::array<char, kUnitBytes>, core::kMaxDimensions> unit;
-  std::array<double, core::kMaxDimensions> max_acceleration;  ///< 0: no limit
+  std::array<double, core::kMaxDimensions> max_velocity;  ///< 0: no limit, as in the next two
+  std::array<double, core::kMaxDimensions> max_acceleration;
+  std::array<double, core::kMaxDimensions> max_jerk;
+  std::array<double, core::kMaxDimensions> lower_bound;  ///< both bounds 0: none
+  std::array<double, core::kMaxDimensions> upper_bound;
+  std::uint64_t beyond;  ///< core::Beyond
 };
 
 inline constexpr std::tuple kHeaderRows{
     MemberRow<&RegionHeader::magic>{"magic", FieldWriter::maker, "the characters `SPLNCAST`"},
     MemberRow<&RegionHeader::mark>{"layout version, byte order", FieldWriter::maker,
-                                   "32 bits each: 4 and `0x01020304`"},
+                                   "32 bits each: 5 and `0x01020304`"},
     MemberRow<&RegionHeader::layout_hash>{"layout hash", FieldWriter::maker,
                                           "FNV-1a over the fields of this page"},
     MemberRow<&RegionHeader::kind>{"kind", FieldWriter::maker, "1 waypoints, 2 spline"},
@@ -141,9 +146,22 @@ inline constexpr std::tuple kHeaderRows{
                                    "32 bytes per dimension, zero-terminated"},
     MemberRow<&RegionHeader::unit>{"unit", FieldWriter::maker,
                                    "16 bytes per dimension, zero-terminated"},
-    MemberRow<&RegionHeader::max_acceleration>{
-        "acceleration limit", FieldWriter::maker,
-        "a double per dimension, 0 for none (spline region)"}};
+    MemberRow<&RegionHeader::max_velocity>{
+        "velocity limit", FieldWriter::maker,
+        "a double per dimension, 0 for none (spline region, as all below)"},
+    MemberRow<&RegionHeader::max_acceleration>{"acceleration limit", FieldWriter::maker,
+                                               "a double per dimension, 0 for none"},
+    MemberRow<&RegionHeader::max_jerk>{"jerk limit", FieldWriter::maker,
+                                       "a double per dimension, 0 for none"},
+    MemberRow<&RegionHeader::lower_bound>{"lower bound", FieldWriter::maker,
+                                          "a double per dimension: of the position, −∞ for none; 0 "
+                                          "with an upper bound of 0 says that "
+                                          "there are no bounds"},
+    MemberRow<&RegionHeader::upper_bound>{"upper bound", FieldWriter::maker,
+                                          "a double per dimension, +∞ for none"},
+    MemberRow<&RegionHeader::beyond>{
+        "beyond the limits", FieldWriter::maker,
+        "what is done about such a segment: 0 report it, 1 refuse its waypoint"}};
 inline constexpr auto kHeaderFields = place(kHeaderRows);
 inline constexpr std::size_t kHeaderWords = size_of(kHeaderFields).words;
 

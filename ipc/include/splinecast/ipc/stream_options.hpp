@@ -7,6 +7,7 @@
 
 #include "splinecast/core/condition.hpp"
 #include "splinecast/core/dimension_kind.hpp"
+#include "splinecast/core/limits.hpp"
 #include "splinecast/core/sliding_window.hpp"
 #include "splinecast/ipc/clock.hpp"
 #include "splinecast/ipc/layout.hpp"
@@ -41,12 +42,12 @@ struct SolverOptions {
   bool force_lag = false;                 ///< take a lag that is too short for λ
   std::optional<core::Time> stop_time{};  ///< length of the stop tail; default 250 ms. With limits:
                                           ///< its least length, default 1 ms
-  std::optional<std::vector<double>> max_acceleration{};  ///< limits of stop tails and splices, one
-                                                          ///< per dimension or one for all; 0: none
-  std::optional<core::Time> freeze_ahead{};  ///< live: what lies this long ahead settles; 5 ms
-  std::optional<core::Time> history{};       ///< live: what ended less than this ago is kept; 1 s
-  std::optional<core::Time> min_splice{};    ///< live: shortest splice; default as freeze_ahead
-  std::optional<std::size_t> capacity{};     ///< segments of history; default 4,096
+  std::optional<core::MotionLimits> limits{};  ///< lists of one value per dimension or one for all
+  std::optional<core::Beyond> beyond{};        ///< default report
+  std::optional<core::Time> freeze_ahead{};    ///< live: what lies this long ahead settles; 5 ms
+  std::optional<core::Time> history{};         ///< live: what ended less than this ago is kept; 1 s
+  std::optional<core::Time> min_splice{};      ///< live: shortest splice; default as freeze_ahead
+  std::optional<std::size_t> capacity{};       ///< segments of history; default 4,096
   bool wake = true;  ///< wake waiting readers: one system call a revision, which wakes
                      ///< at most kWokenAtOnce threads
   RegionAccess access{};
