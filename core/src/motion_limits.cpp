@@ -108,7 +108,8 @@ void require_limits(const MotionLimits& limits, std::span<const Dimension> dimen
     throw std::invalid_argument("dimension " + std::to_string(d) + " is of kind " +
                                 to_string(dimensions[d]) + ", which has no bounds");
   }
-  for (const QuaternionDimensions& quaternion : DimensionKinds(dimensions).quaternions()) {
+  const DimensionKinds kinds(dimensions);
+  for (const QuaternionDimensions& quaternion : kinds.quaternions()) {
     require_first_alone(limits, quaternion.first);
   }
 }

@@ -143,7 +143,7 @@ TEST(SegmentExtremes, AreValuesOfTheCurveThatNoSampleIsBeyond) {
 
 TEST(SegmentExtremes, AreThoseOfDenseSamplesThatAreRefined) {
   RandomPart parts(2);
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < 10'000; ++i) {
     expect_extremes(parts.next(), 100, true);
     if (HasFatalFailure()) FAIL() << "segment " << i;
   }
