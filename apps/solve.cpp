@@ -10,9 +10,11 @@
 #include <string_view>
 #include <vector>
 
+#include "splinecast/ipc/header_limits.hpp"
 #include "splinecast/ipc/stream_sweep.hpp"
 #include "support/descriptors.hpp"
 #include "support/exit_codes.hpp"
+#include "support/limit_file.hpp"
 #include "support/options.hpp"
 #include "support/output.hpp"
 #include "support/signals.hpp"
@@ -28,7 +30,13 @@ constexpr TimeRange kSweeps{core::Time(1), std::chrono::seconds(1)};
 /// Tells what becomes of each stream.
 class Announcer {
  public:
-  Announcer(bool quiet, bool is_one_of_many) : quiet_(quiet), many_(is_one_of_many) {}
+  Announcer(const SolveOptions& options, bool is_one_of_many)
+      : quiet_(options.quiet),
+        many_(is_one_of_many),
+        limits_(&options.limits),
+        joints_(options.solver.named_limits) {
+    for (core::NamedLimits& joint : joints_) joint.name = ipc::header_name(joint.name);
+  }
 
   void tell(ipc::SweepNews news, const std::string& stream, const ipc::Solver* solver,
             std::string_view why = {}) {
@@ -38,6 +46,7 @@ class Announcer {
     if (news == solving) lost_.erase(stream);
     if (quiet_ && !is_lost) return;
     say(fmt::format("'{}': {}", stream, text(news, solver, why)));
+    if (news == solving && limits_->any()) tell_limits(stream, *solver);
     if (news == solving && !many_ && !solver->is_memory_locked()) {
       say(fmt::format("'{}': pages are not locked into memory (RLIMIT_MEMLOCK)", stream));
     }
@@ -76,15 +85,26 @@ class Announcer {
     return {};
   }
 
+  /// Names that matched nothing, and dimensions without a limit.
+  void tell_limits(const std::string& stream, const ipc::Solver& solver) const {
+    const ipc::RegionHeader& header = solver.board();
+    const std::vector<std::string> names = ipc::dimension_names(header);
+    const LimitGaps gaps =
+        limit_gaps(ipc::motion_limits(header), joints_, names, ipc::dimensions_of(header));
+    for (const std::string& line : to_lines(gaps)) say(fmt::format("'{}': {}", stream, line));
+  }
+
   bool quiet_;
   bool many_;
+  const LimitOptions* limits_;
+  std::vector<core::NamedLimits> joints_;
   std::set<std::string> lost_;
 };
 
 /// Solves one stream; sleeps on its ring while there is nothing to do.
 int solve_one(const SolveOptions& options) {
   const ipc::MonotonicClock clock;
-  Announcer announcer(options.quiet, false);
+  Announcer announcer(options, false);
   ipc::Solver solver(options.wanted.front(), options.solver);
   const auto tell = [&](ipc::SweepNews news, std::string_view why = {}) {
     announcer.tell(news, solver.stream(), &solver, why);
@@ -118,7 +138,7 @@ int solve_one(const SolveOptions& options) {
 int solve_many(const SolveOptions& options) {
   const ipc::MonotonicClock clock;
   raise_descriptor_limit();
-  Announcer announcer(options.quiet, true);
+  Announcer announcer(options, true);
   ipc::StreamSweep sweep(
       options.wanted, options.solver,
       [&announcer](ipc::SweepNews news, const std::string& stream, const ipc::Solver* solver,
@@ -154,19 +174,26 @@ void add_live_options(CLI::App& verb, ipc::SolverOptions& options) {
   add_seconds(verb, "--history", options.history,
               "Keep what ended less than this ago; then consume no more (default 1)");
   verb.add_option_function<std::string>(
-          "--max-acceleration",
+          "--beyond",
           [&options](const std::string& text) {
-            if (auto values = core::parse_values(text)) {
-              options.limits = {.acceleration = std::move(*values)};
-              return;
+            if (text != "report" && text != "refuse") {
+              throw CLI::ValidationError("--beyond",
+                                         fmt::format("'{}' is none of report, refuse", text));
             }
-            throw CLI::ValidationError(
-                "--max-acceleration",
-                fmt::format("'{}' is no list of numbers such as 10 or 10,10,5", text));
+            options.beyond = text == "report" ? core::Beyond::report : core::Beyond::refuse;
           },
-          "Largest acceleration of stop tails, splices, the first interval and the one behind a "
-          "frozen knot: one number, or one per dimension; 0 for no limit")
-      ->type_name("A,...");
+          "What is done about a waypoint whose segment is beyond the limits: report (default), "
+          "refuse")
+      ->type_name("WHAT");
+}
+
+/// Reads the file of limits, and gives the solver all of them.
+void take_limits(SolveOptions& options) {
+  if (options.limits.given != core::MotionLimits{}) options.solver.limits = options.limits.given;
+  if (options.limits.file.empty()) return;
+  LimitFile file = read_limit_file(options.limits.file);
+  if (!options.quiet) std::ranges::for_each(file.notes, say);
+  options.solver.named_limits = std::move(file.joints);
 }
 
 }  // namespace
@@ -184,6 +211,7 @@ void add_solve(CLI::App& program, Action& action) {
   add_count(*verb, "--capacity", options->solver.capacity,
             "Segments that the board holds (default 4096; rounded up to a power of two)");
   add_live_options(*verb, options->solver);
+  add_limit_options(*verb, options->limits);
   verb->add_flag("!--no-wake", options->solver.wake,
                  "Wake no waiting readers: for hosts where every reader polls");
   verb->add_option_function<std::string>(
@@ -204,6 +232,7 @@ void add_solve(CLI::App& program, Action& action) {
       throw CLI::ValidationError("STREAM", "a stream is named twice");
     }
     action = [options] {
+      take_limits(*options);
       catch_stop_signals();
       return run_solve(*options);
     };

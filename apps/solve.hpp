@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "splinecast/ipc/stream_options.hpp"
+#include "support/limit_options.hpp"
 
 namespace splinecast::apps {
 
@@ -11,6 +12,7 @@ namespace splinecast::apps {
 struct SolveOptions {
   std::vector<std::string> wanted{};  ///< streams, and patterns of their names
   ipc::SolverOptions solver{};
+  LimitOptions limits{};        ///< the given ones are told of; `solver` has them too
   core::Time sweep{1'000'000};  ///< pause between looks at several streams
   bool quiet = false;
 };

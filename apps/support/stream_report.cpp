@@ -64,8 +64,24 @@ ordered_json refusals_json(const ipc::StreamInfo& info) {
   return list;
 }
 
+/// A value per dimension, null for none; an empty list if no dimension has a limit of the kind.
 ordered_json limits_json(const ipc::RegionHeader& header) {
-  return ipc::motion_limits(header).acceleration;
+  const core::MotionLimits limits = ipc::motion_limits(header);
+  const auto list = [](const std::vector<double>& values) {
+    ordered_json out = ordered_json::array();
+    for (const double value : values) {
+      out.push_back(value == 0 ? ordered_json() : ordered_json(value));
+    }
+    return out;
+  };
+  return {
+      {"velocity", list(limits.velocity)},
+      {"acceleration", list(limits.acceleration)},
+      {"jerk", list(limits.jerk)},
+      {"lower", limits.lower},  // what is infinite becomes null
+      {"upper", limits.upper},
+      {"beyond", ipc::beyond(header) == core::Beyond::refuse ? "refuse" : "report"},
+  };
 }
 
 /// Time from now to the newest knot; null where that means nothing.
@@ -105,7 +121,8 @@ ordered_json solver_json(const ipc::StreamInfo& info) {
       {"stop_time_ns", info.spline->stop_time},
       {"board_capacity", info.spline->capacity},
       {"region_bytes", info.spline->region_bytes},
-      {"max_acceleration", limits_json(*info.spline)},
+      {"max_acceleration", ipc::motion_limits(*info.spline).acceleration},
+      {"limits", limits_json(*info.spline)},
       {"freeze_ahead_ns", info.spline->freeze_ahead},
       {"history_ns", info.spline->history},
       {"min_splice_ns", info.spline->min_splice},

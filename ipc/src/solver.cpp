@@ -42,20 +42,12 @@ const core::Method& method_of(const SolverOptions& options) {
   return options.method == nullptr ? core::c2() : *options.method;
 }
 
-/// One limit per dimension, or one for all.
-void write_limits(const core::MotionLimits& limits, RegionHeader& header) {
-  try {
-    put_limits(core::spread(limits, header.dimensions), header);
-  } catch (const std::invalid_argument& error) {
-    throw BadRequest(error.what());
-  }
-}
-
 /// Limits that are asked for must be those of the board; a kind of which none is given may be any.
 void require_same_limits(const std::string& stream, const RegionHeader& stands,
-                         const core::MotionLimits& limits) {
+                         const SolverOptions& options) {
+  const core::MotionLimits limits = limits_for(options, stands);
   RegionHeader wanted = stands;
-  write_limits(limits, wanted);
+  put_limits(limits, wanted);
   const auto compare = [&](const char* what, bool is_given, auto row) {
     for (std::size_t d = 0; is_given && d < stands.dimensions; ++d) {
       require_same(stream, what, std::optional((wanted.*row)[d]), (stands.*row)[d],
@@ -68,10 +60,6 @@ void require_same_limits(const std::string& stream, const RegionHeader& stands,
   compare("jerk limit", !limits.jerk.empty(), &RegionHeader::max_jerk);
   compare("lower bound", has_bounds, &RegionHeader::lower_bound);
   compare("upper bound", has_bounds, &RegionHeader::upper_bound);
-}
-
-bool limits_acceleration(const SolverOptions& options) noexcept {
-  return options.limits && !options.limits->acceleration.empty();
 }
 
 void require_no_contradiction(const std::string& stream, const RegionHeader& stands,
@@ -103,7 +91,7 @@ void require_no_contradiction(const std::string& stream, const RegionHeader& sta
   require_same_time("freeze-ahead in ns", options.freeze_ahead, stands.freeze_ahead);
   require_same_time("history in ns", options.history, stands.history);
   require_same_time("shortest splice in ns", options.min_splice, stands.min_splice);
-  if (options.limits) require_same_limits(stream, stands, *options.limits);
+  require_same_limits(stream, stands, options);
   if (options.beyond) {
     require_same<std::uint64_t>(stream, "what is done beyond limits (0 report, 1 refuse)",
                                 static_cast<std::uint64_t>(*options.beyond), stands.beyond,
@@ -123,11 +111,12 @@ void write_options(const SolverOptions& options, RegionHeader& header) {
   header.time_scale = options.time_scale.value_or(1.0);
   header.settle = options.settle.value_or(core::default_settle(method));
   header.tail = static_cast<std::uint64_t>(options.tail.value_or(core::Tail::bessel));
+  const core::MotionLimits limits = limits_for(options, header);
   header.stop_time =
       options.stop_time
-          .value_or(limits_acceleration(options) ? core::kLeastStopTime : kDefaultStopTime)
+          .value_or(limits.acceleration.empty() ? kDefaultStopTime : core::kLeastStopTime)
           .count();
-  if (options.limits) write_limits(*options.limits, header);
+  put_limits(limits, header);
   header.beyond = static_cast<std::uint64_t>(options.beyond.value_or(core::Beyond::report));
   const LiveOptions live;
   const core::Time freeze_ahead = options.freeze_ahead.value_or(live.freeze_ahead);
@@ -175,6 +164,7 @@ void require_options(const SolverOptions& options) {
   // How many dimensions there will be is not known yet, nor their kinds.
   SolverOptions curve = options;
   curve.limits.reset();
+  curve.named_limits.clear();
   RegionHeader header{};
   header.dimensions = 1;
   write_options(curve, header);
@@ -433,6 +423,8 @@ void Solver::first_refusals(std::vector<ItemRefusal>& out) {
 }
 
 const Head& Solver::head() const noexcept { return impl_->attachment->solver.head(); }
+const RegionHeader& Solver::board() const noexcept { return impl_->attachment->board.header; }
+
 bool Solver::took_over() const noexcept {
   return attached() && impl_->attachment->board.taken_over;
 }

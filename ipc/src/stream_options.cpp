@@ -13,6 +13,17 @@
 namespace splinecast::ipc {
 namespace {
 
+/// The longest beginning of at most `most` bytes that ends between characters of UTF-8.
+std::string cut(const std::string& text, std::size_t most) {
+  std::size_t length = std::min(text.size(), most);
+  // The byte after the cut must not be one that continues a character.
+  while (length > 0 && length < text.size() &&
+         (static_cast<unsigned char>(text[length]) & 0xc0U) == 0x80U) {
+    --length;
+  }
+  return text.substr(0, length);
+}
+
 template <std::size_t N>
 void put_texts(const std::vector<std::string>& texts, std::size_t dimensions, const char* what,
                std::array<std::array<char, N>, core::kMaxDimensions>& out) {
@@ -21,13 +32,7 @@ void put_texts(const std::vector<std::string>& texts, std::size_t dimensions, co
                      std::to_string(dimensions) + " dimensions");
   }
   for (std::size_t d = 0; d < texts.size(); ++d) {
-    std::size_t length = std::min(texts[d].size(), N - 1);
-    // Not within a character: the byte after the cut must not be one that continues UTF-8.
-    while (length > 0 && length < texts[d].size() &&
-           (static_cast<unsigned char>(texts[d][length]) & 0xc0U) == 0x80U) {
-      --length;
-    }
-    std::copy_n(texts[d].begin(), length, out[d].begin());
+    std::ranges::copy(cut(texts[d], N - 1), out[d].begin());
   }
 }
 
@@ -146,6 +151,23 @@ core::WindowOptions window_options(const RegionHeader& header) {
           .limits = motion_limits(header),
           .held_before_start = stream_clock(header) == StreamClock::monotonic,
           .force_lag = header.force_lag != 0};
+}
+
+std::string header_name(const std::string& name) { return cut(name, kNameBytes - 1); }
+
+core::MotionLimits limits_for(const SolverOptions& options, const RegionHeader& header) {
+  std::vector<core::NamedLimits> named = options.named_limits;
+  for (core::NamedLimits& joint : named) joint.name = header_name(joint.name);
+  try {
+    const core::MotionLimits given =
+        core::spread(options.limits.value_or(core::MotionLimits{}), header.dimensions);
+    const core::MotionLimits limits =
+        core::overridden(core::matched(named, dimension_names(header)), given);
+    core::require_limits(limits, dimensions_of(header));
+    return limits;
+  } catch (const std::invalid_argument& error) {
+    throw BadRequest(error.what());
+  }
 }
 
 void require_same_clock(const RegionHeader& header, const std::string& stream) {

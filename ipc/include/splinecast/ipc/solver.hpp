@@ -131,6 +131,9 @@ class Solver {
   /// The head last committed; attached() only.
   [[nodiscard]] const Head& head() const noexcept;
 
+  /// The header of the board, which says how the stream is solved; attached() only.
+  [[nodiscard]] const RegionHeader& board() const noexcept;
+
   /// Whether this solver went on with a board that a dead one left.
   [[nodiscard]] bool took_over() const noexcept;
   [[nodiscard]] bool is_memory_locked() const noexcept;

@@ -8,6 +8,7 @@
 #include "splinecast/core/condition.hpp"
 #include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/limits.hpp"
+#include "splinecast/core/named_limits.hpp"
 #include "splinecast/core/sliding_window.hpp"
 #include "splinecast/ipc/clock.hpp"
 #include "splinecast/ipc/layout.hpp"
@@ -43,11 +44,14 @@ struct SolverOptions {
   std::optional<core::Time> stop_time{};  ///< length of the stop tail; default 250 ms. With limits:
                                           ///< its least length, default 1 ms
   std::optional<core::MotionLimits> limits{};  ///< lists of one value per dimension or one for all
-  std::optional<core::Beyond> beyond{};        ///< default report
-  std::optional<core::Time> freeze_ahead{};    ///< live: what lies this long ahead settles; 5 ms
-  std::optional<core::Time> history{};         ///< live: what ended less than this ago is kept; 1 s
-  std::optional<core::Time> min_splice{};      ///< live: shortest splice; default as freeze_ahead
-  std::optional<std::size_t> capacity{};       ///< segments of history; default 4,096
+  std::vector<core::NamedLimits>
+      named_limits{};                        ///< of dimensions by name, where `limits` has none
+                                             ///< of the kind; other names are of no effect
+  std::optional<core::Beyond> beyond{};      ///< default report
+  std::optional<core::Time> freeze_ahead{};  ///< live: what lies this long ahead settles; 5 ms
+  std::optional<core::Time> history{};       ///< live: what ended less than this ago is kept; 1 s
+  std::optional<core::Time> min_splice{};    ///< live: shortest splice; default as freeze_ahead
+  std::optional<std::size_t> capacity{};     ///< segments of history; default 4,096
   bool wake = true;  ///< wake waiting readers: one system call a revision, which wakes
                      ///< at most kWokenAtOnce threads
   RegionAccess access{};
@@ -67,6 +71,14 @@ struct SolverOptions {
 
 /// What a header says of the curve: the options that its solver gave.
 [[nodiscard]] core::WindowOptions window_options(const RegionHeader& header);
+
+/// Limits that the options ask for on the stream of this header. Throws BadRequest if they do not
+/// go with its dimensions.
+[[nodiscard]] core::MotionLimits limits_for(const SolverOptions& options,
+                                            const RegionHeader& header);
+
+/// The name that a header has of a dimension: cut to kNameBytes − 1 bytes, between characters.
+[[nodiscard]] std::string header_name(const std::string& name);
 
 /// What a header says of how a live stream is solved; nothing for a recorded one.
 [[nodiscard]] std::optional<LiveOptions> live_options(const RegionHeader& header) noexcept;
