@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "support/curve_fit.hpp"
+#include "support/curve_options.hpp"
 #include "support/emit.hpp"
 #include "support/exit_codes.hpp"
 #include "support/kinds.hpp"
@@ -128,23 +129,7 @@ void require_consistent(const FitOptions& options) {
   const auto refuse = [](const std::string& name, const std::string& why) {
     throw CLI::ValidationError(name, why);
   };
-  const CurveOptions& curve = options.curve;
-  const auto has = [&](std::string_view name) {
-    return std::ranges::any_of(options.methods, [&](const auto* m) { return m->name == name; });
-  };
-  if (!curve.online && (curve.settle || curve.tail || curve.force_lag)) {
-    refuse("--settle, --tail, --force-lag", "go with --online only");
-  }
-  if (curve.online && curve.lambda_is_auto) refuse("--lambda auto", "needs all waypoints at once");
-  if ((curve.lambda || curve.lambda_is_auto) && !has("smoothing")) {
-    refuse("--lambda", "goes with --method smoothing only");
-  }
-  if (curve.force_lag && !has("smoothing")) {
-    refuse("--force-lag", "goes with --method smoothing only");
-  }
-  if (curve.time_scale && !has("rounded")) {
-    refuse("--time-scale", "goes with --method rounded only");
-  }
+  require_consistent(options.curve, options.methods);
   if (options.methods.size() > 1 && !only_reports(options)) {
     refuse("--method", "is given more than once, which goes with --report alone");
   }
@@ -168,19 +153,6 @@ void add_interpolants(CLI::App& verb, std::vector<const core::Method*>& methods)
                       core::method_names(false)))
       ->delimiter(',')
       ->type_name("METHOD");
-}
-
-void add_curve(CLI::App& verb, CurveOptions& options) {
-  add_lambda(verb, options.lambda, &options.lambda_is_auto);
-  add_time_scale(verb, options.time_scale);
-  add_condition(verb, "--start", options.start,
-                "Condition at the first waypoint (default natural for c2, else the method's own)");
-  add_condition(verb, "--end", options.end,
-                "Condition at the last waypoint (default likewise; with --online halt for c2)");
-  verb.add_flag("--online", options.online, "As the solver would: through the sliding window");
-  add_settle(verb, options.settle);
-  add_tail(verb, options.tail);
-  add_force_lag(verb, options.force_lag);
 }
 
 void add_emit(CLI::App& verb, Emit& value) {

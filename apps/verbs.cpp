@@ -8,6 +8,7 @@ void add_verbs(CLI::App& program, Action& action) {
   add_replay(program, action);
   add_sample(program, action);
   add_fit(program, action);
+  add_check(program, action);
   add_methods(program, action);
   add_latency(program, action);
   add_ls(program, action);

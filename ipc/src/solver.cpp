@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <thread>
@@ -46,20 +47,26 @@ const core::Method& method_of(const SolverOptions& options) {
 void require_same_limits(const std::string& stream, const RegionHeader& stands,
                          const SolverOptions& options) {
   const core::MotionLimits limits = limits_for(options, stands);
-  RegionHeader wanted = stands;
-  put_limits(limits, wanted);
-  const auto compare = [&](const char* what, bool is_given, auto row) {
-    for (std::size_t d = 0; is_given && d < stands.dimensions; ++d) {
-      require_same(stream, what, std::optional((wanted.*row)[d]), (stands.*row)[d],
-                   std::to_string((wanted.*row)[d]), std::to_string((stands.*row)[d]));
+  const core::MotionLimits stood = motion_limits(stands);
+  const auto compare = [&](const char* what, const std::vector<double>& wanted,
+                           const std::vector<double>& there, double none) {
+    const auto at = [none](const std::vector<double>& values, std::size_t d) {
+      return values.empty() ? none : values[d];
+    };
+    const auto text = [none](double value) {
+      return value == none ? std::string("none") : std::to_string(value);
+    };
+    for (std::size_t d = 0; d < wanted.size(); ++d) {
+      require_same(stream, what, std::optional(wanted[d]), at(there, d), text(wanted[d]),
+                   text(at(there, d)));
     }
   };
-  const bool has_bounds = !limits.lower.empty() || !limits.upper.empty();
-  compare("velocity limit", !limits.velocity.empty(), &RegionHeader::max_velocity);
-  compare("acceleration limit", !limits.acceleration.empty(), &RegionHeader::max_acceleration);
-  compare("jerk limit", !limits.jerk.empty(), &RegionHeader::max_jerk);
-  compare("lower bound", has_bounds, &RegionHeader::lower_bound);
-  compare("upper bound", has_bounds, &RegionHeader::upper_bound);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  compare("velocity limit", limits.velocity, stood.velocity, 0);
+  compare("acceleration limit", limits.acceleration, stood.acceleration, 0);
+  compare("jerk limit", limits.jerk, stood.jerk, 0);
+  compare("lower bound", limits.lower, stood.lower, -kInfinity);
+  compare("upper bound", limits.upper, stood.upper, kInfinity);
 }
 
 void require_no_contradiction(const std::string& stream, const RegionHeader& stands,

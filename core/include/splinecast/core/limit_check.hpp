@@ -38,8 +38,8 @@ inline constexpr std::size_t kLimitKinds = 4;
 struct Excess {
   /// Value over limit. Of a position: its distance from the middle of its bounds over half their
   /// distance; where one bound only is finite, 1 plus what is beyond it over its size, or over 1 if
-  /// that is larger. 0: there is no limit; infinite: the value is no number.
-  double ratio = 0;
+  /// that is larger. Negative: there is no limit; infinite: the value is no number.
+  double ratio = -1;
   LimitKind kind = LimitKind::velocity;
   std::size_t dimension = 0;  ///< of a quaternion its first
   double value = 0;           ///< with its sign; of a quaternion the bound of its magnitude
