@@ -95,6 +95,7 @@ TEST(FuzzSeeds, AnImageIsWrittenAndReadAsItIs) {
 TEST(FuzzSeeds, WaypointFilesAreReadOrRefused) { try_texts("waypoints", try_waypoints); }
 TEST(FuzzSeeds, TimeFilesAreReadOrRefused) { try_texts("times", try_times); }
 TEST(FuzzSeeds, PolynomialFilesAreReadOrRefused) { try_texts("polynomials", try_polynomials); }
+TEST(FuzzSeeds, LimitFilesAreReadOrRefused) { try_texts("limits", try_limits); }
 TEST(FuzzSeeds, WordsAreReadOrRefused) { try_texts("words", try_words); }
 TEST(FuzzSeeds, CommandLinesAreReadOrRefused) { try_texts("arguments", try_arguments); }
 

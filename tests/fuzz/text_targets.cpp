@@ -9,11 +9,13 @@
 
 #include "fuzz/script.hpp"
 #include "splinecast/core/condition.hpp"
+#include "splinecast/core/limits.hpp"
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/names.hpp"
 #include "splinecast/ipc/waypoint_ring.hpp"
 #include "support/exit_codes.hpp"
 #include "support/kinds.hpp"
+#include "support/limit_file.hpp"
 #include "support/numbers.hpp"
 #include "support/options.hpp"
 #include "support/polynomial_file.hpp"
@@ -136,6 +138,23 @@ void try_polynomials(std::string_view text) {
     const apps::PolynomialFile read = apps::read_polynomials(file.path());
     require(read.curve.segments() > 0, "a file of polynomials has a piece");
     require(read.names.size() <= core::kMaxDimensions, "a file has at most 64 dimensions");
+  } catch (const apps::InputError&) {
+    return;
+  }
+}
+
+void try_limits(std::string_view text) {
+  const MemoryFile file(text);
+  try {
+    const apps::LimitFile read = apps::read_limit_file(file.path());
+    for (const core::NamedLimits& joint : read.joints) {
+      core::require_limits({.velocity = {joint.velocity},
+                            .acceleration = {joint.acceleration},
+                            .jerk = {joint.jerk},
+                            .lower = {joint.lower},
+                            .upper = {joint.upper}},
+                           1);
+    }
   } catch (const apps::InputError&) {
     return;
   }

@@ -18,6 +18,9 @@ void try_times(std::string_view text);
 /// A file of polynomials.
 void try_polynomials(std::string_view text);
 
+/// A file of limits: YAML, or a URDF.
+void try_limits(std::string_view text);
+
 /// Numbers, times, conditions, kinds and names, one on each line.
 void try_words(std::string_view text);
 
