@@ -47,8 +47,8 @@ struct CheckReport {
 core::MotionLimits limits_of(const LimitOptions& options, const LimitFile& file,
                              const WaypointTable& table,
                              const std::vector<core::Dimension>& kinds) {
-  const core::MotionLimits limits = core::overridden(
-      core::matched(file.joints, table.names), core::spread(options.given, table.dimensions()));
+  core::MotionLimits limits = core::overridden(core::matched(file.joints, table.names),
+                                               core::spread(options.given, table.dimensions()));
   core::require_limits(limits, kinds);
   if (limits.empty()) {
     throw InputError(

@@ -63,7 +63,7 @@ std::map<std::string, int> joint_lines(const std::string& name, const std::strin
   const TiXmlElement* const robot = document.FirstChildElement("robot");
   if (robot == nullptr) throw InputError(name + ": there is no element 'robot'");
   std::map<std::string, int> lines;
-  for (auto* joint = robot->FirstChildElement("joint"); joint != nullptr;
+  for (const auto* joint = robot->FirstChildElement("joint"); joint != nullptr;
        joint = joint->NextSiblingElement("joint")) {
     const char* const of = joint->Attribute("name");
     if (of != nullptr) lines.emplace(of, joint->Row());

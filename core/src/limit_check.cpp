@@ -48,7 +48,7 @@ struct Comparison {
 /// What `worst_excesses` needs to know about one limit, and whether it is kept.
 struct Finding {
   Excess excess;
-  bool is_kept;
+  bool is_kept = false;
 };
 
 Finding magnitude_finding(const Comparison& comparison, LimitKind kind, std::size_t d, double limit,

@@ -1,8 +1,9 @@
 #include "splinecast/core/limits.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "splinecast/core/segment_extremes.hpp"
 
 namespace splinecast::core {
 namespace {
@@ -11,8 +12,8 @@ namespace {
 constexpr double kLongest = 1e6;
 /// Shortest time that is distinguished, s: a velocity next to 0 is brought to rest within it.
 constexpr double kShortest = 1e-9;
-/// Leaves rounding in a coefficient out of account.
-constexpr double kRounding = 1 + 1e-9;
+/// Leaves the rounding of a peak out of account.
+constexpr double kRounding = 1 + 0x1p-48;
 
 /// Peak acceleration of a stop tail: its own at the start and where its jerk is 0.
 double stop_tail_peak(double v, double a, double time) noexcept {
@@ -70,26 +71,9 @@ Time move_time_within(std::span<const double> limits, Time least,
 }
 
 double peak_acceleration(const Segment& segment, std::size_t dimensions, std::size_t d) noexcept {
-  const auto c = [&](std::size_t power) {
-    const bool stands = power < static_cast<std::size_t>(segment.order);
-    return stands ? segment.coefficients[power * dimensions + d] : 0.0;
-  };
-  const auto acceleration = [&](double u) {
-    return std::abs(2 * c(2) + u * (6 * c(3) + u * (12 * c(4) + u * 20 * c(5))));
-  };
   const double h = to_seconds(segment.right - segment.left);
-  double peak = std::max(acceleration(0), acceleration(h));
-  // Jerk: 6 c3 + 24 c4 u + 60 c5 u². Both zeros by the stable form of the quadratic's.
-  const double qa = 10 * c(5);
-  const double qb = 4 * c(4);
-  const double qc = c(3);
-  const double discriminant = qb * qb - 4 * qa * qc;
-  if (discriminant < 0) return peak;
-  const double q = -(qb + std::copysign(std::sqrt(discriminant), qb)) / 2;
-  for (const double u : std::array{qa == 0 ? -1 : q / qa, q == 0 ? -1 : qc / q}) {
-    if (u > 0 && u < h) peak = std::max(peak, acceleration(u));
-  }
-  return peak;
+  const SegmentRange range = range_of(segment.order, segment.coefficients, dimensions, d, 2, 0, h);
+  return std::abs(range.largest().value);
 }
 
 double acceleration_excess(std::span<const double> limits, const Segment& segment) noexcept {
@@ -102,10 +86,13 @@ double acceleration_excess(std::span<const double> limits, const Segment& segmen
 }
 
 bool keeps_within(std::span<const double> limits, const Segment& segment) noexcept {
+  SegmentPart part = part_of(segment);
+  part.dimensions = limits.size();
   for (std::size_t d = 0; d < limits.size(); ++d) {
     if (limits[d] <= 0) continue;
     const double at_start = 2 * std::abs(segment.coefficients[2 * limits.size() + d]);
-    const double allowed = std::max(limits[d], at_start) * kRounding;
+    const double allowed =
+        std::max(limits[d], at_start) + kExtremeRounding * size_of_terms(part, d, 2);
     // Written so that what is no number does not pass.
     if (!(peak_acceleration(segment, limits.size(), d) <= allowed)) return false;
   }

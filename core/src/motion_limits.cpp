@@ -59,10 +59,9 @@ void require_first_alone(const MotionLimits& limits, std::size_t first) {
     for (std::size_t d = first + 1; d < first + kQuaternionSize; ++d) {
       const double value = (*values)[d];
       if (value == 0 || value == (*values)[first]) continue;
-      throw std::invalid_argument(std::string(name) + ' ' + std::to_string(value) +
-                                  " of dimension " + std::to_string(d) +
-                                  ": a quaternion has the limit of its first dimension, " +
-                                  std::to_string(first));
+      throw std::invalid_argument(
+          std::string(name) + ' ' + std::to_string(value) + " of dimension " + std::to_string(d) +
+          ": a quaternion has the limit of its first dimension, " + std::to_string(first));
     }
   }
 }
@@ -86,8 +85,8 @@ void require_limits(const MotionLimits& limits) {
   for (std::size_t d = 0; d < std::max(limits.lower.size(), limits.upper.size()); ++d) {
     const double lower = bound_or(limits.lower, d, -kInfinity);
     const double upper = bound_or(limits.upper, d, kInfinity);
-    const bool are_numbers = (is_usable(lower) || lower == -kInfinity) &&
-                             (is_usable(upper) || upper == kInfinity);
+    const bool are_numbers =
+        (is_usable(lower) || lower == -kInfinity) && (is_usable(upper) || upper == kInfinity);
     if (!are_numbers || (has_pairs && lower >= upper)) refuse_bounds(lower, upper);
   }
 }

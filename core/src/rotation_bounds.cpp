@@ -142,7 +142,7 @@ class PeakSearch {
   const RotationQuotient& rotation_;
   double accepted_;
   double rejected_;
-  std::array<Piece, kMaxPieces> pieces_;
+  std::array<Piece, kMaxPieces> pieces_{};
   std::size_t count_ = 0;
   double reached_ = 0;
   double at_ = 0;

@@ -50,7 +50,7 @@ struct Polynomial {
 /// The m-th derivative of one dimension of a polynomial of order N + m.
 template <int N, int M>
 Polynomial<N> derivative_of(const double* coefficients, std::size_t dimensions) noexcept {
-  Polynomial<N> p;
+  Polynomial<N> p{};
   for (int k = 0; k < N; ++k) {
     double factor = 1;
     for (int j = 0; j < M; ++j) factor *= k + M - j;
@@ -119,8 +119,7 @@ template <int Order, int M>
 Zeros zeros_of(const double* coefficients, std::size_t dimensions, const Ends& ends,
                const Zeros& turns) noexcept {
   constexpr int n = Order - M;
-  Zeros zeros;
-  zeros.count = 0;
+  Zeros zeros{};
   if constexpr (n == 2) {
     const auto p = derivative_of<2, M>(coefficients, dimensions);
     const double u = -p.c[0] / p.c[1];
@@ -171,8 +170,7 @@ SegmentRange range_with(const double* coefficients, std::size_t dimensions, cons
 template <int Order>
 void write_ranges_of(const double* coefficients, std::size_t dimensions, const Ends& ends,
                      Derivatives which, std::array<SegmentRange, 4>& out) noexcept {
-  Zeros none;
-  none.count = 0;
+  const Zeros none{};
   if (contains(which, Derivatives::jerk)) {
     const Zeros turns = zeros_of<Order, 4>(coefficients, dimensions, ends, none);
     out[3] = range_with<Order, 3>(coefficients, dimensions, ends, turns);
@@ -235,11 +233,12 @@ double size_of_terms(const SegmentPart& part, std::size_t d, int derivative) noe
   const double u = std::max(std::abs(part.from), std::abs(part.to));
   double size = 0;
   double power = 1;
-  for (int k = derivative; k < part.order; ++k, power *= u) {
+  for (int k = derivative; k < part.order; ++k) {
     double factor = power;
     for (int j = 0; j < derivative; ++j) factor *= k - j;
     const double c = part.coefficients[static_cast<std::size_t>(k) * part.dimensions + d];
     size += std::abs(factor * c);
+    power *= u;
   }
   return size;
 }

@@ -161,7 +161,7 @@ core::MotionLimits limits_for(const SolverOptions& options, const RegionHeader& 
   try {
     const core::MotionLimits given =
         core::spread(options.limits.value_or(core::MotionLimits{}), header.dimensions);
-    const core::MotionLimits limits =
+    core::MotionLimits limits =
         core::overridden(core::matched(named, dimension_names(header)), given);
     core::require_limits(limits, dimensions_of(header));
     return limits;
