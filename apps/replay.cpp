@@ -164,7 +164,7 @@ void require_loops(const WaypointTable& table, std::size_t loops) {
 }  // namespace
 
 void prepare_replay(WaypointTable& table, const ReplayOptions& options, RefusedRows& refused) {
-  select_rows(table, options.from.value_or(core::Time::zero()), options.duration);
+  select_rows(table, options.from, options.duration);
   change_rate(table, options.rate.value_or(1.0));
   drop_unfit_rows(table, options.limits, options.skip_bad ? &refused : nullptr);
   require_loops(table, options.loops);

@@ -84,10 +84,12 @@ class RowCheck {
 
 }  // namespace
 
-void select_rows(WaypointTable& table, core::Time from, std::optional<core::Time> duration) {
-  const core::Time first = core::saturated_sum(table.times.front(), from);
+void select_rows(WaypointTable& table, std::optional<core::Time> from,
+                 std::optional<core::Time> duration) {
+  const core::Time first =
+      core::saturated_sum(table.times.front(), from.value_or(core::Time::zero()));
   const auto is_in = [&](core::Time t) {
-    return t >= first && (!duration || t - first <= *duration);
+    return (!from || t >= first) && (!duration || t <= core::saturated_sum(first, *duration));
   };
   table.keep_rows([&](std::size_t i) { return is_in(table.times[i]); });
   if (table.size() == 0) {

@@ -7,9 +7,10 @@
 /// What is done to a recording before it is sent.
 namespace splinecast::apps {
 
-/// Keeps the rows from `from` on, for `duration` if it is set; both count from the first row's
-/// time. Throws InputError if none is left.
-void select_rows(WaypointTable& table, core::Time from, std::optional<core::Time> duration);
+/// Keeps the rows from `from` on, for `duration`, as far as these are set; both count from the first
+/// row's time. Throws InputError if none is left.
+void select_rows(WaypointTable& table, std::optional<core::Time> from,
+                 std::optional<core::Time> duration);
 
 /// Plays `rate` times as fast: divides times about the first one by it, multiplies velocities by it
 /// and accelerations by its square.

@@ -137,6 +137,16 @@ INSTANTIATE_TEST_SUITE_P(
              {{"out of order", 56}},
              ":5: waypoint refused: out of order"}));
 
+TEST_F(Ingest, ARowThatIsEarlierThanTheFirstIsNamedAsWell) {
+  const TestFolder folder;
+  const auto file = folder.write("a.csv", "t,x\n5,0\n4,1\n6,2\n");
+  Process solver({"solve", name()});
+  const Ended ended = replay(file, {"--on-error", "skip", "--json"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  expect_accounted_for(ended, 3);
+  EXPECT_EQ(json::parse(ended.out)["skipped_by_reason"]["out of order"], 1);
+}
+
 TEST_F(Ingest, WhatTheAppendRefusesIsNamedAndSkippedOrEndsTheStream) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", "t,x\n5.0000005,0\n6,1\n7,2\n8,1\n");
