@@ -92,6 +92,7 @@ class Replay {
     if (!await_consumption()) return false;
     board_.emplace(options_.stream, producer_.stream_id(), options_.trust);
     before_ = board_->head();
+    freeze_ahead_ = ipc::live_options(board_->header()).value_or(ipc::LiveOptions{}).freeze_ahead;
     producer_.refusals(found_);
     if (options_.verify) begin_log();
     return true;
@@ -205,13 +206,17 @@ class Replay {
   /// Sends a row at its time. Returns false if a stop is requested or a refused row stops it.
   bool send(const Sent& next, core::Time offset, Progress& progress) {
     core::Waypoint waypoint = table_.waypoint(next.row);
-    waypoint.time = core::saturated_sum(waypoint.time, offset);
+    waypoint.time = core::saturated_sum(waypoint.time, core::saturated_sum(offset, late_.shifted));
     if (stop_requested() || (options_.rate && !pace(waypoint.time))) return false;
+    const core::Time intended = waypoint.time;
+    core::Time lateness = shift_if_late(waypoint);
     ipc::AppendStatus status = append(waypoint);
     while (status == ipc::AppendStatus::full) {
       if (stop_requested() || !await_room()) return false;
+      lateness = std::max(lateness, shift_if_late(waypoint));
       status = append(waypoint);
     }
+    note_lateness(lateness, waypoint.time - intended);
     if (status == ipc::AppendStatus::accepted) {
       ++sent_;
       in_ring_.push_back(next);
@@ -227,6 +232,26 @@ class Replay {
       progress.show(fmt::format("{}: {} of {} waypoints", options_.stream, sent_, planned()));
     }
     return !stopped_;
+  }
+
+  /// How much a waypoint is late that can be sent now: how long before the end of what settles now
+  /// it lies; 0 if it does not. With `--late shift` it is given the lead again.
+  core::Time shift_if_late(core::Waypoint& waypoint) {
+    if (options_.clock != ipc::StreamClock::monotonic) return {};
+    const core::Time now = clock_.now();
+    const core::Time settled = std::max(producer_.earliest(), now + freeze_ahead_);
+    const core::Time lateness = std::max(settled - waypoint.time, core::Time::zero());
+    if (lateness > core::Time::zero() && options_.late == LatePolicy::shift) {
+      waypoint.time = std::max(waypoint.time, now + options_.lead);
+    }
+    return lateness;
+  }
+
+  /// Counts a waypoint that was late and moves those behind it as it was moved.
+  void note_lateness(core::Time lateness, core::Time moved_by) {
+    if (lateness == core::Time::zero()) return;
+    late_.count(&LateRows::past, lateness);
+    if (moved_by > core::Time::zero()) late_.shift(moved_by);
   }
 
   /// Appends a waypoint unless so many items before it are undecided that a refusal could be
@@ -356,6 +381,7 @@ class Replay {
                         .unsent = planned() - sent_ - refused_by_producer_,
                         .interpolated = now.knots - before_.knots,
                         .refused = now.refused - before_.refused,
+                        .late = late_,
                         .stopped = stopped_,
                         .interrupted = !complete};
     for (std::size_t i = 0; i < report.refused_by_reason.size(); ++i) {
@@ -372,6 +398,8 @@ class Replay {
   std::optional<ipc::Solver> solver_;  ///< first: if there is another one, nothing has been made
   ipc::Producer producer_;
   core::Time recorded_start_{};
+  core::Time freeze_ahead_{};
+  LateRows late_;
   std::optional<OwnBoard> board_;  ///< once there is one
   ipc::Refusals found_;            ///< by the last look
   ipc::Word missed_ = 0;

@@ -88,7 +88,10 @@ void require_whole(const apps::WaypointTable& table) {
 
 /// What `replay` does with a table before it sends it.
 void prepare(apps::WaypointTable& table) {
-  apps::drop_unfit_rows(table, {}, nullptr);
+  apps::WaypointTable shifted = table;
+  apps::drop_unfit_rows(shifted, {}, apps::LatePolicy::shift, nullptr);
+  require_whole(shifted);
+  apps::drop_unfit_rows(table, {}, apps::LatePolicy::refuse, nullptr);
   apps::change_rate(table, 2.0);
   (void)apps::median_interval(table);
   apps::continue_waypoints(table);
