@@ -1,0 +1,123 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "splinecast/core/time.hpp"
+#include "support/waypoint_table.hpp"
+
+/// What a recording shows of its producer and of its motion, and which lead, settle lag,
+/// freeze-ahead, stop time and limits follow from that. Pure arithmetic; everything allocates.
+namespace splinecast::apps {
+
+/// The lead that is given where nothing asks for more, and a short one to compare it with.
+inline constexpr core::Time kLeastLead{200'000'000};
+inline constexpr core::Time kShortLead{60'000'000};
+
+/// Velocities are those of chords at least this long.
+inline constexpr core::Time kChord{50'000'000};
+
+/// A gap is an interval of more than this many medians.
+inline constexpr std::int64_t kGapFactor = 5;
+
+/// Limits are this many times the 95 % quantile of what the motion shows.
+inline constexpr double kLimitFactor = 3;
+
+/// The intervals between rows.
+struct Intervals {
+  core::Time median{};
+  core::Time p5{};  ///< 5 % quantile
+  core::Time p95{};
+  core::Time largest{};
+  core::Time jitter{};  ///< 95 % quantile of |interval − median|
+  std::size_t gaps = 0;
+  core::Time longest_gap{};  ///< 0 if there are none
+
+  [[nodiscard]] core::Time gap_from() const noexcept {
+    return core::saturated_product(median, kGapFactor);
+  }
+};
+
+/// Measures at least one interval; times increase.
+[[nodiscard]] Intervals measure_intervals(std::span<const core::Time> times);
+
+/// What one dimension does, in its unit and seconds.
+struct DimensionMotion {
+  double noise = 0;          ///< standard deviation of noise and rounding of the positions
+  double velocity = 0;       ///< 95 % quantile of the magnitudes, while the machine moves
+  double peak_velocity = 0;  ///< largest magnitude
+  double acceleration = 0;   ///< likewise, of second differences over two chords
+  double peak_acceleration = 0;
+};
+
+/// Measures each dimension of a table whose times increase and whose angles and quaternions are
+/// continuous. Noise is taken from third divided differences by their median; on coarse recordings
+/// the motion itself adds to it. No chord crosses a gap. Throws InputError if the rows between gaps
+/// are too short for an acceleration.
+[[nodiscard]] std::vector<DimensionMotion> measure_motion(const WaypointTable& table,
+                                                          const Intervals& intervals);
+
+/// How a solver treats a live stream.
+struct SolvedHow {
+  std::size_t settle = 8;
+  core::Time freeze_ahead{5'000'000};
+};
+
+/// The depth with which each knot sees `settle` newer ones before it is frozen.
+[[nodiscard]] core::Time depth_needed(core::Time interval, const SolvedHow& how) noexcept;
+
+/// The lead for a recording of this length (max(): a stream that goes on): the depth needed, but no
+/// more than the whole recording, and the jitter; in whole milliseconds, at least kLeastLead.
+[[nodiscard]] core::Time advised_lead(const Intervals& intervals, core::Time length,
+                                      const SolvedHow& how) noexcept;
+
+/// The settle lag to recommend: 8, or fewer, at least 4, where 8 would need a lead of more than 1
+/// s.
+[[nodiscard]] std::size_t advised_settle(const Intervals& intervals,
+                                         core::Time freeze_ahead) noexcept;
+
+/// Limits of each dimension, and the length of a stop that keeps them.
+struct AdvisedLimits {
+  std::vector<double> velocity;
+  std::vector<double> acceleration;  ///< at least such that a stop from the peak velocity takes 1 s
+  core::Time stop_time{};
+};
+[[nodiscard]] AdvisedLimits advised_limits(std::span<const DimensionMotion> motion);
+
+/// What a silence of the producer does to a live stream.
+struct Hiccup {
+  core::Time lead{};
+  core::Time silence{};
+  core::Time depth_left{};     ///< when the producer sends again, before what it sends
+  core::Time dry{};            ///< how long readers follow the stop segment
+  bool comes_to_rest = false;  ///< before the next waypoint is entered
+  /// Seconds from there back onto the path, for each dimension at its peak velocity; nothing where
+  /// the limits leave no speed to catch up with.
+  std::vector<std::optional<double>> way_back{};
+};
+
+/// Foresees a silence, in the worst case: it begins just before a waypoint is due. The way back is
+/// a motion of minimum time within the limits, while the path goes on at the peak velocity.
+[[nodiscard]] Hiccup foresee(core::Time lead, core::Time silence, core::Time interval,
+                             core::Time freeze_ahead, std::span<const DimensionMotion> motion,
+                             const AdvisedLimits& limits);
+
+/// What is to be said about a recording.
+struct Advice {
+  Intervals intervals{};
+  std::vector<DimensionMotion> motion{};
+  SolvedHow how{};
+  core::Time depth_needed{};
+  core::Time lead{};
+  AdvisedLimits limits{};
+  std::vector<Hiccup> hiccups{};  ///< 100 and 300 ms, with the lead and with kShortLead
+};
+
+/// Advice for a table as measure_motion takes it, which goes on after its end if `goes_on`. A
+/// settle lag that is not given is chosen. Throws InputError if the rows are too few.
+[[nodiscard]] Advice advise(const WaypointTable& table, core::Time freeze_ahead,
+                            std::optional<std::size_t> settle, bool goes_on);
+
+}  // namespace splinecast::apps
