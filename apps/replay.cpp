@@ -136,8 +136,14 @@ void add_playback_options(CLI::App& verb, ReplayOptions& options) {
           },
           "live (default): now on this host's clock; recorded: the file's own stamps")
       ->type_name("CLOCK");
-  add_milliseconds(verb, "--lead", options.lead,
-                   "Append each waypoint of a live stream this long before its time (default 200)");
+  verb.add_option_function<std::string>(
+          "--lead",
+          [&options](const std::string& text) {
+            options.lead = time_within("--lead", text, TimeUnit::milliseconds, kAnyTime);
+          },
+          "Append each waypoint of a live stream this long before its time (default what 'advise' "
+          "says of the recording, at least 200)")
+      ->type_name("MS");
   add_condition(verb, "--start", options.start,
                 "Condition at the first waypoint (default halt; if recorded, the method's own)");
   add_condition(

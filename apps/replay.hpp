@@ -23,7 +23,7 @@ struct ReplayOptions {
   std::optional<core::Time> from{};
   std::optional<core::Time> duration{};
   ipc::StreamClock clock = ipc::StreamClock::monotonic;
-  core::Time lead{200'000'000};
+  std::optional<core::Time> lead{};  ///< unset: what the recording and the settle lag need
   std::optional<core::Condition> start{};
   std::optional<core::Condition> end{};
   LatePolicy late = LatePolicy::refuse;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "replay.hpp"
+#include "replay_lead.hpp"
 #include "splinecast/ipc/checked_region.hpp"
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/old_motion.hpp"
@@ -92,6 +93,7 @@ class Replay {
     if (!await_consumption()) return false;
     board_.emplace(options_.stream, producer_.stream_id(), options_.trust);
     before_ = board_->head();
+    lead_ = choose_lead(table_, options_, board_->header());
     freeze_ahead_ = ipc::live_options(board_->header()).value_or(ipc::LiveOptions{}).freeze_ahead;
     producer_.refusals(found_);
     if (options_.verify) begin_log();
@@ -180,7 +182,7 @@ class Replay {
 
   /// Time of the first waypoint on the stream's clock.
   [[nodiscard]] core::Time first_time() const {
-    return options_.clock == ipc::StreamClock::monotonic ? clock_.now() + options_.lead
+    return options_.clock == ipc::StreamClock::monotonic ? clock_.now() + lead_
                                                          : table_.times.front();
   }
 
@@ -242,7 +244,7 @@ class Replay {
     const core::Time settled = std::max(producer_.earliest(), now + freeze_ahead_);
     const core::Time lateness = std::max(settled - waypoint.time, core::Time::zero());
     if (lateness > core::Time::zero() && options_.late == LatePolicy::shift) {
-      waypoint.time = std::max(waypoint.time, now + options_.lead);
+      waypoint.time = std::max(waypoint.time, now + lead_);
     }
     return lateness;
   }
@@ -311,7 +313,7 @@ class Replay {
   /// stream, as long after the first one as it was recorded.
   bool pace(core::Time waypoint_time) {
     if (options_.clock == ipc::StreamClock::monotonic) {
-      return wait_until(waypoint_time - options_.lead);
+      return wait_until(waypoint_time - lead_);
     }
     if (sent_ == 0) recorded_start_ = clock_.now() - waypoint_time;
     return wait_until(recorded_start_ + waypoint_time);
@@ -398,6 +400,7 @@ class Replay {
   std::optional<ipc::Solver> solver_;  ///< first: if there is another one, nothing has been made
   ipc::Producer producer_;
   core::Time recorded_start_{};
+  core::Time lead_{};
   core::Time freeze_ahead_{};
   LateRows late_;
   std::optional<OwnBoard> board_;  ///< once there is one

@@ -218,9 +218,12 @@ Time depth_needed(Time interval, const SolvedHow& how) noexcept {
       core::saturated_product(interval, static_cast<std::int64_t>(how.settle) + 1));
 }
 
+Time depth_needed(Time interval, Time length, const SolvedHow& how) noexcept {
+  return std::min(depth_needed(interval, how), core::saturated_sum(how.freeze_ahead, length));
+}
+
 Time advised_lead(const Intervals& intervals, Time length, const SolvedHow& how) noexcept {
-  const Time all = core::saturated_sum(how.freeze_ahead, length);
-  const Time depth = std::min(depth_needed(intervals.median, how), all);
+  const Time depth = depth_needed(intervals.median, length, how);
   return std::max(kLeastLead, rounded_up_to_ms(core::saturated_sum(depth, intervals.jitter)));
 }
 

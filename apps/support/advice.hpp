@@ -68,8 +68,12 @@ struct SolvedHow {
 /// The depth with which each knot sees `settle` newer ones before it is frozen.
 [[nodiscard]] core::Time depth_needed(core::Time interval, const SolvedHow& how) noexcept;
 
-/// The lead for a recording of this length (max(): a stream that goes on): the depth needed, but no
-/// more than the whole recording, and the jitter; in whole milliseconds, at least kLeastLead.
+/// That depth, but no more than a recording of this length (max(): a stream that goes on) has.
+[[nodiscard]] core::Time depth_needed(core::Time interval, core::Time length,
+                                      const SolvedHow& how) noexcept;
+
+/// The lead for a recording of this length: the depth needed and the jitter; in whole milliseconds,
+/// at least kLeastLead.
 [[nodiscard]] core::Time advised_lead(const Intervals& intervals, core::Time length,
                                       const SolvedHow& how) noexcept;
 
@@ -80,8 +84,8 @@ struct SolvedHow {
 
 /// Limits of each dimension, and the length of a stop that keeps them.
 struct AdvisedLimits {
-  std::vector<double> velocity;
-  std::vector<double> acceleration;  ///< at least such that a stop from the peak velocity takes 1 s
+  std::vector<double> velocity{};
+  std::vector<double> acceleration{};  ///< such that a stop from a peak velocity takes 1 s at most
   core::Time stop_time{};
 };
 [[nodiscard]] AdvisedLimits advised_limits(std::span<const DimensionMotion> motion);
