@@ -210,15 +210,8 @@ class Replay {
     core::Waypoint waypoint = table_.waypoint(next.row);
     waypoint.time = core::saturated_sum(waypoint.time, core::saturated_sum(offset, late_.shifted));
     if (stop_requested() || (options_.rate && !pace(waypoint.time))) return false;
-    const core::Time intended = waypoint.time;
-    core::Time lateness = shift_if_late(waypoint);
-    ipc::AppendStatus status = append(waypoint);
-    while (status == ipc::AppendStatus::full) {
-      if (stop_requested() || !await_room()) return false;
-      lateness = std::max(lateness, shift_if_late(waypoint));
-      status = append(waypoint);
-    }
-    note_lateness(lateness, waypoint.time - intended);
+    const ipc::AppendStatus status = append_when_there_is_room(waypoint);
+    if (status == ipc::AppendStatus::full) return false;
     if (status == ipc::AppendStatus::accepted) {
       ++sent_;
       in_ring_.push_back(next);
@@ -234,6 +227,21 @@ class Replay {
       progress.show(fmt::format("{}: {} of {} waypoints", options_.stream, sent_, planned()));
     }
     return !stopped_;
+  }
+
+  /// Appends a waypoint, moved if it is late and to be shifted. Returns `full` if a stop is
+  /// requested while it waits for room.
+  ipc::AppendStatus append_when_there_is_room(core::Waypoint& waypoint) {
+    const core::Time intended = waypoint.time;
+    core::Time lateness = shift_if_late(waypoint);
+    ipc::AppendStatus status = append(waypoint);
+    while (status == ipc::AppendStatus::full) {
+      if (stop_requested() || !await_room()) return status;
+      lateness = std::max(lateness, shift_if_late(waypoint));
+      status = append(waypoint);
+    }
+    note_lateness(lateness, waypoint.time - intended);
+    return status;
   }
 
   /// How much a waypoint is late that can be sent now: how long before the end of what settles now

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "splinecast/ipc/clock.hpp"
 #include "splinecast/ipc/producer.hpp"
 #include "support/process.hpp"
 #include "support/shared_files.hpp"
@@ -260,10 +261,12 @@ std::string steady_rows() {
 class LateIngest : public Ingest {
  protected:
   /// Replays a file live, and stops the process until the stream has run dry.
-  [[nodiscard]] Ended replay_with_a_pause(const std::string& file,
-                                          const std::string& policy) const {
-    Process replaying({"replay", file, "--stream", name(), "--lead", "200", "--late", policy,
-                       "--on-error", "skip", "--verify", "--json"});
+  [[nodiscard]] Ended replay_with_a_pause(const std::string& file, const std::string& policy,
+                                          const Arguments& more = {}) const {
+    Arguments arguments{"replay", file,   "--stream",   name(), "--lead",   "200",
+                        "--late", policy, "--on-error", "skip", "--verify", "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    Process replaying(arguments);
     const auto solver = [&](const char* key) {
       const json stream = info(name());
       return stream.is_null() || stream["solver"].is_null()
@@ -272,8 +275,9 @@ class LateIngest : public Ingest {
     };
     EXPECT_TRUE(testing::await([&] { return solver("interpolated") > 40; }));
     replaying.signal(SIGSTOP);
-    EXPECT_TRUE(testing::await(
-        [&] { return solver("settled_until_ns") > solver("newest_knot_ns") + 100'000'000; }));
+    EXPECT_TRUE(testing::await([&] {
+      return ipc::MonotonicClock().now().count() > solver("newest_knot_ns") + 100'000'000;
+    }));
     replaying.signal(SIGCONT);
     return replaying.wait();
   }
@@ -363,6 +367,19 @@ TEST_F(LateIngest, AProducerThatWakesLateShiftsWhatIsLeft) {
   EXPECT_GE(report["late"]["shifts"], 1);
   EXPECT_GT(report["late"]["largest_ns"], 80'000'000);
   EXPECT_GT(report["late"]["shifted_ns"], 250'000'000);  // the lead, and what it was late
+  EXPECT_TRUE(report["verification"]["difference"].is_null());
+}
+
+TEST_F(LateIngest, AProducerThatWakesLateWithItsSolverShiftsWhatIsLeftToo) {
+  const TestFolder folder;
+  const auto file = folder.write("a.csv", steady_rows());
+  const Ended ended = replay_with_a_pause(file, "shift", {"--embedded"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  expect_accounted_for(ended, 200);
+  const auto report = json::parse(ended.out);
+  EXPECT_EQ(report["skipped"], 0) << ended.err;
+  EXPECT_EQ(report["refused"], 0) << ended.err;
+  EXPECT_GE(report["late"]["shifts"], 1);
   EXPECT_TRUE(report["verification"]["difference"].is_null());
 }
 
