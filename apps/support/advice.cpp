@@ -258,11 +258,12 @@ AdvisedLimits advised_limits(std::span<const DimensionMotion> motion) {
 
 Hiccup foresee(Time lead, Time silence, Time interval, Time freeze_ahead,
                std::span<const DimensionMotion> motion, const AdvisedLimits& limits) {
-  const Time left = lead - interval - silence;
+  const Time left =
+      std::max(core::saturated_sum(core::saturated_sum(lead, -interval), -silence), -Time::max());
   Hiccup hiccup{.lead = lead,
                 .silence = silence,
                 .depth_left = std::max(left, Time::zero()),
-                .dry = std::max(freeze_ahead - left, Time::zero())};
+                .dry = std::max(core::saturated_sum(freeze_ahead, -left), Time::zero())};
   hiccup.comes_to_rest = hiccup.dry >= limits.stop_time;
   for (std::size_t d = 0; d < motion.size(); ++d) {
     hiccup.way_back.push_back(way_back(motion[d].peak_velocity, core::to_seconds(hiccup.dry),

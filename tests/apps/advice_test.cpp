@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "splinecast/ipc/waypoint_ring.hpp"
 #include "support/exit_codes.hpp"
 
 namespace splinecast::apps {
@@ -51,7 +52,7 @@ DimensionMotion motion_of(const WaypointTable& table) {
 TEST(Advice, MeasuresIntervalsJitterAndGaps) {
   std::vector<Time> times{Time(0)};
   for (int i = 1; i <= 100; ++i) {
-    times.push_back(i * milliseconds(10) + (i % 2 == 1 ? microseconds(500) : microseconds(0)));
+    times.emplace_back(i * milliseconds(10) + (i % 2 == 1 ? microseconds(500) : microseconds(0)));
   }
   for (int i = 0; i < 3; ++i) times.push_back(times.back() + milliseconds(200 + 100 * i));
   const Intervals found = measure_intervals(times);
@@ -81,14 +82,28 @@ TEST(Advice, FindsTheNoiseThatWasAdded) {
 }
 
 TEST(Advice, FindsTheNoiseAlsoBetweenUnevenTimes) {
-  std::mt19937 random(5);
-  std::uniform_int_distribution<int> microsecond(3'000, 20'000);
-  std::normal_distribution<double> noise(0, 1e-3);
-  std::vector<Time> times{Time(0)};
-  while (times.size() < 2000) times.push_back(times.back() + microseconds(microsecond(random)));
-  const WaypointTable table =
-      table_of(times, [&](double t) { return 2 + 3 * t * t + noise(random); });
-  EXPECT_NEAR(motion_of(table).noise, 1e-3, 1e-4);
+  for (const unsigned seed : {5U, 6U}) {
+    std::mt19937 random(seed);
+    std::uniform_int_distribution<int> microsecond(3'000, 20'000);
+    std::normal_distribution<double> noise(0, 1e-3);
+    std::vector<Time> times{Time(0)};
+    while (times.size() < 2000) times.push_back(times.back() + microseconds(microsecond(random)));
+    const WaypointTable table =
+        table_of(times, [&](double t) { return 2 + 3 * t * t + noise(random); });
+    EXPECT_NEAR(motion_of(table).noise, 1e-3, 1.5e-4) << seed;
+  }
+}
+
+TEST(Advice, TakesAnyTimesAndValuesThatAFileCanHave) {
+  const Time last = ipc::kLatestTime;
+  for (const double x : {1e100, 1e-300}) {
+    const Advice found = advise(
+        table_of({-last, -last + Time(1), Time(0), last}, [&](double t) { return t < 0 ? -x : x; }),
+        milliseconds(5), std::nullopt, false);
+    EXPECT_GT(found.lead, seconds(1));
+    EXPECT_GE(found.hiccups.back().dry, Time(0));
+    EXPECT_TRUE(std::isfinite(found.limits.acceleration.front()));
+  }
 }
 
 TEST(Advice, FindsTheRoundingOfACoarseEncoder) {
