@@ -75,13 +75,14 @@ std::string depth_warning(const ipc::StreamInfo& info, const ipc::Trust& trust) 
   const core::Time interval = measure_intervals(table.times).median;
   const core::Time needed =
       depth_needed(interval, {.settle = info.spline->settle, .freeze_ahead = live->freeze_ahead});
-  // The solver looks just before it takes a waypoint, when the depth is an interval less.
-  if (core::saturated_sum(info.head.low_water, interval) >= needed) return {};
+  // Before a waypoint is taken the depth is an interval less; half of one is left for jitter.
+  const core::Time usual = needed - interval;
+  if (info.head.low_water >= usual - interval / 2) return {};
   return fmt::format(
       "least depth {:.6g} ms: K = {} needs {:.6g} ms with a waypoint each {:.6g} ms; give more "
       "lead",
       core::to_seconds(info.head.low_water) * 1e3, info.spline->settle,
-      core::to_seconds(needed - interval) * 1e3, core::to_seconds(interval) * 1e3);
+      core::to_seconds(usual) * 1e3, core::to_seconds(interval) * 1e3);
 }
 
 }  // namespace splinecast::apps
