@@ -6,58 +6,19 @@
 #include <vector>
 
 #include "splinecast/core/time.hpp"
+#include "support/motion_measures.hpp"
 #include "support/waypoint_table.hpp"
 
-/// What a recording shows of its producer and of its motion, and which lead, settle lag,
-/// freeze-ahead, stop time and limits follow from that. Pure arithmetic; everything allocates.
+/// Which lead, settle lag, stop time and limits follow from what a recording shows, and what a
+/// silence of its producer does. Pure arithmetic; what returns vectors allocates.
 namespace splinecast::apps {
 
 /// The lead that is given where nothing asks for more, and a short one to compare it with.
 inline constexpr core::Time kLeastLead{200'000'000};
 inline constexpr core::Time kShortLead{60'000'000};
 
-/// Velocities are those of chords at least this long.
-inline constexpr core::Time kChord{50'000'000};
-
-/// A gap is an interval of more than this many medians.
-inline constexpr std::int64_t kGapFactor = 5;
-
 /// Limits are this many times the 95 % quantile of what the motion shows.
 inline constexpr double kLimitFactor = 3;
-
-/// The intervals between rows.
-struct Intervals {
-  core::Time median{};
-  core::Time p5{};  ///< 5 % quantile
-  core::Time p95{};
-  core::Time largest{};
-  core::Time jitter{};  ///< 95 % quantile of |interval − median|
-  std::size_t gaps = 0;
-  core::Time longest_gap{};  ///< 0 if there are none
-
-  [[nodiscard]] core::Time gap_from() const noexcept {
-    return core::saturated_product(median, kGapFactor);
-  }
-};
-
-/// Measures at least one interval; times increase.
-[[nodiscard]] Intervals measure_intervals(std::span<const core::Time> times);
-
-/// What one dimension does, in its unit and seconds.
-struct DimensionMotion {
-  double noise = 0;          ///< standard deviation of noise and rounding of the positions
-  double velocity = 0;       ///< 95 % quantile of the magnitudes, while the machine moves
-  double peak_velocity = 0;  ///< largest magnitude
-  double acceleration = 0;   ///< likewise, of second differences over two chords
-  double peak_acceleration = 0;
-};
-
-/// Measures each dimension of a table whose times increase and whose angles and quaternions are
-/// continuous. Noise is taken from third divided differences by their median; on coarse recordings
-/// the motion itself adds to it. No chord crosses a gap. Throws InputError if the rows between gaps
-/// are too short for an acceleration.
-[[nodiscard]] std::vector<DimensionMotion> measure_motion(const WaypointTable& table,
-                                                          const Intervals& intervals);
 
 /// How a solver treats a live stream.
 struct SolvedHow {

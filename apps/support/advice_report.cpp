@@ -122,6 +122,26 @@ ordered_json solved_json(const AdviceSource& source) {
           {"late_revisions", misses}};
 }
 
+ordered_json late_json(const AdviceSource& source) {
+  return {{"duplicate", source.duplicates}, {"out of order", source.out_of_order}};
+}
+
+ordered_json gaps_json(const Intervals& intervals) {
+  return {{"longer_than_ns", intervals.gap_from().count()},
+          {"count", intervals.gaps},
+          {"longest_ns", intervals.longest_gap.count()}};
+}
+
+ordered_json advised_json(const Advice& advice) {
+  return {{"lead_ns", advice.lead.count()},
+          {"depth_needed_ns", advice.depth_needed.count()},
+          {"settle", advice.how.settle},
+          {"freeze_ahead_ns", advice.how.freeze_ahead.count()},
+          {"stop_time_ns", advice.limits.stop_time.count()},
+          {"max_velocity", advice.limits.velocity},
+          {"max_acceleration", advice.limits.acceleration}};
+}
+
 std::string intervals_in_words(const Advice& advice, const AdviceSource& source) {
   const Intervals& at = advice.intervals;
   std::string text =
@@ -195,29 +215,18 @@ std::string in_words(const Hiccup& hiccup) {
 }
 
 ordered_json to_json(const Advice& advice, const AdviceSource& source) {
-  ordered_json json{
-      {"source", source.name},
-      {"rows", source.rows},
-      {"length_ns", source.length.count()},
-      {"intervals", to_json(advice.intervals)},
-      {"late", {{"duplicate", source.duplicates}, {"out of order", source.out_of_order}}},
-      {"gaps",
-       {{"longer_than_ns", advice.intervals.gap_from().count()},
-        {"count", advice.intervals.gaps},
-        {"longest_ns", advice.intervals.longest_gap.count()}}},
-      {"solver", solved_json(source)},
-      {"dimensions", ordered_json::array()},
-      {"advice",
-       {{"lead_ns", advice.lead.count()},
-        {"depth_needed_ns", advice.depth_needed.count()},
-        {"settle", advice.how.settle},
-        {"freeze_ahead_ns", advice.how.freeze_ahead.count()},
-        {"stop_time_ns", advice.limits.stop_time.count()},
-        {"max_velocity", advice.limits.velocity},
-        {"max_acceleration", advice.limits.acceleration}}},
-      {"why", ordered_json::object()},
-      {"hiccups", ordered_json::array()},
-      {"notes", notes_of(advice, source)}};
+  ordered_json json{{"source", source.name},
+                    {"rows", source.rows},
+                    {"length_ns", source.length.count()},
+                    {"intervals", to_json(advice.intervals)},
+                    {"late", late_json(source)},
+                    {"gaps", gaps_json(advice.intervals)},
+                    {"solver", solved_json(source)},
+                    {"dimensions", ordered_json::array()},
+                    {"advice", advised_json(advice)},
+                    {"why", ordered_json::object()},
+                    {"hiccups", ordered_json::array()},
+                    {"notes", notes_of(advice, source)}};
   for (std::size_t d = 0; d < advice.motion.size(); ++d) {
     json["dimensions"].push_back(to_json(advice.motion[d], source.columns[d]));
   }
