@@ -14,6 +14,7 @@
 #include "support/options.hpp"
 #include "support/output.hpp"
 #include "support/report_page.hpp"
+#include "support/unit_of_name.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -41,19 +42,6 @@ void require_inside(const std::vector<core::Time>& times, const core::PiecewiseP
         fmt::format("{}: row {}: time {} ns lies outside the data, which go from {} ns to {} ns",
                     file, i + 1, times[i].count(), first.count(), last.count()));
   }
-}
-
-/// A column's name as `name [unit]` or `name (unit)`; without a unit the whole is the name.
-std::pair<std::string, std::string> name_and_unit(const std::string& column) {
-  for (const auto& brackets : {"[]", "()"}) {
-    const std::size_t open = column.rfind(brackets[0]);
-    if (open == std::string::npos || open == 0 || column.back() != brackets[1]) continue;
-    const std::string unit(without_blanks(column.substr(open + 1, column.size() - open - 2)));
-    // p[0], v[1], … count dimensions.
-    if (unit.empty() || parse_count(unit)) continue;
-    return {std::string(without_blanks(column.substr(0, open))), unit};
-  }
-  return {column, ""};
 }
 
 void write_report_of(const WaypointTable& table, std::vector<ReportCurve> curves,

@@ -9,6 +9,7 @@
 #include "support/options.hpp"
 #include "support/output.hpp"
 #include "support/stream_report.hpp"
+#include "support/stream_rows.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -56,7 +57,9 @@ void add_info(CLI::App& program, Action& action) {
   verb->callback([&action, options] {
     action = [options] {
       const ipc::StreamInfo info = ipc::inspect(options->stream, options->trust);
-      const ordered_json json = to_json(info);
+      ordered_json json = to_json(info);
+      const std::string warning = depth_warning(info, options->trust);
+      if (!warning.empty()) json["depth_warning"] = warning;
       if (options->json) {
         print_report(pretty(json));
       } else {

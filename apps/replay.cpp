@@ -55,8 +55,12 @@ std::string in_words(const ordered_json& by_reason) {
 }
 
 /// What else is to be said about a replay that did not go as planned.
-std::string in_words(const ReplayReport& report, const RefusedRows& refused) {
+std::string in_words(const ReplayReport& report, const ReplayOptions& options,
+                     const RefusedRows& refused) {
   std::string text;
+  if (options.late != LatePolicy::refuse && report.late != LateRows{}) {
+    text.append("; ").append(apps::in_words(report.late));
+  }
   const ipc::Word named = refused.count(RefusedBy::solver);
   if (report.refused > named) {
     text += fmt::format("; {} refusals came too fast to be named", report.refused - named);
@@ -75,9 +79,10 @@ int run_replay(ReplayOptions options) {
     };
   }
   WaypointTable table = read_waypoints(options.file, options.table);
-  prepare_replay(table, options, refused);
+  const LateRows late_in_file = prepare_replay(table, options, refused);
   catch_stop_signals();  // until here nothing was made that would have to be ended
-  const ReplayReport report = replay_table(table, options, refused);
+  ReplayReport report = replay_table(table, options, refused);
+  report.late += late_in_file;
   const ipc::Word skipped = refused.count(RefusedBy::file) + refused.count(RefusedBy::producer);
   if (options.json) {
     ordered_json json{{"stream", options.stream},
@@ -87,6 +92,7 @@ int run_replay(ReplayOptions options) {
                       {"refused_by_reason", refused_by_reason(report)},
                       {"skipped", skipped},
                       {"skipped_by_reason", skipped_by_reason(refused)},
+                      {"late", to_json(report.late, options.late)},
                       {"unsent", report.unsent},
                       {"interrupted", report.interrupted},
                       {"rows", refused.to_json()},
@@ -97,7 +103,7 @@ int run_replay(ReplayOptions options) {
     say(fmt::format("'{}': {} waypoints sent, {} interpolated, {} refused{}, {} rows skipped{}{}",
                     options.stream, report.sent, report.interpolated, report.refused,
                     in_words(refused_by_reason(report)), skipped,
-                    in_words(skipped_by_reason(refused)), in_words(report, refused)));
+                    in_words(skipped_by_reason(refused)), in_words(report, options, refused)));
   }
   return exit_code(report);
 }
@@ -130,8 +136,14 @@ void add_playback_options(CLI::App& verb, ReplayOptions& options) {
           },
           "live (default): now on this host's clock; recorded: the file's own stamps")
       ->type_name("CLOCK");
-  add_milliseconds(verb, "--lead", options.lead,
-                   "Append each waypoint of a live stream this long before its time (default 200)");
+  verb.add_option_function<std::string>(
+          "--lead",
+          [&options](const std::string& text) {
+            options.lead = time_within("--lead", text, TimeUnit::milliseconds, kAnyTime);
+          },
+          "Append each waypoint of a live stream this long before its time (default what 'advise' "
+          "says of the recording, at least 200)")
+      ->type_name("MS");
   add_condition(verb, "--start", options.start,
                 "Condition at the first waypoint (default halt; if recorded, the method's own)");
   add_condition(
@@ -163,10 +175,11 @@ void require_loops(const WaypointTable& table, std::size_t loops) {
 
 }  // namespace
 
-void prepare_replay(WaypointTable& table, const ReplayOptions& options, RefusedRows& refused) {
-  select_rows(table, options.from.value_or(core::Time::zero()), options.duration);
+LateRows prepare_replay(WaypointTable& table, const ReplayOptions& options, RefusedRows& refused) {
+  select_rows(table, options.from, options.duration);
   change_rate(table, options.rate.value_or(1.0));
-  drop_unfit_rows(table, options.limits, options.skip_bad ? &refused : nullptr);
+  const LateRows late =
+      drop_unfit_rows(table, options.limits, options.late, options.skip_bad ? &refused : nullptr);
   require_loops(table, options.loops);
   const core::Condition none;
   core::require_values(options.start.value_or(none), table.dimensions());
@@ -180,6 +193,7 @@ void prepare_replay(WaypointTable& table, const ReplayOptions& options, RefusedR
                       core::to_string(*condition)));
     }
   }
+  return late;
 }
 
 int exit_code(const ReplayReport& report) {
@@ -207,6 +221,20 @@ void add_replay(CLI::App& program, Action& action) {
           "What to do about a row that is refused: stop (default) the replay there, or skip the "
           "row and go on")
       ->type_name("skip|stop");
+  verb->add_option_function<std::string>(
+          "--late",
+          [options](const std::string& text) {
+            const auto policy = parse_late_policy(text);
+            if (!policy) {
+              throw CLI::ValidationError("--late",
+                                         fmt::format("'{}' is none of pass, shift, refuse", text));
+            }
+            options->late = *policy;
+          },
+          "What to do about a row whose time is not after the row before, or has settled when it "
+          "can be sent: refuse (default) it; pass: leave it out, or send it as it is; shift: move "
+          "it and all rows behind it")
+      ->type_name("pass|shift|refuse");
   add_count(*verb, "--capacity", options->capacity,
             "Waypoints that the ring holds (default 1024; rounded up to a power of two)");
   add_seconds(*verb, "--wait", options->wait, "Wait this long for a solver (default 10)");

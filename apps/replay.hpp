@@ -7,6 +7,7 @@
 #include "splinecast/ipc/solver.hpp"
 #include "splinecast/ipc/stream_options.hpp"
 #include "splinecast/ipc/verification.hpp"
+#include "support/late_rows.hpp"
 #include "support/refused_rows.hpp"
 #include "support/waypoint_table.hpp"
 
@@ -22,9 +23,10 @@ struct ReplayOptions {
   std::optional<core::Time> from{};
   std::optional<core::Time> duration{};
   ipc::StreamClock clock = ipc::StreamClock::monotonic;
-  core::Time lead{200'000'000};
+  std::optional<core::Time> lead{};  ///< unset: what the recording and the settle lag need
   std::optional<core::Condition> start{};
   std::optional<core::Condition> end{};
+  LatePolicy late = LatePolicy::refuse;
   bool skip_bad = false;
   core::Time wait{10'000'000'000};
   bool embedded = false;
@@ -45,6 +47,7 @@ struct ReplayReport {
   ipc::Word interpolated = 0;  ///< of these, by the solver
   ipc::Word refused = 0;       ///< of these, by the solver, with a reason
   std::array<ipc::Word, ipc::kRefusals> refused_by_reason{};
+  LateRows late{};                     ///< rows that were late when they could be sent
   std::optional<RefusedBy> stopped{};  ///< who refused the row at which --on-error stop stopped it
   bool interrupted = false;
   std::optional<ipc::Verification> verification{};  ///< if one was asked for
@@ -55,8 +58,9 @@ struct ReplayReport {
 [[nodiscard]] int exit_code(const ReplayReport& report);
 
 /// Makes a file's table what is to be sent: the rows and the rate asked for. Rows that cannot be
-/// sent are noted in `refused`, or, without `skip_bad`, the first one throws InputError.
-void prepare_replay(WaypointTable& table, const ReplayOptions& options, RefusedRows& refused);
+/// sent are noted in `refused`, or, without `skip_bad`, the first one throws InputError. Returns
+/// the rows that are late in the file itself.
+LateRows prepare_replay(WaypointTable& table, const ReplayOptions& options, RefusedRows& refused);
 
 /// Sends a prepared table's waypoints to a solver and waits until all are consumed. Notes in
 /// `refused` each row that the producer's append or the solver refused; without `skip_bad` the

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "replay.hpp"
+#include "replay_lead.hpp"
 #include "splinecast/ipc/checked_region.hpp"
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/old_motion.hpp"
@@ -92,6 +93,8 @@ class Replay {
     if (!await_consumption()) return false;
     board_.emplace(options_.stream, producer_.stream_id(), options_.trust);
     before_ = board_->head();
+    lead_ = choose_lead(table_, options_, board_->header());
+    freeze_ahead_ = ipc::live_options(board_->header()).value_or(ipc::LiveOptions{}).freeze_ahead;
     producer_.refusals(found_);
     if (options_.verify) begin_log();
     return true;
@@ -179,7 +182,7 @@ class Replay {
 
   /// Time of the first waypoint on the stream's clock.
   [[nodiscard]] core::Time first_time() const {
-    return options_.clock == ipc::StreamClock::monotonic ? clock_.now() + options_.lead
+    return options_.clock == ipc::StreamClock::monotonic ? clock_.now() + lead_
                                                          : table_.times.front();
   }
 
@@ -205,13 +208,10 @@ class Replay {
   /// Sends a row at its time. Returns false if a stop is requested or a refused row stops it.
   bool send(const Sent& next, core::Time offset, Progress& progress) {
     core::Waypoint waypoint = table_.waypoint(next.row);
-    waypoint.time = core::saturated_sum(waypoint.time, offset);
+    waypoint.time = core::saturated_sum(waypoint.time, core::saturated_sum(offset, late_.shifted));
     if (stop_requested() || (options_.rate && !pace(waypoint.time))) return false;
-    ipc::AppendStatus status = append(waypoint);
-    while (status == ipc::AppendStatus::full) {
-      if (stop_requested() || !await_room()) return false;
-      status = append(waypoint);
-    }
+    const ipc::AppendStatus status = append_when_there_is_room(waypoint);
+    if (status == ipc::AppendStatus::full) return false;
     if (status == ipc::AppendStatus::accepted) {
       ++sent_;
       in_ring_.push_back(next);
@@ -227,6 +227,41 @@ class Replay {
       progress.show(fmt::format("{}: {} of {} waypoints", options_.stream, sent_, planned()));
     }
     return !stopped_;
+  }
+
+  /// Appends a waypoint, moved if it is late and to be shifted. Returns `full` if a stop is
+  /// requested while it waits for room.
+  ipc::AppendStatus append_when_there_is_room(core::Waypoint& waypoint) {
+    const core::Time intended = waypoint.time;
+    core::Time lateness = shift_if_late(waypoint);
+    ipc::AppendStatus status = append(waypoint);
+    while (status == ipc::AppendStatus::full) {
+      if (stop_requested() || !await_room()) return status;
+      lateness = std::max(lateness, shift_if_late(waypoint));
+      status = append(waypoint);
+    }
+    note_lateness(lateness, waypoint.time - intended);
+    return status;
+  }
+
+  /// How much a waypoint is late that can be sent now: how long before the end of what settles now
+  /// it lies; 0 if it does not. With `--late shift` it is given the lead again.
+  core::Time shift_if_late(core::Waypoint& waypoint) {
+    if (options_.clock != ipc::StreamClock::monotonic) return {};
+    const core::Time now = clock_.now();
+    const core::Time settled = std::max(producer_.earliest(), now + freeze_ahead_);
+    const core::Time lateness = std::max(settled - waypoint.time, core::Time::zero());
+    if (lateness > core::Time::zero() && options_.late == LatePolicy::shift) {
+      waypoint.time = std::max(waypoint.time, now + lead_);
+    }
+    return lateness;
+  }
+
+  /// Counts a waypoint that was late and moves those behind it as it was moved.
+  void note_lateness(core::Time lateness, core::Time moved_by) {
+    if (lateness == core::Time::zero()) return;
+    late_.count(&LateRows::past, lateness);
+    if (moved_by > core::Time::zero()) late_.shift(moved_by);
   }
 
   /// Appends a waypoint unless so many items before it are undecided that a refusal could be
@@ -286,7 +321,7 @@ class Replay {
   /// stream, as long after the first one as it was recorded.
   bool pace(core::Time waypoint_time) {
     if (options_.clock == ipc::StreamClock::monotonic) {
-      return wait_until(waypoint_time - options_.lead);
+      return wait_until(waypoint_time - lead_);
     }
     if (sent_ == 0) recorded_start_ = clock_.now() - waypoint_time;
     return wait_until(recorded_start_ + waypoint_time);
@@ -356,6 +391,7 @@ class Replay {
                         .unsent = planned() - sent_ - refused_by_producer_,
                         .interpolated = now.knots - before_.knots,
                         .refused = now.refused - before_.refused,
+                        .late = late_,
                         .stopped = stopped_,
                         .interrupted = !complete};
     for (std::size_t i = 0; i < report.refused_by_reason.size(); ++i) {
@@ -372,6 +408,9 @@ class Replay {
   std::optional<ipc::Solver> solver_;  ///< first: if there is another one, nothing has been made
   ipc::Producer producer_;
   core::Time recorded_start_{};
+  core::Time lead_{};
+  core::Time freeze_ahead_{};
+  LateRows late_;
   std::optional<OwnBoard> board_;  ///< once there is one
   ipc::Refusals found_;            ///< by the last look
   ipc::Word missed_ = 0;

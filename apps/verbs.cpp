@@ -10,6 +10,7 @@ void add_verbs(CLI::App& program, Action& action) {
   add_fit(program, action);
   add_check(program, action);
   add_methods(program, action);
+  add_advise(program, action);
   add_latency(program, action);
   add_ls(program, action);
   add_info(program, action);

@@ -19,6 +19,7 @@ namespace splinecast::apps {
 using Action = std::function<int()>;
 
 /// Each adds its verb to the program and sets `action` when that verb is chosen.
+void add_advise(CLI::App& program, Action& action);
 void add_check(CLI::App& program, Action& action);
 void add_demo(CLI::App& program, Action& action);
 void add_doctor(CLI::App& program, Action& action);

@@ -88,7 +88,7 @@ TEST(EmbeddedReplay, OntoAStreamThatStillMovesWaitsForItsEnd) {
   ipc::Head second;
   ASSERT_TRUE(ipc::Reader(stream.name()).head(second));
   EXPECT_EQ(second.knots, 3U);
-  EXPECT_GE(second.newest_knot, old.newest_knot + options.lead + milliseconds(600));
+  EXPECT_GE(second.newest_knot, old.newest_knot + *options.lead + milliseconds(600));
 }
 
 }  // namespace

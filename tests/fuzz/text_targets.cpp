@@ -13,6 +13,7 @@
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/names.hpp"
 #include "splinecast/ipc/waypoint_ring.hpp"
+#include "support/advice.hpp"
 #include "support/exit_codes.hpp"
 #include "support/kinds.hpp"
 #include "support/limit_file.hpp"
@@ -88,12 +89,16 @@ void require_whole(const apps::WaypointTable& table) {
   for (const core::Time t : table.times) require(ipc::is_time_in_range(t), "times are in range");
 }
 
-/// What `replay` does with a table before it sends it.
+/// What `replay` does with a table before it sends it, and what `advise` makes of it.
 void prepare(apps::WaypointTable& table) {
-  apps::drop_unfit_rows(table, {}, nullptr);
+  apps::WaypointTable shifted = table;
+  apps::drop_unfit_rows(shifted, {}, apps::LatePolicy::shift, nullptr);
+  require_whole(shifted);
+  apps::drop_unfit_rows(table, {}, apps::LatePolicy::refuse, nullptr);
   apps::change_rate(table, 2.0);
   (void)apps::median_interval(table);
   apps::continue_waypoints(table);
+  (void)apps::advise(table, apps::SolvedHow{}.freeze_ahead, std::nullopt, false);
 }
 
 }  // namespace
