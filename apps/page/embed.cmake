@@ -17,15 +17,11 @@ string(REGEX REPLACE "(0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,)" "\\1\n" bytes 
 file(WRITE ${OUT} "#include \"support/report_template.hpp\"
 
 namespace splinecast::apps {
-namespace {
-
-constexpr unsigned char kBytes[] = {
-${bytes}
-};
-
-}  // namespace
 
 std::string_view ${FUNCTION}() noexcept {
+  static constexpr unsigned char kBytes[] = {
+${bytes}
+  };
   return {reinterpret_cast<const char*>(kBytes), sizeof(kBytes)};
 }
 

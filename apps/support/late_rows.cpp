@@ -12,7 +12,7 @@ namespace {
 constexpr std::array kPolicies{LatePolicy::refuse, LatePolicy::pass, LatePolicy::shift};
 
 /// The kinds of late rows, as they are named for people.
-constexpr std::array<std::pair<const char*, ipc::Word LateRows::*>, 3> kKinds{
+constexpr std::array<std::pair<const char*, ipc::Word LateRows::*>, 3> kLateKinds{
     {{"duplicate", &LateRows::duplicate},
      {"out of order", &LateRows::out_of_order},
      {"past", &LateRows::past}}};
@@ -49,7 +49,7 @@ void LateRows::shift(core::Time by) noexcept {
 }
 
 LateRows& LateRows::operator+=(const LateRows& other) noexcept {
-  for (const auto& [name, kind] : kKinds) this->*kind += other.*kind;
+  for (const auto& [name, kind] : kLateKinds) this->*kind += other.*kind;
   left_out += other.left_out;
   shifts += other.shifts;
   shifted = core::saturated_sum(shifted, other.shifted);
@@ -59,7 +59,7 @@ LateRows& LateRows::operator+=(const LateRows& other) noexcept {
 
 nlohmann::ordered_json to_json(const LateRows& late, LatePolicy policy) {
   nlohmann::ordered_json kinds;
-  for (const auto& [name, kind] : kKinds) kinds[name] = late.*kind;
+  for (const auto& [name, kind] : kLateKinds) kinds[name] = late.*kind;
   return {{"policy", to_string(policy)},        {"by_kind", kinds},
           {"left_out", late.left_out},          {"shifts", late.shifts},
           {"shifted_ns", late.shifted.count()}, {"largest_ns", late.largest.count()}};
@@ -68,7 +68,7 @@ nlohmann::ordered_json to_json(const LateRows& late, LatePolicy policy) {
 std::string in_words(const LateRows& late) {
   ipc::Word rows = 0;
   std::string kinds;
-  for (const auto& [name, kind] : kKinds) {
+  for (const auto& [name, kind] : kLateKinds) {
     if (late.*kind == 0) continue;
     rows += late.*kind;
     kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", late.*kind, name);
