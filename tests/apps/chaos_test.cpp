@@ -49,13 +49,13 @@ TEST(Chaos, IsNotJudgedIfItIsInterruptedAndNoReaderSpins) {
   }));
   demo.signal(SIGINT);
   const testing::Ended ended = demo.wait();
-  const auto milliseconds = (clock.now() - begin).count() / 1'000'000;
+  const auto took_ms = (clock.now() - begin).count() / 1'000'000;
   EXPECT_EQ(ended.code, 130) << ended.err;
   const auto found = nlohmann::json::parse(ended.out, nullptr, false);
   ASSERT_TRUE(found.is_object()) << ended.out << ended.err;
   EXPECT_FALSE(found["judged"].get<bool>());
   EXPECT_TRUE(found["sound"].is_null());
-  for (const auto& reader : found["readers"]) EXPECT_LE(reader["samples"], milliseconds + 100);
+  for (const auto& reader : found["readers"]) EXPECT_LE(reader["samples"], took_ms + 100);
 }
 
 }  // namespace
