@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "splinecast/core/stop.hpp"
 #include "splinecast/core/segment.hpp"
 #include "splinecast/core/state.hpp"
 #include "splinecast/ipc/producer.hpp"
@@ -112,7 +113,7 @@ class ChaosProducer {
   void finish() {
     skip_past(clock_.now() + kCatchUp);
     core::Segment stop(JointMotion::kJoints);
-    core::build_stop_tail(next_, kStop, motion_.at(next_), motion_.at(next_, 1),
+    core::build_stop(next_, kStop, motion_.at(next_), motion_.at(next_, 1),
                           motion_.at(next_, 2), stop);
     core::State state(JointMotion::kJoints);
     for (Time t = next_; t <= next_ + kStop; t += kInterval) {

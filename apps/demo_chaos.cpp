@@ -189,7 +189,8 @@ class Chaos {
     json found = {
         {"lost", lost},
         {"items", info.appended},
-        {"interpolated", head_.knots},
+        {"interpolated", head_.interpolated()},
+        {"passed_over", head_.passed_over},
         {"refused", head_.refused},
         {"withdrawn", head_.withdrawn},
         {"replacements", std::max<ipc::Word>(head_.controls, 1) - 1},

@@ -104,7 +104,7 @@ class LatencySolver {
     return {{"revisions", head.revision},
             {"discarded", head.misses},
             {"committed_late", head.revisions},
-            {"interpolated", head.knots},
+            {"interpolated", head.interpolated()},
             {"refused", head.refused}};
   }
 

@@ -153,6 +153,7 @@ class Soak {
       if (!reader.head(head)) continue;
       sum.consumed += head.consumed;
       sum.knots += head.knots;
+      sum.passed_over += head.passed_over;
       sum.refused += head.refused;
       sum.withdrawn += head.withdrawn;
       sum.controls += head.controls;
@@ -160,7 +161,8 @@ class Soak {
       sum.misses += head.misses;
       sum.revisions += head.revisions;
     }
-    return {{"consumed", sum.consumed},      {"interpolated", sum.knots},
+    return {{"consumed", sum.consumed},      {"interpolated", sum.interpolated()},
+            {"passed_over", sum.passed_over},
             {"refused", sum.refused},        {"withdrawn", sum.withdrawn},
             {"controls", sum.controls},      {"underruns", sum.underruns},
             {"deadline_misses", sum.misses}, {"late_commits", sum.revisions}};

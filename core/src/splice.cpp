@@ -10,36 +10,24 @@
 namespace splinecast::core {
 namespace {
 
-/// A parabola's velocity and acceleration at one of its points, in one dimension.
-struct Parabola {
-  double velocity;
-  double acceleration;
-};
-
-/// The parabola through three points at an end of them; `at` looks inwards.
-Parabola at_end(const EndStencil& at, double inwards) noexcept {
-  return {.velocity = parabola_end_slope(at),
-          .acceleration = inwards * 2 * (at.m1 - at.m0) / (at.h0 + at.h1)};
+/// The slope of the parabola through a point and its neighbours on both sides.
+double slope_at_middle(double h_before, double m_before, double h_after, double m_after) noexcept {
+  return (h_after * m_before + h_before * m_after) / (h_before + h_after);
 }
 
-Parabola at_middle(double h_before, double m_before, double h_after, double m_after) noexcept {
-  const double h = h_before + h_after;
-  return {.velocity = (h_after * m_before + h_before * m_after) / h,
-          .acceleration = 2 * (m_after - m_before) / h};
-}
-
-Parabola at_run_start(const RunStart& at, std::size_t d) noexcept {
+double slope_at_run_start(const RunStart& at, std::size_t d) noexcept {
   const auto m = [d](const ChordInterval& interval) { return interval.chord[d]; };
-  if (at.after2.h > 0) return at_end({at.after.h, m(at.after), at.after2.h, m(at.after2)}, 1);
+  if (at.after2.h > 0) {
+    return parabola_end_slope({at.after.h, m(at.after), at.after2.h, m(at.after2)});
+  }
   if (at.after.h > 0 && at.before.h > 0) {
-    return at_middle(at.before.h, m(at.before), at.after.h, m(at.after));
+    return slope_at_middle(at.before.h, m(at.before), at.after.h, m(at.after));
   }
-  if (at.after.h > 0) return {.velocity = m(at.after), .acceleration = 0};
+  if (at.after.h > 0) return m(at.after);
   if (at.before2.h > 0) {
-    return at_end({at.before.h, m(at.before), at.before2.h, m(at.before2)}, -1);
+    return parabola_end_slope({at.before.h, m(at.before), at.before2.h, m(at.before2)});
   }
-  if (at.before.h > 0) return {.velocity = m(at.before), .acceleration = 0};
-  return {.velocity = 0, .acceleration = 0};
+  return at.before.h > 0 ? m(at.before) : 0;
 }
 
 }  // namespace
@@ -62,13 +50,8 @@ void build_splice(const Instant& from, const Instant& to, Segment& out) noexcept
   out.kind = SegmentKind::splice;
 }
 
-void write_run_start(const RunStart& at, std::span<double> velocity,
-                     std::span<double> acceleration) noexcept {
-  for (std::size_t d = 0; d < velocity.size(); ++d) {
-    const Parabola found = at_run_start(at, d);
-    velocity[d] = found.velocity;
-    acceleration[d] = found.acceleration;
-  }
+void write_run_start(const RunStart& at, std::span<double> velocity) noexcept {
+  for (std::size_t d = 0; d < velocity.size(); ++d) velocity[d] = slope_at_run_start(at, d);
 }
 
 }  // namespace splinecast::core

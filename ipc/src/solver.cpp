@@ -10,7 +10,7 @@
 #include <utility>
 #include <variant>
 
-#include "splinecast/core/limits.hpp"
+#include "splinecast/core/stop.hpp"
 #include "splinecast/ipc/checked_region.hpp"
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/futex.hpp"

@@ -166,7 +166,7 @@ class Curve {
     curve_->committed(head_);
   }
   void finish() {
-    curve_->finish({core::ConditionKind::halt, {}}, Time::min());
+    expect_finish();
     head_.finished = true;
     publish({}, 0, 0, std::nullopt);
   }
@@ -175,7 +175,7 @@ class Curve {
   void disturb(const Trial& other, std::size_t from, std::size_t to, std::optional<Time> entry,
                bool finishes, bool takes_over) {
     change(other, from, to, entry);
-    if (finishes) curve_->finish({core::ConditionKind::halt, {}}, Time::min());
+    if (finishes) expect_finish();
     Head dropped = head_;
     curve_->write(dropped);
     if (takes_over) {
@@ -205,16 +205,23 @@ class Curve {
  private:
   void take_over() {
     board_.replace_writer();
-    curve_.emplace(board_.writer, board_.reader, how_, core::DimensionKinds());
+    curve_.emplace(board_.writer, board_.reader, how_, core::DimensionKinds(),
+                   EntryOptions{.is_live = true});
     curve_->restore(head_);
   }
   void change(const Trial& trial, std::size_t from, std::size_t to, std::optional<Time> entry) {
-    if (entry) {
-      curve_->plan_entry(*entry);
-      curve_->enter_as_planned();
-    }
+    curve_->freeze(Time::min());
+    if (entry) curve_->begin_run(*entry, Time::zero());
     for (std::size_t i = from; i < to; ++i) curve_->append(trial.waypoints()[i], i);
+    int tries = kTries;
+    curve_->plan(Time::min(), Time::max(), true, tries);
   }
+  void expect_finish() {
+    int tries = kTries;
+    EXPECT_TRUE(curve_->finish({core::ConditionKind::halt, {}}, Time::min(), tries));
+  }
+
+  static constexpr int kTries = 1000;  // a search is never interrupted
 
   core::WindowOptions how_;
   testing::MemoryBoard board_;

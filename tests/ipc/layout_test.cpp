@@ -79,7 +79,7 @@ TEST(Layout, TheControlBlockOfEveryStreamLiesInItsArea) {
   for (std::uint64_t id = 1; id < 200; ++id) {
     const auto header = make_header({.dimensions = 1}, id);
     EXPECT_GE(header.control, kHeaderBytes);
-    EXPECT_EQ(header.control, 8192 + 128 * (id % 50));  // as the page says
+    EXPECT_EQ(header.control, kHeaderBytes + kSeparation * (id % kControlPositions));
     EXPECT_LE(header.control + kBoardControlWords * sizeof(Word), kBodyOffset);
     places.insert(header.control);
   }

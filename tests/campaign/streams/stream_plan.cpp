@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "splinecast/core/limits.hpp"
+#include "splinecast/core/stop.hpp"
 #include "splinecast/core/smoothing_rows.hpp"
 
 namespace splinecast::campaign {
