@@ -173,18 +173,6 @@ void add_live_options(CLI::App& verb, ipc::SolverOptions& options) {
       ->type_name("MS");
   add_seconds(verb, "--history", options.history,
               "Keep what ended less than this ago; then consume no more (default 1)");
-  verb.add_option_function<std::string>(
-          "--beyond",
-          [&options](const std::string& text) {
-            if (text != "report" && text != "refuse") {
-              throw CLI::ValidationError("--beyond",
-                                         fmt::format("'{}' is none of report, refuse", text));
-            }
-            options.beyond = text == "report" ? core::Beyond::report : core::Beyond::refuse;
-          },
-          "What is done about a waypoint whose segment is beyond the limits: report (default), "
-          "refuse")
-      ->type_name("WHAT");
 }
 
 /// Reads the file of limits, and gives the solver all of them.

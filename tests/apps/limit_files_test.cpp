@@ -190,8 +190,7 @@ TEST_F(LimitFiles, SolveGivesLimitsToTheStreamAndInfoShowsThem) {
   const TestStream stream;
   const auto limits = folder_.write("arm.urdf", kRobot);
   const auto moves = folder_.write("a.csv", "t,shoulder,wrist\n0,0,0\n1,0.1,1\n2,0,0\n");
-  Process solver(
-      {"solve", stream.name(), "--limits", limits, "--max-jerk", "none,5e3", "--beyond", "refuse"});
+  Process solver({"solve", stream.name(), "--limits", limits, "--max-jerk", "none,5e3"});
   const Ended sent = run({"replay", moves, "--stream", stream.name(), "--clock", "recorded"});
   ASSERT_EQ(sent.code, 0) << sent.err;
   const auto shown = testing::info(stream.name())["solver"]["limits"];
@@ -200,15 +199,13 @@ TEST_F(LimitFiles, SolveGivesLimitsToTheStreamAndInfoShowsThem) {
   EXPECT_EQ(shown["jerk"], nlohmann::json({nullptr, 5e3}));
   EXPECT_EQ(shown["lower"], nlohmann::json({-1.0, nullptr}));
   EXPECT_EQ(shown["upper"], nlohmann::json({2.0, nullptr}));
-  EXPECT_EQ(shown["beyond"], "refuse");
+  EXPECT_EQ(shown["beyond"], "report");
   solver.signal(SIGTERM);
   const Ended ended = solver.wait();
   EXPECT_NE(ended.err.find("name of these limits: 'roll'"), std::string::npos) << ended.err;
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
       {{"--max-velocity", "2"}, "velocity limit"},
-      {{"--bounds", "-1:1"}, "lower bound none, not -1"},
-      {{"--beyond", "report"}, "beyond"},
-      {{"--beyond", "ignore"}, "'ignore'"}};
+      {{"--bounds", "-1:1"}, "lower bound none, not -1"}};
   for (const auto& [arguments, message] : cases) {
     std::vector<std::string> solve{"solve", stream.name()};
     solve.insert(solve.end(), arguments.begin(), arguments.end());
