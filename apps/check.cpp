@@ -123,7 +123,7 @@ std::string advice_of(const CurveCheck& check) {
   std::string text;
   if (check.slowing == 0) text += "no slowing is enough\n";
   if (check.slowing > 0 && check.slowing < 1) {
-    // Rounded down: what is printed is slow enough.
+    // Rounded down, so that the printed factor is slow enough.
     text += fmt::format("{:.4f} of the speed would keep velocity, acceleration and jerk\n",
                         std::floor(check.slowing * 1e4) / 1e4);
   }

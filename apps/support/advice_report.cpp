@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// A part of the advice: what it is called in JSON and in text, its value and its reason.
+/// One recommendation: its name in JSON and in text, its value and its reason.
 struct Item {
   const char* key;
   const char* name;

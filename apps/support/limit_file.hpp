@@ -11,7 +11,7 @@ namespace splinecast::apps {
 /// What a file says of the limits of joints.
 struct LimitFile {
   std::vector<core::NamedLimits> joints;
-  std::vector<std::string> notes;  ///< what of it is not used, with file and line
+  std::vector<std::string> notes;  ///< parts that are not used, with file and line
 };
 
 /// Reads MoveIt's joint_limits.yaml or a URDF (a file that begins with `<`). Throws InputError,

@@ -93,8 +93,8 @@ class Reader {
     refuse(root[key], fmt::format("{}: {} is not above 0 and at most 1", key, value));
   }
 
-  /// The value under a key; nothing if it is not given or `has` says that there is none. What `has`
-  /// announces must be there.
+  /// The value under a key; nothing if the key is missing, or if the key `has` is false. If `has`
+  /// is true, the value must be there.
   [[nodiscard]] std::optional<double> value(const YAML::Node& joint, const std::string& has,
                                             const std::string& key) const {
     if (joint[has]) {

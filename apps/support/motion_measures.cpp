@@ -15,7 +15,7 @@ namespace {
 
 using core::Time;
 
-/// The value of rank ⌈fraction · count⌉; 0 if there is none.
+/// The value of rank ⌈fraction · count⌉; 0 without values.
 template <typename T>
 T quantile(std::vector<T>& values, double fraction) {
   if (values.empty()) return T{};
@@ -36,7 +36,7 @@ class Chords {
     }
   }
 
-  /// The end of the shortest chord from row i; nothing if there is none.
+  /// The end of the shortest chord from row i, if one begins there.
   [[nodiscard]] std::optional<std::size_t> end(std::size_t i) const {
     const auto first = table_->times.begin() + static_cast<std::ptrdiff_t>(i);
     const auto at =

@@ -47,8 +47,8 @@ struct Excess {
   double u = 0;               ///< seconds after the left knot
 };
 
-/// Values that are allowed although they are beyond a limit: one per dimension, or none. A motion
-/// that begins beyond its limit may stay there. What is below the limit is of no effect.
+/// Values that are allowed although they exceed a limit: one per dimension, or none. A motion that
+/// begins beyond its limit may stay there. A value below the limit changes nothing.
 struct Allowance {
   std::span<const double> velocity{};
   std::span<const double> acceleration{};

@@ -9,10 +9,10 @@
 #include "splinecast/core/segment.hpp"
 #include "splinecast/core/time.hpp"
 
-/// Limits of motion: what the segments that this library chooses itself (stop tails, splices) keep
-/// to, and what a curve is compared with. A limit of 0 is none; spans hold one value per dimension,
-/// and no limits at all are an empty span. Unless a function says otherwise it is O(D), allocates
-/// nothing and throws nothing.
+/// Limits of motion. Stop tails and splices keep those of acceleration; curves can be compared with
+/// all of them (limit_check.hpp). 0 means no limit; a span holds one value per dimension, and an
+/// empty one means no limits. Unless a function says otherwise, it is O(D), allocates nothing and
+/// throws nothing.
 namespace splinecast::core {
 
 /// Limits of velocity, acceleration and jerk, and bounds of the position, in the units of the
@@ -30,10 +30,11 @@ struct MotionLimits {
   friend bool operator==(const MotionLimits&, const MotionLimits&) = default;
 };
 
-/// What is done about a segment that is beyond its limits.
+/// What a stream asks for where a segment exceeds its limits. It is stored with the stream and
+/// shown by `info`; solvers do not act on it.
 enum class Beyond : std::uint8_t {
-  report = 0,  ///< it is published and counted
-  refuse = 1,  ///< its waypoint is refused
+  report = 0,  ///< publish the segment
+  refuse = 1,  ///< refuse its waypoint
 };
 
 /// Throws std::invalid_argument, naming the limit and its value, unless every limit is a positive
