@@ -10,6 +10,7 @@
 
 #include "splinecast/core/segment.hpp"
 #include "splinecast/core/state.hpp"
+#include "splinecast/core/stop.hpp"
 #include "splinecast/ipc/producer.hpp"
 #include "support/joint_motion.hpp"
 #include "support/signals.hpp"
@@ -112,8 +113,8 @@ class ChaosProducer {
   void finish() {
     skip_past(clock_.now() + kCatchUp);
     core::Segment stop(JointMotion::kJoints);
-    core::build_stop_tail(next_, kStop, motion_.at(next_), motion_.at(next_, 1),
-                          motion_.at(next_, 2), stop);
+    core::build_stop(next_, kStop, motion_.at(next_), motion_.at(next_, 1), motion_.at(next_, 2),
+                     stop);
     core::State state(JointMotion::kJoints);
     for (Time t = next_; t <= next_ + kStop; t += kInterval) {
       core::evaluate(stop.order, stop.coefficients, core::to_seconds(t - next_), state.ref());

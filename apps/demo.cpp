@@ -19,6 +19,7 @@
 #include "support/pick_and_place.hpp"
 #include "support/signals.hpp"
 #include "support/stream_remover.hpp"
+#include "support/stream_report.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -43,6 +44,7 @@ struct DemoOptions {
 json replay_json(const ReplayReport& report) {
   return {{"sent", report.sent},
           {"interpolated", report.interpolated},
+          {"passed_over", report.passed_over},
           {"refused", report.refused},
           {"interrupted", report.interrupted},
           {"exit_code", exit_code(report)}};
@@ -93,8 +95,9 @@ std::string summary(const WaypointTable& table, const json& sent, const json& re
              "from {}, played live.\n\n",
              kReaders, table.dimensions(), table.file) +
          line("waypoints",
-              fmt::format("{} sent, {} interpolated, {} refused", sent["sent"].get<std::size_t>(),
+              fmt::format("{} sent, {} interpolated{}, {} refused", sent["sent"].get<std::size_t>(),
                           sent["interpolated"].get<std::size_t>(),
+                          passed_over_in_words(sent["passed_over"].get<ipc::Word>()),
                           sent["refused"].get<std::size_t>())) +
          line("samples at 1 kHz", fmt::format("{} in all: {}", read["samples"].get<std::size_t>(),
                                               counts_by_status(read["by_status"]))) +

@@ -189,7 +189,8 @@ class Chaos {
     json found = {
         {"lost", lost},
         {"items", info.appended},
-        {"interpolated", head_.knots},
+        {"interpolated", head_.interpolated()},
+        {"passed_over", head_.passed_over},
         {"refused", head_.refused},
         {"withdrawn", head_.withdrawn},
         {"replacements", std::max<ipc::Word>(head_.controls, 1) - 1},
@@ -253,8 +254,10 @@ std::string chaos_summary(const json& found) {
       line("ran dry, and recovered", fmt::format("{}", count("underruns"))) +
       line("futures replaced", fmt::format("{}", count("replacements"))) +
       line("waypoints",
-           fmt::format("{} interpolated, {} refused with a reason, {} withdrawn, {} {}",
-                       count("interpolated"), count("refused"), count("withdrawn"), count("lost"),
+           fmt::format("{} interpolated, {} passed over, {} refused with a reason, {} withdrawn, "
+                       "{} {}",
+                       count("interpolated"), count("passed_over"), count("refused"),
+                       count("withdrawn"), count("lost"),
                        found["judged"].get<bool>() ? "lost" : "not consumed")) +
       line("samples that read otherwise later",
            fmt::format("{:.0f} of {:.0f}", most("changed"), most("samples"))) +

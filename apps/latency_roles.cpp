@@ -101,11 +101,9 @@ class LatencySolver {
   void wait(Time timeout) { solver_.wait(timeout); }
   [[nodiscard]] json counters() const {
     const ipc::Head& head = solver_.head();
-    return {{"revisions", head.revision},
-            {"discarded", head.misses},
-            {"committed_late", head.revisions},
-            {"interpolated", head.knots},
-            {"refused", head.refused}};
+    return {{"revisions", head.revision},       {"discarded", head.misses},
+            {"committed_late", head.revisions}, {"interpolated", head.interpolated()},
+            {"passed_over", head.passed_over},  {"refused", head.refused}};
   }
 
  private:

@@ -12,6 +12,7 @@
 #include "support/recording.hpp"
 #include "support/signals.hpp"
 #include "support/stream_log.hpp"
+#include "support/stream_report.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -88,6 +89,7 @@ int run_replay(ReplayOptions options) {
     ordered_json json{{"stream", options.stream},
                       {"sent", report.sent},
                       {"interpolated", report.interpolated},
+                      {"passed_over", report.passed_over},
                       {"refused", report.refused},
                       {"refused_by_reason", refused_by_reason(report)},
                       {"skipped", skipped},
@@ -100,8 +102,9 @@ int run_replay(ReplayOptions options) {
     if (report.verification) json["verification"] = to_json(*report.verification);
     print_report(json.dump(2) + "\n");
   } else {
-    say(fmt::format("'{}': {} waypoints sent, {} interpolated, {} refused{}, {} rows skipped{}{}",
-                    options.stream, report.sent, report.interpolated, report.refused,
+    say(fmt::format("'{}': {} waypoints sent, {} interpolated{}, {} refused{}, {} rows skipped{}{}",
+                    options.stream, report.sent, report.interpolated,
+                    passed_over_in_words(report.passed_over), report.refused,
                     in_words(refused_by_reason(report)), skipped,
                     in_words(skipped_by_reason(refused)), in_words(report, options, refused)));
   }

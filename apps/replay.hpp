@@ -45,6 +45,7 @@ struct ReplayReport {
   ipc::Word sent = 0;          ///< waypoints accepted by the ring
   ipc::Word unsent = 0;        ///< not come to: the replay was stopped, or interrupted
   ipc::Word interpolated = 0;  ///< of these, by the solver
+  ipc::Word passed_over = 0;   ///< of these, by entries: taken, but the curve does not meet them
   ipc::Word refused = 0;       ///< of these, by the solver, with a reason
   std::array<ipc::Word, ipc::kRefusals> refused_by_reason{};
   LateRows late{};                     ///< rows that were late when they could be sent

@@ -387,9 +387,14 @@ class Replay {
     if (now.refused > before_.refused && !options_.skip_bad && !stopped_) {
       stopped_ = RefusedBy::solver;
     }
+    // An entry that was open before may have met waypoints since that were counted as passed over.
+    const ipc::Word taken = now.knots - before_.knots;
+    const ipc::Word passed_over =
+        std::min(taken, now.passed_over - std::min(now.passed_over, before_.passed_over));
     ReplayReport report{.sent = sent_,
                         .unsent = planned() - sent_ - refused_by_producer_,
-                        .interpolated = now.knots - before_.knots,
+                        .interpolated = taken - passed_over,
+                        .passed_over = passed_over,
                         .refused = now.refused - before_.refused,
                         .late = late_,
                         .stopped = stopped_,

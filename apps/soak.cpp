@@ -153,6 +153,7 @@ class Soak {
       if (!reader.head(head)) continue;
       sum.consumed += head.consumed;
       sum.knots += head.knots;
+      sum.passed_over += head.passed_over;
       sum.refused += head.refused;
       sum.withdrawn += head.withdrawn;
       sum.controls += head.controls;
@@ -160,10 +161,11 @@ class Soak {
       sum.misses += head.misses;
       sum.revisions += head.revisions;
     }
-    return {{"consumed", sum.consumed},      {"interpolated", sum.knots},
-            {"refused", sum.refused},        {"withdrawn", sum.withdrawn},
-            {"controls", sum.controls},      {"underruns", sum.underruns},
-            {"deadline_misses", sum.misses}, {"late_commits", sum.revisions}};
+    return {{"consumed", sum.consumed},       {"interpolated", sum.interpolated()},
+            {"passed_over", sum.passed_over}, {"refused", sum.refused},
+            {"withdrawn", sum.withdrawn},     {"controls", sum.controls},
+            {"underruns", sum.underruns},     {"deadline_misses", sum.misses},
+            {"late_commits", sum.revisions}};
   }
 
   void print_line(Time since) {
@@ -270,11 +272,12 @@ std::string soak_summary(const json& found) {
                           found["rate"].get<double>(), 100 * found["solver_share"].get<double>())) +
          line("producers killed",
               fmt::format("{}, and come back", count(found, "producer_kills"))) +
-         line("items", fmt::format("{} appended: {} interpolated, {} refused with a reason, {} "
-                                   "withdrawn, {} controls; streams that lost one: {}",
-                                   count(found, "appended"), count(sum, "interpolated"),
-                                   count(sum, "refused"), count(sum, "withdrawn"),
-                                   count(sum, "controls"), count(found, "lossy_streams"))) +
+         line("items",
+              fmt::format("{} appended: {} interpolated, {} passed over, {} refused with "
+                          "a reason, {} withdrawn, {} controls; streams that lost one: {}",
+                          count(found, "appended"), count(sum, "interpolated"),
+                          count(sum, "passed_over"), count(sum, "refused"), count(sum, "withdrawn"),
+                          count(sum, "controls"), count(found, "lossy_streams"))) +
          line("ran dry", fmt::format("{} times; deadlines missed {}, committed too late {}",
                                      count(sum, "underruns"), count(sum, "deadline_misses"),
                                      count(sum, "late_commits"))) +

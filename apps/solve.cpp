@@ -18,6 +18,7 @@
 #include "support/options.hpp"
 #include "support/output.hpp"
 #include "support/signals.hpp"
+#include "support/stream_report.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -64,8 +65,10 @@ class Announcer {
       case ipc::SweepNews::solving:
         return solver->took_over() ? "taken over" : "solving";
       case ipc::SweepNews::finished:
-        return fmt::format("finished; {} waypoints interpolated, {} items refused",
-                           solver->head().knots, solver->head().refused);
+        return fmt::format("finished; {} waypoints interpolated{}, {} items refused",
+                           solver->head().interpolated(),
+                           passed_over_in_words(solver->head().passed_over),
+                           solver->head().refused);
       case ipc::SweepNews::elsewhere:
         return "left to the process that solves it";
       case ipc::SweepNews::no_descriptors:
@@ -194,8 +197,10 @@ void add_solve(CLI::App& program, Action& action) {
                    "that come and go")
       ->required();
   add_solver_curve(*verb, options->solver);
-  add_seconds(*verb, "--stop-time", options->solver.stop_time,
-              "Time in which a stream that dries up comes to rest (default 0.25)");
+  add_seconds(
+      *verb, "--stop-time", options->solver.stop_time,
+      "Time in which a stream that dries up comes to rest (default 0.25); longer where a limit "
+      "of acceleration or jerk asks for it");
   add_count(*verb, "--capacity", options->solver.capacity,
             "Segments that the board holds (default 4096; rounded up to a power of two)");
   add_live_options(*verb, options->solver);

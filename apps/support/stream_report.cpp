@@ -1,5 +1,7 @@
 #include "support/stream_report.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <vector>
 
@@ -128,7 +130,8 @@ ordered_json solver_json(const ipc::StreamInfo& info) {
       {"min_splice_ns", info.spline->min_splice},
       {"revision", head.revision},
       {"consumed", head.consumed},
-      {"interpolated", head.knots},
+      {"interpolated", head.interpolated()},
+      {"passed_over", head.passed_over},
       {"refused", head.refused},
       {"refused_by_reason", refused},
       {"refusals", refusals_json(info)},
@@ -173,6 +176,10 @@ ordered_json to_json(const ipc::StreamInfo& info) {
   json["producer"] = info.waypoints ? producer_json(info) : ordered_json(nullptr);
   json["solver"] = info.spline ? solver_json(info) : ordered_json(nullptr);
   return json;
+}
+
+std::string passed_over_in_words(ipc::Word count) {
+  return count == 0 ? "" : fmt::format(", {} passed over", count);
 }
 
 }  // namespace splinecast::apps

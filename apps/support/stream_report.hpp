@@ -16,4 +16,8 @@ namespace splinecast::apps {
 /// One word for where a stream is in its life: `waiting`, `running`, `finished`, `retired` …
 [[nodiscard]] std::string state_of(const ipc::StreamInfo& info);
 
+/// What a summary says behind the number of waypoints that are interpolated: `, 12 passed over`, or
+/// nothing for 0.
+[[nodiscard]] std::string passed_over_in_words(ipc::Word count);
+
 }  // namespace splinecast::apps

@@ -75,9 +75,6 @@ EndIntervals KnotRing::end_intervals() const noexcept {
   if (n > 1) {
     at.h_next = row(n - 2).h;
     at.chord_next = chord(n - 2);
-  } else {
-    at.h_next = before_.h;
-    at.chord_next = before_.chord;
   }
   return at;
 }

@@ -9,6 +9,7 @@
 #include "splinecast/core/knot_ring.hpp"
 #include "splinecast/core/splice.hpp"
 #include "splinecast/core/state.hpp"
+#include "splinecast/core/stop.hpp"
 #include "vector_clones.hpp"
 
 namespace splinecast::core {
@@ -110,8 +111,8 @@ void build_segment(SegmentForm form, const SegmentEnd& left, const SegmentEnd& r
   write_position(left, from);
   if (form == SegmentForm::hold) return build_hold(left.time, right.time, from, out);
   if (form == SegmentForm::stop) {
-    return build_stop_tail(left.time, right.time - left.time, from, left.velocity,
-                           left.acceleration, out);
+    return build_stop(left.time, right.time - left.time, from, left.velocity, left.acceleration,
+                      out);
   }
   std::array<double, kMaxDimensions> to_values;  // NOLINT(*-member-init)
   const auto to = std::span(to_values).first(left.waypoint.size());
@@ -125,8 +126,14 @@ void write_end_accelerations(SegmentForm form, const SegmentEnd& left, const Seg
   std::ranges::fill(start, 0.0);
   std::ranges::fill(end, 0.0);
   if (form == SegmentForm::hold) return;
+  if (form == SegmentForm::stop) {
+    const double seconds = to_seconds(right.time - left.time);
+    for (std::size_t d = 0; d < start.size(); ++d) {
+      start[d] = stop_acceleration(left.velocity[d], left.acceleration[d], seconds);
+    }
+    return;
+  }
   if (starts_with_acceleration(form)) std::ranges::copy(left.acceleration, start.begin());
-  if (form == SegmentForm::stop) return;
   if (arrives_with_acceleration(form)) {
     std::ranges::copy(right.acceleration, end.begin());
     return;

@@ -195,32 +195,6 @@ void build_segment(const Interval& interval, Segment& out) noexcept {
   }
 }
 
-SPLINECAST_VECTOR_CLONES
-void build_stop_tail(Time from, Time stop_time, std::span<const double> position,
-                     std::span<const double> velocity, std::span<const double> acceleration,
-                     Segment& out) noexcept {
-  const std::size_t dimensions = position.size();
-  const double rest_after = to_seconds(stop_time);
-  out.left = from;
-  out.right = from + stop_time;
-  out.order = kMaxOrder;
-  out.kind = SegmentKind::stop_tail;
-  for_overlapping_lanes(dimensions, [&](auto lane, std::size_t first) {
-    using Lane = typename decltype(lane)::type;
-    const auto v = load_lane<Lane>(velocity.data() + first);
-    const auto a = load_lane<Lane>(acceleration.data() + first);
-    const Lane jerk_scale = v / (rest_after * rest_after);
-    const Lane snap_scale = a / rest_after;
-    double* const c = out.coefficients.data() + first;
-    store_lane(c, load_lane<Lane>(position.data() + first));
-    store_lane(c + dimensions, v);
-    store_lane<Lane>(c + 2 * dimensions, a / 2.0);
-    store_lane<Lane>(c + 3 * dimensions, -jerk_scale - 2.0 * snap_scale / 3.0);
-    store_lane<Lane>(c + 4 * dimensions, (2.0 * jerk_scale + snap_scale) / (4 * rest_after));
-    store_lane<Lane>(c + 5 * dimensions, Lane{});
-  });
-}
-
 void build_hold(Time from, Time to, std::span<const double> position, Segment& out) noexcept {
   out.left = from;
   out.right = to;

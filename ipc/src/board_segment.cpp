@@ -169,9 +169,14 @@ void BoardSegment::copy_to(SegmentCopy& out) const {
   out.order = segment_.order;
   out.kind = segment_.kind;
   out.newer_knots = left_.note.newer_knots;
-  out.origin = {.right_newer_knots = right_.is_there() ? right_.note.newer_knots : 0, .item = {}};
+  out.origin = {};
+  if (right_.is_there()) {
+    out.origin.right_newer_knots = right_.note.newer_knots;
+    out.origin.ends_at_waypoint = right_.note.is_waypoint;
+  }
   if (left_.note.form == core::SegmentForm::splice && left_.item > 0) {
     out.origin.item = left_.item - 1;
+    if (!right_.note.is_waypoint) out.origin.known = right_.item;
   }
   out.has_waypoint = left_.note.is_waypoint;
   const auto coefficients =

@@ -40,7 +40,8 @@ KnotBoardReader::KnotBoardReader(std::span<const std::byte> region,
       control_(words_at(region, layout.control, kBoardControlWords)),
       refusals_(words_at(region, layout.refusals, kRefusalsKept)),
       times_(words_at(region, layout.times, layout.capacity)),
-      slots_(words_at(region, layout.slots, layout.capacity * layout.stride / sizeof(Word))) {}
+      slots_(words_at(region, layout.slots,
+                      (layout.capacity + kPassedSlots) * layout.stride / sizeof(Word))) {}
 
 std::array<Word, kStepBuckets> KnotBoardReader::step_times() const noexcept {
   std::array<Word, kStepBuckets> counts{};
@@ -147,8 +148,19 @@ bool KnotBoardReader::copy_head(const Look& look, Head& out) const noexcept {
 }
 
 bool KnotBoardReader::copy_knot(Word number, Word r, KnotCopy& out) const noexcept {
+  out.number = number;
+  return copy_slot(index_of(number), r, out);
+}
+
+bool KnotBoardReader::copy_passed(Word i, Word r, KnotCopy& out) const noexcept {
+  out.number = 0;
+  return copy_slot(layout_.capacity + i % kPassedSlots, r, out);
+}
+
+/// The knot in a slot: R2 to R4.
+inline bool KnotBoardReader::copy_slot(std::size_t index, Word r, KnotCopy& out) const noexcept {
   out.tag = 0;
-  const Word* const at = slot(number);
+  const Word* const at = slot_at(index);
   const SlotView<const Word> view{at, cell_words_};
   const Tags tags = view.tags(std::memory_order_acquire);  // R2
   const std::size_t c = tags.newest(r);
@@ -178,7 +190,7 @@ bool KnotBoardReader::copy_knot(Word number, Word r, KnotCopy& out) const noexce
   }
   out.tag = tag;
   out.cell = c;
-  out.number = number;
+  out.slot = index;
   return true;
 }
 
@@ -219,7 +231,7 @@ std::size_t KnotBoardReader::copy_refusals(const Head& head, Word from,
 
 core::Prefix KnotBoardReader::copy_row(const KnotCopy& knot, std::span<double> g) const noexcept {
   const Word* const row =
-      slot(knot.number) + (layout_.rows + row_of(knot.tag) * layout_.row) / sizeof(Word);
+      slot_at(knot.slot) + (layout_.rows + row_of(knot.tag) * layout_.row) / sizeof(Word);
   const auto value = [row](std::size_t i) {
     return to_double(load(row[i], std::memory_order_relaxed));
   };

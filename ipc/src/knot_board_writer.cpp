@@ -22,10 +22,10 @@ KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout&
       settled_(load(control_[kSettledUntil], std::memory_order_relaxed)),
       late_(load(control_[kLate], std::memory_order_relaxed)),
       checked_(load(control_[kChecked], std::memory_order_relaxed)),
-      states_(layout.capacity),
-      written_(layout.capacity),
+      states_(layout.capacity + kPassedSlots),
+      written_(states_.size()),
       at_{.words =
-              words_at(region, layout.slots, layout.capacity * layout.stride / sizeof(Word)).data(),
+              words_at(region, layout.slots, states_.size() * layout.stride / sizeof(Word)).data(),
           .mask = layout.capacity - 1,
           .slot_words = layout.stride / sizeof(Word),
           .cell_words = layout.cell / sizeof(Word),
@@ -33,9 +33,7 @@ KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout&
           .written = written_.data()} {
   held_times_.reserve(layout.capacity);
   retire_uncommitted(head_cells(), revision_);
-  for (Word number = 0; number < layout_.capacity; ++number) {
-    retire_uncommitted(cells(number), revision_);
-  }
+  for (std::size_t i = 0; i < states_.size(); ++i) retire_uncommitted(cells_at(i), revision_);
   read_state();
   restore_times();
 }
@@ -52,10 +50,10 @@ void KnotBoardWriter::read_state() noexcept {
     }
   }
   head_cell_ = head_cells().tags(std::memory_order_relaxed).newest(revision_);
-  for (Word number = 0; number < layout_.capacity; ++number) {
-    const Tags tags = cells(number).tags(std::memory_order_relaxed);
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const Tags tags = cells_at(i).tags(std::memory_order_relaxed);
     const std::size_t c = tags.newest(revision_);
-    states_[number] = static_cast<SlotState>(tags.of[c] & kTagPartsMask) | (c == 0 ? 0 : kCellBit);
+    states_[i] = static_cast<SlotState>(tags.of[c] & kTagPartsMask) | (c == 0 ? 0 : kCellBit);
   }
 }
 
@@ -91,9 +89,8 @@ KnotBoardWriter::WrittenSlot& KnotBoardWriter::written_slot(const Slots& slots,
 /// W1: claims the spare cell of a slot. A node or row is never stored to while a cell with a
 /// standing tag names it: the committed cell names the other one, and this is the spare's.
 /// `changed`: whether node and row are other ones than the committed cell's.
-inline KnotBoardWriter::Claimed KnotBoardWriter::claim(Slots& slots, Word number, Word tag,
+inline KnotBoardWriter::Claimed KnotBoardWriter::claim(Slots& slots, std::size_t index, Word tag,
                                                        SlotState changed) noexcept {
-  const std::size_t index = number & slots.mask;
   const SlotState state = slots.states[index];
   const SlotState next = (state & ~kWrittenBit) ^ (kCellBit | changed);
   slots.states[index] = state | kWrittenBit;
@@ -148,7 +145,8 @@ void KnotBoardWriter::write_velocities(Word first, std::uint32_t newer_knots,
   Slots slots = at_;
   for (std::size_t i = 0; i < velocities.count; ++i, values += velocities.stride) {
     const Word newer = (newer_knots - i) & kTagNewerMask;
-    const Claimed claimed = claim(slots, first + i, tag | newer << kTagNewerShift, 0);
+    const Claimed claimed =
+        claim(slots, (first + i) & slots.mask, tag | newer << kTagNewerShift, 0);
     store_values(claimed.cell + kCellVelocity, {values, dimensions});
   }
   at_.written_count = slots.written_count;
@@ -156,11 +154,21 @@ void KnotBoardWriter::write_velocities(Word first, std::uint32_t newer_knots,
 }
 
 void KnotBoardWriter::write(Word number, const KnotRecord& knot) noexcept {
+  write_slot(index_of(number), knot);
+  const bool is_end = knot.note.form == core::SegmentForm::none;
+  if (knot.is_new || is_end) note_time(number, is_end ? knot.begins : knot.time);
+}
+
+void KnotBoardWriter::write_passed(Word i, const KnotRecord& knot) noexcept {
+  write_slot(layout_.capacity + i % kPassedSlots, knot);
+}
+
+inline void KnotBoardWriter::write_slot(std::size_t index, const KnotRecord& knot) noexcept {
   double sum = 0;
   const bool has_row = knot.prefix != nullptr;
   const auto changed = static_cast<SlotState>((knot.is_new ? kTagNodeMask : 0) |
                                               (knot.is_new || has_row ? kTagRowMask : 0));
-  const Claimed claimed = claim(at_, number, next_tag() | pack_note(knot.note), changed);
+  const Claimed claimed = claim(at_, index, next_tag() | pack_note(knot.note), changed);
   if (knot.is_new) {
     Word* const node =
         claimed.slot + (layout_.nodes + node_of(claimed.next) * layout_.node) / sizeof(Word);
@@ -179,8 +187,6 @@ void KnotBoardWriter::write(Word number, const KnotRecord& knot) noexcept {
     store_summed(beside + kBesideAcceleration, knot.acceleration, sum);
   }
   written_sum_ += sum;
-  const bool is_end = knot.note.form == core::SegmentForm::none;
-  if (knot.is_new || is_end) note_time(number, is_end ? knot.begins : knot.time);
   if (!has_row) return;
   // Only writers read it; the lock that one takes over from the other orders their accesses.
   Word* const row =
@@ -201,7 +207,7 @@ void KnotBoardWriter::write_form(Word number, core::SegmentForm form, core::Time
   const Word* const committed = cells(number).cell(c);
   KnotNote note = note_of(load(committed[kCellTag], std::memory_order_relaxed));
   note.form = form;
-  const Claimed claimed = claim(at_, number, next_tag() | pack_note(note), 0);
+  const Claimed claimed = claim(at_, index_of(number), next_tag() | pack_note(note), 0);
   for (std::size_t i = kCellVelocity; i < at_.cell_words; ++i) {
     put(claimed.cell[i], load(committed[i], std::memory_order_relaxed));
   }
@@ -227,7 +233,7 @@ core::SegmentForm KnotBoardWriter::form(Word number) const noexcept {
 void KnotBoardWriter::discard() noexcept {
   retire_uncommitted(head_cells(), revision_);
   for (const WrittenSlot& slot : written()) {
-    retire_uncommitted(cells(slot.index), revision_);
+    retire_uncommitted(cells_at(slot.index), revision_);
     states_[slot.index] &= ~kWrittenBit;
   }
   // The oldest last: a time may have been stored to twice.

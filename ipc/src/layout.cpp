@@ -170,7 +170,7 @@ BoardLayout BoardLayout::of(std::size_t dimensions, std::size_t capacity, std::s
   layout.beside = layout.nodes + 2 * layout.node;
   layout.rows = layout.beside + 2 * layout.beside_bytes;
   layout.stride = layout.rows + 2 * layout.row;
-  layout.bytes = round_up(layout.slots + capacity * layout.stride, kPage);
+  layout.bytes = round_up(layout.slots + (capacity + kPassedSlots) * layout.stride, kPage);
   return layout;
 }
 

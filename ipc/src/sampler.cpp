@@ -146,7 +146,9 @@ Sampler::Compared Sampler::compare_with(const Head& before) noexcept {
   for (int compared = 0; compared < kMostCompared; ++compared) {
     const BoardSegment::Taken taken = now.take(*board_, head_, number);
     if (taken == BoardSegment::Taken::torn) return Compared::torn;
-    if (taken == BoardSegment::Taken::none || !is_unchanged(now, before)) return Compared::changed;
+    if (taken == BoardSegment::Taken::none) return Compared::changed;
+    if (is_ahead(now, before)) return Compared::same;
+    if (!is_unchanged(now, before)) return Compared::changed;
     if (sampled_until_ < now.right()) return Compared::same;
     const bool is_last = now.is_last(head_);
     if (number == before.newest) return is_last ? Compared::same : compare_rest(now);
@@ -154,6 +156,17 @@ Sampler::Compared Sampler::compare_with(const Head& before) noexcept {
     number = now.next();
   }
   return Compared::changed;
+}
+
+/// Whether the curve begins with a segment before which the machine is held in the same position as
+/// under `before`, and nothing later has been sampled.
+bool Sampler::is_ahead(const BoardSegment& first, const Head& before) noexcept {
+  const BoardSegment& own = current();
+  const bool is_known = confirmed_ == before.revision && own.is_there() && own.number() == 1;
+  if (!is_known || first.number() != 1) return false;
+  const auto position = own.coefficients().first(board_->dimensions());
+  return sampled_until_ < std::min(first.left(), own.left()) &&
+         std::ranges::equal(position, first.coefficients().first(position.size()));
 }
 
 /// Whether a segment is, as far as it has been sampled, what it was under `before`.

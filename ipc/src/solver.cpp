@@ -10,7 +10,7 @@
 #include <utility>
 #include <variant>
 
-#include "splinecast/core/limits.hpp"
+#include "splinecast/core/stop.hpp"
 #include "splinecast/ipc/checked_region.hpp"
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/futex.hpp"
@@ -119,10 +119,7 @@ void write_options(const SolverOptions& options, RegionHeader& header) {
   header.settle = options.settle.value_or(core::default_settle(method));
   header.tail = static_cast<std::uint64_t>(options.tail.value_or(core::Tail::bessel));
   const core::MotionLimits limits = limits_for(options, header);
-  header.stop_time =
-      options.stop_time
-          .value_or(limits.acceleration.empty() ? kDefaultStopTime : core::kLeastStopTime)
-          .count();
+  header.stop_time = options.stop_time.value_or(kDefaultStopTime).count();
   put_limits(limits, header);
   header.beyond = static_cast<std::uint64_t>(options.beyond.value_or(core::Beyond::report));
   const LiveOptions live;

@@ -21,8 +21,9 @@ constexpr std::size_t changed_besides(std::size_t settle) noexcept { return sett
 /// On a recorded stream, which needs no clock to begin with, one step in so many is timed.
 constexpr Word kTimedEvery = 16;
 
-/// Knots that one item may add: those at a cut, its own, and those of a way back.
-constexpr std::size_t kAddedByItem = 4;
+/// Knots that one item may add: those at a cut, its own, and those of a way back; and, as a stop
+/// does not wait for room, those of a stop behind it.
+constexpr std::size_t kAddedByItem = 4 + PublishedCurve::kAddedByStop;
 
 }  // namespace
 
@@ -39,10 +40,12 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& boar
       published_(&published),
       limits_(limits),
       live_(live),
-      curve_(board, published, window, std::move(kinds)),
+      curve_(board, published, window, std::move(kinds),
+             {.is_live = live.has_value(),
+              .min_splice = live ? live->min_splice : core::Time::zero(),
+              .notice = live ? live->freeze_ahead : core::Time::zero()}),
       max_batch_(std::min(kMaxBatch, board.capacity() / 2 - changed_besides(window.settle))),
       item_(ring.dimensions()),
-      followers_(kFollowers, RingItem(ring.dimensions())),
       replacements_(ring) {
   if (board.capacity() < min_capacity(window.settle)) {
     throw std::invalid_argument("a board of " + std::to_string(board.capacity()) +
@@ -69,6 +72,7 @@ void StreamSolver::restore() {
 }
 
 core::Time StreamSolver::due() const noexcept {
+  if (live_ && (curve_.is_planning() || is_finish_postponed_)) return settled_at_;
   const bool settles =
       live_ && !head_.finished && head_.newest > 0 && head_.settled_until < curve_.end_of_motion();
   const bool waits = live_ && seen_ != head_.consumed;
@@ -82,8 +86,10 @@ void StreamSolver::prefetch() const noexcept {
 
 SettledRaise StreamSolver::settled_raise() const noexcept {
   const bool settles = live_ && !head_.finished && !head_.starved && head_.newest > 0;
-  if (!settles || seen_ != head_.consumed) return {};
-  const core::Time limit = std::min(curve_.newest_time(), curve_.end_of_motion());
+  const bool is_busy = curve_.is_planning() || curve_.course() == Course::waiting;
+  if (!settles || is_busy || seen_ != head_.consumed) return {};
+  const core::Time limit =
+      std::min({curve_.newest_time(), curve_.end_of_motion(), curve_.start_decision()});
   return {board_->settled_word(), head_.settled_until, live_->freeze_ahead, limit};
 }
 
@@ -111,7 +117,7 @@ StepResult StreamSolver::make_revision(const Clock& clock, core::Time now) noexc
   freeze(now);
   const Word consumed = consume(now);
   if (is_damaged()) return {.damaged = true};
-  if (consumed > 0 || has_starved_) return publish(clock, consumed);
+  if (consumed > 0 || has_starved_ || curve_.has_changes()) return publish(clock, consumed);
   if (!live_ || now < due()) return {};
   settled_at_ = now;
   // Nothing else has changed: one word says so, and readers keep what they have copied.
@@ -179,16 +185,29 @@ Word StreamSolver::consume(core::Time now) noexcept {
   const Word head = ring_->head();
   available_ = reachable(head);
   const Word before = head_.consumed;
-  const core::Time keep = live_ ? now - live_->history : core::Time::max();
-  withdraw(keep);
+  keep_ = live_ ? now - live_->history : core::Time::max();
+  withdraw();
   bool is_blocked = false;
+  is_finish_postponed_ = false;
+  tries_ = PublishedCurve::kTriesPerStep;
   batch_limit_ = most_items_;
   for (batch_ = 0; head_.consumed < available_ && batch_ < batch_limit_ && !is_damaged();) {
     ring_->copy(head_.consumed, item_);
-    is_blocked = !has_room(keep);
+    is_blocked = !has_room();
     if (is_blocked) break;
     take(head_.consumed++);
+    if (is_finish_postponed_) {
+      --head_.consumed;
+      break;
+    }
     ++batch_;
+    curve_.plan(settled_until_, keep_, false, tries_);
+    // The next waypoint would push one out of the window that may still be tried.
+    if (curve_.is_planning() && tries_ <= 0) break;
+  }
+  // No waypoint waits: those that are known decide.
+  if (is_blocked || head_.consumed == available_) {
+    curve_.plan(settled_until_, keep_, true, tries_);
   }
   const bool waits = is_blocked && !curve_.has_changes();
   seen_ = waits || available_ == before ? head : head_.consumed;
@@ -197,26 +216,26 @@ Word StreamSolver::consume(core::Time now) noexcept {
 
 /// Whether the item at hand can be taken now: without losing what must be kept, and, as a
 /// replacement cuts what has been committed and nothing else, in this revision.
-bool StreamSolver::has_room(core::Time keep) const noexcept {
-  if (item_.kind != ItemKind::replace) return curve_.has_room(kAddedByItem, keep);
+bool StreamSolver::has_room() const noexcept {
+  if (item_.kind != ItemKind::replace) return curve_.has_room(kAddedByItem, keep_);
   if (curve_.has_changes()) return false;
   // A stop costs one segment of the history at most: it does not wait for room.
   return is_stop() || !curve_.has_begun() ||
-         curve_.has_room_to_enter(item_.time, kAddedByItem, keep);
+         curve_.has_room_to_cut(item_.time, kAddedByItem, keep_);
 }
 
 /// Looks ahead for a replacement that is due and withdraws all that is queued before it: other
 /// replacements that are too late or lie ahead, and waypoints that the board may have no room for.
 /// Nothing is withdrawn for a replacement that has to wait for room itself: it may come too late.
-void StreamSolver::withdraw(core::Time keep) noexcept {
+void StreamSolver::withdraw() noexcept {
   if (!curve_.has_begun() || head_.finished) return;
   replacements_.note(head_.consumed, available_);
   if (replacements_.empty()) return;
-  const core::Time earliest = std::max(settled_until_, curve_.earliest_entry());
+  const core::Time earliest = std::max(settled_until_, curve_.earliest_cut());
   const auto replacement = replacements_.due(earliest, curve_.newest_time());
   if (!replacement) return;
   ring_->copy(*replacement, item_);
-  if (!has_room(keep)) return;
+  if (!has_room()) return;
   head_.withdrawn += *replacement - head_.consumed;
   head_.consumed = *replacement;
 }
@@ -263,62 +282,32 @@ std::optional<Refusal> StreamSolver::judge_time(core::Time time) const noexcept 
   if (status != AppendStatus::accepted && status != AppendStatus::too_far_apart) {
     return to_refusal(status);
   }
-  if (is_starved() && time < settled_until_) return Refusal::past;
-  const bool is_spliced =
-      is_starved() || (curve_.window().is_entered() && curve_.window().knots() == 0);
-  if (is_spliced && live_ && time - earliest < live_->min_splice) return Refusal::too_late;
-  if (!is_spliced && !curve_.window().lag_suffices(time)) return Refusal::lag_too_short;
-  return std::nullopt;
+  if (is_starved() && time < settled_until_ - kMostLate) return Refusal::past;
+  return curve_.window().lag_suffices(time) ? std::nullopt : std::optional(Refusal::lag_too_short);
 }
 
 void StreamSolver::take_waypoint(Word number) noexcept {
   const core::Waypoint waypoint = item_.waypoint();
   if (const auto refusal = has_right_form(waypoint)) return refuse(number, *refusal);
   if (const auto refusal = judge_time(waypoint.time)) return refuse(number, *refusal);
-  const bool starved = is_starved();
-  const auto before = starved ? curve_.plan_entry(settled_until_) : curve_.newest_position();
   if (!curve_.kinds().all_linear()) {
-    curve_.kinds().continue_from(before, item_.waypoint_values());  // what `waypoint` looks at
+    // What `waypoint` looks at.
+    curve_.kinds().continue_from(curve_.newest_position(), item_.waypoint_values());
     if (!is_finite(waypoint)) return refuse(number, Refusal::not_finite);
   }
-  // It may be out of reach with the acceleration allowed.
-  if (!can_follow(number, starved)) return refuse(number, Refusal::too_late);
-  if (starved) curve_.enter_as_planned();
   curve_.append(waypoint, number);
-  head_.starved = false;
+  if (waypoint.time > settled_until_) head_.starved = false;
   ++head_.knots;
   head_.newest_knot = waypoint.time;
-}
-
-/// Whether the waypoint at hand is one that limits allow for; those that wait behind it count.
-bool StreamSolver::can_follow(Word number, bool starved) noexcept {
-  if (curve_.window().options().limits.acceleration.empty()) return true;
-  const Word available = reachable(ring_->head());
-  std::array<core::Waypoint, 1 + kFollowers> first{item_.waypoint()};
-  std::size_t count = 1;
-  while (count < first.size() && number + count < available) {
-    RingItem& item = followers_[count - 1];
-    ring_->copy(number + count, item);
-    const core::Waypoint next = item.waypoint();
-    const bool follows =
-        item.kind == ItemKind::waypoint && has_right_form(next) == std::nullopt &&
-        judge_interval(next.time - first[count - 1].time, limits_) == AppendStatus::accepted;
-    if (!follows) break;
-    curve_.kinds().continue_from(first[count - 1].position, item.waypoint_values());
-    if (!is_finite(next)) break;
-    first[count++] = next;
-  }
-  const auto waypoints = std::span(first).first(count);
-  return starved ? curve_.can_enter_with(waypoints) : curve_.can_append(waypoints);
 }
 
 void StreamSolver::take_replacement(Word number) noexcept {
   // A stop is never too late: it takes effect as soon as possible, in a revision of its own, which
   // is committed sooner than a full batch.
   const core::Time t =
-      is_stop() ? std::max({item_.time, settled_until_, curve_.earliest_entry()}) : item_.time;
+      is_stop() ? std::max({item_.time, settled_until_, curve_.earliest_cut()}) : item_.time;
   const bool has_begun = curve_.has_begun();  // else there is nothing to replace
-  if (has_begun && (t < settled_until_ || !is_time_in_range(t) || !curve_.can_enter(t))) {
+  if (has_begun && (t < settled_until_ || !is_time_in_range(t) || t < curve_.earliest_cut())) {
     return refuse_replacement(number, Refusal::too_late);
   }
   ++head_.controls;
@@ -327,10 +316,9 @@ void StreamSolver::take_replacement(Word number) noexcept {
   const Word followers = may_follow ? std::min<Word>(item_.count, board_->capacity() / 2) : 0;
   batch_limit_ = is_stop() ? 0 : batch_limit_ + followers;
   if (!has_begun) return;
-  // Where nothing moves any more and nothing is to come, there is nothing to withdraw.
-  if (is_stop() && is_starved() && t >= curve_.newest_time()) return;
-  curve_.plan_entry(t);
-  curve_.enter_as_planned();
+  // A stop behind another one changes nothing.
+  if (is_stop() && curve_.is_stop() && t >= curve_.newest_time()) return;
+  curve_.begin_run(t, core::Time::zero());
   head_.starved = false;
   head_.newest_knot = t;
 }
@@ -375,7 +363,8 @@ void StreamSolver::take_finish(Word number) noexcept {
     if (!is_finite(values)) return refuse(number, Refusal::not_finite);
     end_.value.assign(values.begin(), values.end());
   }
-  if (curve_.has_begun()) curve_.finish(end_, settled_until_);
+  is_finish_postponed_ = curve_.has_begun() && !curve_.finish(end_, settled_until_, keep_, tries_);
+  if (is_finish_postponed_) return;
   head_.finished = true;
   ++head_.controls;
 }

@@ -106,9 +106,17 @@ AppendStatus WaypointRingWriter::check(const core::Waypoint& waypoint,
     }
   }
   if (status != AppendStatus::accepted) return status;
-  if (waypoint.time < solved.settled_until) return AppendStatus::past;
+  if (is_past(waypoint.time, solved)) return AppendStatus::past;
   return has_room(1, solved, control_reserve(layout_.capacity)) ? AppendStatus::accepted
                                                                 : AppendStatus::full;
+}
+
+/// Whether a waypoint comes too late to shape the target. The clock is read only if it is late.
+bool WaypointRingWriter::is_past(core::Time time, const Solved& solved) const noexcept {
+  if (time >= solved.settled_until) return false;
+  if (!has_last_) return true;
+  const core::Time now = solved.clock != nullptr ? solved.clock->now() : solved.settled_until;
+  return time + kMostLate < std::max(now, solved.settled_until);
 }
 
 /// A live stream may continue after a pause of any length: its clock runs also while nothing moves.

@@ -1,9 +1,13 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "replay.hpp"
 #include "splinecast/ipc/clock.hpp"
@@ -58,6 +62,66 @@ TEST(EmbeddedReplay, SettlesTheCurveBetweenWaypointsThatAreFarApart) {
   EXPECT_EQ(report.interpolated, 3U);
   EXPECT_GT(count[static_cast<std::size_t>(ipc::SampleStatus::settled)], 100U);
   EXPECT_EQ(count[static_cast<std::size_t>(ipc::SampleStatus::provisional)], 0U);
+}
+
+/// Positions at 100 Hz for half a second, of a motion in seconds.
+std::string recording(double (*motion)(double)) {
+  std::string text = "t,x\n";
+  for (int i = 0; i <= 50; ++i) {
+    const double s = 0.01 * i;
+    text += fmt::format("{},{}\n", s, motion(s));
+  }
+  return text;
+}
+
+class PassedOver : public ::testing::Test {
+ protected:
+  [[nodiscard]] testing::Ended replay(double (*motion)(double),
+                                      const std::vector<std::string>& more = {}) const {
+    const testing::TestFolder folder;
+    // So far ahead that no waypoint comes too late however busy the machine is.
+    std::vector<std::string> arguments{"replay",     folder.write("a.csv", recording(motion)),
+                                       "--stream",   stream_.name(),
+                                       "--embedded", "--lead",
+                                       "1500"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return testing::run(arguments);
+  }
+  testing::TestStream stream_;
+};
+
+TEST_F(PassedOver, AreTheWaypointsBeforeTheEndOfTheEntryOfARecordingThatStartsInMidMotion) {
+  const testing::Ended ended = replay([](double s) { return s; }, {"--json"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const auto report = nlohmann::json::parse(ended.out);
+  const auto count = [&](const char* key) { return report[key].get<int>(); };
+  EXPECT_EQ(count("sent"), 51);
+  EXPECT_EQ(count("refused"), 0);
+  EXPECT_GT(count("passed_over"), 0);
+  EXPECT_GT(count("interpolated"), 0);
+  EXPECT_EQ(count("interpolated") + count("passed_over"), 51);
+  const auto solver = testing::info(stream_.name())["solver"];
+  EXPECT_EQ(solver["passed_over"], report["passed_over"]);
+  EXPECT_EQ(solver["interpolated"], report["interpolated"]);
+}
+
+TEST_F(PassedOver, AreNamedInTheSummary) {
+  const testing::Ended ended = replay([](double s) { return s; });
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const auto solver = testing::info(stream_.name())["solver"];
+  EXPECT_NE(ended.err.find(
+                fmt::format("51 waypoints sent, {} interpolated, {} passed over, 0 refused",
+                            solver["interpolated"].get<int>(), solver["passed_over"].get<int>())),
+            std::string::npos)
+      << ended.err;
+}
+
+TEST_F(PassedOver, IsNoWaypointOfARecordingThatStartsAtRestAndIsNeverLate) {
+  const testing::Ended ended = replay([](double s) { return 1 - std::cos(3 * s); }, {"--json"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const auto report = nlohmann::json::parse(ended.out);
+  EXPECT_EQ(report["interpolated"], 51);
+  EXPECT_EQ(report["passed_over"], 0);
 }
 
 TEST(EmbeddedReplay, OntoAStreamThatStillMovesWaitsForItsEnd) {

@@ -230,9 +230,10 @@ void AttackedStream::end_life() {
 }
 
 /// Every item of a stream that has come to its end: what the ring holds is what was accepted, and
-/// all of it was interpolated, refused with a reason, withdrawn, or carried out.
+/// all of it was interpolated, passed over, refused with a reason, withdrawn, or carried out.
 void AttackedStream::count_items() {
-  findings_.waypoints += head_.knots;
+  findings_.waypoints += head_.interpolated();
+  findings_.passed_over += head_.passed_over;
   findings_.refused += head_.refused;
   findings_.withdrawn += head_.withdrawn;
   const auto left = ring();

@@ -41,6 +41,10 @@ struct CampaignOptions {
 /// it fails as well if something of what it is to try never happened.
 [[nodiscard]] Result run_streams(const CampaignOptions& options);
 
+/// A generated motion whose producer and solver meet mishaps, with limits of acceleration and
+/// without, in simulated time: no limit passed, no freeze, no jump. `seed` is that of the motion.
+[[nodiscard]] Result run_motions(const CampaignOptions& options);
+
 /// A result in the form of the page, of this machine and version.
 [[nodiscard]] Result make_result(const CampaignOptions& options, nlohmann::json promises,
                                  const std::string& attack, std::uint64_t count,

@@ -26,12 +26,12 @@ void Findings::add(const Findings& other) {
     kills[role] += other.kills[role];
     recovery[role].add(other.recovery[role]);
   }
-  constexpr std::array kCounters{&Findings::hangs,     &Findings::unusable, &Findings::clean_ups,
-                                 &Findings::lost,      &Findings::torn,     &Findings::stepped,
-                                 &Findings::changed,   &Findings::wrong,    &Findings::lives,
-                                 &Findings::waypoints, &Findings::refused,  &Findings::withdrawn,
-                                 &Findings::samples,   &Findings::busy,     &Findings::segments,
-                                 &Findings::items,     &Findings::restless, &Findings::ends};
+  constexpr std::array kCounters{
+      &Findings::hangs,     &Findings::unusable,  &Findings::clean_ups,   &Findings::lost,
+      &Findings::torn,      &Findings::stepped,   &Findings::changed,     &Findings::wrong,
+      &Findings::lives,     &Findings::waypoints, &Findings::passed_over, &Findings::refused,
+      &Findings::withdrawn, &Findings::samples,   &Findings::busy,        &Findings::segments,
+      &Findings::items,     &Findings::restless,  &Findings::ends};
   for (const auto counter : kCounters) this->*counter += other.*counter;
 }
 
@@ -71,6 +71,7 @@ bool Findings::is_sound() const {
 nlohmann::json Findings::work() const {
   return {{"streams ended and compared", lives},
           {"waypoints interpolated", waypoints},
+          {"waypoints passed over", passed_over},
           {"refused with a reason", refused},
           {"withdrawn by a replacement", withdrawn},
           {"samples", samples},

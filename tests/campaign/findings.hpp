@@ -24,7 +24,7 @@ struct Findings {
   std::uint64_t hangs = 0;
   std::uint64_t unusable = 0;   ///< starts that failed on what a killed process had left
   std::uint64_t clean_ups = 0;  ///< files that a person would have to remove
-  std::uint64_t lost = 0;       ///< items neither interpolated nor refused nor withdrawn
+  std::uint64_t lost = 0;       ///< items neither taken nor refused nor withdrawn
   std::uint64_t torn = 0;       ///< as in ReaderFacts, and so the next four
   std::uint64_t stepped = 0;
   std::uint64_t restless = 0;
@@ -32,11 +32,12 @@ struct Findings {
   std::uint64_t wrong = 0;
 
   // What else was counted.
-  std::uint64_t lives = 0;  ///< streams that came to their end and were compared
-  std::uint64_t waypoints = 0;
-  std::uint64_t refused = 0;    ///< items of live streams, each with a reason
-  std::uint64_t withdrawn = 0;  ///< waypoints that a replacement withdrew
-  std::uint64_t samples = 0;    ///< as in ReaderFacts, and so the next four
+  std::uint64_t lives = 0;        ///< streams that came to their end and were compared
+  std::uint64_t waypoints = 0;    ///< interpolated ones
+  std::uint64_t passed_over = 0;  ///< waypoints that entries pass over
+  std::uint64_t refused = 0;      ///< items of live streams, each with a reason
+  std::uint64_t withdrawn = 0;    ///< waypoints that a replacement withdrew
+  std::uint64_t samples = 0;      ///< as in ReaderFacts, and so the next four
   std::uint64_t busy = 0;
   std::uint64_t segments = 0;
   std::uint64_t items = 0;

@@ -54,7 +54,9 @@ int run_program(int argc, char** argv) {
   streams->add_option("--seed", options.seed, "Of the first stream; the next has the next one")
       ->capture_default_str();
   streams->add_option("--runs", options.runs, "Number of streams to simulate instead");
-  for (CLI::App* verb : {kill, stress, streams}) {
+  auto* motions = program.add_subcommand("motions", "A motion whose producer meets mishaps");
+  motions->add_option("--seed", options.seed, "Of the motion")->capture_default_str();
+  for (CLI::App* verb : {kill, stress, streams, motions}) {
     verb->add_option("--json", path, "File for the result; else standard output");
     verb->add_option("--command", options.command, "What the result says that runs it again");
   }
@@ -65,7 +67,8 @@ int run_program(int argc, char** argv) {
   }
   return apps::run_guarded([&] {
     apps::catch_stop_signals();
-    const Result result = *streams      ? run_streams(options)
+    const Result result = *motions      ? run_motions(options)
+                          : *streams    ? run_streams(options)
                           : *stress     ? run_stress(options)
                           : every_store ? run_every_store(options)
                                         : run_random_kills(options);

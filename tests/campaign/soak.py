@@ -14,7 +14,7 @@ from page import this_machine
 CAMPAIGN = Path(__file__).resolve().parent
 PROGRAM = CAMPAIGN.parent.parent / "build/release/bin/splinecast"
 STREAMS, RATE = 100, 100  # what the program does unless told otherwise
-COUNTERS = ["interpolated", "refused", "withdrawn", "controls", "underruns", "deadline_misses", "late_commits"]
+COUNTERS = ["interpolated", "passed_over", "refused", "withdrawn", "controls", "underruns", "deadline_misses", "late_commits"]
 ROLES = ["solver", "producers", "readers"]
 
 

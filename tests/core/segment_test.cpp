@@ -214,26 +214,6 @@ TEST(Segment, AHaltingEndHasNoAccelerationAndTheOtherEndKeepsTheCubics) {
   EXPECT_EQ(at_end, std::vector<double>(3));
 }
 
-TEST(Segment, AStopTailContinuesItsKnotAndComesToRestWhereTheoryPutsIt) {
-  const auto x = random_values(7, 2);
-  const auto v = random_values(8, 2);
-  const auto a = random_values(9, 2);
-  Segment tail(2);
-  build_stop_tail(kLeft, Time(400'000'000), x, v, a, tail);
-  const double stop = 0.4;
-  State state(2);
-  evaluate(tail.order, tail.coefficients, 0, state.ref());
-  expect_near(state.position(), x, 0);
-  expect_near(state.velocity(), v, 0);
-  expect_near(state.acceleration(), a, 0);
-  evaluate(tail.order, tail.coefficients, stop, state.ref());
-  expect_near(state.velocity(), std::vector<double>(2), 1e-15);
-  expect_near(state.acceleration(), std::vector<double>(2), 1e-14);
-  for (std::size_t d = 0; d < 2; ++d) {
-    EXPECT_NEAR(state.position()[d], x[d] + v[d] * stop / 2 + a[d] * stop * stop / 12, 1e-15);
-  }
-}
-
 TEST(Segment, FixedSizeEigenStatesAreTheSameMemory) {
   const auto c = random_values(10, 12);
   EigenState<3> fixed;

@@ -214,24 +214,6 @@ TEST(SlidingWindow, ARestoredWindowGoesOnBitForBit) {
   }
 }
 
-TEST(SlidingWindow, AWaypointThatLimitsRefuseLeavesNoTraceOnTheOneBefore) {
-  WindowOptions how = options(8, Tail::bessel);
-  how.limits.acceleration = {1};
-  SlidingWindow window(1, how);
-  const std::vector<double> x{0, 100, -100};
-  const auto waypoint = [&](std::size_t i) {
-    return Waypoint{.time = std::chrono::milliseconds(100) * static_cast<int>(i),
-                    .position = std::span(x).subspan(i, 1)};
-  };
-  window.append(waypoint(0));
-  const std::vector<Waypoint> far{waypoint(1), waypoint(2)};
-  SlidingWindow trial(1, how);
-  EXPECT_FALSE(window.can_append(far, trial));
-  ASSERT_EQ(window.knots(), 1U);
-  EXPECT_EQ(window.knot(0).velocity[0], 0.0);
-  EXPECT_EQ(window.newer_knots_seen(0), 0U);
-}
-
 TEST(SlidingWindow, RefusesOptionsOutOfRange) {
   EXPECT_THROW(SlidingWindow(0, {}), std::invalid_argument);
   EXPECT_THROW(SlidingWindow(65, {}), std::invalid_argument);

@@ -42,9 +42,8 @@ HEAD = """# Defects: each correction, and the test that fails without it
 `tests/defects/run.py` applies each patch in this folder, which takes one correction out again, builds, and runs the
 tests named here. Its last run: {failed} of {all} patches made their test fail, in {minutes} min.
 
-Two defects left traces of a waypoint that limits refused in the curve, because it was tried on the curve's own window and
-then taken back. It is tried on a second window now, so there is nothing to take back that a patch could leave out; their
-tests, `EnteredRun.IsAsItWasAfterAWaypointWasTried` and `FirstRun.OfOneKnotIsAsItWasAfterAWaypointWasTried`, remain.
+Nothing is tried on the curve's own window any more, and the time of a stop is a formula: defects of those have no patch, as there is
+nothing to take out. The tests of stops, `StopSegment.OfAnyStateTakesAFiniteTime` and `StopSegment.FollowsOnePositionRepeatedForEver`, remain.
 
 | number | defect | cause | correction | test | without the correction |
 |---|---|---|---|---|---|

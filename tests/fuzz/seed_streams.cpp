@@ -171,6 +171,9 @@ std::vector<Plan> plans() {
   kinds.units = {"rad", "", "", "", ""};
   auto moving = recorded(1);
   moving.start = {.kind = core::ConditionKind::velocity, .value = {2.0}};
+  // So wide that the two waypoints are joined from rest to rest, without an entry.
+  auto wide = with("c2", 2, 32);
+  wide.limits = {.acceleration = {1e6, 1e6}};
   const auto starve = [](Recorder& r) {
     r.send_many(kBegin + 2 * kTick, 4);
     r.clock.time += 200 * kTick;
@@ -184,7 +187,7 @@ std::vector<Plan> plans() {
          r.send(kBegin);  // refused: out of order
          r.finish();
        }},
-      {"two_waypoints", live(2), with("c2", 2, 32),
+      {"two_waypoints", live(2), wide,
        [](Recorder& r) {
          r.send_many(kBegin + 2 * kTick, 2);
          r.finish();

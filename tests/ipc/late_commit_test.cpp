@@ -72,7 +72,7 @@ TEST(LateCommit, IsCountedAlsoIfNoRevisionFollows) {
 
 TEST(LateCommit, IsCountedAlsoIfTheNextRevisionMissesItsDeadline) {
   LateCommit live;
-  ASSERT_EQ(live.put(live.clock.time + milliseconds(40)), AppendStatus::accepted);
+  ASSERT_EQ(live.replace(live.solved().settled_until, {}), AppendStatus::accepted);
   EXPECT_TRUE(live.solver.step(StoppedClock(live.clock.time, 1, kPause)).missed);
   EXPECT_EQ(live.solver.head().revisions, 1U);
   live.clock.time += milliseconds(3);

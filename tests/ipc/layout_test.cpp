@@ -55,6 +55,19 @@ TEST(Layout, PartsOfARegionFollowEachOtherAlignedAndWithinIt) {
   }
 }
 
+TEST(Layout, TheRegionsOfSevenDimensionsAreAsLargeAsTheReadmeSays) {
+  const std::string said =
+      "| board of 4,096 knots, ring of 1,024 waypoints | 2,220,032 and 212,992 bytes of shared";
+  EXPECT_EQ(BoardLayout::of(7, 4096, kHeaderBytes, false).bytes, 2'220'032U);
+  EXPECT_EQ(RingLayout::of(7, 1024, kHeaderBytes).bytes, 212'992U);
+  std::ifstream file(SPLINECAST_SOURCE "/README.md");
+  std::ostringstream readme;
+  readme << file.rdbuf();
+  EXPECT_NE(readme.str().find(said), std::string::npos);
+  const std::string positions = std::to_string(kControlPositions);
+  EXPECT_NE(readme.str().find("at one of " + positions + " offsets"), std::string::npos);
+}
+
 TEST(Layout, PartsOfASlotOfSevenDimensionsAreACacheLineEach) {
   const auto board = BoardLayout::of(7, 4096, kHeaderBytes, false);
   EXPECT_EQ(board.cell, kCacheLine);
@@ -79,7 +92,7 @@ TEST(Layout, TheControlBlockOfEveryStreamLiesInItsArea) {
   for (std::uint64_t id = 1; id < 200; ++id) {
     const auto header = make_header({.dimensions = 1}, id);
     EXPECT_GE(header.control, kHeaderBytes);
-    EXPECT_EQ(header.control, 8192 + 128 * (id % 50));  // as the page says
+    EXPECT_EQ(header.control, kHeaderBytes + kSeparation * (id % kControlPositions));
     EXPECT_LE(header.control + kBoardControlWords * sizeof(Word), kBodyOffset);
     places.insert(header.control);
   }
@@ -288,6 +301,11 @@ TEST(LayoutPage, SaysWhichVersionItIsOf) {
   const std::string version = std::to_string(kLayoutVersion);
   EXPECT_NE(layout_page().find("layout version " + version), std::string::npos);
   EXPECT_NE(layout_page().find("32 bits each: " + version + " and"), std::string::npos);
+}
+
+TEST(LayoutPage, SaysHowManyPositionsTheControlBlockMayHave) {
+  const std::string positions = std::to_string(kControlPositions);
+  EXPECT_NE(layout_page().find("(stream id mod " + positions + ")"), std::string::npos);
 }
 
 TEST(Layout, AHeaderThatSaysSomethingElseIsRefusedWithTheValue) {

@@ -21,7 +21,9 @@ void expect_trusted(const LiveWorld& world, std::uint64_t seed) {
   EXPECT_LT(report.position_step, 1e-11) << "seed " << seed;
   EXPECT_LT(report.velocity_step, 1e-9) << "seed " << seed;
   EXPECT_LT(report.unpublished_step, 1e-5) << "seed " << seed;
-  EXPECT_LE(report.acceleration, 10 * world.ideal_peak()) << "seed " << seed;
+  // A solver that is stopped while the start is still open leaves it as it has been published.
+  EXPECT_LE(report.acceleration, (world.pauses > 0 ? 15 : 10) * world.ideal_peak())
+      << "seed " << seed;
   const Head& head = world.head();
   // Nothing is lost silently, whoever was killed when.
   EXPECT_EQ(head.consumed, head.knots + head.refused + head.withdrawn + head.controls)
@@ -39,18 +41,21 @@ void expect_verified(const LiveWorld& world, std::uint64_t seed) {
                             << found.first->solved << " solved";
 }
 
-/// Where each waypoint comes when the one before it has been frozen, each is entered by a splice.
+/// Where each waypoint comes when the one before it has been frozen, the curve is always on its way
+/// back to them, within its limits.
 TEST(LiveContract, StaysNearTheMotionAtADepthOfOneKnot) {
   for (std::uint64_t seed = 1; seed < 20; ++seed) {
     LiveWorld world({.seed = seed, .starts_in_motion = true, .max_lead_knots = 1});
     world.run(seconds(5));
-    EXPECT_LT(world.report().acceleration, 1.5 * world.ideal_peak()) << "seed " << seed;
-    EXPECT_GT(world.head().underruns, 100U);
+    EXPECT_LT(world.report().acceleration, 10 * world.ideal_peak()) << "seed " << seed;
     EXPECT_EQ(world.head().refused, 0U);
     world.finish();
     expect_trusted(world, seed);
     expect_verified(world, seed);
-    EXPECT_EQ(world.sent, world.interpolated);
+    EXPECT_EQ(world.sent, world.interpolated + world.passed_over);
+    EXPECT_GT(world.interpolated, world.sent / 4) << "seed " << seed;
+    // Where the curve ends, no segment begins.
+    EXPECT_LE(world.passed_over, world.head().passed_over + 1) << "seed " << seed;
   }
 }
 

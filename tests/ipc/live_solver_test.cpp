@@ -92,7 +92,20 @@ TEST(LiveSolver, ASolverThatTakesOverGoesOnFromTheSettledTimeThatWasToldLast) {
   EXPECT_EQ(live.solver.head().changed_from, settled);
 }
 
-TEST(LiveSolver, RefusesWhatHasGoneByAndSplicesWhatComesAfterAStarvation) {
+TEST(LiveSolver, RefusesAWaypointOnlyIfItIsLaterThanTheStraightLineLasts) {
+  Live live;
+  live.put_all(50, 200);
+  live.clock.time = Live::kNow + milliseconds(600);
+  live.solver.step(live.clock);
+  const Time settled = live.board.reader.look().settled_until;
+  EXPECT_EQ(live.put(settled - kMostLate - Time(1)), AppendStatus::past);
+  EXPECT_EQ(live.put(settled - kMostLate), AppendStatus::accepted);
+  live.drain();
+  EXPECT_EQ(live.solver.head().refused, 0U);
+  EXPECT_EQ(live.solver.head().passed_over, 1U);
+}
+
+TEST(LiveSolver, RefusesNothingForBeingNearAndEntersAgainAfterAStarvation) {
   Live live;
   live.put_all(50, 200);
   live.clock.time = Live::kNow + milliseconds(300);
@@ -100,33 +113,51 @@ TEST(LiveSolver, RefusesWhatHasGoneByAndSplicesWhatComesAfterAStarvation) {
   EXPECT_EQ(live.solver.head().underruns, 1U);
   EXPECT_TRUE(live.solver.head().starved);
   EXPECT_EQ(live.solver.head().low_water, Time::zero());
-  EXPECT_EQ(live.put(Live::kNow + milliseconds(304)), AppendStatus::past);
-  ASSERT_EQ(live.put(Live::kNow + milliseconds(307)), AppendStatus::accepted);  // too near
-  ASSERT_EQ(live.put(Live::kNow + milliseconds(350)), AppendStatus::accepted);
+  const double settled = live.position_at(Live::kNow + milliseconds(305));
+  ASSERT_EQ(live.put(Live::kNow + milliseconds(250)), AppendStatus::accepted);  // late
+  ASSERT_EQ(live.put(Live::kNow + milliseconds(307)), AppendStatus::accepted);  // too near to meet
+  for (int ms = 350; ms <= 900; ms += 10) {
+    ASSERT_EQ(live.put(Live::kNow + milliseconds(ms)), AppendStatus::accepted);
+  }
   live.drain();
-  EXPECT_EQ(live.reason(Refusal::too_late), 1U);
-  EXPECT_EQ(live.board.reader.refusal(0).item, 16U);
-  EXPECT_FALSE(live.solver.head().starved);
-  EXPECT_EQ(live.solver.head().changed_from, Live::kNow + milliseconds(305));
-  EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(350)), std::sin(0.35), 1e-12);
-  EXPECT_EQ(live.solver.head().underruns, 1U);
+  const Head& head = live.solver.head();
+  EXPECT_EQ(head.refused, 0U);
+  EXPECT_FALSE(head.starved);
+  EXPECT_EQ(static_cast<Course>(head.course), Course::entering);
+  EXPECT_GE(head.passed_over, 1U);
+  EXPECT_EQ(head.interpolated() + head.passed_over, head.knots);
+  EXPECT_EQ(head.changed_from, Live::kNow + milliseconds(305));
+  EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(305)), settled, 1e-12);
+  for (int ms = 850; ms <= 900; ms += 10) {
+    const Time t = Live::kNow + milliseconds(ms);
+    EXPECT_NEAR(live.position_at(t), Live::x(t), 1e-12);
+  }
+  EXPECT_EQ(head.underruns, 1U);
 }
 
 TEST(LiveSolver, ReplacesTheFutureInOneRevisionAndLeavesWhatIsBeforeIt) {
   Live live;
-  live.put_all(50, 500);
-  const Time t = Live::kNow + milliseconds(123);
+  live.put_all(50, 800);
+  const Time t = Live::kNow + milliseconds(423);
   const double before = live.position_at(t - milliseconds(1));
   const Word revision = live.board.reader.revision();
-  ASSERT_EQ(live.replace(t, {t + milliseconds(20), t + milliseconds(33)}), AppendStatus::accepted);
-  live.drain();
+  std::vector<Time> times;
+  for (int ms = 20; ms <= 380; ms += 13) times.push_back(t + milliseconds(ms));
+  ASSERT_EQ(live.replace(t, times), AppendStatus::accepted);
+  EXPECT_TRUE(live.solver.step(live.clock).published);
   EXPECT_EQ(live.board.reader.revision(), revision + 1);
   EXPECT_EQ(live.solver.head().changed_from, t);
-  EXPECT_EQ(live.solver.head().newest_knot, t + milliseconds(33));
+  EXPECT_EQ(live.solver.head().newest_knot, times.back());
   EXPECT_EQ(live.position_at(t - milliseconds(1)), before);
-  EXPECT_NEAR(live.position_at(t + milliseconds(20)), std::sin(0.143), 1e-12);
-  EXPECT_NEAR(live.position_at(t + milliseconds(33)), std::sin(0.156), 1e-12);
-  EXPECT_EQ(live.sampler.preview(t + milliseconds(40), live.state.ref()), SampleStatus::stopping);
+  live.drain();
+  const Head& head = live.solver.head();
+  EXPECT_EQ(static_cast<Course>(head.course), Course::entering);
+  for (std::size_t i = head.passed_over; i < times.size(); ++i) {
+    EXPECT_NEAR(live.position_at(times[i]), Live::x(times[i]), 1e-12) << i;
+  }
+  EXPECT_LT(head.passed_over, times.size());
+  EXPECT_EQ(live.sampler.preview(times.back() + milliseconds(7), live.state.ref()),
+            SampleStatus::stopping);
 }
 
 TEST(LiveSolver, AReplacementByNothingIsAStopTailFromThere) {
@@ -136,7 +167,7 @@ TEST(LiveSolver, AReplacementByNothingIsAStopTailFromThere) {
   ASSERT_EQ(live.replace(t, {}), AppendStatus::accepted);
   live.drain();
   EXPECT_EQ(live.sampler.preview(t, live.state.ref()), SampleStatus::stopping);
-  EXPECT_NEAR(live.state.velocity()[0], std::cos(0.25), 1e-3);
+  EXPECT_NEAR(live.state.velocity()[0], Live::velocity(t), 1e-3);
   EXPECT_EQ(live.sampler.preview(t + milliseconds(251), live.state.ref()), SampleStatus::holding);
 }
 
@@ -152,7 +183,8 @@ TEST(LiveSolver, AReplacementThatComesTooLateIsRefusedWithAllThatBelongsToIt) {
   live.drain();
   EXPECT_EQ(live.reason(Refusal::too_late), 3U);
   EXPECT_EQ(live.solver.head().newest_knot, Live::kNow + milliseconds(510));
-  EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(400)), std::sin(0.4), 1e-12);
+  EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(400)),
+              Live::x(Live::kNow + milliseconds(400)), 1e-12);
 }
 
 TEST(LiveSolver, KeepsItsHistoryAndWithdrawsWhatHasNotBeenTaken) {
@@ -173,29 +205,33 @@ TEST(LiveSolver, KeepsItsHistoryAndWithdrawsWhatHasNotBeenTaken) {
 }
 
 TEST(LiveSolver, AFinishBehindASettledKnotGoesBackToIt) {
-  for (const int late : {0, 100, 500}) {  // frozen, in the stop tail, and at rest
+  for (const int late : {0, 100, 500}) {  // frozen, in the stop, and at rest
     Live live;
-    live.put_all(50, 200);
-    live.clock.time = Live::kNow + milliseconds(196 + late);
+    live.put_all(50, 600);
+    const Time newest = Live::kNow + milliseconds(600);
+    live.clock.time = newest - milliseconds(4) + milliseconds(late);
     live.solver.step(live.clock);
     live.finish({.kind = core::ConditionKind::halt, .value = {}});
+    for (int i = 0; i < 20 && !live.solver.head().finished; ++i) live.solver.step(live.clock);
     EXPECT_TRUE(live.solver.head().finished);
     EXPECT_GT(live.solver.head().changed_from, live.clock.time);
-    const double end = live.position_at(Live::kNow + seconds(5));
-    EXPECT_NEAR(end, std::sin(0.2), 1e-12) << late;
-    EXPECT_EQ(live.sampler.preview(Live::kNow + seconds(5), live.state.ref()),
-              SampleStatus::holding);
+    const Time end = live.solver.head().settled_until;
+    EXPECT_GT(end, newest);  // at its time or later
+    EXPECT_NEAR(live.position_at(end), Live::x(newest), 1e-12) << late;
+    EXPECT_NEAR(live.position_at(end + seconds(5)), Live::x(newest), 1e-12) << late;
+    EXPECT_EQ(live.sampler.preview(end + seconds(5), live.state.ref()), SampleStatus::holding);
     // On the way there it has passed it.
-    EXPECT_GT(live.position_at(Live::kNow + milliseconds(400)), std::sin(0.2));
+    const Time between = newest + (end - newest) / 2;
+    EXPECT_GT(live.position_at(between), Live::x(newest));
   }
 }
 
 TEST(LiveSolver, StartsFromAGivenStateAndGivesNothingBeforeIt) {
   Live live;
   const Time t = Live::kNow + milliseconds(20);
-  const std::vector<double> position{std::sin(0.02)};
-  const std::vector<double> velocity{std::cos(0.02)};
-  const std::vector<double> acceleration{-std::sin(0.02)};
+  const std::vector<double> position{Live::x(t)};
+  const std::vector<double> velocity{Live::velocity(t)};
+  const std::vector<double> acceleration{Live::acceleration(t)};
   ASSERT_EQ(live.ring.writer.start_from({t, position, velocity, acceleration}, live.solved()),
             AppendStatus::accepted);
   EXPECT_EQ(live.ring.writer.start_from({t, position, velocity, acceleration}, live.solved()),
@@ -205,7 +241,8 @@ TEST(LiveSolver, StartsFromAGivenStateAndGivesNothingBeforeIt) {
   EXPECT_EQ(live.position_at(t), position[0]);
   EXPECT_EQ(live.state.velocity()[0], velocity[0]);
   EXPECT_EQ(live.state.acceleration()[0], acceleration[0]);
-  EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(35)), std::sin(0.035), 1e-5);
+  EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(35)),
+              Live::x(Live::kNow + milliseconds(35)), 1e-5);
 }
 
 /// A clock that goes on by itself behind every look.
@@ -232,11 +269,13 @@ TEST(LiveSolver, DiscardsARevisionThatComesTooLateAndMakesItAnew) {
   EXPECT_TRUE(late.missed);
   EXPECT_FALSE(late.published);
   EXPECT_EQ(live.board.reader.revision(), revision);
-  EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(75)), std::sin(0.075), 1e-3);
+  EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(75)),
+              Live::x(Live::kNow + milliseconds(75)), 1e-3);
   live.clock.time += milliseconds(2);
   EXPECT_EQ(live.solver.step(live.clock).consumed, 1U);
   EXPECT_EQ(live.solver.head().misses, 1U);
-  EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(110)), std::sin(0.11), 1e-12);
+  EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(110)),
+              Live::x(Live::kNow + milliseconds(110)), 1e-12);
 }
 
 TEST(LiveSolver, AReaderThatSampledWhatWasChangedIsToldOnce) {
@@ -319,7 +358,16 @@ TEST(LiveSolver, AStreamThatHasRestedLongerThanTheMostIntervalGoesOn) {
     live.drain();
     EXPECT_EQ(live.solver.head().refused, 0U);
     EXPECT_EQ(live.solver.head().newest_knot, t);
-    EXPECT_NEAR(live.position_at(t), Live::x(t), 1e-12);
+    // What it has shown is too long ago for the first waypoint to be met: the next ones are.
+    const double x = Live::x(t);
+    for (int ms = 10; ms <= 1000; ms += 10) {
+      ASSERT_EQ(live.append(t + milliseconds(ms), {&x, 1}), AppendStatus::accepted);
+      live.clock.time += milliseconds(10);
+      live.drain();
+    }
+    const auto course = static_cast<Course>(live.solver.head().course);
+    EXPECT_TRUE(course == Course::on_target || course == Course::entering);
+    EXPECT_NEAR(live.position_at(t + milliseconds(1000)), x, 1e-12);
   }
 }
 
@@ -397,7 +445,7 @@ TEST(LiveSolver, AReaderFarBehindIsToldOfALateCommitIntoItsRest) {
 TEST(LiveSolver, AReaderFarBehindIsToldThatItsStopWasCutBeforeItsSample) {
   Gap gap;
   gap.rest(100, 90);
-  ASSERT_EQ(gap.sample(150), SampleStatus::stopping);
+  ASSERT_EQ(gap.sample(340), SampleStatus::stopping);
   gap.run_to(135);
   gap.move_on(200);
   EXPECT_EQ(gap.sample(1000), SampleStatus::revised);

@@ -80,8 +80,13 @@ void expect_previews(const KnotBoardReader& board, StreamClock clock,
 struct Runs : LiveStream {
   Runs() {
     put_all(50, 150);
-    EXPECT_EQ(replace(kNow + milliseconds(500), {kNow + milliseconds(520), kNow + milliseconds(530),
-                                                 kNow + milliseconds(545)}),
+    // Where it rests by then, so that the first one is met.
+    const double rest = position_at(kNow + milliseconds(450));
+    std::vector<core::Waypoint> waypoints;
+    for (const int ms : {520, 530, 545}) {
+      waypoints.push_back({.time = kNow + milliseconds(ms), .position = {&rest, 1}});
+    }
+    EXPECT_EQ(ring.writer.replace_from(kNow + milliseconds(500), waypoints, solved()),
               AppendStatus::accepted);
     drain();
     clock.time += milliseconds(60);

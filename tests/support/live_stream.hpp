@@ -13,7 +13,7 @@
 namespace splinecast::testing {
 
 /// A live stream of one dimension in plain memory whose clock begins at 100 s. Its motion is
-/// sin(t), in seconds from there.
+/// 1 − cos(t), in seconds from 50 ms behind that: it begins at rest.
 struct LiveStream : MemoryStream {
   using Time = core::Time;
   static constexpr Time kNow = std::chrono::seconds(100);
@@ -31,7 +31,12 @@ struct LiveStream : MemoryStream {
     how.held_before_start = true;
     return how;
   }
-  static double x(Time t) { return std::sin(core::to_seconds(t - kNow)); }
+  static double x(Time t) { return 1 - std::cos(seconds_of(t)); }
+  static double velocity(Time t) { return std::sin(seconds_of(t)); }
+  static double acceleration(Time t) { return std::cos(seconds_of(t)); }
+  static double seconds_of(Time t) {
+    return core::to_seconds(t - kNow - std::chrono::milliseconds(50));
+  }
 
   ipc::AppendStatus put(Time t) {
     const double position = x(t);
@@ -55,6 +60,12 @@ struct LiveStream : MemoryStream {
       ASSERT_EQ(put(kNow + std::chrono::milliseconds(ms)), ipc::AppendStatus::accepted) << ms;
     }
     drain();
+  }
+  /// Lets the solver work until it has nothing to take and no entry to look for.
+  void drain() {
+    constexpr int kMostSteps = 100;
+    MemoryStream::drain();
+    for (int i = 0; i < kMostSteps && solver.due() <= clock.time; ++i) solver.step(clock);
   }
   double position_at(Time t) {
     EXPECT_TRUE(ipc::has_values(sampler.preview(t, state.ref())));

@@ -63,6 +63,7 @@ class LiveWorld {
 
   std::uint64_t sent = 0;          ///< waypoints that the ring accepted
   std::uint64_t interpolated = 0;  ///< of these, found on the curve at their time
+  std::uint64_t passed_over = 0;   ///< of these, at times at which the curve is beside its target
   std::uint64_t starved = 0, replaced = 0, solver_kills = 0, producer_kills = 0, pauses = 0;
   std::uint64_t stops = 0;
 
@@ -75,6 +76,7 @@ class LiveWorld {
   void send(core::Time t, std::vector<double> x);
   void run_quietly(core::Time duration);
   void expect_passed();
+  [[nodiscard]] bool is_on_target(core::Time t);
   void step_solver();
   void check_settled();
   void note_items();

@@ -8,6 +8,8 @@
 
 #include "splinecast/ipc/verification.hpp"
 
+#include "splinecast/core/segment_extremes.hpp"
+
 namespace splinecast::campaign {
 
 using ipc::Head;
@@ -25,7 +27,10 @@ RevisionCheck::RevisionCheck(const StreamPlan& plan, testing::MemoryStream& stre
       board_segment_(plan.dimensions.size(), stream.board.reader.smooths()) {}
 
 void RevisionCheck::breach(Breach breach, const std::string& what) {
-  findings_->breach(breach, fmt::format("{}, revision {}", what, head_.revision));
+  findings_->breach(
+      breach, fmt::format("{}, revision {}: course {}, {} of {} waypoints met, unmet {}, newest {}",
+                          what, head_.revision, head_.course, head_.met, head_.run_knots,
+                          head_.unmet, head_.newest));
 }
 
 void RevisionCheck::look(core::Time now, bool is_complete) {
@@ -58,12 +63,14 @@ void RevisionCheck::check_counts(const Head& before) {
   const bool adds_up =
       head_.consumed == head_.knots + head_.refused + head_.withdrawn + head_.controls &&
       head_.refused == std::reduce(head_.reasons.begin(), head_.reasons.end()) &&
-      head_.consumed >= before.consumed && head_.consumed <= stream_->ring.reader.head();
+      head_.passed_over <= head_.knots && head_.consumed >= before.consumed &&
+      head_.consumed <= stream_->ring.reader.head();
   if (!adds_up) {
-    breach(
-        Breach::items_lost,
-        fmt::format("consumed {}, interpolated {}, refused {}, withdrawn {}, controls {}",
-                    head_.consumed, head_.knots, head_.refused, head_.withdrawn, head_.controls));
+    breach(Breach::items_lost,
+           fmt::format("consumed {}, interpolated {}, passed over {}, refused {}, withdrawn {}, "
+                       "controls {}",
+                       head_.consumed, head_.interpolated(), head_.passed_over, head_.refused,
+                       head_.withdrawn, head_.controls));
   }
   if (head_.consumed - before.consumed > plan_->ring_capacity) {
     breach(Breach::unbounded_step,
@@ -108,9 +115,7 @@ void RevisionCheck::count_events(const Head& before) {
   findings_->count(Event::deadline_misses, head_.misses - before.misses);
   if (!head_.finished || before.finished) return;
   findings_->count(Event::finishes);
-  const bool goes_back = head_.run_knots > 0 && head_.run_frozen == head_.run_knots &&
-                         copy_.kind == core::SegmentKind::splice;
-  if (goes_back) findings_->count(Event::returns_after_finish);
+  if (copy_.kind == core::SegmentKind::splice) findings_->count(Event::returns_after_finish);
 }
 
 /// A board that has overwritten the waypoints before a splice shapes it without them, of which its
@@ -119,7 +124,7 @@ void RevisionCheck::check_verifiable() {
   constexpr Word kLookBack = 16;
   constexpr Word kKnotsThatShape = 3;
   const bool is_short = head_.first > 1 && head_.run < head_.first + kLookBack;
-  if (head_.is_entered && head_.run_knots <= kKnotsThatShape && is_short) is_verifiable_ = false;
+  if (head_.is_later_run && head_.run_knots <= kKnotsThatShape && is_short) is_verifiable_ = false;
 }
 
 /// What became of the items that this revision consumed.
@@ -128,9 +133,11 @@ void RevisionCheck::take_items(const Head& before) {
   const bool withdraws = head_.withdrawn > before.withdrawn;
   for (Word item = before.consumed; item < head_.consumed; ++item) {
     const core::Time t = items.waypoint(item).time;
+    if (items.is_taken(item, ItemKind::waypoint)) last_taken_ = item;
     if (items.is_taken(item, ItemKind::waypoint)) pending_.push_back({.item = item, .time = t});
     if (!items.is_taken(item, ItemKind::replace)) continue;
     findings_->count(Event::replacements);
+    is_replaced_ = true;
     // Entered where it begins, a curve in motion begins with quaternions at unit length, and
     // without a negative 0: neither is recorded.
     is_verifiable_ = is_verifiable_ && head_.run > 1;
@@ -152,6 +159,7 @@ void RevisionCheck::forget_from(Word item) {
 /// Whether the waypoints that were interpolated just now lie on the curve: from the newest on, back
 /// along the segments.
 void RevisionCheck::check_passed(const Head& before) {
+  if (head_.course != 0 || head_.passed_over != before.passed_over) return;
   if (plan_->window.interpolant.method->family == core::Family::smoothing) return;
   bool has_copy = copy(head_.newest);
   for (auto waypoint = pending_.rbegin();
@@ -175,7 +183,8 @@ void RevisionCheck::check_settled_segments() {
   const auto segments = settled_.segments();
   for (; joined_ < segments.size(); ++joined_) {
     const ipc::SegmentCopy& segment = segments[joined_];
-    if (segment.kind == core::SegmentKind::splice) findings_->count(Event::splices);
+    if (segment.kind == core::SegmentKind::splice) check_entry(segment);
+    if (segment.kind == core::SegmentKind::stop_tail) check_stop_segment(segment);
     const Word expected = joined_ > 0 ? segments[joined_ - 1].next : 1;
     if (segment.number != expected) {
       has_gap_ = true;
@@ -209,9 +218,63 @@ void RevisionCheck::check_waypoint_at(const ipc::SegmentCopy& segment) {
         (smooths || rules_.passes(segment, false, sent.position, plan_->dimensions))) {
       continue;
     }
+    findings_->count(Event::waypoints_passed_over);
+    last_passed_ = waypoint.item;
+    // The last one may still be met, late.
+    if (++passed_seen_ <= head_.passed_over + (head_.finished ? 1 : 0)) continue;
     breach(Breach::waypoint_missed,
-           fmt::format("item {} at {} when it had settled, segment {} from {}", waypoint.item,
-                       waypoint.time.count(), segment.number, segment.left.count()));
+           fmt::format("item {} at {} when it had settled, segment {} from {}, {} passed over",
+                       waypoint.item, waypoint.time.count(), segment.number, segment.left.count(),
+                       head_.passed_over));
+  }
+}
+
+/// An entry keeps the acceleration limits, but where it begins beyond them.
+void RevisionCheck::check_entry(const ipc::SegmentCopy& segment) {
+  findings_->count(Event::entries);
+  if (segment.origin.known > 0) findings_->count(Event::extrapolated_ends);
+  if (segment.right < segment.natural_right) findings_->count(Event::entries_replaced);
+  const auto& limits = plan_->window.limits.acceleration;
+  const double length = core::to_seconds(segment.right - segment.left);
+  for (std::size_t d = 0; d < limits.size(); ++d) {
+    if (limits[d] <= 0 || plan_->dimensions[d].kind >= core::DimensionKind::quaternion) continue;
+    const auto range =
+        core::range_of(segment.order, segment.coefficients, limits.size(), d, 2, 0, length);
+    const double begin = 2 * std::abs(segment.coefficients[2 * limits.size() + d]);
+    const double peak = std::abs(range.largest().value);
+    if (peak <= std::max(limits[d], begin) * (1 + 1e-9)) continue;
+    breach(Breach::beyond_limits,
+           fmt::format("entry {} from {}: {} in dimension {}, limit {}", segment.number,
+                       segment.left.count(), peak, d, limits[d]));
+    return;
+  }
+}
+
+/// A stop moves every dimension one way, ever slower, by at most |v|·T/2.
+void RevisionCheck::check_stop_segment(const ipc::SegmentCopy& segment) {
+  findings_->count(Event::stop_segments);
+  const std::size_t dimensions = plan_->dimensions.size();
+  const double whole = core::to_seconds(segment.natural_right - segment.left);
+  constexpr double kSlack = 1 + 1e-9;
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    const double v = segment.coefficients[dimensions + d];
+    const auto range = [&](int derivative) {
+      return core::range_of(segment.order, segment.coefficients, dimensions, d, derivative, 0,
+                            whole);
+    };
+    const auto velocity = range(1);
+    const auto position = range(0);
+    const double rounding = 1e-12 * std::abs(v);
+    const bool slows = velocity.least.value >= std::min(v, 0.0) * kSlack - rounding &&
+                       velocity.greatest.value <= std::max(v, 0.0) * kSlack + rounding;
+    const double way = position.greatest.value - position.least.value;
+    const double most = std::abs(v) * whole / 2 * kSlack + 1e-12 * std::abs(position.least.value);
+    if (slows && way <= most) continue;
+    breach(Breach::stop_turned,
+           fmt::format("stop {} from {}: dimension {} at {} goes {} of {}, v from {} to {}",
+                       segment.number, segment.left.count(), d, v, way, most, velocity.least.value,
+                       velocity.greatest.value));
+    return;
   }
 }
 
@@ -225,8 +288,21 @@ void RevisionCheck::check_last_waypoint(const ipc::SegmentCopy& segment) {
         (smooths || rules_.passes(segment, true, sent.position, plan_->dimensions))) {
       continue;
     }
-    breach(Breach::waypoint_missed, fmt::format("item {} at {} in the finished curve",
-                                                waypoint.item, waypoint.time.count()));
+    findings_->count(Event::waypoints_passed_over);
+    last_passed_ = waypoint.item;
+    if (++passed_seen_ <= head_.passed_over + 1) continue;
+    breach(Breach::waypoint_missed,
+           fmt::format("item {} at {} in the finished curve, {} passed over", waypoint.item,
+                       waypoint.time.count(), head_.passed_over));
+  }
+  const bool comes_late =
+      last_passed_ && last_passed_ == last_taken_ && segment.kind != core::SegmentKind::spline &&
+      (smooths || rules_.passes(segment, true, items_.items().waypoint(*last_passed_).position,
+                                plan_->dimensions));
+  const Word passed = passed_seen_ - (comes_late ? 1 : 0);
+  if (!has_gap_ && !is_replaced_ && passed != head_.passed_over) {
+    breach(Breach::items_lost,
+           fmt::format("{} waypoints passed over, {} counted", passed, head_.passed_over));
   }
 }
 

@@ -70,6 +70,8 @@ class RevisionCheck {
   void check_waypoint_at(const ipc::SegmentCopy& segment);
   void check_last_waypoint(const ipc::SegmentCopy& segment);
   void check_end();
+  void check_entry(const ipc::SegmentCopy& segment);
+  void check_stop_segment(const ipc::SegmentCopy& segment);
   void check_verifiable();
   void breach(Breach breach, const std::string& what);
 
@@ -82,6 +84,10 @@ class RevisionCheck {
   std::size_t joined_ = 0;  ///< settled segments that have been checked
   bool has_gap_ = false;    ///< a settled segment was overwritten before it was seen
   bool is_verifiable_ = true;
+  ipc::Word passed_seen_ = 0;               ///< waypoints that have settled beside the curve
+  std::optional<ipc::Word> last_passed_{};  ///< the last of them
+  std::optional<ipc::Word> last_taken_{};   ///< the last waypoint that was taken
+  bool is_replaced_ = false;                ///< waypoints have been
   std::deque<Pending> pending_;  ///< interpolated waypoints that have not settled, by time
   ipc::BoardSegment board_segment_;
   ipc::SegmentCopy copy_;

@@ -21,8 +21,8 @@ enum class Breach : std::uint8_t {
   not_finite,        ///< a sample with values that are no numbers
   not_at_rest,       ///< the newest segment moves at its end
   no_answer,         ///< a sample at now without values although nobody overtook the reader
-  items_lost,        ///< consumed ≠ interpolated + refused + withdrawn + controls
-  waypoint_missed,   ///< an interpolated waypoint that the curve does not pass through
+  items_lost,        ///< consumed ≠ interpolated + passed over + refused + withdrawn + controls
+  waypoint_missed,   ///< a waypoint that the curve does not pass through, and is not passed over
   settled_back,      ///< settled_until went back, or less than freeze-ahead was settled
   unsettled_at_now,  ///< a solver in time, and a sample at now that has not settled
   false_revised,     ///< `revised` although nothing that was sampled has changed
@@ -33,8 +33,10 @@ enum class Breach : std::uint8_t {
   board_refused,     ///< a solver found damage on a board that only solvers had written
   ring_torn,         ///< an item of the ring is not the one that was sent
   not_verified,      ///< solved again, the curve has other bits
+  beyond_limits,     ///< an entry or a stop is beyond a limit that it does not begin beyond
+  stop_turned,       ///< a stop speeds up, turns round or goes further than |v|·T/2
 };
-inline constexpr std::size_t kBreaches = 18;
+inline constexpr std::size_t kBreaches = 20;
 [[nodiscard]] std::string_view to_string(Breach breach) noexcept;
 
 /// What happened to simulated streams: each is to happen in a campaign.
@@ -42,7 +44,10 @@ enum class Event : std::uint8_t {
   streams,
   revisions,
   starvations,
-  splices,
+  entries,
+  extrapolated_ends,
+  entries_replaced,
+  stop_segments,
   replacements,
   cuts,
   stops,
@@ -59,12 +64,13 @@ enum class Event : std::uint8_t {
   solver_hold_ups,
   settled_raises,
   waypoints_interpolated,
+  waypoints_passed_over,
   knots_compared,
   settled_samples_read_again,
   items_observed,
   segments_verified,
 };
-inline constexpr std::size_t kEvents = 24;
+inline constexpr std::size_t kEvents = 28;
 [[nodiscard]] std::string_view to_string(Event event) noexcept;
 
 /// What simulated streams did and broke, summed over all of them.

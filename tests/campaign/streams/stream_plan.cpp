@@ -7,6 +7,7 @@
 
 #include "splinecast/core/limits.hpp"
 #include "splinecast/core/smoothing_rows.hpp"
+#include "splinecast/core/stop.hpp"
 
 namespace splinecast::campaign {
 namespace {

@@ -140,12 +140,7 @@ class KnotRing {
     first_solved_ = 0;
     halts_at_start_ = halts_at_start;
     halts_at_end_ = false;
-    before_ = {};
   }
-
-  /// Tells of the interval between waypoints before knot 0, for a tail that looks at two intervals
-  /// while the ring has one. The chord slopes must outlive their use.
-  void lead_in(const ChordInterval& before) noexcept { before_ = before; }
 
   /// Makes the acceleration at the newest knot 0, whatever the knot velocities say.
   void halt_at_end() noexcept { halts_at_end_ = true; }
@@ -291,7 +286,6 @@ class KnotRing {
   LineVector<double> values_;              ///< [which][knot & mask][dimension, then padding]
   LineVector<std::uint32_t> newer_knots_;  ///< of knots before first_solved_
   LineVector<SmoothingRow> smoothing_;     ///< empty unless the method smooths
-  ChordInterval before_;
 };
 
 /// Writes the acceleration step at the left knot of interval i, which is `interval`: a⁺ − a⁻. At

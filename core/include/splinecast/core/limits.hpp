@@ -52,31 +52,4 @@ void require_limits(const MotionLimits& limits, std::span<const Dimension> dimen
 /// all dimensions. Throws std::invalid_argument for other sizes. Allocates.
 [[nodiscard]] MotionLimits spread(const MotionLimits& limits, std::size_t dimensions);
 
-/// Shortest time in which anything is brought to rest.
-inline constexpr Time kLeastStopTime{1'000'000};
-
-/// The time in which a stop tail from this velocity and acceleration comes to rest such that no
-/// dimension's acceleration passes its limit, or that which it begins with; at least `least`. With
-/// a = 0 it is 1.5·|v|/limit.
-[[nodiscard]] Time stop_time_within(std::span<const double> limits, Time least,
-                                    std::span<const double> velocity,
-                                    std::span<const double> acceleration) noexcept;
-
-/// The time of a splice from rest to rest over `distance` per dimension within limits; at least
-/// `least`. Its acceleration peaks at 10/√3·distance/time².
-[[nodiscard]] Time move_time_within(std::span<const double> limits, Time least,
-                                    std::span<const double> distance) noexcept;
-
-/// The largest absolute acceleration of a segment in dimension d: in closed form, from its ends and
-/// the zeros of its jerk.
-[[nodiscard]] double peak_acceleration(const Segment& segment, std::size_t dimensions,
-                                       std::size_t d) noexcept;
-
-/// The largest ratio of a segment's acceleration to its dimension's limit; 0 without limits.
-[[nodiscard]] double acceleration_excess(std::span<const double> limits,
-                                         const Segment& segment) noexcept;
-
-/// Whether a segment keeps within limits; what it begins with may be beyond them.
-[[nodiscard]] bool keeps_within(std::span<const double> limits, const Segment& segment) noexcept;
-
 }  // namespace splinecast::core

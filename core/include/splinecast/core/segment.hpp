@@ -26,7 +26,7 @@ inline constexpr int kMaxPolynomialOrder = 16;
 enum class SegmentKind : std::uint8_t {
   spline = 0,     ///< between two waypoints
   splice = 1,     ///< order-6 entry from a given state
-  stop_tail = 2,  ///< behind the newest knot, ends at rest
+  stop_tail = 2,  ///< stop segment: behind the newest knot, ends at rest
   hold = 3,       ///< at rest: between a stop tail and a splice, or, of no length, the one waypoint
                   ///< of a finished stream
 };
@@ -98,13 +98,6 @@ void write_right_acceleration(const Interval& interval, std::span<double> out) n
 /// end of the one after it less that at the right end of the one before. D values, as above.
 void write_acceleration_jump(const Interval& before, const Interval& after,
                              std::span<double> out) noexcept;
-
-/// Writes the stop tail behind a knot at time `from` with the given position, velocity and
-/// acceleration: it comes to rest after `stop_time` (> 0), its velocity being the cubic Hermite
-/// from (v, a) to (0, 0). Sets everything but `acceleration_step`.
-void build_stop_tail(Time from, Time stop_time, std::span<const double> position,
-                     std::span<const double> velocity, std::span<const double> acceleration,
-                     Segment& out) noexcept;
 
 /// Writes the segment that holds `position` between two times, which may be the same.
 void build_hold(Time from, Time to, std::span<const double> position, Segment& out) noexcept;

@@ -14,7 +14,6 @@
 #include "splinecast/core/knot_solver.hpp"
 #include "splinecast/core/limits.hpp"
 #include "splinecast/core/method.hpp"
-#include "splinecast/core/run_entry.hpp"
 #include "splinecast/core/segment.hpp"
 
 namespace splinecast::core {
@@ -34,8 +33,8 @@ struct WindowOptions {
   Tail tail = Tail::bessel;  ///< condition at the newest knot while the stream goes on; `hermite`,
                              ///< `quintic` and `smoothing` have one of their own
   Condition start{.kind = ConditionKind::own, .value = {}};  ///< condition at knot 0
-  Time stop_time{250'000'000};     ///< length of the stop tail, > 0; with limits the least length
-  MotionLimits limits{};           ///< stop tails and splices keep those of acceleration
+  Time stop_time{250'000'000};     ///< length of the stop, > 0; with limits the least length
+  MotionLimits limits{};           ///< that stops keep to
   bool held_before_start = false;  ///< a hold stands before knot 0, as on a live stream
   bool force_lag = false;          ///< take a lag that is too short for λ
 };
@@ -51,10 +50,9 @@ struct WindowOptions {
 /// - segment i lies between knots i and i+1; segment n is the stop tail, until `finish`.
 ///
 /// A *run* is a sequence of knots that one elimination goes through. The first run begins with the
-/// start condition; `enter` begins another one from a given state, and knots and segments are then
-/// counted from there: segment 0 is the splice to knot 0 (while there is no knot, the stop tail
-/// from the state), and segment i lies between knots i − 1 and i. A live stream also *freezes*:
-/// what readers may have executed stays, converged or not.
+/// start condition; `begin_run` begins another one, whose first velocity comes from its waypoints,
+/// and knots are counted from there. A live stream also *freezes*: what readers may have
+/// executed stays, converged or not.
 ///
 /// Allocates when made only. Not thread-safe: one thread uses it.
 class SlidingWindow {
@@ -69,10 +67,10 @@ class SlidingWindow {
   /// Number of knots of this run so far.
   [[nodiscard]] std::size_t knots() const noexcept { return knots_.size(); }
 
-  /// Whether this run was entered from a state.
-  [[nodiscard]] bool is_entered() const noexcept { return is_entered_; }
+  /// Whether this is a run that `begin_run` has begun.
+  [[nodiscard]] bool is_later_run() const noexcept { return is_later_run_; }
 
-  /// Number of segments of this run so far, the stop tail included; segments are numbered from 0.
+  /// Number of segments of this run so far, the stop included; segment i begins at knot i.
   [[nodiscard]] std::size_t segments() const noexcept;
 
   /// Number of leading segments that nothing changes any more.
@@ -84,10 +82,14 @@ class SlidingWindow {
   /// The form of the segment that begins at knot i, which must still be in the window.
   [[nodiscard]] SegmentForm form(std::size_t i) const noexcept;
 
-  /// Writes the acceleration with which the stop begins, D values, and returns how long it takes.
-  /// It begins at the newest knot, or at the state that this run was entered from; there must be
-  /// one, and the stream must not be finished. O(D).
+  /// Writes the acceleration that the curve reaches the newest knot with, D values, and returns how
+  /// long the stop behind it takes. There must be a knot, and the stream must not be finished.
+  /// O(D).
   Time write_stop(std::span<double> acceleration) const noexcept;
+
+  /// Writes the acceleration at knot i, which must still be in the window: with which the segment
+  /// that begins there starts, or, at the newest knot, with which the one before it arrives. O(D).
+  void write_acceleration(std::size_t i, std::span<double> acceleration) const noexcept;
 
   /// The oldest segment that can still be asked for.
   [[nodiscard]] std::size_t oldest_segment() const noexcept;
@@ -108,19 +110,19 @@ class SlidingWindow {
   /// `settled_segments()` as it was before the call (with K = 0: from the one it adds).
   void append(const Waypoint& waypoint) noexcept;
 
-  /// Begins a run that goes on from a state; `before` are waypoints that stand before it, oldest
-  /// first, of which the last two count. O(D). What later waypoints say of the first knot is taken
-  /// as long as the splice is open; where it would then pass an acceleration limit, only if the
-  /// accelerations around that knot become smaller by it.
-  void enter(const Instant& from, std::span<const StandingWaypoint> before) noexcept;
+  /// Begins a run. O(1). The velocity of its first knot follows its first three waypoints.
+  void begin_run() noexcept;
 
   /// Keeps every knot of this run up to the right end of the segment that contains t as it is: no
-  /// append changes the segments between them. Until `enter`, never undone. O(1) amortised.
+  /// append changes the segments between them. O(1) amortised.
   void freeze(Time t) noexcept;
 
   /// Keeps so many leading knots of this run as they are, or all if there are fewer; what is frozen
-  /// stays so.
+  /// stays so until `thaw_knots`.
   void freeze_knots(std::size_t count) noexcept;
+
+  /// Lets appends change all knots behind the leading `count` again that have not converged.
+  void thaw_knots(std::size_t count) noexcept { frozen_ = std::min(frozen_, count); }
 
   /// Number of leading knots that are frozen.
   [[nodiscard]] std::size_t frozen_knots() const noexcept { return frozen_; }
@@ -133,30 +135,6 @@ class SlidingWindow {
   /// Writes segment i, oldest_segment() ≤ i < segments(), with its acceleration step: O(D).
   /// `out` must have this window's dimensions.
   void segment(std::size_t i, Segment& out) const noexcept;
-
-  /// The knot at which segment i begins, if one does: not a splice, nor a stop tail from a state.
-  [[nodiscard]] std::optional<std::size_t> left_knot(std::size_t segment) const noexcept {
-    if (!is_entered_) return segment;
-    return segment == 0 ? std::nullopt : std::optional(segment - 1);
-  }
-
-  /// Whether the acceleration limits allow for the first of these waypoints to come next, if the
-  /// others follow it: the splice to it must keep within them, the splice that it shapes, or,
-  /// behind the first knot of a curve or one that has been frozen, the interval to it. True without
-  /// limits. O(K·D) each. `trial` is a window that was made with the same options: where the limits
-  /// make it necessary, it takes this one's state and appends the waypoints.
-  [[nodiscard]] bool can_append(std::span<const Waypoint> waypoints,
-                                SlidingWindow& trial) const noexcept;
-
-  /// Takes the state of a window that was made with the same options. Allocates nothing: O(K·D).
-  void assign(const SlidingWindow& other) noexcept;
-
-  /// Appends waypoints to an open entry. Returns whether they leave it within the limits: for a
-  /// trial.
-  [[nodiscard]] bool keeps_in_entry(std::span<const Waypoint> waypoints) noexcept;
-
-  /// The entry of this run, if it was entered.
-  [[nodiscard]] const RunEntry& entry() const noexcept { return entry_; }
 
   /// Asks for the memory that an append goes through. Loads nothing.
   void prefetch() const noexcept {
@@ -180,11 +158,6 @@ class SlidingWindow {
     return knots_.newer_knots(i);
   }
 
-  /// How many knots stood behind knot 0 when the splice to it was last shaped.
-  [[nodiscard]] std::uint32_t newer_knots_seen_by_entry() const noexcept {
-    return entry_newer_knots_;
-  }
-
   /// How many of its newest knots a window needs in order to go on where another one stood.
   [[nodiscard]] std::size_t knots_to_restore() const noexcept { return reach() + kMaxReach + 3; }
 
@@ -193,18 +166,11 @@ class SlidingWindow {
   /// min(first + knots.size(), knots_to_restore()) of them. The stream must not be finished.
   void restore(std::size_t first, std::span<const Knot> knots) noexcept;
 
-  /// The same for a run that was entered. `entry` counts only if `first` is 0.
-  struct Entry {
-    Instant from;
-    std::span<const StandingWaypoint> before;
-    std::span<const double>
-        acceleration;               ///< with which the splice reaches knot 0, if there is one
-    std::uint32_t newer_knots = 0;  ///< that stood behind knot 0 when the splice was last shaped
-  };
-  void restore_entered(const Entry& entry, std::size_t first, std::span<const Knot> knots) noexcept;
+  /// The same for a later run.
+  void restore_run(std::size_t first, std::span<const Knot> knots) noexcept;
 
  private:
-  static constexpr std::size_t kKnotsThatShapeTheEntry = 3;
+  static constexpr std::size_t kKnotsThatShapeTheStart = 3;
 
   /// How many knots before the newest one an append or the finish may change. With K = 0 an append
   /// leaves the newest knot's velocity alone, but `finish` may change it.
@@ -221,29 +187,17 @@ class SlidingWindow {
     const std::size_t last = is_start_open(newest) ? 0 : newest - std::min(newest, options_.settle);
     return std::min(std::max(last, frozen_), newest);
   }
-  [[nodiscard]] std::size_t settled_knot_segments() const noexcept;
-  void write_stop_tail(Segment& out) const noexcept;
-  void write_step(std::size_t i, const Interval& interval, Segment& out) const noexcept;
-  [[nodiscard]] bool keeps_behind_newest(std::span<const Waypoint> waypoints) noexcept;
-  void take_better_entry() noexcept;
-  [[nodiscard]] double entry_excess() noexcept;
-  [[nodiscard]] bool is_entry_open() const noexcept { return is_entered_ && frozen_ == 0; }
   void solve(const auto& closing, std::size_t last) noexcept;
-  [[nodiscard]] bool push_into_entry(const Waypoint& waypoint) noexcept;
-  void append_to_entry(const Waypoint& waypoint) noexcept;
-  void start_with_entry() noexcept;
+  void append_to_start(const Waypoint& waypoint) noexcept;
+  void start_with_waypoints() noexcept;
   void rest_at_only_knot() noexcept;
   [[nodiscard]] std::size_t oldest_knot() const noexcept;
-  [[nodiscard]] Time stop_time(std::span<const double> velocity,
-                               std::span<const double> acceleration) const noexcept;
-
   WindowOptions options_;
   KnotRing knots_;
   std::unique_ptr<KnotSolver> solver_;
-  RunEntry entry_;
-  Segment splice_;  ///< scratch
-  bool is_entered_ = false;
-  std::uint32_t entry_newer_knots_ = 0;
+  std::vector<double> run_start_;  ///< velocity at knot 0 of a later run
+  bool is_later_run_ = false;
+  std::size_t first_ = 0;  ///< oldest knot that was restored
   std::size_t frozen_ = 0;
   bool finished_ = false;
 };

@@ -6,12 +6,9 @@
 #include "splinecast/core/segment.hpp"
 #include "splinecast/core/time.hpp"
 
-/// Splices: the order-6 entries by which a curve goes on from a given state into its waypoints.
-///
-/// The velocity and acceleration at the first waypoint of a run come from waypoints alone, never
-/// from the curve: nothing of the curve's own error enters them, so that a stream of which every
-/// waypoint is a splice stays near its waypoints. Every function is O(D), allocates nothing and
-/// throws nothing.
+/// Splices: the order-6 segments by which a curve goes on from a given state, and the velocity at
+/// the first waypoint of a run, which comes from its waypoints alone, never from the curve. Every
+/// function is O(D), allocates nothing and throws nothing.
 namespace splinecast::core {
 
 /// A state at an instant. Spans hold one value per dimension; does not own them.
@@ -25,19 +22,8 @@ struct Instant {
 /// Writes the quintic from one state to a later one. Sets everything but `acceleration_step`.
 void build_splice(const Instant& from, const Instant& to, Segment& out) noexcept;
 
-/// The intervals around the first waypoint of a run, between standing waypoints: the one before it,
-/// the one before that, the one after it, and the next.
-struct RunStart {
-  ChordInterval before2;
-  ChordInterval before;
-  ChordInterval after;
-  ChordInterval after2;
-};
-
-/// Writes velocity and acceleration of the parabola through three standing waypoints at the first
-/// one of a run: it and the next two; where fewer follow, the ones before count too. With two
-/// waypoints it is their line; with no other at all both are 0.
-void write_run_start(const RunStart& at, std::span<double> velocity,
-                     std::span<double> acceleration) noexcept;
+/// Writes the slope at the first knot of a run of the parabola through its first three waypoints;
+/// of two it is the slope of their line, of one 0.
+void write_run_start(const KnotRing& knots, std::span<double> velocity) noexcept;
 
 }  // namespace splinecast::core

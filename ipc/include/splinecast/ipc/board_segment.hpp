@@ -13,7 +13,9 @@ namespace splinecast::ipc {
 /// What else a segment came from, for whoever solves it again.
 struct SegmentOrigin {
   std::uint32_t right_newer_knots = 0;  ///< that its right knot had seen when it was last solved
-  std::optional<Word> item{};           ///< of the splice into a run: the run's first waypoint
+  std::optional<Word> item{};           ///< of an entry: the run's first waypoint
+  bool ends_at_waypoint = false;        ///< whether its right knot is a waypoint's
+  Word known = 0;  ///< of an entry beyond the newest waypoint: how many the run had
 };
 
 /// A segment of a published curve, for whoever keeps it.

@@ -69,7 +69,7 @@ struct KnotRecord {
   std::span<const double> velocity;        ///<
   std::span<const double> acceleration{};  ///< iff the note says that there is one
   std::span<const double> residual{};      ///< iff the board smooths
-  Word item = 0;                           ///< of a splice: the run's first waypoint's, plus 1
+  Word item = 0;                           ///< as the layout has it beside the acceleration
   const core::Prefix* prefix = nullptr;    ///< with `g`: the knot's row, where it has changed
   std::span<const double> g{};
 };
@@ -98,6 +98,9 @@ class KnotBoardWriter {
 
   /// Writes a knot for the next revision: at most once each. O(D).
   void write(Word number, const KnotRecord& knot) noexcept;
+
+  /// Writes waypoint `i` of a run, which an entry passes over, for a solver that takes over. O(D).
+  void write_passed(Word i, const KnotRecord& knot) noexcept;
 
   /// Writes consecutive committed knots again, from `first` on, of which only the velocities have
   /// changed: most of what an append does. At each of them stands a waypoint, and a cubic begins.
@@ -225,12 +228,16 @@ class KnotBoardWriter {
 
   [[nodiscard]] std::size_t index_of(Word number) const noexcept { return number & at_.mask; }
   [[nodiscard]] Word* slot(Word number) const noexcept { return at_.slot(index_of(number)); }
+  [[nodiscard]] SlotView<Word> cells_at(std::size_t index) const noexcept {
+    return {at_.slot(index), at_.cell_words};
+  }
   [[nodiscard]] SlotView<Word> cells(Word number) const noexcept {
-    return {slot(number), at_.cell_words};
+    return cells_at(index_of(number));
   }
   [[nodiscard]] SlotView<Word> head_cells() const noexcept;
-  [[nodiscard]] static Claimed claim(Slots& slots, Word number, Word tag,
+  [[nodiscard]] static Claimed claim(Slots& slots, std::size_t index, Word tag,
                                      SlotState changed) noexcept;
+  void write_slot(std::size_t index, const KnotRecord& knot) noexcept;
   [[nodiscard]] static WrittenSlot& written_slot(const Slots& slots, std::size_t index) noexcept;
   [[nodiscard]] Word next_tag() const noexcept { return (revision_ + 1) << kTagRevisionShift; }
   [[nodiscard]] std::span<const WrittenSlot> written() const noexcept {
@@ -275,6 +282,7 @@ class KnotCopy {
   void assign(const KnotCopy& other) noexcept {
     tag = other.tag;
     cell = other.cell;
+    slot = other.slot;
     number = other.number;
     time = other.time;
     note = other.note;
@@ -298,10 +306,11 @@ class KnotCopy {
 
   Word tag = 0;          ///< of the cell that it was copied from; 0: nothing copied
   std::size_t cell = 0;  ///< of its slot, 0 or 1
+  std::size_t slot = 0;
   Word number = 0;
   core::Time time{};
   KnotNote note;
-  Word item = 0;  ///< of a splice: the run's first waypoint's, plus 1
+  Word item = 0;  ///< as the layout has it beside the acceleration
 
  private:
   friend class KnotBoardReader;
@@ -380,6 +389,10 @@ class KnotBoardReader {
     return copy.tag != 0 && is_newest(cells(copy.number), copy.cell, copy.tag, r);
   }
 
+  /// Copies waypoint `i` of a run from the slots of those that entries pass over: what lies there
+  /// may be another one's, as its item says. For the one writer only, who races with nobody.
+  [[nodiscard]] bool copy_passed(Word i, Word r, KnotCopy& out) const noexcept;
+
   /// The same where `copy` may be of another knot.
   [[nodiscard]] bool is_current(const KnotCopy& copy, Word number, Word r) const noexcept {
     return copy.number == number && is_current(copy, r);
@@ -409,9 +422,14 @@ class KnotBoardReader {
   [[nodiscard]] core::Prefix copy_row(const KnotCopy& knot, std::span<double> g) const noexcept;
 
  private:
-  [[nodiscard]] const Word* slot(Word number) const noexcept {
-    return slots_.data() + (number & (layout_.capacity - 1)) * slot_words_;
+  [[nodiscard]] std::size_t index_of(Word number) const noexcept {
+    return number & (layout_.capacity - 1);
   }
+  [[nodiscard]] const Word* slot_at(std::size_t index) const noexcept {
+    return slots_.data() + index * slot_words_;
+  }
+  [[nodiscard]] const Word* slot(Word number) const noexcept { return slot_at(index_of(number)); }
+  [[nodiscard]] bool copy_slot(std::size_t index, Word r, KnotCopy& out) const noexcept;
   [[nodiscard]] SlotView<const Word> cells(Word number) const noexcept {
     return {slot(number), cell_words_};
   }

@@ -174,7 +174,7 @@ inline constexpr std::tuple kRegionRows{
     FieldRow{"control area",
              {.words = 2 * kPage / sizeof(Word)},
              FieldWriter::owner,
-             "the control block lies in it, at 8192 + 128 · (stream id mod 50), so that those of "
+             "the control block lies in it, at 8192 + 128 · (stream id mod 49), so that those of "
              "many streams do not fall into one cache set"},
     FieldRow{"body",
              {},
@@ -226,6 +226,16 @@ inline constexpr std::size_t kItemValues = word_of(kItemFields, "position");
 
 inline constexpr std::size_t kRefusalReasons = 16;
 
+/// Where the end of the published curve stands to the *target*, the spline through the waypoints of
+/// a run.
+enum class Course : std::uint8_t {
+  on_target = 0,  ///< it is the target
+  waiting = 1,    ///< it ends in a stop beside the target: no entry has been found
+  entering = 2,   ///< an entry ends at a waypoint of the run, and the target follows
+  beyond = 3,     ///< an entry ends beyond the newest waypoint, and a stop follows
+};
+inline constexpr int kCourses = 4;
+
 /// What holds for a whole revision.
 struct Head {
   Word revision = 0;  ///< the revision that this head is of; 0: none yet
@@ -233,15 +243,20 @@ struct Head {
   Word newest = 0;    ///< newest knot; 0: none. Of a stream that goes on its stop begins there
   core::Time stop{};  ///< length of the stop, if that is the newest segment
   bool finished = false;
-  Word run = 1;              ///< first knot of the run
-  Word run_knots = 0;        ///< waypoints of the run
-  Word consumed = 0;         ///< ring items taken
-  Word knots = 0;            ///< waypoints interpolated, replaced ones too
-  core::Time newest_knot{};  ///< time of the newest waypoint, or of the state that a run begins in
-  core::Time committed{};    ///< the solver's clock at the commit; of a recorded stream, roughly
-  Word run_frozen = 0;       ///< waypoints of the run that were frozen when this revision was made
-  bool is_entered = false;   ///< the run begins in a given state
-  bool starved = false;      ///< a live stream's settled time has passed its newest knot
+  Word run = 1;        ///< first knot of the run
+  Word run_knots = 0;  ///< waypoints of the run
+  Word run_item = 0;   ///< the ring's item of its first waypoint, plus 1; 0: none yet
+  Word course = 0;     ///< Course
+  Word met = 0;    ///< waypoints of the run before the piece of the target that ends at `newest`
+  Word unmet = 0;  ///< waypoints of the run before those that the open entry passes over
+  Word passed_over = 0;       ///< waypoints that entries pass over, of all runs
+  Word consumed = 0;          ///< ring items taken
+  Word knots = 0;             ///< waypoints taken, replaced ones too
+  core::Time newest_knot{};   ///< time of the newest waypoint, or of the state that a run begins in
+  core::Time committed{};     ///< the solver's clock at the commit; of a recorded stream, roughly
+  Word run_frozen = 0;        ///< waypoints of the run that were frozen when this revision was made
+  bool is_later_run = false;  ///< the run is not the stream's first, or begins in a given state
+  bool starved = false;       ///< a live stream's settled time has passed its newest knot
   core::Time low_water = core::Time::max();  ///< least depth so far; max() before there was any
   Word underruns = 0;                        ///< times that a live stream has starved
   Word misses = 0;                           ///< revisions discarded because they came too late
@@ -252,6 +267,9 @@ struct Head {
   std::array<Word, kRefusalReasons> reasons{};  ///< of these, by Refusal
   core::Time settled_until{};  ///< no time before it ever changes; not of the revision alone
   core::Time changed_from{};   ///< earliest time whose curve this revision changed
+
+  /// Waypoints that the curve interpolates, replaced ones too.
+  [[nodiscard]] Word interpolated() const noexcept { return knots - passed_over; }
 };
 
 /// A cell of the head's slot. What lookups need comes first, in one cache line; what changes rarely
@@ -266,8 +284,20 @@ inline constexpr std::tuple kHeadRows{
     MemberRow<&Head::finished>{"finished", FieldWriter::owner, "1: nothing follows"},
     MemberRow<&Head::run>{"run", FieldWriter::owner, "first knot of the run"},
     MemberRow<&Head::run_knots>{"knots of the run", FieldWriter::owner, "its waypoints"},
+    MemberRow<&Head::run_item>{"item of the run", FieldWriter::owner,
+                               "number of its first waypoint's item, plus 1; 0: none yet"},
+    MemberRow<&Head::course>{"course", FieldWriter::owner,
+                             "0 on the target, 1 waiting, 2 entering at a waypoint, 3 beyond the "
+                             "newest one"},
+    MemberRow<&Head::met>{"met", FieldWriter::owner,
+                          "waypoints of the run before the piece of the target that ends at the "
+                          "newest knot"},
+    MemberRow<&Head::unmet>{"unmet", FieldWriter::owner,
+                            "waypoints of the run before those that the open entry passes over"},
+    MemberRow<&Head::passed_over>{"passed over", FieldWriter::owner,
+                                  "waypoints that entries pass over"},
     MemberRow<&Head::consumed>{"consumed", FieldWriter::owner, "items taken"},
-    MemberRow<&Head::knots>{"knots", FieldWriter::owner, "waypoints interpolated"},
+    MemberRow<&Head::knots>{"knots", FieldWriter::owner, "waypoints taken"},
     MemberRow<&Head::newest_knot>{"newest time", FieldWriter::owner,
                                   "time of the newest waypoint, or of the state that a run begins "
                                   "in, ns"},
@@ -277,8 +307,9 @@ inline constexpr std::tuple kHeadRows{
     MemberRow<&Head::run_frozen>{"frozen", FieldWriter::owner,
                                  "waypoints of the run that were frozen when this revision was "
                                  "made"},
-    MemberRow<&Head::is_entered>{"entered", FieldWriter::owner,
-                                 "1: the run begins in a given state"},
+    MemberRow<&Head::is_later_run>{"later run", FieldWriter::owner,
+                                   "1: the run is not the stream's first, or begins in a given "
+                                   "state"},
     MemberRow<&Head::starved>{"starved", FieldWriter::owner,
                               "1: the settled time of a live stream has passed its newest knot"},
     MemberRow<&Head::low_water>{"least depth", FieldWriter::owner, "so far, ns"},
@@ -291,7 +322,7 @@ inline constexpr std::tuple kHeadRows{
                                "replacements, start states and finishes carried out"},
     MemberRow<&Head::refused>{"refused", FieldWriter::owner, "items refused"},
     MemberRow<&Head::reasons>{"reasons", FieldWriter::owner, "items refused, by reason"},
-    padding(3)};
+    padding(6)};
 inline constexpr auto kHeadFields = place(kHeadRows);
 inline constexpr std::size_t kHeadWords = size_of(kHeadFields).words;
 static_assert(kHeadWords % (kCacheLine / sizeof(Word)) == 0);
@@ -386,7 +417,9 @@ inline constexpr std::tuple kBesideRows{
     FieldRow{"item",
              {.words = 1},
              FieldWriter::owner,
-             "of a splice: number of the item that is the run's first waypoint, plus 1; else 0"},
+             "of a splice: number of the item of the run's first waypoint, plus 1; of the end of "
+             "one beyond the newest waypoint: number of waypoints of the run; of a waypoint that "
+             "is passed over: item of the run · 2²⁴ + its number in the run; else 0"},
     FieldRow{"acceleration",
              {.per_dimension = 1},
              FieldWriter::owner,
@@ -419,6 +452,11 @@ inline constexpr std::tuple kBodyRows{
              FieldWriter::owner,
              "a word per slot: ns at which the segment of the slot's knot begins, or, where none "
              "begins, the one of the next knot at which one does: a hint"}};
+
+/// Slots behind those of the numbered knots: the waypoints that entries pass over, by their number
+/// in the run. Only a solver that takes over reads them.
+inline constexpr std::size_t kPassedSlots = 128;
+inline constexpr unsigned kPassedItemShift = 24;
 inline constexpr auto kBodyFields = place(kBodyRows);
 
 /// Offsets of a waypoint ring, derived from what its header fixes; all in bytes.
@@ -442,7 +480,7 @@ struct BoardLayout {
   bool smooths;          ///< cells have residuals, rows have factors
   std::size_t refusals;  ///< kRefusalsKept words
   std::size_t times;     ///< packed times: capacity words
-  std::size_t slots;     ///< capacity slots
+  std::size_t slots;     ///< capacity + kPassedSlots slots
   std::size_t cell;      ///< bytes of a cell; cells begin a slot
   std::size_t nodes;
   std::size_t node;  ///< bytes of a node

@@ -160,6 +160,7 @@ class Sampler {
   [[nodiscard]] bool see(const Look& look) noexcept;
   [[nodiscard]] Compared compare_with(const Head& before) noexcept;
   [[nodiscard]] Compared compare_rest(BoardSegment& last) noexcept;
+  [[nodiscard]] bool is_ahead(const BoardSegment& first, const Head& before) noexcept;
   [[nodiscard]] bool is_unchanged(const BoardSegment& segment, const Head& before) noexcept;
   [[nodiscard]] bool fits(const core::StateRef& out) const noexcept;
   [[nodiscard]] bool copy_segments(Word oldest, Word newest, Snapshot& out);

@@ -27,14 +27,13 @@ inline constexpr std::uint8_t kAppendStatuses = 13;
 
 /// Why the solver refused an item that the ring had accepted. Counted one by one.
 enum class Refusal : std::uint8_t {
-  past = 1,  ///< before what has settled; live streams only
+  past = 1,  ///< more than kMostLate before what has settled; live streams only
   duplicate = 2,
   out_of_order = 3,
   not_finite = 4,  ///< a value is not usable, or the curve would have one that is not finite
   too_close = 5,
   too_far_apart = 6,
-  too_late = 7,  ///< it cannot be reached in time, or with the acceleration allowed; or it belongs
-                 ///< to a replacement that came too late
+  too_late = 7,  ///< a replacement from a time that has settled, or a waypoint of one
   after_finish = 8,
   already_started = 9,  ///< a start state behind the first waypoint
   unknown_kind = 10,

@@ -36,10 +36,11 @@ struct LiveOptions {
 /// and makes no system call but the clock's.
 ///
 /// On a live stream everything before `settled_until` = now + freeze_ahead is frozen: before a step
-/// takes anything, up to the right end of the segment that contains that time. A waypoint that
-/// comes when the newest knot has been frozen is entered by a splice at settled_until, and so is
-/// what replaces the future. Directly before the commit the clock is read again: a revision that
-/// would change what may have been executed meanwhile is discarded, counted and made anew.
+/// takes anything, up to the right end of the segment that contains that time. Where a waypoint
+/// comes when the newest knot has been frozen, an entry leads from settled_until back to the
+/// waypoints, and so it does to what replaces the future: see PublishedCurve. Directly before the
+/// commit the clock is read again: a revision that would change what may have been executed
+/// meanwhile is discarded, counted and made anew.
 ///
 /// What is published is finite: a revision with a value that is no number, or beyond what readers
 /// accept, is discarded and made again with fewer items, until the one that it comes from is alone
@@ -95,8 +96,8 @@ class StreamSolver {
   [[nodiscard]] Word consume(core::Time now) noexcept;
   [[nodiscard]] bool is_damaged() const noexcept { return lacks_head_ || curve_.is_damaged(); }
   [[nodiscard]] Word reachable(Word head) const noexcept;
-  [[nodiscard]] bool has_room(core::Time keep) const noexcept;
-  void withdraw(core::Time keep) noexcept;
+  [[nodiscard]] bool has_room() const noexcept;
+  void withdraw() noexcept;
   /// Whether the current item is a stop: a replacement without waypoints.
   [[nodiscard]] bool is_stop() const noexcept {
     return item_.kind == ItemKind::replace && item_.count == 0;
@@ -108,7 +109,6 @@ class StreamSolver {
   void take_start_state(Word number) noexcept;
   void take_finish(Word number) noexcept;
   [[nodiscard]] bool is_starved() const noexcept;
-  [[nodiscard]] bool can_follow(Word number, bool starved) noexcept;
   [[nodiscard]] std::optional<Refusal> has_right_form(
       const core::Waypoint& waypoint) const noexcept;
   [[nodiscard]] std::optional<Refusal> judge_time(core::Time time) const noexcept;
@@ -128,14 +128,14 @@ class StreamSolver {
   Head head_;
   bool lacks_head_ = false;  ///< the board has none of its revision: somebody else wrote to it
   core::Time settled_until_ = core::Time::min();  ///< what this step leaves alone lies before it
-  bool is_timed_ = false;                         ///< this step
-  core::Time started_{};                          ///< the clock when it began, if it is timed
-  core::Time settled_at_ = core::Time::min();     ///< the clock when settled_until was last stored
-  bool has_starved_ = false;                      ///< in this step
-  /// Waypoints behind the first one of a run that shape its splice.
-  static constexpr std::size_t kFollowers = 2;
+  core::Time keep_ = core::Time::max();        ///< what ends after it this step does not overwrite
+  bool is_timed_ = false;                      ///< this step
+  core::Time started_{};                       ///< the clock when it began, if it is timed
+  core::Time settled_at_ = core::Time::min();  ///< the clock when settled_until was last stored
+  bool has_starved_ = false;                   ///< in this step
+  int tries_ = 0;                     ///< candidates of an entry that this step may still try
+  bool is_finish_postponed_ = false;  ///< no entry to the last waypoint has been found yet
   RingItem item_;
-  std::vector<RingItem> followers_;
   core::Condition end_;
   Word seen_ = 0;
   Word batch_ = 0;        ///< items taken for this revision, one by one

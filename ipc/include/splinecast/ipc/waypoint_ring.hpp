@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "splinecast/core/condition.hpp"
+#include "splinecast/core/extrapolation.hpp"
 #include "splinecast/core/splice.hpp"
 #include "splinecast/core/waypoint.hpp"
 #include "splinecast/ipc/clock.hpp"
@@ -50,6 +51,11 @@
 /// `retired` is stored with release and loaded with acquire: nothing depends on more than the word
 /// itself. The counters of refusals are relaxed: each is a number of its own.
 namespace splinecast::ipc {
+
+/// How late a waypoint of a live stream may come, before what has settled, and still shape the
+/// target that an entry leads back to: the straight line behind the one before it is over by then.
+/// It is passed over.
+inline constexpr core::Time kMostLate = core::Extrapolation::kLine;
 
 /// What a ring item says.
 enum class ItemKind : std::uint8_t {
@@ -149,6 +155,7 @@ class WaypointRingWriter {
     return head_ - solved.consumed + items + free <= layout_.capacity;
   }
   [[nodiscard]] bool repeats_stop(core::Time from, const Solved& solved) const noexcept;
+  [[nodiscard]] bool is_past(core::Time time, const Solved& solved) const noexcept;
   [[nodiscard]] bool follows_pause(core::Time time, const Solved& solved) const noexcept;
   [[nodiscard]] AppendStatus stop_from(core::Time t, const Solved& solved) noexcept;
   void claim(Word items) noexcept;

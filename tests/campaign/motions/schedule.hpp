@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "campaign/motions/sines.hpp"
+
+namespace splinecast::campaign {
+
+/// A call of a producer: waypoints appended, or in place of all behind `replaces_from`. Times in s.
+struct Call {
+  double at = 0;
+  std::vector<double> times;
+  std::vector<std::vector<double>> positions;  ///< [waypoint][joint]
+  std::optional<double> replaces_from{};
+};
+
+/// What a producer does while the motion goes on, and what happens to it and to the solver.
+struct Schedule {
+  std::vector<Call> calls;                          ///< by `at`
+  std::vector<std::pair<double, double>> pauses{};  ///< of the producer: from, until
+  std::vector<std::pair<double, double>>
+      deaths{};  ///< of the solver: from, until another one comes
+};
+
+/// One way in which a producer fails to deliver a motion in time.
+struct Mishap {
+  std::string_view name;
+  Schedule (*make)(const Sines& motion, std::uint64_t seed);
+  bool is_covered = false;  ///< the lead covers it: nothing may be passed over behind the start
+  /// Path errors of the simulation in live_motion.md, in rad: p99 and largest, with limits of 5, 10
+  /// and 20 rad/s²; 0: none given.
+  std::array<std::pair<double, double>, 3> simulated{};
+};
+
+[[nodiscard]] std::span<const Mishap> mishaps();
+
+}  // namespace splinecast::campaign
