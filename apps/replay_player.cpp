@@ -308,8 +308,13 @@ class Replay {
       row.loop = in_ring_[i].loop + 1;
       where = table_.where(in_ring_[i].row);
     }
-    note(row, fmt::format("{}: waypoint refused by the solver: {} (item {})", where, row.reason,
-                          refused.item));
+    std::string message = fmt::format("{}: waypoint refused by the solver: {} (item {})", where,
+                                      row.reason, refused.item);
+    if (refused.excess) {
+      row.excess = refused.excess;
+      message += ": " + ipc::in_words(*refused.excess, table_.names);
+    }
+    note(row, message);
   }
 
   void note(const RefusedRow& row, const std::string& message) {

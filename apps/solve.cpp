@@ -78,6 +78,8 @@ class Announcer {
             descriptor_limit(), ipc::StreamSweep::kDescriptorsPerStream);
       case ipc::SweepNews::refused:
         return fmt::format("{}; more for this reason are counted only", why);
+      case ipc::SweepNews::beyond_limits:
+        return fmt::format("beyond a limit, {}; more are counted only", why);
       case ipc::SweepNews::postponed:
         return fmt::format("put off, and tried again from time to time: {}", why);
       case ipc::SweepNews::given_up:
@@ -127,6 +129,9 @@ int solve_one(const SolveOptions& options) {
     solver.first_refusals(refused);
     for (const ipc::ItemRefusal& refusal : refused) {
       tell(ipc::SweepNews::refused, to_string(refusal));
+    }
+    if (const auto excess = solver.first_excess()) {
+      tell(ipc::SweepNews::beyond_limits, solver.in_words(*excess));
     }
     if (solver.attached() && solver.head().finished && !was_finished) {
       was_finished = true;
@@ -204,7 +209,10 @@ void add_solve(CLI::App& program, Action& action) {
   add_count(*verb, "--capacity", options->solver.capacity,
             "Segments that the board holds (default 4096; rounded up to a power of two)");
   add_live_options(*verb, options->solver);
-  add_limit_options(*verb, options->limits);
+  add_limit_options(*verb, options->limits,
+                    ". Entries and stops keep it; the spline through the waypoints is not changed "
+                    "by it: see --beyond");
+  add_beyond(*verb, options->solver.beyond);
   verb->add_flag("!--no-wake", options->solver.wake,
                  "Wake no waiting readers: for hosts where every reader polls");
   verb->add_option_function<std::string>(

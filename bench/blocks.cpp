@@ -43,6 +43,7 @@ constexpr std::array kGroups = {
     Group{"^(roundtrip/(embedded|solver)|iceoryx/.*)/iterations"},
     Group{"^(parse|replay)/"},
     Group{"^attach/"},
+    Group{"^plan/", 3},
     Group{"^sample/dims:7/beside:"},
     Group{"^board/", 1},
     // These take seconds a run.

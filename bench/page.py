@@ -88,6 +88,9 @@ BOUNDS = [
     Bound("attach/dims:7/knots:4096", "p50_ns", "ms", size=1e6, most=1, what="p50"),
     Bound("attach/dims:7/knots:4096", "p99_ns", "ms", size=1e6, most=1, what="p99"),
     Bound("board/dims:7/knots:4096", "region_bytes", "MB", size=1e6, most=2.2, what="size of the region"),
+    *(Bound(f"plan/dims:7/limits:{limits}", key, "µs", size=1e3, most=most, what=what)
+      for limits in (0, 1)
+      for key, most, what in (("p50_ns", 20, "a step on the way back, p50"), ("worst_ns", 1000, "the same, worst"))),
     Bound("replay/dims:7", "items_per_second", "waypoints/s", least=1_000_000),
     Bound("parse/dims:7", "bytes_per_second", "MB/s", size=1e6, least=150),
     Bound("streams:1000/idle", "core_percent", "% of a core", most=1),
@@ -280,6 +283,7 @@ ROWS = """| row | what it measures |
 | `sample_random` | samples at random times in 65,536 segments |
 | `sample_many` | 50 times, 2 ms apart, from one revision by one call, per time; the first time is 1 ms later from call to call, as for a predictive controller at 1 kHz; knots at 100 Hz |
 | `append` | one waypoint through the window, and out as a settled segment |
+| `plan` | each step of a solver on the way back from 300 ms of silence, with limits and without: it takes up the waypoints that come at once, looks for an entry and publishes it |
 | `publish` | one waypoint appended to the ring, solved and published, beside readers that poll at 1 kHz on the other core |
 | `roundtrip/embedded` | one core appends and publishes; the other samples, and acknowledges on a cache line |
 | `roundtrip/solver` | one core appends; the other solves and publishes; the first samples |

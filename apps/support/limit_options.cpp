@@ -90,8 +90,9 @@ std::string listed(const std::vector<std::string>& names) {
 
 }  // namespace
 
-void add_limit_options(CLI::App& verb, LimitOptions& options) {
-  const std::string form = ": one number, or one per dimension; 0, none or empty for no limit";
+void add_limit_options(CLI::App& verb, LimitOptions& options, const std::string& scope) {
+  const std::string form =
+      ": one number, or one per dimension; 0, none or empty for no limit" + scope;
   add_list(verb, "--max-velocity", "V,...", options.given.velocity, "Largest velocity" + form);
   add_list(verb, "--max-acceleration", "A,...", options.given.acceleration,
            "Largest acceleration" + form);
@@ -101,6 +102,22 @@ void add_limit_options(CLI::App& verb, LimitOptions& options) {
                   "File of limits by name: joint_limits.yaml of MoveIt, or a URDF; the options "
                   "before replace what it says of their kind")
       ->type_name("FILE");
+}
+
+void add_beyond(CLI::App& verb, std::optional<core::Beyond>& beyond) {
+  verb.add_option_function<std::string>(
+          "--beyond",
+          [&beyond](const std::string& text) {
+            if (text != "report" && text != "refuse") {
+              throw CLI::ValidationError("--beyond",
+                                         fmt::format("'{}' is neither report nor refuse", text));
+            }
+            beyond = text == "refuse" ? core::Beyond::refuse : core::Beyond::report;
+          },
+          "What to do about a waypoint with which the curve passes a limit: report it (default), "
+          "or "
+          "refuse it")
+      ->type_name("WHAT");
 }
 
 LimitGaps limit_gaps(const core::MotionLimits& limits, std::span<const core::NamedLimits> joints,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,8 +19,12 @@ struct LimitOptions {
   [[nodiscard]] bool any() const noexcept { return given != core::MotionLimits{} || !file.empty(); }
 };
 
-/// `--max-velocity`, `--max-acceleration`, `--max-jerk`, `--bounds`, `--limits`.
-void add_limit_options(CLI::App& verb, LimitOptions& options);
+/// `--max-velocity`, `--max-acceleration`, `--max-jerk`, `--bounds`, `--limits`. `scope` says in
+/// the help of the first three what keeps them.
+void add_limit_options(CLI::App& verb, LimitOptions& options, const std::string& scope = "");
+
+/// `--beyond`.
+void add_beyond(CLI::App& verb, std::optional<core::Beyond>& beyond);
 
 /// What a person should know of how limits met the dimensions of a curve.
 struct LimitGaps {

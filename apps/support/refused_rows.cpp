@@ -21,6 +21,14 @@ std::string_view to_string(RefusedBy by) {
 
 }  // namespace
 
+nlohmann::ordered_json to_json(const ipc::LimitExcess& excess) {
+  return {{"kind", core::to_string(excess.kind)},
+          {"dimension", excess.dimension},
+          {"time_ns", excess.time.count()},
+          {"value", excess.value},
+          {"limit", excess.limit}};
+}
+
 void RefusedRows::add(const RefusedRow& row, std::string_view message) {
   say(message);
   const auto same = [&](const Count& c) { return c.by == row.by && c.reason == row.reason; };
@@ -58,6 +66,7 @@ nlohmann::ordered_json RefusedRows::to_json() const {
     if (row.line) json["line"] = *row.line;
     if (row.item) json["item"] = *row.item;
     if (row.loop) json["loop"] = *row.loop;
+    if (row.excess) json["beyond"] = apps::to_json(*row.excess);
     list.push_back(std::move(json));
   }
   return list;

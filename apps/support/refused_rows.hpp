@@ -8,9 +8,12 @@
 #include <string_view>
 #include <vector>
 
-#include "splinecast/ipc/word.hpp"
+#include "splinecast/ipc/knot_board.hpp"
 
 namespace splinecast::apps {
+
+/// `kind`, `dimension`, `time_ns`, `value`, `limit`.
+[[nodiscard]] nlohmann::ordered_json to_json(const ipc::LimitExcess& excess);
 
 /// Who refused a row.
 enum class RefusedBy : std::uint8_t {
@@ -27,6 +30,7 @@ struct RefusedRow {
   std::optional<std::size_t> line{};  ///< in the file, from 1; unset: the item is no row of ours
   std::optional<ipc::Word> item{};    ///< number in the ring; of the solver's only
   std::optional<std::size_t> loop{};  ///< from 1; of what was played only
+  std::optional<ipc::LimitExcess> excess{};  ///< of one beyond limits
 };
 
 /// The rows of a recording that are not interpolated. Each is named on standard error as soon as it

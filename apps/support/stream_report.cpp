@@ -9,6 +9,7 @@
 #include "splinecast/ipc/clock.hpp"
 #include "splinecast/ipc/header_limits.hpp"
 #include "splinecast/ipc/status.hpp"
+#include "support/refused_rows.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -66,6 +67,16 @@ ordered_json refusals_json(const ipc::StreamInfo& info) {
   return list;
 }
 
+ordered_json excesses_json(const ipc::StreamInfo& info) {
+  ordered_json list = ordered_json::array();
+  for (const ipc::LimitExcess& excess : info.excesses) {
+    ordered_json json{{"item", excess.item}, {"refused", excess.is_refused}};
+    json.update(to_json(excess));
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
 /// A value per dimension, null for none; an empty list if no dimension has a limit of the kind.
 ordered_json limits_json(const ipc::RegionHeader& header) {
   const core::MotionLimits limits = ipc::motion_limits(header);
@@ -84,6 +95,12 @@ ordered_json limits_json(const ipc::RegionHeader& header) {
       {"upper", limits.upper},
       {"beyond", ipc::beyond(header) == core::Beyond::refuse ? "refuse" : "report"},
   };
+}
+
+/// What entries keep on a live stream where no limit is given.
+ordered_json shown_json(const ipc::StreamInfo& info) {
+  if (!info.shown) return nullptr;
+  return {{"velocity", info.shown->velocity}, {"acceleration", info.shown->acceleration}};
 }
 
 /// Time from now to the newest knot; null where that means nothing.
@@ -125,6 +142,7 @@ ordered_json solver_json(const ipc::StreamInfo& info) {
       {"region_bytes", info.spline->region_bytes},
       {"max_acceleration", ipc::motion_limits(*info.spline).acceleration},
       {"limits", limits_json(*info.spline)},
+      {"shown", shown_json(info)},
       {"freeze_ahead_ns", info.spline->freeze_ahead},
       {"history_ns", info.spline->history},
       {"min_splice_ns", info.spline->min_splice},
@@ -135,6 +153,8 @@ ordered_json solver_json(const ipc::StreamInfo& info) {
       {"refused", head.refused},
       {"refused_by_reason", refused},
       {"refusals", refusals_json(info)},
+      {"exceeding", head.exceeding},
+      {"excesses", excesses_json(info)},
       {"first_segment", head.first},
       {"newest_segment", head.newest},
       {"settled_until_ns", head.settled_until.count()},

@@ -10,12 +10,6 @@
 namespace splinecast::core {
 namespace {
 
-Time from_seconds(double seconds) noexcept {
-  constexpr double kNanoseconds = 1e9;
-  constexpr double kMost = 4e9;
-  return Time(static_cast<std::int64_t>(std::ceil(std::min(seconds, kMost) * kNanoseconds)));
-}
-
 /// Of soft limits: below it nothing is told from rounding.
 constexpr double kLeastAllowed = 1e-9;
 
@@ -364,8 +358,7 @@ double shown_at_start(const SlidingWindow& target, std::size_t d) noexcept {
 }  // namespace
 
 bool EntrySearch::keeps_start(const SlidingWindow& target, const EntryRules& rules) noexcept {
-  constexpr std::size_t kFirstUndisturbed = 3;  // segments in which the start has faded
-  const bool shows_motion = target.knots() >= kFirstUndisturbed + 2;
+  const bool shows_motion = target.knots() >= kStartFades + 2;
   auto& peaks = allowed_.acceleration;
   for (std::size_t d = 0; d < peaks.size(); ++d) {
     peaks[d] = shows_motion ? 0 : shown_at_start(target, d);
@@ -374,7 +367,7 @@ bool EntrySearch::keeps_start(const SlidingWindow& target, const EntryRules& rul
     Segment& segment = i == 0 ? entry_ : behind_;
     target.segment(i, segment);
     if (!keeps_within(*rules.limits, &kinds_, segment)) return false;
-    if (i < kFirstUndisturbed) continue;
+    if (i < kStartFades) continue;
     for (std::size_t d = 0; d < peaks.size(); ++d) {
       peaks[d] = std::max(peaks[d], peak_acceleration(segment, d));
     }

@@ -208,6 +208,23 @@ Excess worst_excess(const MotionLimits& limits, const DimensionKinds* kinds, con
   return worst_excess(limits, kinds, part_of(segment), allowance);
 }
 
+Excess worst_excess(const MotionLimits& limits, const DimensionKinds* kinds,
+                    const State& state) noexcept {
+  // The cubic that has this state at its left end.
+  std::array<double, kCubicOrder * kMaxDimensions> coefficients;  // NOLINT(*-member-init)
+  const std::size_t dimensions = state.dimensions();
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    coefficients[d] = state.position()[d];
+    coefficients[dimensions + d] = state.velocity()[d];
+    coefficients[2 * dimensions + d] = state.acceleration()[d] / 2;
+    coefficients[3 * dimensions + d] = state.jerk()[d] / 6;
+  }
+  return worst_excess(limits, kinds,
+                      SegmentPart{.order = kCubicOrder,
+                                  .coefficients = std::span(coefficients).first(4 * dimensions),
+                                  .dimensions = dimensions});
+}
+
 std::optional<Excess> first_violation(const MotionLimits& limits, const DimensionKinds* kinds,
                                       const SegmentPart& part,
                                       const Allowance& allowance) noexcept {

@@ -77,7 +77,7 @@ void build_stop(Time from, Time stop_time, std::span<const double> position,
 
 Time stop_time_within(const MotionLimits& limits, Time least, std::span<const double> velocity,
                       std::span<const double> acceleration) noexcept {
-  constexpr double kNanoseconds = 1e9;
+  if (limits.acceleration.empty() && limits.jerk.empty()) return least;
   double longest = 0;
   for (std::size_t d = 0; d < velocity.size(); ++d) {
     const double a_max = limit_of(limits.acceleration, d);
@@ -88,7 +88,7 @@ Time stop_time_within(const MotionLimits& limits, Time least, std::span<const do
     if (j_max > 0) longest = std::max(longest, seconds_within_jerk(velocity[d], j_max));
   }
   longest = std::min(longest, kLongest);
-  return std::max(least, Time(static_cast<std::int64_t>(std::ceil(longest * kNanoseconds))));
+  return std::max(least, from_seconds(longest));
 }
 
 }  // namespace splinecast::core

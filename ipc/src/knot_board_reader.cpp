@@ -39,6 +39,7 @@ KnotBoardReader::KnotBoardReader(std::span<const std::byte> region,
       cell_words_(layout.cell / sizeof(Word)),
       control_(words_at(region, layout.control, kBoardControlWords)),
       refusals_(words_at(region, layout.refusals, kRefusalsKept)),
+      excesses_(words_at(region, layout.excesses, kExcessesKept * kExcessWords)),
       times_(words_at(region, layout.times, layout.capacity)),
       slots_(words_at(region, layout.slots,
                       (layout.capacity + kPassedSlots) * layout.stride / sizeof(Word))) {}
@@ -227,6 +228,33 @@ std::size_t KnotBoardReader::copy_refusals(const Head& head, Word from,
   }
   std::ranges::reverse(out.first(count));
   return count;
+}
+
+std::optional<LimitExcess> KnotBoardReader::excess(const Head& head, Word index) const noexcept {
+  if (index >= head.exceeding || head.exceeding - index > kExcessesKept) return std::nullopt;
+  const auto words = excesses_.subspan(index % kExcessesKept * kExcessWords, kExcessWords);
+  const Word tag = load(words[0], std::memory_order_acquire);
+  constexpr Word kKindMask = 7;
+  constexpr Word kDimensionMask = core::kMaxDimensions - 1;
+  const LimitExcess found{
+      .item = tag >> kExcessItemShift,
+      .is_refused = (tag & 1U) != 0,
+      .kind = static_cast<core::LimitKind>((tag >> 1U & kKindMask) % core::kLimitKinds),
+      .dimension = tag >> kExcessDimensionShift & kDimensionMask,
+      .time = to_time(load(words[1], std::memory_order_acquire)),
+      .value = to_double(load(words[2], std::memory_order_acquire)),
+      .limit = to_double(load(words[3], std::memory_order_acquire))};
+  const bool is_whole = tag != 0 && load(words[0], std::memory_order_relaxed) == tag;
+  return is_whole && found.item < head.consumed ? std::optional(found) : std::nullopt;
+}
+
+std::optional<LimitExcess> KnotBoardReader::excess_of(const Head& head, Word item) const noexcept {
+  const Word kept = std::min<Word>(head.exceeding, kExcessesKept);
+  for (Word back = 1; back <= kept; ++back) {
+    const auto found = excess(head, head.exceeding - back);
+    if (found && found->item == item) return found;
+  }
+  return std::nullopt;
 }
 
 core::Prefix KnotBoardReader::copy_row(const KnotCopy& knot, std::span<double> g) const noexcept {

@@ -17,6 +17,7 @@ KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout&
     : layout_(layout),
       control_(words_at(region, layout.control, kBoardControlWords)),
       refusals_(words_at(region, layout.refusals, kRefusalsKept)),
+      excesses_(words_at(region, layout.excesses, kExcessesKept * kExcessWords)),
       times_(words_at(region, layout.times, layout.capacity)),
       revision_(load(control_[kRevision], std::memory_order_relaxed)),
       settled_(load(control_[kSettledUntil], std::memory_order_relaxed)),
@@ -254,6 +255,19 @@ void KnotBoardWriter::write_refusal(Word index, const RefusedItem& refusal) noex
   // One word, so that it is never torn; published by the commit of the head that counts it.
   put(refusals_[index % kRefusalsKept],
       refusal.item << kRefusalItemShift | static_cast<Word>(refusal.reason));
+}
+
+void KnotBoardWriter::write_excess(Word index, const LimitExcess& excess) noexcept {
+  const auto words = excesses_.subspan(index % kExcessesKept * kExcessWords, kExcessWords);
+  const std::array values{to_word(excess.time), to_word(excess.value), to_word(excess.limit)};
+  store(words[0], 0, std::memory_order_release);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    store(words[i + 1], values[i], std::memory_order_release);
+  }
+  store(words[0],
+        excess.item << kExcessItemShift | excess.dimension << kExcessDimensionShift |
+            static_cast<Word>(excess.kind) << 1U | (excess.is_refused ? 1 : 0),
+        std::memory_order_release);
 }
 
 void KnotBoardWriter::commit(Head& head) noexcept {

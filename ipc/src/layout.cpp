@@ -154,6 +154,7 @@ BoardLayout BoardLayout::of(std::size_t dimensions, std::size_t capacity, std::s
       .control = control,
       .smooths = smooths,
       .refusals = kBodyOffset,
+      .excesses = kBodyOffset + word_of(kBodyFields, "excesses") * sizeof(Word),
       .times = kBodyOffset + word_of(kBodyFields, "times") * sizeof(Word),
       .slots = 0,
       .cell = lines(kCellFields),

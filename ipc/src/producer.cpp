@@ -24,10 +24,12 @@ constexpr core::Time kPoll = std::chrono::milliseconds(2);
 /// The solver's region as the producer sees it: where the ring's tail comes from.
 struct SolverView {
   Region region;
+  RegionHeader header;
   KnotBoardReader board;
+  std::unique_ptr<ReplacementPlanner> planner;  ///< once a replacement has been previewed
 
-  SolverView(Region mapped, const BoardLayout& layout)
-      : region(std::move(mapped)), board(region.bytes(), layout) {
+  SolverView(Region mapped, const RegionHeader& described, const BoardLayout& layout)
+      : region(std::move(mapped)), header(described), board(region.bytes(), layout) {
     region.close_descriptor();
   }
 };
@@ -159,7 +161,7 @@ struct Producer::Impl {
       if (!peeked || peeked->stream_id != ring.header.stream_id) return;
       auto [region, header, layout] = open_board(stream, false, options.trust);
       if (header.stream_id != ring.header.stream_id) return;
-      solver.emplace(std::move(region), layout);
+      solver.emplace(std::move(region), header, layout);
       refused.restart();
     } catch (const std::exception&) {
       solver.reset();  // not there yet, or not ours: looked for again
@@ -222,9 +224,33 @@ AppendStatus Producer::append(const core::Waypoint& waypoint) noexcept {
   return impl_->appended(impl_->ring.writer.append(waypoint, impl_->solved()));
 }
 
-AppendStatus Producer::replace_from(core::Time t,
-                                    std::span<const core::Waypoint> waypoints) noexcept {
-  return impl_->appended(impl_->ring.writer.replace_from(t, waypoints, impl_->solved()));
+AppendStatus Producer::replace_from(core::Time t, std::span<const core::Waypoint> waypoints,
+                                    const ReplaceOptions& options) noexcept {
+  return impl_->appended(
+      impl_->ring.writer.replace_from(t, waypoints, impl_->solved(), options.blend));
+}
+
+ReplacePreview Producer::preview_replace(core::Time t, std::span<const core::Waypoint> waypoints,
+                                         const ReplaceOptions& options) {
+  ReplacePreview preview;
+  preview_replace(t, waypoints, options, preview);
+  return preview;
+}
+
+void Producer::preview_replace(core::Time t, std::span<const core::Waypoint> waypoints,
+                               const ReplaceOptions& options, ReplacePreview& out) {
+  const auto known = impl_->solved();
+  out.status = impl_->ring.writer.check_replacement(t, waypoints, known, options.blend);
+  out.is_known = false;
+  if (out.status != AppendStatus::accepted || !impl_->solver) return;
+  SolverView& solver = *impl_->solver;
+  if (!solver.planner) {
+    solver.planner = std::make_unique<ReplacementPlanner>(
+        solver.board, window_options(solver.header), dimension_kinds(solver.header),
+        live_options(solver.header));
+  }
+  const core::Time from = waypoints.empty() ? std::max(t, known.settled_until) : t;
+  solver.planner->plan(from, waypoints, options.blend, out);
 }
 
 AppendStatus Producer::start_from(const core::Instant& state) noexcept {

@@ -12,6 +12,9 @@ namespace {
 
 using core::SegmentForm;
 
+// A window is restored from them, if no waypoint has been met.
+static_assert(kPassedSlots >= core::kMaxSettle + core::kMaxReach + 3);
+
 }  // namespace
 
 PublishedCurve::PublishedCurve(KnotBoardWriter& board, const KnotBoardReader& published,
@@ -20,10 +23,12 @@ PublishedCurve::PublishedCurve(KnotBoardWriter& board, const KnotBoardReader& pu
     : board_(&board),
       published_(&published),
       window_(published.dimensions(), options),
+      trial_(published.dimensions(), options),
       kinds_(std::move(kinds)),
       entries_(entries),
       look_ahead_(std::max<std::size_t>(options.interpolant.method->look_ahead, 1)),
       has_plain_knots_(!published.smooths() && !options.interpolant.method->needs_acceleration()),
+      has_limits_(!options.limits.empty()),
       cut_(board, published, kinds_),
       search_(published.dimensions(), kinds_),
       shown_(published),
@@ -33,6 +38,7 @@ PublishedCurve::PublishedCurve(KnotBoardWriter& board, const KnotBoardReader& pu
       knots_(window_.knots_to_restore()),
       knot_values_(kKnotValues * published.dimensions() * window_.knots_to_restore()),
       values_(published.dimensions()),
+      segment_(published.dimensions()),
       origin_state_(published.dimensions()),
       beyond_(published.dimensions()) {}
 
@@ -80,7 +86,6 @@ void PublishedCurve::freeze(core::Time t) noexcept {
     course_ = Course::on_target;
     unmet_ = met_;
     origin_ = {};
-    entries_.least = {};
   }
   // At its end the entry has met the newest waypoint that it knew.
   if (course_ == Course::beyond && ends_at_known_ && t >= behind_.end) {
@@ -178,14 +183,61 @@ void PublishedCurve::begin_run(core::Time t, core::Time blend) noexcept {
   committed_knots_ = 0;
   wait_for_entry();
   set_origin(cut_.next(), cut_.state());
-  entries_.least = blend;
+  blend_until_ = t + blend;
   is_searching_ = is_entry_new_ = is_prepared_ = false;
   committed_shown_ = shown_;
   has_forgotten_ = true;
-  shown_.forget_after(t);
+  shown_.forget_after(t - core::Time(1));
   kept_ = 0;
   open_ = 0;
   note_change(t);
+}
+
+/// The first segment that an append may change and the curve may come to follow. At the start of a
+/// live stream those in which the start from rest has not faded are none: where they ask for more
+/// than the motion behind them, the stream starts by an entry.
+std::size_t PublishedCurve::first_compared() const noexcept {
+  const bool starts_at_rest = !window_.is_later_run() && window_.options().held_before_start &&
+                              window_.options().start.kind == core::ConditionKind::halt;
+  const std::size_t frozen = window_.frozen_knots();
+  return std::max({is_on_line() ? met_ : unmet_, frozen - std::min<std::size_t>(frozen, 1),
+                   window_.oldest_segment(), starts_at_rest ? core::kStartFades : 0});
+}
+
+/// What a window needs to go on where this one stands: its knots from passed_first() on.
+std::span<const core::Knot> PublishedCurve::knots_to_go_on() noexcept {
+  const std::size_t first = passed_first();
+  for (std::size_t i = first; i < window_.knots(); ++i) knots_[i - first] = window_.knot(i);
+  return std::span(knots_).first(window_.knots() - first);
+}
+
+std::optional<LimitExcess> PublishedCurve::find_excess(const core::Waypoint& waypoint) noexcept {
+  const auto knots = knots_to_go_on();
+  if (window_.is_later_run()) {
+    trial_.restore_run(passed_first(), knots);
+  } else {
+    trial_.restore(passed_first(), knots);
+  }
+  trial_.freeze_knots(window_.frozen_knots());
+  trial_.append(waypoint);
+  const core::MotionLimits& limits = window_.options().limits;
+  for (std::size_t i = std::max(first_compared(), trial_.oldest_segment()); i + 1 < trial_.knots();
+       ++i) {
+    trial_.segment(i, segment_);
+    if (core::keeps_within(limits, &kinds_, segment_)) continue;
+    const core::Excess found = core::worst_excess(limits, &kinds_, segment_);
+    const core::Time left = segment_.left;
+    if (i + 1 < window_.knots()) {
+      window_.segment(i, segment_);
+      if (!core::keeps_within(limits, &kinds_, segment_)) continue;
+    }
+    return LimitExcess{.kind = found.kind,
+                       .dimension = found.dimension,
+                       .time = left + core::from_seconds(found.u),
+                       .value = found.value,
+                       .limit = found.limit};
+  }
+  return std::nullopt;
 }
 
 void PublishedCurve::append(const core::Waypoint& waypoint, Word item) noexcept {
@@ -284,12 +336,16 @@ bool PublishedCurve::prepare(core::Time settled) noexcept {
 }
 
 core::EntryRules PublishedCurve::entry_rules() const noexcept {
-  return {.limits = &window_.options().limits,
-          .shown = entries_.is_live ? &shown_.limits() : nullptr,
-          .least = std::max(entries_.min_splice, entries_.least)};
+  const core::Time from = uses_cut_ ? cut_.state().time : origin_.time;
+  const bool blends = blend_until_ > from;  // of a run that none has been cut for it lies long ago
+  return {
+      .limits = &window_.options().limits,
+      .shown = entries_.is_live ? &shown_.limits() : nullptr,
+      .least = blends ? std::max(entries_.min_splice, blend_until_ - from) : entries_.min_splice};
 }
 
-void PublishedCurve::plan(core::Time settled, core::Time keep, bool is_last, int& tries) noexcept {
+void PublishedCurve::look_for_entry(core::Time settled, core::Time keep, bool is_last,
+                                    int& tries) noexcept {
   if (is_damaged_ || is_ending_ || ends_there_ || window_.finished()) return;
   // With as many waypoints as a window shows, or, of a live stream, with those that are known when
   // the start is about to settle.

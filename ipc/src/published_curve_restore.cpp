@@ -45,7 +45,7 @@ void PublishedCurve::restore(const Head& head) noexcept {
   is_entry_new_ = is_searching_ = is_ending_ = seeks_end_ = ends_there_ = is_prepared_ = false;
   knows_shown_ = knows_shown_ || head.revision == 0;
   changed_from_ = core::Time::max();
-  entries_.least = {};
+  blend_until_ = head.blend_until;
   head_ = head;
   run_ = head.run;
   run_item_ = head.run_item;

@@ -186,6 +186,7 @@ void PublishedCurve::write_course(Head& head) noexcept {
   head.course = static_cast<Word>(course_);
   head.met = met_;
   head.unmet = unmet_;
+  head.blend_until = blend_until_;
   head.passed_over = passed_before_ + passed_over();
 }
 

@@ -8,6 +8,7 @@
 #include "splinecast/ipc/checked_region.hpp"
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/futex.hpp"
+#include "splinecast/ipc/header_limits.hpp"
 #include "splinecast/ipc/owner_lock.hpp"
 #include "splinecast/ipc/stream_files.hpp"
 
@@ -42,6 +43,7 @@ struct Reader::Impl {
   RegionHeader header;
   KnotBoardReader board;
   Sampler sampler;
+  core::MotionLimits limits;
   Word seen = 0;
 
   Impl(std::string name, Region mapped, const RegionHeader& described, const BoardLayout& layout)
@@ -49,7 +51,8 @@ struct Reader::Impl {
         region(std::move(mapped)),
         header(described),
         board(region.bytes(), layout),
-        sampler(board, stream_clock(described), dimension_kinds(described)) {}
+        sampler(board, stream_clock(described), dimension_kinds(described)),
+        limits(motion_limits(described)) {}
 
   /// Maps the stream's board, or returns nothing if there is none now.
   static std::unique_ptr<Impl> open(const std::string& stream, const Trust& trust) {
@@ -134,6 +137,13 @@ Alive Reader::alive() const noexcept {
           .solver = region_owner_lives(impl_->region.descriptor()) ||
                     (impl_->region.is_linked(impl_->stream, RegionKind::spline) &&
                      may_live(RegionKind::spline))};
+}
+
+const core::MotionLimits& Reader::limits() const noexcept { return impl_->limits; }
+
+core::Excess Reader::excess(const core::State& sampled) const noexcept {
+  if (sampled.dimensions() != dimensions_) return {};
+  return core::worst_excess(impl_->limits, &sampler_->kinds(), sampled);
 }
 
 const RegionHeader& Reader::header() const noexcept { return impl_->header; }

@@ -42,10 +42,14 @@ void ShownMotion::forget_after(core::Time t) noexcept {
   next_ = (times_[place(0)] / kStep + 1) * kStep;
 }
 
-void ShownMotion::restore(const core::SlidingWindow& window, const KnotBoardReader& board,
-                          const Head& head, core::Time end, std::size_t first) noexcept {
+void ShownMotion::restore(const KnotBoardReader& board, const Head& head, core::Time end) noexcept {
   forget_all();
   if (head.newest > 0) take_met(board, head, end);
+}
+
+void ShownMotion::restore(const core::SlidingWindow& window, const KnotBoardReader& board,
+                          const Head& head, core::Time end, std::size_t first) noexcept {
+  restore(board, head, end);
   if (window.knots() == 0) return;
   take_passed(board, head, first, window.oldest_segment());
   for (std::size_t i = std::max(first, window.oldest_segment()); i < window.knots(); ++i) {

@@ -275,15 +275,18 @@ struct Attachment {
   RefusalReader refusals;
   Refusals refused;
   Word refusals_seen;
+  Word excesses_seen;
+  bool is_excess_told = false;
   std::array<bool, kRefusalReasons> told{};  ///< by Refusal
 
   Attachment(RingView producer, OwnedBoard own)
       : ring(std::move(producer)),
         board(std::move(own)),
         solver(ring.ring, board.writer, board.reader, window_options(board.header),
-               ingest_limits(ring.header), dimension_kinds(ring.header),
-               live_options(board.header)),
-        refusals_seen(solver.head().refused) {
+               ingest_limits(ring.header), dimension_kinds(ring.header), live_options(board.header),
+               beyond(board.header)),
+        refusals_seen(solver.head().refused),
+        excesses_seen(solver.head().exceeding) {
     refusals.skip(board.reader);
     refused.items.reserve(kRefusalsKept);
   }
@@ -424,6 +427,23 @@ void Solver::first_refusals(std::vector<ItemRefusal>& out) {
     if (!told) out.push_back(refusal);
     told = true;
   }
+}
+
+std::optional<LimitExcess> Solver::first_excess() noexcept {
+  if (!attached() || impl_->attachment->is_excess_told) return std::nullopt;
+  Attachment& at = *impl_->attachment;
+  const Head& head = at.solver.head();
+  while (at.excesses_seen < head.exceeding) {
+    const auto excess = at.board.reader.excess(head, at.excesses_seen++);
+    at.is_excess_told = excess && !excess->is_refused;
+    if (at.is_excess_told) return excess;
+  }
+  return std::nullopt;
+}
+
+std::string Solver::in_words(const LimitExcess& excess) const {
+  return "item " + std::to_string(excess.item) + ", " +
+         ipc::in_words(excess, dimension_names(board()));
 }
 
 const Head& Solver::head() const noexcept { return impl_->attachment->solver.head(); }

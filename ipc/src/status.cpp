@@ -75,6 +75,8 @@ std::string_view to_string(Refusal refusal) noexcept {
       return "lag too short";
     case Refusal::zero_quaternion:
       return "quaternion of length 0";
+    case Refusal::beyond_limits:
+      return "beyond limits";
   }
   return "unknown";
 }

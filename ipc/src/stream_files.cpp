@@ -11,6 +11,7 @@
 #include "splinecast/ipc/errors.hpp"
 #include "splinecast/ipc/futex.hpp"
 #include "splinecast/ipc/owner_lock.hpp"
+#include "splinecast/ipc/shown_motion.hpp"
 #include "splinecast/ipc/waypoint_ring.hpp"
 
 namespace splinecast::ipc {
@@ -37,8 +38,18 @@ void inspect_spline(StreamInfo& info, const Trust& trust) {
     if (look.revision == 0 || board.copy_head(look, info.head)) break;
   }
   info.step_times = board.step_times();
+  if (live_options(header)) {
+    ShownMotion shown(board);
+    shown.restore(board, info.head, core::Time::max());
+    shown.look(core::Time(header.stop_time));
+    info.shown = shown.limits();
+  }
   info.refusals.resize(kRefusalsKept);
   info.refusals.resize(board.copy_refusals(info.head, 0, info.refusals));
+  const Word excesses = info.head.exceeding;
+  for (Word i = excesses - std::min<Word>(excesses, kExcessesKept); i < excesses; ++i) {
+    if (const auto excess = board.excess(info.head, i)) info.excesses.push_back(*excess);
+  }
 }
 
 /// A file under a region's name that this process may remove.

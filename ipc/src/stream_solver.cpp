@@ -34,12 +34,13 @@ std::size_t StreamSolver::min_capacity(std::size_t settle) noexcept {
 StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& board,
                            const KnotBoardReader& published, const core::WindowOptions& window,
                            const IngestLimits& limits, core::DimensionKinds kinds,
-                           const std::optional<LiveOptions>& live)
+                           const std::optional<LiveOptions>& live, core::Beyond beyond)
     : ring_(&ring),
       board_(&board),
       published_(&published),
       limits_(limits),
       live_(live),
+      beyond_(beyond),
       curve_(board, published, window, std::move(kinds),
              {.is_live = live.has_value(),
               .min_splice = live ? live->min_splice : core::Time::zero(),
@@ -295,10 +296,21 @@ void StreamSolver::take_waypoint(Word number) noexcept {
     curve_.kinds().continue_from(curve_.newest_position(), item_.waypoint_values());
     if (!is_finite(waypoint)) return refuse(number, Refusal::not_finite);
   }
+  if (!is_within_limits(waypoint, number)) return refuse(number, Refusal::beyond_limits);
   curve_.append(waypoint, number);
   if (waypoint.time > settled_until_) head_.starved = false;
   ++head_.knots;
   head_.newest_knot = waypoint.time;
+}
+
+/// Notes where the curve passes a limit with a waypoint. Returns whether to take it all the same.
+bool StreamSolver::is_within_limits(const core::Waypoint& waypoint, Word number) noexcept {
+  auto excess = curve_.excess_with(waypoint);
+  if (!excess) return true;
+  excess->item = number;
+  excess->is_refused = beyond_ == core::Beyond::refuse;
+  board_->write_excess(head_.exceeding++, *excess);
+  return !excess->is_refused;
 }
 
 void StreamSolver::take_replacement(Word number) noexcept {
@@ -318,7 +330,7 @@ void StreamSolver::take_replacement(Word number) noexcept {
   if (!has_begun) return;
   // A stop behind another one changes nothing.
   if (is_stop() && curve_.is_stop() && t >= curve_.newest_time()) return;
-  curve_.begin_run(t, core::Time::zero());
+  curve_.begin_run(t, std::clamp(item_.blend, core::Time::zero(), limits_.max_interval));
   head_.starved = false;
   head_.newest_knot = t;
 }

@@ -161,6 +161,9 @@ void StreamSweep::tell_first_refusals(Solver& solver) noexcept {
     for (const ItemRefusal& refusal : refused_) {
       tell_(SweepNews::refused, solver.stream(), &solver, to_string(refusal));
     }
+    if (const auto excess = solver.first_excess()) {
+      tell_(SweepNews::beyond_limits, solver.stream(), &solver, solver.in_words(*excess));
+    }
   } catch (...) {
     return;  // as in tell()
   }

@@ -138,9 +138,11 @@ AppendStatus WaypointRingWriter::append(const core::Waypoint& waypoint,
 
 AppendStatus WaypointRingWriter::check_replacement(core::Time t,
                                                    std::span<const core::Waypoint> waypoints,
-                                                   const Solved& solved) const noexcept {
+                                                   const Solved& solved,
+                                                   core::Time blend) const noexcept {
+  if (waypoints.empty()) return check_stop(t, solved);
   if (finished_) return AppendStatus::finished;
-  if (!is_time_in_range(t)) return AppendStatus::too_far_apart;
+  if (!is_time_in_range(t) || blend > limits_.max_interval) return AppendStatus::too_far_apart;
   if (t < solved.settled_until) return AppendStatus::too_late;
   if (solved.clock != nullptr && t < solved.clock->now()) return AppendStatus::too_late;
   const std::size_t items = 1 + waypoints.size();
@@ -158,13 +160,15 @@ AppendStatus WaypointRingWriter::check_replacement(core::Time t,
 
 AppendStatus WaypointRingWriter::replace_from(core::Time t,
                                               std::span<const core::Waypoint> waypoints,
-                                              const Solved& solved) noexcept {
+                                              const Solved& solved, core::Time blend) noexcept {
   if (waypoints.empty()) return counted(stop_from(t, solved));
-  const AppendStatus status = check_replacement(t, waypoints, solved);
+  const AppendStatus status = check_replacement(t, waypoints, solved, blend);
   if (status != AppendStatus::accepted) return counted(status);
   claim(1 + waypoints.size());
   const Word kind = static_cast<Word>(ItemKind::replace) | waypoints.size() << kCountShift;
   put_item(0, kind, {.time = t, .position = {}});
+  store(item_words(0)[kItemValues], to_word(std::max(blend, core::Time::zero())),
+        std::memory_order_release);
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
     put_item(1 + i, static_cast<Word>(ItemKind::waypoint), waypoints[i]);
   }
@@ -173,17 +177,26 @@ AppendStatus WaypointRingWriter::replace_from(core::Time t,
 }
 
 /// A stop is never too late: if t has settled, it takes effect where the settled part ends.
-AppendStatus WaypointRingWriter::stop_from(core::Time t, const Solved& solved) noexcept {
+core::Time WaypointRingWriter::stop_time(core::Time t, const Solved& solved) noexcept {
+  return std::max({t, solved.settled_until, kEarliestStop});
+}
+
+AppendStatus WaypointRingWriter::check_stop(core::Time t, const Solved& solved) const noexcept {
   if (finished_) return AppendStatus::finished;
-  const core::Time from = std::max({t, solved.settled_until, kEarliestStop});
+  const core::Time from = stop_time(t, solved);
   if (!is_time_in_range(from)) return AppendStatus::too_far_apart;
   if (repeats_stop(from, solved)) return AppendStatus::accepted;
   // Stops ahead leave an item for a stop that takes effect at once; all stops leave one for finish.
   const bool is_ahead = from > solved.settled_until;
   const std::size_t others = control_reserve(layout_.capacity) / 2;
-  if (!has_room(1, solved, is_ahead ? others : std::min<std::size_t>(others, 1))) {
-    return AppendStatus::full;
-  }
+  const bool has_place = has_room(1, solved, is_ahead ? others : std::min<std::size_t>(others, 1));
+  return has_place ? AppendStatus::accepted : AppendStatus::full;
+}
+
+AppendStatus WaypointRingWriter::stop_from(core::Time t, const Solved& solved) noexcept {
+  const AppendStatus status = check_stop(t, solved);
+  const core::Time from = stop_time(t, solved);
+  if (status != AppendStatus::accepted || repeats_stop(from, solved)) return status;
   claim(1);
   put_item(0, static_cast<Word>(ItemKind::replace), {.time = from, .position = {}});
   publish(1, from);
@@ -239,11 +252,16 @@ void WaypointRingWriter::claim(Word items) noexcept {
         std::memory_order_relaxed);
 }
 
+/// The words of the item that lies so many behind `head`.
+std::span<Word> WaypointRingWriter::item_words(Word index) const noexcept {
+  const std::size_t stride = words_per_item(layout_);
+  return items_.subspan(((head_ + index) & (layout_.capacity - 1)) * stride, stride);
+}
+
 /// Writes the item that lies so many behind `head`: P1.
 void WaypointRingWriter::put_item(Word index, Word kind_and_flags,
                                   const core::Waypoint& values) noexcept {
-  const std::size_t stride = words_per_item(layout_);
-  const auto words = items_.subspan(((head_ + index) & (layout_.capacity - 1)) * stride, stride);
+  const auto words = item_words(index);
   const Word flags = (values.velocity.empty() ? 0 : kHasVelocity) |
                      (values.acceleration.empty() ? 0 : kHasAcceleration);
   store(words[kItemKind], kind_and_flags | flags, std::memory_order_release);
@@ -289,6 +307,9 @@ void WaypointRingReader::copy(Word i, RingItem& out) const noexcept {
   out.condition = static_cast<core::ConditionKind>((kind >> kConditionShift) & kKindMask);
   out.count = static_cast<std::uint32_t>(kind >> kCountShift);
   out.time = to_time(load(words[kItemTime], std::memory_order_acquire));
+  out.blend = out.kind == ItemKind::replace && out.count > 0
+                  ? to_time(load(words[kItemValues], std::memory_order_acquire))
+                  : core::Time::zero();
   const bool is_bare = out.kind == ItemKind::waypoint && !out.has_velocity && !out.has_acceleration;
   const std::size_t values = is_bare ? layout_.dimensions : out.values.size();
   load_values(std::span(out.values).first(values), &words[kItemValues]);

@@ -216,5 +216,52 @@ TEST_F(LimitFiles, SolveGivesLimitsToTheStreamAndInfoShowsThem) {
   const Process agreeing({"solve", stream.name(), "--limits", limits});
 }
 
+TEST_F(LimitFiles, SolveReportsWaypointsBeyondThemOrRefusesThemWithTheirPlace) {
+  // One row leaves the slow motion.
+  std::string rows = "t,shoulder,wrist\n";
+  for (int i = 0; i < 40; ++i) {
+    rows += std::to_string(i) + "," + std::to_string(0.01 * i) + "," +
+            (i == 20 ? "5" : std::to_string(0.02 * i)) + "\n";
+  }
+  const auto moves = folder_.write("steps.csv", rows);
+  for (const std::string beyond : {"report", "refuse"}) {
+    const TestStream stream;
+    Process solver({"solve", stream.name(), "--max-acceleration", "0.2", "--beyond", beyond});
+    const Ended sent = run({"replay", moves, "--stream", stream.name(), "--clock", "recorded",
+                            "--rate", "max", "--on-error", "skip", "--json"});
+    ASSERT_EQ(sent.code, 0) << sent.err;
+    const auto report = nlohmann::json::parse(sent.out);
+    const auto shown = testing::info(stream.name())["solver"];
+    EXPECT_EQ(shown["limits"]["beyond"], beyond);
+    ASSERT_GE(shown["excesses"].size(), 1U);
+    const auto& first = shown["excesses"][0];
+    EXPECT_EQ(shown["exceeding"], shown["excesses"].size());
+    EXPECT_EQ(first["item"], 20);
+    EXPECT_EQ(first["refused"], beyond == "refuse");
+    EXPECT_EQ(first["kind"], "acceleration");
+    EXPECT_EQ(first["dimension"], 1);
+    EXPECT_EQ(first["limit"], 0.2);
+    EXPECT_GT(std::abs(first["value"].get<double>()), 0.2);
+    solver.signal(SIGTERM);
+    const Ended ended = solver.wait();
+    const std::string place = "acceleration of dimension 1 (wrist) is ";
+    if (beyond == "refuse") {
+      EXPECT_EQ(report["refused_by_reason"]["beyond limits"], 1);
+      EXPECT_EQ(report["interpolated"], 39);
+      EXPECT_EQ(report["rows"][0]["beyond"]["value"], first["value"]);
+      EXPECT_NE(sent.err.find("steps.csv:22: waypoint refused by the solver: beyond limits (item "
+                              "20): " +
+                              place),
+                std::string::npos)
+          << sent.err;
+    } else {
+      EXPECT_EQ(report["refused"], 0);
+      EXPECT_NE(ended.err.find("beyond a limit, item 20, " + place), std::string::npos)
+          << ended.err;
+    }
+  }
+  EXPECT_EQ(run({"solve", "x", "--beyond", "slow"}).code, 2);
+}
+
 }  // namespace
 }  // namespace splinecast::apps

@@ -21,7 +21,9 @@ struct CampaignOptions {
   std::uint64_t kills = 300;
   std::uint64_t seed = 1;
   double seconds = 2;      ///< of each part of the stress; of the streams all of them
-  std::uint64_t runs = 0;  ///< of simulated streams; 0: as many as the seconds allow
+  std::uint64_t runs = 0;  ///< of simulated streams, 0: as many as the seconds allow; of instants
+                           ///< at which encoders end, 0: 200
+  std::string trace{};     ///< folder for what readers of the motions see; empty: none
 };
 
 /// Kills at random instants until there were so many kills: two live streams and two recorded ones,
@@ -43,7 +45,31 @@ struct CampaignOptions {
 
 /// A generated motion whose producer and solver meet mishaps, with limits of acceleration and
 /// without, in simulated time: no limit passed, no freeze, no jump. `seed` is that of the motion.
+/// With `trace`, also writes what readers see around the first mishap of each.
 [[nodiscard]] Result run_motions(const CampaignOptions& options);
+
+/// Random mishaps of motions that keep their limits, one run per seed, and then none any more: the
+/// curve is back on its waypoints in time.
+[[nodiscard]] Result run_returns(const CampaignOptions& options);
+
+/// The stops of live waypoints that end at any millisecond, for each tail and several sources: none
+/// speeds up, turns round or goes too far. At some random instants the waypoints really end, and
+/// readers must go down what was published. `seed` is that of the motion.
+[[nodiscard]] Result run_stops(const CampaignOptions& options);
+
+/// Recorded motions from which waypoints are missing, as run_motions. Needs `has_recordings`.
+[[nodiscard]] Result run_recordings(const CampaignOptions& options);
+
+/// Whether there are any: in ../shared/data beside the project, or in $SPLINECAST_SHARED/data.
+[[nodiscard]] bool has_recordings();
+
+/// The mishaps of run_motions in real time, with processes that are killed where it lets them die.
+/// What can only come of a machine that does not run them in time is told, but is no finding.
+[[nodiscard]] Result run_live_motions(const CampaignOptions& options);
+
+/// The mishaps of the motions, a line each: the name of their plots, if there are, and
+/// what happens.
+[[nodiscard]] std::string list_motions();
 
 /// A result in the form of the page, of this machine and version.
 [[nodiscard]] Result make_result(const CampaignOptions& options, nlohmann::json promises,

@@ -56,7 +56,25 @@ int run_program(int argc, char** argv) {
   streams->add_option("--runs", options.runs, "Number of streams to simulate instead");
   auto* motions = program.add_subcommand("motions", "A motion whose producer meets mishaps");
   motions->add_option("--seed", options.seed, "Of the motion")->capture_default_str();
-  for (CLI::App* verb : {kill, stress, streams, motions}) {
+  bool has_encoders = false;
+  motions->add_flag("--encoders", has_encoders, "Measure stops behind each tail instead");
+  motions->add_option("--runs", options.runs, "Instants at which encoders end, per row; 0: 200");
+  bool is_recorded = false;
+  motions->add_flag("--recordings", is_recorded,
+                    "Play recordings with gaps instead; does nothing where there are none");
+  bool has_processes = false;
+  motions->add_flag("--processes", has_processes, "In real time, with processes, instead");
+  bool lists = false;
+  motions->add_flag("--list", lists, "Print the names of the plots and the mishaps, and end");
+  motions->add_option("--trace", options.trace,
+                      "Folder for what readers see around each mishap, as CSV");
+  auto* returns = program.add_subcommand("returns", "Ways back onto the waypoints, one per seed");
+  returns->add_option("--seconds", options.seconds, "How long")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  returns->add_option("--seed", options.seed, "Of the first run")->capture_default_str();
+  returns->add_option("--runs", options.runs, "Number of runs instead");
+  for (CLI::App* verb : {kill, stress, streams, motions, returns}) {
     verb->add_option("--json", path, "File for the result; else standard output");
     verb->add_option("--command", options.command, "What the result says that runs it again");
   }
@@ -67,11 +85,23 @@ int run_program(int argc, char** argv) {
   }
   return apps::run_guarded([&] {
     apps::catch_stop_signals();
-    const Result result = *motions      ? run_motions(options)
-                          : *streams    ? run_streams(options)
-                          : *stress     ? run_stress(options)
-                          : every_store ? run_every_store(options)
-                                        : run_random_kills(options);
+    if (lists) {
+      apps::print_report(list_motions());
+      return apps::kOk;
+    }
+    if (is_recorded && !has_recordings()) {
+      apps::say("there are no recordings on this machine");
+      return apps::kOk;
+    }
+    const Result result = has_encoders    ? run_stops(options)
+                          : is_recorded   ? run_recordings(options)
+                          : has_processes ? run_live_motions(options)
+                          : *motions      ? run_motions(options)
+                          : *returns      ? run_returns(options)
+                          : *streams      ? run_streams(options)
+                          : *stress       ? run_stress(options)
+                          : every_store   ? run_every_store(options)
+                                          : run_random_kills(options);
     return report(result, path);
   });
 }

@@ -79,6 +79,7 @@ struct MemoryStream {
   ipc::IngestLimits limits;
   core::DimensionKinds kinds;
   std::optional<ipc::LiveOptions> live;
+  core::Beyond beyond = core::Beyond::report;  ///< of the next solver
   ipc::StreamSolver solver;
   FixedClock clock;
 
@@ -126,8 +127,8 @@ struct MemoryStream {
   /// What happens when the solver is killed and another one comes.
   void replace_solver() {
     board.replace_writer();
-    solver =
-        ipc::StreamSolver(ring.reader, board.writer, board.reader, window, limits, kinds, live);
+    solver = ipc::StreamSolver(ring.reader, board.writer, board.reader, window, limits, kinds, live,
+                               beyond);
   }
 };
 

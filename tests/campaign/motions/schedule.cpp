@@ -9,17 +9,6 @@ namespace {
 
 constexpr double kLength = Sines::kSeconds;
 
-/// Waypoints at a rate, each sent `lead` before its time.
-Schedule steady(const Sines& motion, double rate, double lead) {
-  Schedule schedule;
-  const int count = static_cast<int>(kLength * rate);
-  for (int i = 0; i < count; ++i) {
-    const double t = i / rate;
-    schedule.calls.push_back({.at = t - lead, .times = {t}, .positions = {motion.positions(t)}});
-  }
-  return schedule;
-}
-
 /// What would have been sent in a pause is sent behind it.
 void pause(Schedule& schedule, double from, double until) {
   schedule.pauses.emplace_back(from, until);
@@ -72,8 +61,17 @@ Schedule short_lead(const Sines& motion, std::uint64_t /*seed*/) {
   return with_silences(motion, 0.06);
 }
 
+Schedule covered(const Sines& motion, std::uint64_t /*seed*/) { return with_silences(motion, 0.4); }
+
 Schedule one_pause(const Sines& motion, std::uint64_t /*seed*/) {
   Schedule schedule = steady(motion, 100, 0.06);
+  pause(schedule, 8, 8.3);
+  return schedule;
+}
+
+/// The same at 1 kHz, as encoders give it.
+Schedule encoders(const Sines& motion, std::uint64_t /*seed*/) {
+  Schedule schedule = steady(motion, 1000, 0.06);
   pause(schedule, 8, 8.3);
   return schedule;
 }
@@ -111,6 +109,7 @@ Schedule plans(const Sines& motion, std::uint64_t /*seed*/) {
       // In place of what lies between 60 ms ahead and the newest waypoint.
       const double newest = call.times[0];
       call.replaces_from = call.at + 0.06;
+      schedule.offsets.emplace_back(*call.replaces_from, offset);
       call.times.clear();
       call.positions.clear();
       for (double t = newest - 0.13; t <= newest + 1e-9; t += 0.01) {
@@ -127,29 +126,50 @@ Schedule plans(const Sines& motion, std::uint64_t /*seed*/) {
 
 constexpr std::array kMishaps{
     Mishap{"30 Hz, lead 60 ms, each 0 to 90 ms late",
+           "late",
            late,
+           0,
            false,
            {{{0.004, 0.005}, {0.001, 0.002}, {0.0005, 0.0005}}}},
-    Mishap{"chunks of 8 waypoints by replace_from, 30 Hz, lead 60 ms", chunks},
+    Mishap{"chunks of 8 waypoints by replace_from, 30 Hz, lead 60 ms", "chunks", chunks},
     Mishap{"100 Hz, lead 200 ms, never late, start in motion",
+           "start",
            never_late,
+           0,
            true,
            {{{0.0005, 0.0005}, {0.0005, 0.0005}, {0.0005, 0.0005}}}},
     Mishap{"100 Hz, lead 200 ms, 300 ms of silence every 2 s",
+           "pauses_long_lead",
            long_lead,
+           0,
            false,
            {{{0.14, 0.15}, {0.03, 0.05}, {0.017, 0.029}}}},
     Mishap{"100 Hz, lead 60 ms, 300 ms of silence every 2 s",
+           "pauses_short_lead",
            short_lead,
+           0,
            false,
            {{{0.33, 0.34}, {0.21, 0.22}, {0.16, 0.18}}}},
-    Mishap{"100 Hz, lead 60 ms, one pause of 300 ms", one_pause},
-    Mishap{"100 Hz, lead 60 ms, deaths of producer and solver", deaths},
-    Mishap{"100 Hz, lead 50 ms, a gap of 1.7 s in the recording", gap},
-    Mishap{"plans by replace_from that differ by 3 mrad, 60 ms ahead", plans},
+    Mishap{"100 Hz, lead 400 ms, 300 ms of silence every 2 s", "", covered, 0, true},
+    Mishap{"100 Hz, lead 60 ms, one pause of 300 ms", "one_pause", one_pause},
+    Mishap{"100 Hz, lead 60 ms, deaths of producer and solver", "deaths", deaths},
+    Mishap{"100 Hz, lead 50 ms, a gap of 1.7 s in the recording", "gap", gap},
+    Mishap{"plans by replace_from that differ by 3 mrad, 60 ms ahead", "plans", plans},
+    Mishap{"1 kHz encoders of 0.1 mrad, lead 60 ms, one pause of 300 ms", "encoders", encoders,
+           1e-4},
 };
 
 }  // namespace
+
+Schedule steady(const Motion& motion, double rate, double lead) {
+  Schedule schedule;
+  const int count = static_cast<int>(motion.seconds() * rate);
+  for (int i = 0; i < count; ++i) {
+    const double t = i / rate;
+    schedule.calls.push_back({.at = t - lead, .times = {t}, .positions = {motion.positions(t)}});
+  }
+  return schedule;
+}
 
 std::span<const Mishap> mishaps() { return kMishaps; }
 

@@ -27,12 +27,24 @@ struct Schedule {
   std::vector<std::pair<double, double>> pauses{};  ///< of the producer: from, until
   std::vector<std::pair<double, double>>
       deaths{};  ///< of the solver: from, until another one comes
+  /// What plans add to the motion, in rad: from when on, how much. None: they follow it.
+  std::vector<std::pair<double, double>> offsets{};
+
+  /// What the plan that holds at t adds to the motion.
+  [[nodiscard]] double offset(double t) const noexcept {
+    double sum = 0;
+    for (const auto& [from, much] : offsets) sum = from <= t ? much : sum;
+    return sum;
+  }
 };
 
 /// One way in which a producer fails to deliver a motion in time.
 struct Mishap {
   std::string_view name;
+  std::string_view file;  ///< names its plot; empty: nothing happens that a plot could show
   Schedule (*make)(const Sines& motion, std::uint64_t seed);
+  double quantum =
+      0;  ///< rad: waypoints are multiples of it, as encoders give them; 0: they are not
   bool is_covered = false;  ///< the lead covers it: nothing may be passed over behind the start
   /// Path errors of the simulation in live_motion.md, in rad: p99 and largest, with limits of 5, 10
   /// and 20 rad/s²; 0: none given.
@@ -40,5 +52,8 @@ struct Mishap {
 };
 
 [[nodiscard]] std::span<const Mishap> mishaps();
+
+/// Waypoints at a rate in Hz, each sent `lead` s before its time.
+[[nodiscard]] Schedule steady(const Motion& motion, double rate, double lead);
 
 }  // namespace splinecast::campaign

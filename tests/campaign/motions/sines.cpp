@@ -19,11 +19,11 @@ Sines::Sines(std::uint64_t seed) {
              Sine{0.35 / fast, fast, between(0, 2 * std::numbers::pi)}};
   }
   // Time and amplitude are scaled so that both peaks are as wanted.
-  const double rate = kPeakAcceleration / kPeakVelocity * peak(1) / peak(2);
+  const double rate = kPeakAcceleration / kPeakVelocity * peak_of_all(1) / peak_of_all(2);
   for (auto& joint : sines_) {
     for (Sine& sine : joint) sine.frequency *= rate;
   }
-  const double size = kPeakVelocity / peak(1);
+  const double size = kPeakVelocity / peak_of_all(1);
   for (auto& joint : sines_) {
     for (Sine& sine : joint) sine.amplitude *= size;
   }
@@ -39,19 +39,19 @@ double Sines::at(std::size_t joint, double t, int derivative) const noexcept {
   return sum;
 }
 
-std::vector<double> Sines::positions(double t) const {
-  std::vector<double> values(kJoints);
-  for (std::size_t joint = 0; joint < kJoints; ++joint) values[joint] = at(joint, t);
-  return values;
-}
-
-double Sines::peak(int derivative) const noexcept {
+double Sines::peak(std::size_t joint, int derivative) const noexcept {
   constexpr double kStep = 1e-3;
   double most = 0;
   for (double t = 0; t <= kSeconds; t += kStep) {
-    for (std::size_t joint = 0; joint < kJoints; ++joint) {
-      most = std::max(most, std::abs(at(joint, t, derivative)));
-    }
+    most = std::max(most, std::abs(at(joint, t, derivative)));
+  }
+  return most;
+}
+
+double Sines::peak_of_all(int derivative) const noexcept {
+  double most = 0;
+  for (std::size_t joint = 0; joint < kJoints; ++joint) {
+    most = std::max(most, peak(joint, derivative));
   }
   return most;
 }

@@ -3,12 +3,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+
+#include "campaign/motions/motion.hpp"
 
 namespace splinecast::campaign {
 
 /// A motion of six joints, each the sum of two sines, of given peaks over all joints.
-class Sines {
+class Sines final : public Motion {
  public:
   static constexpr std::size_t kJoints = 6;
   static constexpr double kPeakVelocity = 1.1;      ///< rad/s
@@ -17,9 +18,11 @@ class Sines {
 
   explicit Sines(std::uint64_t seed);
 
-  /// A joint's position in rad, or a derivative of it, at a time in s.
-  [[nodiscard]] double at(std::size_t joint, double t, int derivative = 0) const noexcept;
-  [[nodiscard]] std::vector<double> positions(double t) const;
+  [[nodiscard]] std::size_t joints() const noexcept override { return kJoints; }
+  [[nodiscard]] double seconds() const noexcept override { return kSeconds; }
+  [[nodiscard]] double at(std::size_t joint, double t, int derivative = 0) const noexcept override;
+  /// The largest of 1,000 values a second.
+  [[nodiscard]] double peak(std::size_t joint, int derivative) const noexcept override;
 
  private:
   struct Sine {
@@ -27,7 +30,7 @@ class Sines {
     double frequency;  ///< rad/s
     double phase;
   };
-  [[nodiscard]] double peak(int derivative) const noexcept;
+  [[nodiscard]] double peak_of_all(int derivative) const noexcept;
 
   std::array<std::array<Sine, 2>, kJoints> sines_{};
 };

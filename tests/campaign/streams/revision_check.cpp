@@ -76,6 +76,7 @@ void RevisionCheck::check_counts(const Head& before) {
     breach(Breach::unbounded_step,
            fmt::format("{} items in one step", head_.consumed - before.consumed));
   }
+  findings_->count(Event::excesses, head_.exceeding - before.exceeding);
   for (std::size_t i = 0; i < ipc::kRefusals; ++i) {
     for (Word n = before.reasons[i]; n < head_.reasons[i]; ++n) {
       findings_->count(static_cast<ipc::Refusal>(i));

@@ -21,6 +21,7 @@ constexpr double kDies = 0.01;
 constexpr double kSkipsWhatIsPast = 0.85;
 constexpr double kKnowsLess = 0.1;
 constexpr double kSendsAgain = 0.4;
+constexpr double kBlends = 0.4;
 /// Waypoints that are sent at once at most.
 constexpr int kMostAtOnce = 300;
 constexpr std::size_t kMostReplaced = 40;
@@ -34,6 +35,7 @@ SimulatedProducer::SimulatedProducer(const StreamPlan& plan, testing::MemoryStre
       check_(&check),
       findings_(&findings),
       random_(&random),
+      blends_(plan.seed + 1),
       source_(plan, random),
       observed_(plan.dimensions.size()),
       phase_end_(plan.begin),
@@ -181,8 +183,10 @@ void SimulatedProducer::replace(Time now) {
                          .velocity = keep(waypoint.velocity),
                          .acceleration = keep(waypoint.acceleration)});
   }
-  const auto status = answered(stream_->ring.writer.replace_from(t, waypoints, solved()));
+  const Time blend = blends_.chance(kBlends) ? blends_.part(plan_->interval, 0, 40) : Time(0);
+  const auto status = answered(stream_->ring.writer.replace_from(t, waypoints, solved(), blend));
   if (status != AppendStatus::accepted) return;
+  if (blend > Time(0)) findings_->count(Event::blends);
   const Time last = std::exchange(last_sent_, at);
   next_waypoint_ = (count == 0 ? t : at) + plan_->interval;
   // As a producer does that takes the replacement for refused.

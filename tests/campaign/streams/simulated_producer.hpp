@@ -46,6 +46,7 @@ class SimulatedProducer {
   RevisionCheck* check_;
   StreamFindings* findings_;
   Random* random_;
+  Random blends_;  ///< of their own, so that what a seed does else depends on nothing of them
   WaypointSource source_;
   ipc::RingItem observed_;
   Phase phase_ = Phase::steady;

@@ -45,6 +45,8 @@ SimulatedStream::SimulatedStream(const StreamPlan& plan, StreamFindings& finding
       next_step_(now_),
       pace_(random.part(plan.live.freeze_ahead, 0.05, 0.5)) {
   stream_.replace_producer();
+  stream_.beyond = plan.beyond;
+  stream_.replace_solver();
 }
 
 bool SimulatedStream::is_over() const {

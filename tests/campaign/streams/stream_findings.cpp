@@ -39,6 +39,8 @@ constexpr std::array<std::string_view, kEvents> kEventNames{"streams",
                                                             "entries replaced",
                                                             "stop segments",
                                                             "replacements",
+                                                            "replacements with a blend",
+                                                            "waypoints beyond a limit",
                                                             "cuts",
                                                             "stops",
                                                             "waypoints withdrawn",
@@ -64,7 +66,8 @@ constexpr std::array<std::string_view, kEvents> kEventNames{"streams",
 constexpr std::array kRefusalsToSee{
     ipc::Refusal::past,          ipc::Refusal::duplicate,       ipc::Refusal::out_of_order,
     ipc::Refusal::too_close,     ipc::Refusal::too_far_apart,   ipc::Refusal::too_late,
-    ipc::Refusal::lag_too_short, ipc::Refusal::zero_quaternion, ipc::Refusal::lacks_derivatives};
+    ipc::Refusal::lag_too_short, ipc::Refusal::zero_quaternion, ipc::Refusal::lacks_derivatives,
+    ipc::Refusal::beyond_limits};
 /// Statuses of samples, but for those that take another process at the same time.
 constexpr std::array kStatusesToSee{
     ipc::SampleStatus::settled,       ipc::SampleStatus::provisional, ipc::SampleStatus::stopping,

@@ -49,6 +49,8 @@ enum class Event : std::uint8_t {
   entries_replaced,
   stop_segments,
   replacements,
+  blends,
+  excesses,
   cuts,
   stops,
   withdrawals,
@@ -70,7 +72,7 @@ enum class Event : std::uint8_t {
   items_observed,
   segments_verified,
 };
-inline constexpr std::size_t kEvents = 28;
+inline constexpr std::size_t kEvents = 30;
 [[nodiscard]] std::string_view to_string(Event event) noexcept;
 
 /// What simulated streams did and broke, summed over all of them.

@@ -181,6 +181,8 @@ StreamPlan make_plan(std::uint64_t seed, Random& random) {
   plan.step_trouble = random.chance(0.3) ? 0 : random.log_uniform(1e-3, 0.1);
   plan.starts_in_motion = random.chance(0.3);
   plan.end = make_end(plan, random);
+  constexpr std::uint64_t kOneOf = 8;
+  plan.beyond = seed % kOneOf == kOneOf / 2 ? core::Beyond::refuse : core::Beyond::report;
   return plan;
 }
 

@@ -35,6 +35,7 @@ struct StreamPlan {
   double offset = 0;        ///< of positions, in magnitudes
   double step_trouble = 0;  ///< share of the solver's steps in which something goes wrong
   bool starts_in_motion = false;
+  core::Beyond beyond{};
   core::Condition end{};  ///< that it is finished with
 };
 

@@ -36,6 +36,9 @@ struct EntryEnd {
   Time rest{};      ///< beyond the newest: when the stop has come to rest
 };
 
+/// Segments of a target that starts at rest in which that start has faded to less than a fiftieth.
+inline constexpr std::size_t kStartFades = 3;
+
 /// Looks for the entry by which a curve goes on from a state onto the *target*: the spline through
 /// the knots of a run, and behind the newest one its Extrapolation.
 ///
@@ -57,11 +60,11 @@ struct EntryEnd {
 /// The search can be interrupted after any candidate: what it has refused it does not try again
 /// until `restart`. A candidate that cannot pass, because the mean acceleration or velocity that it
 /// needs is beyond its limit, costs O(D) and does not count as one that was tried; there are at
-/// most K + 2 knots and 50 durations. Allocates when made only; one thread uses it.
+/// most K + 2 knots and 170 durations. Allocates when made only; one thread uses it.
 class EntrySearch {
  public:
   static constexpr Time kLongest{3'000'000'000};
-  static constexpr double kGrowth = 1.15;
+  static constexpr double kGrowth = 1.05;
 
   enum class Outcome {
     more,   ///< candidates that are known are left

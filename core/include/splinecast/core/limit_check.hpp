@@ -10,6 +10,7 @@
 #include "splinecast/core/dimension_kind.hpp"
 #include "splinecast/core/limits.hpp"
 #include "splinecast/core/segment_extremes.hpp"
+#include "splinecast/core/state.hpp"
 
 /// Compares segments with limits of motion.
 ///
@@ -73,6 +74,10 @@ using WorstExcesses = std::array<Excess, kLimitKinds>;
                                   const Allowance& allowance = {}) noexcept;
 [[nodiscard]] Excess worst_excess(const MotionLimits& limits, const DimensionKinds* kinds,
                                   const Segment& segment, const Allowance& allowance = {}) noexcept;
+
+/// The largest for one state: `u` is 0.
+[[nodiscard]] Excess worst_excess(const MotionLimits& limits, const DimensionKinds* kinds,
+                                  const State& state) noexcept;
 
 /// The first place where a limit is passed, with the value there; nothing if all are kept. It is
 /// found to 10⁻⁹ of the part's length.

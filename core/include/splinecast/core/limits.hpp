@@ -30,11 +30,10 @@ struct MotionLimits {
   friend bool operator==(const MotionLimits&, const MotionLimits&) = default;
 };
 
-/// What a stream asks for where a segment exceeds its limits. It is stored with the stream and
-/// shown by `info`; solvers do not act on it.
+/// What a solver does about a waypoint with which the curve passes a limit.
 enum class Beyond : std::uint8_t {
-  report = 0,  ///< publish the segment
-  refuse = 1,  ///< refuse its waypoint
+  report = 0,  ///< take it, count it and note where
+  refuse = 1,  ///< refuse it
 };
 
 /// Throws std::invalid_argument, naming the limit and its value, unless every limit is a positive

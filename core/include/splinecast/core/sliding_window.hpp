@@ -34,7 +34,7 @@ struct WindowOptions {
                              ///< `quintic` and `smoothing` have one of their own
   Condition start{.kind = ConditionKind::own, .value = {}};  ///< condition at knot 0
   Time stop_time{250'000'000};     ///< length of the stop, > 0; with limits the least length
-  MotionLimits limits{};           ///< that stops keep to
+  MotionLimits limits{};           ///< that stops and entries keep to
   bool held_before_start = false;  ///< a hold stands before knot 0, as on a live stream
   bool force_lag = false;          ///< take a lag that is too short for λ
 };

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 
 namespace splinecast::core {
@@ -13,6 +15,12 @@ using Time = std::chrono::nanoseconds;
 /// every time of a stream changes no bit of its curve.
 [[nodiscard]] constexpr double to_seconds(Time difference) noexcept {
   return static_cast<double>(difference.count()) / 1e9;
+}
+
+/// The least time of at least so many seconds, which must be a number; at most 4·10⁹ s.
+[[nodiscard]] inline Time from_seconds(double seconds) noexcept {
+  constexpr double kMost = 4e9;
+  return Time(static_cast<std::int64_t>(std::ceil(std::clamp(seconds, -kMost, kMost) * 1e9)));
 }
 
 /// a + b, or the last time there is in that direction.

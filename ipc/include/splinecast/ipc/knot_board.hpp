@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "splinecast/core/knot_ring.hpp"
 #include "splinecast/core/knot_segment.hpp"
+#include "splinecast/core/limit_check.hpp"
 #include "splinecast/ipc/layout.hpp"
 #include "splinecast/ipc/publication.hpp"
 #include "splinecast/ipc/status.hpp"
@@ -39,6 +41,11 @@
 ///   loaded after R1. A later refusal, committed or not, overwrites the oldest one first; it is of
 ///   a later item. So a word is the refusal of its index iff its item comes before that of the next
 ///   index; the last one's item must come before the first item not consumed under that head.
+/// - Excesses: four words. W3 of the head that counts it and R1 order a committed one; that of a
+///   later revision may overwrite the oldest. Its first word is stored as 0 before the others, each
+///   of which is a release, and last as what it is, so that who loads with acquire the same first
+///   word before and after the others, and not 0, has copied one whole record: items are never
+///   given twice.
 /// - `retired`: stored with release and loaded with acquire; nothing depends on more than the word.
 /// - What the writer loads of its own board is relaxed: it made these stores itself, or its
 ///   predecessor did, whose death the kernel told by giving the owner's lock away.
@@ -48,6 +55,17 @@ namespace splinecast::ipc {
 struct RefusedItem {
   Word item = 0;
   Refusal reason{};
+};
+
+/// Where a limit was passed: of the first segment beyond one, the place that is farthest beyond.
+struct LimitExcess {
+  Word item = 0;            ///< of the waypoint
+  bool is_refused = false;  ///< else it was taken
+  core::LimitKind kind{};
+  std::size_t dimension = 0;  ///< of a quaternion its first
+  core::Time time{};
+  double value = 0;  ///< with its sign; of a quaternion a bound of its magnitude
+  double limit = 0;  ///< or the bound of a position
 };
 
 /// What goes with a knot besides its values.
@@ -127,6 +145,9 @@ class KnotBoardWriter {
 
   /// Notes a refusal for the next revision: the `index`-th of the stream, counted from 0.
   void write_refusal(Word index, const RefusedItem& refusal) noexcept;
+
+  /// Notes where a limit was passed: the `index`-th time in the stream, counted from 0.
+  void write_excess(Word index, const LimitExcess& excess) noexcept;
 
   /// Makes what has been written visible, as the revision after the last one: W3. Sets
   /// head.revision.
@@ -251,6 +272,7 @@ class KnotBoardWriter {
   BoardLayout layout_;
   std::span<Word> control_;
   std::span<Word> refusals_;
+  std::span<Word> excesses_;
   std::span<Word> times_;
   Word revision_;
   Word settled_;
@@ -417,6 +439,13 @@ class KnotBoardReader {
   [[nodiscard]] std::size_t copy_refusals(const Head& head, Word from,
                                           std::span<RefusedItem> out) const noexcept;
 
+  /// The excess noted at `index` < head.exceeding; nothing if it has been overwritten, or is
+  /// being.
+  [[nodiscard]] std::optional<LimitExcess> excess(const Head& head, Word index) const noexcept;
+
+  /// That of an item, if it is one of the last kExcessesKept. O(kExcessesKept).
+  [[nodiscard]] std::optional<LimitExcess> excess_of(const Head& head, Word item) const noexcept;
+
   /// Copies the row of a knot that has been copied, into `g`, and returns its scalars. For the one
   /// writer only, who races with nobody.
   [[nodiscard]] core::Prefix copy_row(const KnotCopy& knot, std::span<double> g) const noexcept;
@@ -443,6 +472,7 @@ class KnotBoardReader {
   std::size_t cell_words_;
   std::span<const Word> control_;
   std::span<const Word> refusals_;
+  std::span<const Word> excesses_;
   std::span<const Word> times_;
   std::span<const Word> slots_;
 };

@@ -216,7 +216,11 @@ inline constexpr std::tuple kItemRows{
              "8), acceleration given (bit 9), end condition of a finish (bits 16–23), waypoints "
              "that follow a replace and belong to it (bits 32–63)"},
     FieldRow{"time", {.words = 1}, FieldWriter::owner, "ns"},
-    FieldRow{"position", {.per_dimension = 1}, FieldWriter::owner, "doubles"},
+    FieldRow{"position",
+             {.per_dimension = 1},
+             FieldWriter::owner,
+             "doubles; of a replace with waypoints, in the first word: ns that the entry takes at "
+             "least"},
     FieldRow{"velocity", {.per_dimension = 1}, FieldWriter::owner, "doubles, where given"},
     FieldRow{"acceleration", {.per_dimension = 1}, FieldWriter::owner, "doubles, where given"}};
 inline constexpr auto kItemFields = place(kItemRows);
@@ -249,6 +253,7 @@ struct Head {
   Word course = 0;     ///< Course
   Word met = 0;    ///< waypoints of the run before the piece of the target that ends at `newest`
   Word unmet = 0;  ///< waypoints of the run before those that the open entry passes over
+  core::Time blend_until{};   ///< no entry of the run ends before
   Word passed_over = 0;       ///< waypoints that entries pass over, of all runs
   Word consumed = 0;          ///< ring items taken
   Word knots = 0;             ///< waypoints taken, replaced ones too
@@ -263,6 +268,7 @@ struct Head {
   Word revisions = 0;  ///< revisions committed too late, this one too: readers are told
   Word withdrawn = 0;  ///< items that a replacement withdrew unread
   Word controls = 0;   ///< replacements, start states and finishes carried out
+  Word exceeding = 0;  ///< waypoints that brought the curve, or would have, beyond a limit
   Word refused = 0;    ///< items refused
   std::array<Word, kRefusalReasons> reasons{};  ///< of these, by Refusal
   core::Time settled_until{};  ///< no time before it ever changes; not of the revision alone
@@ -294,6 +300,8 @@ inline constexpr std::tuple kHeadRows{
                           "newest knot"},
     MemberRow<&Head::unmet>{"unmet", FieldWriter::owner,
                             "waypoints of the run before those that the open entry passes over"},
+    MemberRow<&Head::blend_until>{"blend until", FieldWriter::owner,
+                                  "ns: no entry of the run ends before"},
     MemberRow<&Head::passed_over>{"passed over", FieldWriter::owner,
                                   "waypoints that entries pass over"},
     MemberRow<&Head::consumed>{"consumed", FieldWriter::owner, "items taken"},
@@ -320,9 +328,11 @@ inline constexpr std::tuple kHeadRows{
     MemberRow<&Head::withdrawn>{"withdrawn", FieldWriter::owner, "items withdrawn unread"},
     MemberRow<&Head::controls>{"controls", FieldWriter::owner,
                                "replacements, start states and finishes carried out"},
+    MemberRow<&Head::exceeding>{"exceeding", FieldWriter::owner,
+                                "waypoints that brought the curve, or would have, beyond a limit"},
     MemberRow<&Head::refused>{"refused", FieldWriter::owner, "items refused"},
     MemberRow<&Head::reasons>{"reasons", FieldWriter::owner, "items refused, by reason"},
-    padding(6)};
+    padding(4)};
 inline constexpr auto kHeadFields = place(kHeadRows);
 inline constexpr std::size_t kHeadWords = size_of(kHeadFields).words;
 static_assert(kHeadWords % (kCacheLine / sizeof(Word)) == 0);
@@ -442,11 +452,22 @@ inline constexpr std::size_t kRowG = word_of(kRowFields, "g");
 
 /// The ring of refusals.
 inline constexpr std::size_t kRefusalsKept = 1024;
+inline constexpr std::size_t kExcessesKept = 128;
+inline constexpr std::size_t kExcessWords = 4;
+inline constexpr unsigned kExcessItemShift = 10;
+inline constexpr unsigned kExcessDimensionShift = 4;
 inline constexpr std::tuple kBodyRows{
     FieldRow{"refusals",
              {.words = kRefusalsKept},
              FieldWriter::owner,
              "the last 1,024: item number · 256 + reason"},
+    FieldRow{"excesses",
+             {.words = kExcessesKept * kExcessWords},
+             FieldWriter::owner,
+             "the last 128 waypoints with which a limit was passed, 4 words each: 0 while it is "
+             "written, else item number · 1,024 + dimension · 16 + kind (0 velocity, 1 "
+             "acceleration, 2 jerk, 3 position) · 2 + 1 if it was refused; when, in ns; the value, "
+             "and the limit, as doubles"},
     FieldRow{"times",
              {},
              FieldWriter::owner,
@@ -455,7 +476,7 @@ inline constexpr std::tuple kBodyRows{
 
 /// Slots behind those of the numbered knots: the waypoints that entries pass over, by their number
 /// in the run. Only a solver that takes over reads them.
-inline constexpr std::size_t kPassedSlots = 128;
+inline constexpr std::size_t kPassedSlots = 80;
 inline constexpr unsigned kPassedItemShift = 24;
 inline constexpr auto kBodyFields = place(kBodyRows);
 
@@ -479,6 +500,7 @@ struct BoardLayout {
   std::size_t control;
   bool smooths;          ///< cells have residuals, rows have factors
   std::size_t refusals;  ///< kRefusalsKept words
+  std::size_t excesses;  ///< kExcessesKept of kExcessWords each
   std::size_t times;     ///< packed times: capacity words
   std::size_t slots;     ///< capacity + kPassedSlots slots
   std::size_t cell;      ///< bytes of a cell; cells begin a slot

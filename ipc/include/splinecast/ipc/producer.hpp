@@ -6,10 +6,19 @@
 
 #include "splinecast/core/waypoint.hpp"
 #include "splinecast/ipc/refusals.hpp"
+#include "splinecast/ipc/replace_preview.hpp"
 #include "splinecast/ipc/status.hpp"
 #include "splinecast/ipc/stream_options.hpp"
 
 namespace splinecast::ipc {
+
+/// How a replacement goes over from the old motion to the new one.
+struct ReplaceOptions {
+  /// The entry onto the new waypoints takes at least so long: those before its end are passed over.
+  /// 0 or less: to the first one, or, with limits, to the first at which they can be kept. At most
+  /// the stream's most interval.
+  core::Time blend{};
+};
 
 /// The role that appends waypoints: the one writer of a stream's waypoint ring.
 ///
@@ -33,10 +42,11 @@ class Producer {
   [[nodiscard]] AppendStatus append(const core::Waypoint& waypoint) noexcept;
 
   /// Replaces all that lies behind time t by these waypoints, from none upwards, as one revision:
-  /// the curve goes on from its state at t by a splice, or, without a waypoint, comes to rest. With
-  /// waypoints, `t` must not lie before earliest(), else `too_late`; the waypoints must be later
-  /// than it, and fit into the ring besides what it keeps free for stops. On a stream that has no
-  /// waypoint yet they start it, as appended ones do. O(D) per waypoint; otherwise as append.
+  /// the curve goes on from its state at t by an entry, as ReplaceOptions has it, or, without a
+  /// waypoint, comes to rest. With waypoints, `t` must not lie before earliest(), else `too_late`;
+  /// the waypoints must be later than it, and fit into the ring besides what it keeps free for
+  /// stops. On a stream that has no waypoint yet they start it, as appended ones do. O(D) per
+  /// waypoint; otherwise as append.
   ///
   /// Without waypoints it is a stop, which is never too late: a t that has settled means as soon as
   /// possible. The solver's next step carries it out at its settled_until, or at t if that is
@@ -44,8 +54,20 @@ class Producer {
   /// most. A stop at a t behind the newest knot waits for its turn, and at the latest for
   /// settled_until to reach t. A ring of 16 items or more keeps room for stops and for `finish`:
   /// when it is full of waypoints it takes them.
-  [[nodiscard]] AppendStatus replace_from(core::Time t,
-                                          std::span<const core::Waypoint> waypoints) noexcept;
+  [[nodiscard]] AppendStatus replace_from(core::Time t, std::span<const core::Waypoint> waypoints,
+                                          const ReplaceOptions& options = {}) noexcept;
+
+  /// What `replace_from` with these arguments would do, without changing anything: how long the
+  /// entry takes, the largest velocities, accelerations and jerks, and what would be passed over.
+  /// Of a stop: how long it takes from t, or from earliest() if that is later. As the solver would
+  /// plan it now: what is published meanwhile, and the time that passes, may change it. O(n·K·D),
+  /// and reads the board; no system call but the search for a solver, as in append. Allocates: the
+  /// second form reuses its memory. From the producer's thread. Throws std::bad_alloc only.
+  [[nodiscard]] ReplacePreview preview_replace(core::Time t,
+                                               std::span<const core::Waypoint> waypoints,
+                                               const ReplaceOptions& options = {});
+  void preview_replace(core::Time t, std::span<const core::Waypoint> waypoints,
+                       const ReplaceOptions& options, ReplacePreview& out);
 
   /// Says in which state the stream starts, before its first waypoint, which must be later:
   /// velocity and acceleration have one value per dimension. Otherwise as append.

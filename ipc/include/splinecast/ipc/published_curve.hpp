@@ -17,7 +17,6 @@ namespace splinecast::ipc {
 struct EntryOptions {
   bool is_live = false;     ///< else an entry is looked for once K newer waypoints are known
   core::Time min_splice{};  ///< length of the shortest entry
-  core::Time least{};       ///< of the entry into the present run: at least so long
   core::Time notice{};      ///< how long before it settles a live stream's start is decided
 };
 
@@ -113,9 +112,16 @@ class PublishedCurve {
   [[nodiscard]] core::Time earliest_cut() const noexcept;
 
   /// Cuts the committed curve at t, where there is one, and begins a run that goes on from there,
-  /// by an entry that takes at least `blend`. There must be no uncommitted changes. Changes nothing
-  /// if the board is damaged.
+  /// by an entry that does not end before t + `blend`. There must be no uncommitted changes.
+  /// Changes nothing if the board is damaged.
   void begin_run(core::Time t, core::Time blend) noexcept;
+
+  /// The first segment that would be beyond a limit with this waypoint, and would not be so
+  /// without, where it is farthest beyond; of the segments that it changes, as far as the curve may
+  /// come to follow them. Without limits O(1), else O(K·D). Changes nothing of the curve.
+  [[nodiscard]] std::optional<LimitExcess> excess_with(const core::Waypoint& waypoint) noexcept {
+    return has_limits_ && window_.knots() > 0 ? find_excess(waypoint) : std::nullopt;
+  }
 
   /// Appends a waypoint to the run: the ring's item of this number.
   void append(const core::Waypoint& waypoint, Word item) noexcept;
@@ -124,7 +130,11 @@ class PublishedCurve {
   /// `tries` is counted down: see kTriesPerStep. `is_last`: no waypoint waits, so that those that
   /// are known decide.
   /// Segments that end after `keep` are not lost by it.
-  void plan(core::Time settled, core::Time keep, bool is_last, int& tries) noexcept;
+  void plan(core::Time settled, core::Time keep, bool is_last, int& tries) noexcept {
+    if (is_searching_ || window_.options().held_before_start) {
+      look_for_entry(settled, keep, is_last, tries);
+    }
+  }
 
   /// Whether an entry is still being looked for: a step is of use without a new waypoint.
   [[nodiscard]] bool is_planning() const noexcept {
@@ -174,6 +184,10 @@ class PublishedCurve {
   [[nodiscard]] bool find_state(core::Time settled) noexcept;
   [[nodiscard]] bool prepare(core::Time settled) noexcept;
   [[nodiscard]] core::EntryRules entry_rules() const noexcept;
+  [[nodiscard]] std::size_t first_compared() const noexcept;
+  [[nodiscard]] std::span<const core::Knot> knots_to_go_on() noexcept;
+  void look_for_entry(core::Time settled, core::Time keep, bool is_last, int& tries) noexcept;
+  [[nodiscard]] std::optional<LimitExcess> find_excess(const core::Waypoint& waypoint) noexcept;
   void enter() noexcept;
   void enter_before_end() noexcept;
   void note_change(core::Time from) noexcept;
@@ -212,11 +226,13 @@ class PublishedCurve {
   KnotBoardWriter* board_;
   const KnotBoardReader* published_;
   core::SlidingWindow window_;
+  core::SlidingWindow trial_;  ///< scratch: the window with one more waypoint
   core::DimensionKinds kinds_;
   EntryOptions entries_;
   std::size_t look_ahead_;  ///< how many rows before the newest knot an append may change
   bool has_plain_knots_;    ///< the method changes the velocities of knots and no more
-  Head head_;               ///< last committed
+  bool has_limits_;
+  Head head_;  ///< last committed
   CurveCut cut_;
   core::EntrySearch search_;
   ShownMotion shown_;
@@ -228,6 +244,7 @@ class PublishedCurve {
   std::vector<core::Knot> knots_;
   std::vector<double> knot_values_;
   std::vector<double> values_;  ///< scratch
+  core::Segment segment_;       ///< scratch
   Word run_ = 1;
   Word run_item_ = 0;  ///< item of the run's first waypoint, plus 1
   Word first_ = 0;
@@ -251,8 +268,9 @@ class PublishedCurve {
   Word passed_before_ = 0;            ///< waypoints passed over by entries that are over
   Origin origin_;
   core::State origin_state_;
-  core::Time entry_end_{};  ///< of one that ends at a waypoint
-  core::State beyond_;      ///< end of an entry beyond the newest waypoint
+  core::Time blend_until_ = core::Time::min();  ///< no entry of the run ends before
+  core::Time entry_end_{};                      ///< of one that ends at a waypoint
+  core::State beyond_;                          ///< end of an entry beyond the newest waypoint
   BehindEntry behind_;
   Word known_ = 0;              ///< of an entry beyond the newest waypoint: how many the run had
   bool ends_at_known_ = false;  ///< at the newest waypoint that it knew, which is not met yet

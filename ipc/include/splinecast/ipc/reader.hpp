@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "splinecast/core/limit_check.hpp"
 #include "splinecast/core/state.hpp"
 #include "splinecast/ipc/sampler.hpp"
 #include "splinecast/ipc/stream_options.hpp"
@@ -75,6 +76,13 @@ class Reader {
   [[nodiscard]] SampleStatus snapshot(core::Time from, core::Time to, Snapshot& out) {
     return sampler_->snapshot(from, to, out);
   }
+
+  /// The stream's limits; empty if it has none. They never change.
+  [[nodiscard]] const core::MotionLimits& limits() const noexcept;
+
+  /// Marks a sample: where it is nearest to a limit of the stream, or farthest beyond it; a ratio
+  /// above 1 is beyond. O(D), allocates nothing.
+  [[nodiscard]] core::Excess excess(const core::State& sampled) const noexcept;
 
   /// Copies the head of the newest revision. Returns false if there is none, or if the writer
   /// overtook every try.

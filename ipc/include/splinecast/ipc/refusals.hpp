@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,10 +17,16 @@ struct ItemRefusal {
   Word item = 0;                     ///< number of the item: Producer::appended() before its append
   std::optional<core::Time> time{};  ///< of the item; unset if the ring has overwritten it
   Refusal reason{};
+  std::optional<LimitExcess> excess{};  ///< of `beyond_limits`, unless the board has it no more
 };
 
-/// `item 17 refused: too late (time 123 ns)`.
+/// `item 17 refused: too late (time 123 ns)`; of one beyond a limit also where.
 [[nodiscard]] std::string to_string(const ItemRefusal& refusal);
+
+/// `acceleration of dimension 2 (wrist) is 12.5 at 456 ns, limit 10`, with the dimension's name if
+/// there is one among these.
+[[nodiscard]] std::string in_words(const LimitExcess& excess,
+                                   std::span<const std::string> names = {});
 
 /// What a solver has refused since it was asked the last time.
 struct Refusals {

@@ -35,7 +35,11 @@ class ShownMotion {
   void forget_after(core::Time t) noexcept;
 
   /// Forgets everything, and takes the waypoints that the curve meets before `end`, by what the
-  /// board holds under a head, and then those of the run from number `first` on: from the slots of
+  /// board holds under a head. Anybody may look: what a writer changes meanwhile is left out.
+  /// O(kSpan/kStep·(log n + D)).
+  void restore(const KnotBoardReader& board, const Head& head, core::Time end) noexcept;
+
+  /// The same for the writer, and then those of the run from number `first` on: from the slots of
   /// those that are passed over, and from the window. O((kSpan/kStep + kPassedSlots)·D).
   void restore(const core::SlidingWindow& window, const KnotBoardReader& board, const Head& head,
                core::Time end, std::size_t first) noexcept;

@@ -128,6 +128,13 @@ class Solver {
   /// the last call.
   void first_refusals(std::vector<ItemRefusal>& out);
 
+  /// The first waypoint since this solver attached that was taken although the curve passes a limit
+  /// with it, once. O(1) unless another one has been taken since the last call.
+  [[nodiscard]] std::optional<LimitExcess> first_excess() noexcept;
+
+  /// `item 17, acceleration of dimension 2 (wrist) is …`; attached() only.
+  [[nodiscard]] std::string in_words(const LimitExcess& excess) const;
+
   /// The head last committed; attached() only.
   [[nodiscard]] const Head& head() const noexcept;
 

@@ -40,8 +40,9 @@ enum class Refusal : std::uint8_t {
   lacks_derivatives = 11,  ///< the method needs a velocity, or acceleration, that is not given
   lag_too_short = 12,      ///< the settle lag is too short for λ with waypoints so close
   zero_quaternion = 13,    ///< a quaternion has length 0, or one outside 1e-100 to 1e100
+  beyond_limits = 14,      ///< the curve would be beyond a limit, and that is to be refused
 };
-inline constexpr std::uint8_t kRefusals = 14;
+inline constexpr std::uint8_t kRefusals = 15;
 
 /// What a sample is worth.
 enum class SampleStatus : std::uint8_t {

@@ -22,8 +22,11 @@ struct StreamInfo {
   std::array<Word, kAppendStatuses> refused_by_producer{};  ///< by AppendStatus
   Head head;                                                ///< revision 0: nothing solved yet
   std::array<Word, kStepBuckets> step_times{};  ///< steps of the solver that took 2ⁱ to 2ⁱ⁺¹ ns
+  std::optional<core::MotionLimits> shown;      ///< of a live stream: what its motion shows, by the
+                                                ///< waypoints on the board; see ShownMotion
   std::vector<RefusedItem> refusals;  ///< the last items refused, oldest first: kRefusalsKept,
                                       ///< fewer if the solver has overwritten some meanwhile
+  std::vector<LimitExcess> excesses;  ///< the last places beyond a limit, likewise: kExcessesKept
 };
 
 /// Looks at a stream. Throws NoSuchStream if nothing of it stands, BadRegion if a region cannot

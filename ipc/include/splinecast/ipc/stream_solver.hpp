@@ -46,6 +46,9 @@ struct LiveOptions {
 /// accept, is discarded and made again with fewer items, until the one that it comes from is alone
 /// and is refused.
 ///
+/// Of a stream with limits each waypoint is tried first: where the curve would pass a limit with
+/// it, that is noted, and the waypoint is taken or refused, as `beyond` has it.
+///
 /// A stop, a replacement without waypoints, takes effect at settled_until of the first step that
 /// finds it in the ring, or at its own time if that is later: whatever is queued before it, whether
 /// or not the board has room for those items.
@@ -59,7 +62,8 @@ class StreamSolver {
   StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& board,
                const KnotBoardReader& published, const core::WindowOptions& window,
                const IngestLimits& limits, core::DimensionKinds kinds = {},
-               const std::optional<LiveOptions>& live = std::nullopt);
+               const std::optional<LiveOptions>& live = std::nullopt,
+               core::Beyond beyond = core::Beyond::report);
 
   /// Takes what the ring holds, up to a bounded batch, and publishes the result as one revision; on
   /// a live stream also says how far the curve is settled, when that is due, which is no revision.
@@ -104,6 +108,7 @@ class StreamSolver {
   }
   void take(Word number) noexcept;
   void take_waypoint(Word number) noexcept;
+  [[nodiscard]] bool is_within_limits(const core::Waypoint& waypoint, Word number) noexcept;
   void take_replacement(Word number) noexcept;
   void refuse_replacement(Word number, Refusal reason) noexcept;
   void take_start_state(Word number) noexcept;
@@ -123,6 +128,7 @@ class StreamSolver {
   const KnotBoardReader* published_;
   IngestLimits limits_;
   std::optional<LiveOptions> live_;
+  core::Beyond beyond_;
   PublishedCurve curve_;
   std::size_t max_batch_;
   Head head_;

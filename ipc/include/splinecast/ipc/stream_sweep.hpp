@@ -25,6 +25,7 @@ enum class SweepNews : std::uint8_t {
   elsewhere,       ///< another process solves it; taken over when that dies
   no_descriptors,  ///< RLIMIT_NOFILE leaves none for it; tried again when streams have come or gone
   refused,         ///< an item was refused, the first one for its reason
+  beyond_limits,   ///< the curve passes a limit with a waypoint that was taken, the first one
   postponed,       ///< memory or descriptors are lacking; tried again from time to time
   given_up,        ///< it cannot be solved; tried again when other files exist under its name
   gone,            ///< a stream that was found by a pattern stands no more

@@ -74,6 +74,7 @@ struct RingItem {
   bool has_acceleration = false;
   core::ConditionKind condition{};  ///< of a finish
   std::uint32_t count = 0;          ///< of a replacement: waypoints that belong to it
+  core::Time blend{};               ///< of one with waypoints: its entry takes at least so long
   core::Time time{};
   std::vector<double> values;  ///< positions, velocities, accelerations: those that it has
 
@@ -119,11 +120,19 @@ class WaypointRingWriter {
 
   /// Replaces all that lies behind t: `waypoints`, which may be none, must be later than it, and
   /// together with the replacement itself fit into the ring besides control_reserve. One store of
-  /// `head` makes all of it visible. O(D) per waypoint. Without waypoints it is a stop, for which
+  /// `head` makes all of it visible. O(D) per waypoint. The entry onto them takes at least `blend`:
+  /// a negative one means 0, one beyond the most interval is `too_far_apart`. Without waypoints it
+  /// is a stop, for which
   /// there is the reserve. A t that has settled means the earliest time possible; a stop that
   /// repeats the newest item, a stop that still waits, at the same time or later takes no item.
   [[nodiscard]] AppendStatus replace_from(core::Time t, std::span<const core::Waypoint> waypoints,
-                                          const Solved& solved) noexcept;
+                                          const Solved& solved, core::Time blend = {}) noexcept;
+
+  /// What `replace_from` would answer, of a stop as well. Changes nothing.
+  [[nodiscard]] AppendStatus check_replacement(core::Time t,
+                                               std::span<const core::Waypoint> waypoints,
+                                               const Solved& solved,
+                                               core::Time blend = {}) const noexcept;
 
   /// Says in which state the stream starts: before its first waypoint, which must be later.
   [[nodiscard]] AppendStatus start_from(const core::Instant& state, const Solved& solved) noexcept;
@@ -148,17 +157,17 @@ class WaypointRingWriter {
   [[nodiscard]] AppendStatus check_form(const core::Waypoint& waypoint) const noexcept;
   [[nodiscard]] AppendStatus check(const core::Waypoint& waypoint,
                                    const Solved& solved) const noexcept;
-  [[nodiscard]] AppendStatus check_replacement(core::Time t,
-                                               std::span<const core::Waypoint> waypoints,
-                                               const Solved& solved) const noexcept;
   [[nodiscard]] bool has_room(Word items, const Solved& solved, std::size_t free) const noexcept {
     return head_ - solved.consumed + items + free <= layout_.capacity;
   }
   [[nodiscard]] bool repeats_stop(core::Time from, const Solved& solved) const noexcept;
   [[nodiscard]] bool is_past(core::Time time, const Solved& solved) const noexcept;
   [[nodiscard]] bool follows_pause(core::Time time, const Solved& solved) const noexcept;
+  [[nodiscard]] static core::Time stop_time(core::Time t, const Solved& solved) noexcept;
+  [[nodiscard]] AppendStatus check_stop(core::Time t, const Solved& solved) const noexcept;
   [[nodiscard]] AppendStatus stop_from(core::Time t, const Solved& solved) noexcept;
   void claim(Word items) noexcept;
+  [[nodiscard]] std::span<Word> item_words(Word index) const noexcept;
   void put_item(Word index, Word kind_and_flags, const core::Waypoint& values) noexcept;
   void publish(Word items, core::Time last) noexcept;
   [[nodiscard]] AppendStatus counted(AppendStatus status) noexcept;

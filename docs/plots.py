@@ -1,0 +1,365 @@
+#!/usr/bin/env python3
+"""Draws what readers see around each mishap, and writes the measured numbers into the page.
+
+    plots.py FOLDER           draws docs/plots/*.svg from what `splinecast_campaign motions --trace FOLDER`
+                              has written, and updates the tables of docs/what-happens-when.md; also those
+                              of docs/tails.md, from tests/campaign/results/stops.json
+    plots.py --check PROGRAM  exits 1 unless the page shows every plot and describes every mishap that
+                              `PROGRAM motions --list` names, and every plot is there
+
+`./run plots` runs the campaign and this.
+"""
+
+import csv
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+DOCS = Path(__file__).resolve().parent
+PLOTS = DOCS / "plots"
+PAGE = DOCS / "what-happens-when.md"
+TAILS = DOCS / "tails.md"
+STOPS = DOCS.parent / "tests" / "campaign" / "results" / "stops.json"
+
+WIDTH = 760
+LEFT, RIGHT, TOP, GAP, BOTTOM = 62, 14, 58, 16, 40
+PANEL = 132
+HEIGHT = TOP + 3 * PANEL + 2 * GAP + BOTTOM
+
+INK, FAINT, CURVE, TARGET, LIMIT = "#24292f", "#d8dee4", "#0b62c4", "#8c959f", "#c1272d"
+SHADES = {"stopping": "#ffe3b8", "holding": "#dfe3e8", "entry": "#d3efd7"}
+SHADE_NAMES = {"stopping": "stop", "holding": "hold", "entry": "entry"}
+
+
+def read_trace(path):
+    """Columns of numbers by their names, None where there is none; and the statuses."""
+    with open(path, encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    numbers = {name: [float(row[name]) if row[name] else None for row in rows]
+               for name in rows[0] if name != "status"}
+    return numbers, [row["status"] for row in rows]
+
+
+def spans_of(times, statuses):
+    """(status, from, until) of consecutive samples of one status that is shaded."""
+    spans = []
+    for t, status in zip(times, statuses):
+        if spans and spans[-1][0] == status:
+            spans[-1][2] = t
+        else:
+            if spans:
+                spans[-1][2] = t
+            spans.append([status, t, t])
+    return [span for span in spans if span[0] in SHADES and span[2] > span[1]]
+
+
+def simplified(points, tolerance=0.25):
+    """Ramer–Douglas–Peucker: the points that matter at this tolerance, in pixels."""
+    keep = {0, len(points) - 1}
+    stack = [(0, len(points) - 1)]
+    while stack:
+        a, b = stack.pop()
+        (xa, ya), (xb, yb) = points[a], points[b]
+        worst, most = None, tolerance
+        for i in range(a + 1, b):
+            x, y = points[i]
+            share = (x - xa) / (xb - xa) if xb > xa else 0
+            distance = abs(y - (ya + share * (yb - ya)))
+            if distance > most:
+                worst, most = i, distance
+        if worst is not None:
+            keep.add(worst)
+            stack += [(a, worst), (worst, b)]
+    return [points[i] for i in sorted(keep)]
+
+
+def round_step(span, count):
+    """A step of 1, 2 or 5 times a power of ten, for at most so many ticks."""
+    step = 10.0 ** -6
+    while True:
+        for factor in (1, 2, 5):
+            if span / (step * factor) <= count:
+                return step * factor
+        step *= 10
+
+
+def tick_text(value, step):
+    decimals = 0
+    while decimals < 6 and abs(round(step, decimals) - step) > 1e-9 * step:
+        decimals += 1
+    return f"{value:.{decimals}f}".replace("-", "−") if abs(value) > step / 2 else "0"
+
+
+class Panel:
+    """One quantity over time."""
+
+    def __init__(self, number, label, times, low, high):
+        self.top = TOP + number * (PANEL + GAP)
+        self.label = label
+        self.first, self.last = times[0], times[-1]
+        margin = 0.08 * (high - low) or 1
+        self.low, self.high = low - margin, high + margin
+
+    def x(self, t):
+        return LEFT + (t - self.first) / (self.last - self.first) * (WIDTH - LEFT - RIGHT)
+
+    def y(self, value):
+        return self.top + (self.high - value) / (self.high - self.low) * PANEL
+
+    def frame(self):
+        right = WIDTH - RIGHT
+        parts = [f'<text transform="translate(14 {self.top + PANEL / 2:.0f}) rotate(-90)" '
+                 f'text-anchor="middle">{self.label}</text>']
+        step = round_step(self.high - self.low, 5)
+        tick = -int(-self.low // step) * step
+        while tick <= self.high:
+            y = self.y(tick)
+            parts.append(f'<path d="M{LEFT} {y:.1f}H{right}" stroke="{FAINT}"/>'
+                         f'<text x="{LEFT - 6}" y="{y + 4:.1f}" text-anchor="end">'
+                         f'{tick_text(tick, step)}</text>')
+            tick += step
+        parts.append(f'<rect x="{LEFT}" y="{self.top}" width="{right - LEFT}" height="{PANEL}" '
+                     f'fill="none" stroke="{TARGET}"/>')
+        return parts
+
+    def shades(self, spans):
+        return [f'<rect x="{self.x(a):.1f}" y="{self.top}" width="{self.x(b) - self.x(a):.1f}" '
+                f'height="{PANEL}" fill="{SHADES[status]}"/>' for status, a, b in spans]
+
+    def line(self, times, values, color, width, dashes=""):
+        points = [(self.x(t), self.y(v)) for t, v in zip(times, values) if v is not None]
+        if len(points) < 2:
+            return []
+        text = "".join(f"{'L' if i else 'M'}{x:.1f} {y:.1f}"
+                       for i, (x, y) in enumerate(simplified(points)))
+        return [f'<path clip-path="url(#p{self.top})" d="{text}" fill="none" stroke="{color}" '
+                f'stroke-width="{width}" stroke-linejoin="round"{dashes}/>']
+
+    def clip(self):
+        return (f'<clipPath id="p{self.top}"><rect x="{LEFT}" y="{self.top}" '
+                f'width="{WIDTH - LEFT - RIGHT}" height="{PANEL}"/></clipPath>')
+
+
+def legend(row, statuses):
+    """Keys in the line above the panels."""
+    parts, x = [], LEFT
+    entries = [("line", CURVE, f"joint {row['joint']}"), ("line", TARGET, "target")]
+    if row["limit [rad/s2]"]:
+        entries.append(("dashes", LIMIT, f"limit {row['limit [rad/s2]']:g} rad/s²"))
+    entries += [("box", SHADES[s], SHADE_NAMES[s]) for s in SHADES if s in statuses]
+    if row["silences [s]"]:
+        entries.append(("bar", INK, "producer silent"))
+    if row["solver dead [s]"]:
+        entries.append(("bar", LIMIT, "no solver"))
+    if row["replacements [s]"]:
+        entries.append(("tick", INK, "replace_from"))
+    for kind, color, name in entries:
+        if kind == "box":
+            parts.append(f'<rect x="{x}" y="25" width="18" height="11" fill="{color}"/>')
+        elif kind == "bar":
+            parts.append(f'<rect x="{x}" y="28" width="18" height="5" fill="{color}"/>')
+        elif kind == "tick":
+            parts.append(f'<path d="M{x + 9} 25l-4 8h8z" fill="{color}"/>')
+        else:
+            dashes = ' stroke-dasharray="5 4"' if kind == "dashes" else ""
+            parts.append(f'<path d="M{x} 31h18" stroke="{color}" stroke-width="2"{dashes}/>')
+        parts.append(f'<text x="{x + 23}" y="35">{name}</text>')
+        x += 40 + 6.3 * len(name)
+    return parts
+
+
+def events(panel, row):
+    """What happens, in the strip between the legend and the panels."""
+    parts = []
+
+    def bar(intervals, color, y):
+        for begin, end in intervals:
+            a, b = panel.x(begin), panel.x(min(end, panel.last))
+            parts.append(f'<rect x="{a:.1f}" y="{y}" width="{b - a:.1f}" height="5" fill="{color}"/>')
+
+    bar(row["silences [s]"], INK, TOP - 14)
+    bar(row["solver dead [s]"], LIMIT, TOP - 8)
+    for at, _ in row["replacements [s]"]:
+        parts.append(f'<path d="M{panel.x(at):.1f} {TOP - 13}l-4 8h8z" fill="{INK}"/>')
+    return parts
+
+
+def acceleration_range(values, statuses, limit):
+    """What the panel shows: all, or, where noise would hide the rest, what stops and entries take."""
+    most = max(abs(v) for v in values)
+    shaded = [abs(v) for v, s in zip(values, statuses) if s in SHADES]
+    calm = max(shaded + [limit * 1.15, 1])
+    return min(most, 1.5 * calm) if most > 4 * calm else max(most, limit * 1.15)
+
+
+def draw(row, numbers, statuses):
+    times = [t for t in numbers["t [s]"]]
+    spans = spans_of(times, statuses)
+    limit = row["limit [rad/s2]"]
+    a = numbers["acceleration [rad/s2]"]
+    most = acceleration_range(a, statuses, limit)
+    panels = []
+    for number, (label, name) in enumerate((("position [rad]", "position [rad]"),
+                                            ("velocity [rad/s]", "velocity [rad/s]"))):
+        values = [v for v in numbers[name] + numbers["target " + name] if v is not None]
+        panels.append(Panel(number, label, times, min(values), max(values)))
+    panels.append(Panel(2, "acceleration [rad/s²]", times, -most, most))
+    title = row["mishap"] + (f", limit {limit:g} rad/s²" if limit else ", no limit")
+    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
+             f'width="{WIDTH}" height="{HEIGHT}" font-family="sans-serif" font-size="12" '
+             f'fill="{INK}">', f"<title>{title}</title>",
+             "<defs>" + "".join(panel.clip() for panel in panels) + "</defs>",
+             f'<rect width="{WIDTH}" height="{HEIGHT}" fill="#ffffff"/>',
+             f'<text x="{LEFT}" y="16" font-weight="bold">{title}</text>']
+    parts += legend(row, set(statuses)) + events(panels[0], row)
+    for panel in panels:
+        parts += panel.shades(spans) + panel.frame()
+    for panel, name in zip(panels, ("position [rad]", "velocity [rad/s]")):
+        parts += panel.line(times, numbers["target " + name], TARGET, 3)
+        parts += panel.line(times, numbers[name], CURVE, 1.5)
+    if limit:
+        for y in (limit, -limit):
+            parts += panels[2].line([times[0], times[-1]], [y, y], LIMIT, 1.2,
+                                    ' stroke-dasharray="5 4"')
+    parts += panels[2].line(times, a, CURVE, 1.5)
+    if max(abs(v) for v in a) > panels[2].high:
+        parts.append(f'<text x="{WIDTH - RIGHT - 6}" y="{panels[2].top + 14}" text-anchor="end">'
+                     f"the noise beyond the panel reaches {max(abs(v) for v in a):.0f} rad/s²</text>")
+    step = round_step(times[-1] - times[0], 9)
+    tick = -int(-times[0] // step) * step
+    bottom = panels[2].top + PANEL
+    while tick <= times[-1] + 1e-9:
+        x = panels[0].x(tick)
+        parts.append(f'<path d="M{x:.1f} {bottom}v4" stroke="{TARGET}"/>'
+                     f'<text x="{x:.1f}" y="{bottom + 17}" text-anchor="middle">'
+                     f"{tick_text(tick, step)}</text>")
+        tick += step
+    parts.append(f'<text x="{(LEFT + WIDTH - RIGHT) / 2:.0f}" y="{HEIGHT - 6}" '
+                 'text-anchor="middle">time [s]</text></svg>')
+    return "\n".join(parts) + "\n"
+
+
+def percent(part, whole):
+    return f"{100 * part / whole:.1f} %"
+
+
+def mrad(radians):
+    return f"{1000 * radians:.2g} mrad" if radians < 0.01 else f"{1000 * radians:.0f} mrad"
+
+
+def table_of(rows):
+    """The measured numbers of a section, a column per row of the campaign."""
+    heads = [f"limit {row['limit [rad/s2]']:g} rad/s²" if row["limit [rad/s2]"] else "no limit"
+             for row in rows]
+
+    def line(name, text):
+        return f"| {name} | " + " | ".join(text(row) for row in rows) + " |"
+
+    def back(row):
+        t = row["back on the path after [s]"]
+        return f"{t:.2f} s" if t >= 0 else "not in the plot"
+
+    lines = ["| | " + " | ".join(heads) + " |", "|---" * (len(rows) + 1) + "|"]
+    lines.append(line("plot: largest path error", lambda r: mrad(r["largest path error shown [rad]"])))
+    lines.append(line("plot: back on the path after", back))
+    lines.append(line("plot: stopping, holding, in entries",
+                      lambda r: f"{r['stopping [s]']:.2f} s, {r['holding [s]']:.2f} s, "
+                      f"{r['in entries [s]']:.2f} s"))
+    lines.append(line("20 s: path error from 2 s on, p99, largest",
+                      lambda r: f"{mrad(r['path error p99 [rad]'])}, "
+                      f"{mrad(r['largest path error [rad]'])}"))
+    lines.append(line("20 s: peak velocity, acceleration",
+                      lambda r: f"{r['peak velocity [rad/s]']:.2f} rad/s, "
+                      f"{r['peak acceleration [rad/s2]']:.2f} rad/s²"))
+    lines.append(line("20 s: waypoints; passed over",
+                      lambda r: f"{r['waypoints']:,}; {percent(r['passed over'], r['waypoints'])}"))
+    lines.append(line("20 s: refused as `past`; for other reasons",
+                      lambda r: f"{r['refused as past']}; {r['refused otherwise']}"))
+    lines.append(line("20 s: ran dry (`underruns`)", lambda r: f"{r['ran dry']}"))
+    lines.append(line("20 s: holding besides the silences",
+                      lambda r: f"{r['holding besides the pauses [%]']:.2f} %"))
+    return "\n".join(lines)
+
+
+def put_tables(path, tables):
+    """Puts each table between the marks of its name."""
+    text = path.read_text(encoding="utf-8")
+    for name, table in tables.items():
+        begin, end = f"<!-- measured: {name} -->\n", "\n<!-- end -->"
+        if begin not in text:
+            sys.exit(f"{path}: there is no place for what was measured of {name}")
+        head, rest = text.split(begin, 1)
+        text = head + begin + "\n" + table + "\n" + end + rest.split(end, 1)[1]
+    path.write_text(text, encoding="utf-8")
+
+
+def update_page(rows):
+    sections = dict.fromkeys(row["section"] for row in rows)
+    put_tables(PAGE, {section: table_of([row for row in rows if row["section"] == section])
+                      for section in sections})
+
+
+def update_tails():
+    """A table for each source: a row for each quantity, a column for each curve."""
+    measured = json.loads(STOPS.read_text(encoding="utf-8"))["measured"]
+    sources = {}
+    for name, text in measured.items():
+        source, curve = name.split("; ")
+        quantities = dict(part.split(": ") for part in text.split("; "))
+        sources.setdefault(source, {})[curve.removeprefix("c2, ")] = quantities
+    order = ["bessel", "parabolic", "natural", "rest", "smoothing, lambda 5e-7 s3"]
+    tables = {}
+    for source, curves in sources.items():
+        lines = ["| | " + " | ".join(f"`{curve.split(',')[0]}`" for curve in order) + " |",
+                 "|---" * (len(order) + 1) + "|"]
+        for quantity in max(curves.values(), key=len):
+            cells = [curves[curve].get(quantity, "none") for curve in order]
+            lines.append(f"| {quantity.replace('|', chr(92) + '|')} | " + " | ".join(cells) + " |")
+        tables[source] = "\n".join(lines).replace("/s2", "/s²").replace("/s3", "/s³")
+    put_tables(TAILS, tables)
+
+
+def make(folder):
+    rows = json.loads((folder / "rows.json").read_text(encoding="utf-8"))
+    PLOTS.mkdir(exist_ok=True)
+    for old in PLOTS.glob("*.svg"):
+        old.unlink()
+    for row in rows:
+        svg = draw(row, *read_trace(folder / f"{row['file']}.csv"))
+        (PLOTS / f"{row['file']}.svg").write_text(svg, encoding="utf-8")
+    update_page(rows)
+    update_tails()
+
+
+def check(program):
+    page = PAGE.read_text(encoding="utf-8")
+    shown = set(re.findall(r"\(plots/([^)]+\.svg)\)", page))
+    there = {path.name for path in PLOTS.glob("*.svg")}
+    faults = [f"{name} is not there" for name in sorted(shown - there)]
+    faults += [f"{name} is not in the page" for name in sorted(there - shown)]
+    listed = subprocess.run([program, "motions", "--list"], check=True, capture_output=True,
+                            text=True).stdout
+    for line in listed.splitlines():
+        name, mishap = line.split("\t")
+        if mishap not in page:
+            faults.append(f"the page does not describe “{mishap}”")
+        faults += [f"the page does not show {plot}"
+                   for plot in (f"{name}_limit.svg", f"{name}_no_limit.svg")
+                   if name and plot not in shown]
+    if faults:
+        sys.exit("\n".join(faults))
+
+
+def main(arguments):
+    if len(arguments) == 2 and arguments[0] == "--check":
+        check(arguments[1])
+    elif len(arguments) == 1 and not arguments[0].startswith("-"):
+        make(Path(arguments[0]))
+    else:
+        sys.exit(__doc__)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "campaign/motions/motion.hpp"
+#include "campaign/motions/schedule.hpp"
+#include "splinecast/core/piecewise_polynomial.hpp"
+
+namespace splinecast::campaign {
+
+/// A recording: the natural `c2` spline through all of its waypoints at once.
+class Recorded final : public Motion {
+ public:
+  /// Reads a waypoint file: its columns of these names, in m or rad.
+  [[nodiscard]] static Recorded from_waypoints(const std::filesystem::path& file,
+                                               const std::vector<std::string>& columns);
+  /// Samples a file of polynomials at 100 Hz.
+  [[nodiscard]] static Recorded from_polynomials(const std::filesystem::path& file);
+
+  [[nodiscard]] std::size_t joints() const noexcept override { return curve_.dimensions(); }
+  [[nodiscard]] double seconds() const noexcept override;
+  /// Outside of the recording what it is at its nearest end.
+  [[nodiscard]] double at(std::size_t joint, double t, int derivative = 0) const override;
+  /// In closed form.
+  [[nodiscard]] double peak(std::size_t joint, int derivative) const override;
+
+  /// Its waypoints, each sent `lead` s before its time. Those in the gaps are missing, and so the
+  /// producer is silent from `lead` before a gap on.
+  [[nodiscard]] Schedule schedule(double lead, std::vector<std::pair<double, double>> gaps) const;
+
+ private:
+  Recorded(std::size_t dimensions, std::vector<core::Time> times,
+           const std::vector<double>& positions);
+
+  core::PiecewisePolynomial curve_;
+};
+
+}  // namespace splinecast::campaign

@@ -1,0 +1,211 @@
+#include "campaign/motions/trace.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "support/output.hpp"
+
+namespace splinecast::campaign {
+namespace {
+
+constexpr double kBefore = 0.3;               ///< s that are shown before the mishap
+constexpr double kLongest = 4;                ///< s that are shown in all
+constexpr double kOnPath = 2e-4;              ///< rad: nearer is on the path
+constexpr double kCalm = 0.08;                ///< s on the path, after which the mishap is over
+constexpr double kStarted = 1.9;              ///< s, after which the start is over
+constexpr double kEnd = Sines::kSeconds - 1;  ///< s, after which the motion ends
+constexpr double kTick = 1e-3;                ///< s
+
+/// A sample, kept.
+struct Row {
+  double t = 0;
+  ipc::SampleStatus status{};
+  bool is_entry = false;
+  std::uint64_t starvations = 0;
+  core::State state{Sines::kJoints};
+  double error = 0;  ///< rad, the largest of all joints; from 0 s on
+};
+
+double error_of(const Row& row, const Motion& motion, const Schedule& schedule, std::size_t joint) {
+  if (row.t < 0) return 0;
+  return std::abs(row.state.position()[joint] - motion.at(joint, row.t) - schedule.offset(row.t));
+}
+
+bool is_at_rest(const Row& row) {
+  return row.status == ipc::SampleStatus::stopping || row.status == ipc::SampleStatus::holding;
+}
+
+/// When the first mishap begins: the stream runs dry, or its future is replaced, or the start.
+double mishap_of(const std::vector<Row>& rows, const Schedule& schedule) {
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const bool is_measured = rows[i].t >= kStarted && rows[i].t < kEnd;
+    if (is_measured && rows[i].starvations > rows[i - 1].starvations) return rows[i].t;
+  }
+  for (const Call& call : schedule.calls) {
+    if (call.at >= kStarted && call.replaces_from) return call.at;
+  }
+  return 0;
+}
+
+struct Window {
+  double mishap = 0;
+  std::size_t first = 0;
+  std::size_t end = 0;
+  double back = 0;  ///< s behind the mishap: on the path again; −1: not within the window
+};
+
+Window window_of(const std::vector<Row>& rows, const Schedule& schedule) {
+  Window window{.mishap = mishap_of(rows, schedule), .end = rows.size(), .back = -1};
+  double calm_since = -1;
+  bool has_left = false;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row& row = rows[i];
+    if (row.t < window.mishap - kBefore) window.first = i + 1;
+    if (row.t < window.mishap) continue;
+    const bool is_off = row.is_entry || is_at_rest(row) || row.error > kOnPath;
+    has_left = has_left || is_off;
+    if (is_off) calm_since = -1;
+    if (!is_off && calm_since < 0) calm_since = row.t;
+    const bool is_calm = has_left && calm_since >= 0 && row.t >= calm_since + kCalm;
+    if (is_calm && window.back < 0) window.back = calm_since - window.mishap;
+    const bool is_whole = is_calm && schedule.deaths.empty();  // other kinds of death follow
+    if (is_whole || row.t >= window.mishap - kBefore + kLongest) {
+      window.end = i;
+      break;
+    }
+  }
+  return window;
+}
+
+std::size_t worst_joint(std::span<const Row> rows, const Motion& motion, const Schedule& schedule) {
+  std::size_t worst = 0;
+  double most = -1;
+  for (std::size_t joint = 0; joint < Sines::kJoints; ++joint) {
+    for (const Row& row : rows) {
+      const double error = error_of(row, motion, schedule, joint);
+      if (error > most) {
+        most = error;
+        worst = joint;
+      }
+    }
+  }
+  return worst;
+}
+
+std::string csv_of(std::span<const Row> rows, const Motion& motion, const Schedule& schedule,
+                   std::size_t joint) {
+  std::string text =
+      "t [s],target position [rad],target velocity [rad/s],position [rad],velocity [rad/s],"
+      "acceleration [rad/s2],status\n";
+  const auto to = std::back_inserter(text);
+  for (const Row& row : rows) {
+    fmt::format_to(to, "{:.3f},", row.t);
+    if (row.t >= 0) {
+      fmt::format_to(to, "{:.6f},{:.6f}", motion.at(joint, row.t) + schedule.offset(row.t),
+                     motion.at(joint, row.t, 1));
+    } else {
+      text += ',';
+    }
+    fmt::format_to(to, ",{:.6f},{:.6f},{:.6f},{}\n", row.state.position()[joint],
+                   row.state.velocity()[joint], row.state.acceleration()[joint],
+                   row.is_entry ? "entry" : ipc::to_string(row.status));
+  }
+  return text;
+}
+
+void write_file(const std::filesystem::path& path, const std::string& text) {
+  apps::Output output(path);
+  output.write(text);
+  output.close();
+}
+
+/// Seconds of the samples for which `holds` says so.
+double seconds_of(std::span<const Row> rows, const auto& holds) {
+  return kTick * static_cast<double>(std::ranges::count_if(rows, holds));
+}
+
+double largest_error(std::span<const Row> rows) {
+  double most = 0;
+  for (const Row& row : rows) most = std::max(most, row.error);
+  return most;
+}
+
+/// Those of the intervals that begin within the samples.
+nlohmann::json within(std::span<const std::pair<double, double>> intervals,
+                      std::span<const Row> rows) {
+  nlohmann::json kept = nlohmann::json::array();
+  for (const auto& [from, until] : intervals) {
+    if (from >= rows.front().t && from <= rows.back().t) kept.push_back({from, until});
+  }
+  return kept;
+}
+
+nlohmann::json replacements_within(const Schedule& schedule, std::span<const Row> rows) {
+  std::vector<std::pair<double, double>> found;
+  for (const Call& call : schedule.calls) {
+    if (call.replaces_from) found.emplace_back(call.at, *call.replaces_from);
+  }
+  return within(found, rows);
+}
+
+}  // namespace
+
+Traces::Traces(std::filesystem::path folder) : folder_(std::move(folder)) {
+  std::filesystem::create_directories(folder_);
+}
+
+void Traces::add(const Sines& motion, const Mishap& mishap, double limit, TrialOptions options) {
+  const Schedule schedule = mishap.make(motion, options.seed);
+  std::vector<Row> rows;
+  options.watch = [&](const Sight& sight) {
+    Row row{.t = sight.t,
+            .status = sight.status,
+            .is_entry = sight.is_entry,
+            .starvations = sight.starvations,
+            .state = *sight.state};
+    for (std::size_t joint = 0; joint < Sines::kJoints; ++joint) {
+      row.error = std::max(row.error, error_of(row, motion, schedule, joint));
+    }
+    rows.push_back(std::move(row));
+  };
+  const Seen seen = Trial(motion, schedule, options).run();
+  const Window window = window_of(rows, schedule);
+  const auto shown = std::span(rows).subspan(window.first, window.end - window.first);
+  const std::size_t joint = worst_joint(shown, motion, schedule);
+  const std::string name = fmt::format("{}_{}", mishap.file, limit > 0 ? "limit" : "no_limit");
+  write_file(folder_ / (name + ".csv"), csv_of(shown, motion, schedule, joint));
+  const auto is_stopping = [](const Row& row) { return row.status == ipc::SampleStatus::stopping; };
+  const auto is_holding = [](const Row& row) { return row.status == ipc::SampleStatus::holding; };
+  const auto is_entry = [](const Row& row) { return row.is_entry; };
+  rows_.push_back({{"file", name},
+                   {"mishap", mishap.name},
+                   {"section", mishap.file},
+                   {"limit [rad/s2]", limit},
+                   {"joint", joint + 1},
+                   {"mishap at [s]", window.mishap},
+                   {"silences [s]", within(schedule.pauses, shown)},
+                   {"solver dead [s]", within(schedule.deaths, shown)},
+                   {"replacements [s]", replacements_within(schedule, shown)},
+                   {"stopping [s]", seconds_of(shown, is_stopping)},
+                   {"holding [s]", seconds_of(shown, is_holding)},
+                   {"in entries [s]", seconds_of(shown, is_entry)},
+                   {"back on the path after [s]", window.back},
+                   {"largest path error shown [rad]", largest_error(shown)},
+                   {"largest path error [rad]", seen.error(1)},
+                   {"path error p99 [rad]", seen.error(0.99)},
+                   {"peak velocity [rad/s]", seen.peak_velocity()},
+                   {"peak acceleration [rad/s2]", seen.peak_acceleration()},
+                   {"waypoints", seen.knots},
+                   {"passed over", seen.passed_over},
+                   {"refused as past", seen.past},
+                   {"refused otherwise", seen.refused},
+                   {"ran dry", seen.starvations},
+                   {"holding besides the pauses [%]", 100 * seen.holding}});
+}
+
+void Traces::finish() const { write_file(folder_ / "rows.json", rows_.dump(1) + "\n"); }
+
+}  // namespace splinecast::campaign

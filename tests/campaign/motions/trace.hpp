@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "campaign/motions/schedule.hpp"
+#include "campaign/motions/sines.hpp"
+#include "campaign/motions/trial.hpp"
+
+namespace splinecast::campaign {
+
+/// Writes what a reader sees around the first mishap of each schedule, for docs/plots.py: a file
+/// `NAME.csv` per row, and `rows.json`, which says what each one shows. In simulated time, without
+/// noise, the same on every machine.
+class Traces {
+ public:
+  /// Creates the folder if it is missing.
+  explicit Traces(std::filesystem::path folder);
+
+  /// Runs a row and writes its file. `limit` in rad/s², 0: none.
+  void add(const Sines& motion, const Mishap& mishap, double limit, TrialOptions options);
+
+  /// Writes `rows.json`.
+  void finish() const;
+
+ private:
+  std::filesystem::path folder_;
+  nlohmann::json rows_;
+};
+
+}  // namespace splinecast::campaign

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "campaign/motions/motion.hpp"
+#include "campaign/motions/schedule.hpp"
+#include "splinecast/ipc/sampler.hpp"
+#include "support/memory_stream.hpp"
+
+namespace splinecast::campaign {
+
+/// What a 1 kHz reader saw of one schedule, and what became of the waypoints.
+struct Seen {
+  std::vector<double> errors;           ///< rad, at each sample: the largest of all joints; sorted
+  std::vector<double> peak_velocities;  ///< of each joint
+  std::vector<double> peak_accelerations;  ///< of each joint
+  double holding = 0;                      ///< share of the samples, but those in pauses
+  std::uint64_t refused = 0;               ///< but those that came too late
+  std::uint64_t past = 0;                  ///< refused because they came too late
+  std::uint64_t knots = 0;
+  std::uint64_t passed_over = 0;
+  std::uint64_t passed_at_start = 0;
+  std::uint64_t starvations = 0;
+
+  [[nodiscard]] double error(double share) const {
+    return errors[static_cast<std::size_t>(share * static_cast<double>(errors.size() - 1))];
+  }
+  [[nodiscard]] double peak_velocity() const;
+  [[nodiscard]] double peak_acceleration() const;
+};
+
+/// A sample of a 1 kHz reader. The state is valid during the call that hands it over.
+struct Sight {
+  double t = 0;
+  ipc::SampleStatus status{};
+  bool is_entry = false;
+  std::uint64_t starvations = 0;  ///< so far
+  const core::State* state = nullptr;
+};
+
+/// How a schedule is carried out.
+struct TrialOptions {
+  core::WindowOptions window{};  ///< a live stream's start is added
+  double noise = 0;              ///< rad: standard deviation of what is added to waypoints
+  double quantum = 0;            ///< rad: waypoints are rounded to multiples of it; 0: they are not
+  std::uint64_t seed = 1;        ///< of the noise
+  std::function<void(const Sight&)> watch{};  ///< called with each sample that has values
+};
+
+/// A live stream in plain memory, in simulated time, with a reader at 1 kHz: the real ring, solver,
+/// board and sampler.
+class Trial {
+ public:
+  /// `motion` and `schedule` outlive it.
+  Trial(const Motion& motion, const Schedule& schedule, TrialOptions options);
+
+  /// From kLead before the motion to its end.
+  Seen run();
+
+  /// Advances by a millisecond: the producer's calls, the solver's steps and one sample.
+  void tick();
+  [[nodiscard]] double now() const noexcept { return now_; }
+  [[nodiscard]] const ipc::Head& head() const noexcept { return stream_.solver.head(); }
+  [[nodiscard]] ipc::Sampler& sampler() noexcept { return sampler_; }
+  [[nodiscard]] static core::Time stream_time(double t);
+
+ private:
+  void produce();
+  void send(const Call& call);
+  void count(ipc::AppendStatus status);
+  void solve();
+  void read();
+  [[nodiscard]] bool is_entry();
+
+  const Motion& motion_;
+  const Schedule& schedule_;
+  TrialOptions options_;
+  std::mt19937_64 random_;
+  testing::MemoryStream stream_;
+  ipc::Sampler sampler_;
+  ipc::Snapshot snapshot_;
+  core::State state_;
+  Seen seen_;
+  int ms_;
+  double now_ = 0;
+  std::size_t next_ = 0;
+  std::size_t death_ = 0;
+  std::uint64_t refused_ = 0;
+  std::uint64_t samples_ = 0;
+  std::uint64_t held_ = 0;
+};
+
+}  // namespace splinecast::campaign
