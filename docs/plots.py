@@ -273,6 +273,8 @@ def table_of(rows):
     lines.append(line("20 s: peak velocity, acceleration",
                       lambda r: f"{r['peak velocity [rad/s]']:.2f} rad/s, "
                       f"{r['peak acceleration [rad/s2]']:.2f} rad/s²"))
+    lines.append(line("20 s: peak acceleration in entries",
+                      lambda r: f"{r['peak acceleration in entries [rad/s2]']:.2f} rad/s²"))
     lines.append(line("20 s: waypoints; passed over",
                       lambda r: f"{r['waypoints']:,}; {percent(r['passed over'], r['waypoints'])}"))
     lines.append(line("20 s: refused as `past`; for other reasons",

@@ -72,10 +72,12 @@ std::string row_name(const Mishap& mishap, double limit, bool is_noisy) {
 std::string row_text(const Mishap& mishap, std::size_t which_limit, bool is_noisy,
                      const Seen& seen) {
   std::string text = fmt::format(
-      "peaks {:.2f} rad/s, {:.2f} rad/s2; path error p50 {:.4f}, p99 {:.4f}, largest {:.4f} rad; "
+      "peaks {:.2f} rad/s, {:.2f} rad/s2, in entries {:.2f} rad/s2; path error p50 {:.4f}, p99 "
+      "{:.4f}, largest {:.4f} rad; "
       "passed over {:.1f} %; holding {:.2f} %",
-      seen.peak_velocity(), seen.peak_acceleration(), seen.error(0.5), seen.error(0.99),
-      seen.error(1), 100 * static_cast<double>(seen.passed_over) / static_cast<double>(seen.knots),
+      seen.peak_velocity(), seen.peak_acceleration(), seen.entry_acceleration, seen.error(0.5),
+      seen.error(0.99), seen.error(1),
+      100 * static_cast<double>(seen.passed_over) / static_cast<double>(seen.knots),
       100 * seen.holding);
   if (is_noisy || which_limit >= mishap.simulated.size()) return text;
   const auto [p99, largest] = mishap.simulated[which_limit];

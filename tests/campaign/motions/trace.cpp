@@ -198,6 +198,7 @@ void Traces::add(const Sines& motion, const Mishap& mishap, double limit, TrialO
                    {"path error p99 [rad]", seen.error(0.99)},
                    {"peak velocity [rad/s]", seen.peak_velocity()},
                    {"peak acceleration [rad/s2]", seen.peak_acceleration()},
+                   {"peak acceleration in entries [rad/s2]", seen.entry_acceleration},
                    {"waypoints", seen.knots},
                    {"passed over", seen.passed_over},
                    {"refused as past", seen.past},

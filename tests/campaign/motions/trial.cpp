@@ -120,7 +120,8 @@ void Trial::solve() {
 void Trial::read() {
   const auto status = sampler_.sample(stream_.clock.time, state_);
   if (!ipc::has_values(status)) return;
-  if (options_.watch) options_.watch({now_, status, is_entry(), head().underruns, &state_});
+  const bool enters = is_entry();
+  if (options_.watch) options_.watch({now_, status, enters, head().underruns, &state_});
   if (now_ < 0) return;
   const auto is_now = [&](const auto& pause) { return now_ >= pause.first && now_ < pause.second; };
   if (std::ranges::none_of(schedule_.pauses, is_now) &&
@@ -136,6 +137,11 @@ void Trial::read() {
     velocity = std::max(velocity, std::abs(state_.velocity()[joint]));
     double& acceleration = seen_.peak_accelerations[joint];
     acceleration = std::max(acceleration, std::abs(state_.acceleration()[joint]));
+  }
+  if (enters) {
+    for (const double a : state_.acceleration()) {
+      seen_.entry_acceleration = std::max(seen_.entry_acceleration, std::abs(a));
+    }
   }
   if (now_ >= kSettling) seen_.errors.push_back(error);
 }

@@ -18,6 +18,7 @@ struct Seen {
   std::vector<double> errors;           ///< rad, at each sample: the largest of all joints; sorted
   std::vector<double> peak_velocities;  ///< of each joint
   std::vector<double> peak_accelerations;  ///< of each joint
+  double entry_acceleration = 0;           ///< rad/s², the largest in entries
   double holding = 0;                      ///< share of the samples, but those in pauses
   std::uint64_t refused = 0;               ///< but those that came too late
   std::uint64_t past = 0;                  ///< refused because they came too late
