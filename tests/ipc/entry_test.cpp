@@ -563,6 +563,9 @@ TEST(Entry, IsTheSameToItsBitsWhereAnotherSolverTakesOverBeforeEveryStepThatEnds
       EXPECT_EQ(live->verified(), "") << (live == &many ? "taken over" : "undisturbed");
       expect_continuous(*live);
     }
+    // Without limits what the motion has shown decides, of which a solver that takes over knows
+    // less.
+    if (scenario.limit == 0) continue;
     const auto a = one.collected.segments();
     const auto b = many.collected.segments();
     EXPECT_EQ(a.size(), b.size());
