@@ -71,7 +71,12 @@ struct CampaignOptions {
 /// what happens.
 [[nodiscard]] std::string list_motions();
 
-/// A result in the form of the page, of this machine and version.
+/// A result in the form of the page, of this machine and version. It is sound if all that was found
+/// is 0.
+[[nodiscard]] Result make_result(const CampaignOptions& options, nlohmann::json promises,
+                                 const std::string& attack, std::uint64_t count,
+                                 const std::string& unit, nlohmann::json found,
+                                 nlohmann::json measured, double seconds);
 [[nodiscard]] Result make_result(const CampaignOptions& options, nlohmann::json promises,
                                  const std::string& attack, std::uint64_t count,
                                  const std::string& unit, const Findings& findings,

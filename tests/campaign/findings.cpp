@@ -1,6 +1,5 @@
 #include "campaign/findings.hpp"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <string>
@@ -62,10 +61,6 @@ nlohmann::json Findings::found() const {
           {"hangs", hangs},
           {"names left unusable", unusable},
           {"manual clean-ups", clean_ups}};
-}
-
-bool Findings::is_sound() const {
-  return std::ranges::all_of(found(), [](const nlohmann::json& count) { return count == 0; });
 }
 
 nlohmann::json Findings::work() const {

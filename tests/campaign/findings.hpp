@@ -50,7 +50,6 @@ struct Findings {
 
   /// The violations, by name.
   [[nodiscard]] nlohmann::json found() const;
-  [[nodiscard]] bool is_sound() const;
 
   /// What was read and solved, by name.
   [[nodiscard]] nlohmann::json work() const;

@@ -7,7 +7,6 @@
 #include "campaign/motions/live_row.hpp"
 #include "campaign/motions/rules.hpp"
 #include "support/signals.hpp"
-#include "version.hpp"
 
 namespace splinecast::campaign {
 namespace {
@@ -55,9 +54,6 @@ struct LiveFindings {
             {"jumps without limits", jumps},
             {"steps of the position", steps}};
   }
-  [[nodiscard]] bool is_sound() const {
-    return limits_passed + freezes + refusals + passed_although_covered + jumps + steps == 0;
-  }
 };
 
 std::string text_of(const LiveSeen& seen) {
@@ -103,20 +99,11 @@ Result run_live_motions(const CampaignOptions& options) {
     }
   }
   measured["rows in which the machine held a process up for more than 20 ms"] = findings.late_rows;
-  return {.json = {{"promise", {2, 4, 5, 8}},
-                   {"attack",
-                    "the mishaps of the motions in real time: producers, solvers and readers at 1 "
-                    "kHz as processes, deaths by SIGKILL"},
-                   {"count", rows},
-                   {"unit", "runs of 10 s"},
-                   {"found", findings.json()},
-                   {"measured", std::move(measured)},
-                   {"machine", this_machine()},
-                   {"seconds", core::to_seconds(clock.now() - begin)},
-                   {"command", options.command},
-                   {"version", apps::kVersion},
-                   {"build", this_build()}},
-          .is_sound = findings.is_sound()};
+  return make_result(options, {2, 4, 5, 8},
+                     "the mishaps of the motions in real time: producers, solvers and readers at 1 "
+                     "kHz as processes, deaths by SIGKILL",
+                     rows, "runs of 10 s", findings.json(), std::move(measured),
+                     core::to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

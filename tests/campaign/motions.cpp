@@ -10,7 +10,6 @@
 #include "campaign/motions/sines.hpp"
 #include "campaign/motions/trace.hpp"
 #include "campaign/motions/trial.hpp"
-#include "version.hpp"
 
 namespace splinecast::campaign {
 namespace {
@@ -40,9 +39,6 @@ struct MotionFindings {
             {"waypoints refused that did not come too late", refusals},
             {"waypoints passed over although the lead covered the hiccup", passed_although_covered},
             {"jumps without limits", jumps}};
-  }
-  [[nodiscard]] bool is_sound() const {
-    return limits_passed + freezes + refusals + passed_although_covered + jumps == 0;
   }
 };
 
@@ -130,21 +126,12 @@ Result run_motions(const CampaignOptions& options) {
       }
     }
   }
-  return {.json = {{"promise", {2, 4, 5}},
-                   {"attack",
-                    "a motion of six joints whose producer is late, silent, dead or of another "
-                    "mind, with limits and without, in simulated time through the real ring, "
-                    "solver, board and sampler"},
-                   {"count", rows},
-                   {"unit", "runs of 20 s"},
-                   {"found", findings.json()},
-                   {"measured", std::move(measured)},
-                   {"machine", this_machine()},
-                   {"seconds", core::to_seconds(clock.now() - begin)},
-                   {"command", options.command},
-                   {"version", apps::kVersion},
-                   {"build", this_build()}},
-          .is_sound = findings.is_sound()};
+  return make_result(options, {2, 4, 5},
+                     "a motion of six joints whose producer is late, silent, dead or of another "
+                     "mind, with limits and without, in simulated time through the real ring, "
+                     "solver, board and sampler",
+                     rows, "runs of 20 s", findings.json(), std::move(measured),
+                     core::to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

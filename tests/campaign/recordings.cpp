@@ -8,7 +8,6 @@
 #include "campaign/motions/recorded.hpp"
 #include "campaign/motions/rules.hpp"
 #include "campaign/motions/trial.hpp"
-#include "version.hpp"
 
 namespace splinecast::campaign {
 namespace {
@@ -110,9 +109,6 @@ struct RecordingFindings {
             {"waypoints refused that did not come too late", refusals},
             {"jumps without limits", jumps}};
   }
-  [[nodiscard]] bool is_sound() const {
-    return velocities + accelerations + freezes + refusals + jumps == 0;
-  }
 };
 
 std::string text_of(const Recorded& motion, const Seen& seen) {
@@ -155,21 +151,12 @@ Result run_recordings(const CampaignOptions& options) {
       }
     }
   }
-  return {.json = {{"promise", {2, 4, 5}},
-                   {"attack",
-                    "recorded motions and flights from which waypoints are missing, with limits "
-                    "and without, in simulated time through the real ring, solver, board and "
-                    "sampler"},
-                   {"count", rows},
-                   {"unit", "runs"},
-                   {"found", findings.json()},
-                   {"measured", std::move(measured)},
-                   {"machine", this_machine()},
-                   {"seconds", core::to_seconds(clock.now() - begin)},
-                   {"command", options.command},
-                   {"version", apps::kVersion},
-                   {"build", this_build()}},
-          .is_sound = findings.is_sound()};
+  return make_result(options, {2, 4, 5},
+                     "recorded motions and flights from which waypoints are missing, with limits "
+                     "and without, in simulated time through the real ring, solver, board and "
+                     "sampler",
+                     rows, "runs", findings.json(), std::move(measured),
+                     core::to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <memory>
@@ -45,19 +46,29 @@ std::string campaign_stream(const std::string& what) {
 
 Result make_result(const CampaignOptions& options, nlohmann::json promises,
                    const std::string& attack, std::uint64_t count, const std::string& unit,
-                   const Findings& findings, nlohmann::json measured, double seconds) {
-  measured.update(findings.work());
+                   nlohmann::json found, nlohmann::json measured, double seconds) {
+  const bool is_sound =
+      std::ranges::all_of(found, [](const auto& violations) { return violations == 0; });
   return {.json = {{"promise", std::move(promises)},
                    {"attack", attack},
                    {"count", count},
                    {"unit", unit},
-                   {"found", findings.found()},
+                   {"found", std::move(found)},
                    {"measured", std::move(measured)},
                    {"machine", this_machine()},
                    {"seconds", seconds},
                    {"command", options.command},
-                   {"version", apps::kVersion}},
-          .is_sound = findings.is_sound()};
+                   {"version", apps::kVersion},
+                   {"build", this_build()}},
+          .is_sound = is_sound};
+}
+
+Result make_result(const CampaignOptions& options, nlohmann::json promises,
+                   const std::string& attack, std::uint64_t count, const std::string& unit,
+                   const Findings& findings, nlohmann::json measured, double seconds) {
+  measured.update(findings.work());
+  return make_result(options, std::move(promises), attack, count, unit,
+                     nlohmann::json(findings.found()), std::move(measured), seconds);
 }
 
 }  // namespace splinecast::campaign

@@ -14,7 +14,6 @@
 #include "support/memory_stream.hpp"
 #include "support/output.hpp"
 #include "support/signals.hpp"
-#include "version.hpp"
 
 namespace splinecast::campaign {
 namespace {
@@ -314,24 +313,13 @@ Result run_returns(const CampaignOptions& options) {
       {"time of the return over that allowed, p50", quantile(counts.shares, 0.5)},
       {"time of the return over that allowed, p99", quantile(counts.shares, 0.99)},
       {"time of the return over that allowed, largest", quantile(counts.shares, 1)}};
-  const bool is_sound =
-      counts.late_returns + counts.never_back + counts.off_path + never_tried == 0;
-  return {.json = {{"promise", 10},
-                   {"attack",
-                    "motions with random intervals, leads, limits and methods, whose producers "
-                    "fall silent, are late, plan anew and whose solvers die; then nothing more "
-                    "happens: back on the waypoints within twice the least time of a two-phase "
-                    "motion under the same limits, and 0.5 s"},
-                   {"count", counts.runs},
-                   {"unit", "returns"},
-                   {"found", found},
-                   {"measured", measured},
-                   {"machine", this_machine()},
-                   {"seconds", core::to_seconds(clock.now() - begin)},
-                   {"command", options.command},
-                   {"version", apps::kVersion},
-                   {"build", this_build()}},
-          .is_sound = is_sound};
+  return make_result(options, 10,
+                     "motions with random intervals, leads, limits and methods, whose producers "
+                     "fall silent, are late, plan anew and whose solvers die; then nothing more "
+                     "happens: back on the waypoints within twice the least time of a two-phase "
+                     "motion under the same limits, and 0.5 s",
+                     counts.runs, "returns", found, measured,
+                     core::to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

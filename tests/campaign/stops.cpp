@@ -6,7 +6,6 @@
 #include "campaign/campaigns.hpp"
 #include "campaign/motions/stops.hpp"
 #include "splinecast/core/smoothing_rows.hpp"
-#include "version.hpp"
 
 namespace splinecast::campaign {
 namespace {
@@ -88,23 +87,14 @@ Result run_stops(const CampaignOptions& options) {
       too_far += measures.too_far;
     }
   }
-  return {.json = {{"promise", {4}},
-                   {"attack",
-                    "live waypoints of encoders, and exact ones, that end at any millisecond: the "
-                    "published stop of every tail"},
-                   {"count", stops},
-                   {"unit", "stops of six joints"},
-                   {"found",
-                    {{"stops that speed up or turn round", not_monotone},
-                     {"stops further than half the stop time at their velocity", too_far},
-                     {"stops that readers go down otherwise than published", others}}},
-                   {"measured", std::move(measured)},
-                   {"machine", this_machine()},
-                   {"seconds", core::to_seconds(clock.now() - begin)},
-                   {"command", options.command},
-                   {"version", apps::kVersion},
-                   {"build", this_build()}},
-          .is_sound = not_monotone + too_far + others == 0};
+  const nlohmann::json found{{"stops that speed up or turn round", not_monotone},
+                             {"stops further than half the stop time at their velocity", too_far},
+                             {"stops that readers go down otherwise than published", others}};
+  return make_result(options, 4,
+                     "live waypoints of encoders, and exact ones, that end at any millisecond: the "
+                     "published stop of every tail",
+                     stops, "stops of six joints", found, std::move(measured),
+                     core::to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

@@ -9,7 +9,6 @@
 #include "campaign/streams/simulated_stream.hpp"
 #include "support/output.hpp"
 #include "support/signals.hpp"
-#include "version.hpp"
 
 namespace splinecast::campaign {
 namespace {
@@ -82,23 +81,12 @@ Result run_streams(const CampaignOptions& options) {
   auto measured = findings.coverage();
   measured["simulated seconds per second"] = findings.simulated() / seconds;
   measured["first seed"] = options.seed;
-  bool is_sound = true;
-  for (const auto& count : breaches) is_sound = is_sound && count == 0;
-  return {.json = {{"promise", {1, 2, 3, 4, 5, 8}},
-                   {"attack",
-                    "simulated live streams, one per seed: random producers, clocks, limits, kinds "
-                    "and methods, replacements, stops, deaths and hold-ups, through the real ring, "
-                    "solver, board and samplers in plain memory"},
-                   {"count", findings.streams()},
-                   {"unit", "streams"},
-                   {"found", breaches},
-                   {"measured", std::move(measured)},
-                   {"machine", this_machine()},
-                   {"seconds", seconds},
-                   {"command", options.command},
-                   {"version", apps::kVersion},
-                   {"build", this_build()}},
-          .is_sound = is_sound};
+  return make_result(
+      options, {1, 2, 3, 4, 5, 8},
+      "simulated live streams, one per seed: random producers, clocks, limits, kinds "
+      "and methods, replacements, stops, deaths and hold-ups, through the real ring, "
+      "solver, board and samplers in plain memory",
+      findings.streams(), "streams", breaches, std::move(measured), seconds);
 }
 
 }  // namespace splinecast::campaign
