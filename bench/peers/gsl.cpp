@@ -4,8 +4,8 @@
 #include <array>
 #include <memory>
 
-#include "bench_stream.hpp"
-#include "random_times.hpp"
+#include "bench/harness/bench_stream.hpp"
+#include "bench/harness/random_times.hpp"
 
 /// The GNU Scientific Library: a cubic spline and an accelerator per dimension, in this process.
 namespace splinecast::bench {

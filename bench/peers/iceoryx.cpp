@@ -11,7 +11,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "roundtrip.hpp"
+#include "bench/harness/roundtrip.hpp"
 
 /// Eclipse iceoryx, with a daemon of its own: the same payload there and back, polled.
 namespace splinecast::bench {

@@ -3,7 +3,7 @@
 #include <boost/math/interpolators/makima.hpp>
 #include <vector>
 
-#include "bench_stream.hpp"
+#include "bench/harness/bench_stream.hpp"
 
 /// Boost.Math's modified Akima: the library interpolator that takes one more point at a time. It is
 /// C¹ only, and changes nothing but the last two slopes.

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "splinecast/ipc/producer.hpp"
-#include "splinecast/ipc/reader.hpp"
-#include "splinecast/ipc/solver.hpp"
-#include "splinecast/ipc/stream_files.hpp"
+#include "ipc/roles/stream_files.hpp"
+#include "splinecast/producer.hpp"
+#include "splinecast/reader.hpp"
+#include "splinecast/solver.hpp"
 
 /// `bits write STREAM` solves a fixed recording into a stream, `bits read STREAM` prints a hash of
 /// everything it samples there, `bits remove STREAM` removes it. However writer and reader were

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "campaign/findings.hpp"
+#include "tests/campaign/findings.hpp"
 
 /// The campaigns: each attacks streams of its own, mostly with real processes over real shared
 /// memory, and returns its result, as the head of page.py says, and whether no promise was broken.

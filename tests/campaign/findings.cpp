@@ -1,4 +1,4 @@
-#include "campaign/findings.hpp"
+#include "tests/campaign/findings.hpp"
 
 #include <nlohmann/json.hpp>
 #include <numeric>

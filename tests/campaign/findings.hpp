@@ -5,8 +5,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string_view>
 
-#include "campaign/journal.hpp"
-#include "support/recovery.hpp"
+#include "apps/trials/recovery.hpp"
+#include "tests/campaign/kills/journal.hpp"
 
 namespace splinecast::campaign {
 

@@ -2,11 +2,12 @@
 #include <csignal>
 #include <fstream>
 
-#include "campaign/campaigns.hpp"
-#include "support/exit_codes.hpp"
-#include "support/guarded.hpp"
-#include "support/output.hpp"
-#include "support/signals.hpp"
+#include "apps/cli/guarded.hpp"
+#include "apps/output/stream.hpp"
+#include "apps/process/exit_codes.hpp"
+#include "apps/process/messages.hpp"
+#include "apps/process/signals.hpp"
+#include "tests/campaign/campaigns.hpp"
 
 namespace splinecast::campaign {
 namespace {

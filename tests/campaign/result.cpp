@@ -6,9 +6,9 @@
 #include <memory>
 #include <utility>
 
-#include "campaign/campaigns.hpp"
-#include "support/exit_codes.hpp"
-#include "version.hpp"
+#include "apps/cli/version.hpp"
+#include "apps/process/exit_codes.hpp"
+#include "tests/campaign/campaigns.hpp"
 
 namespace splinecast::campaign {
 namespace {

@@ -15,10 +15,11 @@
 #include <random>
 #include <span>
 
-#include "fuzz/byteflip_roles.hpp"
-#include "splinecast/ipc/names.hpp"
-#include "splinecast/ipc/region.hpp"
-#include "support/output.hpp"
+#include "apps/output/stream.hpp"
+#include "apps/process/messages.hpp"
+#include "ipc/mapping/region.hpp"
+#include "ipc/memory/names.hpp"
+#include "tests/fuzz/byteflip_roles.hpp"
 
 /// Flips bytes at random in both regions of live streams, under a producer, a solver and two
 /// readers as processes of their own. Nobody may crash, hang, or say a number that is none; a

@@ -1,4 +1,4 @@
-#include "fuzz/byteflip_roles.hpp"
+#include "tests/fuzz/byteflip_roles.hpp"
 
 #include <poll.h>
 
@@ -9,12 +9,12 @@
 #include <random>
 #include <vector>
 
-#include "splinecast/ipc/errors.hpp"
-#include "splinecast/ipc/producer.hpp"
-#include "splinecast/ipc/reader.hpp"
-#include "splinecast/ipc/solver.hpp"
-#include "splinecast/ipc/stream_files.hpp"
-#include "support/stream_report.hpp"
+#include "apps/streams/report.hpp"
+#include "ipc/roles/stream_files.hpp"
+#include "splinecast/errors.hpp"
+#include "splinecast/producer.hpp"
+#include "splinecast/reader.hpp"
+#include "splinecast/solver.hpp"
 
 namespace splinecast::fuzz {
 namespace {

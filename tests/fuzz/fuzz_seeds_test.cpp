@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "fuzz/region_targets.hpp"
-#include "fuzz/seed_streams.hpp"
-#include "fuzz/text_targets.hpp"
-#include "splinecast/ipc/board_segment.hpp"
-#include "support/process.hpp"
+#include "ipc/board/segment.hpp"
+#include "tests/fixtures/processes/process.hpp"
+#include "tests/fuzz/region_targets.hpp"
+#include "tests/fuzz/seed_streams.hpp"
+#include "tests/fuzz/text_targets.hpp"
 
 /// The fuzzers' targets, over what fuzzers have found and over mutations of whole streams, in every
 /// build.

@@ -8,7 +8,7 @@
 #include <new>
 #include <span>
 
-#include "splinecast/ipc/layout.hpp"
+#include "ipc/layout/header.hpp"
 
 namespace splinecast::fuzz {
 

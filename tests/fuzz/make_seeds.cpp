@@ -3,7 +3,7 @@
 #include <fstream>
 #include <string>
 
-#include "fuzz/seed_streams.hpp"
+#include "tests/fuzz/seed_streams.hpp"
 
 /// Writes the seeds of the region targets: make_seeds FOLDER
 int main(int argc, char** argv) {

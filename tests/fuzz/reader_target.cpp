@@ -1,13 +1,13 @@
 #include <array>
 #include <vector>
 
-#include "fuzz/guarded_bytes.hpp"
-#include "fuzz/region_targets.hpp"
-#include "fuzz/sampling.hpp"
-#include "splinecast/ipc/errors.hpp"
-#include "splinecast/ipc/old_motion.hpp"
-#include "splinecast/ipc/settled_segments.hpp"
-#include "splinecast/ipc/stream_options.hpp"
+#include "ipc/roles/old_motion.hpp"
+#include "ipc/verification/settled_segments.hpp"
+#include "splinecast/errors.hpp"
+#include "splinecast/options.hpp"
+#include "tests/fuzz/guarded_bytes.hpp"
+#include "tests/fuzz/region_targets.hpp"
+#include "tests/fuzz/sampling.hpp"
 
 namespace splinecast::fuzz {
 namespace {

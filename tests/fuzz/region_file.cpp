@@ -6,7 +6,7 @@
 #include <iterator>
 #include <vector>
 
-#include "fuzz/region_targets.hpp"
+#include "tests/fuzz/region_targets.hpp"
 
 /// Tries region images as the fuzzers do, with any compiler: region_file FILE…, or one from
 /// standard input. Exits with 1 if a promise is broken; dies as the target does.

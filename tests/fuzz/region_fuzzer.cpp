@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "fuzz/region_targets.hpp"
+#include "tests/fuzz/region_targets.hpp"
 
 // libFuzzer's entry to one region target: SPLINECAST_FUZZ_TARGET names it.
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fuzz/stream_image.hpp"
+#include "tests/fuzz/stream_image.hpp"
 
 /// What is done with hostile regions. Each target takes any image and returns; it throws Broken if
 /// a promise is broken, and the process dies of a read, or store, outside a region. Regions may be

@@ -5,14 +5,14 @@
 #include <stdexcept>
 #include <string>
 
-#include "fuzz/region_targets.hpp"
-#include "fuzz/script.hpp"
-#include "splinecast/ipc/errors.hpp"
-#include "splinecast/ipc/producer.hpp"
-#include "splinecast/ipc/reader.hpp"
-#include "splinecast/ipc/solver.hpp"
-#include "splinecast/ipc/stream_files.hpp"
-#include "support/stream_report.hpp"
+#include "apps/streams/report.hpp"
+#include "ipc/roles/stream_files.hpp"
+#include "splinecast/errors.hpp"
+#include "splinecast/producer.hpp"
+#include "splinecast/reader.hpp"
+#include "splinecast/solver.hpp"
+#include "tests/fuzz/region_targets.hpp"
+#include "tests/fuzz/script.hpp"
 
 namespace splinecast::fuzz {
 namespace {

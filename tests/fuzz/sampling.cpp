@@ -1,4 +1,4 @@
-#include "fuzz/sampling.hpp"
+#include "tests/fuzz/sampling.hpp"
 
 #include <algorithm>
 #include <array>

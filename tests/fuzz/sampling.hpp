@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "fuzz/script.hpp"
-#include "splinecast/ipc/board_segment.hpp"
-#include "splinecast/ipc/sampler.hpp"
+#include "ipc/board/segment.hpp"
+#include "ipc/sampling/sampler.hpp"
+#include "tests/fuzz/script.hpp"
 
 namespace splinecast::fuzz {
 

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "splinecast/core/time.hpp"
-#include "splinecast/ipc/word.hpp"
+#include "ipc/memory/word.hpp"
+#include "splinecast/time.hpp"
 
 namespace splinecast::fuzz {
 

@@ -1,4 +1,4 @@
-#include "fuzz/seed_streams.hpp"
+#include "tests/fuzz/seed_streams.hpp"
 
 #include <unistd.h>
 
@@ -7,10 +7,10 @@
 #include <functional>
 #include <stdexcept>
 
-#include "splinecast/ipc/producer.hpp"
-#include "splinecast/ipc/solver.hpp"
-#include "splinecast/ipc/stream_files.hpp"
-#include "support/memory_stream.hpp"
+#include "ipc/roles/stream_files.hpp"
+#include "splinecast/producer.hpp"
+#include "splinecast/solver.hpp"
+#include "tests/fixtures/streams/memory_stream.hpp"
 
 namespace splinecast::fuzz {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "fuzz/stream_image.hpp"
+#include "tests/fuzz/stream_image.hpp"
 
 namespace splinecast::fuzz {
 

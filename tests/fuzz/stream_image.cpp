@@ -1,11 +1,11 @@
-#include "fuzz/stream_image.hpp"
+#include "tests/fuzz/stream_image.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <limits>
 
-#include "splinecast/ipc/publication.hpp"
+#include "ipc/layout/publication.hpp"
 
 namespace splinecast::fuzz {
 namespace {

@@ -1,7 +1,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "fuzz/text_targets.hpp"
+#include "tests/fuzz/text_targets.hpp"
 
 // libFuzzer's entry to one text target: SPLINECAST_FUZZ_TARGET names it.
 

@@ -1,4 +1,4 @@
-#include "fuzz/text_targets.hpp"
+#include "tests/fuzz/text_targets.hpp"
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -7,21 +7,21 @@
 #include <string>
 #include <vector>
 
-#include "fuzz/script.hpp"
-#include "splinecast/core/condition.hpp"
-#include "splinecast/core/limits.hpp"
-#include "splinecast/ipc/errors.hpp"
-#include "splinecast/ipc/names.hpp"
-#include "splinecast/ipc/waypoint_ring.hpp"
-#include "support/advice.hpp"
-#include "support/exit_codes.hpp"
-#include "support/kinds.hpp"
-#include "support/limit_file.hpp"
-#include "support/numbers.hpp"
-#include "support/options.hpp"
-#include "support/polynomial_file.hpp"
-#include "support/recording.hpp"
-#include "support/table_format.hpp"
+#include "apps/advise/advice.hpp"
+#include "apps/cli/options.hpp"
+#include "apps/files/kinds.hpp"
+#include "apps/files/numbers.hpp"
+#include "apps/files/polynomial_file.hpp"
+#include "apps/files/table_format.hpp"
+#include "apps/limits/file.hpp"
+#include "apps/process/exit_codes.hpp"
+#include "apps/recordings/recording.hpp"
+#include "ipc/memory/names.hpp"
+#include "ipc/ring/waypoint_ring.hpp"
+#include "splinecast/boundary_condition.hpp"
+#include "splinecast/errors.hpp"
+#include "splinecast/limits.hpp"
+#include "tests/fuzz/script.hpp"
 
 namespace splinecast::fuzz {
 namespace {
@@ -86,7 +86,7 @@ void require_whole(const apps::WaypointTable& table) {
             "a derivative is given for all positions or none");
   }
   require(table.positions.size() == table.size() * dimensions, "each row has each position");
-  for (const core::Time t : table.times) require(ipc::is_time_in_range(t), "times are in range");
+  for (const core::Time t : table.times) require(core::is_time_in_range(t), "times are in range");
 }
 
 /// What `replay` does with a table before it sends it, and what `advise` makes of it.
@@ -130,7 +130,7 @@ void try_times(std::string_view text) {
   const MemoryFile file(text);
   try {
     for (const core::Time t : apps::read_times(file.path(), options.time_unit)) {
-      require(ipc::is_time_in_range(t), "times are in range");
+      require(core::is_time_in_range(t), "times are in range");
     }
   } catch (const apps::InputError&) {
     return;

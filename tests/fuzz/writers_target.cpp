@@ -1,13 +1,13 @@
 #include <optional>
 #include <stdexcept>
 
-#include "fuzz/guarded_bytes.hpp"
-#include "fuzz/region_targets.hpp"
-#include "fuzz/sampling.hpp"
-#include "splinecast/ipc/errors.hpp"
-#include "splinecast/ipc/stream_options.hpp"
-#include "splinecast/ipc/stream_solver.hpp"
-#include "support/memory_stream.hpp"
+#include "ipc/solve/stream_solver.hpp"
+#include "splinecast/errors.hpp"
+#include "splinecast/options.hpp"
+#include "tests/fixtures/streams/memory_stream.hpp"
+#include "tests/fuzz/guarded_bytes.hpp"
+#include "tests/fuzz/region_targets.hpp"
+#include "tests/fuzz/sampling.hpp"
 
 namespace splinecast::fuzz {
 namespace {
@@ -92,7 +92,7 @@ class Stream {
   [[nodiscard]] ipc::WaypointRingWriter::Solved solved() {
     ipc::WaypointRingWriter::Solved known{.consumed = published_.tail()};
     const ipc::Look look = published_.look();
-    const bool is_known = look.revision > 0 && ipc::is_time_in_range(look.settled_until);
+    const bool is_known = look.revision > 0 && core::is_time_in_range(look.settled_until);
     if (ipc::live_options(board_header_) && is_known) known.settled_until = look.settled_until;
     return known;
   }

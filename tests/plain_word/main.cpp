@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "support/threaded_stream.hpp"
+#include "tests/fixtures/streams/threaded_stream.hpp"
 
 /// Runs a stream's threads with one of its words as plain memory:
 ///   splinecast_plain_word none|WORD

@@ -9,12 +9,12 @@
 #include <limits>
 #include <random>
 
-#include "realtime/sending.hpp"
-#include "splinecast/ipc/publication.hpp"
-#include "splinecast/ipc/reader.hpp"
-#include "splinecast/ipc/solver.hpp"
-#include "support/confined.hpp"
-#include "support/process.hpp"
+#include "ipc/layout/publication.hpp"
+#include "splinecast/reader.hpp"
+#include "splinecast/solver.hpp"
+#include "tests/fixtures/processes/confined.hpp"
+#include "tests/fixtures/processes/process.hpp"
+#include "tests/realtime/sending.hpp"
 
 /// A reader that a priority above the writer's keeps on the writer's core: while it samples, the
 /// writer stands where it was preempted. Whoever waited for that writer would wait for ever.

@@ -9,11 +9,11 @@
 #include <random>
 #include <vector>
 
-#include "realtime/sending.hpp"
-#include "splinecast/ipc/reader.hpp"
-#include "splinecast/ipc/solver.hpp"
-#include "support/confined.hpp"
-#include "support/process.hpp"
+#include "splinecast/reader.hpp"
+#include "splinecast/solver.hpp"
+#include "tests/fixtures/processes/confined.hpp"
+#include "tests/fixtures/processes/process.hpp"
+#include "tests/realtime/sending.hpp"
 
 /// The three loops as controllers would run them, in a process that dies at its first system call.
 namespace splinecast::testing {

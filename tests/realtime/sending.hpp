@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "splinecast/ipc/clock.hpp"
-#include "splinecast/ipc/producer.hpp"
+#include "splinecast/clock.hpp"
+#include "splinecast/producer.hpp"
 
 namespace splinecast::testing {
 

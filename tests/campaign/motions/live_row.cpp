@@ -1,4 +1,4 @@
-#include "campaign/motions/live_row.hpp"
+#include "tests/campaign/motions/live_row.hpp"
 
 #include <algorithm>
 #include <boost/interprocess/anonymous_shared_memory.hpp>
@@ -6,12 +6,12 @@
 #include <cmath>
 #include <memory>
 
-#include "splinecast/ipc/errors.hpp"
-#include "splinecast/ipc/solver.hpp"
-#include "splinecast/ipc/stream_files.hpp"
-#include "support/exit_codes.hpp"
-#include "support/output.hpp"
-#include "support/signals.hpp"
+#include "apps/process/exit_codes.hpp"
+#include "apps/process/messages.hpp"
+#include "apps/process/signals.hpp"
+#include "ipc/roles/stream_files.hpp"
+#include "splinecast/errors.hpp"
+#include "splinecast/solver.hpp"
 
 namespace splinecast::campaign {
 namespace {

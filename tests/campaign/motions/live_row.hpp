@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 
-#include "campaign/motions/schedule.hpp"
-#include "campaign/motions/sines.hpp"
-#include "splinecast/ipc/producer.hpp"
-#include "splinecast/ipc/reader.hpp"
-#include "support/child.hpp"
+#include "apps/process/child.hpp"
+#include "splinecast/producer.hpp"
+#include "splinecast/reader.hpp"
+#include "tests/campaign/motions/schedule.hpp"
+#include "tests/campaign/motions/sines.hpp"
 
 namespace splinecast::campaign {
 

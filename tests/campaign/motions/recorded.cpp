@@ -1,12 +1,12 @@
-#include "campaign/motions/recorded.hpp"
+#include "tests/campaign/motions/recorded.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "splinecast/core/fit.hpp"
-#include "splinecast/core/segment_extremes.hpp"
-#include "support/polynomial_file.hpp"
-#include "support/waypoint_table.hpp"
+#include "apps/files/polynomial_file.hpp"
+#include "apps/files/waypoint_table.hpp"
+#include "core/limits/extremes.hpp"
+#include "splinecast/fit.hpp"
 
 namespace splinecast::campaign {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "campaign/motions/motion.hpp"
-#include "campaign/motions/schedule.hpp"
-#include "splinecast/core/piecewise_polynomial.hpp"
+#include "splinecast/piecewise_polynomial.hpp"
+#include "tests/campaign/motions/motion.hpp"
+#include "tests/campaign/motions/schedule.hpp"
 
 namespace splinecast::campaign {
 

@@ -1,8 +1,8 @@
-#include "campaign/motions/rules.hpp"
+#include "tests/campaign/motions/rules.hpp"
 
 #include <algorithm>
 
-#include "splinecast/core/sliding_window.hpp"
+#include "core/online/sliding_window.hpp"
 
 namespace splinecast::campaign {
 

@@ -1,4 +1,4 @@
-#include "campaign/motions/schedule.hpp"
+#include "tests/campaign/motions/schedule.hpp"
 
 #include <algorithm>
 #include <cmath>

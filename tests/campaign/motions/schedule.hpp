@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "campaign/motions/sines.hpp"
+#include "tests/campaign/motions/sines.hpp"
 
 namespace splinecast::campaign {
 

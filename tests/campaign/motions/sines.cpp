@@ -1,4 +1,4 @@
-#include "campaign/motions/sines.hpp"
+#include "tests/campaign/motions/sines.hpp"
 
 #include <algorithm>
 #include <cmath>

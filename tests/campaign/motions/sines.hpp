@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "campaign/motions/motion.hpp"
+#include "tests/campaign/motions/motion.hpp"
 
 namespace splinecast::campaign {
 

@@ -1,10 +1,10 @@
-#include "campaign/motions/stops.hpp"
+#include "tests/campaign/motions/stops.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "splinecast/core/segment_extremes.hpp"
+#include "core/limits/extremes.hpp"
 
 namespace splinecast::campaign {
 namespace {

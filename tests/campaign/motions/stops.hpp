@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "campaign/motions/sines.hpp"
-#include "campaign/motions/trial.hpp"
+#include "tests/campaign/motions/sines.hpp"
+#include "tests/campaign/motions/trial.hpp"
 
 namespace splinecast::campaign {
 

@@ -1,4 +1,4 @@
-#include "campaign/motions/trace.hpp"
+#include "tests/campaign/motions/trace.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "support/output.hpp"
+#include "apps/output/stream.hpp"
 
 namespace splinecast::campaign {
 namespace {

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "campaign/motions/schedule.hpp"
-#include "campaign/motions/sines.hpp"
-#include "campaign/motions/trial.hpp"
+#include "tests/campaign/motions/schedule.hpp"
+#include "tests/campaign/motions/sines.hpp"
+#include "tests/campaign/motions/trial.hpp"
 
 namespace splinecast::campaign {
 

@@ -1,4 +1,4 @@
-#include "campaign/motions/trial.hpp"
+#include "tests/campaign/motions/trial.hpp"
 
 #include <algorithm>
 #include <cmath>

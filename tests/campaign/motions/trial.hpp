@@ -6,10 +6,10 @@
 #include <random>
 #include <vector>
 
-#include "campaign/motions/motion.hpp"
-#include "campaign/motions/schedule.hpp"
-#include "splinecast/ipc/sampler.hpp"
-#include "support/memory_stream.hpp"
+#include "ipc/sampling/sampler.hpp"
+#include "tests/campaign/motions/motion.hpp"
+#include "tests/campaign/motions/schedule.hpp"
+#include "tests/fixtures/streams/memory_stream.hpp"
 
 namespace splinecast::campaign {
 

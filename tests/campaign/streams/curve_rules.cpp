@@ -1,10 +1,10 @@
-#include "campaign/streams/curve_rules.hpp"
+#include "tests/campaign/streams/curve_rules.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "splinecast/core/segment.hpp"
+#include "core/polynomial/segment.hpp"
 
 namespace splinecast::campaign {
 namespace {

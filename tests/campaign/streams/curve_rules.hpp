@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "splinecast/core/dimension_kind.hpp"
-#include "splinecast/core/state.hpp"
-#include "splinecast/ipc/board_segment.hpp"
+#include "ipc/board/segment.hpp"
+#include "splinecast/dimension_kind.hpp"
+#include "splinecast/state.hpp"
 
 namespace splinecast::campaign {
 

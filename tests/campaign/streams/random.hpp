@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "splinecast/core/time.hpp"
+#include "splinecast/time.hpp"
 
 namespace splinecast::campaign {
 

@@ -1,4 +1,4 @@
-#include "campaign/streams/revision_check.hpp"
+#include "tests/campaign/streams/revision_check.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <numeric>
 #include <utility>
 
-#include "splinecast/ipc/verification.hpp"
+#include "ipc/verification/verify.hpp"
 
-#include "splinecast/core/segment_extremes.hpp"
+#include "core/limits/extremes.hpp"
 
 namespace splinecast::campaign {
 

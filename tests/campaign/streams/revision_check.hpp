@@ -4,11 +4,11 @@
 #include <optional>
 #include <utility>
 
-#include "campaign/streams/curve_rules.hpp"
-#include "campaign/streams/stream_findings.hpp"
-#include "splinecast/ipc/settled_segments.hpp"
-#include "support/item_record.hpp"
-#include "support/memory_stream.hpp"
+#include "ipc/verification/settled_segments.hpp"
+#include "tests/campaign/streams/curve_rules.hpp"
+#include "tests/campaign/streams/stream_findings.hpp"
+#include "tests/fixtures/streams/item_record.hpp"
+#include "tests/fixtures/streams/memory_stream.hpp"
 
 namespace splinecast::campaign {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "splinecast/ipc/knot_board.hpp"
+#include "ipc/board/knot_board.hpp"
 
 namespace splinecast::campaign {
 

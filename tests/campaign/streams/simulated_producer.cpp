@@ -1,4 +1,4 @@
-#include "campaign/streams/simulated_producer.hpp"
+#include "tests/campaign/streams/simulated_producer.hpp"
 
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 #include <functional>
 #include <vector>
 
-#include "campaign/streams/revision_check.hpp"
-#include "campaign/streams/waypoint_source.hpp"
+#include "tests/campaign/streams/revision_check.hpp"
+#include "tests/campaign/streams/waypoint_source.hpp"
 
 namespace splinecast::campaign {
 

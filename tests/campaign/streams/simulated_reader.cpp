@@ -1,11 +1,11 @@
-#include "campaign/streams/simulated_reader.hpp"
+#include "tests/campaign/streams/simulated_reader.hpp"
 
 #include <fmt/format.h>
 
 #include <bit>
 #include <cmath>
 
-#include "splinecast/ipc/layout.hpp"
+#include "ipc/layout/header.hpp"
 
 namespace splinecast::campaign {
 namespace {

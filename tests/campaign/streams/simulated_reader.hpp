@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "campaign/streams/revision_log.hpp"
-#include "campaign/streams/stream_findings.hpp"
-#include "splinecast/ipc/sampler.hpp"
+#include "ipc/sampling/sampler.hpp"
+#include "tests/campaign/streams/revision_log.hpp"
+#include "tests/campaign/streams/stream_findings.hpp"
 
 namespace splinecast::campaign {
 

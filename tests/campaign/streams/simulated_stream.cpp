@@ -1,4 +1,4 @@
-#include "campaign/streams/simulated_stream.hpp"
+#include "tests/campaign/streams/simulated_stream.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "support/torn_publication.hpp"
+#include "tests/fixtures/streams/torn_publication.hpp"
 
 namespace splinecast::campaign {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <memory>
 
-#include "campaign/streams/revision_check.hpp"
-#include "campaign/streams/simulated_producer.hpp"
-#include "campaign/streams/simulated_reader.hpp"
-#include "support/simulated_clock.hpp"
+#include "tests/campaign/streams/revision_check.hpp"
+#include "tests/campaign/streams/simulated_producer.hpp"
+#include "tests/campaign/streams/simulated_reader.hpp"
+#include "tests/fixtures/streams/simulated_clock.hpp"
 
 namespace splinecast::campaign {
 

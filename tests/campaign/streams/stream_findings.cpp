@@ -1,10 +1,10 @@
-#include "campaign/streams/stream_findings.hpp"
+#include "tests/campaign/streams/stream_findings.hpp"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "support/output.hpp"
+#include "apps/process/messages.hpp"
 
 namespace splinecast::campaign {
 namespace {

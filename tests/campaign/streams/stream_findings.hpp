@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "campaign/streams/stream_plan.hpp"
-#include "splinecast/ipc/status.hpp"
+#include "splinecast/status.hpp"
+#include "tests/campaign/streams/stream_plan.hpp"
 
 namespace splinecast::campaign {
 

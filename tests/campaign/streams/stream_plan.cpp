@@ -1,13 +1,13 @@
-#include "campaign/streams/stream_plan.hpp"
+#include "tests/campaign/streams/stream_plan.hpp"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 
-#include "splinecast/core/limits.hpp"
-#include "splinecast/core/smoothing_rows.hpp"
-#include "splinecast/core/stop.hpp"
+#include "core/forms/stop.hpp"
+#include "core/solvers/smoothing_rows.hpp"
+#include "splinecast/limits.hpp"
 
 namespace splinecast::campaign {
 namespace {

@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "campaign/streams/random.hpp"
-#include "splinecast/core/dimension_kind.hpp"
-#include "splinecast/core/sliding_window.hpp"
-#include "splinecast/ipc/stream_solver.hpp"
-#include "splinecast/ipc/waypoint_ring.hpp"
+#include "core/online/sliding_window.hpp"
+#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/solve/stream_solver.hpp"
+#include "splinecast/dimension_kind.hpp"
+#include "tests/campaign/streams/random.hpp"
 
 namespace splinecast::campaign {
 

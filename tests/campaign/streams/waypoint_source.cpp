@@ -1,4 +1,4 @@
-#include "campaign/streams/waypoint_source.hpp"
+#include "tests/campaign/streams/waypoint_source.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "campaign/streams/stream_plan.hpp"
-#include "splinecast/core/waypoint.hpp"
+#include "splinecast/waypoint.hpp"
+#include "tests/campaign/streams/stream_plan.hpp"
 
 namespace splinecast::campaign {
 

@@ -1,0 +1,136 @@
+#include "apps/advise/advice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+
+#include "apps/process/exit_codes.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+using core::Time;
+
+Time rounded_up_to_ms(Time t) noexcept {
+  constexpr Time kMillisecond = std::chrono::milliseconds(1);
+  if (t > Time::max() - kMillisecond) return t;
+  return std::chrono::ceil<std::chrono::milliseconds>(t);
+}
+
+/// Seconds of the minimum-time motion onto a path that moves on at constant velocity: it begins a
+/// distance behind and slower by `deficit`, and is never faster than the path by more than `most`.
+double catch_up_time(double distance, double deficit, double acceleration, double most) {
+  const double peak = std::sqrt(acceleration * distance + deficit * deficit / 2);
+  if (peak <= most) return (2 * peak + deficit) / acceleration;
+  const double covered = (most * most - deficit * deficit / 2) / acceleration;
+  return (2 * most + deficit) / acceleration + (distance - covered) / most;
+}
+
+/// Seconds back onto the path after `dry` seconds of a stop of `stop` seconds from velocity v.
+std::optional<double> way_back(double v, double dry, double stop, double max_velocity,
+                               double max_acceleration) {
+  if (v == 0 || dry <= 0) return 0.0;
+  const double u = std::min(dry / stop, 1.0);
+  const double velocity = v * (1 - 3 * u * u + 2 * u * u * u);
+  const double distance = v * dry - v * stop * (u - u * u * u + u * u * u * u / 2);
+  const double reserve = max_velocity - v;
+  if (reserve <= 0) return std::nullopt;
+  return catch_up_time(distance, v - velocity, max_acceleration, reserve);
+}
+
+}  // namespace
+
+Time depth_needed(Time interval, const SolvedHow& how) noexcept {
+  return core::saturated_sum(
+      how.freeze_ahead,
+      core::saturated_product(interval, static_cast<std::int64_t>(how.settle) + 1));
+}
+
+Time depth_needed(Time interval, Time length, const SolvedHow& how) noexcept {
+  return std::min(depth_needed(interval, how), core::saturated_sum(how.freeze_ahead, length));
+}
+
+Time advised_lead(const Intervals& intervals, Time length, const SolvedHow& how) noexcept {
+  const Time depth = depth_needed(intervals.median, length, how);
+  return std::max(kLeastLead, rounded_up_to_ms(core::saturated_sum(depth, intervals.jitter)));
+}
+
+std::size_t advised_settle(const Intervals& intervals, Time freeze_ahead) noexcept {
+  constexpr std::size_t kFewest = 4;
+  constexpr Time kLongestLead = std::chrono::seconds(1);
+  std::size_t settle = SolvedHow{}.settle;
+  const auto lead = [&] {
+    return advised_lead(intervals, Time::max(), {.settle = settle, .freeze_ahead = freeze_ahead});
+  };
+  while (settle > kFewest && lead() > kLongestLead) --settle;
+  return settle;
+}
+
+AdvisedLimits advised_limits(std::span<const DimensionMotion> motion) {
+  constexpr double kLongestStop = 1;     // s
+  constexpr double kStopPeak = 1.5;      // largest deceleration of a stop, in v/T
+  constexpr Time kUnmoved{250'000'000};  // what `solve` takes by default
+  AdvisedLimits limits;
+  double stop = 0;
+  for (const DimensionMotion& d : motion) {
+    limits.velocity.push_back(kLimitFactor * d.velocity);
+    limits.acceleration.push_back(
+        std::max(kLimitFactor * d.acceleration, kStopPeak * d.peak_velocity / kLongestStop));
+    if (d.peak_velocity == 0) continue;
+    stop = std::max(stop, kStopPeak * d.peak_velocity / limits.acceleration.back());
+  }
+  constexpr double kRounding = 1e-6;  // ms, of the quotients
+  const auto milliseconds =
+      std::chrono::milliseconds(std::llround(std::ceil(stop * 1e3 - kRounding)));
+  limits.stop_time = stop == 0 ? kUnmoved : std::max(milliseconds, std::chrono::milliseconds(1));
+  return limits;
+}
+
+Hiccup foresee(Time lead, Time silence, Time interval, Time freeze_ahead,
+               std::span<const DimensionMotion> motion, const AdvisedLimits& limits) {
+  const Time left =
+      std::max(core::saturated_sum(core::saturated_sum(lead, -interval), -silence), -Time::max());
+  Hiccup hiccup{.lead = lead,
+                .silence = silence,
+                .depth_left = std::max(left, Time::zero()),
+                .dry = std::max(core::saturated_sum(freeze_ahead, -left), Time::zero())};
+  hiccup.comes_to_rest = hiccup.dry >= limits.stop_time;
+  for (std::size_t d = 0; d < motion.size(); ++d) {
+    hiccup.way_back.push_back(way_back(motion[d].peak_velocity, core::to_seconds(hiccup.dry),
+                                       core::to_seconds(limits.stop_time), limits.velocity[d],
+                                       limits.acceleration[d]));
+  }
+  return hiccup;
+}
+
+Advice advise(const WaypointTable& table, Time freeze_ahead, std::optional<std::size_t> settle,
+              bool goes_on) {
+  constexpr std::array<Time, 2> kSilences{std::chrono::milliseconds(100),
+                                          std::chrono::milliseconds(300)};
+  if (table.size() < 3) {
+    throw InputError(
+        fmt::format("{}: {} rows in order: advice takes at least 3", table.file, table.size()));
+  }
+  const Intervals intervals = measure_intervals(table.times);
+  const SolvedHow how{.settle = settle.value_or(advised_settle(intervals, freeze_ahead)),
+                      .freeze_ahead = freeze_ahead};
+  const Time length = goes_on ? Time::max() : table.times.back() - table.times.front();
+  Advice advice{.intervals = intervals,
+                .motion = measure_motion(table, intervals),
+                .how = how,
+                .depth_needed = depth_needed(intervals.median, how),
+                .lead = advised_lead(intervals, length, how)};
+  advice.limits = advised_limits(advice.motion);
+  for (const Time lead : {advice.lead, kShortLead}) {
+    for (const Time silence : kSilences) {
+      advice.hiccups.push_back(
+          foresee(lead, silence, intervals.median, freeze_ahead, advice.motion, advice.limits));
+    }
+  }
+  return advice;
+}
+
+}  // namespace splinecast::apps

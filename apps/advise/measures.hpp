@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "apps/files/waypoint_table.hpp"
+#include "splinecast/time.hpp"
+
+/// What a recording shows of its producer and of its motion. Everything allocates.
+namespace splinecast::apps {
+
+/// Velocities are those of chords at least this long.
+inline constexpr core::Time kChord{50'000'000};
+
+/// A gap is an interval of more than this many medians.
+inline constexpr std::int64_t kGapFactor = 5;
+
+/// The intervals between rows.
+struct Intervals {
+  core::Time median{};
+  core::Time p5{};  ///< 5 % quantile
+  core::Time p95{};
+  core::Time largest{};
+  core::Time jitter{};  ///< 95 % quantile of |interval − median|
+  std::size_t gaps = 0;
+  core::Time longest_gap{};  ///< 0 if there are none
+
+  [[nodiscard]] core::Time gap_from() const noexcept {
+    return core::saturated_product(median, kGapFactor);
+  }
+};
+
+/// Measures at least one interval; times increase.
+[[nodiscard]] Intervals measure_intervals(std::span<const core::Time> times);
+
+/// What one dimension does, in its unit and seconds.
+struct DimensionMotion {
+  double noise = 0;          ///< standard deviation of noise and rounding of the positions
+  double velocity = 0;       ///< 95 % quantile of the magnitudes, while the machine moves
+  double peak_velocity = 0;  ///< largest magnitude
+  double acceleration = 0;   ///< likewise, of second differences over two chords
+  double peak_acceleration = 0;
+};
+
+/// Measures each dimension of a table whose times increase and whose angles and quaternions are
+/// continuous. Noise is taken from third divided differences by their median; on coarse recordings
+/// the motion itself adds to it. No chord crosses a gap. Throws InputError if the rows between gaps
+/// are too short for an acceleration.
+[[nodiscard]] std::vector<DimensionMotion> measure_motion(const WaypointTable& table,
+                                                          const Intervals& intervals);
+
+}  // namespace splinecast::apps

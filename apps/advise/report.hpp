@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/advise/advice.hpp"
+
+namespace splinecast::apps {
+
+/// Where advice comes from: a file, or a stream with its own options and its solver's counters.
+struct AdviceSource {
+  std::string name;
+  std::vector<std::string> columns;  ///< names, with units in brackets
+  std::size_t rows = 0;
+  core::Time length{};
+  std::size_t duplicates = 0;
+  std::size_t out_of_order = 0;
+
+  /// Of a stream that a solver has taken up.
+  struct Solved {
+    SolvedHow how{};
+    core::Time stop_time{};
+    std::optional<core::Time> low_water{};  ///< least depth so far
+    std::size_t misses = 0;                 ///< revisions that were discarded or came too late
+  };
+  std::optional<Solved> solved{};
+};
+
+/// Advice as JSON and as text, with reasons.
+[[nodiscard]] nlohmann::ordered_json to_json(const Advice& advice, const AdviceSource& source);
+[[nodiscard]] std::string in_words(const Advice& advice, const AdviceSource& source);
+
+/// Why the lead is as long as advised_lead says.
+[[nodiscard]] std::string lead_in_words(const Intervals& intervals, const SolvedHow& how,
+                                        core::Time lead);
+
+/// What a silence of the producer does, in words.
+[[nodiscard]] std::string in_words(const Hiccup& hiccup);
+
+/// A time in milliseconds, with its unit.
+[[nodiscard]] std::string in_milliseconds(core::Time t);
+
+}  // namespace splinecast::apps

@@ -1,0 +1,142 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "apps/advise/advice.hpp"
+#include "apps/advise/report.hpp"
+#include "apps/cli/options.hpp"
+#include "apps/files/kinds.hpp"
+#include "apps/output/stream.hpp"
+#include "apps/process/exit_codes.hpp"
+#include "apps/recordings/recording.hpp"
+#include "apps/streams/report.hpp"
+#include "apps/streams/rows.hpp"
+#include "ipc/memory/names.hpp"
+#include "ipc/roles/stream_files.hpp"
+#include "splinecast/errors.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+struct AdviseOptions {
+  std::string source;
+  TableOptions table;
+  std::optional<std::size_t> settle;
+  std::optional<core::Time> freeze_ahead;
+  bool json = false;
+  ipc::Trust trust;
+};
+
+/// The rows to look at, and where they come from.
+struct Rows {
+  WaypointTable table;
+  AdviceSource source;
+};
+
+Rows rows_of_file(const AdviseOptions& options) {
+  constexpr ipc::IngestLimits kAnyInterval{.min_interval = core::Time(1),
+                                           .max_interval = core::Time::max()};
+  Rows rows{.table = read_waypoints(options.source, options.table), .source = {}};
+  rows.source.name = rows.table.file;
+  const LateRows late = drop_unfit_rows(rows.table, kAnyInterval, LatePolicy::pass, nullptr);
+  rows.source.duplicates = late.duplicate;
+  rows.source.out_of_order = late.out_of_order;
+  return rows;
+}
+
+/// What the board of a stream says; nothing if no solver has taken the stream up.
+std::optional<AdviceSource::Solved> solved_of(const ipc::StreamInfo& info) {
+  if (!info.spline || info.spline->stream_id != info.waypoints->stream_id) return std::nullopt;
+  const ipc::LiveOptions live = ipc::live_options(*info.spline).value_or(ipc::LiveOptions{});
+  AdviceSource::Solved solved{
+      .how = {.settle = info.spline->settle, .freeze_ahead = live.freeze_ahead},
+      .stop_time = core::Time(info.spline->stop_time),
+      .misses = info.head.misses + info.head.revisions};
+  if (info.head.low_water < core::Time::max()) solved.low_water = info.head.low_water;
+  return solved;
+}
+
+Rows rows_of_stream(const AdviseOptions& options) {
+  const ipc::StreamInfo info = ipc::inspect(options.source, options.trust);
+  if (!info.waypoints) {
+    throw InputError(fmt::format("stream '{}' has no producer yet", options.source));
+  }
+  Rows rows{.table = read_stream_rows(options.source, options.trust), .source = {}};
+  const auto refused = [&](ipc::AppendStatus status) {
+    return info.refused_by_producer[static_cast<std::size_t>(status)];
+  };
+  rows.source.name = rows.table.file;
+  rows.source.duplicates = refused(ipc::AppendStatus::duplicate);
+  rows.source.out_of_order = refused(ipc::AppendStatus::out_of_order);
+  rows.source.solved = solved_of(info);
+  return rows;
+}
+
+bool is_stream(const std::string& name) {
+  const std::vector<std::string> streams = ipc::stream_names();
+  return std::ranges::find(streams, name) != streams.end();
+}
+
+Rows rows_of(const AdviseOptions& options) {
+  if (is_stream(options.source)) return rows_of_stream(options);
+  if (options.source != "-" && !std::filesystem::exists(options.source)) {
+    throw InputError(fmt::format("there is neither a file nor a stream '{}'", options.source));
+  }
+  return rows_of_file(options);
+}
+
+/// A freeze-ahead with which revisions came too late is doubled.
+core::Time freeze_ahead_of(const AdviseOptions& options, const AdviceSource& source) {
+  if (options.freeze_ahead) return *options.freeze_ahead;
+  if (!source.solved) return SolvedHow{}.freeze_ahead;
+  const core::Time own = source.solved->how.freeze_ahead;
+  return source.solved->misses > 0 ? core::saturated_product(own, 2) : own;
+}
+
+int run_advise(const AdviseOptions& options) {
+  Rows rows = rows_of(options);
+  AdviceSource& source = rows.source;
+  source.rows = rows.table.size();
+  source.columns = rows.table.names;
+  continue_waypoints(rows.table);
+  std::optional<std::size_t> settle = options.settle;
+  if (!settle && source.solved) settle = source.solved->how.settle;
+  const Advice advice =
+      advise(rows.table, freeze_ahead_of(options, source), settle, source.solved.has_value());
+  source.length = rows.table.times.back() - rows.table.times.front();
+  print_report(options.json ? pretty(to_json(advice, source)) : in_words(advice, source));
+  return kOk;
+}
+
+}  // namespace
+
+void add_advise(CLI::App& program, Action& action) {
+  auto options = std::make_shared<AdviseOptions>();
+  auto* verb = program.add_subcommand(
+      "advise", "Recommend lead, settle lag, freeze-ahead, stop time and limits, and say why");
+  verb->add_option(
+          "FILE|STREAM", options->source,
+          "Waypoint file, CSV or TUM text, - for standard input; or a stream, of which the "
+          "waypoints in its ring are looked at (write ./NAME for a file of that name)")
+      ->required();
+  add_settle(*verb, options->settle);
+  verb->get_option("--settle")
+      ->description(
+          "Settle lag of the solver, 0 to 64 (default the stream's own; of a file 8, or "
+          "fewer where 8 would need a lead of more than 1 s)");
+  verb->add_option_function<std::string>(
+          "--freeze-ahead",
+          [options](const std::string& text) {
+            options->freeze_ahead = time_within("--freeze-ahead", text, TimeUnit::milliseconds);
+          },
+          "What lies this long ahead of now is settled (default 5, or the stream's own)")
+      ->type_name("MS");
+  verb->add_flag("--json", options->json, "Report as JSON on standard output");
+  add_table_options(*verb, options->table);
+  add_trust(*verb, options->trust);
+  verb->callback([&action, options] { action = [options] { return run_advise(*options); }; });
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "core/limits/check.hpp"
+#include "splinecast/piecewise_polynomial.hpp"
+
+namespace splinecast::apps {
+
+/// An excess with its time on the curve.
+struct TimedExcess {
+  core::Excess excess;
+  core::Time time{};
+};
+
+/// How a whole curve compares with limits.
+struct CurveCheck {
+  std::size_t segments = 0;
+  std::size_t segments_beyond = 0;
+  std::optional<TimedExcess> first_violation{};
+  std::array<std::optional<TimedExcess>, core::kLimitKinds> worst{};  ///< by LimitKind
+  /// The largest factor r ≤ 1 of the speed for which velocities r·v, accelerations r²·a and jerks
+  /// r³·j keep their limits; 0: none does.
+  double slowing = 1;
+  bool keeps_bounds = true;  ///< which slowing does not change
+
+  [[nodiscard]] bool keeps_limits() const noexcept { return segments_beyond == 0; }
+};
+
+/// Compares every segment of a curve. Steps of the acceleration where segments meet count as no
+/// jerk. The limits have passed core::require_limits.
+[[nodiscard]] CurveCheck check_curve(const core::PiecewisePolynomial& curve,
+                                     const core::MotionLimits& limits,
+                                     const core::DimensionKinds& kinds);
+
+}  // namespace splinecast::apps

@@ -1,0 +1,190 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/check/excesses.hpp"
+#include "apps/cli/options.hpp"
+#include "apps/files/kinds.hpp"
+#include "apps/fit/curve.hpp"
+#include "apps/fit/options.hpp"
+#include "apps/limits/file.hpp"
+#include "apps/limits/options.hpp"
+#include "apps/output/stream.hpp"
+#include "apps/process/exit_codes.hpp"
+#include "apps/process/messages.hpp"
+#include "apps/streams/report.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct CheckOptions {
+  std::string file;
+  TableOptions table;
+  const core::Method* method = nullptr;
+  CurveOptions curve;
+  LimitOptions limits;
+  bool json = false;
+};
+
+/// What a check found, and the words for it.
+struct CheckReport {
+  std::string file;
+  std::vector<std::string> names;
+  std::string method;
+  core::Time begin{};
+  core::Time end{};
+  CurveCheck check;
+  LimitGaps gaps;
+  std::vector<std::string> notes;
+};
+
+/// The limits that are asked for, for the dimensions of a table.
+core::MotionLimits limits_of(const LimitOptions& options, const LimitFile& file,
+                             const WaypointTable& table,
+                             const std::vector<core::Dimension>& kinds) {
+  core::MotionLimits limits = core::overridden(core::matched(file.joints, table.names),
+                                               core::spread(options.given, table.dimensions()));
+  core::require_limits(limits, kinds);
+  if (limits.empty()) {
+    throw InputError(
+        fmt::format("{}: none of the limits is for one of its dimensions", table.file));
+  }
+  return limits;
+}
+
+CheckReport checked(const CheckOptions& options) {
+  WaypointTable table = read_waypoints(options.file, options.table);
+  require_spline_input(table);
+  continue_waypoints(table);
+  LimitFile file;
+  if (!options.limits.file.empty()) file = read_limit_file(options.limits.file);
+  std::vector<core::Dimension> kinds = table.kinds;
+  kinds.resize(table.dimensions());
+  const core::MotionLimits limits = limits_of(options.limits, file, table, kinds);
+  const core::PiecewisePolynomial curve = fit_table(table, *options.method, options.curve);
+  return {.file = table.file,
+          .names = table.names,
+          .method = std::string(options.method->name),
+          .begin = curve.breaks().front(),
+          .end = curve.breaks().back(),
+          .check = check_curve(curve, limits, core::DimensionKinds(kinds)),
+          .gaps = limit_gaps(limits, file.joints, table.names, kinds),
+          .notes = file.notes};
+}
+
+ordered_json excess_json(const std::optional<TimedExcess>& found, const CheckReport& report) {
+  if (!found) return nullptr;
+  const core::Excess& excess = found->excess;
+  return {{"kind", core::to_string(excess.kind)},
+          {"dimension", excess.dimension},
+          {"name", report.names[excess.dimension]},
+          {"time_ns", found->time.count()},
+          {"value", excess.value},
+          {"limit", excess.limit},
+          {"ratio", excess.ratio}};
+}
+
+ordered_json to_json(const CheckReport& report) {
+  const CurveCheck& check = report.check;
+  ordered_json worst = ordered_json::object();
+  for (std::size_t kind = 0; kind < check.worst.size(); ++kind) {
+    worst[std::string(core::to_string(static_cast<core::LimitKind>(kind)))] =
+        excess_json(check.worst[kind], report);
+  }
+  return {{"file", report.file},
+          {"method", report.method},
+          {"begin_ns", report.begin.count()},
+          {"end_ns", report.end.count()},
+          {"keeps_limits", check.keeps_limits()},
+          {"segments", check.segments},
+          {"segments_beyond", check.segments_beyond},
+          {"first_violation", excess_json(check.first_violation, report)},
+          {"worst", worst},
+          {"slowing", check.slowing},
+          {"slowing_suffices", check.slowing > 0 && check.keeps_bounds},
+          {"names_without_dimension", report.gaps.unmatched},
+          {"dimensions_without_limit", report.gaps.without},
+          {"notes", report.notes}};
+}
+
+std::string text_of(const TimedExcess& found, const CheckReport& report) {
+  const core::Excess& excess = found.excess;
+  return fmt::format("{:.6g} of {:.6g} (ratio {:.6g}), '{}' at {:.9f} s", excess.value,
+                     excess.limit, excess.ratio, report.names[excess.dimension],
+                     core::to_seconds(found.time));
+}
+
+std::string advice_of(const CurveCheck& check) {
+  std::string text;
+  if (check.slowing == 0) text += "no slowing is enough\n";
+  if (check.slowing > 0 && check.slowing < 1) {
+    // Rounded down, so that the printed factor is slow enough.
+    text += fmt::format("{:.4f} of the speed would keep velocity, acceleration and jerk\n",
+                        std::floor(check.slowing * 1e4) / 1e4);
+  }
+  if (!check.keeps_bounds) text += "slowing cannot keep the bounds of the position\n";
+  return text;
+}
+
+std::string to_text(const CheckReport& report) {
+  const CurveCheck& check = report.check;
+  std::string text =
+      fmt::format("{}: {} segments of {} from {:.9f} s to {:.9f} s\n", report.file, check.segments,
+                  report.method, core::to_seconds(report.begin), core::to_seconds(report.end));
+  for (std::size_t kind = 0; kind < check.worst.size(); ++kind) {
+    const auto& worst = check.worst[kind];
+    text += fmt::format("{:<16}  {}\n", core::to_string(static_cast<core::LimitKind>(kind)),
+                        worst ? text_of(*worst, report) : "no limit");
+  }
+  if (check.keeps_limits()) return text + "all limits are kept\n";
+  const TimedExcess& first = *check.first_violation;
+  text += fmt::format("first violation   {} {}\n", core::to_string(first.excess.kind),
+                      text_of(first, report));
+  text += fmt::format("{} of {} segments are beyond their limits\n", check.segments_beyond,
+                      check.segments);
+  return text + advice_of(check);
+}
+
+int run_check(const CheckOptions& options) {
+  const CheckReport report = checked(options);
+  for (const std::string& note : report.notes) say(note);
+  for (const std::string& line : to_lines(report.gaps)) say(line);
+  print_report(options.json ? pretty(to_json(report)) : to_text(report));
+  return report.check.keeps_limits() ? kOk : kFellShort;
+}
+
+}  // namespace
+
+void add_check(CLI::App& program, Action& action) {
+  auto options = std::make_shared<CheckOptions>();
+  auto* verb = program.add_subcommand(
+      "check", "Compare the spline through a file with limits; exit code 3 if it is beyond them");
+  verb->add_option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
+      ->required();
+  add_limit_options(*verb, options->limits);
+  verb->add_option_function<std::string>(
+          "--method", [options](const std::string& text) { options->method = &method_named(text); },
+          fmt::format("Interpolant: {} (default c2)", core::method_names(false)))
+      ->type_name("METHOD");
+  add_curve(*verb, options->curve);
+  add_table_options(*verb, options->table);
+  verb->add_flag("--json", options->json, "As JSON");
+  verb->callback([&action, options] {
+    if (options->method == nullptr) options->method = &core::c2();
+    require_consistent(options->curve, std::array{options->method});
+    if (!options->limits.any()) {
+      throw CLI::ValidationError("check",
+                                 "needs limits: --limits, --max-velocity, --max-acceleration, "
+                                 "--max-jerk or --bounds");
+    }
+    action = [options] { return run_check(*options); };
+  });
+}
+
+}  // namespace splinecast::apps

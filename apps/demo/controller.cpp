@@ -1,0 +1,138 @@
+#include "apps/demo/controller.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include "apps/process/signals.hpp"
+#include "apps/streams/attach.hpp"
+#include "core/polynomial/segment.hpp"
+#include "splinecast/reader.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+constexpr core::Time kPeriod = std::chrono::milliseconds(1);
+constexpr core::Time kWait = std::chrono::seconds(15);
+/// How long after the last waypoint a reader goes on: long enough to see it hold.
+constexpr core::Time kAfterEnd = std::chrono::milliseconds(100);
+
+/// Largest differences in position, velocity and acceleration.
+class LargestStep {
+ public:
+  void compare(const core::State& a, const core::State& b) {
+    const std::size_t dimensions = a.dimensions();
+    for (std::size_t i = 0; i < largest_.size() * dimensions; ++i) {
+      double& most = largest_[i / dimensions];
+      most = std::max(most, std::abs(a.values()[i] - b.values()[i]));
+    }
+  }
+  [[nodiscard]] nlohmann::json json() const { return largest_; }
+
+ private:
+  std::array<double, 3> largest_{};
+};
+
+double percentile(std::vector<double>& values, double fraction) {
+  if (values.empty()) return 0;
+  const auto at = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, values.begin() + at);
+  return values[static_cast<std::size_t>(at)];
+}
+
+class DemoReader {
+ public:
+  explicit DemoReader(const std::string& stream)
+      : reader_(attach_reader(stream, kWait)),
+        kinds_(reader_.kinds()),
+        snapshot_(reader_.dimensions()),
+        now_(reader_.dimensions()),
+        before_(reader_.dimensions()),
+        left_(reader_.dimensions()),
+        right_(reader_.dimensions()) {}
+
+  nlohmann::json run() {
+    core::Time due = clock_.now();
+    while (!has_ended() && sleep_until(due)) {
+      tick();
+      due += kPeriod;
+    }
+    return {{"samples", samples_},
+            {"by_status", by_status_},
+            {"step_at_knots", at_knots_.json()},
+            {"change_of_the_past", of_the_past_.json()},
+            {"age_ms", {percentile(ages_, 0.5), percentile(ages_, 1.0)}},
+            {"sample_ns", {percentile(costs_, 0.5), percentile(costs_, 0.99)}}};
+  }
+
+ private:
+  void tick() {
+    const core::Time t = clock_.now();
+    const auto status = reader_.sample(t, now_);
+    costs_.push_back(static_cast<double>((clock_.now() - t).count()));
+    ++samples_;
+    ++by_status_[static_cast<std::size_t>(status)];
+    if (reader_.head(head_) && !head_.finished) {
+      ages_.push_back(core::to_seconds(t - head_.committed) * 1e3);
+    }
+    if (ipc::has_values(status)) check(t);
+  }
+
+  /// The knots passed since the tick before, and the curve now at that tick against what was read
+  /// then.
+  void check(core::Time t) {
+    if (has_before_) {
+      if (ipc::has_values(reader_.sample(before_time_, left_)))
+        of_the_past_.compare(left_, before_);
+      if (ipc::has_values(reader_.snapshot(before_time_, t, snapshot_))) check_knots();
+    }
+    std::swap(now_, before_);
+    before_time_ = t;
+    has_before_ = true;
+  }
+
+  void check_knots() {
+    const auto segments = snapshot_.segments();
+    for (std::size_t i = 1; i < segments.size(); ++i) {
+      const ipc::SegmentCopy& a = segments[i - 1];
+      const ipc::SegmentCopy& b = segments[i];
+      evaluate(a, core::to_seconds(a.right - a.left), left_);
+      evaluate(b, 0, right_);
+      at_knots_.compare(left_, right_);
+    }
+  }
+
+  /// A wrapping position is left as it is: read, it steps by a period where it goes round.
+  void evaluate(const ipc::SegmentCopy& segment, double u, core::State& out) const {
+    const core::StateRef ref = out.ref();
+    core::evaluate(segment.order, segment.coefficients, u, ref);
+    kinds_.normalise_quaternions(ref.position, ref.velocity, ref.acceleration);
+  }
+
+  [[nodiscard]] bool has_ended() const {
+    return head_.finished && clock_.now() > head_.newest_knot + kAfterEnd;
+  }
+
+  ipc::MonotonicClock clock_;
+  ipc::Reader reader_;
+  core::DimensionKinds kinds_;
+  ipc::Head head_;
+  ipc::Snapshot snapshot_;
+  core::State now_, before_, left_, right_;
+  core::Time before_time_{};
+  bool has_before_ = false;
+  std::size_t samples_ = 0;
+  std::array<std::size_t, ipc::kSampleStatuses> by_status_{};
+  LargestStep at_knots_;
+  LargestStep of_the_past_;
+  std::vector<double> ages_;
+  std::vector<double> costs_;
+};
+
+}  // namespace
+
+nlohmann::json run_demo_reader(const std::string& stream) { return DemoReader(stream).run(); }
+
+}  // namespace splinecast::apps

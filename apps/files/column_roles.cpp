@@ -1,0 +1,268 @@
+#include "apps/files/column_roles.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <utility>
+
+#include "apps/process/exit_codes.hpp"
+#include "apps/process/messages.hpp"
+#include "splinecast/state.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+/// What is in the brackets of a column named `<word>[…]`.
+std::optional<std::string_view> in_brackets(std::string_view name, std::string_view word) {
+  if (!name.starts_with(word) || !name.ends_with(']')) return std::nullopt;
+  name.remove_prefix(word.size());
+  if (!name.starts_with('[')) return std::nullopt;
+  return name.substr(1, name.size() - 2);
+}
+
+/// i of a column named `<word>[i]`.
+std::optional<std::size_t> index_of(std::string_view name, std::string_view word) {
+  const auto text = in_brackets(name, word);
+  const bool has_digits =
+      text && !text->empty() && text->find_first_not_of("0123456789") == std::string_view::npos;
+  return has_digits ? parse_count(*text) : std::nullopt;
+}
+
+/// Whether a column named `<word>[…]` is meant to have an index there, but has none: `v[-1]`.
+bool has_bad_index(std::string_view name, std::string_view word) {
+  const auto text = in_brackets(name, word);
+  if (!text || index_of(name, word)) return false;
+  const std::string_view index = without_blanks(*text);
+  return index.empty() || index.find_first_of("0123456789+-.") == 0;
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+/// Whether a name could also be that of a time or of a derivative: `vx`, `acc_y`, `time_sync`.
+bool is_ambiguous(std::string_view name) {
+  constexpr std::array<std::string_view, 12> kWords{"vel",   "speed", "acc",   "jerk",
+                                                    "omega", "alpha", "gyro",  "dot",
+                                                    "rate",  "time",  "stamp", "sec"};
+  constexpr std::size_t kLongestSymbol = 3;  // v, vx, v_x
+  const std::string all = lower(name);
+  const std::string_view base =
+      without_blanks(std::string_view(all).substr(0, all.find_first_of(" [(")));
+  const bool is_symbol = base.size() <= kLongestSymbol && base.find_first_of("vaj") == 0;
+  return is_symbol || std::ranges::any_of(kWords, [&](std::string_view word) {
+           return base.find(word) != std::string_view::npos;
+         });
+}
+
+}  // namespace
+
+ColumnRoles::ColumnRoles(std::string file, const TableFormat& format, std::optional<TimeUnit> unit)
+    : file_(std::move(file)), format_(format) {
+  std::optional<std::size_t> time;
+  for (std::size_t c = 0; c < format_.names.size(); ++c) {
+    const std::string& name = format_.names[c];
+    if (!index_.emplace(name, c).second && !name.empty()) {
+      throw InputError(fmt::format("{}: two columns are named '{}'", file_, name));
+    }
+    if (c < format_.aliases.size()) aliases_.emplace(format_.aliases[c], c);
+    const auto named = unit_of_time_column(name);
+    if (!named || time) continue;
+    time = c;
+    roles_.unit = unit.value_or(*named);
+  }
+  if (!time) {
+    throw InputError(fmt::format(
+        "{}: there is no time column (t_ns, timestamp_us, timestamp [ns], t, time, timestamp) "
+        "among {}{}",
+        file_, all_names(), format_.names.size() == 1 ? " (fields are separated by commas)" : ""));
+  }
+  roles_.time = *time;
+}
+
+void ColumnRoles::find_values(const std::vector<std::string>& selected, Lines rest) {
+  const Columns all = position_columns(!selected.empty(), rest);
+  for (const std::string& wanted : selected) add_position(selected_column(wanted));
+  if (selected.empty()) {
+    for (const std::size_t c : all) add_position(c);
+  }
+  if (roles_.positions.empty()) {
+    throw InputError(
+        fmt::format("{}: there is no position column besides the time ({})", file_, all_names()));
+  }
+  roles_.velocities = derivative_columns("v", all);
+  roles_.accelerations = derivative_columns("a", all);
+  if (!selected.empty()) return;
+  require_no_unused_derivative();
+  tell_roles();
+}
+
+void ColumnRoles::add_position(std::size_t c) {
+  if (roles_.positions.size() == core::kMaxDimensions) {
+    throw InputError(fmt::format(
+        "{}: column {}, '{}', would be the position of dimension {}; at most {} dimensions are "
+        "possible: select some with --columns",
+        file_, c + 1, format_.names[c], core::kMaxDimensions + 1, core::kMaxDimensions));
+  }
+  roles_.positions.push_back(c);
+}
+
+std::optional<std::size_t> ColumnRoles::find(const std::string& name) const {
+  const auto found = index_.find(name);
+  return found == index_.end() ? std::nullopt : std::optional(found->second);
+}
+
+/// A column by name, or by the name that a comment gives it.
+std::size_t ColumnRoles::selected_column(const std::string& wanted) const {
+  auto c = find(wanted);
+  if (const auto alias = aliases_.find(wanted); !c && alias != aliases_.end()) c = alias->second;
+  if (!c) {
+    throw InputError(
+        fmt::format("{}: there is no column '{}' among {}", file_, wanted, all_names()));
+  }
+  const bool is_again = std::ranges::find(roles_.positions, *c) != roles_.positions.end();
+  if (*c == roles_.time || is_again) {
+    throw InputError(fmt::format("{}: column '{}' is {}", file_, wanted,
+                                 is_again ? "selected twice" : "the time"));
+  }
+  return *c;
+}
+
+/// Columns that hold positions if none are selected: numeric ones that are nothing else. A few too
+/// many are enough to tell that there are too many.
+ColumnRoles::Columns ColumnRoles::position_columns(bool is_selected, const Lines& rest) const {
+  const std::vector<bool> is_numeric = numeric_columns(rest);
+  Columns columns;
+  for (std::size_t c = 0; c < format_.names.size(); ++c) {
+    const std::string& name = format_.names[c];
+    if (c == roles_.time || index_of(name, "v") || index_of(name, "a") || is_sampled(name)) {
+      continue;
+    }
+    if (!is_numeric[c]) {
+      if (name.empty() || is_selected) continue;
+      say(fmt::format("{}: column '{}' is not numeric and is left out", file_, name));
+      continue;
+    }
+    if (!is_selected) require_usable(c);
+    columns.push_back(c);
+    if (!is_selected && columns.size() > core::kMaxDimensions) break;
+  }
+  return columns;
+}
+
+/// Whether each column holds numbers: its first cell does, or, if that is bad, any other. (A bad
+/// cell must not make a dimension vanish.)
+std::vector<bool> ColumnRoles::numeric_columns(Lines rest) const {
+  std::vector<bool> is_numeric(format_.names.size(), format_.first_row.number == 0);
+  Columns open;
+  for (std::size_t c = 0; c < is_numeric.size(); ++c) open.push_back(c);
+  std::vector<std::string_view> fields;
+  Line line = format_.first_row;
+  if (line.number == 0) return is_numeric;
+  do {
+    split(line.text, format_.at_commas, fields);
+    std::erase_if(open, [&](std::size_t c) {
+      if (c < fields.size() && parse_number(fields[c])) is_numeric[c] = true;
+      return is_numeric[c];
+    });
+  } while (!open.empty() && rest.next_data(line));
+  return is_numeric;
+}
+
+/// Throws for a column that would be a position by default, though its name says something else.
+void ColumnRoles::require_usable(std::size_t c) const {
+  const std::string& name = format_.names[c];
+  if (unit_of_time_column(name)) {
+    throw InputError(fmt::format(
+        "{}: column {}, '{}', is a second time column besides '{}': select the positions with "
+        "--columns",
+        file_, c + 1, name, format_.names[roles_.time]));
+  }
+  for (const std::string_view letter : {"v", "a"}) {
+    if (!has_bad_index(name, letter)) continue;
+    throw InputError(fmt::format("{}: column {}, '{}', is no {}: {}[i] has an index i of 0 to {}",
+                                 file_, c + 1, name, letter == "v" ? "velocity" : "acceleration",
+                                 letter, core::kMaxDimensions - 1));
+  }
+}
+
+/// j[i] beside p[i], v[i] and a[i], omega[i] and alpha[i] behind j[0]: samples that this program
+/// wrote, whose jerk and angular motion are no positions.
+bool ColumnRoles::is_sampled(const std::string& name) const {
+  const bool is_angular = index_of(name, "omega") || index_of(name, "alpha");
+  const auto i = is_angular ? 0 : index_of(name, "j");
+  if (!i) return false;
+  return std::ranges::all_of(std::string_view("pvaj"), [&](char letter) {
+    return find(fmt::format("{}[{}]", letter, *i)).has_value();
+  });
+}
+
+/// Columns of a given derivative, one per selected position, or none at all. `<letter>[i]` goes
+/// with the column p[i] if there is one, else with the file's i-th position column.
+ColumnRoles::Columns ColumnRoles::derivative_columns(std::string_view letter,
+                                                     const Columns& all) const {
+  Columns columns;
+  for (const std::size_t position : roles_.positions) {
+    auto i = index_of(format_.names[position], "p");
+    if (!i) i = static_cast<std::size_t>(std::ranges::lower_bound(all, position) - all.begin());
+    const auto c = find(fmt::format("{}[{}]", letter, *i));
+    if (c && std::ranges::find(roles_.positions, *c) == roles_.positions.end()) {
+      columns.push_back(*c);
+    }
+  }
+  if (!columns.empty() && columns.size() != roles_.positions.size()) {
+    throw InputError(fmt::format("{}: {} columns {}[i] for {} positions; one each, or none", file_,
+                                 columns.size(), letter, roles_.positions.size()));
+  }
+  return columns;
+}
+
+/// Throws for a velocity or an acceleration that goes with none of the positions.
+void ColumnRoles::require_no_unused_derivative() const {
+  for (std::size_t c = 0; c < format_.names.size(); ++c) {
+    const std::string& name = format_.names[c];
+    for (const auto& [letter, used] :
+         {std::pair("v", &roles_.velocities), std::pair("a", &roles_.accelerations)}) {
+      if (c == roles_.time || !index_of(name, letter)) continue;
+      if (std::ranges::find(*used, c) != used->end()) continue;
+      throw InputError(fmt::format("{}: column {}, '{}', goes with none of the {} positions ({})",
+                                   file_, c + 1, name, roles_.positions.size(),
+                                   names_of(roles_.positions)));
+    }
+  }
+}
+
+void ColumnRoles::tell_roles() const {
+  const bool is_clear = std::ranges::none_of(
+      roles_.positions, [&](std::size_t c) { return is_ambiguous(format_.names[c]); });
+  if (is_clear) return;
+  say(
+      fmt::format("{}: time: {}; positions: {}; velocities: {}; accelerations: {} (--columns "
+                  "selects other positions)",
+                  file_, format_.names[roles_.time], names_of(roles_.positions),
+                  names_of(roles_.velocities), names_of(roles_.accelerations)));
+}
+
+std::string ColumnRoles::names_of(const Columns& columns) const {
+  std::string text;
+  for (const std::size_t c : columns) {
+    text += (text.empty() ? "" : ", ") + format_.names[c];
+  }
+  return text.empty() ? "none" : text;
+}
+
+/// All columns' names, or the first of very many.
+std::string ColumnRoles::all_names() const {
+  constexpr std::size_t kMost = 100;
+  Columns columns;
+  for (std::size_t c = 0; c < std::min(format_.names.size(), kMost); ++c) columns.push_back(c);
+  const std::size_t more = format_.names.size() - columns.size();
+  return names_of(columns) + (more == 0 ? "" : fmt::format(" and {} more", more));
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/files/numbers.hpp"
+#include "apps/files/table_format.hpp"
+
+namespace splinecast::apps {
+
+/// Which field of a row is what.
+struct Roles {
+  std::size_t time = 0;
+  TimeUnit unit = TimeUnit::seconds;
+  std::vector<std::size_t> positions{};
+  std::vector<std::size_t> velocities{};     ///< one per position, or none
+  std::vector<std::size_t> accelerations{};  ///< likewise
+};
+
+/// Finds out by their names what the columns of a table are. O(n log n) for n columns, besides one
+/// look at each field up to the first row in which all columns have numbers.
+class ColumnRoles {
+ public:
+  /// Finds the time column. `file` is for messages. Throws InputError if there is none, or if two
+  /// columns have one name.
+  ColumnRoles(std::string file, const TableFormat& format, std::optional<TimeUnit> unit);
+
+  /// Finds the columns of positions and given derivatives. `selected` names the positions in their
+  /// order; if it is empty, they are all numeric columns that are nothing else, and a message says
+  /// which columns became what if a name leaves that open. `rest` is behind the first row. Throws
+  /// InputError, naming the column, for one that looks like a time or a derivative but cannot be
+  /// used, and for more than 64 positions.
+  void find_values(const std::vector<std::string>& selected, Lines rest);
+
+  [[nodiscard]] const Roles& roles() const { return roles_; }
+
+ private:
+  using Columns = std::vector<std::size_t>;
+
+  [[nodiscard]] std::optional<std::size_t> find(const std::string& name) const;
+  [[nodiscard]] std::size_t selected_column(const std::string& wanted) const;
+  [[nodiscard]] Columns position_columns(bool is_selected, const Lines& rest) const;
+  [[nodiscard]] std::vector<bool> numeric_columns(Lines rest) const;
+  [[nodiscard]] bool is_sampled(const std::string& name) const;
+  [[nodiscard]] Columns derivative_columns(std::string_view letter, const Columns& all) const;
+  void require_usable(std::size_t c) const;
+  void require_no_unused_derivative() const;
+  void add_position(std::size_t c);
+  void tell_roles() const;
+  [[nodiscard]] std::string names_of(const Columns& columns) const;
+  [[nodiscard]] std::string all_names() const;
+
+  std::string file_;
+  const TableFormat& format_;
+  std::map<std::string, std::size_t> index_;    ///< by name
+  std::map<std::string, std::size_t> aliases_;  ///< by the name that a comment gives
+  Roles roles_;
+};
+
+}  // namespace splinecast::apps

@@ -1,0 +1,135 @@
+#include "apps/files/polynomial_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+
+#include "apps/files/numbers.hpp"
+#include "apps/files/table_format.hpp"
+#include "apps/files/text_file.hpp"
+#include "apps/process/exit_codes.hpp"
+#include "splinecast/waypoint.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+/// A polynomial's column: dimension and power.
+struct Column {
+  std::size_t dimension = 0;
+  std::size_t power = 0;
+
+  friend bool operator==(const Column&, const Column&) = default;
+};
+
+/// What the header says.
+struct Format {
+  std::vector<std::string> names;
+  std::vector<Column> columns;  ///< of fields 1, 2, …
+  std::size_t order = 0;
+};
+
+[[noreturn]] void fail(const TextFile& file, const Line& line, const std::string& what) {
+  throw InputError(fmt::format("{}:{}: {}", file.name(), line.number, what));
+}
+
+/// The fields of a line, without one that a comma at the end of the line would begin.
+std::vector<std::string_view> fields_of(const Line& line) {
+  std::vector<std::string_view> fields;
+  split(line.text, true, fields);
+  if (without_blanks(fields.back()).empty()) fields.pop_back();
+  return fields;
+}
+
+bool is_duration(std::string_view name) {
+  return std::ranges::equal(name, std::string_view("duration"),
+                            [](unsigned char a, char b) { return std::tolower(a) == b; });
+}
+
+Format read_header(const TextFile& file, const Line& line) {
+  Format format;
+  const auto fields = fields_of(line);
+  if (fields.empty() || !is_duration(trimmed(fields[0]))) {
+    fail(file, line, "the first column is not 'duration'");
+  }
+  for (std::size_t i = 1; i < fields.size(); ++i) {
+    const std::string_view field = trimmed(fields[i]);
+    const std::size_t caret = field.find('^');
+    const auto power =
+        caret == std::string_view::npos ? std::nullopt : parse_count(field.substr(caret + 1));
+    if (!power || *power >= static_cast<std::size_t>(core::kMaxPolynomialOrder)) {
+      fail(file, line, fmt::format("column '{}' names no power, as x^0 does", field));
+    }
+    const std::string name(field.substr(0, caret));
+    if (name.empty()) fail(file, line, fmt::format("column '{}' names no dimension", field));
+    const auto found = std::ranges::find(format.names, name);
+    const auto dimension = static_cast<std::size_t>(found - format.names.begin());
+    if (found == format.names.end()) format.names.push_back(name);
+    const Column column{dimension, *power};
+    if (std::ranges::find(format.columns, column) != format.columns.end()) {
+      fail(file, line, fmt::format("column '{}' is there twice", field));
+    }
+    format.columns.push_back(column);
+    format.order = std::max<std::size_t>(format.order, *power + 1);
+  }
+  if (format.names.empty() || format.names.size() > core::kMaxDimensions) {
+    fail(file, line, fmt::format("{} dimensions; 1 to 64 can be read", format.names.size()));
+  }
+  return format;
+}
+
+/// Of a piece, and of all together.
+constexpr core::Time kLongestPiece = std::chrono::hours(24 * 366);
+
+core::Time duration_of(const TextFile& file, const Line& line, std::string_view field) {
+  const auto duration = parse_time(without_blanks(field), TimeUnit::seconds);
+  if (!duration || *duration <= core::Time::zero() || *duration > kLongestPiece) {
+    fail(file, line, fmt::format("'{}' is no duration of up to a year", without_blanks(field)));
+  }
+  return *duration;
+}
+
+void append_piece(const TextFile& file, const Line& line, const Format& format,
+                  core::PiecewisePolynomial& curve) {
+  const auto fields = fields_of(line);
+  if (fields.size() != format.columns.size() + 1) {
+    fail(file, line,
+         fmt::format("{} fields; the header has {}", fields.size(), format.columns.size() + 1));
+  }
+  std::vector<double> coefficients(format.order * format.names.size());
+  for (std::size_t i = 0; i < format.columns.size(); ++i) {
+    const auto value = parse_number(without_blanks(fields[i + 1]));
+    const Column& column = format.columns[i];
+    if (!value || !core::is_usable(*value)) {
+      fail(
+          file, line,
+          fmt::format("column '{}^{}': '{}' is no number within 1e100",
+                      format.names[column.dimension], column.power, without_blanks(fields[i + 1])));
+    }
+    coefficients[column.power * format.names.size() + column.dimension] = *value;
+  }
+  const core::Time left = curve.segments() == 0 ? core::Time::zero() : curve.breaks().back();
+  const core::Time right = left + duration_of(file, line, fields[0]);
+  if (right > kLongestPiece) fail(file, line, "the trajectory lasts longer than a year");
+  curve.append(left, right, static_cast<int>(format.order), coefficients);
+}
+
+}  // namespace
+
+PolynomialFile read_polynomials(const std::string& path) {
+  const TextFile file(path);
+  Lines lines(file.text());
+  Line line;
+  if (!lines.next_data(line)) throw InputError(fmt::format("{}: there is no header", file.name()));
+  const Format format = read_header(file, line);
+  PolynomialFile result{.names = format.names,
+                        .curve = core::PiecewisePolynomial(format.names.size())};
+  while (lines.next_data(line)) append_piece(file, line, format, result.curve);
+  if (result.curve.segments() == 0) {
+    throw InputError(fmt::format("{}: there are no rows", file.name()));
+  }
+  return result;
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,118 @@
+#include "apps/fit/curve.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "apps/process/exit_codes.hpp"
+#include "apps/process/messages.hpp"
+#include "core/solvers/smoothing_rows.hpp"
+#include "splinecast/fit.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+constexpr core::ConditionKind kOwn = core::ConditionKind::own;
+
+core::Condition or_own(const std::optional<core::Condition>& condition) {
+  return condition.value_or(core::Condition{.kind = kOwn, .value = {}});
+}
+
+/// Throws InputError where a derivative is needed that the file does not give, or not as a number.
+void require_derivatives(const WaypointTable& table, const core::Method& method) {
+  const auto require = [&](bool needed, const std::vector<double>& values, char letter) {
+    if (!needed) return;
+    if (values.empty()) {
+      throw InputError(fmt::format("{}: method {} needs columns {}[0] to {}[{}]", table.file,
+                                   method.name, letter, letter, table.dimensions() - 1));
+    }
+    const auto bad = std::ranges::find_if_not(values, core::is_usable);
+    if (bad == values.end()) return;
+    const auto at = static_cast<std::size_t>(bad - values.begin());
+    throw InputError(fmt::format("{}: column '{}[{}]': {} is not finite, or beyond 1e100",
+                                 table.where(at / table.dimensions()), letter,
+                                 at % table.dimensions(), *bad));
+  };
+  require(method.needs_velocity(), table.velocities, 'v');
+  require(method.needs_acceleration(), table.accelerations, 'a');
+}
+
+double chosen_lambda(const core::Waypoints& waypoints, const CurveOptions& options) {
+  if (options.lambda) return *options.lambda;
+  if (options.online) {
+    throw std::invalid_argument("method smoothing needs a --lambda: online it cannot be chosen");
+  }
+  const double lambda = core::cross_validated_lambda(waypoints);
+  say(fmt::format("lambda {} chosen by cross-validation", lambda));
+  return lambda;
+}
+
+[[noreturn]] void throw_lag_too_short(const WaypointTable& table, std::size_t i,
+                                      const core::WindowOptions& how) {
+  const double ahead = core::to_seconds(table.times[i] - table.times[i - how.settle]);
+  const double mean = ahead / static_cast<double>(how.settle);
+  throw InputError(fmt::format(
+      "{}: settle lag {} is too short for lambda {} with waypoints {:.3g} s apart: {} or more are "
+      "needed (at most {} can be had); --force-lag takes it",
+      table.where(i), how.settle, how.interpolant.lambda, mean,
+      static_cast<std::size_t>(std::ceil(core::smoothing_lag(how.interpolant.lambda, mean))),
+      core::kMaxSettle));
+}
+
+/// Feeds the waypoints through the sliding window, as the solver does, and keeps each segment as it
+/// settles.
+core::PiecewisePolynomial fit_online(const WaypointTable& table, const core::WindowOptions& how,
+                                     const core::Condition& end) {
+  core::SlidingWindow window(table.dimensions(), how);
+  core::require_values(end, table.dimensions());
+  if (!core::is_online(end.kind)) {
+    throw std::invalid_argument("condition '" + core::to_string(end) +
+                                "' needs all waypoints at once: it cannot be met online");
+  }
+  core::PiecewisePolynomial curve(table.dimensions());
+  core::Segment segment(table.dimensions());
+  const auto take_settled = [&] {
+    while (curve.segments() < window.settled_segments()) {
+      window.segment(curve.segments(), segment);
+      curve.append(segment);
+    }
+  };
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (!window.lag_suffices(table.times[i])) throw_lag_too_short(table, i, how);
+    window.append(table.waypoint(i));
+    take_settled();
+  }
+  window.finish(end);
+  take_settled();
+  return curve;
+}
+
+}  // namespace
+
+core::PiecewisePolynomial fit_table(const WaypointTable& table, const core::Method& method,
+                                    const CurveOptions& options) {
+  require_derivatives(table, method);
+  core::DimensionKinds(table.kinds).require_end(or_own(options.end));
+  const core::Waypoints waypoints = table.waypoints();
+  core::Interpolant how{.method = &method, .lambda = 0, .time_scale = 1};
+  if (method.family == core::Family::smoothing) how.lambda = chosen_lambda(waypoints, options);
+  how.time_scale = options.time_scale.value_or(how.time_scale);
+  if (!options.online) {
+    return core::fit(
+        waypoints,
+        {.interpolant = how, .start = or_own(options.start), .end = or_own(options.end)});
+  }
+  if (options.tail && method.has_own_tail()) {
+    throw std::invalid_argument("method " + std::string(method.name) + " has a tail of its own");
+  }
+  core::WindowOptions window{.interpolant = how,
+                             .settle = options.settle.value_or(core::default_settle(method)),
+                             .tail = options.tail.value_or(core::Tail::bessel),
+                             .start = or_own(options.start),
+                             .force_lag = options.force_lag};
+  return fit_online(table, window, or_own(options.end));
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/output/stream.hpp"
+#include "splinecast/piecewise_polynomial.hpp"
+#include "splinecast/waypoint.hpp"
+
+namespace splinecast::apps {
+
+/// One of the curves of a report.
+struct ReportCurve {
+  std::string name;  ///< "c2", "akima", …
+  core::PiecewisePolynomial curve;
+};
+
+/// What a report shows: curves through, or near, the same waypoints.
+struct Report {
+  std::string title;
+  std::vector<std::string> names;  ///< of the dimensions
+  std::vector<std::string> units;  ///< of the positions, one per dimension; "" for an unknown one
+  core::Waypoints waypoints;       ///< at least one
+  std::vector<core::Dimension> kinds{};  ///< of the dimensions; none: all linear
+  std::vector<ReportCurve> curves;       ///< at least one, of as many dimensions; none empty
+};
+
+/// Writes a report as one HTML file that needs nothing else, no network either: for each dimension
+/// position, velocity, acceleration and jerk over time, all curves in each chart, and a table of
+/// extremes, largest steps at knots and distances from the waypoints. Texts may hold anything.
+/// Long recordings are drawn as the least and greatest values of short intervals.
+void write_report(const Report& report, Output& output);
+
+}  // namespace splinecast::apps

@@ -1,0 +1,194 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <memory>
+
+#include "apps/cli/options.hpp"
+#include "apps/files/kinds.hpp"
+#include "apps/files/numbers.hpp"
+#include "apps/files/unit_of_name.hpp"
+#include "apps/fit/curve.hpp"
+#include "apps/fit/options.hpp"
+#include "apps/fit/report_page.hpp"
+#include "apps/output/emit.hpp"
+#include "apps/output/stream.hpp"
+#include "apps/process/exit_codes.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+struct FitOptions {
+  std::string file;
+  TableOptions table;
+  std::vector<const core::Method*> methods;
+  CurveOptions curve;
+  std::string at;
+  std::optional<core::Time> dt;
+  Emit emit = Emit::samples;
+  std::string output;
+  std::string report;
+  std::vector<std::string> units;  ///< of positions in the report; the last one for all that follow
+};
+
+void require_inside(const std::vector<core::Time>& times, const core::PiecewisePolynomial& curve,
+                    const std::string& file) {
+  const core::Time first = curve.breaks().front();
+  const core::Time last = curve.breaks().back();
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (times[i] >= first && times[i] <= last) continue;
+    throw InputError(
+        fmt::format("{}: row {}: time {} ns lies outside the data, which go from {} ns to {} ns",
+                    file, i + 1, times[i].count(), first.count(), last.count()));
+  }
+}
+
+void write_report_of(const WaypointTable& table, std::vector<ReportCurve> curves,
+                     const FitOptions& options) {
+  Report report{.title = table.file,
+                .names = {},
+                .units = {},
+                .waypoints = table.waypoints(),
+                .kinds = table.kinds,
+                .curves = std::move(curves)};
+  for (std::size_t d = 0; d < table.dimensions(); ++d) {
+    auto [name, unit] = name_and_unit(table.names[d]);
+    if (!options.units.empty()) unit = options.units[std::min(d, options.units.size() - 1)];
+    report.names.push_back(std::move(name));
+    report.units.push_back(std::move(unit));
+  }
+  Output output(options.report);
+  write_report(report, output);
+  output.close();
+}
+
+/// The samples that --dt asks for can be written in a lifetime.
+void require_samples(const core::PiecewisePolynomial& curve, core::Time dt) {
+  constexpr std::int64_t kMost = 1'000'000'000;
+  const std::int64_t samples = (curve.breaks().back() - curve.breaks().front()) / dt;
+  if (samples <= kMost) return;
+  throw InputError(fmt::format("--dt {} makes {} samples; the most is {}", core::to_seconds(dt),
+                               samples, kMost));
+}
+
+/// Whether all that is asked for is a report.
+bool only_reports(const FitOptions& options) {
+  return !options.report.empty() && options.emit == Emit::samples && options.at.empty() &&
+         !options.dt;
+}
+
+/// The files that are written; an empty one is standard output.
+std::vector<std::string> outputs_of(const FitOptions& options) {
+  std::vector<std::string> outputs;
+  if (!options.report.empty()) outputs.push_back(options.report);
+  if (!only_reports(options)) outputs.push_back(options.output);
+  return outputs;
+}
+
+int run_fit(const FitOptions& options) {
+  require_separate(outputs_of(options), std::array{options.file, options.at});
+  WaypointTable table = read_waypoints(options.file, options.table);
+  require_spline_input(table);
+  continue_waypoints(table);
+  std::vector<ReportCurve> curves;
+  for (const core::Method* method : options.methods) {
+    curves.push_back(
+        {.name = std::string(method->name), .curve = fit_table(table, *method, options.curve)});
+  }
+  const core::PiecewisePolynomial curve = curves.front().curve;
+  const auto at = options.at.empty() ? std::vector<core::Time>{}
+                                     : read_times(options.at, options.table.time_unit);
+  require_inside(at, curve, options.at);
+  if (options.dt) require_samples(curve, *options.dt);
+  if (!options.report.empty()) write_report_of(table, std::move(curves), options);
+  if (only_reports(options)) return kOk;
+  Output output(options.output);
+  if (options.emit == Emit::samples) {
+    emit_samples(curve, core::DimensionKinds(table.kinds), at, options.dt, output);
+  } else {
+    emit_json(curve, options.emit, output);
+  }
+  output.close();
+  return kOk;
+}
+
+void require_consistent(const FitOptions& options) {
+  const auto refuse = [](const std::string& name, const std::string& why) {
+    throw CLI::ValidationError(name, why);
+  };
+  require_consistent(options.curve, options.methods);
+  if (options.methods.size() > 1 && !only_reports(options)) {
+    refuse("--method", "is given more than once, which goes with --report alone");
+  }
+  if (!options.units.empty() && options.report.empty()) refuse("--unit", "goes with --report only");
+  if (options.emit == Emit::samples) {
+    if (options.at.empty() && !options.dt && options.report.empty()) {
+      refuse("fit", "needs --at or --dt to write samples, or --report");
+    }
+  } else if (!options.at.empty() || options.dt) {
+    refuse("--at, --dt", "go with --emit samples only");
+  }
+}
+
+void add_interpolants(CLI::App& verb, std::vector<const core::Method*>& methods) {
+  verb.add_option_function<std::vector<std::string>>(
+          "--method",
+          [&methods](const std::vector<std::string>& names) {
+            for (const std::string& name : names) methods.push_back(&method_named(name));
+          },
+          fmt::format("Interpolant: {} (default c2); with --report several, separated by commas",
+                      core::method_names(false)))
+      ->delimiter(',')
+      ->type_name("METHOD");
+}
+
+void add_emit(CLI::App& verb, Emit& value) {
+  verb.add_option_function<std::string>(
+          "--emit",
+          [&value](const std::string& text) {
+            const auto emit = parse_emit(text);
+            if (!emit) {
+              throw CLI::ValidationError(
+                  "--emit", fmt::format("'{}' is none of samples, pp, bezier, bspline", text));
+            }
+            value = *emit;
+          },
+          "What to write: samples (CSV, default); as JSON pp (piecewise polynomial), bezier "
+          "(control points), bspline")
+      ->type_name("WHAT");
+}
+
+}  // namespace
+
+void add_fit(CLI::App& program, Action& action) {
+  auto options = std::make_shared<FitOptions>();
+  auto* verb = program.add_subcommand("fit", "Fit a spline to a file, without shared memory");
+  verb->add_option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
+      ->required();
+  add_interpolants(*verb, options->methods);
+  add_curve(*verb, options->curve);
+  auto* at = verb->add_option("--at", options->at, "File with a time column: where to sample")
+                 ->type_name("FILE");
+  add_seconds(*verb, "--dt", options->dt, "Sample this often, from the first waypoint on",
+              kPositiveTime);
+  verb->get_option("--dt")->excludes(at);
+  add_emit(*verb, options->emit);
+  verb->add_option("-o,--output", options->output, "File to write (default: standard output)")
+      ->type_name("OUT");
+  verb->add_option("--report", options->report, "Page of charts to write, HTML")->type_name("OUT");
+  verb->add_option(
+          "--unit", options->units,
+          "Unit of the positions in the report, or one per column (default: what a column's "
+          "name has in brackets)")
+      ->delimiter(',')
+      ->type_name("UNIT");
+  add_table_options(*verb, options->table);
+  verb->callback([&action, options] {
+    if (options->methods.empty()) options->methods.push_back(&core::c2());
+    require_consistent(*options);
+    action = [options] { return run_fit(*options); };
+  });
+}
+
+}  // namespace splinecast::apps

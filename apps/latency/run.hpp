@@ -1,0 +1,40 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/latency/floor.hpp"
+#include "apps/latency/iceoryx.hpp"
+#include "apps/latency/options.hpp"
+#include "apps/latency/stamps.hpp"
+#include "apps/machine/environment.hpp"
+#include "apps/timing/clock_measure.hpp"
+
+namespace splinecast::apps {
+
+/// What `latency` found.
+struct LatencyResult {
+  LatencyOptions options;
+  Environment environment;
+  ClockMeasure clock;
+  std::vector<std::string> warnings;  ///< what was not as asked for, or spoils the figures
+  bool interrupted = false;
+  std::vector<Latencies> stages;  ///< of the pipeline, in its order
+  LatencyFloor floor;
+  LatencyPeer iceoryx;
+  nlohmann::ordered_json processes;  ///< a list of `role` and what the kernel counted
+  nlohmann::ordered_json solver;     ///< its counters
+};
+
+/// A warning that the kernel stops spinning SCHED_FIFO processes, or may do so, which the figures
+/// then include; empty if it does not, or if none spin.
+[[nodiscard]] std::string throttling_warning(const LatencyOptions& options,
+                                             const Environment& environment);
+
+/// Measures the floor, the pipeline and, unless told off, iceoryx, one after the other, in
+/// processes of their own on a stream of their own. Takes twice the warm-up and the duration.
+/// Throws Failure or TimeOut if the pipeline cannot be measured.
+[[nodiscard]] LatencyResult run_latency(const LatencyOptions& options);
+
+}  // namespace splinecast::apps

@@ -1,0 +1,262 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "apps/cli/options.hpp"
+#include "apps/files/numbers.hpp"
+#include "apps/latency/compare.hpp"
+#include "apps/latency/page.hpp"
+#include "apps/latency/report.hpp"
+#include "apps/latency/roles.hpp"
+#include "apps/latency/run.hpp"
+#include "apps/output/stream.hpp"
+#include "apps/process/exit_codes.hpp"
+#include "apps/process/messages.hpp"
+#include "apps/timing/hgrm.hpp"
+#include "splinecast/state.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double kMostRate = 100'000;
+/// Waypoints of one measurement: their stamps are kept in memory, some 100 bytes each.
+constexpr double kMostWaypoints = 1e7;
+/// Revisions that only settle are noted too, 400 a second and more.
+constexpr double kMostNoted = 2e9;
+constexpr core::Time kLongestRun = std::chrono::hours(4);
+constexpr core::Time kLongestLead = std::chrono::minutes(1);  ///< the board holds it
+constexpr int kMostCpus = 1024;
+constexpr double kDefaultThreshold = 20;  // percent
+constexpr double kDefaultFloor = 1;       // µs
+
+struct LatencyCommand {
+  LatencyOptions options;
+  bool json = false;
+  std::string hgrm;
+  std::string report;
+};
+
+struct CompareCommand {
+  std::string a;
+  std::string b;
+  double threshold = kDefaultThreshold;
+  double floor_us = kDefaultFloor;
+  bool json = false;
+};
+
+/// Under SCHED_FIFO a process that spins leaves its CPU to nobody of the same priority: two on one
+/// CPU would wait for each other for ever.
+void require_cpu_each(const LatencyOptions& options) {
+  if (!options.fifo || !options.spin) return;
+  std::set<int> distinct;
+  std::size_t pinned = 0;
+  const auto note = [&](const std::optional<int>& cpu) {
+    if (!cpu) return;
+    ++pinned;
+    distinct.insert(*cpu);
+  };
+  note(options.cpu_producer);
+  if (!options.embedded) note(options.cpu_solver);
+  for (std::size_t r = 0; r < options.readers; ++r) note(options.cpu_reader(r));
+  if (distinct.size() == pinned && options.processes() <= usable_cpus()) return;
+  throw InputError(fmt::format(
+      "--mode spin under --policy fifo needs a CPU of its own for each process: {} for {}",
+      std::min(usable_cpus(), usable_cpus() - (pinned - distinct.size())), options.processes()));
+}
+
+void require_measurable(const LatencyOptions& options) {
+  const double waypoints = options.rate * core::to_seconds(options.warmup + options.duration);
+  if (waypoints > kMostWaypoints) {
+    throw InputError(fmt::format("{:.0f} waypoints are more than {:.0f}, the most of a measurement",
+                                 waypoints, kMostWaypoints));
+  }
+  const double bytes = bytes_noted(options);
+  if (bytes > kMostNoted) {
+    throw InputError(fmt::format(
+        "{} s with {} readers would note {:.0f} bytes; the most is {:.0f}: choose a "
+        "shorter --duration",
+        core::to_seconds(options.warmup + options.duration), options.readers, bytes, kMostNoted));
+  }
+  require_cpu_each(options);
+}
+
+void write_hgrm(const LatencyResult& result, const std::string& prefix) {
+  for (const LatencySeries& series : series_of(result)) {
+    if (series.histogram->count() == 0) continue;
+    std::string name = fmt::format("{}.{}{}.hgrm", prefix, series.name,
+                                   series.from == "raw" && series.name != "floor" ? ".raw" : "");
+    std::ranges::replace(name, ' ', '-');
+    Output output(name);
+    output.write(percentile_text(*series.histogram));
+    output.close();
+  }
+}
+
+int run_latency_command(const LatencyCommand& command) {
+  require_measurable(command.options);
+  const LatencyResult result = run_latency(command.options);
+  for (const std::string& warning : result.warnings) say("WARNING: " + warning);
+  const ordered_json json = to_json(result);
+  if (!command.hgrm.empty()) write_hgrm(result, command.hgrm);
+  if (!command.report.empty()) {
+    Output output(command.report);
+    write_latency_page(result, output);
+    output.close();
+  }
+  print_report(command.json ? json.dump(2) + "\n" : latency_text(json, isatty(STDOUT_FILENO) == 1));
+  return result.interrupted ? kInterrupted : kOk;
+}
+
+ordered_json read_result(const std::string& file) {
+  std::ifstream in(file);
+  if (!in) throw InputError(fmt::format("{}: cannot be read", file));
+  try {
+    return ordered_json::parse(in);
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(fmt::format("{}: {}", file, error.what()));
+  }
+}
+
+int run_compare(const CompareCommand& command) {
+  constexpr double kNanoseconds = 1e3;
+  const ordered_json a = read_result(command.a);
+  const ordered_json b = read_result(command.b);
+  try {
+    const LatencyComparison found =
+        compare_latencies(a, b, command.threshold, command.floor_us * kNanoseconds);
+    print_report(command.json ? to_json(found).dump(2) + "\n" : comparison_text(found));
+    return found.regressions() > 0 ? kFellShort : kOk;
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(fmt::format("{} or {}: {}", command.a, command.b, error.what()));
+  }
+}
+
+int parse_cpu(const std::string& name, const std::string& text) {
+  const auto cpu = parse_count(text);
+  if (cpu && *cpu < kMostCpus) return static_cast<int>(*cpu);
+  throw CLI::ValidationError(name, fmt::format("'{}' is no CPU from 0 to {}", text, kMostCpus - 1));
+}
+
+void add_cpu(CLI::App& verb, const std::string& name, std::optional<int>& cpu,
+             const std::string& help) {
+  verb.add_option_function<std::string>(
+          name, [&cpu, name](const std::string& text) { cpu = parse_cpu(name, text); }, help)
+      ->type_name("CPU");
+}
+
+/// What is sent, and how.
+void add_work(CLI::App& verb, LatencyOptions& options) {
+  add_rate(verb, "--rate", options.rate, "Waypoints a second (default 1000)", {1, kMostRate});
+  add_seconds(verb, "--duration", options.duration, "How long to measure (default 10)",
+              {core::Time(1), kLongestRun});
+  add_seconds(verb, "--warmup", options.warmup, "How long to run before that (default 1)",
+              {core::Time::zero(), kLongestRun});
+  add_milliseconds(verb, "--lead", options.lead,
+                   "How far ahead of now waypoints are sent, at most 60000 (default 200)",
+                   {core::Time::zero(), kLongestLead});
+  verb.add_option_function<std::string>(
+          "--deadline",
+          [&options](const std::string& text) {
+            options.deadline = time_within("--deadline", text, TimeUnit::milliseconds);
+          },
+          "A latency beyond this is a missed deadline (default: a period)")
+      ->type_name("MS");
+  verb.add_option("--dims", options.dimensions, "Dimensions, 1 to 64 (default 7)")
+      ->check(CLI::Range(std::size_t{1}, core::kMaxDimensions))
+      ->type_name("N");
+  add_settle(verb, options.settle);
+  verb.add_option("--readers", options.readers, "Readers, 1 to 64 (default 1)")
+      ->check(CLI::Range(1, 64))
+      ->type_name("N");
+  verb.add_flag("--embedded", options.embedded, "Solve in the producer's process");
+}
+
+/// How the processes run.
+void add_processes(CLI::App& verb, LatencyOptions& options) {
+  verb.add_option_function<std::string>(
+          "--mode", [&options](const std::string& text) { options.spin = text == "spin"; },
+          "wait (default): sleep until there is something to do; spin: poll, a CPU each")
+      ->check(CLI::IsMember({"spin", "wait"}))
+      ->type_name("MODE");
+  add_cpu(verb, "--cpu-producer", options.cpu_producer, "CPU to pin the producer to");
+  add_cpu(verb, "--cpu-solver", options.cpu_solver, "CPU to pin the solver to");
+  verb.add_option_function<std::vector<std::string>>(
+          "--cpu-reader",
+          [&options](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) {
+              options.cpu_readers.push_back(parse_cpu("--cpu-reader", text));
+            }
+          },
+          "CPUs to pin the readers to, one after the other")
+      ->delimiter(',')
+      ->type_name("CPU,...");
+  verb.add_option_function<std::string>(
+          "--policy", [&options](const std::string& text) { options.fifo = text == "fifo"; },
+          "Scheduling: other (default) or fifo, SCHED_FIFO")
+      ->check(CLI::IsMember({"fifo", "other"}))
+      ->type_name("POLICY");
+  verb.add_option("--prio", options.priority, "Priority under fifo, 1 to 99 (default 50)")
+      ->check(CLI::Range(1, 99))
+      ->type_name("N");
+  verb.add_flag("--mlock", options.lock_memory, "Lock all memory (mlockall)");
+  verb.add_flag("--iceoryx,!--no-iceoryx", options.iceoryx,
+                "Measure iceoryx too, with its daemon started for it (default: where it is built "
+                "in)");
+}
+
+void add_compare(CLI::App& verb, const std::shared_ptr<CompareCommand>& command) {
+  auto* compare = verb.add_subcommand(
+      "compare", "Compare two results of --json; exits with 3 if B is slower than A");
+  compare->add_option("A", command->a, "The result to compare with")->required();
+  compare->add_option("B", command->b, "The result that may be slower")->required();
+  compare
+      ->add_option_function<std::string>(
+          "--threshold",
+          [command](const std::string& text) {
+            command->threshold = number_within("--threshold", text, {0, 1e6});
+          },
+          "Percent that a percentile may be longer (default 20)")
+      ->type_name("PERCENT");
+  compare
+      ->add_option_function<std::string>(
+          "--least",
+          [command](const std::string& text) {
+            command->floor_us = number_within("--least", text, {0, 1e9});
+          },
+          "Microseconds that it must be longer besides (default 1)")
+      ->type_name("US");
+  compare->add_flag("--json", command->json, "As JSON");
+}
+
+}  // namespace
+
+void add_latency(CLI::App& program, Action& action) {
+  auto command = std::make_shared<LatencyCommand>();
+  auto compared = std::make_shared<CompareCommand>();
+  auto* verb = program.add_subcommand(
+      "latency", "Measure the way from a producer's append to a reader's sample, in processes");
+  add_work(*verb, command->options);
+  add_processes(*verb, command->options);
+  verb->add_flag("--json", command->json, "As JSON");
+  verb->add_option("--hgrm", command->hgrm,
+                   "Write HdrHistogram percentile text, PREFIX.STAGE.hgrm for each stage")
+      ->type_name("PREFIX");
+  verb->add_option("--report", command->report, "Write a page with charts")->type_name("OUT.html");
+  add_compare(*verb, compared);
+  verb->callback([&action, verb, command, compared] {
+    if (verb->got_subcommand("compare")) {
+      action = [compared] { return run_compare(*compared); };
+    } else {
+      action = [command] { return run_latency_command(*command); };
+    }
+  });
+}
+
+}  // namespace splinecast::apps

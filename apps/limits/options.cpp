@@ -1,0 +1,144 @@
+#include "apps/limits/options.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "apps/files/numbers.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The fields of a list with commas.
+std::vector<std::string_view> fields_of(std::string_view text) {
+  std::vector<std::string_view> fields;
+  for (;;) {
+    const std::size_t comma = text.find(',');
+    fields.push_back(without_blanks(text.substr(0, comma)));
+    if (comma == std::string_view::npos) return fields;
+    text.remove_prefix(comma + 1);
+  }
+}
+
+/// A number; `none` for an empty field and the word. Nothing for any other text.
+std::optional<double> number_or(double none, std::string_view field) {
+  if (field.empty() || field == "none") return none;
+  return parse_number(field);
+}
+
+void add_list(CLI::App& verb, const std::string& name, const std::string& type,
+              std::vector<double>& values, const std::string& help) {
+  verb.add_option_function<std::string>(
+          name,
+          [&values, name](const std::string& text) {
+            values.clear();
+            for (const std::string_view field : fields_of(text)) {
+              const auto value = number_or(0, field);
+              if (!value) {
+                throw CLI::ValidationError(
+                    name, fmt::format("'{}' is no list of numbers such as 10 or 10,none,5", text));
+              }
+              values.push_back(*value);
+            }
+          },
+          help)
+      ->type_name(type);
+}
+
+/// `LO:HI`, of which either may be missing, or neither.
+bool parse_bounds(std::string_view field, core::MotionLimits& limits) {
+  const std::size_t colon = field.find(':');
+  const bool is_none = field.empty() || field == "none";
+  if (!is_none && colon == std::string_view::npos) return false;
+  const auto lower = number_or(-kInfinity, is_none ? "" : field.substr(0, colon));
+  const auto upper = number_or(kInfinity, is_none ? "" : field.substr(colon + 1));
+  if (!lower || !upper) return false;
+  limits.lower.push_back(*lower);
+  limits.upper.push_back(*upper);
+  return true;
+}
+
+void add_bounds(CLI::App& verb, core::MotionLimits& limits) {
+  verb.add_option_function<std::string>(
+          "--bounds",
+          [&limits](const std::string& text) {
+            limits.lower.clear();
+            limits.upper.clear();
+            for (const std::string_view field : fields_of(text)) {
+              if (parse_bounds(field, limits)) continue;
+              throw CLI::ValidationError(
+                  "--bounds", fmt::format("'{}' is no list of bounds such as -1:1,none,0:", text));
+            }
+          },
+          "Bounds of the position, lower and upper: one pair, or one per dimension; either may be "
+          "left out, or both (none)")
+      ->type_name("LO:HI,...");
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) {
+    list += list.empty() ? "" : ", ";
+    list += '\'' + name + '\'';
+  }
+  return list;
+}
+
+}  // namespace
+
+void add_limit_options(CLI::App& verb, LimitOptions& options, const std::string& scope) {
+  const std::string form =
+      ": one number, or one per dimension; 0, none or empty for no limit" + scope;
+  add_list(verb, "--max-velocity", "V,...", options.given.velocity, "Largest velocity" + form);
+  add_list(verb, "--max-acceleration", "A,...", options.given.acceleration,
+           "Largest acceleration" + form);
+  add_list(verb, "--max-jerk", "J,...", options.given.jerk, "Largest jerk" + form);
+  add_bounds(verb, options.given);
+  verb.add_option("--limits", options.file,
+                  "File of limits by name: joint_limits.yaml of MoveIt, or a URDF; the options "
+                  "before replace what it says of their kind")
+      ->type_name("FILE");
+}
+
+void add_beyond(CLI::App& verb, std::optional<core::Beyond>& beyond) {
+  verb.add_option_function<std::string>(
+          "--beyond",
+          [&beyond](const std::string& text) {
+            if (text != "report" && text != "refuse") {
+              throw CLI::ValidationError("--beyond",
+                                         fmt::format("'{}' is neither report nor refuse", text));
+            }
+            beyond = text == "refuse" ? core::Beyond::refuse : core::Beyond::report;
+          },
+          "What to do about a waypoint with which the curve passes a limit: report it (default), "
+          "or "
+          "refuse it")
+      ->type_name("WHAT");
+}
+
+LimitGaps limit_gaps(const core::MotionLimits& limits, std::span<const core::NamedLimits> joints,
+                     std::span<const std::string> names, std::span<const core::Dimension> kinds) {
+  LimitGaps gaps{.unmatched = core::unmatched(joints, names), .without = {}};
+  for (const std::size_t d : core::without_limits(limits, kinds)) {
+    const bool has_name = d < names.size() && !names[d].empty();
+    gaps.without.push_back(has_name ? names[d] : std::to_string(d));
+  }
+  return gaps;
+}
+
+std::vector<std::string> to_lines(const LimitGaps& gaps) {
+  std::vector<std::string> lines;
+  if (!gaps.unmatched.empty()) {
+    lines.push_back("no dimension has the name of these limits: " + listed(gaps.unmatched));
+  }
+  if (!gaps.without.empty()) {
+    lines.push_back("these dimensions have no limit: " + listed(gaps.without));
+  }
+  return lines;
+}
+
+}  // namespace splinecast::apps

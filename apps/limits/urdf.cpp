@@ -1,0 +1,143 @@
+#include "apps/limits/file.hpp"
+#include "apps/process/exit_codes.hpp"
+
+#ifdef SPLINECAST_HAS_URDFDOM
+
+#include <console_bridge/console.h>
+#include <fmt/format.h>
+#include <tinyxml.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <algorithm>
+#include <map>
+
+namespace splinecast::apps {
+namespace {
+
+/// Keeps what urdfdom says instead of printing it, as long as it lives.
+class Messages : public console_bridge::OutputHandler {
+ public:
+  Messages() { console_bridge::useOutputHandler(this); }
+  ~Messages() override { console_bridge::restorePreviousOutputHandler(); }
+  Messages(const Messages&) = delete;
+  Messages& operator=(const Messages&) = delete;
+
+  void log(const std::string& text, console_bridge::LogLevel level, const char* /*file*/,
+           int /*line*/) override {
+    if (level < console_bridge::CONSOLE_BRIDGE_LOG_ERROR) return;
+    text_ += (text_.empty() ? "" : "; ") + text;
+  }
+
+  [[nodiscard]] const std::string& text() const noexcept { return text_; }
+
+ private:
+  std::string text_;
+};
+
+/// Throws InputError for elements so deep in others that parsers, which are recursive, could run
+/// out of stack.
+void require_flat(const std::string& name, const std::string& text) {
+  constexpr int kDeepest = 200;
+  int depth = 0;
+  int line = 1;
+  for (std::size_t i = 0; i + 1 < text.size(); ++i) {
+    if (text[i] == '\n') ++line;
+    if (text[i] == '/' && text[i + 1] == '>') --depth;
+    if (text[i] != '<') continue;
+    if (text[i + 1] == '/') --depth;
+    if (text[i + 1] != '/' && text[i + 1] != '!' && text[i + 1] != '?') ++depth;
+    if (depth <= kDeepest) continue;
+    throw InputError(
+        fmt::format("{}:{}: more than {} elements inside one another", name, line, kDeepest));
+  }
+}
+
+/// The line of each joint's element.
+std::map<std::string, int> joint_lines(const std::string& name, const std::string& text) {
+  TiXmlDocument document;
+  document.Parse(text.c_str());
+  if (document.Error()) {
+    throw InputError(
+        fmt::format("{}:{}: {}", name, std::max(document.ErrorRow(), 1), document.ErrorDesc()));
+  }
+  const TiXmlElement* const robot = document.FirstChildElement("robot");
+  if (robot == nullptr) throw InputError(name + ": there is no element 'robot'");
+  std::map<std::string, int> lines;
+  for (const auto* joint = robot->FirstChildElement("joint"); joint != nullptr;
+       joint = joint->NextSiblingElement("joint")) {
+    const char* const of = joint->Attribute("name");
+    if (of != nullptr) lines.emplace(of, joint->Row());
+  }
+  return lines;
+}
+
+/// `file:line`, the line being that of the joint that a message is about.
+std::string where(const std::string& name, const std::map<std::string, int>& lines,
+                  const std::string& message) {
+  for (const auto& [joint, line] : lines) {
+    if (message.find('[' + joint + ']') != std::string::npos ||
+        message.find('\'' + joint + '\'') != std::string::npos) {
+      return fmt::format("{}:{}", name, line);
+    }
+  }
+  return name;
+}
+
+bool is_bounded(const urdf::Joint& joint) {
+  return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::PRISMATIC;
+}
+
+bool is_dimension(const urdf::Joint& joint) {
+  return (is_bounded(joint) || joint.type == urdf::Joint::CONTINUOUS) && !joint.mimic;
+}
+
+}  // namespace
+
+LimitFile read_urdf(const std::string& name, const std::string& text) {
+  require_flat(name, text);
+  const std::map<std::string, int> lines = joint_lines(name, text);
+  Messages messages;
+  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
+  if (!model) {
+    const std::string why = messages.text().empty() ? "is no robot description" : messages.text();
+    throw InputError(where(name, lines, why) + ": " + why);
+  }
+  LimitFile file;
+  for (const auto& [joint_name, joint] : model->joints_) {
+    if (!is_dimension(*joint)) continue;
+    const std::string at = fmt::format("{}:{}", name, lines.at(joint_name));
+    core::NamedLimits limits{.name = joint_name};
+    if (joint->limits) {
+      limits.velocity = limit_value(at, "velocity", joint->limits->velocity);
+      if (limits.velocity == 0) {
+        file.notes.push_back(
+            fmt::format("{}: velocity 0 of joint '{}' is taken for no limit", at, joint_name));
+      }
+      if (is_bounded(*joint)) {
+        limits.lower = joint->limits->lower;
+        limits.upper = joint->limits->upper;
+      }
+    }
+    if (!(limits.lower < limits.upper)) {
+      throw InputError(fmt::format("{}: lower {} of joint '{}' is not below upper {}", at,
+                                   limits.lower, joint_name, limits.upper));
+    }
+    file.joints.push_back(std::move(limits));
+  }
+  std::ranges::stable_sort(file.joints, {}, [&](const auto& each) { return lines.at(each.name); });
+  return file;
+}
+
+}  // namespace splinecast::apps
+
+#else
+
+namespace splinecast::apps {
+
+LimitFile read_urdf(const std::string& name, const std::string& /*text*/) {
+  throw InputError(name + ": this build cannot read URDF (it was made without urdfdom)");
+}
+
+}  // namespace splinecast::apps
+
+#endif

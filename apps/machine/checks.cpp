@@ -1,0 +1,254 @@
+#include "apps/machine/checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+#include "apps/files/numbers.hpp"
+#include "apps/machine/unread.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+// From linux/capability.h, whose names are macros of another package.
+constexpr unsigned kCapabilityIpcLock = 14;
+constexpr unsigned kCapabilitySysNice = 23;
+/// Inodes of the namespaces that the kernel boots with (linux/proc_ns.h).
+constexpr std::uint64_t kFirstPidNamespace = 0xEFFFFFFC;
+constexpr std::uint64_t kFirstTimeNamespace = 0xEFFFFFFA;
+/// Users below are of the system: logind leaves their shared memory alone.
+constexpr uid_t kFirstOrdinaryUser = 1000;
+/// What a container runtime gives /dev/shm unless it is asked for more.
+constexpr std::uint64_t kContainersRoom = std::uint64_t{64} << 20U;
+
+std::string mebibytes(double bytes) { return fmt::format("{:.1f} MiB", bytes / (1 << 20)); }
+
+bool has_capability(const MachineFacts& facts, unsigned number) {
+  std::istringstream lines(facts.status);
+  for (std::string line; std::getline(lines, line);) {
+    constexpr std::string_view kField = "CapEff:";
+    if (!line.starts_with(kField)) continue;
+    std::uint64_t set = 0;
+    std::istringstream(line.substr(kField.size())) >> std::hex >> set;
+    return (set >> number & 1U) != 0;
+  }
+  return false;
+}
+
+/// Type and options of what is mounted on /dev/shm: the last mount hides those before it.
+struct Mount {
+  std::string type;
+  std::string options;
+};
+
+Mount shared_memory_mount(const std::string& mounts) {
+  Mount found;
+  std::istringstream lines(mounts);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream fields(line);
+    std::string device;
+    std::string point;
+    Mount mount;
+    fields >> device >> point >> mount.type >> mount.options;
+    if (point == "/dev/shm") found = mount;
+  }
+  return found;
+}
+
+/// The value that counts for a key of an INI file: the last one.
+std::string setting(const std::string& text, std::string_view key) {
+  std::string value;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t equals = line.find('=');
+    if (equals == std::string::npos) continue;
+    const std::string_view view(line);
+    if (without_blanks(view.substr(0, equals)) != key) continue;
+    value = without_blanks(view.substr(equals + 1));
+  }
+  return value;
+}
+
+constexpr const char* kMounts = "/proc/self/mounts";
+constexpr const char* kStatus = "/proc/self/status";
+constexpr const char* kLogind = "/etc/systemd/logind.conf";
+
+bool is_contained(const MachineFacts& facts) {
+  return facts.in_container ||
+         (facts.pid_namespace != 0 && facts.pid_namespace != kFirstPidNamespace);
+}
+
+}  // namespace
+
+Finding check_shared_memory(const MachineFacts& facts) {
+  const Mount mount = shared_memory_mount(facts.mounts);
+  const std::string check = "/dev/shm";
+  const std::string why = unread(facts, {kMounts});
+  if (!why.empty() && facts.may_write_shared) return unknown(check, why);
+  if (why.empty() && mount.type != "tmpfs") {
+    return {.check = check,
+            .verdict = Verdict::problem,
+            .means = mount.type.empty() ? "is not mounted: there is no shared memory"
+                                        : fmt::format("is {}, not memory (tmpfs)", mount.type),
+            .mend = "mount -t tmpfs -o mode=1777,size=50% tmpfs /dev/shm"};
+  }
+  if (fmt::format(",{},", mount.options).find(",ro,") != std::string::npos) {
+    return {.check = check,
+            .verdict = Verdict::problem,
+            .means = "is mounted read-only: no stream can be made",
+            .mend = "mount -o remount,rw /dev/shm"};
+  }
+  if (!facts.may_write_shared) {
+    return {.check = check,
+            .verdict = Verdict::problem,
+            .means = "this user may not make files there: no stream can be made",
+            .mend = "chmod 1777 /dev/shm"};
+  }
+  return {.check = check, .means = "is memory (tmpfs), and this user may make streams there"};
+}
+
+Finding check_room(const MachineFacts& facts, std::size_t needed) {
+  const std::string check = "room in /dev/shm";
+  if (!facts.room) return unknown(check, "the kernel does not say (statvfs)");
+  const Room room = *facts.room;
+  const std::string means =
+      fmt::format("{} in all, {} free", mebibytes(static_cast<double>(room.total)),
+                  mebibytes(static_cast<double>(room.free)));
+  if (room.free < needed) {
+    return {.check = check,
+            .verdict = Verdict::problem,
+            .means = means + fmt::format("; another stream needs about {}",
+                                         mebibytes(static_cast<double>(needed))),
+            .mend =
+                "remove streams (splinecast rm), or mount -o remount,size=1g /dev/shm; of a "
+                "container: --shm-size=1g"};
+  }
+  if (room.total <= kContainersRoom) {
+    return {.check = check,
+            .verdict = Verdict::note,
+            .means = means + ", which is soon used up",
+            .mend = "mount -o remount,size=1g /dev/shm; of a container: --shm-size=1g"};
+  }
+  return {.check = check, .means = means};
+}
+
+Finding check_locked_memory(const MachineFacts& facts, std::size_t needed) {
+  const std::string check = "locked memory";
+  if (facts.lockable == RLIM_INFINITY || has_capability(facts, kCapabilityIpcLock)) {
+    return {.check = check, .means = "without a limit: no page of a stream is swapped out"};
+  }
+  const std::string means = fmt::format("RLIMIT_MEMLOCK is {}, the streams have {}",
+                                        mebibytes(static_cast<double>(facts.lockable)),
+                                        mebibytes(static_cast<double>(needed)));
+  if (facts.lockable >= needed) return {.check = check, .means = means};
+  // CAP_IPC_LOCK would do.
+  if (const auto why = unread(facts, {kStatus}); !why.empty()) {
+    return unknown(check, means + "; " + why);
+  }
+  return {.check = check,
+          .verdict = Verdict::note,
+          .means = means + ": everything works, but their pages may be swapped out",
+          .mend = fmt::format("`USER - memlock {}` in /etc/security/limits.d/splinecast.conf; of a "
+                              "service: LimitMEMLOCK=infinity",
+                              (needed >> 10U) + 1024)};
+}
+
+Finding check_priority(const MachineFacts& facts) {
+  const std::string check = "real-time priority";
+  if (has_capability(facts, kCapabilitySysNice)) {
+    return {.check = check, .means = "this user may use SCHED_FIFO (CAP_SYS_NICE)"};
+  }
+  if (facts.priority > 0) {
+    return {.check = check,
+            .means = fmt::format("this user may use SCHED_FIFO up to {} (RLIMIT_RTPRIO)",
+                                 facts.priority)};
+  }
+  // CAP_SYS_NICE would do.
+  if (const auto why = unread(facts, {kStatus}); !why.empty()) {
+    return unknown(check, "RLIMIT_RTPRIO is 0; " + why);
+  }
+  return {.check = check,
+          .verdict = Verdict::note,
+          .means = "RLIMIT_RTPRIO is 0: solver and readers share the CPUs with everything else",
+          .mend =
+              "`USER - rtprio 80` in /etc/security/limits.d/splinecast.conf; of a service: "
+              "LimitRTPRIO=80"};
+}
+
+Finding check_remove_ipc(const MachineFacts& facts) {
+  const std::string check = "RemoveIPC";
+  if (!facts.runs_systemd && is_contained(facts)) {
+    return unknown(check, "in a container it is the host that may run systemd");
+  }
+  if (!facts.runs_systemd) {
+    return {.check = check, .means = "no systemd: nobody removes a user's shared memory"};
+  }
+  if (facts.user < kFirstOrdinaryUser) {
+    return {.check = check, .means = "does not concern a user of the system"};
+  }
+  if (const auto why = unread(facts, {kLogind}); !why.empty()) return unknown(check, why);
+  const std::string value = setting(facts.logind, "RemoveIPC");
+  constexpr std::array<std::string_view, 5> kNo{"no", "false", "off", "0", "n"};
+  if (std::ranges::find(kNo, value) != kNo.end()) {
+    return {.check = check, .means = "is off: streams outlive the user's last session"};
+  }
+  return {.check = check,
+          .verdict = Verdict::note,
+          .means = "is on: systemd removes this user's streams when the last session ends",
+          .mend =
+              "RemoveIPC=no in /etc/systemd/logind.conf, then systemctl restart systemd-logind; "
+              "or run the writers as a service of a system user"};
+}
+
+Finding check_container(const MachineFacts& facts) {
+  const std::string check = "container";
+  if (!facts.in_container && facts.pid_namespace == 0) {
+    return unknown(check, "/proc/self/ns/pid cannot be read");
+  }
+  if (!facts.in_container && facts.pid_namespace == kFirstPidNamespace) {
+    return {.check = check, .means = "none: all processes of this host see the same streams"};
+  }
+  return {.check = check,
+          .verdict = Verdict::note,
+          .means = facts.in_container
+                       ? "this is one: only processes that share its /dev/shm see its streams"
+                       : "this is a process namespace of its own: the process numbers that streams "
+                         "name may mean nothing here",
+          .mend = "start all with --ipc=host, or with --ipc=shareable and --ipc=container:NAME"};
+}
+
+Finding check_time_namespace(const MachineFacts& facts) {
+  const std::string check = "time namespace";
+  if (facts.time_namespace == 0 && facts.pid_namespace == 0) {
+    return unknown(check, "/proc/self/ns/time cannot be read");
+  }
+  if (facts.time_namespace == 0 || facts.time_namespace == kFirstTimeNamespace) {
+    return {.check = check, .means = "that of the host: its clock is everybody's"};
+  }
+  std::istringstream offsets(facts.clock_offsets);
+  std::string clock;
+  std::int64_t seconds = 0;
+  std::int64_t nanoseconds = 0;
+  offsets >> clock >> seconds >> nanoseconds;
+  return {.check = check,
+          .verdict = Verdict::note,
+          .means = fmt::format("one of its own, its clock {}.{:09} s ahead of the host's: live "
+                               "streams from outside are refused",
+                               seconds, nanoseconds),
+          .mend = "run producer, solver and readers in one time namespace"};
+}
+
+std::vector<Finding> check_machine(const MachineFacts& facts, std::size_t needed) {
+  return {
+      check_shared_memory(facts),  check_room(facts, needed), check_locked_memory(facts, needed),
+      check_priority(facts),       check_remove_ipc(facts),   check_container(facts),
+      check_time_namespace(facts), check_clock(facts),        check_governor(facts),
+      check_isolated_cpus(facts),  check_preemption(facts),   check_throttling(facts),
+      check_huge_pages(facts),     check_steal(facts)};
+}
+
+}  // namespace splinecast::apps

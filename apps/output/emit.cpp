@@ -1,0 +1,118 @@
+#include "apps/output/emit.hpp"
+
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "splinecast/b_spline.hpp"
+#include "splinecast/bezier.hpp"
+#include "splinecast/calculus.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json breaks_json(const core::PiecewisePolynomial& curve) {
+  ordered_json breaks = ordered_json::array();
+  for (const core::Time t : curve.breaks()) breaks.push_back(t.count());
+  return breaks;
+}
+
+/// Points [i][dimension].
+ordered_json points_json(std::span<const double> values, std::size_t dimensions) {
+  ordered_json points = ordered_json::array();
+  for (std::size_t i = 0; i < values.size(); i += dimensions) {
+    points.push_back(values.subspan(i, dimensions));
+  }
+  return points;
+}
+
+/// Coefficients [dimension][power, highest first] of a segment.
+ordered_json coefficients_json(std::span<const double> coefficients, std::size_t dimensions) {
+  ordered_json segment = ordered_json::array();
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    ordered_json powers = ordered_json::array();
+    for (std::size_t k = coefficients.size() / dimensions; k-- > 0;) {
+      powers.push_back(coefficients[k * dimensions + d]);
+    }
+    segment.push_back(std::move(powers));
+  }
+  return segment;
+}
+
+ordered_json pp_json(const core::PiecewisePolynomial& curve) {
+  ordered_json segments = ordered_json::array();
+  for (std::size_t i = 0; i < curve.segments() && !curve.is_hold(); ++i) {
+    segments.push_back(coefficients_json(curve.coefficients(i), curve.dimensions()));
+  }
+  return {{"breaks_ns", breaks_json(curve)}, {"coefficients", std::move(segments)}};
+}
+
+ordered_json bezier_json(const core::PiecewisePolynomial& curve) {
+  ordered_json segments = ordered_json::array();
+  if (!curve.is_hold()) {
+    for (const core::BezierSegment& segment : core::to_bezier(curve)) {
+      segments.push_back(points_json(segment.control_points, curve.dimensions()));
+    }
+  }
+  return {{"breaks_ns", breaks_json(curve)}, {"segments", std::move(segments)}};
+}
+
+ordered_json b_spline_json(const core::PiecewisePolynomial& curve) {
+  core::BSpline spline{.degree = curve.order() - 1,
+                       .dimensions = curve.dimensions(),
+                       .origin = curve.breaks().front(),
+                       .knots = {},
+                       .control_points = {}};
+  if (!curve.is_hold()) spline = core::to_b_spline(curve);
+  ordered_json knots = ordered_json::array();
+  for (const core::Time knot : spline.knots) knots.push_back(core::to_seconds(knot));
+  return {{"degree", spline.degree},
+          {"origin_ns", spline.origin.count()},
+          {"knots", std::move(knots)},
+          {"control_points", points_json(spline.control_points, spline.dimensions)}};
+}
+
+}  // namespace
+
+std::optional<Emit> parse_emit(std::string_view text) noexcept {
+  if (text == "samples") return Emit::samples;
+  if (text == "pp") return Emit::pp;
+  if (text == "bezier") return Emit::bezier;
+  if (text == "bspline") return Emit::bspline;
+  return std::nullopt;
+}
+
+void emit_samples(const core::PiecewisePolynomial& curve, const core::DimensionKinds& kinds,
+                  const std::vector<core::Time>& at, std::optional<core::Time> dt, Output& output) {
+  SampleWriter writer(output, curve.dimensions(), kinds, false);
+  core::State state(curve.dimensions());
+  const auto write = [&](core::Time t) {
+    curve.evaluate(t, state.ref());
+    kinds.normalise(state.ref());
+    writer.write(t, state);
+  };
+  for (const core::Time t : at) write(t);
+  if (!dt) return;
+  const core::Time last = curve.breaks().back();
+  core::Time t = curve.breaks().front();
+  for (write(t); last - t >= *dt; write(t)) t += *dt;
+}
+
+void emit_json(const core::PiecewisePolynomial& curve, Emit what, Output& output) {
+  const auto even = core::raised(curve, curve.order());
+  const auto json = [&] {
+    switch (what) {
+      case Emit::bezier:
+        return bezier_json(even);
+      case Emit::bspline:
+        return b_spline_json(even);
+      default:
+        return pp_json(even);
+    }
+  };
+  output.write(json().dump());
+  output.write("\n");
+}
+
+}  // namespace splinecast::apps

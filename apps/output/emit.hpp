@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/output/stream.hpp"
+#include "splinecast/piecewise_polynomial.hpp"
+
+namespace splinecast::apps {
+
+/// What `fit` writes of a curve.
+enum class Emit {
+  samples,  ///< CSV
+  pp,       ///< piecewise polynomial, JSON
+  bezier,   ///< Bezier control points, JSON
+  bspline,  ///< B-spline, JSON
+};
+
+/// Reads `samples`, `pp`, `bezier` or `bspline`. Returns nothing for any other text.
+[[nodiscard]] std::optional<Emit> parse_emit(std::string_view text) noexcept;
+
+/// Writes samples at the given times, then, given `dt`, every dt from the first to the last break,
+/// in the form in which dimensions of these kinds are read.
+void emit_samples(const core::PiecewisePolynomial& curve, const core::DimensionKinds& kinds,
+                  const std::vector<core::Time>& at, std::optional<core::Time> dt, Output& output);
+
+/// Writes a line of JSON, all segments raised to the highest order. A single waypoint has no
+/// segment that a polynomial or a knot vector could span: then there are the waypoint's time and
+/// empty lists.
+///
+/// - `pp`: `breaks_ns`, `coefficients[segment][dimension][power, highest first]` in seconds.
+/// - `bezier`: `breaks_ns`, `segments[segment][0…order−1][dimension]`.
+/// - `bspline`: `degree`, `origin_ns`, `knots` in seconds from the origin,
+///   `control_points[i][dimension]`.
+void emit_json(const core::PiecewisePolynomial& curve, Emit what, Output& output);
+
+}  // namespace splinecast::apps

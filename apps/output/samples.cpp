@@ -1,0 +1,42 @@
+#include "apps/output/samples.hpp"
+
+#include <iterator>
+#include <utility>
+
+namespace splinecast::apps {
+
+SampleWriter::SampleWriter(Output& output, std::size_t dimensions, core::DimensionKinds kinds,
+                           bool with_status)
+    : output_(&output), kinds_(std::move(kinds)), motions_(kinds_.quaternions().size()) {
+  auto to = std::back_inserter(line_);
+  fmt::format_to(to, "t_ns");
+  for (const char letter : {'p', 'v', 'a', 'j'}) {
+    for (std::size_t d = 0; d < dimensions; ++d) fmt::format_to(to, ",{}[{}]", letter, d);
+  }
+  for (const char* const word : {"omega", "alpha"}) {
+    for (std::size_t i = 0; i < 3 * motions_.size(); ++i) fmt::format_to(to, ",{}[{}]", word, i);
+  }
+  fmt::format_to(to, "{}\n", with_status ? ",status" : "");
+  output_->write({line_.data(), line_.size()});
+}
+
+void SampleWriter::write(core::Time time, const core::State& state, std::string_view status) {
+  line_.clear();
+  auto to = std::back_inserter(line_);
+  fmt::format_to(to, "{}", time.count());
+  for (const double value : state.values()) fmt::format_to(to, ",{}", value);
+  for (std::size_t q = 0; q < motions_.size(); ++q) {
+    motions_[q] = core::angular_motion(kinds_.quaternions()[q], state.position(), state.velocity(),
+                                       state.acceleration());
+  }
+  for (const auto part : {&core::AngularMotion::velocity, &core::AngularMotion::acceleration}) {
+    for (const core::AngularMotion& motion : motions_) {
+      for (const double value : motion.*part) fmt::format_to(to, ",{}", value);
+    }
+  }
+  if (!status.empty()) fmt::format_to(to, ",{}", status);
+  line_.push_back('\n');
+  output_->write({line_.data(), line_.size()});
+}
+
+}  // namespace splinecast::apps

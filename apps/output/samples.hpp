@@ -1,0 +1,34 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "apps/output/stream.hpp"
+#include "splinecast/dimension_kind.hpp"
+#include "splinecast/state.hpp"
+#include "splinecast/time.hpp"
+
+namespace splinecast::apps {
+
+/// Writes samples as CSV: `t_ns,p[0],…,v[0],…,a[0],…,j[0],…`, where there are quaternions also
+/// `omega[0],…,alpha[0],…`, three for each; numbers in the shortest form that reads back exactly.
+class SampleWriter {
+ public:
+  /// Writes the header, with a last column `status` if asked for.
+  SampleWriter(Output& output, std::size_t dimensions, core::DimensionKinds kinds,
+               bool with_status);
+
+  /// Writes a row, of a state as it is read. An empty `status` writes none.
+  void write(core::Time time, const core::State& state, std::string_view status = {});
+
+ private:
+  Output* output_;
+  core::DimensionKinds kinds_;
+  std::vector<core::AngularMotion> motions_;  ///< of the quaternions
+  fmt::memory_buffer line_;
+};
+
+}  // namespace splinecast::apps

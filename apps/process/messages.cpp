@@ -1,0 +1,42 @@
+#include "apps/process/messages.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+
+#include "ipc/memory/names.hpp"
+#include "splinecast/clock.hpp"
+
+namespace splinecast::apps {
+
+Progress::Progress() : terminal_(isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() {
+  if (shown_) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::show(std::string_view text) {
+  if (!terminal_) return;
+  const core::Time now = ipc::MonotonicClock().now();
+  if (now < next_) return;
+  constexpr core::Time kPeriod = std::chrono::milliseconds(100);
+  next_ = now + kPeriod;
+  shown_ = true;
+  fmt::print(stderr, "\r\033[K{}", text);
+  std::fflush(stderr);
+}
+
+void say(std::string_view text) {
+  std::string lines = "splinecast: ";
+  for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+    lines += ipc::printable(text.substr(0, end)) + '\n';
+    text.remove_prefix(end + 1);
+  }
+  lines += ipc::printable(text) + '\n';
+  std::fputs(lines.c_str(), stderr);  // a message that cannot be written is no reason to end
+}
+
+}  // namespace splinecast::apps

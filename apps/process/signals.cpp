@@ -1,0 +1,110 @@
+#include "apps/process/signals.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <ctime>
+#include <string_view>
+
+#include "apps/process/exit_codes.hpp"
+#include "splinecast/clock.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+constexpr std::array kStopSignals{SIGINT, SIGTERM, SIGHUP};
+constexpr unsigned kGraceSeconds = 5;
+
+// All that the handlers use. A child's copy is its own.
+std::atomic<bool> stop{false};
+std::atomic<std::int64_t> stopped_at{0};  ///< CLOCK_MONOTONIC, ns
+std::atomic<pid_t> parent{0};             ///< of a child process that its parent waits for; else 0
+static_assert(std::atomic<bool>::is_always_lock_free);
+static_assert(std::atomic<std::int64_t>::is_always_lock_free);
+static_assert(std::atomic<pid_t>::is_always_lock_free);
+
+void set_handler(int signal, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;  // without SA_RESTART: sleeps and writes end early
+  sigaction(signal, &action, nullptr);
+}
+
+void (*handler_of(int signal))(int) {
+  struct sigaction action {};
+  sigaction(signal, nullptr, &action);
+  return action.sa_handler;
+}
+
+/// SIGALRM, while a stop is overdue.
+void end_at_once(int /*signal*/) {
+  constexpr std::string_view kMessage = "splinecast: did not end within 5 s of a signal: aborted\n";
+  [[maybe_unused]] const ssize_t told = write(STDERR_FILENO, kMessage.data(), kMessage.size());
+  _exit(kInterrupted);
+}
+
+// Only async-signal-safe functions from here on.
+void request_stop(int /*signal*/) {
+  const int error = errno;
+  stopped_at.store(ipc::MonotonicClock().now().count(), std::memory_order_relaxed);
+  stop.store(true, std::memory_order_relaxed);
+  for (const int signal : kStopSignals) {
+    if (handler_of(signal) == request_stop) set_handler(signal, SIG_DFL);
+  }
+  const pid_t waiting = parent.load(std::memory_order_relaxed);
+  if (waiting == 0 || getppid() != waiting) alarm(kGraceSeconds);
+  errno = error;
+}
+
+void catch_signals() {
+  set_handler(SIGALRM, end_at_once);
+  sigset_t alarm_signal;
+  sigemptyset(&alarm_signal);
+  sigaddset(&alarm_signal, SIGALRM);
+  sigprocmask(SIG_UNBLOCK, &alarm_signal, nullptr);  // blocked signals are inherited
+  for (const int signal : kStopSignals) {
+    if (signal == SIGHUP && handler_of(signal) == SIG_IGN) continue;  // nohup stays nohup
+    set_handler(signal, request_stop);
+  }
+}
+
+}  // namespace
+
+void catch_stop_signals() {
+  parent.store(0, std::memory_order_relaxed);
+  catch_signals();
+}
+
+void catch_stop_signals_as_child_of(pid_t waiting) {
+  parent.store(waiting, std::memory_order_relaxed);
+  alarm(0);  // a signal may have come to the parent's handler, which this process inherited
+  catch_signals();
+}
+
+bool stop_requested() noexcept { return stop.load(std::memory_order_relaxed); }
+
+core::Time time_since_stop() noexcept {
+  if (!stop_requested()) return core::Time::zero();
+  return ipc::MonotonicClock().now() - core::Time(stopped_at.load(std::memory_order_relaxed));
+}
+
+bool sleep_until(core::Time instant) noexcept {
+  // In slices: a signal that comes just before a sleep does not end it.
+  constexpr core::Time kSlice = std::chrono::milliseconds(50);
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  const ipc::MonotonicClock clock;
+  for (;;) {
+    if (stop_requested()) return false;
+    const core::Time now = clock.now();
+    if (now >= instant) return true;
+    const std::int64_t until = std::min(instant, now + kSlice).count();
+    const timespec time{.tv_sec = until / kSecond, .tv_nsec = until % kSecond};
+    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, nullptr);
+  }
+}
+
+}  // namespace splinecast::apps

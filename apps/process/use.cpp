@@ -1,0 +1,52 @@
+#include "apps/process/use.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace splinecast::apps {
+namespace {
+
+constexpr double kWarmUp = 0.25;
+constexpr double kSecondHalf = (1 + kWarmUp) / 2;
+
+}  // namespace
+
+std::optional<ProcessUse> process_use(pid_t pid) {
+  const std::string folder = fmt::format("/proc/{}", pid);
+  std::ifstream statm(folder + "/statm");
+  std::size_t mapped = 0;
+  std::size_t resident = 0;
+  std::size_t shared = 0;
+  if (!(statm >> mapped >> resident >> shared)) return std::nullopt;
+  std::error_code error;
+  const std::filesystem::directory_iterator files(folder + "/fd", error);
+  if (error) return std::nullopt;
+  const auto count = std::distance(begin(files), end(files));
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  return ProcessUse{.mapped_bytes = mapped * page,
+                    .resident_bytes = resident * page,
+                    .private_bytes = (resident - std::min(shared, resident)) * page,
+                    .descriptors = static_cast<std::size_t>(count)};
+}
+
+core::Time cpu_time(pid_t pid) noexcept {
+  clockid_t clock{};
+  timespec time{};
+  if (clock_getcpuclockid(pid, &clock) != 0 || clock_gettime(clock, &time) != 0) return {};
+  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+}
+
+void Flatness::add(double share, std::size_t value) noexcept {
+  if (share < kWarmUp) return;
+  std::size_t& most = share < kSecondHalf ? first_ : second_;
+  most = std::max(most, value);
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,51 @@
+#include "apps/replay/lead.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "apps/advise/report.hpp"
+#include "apps/process/messages.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+/// Warns if a lead is less than what K needs, and says what a silence of 100 ms does with it.
+void judge_lead(core::Time lead, core::Time needed, core::Time interval, const SolvedHow& how,
+                const ReplayOptions& options, core::Time stop_time) {
+  if (lead >= needed) return;
+  const Hiccup hiccup = foresee(lead, std::chrono::milliseconds(100), interval, how.freeze_ahead,
+                                {}, {.stop_time = stop_time});
+  say(fmt::format("'{}': the lead of {} is less than the {} that K = {} needs; a silence of {}: {}",
+                  options.stream, in_milliseconds(lead), in_milliseconds(needed), how.settle,
+                  in_milliseconds(hiccup.silence), in_words(hiccup)));
+}
+
+}  // namespace
+
+core::Time choose_lead(const WaypointTable& table, const ReplayOptions& options,
+                       const ipc::RegionHeader& board) {
+  const auto live = ipc::live_options(board);
+  if (!live || !options.rate || table.size() < 2) return options.lead.value_or(kLeastLead);
+  const SolvedHow how{.settle = board.settle, .freeze_ahead = live->freeze_ahead};
+  const Intervals intervals = measure_intervals(table.times);
+  const core::Time length =
+      options.loops > 1 ? core::Time::max() : table.times.back() - table.times.front();
+  if (options.lead) {
+    const core::Time needed = depth_needed(intervals.median, length, how);
+    if (!options.quiet) {
+      judge_lead(*options.lead, needed, intervals.median, how, options,
+                 core::Time(board.stop_time));
+    }
+    return *options.lead;
+  }
+  const core::Time lead = advised_lead(intervals, length, how);
+  if (lead != kLeastLead && !options.quiet) {
+    say(fmt::format("'{}': lead {}: {}", options.stream, in_milliseconds(lead),
+                    lead_in_words(intervals, how, lead)));
+  }
+  return lead;
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,277 @@
+#include "apps/replay/player.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/cli/options.hpp"
+#include "apps/output/stream.hpp"
+#include "apps/process/exit_codes.hpp"
+#include "apps/process/messages.hpp"
+#include "apps/process/signals.hpp"
+#include "apps/recordings/recording.hpp"
+#include "apps/streams/log.hpp"
+#include "apps/streams/report.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::string_view kUnreadable = "unreadable";
+
+/// Why rows were not sent, and how many each.
+ordered_json skipped_by_reason(const RefusedRows& refused) {
+  const auto count = [&](std::string_view reason) {
+    return refused.count(RefusedBy::file, reason) + refused.count(RefusedBy::producer, reason);
+  };
+  ordered_json json{{kUnreadable, count(kUnreadable)}};
+  for (std::uint8_t i = 1; i < ipc::kAppendStatuses; ++i) {
+    const auto status = static_cast<ipc::AppendStatus>(i);
+    if (status == ipc::AppendStatus::full) continue;  // sent again until there is room
+    json[std::string(ipc::to_string(status))] = count(ipc::to_string(status));
+  }
+  return json;
+}
+
+/// Why waypoints that were sent were refused, and how many each.
+ordered_json refused_by_reason(const ReplayReport& report) {
+  ordered_json json = ordered_json::object();
+  for (std::size_t i = 1; i < report.refused_by_reason.size(); ++i) {
+    const auto reason = static_cast<ipc::Refusal>(i);
+    json[std::string(ipc::to_string(reason))] = report.refused_by_reason[i];
+  }
+  return json;
+}
+
+/// ` (3 duplicate, 1 not finite)`; nothing for none.
+std::string in_words(const ordered_json& by_reason) {
+  std::string text;
+  for (const auto& [reason, count] : by_reason.items()) {
+    if (count == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? " (" : ", ", count.get<ipc::Word>(), reason);
+  }
+  return text.empty() ? text : text + ")";
+}
+
+/// What else is to be said about a replay that did not go as planned.
+std::string in_words(const ReplayReport& report, const ReplayOptions& options,
+                     const RefusedRows& refused) {
+  std::string text;
+  if (options.late != LatePolicy::refuse && report.late != LateRows{}) {
+    text.append("; ").append(apps::in_words(report.late));
+  }
+  const ipc::Word named = refused.count(RefusedBy::solver);
+  if (report.refused > named) {
+    text += fmt::format("; {} refusals came too fast to be named", report.refused - named);
+  }
+  if (report.interrupted) text += "; interrupted";
+  if (report.unsent > 0) text += fmt::format("; {} not sent", report.unsent);
+  if (report.verification) text.append("; ").append(apps::in_words(*report.verification));
+  return text;
+}
+
+int run_replay(ReplayOptions options) {
+  RefusedRows refused;
+  if (options.skip_bad) {
+    options.table.on_bad_row = [&refused](std::size_t line, const InputError& error) {
+      refused.add({.by = RefusedBy::file, .reason = kUnreadable, .line = line}, error.what());
+    };
+  }
+  WaypointTable table = read_waypoints(options.file, options.table);
+  const LateRows late_in_file = prepare_replay(table, options, refused);
+  catch_stop_signals();  // until here nothing was made that would have to be ended
+  ReplayReport report = replay_table(table, options, refused);
+  report.late += late_in_file;
+  const ipc::Word skipped = refused.count(RefusedBy::file) + refused.count(RefusedBy::producer);
+  if (options.json) {
+    ordered_json json{{"stream", options.stream},
+                      {"sent", report.sent},
+                      {"interpolated", report.interpolated},
+                      {"passed_over", report.passed_over},
+                      {"refused", report.refused},
+                      {"refused_by_reason", refused_by_reason(report)},
+                      {"skipped", skipped},
+                      {"skipped_by_reason", skipped_by_reason(refused)},
+                      {"late", to_json(report.late, options.late)},
+                      {"unsent", report.unsent},
+                      {"interrupted", report.interrupted},
+                      {"rows", refused.to_json()},
+                      {"rows_not_listed", refused.unlisted()}};
+    if (report.verification) json["verification"] = to_json(*report.verification);
+    print_report(json.dump(2) + "\n");
+  } else {
+    say(fmt::format("'{}': {} waypoints sent, {} interpolated{}, {} refused{}, {} rows skipped{}{}",
+                    options.stream, report.sent, report.interpolated,
+                    passed_over_in_words(report.passed_over), report.refused,
+                    in_words(refused_by_reason(report)), skipped,
+                    in_words(skipped_by_reason(refused)), in_words(report, options, refused)));
+  }
+  return exit_code(report);
+}
+
+void add_playback_options(CLI::App& verb, ReplayOptions& options) {
+  verb.add_option_function<std::string>(
+          "--rate",
+          [&options](const std::string& text) {
+            if (text == "max") {
+              options.rate.reset();
+            } else {
+              options.rate = number_within("--rate", text);
+            }
+          },
+          "Play R times as fast as recorded (default 1), or as fast as it goes: max")
+      ->type_name("R|max");
+  add_count(verb, "--loop", options.loops, "Play the recording N times (default 1)",
+            {1, 1'000'000'000});
+  add_seconds(verb, "--from", options.from, "Begin this long after the first waypoint");
+  add_seconds(verb, "--duration", options.duration, "Play only so much of the recording");
+  verb.add_option_function<std::string>(
+          "--clock",
+          [&options](const std::string& text) {
+            if (text != "live" && text != "recorded") {
+              throw CLI::ValidationError("--clock",
+                                         fmt::format("'{}' is neither live nor recorded", text));
+            }
+            options.clock =
+                text == "live" ? ipc::StreamClock::monotonic : ipc::StreamClock::recorded;
+          },
+          "live (default): now on this host's clock; recorded: the file's own stamps")
+      ->type_name("CLOCK");
+  verb.add_option_function<std::string>(
+          "--lead",
+          [&options](const std::string& text) {
+            options.lead = time_within("--lead", text, TimeUnit::milliseconds, kAnyTime);
+          },
+          "Append each waypoint of a live stream this long before its time (default what 'advise' "
+          "says of the recording, at least 200)")
+      ->type_name("MS");
+  add_condition(verb, "--start", options.start,
+                "Condition at the first waypoint (default halt; if recorded, the method's own)");
+  add_condition(
+      verb, "--end", options.end,
+      "Condition at the last waypoint (default halt; if recorded, the method's own, which "
+      "for c2 is halt)");
+}
+
+void add_interval(CLI::App& verb, const std::string& name, core::Time& value,
+                  const std::string& help) {
+  verb.add_option_function<std::string>(
+          name,
+          [&value, name](const std::string& text) {
+            value = time_within(name, text, TimeUnit::seconds);
+          },
+          help)
+      ->type_name("SECONDS");
+}
+
+/// All loops together may not take longer than times can say.
+void require_loops(const WaypointTable& table, std::size_t loops) {
+  if (loops == 1) return;
+  const core::Time once = table.times.back() - table.times.front() + median_interval(table);
+  const double seconds = static_cast<double>(loops) * core::to_seconds(once);
+  if (seconds <= core::to_seconds(kLongestTime)) return;
+  throw InputError(fmt::format("{}: --loop {} takes {} s; the most is {} s", table.file, loops,
+                               seconds, core::to_seconds(kLongestTime)));
+}
+
+}  // namespace
+
+LateRows prepare_replay(WaypointTable& table, const ReplayOptions& options, RefusedRows& refused) {
+  select_rows(table, options.from, options.duration);
+  change_rate(table, options.rate.value_or(1.0));
+  const LateRows late =
+      drop_unfit_rows(table, options.limits, options.late, options.skip_bad ? &refused : nullptr);
+  require_loops(table, options.loops);
+  const core::Condition none;
+  core::require_values(options.start.value_or(none), table.dimensions());
+  core::require_values(options.end.value_or(none), table.dimensions());
+  core::DimensionKinds(table.kinds).require_end(options.end.value_or(none));
+  for (const auto& condition : {options.start, options.end}) {
+    if (condition && !core::is_online(condition->kind)) {
+      throw InputError(
+          fmt::format("condition '{}' needs all waypoints at once: a stream cannot "
+                      "meet it",
+                      core::to_string(*condition)));
+    }
+  }
+  return late;
+}
+
+int exit_code(const ReplayReport& report) {
+  if (report.verification && report.verification->first) return kFellShort;
+  if (report.stopped) return *report.stopped == RefusedBy::solver ? kFailed : kBadUsageOrInput;
+  return report.interrupted ? kInterrupted : kOk;
+}
+
+void add_replay(CLI::App& program, Action& action) {
+  auto options = std::make_shared<ReplayOptions>();
+  auto* verb = program.add_subcommand("replay", "Send a recorded stream to a solver");
+  verb->add_option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
+      ->required();
+  verb->add_option("--stream", options->stream, "Stream to produce")->required();
+  add_playback_options(*verb, *options);
+  verb->add_option_function<std::string>(
+          "--on-error",
+          [options](const std::string& text) {
+            if (text != "skip" && text != "stop") {
+              throw CLI::ValidationError("--on-error",
+                                         fmt::format("'{}' is neither skip nor stop", text));
+            }
+            options->skip_bad = text == "skip";
+          },
+          "What to do about a row that is refused: stop (default) the replay there, or skip the "
+          "row and go on")
+      ->type_name("skip|stop");
+  verb->add_option_function<std::string>(
+          "--late",
+          [options](const std::string& text) {
+            const auto policy = parse_late_policy(text);
+            if (!policy) {
+              throw CLI::ValidationError("--late",
+                                         fmt::format("'{}' is none of pass, shift, refuse", text));
+            }
+            options->late = *policy;
+          },
+          "What to do about a row whose time is not after the row before, or has settled when it "
+          "can be sent: refuse (default) it; pass: leave it out, or send it as it is; shift: move "
+          "it and all rows behind it")
+      ->type_name("pass|shift|refuse");
+  add_count(*verb, "--capacity", options->capacity,
+            "Waypoints that the ring holds (default 1024; rounded up to a power of two)");
+  add_seconds(*verb, "--wait", options->wait, "Wait this long for a solver (default 10)");
+  add_interval(*verb, "--min-interval", options->limits.min_interval,
+               "Least time between waypoints (default 1e-6)");
+  add_interval(*verb, "--max-interval", options->limits.max_interval,
+               "Most time between waypoints (default 3600)");
+  verb->add_flag("--embedded", options->embedded, "Solve in this process");
+  verb->add_flag(
+      "--verify", options->verify,
+      "Solve what was sent again, with the decisions that the stream records, and compare "
+      "every segment bit by bit: exit code 3 if one differs");
+  add_solver_curve(*verb, options->solver);
+  verb->add_flag("--json", options->json, "Report as JSON on standard output");
+  add_table_options(*verb, options->table);
+  add_access(*verb, options->access);
+  add_trust(*verb, options->trust);
+  verb->callback([&action, options] {
+    const ipc::SolverOptions& curve = options->solver;
+    const bool shapes = curve.method != nullptr || curve.lambda || curve.time_scale ||
+                        curve.settle || curve.tail || curve.force_lag;
+    if (shapes && !options->embedded) {
+      throw CLI::ValidationError("--method, --lambda, --time-scale, --settle, --tail, --force-lag",
+                                 "go with --embedded; else tell 'solve'");
+    }
+    const bool is_live = options->clock == ipc::StreamClock::monotonic;
+    if (is_live && options->end && !core::is_at_rest(options->end->kind)) {
+      throw CLI::ValidationError("--end", "a live stream ends at rest: rest or halt");
+    }
+    options->solver.access = options->access;
+    options->solver.trust = options->trust;
+    action = [options] { return run_replay(*options); };
+  });
+}
+
+}  // namespace splinecast::apps

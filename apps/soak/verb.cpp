@@ -1,0 +1,325 @@
+#include "apps/soak/roles.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <deque>
+#include <memory>
+#include <optional>
+
+#include "apps/cli/options.hpp"
+#include "apps/output/stream.hpp"
+#include "apps/process/child.hpp"
+#include "apps/process/descriptors.hpp"
+#include "apps/process/exit_codes.hpp"
+#include "apps/process/signals.hpp"
+#include "apps/process/use.hpp"
+#include "apps/streams/attach.hpp"
+#include "apps/streams/remover.hpp"
+#include "apps/streams/solve.hpp"
+#include "apps/trials/judgement.hpp"
+#include "ipc/roles/stream_files.hpp"
+#include "splinecast/reader.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+using core::Time;
+using nlohmann::json;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr std::size_t kMostProducers = 4;  ///< processes
+/// About what a process can open (RLIMIT_NOFILE, two descriptors a stream).
+constexpr std::size_t kMostStreams = 10'000;
+constexpr std::size_t kMostReaders = 64;  ///< processes
+constexpr double kMostRate = 1000;
+constexpr Time kBetweenKills = seconds(2);
+constexpr Time kPatience = seconds(60);
+constexpr double kMegabyte = 1e6;
+/// What an allocator may still take after the warm-up, and files that are open for an instant.
+constexpr std::size_t kMemoryTolerance = 512UL * 1024;
+constexpr std::size_t kDescriptorTolerance = 4;
+
+/// The processes of one role: what the largest of them takes.
+struct Role {
+  const char* name;
+  std::deque<std::optional<Child>> processes{};
+  Flatness memory{kMemoryTolerance};    ///< its own; shared pages come as a board fills
+  Flatness mappings{kMemoryTolerance};  ///< those too
+  Flatness descriptors{kDescriptorTolerance};
+  ProcessUse now{};
+
+  /// Looks at all of them, at a share of the run.
+  void look(double share) {
+    now = {};
+    for (const auto& child : processes) {
+      const auto use = process_use(child->pid());
+      if (!use) continue;
+      now.private_bytes = std::max(now.private_bytes, use->private_bytes);
+      now.mapped_bytes = std::max(now.mapped_bytes, use->mapped_bytes);
+      now.descriptors = std::max(now.descriptors, use->descriptors);
+    }
+    memory.add(share, now.private_bytes);
+    mappings.add(share, now.mapped_bytes);
+    descriptors.add(share, now.descriptors);
+  }
+  [[nodiscard]] bool has_grown() const {
+    return memory.has_grown() || mappings.has_grown() || descriptors.has_grown();
+  }
+  [[nodiscard]] json result() const {
+    return {{"processes", processes.size()},
+            {"private_bytes", {memory.first(), memory.second()}},
+            {"mapped_bytes", {mappings.first(), mappings.second()}},
+            {"descriptors", {descriptors.first(), descriptors.second()}},
+            {"grown", has_grown()}};
+  }
+};
+
+class Soak {
+ public:
+  Soak(const SoakOptions& options, std::vector<std::string> streams)
+      : options_(options),
+        streams_(std::move(streams)),
+        start_(clock_.now() + seconds(1)),
+        groups_(std::min(kMostProducers, streams_.size())) {
+    solver_.processes.emplace_back(std::in_place, [this] { return solve(); });
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      for (std::size_t i = g; i < streams_.size(); i += groups_.size()) {
+        groups_[g].push_back(streams_[i]);
+      }
+      producers_.processes.emplace_back(std::in_place, [this, g] { return produce(g); });
+    }
+    for (std::size_t r = 0; r < options.readers; ++r) {
+      readers_.processes.emplace_back(std::in_place, [this] { return run_soak_reader(streams_); });
+    }
+    for (const std::string& stream : streams_) heads_.push_back(attach_reader(stream, kPatience));
+  }
+
+  json run() {
+    sleep_until(start_);  // what comes before is starting up
+    const Time begin = clock_.now();
+    const Time end = begin + options_.seconds;
+    const Time look = std::clamp<Time>(options_.seconds / 240, milliseconds(50), seconds(10));
+    const Time line = std::max<Time>(seconds(1), options_.seconds / 240);
+    Time next_kill = begin + kBetweenKills;
+    Time next_line = begin;
+    for (Time due = begin; due < end && sleep_until(due); due += look) {
+      const Time now = clock_.now();
+      const double share = core::to_seconds(now - begin) / core::to_seconds(options_.seconds);
+      for (Role* role : roles()) role->look(share);
+      if (!options_.json && now >= next_line) {
+        print_line(now - begin);
+        next_line += line;
+      }
+      if (now < next_kill) continue;
+      kill_a_producer();
+      next_kill = now + kBetweenKills;
+    }
+    const double took = core::to_seconds(std::max(clock_.now() - begin, Time(1)));
+    return finish(took, core::to_seconds(cpu_time(solver_.processes.front()->pid())) / took);
+  }
+
+ private:
+  [[nodiscard]] std::array<Role*, 3> roles() { return {&solver_, &producers_, &readers_}; }
+
+  [[nodiscard]] json solve() const {
+    const double kept = 1 + 1.2 * options_.rate;  // the history, the lead and some more
+    const auto capacity = std::bit_ceil(static_cast<std::size_t>(2 * kept) + 64);
+    return run_solve({.wanted = {streams_.front().substr(0, streams_.front().rfind('.')) + ".*"},
+                      .solver = {.capacity = capacity},
+                      .quiet = true});
+  }
+  [[nodiscard]] json produce(std::size_t group) const {
+    return run_soak_producers(groups_[group], options_.rate, start_);
+  }
+
+  /// One after the other, by SIGKILL; a new one goes on with its streams.
+  void kill_a_producer() {
+    const std::size_t group = kills_++ % groups_.size();
+    std::optional<Child>& producer = producers_.processes[group];
+    producer.reset();  // SIGKILL
+    producer.emplace([this, group] { return produce(group); });
+  }
+
+  /// What all streams' heads count.
+  [[nodiscard]] json counted() const {
+    ipc::Head sum;
+    ipc::Head head;
+    for (const ipc::Reader& reader : heads_) {
+      if (!reader.head(head)) continue;
+      sum.consumed += head.consumed;
+      sum.knots += head.knots;
+      sum.passed_over += head.passed_over;
+      sum.refused += head.refused;
+      sum.withdrawn += head.withdrawn;
+      sum.controls += head.controls;
+      sum.underruns += head.underruns;
+      sum.misses += head.misses;
+      sum.revisions += head.revisions;
+    }
+    return {{"consumed", sum.consumed},       {"interpolated", sum.interpolated()},
+            {"passed_over", sum.passed_over}, {"refused", sum.refused},
+            {"withdrawn", sum.withdrawn},     {"controls", sum.controls},
+            {"underruns", sum.underruns},     {"deadline_misses", sum.misses},
+            {"late_commits", sum.revisions}};
+  }
+
+  void print_line(Time since) {
+    if (lines_++ % 20 == 0) {
+      print_report(fmt::format("{:>7} {:>6} {:>10} {:>8} {:>6} {:>18} {:>18} {:>18}\n", "s",
+                               "kills", "consumed", "refused", "dry", "solver MB, files",
+                               "producer MB, files", "reader MB, files"));
+    }
+    const auto use = [](const Role& role) {
+      return fmt::format("{:.2f} {:>6}", static_cast<double>(role.now.private_bytes) / kMegabyte,
+                         role.now.descriptors);
+    };
+    const json sum = counted();
+    const auto count = [&](const char* key) { return sum[key].get<ipc::Word>(); };
+    print_report(fmt::format("{:>7.0f} {:>6} {:>10} {:>8} {:>6} {:>18} {:>18} {:>18}\n",
+                             core::to_seconds(since), kills_, count("consumed"), count("refused"),
+                             count("underruns"), use(solver_), use(producers_), use(readers_)));
+  }
+
+  /// Lets everybody end and adds up.
+  json finish(double took, double solver_share) {
+    json found = {{"streams", streams_.size()},
+                  {"seconds", took},
+                  {"rate", options_.rate},
+                  {"producer_kills", kills_},
+                  {"solver_share", solver_share}};
+    bool is_flat = true;
+    for (const Role* role : roles()) {
+      found[role->name] = role->result();
+      is_flat = is_flat && !role->has_grown();
+    }
+    for (auto& producer : producers_.processes) producer->stop();
+    for (auto& producer : producers_.processes) (void)producer->result();
+    json seen = json::array();
+    for (auto& reader : readers_.processes) {
+      reader->stop();
+      seen.push_back(reader->result());
+    }
+    solver_.processes.front()->stop();
+    const bool has_solved = solver_.processes.front()->result() == kOk;
+    found["counters"] = counted();
+    found["read"] = seen;
+    ipc::Word appended = 0;
+    std::size_t lossy = 0;
+    std::size_t unfinished = 0;
+    for (const std::string& stream : streams_) {
+      const ipc::StreamInfo info = ipc::inspect(stream);
+      const ipc::Head& head = info.head;
+      appended += info.appended;
+      const ipc::Word told = head.knots + head.refused + head.withdrawn + head.controls;
+      if (info.appended != told || head.consumed != told) ++lossy;
+      if (!head.finished) ++unfinished;
+    }
+    found["appended"] = appended;
+    found["lossy_streams"] = lossy;
+    found["unfinished_streams"] = unfinished;
+    const bool is_sound = std::ranges::all_of(
+        seen, [](const json& one) { return one["unsound_streams"] == 0 && one["samples"] > 0; });
+    add_judgement(found, is_flat && is_sound && has_solved && lossy == 0 && unfinished == 0);
+    return found;
+  }
+
+  SoakOptions options_;
+  std::vector<std::string> streams_;
+  ipc::MonotonicClock clock_;
+  Time start_;
+  std::vector<std::vector<std::string>> groups_;  ///< the streams of each producer process
+  Role solver_{"solver"};
+  Role producers_{"producers"};
+  Role readers_{"readers"};
+  std::vector<ipc::Reader> heads_;
+  std::size_t kills_ = 0;
+  std::size_t lines_ = 0;
+};
+
+std::string soak_summary(const json& found) {
+  const auto line = [](const char* what, const std::string& text) {
+    return fmt::format("  {:<26} {}\n", what, text);
+  };
+  const auto count = [](const json& of, const char* key) { return of[key].get<std::uint64_t>(); };
+  const json& sum = found["counters"];
+  const auto role = [&](const char* name) {
+    const json& of = found[name];
+    return line(
+        name, fmt::format("{} processes; {:.2f} then {:.2f} MB, {} then {} files{}",
+                          count(of, "processes"), of["private_bytes"][0].get<double>() / kMegabyte,
+                          of["private_bytes"][1].get<double>() / kMegabyte,
+                          of["descriptors"][0].get<int>(), of["descriptors"][1].get<int>(),
+                          of["grown"].get<bool>() ? ": GROWN" : ""));
+  };
+  std::uint64_t samples = 0;
+  std::uint64_t changed = 0;
+  std::uint64_t unsound = 0;
+  for (const json& reader : found["read"]) {
+    samples += count(reader, "samples");
+    changed += count(reader, "changed");
+    unsound += count(reader, "unsound_streams");
+  }
+  return "\n" +
+         line("streams",
+              fmt::format("{} for {:.0f} s, {} waypoints a second each; the solver took "
+                          "{:.1f} % of a core",
+                          count(found, "streams"), found["seconds"].get<double>(),
+                          found["rate"].get<double>(), 100 * found["solver_share"].get<double>())) +
+         line("producers killed",
+              fmt::format("{}, and come back", count(found, "producer_kills"))) +
+         line("items",
+              fmt::format("{} appended: {} interpolated, {} passed over, {} refused with "
+                          "a reason, {} withdrawn, {} controls; streams that lost one: {}",
+                          count(found, "appended"), count(sum, "interpolated"),
+                          count(sum, "passed_over"), count(sum, "refused"), count(sum, "withdrawn"),
+                          count(sum, "controls"), count(found, "lossy_streams"))) +
+         line("ran dry", fmt::format("{} times; deadlines missed {}, committed too late {}",
+                                     count(sum, "underruns"), count(sum, "deadline_misses"),
+                                     count(sum, "late_commits"))) +
+         line("samples", fmt::format("{}; {} read otherwise later; streams with a step: {}",
+                                     samples, changed, unsound)) +
+         role("solver") + role("producers") + role("readers") + line("sound", judgement(found));
+}
+
+}  // namespace
+
+json run_soak(const SoakOptions& options) {
+  raise_descriptor_limit();
+  std::vector<std::string> streams;
+  for (std::size_t i = 0; i < options.streams; ++i) {
+    streams.push_back(fmt::format("soak.{}.{}", getpid(), i));
+  }
+  const StreamRemover remover(streams);
+  return Soak(options, streams).run();
+}
+
+void add_soak(CLI::App& program, Action& action) {
+  auto options = std::make_shared<SoakOptions>();
+  auto* verb = program.add_subcommand(
+      "soak",
+      "Run many streams at once for long, kill producers meanwhile, and see that nothing "
+      "grows and nothing is lost; exits with 1 if something does");
+  add_count(*verb, "--streams", options->streams, "Streams at once, 1 to 10000 (default 100)",
+            {1, kMostStreams});
+  add_seconds(*verb, "--seconds", options->seconds, "How long, from 1 on (default 60)",
+              {seconds(1), kLongestTime});
+  add_rate(*verb, "--rate", options->rate, "Waypoints a second and stream (default 100)",
+           {1, kMostRate});
+  add_count(*verb, "--readers", options->readers,
+            "Processes that each read all streams, 1 to 64 (default 2)", {1, kMostReaders});
+  verb->add_flag("--json", options->json, "As JSON, and no table");
+  verb->callback([&action, options] {
+    action = [options] {
+      catch_stop_signals();
+      return print_judgement([&] { return run_soak(*options); }, options->json, soak_summary,
+                             kFailed);
+    };
+  });
+}
+
+}  // namespace splinecast::apps

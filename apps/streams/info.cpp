@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/cli/options.hpp"
+#include "apps/output/stream.hpp"
+#include "apps/process/exit_codes.hpp"
+#include "apps/streams/report.hpp"
+#include "apps/streams/rows.hpp"
+#include "ipc/memory/names.hpp"
+#include "ipc/roles/stream_files.hpp"
+#include "splinecast/clock.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string text_of(const ordered_json& value) {
+  return ipc::printable(value.is_string()
+                            ? value.get<std::string>()
+                            : value.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
+}
+
+std::string table_of(const ordered_json& json, int indent) {
+  std::string table;
+  for (const auto& [key, value] : json.items()) {
+    if (value.is_object()) {
+      table += fmt::format("{:{}}{}\n", "", indent, key) + table_of(value, indent + 2);
+    } else {
+      table += fmt::format("{:{}}{:<{}}  {}\n", "", indent, key, 26 - indent, text_of(value));
+    }
+  }
+  return table;
+}
+
+/// What a person asks first, in words.
+std::string age_of(const ipc::StreamInfo& info) {
+  if (info.head.revision == 0) return {};
+  const double age = core::to_seconds(ipc::MonotonicClock().now() - info.head.committed);
+  return fmt::format("{:<26}  {:.3f} s ago\n", "last published", age);
+}
+
+}  // namespace
+
+void add_info(CLI::App& program, Action& action) {
+  struct Options {
+    std::string stream;
+    bool json = false;
+    ipc::Trust trust;
+  };
+  auto options = std::make_shared<Options>();
+  auto* verb = program.add_subcommand("info", "Show all that is known about one stream");
+  verb->add_option("STREAM", options->stream, "Stream to show")->required();
+  verb->add_flag("--json", options->json, "As JSON");
+  add_trust(*verb, options->trust);
+  verb->callback([&action, options] {
+    action = [options] {
+      const ipc::StreamInfo info = ipc::inspect(options->stream, options->trust);
+      ordered_json json = to_json(info);
+      const std::string warning = depth_warning(info, options->trust);
+      if (!warning.empty()) json["depth_warning"] = warning;
+      if (options->json) {
+        print_report(pretty(json));
+      } else {
+        print_report(table_of(json, 0) + age_of(info));
+      }
+      return kOk;
+    };
+  });
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,45 @@
+#include "apps/streams/log.hpp"
+
+#include <fmt/format.h>
+
+#include "splinecast/options.hpp"
+
+namespace splinecast::apps {
+
+using nlohmann::ordered_json;
+
+StreamLog::StreamLog(const std::string& stream, std::uint64_t stream_id, const ipc::Trust& trust)
+    : board_(stream, stream_id, trust),
+      settled_(board_.reader(), ipc::stream_clock(board_.header()) == ipc::StreamClock::monotonic),
+      items_(board_.reader().dimensions()) {}
+
+ipc::Verification StreamLog::verify(const core::Condition& end) {
+  look();
+  return ipc::verify({.window = ipc::window_options(board_.header()),
+                      .kinds = ipc::dimension_kinds(board_.header()),
+                      .items = items_,
+                      .segments = settled_.segments(),
+                      .head = settled_.head(),
+                      .end = end});
+}
+
+std::string in_words(const ipc::Verification& found) {
+  if (!found.first) return fmt::format("{} segments solved again, all equal", found.equal);
+  const ipc::Difference& at = *found.first;
+  return fmt::format(
+      "{} segments solved again and equal, then segment {} ({} to {} ns) differs in {}: {} "
+      "published, {} solved",
+      found.equal, at.segment, at.left.count(), at.right.count(), at.what, at.published, at.solved);
+}
+
+ordered_json to_json(const ipc::Verification& found) {
+  ordered_json json{{"equal", found.equal}, {"difference", nullptr}};
+  if (!found.first) return json;
+  const ipc::Difference& at = *found.first;
+  json["difference"] = {{"segment", at.segment},        {"left_ns", at.left.count()},
+                        {"right_ns", at.right.count()}, {"what", at.what},
+                        {"published", at.published},    {"solved", at.solved}};
+  return json;
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "ipc/board/knot_board.hpp"
+#include "ipc/mapping/checked_region.hpp"
+
+namespace splinecast::apps {
+
+/// The board of the stream that this process produces, read as any passive reader does.
+class OwnBoard {
+ public:
+  /// Opens the board of the stream with this id. Throws NoSuchStream, BadRegion, or Failure if
+  /// another stream stands under the name.
+  OwnBoard(const std::string& stream, std::uint64_t stream_id, const ipc::Trust& trust);
+
+  [[nodiscard]] const ipc::RegionHeader& header() const noexcept { return board_.header; }
+  /// The newest head; that of revision 0 if there is none yet.
+  [[nodiscard]] ipc::Head head() const;
+  [[nodiscard]] const ipc::KnotBoardReader& reader() const noexcept { return reader_; }
+
+ private:
+  ipc::CheckedRegion<ipc::BoardLayout> board_;
+  ipc::KnotBoardReader reader_;
+};
+
+/// Removes the board that an embedded solver of this process made for a ring that has been
+/// withdrawn. Does nothing where there is a ring, or where the board is somebody else's by now.
+void remove_board_without_ring(const std::string& stream, const ipc::Trust& trust);
+
+}  // namespace splinecast::apps

@@ -1,0 +1,23 @@
+#include "apps/streams/remover.hpp"
+
+#include <exception>
+#include <utility>
+
+#include "apps/process/messages.hpp"
+#include "ipc/roles/stream_files.hpp"
+
+namespace splinecast::apps {
+
+StreamRemover::StreamRemover(std::vector<std::string> streams) : streams_(std::move(streams)) {}
+
+StreamRemover::~StreamRemover() {
+  for (const std::string& stream : streams_) {
+    try {
+      ipc::remove_stream(stream);
+    } catch (const std::exception& error) {
+      say(error.what());
+    }
+  }
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,205 @@
+#include "apps/streams/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "apps/recordings/refused_rows.hpp"
+#include "ipc/layout/limits.hpp"
+#include "splinecast/boundary_condition.hpp"
+#include "splinecast/clock.hpp"
+#include "splinecast/status.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string clock_name(const ipc::RegionHeader& header) {
+  return ipc::stream_clock(header) == ipc::StreamClock::monotonic ? "live" : "recorded";
+}
+
+ordered_json kinds_json(const ipc::RegionHeader& header) {
+  ordered_json kinds = ordered_json::array();
+  for (const core::Dimension& dimension : ipc::dimensions_of(header)) {
+    kinds.push_back(core::to_string(dimension));
+  }
+  return kinds;
+}
+
+/// What both headers say; the producer's if it stands.
+ordered_json stream_json(const ipc::RegionHeader& header) {
+  return {
+      {"stream_id", std::to_string(header.stream_id)},  // 64 bits: more than a number of JSON has
+      {"dimensions", header.dimensions},
+      {"names", ipc::dimension_names(header)},
+      {"kinds", kinds_json(header)},
+      {"clock", clock_name(header)},
+      {"start", core::to_string(ipc::start_condition(header))},
+      {"min_interval_ns", header.min_interval},
+      {"max_interval_ns", header.max_interval},
+  };
+}
+
+ordered_json producer_json(const ipc::StreamInfo& info) {
+  ordered_json refused = ordered_json::object();
+  for (std::size_t i = 1; i < info.refused_by_producer.size(); ++i) {
+    refused[std::string(ipc::to_string(static_cast<ipc::AppendStatus>(i)))] =
+        info.refused_by_producer[i];
+  }
+  return {
+      {"alive", info.producer_alive},
+      {"pid", info.waypoints->owner_pid},
+      {"epoch", info.waypoints->epoch},
+      {"ring_capacity", info.waypoints->capacity},
+      {"region_bytes", info.waypoints->region_bytes},
+      {"appended", info.appended},
+      {"refused", refused},
+  };
+}
+
+ordered_json refusals_json(const ipc::StreamInfo& info) {
+  ordered_json list = ordered_json::array();
+  for (const ipc::RefusedItem& refusal : info.refusals) {
+    list.push_back({{"item", refusal.item}, {"reason", ipc::to_string(refusal.reason)}});
+  }
+  return list;
+}
+
+ordered_json excesses_json(const ipc::StreamInfo& info) {
+  ordered_json list = ordered_json::array();
+  for (const ipc::LimitExcess& excess : info.excesses) {
+    ordered_json json{{"item", excess.item}, {"refused", excess.is_refused}};
+    json.update(to_json(excess));
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+/// A value per dimension, null for none; an empty list if no dimension has a limit of the kind.
+ordered_json limits_json(const ipc::RegionHeader& header) {
+  const core::MotionLimits limits = ipc::motion_limits(header);
+  const auto list = [](const std::vector<double>& values) {
+    ordered_json out = ordered_json::array();
+    for (const double value : values) {
+      out.push_back(value == 0 ? ordered_json() : ordered_json(value));
+    }
+    return out;
+  };
+  return {
+      {"velocity", list(limits.velocity)},
+      {"acceleration", list(limits.acceleration)},
+      {"jerk", list(limits.jerk)},
+      {"lower", limits.lower},  // what is infinite becomes null
+      {"upper", limits.upper},
+      {"beyond", ipc::beyond(header) == core::Beyond::refuse ? "refuse" : "report"},
+  };
+}
+
+/// What entries keep on a live stream where no limit is given.
+ordered_json shown_json(const ipc::StreamInfo& info) {
+  if (!info.shown) return nullptr;
+  return {{"velocity", info.shown->velocity}, {"acceleration", info.shown->acceleration}};
+}
+
+/// Time from now to the newest knot; null where that means nothing.
+ordered_json depth(const ipc::StreamInfo& info) {
+  if (clock_name(*info.spline) == "recorded" || info.head.newest == 0) return nullptr;
+  const core::Time left = info.head.newest_knot - ipc::MonotonicClock().now();
+  return std::max(left, core::Time::zero()).count();
+}
+
+/// How long the solver's steps took, from reading the clock to the commit: pairs of the least time
+/// in ns and how many took so long, up to twice that; those that none took are left out.
+ordered_json step_times_json(const ipc::StreamInfo& info) {
+  ordered_json list = ordered_json::array();
+  for (std::size_t i = 0; i < info.step_times.size(); ++i) {
+    if (info.step_times[i] > 0) list.push_back({std::uint64_t{1} << i, info.step_times[i]});
+  }
+  return list;
+}
+
+ordered_json solver_json(const ipc::StreamInfo& info) {
+  const bool has_low_water = info.head.low_water < core::Time::max();
+  const ipc::Head& head = info.head;
+  const core::Method& method = *ipc::window_options(*info.spline).interpolant.method;
+  ordered_json refused = ordered_json::object();
+  for (std::size_t i = 1; i < ipc::kRefusals; ++i) {
+    refused[std::string(ipc::to_string(static_cast<ipc::Refusal>(i)))] = head.reasons[i];
+  }
+  return {
+      {"alive", info.solver_alive},
+      {"pid", info.spline->owner_pid},
+      {"epoch", info.spline->epoch},
+      {"method", method.name},
+      {"lambda", info.spline->lambda},
+      {"time_scale", info.spline->time_scale},
+      {"settle", info.spline->settle},
+      {"tail", core::to_string(static_cast<core::Tail>(info.spline->tail))},
+      {"stop_time_ns", info.spline->stop_time},
+      {"board_capacity", info.spline->capacity},
+      {"region_bytes", info.spline->region_bytes},
+      {"max_acceleration", ipc::motion_limits(*info.spline).acceleration},
+      {"limits", limits_json(*info.spline)},
+      {"shown", shown_json(info)},
+      {"freeze_ahead_ns", info.spline->freeze_ahead},
+      {"history_ns", info.spline->history},
+      {"min_splice_ns", info.spline->min_splice},
+      {"revision", head.revision},
+      {"consumed", head.consumed},
+      {"interpolated", head.interpolated()},
+      {"passed_over", head.passed_over},
+      {"refused", head.refused},
+      {"refused_by_reason", refused},
+      {"refusals", refusals_json(info)},
+      {"exceeding", head.exceeding},
+      {"excesses", excesses_json(info)},
+      {"first_segment", head.first},
+      {"newest_segment", head.newest},
+      {"settled_until_ns", head.settled_until.count()},
+      {"newest_knot_ns", head.newest_knot.count()},
+      {"committed_ns", head.committed.count()},
+      {"withdrawn", head.withdrawn},
+      {"controls", head.controls},
+      {"depth_ns", depth(info)},
+      {"low_water_ns", has_low_water ? ordered_json(head.low_water.count()) : ordered_json()},
+      {"starved", head.starved},
+      {"underruns", head.underruns},
+      {"deadline_misses", head.misses},
+      {"late_commits", head.revisions},
+      {"finished", head.finished},
+      {"step_times_ns", step_times_json(info)},
+  };
+}
+
+}  // namespace
+
+std::string pretty(const ordered_json& json) {
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string state_of(const ipc::StreamInfo& info) {
+  if (!info.waypoints) return info.solver_alive ? "waiting for a producer" : "left behind";
+  if (!info.spline || info.spline->stream_id != info.waypoints->stream_id) {
+    return "waiting for a solver";
+  }
+  if (info.head.finished) return "finished";
+  if (info.producer_alive && info.solver_alive) return "running";
+  return info.producer_alive || info.solver_alive ? "one writer gone" : "both writers gone";
+}
+
+ordered_json to_json(const ipc::StreamInfo& info) {
+  ordered_json json{{"stream", info.stream}, {"state", state_of(info)}};
+  const auto& header = info.waypoints ? info.waypoints : info.spline;
+  if (header) json.update(stream_json(*header));
+  json["producer"] = info.waypoints ? producer_json(info) : ordered_json(nullptr);
+  json["solver"] = info.spline ? solver_json(info) : ordered_json(nullptr);
+  return json;
+}
+
+std::string passed_over_in_words(ipc::Word count) {
+  return count == 0 ? "" : fmt::format(", {} passed over", count);
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,34 @@
+#include <algorithm>
+#include <memory>
+
+#include "apps/cli/guarded.hpp"
+#include "apps/cli/options.hpp"
+#include "apps/process/exit_codes.hpp"
+#include "ipc/roles/stream_files.hpp"
+
+namespace splinecast::apps {
+void add_rm(CLI::App& program, Action& action) {
+  struct Options {
+    std::vector<std::string> streams;
+    ipc::Trust trust;
+  };
+  auto options = std::make_shared<Options>();
+  auto* verb = program.add_subcommand("rm", "Remove streams whose writers have ended");
+  verb->add_option("STREAM", options->streams, "Streams to remove")->required();
+  add_trust(*verb, options->trust);
+  verb->callback([&action, options] {
+    action = [options] {
+      int code = kOk;
+      for (const std::string& stream : options->streams) {
+        // What hinders one does not keep the others.
+        code = std::max(code, run_guarded([&] {
+                          ipc::remove_stream(stream, options->trust);
+                          return kOk;
+                        }));
+      }
+      return code;
+    };
+  });
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,232 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "apps/cli/options.hpp"
+#include "apps/output/samples.hpp"
+#include "apps/output/stream.hpp"
+#include "apps/process/exit_codes.hpp"
+#include "apps/process/messages.hpp"
+#include "apps/process/signals.hpp"
+#include "apps/streams/attach.hpp"
+#include "splinecast/errors.hpp"
+#include "splinecast/reader.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+struct SampleOptions {
+  std::string stream;
+  std::string at;
+  std::optional<TimeUnit> time_unit;
+  double rate = 0;
+  std::size_t count = 0;
+  std::string output;
+  core::Time wait{10'000'000'000};
+  ipc::Trust trust;
+};
+
+/// Samples one stream to a file, attaching again when it is made anew.
+class Sampling {
+ public:
+  Sampling(const SampleOptions& options, std::vector<core::Time> times)
+      : options_(options),
+        times_(std::move(times)),
+        reader_(attach_reader(options.stream, options.wait, options.trust)),
+        // Samples at a rate can be followed in the file; those of --at are written as a whole.
+        output_(options.output, options.at.empty() ? Writing::growing : Writing::whole),
+        state_(reader_.dimensions()),
+        none_(reader_.dimensions()),
+        writer_(output_, reader_.dimensions(), reader_.kinds(), true) {
+    fill_with_nan(none_);
+  }
+
+  int run() {
+    const bool is_complete = write_all();
+    output_.close();
+    if (!is_complete) throw Interrupted("interrupted");
+    return kOk;
+  }
+
+ private:
+  /// Returns false if a stop is requested before that, as those it calls do.
+  bool write_all() {
+    if (!options_.at.empty()) {
+      return std::ranges::all_of(times_, [this](core::Time t) { return write(t); });
+    }
+    return reader_.clock() == ipc::StreamClock::monotonic ? follow_live()
+                                                          : step_through_recording();
+  }
+
+  static void fill_with_nan(core::State& state) {
+    const core::StateRef all = state.ref();
+    for (const auto part : {all.position, all.velocity, all.acceleration, all.jerk}) {
+      std::ranges::fill(part, std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+
+  [[nodiscard]] core::Time period_times(std::size_t k) const {
+    return core::Time(std::llround(static_cast<double>(k) * 1e9 / options_.rate));
+  }
+
+  bool follow_live() {
+    const core::Time start = clock_.now();
+    for (std::size_t k = 0; k < options_.count; ++k) {
+      const core::Time t = start + period_times(k);
+      if (clock_.now() < t) output_.flush();  // whoever reads it has each line before the next
+      if (!sleep_until(t) || !write(t)) return false;
+    }
+    return true;
+  }
+
+  bool step_through_recording() {
+    const core::Time start = first_knot();
+    for (std::size_t k = 0; k < options_.count; ++k) {
+      if (!write(start + period_times(k))) return false;
+    }
+    return true;
+  }
+
+  /// Time of the oldest knot that the board keeps.
+  core::Time first_knot() {
+    const core::Time end = ipc::deadline(clock_, options_.wait);
+    for (;;) {
+      core::Time first{};
+      if (reader_.first_time(first)) return first;
+      if (stop_requested()) throw Interrupted("interrupted");
+      if (clock_.now() >= end) {
+        throw TimeOut(fmt::format("stream '{}' has no waypoints", options_.stream));
+      }
+      (void)reader_.wait(std::chrono::milliseconds(50));
+    }
+  }
+
+  bool write(core::Time t) {
+    if (stop_requested()) return false;
+    const auto status = sample(t);
+    if (!status) return false;
+    writer_.write(t, ipc::has_values(*status) ? state_ : none_, ipc::to_string(*status));
+    return true;
+  }
+
+  /// A recorded stream is sampled where it is final, as long as it goes on: what is not settled yet
+  /// is waited for, until nothing new has come for --wait. Nothing if a stop is requested
+  /// meanwhile.
+  std::optional<ipc::SampleStatus> sample(core::Time t) {
+    core::Time end = ipc::deadline(clock_, options_.wait);
+    for (;;) {
+      const auto status = reader_.sample(t, state_);
+      const bool has_answered =
+          status != ipc::SampleStatus::retired && status != ipc::SampleStatus::busy;
+      if (stop_requested() && !(has_answered && is_final(status))) return std::nullopt;
+      if (status == ipc::SampleStatus::retired) {
+        reattach();
+        continue;
+      }
+      if (status == ipc::SampleStatus::busy && clock_.now() < end) {
+        (void)reader_.wait(std::chrono::milliseconds(1));
+        continue;
+      }
+      if (!patient_ || is_final(status)) return status;
+      output_.flush();
+      if (reader_.wait(std::chrono::milliseconds(20)) == ipc::WaitStatus::advanced) {
+        end = ipc::deadline(clock_, options_.wait);
+      } else if (clock_.now() >= end) {
+        patient_ = false;
+        say(fmt::format("stream '{}': nothing new for {} s; from {} ns on samples are not settled",
+                        options_.stream, core::to_seconds(options_.wait), t.count()));
+      }
+    }
+  }
+
+  [[nodiscard]] bool is_final(ipc::SampleStatus status) const {
+    if (reader_.clock() == ipc::StreamClock::monotonic) return true;
+    if (status == ipc::SampleStatus::settled || status == ipc::SampleStatus::before_history) {
+      return true;
+    }
+    ipc::Head head;
+    return reader_.head(head) && head.finished;
+  }
+
+  void reattach() {
+    const auto dimensions = ipc::dimensions_of(reader_.header());
+    reader_ = attach_reader(options_.stream, options_.wait, options_.trust);
+    if (reader_.dimensions() != dimensions.size()) {
+      throw Failure(fmt::format("stream '{}' was made anew with {} dimensions, not {}",
+                                options_.stream, reader_.dimensions(), dimensions.size()));
+    }
+    if (ipc::dimensions_of(reader_.header()) == dimensions) return;
+    throw Failure(
+        fmt::format("stream '{}' was made anew with other dimension kinds", options_.stream));
+  }
+
+  const SampleOptions& options_;
+  std::vector<core::Time> times_;  ///< of --at
+  ipc::MonotonicClock clock_;
+  ipc::Reader reader_;
+  Output output_;
+  core::State state_;
+  core::State none_;
+  SampleWriter writer_;
+  bool patient_ = true;  ///< whether what is not settled is still waited for
+};
+
+/// The last sample's time must be in range.
+void require_span(const SampleOptions& options) {
+  if (options.count == 0) return;  // --at
+  const double seconds = static_cast<double>(options.count - 1) / options.rate;
+  const double most = core::to_seconds(kLongestTime);
+  if (seconds <= most) return;
+  throw CLI::ValidationError(
+      "--count", fmt::format("{} samples at {} Hz take {} s; the most is {} s", options.count,
+                             options.rate, seconds, most));
+}
+
+int run_sample(const SampleOptions& options) {
+  require_separate(std::array{options.output}, std::array{options.at});
+  // Before the output is opened; a signal may end the process meanwhile, wherever it waits.
+  auto times =
+      options.at.empty() ? std::vector<core::Time>{} : read_times(options.at, options.time_unit);
+  catch_stop_signals();
+  return Sampling(options, std::move(times)).run();
+}
+
+}  // namespace
+
+void add_sample(CLI::App& program, Action& action) {
+  auto options = std::make_shared<SampleOptions>();
+  auto* verb = program.add_subcommand("sample", "Read a stream's curve and write it as CSV");
+  verb->add_option("STREAM", options->stream, "Stream to read")->required();
+  auto* at = verb->add_option("--at", options->at, "File with a time column: where to sample")
+                 ->type_name("FILE");
+  auto* rate = verb->add_option_function<std::string>(
+      "--rate",
+      [options](const std::string& text) { options->rate = number_within("--rate", text); },
+      "Samples a second");
+  rate->type_name("HZ");
+  add_count(*verb, "--count", options->count, "Number of samples");
+  auto* count = verb->get_option("--count");
+  rate->needs(count)->excludes(at);
+  count->needs(rate);
+  verb->add_option("-o,--output", options->output, "File to write (default: standard output)")
+      ->type_name("OUT");
+  add_seconds(*verb, "--wait", options->wait,
+              "Wait this long for the stream, and for what a recorded one has yet to settle "
+              "(default 10)");
+  add_time_unit(*verb, options->time_unit);
+  add_trust(*verb, options->trust);
+  verb->callback([&action, options, at, rate] {
+    if (at->empty() && rate->empty()) {
+      throw CLI::ValidationError("sample", "needs --at, or --rate with --count");
+    }
+    require_span(*options);
+    action = [options] { return run_sample(*options); };
+  });
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,243 @@
+#include "apps/streams/solve.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/cli/options.hpp"
+#include "apps/limits/file.hpp"
+#include "apps/process/descriptors.hpp"
+#include "apps/process/exit_codes.hpp"
+#include "apps/process/messages.hpp"
+#include "apps/process/signals.hpp"
+#include "apps/streams/report.hpp"
+#include "ipc/layout/limits.hpp"
+#include "ipc/roles/stream_sweep.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+/// Longest sleep on one stream; a signal that comes just before a sleep waits this long.
+constexpr core::Time kLongestWait = std::chrono::milliseconds(50);
+
+constexpr TimeRange kSweeps{core::Time(1), std::chrono::seconds(1)};
+
+/// Tells what becomes of each stream.
+class Announcer {
+ public:
+  Announcer(const SolveOptions& options, bool is_one_of_many)
+      : quiet_(options.quiet),
+        many_(is_one_of_many),
+        limits_(&options.limits),
+        joints_(options.solver.named_limits) {
+    for (core::NamedLimits& joint : joints_) joint.name = ipc::header_name(joint.name);
+  }
+
+  void tell(ipc::SweepNews news, const std::string& stream, const ipc::Solver* solver,
+            std::string_view why = {}) {
+    using enum ipc::SweepNews;
+    const bool is_lost = news == no_descriptors || news == postponed || news == given_up;
+    if (is_lost) lost_.insert(stream);
+    if (news == solving) lost_.erase(stream);
+    if (quiet_ && !is_lost) return;
+    say(fmt::format("'{}': {}", stream, text(news, solver, why)));
+    if (news == solving && limits_->any()) tell_limits(stream, *solver);
+    if (news == solving && !many_ && !solver->is_memory_locked()) {
+      say(fmt::format("'{}': pages are not locked into memory (RLIMIT_MEMLOCK)", stream));
+    }
+  }
+
+  /// Whether a stream that should be solved is not.
+  [[nodiscard]] bool has_lost() const { return !lost_.empty(); }
+
+ private:
+  [[nodiscard]] static std::string text(ipc::SweepNews news, const ipc::Solver* solver,
+                                        std::string_view why) {
+    switch (news) {
+      case ipc::SweepNews::waiting:
+        return "waiting for a producer";
+      case ipc::SweepNews::solving:
+        return solver->took_over() ? "taken over" : "solving";
+      case ipc::SweepNews::finished:
+        return fmt::format("finished; {} waypoints interpolated{}, {} items refused",
+                           solver->head().interpolated(),
+                           passed_over_in_words(solver->head().passed_over),
+                           solver->head().refused);
+      case ipc::SweepNews::elsewhere:
+        return "left to the process that solves it";
+      case ipc::SweepNews::no_descriptors:
+        return fmt::format(
+            "left out: RLIMIT_NOFILE allows {} file descriptors, a stream takes {} "
+            "(ulimit -Hn)",
+            descriptor_limit(), ipc::StreamSweep::kDescriptorsPerStream);
+      case ipc::SweepNews::refused:
+        return fmt::format("{}; more for this reason are counted only", why);
+      case ipc::SweepNews::beyond_limits:
+        return fmt::format("beyond a limit, {}; more are counted only", why);
+      case ipc::SweepNews::postponed:
+        return fmt::format("put off, and tried again from time to time: {}", why);
+      case ipc::SweepNews::given_up:
+        return fmt::format("given up: {}", why);
+      case ipc::SweepNews::gone:
+        return "gone";
+    }
+    return {};
+  }
+
+  /// Names that matched nothing, and dimensions without a limit.
+  void tell_limits(const std::string& stream, const ipc::Solver& solver) const {
+    const ipc::RegionHeader& header = solver.board();
+    const std::vector<std::string> names = ipc::dimension_names(header);
+    const LimitGaps gaps =
+        limit_gaps(ipc::motion_limits(header), joints_, names, ipc::dimensions_of(header));
+    for (const std::string& line : to_lines(gaps)) say(fmt::format("'{}': {}", stream, line));
+  }
+
+  bool quiet_;
+  bool many_;
+  const LimitOptions* limits_;
+  std::vector<core::NamedLimits> joints_;
+  std::set<std::string> lost_;
+};
+
+/// Solves one stream; sleeps on its ring while there is nothing to do.
+int solve_one(const SolveOptions& options) {
+  const ipc::MonotonicClock clock;
+  Announcer announcer(options, false);
+  ipc::Solver solver(options.wanted.front(), options.solver);
+  const auto tell = [&](ipc::SweepNews news, std::string_view why = {}) {
+    announcer.tell(news, solver.stream(), &solver, why);
+  };
+  tell(ipc::SweepNews::waiting);
+  bool was_attached = false;
+  bool was_finished = false;
+  std::vector<ipc::ItemRefusal> refused;
+  while (!stop_requested()) {
+    if (!solver.attached()) {
+      if (was_attached) tell(ipc::SweepNews::waiting);
+      was_attached = solver.attach(clock);
+      was_finished = false;
+      if (was_attached) tell(ipc::SweepNews::solving);
+    }
+    const ipc::StepResult result = solver.step(clock);
+    solver.first_refusals(refused);
+    for (const ipc::ItemRefusal& refusal : refused) {
+      tell(ipc::SweepNews::refused, to_string(refusal));
+    }
+    if (const auto excess = solver.first_excess()) {
+      tell(ipc::SweepNews::beyond_limits, solver.in_words(*excess));
+    }
+    if (solver.attached() && solver.head().finished && !was_finished) {
+      was_finished = true;
+      tell(ipc::SweepNews::finished);
+    }
+    if (result.consumed == 0 && !result.missed) solver.wait(kLongestWait);
+  }
+  return kOk;
+}
+
+/// Solves many streams; looks at them from time to time.
+int solve_many(const SolveOptions& options) {
+  const ipc::MonotonicClock clock;
+  raise_descriptor_limit();
+  Announcer announcer(options, true);
+  ipc::StreamSweep sweep(
+      options.wanted, options.solver,
+      [&announcer](ipc::SweepNews news, const std::string& stream, const ipc::Solver* solver,
+                   std::string_view why) { announcer.tell(news, stream, solver, why); },
+      options.sweep);
+  core::Time due = clock.now();
+  while (!stop_requested()) {
+    if (sweep.sweep(clock)) continue;
+    due = std::max(due + sweep.next_pause(), clock.now());
+    sleep_until(due);
+  }
+  return announcer.has_lost() ? kFailed : kOk;
+}
+
+}  // namespace
+
+int run_solve(const SolveOptions& options) {
+  const bool is_one = options.wanted.size() == 1 && !ipc::is_pattern(options.wanted.front());
+  return is_one ? solve_one(options) : solve_many(options);
+}
+
+namespace {
+
+/// What concerns live streams.
+void add_live_options(CLI::App& verb, ipc::SolverOptions& options) {
+  verb.add_option_function<std::string>(
+          "--freeze-ahead",
+          [&options](const std::string& text) {
+            options.freeze_ahead = time_within("--freeze-ahead", text, TimeUnit::milliseconds);
+          },
+          "Leave alone what lies this long ahead of now (default 5)")
+      ->type_name("MS");
+  add_seconds(verb, "--history", options.history,
+              "Keep what ended less than this ago; then consume no more (default 1)");
+}
+
+/// Reads the file of limits, and gives the solver all of them.
+void take_limits(SolveOptions& options) {
+  if (options.limits.given != core::MotionLimits{}) options.solver.limits = options.limits.given;
+  if (options.limits.file.empty()) return;
+  LimitFile file = read_limit_file(options.limits.file);
+  if (!options.quiet) std::ranges::for_each(file.notes, say);
+  options.solver.named_limits = std::move(file.joints);
+}
+
+}  // namespace
+
+void add_solve(CLI::App& program, Action& action) {
+  auto options = std::make_shared<SolveOptions>();
+  auto* verb = program.add_subcommand("solve", "Turn the waypoints of streams into splines");
+  verb->add_option("STREAM", options->wanted,
+                   "Streams to solve, in one process: names, and patterns such as 'arm.*' for all "
+                   "that come and go")
+      ->required();
+  add_solver_curve(*verb, options->solver);
+  add_seconds(
+      *verb, "--stop-time", options->solver.stop_time,
+      "Time in which a stream that dries up comes to rest (default 0.25); longer where a limit "
+      "of acceleration or jerk asks for it");
+  add_count(*verb, "--capacity", options->solver.capacity,
+            "Segments that the board holds (default 4096; rounded up to a power of two)");
+  add_live_options(*verb, options->solver);
+  add_limit_options(*verb, options->limits,
+                    ". Entries and stops keep it; the spline through the waypoints is not changed "
+                    "by it: see --beyond");
+  add_beyond(*verb, options->solver.beyond);
+  verb->add_flag("!--no-wake", options->solver.wake,
+                 "Wake no waiting readers: for hosts where every reader polls");
+  verb->add_option_function<std::string>(
+          "--sweep",
+          [options](const std::string& text) {
+            options->sweep = time_within("--sweep", text, TimeUnit::milliseconds, kSweeps);
+          },
+          "Pause between looks at several streams (default 1, at most 1000); 20 if that is longer "
+          "for "
+          "those on which nothing has happened for a second")
+      ->type_name("MS");
+  verb->add_flag("--quiet", options->quiet, "Say nothing of what becomes of the streams");
+  add_access(*verb, options->solver.access);
+  add_trust(*verb, options->solver.trust);
+  verb->callback([&action, options] {
+    const std::set<std::string> distinct(options->wanted.begin(), options->wanted.end());
+    if (distinct.size() != options->wanted.size()) {
+      throw CLI::ValidationError("STREAM", "a stream is named twice");
+    }
+    action = [options] {
+      take_limits(*options);
+      catch_stop_signals();
+      return run_solve(*options);
+    };
+  });
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "splinecast/time.hpp"
+
+namespace splinecast::apps {
+
+/// Counts of latencies over time: how the histogram changes while it is measured. Windows of equal
+/// length, and in each bins of equal ratio, kBinsPerOctave to a factor of two.
+class TimeGrid {
+ public:
+  static constexpr std::size_t kWindows = 200;
+  static constexpr int kBinsPerOctave = 4;
+
+  /// Covers [from, until); what lies outside counts in the first or last window.
+  TimeGrid(core::Time from, core::Time until);
+
+  void record(core::Time at, core::Time latency);
+
+  /// `window_s`, `bins_per_octave`, `greatest_ns` per window (null where nothing was recorded),
+  /// and `cells`, a list of [window, bin, count] without the empty ones: a bin b holds latencies
+  /// from 2^(b/bins_per_octave) ns on.
+  [[nodiscard]] nlohmann::ordered_json json() const;
+
+ private:
+  struct Window {
+    std::vector<std::uint64_t> counts;
+    core::Time greatest{-1};
+  };
+  core::Time from_;
+  core::Time window_;
+  std::vector<Window> windows_;
+};
+
+}  // namespace splinecast::apps

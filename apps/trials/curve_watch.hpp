@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "ipc/sampling/sampler.hpp"
+
+namespace splinecast::apps {
+
+/// What a watch has found. Steps are absolute, in the stream's units.
+struct WatchReport {
+  std::uint64_t samples = 0;
+  std::array<std::uint64_t, ipc::kSampleStatuses> by_status{};
+  std::uint64_t changed = 0;     ///< earlier samples that read otherwise later, without `revised`
+  std::uint64_t unsettled = 0;   ///< samples in motion that had not settled at their instant
+  std::uint64_t knots = 0;       ///< joins between segments that were compared
+  double position_step = 0;      ///< largest at a join
+  double velocity_step = 0;      ///< largest at a join
+  double unpublished_step = 0;   ///< largest difference of an acceleration step from the published
+  double acceleration_step = 0;  ///< largest published one
+  double acceleration = 0;       ///< largest sampled
+};
+
+/// Whether nothing stepped or changed that must not, of a motion of joint angles in rad.
+[[nodiscard]] bool is_sound(const WatchReport& report) noexcept;
+
+/// Samples a live curve as a controller does and checks what no controller has the time to: that
+/// what was read once reads the same ever after, that position and velocity never step, and that
+/// every acceleration step is the one published. One thread uses a watch.
+class CurveWatch {
+ public:
+  /// `sampler` outlives the watch, which is its only user.
+  explicit CurveWatch(ipc::Sampler& sampler, std::size_t dimensions);
+
+  /// Samples at `now` and checks everything since the tick before. Returns the sample's status.
+  ipc::SampleStatus tick(core::Time now);
+
+  /// The last sample; of use if its status had values.
+  [[nodiscard]] const core::State& state() const noexcept { return now_; }
+  [[nodiscard]] const WatchReport& report() const noexcept { return report_; }
+
+ private:
+  /// Ticks whose samples are kept to be read again.
+  static constexpr std::size_t kKept = 256;
+  struct Seen {
+    core::Time time{};
+    std::vector<double> values;
+  };
+
+  void read_again(std::size_t back);
+  void check_joins(core::Time from, core::Time to);
+  void evaluate(const ipc::SegmentCopy& segment, double u, core::State& out) const;
+  void check_join(const ipc::SegmentCopy& before, const ipc::SegmentCopy& after);
+
+  ipc::Sampler* sampler_;
+  core::State now_;
+  core::State left_;
+  core::State right_;
+  ipc::Snapshot snapshot_;
+  std::vector<Seen> seen_;
+  std::size_t kept_ = 0;  ///< ticks since the curve was last new to this watch
+  WatchReport report_;
+};
+
+}  // namespace splinecast::apps

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "splinecast/time.hpp"
+
+namespace splinecast::apps {
+
+/// A motion without end: seven joint angles in rad, each a cosine of its own frequency and hence at
+/// rest when it starts.
+class JointMotion {
+ public:
+  static constexpr std::size_t kJoints = 7;
+  explicit JointMotion(core::Time start) : start_(start) {}
+
+  /// The derivative-th derivative (0 to 2) of every joint at t.
+  [[nodiscard]] std::vector<double> at(core::Time t, int derivative = 0) const;
+
+  /// The largest acceleration of every joint, rad/s².
+  [[nodiscard]] static std::vector<double> peak_acceleration();
+
+ private:
+  core::Time start_;
+};
+
+}  // namespace splinecast::apps

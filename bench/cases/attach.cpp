@@ -1,0 +1,63 @@
+#include <benchmark/benchmark.h>
+
+#include <optional>
+#include <stdexcept>
+
+#include "apps/process/child.hpp"
+#include "bench/harness/bench_stream.hpp"
+#include "bench/harness/trips.hpp"
+#include "bench/harness/writer.hpp"
+#include "splinecast/reader.hpp"
+
+namespace splinecast::bench {
+namespace {
+
+constexpr std::size_t kAttachments = 500;
+
+/// The newest settled time of a stream.
+core::Time settled_until(const std::string& stream) {
+  ipc::Reader reader(stream);
+  core::State state(kWrittenDimensions);
+  (void)reader.sample(core::Time{}, state);
+  return reader.settled_until();
+}
+
+/// From attaching to another process's stream to the first sample.
+void attach(benchmark::State& bench) {
+  const Pinned pin(kNear);
+  const StreamName stream;
+  const SharedLines lines;
+  for (auto _ : bench) {
+    apps::Child writer([&] { return write_stream(stream, kWrittenKnots, std::nullopt, lines[0]); });
+    await(lines[0], 1);
+    const core::Time t = settled_until(stream);
+    const ipc::MonotonicClock clock;
+    core::State state(kWrittenDimensions);
+    Trips attachments(kAttachments);
+    for (std::size_t i = 0; i < kAttachments; ++i) {
+      const core::Time start = clock.now();
+      ipc::Reader reader(stream);
+      const ipc::SampleStatus status = reader.sample(t, state);
+      attachments.add(clock.now() - start);
+      if (!ipc::has_values(status)) throw std::runtime_error("a first sample had no values");
+    }
+    report(bench, attachments.summary());
+    writer.stop();
+    writer.result();
+  }
+}
+
+/// How large the region is that the solver writes.
+void board_bytes(benchmark::State& bench) {
+  const Waypoints waypoints(kWrittenKnots, kWrittenDimensions);
+  const BenchStream stream(waypoints);
+  const ipc::Reader reader(stream.name());
+  for (auto _ : bench) benchmark::DoNotOptimize(reader.header());
+  bench.counters["region_bytes"] = static_cast<double>(reader.header().region_bytes);
+}
+
+BENCHMARK(attach)->Name("attach/dims:7/knots:4096")->Iterations(1)->UseManualTime();
+BENCHMARK(board_bytes)->Name("board/dims:7/knots:4096")->Iterations(1);
+
+}  // namespace
+}  // namespace splinecast::bench

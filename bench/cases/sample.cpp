@@ -1,0 +1,102 @@
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <map>
+#include <span>
+
+#include "bench/harness/bench_stream.hpp"
+#include "bench/harness/random_times.hpp"
+#include "splinecast/reader.hpp"
+
+namespace splinecast::bench {
+namespace {
+
+struct Recorded {
+  Waypoints waypoints;
+  BenchStream stream;
+
+  Recorded(std::size_t count, std::size_t dimensions)
+      : waypoints(count, dimensions), stream(waypoints) {}
+};
+
+/// The streams are made once and stand until the end.
+const Recorded& recorded(std::size_t count, std::size_t dimensions) {
+  static std::map<std::pair<std::size_t, std::size_t>, Recorded> streams;
+  return streams.try_emplace({count, dimensions}, count, dimensions).first->second;
+}
+
+/// Position, velocity, acceleration and jerk at 1 kHz steps through 100 Hz knots, from shared
+/// memory, through the public interface.
+void sample(benchmark::State& bench) {
+  const auto dimensions = static_cast<std::size_t>(bench.range(0));
+  const Recorded& from = recorded(4096, dimensions);
+  ipc::Reader reader(from.stream.name());
+  core::State state(dimensions);
+  const core::Time last = from.waypoints.times.back();
+  core::Time t{};
+  for (auto _ : bench) {
+    benchmark::DoNotOptimize(reader.sample(t, state));
+    benchmark::DoNotOptimize(state.values().data());
+    t += core::Time(1'000'000);
+    if (t > last) t = core::Time{};
+  }
+}
+
+/// The same at random times over 65,536 segments.
+void sample_random(benchmark::State& bench) {
+  const auto dimensions = static_cast<std::size_t>(bench.range(0));
+  const Recorded& from = recorded(kRandomSegments, dimensions);
+  ipc::Reader reader(from.stream.name());
+  core::State state(dimensions);
+  const std::vector<core::Time> times = random_times(from.waypoints.times.back());
+  std::size_t i = 0;
+  for (auto _ : bench) {
+    benchmark::DoNotOptimize(reader.sample(times[i++ % times.size()], state));
+    benchmark::DoNotOptimize(state.values().data());
+  }
+}
+
+/// Times 2 ms apart, the first one 1 ms later from call to call, as a predictive controller at 1
+/// kHz asks for; by parity of the call, so that each call takes a part of one of them.
+std::array<std::vector<core::Time>, 2> horizons_until(core::Time end) {
+  constexpr core::Time kApart{2'000'000};
+  std::array<std::vector<core::Time>, 2> times;
+  for (core::Time t{}; t + kApart / 2 <= end; t += kApart) {
+    times[0].push_back(t);
+    times[1].push_back(t + kApart / 2);
+  }
+  return times;
+}
+
+/// Many times from one revision: the horizon of a predictive controller over a curve that is
+/// published whole. The counter `times` says how many a call samples.
+void sample_many(benchmark::State& bench) {
+  const auto dimensions = static_cast<std::size_t>(bench.range(0));
+  const auto count = static_cast<std::size_t>(bench.range(1));
+  const Recorded& from = recorded(4096, dimensions);
+  ipc::Reader reader(from.stream.name());
+  std::vector<double> values(count * core::State(dimensions).values().size());
+  std::vector<ipc::SampleStatus> status(count);
+  const auto times = horizons_until(from.waypoints.times.back());
+  const std::size_t calls = 2 * (times[0].size() - count);
+  std::size_t i = 0;
+  for (auto _ : bench) {
+    const auto horizon = std::span(times[i % 2]).subspan(i / 2, count);
+    benchmark::DoNotOptimize(reader.sample_many(horizon, {.values = values, .status = status}));
+    benchmark::ClobberMemory();
+    i = i + 1 < calls ? i + 1 : 0;
+  }
+  for (const ipc::SampleStatus one : status) {
+    if (!ipc::has_values(one)) bench.SkipWithError("a time of a horizon had no values");
+  }
+  bench.counters["times"] = static_cast<double>(count);
+}
+
+BENCHMARK(sample)->ArgName("dims")->Apply(all_dimensions);
+BENCHMARK(sample_many)->ArgNames({"dims", "times"})->Args({7, 50});
+BENCHMARK(sample_random)->ArgName("dims")->Arg(7);
+/// For counting instructions: profile_paths.py divides by the iterations.
+BENCHMARK(sample)->Name("counted/sample")->Arg(7)->Iterations(10'000);
+
+}  // namespace
+}  // namespace splinecast::bench

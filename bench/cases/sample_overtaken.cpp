@@ -1,0 +1,106 @@
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <functional>
+
+#include "apps/files/waypoint_table.hpp"
+#include "apps/process/child.hpp"
+#include "apps/replay/player.hpp"
+#include "bench/harness/bench_stream.hpp"
+#include "bench/harness/csv_recording.hpp"
+#include "bench/harness/trips.hpp"
+#include "bench/harness/writer.hpp"
+#include "splinecast/reader.hpp"
+
+/// Samples where the board is written as fast as this machine can.
+namespace splinecast::bench {
+namespace {
+
+constexpr std::size_t kSamples = 1'000'000;
+constexpr core::Time kPatience{10'000'000'000};
+
+/// `replay --embedded --rate max` on the far core, until a stop is requested.
+nlohmann::json replay_for_ever(const std::string& stream) {
+  const Pinned pin(kFar);
+  apps::ReplayOptions options{.file = csv_recording().path(),
+                              .stream = stream,
+                              .rate = {},
+                              .loops = 1'000'000,
+                              .clock = ipc::StreamClock::recorded,
+                              .embedded = true,
+                              .quiet = true};
+  apps::WaypointTable table = apps::read_waypoints(options.file, options.table);
+  apps::RefusedRows refused;
+  apps::prepare_replay(table, options, refused);
+  (void)apps::replay_table(table, options, refused);
+  return nullptr;
+}
+
+/// Samples in the segments that a revision changes, each time in another one; every sample is timed
+/// alone.
+nlohmann::json sample_open_segments(const std::string& stream) {
+  constexpr std::size_t kSegments = 8;
+  constexpr core::Time kInterval{10'000'000};
+  ipc::Reader reader(stream, kPatience);
+  core::State state(kWrittenDimensions);
+  const ipc::MonotonicClock clock;
+  const core::Time cost = clock_cost();
+  while (!ipc::has_values(reader.preview(reader.settled_until(), state))) {
+  }
+  Trips all(kSamples);
+  std::array<std::size_t, ipc::kSampleStatuses> by_status{};
+  std::size_t revisions = 0;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const ipc::Word seen = reader.sampler().revision_seen();
+    const auto segment = static_cast<int>(i % kSegments);
+    const core::Time start = clock.now();
+    const ipc::SampleStatus status =
+        reader.preview(reader.settled_until() + segment * kInterval, state);
+    all.add(clock.now() - start - cost);
+    ++by_status[static_cast<std::size_t>(status)];
+    if (reader.sampler().revision_seen() != seen) ++revisions;
+  }
+  nlohmann::json summary = all.summary();
+  const auto share = [](std::size_t count) { return static_cast<double>(count) / kSamples; };
+  const auto share_with = [&](ipc::SampleStatus status) {
+    return share(by_status[static_cast<std::size_t>(status)]);
+  };
+  summary["busy_share"] = share_with(ipc::SampleStatus::busy);
+  summary["before_history_share"] = share_with(ipc::SampleStatus::before_history);
+  summary["new_revision_share"] = share(revisions);
+  return summary;
+}
+
+void sample_overtaken(benchmark::State& bench,
+                      const std::function<nlohmann::json(
+                          const std::string& stream, std::atomic<std::uint64_t>& ready)>& write) {
+  (void)csv_recording();  // made by this process, which removes it
+  const Pinned pin(kNear);
+  const StreamName stream;
+  const SharedLines lines;
+  for (auto _ : bench) {
+    apps::Child writer([&] { return write(stream, lines[0]); });
+    report(bench, sample_open_segments(stream));
+    writer.stop();
+    writer.result();
+  }
+}
+
+BENCHMARK_CAPTURE(sample_overtaken, replay,
+                  [](const std::string& stream, std::atomic<std::uint64_t>&) {
+                    return replay_for_ever(stream);
+                  })
+    ->Name("sample/dims:7/beside:replay")
+    ->Iterations(1)
+    ->UseManualTime();
+/// The same with a revision for each waypoint: what overtakes readers most often.
+BENCHMARK_CAPTURE(sample_overtaken, publish,
+                  [](const std::string& stream, std::atomic<std::uint64_t>& ready) {
+                    return write_stream(stream, kWrittenKnots, core::Time::zero(), ready);
+                  })
+    ->Name("sample/dims:7/beside:publish")
+    ->Iterations(1)
+    ->UseManualTime();
+
+}  // namespace
+}  // namespace splinecast::bench

@@ -1,0 +1,121 @@
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+#include <ctime>
+#include <optional>
+#include <stdexcept>
+
+#include "apps/process/child.hpp"
+#include "bench/harness/bench_stream.hpp"
+#include "bench/harness/trips.hpp"
+#include "bench/harness/writer.hpp"
+#include "splinecast/reader.hpp"
+
+namespace splinecast::bench {
+namespace {
+
+constexpr std::size_t kSamples = 2'000'000;
+/// First samples of a new revision that a run needs at least.
+constexpr std::size_t kFirstSamples = 100;
+constexpr core::Time kPatience{10'000'000'000};
+
+/// Samples at 1 kHz steps, again and again, from 20 s before what is settled to behind the newest
+/// knot.
+class Walk {
+ public:
+  explicit Walk(const std::string& stream) : reader_(stream, kPatience) {
+    (void)reader_.sample(core::Time{}, state_);  // what is settled is known by now
+  }
+
+  /// Goes on to the time of the next sample.
+  void step() {
+    t_ += core::Time(1'000'000);
+    if (t_ < end_) return;
+    t_ = reader_.settled_until() - core::Time(20'000'000'000);
+    end_ = reader_.settled_until() + core::Time(100'000'000);
+  }
+  [[nodiscard]] ipc::SampleStatus sample() { return reader_.sample(t_, state_); }
+  [[nodiscard]] ipc::Word revision_seen() { return reader_.sampler().revision_seen(); }
+
+ private:
+  ipc::Reader reader_;
+  core::State state_{kWrittenDimensions};
+  core::Time t_{};
+  core::Time end_{};
+};
+
+void require_values(ipc::SampleStatus status) {
+  if (!ipc::has_values(status)) throw std::runtime_error("a sample had no values");
+}
+
+/// CPU time of this thread.
+core::Time cpu_now() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec);
+}
+
+/// CPU time of a sample [ns], the mean of many: the clock is too coarse for a single one.
+double mean_time(Walk& walk) {
+  const core::Time start = cpu_now();
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    walk.step();
+    require_values(walk.sample());
+  }
+  return static_cast<double>((cpu_now() - start).count()) / kSamples;
+}
+
+/// Times every sample alone. Of a stream `is_written` meanwhile those are reported as well that
+/// found a new revision.
+nlohmann::json time_alone(Walk& walk, bool is_written) {
+  const ipc::MonotonicClock clock;
+  const core::Time cost = clock_cost();
+  Trips all(kSamples);
+  Trips first_of_revision(kFirstSamples);
+  while (all.size() < kSamples || (is_written && first_of_revision.size() < kFirstSamples)) {
+    walk.step();
+    const ipc::Word seen = walk.revision_seen();
+    const core::Time start = clock.now();
+    const ipc::SampleStatus status = walk.sample();
+    const core::Time took = clock.now() - start - cost;
+    require_values(status);
+    if (all.size() < kSamples) all.add(took);
+    if (walk.revision_seen() != seen) first_of_revision.add(took);
+  }
+  nlohmann::json summary = all.summary();
+  if (is_written) summary["new_revision_p50_ns"] = first_of_revision.quantile(0.5);
+  return summary;
+}
+
+/// A sample while another process publishes.
+void sample_written(benchmark::State& bench, std::optional<core::Time> interval) {
+  const Pinned pin(kNear);
+  const StreamName stream;
+  const SharedLines lines;
+  for (auto _ : bench) {
+    apps::Child writer([&] { return write_stream(stream, 2 * kWrittenKnots, interval, lines[0]); });
+    await(lines[0], 1);
+    Walk walk(stream);
+    const double mean = mean_time(walk);
+    report(bench, time_alone(walk, interval.has_value()));
+    bench.counters["mean_ns"] = mean;
+    writer.stop();
+    writer.result();
+  }
+}
+
+BENCHMARK_CAPTURE(sample_written, quiet, std::nullopt)
+    ->Name("sample/dims:7/writer:quiet")
+    ->Iterations(1)
+    ->UseManualTime();
+BENCHMARK_CAPTURE(sample_written, slow, core::Time(10'000'000))
+    ->Name("sample/dims:7/writer:100Hz")
+    ->Iterations(1)
+    ->UseManualTime();
+BENCHMARK_CAPTURE(sample_written, fast, core::Time(1'000'000))
+    ->Name("sample/dims:7/writer:1kHz")
+    ->Iterations(1)
+    ->UseManualTime();
+
+}  // namespace
+}  // namespace splinecast::bench

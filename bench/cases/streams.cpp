@@ -1,0 +1,161 @@
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "apps/process/signals.hpp"
+#include "apps/process/use.hpp"
+#include "apps/soak/roles.hpp"
+#include "bench/harness/solved_streams.hpp"
+#include "ipc/roles/stream_sweep.hpp"
+
+/// What many streams of seven dimensions cost the one process that solves them. The time of these
+/// rows is the CPU time that this process takes for a second: 10 ms are 1 % of a core.
+namespace splinecast::bench {
+namespace {
+
+using core::Time;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr double kRate = 100;
+constexpr Time kPatience = seconds(60);
+constexpr Time kWindow = seconds(1);
+
+/// Streams that one process solves, and their producers in another one.
+class ManyStreams {
+ public:
+  /// Their motion begins in a second, or, if they are idle, never.
+  ManyStreams(std::size_t count, bool are_idle, const ipc::SolverOptions& options)
+      : solved_(count, options), producers_([&] {
+          const Time begin = clock_.now() + (are_idle ? seconds(1'000'000) : seconds(1));
+          return apps::run_soak_producers(solved_.streams(), kRate, begin);
+        }) {
+    readers_ = solved_.attach_readers(kPatience);
+    const Time end = clock_.now() + kPatience;  // the rows tell how many waypoints there are
+    while (!are_idle && !all_move() && clock_.now() < end) {
+      apps::sleep_until(clock_.now() + milliseconds(10));
+    }
+  }
+  ManyStreams(const ManyStreams&) = delete;
+  ManyStreams& operator=(const ManyStreams&) = delete;
+  ~ManyStreams() {
+    producers_.stop();
+    (void)producers_.result();
+  }
+
+  [[nodiscard]] pid_t solver() const { return solved_.solver(); }
+  [[nodiscard]] std::vector<ipc::Reader>& readers() { return readers_; }
+
+  /// Waypoints that the solver has taken so far, and deadlines that it has missed.
+  struct Solved {
+    double waypoints = 0;
+    double missed = 0;
+  };
+  [[nodiscard]] Solved solved() const {
+    Solved sum;
+    ipc::Head head;
+    for (const ipc::Reader& reader : readers_) {
+      if (!reader.head(head)) continue;
+      sum.waypoints += static_cast<double>(head.knots);
+      sum.missed += static_cast<double>(head.misses + head.revisions);
+    }
+    return sum;
+  }
+
+ private:
+  /// Whether every stream has what it needs to move.
+  [[nodiscard]] bool all_move() const {
+    ipc::Head head;
+    for (const ipc::Reader& reader : readers_) {
+      if (!reader.head(head) || head.knots < 2) return false;
+    }
+    return true;
+  }
+
+  ipc::MonotonicClock clock_;
+  SolvedStreams solved_;
+  apps::Child producers_;
+  std::vector<ipc::Reader> readers_;
+};
+
+/// How the streams of a row are.
+struct Row {
+  std::size_t streams;
+  bool is_idle;
+  bool wakes = false;  ///< readers, by a system call a revision
+  Time freeze_ahead = milliseconds(5);
+};
+
+ipc::SolverOptions options_of(const Row& row) {
+  return {.freeze_ahead = row.freeze_ahead, .capacity = kBusyCapacity, .wake = row.wakes};
+}
+
+/// The solver's own CPU clock, over a second each; of idle streams once they have been quiet for so
+/// long that the solver takes them for idle.
+void solve(benchmark::State& bench, Row row) {
+  ManyStreams world(row.streams, row.is_idle, options_of(row));
+  const ipc::MonotonicClock clock;
+  if (row.is_idle) apps::sleep_until(clock.now() + 2 * ipc::StreamSweep::kQuietAfter);
+  const auto before = world.solved();
+  double cpu = 0;
+  double wall = 0;
+  for (auto _ : bench) {
+    const Time begin = clock.now();
+    const Time taken = apps::cpu_time(world.solver());
+    apps::sleep_until(begin + kWindow);
+    const double taken_now = core::to_seconds(apps::cpu_time(world.solver()) - taken);
+    const double passed = core::to_seconds(clock.now() - begin);
+    bench.SetIterationTime(taken_now / passed);
+    cpu += taken_now;
+    wall += passed;
+  }
+  const auto after = world.solved();
+  const auto streams = static_cast<double>(row.streams);
+  bench.counters["core_percent"] = 100 * cpu / wall;
+  bench.counters["us_per_stream_and_s"] = 1e6 * cpu / wall / streams;
+  bench.counters["waypoints_per_s"] = (after.waypoints - before.waypoints) / wall;
+  bench.counters["late"] = after.missed - before.missed;
+  if (const auto use = apps::process_use(world.solver())) {
+    bench.counters["kB_per_stream"] = static_cast<double>(use->resident_bytes) / streams / 1e3;
+    bench.counters["files_per_stream"] = static_cast<double>(use->descriptors) / streams;
+  }
+}
+
+/// A reader of all streams: one sample, each time of another stream.
+void sample(benchmark::State& bench, Row row) {
+  ManyStreams world(row.streams, row.is_idle, options_of(row));
+  const ipc::MonotonicClock clock;
+  core::State state(world.readers().front().dimensions());
+  std::size_t i = 0;
+  for (auto _ : bench) {
+    benchmark::DoNotOptimize(world.readers()[i].sample(clock.now(), state));
+    benchmark::DoNotOptimize(state.values().data());
+    i = (i + 1) % row.streams;
+  }
+}
+
+void add(const std::string& name, const Row& row) {
+  benchmark::RegisterBenchmark(fmt::format("streams:{}/{}", row.streams, name).c_str(), solve, row)
+      ->UseManualTime()
+      ->Iterations(3)
+      ->Unit(benchmark::kMillisecond);
+}
+
+const bool is_registered = [] {
+  for (const std::size_t streams : {10U, 100U, 1000U}) {
+    add("idle", {.streams = streams, .is_idle = true});
+    add("busy:100Hz", {.streams = streams, .is_idle = false});
+    benchmark::RegisterBenchmark(fmt::format("streams:{}/sample", streams).c_str(), sample,
+                                 Row{.streams = streams, .is_idle = false});
+  }
+  add("busy:100Hz/freeze:50ms",
+      {.streams = 1000, .is_idle = false, .freeze_ahead = milliseconds(50)});
+  add("busy:100Hz/wake", {.streams = 1000, .is_idle = false, .wakes = true});
+  return true;
+}();
+
+}  // namespace
+}  // namespace splinecast::bench

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <string>
+#include <vector>
+
+#include "splinecast/time.hpp"
+#include "splinecast/waypoint.hpp"
+
+namespace splinecast::bench {
+
+/// The dimensions that have a row each.
+void all_dimensions(benchmark::internal::Benchmark* bench);
+
+/// Waypoints of a smooth motion at 100 Hz with jitter: what every benchmark is fed.
+struct Waypoints {
+  std::size_t dimensions;
+  std::vector<core::Time> times;
+  std::vector<double> positions;  ///< [waypoint][dimension]
+
+  Waypoints(std::size_t count, std::size_t dims);
+  [[nodiscard]] std::span<const double> position(std::size_t i) const {
+    return std::span(positions).subspan(i * dimensions, dimensions);
+  }
+};
+
+/// Endless waypoints: the same ones again and again, with times that go on.
+class Feed {
+ public:
+  explicit Feed(std::size_t dimensions);
+  core::Waypoint next();
+
+ private:
+  Waypoints waypoints_;
+  std::size_t i_ = 0;
+  core::Time offset_{};
+};
+
+/// A name for a stream of this process, never given twice; whatever stands under it is removed at
+/// the end.
+class StreamName {
+ public:
+  StreamName();
+  StreamName(const StreamName&) = delete;
+  StreamName& operator=(const StreamName&) = delete;
+  ~StreamName();
+  operator const std::string&() const { return name_; }  // NOLINT(*-explicit-*)
+
+ private:
+  std::string name_;
+};
+
+/// A finished recorded stream in shared memory.
+class BenchStream {
+ public:
+  explicit BenchStream(const Waypoints& waypoints);
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+ private:
+  StreamName name_;
+};
+
+}  // namespace splinecast::bench

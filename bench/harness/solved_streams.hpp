@@ -1,0 +1,44 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+#include "apps/process/child.hpp"
+#include "apps/streams/remover.hpp"
+#include "splinecast/options.hpp"
+#include "splinecast/reader.hpp"
+#include "splinecast/time.hpp"
+
+namespace splinecast::bench {
+
+/// Knots of a board that holds a second of history at 100 Hz and the producers' lead.
+inline constexpr std::size_t kBusyCapacity = 256;
+
+/// Pause between two looks of the solver process at the streams on which something happens.
+inline constexpr core::Time kSweep{1'000'000};
+
+/// Names for many streams, and one process that solves them as `solve` does once they have
+/// producers. Raises this process's limit of open files. Removes the streams at the end, when
+/// their producers must have ended.
+class SolvedStreams {
+ public:
+  SolvedStreams(std::size_t count, const ipc::SolverOptions& options);
+  SolvedStreams(const SolvedStreams&) = delete;
+  SolvedStreams& operator=(const SolvedStreams&) = delete;
+  ~SolvedStreams();
+
+  [[nodiscard]] const std::vector<std::string>& streams() const { return streams_; }
+  [[nodiscard]] pid_t solver() const { return solver_.pid(); }
+
+  /// A reader of each stream, in their order. Waits up to `patience` for each.
+  [[nodiscard]] std::vector<ipc::Reader> attach_readers(core::Time patience) const;
+
+ private:
+  std::vector<std::string> streams_;
+  apps::StreamRemover remover_;
+  apps::Child solver_;
+};
+
+}  // namespace splinecast::bench

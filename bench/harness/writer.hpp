@@ -1,0 +1,24 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "splinecast/time.hpp"
+
+/// A stream that another process writes.
+namespace splinecast::bench {
+
+inline constexpr std::size_t kWrittenDimensions = 7;
+inline constexpr std::size_t kWrittenKnots = 4096;
+
+/// For a child process: publishes kWrittenKnots waypoints of a recorded stream, each as a revision
+/// of its own, on a board that holds `capacity` knots, and sets `ready` to 1. Then publishes one
+/// more in each `interval`, as fast as it can if that is 0, or none if it is unset, until a stop is
+/// requested. Runs on the far core.
+nlohmann::json write_stream(const std::string& stream, std::size_t capacity,
+                            std::optional<core::Time> interval, std::atomic<std::uint64_t>& ready);
+
+}  // namespace splinecast::bench

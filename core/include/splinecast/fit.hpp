@@ -1,0 +1,37 @@
+#pragma once
+
+#include "splinecast/boundary_condition.hpp"
+#include "splinecast/method.hpp"
+#include "splinecast/piecewise_polynomial.hpp"
+#include "splinecast/waypoint.hpp"
+
+namespace splinecast::core {
+
+/// What shapes a curve that is solved at once.
+struct FitOptions {
+  Interpolant interpolant{};
+  Condition start{.kind = ConditionKind::own, .value = {}};  ///< `own` is natural for `c2`
+  Condition end{.kind = ConditionKind::own, .value = {}};
+};
+
+/// The curve of a method through all waypoints at once (`smoothing`: near them).
+///
+/// There must be at least one waypoint; times must increase strictly and all values be finite.
+/// One waypoint gives a hold. `hermite` and `quintic` need velocities, `quintic` accelerations too;
+/// the others do not look at them. `not-a-knot` and `periodic` are for `c2`, and `normalized` ends
+/// naturally. Throws std::invalid_argument, with the reason, index and value, for anything else.
+/// O(n·D).
+[[nodiscard]] PiecewisePolynomial fit(const Waypoints& waypoints, const FitOptions& options);
+
+/// The λ that generalised cross-validation chooses for `smoothing`, one for all dimensions: the
+/// minimum of n·Σ(x_i − f(t_i))²/(n − tr H)² over λ, squares summed over dimensions, H being the
+/// matrix that takes x to f(t_i). The trace is exact, from the band of the inverse (Hutchinson and
+/// de Hoog). Sought from what smooths nothing to what leaves but a line; 0 for fewer than three
+/// waypoints. O(n·D), about sixty times. Throws as `fit` does.
+[[nodiscard]] double cross_validated_lambda(const Waypoints& waypoints);
+
+/// The mean squared error, in the sense of generalised cross-validation, that smoothing with λ > 0
+/// leaves: what cross_validated_lambda minimises. At least three waypoints. O(n·D).
+[[nodiscard]] double cross_validation_score(const Waypoints& waypoints, double lambda);
+
+}  // namespace splinecast::core

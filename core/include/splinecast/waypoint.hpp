@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "splinecast/time.hpp"
+
+namespace splinecast::core {
+
+/// The largest magnitude of a position, velocity or acceleration. Far beyond any use, and so far
+/// below a double's range that no formula overflows on the way.
+inline constexpr double kLargestValue = 1e100;
+
+/// Whether a value can be taken: a number within ±kLargestValue.
+[[nodiscard]] constexpr bool is_usable(double value) noexcept {
+  return value >= -kLargestValue && value <= kLargestValue;  // no NaN is
+}
+
+/// The earliest and latest times: the difference of any two fits into 64 bits.
+inline constexpr Time kLatestTime{(std::int64_t{1} << 62U) - 1};
+static_assert(kLatestTime - -kLatestTime > Time::zero());
+[[nodiscard]] constexpr bool is_time_in_range(Time time) noexcept {
+  return time >= -kLatestTime && time <= kLatestTime;
+}
+
+/// What a producer gives: a time, a position and, optionally, velocity and acceleration.
+/// Spans hold one value per dimension; an empty span says "not given". Does not own its values.
+struct Waypoint {
+  Time time{};
+  std::span<const double> position{};
+  std::span<const double> velocity{};
+  std::span<const double> acceleration{};
+};
+
+/// Waypoints of a whole recording: values are [waypoint][dimension], `velocities` and
+/// `accelerations` empty if not given. A view: it owns nothing.
+struct Waypoints {
+  std::size_t dimensions = 0;
+  std::span<const Time> times{};
+  std::span<const double> positions{};
+  std::span<const double> velocities{};
+  std::span<const double> accelerations{};
+
+  [[nodiscard]] std::size_t size() const noexcept { return times.size(); }
+  [[nodiscard]] Waypoint operator[](std::size_t i) const noexcept {
+    const auto row = [&](std::span<const double> values) {
+      return values.empty() ? values : values.subspan(i * dimensions, dimensions);
+    };
+    return {.time = times[i],
+            .position = row(positions),
+            .velocity = row(velocities),
+            .acceleration = row(accelerations)};
+  }
+};
+
+}  // namespace splinecast::core

@@ -1,0 +1,258 @@
+#include "core/limits/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/limits/rotation_bounds.hpp"
+
+namespace splinecast::core {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// A violation is found to this part of the range: 2⁻³⁰ < 10⁻⁹.
+constexpr int kHalvings = 30;
+
+constexpr std::array kMagnitudes{LimitKind::velocity, LimitKind::acceleration, LimitKind::jerk};
+
+/// The derivative that a limit is of: 0 is the position.
+constexpr int derivative_of(LimitKind kind) noexcept {
+  return (static_cast<int>(kind) + 1) % static_cast<int>(kLimitKinds);
+}
+
+double value_or(std::span<const double> values, std::size_t d, double none) noexcept {
+  return d < values.size() ? values[d] : none;
+}
+
+/// What is compared: limits, and the part of a curve.
+struct Comparison {
+  const MotionLimits& limits;
+  const SegmentPart& part;
+  const Allowance& allowance;
+
+  /// The limit of a dimension, or what is allowed instead; 0: none.
+  [[nodiscard]] double limit(LimitKind kind, std::size_t d) const noexcept {
+    const bool is_velocity = kind == LimitKind::velocity;
+    if (kind == LimitKind::jerk) return value_or(limits.jerk, d, 0);
+    const double limit = value_or(is_velocity ? limits.velocity : limits.acceleration, d, 0);
+    if (limit == 0) return 0;
+    return std::max(limit,
+                    value_or(is_velocity ? allowance.velocity : allowance.acceleration, d, 0));
+  }
+
+  [[nodiscard]] double rounding(LimitKind kind, std::size_t d) const noexcept {
+    return kExtremeRounding * size_of_terms(part, d, derivative_of(kind));
+  }
+};
+
+/// What `worst_excesses` needs to know about one limit, and whether it is kept.
+struct Finding {
+  Excess excess;
+  bool is_kept = false;
+};
+
+Finding magnitude_finding(const Comparison& comparison, LimitKind kind, std::size_t d, double limit,
+                          const SegmentRange& range) noexcept {
+  const Extreme largest = range.largest();
+  const double size = std::abs(largest.value);
+  const double ratio = std::isnan(size) ? kInfinity : size / limit;
+  const bool is_kept = size <= limit || size <= limit + comparison.rounding(kind, d);
+  return {{ratio, kind, d, largest.value, limit, largest.u}, is_kept};
+}
+
+/// The ratio of a value to bounds of which one at least is finite.
+double ratio_to_bounds(double value, double lower, double upper) noexcept {
+  if (std::isnan(value)) return kInfinity;
+  if (lower > -kInfinity && upper < kInfinity) {
+    return std::abs(value - (lower + upper) / 2) / ((upper - lower) / 2);
+  }
+  const double bound = upper < kInfinity ? upper : lower;
+  const double beyond = upper < kInfinity ? value - upper : lower - value;
+  return std::max(0.0, 1 + beyond / std::max(1.0, std::abs(bound)));
+}
+
+Finding position_finding(const Comparison& comparison, std::size_t d, double lower, double upper,
+                         const SegmentRange& range) noexcept {
+  const auto excess_of = [&](const Extreme& extreme, double bound) {
+    const double ratio = ratio_to_bounds(extreme.value, lower, upper);
+    return Excess{ratio, LimitKind::position, d, extreme.value, bound, extreme.u};
+  };
+  const Excess low = excess_of(range.least, lower);
+  const Excess high = excess_of(range.greatest, upper);
+  const bool is_low = upper == kInfinity || (lower > -kInfinity && low.ratio > high.ratio);
+  bool is_kept = range.least.value >= lower && range.greatest.value <= upper;
+  if (!is_kept) {
+    const double rounding = comparison.rounding(LimitKind::position, d);
+    is_kept = range.least.value >= lower - rounding && range.greatest.value <= upper + rounding;
+  }
+  return {is_low ? low : high, is_kept};
+}
+
+/// Calls take(finding) for each limit of a dimension until it answers false; false then.
+bool take_dimension(const Comparison& comparison, std::size_t d, auto& take) noexcept {
+  constexpr std::array kSets{Derivatives::velocity, Derivatives::acceleration, Derivatives::jerk};
+  std::array<double, kMagnitudes.size()> limits{};
+  Derivatives which = Derivatives::none;
+  for (std::size_t i = 0; i < kMagnitudes.size(); ++i) {
+    limits[i] = comparison.limit(kMagnitudes[i], d);
+    if (limits[i] > 0) which = which | kSets[i];
+  }
+  const double lower = value_or(comparison.limits.lower, d, -kInfinity);
+  const double upper = value_or(comparison.limits.upper, d, kInfinity);
+  const bool has_bounds = lower > -kInfinity || upper < kInfinity;
+  if (has_bounds) which = which | Derivatives::position;
+  if (which == Derivatives::none) return true;
+  std::array<SegmentRange, 4> ranges;
+  write_ranges(comparison.part, d, which, ranges);
+  for (std::size_t i = 0; i < kMagnitudes.size(); ++i) {
+    if (limits[i] == 0) continue;
+    if (!take(magnitude_finding(comparison, kMagnitudes[i], d, limits[i], ranges[i + 1]))) {
+      return false;
+    }
+  }
+  return !has_bounds || take(position_finding(comparison, d, lower, upper, ranges[0]));
+}
+
+std::span<const QuaternionDimensions> quaternions_of(const DimensionKinds* kinds) noexcept {
+  return kinds == nullptr ? std::span<const QuaternionDimensions>() : kinds->quaternions();
+}
+
+/// Calls take_one(dimension) for each dimension of its own and take_rotation(quaternion) for each
+/// quaternion, until one answers false; false then.
+bool for_all(const DimensionKinds* kinds, std::size_t dimensions, const auto& take_one,
+             const auto& take_rotation) noexcept {
+  auto quaternions = quaternions_of(kinds);
+  for (std::size_t d = 0; d < dimensions;) {
+    const bool is_rotation = !quaternions.empty() && quaternions.front().first == d;
+    if (!(is_rotation ? take_rotation(quaternions.front()) : take_one(d))) return false;
+    if (is_rotation) quaternions = quaternions.subspan(1);
+    d += is_rotation ? kQuaternionSize : 1;
+  }
+  return true;
+}
+
+bool rotation_keeps(const Comparison& comparison, const QuaternionDimensions& quaternion) noexcept {
+  const auto limit = [&](LimitKind kind) { return comparison.limit(kind, quaternion.first); };
+  const bool has_any =
+      std::ranges::any_of(kMagnitudes, [&](LimitKind kind) { return limit(kind) > 0; });
+  if (!has_any) return true;
+  const RotationBounds bounds(comparison.part, quaternion);
+  return std::ranges::all_of(kMagnitudes, [&](LimitKind kind) {
+    return limit(kind) == 0 || bounds.keeps(derivative_of(kind), limit(kind));
+  });
+}
+
+void take_rotation_excesses(const Comparison& comparison, const QuaternionDimensions& quaternion,
+                            const auto& take) noexcept {
+  const RotationBounds bounds(comparison.part, quaternion);
+  for (const LimitKind kind : kMagnitudes) {
+    const double limit = comparison.limit(kind, quaternion.first);
+    if (limit == 0) continue;
+    const Extreme most = bounds.bound(derivative_of(kind));
+    take(Excess{most.value / limit, kind, quaternion.first, most.value, limit, most.u});
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(LimitKind kind) noexcept {
+  constexpr std::array<std::string_view, kLimitKinds> kNames{"velocity", "acceleration", "jerk",
+                                                             "position"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+bool keeps_within(const MotionLimits& limits, const DimensionKinds* kinds, const SegmentPart& part,
+                  const Allowance& allowance) noexcept {
+  const Comparison comparison{limits, part, allowance};
+  auto is_kept = [](const Finding& finding) { return finding.is_kept; };
+  return for_all(
+      kinds, part.dimensions, [&](std::size_t d) { return take_dimension(comparison, d, is_kept); },
+      [&](const QuaternionDimensions& quaternion) {
+        return rotation_keeps(comparison, quaternion);
+      });
+}
+
+bool keeps_within(const MotionLimits& limits, const DimensionKinds* kinds, const Segment& segment,
+                  const Allowance& allowance) noexcept {
+  return keeps_within(limits, kinds, part_of(segment), allowance);
+}
+
+WorstExcesses worst_excesses(const MotionLimits& limits, const DimensionKinds* kinds,
+                             const SegmentPart& part, const Allowance& allowance) noexcept {
+  const Comparison comparison{limits, part, allowance};
+  WorstExcesses worst{};
+  for (std::size_t i = 0; i < kLimitKinds; ++i) worst[i].kind = static_cast<LimitKind>(i);
+  const auto take = [&](const Excess& excess) {
+    Excess& so_far = worst[static_cast<std::size_t>(excess.kind)];
+    if (excess.ratio > so_far.ratio) so_far = excess;
+    return true;
+  };
+  auto take_finding = [&](const Finding& finding) { return take(finding.excess); };
+  (void)for_all(
+      kinds, part.dimensions,
+      [&](std::size_t d) { return take_dimension(comparison, d, take_finding); },
+      [&](const QuaternionDimensions& quaternion) {
+        take_rotation_excesses(comparison, quaternion, take);
+        return true;
+      });
+  return worst;
+}
+
+Excess worst_excess(const MotionLimits& limits, const DimensionKinds* kinds,
+                    const SegmentPart& part, const Allowance& allowance) noexcept {
+  return std::ranges::max(worst_excesses(limits, kinds, part, allowance), {}, &Excess::ratio);
+}
+
+Excess worst_excess(const MotionLimits& limits, const DimensionKinds* kinds, const Segment& segment,
+                    const Allowance& allowance) noexcept {
+  return worst_excess(limits, kinds, part_of(segment), allowance);
+}
+
+Excess worst_excess(const MotionLimits& limits, const DimensionKinds* kinds,
+                    const State& state) noexcept {
+  // The cubic that has this state at its left end.
+  std::array<double, kCubicOrder * kMaxDimensions> coefficients;  // NOLINT(*-member-init)
+  const std::size_t dimensions = state.dimensions();
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    coefficients[d] = state.position()[d];
+    coefficients[dimensions + d] = state.velocity()[d];
+    coefficients[2 * dimensions + d] = state.acceleration()[d] / 2;
+    coefficients[3 * dimensions + d] = state.jerk()[d] / 6;
+  }
+  return worst_excess(limits, kinds,
+                      SegmentPart{.order = kCubicOrder,
+                                  .coefficients = std::span(coefficients).first(4 * dimensions),
+                                  .dimensions = dimensions});
+}
+
+std::optional<Excess> first_violation(const MotionLimits& limits, const DimensionKinds* kinds,
+                                      const SegmentPart& part,
+                                      const Allowance& allowance) noexcept {
+  if (keeps_within(limits, kinds, part, allowance)) return std::nullopt;
+  SegmentPart start = part;
+  start.to = part.from;
+  if (!keeps_within(limits, kinds, start, allowance)) {
+    return worst_excess(limits, kinds, start, allowance);
+  }
+  // No limit is passed until `kept`; one is until `start.to`.
+  double kept = part.from;
+  start.to = part.to;
+  for (int i = 0; i < kHalvings; ++i) {
+    SegmentPart half = start;
+    half.to = kept + (start.to - kept) / 2;
+    if (keeps_within(limits, kinds, half, allowance)) {
+      kept = half.to;
+    } else {
+      start = half;
+    }
+  }
+  start.from = kept;
+  return worst_excess(limits, kinds, start, allowance);
+}
+
+std::optional<Excess> first_violation(const MotionLimits& limits, const DimensionKinds* kinds,
+                                      const Segment& segment, const Allowance& allowance) noexcept {
+  return first_violation(limits, kinds, part_of(segment), allowance);
+}
+
+}  // namespace splinecast::core

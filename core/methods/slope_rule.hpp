@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "core/basics/laws.hpp"
+
+/// Slope rules: the local methods. Each finds a knot's velocity from a few intervals around it.
+namespace splinecast::core {
+
+/// Most intervals that a rule may look at on either side of a knot.
+inline constexpr int kMaxReach = 4;
+
+/// The intervals around a knot in one dimension. Interval 0 follows the knot, interval −1 precedes
+/// it.
+class Stencil {
+ public:
+  explicit Stencil(double time_scale) : time_scale_(time_scale) {}
+
+  /// Length in seconds and chord slope of interval k, −behind ≤ k < ahead of the rule.
+  [[nodiscard]] double h(int k) const noexcept { return h_[index(k)]; }
+  [[nodiscard]] double m(int k) const noexcept { return m_[index(k)]; }
+  /// By how much rounding may have changed the chord slope of interval k, to a factor of about 3:
+  /// ε·|x|/h, with the greater of the positions at its ends.
+  [[nodiscard]] double rounding(int k) const noexcept { return rounding_[index(k)]; }
+  void set(int k, double h, double m, double rounding) noexcept {
+    h_[index(k)] = h;
+    m_[index(k)] = m;
+    rounding_[index(k)] = rounding;
+  }
+
+  /// Seconds that count as much as one unit of position.
+  [[nodiscard]] double time_scale() const noexcept { return time_scale_; }
+
+ private:
+  static constexpr std::size_t kIntervals = std::size_t{2} * kMaxReach;
+  static std::size_t index(int k) noexcept {
+    return static_cast<std::size_t>(std::ptrdiff_t{k} + kMaxReach);
+  }
+
+  double time_scale_;
+  std::array<double, kIntervals> h_{};
+  std::array<double, kIntervals> m_{};
+  std::array<double, kIntervals> rounding_{};
+};
+
+/// The two intervals at an end in one dimension, looking inwards: the end interval, then the next.
+struct EndStencil {
+  double h0, m0;
+  double h1, m1;
+};
+
+/// How much the slope at the end of the parabola through the three end knots differs from the chord
+/// slope there, as a share of the change of the chord slope.
+[[nodiscard]] constexpr double parabola_weight(double h0, double h1) noexcept {
+  return h0 / (h1 + h0);
+}
+
+/// The slope at the end of the parabola through the three end knots.
+[[nodiscard]] constexpr double parabola_end_slope(const EndStencil& s) noexcept {
+  return s.m0 + parabola_weight(s.h0, s.h1) * (s.m0 - s.m1);
+}
+
+/// A local method. A rule is odd and time-symmetric, so that one end formula serves both ends.
+struct SlopeRule {
+  std::string_view name;
+  std::uint64_t number;  ///< names the rule in shared memory: never given to another
+  int behind;            ///< knots it looks back, 1 … kMaxReach
+  int ahead;             ///< knots it looks ahead, 1 … kMaxReach: its settle lag
+  double (*slope)(const Stencil&) noexcept;
+
+  /// The slope at an end knot. Without: zero acceleration there, if `natural_end`; else `slope`,
+  /// with the chord slopes extended linearly beyond the end.
+  double (*end_slope)(const EndStencil&) noexcept;
+  bool natural_end;
+  Laws laws;
+};
+
+/// All rules.
+[[nodiscard]] std::span<const SlopeRule> slope_rules() noexcept;
+
+}  // namespace splinecast::core

@@ -1,0 +1,384 @@
+#include "core/online/entry_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "core/limits/extremes.hpp"
+
+namespace splinecast::core {
+namespace {
+
+/// Of soft limits: below it nothing is told from rounding.
+constexpr double kLeastAllowed = 1e-9;
+
+double limit_of(const std::vector<double>& limits, std::size_t d) noexcept {
+  return limits.empty() ? 0 : limits[d];
+}
+
+/// Whether the velocity at the newest knot is a guess until the next one is known.
+bool is_guess(const SlidingWindow& target) noexcept {
+  return !target.options().interpolant.method->needs_velocity();
+}
+
+}  // namespace
+
+EntrySearch::EntrySearch(std::size_t dimensions, DimensionKinds kinds)
+    : kinds_(std::move(kinds)),
+      end_state_(dimensions),
+      rest_(dimensions),
+      entry_(dimensions),
+      behind_(dimensions),
+      extrapolation_(dimensions) {
+  allowed_.velocity.resize(dimensions);
+  allowed_.acceleration.resize(dimensions);
+  granted_ = allowed_;
+  for (auto* const bounds : {&allowed_.jerk, &allowed_.lower, &allowed_.upper}) {
+    bounds->reserve(dimensions);
+  }
+}
+
+void EntrySearch::restart(std::size_t first) noexcept {
+  next_knot_ = first;
+  former_end_.reset();
+  duration_ = 0;
+  is_longest_ = false;
+  fallback_knot_.reset();
+  std::ranges::fill(granted_.velocity, 0.0);
+  std::ranges::fill(granted_.acceleration, 0.0);
+}
+
+void EntrySearch::restart(std::size_t first, const Instant& from, const Instant& end) noexcept {
+  restart(first);
+  former_end_ = end.time;
+  build_splice(from, end, behind_);
+  constexpr double kSlack = 1 + 1e-9;
+  const auto peak = [&](std::size_t d, int derivative) {
+    const SegmentPart part = part_of(behind_);
+    const auto range =
+        range_of(part.order, part.coefficients, part.dimensions, d, derivative, part.from, part.to);
+    return std::abs(range.largest().value) * kSlack;
+  };
+  write_of_dimensions([&](std::size_t d) { return peak(d, 1); },
+                      [&](std::size_t d) { return peak(d, 2); },
+                      [&](std::size_t d, double velocity, double acceleration) {
+                        granted_.velocity[d] = velocity;
+                        granted_.acceleration[d] = acceleration;
+                      });
+}
+
+/// Gives each dimension its velocity and acceleration. Of quaternions |ω| ≤ 2|q̇| and
+/// |α| ≤ 2|q̈| + 4|q̇|², of all four components together.
+void EntrySearch::write_of_dimensions(const auto& velocity_of, const auto& acceleration_of,
+                                      const auto& write) const noexcept {
+  std::size_t d = 0;
+  for (const QuaternionDimensions& q : kinds_.quaternions()) {
+    for (; d < q.first; ++d) write(d, velocity_of(d), acceleration_of(d));
+    double velocity = 0;
+    double acceleration = 0;
+    for (; d < q.first + kQuaternionSize; ++d) {
+      velocity = std::hypot(velocity, velocity_of(d));
+      acceleration = std::hypot(acceleration, acceleration_of(d));
+    }
+    write(q.first, 2 * velocity, 2 * acceleration + 4 * velocity * velocity);
+  }
+  for (; d < allowed_.velocity.size(); ++d) write(d, velocity_of(d), acceleration_of(d));
+}
+
+EntrySearch::Outcome EntrySearch::search(const SlidingWindow& target, const Instant& from,
+                                         const EntryRules& rules, int& tries) noexcept {
+  knows_behind_ = false;
+  const Outcome at_knots = search_knots(target, from, rules, tries);
+  if (at_knots != Outcome::none || !rules.goes_beyond) return at_knots;
+  const Outcome beyond = search_beyond(target, from, rules, tries);
+  return beyond == Outcome::none ? fall_back(target, from, rules) : beyond;
+}
+
+EntrySearch::Outcome EntrySearch::search_knots(const SlidingWindow& target, const Instant& from,
+                                               const EntryRules& rules, int& tries) noexcept {
+  next_knot_ = std::max(next_knot_, target.oldest_segment());
+  const std::size_t newer = std::max<std::size_t>(rules.newer, is_guess(target) ? 1 : 0);
+  for (; next_knot_ + newer < target.knots(); ++next_knot_) {
+    if (target.time(next_knot_) - from.time < rules.least) continue;
+    end_at_knot(target, next_knot_);
+    const Verdict verdict = judge(from, rules, tries);
+    if (verdict == Verdict::untried) return Outcome::more;
+    if (verdict == Verdict::exceeds) continue;
+    if (keeps_behind(target, *rules.limits)) return Outcome::found;
+    if (!fallback_knot_) fallback_knot_ = next_knot_;
+  }
+  return Outcome::none;
+}
+
+EntrySearch::Outcome EntrySearch::search_beyond(const SlidingWindow& target, const Instant& from,
+                                                const EntryRules& rules, int& tries) noexcept {
+  extrapolation_.begin(target);
+  const Time to_newest = target.time(target.knots() - 1) - from.time;
+  const bool guesses = is_guess(target);
+  while (const auto duration = next_duration(from.time, to_newest, guesses, rules.least)) {
+    end_beyond(target, from.time + *duration);
+    const double before = duration_;
+    const bool was_longest = is_longest_;
+    duration_ = to_seconds(*duration);
+    is_longest_ = *duration >= kLongest;
+    const Verdict verdict = judge(from, rules, tries);
+    if (verdict == Verdict::untried) {
+      duration_ = before;
+      is_longest_ = was_longest;
+      return Outcome::more;
+    }
+    if (verdict == Verdict::passes && keeps_beyond(*rules.limits)) return Outcome::found;
+    if (is_longest_ && passes_at_last(from, rules) && keeps_beyond(*rules.limits)) {
+      return Outcome::found;
+    }
+  }
+  return Outcome::none;
+}
+
+/// The next duration: first that to the newest knot, if it has not been tried as one, then longer
+/// ones; none behind the longest one.
+/// An entry that is made again may end when it did before, or it would recede with every waypoint.
+std::optional<Time> EntrySearch::next_duration(Time from, Time to_newest, bool tries_newest,
+                                               Time shortest) noexcept {
+  if (is_longest_) return std::nullopt;
+  if (duration_ == 0 && tries_newest && to_newest >= shortest && to_newest > Time::zero()) {
+    return to_newest;
+  }
+  shortest = std::max(shortest, to_newest);
+  const double least = std::max(to_seconds(shortest), duration_);
+  const Time longer = from_seconds(least * kGrowth);
+  const Time next = shortest < kLongest ? std::min(longer, kLongest) : longer;
+  const bool comes_first =
+      former_end_ && *former_end_ - from > from_seconds(least) && *former_end_ - from < next;
+  return comes_first ? *former_end_ - from : next;
+}
+
+/// The first knot at which the entry itself keeps the limits, if it still does.
+EntrySearch::Outcome EntrySearch::fall_back(const SlidingWindow& target, const Instant& from,
+                                            const EntryRules& rules) noexcept {
+  if (!fallback_knot_ || *fallback_knot_ < target.oldest_segment()) return Outcome::none;
+  if (target.time(*fallback_knot_) - from.time < rules.least) return Outcome::none;
+  end_at_knot(target, *fallback_knot_);
+  allow(from, rules);
+  return passes(from) ? Outcome::found : Outcome::none;
+}
+
+EntrySearch::Outcome EntrySearch::search_rest(const Instant& rest, const Instant& from,
+                                              const EntryRules& rules, int& tries) noexcept {
+  const Time own = rest.time - from.time;
+  end_ = {};
+  end_.state = rest;
+  if (duration_ == 0 && own >= rules.least) {
+    const Verdict verdict = judge(from, rules, tries);
+    if (verdict == Verdict::passes) return Outcome::found;
+    if (verdict == Verdict::untried) return Outcome::more;
+  }
+  constexpr double kMost = 1e9;
+  duration_ = std::max({duration_, to_seconds(own), to_seconds(rules.least)});
+  for (; duration_ < kMost; duration_ *= kGrowth) {
+    end_.state.time = from.time + from_seconds(duration_ * kGrowth);
+    const Verdict verdict = judge(from, rules, tries);
+    if (verdict == Verdict::passes) return Outcome::found;
+    if (verdict == Verdict::untried) return Outcome::more;
+    if (duration_ > to_seconds(kLongest) && passes_at_last(from, rules)) return Outcome::found;
+  }
+  build_splice(from, end_.state, entry_);
+  return Outcome::found;
+}
+
+/// Tries the present end. Does not build what cannot pass.
+EntrySearch::Verdict EntrySearch::judge(const Instant& from, const EntryRules& rules,
+                                        int& tries) noexcept {
+  allow(from, rules);
+  if (is_out_of_reach(from)) return Verdict::exceeds;
+  if (tries <= 0) return Verdict::untried;
+  --tries;
+  return passes(from) ? Verdict::passes : Verdict::exceeds;
+}
+
+void EntrySearch::end_at_knot(const SlidingWindow& target, std::size_t knot) noexcept {
+  const Knot at = target.knot(knot);
+  target.write_acceleration(knot, end_state_.ref().acceleration);
+  end_ = {.knot = knot,
+          .known = target.knots(),
+          .state = {.time = at.time,
+                    .position = at.position,
+                    .velocity = at.velocity,
+                    .acceleration = end_state_.acceleration()}};
+}
+
+void EntrySearch::end_beyond(const SlidingWindow& target, Time t) noexcept {
+  extrapolation_.state_at(t, end_state_.ref());
+  end_ = {.known = target.knots(),
+          .state = {.time = t,
+                    .position = end_state_.position(),
+                    .velocity = end_state_.velocity(),
+                    .acceleration = end_state_.acceleration()},
+          .line_end = extrapolation_.line_end(),
+          .rest = extrapolation_.rest()};
+}
+
+/// Whether all segments behind the knot at which the entry ends keep the limits. The newest one
+/// that does not is looked for once in a search.
+bool EntrySearch::keeps_behind(const SlidingWindow& target, const MotionLimits& limits) noexcept {
+  if (!knows_behind_) {
+    knows_behind_ = true;
+    last_beyond_.reset();
+    for (std::size_t i = target.knots() - 1; i > *end_.knot && !last_beyond_; --i) {
+      target.segment(i - 1, behind_);
+      if (!keeps_within(limits, &kinds_, behind_)) last_beyond_ = i - 1;
+    }
+  }
+  return !last_beyond_ || *last_beyond_ < *end_.knot;
+}
+
+/// Whether the rest of the line and the stop keep the position bounds; they keep all other limits.
+bool EntrySearch::keeps_beyond(const MotionLimits& limits) noexcept {
+  if (limits.lower.empty() && limits.upper.empty()) return true;
+  // Each dimension moves one way only.
+  extrapolation_.state_at(extrapolation_.rest(), rest_.ref());
+  const auto position = rest_.position();
+  for (std::size_t d = 0; d < position.size(); ++d) {
+    if (!limits.lower.empty() && position[d] < limits.lower[d]) return false;
+    if (!limits.upper.empty() && position[d] > limits.upper[d]) return false;
+  }
+  return true;
+}
+
+/// What velocities and accelerations the entry may have: a limit, or what it begins with where that
+/// is beyond the limit.
+void EntrySearch::allow(const Instant& from, const EntryRules& rules) noexcept {
+  allowed_.jerk = rules.limits->jerk;
+  allowed_.lower = rules.limits->lower;
+  allowed_.upper = rules.limits->upper;
+  for (std::size_t d = 0; d < from.position.size(); ++d) {
+    const double v_max = limit_of(rules.limits->velocity, d);
+    const double a_max = limit_of(rules.limits->acceleration, d);
+    allowed_.velocity[d] = v_max > 0 ? std::max(v_max, std::abs(from.velocity[d])) : 0;
+    allowed_.acceleration[d] = a_max > 0 ? std::max(a_max, std::abs(from.acceleration[d])) : 0;
+  }
+  if (rules.shown != nullptr) allow_shown(from, rules);
+}
+
+void EntrySearch::allow_shown(const Instant& from, const EntryRules& rules) noexcept {
+  const Instant& to = end_.state;
+  const auto allow_dimension = [&](std::size_t d, double velocity, double acceleration) {
+    if (allowed_.acceleration[d] > 0) return;
+    if (allowed_.velocity[d] == 0) {
+      allowed_.velocity[d] = std::max({velocity, granted_.velocity[d], kLeastAllowed});
+    }
+    allowed_.acceleration[d] = std::max({acceleration, granted_.acceleration[d], kLeastAllowed});
+  };
+  // Rest to rest over a way x in a second peaks at 1.875 x and 5.77 x.
+  const auto velocity_of = [&](std::size_t d) {
+    const double way = std::abs(to.position[d] - from.position[d]);
+    return std::max(
+        {rules.shown->velocity[d], std::abs(from.velocity[d]), std::abs(to.velocity[d]), 2 * way});
+  };
+  const auto acceleration_of = [&](std::size_t d) {
+    const double way = std::abs(to.position[d] - from.position[d]);
+    return std::max({rules.shown->acceleration[d], std::abs(from.acceleration[d]),
+                     std::abs(to.acceleration[d]), 6 * way});
+  };
+  write_of_dimensions(velocity_of, acceleration_of, allow_dimension);
+}
+
+/// Whether no motion over the time that the entry takes leads from one state to the other as
+/// allowed: its mean acceleration is Δv/T, its mean velocity Δx/T, and with |a| ≤ A its way differs
+/// by at most A·T²/4 from that at the mean of both velocities.
+bool EntrySearch::is_out_of_reach(const Instant& from) const noexcept {
+  constexpr double kSlack = 1 + 1e-9;
+  const double duration = to_seconds(end_.state.time - from.time) * kSlack;
+  for (std::size_t d = 0; d < from.position.size(); ++d) {
+    const double way = end_.state.position[d] - from.position[d];
+    const double v0 = from.velocity[d];
+    const double v1 = end_.state.velocity[d];
+    const double a_max = allowed_.acceleration[d];
+    if (a_max > 0 && (std::abs(v1 - v0) > a_max * duration ||
+                      std::abs(way - (v0 + v1) / 2 * duration) > a_max * duration * duration / 4)) {
+      return true;
+    }
+    const double v_max = allowed_.velocity[d];
+    if (v_max > 0 && std::abs(way) > v_max * duration) return true;
+  }
+  return false;
+}
+
+bool EntrySearch::passes(const Instant& from) noexcept {
+  build_splice(from, end_.state, entry_);
+  return keeps_within(allowed_, &kinds_, entry_) && keeps_length();
+}
+
+/// The same for the longest entry, which need not keep what the motion has shown.
+bool EntrySearch::passes_at_last(const Instant& from, const EntryRules& rules) noexcept {
+  if (rules.shown == nullptr) return false;
+  allow(from, {.limits = rules.limits});
+  return passes(from);
+}
+
+/// Whether quaternions stay so long along the entry that their direction is well defined.
+bool EntrySearch::keeps_length() const noexcept {
+  constexpr int kLooks = 16;
+  constexpr double kLeast = 0.7;
+  const double duration = to_seconds(entry_.right - entry_.left);
+  std::array<double, kMaxDimensions> values;  // NOLINT(*-member-init)
+  const auto position = std::span(values).first(end_state_.dimensions());
+  for (int i = 1; i < kLooks && !kinds_.quaternions().empty(); ++i) {
+    evaluate_derivative(entry_.order, entry_.coefficients, duration * i / kLooks, 0, position);
+    for (const QuaternionDimensions& q : kinds_.quaternions()) {
+      double squares = 0;
+      for (const double x : position.subspan(q.first, kQuaternionSize)) squares += x * x;
+      if (squares < kLeast * kLeast) return false;
+    }
+  }
+  return true;
+}
+
+namespace {
+
+double peak_acceleration(const Segment& segment, std::size_t d) noexcept {
+  const SegmentPart part = part_of(segment);
+  return std::abs(range_of(part.order, part.coefficients, part.dimensions, d, 2, part.from, part.to)
+                      .largest()
+                      .value);
+}
+
+/// The acceleration that the first three waypoints show; 0 if there are fewer.
+double shown_at_start(const SlidingWindow& target, std::size_t d) noexcept {
+  constexpr std::size_t kWaypoints = 3;
+  if (target.knots() < kWaypoints) return 0;
+  const auto slope = [&](std::size_t i) {
+    return (target.knot(i + 1).waypoint[d] - target.knot(i).waypoint[d]) /
+           to_seconds(target.time(i + 1) - target.time(i));
+  };
+  return std::abs(slope(1) - slope(0)) * 2 / to_seconds(target.time(2) - target.time(0));
+}
+
+}  // namespace
+
+bool EntrySearch::keeps_start(const SlidingWindow& target, const EntryRules& rules) noexcept {
+  const bool shows_motion = target.knots() >= kStartFades + 2;
+  auto& peaks = allowed_.acceleration;
+  for (std::size_t d = 0; d < peaks.size(); ++d) {
+    peaks[d] = shows_motion ? 0 : shown_at_start(target, d);
+  }
+  for (std::size_t i = 0; i + 1 < target.knots(); ++i) {
+    Segment& segment = i == 0 ? entry_ : behind_;
+    target.segment(i, segment);
+    if (!keeps_within(*rules.limits, &kinds_, segment)) return false;
+    if (i < kStartFades) continue;
+    for (std::size_t d = 0; d < peaks.size(); ++d) {
+      peaks[d] = std::max(peaks[d], peak_acceleration(segment, d));
+    }
+  }
+  if (rules.shown == nullptr) return true;
+  for (std::size_t d = 0; d < peaks.size(); ++d) {
+    if (limit_of(rules.limits->acceleration, d) > 0) continue;
+    const double shown = std::max(3 * peaks[d], rules.shown->acceleration[d]);
+    if (peak_acceleration(entry_, d) > shown) return false;
+  }
+  return true;
+}
+
+}  // namespace splinecast::core

@@ -1,0 +1,74 @@
+#include "splinecast/bezier.hpp"
+
+#include "core/basics/binomial.hpp"
+
+namespace splinecast::core {
+namespace {
+
+/// With b_j the control points, n the degree and h the length, Δ^k b_0 = c_k h^k / C(n, k). Between
+/// both, b_j = Σ C(j, k) Δ^k b_0: repeated sums one way, repeated differences the other.
+void scale_to_differences(std::span<double> c, std::size_t dimensions, double h) noexcept {
+  const std::size_t degree = c.size() / dimensions - 1;
+  double power_of_h = 1;
+  for (std::size_t k = 0; k <= degree; ++k) {
+    for (std::size_t d = 0; d < dimensions; ++d) {
+      c[k * dimensions + d] *= power_of_h / binomial(degree, k);
+    }
+    power_of_h *= h;
+  }
+}
+
+void differences_to_points(std::span<double> b, std::size_t dimensions) noexcept {
+  for (std::size_t first = b.size() - dimensions; first > 0; first -= dimensions) {
+    for (std::size_t j = first; j < b.size(); ++j) b[j] += b[j - dimensions];
+  }
+}
+
+void points_to_differences(std::span<double> b, std::size_t dimensions) noexcept {
+  for (std::size_t first = dimensions; first < b.size(); first += dimensions) {
+    for (std::size_t j = b.size(); j-- > first;) b[j] -= b[j - dimensions];
+  }
+}
+
+void scale_to_coefficients(std::span<double> c, std::size_t dimensions, double h) noexcept {
+  const std::size_t degree = c.size() / dimensions - 1;
+  double power_of_h = 1;
+  for (std::size_t k = 0; k <= degree; ++k) {
+    const double factor = h > 0 ? binomial(degree, k) / power_of_h : (k == 0 ? 1 : 0);
+    for (std::size_t d = 0; d < dimensions; ++d) c[k * dimensions + d] *= factor;
+    power_of_h *= h;
+  }
+}
+
+}  // namespace
+
+std::vector<BezierSegment> to_bezier(const PiecewisePolynomial& curve) {
+  std::vector<BezierSegment> segments;
+  segments.reserve(curve.segments());
+  for (std::size_t i = 0; i < curve.segments(); ++i) {
+    const auto c = curve.coefficients(i);
+    BezierSegment segment{.left = curve.left_of(i),
+                          .right = curve.right_of(i),
+                          .order = curve.order_of(i),
+                          .control_points = {c.begin(), c.end()}};
+    scale_to_differences(segment.control_points, curve.dimensions(), curve.seconds(i));
+    differences_to_points(segment.control_points, curve.dimensions());
+    segments.push_back(std::move(segment));
+  }
+  return segments;
+}
+
+PiecewisePolynomial from_bezier(std::size_t dimensions, std::span<const BezierSegment> segments) {
+  PiecewisePolynomial curve(dimensions);
+  for (const BezierSegment& segment : segments) {
+    std::vector<double> c = segment.control_points;
+    if (dimensions > 0 && c.size() >= dimensions) {  // else refused by append
+      points_to_differences(c, dimensions);
+      scale_to_coefficients(c, dimensions, to_seconds(segment.right - segment.left));
+    }
+    curve.append(segment.left, segment.right, segment.order, c);
+  }
+  return curve;
+}
+
+}  // namespace splinecast::core

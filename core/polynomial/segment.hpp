@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/basics/derivatives.hpp"
+#include "splinecast/state.hpp"
+#include "splinecast/time.hpp"
+
+/// Segments: polynomials local to their left knot, u = t − left in seconds.
+///
+/// Coefficients are laid out [power][dimension], lowest power first, so that loops run over
+/// contiguous dimensions. Source: doc 003 eq 4-3, 4-4 (with the exponent it omits).
+namespace splinecast::core {
+
+/// Coefficients per dimension: 4 for a cubic; 6 at splices, halts and stop tails.
+inline constexpr int kCubicOrder = 4;
+inline constexpr int kMaxOrder = 6;
+
+/// Highest order of a polynomial that is evaluated: a quintic integrated or raised leaves room.
+inline constexpr int kMaxPolynomialOrder = 16;
+
+/// What a segment is for; readers derive a sample's status from it.
+enum class SegmentKind : std::uint8_t {
+  spline = 0,     ///< between two waypoints
+  splice = 1,     ///< order-6 entry from a given state
+  stop_tail = 2,  ///< stop segment: behind the newest knot, ends at rest
+  hold = 3,       ///< at rest: between a stop tail and a splice, or, of no length, the one waypoint
+                  ///< of a finished stream
+};
+
+/// One polynomial piece of a curve with D dimensions.
+struct Segment {
+  /// Allocates 7·D doubles; nothing allocates afterwards.
+  explicit Segment(std::size_t dimensions)
+      : coefficients(static_cast<std::size_t>(kMaxOrder) * dimensions),
+        acceleration_step(dimensions) {}
+
+  Time left{};
+  Time right{};
+  int order = kCubicOrder;
+  SegmentKind kind = SegmentKind::spline;
+  std::vector<double> coefficients;       ///< [power][dimension]; powers ≥ order are of no use
+  std::vector<double> acceleration_step;  ///< a⁺ − a⁻ at the left knot, per dimension
+};
+
+/// Evaluates position, velocity, acceleration and jerk at u seconds after the left knot.
+///
+/// `coefficients` holds order·D values, 1 ≤ order ≤ kMaxPolynomialOrder; D is the size of each span
+/// of `out`. By Horner's rule, in the same operations everywhere: the bits depend on nothing but
+/// the arguments. O(order·D). Never throws or allocates; safe from any thread.
+void evaluate(int order, std::span<const double> coefficients, double u,
+              const StateRef& out) noexcept;
+
+/// Evaluates the derivative-th derivative (≥ 0; 0 is the position) at u seconds after the left
+/// knot, in the operations, and hence to the bits, of `evaluate`. `out` takes D values. O(order·D).
+/// Never throws or allocates; safe from any thread.
+void evaluate_derivative(int order, std::span<const double> coefficients, double u, int derivative,
+                         std::span<double> out) noexcept;
+
+/// Evaluates the derivatives asked for at many times, in the operations, and hence to the bits, of
+/// `evaluate`.
+///
+/// `coefficients` holds order·dimensions values, 1 ≤ order ≤ kMaxPolynomialOrder; `u` seconds after
+/// the left knot. Writes [time][derivative asked for][dimension], `stride` doubles from one time to
+/// the next: at least count(which)·dimensions, which `out` must have behind the last one. What lies
+/// between is left alone. O(order·dimensions) each. Never throws or allocates; safe from any
+/// thread.
+void evaluate_many(int order, std::span<const double> coefficients, std::size_t dimensions,
+                   std::span<const double> u, Derivatives which, std::span<double> out,
+                   std::size_t stride) noexcept;
+
+/// An interval between two knots together with what the solve found at them. Spans hold one value
+/// per dimension. A view: it owns nothing.
+struct Interval {
+  Time left{};
+  Time right{};
+  double h = 0;                    ///< length in seconds
+  std::span<const double> x0;      ///< position at the left knot
+  std::span<const double> chord;   ///< chord slope m = (x1 − x0)/h
+  std::span<const double> v0, v1;  ///< knot velocities
+  std::span<const double> a0, a1;  ///< knot accelerations; empty: the cubic's
+};
+
+/// Writes the segment of an interval: the cubic of its knot velocities (doc 003 eq 4-7; doc 000
+/// eq 5.27, 5.28), or, where a knot acceleration is given, the quintic with that acceleration and,
+/// at an end without one, that of the cubic it replaces. Sets everything but `acceleration_step`.
+void build_segment(const Interval& interval, Segment& out) noexcept;
+
+/// Writes the one-sided accelerations of an interval's segment at its knots: D values, which must
+/// not overlap those of the interval.
+void write_left_acceleration(const Interval& interval, std::span<double> out) noexcept;
+void write_right_acceleration(const Interval& interval, std::span<double> out) noexcept;
+
+/// Writes by how much the acceleration jumps at the knot between two intervals: that at the left
+/// end of the one after it less that at the right end of the one before. D values, as above.
+void write_acceleration_jump(const Interval& before, const Interval& after,
+                             std::span<double> out) noexcept;
+
+/// Writes the segment that holds `position` between two times, which may be the same.
+void build_hold(Time from, Time to, std::span<const double> position, Segment& out) noexcept;
+
+}  // namespace splinecast::core

@@ -1,0 +1,480 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/forms/knot_segment.hpp"
+#include "core/limits/check.hpp"
+#include "core/solvers/knot_ring.hpp"
+#include "ipc/layout/header.hpp"
+#include "ipc/layout/publication.hpp"
+#include "splinecast/status.hpp"
+
+/// The knot board: the knots of a stream and the head that goes with each revision, over a span of
+/// bytes. One solver writes it, by publication.hpp; anybody reads. Knots are numbered from 1; knot
+/// n lies in slot n modulo the capacity, and there is no number in the slot: under revision r the
+/// head says which knots stand, and each slot belongs to one of them.
+///
+/// Segment n begins at knot n. It is made from knots n and n + 1 and ends where the next segment
+/// begins: at knot n + 1, or, where that knot is one at which none begins, at the one behind it. So
+/// a segment that was cut keeps both its knots, and its bits.
+///
+/// Orderings of the words outside the slots; those of the slots, of `settled until` and of the ring
+/// of changes are publication.hpp's:
+///
+/// - `tail` and `sleeping`: S3, P3 and the sleep of waypoint_ring.hpp. `tail` follows the commit,
+///   so that a solver that dies between the two has its items consumed: the next one stores it
+///   again.
+/// - `late` and `checked`, which are stored after the commit, when it is known whether it came too
+///   late: first `late`, if it did, then `checked`. If a writer dies before `checked`, its
+///   successor decides about that revision. Others load them relaxed: each is a number of its own.
+/// - Packed times: relaxed. They are a hint; the knot that they lead to decides.
+/// - Step times: relaxed. Each is a number of its own.
+/// - Refusals: one word each, which is never torn, stored before W3 of the head that counts it and
+///   loaded after R1. A later refusal, committed or not, overwrites the oldest one first; it is of
+///   a later item. So a word is the refusal of its index iff its item comes before that of the next
+///   index; the last one's item must come before the first item not consumed under that head.
+/// - Excesses: four words. W3 of the head that counts it and R1 order a committed one; that of a
+///   later revision may overwrite the oldest. Its first word is stored as 0 before the others, each
+///   of which is a release, and last as what it is, so that who loads with acquire the same first
+///   word before and after the others, and not 0, has copied one whole record: items are never
+///   given twice.
+/// - `retired`: stored with release and loaded with acquire; nothing depends on more than the word.
+/// - What the writer loads of its own board is relaxed: it made these stores itself, or its
+///   predecessor did, whose death the kernel told by giving the owner's lock away.
+namespace splinecast::ipc {
+
+/// An item that the solver refused.
+struct RefusedItem {
+  Word item = 0;
+  Refusal reason{};
+};
+
+/// Where a limit was passed: of the first segment beyond one, the place that is farthest beyond.
+struct LimitExcess {
+  Word item = 0;            ///< of the waypoint
+  bool is_refused = false;  ///< else it was taken
+  core::LimitKind kind{};
+  std::size_t dimension = 0;  ///< of a quaternion its first
+  core::Time time{};
+  double value = 0;  ///< with its sign; of a quaternion a bound of its magnitude
+  double limit = 0;  ///< or the bound of a position
+};
+
+/// What goes with a knot besides its values.
+struct KnotNote {
+  core::SegmentForm form{};     ///< of the segment that begins here
+  bool is_waypoint = false;     ///< whether a waypoint stands here
+  bool arrives = false;         ///< the acceleration is that of the segment that ends here,
+  bool starts = false;          ///< of the one that begins here, or of both
+  std::uint32_t newer_knots{};  ///< that it had seen when it was solved: 0 … 127
+};
+
+/// A knot as a revision writes it. Spans hold one value per dimension.
+struct KnotRecord {
+  bool is_new = false;  ///< the knot comes to stand in its slot; else only its cell is written
+  KnotNote note;
+  core::Time time{};                       ///< of a new knot
+  core::Time begins{};                     ///< when the next segment begins, if none begins here
+  std::span<const double> position;        ///< of a new knot: its waypoint, else of the curve
+  std::span<const double> velocity;        ///<
+  std::span<const double> acceleration{};  ///< iff the note says that there is one
+  std::span<const double> residual{};      ///< iff the board smooths
+  Word item = 0;                           ///< as the layout has it beside the acceleration
+  const core::Prefix* prefix = nullptr;    ///< with `g`: the knot's row, where it has changed
+  std::span<const double> g{};
+};
+
+/// The solver's side. One thread of one process uses it; no function but the constructor allocates,
+/// and none blocks.
+class KnotBoardWriter {
+ public:
+  /// `region` holds a board of this layout and outlives the writer. Retires whatever a writer
+  /// before this one had not committed (T1), and makes the packed times those of the committed
+  /// knots again.
+  KnotBoardWriter(std::span<std::byte> region, const BoardLayout& layout);
+  KnotBoardWriter(const KnotBoardWriter&) = delete;
+  KnotBoardWriter& operator=(const KnotBoardWriter&) = delete;
+  KnotBoardWriter(KnotBoardWriter&&) noexcept = default;
+  KnotBoardWriter& operator=(KnotBoardWriter&&) noexcept = default;
+  ~KnotBoardWriter() = default;
+
+  [[nodiscard]] std::size_t capacity() const noexcept { return layout_.capacity; }
+
+  /// The last revision that was committed.
+  [[nodiscard]] Word revision() const noexcept { return revision_; }
+
+  /// Asks for the lines that a revision of knots `first` to `newest` writes, where `newest` is new.
+  void prefetch(Word first, Word newest) const noexcept;
+
+  /// Writes a knot for the next revision: at most once each. O(D).
+  void write(Word number, const KnotRecord& knot) noexcept;
+
+  /// Writes waypoint `i` of a run, which an entry passes over, for a solver that takes over. O(D).
+  void write_passed(Word i, const KnotRecord& knot) noexcept;
+
+  /// Writes consecutive committed knots again, from `first` on, of which only the velocities have
+  /// changed: most of what an append does. At each of them stands a waypoint, and a cubic begins.
+  /// They were solved together: `newer_knots` is how many newer knots the first one had seen. O(D)
+  /// each.
+  void write_velocities(Word first, std::uint32_t newer_knots,
+                        const core::KnotVelocities& velocities) noexcept;
+
+  /// Writes a committed knot again with another form, and, where that is `none`, with the time at
+  /// which the next segment begins. Else nothing changes; readers see that its segment has. O(D).
+  void write_form(Word number, core::SegmentForm form, core::Time begins = {}) noexcept;
+
+  /// The form of a knot's segment, as the next revision will have it.
+  [[nodiscard]] core::SegmentForm form(Word number) const noexcept;
+
+  /// Whether all that was written for the next revision is what readers, and a solver that takes
+  /// over, accept: finite values within bounds. Else it must be discarded.
+  [[nodiscard]] bool is_sound() const noexcept {
+    return written_sum_ <= kLargestSum && std::isfinite(row_sum_);
+  }
+
+  /// Takes back what has been written for the next revision, as a takeover does (T1).
+  void discard() noexcept;
+
+  /// Notes a refusal for the next revision: the `index`-th of the stream, counted from 0.
+  void write_refusal(Word index, const RefusedItem& refusal) noexcept;
+
+  /// Notes where a limit was passed: the `index`-th time in the stream, counted from 0.
+  void write_excess(Word index, const LimitExcess& excess) noexcept;
+
+  /// Makes what has been written visible, as the revision after the last one: W3. Sets
+  /// head.revision.
+  void commit(Head& head) noexcept;
+
+  /// Promises that no later revision changes anything before t: S1. Stores nothing where that has
+  /// been said already.
+  void store_settled(core::Time t) noexcept {
+    const Word word = to_word(t);
+    if (word == settled_) return;
+    settled_ = word;
+    store(control_[kSettledUntil], word, std::memory_order_release);
+  }
+
+  /// The settled word itself, for SettledRaise.
+  [[nodiscard]] Word& settled_word() noexcept { return control_[kSettledUntil]; }
+
+  /// Loads the settled word, which a SettledRaise may have raised.
+  [[nodiscard]] core::Time take_up_settled() noexcept {
+    settled_ = load(control_[kSettledUntil], std::memory_order_relaxed);
+    return to_time(settled_);
+  }
+
+  /// Items that the producer may overwrite: after the commit that consumed them, S3.
+  void store_tail(Word consumed) noexcept {
+    store(control_[kTail], consumed, std::memory_order_release);
+  }
+
+  /// Counts a step of so many nanoseconds.
+  void count_step(core::Time length) noexcept;
+
+  /// Notes, behind the commit, that the newest revision was compared with the clock, and whether it
+  /// came too late.
+  void store_checked(bool is_late) noexcept;
+
+  /// Whether the newest revision has been compared so, and whether it was found to be too late.
+  [[nodiscard]] bool is_checked() const noexcept { return checked_ == revision_; }
+  [[nodiscard]] bool is_late() const noexcept { return revision_ > 0 && late_ == revision_; }
+
+  /// For a solver about to sleep, or awake again: seq_cst, see waypoint_ring.hpp.
+  void store_sleeping(bool sleeping) noexcept {
+    store(control_[kSleeping], sleeping ? 1 : 0, std::memory_order_seq_cst);
+  }
+
+  /// Says that the region is of no more use.
+  void retire() noexcept { store(control_[kRetired], 1, std::memory_order_release); }
+
+  /// The word that waiting readers watch.
+  [[nodiscard]] const Word& revision_word() const noexcept { return control_[kRevision]; }
+
+ private:
+  /// Largest sum of magnitudes of what one revision writes. Values within ±core::kLargestValue at
+  /// the shortest intervals make none so large, and within it every segment stays within what
+  /// readers accept, whatever the interval.
+  static constexpr double kLargestSum = 1e150;
+
+  /// What this writer knows of a slot without looking: the node and the row that the newest
+  /// committed cell names, as in its tag; which cell that is; and whether the slot has been written
+  /// for the next revision.
+  using SlotState = std::uint32_t;
+  static constexpr SlotState kCellBit = 1U << 16;
+  static constexpr SlotState kWrittenBit = 1U << 17;
+
+  /// A slot that has been written for the next revision, and its state when that is committed.
+  struct WrittenSlot {
+    std::uint32_t index;
+    SlotState next;
+  };
+
+  /// Where the slots lie, and what is known of them.
+  struct Slots {
+    Word* words;
+    std::size_t mask;
+    std::size_t slot_words;
+    std::size_t cell_words;
+    SlotState* states;
+    WrittenSlot* written;           ///< each once
+    std::size_t written_count = 0;  ///< at most as many as there are slots
+
+    [[nodiscard]] Word* slot(std::size_t index) const noexcept {
+      return words + index * slot_words;
+    }
+  };
+
+  /// A slot whose spare cell has been claimed for the next revision.
+  struct Claimed {
+    Word* slot;
+    Word* cell;
+    SlotState next;
+
+    /// Which one of the two parts of each kind is written.
+    [[nodiscard]] std::size_t which_cell() const noexcept { return (next & kCellBit) != 0 ? 1 : 0; }
+  };
+  /// A packed time that has been stored to for the next revision, and what it was before.
+  struct HeldTime {
+    std::size_t index;
+    Word time;
+  };
+
+  [[nodiscard]] std::size_t index_of(Word number) const noexcept { return number & at_.mask; }
+  [[nodiscard]] Word* slot(Word number) const noexcept { return at_.slot(index_of(number)); }
+  [[nodiscard]] SlotView<Word> cells_at(std::size_t index) const noexcept {
+    return {at_.slot(index), at_.cell_words};
+  }
+  [[nodiscard]] SlotView<Word> cells(Word number) const noexcept {
+    return cells_at(index_of(number));
+  }
+  [[nodiscard]] SlotView<Word> head_cells() const noexcept;
+  [[nodiscard]] static Claimed claim(Slots& slots, std::size_t index, Word tag,
+                                     SlotState changed) noexcept;
+  void write_slot(std::size_t index, const KnotRecord& knot) noexcept;
+  [[nodiscard]] static WrittenSlot& written_slot(const Slots& slots, std::size_t index) noexcept;
+  [[nodiscard]] Word next_tag() const noexcept { return (revision_ + 1) << kTagRevisionShift; }
+  [[nodiscard]] std::span<const WrittenSlot> written() const noexcept {
+    return std::span(written_).first(at_.written_count);
+  }
+  void note_time(Word number, core::Time time) noexcept;
+  void read_state() noexcept;
+  void restore_times() noexcept;
+  void forget_written() noexcept;
+
+  BoardLayout layout_;
+  std::span<Word> control_;
+  std::span<Word> refusals_;
+  std::span<Word> excesses_;
+  std::span<Word> times_;
+  Word revision_;
+  Word settled_;
+  Word late_;
+  Word checked_;
+  std::size_t head_cell_ = 0;                           ///< the newest committed one
+  std::array<std::array<Word, kHeadWords>, 2> head_{};  ///< what both cells hold
+  std::vector<SlotState> states_;
+  std::vector<WrittenSlot> written_;
+  Slots at_;  ///< in the region and in these
+  std::vector<HeldTime> held_times_;
+  double written_sum_ = 0;  ///< of the magnitudes of what readers see of the next revision
+  double row_sum_ = 0;      ///< of those of its rows
+};
+
+/// What a reader saw of the commit word and of the settled word, in this order of loads: S2, R1.
+struct Look {
+  core::Time settled_until{};
+  Word revision = 0;
+};
+
+/// A reader's own copy of a knot. Allocates when made only.
+class KnotCopy {
+ public:
+  KnotCopy(std::size_t dimensions, bool smooths)
+      : dimensions_(dimensions), smooths_(smooths), values_((smooths ? 4 : 3) * dimensions) {}
+
+  /// Takes over another copy of a knot of the same board: O(D).
+  void assign(const KnotCopy& other) noexcept {
+    tag = other.tag;
+    cell = other.cell;
+    slot = other.slot;
+    number = other.number;
+    time = other.time;
+    note = other.note;
+    item = other.item;
+    const std::size_t used = smooths_ ? 4 : note.arrives || note.starts ? 3 : 2;
+    std::memcpy(values_.data(), other.values_.data(), used * dimensions_ * sizeof(double));
+  }
+
+  [[nodiscard]] bool is_there() const noexcept { return tag != 0; }
+  [[nodiscard]] std::span<const double> waypoint() const noexcept { return values(0); }
+  [[nodiscard]] std::span<const double> velocity() const noexcept { return values(1); }
+  [[nodiscard]] std::span<const double> acceleration() const noexcept {
+    return note.arrives || note.starts ? values(2) : std::span<const double>{};
+  }
+  [[nodiscard]] std::span<const double> residual() const noexcept {
+    return smooths_ ? values(3) : std::span<const double>{};
+  }
+  [[nodiscard]] core::SegmentEnd end() const noexcept {
+    return {time, waypoint(), velocity(), acceleration(), residual()};
+  }
+
+  Word tag = 0;          ///< of the cell that it was copied from; 0: nothing copied
+  std::size_t cell = 0;  ///< of its slot, 0 or 1
+  std::size_t slot = 0;
+  Word number = 0;
+  core::Time time{};
+  KnotNote note;
+  Word item = 0;  ///< as the layout has it beside the acceleration
+
+ private:
+  friend class KnotBoardReader;
+  [[nodiscard]] std::span<const double> values(std::size_t which) const noexcept {
+    return {values_.data() + which * dimensions_, dimensions_};
+  }
+
+  std::size_t dimensions_;
+  bool smooths_;
+  std::vector<double> values_;  ///< waypoint, velocity, acceleration, residual
+};
+
+/// A reader's side; no function blocks, allocates or stores. Every copy is taken under a revision
+/// `r` that the caller has loaded, and fails if the writer has gone on too far meanwhile, or if
+/// what lies there is nothing that a solver writes: whatever the bytes are, each call takes a
+/// bounded number of steps within the region.
+class KnotBoardReader {
+ public:
+  /// `region` holds a board of this layout and outlives the reader.
+  KnotBoardReader(std::span<const std::byte> region, const BoardLayout& layout) noexcept;
+
+  [[nodiscard]] std::size_t dimensions() const noexcept { return layout_.dimensions; }
+  [[nodiscard]] std::size_t capacity() const noexcept { return layout_.capacity; }
+  [[nodiscard]] bool smooths() const noexcept { return layout_.smooths; }
+
+  /// S2 and R1: how far the curve is settled, and the newest revision; 0: none yet.
+  [[nodiscard]] Look look() const noexcept {
+    const core::Time settled = to_time(load(control_[kSettledUntil], std::memory_order_acquire));
+    return {settled, load(control_[kRevision], std::memory_order_acquire)};
+  }
+  [[nodiscard]] Word revision() const noexcept {
+    return load(control_[kRevision], std::memory_order_acquire);
+  }
+  [[nodiscard]] const Word& revision_word() const noexcept { return control_[kRevision]; }
+  [[nodiscard]] bool retired() const noexcept {
+    return load(control_[kRetired], std::memory_order_acquire) != 0;
+  }
+
+  /// Items consumed, which the producer may overwrite: P3.
+  [[nodiscard]] Word tail() const noexcept {
+    return load(control_[kTail], std::memory_order_acquire);
+  }
+  /// Whether the solver sleeps; seq_cst, see waypoint_ring.hpp.
+  [[nodiscard]] bool sleeping() const noexcept {
+    return load(control_[kSleeping], std::memory_order_seq_cst) != 0;
+  }
+
+  /// How many of the solver's steps took 2ⁱ to 2ⁱ⁺¹ ns, at i.
+  [[nodiscard]] std::array<Word, kStepBuckets> step_times() const noexcept;
+
+  /// Asks for the lines that a reader will load to get segment `number` of a revision that it has
+  /// not seen, all at once: each may have to come from the writer's core, and would else be waited
+  /// for one after the other. Loads nothing.
+  void prefetch(Word r, Word number) const noexcept;
+
+  /// Likewise for a segment anywhere: its knots' cells and nodes, of both revisions each, because
+  /// the tags, which say which ones count, would else be waited for first.
+  void prefetch_segment(Word number) const noexcept;
+
+  /// Copies what lookups need of the head under a look's revision: revision, first, newest, stop,
+  /// finished, settled_until; and the earliest changed_from of the revisions after `seen` up to
+  /// that one, min() if that many are not kept. The other members stay, and upon failure all of
+  /// them.
+  [[nodiscard]] bool copy_bounds(const Look& look, Word seen, Head& out) const noexcept;
+
+  /// Copies the whole head. Upon failure `out` stays as it is.
+  [[nodiscard]] bool copy_head(const Look& look, Head& out) const noexcept;
+
+  /// Copies knot `number` under r: it must stand on the board then. Upon failure `out.tag` is 0 and
+  /// the rest of no use. O(D).
+  [[nodiscard]] bool copy_knot(Word number, Word r, KnotCopy& out) const noexcept;
+
+  /// Whether a copy is what the board holds under r too: no words are copied again. K1 and K2; r is
+  /// no older than the revision that the copy was made under, and the knot stands under r.
+  [[nodiscard]] bool is_current(const KnotCopy& copy, Word r) const noexcept {
+    return copy.tag != 0 && is_newest(cells(copy.number), copy.cell, copy.tag, r);
+  }
+
+  /// Copies waypoint `i` of a run from the slots of those that entries pass over: what lies there
+  /// may be another one's, as its item says. For the one writer only, who races with nobody.
+  [[nodiscard]] bool copy_passed(Word i, Word r, KnotCopy& out) const noexcept;
+
+  /// The same where `copy` may be of another knot.
+  [[nodiscard]] bool is_current(const KnotCopy& copy, Word number, Word r) const noexcept {
+    return copy.number == number && is_current(copy, r);
+  }
+
+  /// Copies a knot's time and the form of the segment that begins there, under r.
+  [[nodiscard]] bool copy_time(Word number, Word r, core::Time& time,
+                               core::SegmentForm& form) const noexcept;
+
+  /// When the segment of knot `number` begins, from the packed times: a hint, to be confirmed.
+  [[nodiscard]] core::Time time_hint(Word number) const noexcept {
+    return to_time(load(times_[number & (layout_.capacity - 1)], std::memory_order_relaxed));
+  }
+
+  /// The refusal noted at `index`, counted from 0 over the stream's life; only the last
+  /// kRefusalsKept are there.
+  [[nodiscard]] RefusedItem refusal(Word index) const noexcept;
+
+  /// Copies the refusals that `head` counts from `from` on, oldest first. Returns how many there
+  /// still are, at most out.size(): these are the last ones, and those before them have been
+  /// overwritten.
+  [[nodiscard]] std::size_t copy_refusals(const Head& head, Word from,
+                                          std::span<RefusedItem> out) const noexcept;
+
+  /// The excess noted at `index` < head.exceeding; nothing if it has been overwritten, or is
+  /// being.
+  [[nodiscard]] std::optional<LimitExcess> excess(const Head& head, Word index) const noexcept;
+
+  /// That of an item, if it is one of the last kExcessesKept. O(kExcessesKept).
+  [[nodiscard]] std::optional<LimitExcess> excess_of(const Head& head, Word item) const noexcept;
+
+  /// Copies the row of a knot that has been copied, into `g`, and returns its scalars. For the one
+  /// writer only, who races with nobody.
+  [[nodiscard]] core::Prefix copy_row(const KnotCopy& knot, std::span<double> g) const noexcept;
+
+ private:
+  [[nodiscard]] std::size_t index_of(Word number) const noexcept {
+    return number & (layout_.capacity - 1);
+  }
+  [[nodiscard]] const Word* slot_at(std::size_t index) const noexcept {
+    return slots_.data() + index * slot_words_;
+  }
+  [[nodiscard]] const Word* slot(Word number) const noexcept { return slot_at(index_of(number)); }
+  [[nodiscard]] bool copy_slot(std::size_t index, Word r, KnotCopy& out) const noexcept;
+  [[nodiscard]] SlotView<const Word> cells(Word number) const noexcept {
+    return {slot(number), cell_words_};
+  }
+  [[nodiscard]] SlotView<const Word> head_cells() const noexcept {
+    return {control_.data() + kHeadSlot, kHeadWords};
+  }
+  [[nodiscard]] core::Time earliest_change(Word seen, Word r) const noexcept;
+
+  BoardLayout layout_;
+  std::size_t slot_words_;
+  std::size_t cell_words_;
+  std::span<const Word> control_;
+  std::span<const Word> refusals_;
+  std::span<const Word> excesses_;
+  std::span<const Word> times_;
+  std::span<const Word> slots_;
+};
+
+}  // namespace splinecast::ipc

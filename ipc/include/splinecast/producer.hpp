@@ -1,0 +1,129 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "ipc/roles/refusals.hpp"
+#include "ipc/roles/replace_preview.hpp"
+#include "splinecast/options.hpp"
+#include "splinecast/status.hpp"
+#include "splinecast/waypoint.hpp"
+
+namespace splinecast::ipc {
+
+/// How a replacement goes over from the old motion to the new one.
+struct ReplaceOptions {
+  /// The entry onto the new waypoints takes at least so long: those before its end are passed over.
+  /// 0 or less: to the first one, or, with limits, to the first at which they can be kept. At most
+  /// the stream's most interval.
+  core::Time blend{};
+};
+
+/// The role that appends waypoints: the one writer of a stream's waypoint ring.
+///
+/// One thread uses it. Other processes read what it writes; while it lives, no other process can
+/// become the producer of the same stream.
+class Producer {
+ public:
+  /// Makes the stream, or makes it again if it is finished, or continues it if its producer died
+  /// before finishing. A solver takes up a stream that was made again once the old curve has come
+  /// to rest: on a live one, call wait_for_solver() before choosing times for waypoints. Throws
+  /// StreamBusy if it has a living producer, BadRequest if the options contradict a stream that is
+  /// continued, BadRegion if shared memory is full or the files of that name cannot be used.
+  Producer(std::string stream, ProducerOptions options);
+  Producer(Producer&&) noexcept;
+  Producer& operator=(Producer&&) noexcept;
+  ~Producer();
+
+  /// Appends a waypoint. O(D), never blocks or allocates; one system call where it wakes a sleeping
+  /// solver. Until a solver has come each call looks for one, which is a system call and may
+  /// allocate. `full` asks to try again later.
+  [[nodiscard]] AppendStatus append(const core::Waypoint& waypoint) noexcept;
+
+  /// Replaces all that lies behind time t by these waypoints, from none upwards, as one revision:
+  /// the curve goes on from its state at t by an entry, as ReplaceOptions has it, or, without a
+  /// waypoint, comes to rest. With waypoints, `t` must not lie before earliest(), else `too_late`;
+  /// the waypoints must be later than it, and fit into the ring besides what it keeps free for
+  /// stops. On a stream that has no waypoint yet they start it, as appended ones do. O(D) per
+  /// waypoint; otherwise as append.
+  ///
+  /// Without waypoints it is a stop, which is never too late: a t that has settled means as soon as
+  /// possible. The solver's next step carries it out at its settled_until, or at t if that is
+  /// later, whatever is queued before it; and that step comes after one sweep, or one wake, at
+  /// most. A stop at a t behind the newest knot waits for its turn, and at the latest for
+  /// settled_until to reach t. A ring of 16 items or more keeps room for stops and for `finish`:
+  /// when it is full of waypoints it takes them.
+  [[nodiscard]] AppendStatus replace_from(core::Time t, std::span<const core::Waypoint> waypoints,
+                                          const ReplaceOptions& options = {}) noexcept;
+
+  /// What `replace_from` with these arguments would do, without changing anything: how long the
+  /// entry takes, the largest velocities, accelerations and jerks, and what would be passed over.
+  /// Of a stop: how long it takes from t, or from earliest() if that is later. As the solver would
+  /// plan it now: what is published meanwhile, and the time that passes, may change it. O(n·K·D),
+  /// and reads the board; no system call but the search for a solver, as in append. Allocates: the
+  /// second form reuses its memory. From the producer's thread. Throws std::bad_alloc only.
+  [[nodiscard]] ReplacePreview preview_replace(core::Time t,
+                                               std::span<const core::Waypoint> waypoints,
+                                               const ReplaceOptions& options = {});
+  void preview_replace(core::Time t, std::span<const core::Waypoint> waypoints,
+                       const ReplaceOptions& options, ReplacePreview& out);
+
+  /// Says in which state the stream starts, before its first waypoint, which must be later:
+  /// velocity and acceleration have one value per dimension. Otherwise as append.
+  [[nodiscard]] AppendStatus start_from(const core::Instant& state) noexcept;
+
+  /// The earliest time that may still be changed: of a live stream what its solver has settled;
+  /// min() of a recorded one, or while there is no solver.
+  [[nodiscard]] core::Time earliest() noexcept;
+
+  /// Ends the stream at its last waypoint; a live one at rest there. The last waypoint is the last
+  /// one that the solver does not refuse: see refusals(). If that knot is frozen
+  /// already, the stop tail runs and a splice goes back to it. Throws std::invalid_argument if the
+  /// condition's values do not fit the dimensions or ask for motion in a quaternion's, BadRequest
+  /// if a stream cannot meet it; otherwise as append.
+  [[nodiscard]] AppendStatus finish(const core::Condition& end);
+
+  /// What the solver has refused since the last call, of the items that this producer appended:
+  /// `accepted` says only that the ring has an item. All is known of an item once
+  /// `Refusals::consumed` is above its number. The board keeps the last 1,024 refusals; `missed`
+  /// counts those that were overwritten before, and is 0 as long as at most 1,024 items are
+  /// consumed between two calls. O(1) if nothing was published since, else O(refusals); reads the
+  /// board only, no system call but the search for a solver, as in append. Allocates in the result
+  /// only: the second form reuses its memory. From the producer's thread.
+  [[nodiscard]] Refusals refusals();
+  void refusals(Refusals& out);
+
+  /// Waits until a solver has taken the stream up. Returns false after the timeout.
+  [[nodiscard]] bool wait_for_solver(core::Time timeout);
+
+  /// Waits until the ring has room for a waypoint, or until the solver has consumed everything.
+  /// Returns false after the timeout. Look at solver_alive() before waiting again.
+  [[nodiscard]] bool wait_for_room(core::Time timeout);
+  [[nodiscard]] bool wait_until_consumed(core::Time timeout);
+
+  /// Whether a solver process lives; true where no descriptor is left to look with. System calls.
+  [[nodiscard]] bool solver_alive() const;
+
+  /// Items appended and, of these, consumed by the solver.
+  [[nodiscard]] Word appended() const noexcept;
+  [[nodiscard]] Word consumed() const noexcept;
+
+  /// The stream's random number, the same in both of its regions.
+  [[nodiscard]] std::uint64_t stream_id() const noexcept;
+
+  /// Whether waypoints of a producer that died stand in the ring, and the last one's time.
+  [[nodiscard]] bool continues() const noexcept;
+  [[nodiscard]] core::Time last_time() const noexcept;
+
+  [[nodiscard]] bool is_memory_locked() const noexcept;
+
+  /// Removes the stream's waypoint region: for a stream that no solver ever took up.
+  void withdraw() noexcept;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace splinecast::ipc

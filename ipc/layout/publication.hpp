@@ -1,0 +1,201 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include "ipc/memory/word.hpp"
+
+/// Publication: how one writer makes many words visible at once, and any number of readers copy
+/// them whole, without waiting for anybody.
+///
+/// A *slot* has two *cells* and two *nodes*. A node holds what a knot is given (time, position), a
+/// cell what each solve changes (velocity). Word 0 of a cell is its *tag*: the revision that wrote
+/// it, and the bits that go with the knot, of which one names its node. Comparisons of tags with
+/// revisions use the revision only. The *newest* cell under revision r is the one with the greatest
+/// revision ≤ r; the other one is the *spare*. A revision writes the spare cell of each slot that
+/// it changes, and the node that the newest cell does not name if a new knot takes the slot; then
+/// it stores its number to the *commit word*, which makes all of it visible at once. The head is a
+/// slot without nodes.
+///
+/// Each "fails" below is an execution that a model has found: [s] the spin model of tests/model, by
+/// plain interleaving, so that it can happen on x86 too; [m] only a weaker memory model (RC11,
+/// IMM), so that neither x86 nor ThreadSanitizer shows it.
+///
+/// Writer
+///
+/// W0 What the writer loads of tags and words is relaxed: its own stores, or those of a dead writer
+///    whose lock the kernel gave it.
+/// W1 tag[c].store((r+1, node), release), first, before node and cell.
+///    First, because a reader that copies a new word (R3) must not find the old tag at R4. The same
+///    covers the node: it is overwritten only when no cell with a standing tag names it. The newest
+///    cell names the other one, and the spare's tag, which may name it, has been overwritten by W1.
+///    Fails: the tag after the cell [s]; the node before the tag [s], where a slot gets a new knot
+///    twice in a row: revisions 1 and 3 use the same cell and node, and a reader under 1 takes the
+///    time of knot 3 with the tag of knot 1.
+///    Release, because of the *previous* revision q in the other cell. A reader under an older
+///    revision finds the new tag too new and takes the other cell. It may have loaded that cell's
+///    tag before q overwrote it. Having acquired the new tag, it knows that q has claimed that
+///    cell, so R4 sees q's tag or a later one and rejects the copy [m].
+/// W2 node[m] and cell[c].store(release), each word. Pairs with R3: a reader that loads a new word
+///    also sees W1, so that R4 finds the new tag [m]. Cell and node may be stored in either order.
+/// W3 commit.store(r+1, release). Pairs with R1: a reader that sees the revision sees its tags,
+///    cells, nodes and ring word [m].
+/// T1 Takeover: before its first other store, the successor overwrites every tag above the commit
+///    word with kRetiredTag (release). A writer that discards its own revision does the same. Else
+///    a half-written cell becomes the newest when the commit word reaches its tag; seen where the
+///    successor leaves that slot alone [s]. Retiring with 0 fails [s]: 0 is not above the revision,
+///    and a reader whose newest cell is being overwritten takes the retired one as older history.
+///    Release for the same reason as W1: a reader that finds the retired tag takes the other cell,
+///    and must then see at R4 if that was overwritten before [m].
+///    A retired tag names no node: the writer takes the node bit from the newest *committed* cell
+///    only [s].
+///
+/// Reader
+///
+/// R1 commit.load(acquire). Pairs with W3.
+/// R2 Both tags, load(acquire). Pairs with W1 or T1 of a later revision, and keeps R3 behind R2.
+/// R3 cell[c] and node[tag's node].load(acquire), each word, in either order. Pairs with W2, and
+///    keeps R4 behind R3.
+/// R4 tag[c].load(relaxed), directly after the copies: still the tag of R2, all 64 bits, else the
+///    copy is rejected. Relaxed is enough: R3 has ordered it, and nothing after it depends on it.
+///    One look covers cell and node.
+///
+/// Two knots of one segment are copied one after the other under the same r. Each is exactly what r
+/// holds, so that no second look at the first is needed after the second.
+///
+/// Kept copies: a copy with tag T may be used under r' ≥ the revision that it was made under, iff
+///
+/// K1 tag[1 − c].load(acquire) is not in (T, r'], and then
+/// K2 tag[c].load(relaxed), after K1, is still T.
+///
+/// Let q be the first revision after the copy's, up to r', that wrote the slot. It wrote the other
+/// cell, and R1 has made that visible. K1 finds q: rejected. Or it finds a later tag, above r' or
+/// retired: a later revision q' claims the other cell only after one in between has claimed the
+/// copy's own cell, and that store precedes the tag of q', or the retirement of it, both release;
+/// K1 has acquired it, so K2 sees that the copy's cell was overwritten: rejected. K1 relaxed fails
+/// [m]. Not enough [s]: the own tag alone (q leaves it as it is); the own tag before the other one;
+/// both tags in the order of storage, compared as if loaded at one instant (two revisions pass
+/// between the two loads). When the tag has changed, cell and node are both copied again: the node
+/// bit does not identify a knot, after two new knots it is the same again [s].
+///
+/// Ring of changes: word r mod N holds the time from which revision r changed the curve.
+///
+/// C1 Word r is stored (release) after the head's spare tag has been claimed for r (W1) and before
+///    the commit (W3).
+/// C2 A reader that saw revision `seen` and now reads under r loads words seen+1 … r (acquire),
+///    after R1. R1 guarantees that each is the word of its revision or of one N, 2N, … later.
+/// C3 Then it loads both tags of the head (relaxed is enough; after C2). Let g be the greatest tag
+///    that is not retired. The words count iff there is such a tag and g ≤ seen + N − 1. Otherwise
+///    everything is taken as changed.
+///
+/// Why: let a word loaded be of a later revision m ≥ seen + 1 + N. C2 acquires C1, hence the claim
+/// of the head's tag for m, and the claim of m − 1 in the other cell, which was committed. So each
+/// tag that C3 loads is that one, a later one, or retired. If one of the two is not retired,
+/// g ≥ m − 1 ≥ seen + N: the words do not count.
+/// - N − 1, not N: the writer may die after storing word m; its successor retires tag m, and g is
+///   m − 1 [s]. While no tag is ever retired, N holds too.
+/// - Both tags retired must not count [s]: writer 1 dies with m claimed, its tag is retired, the
+///   reader loads that tag; the successor commits m, claims m+1 in the other cell and dies; its
+///   successor retires that; the reader loads that tag. Both are retired although m is committed.
+///   Two discards by a living writer do the same.
+/// - Tag before word: if word m is stored first, C2 knows only of the tags up to m − 1. A reader
+///   then loads the tag m − 2 in the cell that m is about to claim, and, after m and m + 1, finds
+///   m + 1 retired in the other: g = m − 2 [s].
+/// - Words before tags: a tag loaded before the words says nothing about what overwrote them
+///   afterwards [s].
+/// - C1 and C2 relaxed fail [m]: C3 then need not see the claim that precedes the word. C3 needs no
+///   acquire, and the release of W1 and T1 is not needed for the ring: C1 carries the claim.
+///
+/// Settled word: one word beside the commit word. It promises that no later revision changes
+/// anything before it.
+///
+/// S1 settled.store(s, release), after the commit (W3) of the revision to which s belongs. It may
+///    be raised later without a revision; every later revision then begins at or after it. It never
+///    decreases.
+/// S2 settled.load(acquire), before R1 (acquire). Pairs with S1: a reader that sees s sees, at R1,
+///    the revision to which s belongs or a later one. No revision after that changes anything
+///    before s, so the curve before s under r is final.
+///
+/// - The settled word loaded after the commit word fails [s]: between the two loads a revision
+///   changes the curve before s, is committed, and s is stored. The reader calls the old curve
+///   settled.
+/// - Stored before the commit it fails in the same way [s]: the reader takes s with the older
+///   revision.
+/// - S1 or S2 relaxed fails [m]: R1 may then load a revision older than the one to which s belongs.
+///   (W3 and R1 are not needed for this pair alone: S1 carries the commit.)
+/// - A successor goes on from the word that it finds and the committed revision. If it begins
+///   lower, it changes what its predecessor promised [s]. If the predecessor died between W3 and
+///   S1, the word is lower than it could be, which is safe.
+/// - A reader may use an s that it loaded earlier with a newer revision, never a newer s with an
+///   older one: each reload of the settled word is followed by R1 before s is used.
+///
+/// There are no fences, no read-modify-writes, and readers store nothing.
+namespace splinecast::ipc {
+
+/// A tag's revision stands in its upper 48 bits; what goes with the cell is below.
+inline constexpr unsigned kTagRevisionShift = 16;
+
+/// A tag that no revision reaches.
+inline constexpr Word kRetiredTag = std::numeric_limits<Word>::max();
+
+/// The last revision that a tag can hold, less one: at a million a second, after 8.9 years.
+inline constexpr Word kLastRevision = (kRetiredTag >> kTagRevisionShift) - 2;
+
+[[nodiscard]] constexpr Word revision_of(Word tag) noexcept { return tag >> kTagRevisionShift; }
+
+/// The two tags of a slot, as seen once.
+struct Tags {
+  std::array<Word, 2> of;
+
+  /// The cell that is newest under revision r; may itself be newer than r: see holds_any.
+  [[nodiscard]] std::size_t newest(Word r) const noexcept {
+    const Word r0 = revision_of(of[0]);
+    const Word r1 = revision_of(of[1]);
+    return r1 <= r && (r0 > r || r1 > r0) ? 1 : 0;
+  }
+  /// Whether either cell was written at or before revision r. Tag 0 is never written.
+  [[nodiscard]] bool holds_any(Word r) const noexcept {
+    const Word tag = of[newest(r)];
+    return tag != 0 && revision_of(tag) <= r;
+  }
+};
+
+/// A slot's cells: `cell_words` words each, one after the other, of which the first is the tag.
+template <typename WordType>
+struct SlotView {
+  WordType* words;
+  std::size_t cell_words;
+
+  [[nodiscard]] WordType* cell(std::size_t c) const noexcept { return words + c * cell_words; }
+
+  [[nodiscard]] Tags tags(std::memory_order order) const noexcept {
+    return {{load(cell(0)[0], order), load(cell(1)[0], order)}};
+  }
+};
+
+/// W2 for one word.
+inline void put(Word& word, Word value) noexcept { store(word, value, std::memory_order_release); }
+
+/// K1 and K2: whether what was copied from cell `c`, with `tag`, is what the slot holds under
+/// revision `r` too, which is no older than the tag. Two loads. Where words of that cell, or of
+/// its node, were loaded (acquire) before the call, true also says that these are of the tag (R4).
+[[nodiscard]] inline bool is_newest(const SlotView<const Word>& slot, std::size_t c, Word tag,
+                                    Word r) noexcept {
+  const Word other = revision_of(load(slot.cell(1 - c)[0], std::memory_order_acquire));
+  if (other > revision_of(tag) && other <= r) return false;
+  return load(slot.cell(c)[0], std::memory_order_relaxed) == tag;
+}
+
+/// T1 for one slot: retires what no commit has made visible.
+inline void retire_uncommitted(const SlotView<Word>& slot, Word committed) noexcept {
+  for (std::size_t c = 0; c < 2; ++c) {
+    Word& tag = slot.cell(c)[0];
+    if (revision_of(load(tag, std::memory_order_relaxed)) > committed) {
+      store(tag, kRetiredTag, std::memory_order_release);
+    }
+  }
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,39 @@
+#include "ipc/mapping/checked_region.hpp"
+
+#include <utility>
+
+#include "ipc/mapping/owner_lock.hpp"
+#include "splinecast/errors.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+template <typename Layout>
+CheckedRegion<Layout> open_checked(std::string_view stream, RegionKind kind, bool writable,
+                                   const Trust& trust,
+                                   Layout (*check)(const RegionHeader&, std::size_t)) {
+  Region region = Region::open(stream, kind, writable, trust);
+  // A second name that somebody gave the file has a lock file of its own, which keeps nobody out.
+  if (writable && is_region_locked(region.descriptor())) {
+    throw StreamBusy(region_path(stream, kind) + " has a living " + std::string(owner_role(kind)));
+  }
+  const RegionHeader header = copy_header(region.bytes());
+  try {
+    const Layout layout = check(header, region.bytes().size());
+    return {.region = std::move(region), .header = header, .layout = layout};
+  } catch (const BadRegion& error) {
+    throw BadRegion(region_path(stream, kind) + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+CheckedRegion<RingLayout> open_ring(std::string_view stream, bool writable, const Trust& trust) {
+  return open_checked(stream, RegionKind::waypoints, writable, trust, checked_ring_layout);
+}
+
+CheckedRegion<BoardLayout> open_board(std::string_view stream, bool writable, const Trust& trust) {
+  return open_checked(stream, RegionKind::spline, writable, trust, checked_board_layout);
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,77 @@
+#include "ipc/memory/descriptor.hpp"
+
+#include <fcntl.h>
+#include <pthread.h>
+#include <unistd.h>
+
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace splinecast::ipc {
+namespace {
+
+/// Every owned descriptor of this process. The mutex is held across fork, so that the child sees
+/// the list whole.
+struct Registry {
+  std::mutex mutex;
+  std::vector<int> descriptors;
+};
+
+Registry& registry() {
+  static Registry* const the_registry = [] {
+    pthread_atfork([] { registry().mutex.lock(); }, [] { registry().mutex.unlock(); },
+                   [] {
+                     for (const int descriptor : registry().descriptors) ::close(descriptor);
+                     registry().descriptors.clear();
+                     registry().mutex.unlock();
+                   });
+    return new Registry;  // lives as long as the process: forks may come in static destructors
+  }();
+  return *the_registry;
+}
+
+}  // namespace
+
+OwnedDescriptor OwnedDescriptor::open(const std::string& path, int flags, mode_t mode) {
+  Registry& owned = registry();
+  const std::scoped_lock guard(owned.mutex);
+  owned.descriptors.push_back(-1);
+  const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC, mode);
+  if (descriptor < 0) {
+    owned.descriptors.pop_back();
+  } else {
+    owned.descriptors.back() = descriptor;
+  }
+  return OwnedDescriptor(descriptor);
+}
+
+OwnedDescriptor::OwnedDescriptor(OwnedDescriptor&& other) noexcept
+    : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+OwnedDescriptor& OwnedDescriptor::operator=(OwnedDescriptor&& other) noexcept {
+  if (this != &other) {
+    close();
+    descriptor_ = std::exchange(other.descriptor_, -1);
+  }
+  return *this;
+}
+
+OwnedDescriptor::~OwnedDescriptor() { close(); }
+
+void OwnedDescriptor::close() noexcept {
+  if (descriptor_ < 0) return;
+  const std::scoped_lock guard(registry().mutex);
+  // In a forked child the list is empty and the number may be somebody else's by now.
+  if (std::erase(registry().descriptors, descriptor_) > 0) {
+    // A child that was forked a moment ago may not have closed its copy yet: unlocking through any
+    // copy unlocks them all.
+    struct flock whole_file {};
+    whole_file.l_type = F_UNLCK;
+    fcntl(descriptor_, F_OFD_SETLK, &whole_file);
+    ::close(descriptor_);
+  }
+  descriptor_ = -1;
+}
+
+}  // namespace splinecast::ipc

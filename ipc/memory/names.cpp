@@ -1,0 +1,136 @@
+#include "ipc/memory/names.hpp"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <set>
+#include <system_error>
+
+#include "ipc/memory/system_failure.hpp"
+#include "splinecast/errors.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+constexpr std::string_view kPrefix = "splinecast.";
+constexpr std::string_view kLockSuffix = ".lock";
+constexpr std::size_t kMaxNameLength = 128;
+
+constexpr std::array kKinds{RegionKind::waypoints, RegionKind::spline};
+
+std::string_view suffix(RegionKind kind) noexcept {
+  return kind == RegionKind::waypoints ? ".waypoints" : ".spline";
+}
+
+bool is_name_character(char c) noexcept {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' ||
+         c == '_' || c == '-';
+}
+
+bool is_stream_name(std::string_view text) noexcept {
+  return !text.empty() && text.size() <= kMaxNameLength && text.front() != '.' &&
+         std::ranges::all_of(text, is_name_character);
+}
+
+/// The stream that a file belongs to, or an empty view.
+std::string_view stream_of(std::string_view file) noexcept {
+  if (!file.starts_with(kPrefix)) return {};
+  file.remove_prefix(kPrefix.size());
+  if (file.ends_with(kLockSuffix)) file.remove_suffix(kLockSuffix.size());
+  for (const RegionKind kind : kKinds) {
+    if (!file.ends_with(suffix(kind))) continue;
+    file.remove_suffix(suffix(kind).size());
+    return is_stream_name(file) ? file : std::string_view();
+  }
+  return {};
+}
+
+/// Bytes of the UTF-8 character that a text begins with, which is to be printed as it is; 0 for a
+/// control character and for what is not valid UTF-8.
+std::size_t printable_bytes(std::string_view text) noexcept {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned first = byte(0);
+  if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
+  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || first > 0xf4 || text.size() < length) return 0;
+  char32_t point = first & (0x7fU >> length);
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(i) & 0xc0U) != 0x80U) return 0;
+    point = point << 6U | (byte(i) & 0x3fU);
+  }
+  constexpr std::array<char32_t, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};
+  const bool is_character =
+      point >= kLeast[length] && point <= 0x10ffff && (point < 0xd800 || point > 0xdfff);
+  // U+0080 to U+009F are control characters; U+2028 and 2029 are line ends; the others change the
+  // direction of the text.
+  const bool is_control =
+      point < 0xa0 || (point >= 0x2028 && point <= 0x202e) || (point >= 0x2066 && point <= 0x2069);
+  return is_character && !is_control ? length : 0;
+}
+
+}  // namespace
+
+std::string_view owner_role(RegionKind kind) noexcept {
+  return kind == RegionKind::waypoints ? "producer" : "solver";
+}
+
+void require_stream_name(std::string_view stream) {
+  if (is_stream_name(stream)) return;
+  throw BadRequest("'" + printable(stream) +
+                   "' cannot name a stream: 1 to 128 of A-Z a-z 0-9 . _ - are needed, "
+                   "the first no dot");
+}
+
+std::string printable(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t bytes = printable_bytes(text);
+    if (bytes > 0) {
+      out.append(text.substr(0, bytes));
+    } else {
+      const auto byte = static_cast<unsigned char>(text.front());
+      out.append("\\x").append({kDigits[byte >> 4U], kDigits[byte & 0xfU]});
+    }
+    text.remove_prefix(std::max<std::size_t>(bytes, 1));
+  }
+  return out;
+}
+
+std::string region_name(std::string_view stream, RegionKind kind) {
+  require_stream_name(stream);
+  return std::string(kPrefix).append(stream).append(suffix(kind));
+}
+
+std::string region_path(std::string_view stream, RegionKind kind) {
+  return std::string(kSharedMemoryFolder) + region_name(stream, kind);
+}
+
+std::string lock_path(std::string_view stream, RegionKind kind) {
+  return region_path(stream, kind).append(kLockSuffix);
+}
+
+bool is_pattern(std::string_view text) noexcept {
+  return text.find_first_of("*?[") != std::string_view::npos;
+}
+
+bool matches(const std::string& pattern, const std::string& stream) noexcept {
+  return fnmatch(pattern.c_str(), stream.c_str(), 0) == 0;
+}
+
+std::vector<std::string> stream_names() {
+  std::set<std::string> names;
+  std::error_code error;
+  std::filesystem::directory_iterator entry(kSharedMemoryFolder, error);
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    const std::string file = entry->path().filename();
+    const std::string_view stream = stream_of(file);
+    if (!stream.empty()) names.emplace(stream);
+  }
+  if (error) throw_failure("cannot read " + std::string(kSharedMemoryFolder), error.value());
+  return {names.begin(), names.end()};
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,146 @@
+#pragma once
+
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "ipc/memory/store_hook.hpp"
+#include "splinecast/time.hpp"
+
+/// Shared memory is made of 64-bit words, and every access to one that another process may write
+/// is atomic: no plain memory is shared, so there is nothing to race on.
+namespace splinecast::ipc {
+
+using Word = std::uint64_t;
+static_assert(std::atomic_ref<Word>::is_always_lock_free);
+static_assert(sizeof(double) == sizeof(Word));
+
+#ifdef SPLINECAST_PLAIN_WORD
+/// The one word that a test's own build of this library takes for plain memory, which
+/// ThreadSanitizer must report.
+inline const Word* plain_word = nullptr;
+#endif
+
+/// Loads a word, also through a read-only mapping: a lock-free 64-bit load stores nothing, which
+/// std::atomic_ref cannot say in its type.
+[[nodiscard]] inline Word load(const Word& word, std::memory_order order) noexcept {
+#ifdef SPLINECAST_PLAIN_WORD
+  if (&word == plain_word) return word;
+#endif
+  return std::atomic_ref<Word>(const_cast<Word&>(word)).load(order);  // NOLINT(*-const-cast)
+}
+
+/// Every store to a region that stands goes through here.
+inline void store(Word& word, Word value, std::memory_order order) noexcept {
+#ifdef SPLINECAST_PLAIN_WORD
+  if (&word == plain_word) {
+    word = value;
+    return;
+  }
+#endif
+  before_store();
+  std::atomic_ref<Word>(word).store(value, order);
+}
+
+[[nodiscard]] inline Word to_word(double value) noexcept { return std::bit_cast<Word>(value); }
+[[nodiscard]] inline Word to_word(core::Time value) noexcept {
+  return static_cast<Word>(value.count());
+}
+[[nodiscard]] inline double to_double(Word word) noexcept { return std::bit_cast<double>(word); }
+[[nodiscard]] inline core::Time to_time(Word word) noexcept {
+  return core::Time(static_cast<std::int64_t>(word));
+}
+
+/// Asks for the cache lines of some memory. Loads nothing.
+inline void prefetch_lines(const void* from, std::size_t bytes) noexcept {
+  constexpr std::size_t kLine = 64;
+  const auto* const first = static_cast<const std::byte*>(from);
+  for (std::size_t at = 0; at < bytes; at += kLine) __builtin_prefetch(first + at);
+}
+
+/// Calls `copy(to[i], from[i])` for each i < n, in any order: a load and a store each, and one jump
+/// for the last eight instead of a test for each.
+template <typename To, typename From, typename Copy>
+[[gnu::always_inline]] inline void copy_each(To* to, const From* from, std::size_t n,
+                                             const Copy& copy) noexcept {
+  for (; n > 8; n -= 8, to += 8, from += 8) {
+    copy(to[0], from[0]);
+    copy(to[1], from[1]);
+    copy(to[2], from[2]);
+    copy(to[3], from[3]);
+    copy(to[4], from[4]);
+    copy(to[5], from[5]);
+    copy(to[6], from[6]);
+    copy(to[7], from[7]);
+  }
+  switch (n) {
+    case 8:
+      copy(to[7], from[7]);
+      [[fallthrough]];
+    case 7:
+      copy(to[6], from[6]);
+      [[fallthrough]];
+    case 6:
+      copy(to[5], from[5]);
+      [[fallthrough]];
+    case 5:
+      copy(to[4], from[4]);
+      [[fallthrough]];
+    case 4:
+      copy(to[3], from[3]);
+      [[fallthrough]];
+    case 3:
+      copy(to[2], from[2]);
+      [[fallthrough]];
+    case 2:
+      copy(to[1], from[1]);
+      [[fallthrough]];
+    case 1:
+      copy(to[0], from[0]);
+      [[fallthrough]];
+    default:
+      break;
+  }
+}
+
+/// Stores values with release, each in a word of its own from `to` on.
+inline void store_values(Word* to, std::span<const double> values) noexcept {
+  copy_each(to, values.data(), values.size(), [](Word& word, double value) {
+    store(word, to_word(value), std::memory_order_release);
+  });
+}
+
+/// The same, and adds their magnitudes to a sum: see core::magnitude_of.
+inline void store_summed(Word* to, std::span<const double> values, double& sum) noexcept {
+  double own = sum;
+  copy_each(to, values.data(), values.size(), [&own](Word& word, double value) {
+    store(word, to_word(value), std::memory_order_release);
+    own += std::abs(value);
+  });
+  sum = own;
+}
+
+/// Loads values with acquire, each from a word of its own from `from` on.
+inline void load_values(std::span<double> values, const Word* from) noexcept {
+  copy_each(values.data(), from, values.size(), [](double& value, const Word& word) {
+    value = to_double(load(word, std::memory_order_acquire));
+  });
+}
+
+/// Views part of a region as words. `offset` is a multiple of 8 and lies, with `count` words,
+/// within the region: the caller has checked its layout.
+[[nodiscard]] inline std::span<Word> words_at(std::span<std::byte> region, std::size_t offset,
+                                              std::size_t count) noexcept {
+  return {reinterpret_cast<Word*>(region.data() + offset), count};  // NOLINT(*-reinterpret-cast)
+}
+[[nodiscard]] inline std::span<const Word> words_at(std::span<const std::byte> region,
+                                                    std::size_t offset,
+                                                    std::size_t count) noexcept {
+  return {reinterpret_cast<const Word*>(region.data() + offset),  // NOLINT(*-reinterpret-cast)
+          count};
+}
+
+}  // namespace splinecast::ipc

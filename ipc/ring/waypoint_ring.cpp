@@ -1,0 +1,359 @@
+#include "ipc/ring/waypoint_ring.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+#include "core/basics/magnitude.hpp"
+#include "splinecast/errors.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+// Word kItemKind of an item.
+constexpr Word kKindMask = 0xff;
+constexpr Word kHasVelocity = 1U << 8;
+constexpr Word kHasAcceleration = 1U << 9;
+constexpr unsigned kConditionShift = 16;
+constexpr unsigned kCountShift = 32;
+
+/// The time of a stop if the producer knows no settled time: before every waypoint that can follow.
+constexpr core::Time kEarliestStop = -core::kLatestTime;
+
+std::size_t words_per_item(const RingLayout& layout) noexcept {
+  return layout.stride / sizeof(Word);
+}
+
+bool fits(std::span<const double> values, std::size_t dimensions) noexcept {
+  return values.empty() || values.size() == dimensions;
+}
+
+}  // namespace
+
+bool is_finite(std::span<const double> values) noexcept {
+  // Mostly even their sum is usable.
+  return core::is_usable(core::magnitude_of(values)) ||
+         std::ranges::all_of(values, core::is_usable);
+}
+
+bool is_finite(const core::Waypoint& waypoint) noexcept {
+  return is_finite(waypoint.position) &&
+         (waypoint.velocity.empty() || is_finite(waypoint.velocity)) &&
+         (waypoint.acceleration.empty() || is_finite(waypoint.acceleration));
+}
+
+core::Waypoint RingItem::waypoint() const noexcept {
+  const std::size_t dimensions = values.size() / 3;
+  const auto all = std::span<const double>(values);
+  core::Waypoint waypoint{.time = time, .position = all.first(dimensions)};
+  if (has_velocity) waypoint.velocity = all.subspan(dimensions, dimensions);
+  if (has_acceleration) waypoint.acceleration = all.last(dimensions);
+  return waypoint;
+}
+
+core::WaypointValues RingItem::waypoint_values() noexcept {
+  const std::size_t dimensions = values.size() / 3;
+  const auto all = std::span(values);
+  core::WaypointValues waypoint{.position = all.first(dimensions)};
+  if (has_velocity) waypoint.velocity = all.subspan(dimensions, dimensions);
+  if (has_acceleration) waypoint.acceleration = all.last(dimensions);
+  return waypoint;
+}
+
+WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLayout& layout,
+                                       const IngestLimits& limits)
+    : layout_(layout),
+      limits_(limits),
+      control_(words_at(region, layout.control, kRingControlWords)),
+      items_(words_at(region, layout.items, layout.capacity * words_per_item(layout))),
+      head_(load(control_[kHead], std::memory_order_relaxed)) {
+  // Look back for the newest item that says from when on the next may be: behind the last waypoint
+  // there may be a finish.
+  const WaypointRingReader past(region, layout);
+  ends_with_stop_ = head_ > 0 && past.is_stop(head_ - 1);
+  bool is_found = false;
+  for (Word back = 1; back <= std::min<Word>(head_, layout.capacity) && !is_found; ++back) {
+    const ItemKind kind = past.kind(head_ - back);
+    finished_ = finished_ || kind == ItemKind::finish;
+    is_found = kind != ItemKind::finish;
+    last_time_ = past.time(head_ - back);
+    has_last_ = is_found && last_time_ != kEarliestStop;
+  }
+  if (!core::is_time_in_range(last_time_)) {
+    throw BadRegion("the ring's last item has time " + std::to_string(last_time_.count()) +
+                    " ns, not within 2^62 ns of 0");
+  }
+}
+
+AppendStatus WaypointRingWriter::check_form(const core::Waypoint& waypoint) const noexcept {
+  const std::size_t dimensions = layout_.dimensions;
+  if (finished_) return AppendStatus::finished;
+  if (waypoint.position.size() != dimensions || !fits(waypoint.velocity, dimensions) ||
+      !fits(waypoint.acceleration, dimensions)) {
+    return AppendStatus::wrong_dimension;
+  }
+  if (!is_finite(waypoint)) return AppendStatus::not_finite;
+  return core::is_time_in_range(waypoint.time) ? AppendStatus::accepted
+                                               : AppendStatus::too_far_apart;
+}
+
+AppendStatus WaypointRingWriter::check(const core::Waypoint& waypoint,
+                                       const Solved& solved) const noexcept {
+  AppendStatus status = check_form(waypoint);
+  if (status == AppendStatus::accepted && has_last_) {
+    status = judge_interval(waypoint.time - last_time_, limits_);
+    if (status == AppendStatus::too_far_apart && follows_pause(waypoint.time, solved)) {
+      status = AppendStatus::accepted;
+    }
+  }
+  if (status != AppendStatus::accepted) return status;
+  if (is_past(waypoint.time, solved)) return AppendStatus::past;
+  return has_room(1, solved, control_reserve(layout_.capacity)) ? AppendStatus::accepted
+                                                                : AppendStatus::full;
+}
+
+/// Whether a waypoint comes too late to shape the target. The clock is read only if it is late.
+bool WaypointRingWriter::is_past(core::Time time, const Solved& solved) const noexcept {
+  if (time >= solved.settled_until) return false;
+  if (!has_last_) return true;
+  const core::Time now = solved.clock != nullptr ? solved.clock->now() : solved.settled_until;
+  return time + kMostLate < std::max(now, solved.settled_until);
+}
+
+/// A live stream may continue after a pause of any length: its clock runs also while nothing moves.
+bool WaypointRingWriter::follows_pause(core::Time time, const Solved& solved) const noexcept {
+  const auto follows = [&](core::Time since) {
+    return since > last_time_ && time - since <= limits_.max_interval;
+  };
+  return follows(solved.settled_until) || (solved.clock != nullptr && follows(solved.clock->now()));
+}
+
+AppendStatus WaypointRingWriter::append(const core::Waypoint& waypoint,
+                                        const Solved& solved) noexcept {
+  const AppendStatus status = check(waypoint, solved);
+  if (status != AppendStatus::accepted) return counted(status);
+  put_item(0, static_cast<Word>(ItemKind::waypoint), waypoint);
+  publish(1, waypoint.time);
+  return status;
+}
+
+AppendStatus WaypointRingWriter::check_replacement(core::Time t,
+                                                   std::span<const core::Waypoint> waypoints,
+                                                   const Solved& solved,
+                                                   core::Time blend) const noexcept {
+  if (waypoints.empty()) return check_stop(t, solved);
+  if (finished_) return AppendStatus::finished;
+  if (!core::is_time_in_range(t) || blend > limits_.max_interval)
+    return AppendStatus::too_far_apart;
+  if (t < solved.settled_until) return AppendStatus::too_late;
+  if (solved.clock != nullptr && t < solved.clock->now()) return AppendStatus::too_late;
+  const std::size_t items = 1 + waypoints.size();
+  if (items + control_reserve(layout_.capacity) > layout_.capacity) return AppendStatus::too_many;
+  core::Time before = t;
+  for (const core::Waypoint& waypoint : waypoints) {
+    AppendStatus status = check_form(waypoint);
+    if (status == AppendStatus::accepted) status = judge_interval(waypoint.time - before, limits_);
+    if (status != AppendStatus::accepted) return status;
+    before = waypoint.time;
+  }
+  return has_room(items, solved, control_reserve(layout_.capacity)) ? AppendStatus::accepted
+                                                                    : AppendStatus::full;
+}
+
+AppendStatus WaypointRingWriter::replace_from(core::Time t,
+                                              std::span<const core::Waypoint> waypoints,
+                                              const Solved& solved, core::Time blend) noexcept {
+  if (waypoints.empty()) return counted(stop_from(t, solved));
+  const AppendStatus status = check_replacement(t, waypoints, solved, blend);
+  if (status != AppendStatus::accepted) return counted(status);
+  claim(1 + waypoints.size());
+  const Word kind = static_cast<Word>(ItemKind::replace) | waypoints.size() << kCountShift;
+  put_item(0, kind, {.time = t, .position = {}});
+  store(item_words(0)[kItemValues], to_word(std::max(blend, core::Time::zero())),
+        std::memory_order_release);
+  for (std::size_t i = 0; i < waypoints.size(); ++i) {
+    put_item(1 + i, static_cast<Word>(ItemKind::waypoint), waypoints[i]);
+  }
+  publish(1 + waypoints.size(), waypoints.back().time);
+  return status;
+}
+
+/// A stop is never too late: if t has settled, it takes effect where the settled part ends.
+core::Time WaypointRingWriter::stop_time(core::Time t, const Solved& solved) noexcept {
+  return std::max({t, solved.settled_until, kEarliestStop});
+}
+
+AppendStatus WaypointRingWriter::check_stop(core::Time t, const Solved& solved) const noexcept {
+  if (finished_) return AppendStatus::finished;
+  const core::Time from = stop_time(t, solved);
+  if (!core::is_time_in_range(from)) return AppendStatus::too_far_apart;
+  if (repeats_stop(from, solved)) return AppendStatus::accepted;
+  // Stops ahead leave an item for a stop that takes effect at once; all stops leave one for finish.
+  const bool is_ahead = from > solved.settled_until;
+  const std::size_t others = control_reserve(layout_.capacity) / 2;
+  const bool has_place = has_room(1, solved, is_ahead ? others : std::min<std::size_t>(others, 1));
+  return has_place ? AppendStatus::accepted : AppendStatus::full;
+}
+
+AppendStatus WaypointRingWriter::stop_from(core::Time t, const Solved& solved) noexcept {
+  const AppendStatus status = check_stop(t, solved);
+  const core::Time from = stop_time(t, solved);
+  if (status != AppendStatus::accepted || repeats_stop(from, solved)) return status;
+  claim(1);
+  put_item(0, static_cast<Word>(ItemKind::replace), {.time = from, .position = {}});
+  publish(1, from);
+  has_last_ = from != kEarliestStop;
+  ends_with_stop_ = true;
+  return AppendStatus::accepted;
+}
+
+/// Whether a stop would change nothing: the newest item is one, and waits.
+bool WaypointRingWriter::repeats_stop(core::Time from, const Solved& solved) const noexcept {
+  return ends_with_stop_ && solved.consumed < head_ && from >= last_time_;
+}
+
+AppendStatus WaypointRingWriter::start_from(const core::Instant& state,
+                                            const Solved& solved) noexcept {
+  const core::Waypoint values{state.time, state.position, state.velocity, state.acceleration};
+  AppendStatus status = check_form(values);
+  if (status == AppendStatus::accepted && (state.velocity.empty() || state.acceleration.empty())) {
+    status = AppendStatus::wrong_dimension;
+  }
+  if (status == AppendStatus::accepted && head_ > 0) status = AppendStatus::already_started;
+  if (status == AppendStatus::accepted && state.time < solved.settled_until) {
+    status = AppendStatus::past;
+  }
+  if (status != AppendStatus::accepted) return counted(status);
+  put_item(0, static_cast<Word>(ItemKind::start_state), values);
+  publish(1, state.time);
+  return status;
+}
+
+AppendStatus WaypointRingWriter::finish(const core::Condition& end, const Solved& solved) noexcept {
+  if (finished_) return AppendStatus::finished;
+  if (!has_room(1, solved, 0)) return AppendStatus::full;
+  const Word kind = static_cast<Word>(ItemKind::finish) | static_cast<Word>(end.kind)
+                                                              << kConditionShift;
+  const bool is_velocity = end.kind == core::ConditionKind::velocity;
+  const std::span<const double> value(end.value);
+  put_item(0, kind,
+           {.time = last_time_,
+            .position = {},
+            .velocity = is_velocity ? value : std::span<const double>{},
+            .acceleration = is_velocity ? std::span<const double>{} : value});
+  finished_ = true;
+  publish(1, last_time_);
+  return AppendStatus::accepted;
+}
+
+/// Tells observers, before several items are written, how far that will go: P0. Never back: what a
+/// producer before this one claimed may have been overwritten.
+void WaypointRingWriter::claim(Word items) noexcept {
+  Word& claimed = control_[kClaimed];
+  store(claimed, std::max(load(claimed, std::memory_order_relaxed), head_ + items),
+        std::memory_order_relaxed);
+}
+
+/// The words of the item that lies so many behind `head`.
+std::span<Word> WaypointRingWriter::item_words(Word index) const noexcept {
+  const std::size_t stride = words_per_item(layout_);
+  return items_.subspan(((head_ + index) & (layout_.capacity - 1)) * stride, stride);
+}
+
+/// Writes the item that lies so many behind `head`: P1.
+void WaypointRingWriter::put_item(Word index, Word kind_and_flags,
+                                  const core::Waypoint& values) noexcept {
+  const auto words = item_words(index);
+  const Word flags = (values.velocity.empty() ? 0 : kHasVelocity) |
+                     (values.acceleration.empty() ? 0 : kHasAcceleration);
+  store(words[kItemKind], kind_and_flags | flags, std::memory_order_release);
+  store(words[kItemTime], to_word(values.time), std::memory_order_release);
+  const auto rest = words.subspan(kItemValues);
+  store_values(rest.data(), values.position);
+  store_values(rest.data() + layout_.dimensions, values.velocity);
+  store_values(rest.data() + 2 * layout_.dimensions, values.acceleration);
+}
+
+void WaypointRingWriter::publish(Word items, core::Time last) noexcept {
+  head_ += items;
+  has_last_ = true;
+  ends_with_stop_ = false;
+  last_time_ = last;
+  store(control_[kHead], head_, std::memory_order_seq_cst);  // P2
+}
+
+AppendStatus WaypointRingWriter::counted(AppendStatus status) noexcept {
+  if (status == AppendStatus::accepted) return status;
+  Word& counter = control_[kProducerCounters + static_cast<std::size_t>(status)];
+  store(counter, load(counter, std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  return status;
+}
+
+void WaypointRingWriter::retire() noexcept {
+  store(control_[kRetired], 1, std::memory_order_release);
+}
+
+WaypointRingReader::WaypointRingReader(std::span<const std::byte> region,
+                                       const RingLayout& layout) noexcept
+    : layout_(layout),
+      control_(words_at(region, layout.control, kRingControlWords)),
+      items_(words_at(region, layout.items, layout.capacity * words_per_item(layout))) {}
+
+void WaypointRingReader::copy(Word i, RingItem& out) const noexcept {
+  const std::size_t stride = words_per_item(layout_);
+  const auto words = items_.subspan((i & (layout_.capacity - 1)) * stride, stride);
+  const Word kind = load(words[kItemKind], std::memory_order_acquire);
+  out.kind = static_cast<ItemKind>(kind & kKindMask);
+  out.has_velocity = (kind & kHasVelocity) != 0;
+  out.has_acceleration = (kind & kHasAcceleration) != 0;
+  out.condition = static_cast<core::ConditionKind>((kind >> kConditionShift) & kKindMask);
+  out.count = static_cast<std::uint32_t>(kind >> kCountShift);
+  out.time = to_time(load(words[kItemTime], std::memory_order_acquire));
+  out.blend = out.kind == ItemKind::replace && out.count > 0
+                  ? to_time(load(words[kItemValues], std::memory_order_acquire))
+                  : core::Time::zero();
+  const bool is_bare = out.kind == ItemKind::waypoint && !out.has_velocity && !out.has_acceleration;
+  const std::size_t values = is_bare ? layout_.dimensions : out.values.size();
+  load_values(std::span(out.values).first(values), &words[kItemValues]);
+}
+
+ItemKind WaypointRingReader::kind(Word i) const noexcept {
+  const Word& word = items_[(i & (layout_.capacity - 1)) * words_per_item(layout_) + kItemKind];
+  return static_cast<ItemKind>(load(word, std::memory_order_acquire) & kKindMask);
+}
+
+bool WaypointRingReader::is_stop(Word i) const noexcept {
+  const Word& word = items_[(i & (layout_.capacity - 1)) * words_per_item(layout_) + kItemKind];
+  const Word kind = load(word, std::memory_order_acquire);
+  return (kind & kKindMask) == static_cast<Word>(ItemKind::replace) && kind >> kCountShift == 0;
+}
+
+core::Time WaypointRingReader::time(Word i) const noexcept {
+  const Word& word = items_[(i & (layout_.capacity - 1)) * words_per_item(layout_) + kItemTime];
+  return to_time(load(word, std::memory_order_acquire));
+}
+
+bool WaypointRingReader::observe(Word i, RingItem& out) const noexcept {
+  copy(i, out);
+  return is_kept(i);
+}
+
+std::optional<core::Time> WaypointRingReader::observe_time(Word i) const noexcept {
+  if (i >= head()) return std::nullopt;
+  const core::Time at = time(i);
+  return is_kept(i) ? std::optional(at) : std::nullopt;
+}
+
+/// O2, for what has been loaded of item i.
+bool WaypointRingReader::is_kept(Word i) const noexcept {
+  const Word next = i + layout_.capacity;  // the item that comes into its place
+  return load(control_[kHead], std::memory_order_relaxed) < next &&
+         load(control_[kClaimed], std::memory_order_relaxed) <= next;
+}
+
+Word WaypointRingReader::refused(AppendStatus status) const noexcept {
+  return load(control_[kProducerCounters + static_cast<std::size_t>(status)],
+              std::memory_order_relaxed);
+}
+
+}  // namespace splinecast::ipc

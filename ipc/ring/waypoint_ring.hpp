@@ -1,0 +1,256 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/forms/splice.hpp"
+#include "core/online/extrapolation.hpp"
+#include "ipc/layout/header.hpp"
+#include "splinecast/boundary_condition.hpp"
+#include "splinecast/clock.hpp"
+#include "splinecast/status.hpp"
+#include "splinecast/waypoint.hpp"
+
+/// The waypoint ring: items from one producer to one solver, over a span of bytes.
+///
+/// Items are numbered from 0; item i lies at i modulo the capacity. `head` counts the items
+/// appended, `tail`, in the solver's region, those consumed; both only grow.
+///
+/// Orderings of the hand-over:
+///
+/// P0 claimed.store(relaxed), before a replacement writes its items: how far they go. `head` alone
+///    says that the item behind it may be in writing, but not that many are. Relaxed is enough,
+///    because each P1 is a release: who sees a word of the replacement sees P0.
+/// P1 word.store(release), each. For the solver P2 would do; for an observer it pairs with O1: who
+///    sees a word of item i + capacity sees P0, and the P2 that let `head` reach i + capacity.
+/// P2 head.store(seq_cst), which is also a release. Pairs with S1: who sees the count sees the
+///    words. It comes last, so that a producer who dies before it has appended nothing.
+/// S1 head.load(acquire). Pairs with P2.
+/// S2 word.load(acquire), each; relaxed would do, as S1 has ordered it and nobody overwrites the
+///    item before S3: it is the same function as O1.
+/// S3 tail.store(release), when the items have been read. Pairs with P3: the loads of S2 come
+///    before the stores of the P1 that overwrite them. Relaxed would let those be seen by S2.
+/// P3 tail.load(acquire), before P1. Pairs with S3.
+/// O1 word.load(acquire), each: see P1. Keeps O2 behind it.
+/// O2 head.load and claimed.load (relaxed), after the copy: item i may be kept iff
+///    head < i + capacity and claimed ≤ i + capacity. At head = i + capacity the producer may
+///    already be writing the item that takes its place. Relaxed is enough: O1 has ordered both, and
+///    nothing after them depends on them. `claimed` never goes back, also not at a takeover: what a
+///    dead producer overwrote stays lost.
+///
+/// Orderings of sleep and wake. The solver stores `sleeping` and then loads `head`; the producer
+/// stores `head` and then loads `sleeping`. One of the two must see what the other stored, else the
+/// solver sleeps on beside an item that nobody wakes it for. All four are seq_cst: release and
+/// acquire let each load pass the store before it, on x86 as well. The solver sleeps only if `head`
+/// is still the one up to which it has consumed, and the kernel compares `head` once more.
+///
+/// `retired` is stored with release and loaded with acquire: nothing depends on more than the word
+/// itself. The counters of refusals are relaxed: each is a number of its own.
+namespace splinecast::ipc {
+
+/// How late a waypoint of a live stream may come, before what has settled, and still shape the
+/// target that an entry leads back to: the straight line behind the one before it is over by then.
+/// It is passed over.
+inline constexpr core::Time kMostLate = core::Extrapolation::kLine;
+
+/// What a ring item says.
+enum class ItemKind : std::uint8_t {
+  waypoint = 1,
+  replace = 2,      ///< withdraws the future from a time on; so many waypoints follow
+  start_state = 3,  ///< the state that a stream starts in
+  finish = 4,       ///< the stream ends at its last waypoint, with a condition there
+};
+
+/// A ring item with memory of its own. Allocates when made only.
+struct RingItem {
+  explicit RingItem(std::size_t dimensions) : values(3 * dimensions) {}
+
+  ItemKind kind = ItemKind::waypoint;
+  bool has_velocity = false;
+  bool has_acceleration = false;
+  core::ConditionKind condition{};  ///< of a finish
+  std::uint32_t count = 0;          ///< of a replacement: waypoints that belong to it
+  core::Time blend{};               ///< of one with waypoints: its entry takes at least so long
+  core::Time time{};
+  std::vector<double> values;  ///< positions, velocities, accelerations: those that it has
+
+  /// The item's waypoint or state; and its values, which may be changed. Both view `values`.
+  [[nodiscard]] core::Waypoint waypoint() const noexcept;
+  [[nodiscard]] core::WaypointValues waypoint_values() noexcept;
+};
+
+/// The checks that a waypoint must pass, wherever it comes from.
+struct IngestLimits {
+  core::Time min_interval{1'000};              ///< 1 µs
+  core::Time max_interval{3'600'000'000'000};  ///< 1 h
+};
+
+/// Items that waypoints leave free in a ring, for stops and a finish: these must not wait until the
+/// board has room for what is queued before them.
+[[nodiscard]] constexpr std::size_t control_reserve(std::size_t capacity) noexcept {
+  constexpr std::size_t kMost = 4;
+  constexpr std::size_t kShare = 16;
+  return std::min(kMost, capacity / kShare);
+}
+
+/// The producer's side. One thread of one process uses it. No function blocks or allocates.
+class WaypointRingWriter {
+ public:
+  /// `region` holds a ring of this layout and outlives the writer. Goes on behind what it holds;
+  /// throws BadRegion if its last item has a time that no producer writes.
+  WaypointRingWriter(std::span<std::byte> region, const RingLayout& layout,
+                     const IngestLimits& limits);
+
+  /// What is known of the solver: items that it has taken, and the time before which it no longer
+  /// changes anything, as last published; min() on a recorded stream. At rest nothing is published:
+  /// then a live stream's clock says how long it has paused.
+  struct Solved {
+    Word consumed = 0;
+    core::Time settled_until = core::Time::min();
+    const Clock* clock = nullptr;  ///< of a live stream
+  };
+
+  /// Appends a waypoint if its form is right and there is room besides control_reserve. O(D),
+  /// wait-free.
+  [[nodiscard]] AppendStatus append(const core::Waypoint& waypoint, const Solved& solved) noexcept;
+
+  /// Replaces all that lies behind t: `waypoints`, which may be none, must be later than it, and
+  /// together with the replacement itself fit into the ring besides control_reserve. One store of
+  /// `head` makes all of it visible. O(D) per waypoint. The entry onto them takes at least `blend`:
+  /// a negative one means 0, one beyond the most interval is `too_far_apart`. Without waypoints it
+  /// is a stop, for which
+  /// there is the reserve. A t that has settled means the earliest time possible; a stop that
+  /// repeats the newest item, a stop that still waits, at the same time or later takes no item.
+  [[nodiscard]] AppendStatus replace_from(core::Time t, std::span<const core::Waypoint> waypoints,
+                                          const Solved& solved, core::Time blend = {}) noexcept;
+
+  /// What `replace_from` would answer, of a stop as well. Changes nothing.
+  [[nodiscard]] AppendStatus check_replacement(core::Time t,
+                                               std::span<const core::Waypoint> waypoints,
+                                               const Solved& solved,
+                                               core::Time blend = {}) const noexcept;
+
+  /// Says in which state the stream starts: before its first waypoint, which must be later.
+  [[nodiscard]] AppendStatus start_from(const core::Instant& state, const Solved& solved) noexcept;
+
+  /// Appends the end of the stream. The condition's values must have been checked.
+  [[nodiscard]] AppendStatus finish(const core::Condition& end, const Solved& solved) noexcept;
+
+  /// Items appended so far.
+  [[nodiscard]] Word head() const noexcept { return head_; }
+  [[nodiscard]] bool finished() const noexcept { return finished_; }
+
+  /// The time that the next waypoint must be later than, once there is one.
+  [[nodiscard]] core::Time last_time() const noexcept { return last_time_; }
+
+  /// The word that waiting solvers watch.
+  [[nodiscard]] const Word& head_word() const noexcept { return control_[kHead]; }
+
+  /// Says that the region is of no more use.
+  void retire() noexcept;
+
+ private:
+  [[nodiscard]] AppendStatus check_form(const core::Waypoint& waypoint) const noexcept;
+  [[nodiscard]] AppendStatus check(const core::Waypoint& waypoint,
+                                   const Solved& solved) const noexcept;
+  [[nodiscard]] bool has_room(Word items, const Solved& solved, std::size_t free) const noexcept {
+    return head_ - solved.consumed + items + free <= layout_.capacity;
+  }
+  [[nodiscard]] bool repeats_stop(core::Time from, const Solved& solved) const noexcept;
+  [[nodiscard]] bool is_past(core::Time time, const Solved& solved) const noexcept;
+  [[nodiscard]] bool follows_pause(core::Time time, const Solved& solved) const noexcept;
+  [[nodiscard]] static core::Time stop_time(core::Time t, const Solved& solved) noexcept;
+  [[nodiscard]] AppendStatus check_stop(core::Time t, const Solved& solved) const noexcept;
+  [[nodiscard]] AppendStatus stop_from(core::Time t, const Solved& solved) noexcept;
+  void claim(Word items) noexcept;
+  [[nodiscard]] std::span<Word> item_words(Word index) const noexcept;
+  void put_item(Word index, Word kind_and_flags, const core::Waypoint& values) noexcept;
+  void publish(Word items, core::Time last) noexcept;
+  [[nodiscard]] AppendStatus counted(AppendStatus status) noexcept;
+
+  RingLayout layout_;
+  IngestLimits limits_;
+  std::span<Word> control_;
+  std::span<Word> items_;
+  Word head_ = 0;
+  bool finished_ = false;
+  bool has_last_ = false;
+  bool ends_with_stop_ = false;  ///< the newest item is a stop
+  core::Time last_time_{};
+};
+
+/// The solver's side, and any passive observer's. No function blocks, allocates or stores.
+class WaypointRingReader {
+ public:
+  /// `region` holds a ring of this layout and outlives the reader.
+  WaypointRingReader(std::span<const std::byte> region, const RingLayout& layout) noexcept;
+
+  [[nodiscard]] std::size_t dimensions() const noexcept { return layout_.dimensions; }
+  [[nodiscard]] std::size_t capacity() const noexcept { return layout_.capacity; }
+
+  /// Items appended so far; S1, or seq_cst for a solver about to sleep.
+  [[nodiscard]] Word head(std::memory_order order = std::memory_order_acquire) const noexcept {
+    return load(control_[kHead], order);
+  }
+  [[nodiscard]] const Word& head_word() const noexcept { return control_[kHead]; }
+  [[nodiscard]] bool retired() const noexcept {
+    return load(control_[kRetired], std::memory_order_acquire) != 0;
+  }
+
+  /// `head` and `retired`, which lie in one cache line: all that has to be looked at of a ring to
+  /// which nothing happens.
+  [[nodiscard]] std::span<const Word, 2> polled() const noexcept { return control_.first<2>(); }
+
+  /// Asks for the lines of item i. Loads nothing.
+  void prefetch(Word i) const noexcept {
+    prefetch_lines(&items_[(i & (layout_.capacity - 1)) * (layout_.stride / sizeof(Word))],
+                   layout_.stride / 2);
+  }
+
+  /// Copies item i < head(), of which the consumer has not yet stored a tail beyond it.
+  void copy(Word i, RingItem& out) const noexcept;
+
+  /// Kind and time of item i, of which the same holds.
+  [[nodiscard]] ItemKind kind(Word i) const noexcept;
+  /// Whether it is a replacement without waypoints.
+  [[nodiscard]] bool is_stop(Word i) const noexcept;
+  [[nodiscard]] core::Time time(Word i) const noexcept;
+
+  /// Copies item i for an observer whom the producer does not wait for. Returns false if the item
+  /// is, or may be, overwritten (O2); then `out` is of no use. Wait-free: O(D).
+  [[nodiscard]] bool observe(Word i, RingItem& out) const noexcept;
+
+  /// The time of item i for such an observer; nothing if the item is, or may be, overwritten, or
+  /// has not been appended.
+  [[nodiscard]] std::optional<core::Time> observe_time(Word i) const noexcept;
+
+  /// Items that the producer itself refused with this status.
+  [[nodiscard]] Word refused(AppendStatus status) const noexcept;
+
+ private:
+  [[nodiscard]] bool is_kept(Word i) const noexcept;
+
+  RingLayout layout_;
+  std::span<const Word> control_;
+  std::span<const Word> items_;
+};
+
+/// Whether a waypoint may follow another one this much earlier: `accepted`, or why not.
+[[nodiscard]] constexpr AppendStatus judge_interval(core::Time interval,
+                                                    const IngestLimits& limits) noexcept {
+  if (interval == core::Time::zero()) return AppendStatus::duplicate;
+  if (interval < core::Time::zero()) return AppendStatus::out_of_order;
+  if (interval < limits.min_interval) return AppendStatus::too_close;
+  if (interval > limits.max_interval) return AppendStatus::too_far_apart;
+  return AppendStatus::accepted;
+}
+
+/// Whether all values are numbers within ±core::kLargestValue.
+[[nodiscard]] bool is_finite(std::span<const double> values) noexcept;
+[[nodiscard]] bool is_finite(const core::Waypoint& waypoint) noexcept;
+
+}  // namespace splinecast::ipc

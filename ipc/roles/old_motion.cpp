@@ -1,0 +1,54 @@
+#include "ipc/roles/old_motion.hpp"
+
+#include "ipc/board/segment.hpp"
+#include "ipc/mapping/checked_region.hpp"
+#include "ipc/ring/waypoint_ring.hpp"
+#include "splinecast/errors.hpp"
+#include "splinecast/options.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+constexpr int kHeadTries = 16;
+
+}  // namespace
+
+core::Time end_of_motion(const RegionHeader& header, const KnotBoardReader& board) noexcept {
+  if (stream_clock(header) == StreamClock::recorded || header.time_namespace != time_namespace() ||
+      board.retired()) {
+    return core::Time::min();
+  }
+  BoardSegment last(board.dimensions(), board.smooths());
+  // Tries again, because the board's solver may overtake an observer.
+  for (int attempt = 0; attempt < kHeadTries; ++attempt) {
+    const Look look = board.look();
+    Head head;
+    if (look.revision == 0) break;
+    if (!board.copy_head(look, head)) continue;
+    if (head.newest == 0) break;
+    if (last.take_last(board, head)) return last.right();
+  }
+  return core::Time::min();
+}
+
+void require_near_end(const std::string& stream, core::Time end, core::Time now) {
+  if (end <= now || end - now <= kLongestOldMotion) return;
+  throw BadRegion("stream '" + stream + "' was made again, but its old motion ends only at " +
+                  std::to_string(end.count()) + " ns, more than an hour from now; 'splinecast rm " +
+                  stream + "' removes it, once its writers have been stopped");
+}
+
+core::Time end_of_old_motion(const std::string& stream, std::uint64_t stream_id,
+                             const Trust& trust) {
+  try {
+    const auto peeked = peek_header(stream, RegionKind::spline, trust);
+    if (!peeked || peeked->stream_id == stream_id) return core::Time::min();
+    const auto [region, header, layout] = open_board(stream, false, trust);
+    if (header.stream_id == stream_id) return core::Time::min();
+    return end_of_motion(header, KnotBoardReader(region.bytes(), layout));
+  } catch (const StreamError&) {
+    return core::Time::min();  // it went meanwhile, or no solver of ours can use it either
+  }
+}
+
+}  // namespace splinecast::ipc

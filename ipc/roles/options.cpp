@@ -1,0 +1,199 @@
+#include "splinecast/options.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+
+#include "ipc/layout/limits.hpp"
+#include "splinecast/errors.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+/// The longest beginning of at most `most` bytes that ends between characters of UTF-8.
+std::string cut(const std::string& text, std::size_t most) {
+  std::size_t length = std::min(text.size(), most);
+  // The byte after the cut must not be one that continues a character.
+  while (length > 0 && length < text.size() &&
+         (static_cast<unsigned char>(text[length]) & 0xc0U) == 0x80U) {
+    --length;
+  }
+  return text.substr(0, length);
+}
+
+template <std::size_t N>
+void put_texts(const std::vector<std::string>& texts, std::size_t dimensions, const char* what,
+               std::array<std::array<char, N>, core::kMaxDimensions>& out) {
+  if (!texts.empty() && texts.size() != dimensions) {
+    throw BadRequest(std::to_string(texts.size()) + ' ' + what + " for " +
+                     std::to_string(dimensions) + " dimensions");
+  }
+  for (std::size_t d = 0; d < texts.size(); ++d) {
+    std::ranges::copy(cut(texts[d], N - 1), out[d].begin());
+  }
+}
+
+template <std::size_t N>
+std::vector<std::string> texts_of(
+    const std::array<std::array<char, N>, core::kMaxDimensions>& texts, std::size_t dimensions) {
+  std::vector<std::string> out;
+  for (std::size_t d = 0; d < dimensions; ++d) out.push_back(text_of(texts[d]));
+  return out;
+}
+
+void put_kinds(const ProducerOptions& options, RegionHeader& header) {
+  const std::vector<core::Dimension>& kinds = options.kinds;
+  if (!kinds.empty() && kinds.size() != options.dimensions) {
+    throw BadRequest(std::to_string(kinds.size()) + " kinds for " +
+                     std::to_string(options.dimensions) + " dimensions");
+  }
+  try {
+    (void)core::DimensionKinds(kinds);
+  } catch (const std::invalid_argument& error) {
+    throw BadRequest(error.what());
+  }
+  for (std::size_t d = 0; d < kinds.size(); ++d) {
+    header.dimension_kind[d] = static_cast<std::uint64_t>(kinds[d].kind);
+    header.period[d] = kinds[d].period;
+  }
+}
+
+void store_header_word(std::span<std::byte> region, std::size_t word, Word value) noexcept {
+  store(words_at(region, word * sizeof(Word), 1)[0], value, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id) {
+  if (options.dimensions < core::kMinDimensions || options.dimensions > core::kMaxDimensions) {
+    throw BadRequest("a stream has 1 to 64 dimensions, not " + std::to_string(options.dimensions));
+  }
+  if (options.limits.min_interval < core::Time(1) ||
+      options.limits.max_interval < options.limits.min_interval ||
+      options.limits.max_interval > core::kLatestTime / 2) {
+    throw BadRequest("intervals from " + std::to_string(options.limits.min_interval.count()) +
+                     " ns to " + std::to_string(options.limits.max_interval.count()) +
+                     " ns are no range of positive times");
+  }
+  core::require_values(options.start, options.dimensions);
+  if (!core::is_online(options.start.kind)) {
+    throw BadRequest("start condition '" + core::to_string(options.start) +
+                     "' needs all waypoints at once: a stream cannot meet it");
+  }
+  RegionHeader header{};
+  header.magic = kMagic;
+  header.mark = {};
+  header.layout_hash = layout_hash();
+  header.stream_id = stream_id;
+  header.dimensions = options.dimensions;
+  header.clock = static_cast<std::uint64_t>(options.clock);
+  header.time_namespace = options.clock == StreamClock::monotonic ? time_namespace() : 0;
+  header.control = kHeaderBytes + stream_id % kControlPositions * kSeparation;
+  header.min_interval = options.limits.min_interval.count();
+  header.max_interval = options.limits.max_interval.count();
+  header.start_kind = static_cast<std::uint64_t>(options.start.kind);
+  std::ranges::copy(options.start.value, header.start_value.begin());
+  put_kinds(options, header);
+  put_texts(options.names, options.dimensions, "names", header.name);
+  put_texts(options.units, options.dimensions, "units", header.unit);
+  return header;
+}
+
+core::Condition start_condition(const RegionHeader& header) {
+  core::Condition start{.kind = static_cast<core::ConditionKind>(header.start_kind), .value = {}};
+  if (start.kind == core::ConditionKind::velocity ||
+      start.kind == core::ConditionKind::acceleration) {
+    const auto values = std::span(header.start_value).first(header.dimensions);
+    start.value.assign(values.begin(), values.end());
+  }
+  return start;
+}
+
+std::vector<std::string> dimension_names(const RegionHeader& header) {
+  return texts_of(header.name, header.dimensions);
+}
+
+std::vector<std::string> dimension_units(const RegionHeader& header) {
+  return texts_of(header.unit, header.dimensions);
+}
+
+core::DimensionKinds dimension_kinds(const RegionHeader& header) {
+  return core::DimensionKinds(dimensions_of(header));
+}
+
+IngestLimits ingest_limits(const RegionHeader& header) noexcept {
+  return {.min_interval = core::Time(header.min_interval),
+          .max_interval = core::Time(header.max_interval)};
+}
+
+StreamClock stream_clock(const RegionHeader& header) noexcept {
+  return static_cast<StreamClock>(header.clock);
+}
+
+std::optional<LiveOptions> live_options(const RegionHeader& header) noexcept {
+  if (stream_clock(header) != StreamClock::monotonic) return std::nullopt;
+  return LiveOptions{.freeze_ahead = core::Time(header.freeze_ahead),
+                     .history = core::Time(header.history),
+                     .min_splice = core::Time(header.min_splice)};
+}
+
+core::WindowOptions window_options(const RegionHeader& header) {
+  return {.interpolant = {.method = core::find_method(header.method),
+                          .lambda = header.lambda,
+                          .time_scale = header.time_scale},
+          .settle = header.settle,
+          .tail = static_cast<core::Tail>(header.tail),
+          .start = start_condition(header),
+          .stop_time = core::Time(header.stop_time),
+          .limits = motion_limits(header),
+          .held_before_start = stream_clock(header) == StreamClock::monotonic,
+          .force_lag = header.force_lag != 0};
+}
+
+std::string header_name(const std::string& name) { return cut(name, kNameBytes - 1); }
+
+core::MotionLimits limits_for(const SolverOptions& options, const RegionHeader& header) {
+  std::vector<core::NamedLimits> named = options.named_limits;
+  for (core::NamedLimits& joint : named) joint.name = header_name(joint.name);
+  try {
+    const core::MotionLimits given =
+        core::spread(options.limits.value_or(core::MotionLimits{}), header.dimensions);
+    core::MotionLimits limits =
+        core::overridden(core::matched(named, dimension_names(header)), given);
+    core::require_limits(limits, dimensions_of(header));
+    return limits;
+  } catch (const std::invalid_argument& error) {
+    throw BadRequest(error.what());
+  }
+}
+
+void require_same_clock(const RegionHeader& header, const std::string& stream) {
+  if (stream_clock(header) != StreamClock::monotonic || header.time_namespace == time_namespace()) {
+    return;
+  }
+  throw BadRegion("stream '" + stream + "' runs on the clock of time namespace " +
+                  std::to_string(header.time_namespace) + ", this process on that of " +
+                  std::to_string(time_namespace()));
+}
+
+void require_same_stream(const RegionHeader& ring, const RegionHeader& board) {
+  const auto require = [](bool is_same, const char* what) {
+    if (!is_same) throw BadRegion(std::string("the regions of the stream differ in ") + what);
+  };
+  require(ring.stream_id == board.stream_id, "their stream id");
+  require(ring.dimensions == board.dimensions, "the number of dimensions");
+  require(dimensions_of(ring) == dimensions_of(board), "dimension kinds");
+  require(ring.clock == board.clock && ring.time_namespace == board.time_namespace, "their clock");
+  require(start_condition(ring) == start_condition(board), "the start condition");
+}
+
+void enter_owner(std::span<std::byte> region, const RegionHeader& before) noexcept {
+  store_header_word(region, word_of(kHeaderFields, "process id"), static_cast<Word>(getpid()));
+  store_header_word(region, word_of(kHeaderFields, "since"), to_word(MonotonicClock().now()));
+  store_header_word(region, word_of(kHeaderFields, "epoch"), before.epoch + 1);
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,185 @@
+#include "ipc/roles/replace_preview.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "core/forms/stop.hpp"
+#include "core/limits/extremes.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+constexpr int kTries = 16;
+
+void clear(MotionPeaks& peaks, std::size_t dimensions) {
+  peaks.velocity.assign(dimensions, 0);
+  peaks.acceleration.assign(dimensions, 0);
+  peaks.jerk.assign(dimensions, 0);
+}
+
+void take_peaks(const core::SegmentPart& part, MotionPeaks& peaks) {
+  using core::Derivatives;
+  for (std::size_t d = 0; d < part.dimensions; ++d) {
+    std::array<core::SegmentRange, 4> ranges;
+    core::write_ranges(
+        part, d, Derivatives::velocity | Derivatives::acceleration | Derivatives::jerk, ranges);
+    const auto take = [&](double& peak, const core::SegmentRange& range) {
+      peak = std::max(peak, std::abs(range.largest().value));
+    };
+    take(peaks.velocity[d], ranges[1]);
+    take(peaks.acceleration[d], ranges[2]);
+    take(peaks.jerk[d], ranges[3]);
+  }
+}
+
+}  // namespace
+
+ReplacementPlanner::ReplacementPlanner(const KnotBoardReader& board, core::WindowOptions options,
+                                       core::DimensionKinds kinds,
+                                       const std::optional<LiveOptions>& live)
+    : board_(&board),
+      options_(std::move(options)),
+      kinds_(std::move(kinds)),
+      min_splice_(live ? live->min_splice : core::Time::zero()),
+      is_live_(live.has_value()),
+      sampler_(board, is_live_ ? StreamClock::monotonic : StreamClock::recorded, kinds_),
+      shown_(board),
+      window_(board.dimensions(), options_),
+      search_(board.dimensions(), kinds_),
+      state_(board.dimensions()),
+      segment_(board.dimensions()),
+      values_(3 * board.dimensions()) {}
+
+/// Reads the state at t and what the motion before has shown.
+bool ReplacementPlanner::read_state(core::Time t) {
+  if (!has_values(sampler_.preview(t, state_.ref()))) return false;
+  Head head;
+  for (int i = 0; i < kTries; ++i) {
+    if (!board_->copy_head(board_->look(), head)) continue;
+    window_.begin_run();
+    shown_.restore(*board_, head, t);
+    return true;
+  }
+  return false;
+}
+
+/// Appends a waypoint in the form that is nearest to the one before, as the solver does.
+void ReplacementPlanner::append(const core::Waypoint& waypoint) {
+  const std::size_t dimensions = window_.dimensions();
+  const auto copy = [&](std::size_t part, std::span<const double> from) {
+    const auto to = std::span(values_).subspan(part * dimensions, from.size());
+    std::ranges::copy(from, to.begin());
+    return to;
+  };
+  const core::WaypointValues values{.position = copy(0, waypoint.position),
+                                    .velocity = copy(1, waypoint.velocity),
+                                    .acceleration = copy(2, waypoint.acceleration)};
+  const std::size_t knots = window_.knots();
+  kinds_.continue_from(knots > 0 ? window_.knot(knots - 1).waypoint : state_.position(), values);
+  window_.append({.time = waypoint.time,
+                  .position = values.position,
+                  .velocity = values.velocity,
+                  .acceleration = values.acceleration});
+  if (is_live_) shown_.note(waypoint.time, values.position);
+}
+
+void ReplacementPlanner::take(const core::Segment& segment, MotionPeaks* entry,
+                              ReplacePreview& out) const {
+  const core::SegmentPart part = core::part_of(segment);
+  take_peaks(part, out.motion);
+  if (entry != nullptr) take_peaks(part, *entry);
+  const core::Excess excess = core::worst_excess(options_.limits, &kinds_, part);
+  if (excess.ratio > out.worst.ratio) out.worst = excess;
+}
+
+void ReplacementPlanner::take_stop(ReplacePreview& out, const core::Instant& from) {
+  const core::Time length =
+      core::stop_time_within(options_.limits, options_.stop_time, from.velocity, from.acceleration);
+  core::build_stop(from.time, length, from.position, from.velocity, from.acceleration, segment_);
+  take(segment_, out.enters ? nullptr : &out.entry, out);
+  if (!out.enters) out.duration = length;
+}
+
+/// Takes the entry that has been found, and what follows it.
+void ReplacementPlanner::take_entry(ReplacePreview& out) {
+  const core::EntryEnd& end = search_.end();
+  out.enters = true;
+  out.duration = end.state.time - out.begin;
+  out.waypoint = end.knot;
+  take(search_.entry(), &out.entry, out);
+  if (end.knot) {
+    out.passed_over = *end.knot;
+    next_segment_ = *end.knot;
+    return;
+  }
+  const std::size_t knots = window_.knots();
+  const bool meets_last = end.state.time == window_.time(knots - 1);
+  if (meets_last) out.waypoint = knots - 1;
+  out.passed_over = knots - (meets_last ? 1 : 0);
+  take_stop(out, end.state);  // the straight line before it is no faster
+}
+
+/// Takes segments of the target behind the entry, up to number `end`: before they leave the window.
+void ReplacementPlanner::take_segments(std::size_t end, ReplacePreview& out) {
+  for (; next_segment_ && *next_segment_ < end; ++*next_segment_) {
+    window_.segment(*next_segment_, segment_);
+    take(segment_, nullptr, out);
+  }
+}
+
+/// Appends the waypoints and looks for an entry behind each, as the solver does; then without what
+/// may still come.
+bool ReplacementPlanner::find_entry(const core::Instant& from,
+                                    std::span<const core::Waypoint> waypoints, core::Time blend,
+                                    ReplacePreview& out) {
+  core::EntryRules rules{.limits = &options_.limits,
+                         .shown = is_live_ ? &shown_.limits() : nullptr,
+                         .least = std::max(min_splice_, blend),
+                         .newer = options_.settle};
+  bool is_found = false;
+  const auto search = [&] {
+    constexpr int kAll = 1000;
+    int tries = kAll;
+    if (is_live_) shown_.look(options_.stop_time);
+    is_found = search_.search(window_, from, rules, tries) == core::EntrySearch::Outcome::found;
+    if (!is_found) return;
+    take_entry(out);
+    if (out.waypoint && next_segment_) window_.freeze_knots(*out.waypoint + 1);
+  };
+  search_.restart(0);
+  next_segment_.reset();
+  for (const core::Waypoint& waypoint : waypoints) {
+    append(waypoint);
+    if (!is_found) search();
+    take_segments(window_.settled_segments(), out);
+  }
+  if (!is_found && !waypoints.empty() && is_live_) {
+    rules.goes_beyond = true;
+    rules.newer = 0;
+    search();
+  }
+  take_segments(window_.segments(), out);
+  return is_found;
+}
+
+void ReplacementPlanner::plan(core::Time t, std::span<const core::Waypoint> waypoints,
+                              core::Time blend, ReplacePreview& out) {
+  out.is_known = read_state(t);
+  out.begin = t;
+  out.duration = {};
+  out.enters = false;
+  out.waypoint.reset();
+  out.passed_over = 0;
+  out.worst = {};
+  clear(out.entry, window_.dimensions());
+  clear(out.motion, window_.dimensions());
+  if (!out.is_known) return;
+  const core::Instant from{t, state_.position(), state_.velocity(), state_.acceleration()};
+  if (find_entry(from, waypoints, blend, out)) return;
+  out.passed_over = waypoints.size();
+  take_stop(out, from);
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,110 @@
+#include "splinecast/status.hpp"
+
+namespace splinecast::ipc {
+
+Refusal to_refusal(AppendStatus interval) noexcept {
+  switch (interval) {
+    case AppendStatus::duplicate:
+      return Refusal::duplicate;
+    case AppendStatus::out_of_order:
+      return Refusal::out_of_order;
+    case AppendStatus::too_close:
+      return Refusal::too_close;
+    default:
+      return Refusal::too_far_apart;
+  }
+}
+
+std::string_view to_string(AppendStatus status) noexcept {
+  switch (status) {
+    case AppendStatus::accepted:
+      return "accepted";
+    case AppendStatus::full:
+      return "full";
+    case AppendStatus::past:
+      return "past";
+    case AppendStatus::duplicate:
+      return "duplicate";
+    case AppendStatus::out_of_order:
+      return "out of order";
+    case AppendStatus::not_finite:
+      return "not finite";
+    case AppendStatus::too_close:
+      return "too close";
+    case AppendStatus::too_far_apart:
+      return "too far apart";
+    case AppendStatus::wrong_dimension:
+      return "wrong dimension";
+    case AppendStatus::too_late:
+      return "too late";
+    case AppendStatus::too_many:
+      return "too many";
+    case AppendStatus::already_started:
+      return "already started";
+    case AppendStatus::finished:
+      return "finished";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(Refusal refusal) noexcept {
+  switch (refusal) {
+    case Refusal::past:
+      return "past";
+    case Refusal::duplicate:
+      return "duplicate";
+    case Refusal::out_of_order:
+      return "out of order";
+    case Refusal::not_finite:
+      return "not finite";
+    case Refusal::too_close:
+      return "too close";
+    case Refusal::too_far_apart:
+      return "too far apart";
+    case Refusal::too_late:
+      return "too late";
+    case Refusal::after_finish:
+      return "after finish";
+    case Refusal::already_started:
+      return "already started";
+    case Refusal::unknown_kind:
+      return "unknown kind";
+    case Refusal::lacks_derivatives:
+      return "lacks derivatives";
+    case Refusal::lag_too_short:
+      return "lag too short";
+    case Refusal::zero_quaternion:
+      return "quaternion of length 0";
+    case Refusal::beyond_limits:
+      return "beyond limits";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(SampleStatus status) noexcept {
+  switch (status) {
+    case SampleStatus::settled:
+      return "settled";
+    case SampleStatus::provisional:
+      return "provisional";
+    case SampleStatus::stopping:
+      return "stopping";
+    case SampleStatus::holding:
+      return "holding";
+    case SampleStatus::revised:
+      return "revised";
+    case SampleStatus::before_history:
+      return "before history";
+    case SampleStatus::no_data:
+      return "no data";
+    case SampleStatus::busy:
+      return "busy";
+    case SampleStatus::retired:
+      return "retired";
+    case SampleStatus::wrong_dimension:
+      return "wrong dimension";
+  }
+  return "unknown";
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,201 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/basics/derivatives.hpp"
+#include "ipc/board/knot_board.hpp"
+#include "ipc/board/segment.hpp"
+#include "splinecast/clock.hpp"
+#include "splinecast/dimension_kind.hpp"
+#include "splinecast/state.hpp"
+#include "splinecast/status.hpp"
+#include "splinecast/time.hpp"
+
+namespace splinecast::ipc {
+
+/// Several segments of one revision: a consistent piece of the curve, whole or not at all.
+class Snapshot {
+ public:
+  /// Allocates as it grows; reuse one to allocate no more.
+  explicit Snapshot(std::size_t dimensions) : dimensions_(dimensions) {}
+
+  [[nodiscard]] std::size_t dimensions() const noexcept { return dimensions_; }
+  [[nodiscard]] const Head& head() const noexcept { return head_; }
+
+  /// The segments, oldest first.
+  [[nodiscard]] std::span<const SegmentCopy> segments() const noexcept {
+    return std::span(segments_).first(size_);
+  }
+
+ private:
+  friend class Sampler;
+  std::size_t dimensions_;
+  Head head_;
+  std::size_t size_ = 0;
+  std::vector<SegmentCopy> segments_;
+};
+
+/// Where `sample_many` writes: N times, D dimensions, and as many derivatives as are asked for.
+struct SampleBlock {
+  std::span<double> values;        ///< [time][derivative asked for, position first][dimension]
+  std::span<SampleStatus> status;  ///< one per time; those without values leave theirs undefined
+  core::Derivatives derivatives = core::Derivatives::all;
+};
+
+/// The reader without its region: looks a time up on a knot board and evaluates the curve.
+///
+/// It keeps its own copies of the segments it used last: the knots, with the tags of the revisions
+/// that wrote them, and the polynomials made from them. While those tags stand, a sample of one of
+/// them copies nothing; where time passes the right knot of the newest one, it copies one knot. One
+/// thread uses a sampler; any number of samplers, in any processes, read one board. Stores to
+/// shared memory never. Allocates when made only: 16 D doubles, or 19 D of a curve that is
+/// smoothed, for each of kSegmentsKept + 1 segments.
+class Sampler {
+ public:
+  /// How many segments it keeps copies of: the horizon of a controller that looks ahead, mostly.
+  static constexpr std::size_t kSegmentsKept = 16;
+
+  /// How many segments a sample compares at most after missing many revisions.
+  static constexpr int kMostCompared = 16;
+
+  /// `board` is read as often as sampled; `clock` says whether a hold stands before the first
+  /// waypoint; `kinds` are those of the board's dimensions.
+  Sampler(const KnotBoardReader& board, StreamClock clock, core::DimensionKinds kinds = {});
+  Sampler(const Sampler&) = delete;
+  Sampler& operator=(const Sampler&) = delete;
+  Sampler(Sampler&&) noexcept = default;
+  Sampler& operator=(Sampler&&) noexcept = default;
+  ~Sampler() = default;
+
+  /// Evaluates the curve at `t`, in the form in which its dimensions are read, into `out`, whose
+  /// spans have one value per dimension: else it returns `wrong_dimension`. Wait-free: no system
+  /// call, no allocation; O(D) where `t` lies in the segment used last or the next one, O(log n +
+  /// D) elsewhere; a bounded number of tries. Where the status has no values, `out` is left as it
+  /// was.
+  ///
+  /// On a live stream a sample counts as executed: if a revision since then changed the curve
+  /// before the latest time sampled, the next one is `revised`, once. That happens only if the
+  /// solver was stopped between its last look at the clock and the commit, or if a time ahead of
+  /// what is settled is sampled; use `preview` for that.
+  ///
+  /// The board keeps which time each of the last kChangesKept revisions changed the curve from.
+  /// A reader that has missed more compares the curve itself. Revisions change nothing before the
+  /// settled_until that it saw last; where it has sampled from there on, it looks whether the
+  /// segments are those of the revision that it saw last, by their tags, or have the bits of its
+  /// own copy, and whether a rest continues as a hold. If so, the sample is not `revised`. If they
+  /// differ, or cannot be compared because the board no longer keeps them or there are more than
+  /// kMostCompared, it is: a change is never missed.
+  [[nodiscard]] SampleStatus sample(core::Time t, const core::StateRef& out) noexcept;
+  [[nodiscard]] SampleStatus sample(core::Time t, core::State& out) noexcept;
+
+  /// The same for a look ahead: what it gives does not count as executed.
+  [[nodiscard]] SampleStatus preview(core::Time t, const core::StateRef& out) noexcept;
+
+  /// Evaluates the curve at any number of times, increasing or not, all of *one* revision: for
+  /// controllers that look ahead, whose horizon must not mix two. Returns that revision, which is
+  /// 0 where there was none to be had: then every status says why, and none has values. A look
+  /// ahead, which does not count as executed. Wait-free, like `sample`: a bounded number of tries,
+  /// each O(N·D) where the times follow each other, and O(N·(log n + D)) at most. A writer that
+  /// publishes faster than a try takes leaves `busy`. Where the block's sizes are not those of the
+  /// times and of the curve it is `wrong_dimension`.
+  Word sample_many(std::span<const core::Time> times, const SampleBlock& out) noexcept;
+
+  /// The time before which what the last sample saw never changes, whatever its status.
+  [[nodiscard]] core::Time settled_until() const noexcept { return head_.settled_until; }
+
+  /// Copies every segment that has a part between `from` and `to` (inclusive), all under one
+  /// revision. Returns `settled` or `provisional` for the whole; `before_history`, `no_data`,
+  /// `busy`, `retired` or `wrong_dimension` leave `out` without segments. The segments are the
+  /// curve as it was solved, before core::DimensionKinds::normalise; their acceleration steps are
+  /// those of what readers see. The step at the left end of the oldest segment on the board is not
+  /// known (empty): begin one segment earlier. Allocates if `out` must grow.
+  [[nodiscard]] SampleStatus snapshot(core::Time from, core::Time to, Snapshot& out);
+
+  /// The kinds of the board's dimensions.
+  [[nodiscard]] const core::DimensionKinds& kinds() const noexcept { return kinds_; }
+
+  /// The revision that the last sample saw; 0 before the first.
+  [[nodiscard]] Word revision_seen() const noexcept { return head_.revision; }
+
+ private:
+  /// Result of looking a time up under one revision.
+  enum class Found { segment, before_first, torn };
+  /// What a comparison with the curve seen before has found.
+  enum class Compared { same, changed, torn };
+
+  /// A copy of a segment, and the newest revision that it is known to be part of.
+  struct Kept {
+    BoardSegment segment;
+    Word known_by = 0;
+  };
+  [[nodiscard]] const BoardSegment& current() const noexcept { return current_->segment; }
+  /// One that is not kept, to copy into.
+  [[nodiscard]] BoardSegment& spare() noexcept { return copies_[spare_].segment; }
+  /// Which copy segment `number` is, if it is kept.
+  [[nodiscard]] std::uint8_t& place_of(Word number) noexcept {
+    return places_[number % kSegmentsKept];
+  }
+  [[nodiscard]] bool is_confirmed() noexcept;
+  [[nodiscard]] bool goes_on(core::Time t) noexcept;
+  void confirm() noexcept;
+  void confirm(Kept& copy) noexcept;
+  [[nodiscard]] Found locate(core::Time t) noexcept;
+  [[nodiscard]] bool take(Word number) noexcept;
+  [[nodiscard]] bool spans(const BoardSegment& segment, core::Time t) const noexcept;
+  [[nodiscard]] static Word near(const BoardSegment& copy, core::Time t) noexcept;
+  [[nodiscard]] Word guess_by_pace(core::Time t) const noexcept;
+  [[nodiscard]] Word number_by_hint(core::Time t) const noexcept;
+  [[nodiscard]] bool begin_of(Word number, core::Time& begin, bool& is_end) const noexcept;
+  [[nodiscard]] bool number_by_cells(core::Time t, Word& number) const noexcept;
+  void read(const BoardSegment& segment, double u, const core::StateRef& out) const noexcept;
+  [[nodiscard]] SampleStatus evaluate(const BoardSegment& segment, core::Time t,
+                                      const core::StateRef& out) const noexcept;
+  [[nodiscard]] SampleStatus execute(core::Time t, const core::StateRef& out) noexcept;
+  [[nodiscard]] SampleStatus find(core::Time t, const core::StateRef& out) noexcept;
+  [[nodiscard]] SampleStatus look_up(core::Time t, const core::StateRef& out) noexcept;
+  [[nodiscard]] SampleStatus hold_first(const core::StateRef& out) noexcept;
+  [[nodiscard]] bool see(const Look& look) noexcept;
+  [[nodiscard]] Compared compare_with(const Head& before) noexcept;
+  [[nodiscard]] Compared compare_rest(BoardSegment& last) noexcept;
+  [[nodiscard]] bool is_ahead(const BoardSegment& first, const Head& before) noexcept;
+  [[nodiscard]] bool is_unchanged(const BoardSegment& segment, const Head& before) noexcept;
+  [[nodiscard]] bool fits(const core::StateRef& out) const noexcept;
+  [[nodiscard]] bool copy_segments(Word oldest, Word newest, Snapshot& out);
+  [[nodiscard]] bool finish_oldest_step(SegmentCopy& oldest);
+  [[nodiscard]] SampleStatus from_own_copy(core::Time t, const core::StateRef& out) noexcept;
+  [[nodiscard]] SampleStatus see_newest(core::Time t) noexcept;
+  [[nodiscard]] bool evaluate_many(std::span<const core::Time> times,
+                                   const SampleBlock& out) noexcept;
+  [[nodiscard]] std::size_t evaluate_moving(std::span<const core::Time> times, std::size_t first,
+                                            std::size_t stride, const SampleBlock& out) noexcept;
+
+  const KnotBoardReader* board_;
+  StreamClock clock_;
+  core::DimensionKinds kinds_;
+  bool all_linear_;
+  Head head_;                                     ///< bounds under the revision last seen whole
+  core::Time sampled_until_ = core::Time::min();  ///< latest time sampled as executed
+  bool revised_ = false;  ///< the curve before that time has been changed: not yet told
+  Word confirmed_ = 0;    ///< current_->known_by
+  core::Time copied_settled_until_{};  ///< settled_until of that revision
+  /// What most samples need of the current copy, as confirmed: where on it the curve moves, and
+  /// whether all of it is settled. Nowhere, unless it lies between two waypoints.
+  struct AtHand {
+    core::Time left{};
+    core::Time right{};
+    bool is_finished = false;
+  };
+  AtHand at_hand_;
+  std::vector<Kept> copies_;                          ///< kSegmentsKept of them, and a spare one
+  std::array<std::uint8_t, kSegmentsKept> places_{};  ///< which copy, by number mod kSegmentsKept
+  std::size_t spare_ = kSegmentsKept;
+  Kept* current_;                           ///< the one used last
+  core::State state_;                       ///< scratch
+  std::vector<double> start_acceleration_;  ///< scratch
+  std::vector<double> end_acceleration_;    ///< scratch
+};
+
+}  // namespace splinecast::ipc

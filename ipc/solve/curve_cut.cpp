@@ -1,0 +1,124 @@
+#include "ipc/solve/curve_cut.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "ipc/ring/waypoint_ring.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+using core::SegmentForm;
+
+constexpr std::array<double, core::kMaxDimensions> kZeros{};
+
+}  // namespace
+
+Word segment_at(const KnotBoardReader& board, const Head& head, core::Time t) noexcept {
+  Word low = head.first;
+  Word high = head.newest;
+  while (low < high) {
+    const Word middle = high - (high - low) / 2;
+    if (board.time_hint(middle) <= t) {
+      low = middle;
+    } else {
+      high = middle - 1;
+    }
+  }
+  return low;
+}
+
+CurveCut::CurveCut(KnotBoardWriter& board, const KnotBoardReader& published,
+                   core::DimensionKinds kinds)
+    : board_(&board),
+      published_(&published),
+      kinds_(std::move(kinds)),
+      segment_(published.dimensions(), published.smooths()),
+      state_(published.dimensions()),
+      position_(published.dimensions()) {}
+
+core::Instant CurveCut::state() const noexcept {
+  return {.time = time_,
+          .position = state_.position(),
+          .velocity = state_.velocity(),
+          .acceleration = state_.acceleration()};
+}
+
+bool CurveCut::read(Word number) noexcept {
+  return segment_.take(*published_, head_, number) == BoardSegment::Taken::whole &&
+         core::is_time_in_range(segment_.left());
+}
+
+bool CurveCut::find(const Head& head, core::Time t) noexcept {
+  head_ = head;
+  time_ = t;
+  cut_ = segment_at(*published_, head, t);
+  is_held_ = keeps_right_ = false;
+  if (!read(cut_)) return false;
+  evaluate_at_cut({segment_.left(), segment_.right(), segment_.order(), segment_.coefficients()}, t,
+                  state_);
+  next_ = cut_;
+  ends_ = t >= segment_.right();
+  if (cut_ == head.first && t <= segment_.left()) {  // nothing stands before it
+    cut_ = 0;
+    // It keeps its bits: readers are held there before it.
+    if (next_ == 1) {
+      std::ranges::copy(segment_.coefficients().first(state_.dimensions()),
+                        state_.ref().position.begin());
+    }
+  } else if (t == segment_.left()) {
+    // The segment before keeps their common knot; or that one has been cut already.
+    const auto before = segment_before(*published_, head, cut_);
+    if (!before || *before == 0 || !read(*before)) return false;
+    keeps_right_ = *before + 1 == cut_;
+    next_ = keeps_right_ ? cut_ + 1 : cut_;
+    cut_ = *before;
+  } else if (ends_) {
+    is_held_ = t > segment_.right();
+    next_ = cut_ + (is_held_ ? 2 : 1);
+  } else {
+    keeps_right_ = segment_.kind() != core::SegmentKind::hold;
+    next_ = cut_ + (keeps_right_ ? 2 : 1);
+  }
+  const core::StateRef state = state_.ref();
+  if (next_ > 1) kinds_.normalise_quaternions(state.position, state.velocity, state.acceleration);
+  return true;
+}
+
+std::span<const double> CurveCut::position_at(core::Time t) noexcept {
+  core::evaluate_derivative(segment_.order(), segment_.coefficients(),
+                            core::to_seconds(t - segment_.left()), 0, position_);
+  return position_;
+}
+
+void CurveCut::write() noexcept {
+  if (cut_ == 0) return;
+  if (is_held_) {
+    write_rest(cut_ + 1, SegmentForm::hold, segment_.right(), position_at(segment_.right()));
+  }
+  if (ends_) return;  // it ends as it is
+  if (keeps_right_ && cut_ < head_.newest) {
+    board_->write_form(cut_ + 1, SegmentForm::none, time_);
+  } else if (keeps_right_) {
+    // A stop: how long it would have taken stands at its right knot.
+    const core::Time end = segment_.natural_right();
+    write_rest(cut_ + 1, SegmentForm::none, end, position_at(end), time_);
+  }
+  board_->write_form(cut_, segment_.left_knot().note.form);
+}
+
+void CurveCut::write_rest(Word number, SegmentForm form, core::Time time,
+                          std::span<const double> position, core::Time begins) noexcept {
+  const auto zeros = std::span(kZeros).first(position.size());
+  board_->write(number, {.is_new = true,
+                         .note = {.form = form},
+                         .time = time,
+                         .begins = begins,
+                         .position = position,
+                         .velocity = zeros,
+                         .residual = published_->smooths() ? zeros : zeros.first(0)});
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,289 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/online/entry_search.hpp"
+#include "core/online/sliding_window.hpp"
+#include "ipc/board/knot_board.hpp"
+#include "ipc/solve/curve_cut.hpp"
+#include "ipc/solve/shown_motion.hpp"
+#include "splinecast/dimension_kind.hpp"
+
+namespace splinecast::ipc {
+
+/// How a published curve comes back to its target.
+struct EntryOptions {
+  bool is_live = false;     ///< else an entry is looked for once K newer waypoints are known
+  core::Time min_splice{};  ///< length of the shortest entry
+  core::Time notice{};      ///< how long before it settles a live stream's start is decided
+};
+
+/// The curve of one stream: the window that is being solved, which is the *target*, and the board
+/// that knots are published on. Knows neither ring nor clock; what a waypoint must be like is
+/// checked before.
+///
+/// The published curve is the target, but where an *entry* leads from elsewhere onto it: after the
+/// newest knot had settled before its successor came, after a cut, and where a stream starts in
+/// motion. Waypoints before the end of an entry are knots of the target that the curve passes over:
+/// they lie in slots of their own, for a solver that takes over. While no entry is found the curve
+/// that is published stays, which ends at rest. An entry that ends at a waypoint is final once it
+/// has begun; one that ends beyond the newest waypoint is made again when a newer one comes.
+///
+/// Knots lie on the board under consecutive numbers, run after run: `Head::run` is the first knot
+/// of a run, its first waypoint or the state that it was entered from. The board is the only memory
+/// of what came before: a solver that takes over, and one that has discarded a revision, both go on
+/// from what has been committed.
+///
+/// Allocates when made only; one thread uses it.
+class PublishedCurve {
+ public:
+  /// Candidates that are built and compared with the limits in one step: bounds how long it takes.
+  static constexpr int kTriesPerStep = 4;
+  /// Knots that a stop may add.
+  static constexpr std::size_t kAddedByStop = 2;
+
+  /// Both are sides of one board, and outlive the curve. Throws std::invalid_argument for window
+  /// options out of range.
+  PublishedCurve(KnotBoardWriter& board, const KnotBoardReader& published,
+                 const core::WindowOptions& options, core::DimensionKinds kinds,
+                 const EntryOptions& entries);
+
+  /// Whether what was read back from the board was nothing that this class had written: then the
+  /// curve is of no more use.
+  [[nodiscard]] bool is_damaged() const noexcept { return is_damaged_; }
+
+  /// Goes on from what has been committed, of which `head` is the head. O(K·D).
+  void restore(const Head& head) noexcept;
+
+  /// Prefetches the memory outside this object that the next append touches.
+  void prefetch() const noexcept;
+
+  [[nodiscard]] const core::SlidingWindow& window() const noexcept { return window_; }
+  [[nodiscard]] const core::DimensionKinds& kinds() const noexcept { return kinds_; }
+  [[nodiscard]] Course course() const noexcept { return course_; }
+
+  /// The position that the next waypoint is to be near: of the newest waypoint of the run, or of
+  /// the state that it was entered from; empty if there is none.
+  [[nodiscard]] std::span<const double> newest_position() const noexcept;
+
+  /// Whether anything has been changed since the last commit.
+  [[nodiscard]] bool has_changes() const noexcept { return has_changes_; }
+
+  /// Whether there is a curve.
+  [[nodiscard]] bool has_begun() const noexcept { return newest_ > 0 || has_changes_; }
+
+  /// The time that the next waypoint must be later than: of the newest knot of the run, or the one
+  /// from which the run was entered. There must be a run.
+  [[nodiscard]] core::Time newest_time() const noexcept;
+
+  /// The time before which no append changes the run: of the first knot that has not converged.
+  [[nodiscard]] core::Time settled_until() const noexcept;
+
+  /// Whether the run is a stop from a given state, and no waypoint has come since.
+  [[nodiscard]] bool is_stop() const noexcept {
+    return course_ == Course::waiting && window_.knots() == 0;
+  }
+
+  /// When a live stream's start has to be decided, before it settles; max() if nothing is to be.
+  [[nodiscard]] core::Time start_decision() const noexcept {
+    return is_start_open() ? window_.time(0) - entries_.notice : core::Time::max();
+  }
+
+  /// When the curve has come to rest.
+  [[nodiscard]] core::Time end_of_motion() const noexcept { return end_; }
+
+  /// Keeps everything up to the right end of the segment that contains t as it has been committed.
+  /// Where the newest knot has settled, an entry becomes necessary.
+  void freeze(core::Time t) noexcept;
+
+  /// Whether the board can take so many more knots without losing a segment that ends after `keep`;
+  /// likewise where the committed curve is cut at t first.
+  [[nodiscard]] bool has_room(std::size_t knots, core::Time keep) const noexcept;
+  [[nodiscard]] bool has_room_to_cut(core::Time t, std::size_t knots,
+                                     core::Time keep) const noexcept;
+
+  /// Begins the curve in a given state, instead of with a waypoint.
+  void begin(const core::Instant& state) noexcept;
+
+  /// The first time at which the committed curve can be cut: where it begins; min() if it is held
+  /// before, max() if there is none.
+  [[nodiscard]] core::Time earliest_cut() const noexcept;
+
+  /// Cuts the committed curve at t, where there is one, and begins a run that goes on from there,
+  /// by an entry that does not end before t + `blend`. There must be no uncommitted changes.
+  /// Changes nothing if the board is damaged.
+  void begin_run(core::Time t, core::Time blend) noexcept;
+
+  /// The first segment that would be beyond a limit with this waypoint, and would not be so
+  /// without, where it is farthest beyond; of the segments that it changes, as far as the curve may
+  /// come to follow them. Without limits O(1), else O(K·D). Changes nothing of the curve.
+  [[nodiscard]] std::optional<LimitExcess> excess_with(const core::Waypoint& waypoint) noexcept {
+    return has_limits_ && window_.knots() > 0 ? find_excess(waypoint) : std::nullopt;
+  }
+
+  /// Appends a waypoint to the run: the ring's item of this number.
+  void append(const core::Waypoint& waypoint, Word item) noexcept;
+
+  /// Looks for an entry if one is needed, from `settled` on or from where the open one will begin.
+  /// `tries` is counted down: see kTriesPerStep. `is_last`: no waypoint waits, so that those that
+  /// are known decide.
+  /// Segments that end after `keep` are not lost by it.
+  void plan(core::Time settled, core::Time keep, bool is_last, int& tries) noexcept {
+    if (is_searching_ || window_.options().held_before_start) {
+      look_for_entry(settled, keep, is_last, tries);
+    }
+  }
+
+  /// Whether an entry is still being looked for: a step is of use without a new waypoint.
+  [[nodiscard]] bool is_planning() const noexcept {
+    return is_searching_ && !is_ending_ && !ends_there_ && !window_.finished();
+  }
+
+  /// Ends the curve at its newest knot with a condition. Where the published curve does not lead
+  /// there, an entry does, from `settled` on, at the knot's time or as late as it takes. Returns
+  /// false if no such entry has been found yet: then nothing has changed.
+  /// Segments that end after `keep` are not lost by it.
+  [[nodiscard]] bool finish(const core::Condition& end, core::Time settled, core::Time keep,
+                            int& tries) noexcept;
+
+  /// Writes what has been changed to the board, and to `head` all that it says of the curve.
+  void write(Head& head) noexcept;
+
+  /// After the commit of that head.
+  void committed(const Head& head) noexcept;
+
+ private:
+  /// The state from which an entry, or the stop of a run without waypoints, begins.
+  struct Origin {
+    Word number = 0;  ///< of its knot; 0: none stands at the end of the curve
+    core::Time time{};
+    bool is_new = false;  ///< the board does not hold it yet
+  };
+
+  /// Number of knot i ≥ met_ of the run.
+  [[nodiscard]] Word number_of(std::size_t knot) const noexcept {
+    return met_number_ + knot - met_;
+  }
+  /// Whether the published curve ends with a piece of the target.
+  [[nodiscard]] bool is_on_line() const noexcept {
+    return course_ == Course::on_target || course_ == Course::entering;
+  }
+  [[nodiscard]] bool has_room_behind(Word number, std::size_t knots,
+                                     core::Time keep) const noexcept;
+  [[nodiscard]] bool has_room_to_enter(core::Time keep) const noexcept;
+  [[nodiscard]] core::Instant origin_state() const noexcept;
+  void set_origin(Word number, const core::Instant& state) noexcept;
+  void wait_for_entry() noexcept;
+  [[nodiscard]] bool is_start_open() const noexcept;
+  void check_start() noexcept;
+  void restart_search() noexcept;
+  void find_shown() noexcept;
+  [[nodiscard]] bool needs_entry() const noexcept;
+  [[nodiscard]] bool find_state(core::Time settled) noexcept;
+  [[nodiscard]] bool prepare(core::Time settled) noexcept;
+  [[nodiscard]] core::EntryRules entry_rules() const noexcept;
+  [[nodiscard]] std::size_t first_compared() const noexcept;
+  [[nodiscard]] std::span<const core::Knot> knots_to_go_on() noexcept;
+  void look_for_entry(core::Time settled, core::Time keep, bool is_last, int& tries) noexcept;
+  [[nodiscard]] std::optional<LimitExcess> find_excess(const core::Waypoint& waypoint) noexcept;
+  void enter() noexcept;
+  void enter_before_end() noexcept;
+  void note_change(core::Time from) noexcept;
+  void keep_settled() noexcept;
+  void write_origin() noexcept;
+  void write_beyond() noexcept;
+  void write_ending() noexcept;
+  void write_passed(std::size_t first, std::size_t end) noexcept;
+  void write_unmet(std::size_t end) noexcept;
+  [[nodiscard]] std::size_t plain_knots() const noexcept;
+  void write_knots(std::size_t first, std::size_t end) noexcept;
+  void write_knot(std::size_t i) noexcept;
+  void give_row(std::size_t i, const core::Knot& knot, KnotRecord& record) const noexcept;
+  void write_course(Head& head) noexcept;
+  [[nodiscard]] std::size_t passed_over() const noexcept;
+  void restore_course() noexcept;
+  void restore_run() noexcept;
+  void restore_origin() noexcept;
+  [[nodiscard]] bool restore_beyond(Word& number) noexcept;
+  [[nodiscard]] bool read_knot(Word number) noexcept;
+  [[nodiscard]] bool find_knot(std::size_t i, Word& line) noexcept;
+  [[nodiscard]] core::Knot restore_knot(std::span<double> values) noexcept;
+  /// The oldest knot that the window still has whole.
+  [[nodiscard]] std::size_t passed_first() const noexcept {
+    return window_.knots() - std::min(window_.knots(), window_.knots_to_restore());
+  }
+
+  /// Knots before those that an entry passes over which a window needs to go on: what a row and a
+  /// slope look back at.
+  static constexpr std::size_t kMetKept = core::kMaxReach + 3;
+
+  /// Values of a knot that a window is restored from: waypoint, g, position, velocity, acceleration
+  /// and residual of D each.
+  static constexpr std::size_t kKnotValues = 6;
+
+  KnotBoardWriter* board_;
+  const KnotBoardReader* published_;
+  core::SlidingWindow window_;
+  core::SlidingWindow trial_;  ///< scratch: the window with one more waypoint
+  core::DimensionKinds kinds_;
+  EntryOptions entries_;
+  std::size_t look_ahead_;  ///< how many rows before the newest knot an append may change
+  bool has_plain_knots_;    ///< the method changes the velocities of knots and no more
+  bool has_limits_;
+  Head head_;  ///< last committed
+  CurveCut cut_;
+  core::EntrySearch search_;
+  ShownMotion shown_;
+  ShownMotion committed_shown_;  ///< before a cut that has not been committed
+  bool has_forgotten_ = false;   ///< there is such a cut
+  bool knows_shown_ = false;     ///< shown_ holds what the board does
+  BoardSegment read_;            ///< scratch
+  KnotCopy knot_;                ///< scratch
+  std::vector<core::Knot> knots_;
+  std::vector<double> knot_values_;
+  std::vector<double> values_;  ///< scratch
+  core::Segment segment_;       ///< scratch
+  Word run_ = 1;
+  Word run_item_ = 0;  ///< item of the run's first waypoint, plus 1
+  Word first_ = 0;
+  Word newest_ = 0;
+  core::Time end_{};
+  core::Time stop_{};  ///< length of the stop, if the newest segment is one
+  core::Time changed_from_ = core::Time::max();
+  std::size_t kept_ = 0;  ///< leading knots of the run that nothing has changed since the commit
+  std::size_t open_ = 0;  ///< leading knots of the run that are written for good
+
+  Course course_ = Course::on_target;
+  std::size_t met_ = 0;            ///< first knot of the run in the last piece of the target
+  Word met_number_ = 1;            ///< its number
+  std::size_t unmet_ = 0;          ///< first knot of the run that the open entry passes over
+  std::size_t passed_lowest_ = 0;  ///< first knot in the slots of passed ones: the same, or, where
+                                   ///< a stream starts by an entry, the one before
+  std::size_t placed_ =
+      0;  ///< leading knots of the run that the numbered slots hold, if on the line
+  std::size_t passed_written_ = 0;    ///< leading knots of the run that the slots of passed ones
+  std::size_t passed_committed_ = 0;  ///< hold or held, and those committed of them
+  Word passed_before_ = 0;            ///< waypoints passed over by entries that are over
+  Origin origin_;
+  core::State origin_state_;
+  core::Time blend_until_ = core::Time::min();  ///< no entry of the run ends before
+  core::Time entry_end_{};                      ///< of one that ends at a waypoint
+  core::State beyond_;                          ///< end of an entry beyond the newest waypoint
+  BehindEntry behind_;
+  Word known_ = 0;              ///< of an entry beyond the newest waypoint: how many the run had
+  bool ends_at_known_ = false;  ///< at the newest waypoint that it knew, which is not met yet
+  bool is_entry_new_ = false;   ///< the entry has not been written
+  bool is_prepared_ = false;    ///< this step has found what a search begins with
+  bool uses_cut_ = false;       ///< that is cut_, else the origin
+  bool is_searching_ = false;
+  bool seeks_end_ = false;           ///< the search is for an entry that ends the curve
+  bool is_ending_ = false;           ///< the curve ends by an entry to `beyond_`
+  std::size_t committed_knots_ = 0;  ///< waypoints of the run, as committed
+  bool ends_there_ = false;          ///< the curve rests at the last waypoint
+  bool has_changes_ = false;
+  bool is_damaged_ = false;
+};
+
+}  // namespace splinecast::ipc

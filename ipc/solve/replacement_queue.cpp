@@ -1,0 +1,40 @@
+#include "ipc/solve/replacement_queue.hpp"
+
+#include <algorithm>
+
+namespace splinecast::ipc {
+
+ReplacementQueue::ReplacementQueue(const WaypointRingReader& ring) : ring_(&ring) {
+  items_.reserve(2 * ring.capacity());
+}
+
+void ReplacementQueue::note(Word consumed, Word available) noexcept {
+  while (first_ < items_.size() && items_[first_] < consumed) ++first_;
+  if (2 * first_ >= items_.size()) {  // moves no more than it forgets
+    items_.erase(items_.begin(), items_.begin() + static_cast<std::ptrdiff_t>(first_));
+    first_ = 0;
+  }
+  noted_ = std::max(noted_, consumed);
+  for (; noted_ < available; ++noted_) {
+    if (ring_->kind(noted_) == ItemKind::replace) items_.push_back(noted_);
+  }
+}
+
+std::optional<Word> ReplacementQueue::due(core::Time settled_until,
+                                          core::Time newest) const noexcept {
+  std::optional<Word> found;
+  core::Time earliest = core::Time::max();
+  for (std::size_t i = first_; i < items_.size(); ++i) {
+    const core::Time t = ring_->time(items_[i]);
+    const bool is_stop = ring_->is_stop(items_[i]);
+    const bool applies =
+        is_stop ? t <= std::max(newest, settled_until) : t >= settled_until && t <= newest;
+    const core::Time effect = std::max(t, settled_until);
+    if (!applies || effect > earliest) continue;
+    earliest = effect;
+    found = items_[i];
+  }
+  return found;
+}
+
+}  // namespace splinecast::ipc

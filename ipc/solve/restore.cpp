@@ -1,0 +1,247 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/solve/published_curve.hpp"
+
+/// How a published curve is taken up again from the board.
+namespace splinecast::ipc {
+namespace {
+
+using core::SegmentForm;
+
+bool are_numbers(std::span<const double> values) noexcept {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+/// Whether a knot that was read back can be gone on from.
+bool is_sound(const core::Knot& knot) noexcept {
+  const core::Prefix& prefix = knot.prefix;
+  return core::is_time_in_range(knot.time) &&
+         are_numbers(std::array{prefix.gamma, prefix.smoothing.pivot, prefix.smoothing.lower1,
+                                prefix.smoothing.lower2}) &&
+         are_numbers(knot.waypoint) && are_numbers(knot.g) && are_numbers(knot.position) &&
+         are_numbers(knot.velocity) && are_numbers(knot.acceleration) && are_numbers(knot.residual);
+}
+
+/// Whether what a head says of its run, which goes on, can be.
+bool describes_a_run(const Head& head) noexcept {
+  if (head.course >= kCourses) return false;
+  if (head.newest == 0) return head.run_knots == 0 && !head.is_later_run;
+  const bool is_on_line = static_cast<Course>(head.course) == Course::on_target ||
+                          static_cast<Course>(head.course) == Course::entering;
+  const bool has_piece = !is_on_line || (head.met < head.run_knots &&
+                                         head.run_knots - head.met <= head.newest - head.run + 1);
+  return head.run >= 1 && head.run <= head.newest && head.unmet <= head.run_knots &&
+         head.met <= head.run_knots && has_piece && head.run_knots < Word{1} << 62U;
+}
+
+}  // namespace
+
+void PublishedCurve::restore(const Head& head) noexcept {
+  has_changes_ = false;
+  is_entry_new_ = is_searching_ = is_ending_ = seeks_end_ = ends_there_ = is_prepared_ = false;
+  knows_shown_ = knows_shown_ || head.revision == 0;
+  changed_from_ = core::Time::max();
+  blend_until_ = head.blend_until;
+  head_ = head;
+  run_ = head.run;
+  run_item_ = head.run_item;
+  first_ = head.first;
+  newest_ = head.newest;
+  stop_ = head.stop;
+  end_ = {};
+  course_ = Course::on_target;
+  met_ = unmet_ = placed_ = passed_written_ = passed_committed_ = 0;
+  met_number_ = 1;
+  passed_before_ = 0;
+  origin_ = {};
+  committed_knots_ = head.run_knots;
+  is_damaged_ = ends_at_known_ = false;
+  if (newest_ > 0) {
+    is_damaged_ = !read_.take_last(*published_, head_);
+    end_ = read_.right();
+  }
+  if (!head.finished && !is_damaged_) restore_run();
+  if (has_forgotten_) shown_ = committed_shown_;
+  has_forgotten_ = false;
+  shown_.forget_after(window_.knots() > 0 ? newest_time() : origin_.time);
+  keep_settled();
+}
+
+bool PublishedCurve::read_knot(Word number) noexcept {
+  const bool is_there = published_->copy_knot(number, board_->revision(), knot_);
+  is_damaged_ = is_damaged_ || !is_there;
+  return is_there;
+}
+
+/// The knot that has been read, as the window had it; `values` is where its spans lie. Invalid data
+/// leaves the curve damaged.
+core::Knot PublishedCurve::restore_knot(std::span<double> values) noexcept {
+  const std::size_t dimensions = window_.dimensions();
+  std::size_t used = 0;
+  const auto place = [&] {
+    const auto part = values.subspan(used, dimensions);
+    used += dimensions;
+    return part;
+  };
+  const auto keep = [&](std::span<const double> from) {
+    const auto part = place();
+    std::ranges::copy(from, part.begin());
+    return part.first(from.size());
+  };
+  const auto g = place();
+  const core::Prefix prefix = published_->copy_row(knot_, g);
+  const auto position = place();
+  core::write_position(knot_.end(), position);
+  const core::Knot knot{.time = knot_.time,
+                        .prefix = prefix,
+                        .newer_knots = knot_.note.newer_knots,
+                        .waypoint = keep(knot_.waypoint()),
+                        .g = g,
+                        .position = position,
+                        .velocity = keep(knot_.velocity()),
+                        .acceleration = keep(knot_.acceleration()),
+                        .residual = keep(knot_.residual())};
+  is_damaged_ = is_damaged_ || !is_sound(knot);
+  return knot;
+}
+
+/// Reads knot i of the run: the last waypoint at or before `line` in the numbered slots at which a
+/// segment begins, or, if it has been passed over, the one in its own slot. The knots behind it
+/// have been read. One that lies in both was passed over first and met later, or is one of the last
+/// that were met, whose row has changed since: the later record counts, or, of one revision, its
+/// own slot, as a cut writes the form of a numbered one again.
+bool PublishedCurve::find_knot(std::size_t i, Word& line) noexcept {
+  const Word oldest = std::max(run_, first_);
+  const auto find_on_line = [&] {
+    for (; line >= oldest && line > 0; --line) {
+      if (!read_knot(line)) return false;
+      if (knot_.note.is_waypoint && knot_.note.form != SegmentForm::none) return true;
+    }
+    return false;
+  };
+  const Word item = run_item_ << kPassedItemShift | i;
+  const bool is_passed = published_->copy_passed(i, board_->revision(), knot_) &&
+                         knot_.item == item && knot_.note.is_waypoint;
+  const core::Time time = knot_.time;
+  const Word revision = revision_of(knot_.tag);
+  const bool is_on_line = find_on_line() && !(is_passed && knot_.time < time);
+  if (is_damaged_) return false;
+  if (is_on_line) --line;
+  if (is_passed && (!is_on_line || revision_of(knot_.tag) <= revision)) {
+    return published_->copy_passed(i, board_->revision(), knot_);
+  }
+  return is_on_line;
+}
+
+void PublishedCurve::restore_course() noexcept {
+  course_ = static_cast<Course>(head_.course);
+  met_ = head_.met;
+  unmet_ = head_.unmet;
+  const std::size_t knots = head_.run_knots;
+  if (is_on_line()) {
+    placed_ = knots;
+    met_number_ = knots > 0 ? newest_ - (knots - std::min(knots, met_ + 1)) : 1;
+    passed_written_ = passed_committed_ = met_;
+  } else {
+    met_ = placed_ = passed_written_ = passed_committed_ = knots;
+    if (knots == unmet_) passed_written_ = passed_committed_ = knots - std::min(knots, kMetKept);
+  }
+  const std::size_t end = is_on_line() ? met_ : knots;
+  const Word open = end - std::min(end, unmet_);
+  passed_before_ = head_.passed_over - std::min(head_.passed_over, open);
+  restore_origin();
+  passed_lowest_ =
+      !head_.is_later_run && origin_.number == 1 ? 0 : unmet_ - std::min(unmet_, kMetKept);
+}
+
+/// Finds the knot of the state that the open entry begins in.
+void PublishedCurve::restore_origin() noexcept {
+  if (newest_ == 0 || course_ == Course::on_target) return;
+  Word number = newest_;
+  if (course_ == Course::entering) {
+    number = met_number_ - 1;
+  } else {
+    if (!read_knot(number)) return;
+    if (knot_.note.is_waypoint) return;  // the stop behind the newest knot that was met
+    if (course_ == Course::beyond && !restore_beyond(number)) return;
+  }
+  if (course_ == Course::entering && number < first_) {
+    // The entry has left the board: it is over.
+    passed_before_ += passed_over();
+    course_ = Course::on_target;
+    unmet_ = met_;
+    return;
+  }
+  if (number < run_ || !read_knot(number)) {
+    is_damaged_ = true;
+    return;
+  }
+  const core::Knot state = restore_knot(knot_values_);
+  is_damaged_ = is_damaged_ || knot_.note.is_waypoint || state.acceleration.empty();
+  if (is_damaged_) return;
+  set_origin(number, {state.time, state.position, state.velocity, state.acceleration});
+  origin_.is_new = false;
+  if (course_ != Course::entering || !read_knot(met_number_)) return;
+  is_damaged_ = is_damaged_ || !knot_.note.arrives;
+  entry_end_ = knot_.time;
+  std::ranges::copy(knot_.acceleration(), beyond_.ref().acceleration.begin());
+}
+
+/// Takes up the end of an entry beyond the newest waypoint. `number` is that of the newest knot,
+/// which has been read, and becomes that of the entry's beginning.
+bool PublishedCurve::restore_beyond(Word& number) noexcept {
+  if (!knot_.note.arrives && (number < 2 || !read_knot(--number))) return false;
+  is_damaged_ = is_damaged_ || !knot_.note.arrives || number < 2;
+  behind_ = {.end = knot_.time};
+  const core::StateRef to = beyond_.ref();
+  std::ranges::copy(knot_.waypoint(), to.position.begin());
+  std::ranges::copy(knot_.velocity(), to.velocity.begin());
+  if (knot_.note.arrives) std::ranges::copy(knot_.acceleration(), to.acceleration.begin());
+  known_ = std::min<Word>(knot_.item, head_.run_knots);
+  --number;
+  ends_at_known_ =
+      known_ > unmet_ && published_->copy_passed(known_ - 1, board_->revision(), knot_) &&
+      knot_.item == (run_item_ << kPassedItemShift | (known_ - 1)) && knot_.time == behind_.end;
+  return !is_damaged_;
+}
+
+void PublishedCurve::restore_run() noexcept {
+  if (!describes_a_run(head_)) {
+    is_damaged_ = true;
+    return;
+  }
+  restore_course();
+  const std::size_t size = kKnotValues * window_.dimensions();
+  const std::size_t end = knots_.size();
+  const std::size_t most = std::min<std::size_t>(head_.run_knots, end);
+  std::size_t count = 0;
+  for (Word line = newest_; count < most && !is_damaged_; ++count) {
+    const std::size_t i = head_.run_knots - 1 - count;
+    const bool is_there = find_knot(i, line);
+    // Those that the open entry does not need may have left the board.
+    if (!is_there && !is_damaged_ && i + kMetKept < unmet_) break;
+    is_damaged_ = is_damaged_ || !is_there;
+    if (is_damaged_) return;
+    const std::size_t k = end - 1 - count;
+    knots_[k] = restore_knot(std::span(knot_values_).subspan(size * k, size));
+    is_damaged_ = is_damaged_ || (count > 0 && knots_[k].time >= knots_[k + 1].time);
+  }
+  if (is_damaged_) return;
+  const std::size_t first = head_.run_knots - count;
+  const auto knots = std::span(knots_).last(count);
+  if (!head_.is_later_run) {
+    window_.restore(first, knots);
+  } else {
+    window_.restore_run(first, knots);
+  }
+  window_.freeze_knots(head_.run_frozen);
+  const bool is_open = course_ == Course::waiting || course_ == Course::beyond;
+  is_searching_ = is_open && window_.knots() > (course_ == Course::beyond ? known_ : unmet_);
+  restart_search();
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,430 @@
+#include "ipc/solve/stream_solver.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "splinecast/errors.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+/// Most items of one revision: bounds how long a step takes.
+constexpr std::size_t kMaxBatch = 256;
+
+/// Knots that a revision may write besides one per item: the open ones, the one before them, those
+/// at a cut, and those of a way back.
+constexpr std::size_t changed_besides(std::size_t settle) noexcept { return settle + 6; }
+
+/// On a recorded stream, which needs no clock to begin with, one step in so many is timed.
+constexpr Word kTimedEvery = 16;
+
+/// Knots that one item may add: those at a cut, its own, and those of a way back; and, as a stop
+/// does not wait for room, those of a stop behind it.
+constexpr std::size_t kAddedByItem = 4 + PublishedCurve::kAddedByStop;
+
+}  // namespace
+
+std::size_t StreamSolver::min_capacity(std::size_t settle) noexcept {
+  return 2 * changed_besides(settle) + 2;
+}
+
+StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& board,
+                           const KnotBoardReader& published, const core::WindowOptions& window,
+                           const IngestLimits& limits, core::DimensionKinds kinds,
+                           const std::optional<LiveOptions>& live, core::Beyond beyond)
+    : ring_(&ring),
+      board_(&board),
+      published_(&published),
+      limits_(limits),
+      live_(live),
+      beyond_(beyond),
+      curve_(board, published, window, std::move(kinds),
+             {.is_live = live.has_value(),
+              .min_splice = live ? live->min_splice : core::Time::zero(),
+              .notice = live ? live->freeze_ahead : core::Time::zero()}),
+      max_batch_(std::min(kMaxBatch, board.capacity() / 2 - changed_besides(window.settle))),
+      item_(ring.dimensions()),
+      replacements_(ring) {
+  if (board.capacity() < min_capacity(window.settle)) {
+    throw std::invalid_argument("a board of " + std::to_string(board.capacity()) +
+                                " knots is too small for settle lag " +
+                                std::to_string(window.settle));
+  }
+  end_.value.reserve(ring.dimensions());
+  most_items_ = max_batch_;
+  restore();
+  if (is_damaged() || board.revision() >= kLastRevision) {
+    throw BadRegion("the board holds no curve that a solver could go on with at its revision " +
+                    std::to_string(board.revision()));
+  }
+  // The last writer may have died between its commit and what follows it.
+  board_->store_tail(head_.consumed);
+  if (!live_ && curve_.has_begun() && !head_.finished) store_settled(curve_.settled_until());
+}
+
+void StreamSolver::restore() {
+  head_ = {};
+  const Look look = published_->look();
+  lacks_head_ = look.revision > 0 && !published_->copy_head(look, head_);  // nobody else writes
+  curve_.restore(head_);
+}
+
+core::Time StreamSolver::due() const noexcept {
+  if (live_ && (curve_.is_planning() || is_finish_postponed_)) return settled_at_;
+  const bool settles =
+      live_ && !head_.finished && head_.newest > 0 && head_.settled_until < curve_.end_of_motion();
+  const bool waits = live_ && seen_ != head_.consumed;
+  return settles || waits ? settled_at_ + live_->freeze_ahead / 2 : core::Time::max();
+}
+
+void StreamSolver::prefetch() const noexcept {
+  ring_->prefetch(head_.consumed);
+  curve_.prefetch();
+}
+
+SettledRaise StreamSolver::settled_raise() const noexcept {
+  const bool settles = live_ && !head_.finished && !head_.starved && head_.newest > 0;
+  const bool is_busy = curve_.is_planning() || curve_.course() == Course::waiting;
+  if (!settles || is_busy || seen_ != head_.consumed) return {};
+  const core::Time limit =
+      std::min({curve_.newest_time(), curve_.end_of_motion(), curve_.start_decision()});
+  return {board_->settled_word(), head_.settled_until, live_->freeze_ahead, limit};
+}
+
+StepResult StreamSolver::step(const Clock& clock) noexcept {
+  if (is_damaged()) return {.damaged = true};
+  if (live_) head_.settled_until = std::max(head_.settled_until, board_->take_up_settled());
+  is_timed_ = live_ || board_->revision() % kTimedEvery == 0;
+  if (is_timed_) started_ = clock.now();
+  const core::Time now = live_ ? started_ : core::Time::min();
+  if (live_ && !board_->is_checked()) check_commit(now);
+  // Each try takes half the items of the one before; the last try takes one item and refuses it.
+  constexpr int kMostTries = 12;
+  static_assert(kMaxBatch < 1U << (kMostTries - 2));
+  for (int i = 0; i < kMostTries; ++i) {
+    const StepResult result = make_revision(clock, now);
+    if (board_->is_sound()) return result;
+    suspect_items();
+    if (is_damaged()) return {.damaged = true};
+  }
+  return {};
+}
+
+/// Makes a revision of the next items and publishes it, unless it is unsound.
+StepResult StreamSolver::make_revision(const Clock& clock, core::Time now) noexcept {
+  freeze(now);
+  const Word consumed = consume(now);
+  if (is_damaged()) return {.damaged = true};
+  if (consumed > 0 || has_starved_ || curve_.has_changes()) return publish(clock, consumed);
+  if (!live_ || now < due()) return {};
+  settled_at_ = now;
+  // Nothing else has changed: one word says so, and readers keep what they have copied.
+  if (head_.newest > 0) store_settled(settled_until_);
+  return {};
+}
+
+void StreamSolver::store_settled(core::Time t) noexcept {
+  head_.settled_until = std::max(head_.settled_until, t);
+  board_->store_settled(head_.settled_until);
+}
+
+/// Drops a revision that was not committed.
+void StreamSolver::take_back(Word misses) noexcept {
+  board_->discard();
+  restore();
+  head_.misses = misses;
+  seen_ = head_.consumed;
+}
+
+/// Drops an unsound revision, and takes fewer items next: in the end the offending one alone.
+void StreamSolver::suspect_items() noexcept {
+  suspected_ = std::max(suspected_, head_.consumed);
+  if (batch_ > 1) {
+    most_items_ = std::min<Word>(batch_, max_batch_) / 2;
+  } else {
+    unsound_item_ = head_.consumed - 1;
+  }
+  take_back(head_.misses);
+}
+
+/// Fixes what this step leaves alone.
+void StreamSolver::freeze(core::Time now) noexcept {
+  settled_until_ = head_.settled_until;
+  has_starved_ = false;
+  if (!live_) return;
+  settled_until_ = std::max(settled_until_, now + live_->freeze_ahead);
+  if (!curve_.has_begun() || head_.finished) return;
+  curve_.freeze(settled_until_);
+  head_.low_water =
+      std::min(head_.low_water, std::max(core::Time::zero(), curve_.newest_time() - now));
+  if (head_.starved || !is_starved()) return;
+  has_starved_ = true;
+  head_.starved = true;
+  ++head_.underruns;
+}
+
+/// Whether nothing of the run may be changed any more, so that what follows must be spliced.
+bool StreamSolver::is_starved() const noexcept {
+  // What has not been committed has not settled: a first waypoint that comes in this step.
+  if (!live_ || head_.newest == 0) return false;
+  return curve_.window().knots() > 0 ? settled_until_ >= curve_.newest_time()
+                                     : settled_until_ > curve_.newest_time();
+}
+
+/// How far items can be taken if the ring's head is this: whatever it says, no further than a ring
+/// has items, and not back.
+Word StreamSolver::reachable(Word head) const noexcept {
+  const Word waiting = head - head_.consumed;
+  const bool goes_back = waiting > std::numeric_limits<Word>::max() / 2;
+  return head_.consumed + (goes_back ? 0 : std::min<Word>(waiting, ring_->capacity()));
+}
+
+Word StreamSolver::consume(core::Time now) noexcept {
+  const Word head = ring_->head();
+  available_ = reachable(head);
+  const Word before = head_.consumed;
+  keep_ = live_ ? now - live_->history : core::Time::max();
+  withdraw();
+  bool is_blocked = false;
+  is_finish_postponed_ = false;
+  tries_ = PublishedCurve::kTriesPerStep;
+  batch_limit_ = most_items_;
+  for (batch_ = 0; head_.consumed < available_ && batch_ < batch_limit_ && !is_damaged();) {
+    ring_->copy(head_.consumed, item_);
+    is_blocked = !has_room();
+    if (is_blocked) break;
+    take(head_.consumed++);
+    if (is_finish_postponed_) {
+      --head_.consumed;
+      break;
+    }
+    ++batch_;
+    curve_.plan(settled_until_, keep_, false, tries_);
+    // The next waypoint would push one out of the window that may still be tried.
+    if (curve_.is_planning() && tries_ <= 0) break;
+  }
+  // No waypoint waits: those that are known decide.
+  if (is_blocked || head_.consumed == available_) {
+    curve_.plan(settled_until_, keep_, true, tries_);
+  }
+  const bool waits = is_blocked && !curve_.has_changes();
+  seen_ = waits || available_ == before ? head : head_.consumed;
+  return head_.consumed - before;
+}
+
+/// Whether the item at hand can be taken now: without losing what must be kept, and, as a
+/// replacement cuts what has been committed and nothing else, in this revision.
+bool StreamSolver::has_room() const noexcept {
+  if (item_.kind != ItemKind::replace) return curve_.has_room(kAddedByItem, keep_);
+  if (curve_.has_changes()) return false;
+  // A stop costs one segment of the history at most: it does not wait for room.
+  return is_stop() || !curve_.has_begun() ||
+         curve_.has_room_to_cut(item_.time, kAddedByItem, keep_);
+}
+
+/// Looks ahead for a replacement that is due and withdraws all that is queued before it: other
+/// replacements that are too late or lie ahead, and waypoints that the board may have no room for.
+/// Nothing is withdrawn for a replacement that has to wait for room itself: it may come too late.
+void StreamSolver::withdraw() noexcept {
+  if (!curve_.has_begun() || head_.finished) return;
+  replacements_.note(head_.consumed, available_);
+  if (replacements_.empty()) return;
+  const core::Time earliest = std::max(settled_until_, curve_.earliest_cut());
+  const auto replacement = replacements_.due(earliest, curve_.newest_time());
+  if (!replacement) return;
+  ring_->copy(*replacement, item_);
+  if (!has_room()) return;
+  head_.withdrawn += *replacement - head_.consumed;
+  head_.consumed = *replacement;
+}
+
+void StreamSolver::take(Word number) noexcept {
+  if (head_.finished) return refuse(number, Refusal::after_finish);
+  if (number == unsound_item_) {
+    return item_.kind == ItemKind::replace ? refuse_replacement(number, Refusal::not_finite)
+                                           : refuse(number, Refusal::not_finite);
+  }
+  switch (item_.kind) {
+    case ItemKind::waypoint:
+      return take_waypoint(number);
+    case ItemKind::replace:
+      return take_replacement(number);
+    case ItemKind::start_state:
+      return take_start_state(number);
+    case ItemKind::finish:
+      return take_finish(number);
+  }
+  refuse(number, Refusal::unknown_kind);
+}
+
+/// The producer has checked most of this; but what another process wrote is never trusted.
+std::optional<Refusal> StreamSolver::has_right_form(const core::Waypoint& waypoint) const noexcept {
+  if (!is_finite(waypoint)) return Refusal::not_finite;
+  if (!curve_.kinds().takes(waypoint.position)) return Refusal::zero_quaternion;
+  if (!curve_.window().takes(waypoint)) return Refusal::lacks_derivatives;
+  if (!core::is_time_in_range(waypoint.time)) return Refusal::too_far_apart;
+  return std::nullopt;
+}
+
+std::optional<Refusal> StreamSolver::judge_time(core::Time time) const noexcept {
+  if (!curve_.has_begun()) {
+    if (live_ && time < settled_until_) return Refusal::past;
+    return std::nullopt;
+  }
+  const core::Time newest = curve_.newest_time();
+  const core::Time earliest = is_starved() ? settled_until_ : newest;
+  const auto status = judge_interval(time - newest, limits_);
+  if (status == AppendStatus::too_far_apart && time - earliest > limits_.max_interval) {
+    return Refusal::too_far_apart;
+  }
+  if (status != AppendStatus::accepted && status != AppendStatus::too_far_apart) {
+    return to_refusal(status);
+  }
+  if (is_starved() && time < settled_until_ - kMostLate) return Refusal::past;
+  return curve_.window().lag_suffices(time) ? std::nullopt : std::optional(Refusal::lag_too_short);
+}
+
+void StreamSolver::take_waypoint(Word number) noexcept {
+  const core::Waypoint waypoint = item_.waypoint();
+  if (const auto refusal = has_right_form(waypoint)) return refuse(number, *refusal);
+  if (const auto refusal = judge_time(waypoint.time)) return refuse(number, *refusal);
+  if (!curve_.kinds().all_linear()) {
+    // What `waypoint` looks at.
+    curve_.kinds().continue_from(curve_.newest_position(), item_.waypoint_values());
+    if (!is_finite(waypoint)) return refuse(number, Refusal::not_finite);
+  }
+  if (!is_within_limits(waypoint, number)) return refuse(number, Refusal::beyond_limits);
+  curve_.append(waypoint, number);
+  if (waypoint.time > settled_until_) head_.starved = false;
+  ++head_.knots;
+  head_.newest_knot = waypoint.time;
+}
+
+/// Notes where the curve passes a limit with a waypoint. Returns whether to take it all the same.
+bool StreamSolver::is_within_limits(const core::Waypoint& waypoint, Word number) noexcept {
+  auto excess = curve_.excess_with(waypoint);
+  if (!excess) return true;
+  excess->item = number;
+  excess->is_refused = beyond_ == core::Beyond::refuse;
+  board_->write_excess(head_.exceeding++, *excess);
+  return !excess->is_refused;
+}
+
+void StreamSolver::take_replacement(Word number) noexcept {
+  // A stop is never too late: it takes effect as soon as possible, in a revision of its own, which
+  // is committed sooner than a full batch.
+  const core::Time t =
+      is_stop() ? std::max({item_.time, settled_until_, curve_.earliest_cut()}) : item_.time;
+  const bool has_begun = curve_.has_begun();  // else there is nothing to replace
+  if (has_begun &&
+      (t < settled_until_ || !core::is_time_in_range(t) || t < curve_.earliest_cut())) {
+    return refuse_replacement(number, Refusal::too_late);
+  }
+  ++head_.controls;
+  // One revision, as far as the board has room.
+  const bool may_follow = number >= suspected_;
+  const Word followers = may_follow ? std::min<Word>(item_.count, board_->capacity() / 2) : 0;
+  batch_limit_ = is_stop() ? 0 : batch_limit_ + followers;
+  if (!has_begun) return;
+  // A stop behind another one changes nothing.
+  if (is_stop() && curve_.is_stop() && t >= curve_.newest_time()) return;
+  curve_.begin_run(t, std::clamp(item_.blend, core::Time::zero(), limits_.max_interval));
+  head_.starved = false;
+  head_.newest_knot = t;
+}
+
+/// Refuses a replacement, and in the same revision its waypoints, so that no other solver takes
+/// them for appended ones.
+void StreamSolver::refuse_replacement(Word number, Refusal reason) noexcept {
+  refuse(number, reason);
+  const Word end = head_.consumed + std::min<Word>(item_.count, available_ - head_.consumed);
+  while (head_.consumed < end) refuse(head_.consumed++, reason);
+}
+
+void StreamSolver::take_start_state(Word number) noexcept {
+  const core::Waypoint state = item_.waypoint();
+  if (curve_.has_begun()) return refuse(number, Refusal::already_started);
+  if (!is_finite(state)) return refuse(number, Refusal::not_finite);
+  if (!curve_.kinds().takes(state.position)) return refuse(number, Refusal::zero_quaternion);
+  if (state.velocity.empty() || state.acceleration.empty()) {
+    return refuse(number, Refusal::lacks_derivatives);
+  }
+  if (!core::is_time_in_range(state.time)) return refuse(number, Refusal::too_far_apart);
+  if (live_ && state.time < settled_until_) return refuse(number, Refusal::past);
+  ++head_.controls;
+  curve_.begin({.time = state.time,
+                .position = state.position,
+                .velocity = state.velocity,
+                .acceleration = state.acceleration});
+  head_.newest_knot = state.time;
+}
+
+void StreamSolver::take_finish(Word number) noexcept {
+  end_.kind = item_.condition;
+  end_.value.clear();
+  const std::size_t dimensions = ring_->dimensions();
+  if (!core::is_online(item_.condition)) {
+    return refuse(number, Refusal::unknown_kind);
+  }
+  const bool is_velocity = item_.condition == core::ConditionKind::velocity;
+  if (is_velocity || item_.condition == core::ConditionKind::acceleration) {
+    const auto values =
+        std::span(item_.values).subspan((is_velocity ? 1 : 2) * dimensions, dimensions);
+    if (!is_finite(values)) return refuse(number, Refusal::not_finite);
+    end_.value.assign(values.begin(), values.end());
+  }
+  is_finish_postponed_ = curve_.has_begun() && !curve_.finish(end_, settled_until_, keep_, tries_);
+  if (is_finish_postponed_) return;
+  head_.finished = true;
+  ++head_.controls;
+}
+
+void StreamSolver::refuse(Word number, Refusal reason) noexcept {
+  board_->write_refusal(head_.refused++, {.item = number, .reason = reason});
+  ++head_.reasons[static_cast<std::size_t>(reason)];
+}
+
+/// A commit is late if the process was stopped between reading the clock and the commit; readers
+/// find out by changed_from. Stored at once: the next revision may be discarded, may never come, or
+/// may be another solver's.
+void StreamSolver::check_commit(core::Time now) noexcept {
+  const bool is_late = head_.changed_from <= now && head_.changed_from < core::Time::max();
+  if (is_late && !board_->is_late()) ++head_.revisions;
+  board_->store_checked(is_late);
+}
+
+/// Up to where the curve that has been committed never changes.
+core::Time StreamSolver::settled_by_commit() const noexcept {
+  if (!live_) return curve_.settled_until();
+  // What is finished changes no more: it has settled to its end.
+  return head_.finished
+             ? std::min(std::max(settled_until_, curve_.end_of_motion()), core::kLatestTime)
+             : settled_until_;
+}
+
+StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
+  head_.changed_from = core::Time::max();
+  curve_.write(head_);
+  if (!board_->is_sound()) return {};
+  // Nothing is compared with the commit time of a recorded stream.
+  head_.committed = is_timed_ ? clock.now() : std::max(head_.committed, clock.about_now());
+  if (live_ && head_.changed_from <= head_.committed) {
+    take_back(head_.misses + 1);
+    return {.missed = true};
+  }
+  board_->commit(head_);
+  settled_at_ = started_;
+  if (head_.newest > 0) store_settled(settled_by_commit());
+  board_->store_tail(head_.consumed);
+  if (is_timed_) board_->count_step(head_.committed - started_);
+  curve_.committed(head_);
+  most_items_ = std::min<Word>(2 * most_items_, max_batch_);
+  const bool changes = head_.changed_from < core::Time::max();
+  if (live_) check_commit(changes ? clock.now() : head_.committed);
+  return {.consumed = consumed, .published = true};
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,241 @@
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "core/forms/stop.hpp"
+#include "ipc/solve/published_curve.hpp"
+
+/// How a published curve becomes knots on the board.
+namespace splinecast::ipc {
+namespace {
+
+using core::SegmentForm;
+
+constexpr std::array<double, core::kMaxDimensions> kZeros{};
+
+/// Knots of a run whose rows an append may change however far back its method looks.
+constexpr std::size_t kFirstKnots = 4;
+
+}  // namespace
+
+/// Writes the state that an entry begins in, or the stop of a run without an entry.
+void PublishedCurve::write_origin() noexcept {
+  const bool enters = course_ != Course::waiting || is_ending_;
+  const auto zeros = std::span(kZeros).first(published_->smooths() ? window_.dimensions() : 0);
+  const std::size_t known = course_ == Course::entering ? search_.end().known - 1 - met_ : 0;
+  board_->write(origin_.number, {.is_new = true,
+                                 .note = {.form = enters ? SegmentForm::splice : SegmentForm::stop,
+                                          .starts = true,
+                                          .newer_knots = static_cast<std::uint32_t>(known)},
+                                 .time = origin_.time,
+                                 .position = origin_state_.position(),
+                                 .velocity = origin_state_.velocity(),
+                                 .acceleration = origin_state_.acceleration(),
+                                 .residual = zeros,
+                                 .item = enters ? run_item_ : 0});
+  note_change(origin_.time);
+}
+
+/// Writes the end of an entry beyond the newest waypoint, and what follows it: the rest of the
+/// straight line and the stop, or the rest of that.
+void PublishedCurve::write_beyond() noexcept {
+  const auto zeros = std::span(kZeros).first(window_.dimensions());
+  const auto residual = zeros.first(published_->smooths() ? window_.dimensions() : 0);
+  const bool has_line = behind_.has_line();
+  KnotRecord record{.is_new = true,
+                    .note = {.form = has_line ? SegmentForm::cubic : SegmentForm::stop,
+                             .arrives = true,
+                             .starts = !has_line},
+                    .time = behind_.end,
+                    .begins = behind_.end,
+                    .position = beyond_.position(),
+                    .velocity = beyond_.velocity(),
+                    .acceleration = beyond_.acceleration(),
+                    .residual = residual,
+                    .item = known_};
+  board_->write(origin_.number + 1, record);
+  newest_ = origin_.number + 1;
+  if (has_line) {
+    behind_.write_line_end(beyond_.position(), beyond_.velocity(), values_);
+    record.note = {.form = SegmentForm::stop, .starts = true};
+    record.time = record.begins = behind_.line_end;
+    record.position = values_;
+    record.acceleration = zeros;
+    record.item = 0;
+    board_->write(++newest_, record);
+  }
+  stop_ = behind_.stop_length();
+  end_ = behind_.stop_begin() + stop_;
+}
+
+/// Writes the end of an entry that ends the curve.
+void PublishedCurve::write_ending() noexcept {
+  const auto zeros = std::span(kZeros).first(window_.dimensions());
+  newest_ = origin_.number + 1;
+  board_->write(newest_, {.is_new = true,
+                          .note = {.arrives = true},
+                          .time = behind_.end,
+                          .begins = behind_.end,
+                          .position = beyond_.position(),
+                          .velocity = zeros,
+                          .acceleration = zeros,
+                          .residual = zeros.first(published_->smooths() ? zeros.size() : 0)});
+  stop_ = core::Time::zero();
+  end_ = behind_.end;
+}
+
+/// An append changes rows as far back as its method looks, that of a run's first knots all of them.
+void PublishedCurve::give_row(std::size_t i, const core::Knot& knot,
+                              KnotRecord& record) const noexcept {
+  const std::size_t known = committed_knots_;
+  const std::size_t first_row = known <= kFirstKnots ? 0 : known - std::min(known, look_ahead_);
+  if (!record.is_new && i < first_row) return;
+  record.prefix = &knot.prefix;
+  record.g = knot.g;
+}
+
+/// Writes waypoints that the curve passes over, for a solver that takes over; and once more the
+/// last ones that it has met, whose rows change with the next.
+void PublishedCurve::write_passed(std::size_t first, std::size_t end) noexcept {
+  const auto zeros = std::span(kZeros).first(window_.dimensions());
+  for (std::size_t i = first; i < end; ++i) {
+    const core::Knot knot = window_.knot(i);
+    KnotRecord record{
+        .is_new = i >= passed_committed_,
+        .note = {.is_waypoint = true, .arrives = true, .newer_knots = knot.newer_knots},
+        .time = knot.time,
+        .position = knot.waypoint,
+        .velocity = knot.velocity,
+        .acceleration = knot.acceleration.empty() ? zeros : knot.acceleration,
+        .residual = knot.residual,
+        .item = run_item_ << kPassedItemShift | i};
+    give_row(i, knot, record);
+    board_->write_passed(i, record);
+  }
+  passed_written_ = std::max(passed_written_, end);
+}
+
+/// Writes the waypoints before `end` that the curve has not met, as far back as appends have
+/// changed them or their rows.
+void PublishedCurve::write_unmet(std::size_t end) noexcept {
+  const std::size_t knots = window_.knots();
+  const std::size_t solved = knots - std::min(knots, window_.options().settle);
+  const std::size_t changed = std::min(solved, committed_knots_);
+  const std::size_t first = std::min(changed - std::min(changed, look_ahead_), passed_written_);
+  write_passed(std::max({first, passed_first(), passed_lowest_}), end);
+}
+
+/// Of the knots before this one an append changes nothing but the velocity.
+std::size_t PublishedCurve::plain_knots() const noexcept {
+  const bool is_plain = has_plain_knots_ && !window_.finished() && committed_knots_ > kFirstKnots &&
+                        placed_ == committed_knots_;
+  return is_plain ? placed_ - look_ahead_ : 0;
+}
+
+/// Writes knots of the run as the window has them now, from `first` to the one before `end`.
+void PublishedCurve::write_knots(std::size_t first, std::size_t end) noexcept {
+  const std::size_t plain_end = std::min(plain_knots(), end);
+  // Of the first knot of a piece more than the velocity may have changed.
+  const std::size_t plain_first = std::max<std::size_t>(kept_, met_ + 1);
+  std::size_t i = first;
+  for (; i < std::min(plain_first, end); ++i) write_knot(i);
+  if (i < plain_end) note_change(window_.time(i - 1));
+  while (i < plain_end) {
+    const auto velocities = window_.velocities(i, plain_end - i);
+    board_->write_velocities(number_of(i), window_.newer_knots_seen(i), velocities);
+    i += velocities.count;
+  }
+  for (; i < end; ++i) write_knot(i);
+}
+
+/// Writes knot i of the run as the window has it now.
+void PublishedCurve::write_knot(std::size_t i) noexcept {
+  const core::Knot knot = window_.knot(i);
+  const bool is_newest = i + 1 == window_.knots();
+  const bool ends_entry = i == met_ && course_ == Course::entering;
+  KnotRecord record{.is_new = i >= placed_,
+                    .note = {.form = window_.form(i),
+                             .is_waypoint = true,
+                             .arrives = ends_entry || !knot.acceleration.empty(),
+                             .starts = !knot.acceleration.empty(),
+                             .newer_knots = knot.newer_knots},
+                    .time = knot.time,
+                    .begins = knot.time,
+                    .position = knot.waypoint,
+                    .velocity = knot.velocity,
+                    .acceleration = ends_entry ? beyond_.acceleration() : knot.acceleration,
+                    .residual = knot.residual};
+  if (record.note.form == SegmentForm::stop) {
+    // Where a segment arrives here with a given acceleration, the stop starts with the same one.
+    stop_ = window_.write_stop(values_);
+    end_ = knot.time + stop_;
+    record.note.starts = true;
+    if (!ends_entry) record.acceleration = values_;
+  }
+  give_row(i, knot, record);
+  board_->write(number_of(i), record);
+  const bool was_stop = i + 1 == placed_ && !is_newest;
+  if (i >= kept_) {
+    note_change(i > met_ ? window_.time(i - 1) : knot.time);
+  } else if (was_stop || window_.finished()) {
+    note_change(knot.time);
+  }
+}
+
+void PublishedCurve::write_course(Head& head) noexcept {
+  head.course = static_cast<Word>(course_);
+  head.met = met_;
+  head.unmet = unmet_;
+  head.blend_until = blend_until_;
+  head.passed_over = passed_before_ + passed_over();
+}
+
+void PublishedCurve::write(Head& head) noexcept {
+  head.changed_from = changed_from_;
+  changed_from_ = core::Time::max();
+  head.run_frozen = window_.frozen_knots();
+  write_course(head);
+  const std::size_t knots = window_.knots();
+  if (!has_changes_ || (knots == 0 && !window_.is_later_run())) return;
+  const bool writes_origin = origin_.number > 0 && (origin_.is_new || is_entry_new_);
+  if (writes_origin) write_origin();
+  if (is_ending_) {
+    write_ending();
+  } else if (is_on_line()) {
+    if (is_entry_new_) write_unmet(met_);
+    write_knots(std::max(open_, met_), knots);
+    newest_ = number_of(knots - 1);
+    if (window_.finished()) {
+      stop_ = core::Time::zero();
+      end_ = window_.time(knots - 1);
+    }
+  } else {
+    if (is_entry_new_) write_beyond();
+    if (writes_origin && course_ == Course::waiting) {
+      newest_ = origin_.number;
+      const core::WindowOptions& options = window_.options();
+      stop_ = core::stop_time_within(options.limits, options.stop_time, origin_state_.velocity(),
+                                     origin_state_.acceleration());
+      end_ = origin_.time + stop_;
+    }
+    if (knots > 0) write_unmet(knots);
+  }
+  head.changed_from = std::min(head.changed_from, changed_from_);
+  changed_from_ = core::Time::max();
+  // Never back: a replacement drops knots, but the slots that they took are not given back.
+  const Word kept = newest_ - std::min<Word>(newest_, board_->capacity()) + 1;
+  if (kept > first_) {
+    first_ = kept;
+    // A segment begins at the first knot: where none does, the one before has been lost.
+    if (first_ < newest_ && board_->form(first_) == SegmentForm::none) ++first_;
+  }
+  head.newest = newest_;
+  head.stop = stop_;
+  head.run = run_;
+  head.run_knots = knots;
+  head.run_item = run_item_;
+  head.is_later_run = window_.is_later_run();
+  head.first = first_;
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "ipc/memory/word.hpp"
+#include "ipc/ring/waypoint_ring.hpp"
+#include "splinecast/waypoint.hpp"
+
+namespace splinecast::ipc {
+
+/// What a stream was sent, item by item from its first one, and what the solver took of it.
+/// Allocates as it grows. One thread uses it.
+class SentItems {
+ public:
+  explicit SentItems(std::size_t dimensions) : dimensions_(dimensions) {}
+
+  [[nodiscard]] std::size_t dimensions() const noexcept { return dimensions_; }
+
+  /// Items so far; they are numbered from 0.
+  [[nodiscard]] Word size() const noexcept { return items_.size(); }
+
+  /// Adds the next item, with a copy of its values: of a start state all three, of a replacement
+  /// the time only.
+  void add(ItemKind kind, const core::Waypoint& values);
+
+  /// Notes that the solver refused an item: one of these, else nothing happens.
+  void refuse(Word item) noexcept;
+
+  [[nodiscard]] ItemKind kind(Word item) const noexcept { return items_[item].kind; }
+
+  /// Whether an item is of this kind and was not refused. O(1).
+  [[nodiscard]] bool is_taken(Word item, ItemKind kind) const noexcept {
+    return items_[item].kind == kind && !items_[item].is_refused;
+  }
+
+  /// The first item from `from` on that is of this kind and was not refused; none before `end`
+  /// gives nothing.
+  [[nodiscard]] std::optional<Word> find(ItemKind kind, Word from, Word end) const noexcept;
+
+  /// An item's values: a view, good until the next `add`.
+  [[nodiscard]] core::Waypoint waypoint(Word item) const noexcept;
+
+ private:
+  struct Item {
+    ItemKind kind;
+    bool is_refused = false;
+    bool has_velocity = false;
+    bool has_acceleration = false;
+    core::Time time{};
+    std::size_t values = 0;  ///< where its own begin
+  };
+  std::size_t dimensions_;
+  std::vector<Item> items_;
+  std::vector<double> values_;
+};
+
+}  // namespace splinecast::ipc

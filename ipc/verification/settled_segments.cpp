@@ -1,0 +1,65 @@
+#include "ipc/verification/settled_segments.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace splinecast::ipc {
+namespace {
+
+constexpr int kTries = 16;
+
+}  // namespace
+
+SettledSegments::SettledSegments(const KnotBoardReader& board, bool is_held_before_start)
+    : board_(&board),
+      is_held_before_start_(is_held_before_start),
+      copy_(board.dimensions(), board.smooths()),
+      start_(board.dimensions()),
+      end_(board.dimensions()) {}
+
+void SettledSegments::look() {
+  for (int attempt = 0; attempt < kTries; ++attempt) {
+    const Look look = board_->look();
+    if (look.revision == seen_.revision && look.settled_until == seen_.settled_until) return;
+    if (!take(look)) continue;
+    seen_ = look;
+    return;
+  }
+}
+
+/// Takes what has settled under a revision; false if the writer went on meanwhile.
+bool SettledSegments::take(const Look& look) {
+  if (!board_->copy_head(look, head_)) return false;
+  if (head_.newest == 0) return true;
+  Word number = std::max(segments_.empty() ? 1 : segments_.back().next, head_.first);
+  while (number <= head_.newest) {
+    const BoardSegment::Taken taken = copy_.take(*board_, head_, number);
+    if (taken == BoardSegment::Taken::torn) return false;
+    if (taken == BoardSegment::Taken::none) break;  // the end of a finished curve
+    if (!head_.finished && copy_.right() > head_.settled_until) break;
+    keep();
+    if (copy_.is_last(head_)) break;
+    number = copy_.next();
+  }
+  return true;
+}
+
+/// Keeps the segment that has been copied, with its acceleration step if the one before is known.
+void SettledSegments::keep() {
+  SegmentCopy segment;
+  copy_.copy_to(segment);
+  copy_.write_accelerations(start_, end_);
+  if (!segments_.empty() && segments_.back().next == segment.number) {
+    segment.acceleration_step.resize(start_.size());
+    for (std::size_t d = 0; d < start_.size(); ++d) {
+      segment.acceleration_step[d] = start_[d] - arrival_[d];
+    }
+  } else if (segment.number == 1) {
+    const bool is_held = is_held_before_start_ && segment.has_waypoint;
+    segment.acceleration_step = is_held ? start_ : std::vector<double>(start_.size());
+  }
+  arrival_ = end_;
+  segments_.push_back(std::move(segment));
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,318 @@
+#include "apps/process/signals.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "apps/process/exit_codes.hpp"
+#include "ipc/roles/stream_files.hpp"
+#include "splinecast/errors.hpp"
+#include "tests/apps/streams/life.hpp"
+
+/// A signal ends whatever runs: in order if it can, and if not, by force.
+namespace splinecast::apps {
+namespace {
+
+using testing::TestFolder;
+
+/// A process that catches signals and tells of them through a pipe, but does not end.
+class Stubborn {
+ public:
+  explicit Stubborn(const std::function<void()>& catch_signals) {
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+    pid_ = fork();
+    if (pid_ == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      catch_signals();
+      (void)!write(ends[1], "r", 1);
+      while (!stop_requested()) poll_a_while();
+      const unsigned left = alarm(0);
+      alarm(left);
+      (void)!write(ends[1], left > 0 ? "a" : "s", 1);
+      for (;;) poll_a_while();
+    }
+    close(ends[1]);
+    pipe_ = ends[0];
+  }
+  Stubborn(const Stubborn&) = delete;
+  Stubborn& operator=(const Stubborn&) = delete;
+  ~Stubborn() {
+    close(pipe_);
+    if (pid_ <= 0) return;
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+
+  /// What it says next: `r` it catches signals, then `a` or `s`: it has got one, with an alarm or
+  /// without.
+  [[nodiscard]] char next() const {
+    char said = 0;
+    return read(pipe_, &said, 1) == 1 ? said : '-';
+  }
+  void signal(int number) const { kill(pid_, number); }
+
+  /// The status that it ended with; nothing if it goes on running.
+  std::optional<int> wait() {
+    constexpr std::chrono::seconds kBound(30);
+    int status = 0;
+    const auto end = std::chrono::steady_clock::now() + kBound;
+    while (waitpid(pid_, &status, WNOHANG) == 0) {
+      if (std::chrono::steady_clock::now() > end) return std::nullopt;
+      poll_a_while();
+    }
+    pid_ = -1;
+    return status;
+  }
+
+ private:
+  static void poll_a_while() { usleep(1000); }
+
+  pid_t pid_ = -1;
+  int pipe_ = -1;
+};
+
+TEST(Signals, TheSecondOneEndsAProcessThatDoesNotEndAtTheFirst) {
+  for (const auto& [first, second] :
+       {std::pair{SIGINT, SIGINT}, {SIGTERM, SIGTERM}, {SIGINT, SIGTERM}}) {
+    Stubborn process(catch_stop_signals);
+    ASSERT_EQ(process.next(), 'r');
+    process.signal(first);
+    ASSERT_EQ(process.next(), 'a');
+    process.signal(second);
+    const auto status = process.wait();
+    ASSERT_TRUE(status) << "goes on after a second signal";
+    ASSERT_TRUE(WIFSIGNALED(*status)) << *status;
+    EXPECT_EQ(WTERMSIG(*status), second);
+  }
+}
+
+TEST(Signals, AProcessThatDoesNotEndWithinSecondsOfOneIsEnded) {
+  Stubborn process(catch_stop_signals);
+  ASSERT_EQ(process.next(), 'r');
+  process.signal(SIGTERM);
+  const auto status = process.wait();
+  ASSERT_TRUE(status) << "goes on after a signal";
+  ASSERT_TRUE(WIFEXITED(*status)) << *status;
+  EXPECT_EQ(WEXITSTATUS(*status), kInterrupted);
+}
+
+TEST(Signals, AChildProcessIsGivenAsLongAsItsParentWaits) {
+  const pid_t parent = getpid();
+  Stubborn child([parent] { catch_stop_signals_as_child_of(parent); });
+  ASSERT_EQ(child.next(), 'r');
+  child.signal(SIGTERM);
+  EXPECT_EQ(child.next(), 's');
+  Stubborn orphan([] { catch_stop_signals_as_child_of(1); });
+  ASSERT_EQ(orphan.next(), 'r');
+  orphan.signal(SIGTERM);
+  EXPECT_EQ(orphan.next(), 'a');
+}
+
+/// Name and state of a process, as /proc has them: `splinecast S`; empty once it has gone.
+std::string name_and_state(pid_t pid) {
+  const std::string stat = testing::read_file("/proc/" + std::to_string(pid) + "/stat");
+  const auto open = stat.find('(');
+  const auto close = stat.rfind(')');
+  if (open == std::string::npos || close == std::string::npos) return {};
+  return stat.substr(open + 1, close - open - 1) + " " + stat[close + 2];
+}
+
+/// Whether a process catches SIGTERM: SigCgt has bit n - 1 for signal n.
+bool catches_signals(pid_t pid) {
+  const std::string status = testing::read_file("/proc/" + std::to_string(pid) + "/status");
+  constexpr std::string_view kField = "SigCgt:";
+  const auto at = status.find(kField);
+  return at != std::string::npos &&
+         (std::stoull(status.substr(at + kField.size()), nullptr, 16) >> (SIGTERM - 1) & 1U) != 0;
+}
+
+/// A pipe that nobody reads and that holds all it can.
+class FullPipe {
+ public:
+  FullPipe() : path_(folder_.path("pipe")) {
+    if (mkfifo(path_.c_str(), 0600) != 0) throw std::runtime_error("no FIFO");
+    end_ = open(path_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    const std::array<char, 4096> some{};
+    while (write(end_, some.data(), some.size()) > 0) {
+    }
+    while (write(end_, some.data(), 1) > 0) {
+    }
+  }
+  FullPipe(const FullPipe&) = delete;
+  FullPipe& operator=(const FullPipe&) = delete;
+  ~FullPipe() { close(end_); }
+
+  /// Starts `splinecast` with its standard output there, and waits until it sleeps.
+  [[nodiscard]] Process start(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> shell{"-c", R"(out="$1"; shift; exec "$0" "$@" >"$out")",
+                                   SPLINECAST_PROGRAM, path_};
+    shell.insert(shell.end(), arguments.begin(), arguments.end());
+    Process process("/bin/sh", shell);
+    EXPECT_TRUE(await([&] { return name_and_state(process.pid()) == "splinecast S"; }))
+        << arguments[0];
+    return process;
+  }
+
+ private:
+  TestFolder folder_;
+  std::string path_;
+  int end_ = -1;
+};
+
+/// Signals a process and tells how it ended: its exit code, or 128 and the signal's number, as a
+/// shell does.
+int code_after(Process& process, int signal) {
+  process.signal(signal);
+  const Ended ended = process.wait();
+  return ended.signal != 0 ? 128 + ended.signal : ended.code;
+}
+
+/// Waits until no child process is left, also of those that ended, whose children come to this
+/// process.
+bool has_no_children() {
+  return await([] {
+    while (waitpid(-1, nullptr, WNOHANG) > 0) {
+    }
+    return waitpid(-1, nullptr, WNOHANG) < 0 && errno == ECHILD;
+  });
+}
+
+class EveryVerb : public Life, public ::testing::WithParamInterface<int> {};
+
+TEST_P(EveryVerb, ThatHoldsNothingEndsByASignalAlsoWhileItsOutputIsStuck) {
+  const FullPipe pipe;
+  ASSERT_EQ(run({"replay", file_, "--stream", name(), "--rate", "max", "--clock", "recorded",
+                 "--embedded"})
+                .code,
+            0);
+  const auto polynomials = folder_.write("p.csv", "duration,x^0,x^1\n9,0,1\n");
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"fit", file_, "--dt", "0.001"},
+        {"fit", file_, "--method", "smoothing", "--lambda", "auto", "--dt", "0.001"},
+        {"methods", "--against", polynomials},
+        {"info", name()},
+        {"ls", "--json"},
+        {"doctor"}}) {
+    Process process = pipe.start(arguments);
+    EXPECT_EQ(code_after(process, GetParam()), 128 + GetParam()) << arguments[0];
+  }
+  const auto long_lasting = folder_.write("l.csv", "duration,x^0,x^1\n9000,0,1\n");
+  Process measuring({"methods", "--against", long_lasting});
+  ASSERT_TRUE(await([&] { return name_and_state(measuring.pid()) == "splinecast R"; }));
+  EXPECT_EQ(code_after(measuring, GetParam()), 128 + GetParam());
+  Process removing({"rm", name()});  // done before, or ended by it
+  const int code = code_after(removing, GetParam());
+  EXPECT_TRUE(code == 0 || code == 128 + GetParam()) << code;
+}
+
+TEST_P(EveryVerb, ThatSolvesEndsInOrder) {
+  Process one(solve());
+  one.await_message("waiting for a producer");
+  EXPECT_EQ(code_after(one, GetParam()), kOk);
+  Process many({"solve", name(), name() + ".*"});
+  ASSERT_TRUE(await([&] { return catches_signals(many.pid()); }));
+  EXPECT_EQ(code_after(many, GetParam()), kOk);
+}
+
+TEST_P(EveryVerb, ThatSendsOrSamplesExitsWith130IfItIsInterrupted) {
+  const int signal = GetParam();
+  {
+    Process replaying({"replay", file_, "--stream", name(), "--wait", "1000"});
+    ASSERT_TRUE(await([&] { return info(name()).is_object(); }));
+    EXPECT_EQ(code_after(replaying, signal), kInterrupted) << "waiting for a solver";
+  }
+  Process solver(solve());
+  solver.await_message("waiting for a producer");
+  {
+    Process sampling({"sample", name(), "--rate", "10", "--count", "100", "--wait", "1000"});
+    ASSERT_TRUE(await([&] { return catches_signals(sampling.pid()); }));
+    EXPECT_EQ(code_after(sampling, signal), kInterrupted) << "waiting for a stream";
+  }
+  Process replaying({"replay", file_, "--stream", name(), "--loop", "1000"});
+  ASSERT_TRUE(await([&] { return field("solver", "interpolated") > 5; }));
+  const FullPipe pipe;
+  Process stuck = pipe.start({"sample", name(), "--rate", "1000", "--count", "1000000000"});
+  EXPECT_EQ(code_after(stuck, signal), kInterrupted) << "a full pipe";
+  Process live({"sample", name(), "--rate", "1", "--count", "1000"});
+  ASSERT_TRUE(await([&] { return catches_signals(live.pid()); }));
+  EXPECT_EQ(code_after(live, signal), kInterrupted) << "a live stream";
+  EXPECT_EQ(code_after(replaying, signal), kInterrupted) << "sending";
+  EXPECT_EQ(code_after(solver, signal), kOk);
+}
+
+TEST_P(EveryVerb, OfManyProcessesEndsWithAllOfThemAndWith130) {
+  ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"demo", "--seconds", "1000"},
+        {"demo", "--chaos", "--seconds", "1000", "--json"},
+        {"latency", "--duration", "3000"},
+        {"soak", "--streams", "3", "--seconds", "1000", "--json"}}) {
+    Process process(arguments);
+    const std::string stream =
+        arguments[0] + "." + std::to_string(process.pid()) + (arguments[0] == "soak" ? ".0" : "");
+    const auto interpolated = [&] {
+      const auto now = info(stream);
+      return now.is_object() && now["solver"].is_object()
+                 ? now["solver"]["interpolated"].get<ipc::Word>()
+                 : 0;
+    };
+    ASSERT_TRUE(await([&] { return interpolated() > 10; })) << arguments[0];
+    EXPECT_EQ(code_after(process, GetParam()), kInterrupted) << arguments[0];
+    EXPECT_TRUE(has_no_children()) << arguments[0];
+    EXPECT_THROW(ipc::remove_stream(stream), ipc::NoSuchStream) << "left behind";
+  }
+}
+
+TEST_P(EveryVerb, OfManyProcessesEndsWithAllOfThemAtASecondSignal) {
+  ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
+  Process process({"demo", "--chaos", "--seconds", "1000"});
+  const std::string stream = "demo." + std::to_string(process.pid());
+  ASSERT_TRUE(await([&] { return info(stream).is_object(); }));
+  process.signal(GetParam());
+  EXPECT_EQ(code_after(process, GetParam()) & ~127, 128);
+  EXPECT_TRUE(has_no_children());
+  try {
+    ipc::remove_stream(stream);
+  } catch (const ipc::NoSuchStream&) {  // the first signal was enough
+  }
+}
+
+TEST(Signals, CtrlCLetsTheDemosProcessesEndInOrder) {
+  // A session and process group of its own, as a terminal has one; the signal goes to all of it.
+  Process demo("/usr/bin/setsid", {SPLINECAST_PROGRAM, "demo", "--seconds", "1000", "--json"});
+  const std::string stream = "demo." + std::to_string(demo.pid());
+  ASSERT_TRUE(await([&] {
+    const auto now = info(stream);
+    return now.is_object() && now["solver"].is_object() && now["solver"]["interpolated"] > 10;
+  }));
+  ASSERT_EQ(kill(-demo.pid(), SIGINT), 0);
+  const Ended ended = demo.wait();
+  EXPECT_EQ(ended.code, kInterrupted) << ended.err;
+  const auto found = nlohmann::json::parse(ended.out, nullptr, false);
+  ASSERT_TRUE(found.is_object()) << ended.out << ended.err;
+  EXPECT_TRUE(found["interrupted"].get<bool>());
+  EXPECT_EQ(found["readers"].size(), 2U);
+}
+
+INSTANTIATE_TEST_SUITE_P(On, EveryVerb, ::testing::Values(SIGINT, SIGTERM), [](const auto& tested) {
+  return std::string(tested.param == SIGINT ? "SIGINT" : "SIGTERM");
+});
+
+}  // namespace
+}  // namespace splinecast::apps

@@ -1,0 +1,398 @@
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "apps/machine/checks.hpp"
+#include "apps/machine/left_names.hpp"
+#include "ipc/mapping/owner_lock.hpp"
+#include "splinecast/errors.hpp"
+#include "tests/fixtures/processes/private_shared_memory.hpp"
+#include "tests/fixtures/processes/process.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+using testing::PrivateSharedMemory;
+using testing::TestStream;
+
+Environment good_environment() {
+  Environment environment;
+  environment.isolated = "2-3";
+  environment.governor = "performance";
+  environment.preemption = "PREEMPT_RT";
+  environment.clock = "tsc";
+  environment.rt_runtime = "-1";
+  environment.rt_period = "1000000";
+  return environment;
+}
+
+/// A machine with nothing to mend.
+MachineFacts good_machine() {
+  return {.environment = good_environment(),
+          .mounts = "proc /proc proc rw 0 0\ntmpfs /dev/shm tmpfs rw,nosuid,nodev 0 0\n",
+          .room = Room{.total = std::uint64_t{1} << 30U, .free = std::uint64_t{1} << 29U},
+          .may_write_shared = true,
+          .lockable = std::uint64_t{1} << 26U,
+          .priority = 80,
+          .status = "Name:\tx\nCapEff:\t0000000000000000\n",
+          .user = 1000,
+          .logind = "[Login]\n#RemoveIPC=yes\nRemoveIPC=no\n",
+          .runs_systemd = true,
+          .in_container = false,
+          .pid_namespace = 4026531836,
+          .time_namespace = 4026531834,
+          .clock_offsets = "monotonic 0 0\nboottime 0 0\n",
+          .shared_huge_pages = "always within_size advise [never] deny force\n",
+          .cpu_times = "cpu  100 0 100 800 0 0 0 1 0 0\ncpu0 1 2 3\n",
+          .clock_cost = core::Time(20)};
+}
+
+constexpr std::size_t kNeeded = std::size_t{1} << 24U;
+
+TEST(Doctor, HasNothingToSayAboutAGoodMachine) {
+  for (const Finding& finding : check_machine(good_machine(), kNeeded)) {
+    EXPECT_EQ(finding.verdict, Verdict::ok) << finding.check << ": " << finding.means;
+    EXPECT_FALSE(finding.means.empty()) << finding.check;
+    EXPECT_TRUE(finding.mend.empty()) << finding.check;
+  }
+}
+
+/// One fact changed, and what must come of it.
+struct Case {
+  const char* check;
+  Verdict verdict;
+  std::string means;
+  std::function<void(MachineFacts&)> change;
+};
+
+TEST(Doctor, FindsEachLimitByItself) {
+  const std::vector<Case> cases{
+      {"/dev/shm", Verdict::problem, "not mounted", [](auto& m) { m.mounts = ""; }},
+      {"/dev/shm", Verdict::problem, "is ext4",
+       [](auto& m) { m.mounts = "/dev/sda1 /dev/shm ext4 rw 0 0\n"; }},
+      {"/dev/shm", Verdict::problem, "read-only",
+       [](auto& m) { m.mounts += "tmpfs /dev/shm tmpfs nosuid,ro 0 0\n"; }},
+      {"/dev/shm", Verdict::problem, "may not make files",
+       [](auto& m) { m.may_write_shared = false; }},
+      {"room in /dev/shm", Verdict::problem, "needs about 16.0 MiB",
+       [](auto& m) { m.room->free = kNeeded - 1; }},
+      {"room in /dev/shm", Verdict::note, "64.0 MiB in all",
+       [](auto& m) { m.room = Room{.total = 64 << 20U, .free = 64 << 20U}; }},
+      {"locked memory", Verdict::note, "RLIMIT_MEMLOCK is 0.1 MiB",
+       [](auto& m) { m.lockable = 64 << 10U; }},
+      {"real-time priority", Verdict::note, "RLIMIT_RTPRIO is 0", [](auto& m) { m.priority = 0; }},
+      {"RemoveIPC", Verdict::note, "is on", [](auto& m) { m.logind = ""; }},
+      {"RemoveIPC", Verdict::note, "is on",
+       [](auto& m) { m.logind += "[Login]\n RemoveIPC = yes\n"; }},
+      {"container", Verdict::note, "share its /dev/shm", [](auto& m) { m.in_container = true; }},
+      {"container", Verdict::note, "process namespace of its own",
+       [](auto& m) { m.pid_namespace = 4026532000; }},
+      {"time namespace", Verdict::note, "clock 1000.000000005 s ahead",
+       [](auto& m) {
+         m.time_namespace = 4026532001;
+         m.clock_offsets = "monotonic        1000         5\nboottime 0 0\n";
+       }},
+      {"clock", Verdict::note, "hpet, 20 ns a reading: each reading of it is a system call",
+       [](auto& m) { m.environment.clock = "hpet"; }},
+      {"cpu governor", Verdict::note, "powersave",
+       [](auto& m) { m.environment.governor = "powersave"; }},
+      {"isolated cpus", Verdict::note, "none", [](auto& m) { m.environment.isolated = ""; }},
+      {"kernel preemption", Verdict::note, "PREEMPT_DYNAMIC",
+       [](auto& m) { m.environment.preemption = "PREEMPT_DYNAMIC"; }},
+      {"real-time throttling", Verdict::note, "stopped for 50 ms of each 1000000 us",
+       [](auto& m) { m.environment.rt_runtime = "950000"; }},
+      {"huge pages", Verdict::note, "always for shared memory",
+       [](auto& m) { m.shared_huge_pages = "[always] within_size advise never\n"; }},
+      {"hypervisor", Verdict::note, "KVM; 10.00 % of the CPUs' time stolen",
+       [](auto& m) {
+         m.environment.hypervisor = "KVM";
+         m.cpu_times = "cpu  100 0 100 700 0 0 0 100 0 0\n";
+       }},
+  };
+  for (const Case& one : cases) {
+    MachineFacts machine = good_machine();
+    one.change(machine);
+    for (const Finding& finding : check_machine(machine, kNeeded)) {
+      if (finding.check != one.check) {
+        EXPECT_EQ(finding.verdict, Verdict::ok) << one.means << " made " << finding.check;
+        continue;
+      }
+      EXPECT_EQ(finding.verdict, one.verdict) << finding.means;
+      EXPECT_NE(finding.means.find(one.means), std::string::npos) << finding.means;
+      EXPECT_FALSE(finding.mend.empty()) << finding.means;
+    }
+  }
+}
+
+/// What cannot be known is not `ok`, and nothing else changes.
+TEST(Doctor, SaysUnknownAndWhyWhereNothingCanBeKnown) {
+  const auto hide = [](const char* file) {
+    return [file](auto& m) { m.unread[file] = "Permission denied"; };
+  };
+  const std::vector<Case> cases{
+      {"/dev/shm",
+       {},
+       "/proc/self/mounts: Permission denied",
+       [&](auto& m) {
+         m.mounts = "";
+         hide("/proc/self/mounts")(m);
+       }},
+      {"room in /dev/shm", {}, "does not say", [](auto& m) { m.room.reset(); }},
+      {"locked memory",
+       {},
+       "/proc/self/status: Permission denied",
+       [&](auto& m) {
+         m.lockable = 0;
+         m.status = "";
+         hide("/proc/self/status")(m);
+       }},
+      {"real-time priority",
+       {},
+       "/proc/self/status: Permission denied",
+       [&](auto& m) {
+         m.priority = 0;
+         m.status = "";
+         hide("/proc/self/status")(m);
+       }},
+      {"RemoveIPC",
+       {},
+       "/etc/systemd/logind.conf: Permission denied",
+       hide("/etc/systemd/logind.conf")},
+      {"clock",
+       {},
+       "current_clocksource: Permission denied",
+       [&](auto& m) {
+         m.environment.clock = "";
+         hide("/sys/devices/system/clocksource/clocksource0/current_clocksource")(m);
+       }},
+      {"cpu governor",
+       {},
+       "under the hypervisor",
+       [](auto& m) {
+         m.environment.governor = "";
+         m.environment.hypervisor = "KVM";
+       }},
+      {"isolated cpus",
+       {},
+       "isolated: Permission denied",
+       [&](auto& m) {
+         m.environment.isolated = "";
+         hide("/sys/devices/system/cpu/isolated")(m);
+       }},
+      {"kernel preemption",
+       {},
+       "/proc/sys/kernel/version: Permission denied",
+       [&](auto& m) {
+         m.environment.preemption = "";
+         hide("/proc/sys/kernel/version")(m);
+       }},
+      {"real-time throttling",
+       {},
+       "sched_rt_runtime_us: Permission denied",
+       [&](auto& m) {
+         m.environment.rt_runtime = "";
+         hide("/proc/sys/kernel/sched_rt_runtime_us")(m);
+       }},
+      {"huge pages",
+       {},
+       "shmem_enabled: Permission denied",
+       [&](auto& m) {
+         m.shared_huge_pages = "";
+         hide("/sys/kernel/mm/transparent_hugepage/shmem_enabled")(m);
+       }},
+      {"hypervisor",
+       {},
+       "/proc/stat: Permission denied",
+       [&](auto& m) {
+         m.cpu_times = "";
+         hide("/proc/stat")(m);
+       }},
+  };
+  for (const Case& one : cases) {
+    MachineFacts machine = good_machine();
+    one.change(machine);
+    for (const Finding& finding : check_machine(machine, kNeeded)) {
+      const bool is_it = finding.check == one.check;
+      EXPECT_EQ(finding.verdict, is_it ? Verdict::unknown : Verdict::ok)
+          << finding.check << ": " << finding.means;
+      if (is_it) {
+        EXPECT_NE(finding.means.find(one.means), std::string::npos) << finding.means;
+      }
+    }
+  }
+}
+
+TEST(Doctor, InAContainerTheHostsSystemdIsUnknown) {
+  MachineFacts machine = good_machine();
+  machine.runs_systemd = false;
+  EXPECT_EQ(check_remove_ipc(machine).verdict, Verdict::ok);
+  machine.in_container = true;
+  EXPECT_EQ(check_remove_ipc(machine).verdict, Verdict::unknown);
+  machine.in_container = false;
+  machine.pid_namespace = 0;
+  machine.time_namespace = 0;
+  EXPECT_EQ(check_container(machine).verdict, Verdict::unknown);
+  EXPECT_EQ(check_time_namespace(machine).verdict, Verdict::unknown);
+}
+
+/// Nothing can be read: of what files say, nothing is `ok`.
+TEST(Doctor, KnowsNothingOfAMachineWithoutProcAndSys) {
+  const testing::TestFolder root;
+  const MachineFacts facts = read_machine(root.path(""));
+  EXPECT_EQ(facts.unread.at("/proc/stat"), "No such file or directory");
+  for (const auto check :
+       {check_clock, check_governor, check_isolated_cpus, check_preemption, check_throttling,
+        check_huge_pages, check_steal, check_container, check_time_namespace}) {
+    const Finding finding = check(facts);
+    EXPECT_EQ(finding.verdict, Verdict::unknown) << finding.check << ": " << finding.means;
+    EXPECT_FALSE(finding.means.empty());
+  }
+  EXPECT_EQ(check_room(facts, kNeeded).verdict, Verdict::unknown);
+  std::filesystem::create_directories(root.path("proc/stat"));  // it opens, but cannot be read
+  EXPECT_EQ(read_machine(root.path("")).unread.at("/proc/stat"), "Is a directory");
+}
+
+TEST(Doctor, WhatRootMayOrAnotherMachineLacksIsNoLimit) {
+  const std::vector<std::function<void(MachineFacts&)>> changes{
+      [](auto& m) {  // CAP_IPC_LOCK and CAP_SYS_NICE
+        m.lockable = 0;
+        m.priority = 0;
+        m.status = "CapEff:\t0000000000804000\n";
+      },
+      [](auto& m) { m.lockable = RLIM_INFINITY; },
+      [](auto& m) {
+        m.logind = "";
+        m.runs_systemd = false;
+      },
+      [](auto& m) {
+        m.logind = "";
+        m.user = 999;
+      },
+      [](auto& m) { m.time_namespace = 0; },
+      [](auto& m) { m.environment.clock = "kvm-clock"; },
+      [](auto& m) { m.environment.governor = ""; },
+      [](auto& m) { m.shared_huge_pages = ""; },
+      [](auto& m) { m.cpu_times = ""; }};
+  for (const auto& change : changes) {
+    MachineFacts machine = good_machine();
+    change(machine);
+    for (const Finding& finding : check_machine(machine, kNeeded)) {
+      EXPECT_EQ(finding.verdict, Verdict::ok) << finding.check << ": " << finding.means;
+    }
+  }
+}
+
+TEST(Doctor, ReadsFactsFromTheFilesOfAnyMachine) {
+  const testing::TestFolder root;
+  const auto put = [&](const std::string& file, const std::string& text) {
+    std::filesystem::create_directories(std::filesystem::path(root.path(file)).parent_path());
+    (void)root.write(file, text);
+  };
+  put("proc/self/mounts", "tmpfs /dev/shm tmpfs rw 0 0\n");
+  put("proc/self/status", "CapEff:\t0000000000004000\n");
+  put("proc/stat", "cpu 1 2 3\n");
+  put("etc/systemd/logind.conf", "RemoveIPC=no\n");
+  put("etc/systemd/logind.conf.d/20-b.conf", "RemoveIPC=off\n");
+  put("usr/lib/systemd/logind.conf.d/10-a.conf", "RemoveIPC=yes\n");
+  put("usr/lib/systemd/logind.conf.d/20-b.conf", "RemoveIPC=hidden\n");
+  put("run/systemd/system/x", "");
+  put("run/.containerenv", "");
+  put("sys/kernel/mm/transparent_hugepage/shmem_enabled", "always [never]\n");
+  const MachineFacts facts = read_machine(root.path(""));
+  EXPECT_EQ(facts.mounts, "tmpfs /dev/shm tmpfs rw 0 0\n");
+  EXPECT_EQ(facts.status, "CapEff:\t0000000000004000\n");
+  EXPECT_EQ(facts.cpu_times, "cpu 1 2 3\n");
+  EXPECT_EQ(facts.logind, "RemoveIPC=no\n\nRemoveIPC=yes\n\nRemoveIPC=off\n");
+  EXPECT_TRUE(facts.runs_systemd);
+  EXPECT_TRUE(facts.in_container);
+  EXPECT_EQ(facts.shared_huge_pages, "always [never]\n");
+  EXPECT_FALSE(facts.room);  // there is no dev/shm
+  EXPECT_FALSE(facts.may_write_shared);
+  EXPECT_EQ(facts.time_namespace, 0U);
+  EXPECT_EQ(facts.user, geteuid());
+}
+
+TEST(Doctor, TellsLivingNamesFromDeadOnes) {
+  const TestStream stream;
+  EXPECT_THROW((void)look_at_name(stream.name()), ipc::NoSuchStream);
+  {
+    const ipc::OwnerLock lock(stream.name(), ipc::RegionKind::spline);
+    EXPECT_EQ(look_at_name(stream.name()).state, NameState::living);
+  }
+  EXPECT_EQ(look_at_name(stream.name()).state, NameState::dead);
+}
+
+class DoctorVerb : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    REQUIRE_PRIVATE_SHARED_MEMORY();
+    std::filesystem::permissions(folder_.path(""), std::filesystem::perms(0755));
+    file_ = folder_.write("a.csv", "t,x\n0,1\n0.1,2\n0.2,1\n");
+  }
+  [[nodiscard]] std::vector<std::string> replay(const std::string& stream) const {
+    return {"replay",   file_,    "--stream", stream,      "--clock",
+            "recorded", "--rate", "max",      "--embedded"};
+  }
+  testing::TestFolder folder_;
+  std::string file_;
+};
+
+TEST_F(DoctorVerb, CleansNamesWhoseOwnersAreProvenDeadAndNoOthers) {
+  const PrivateSharedMemory memory("64m");
+  ASSERT_EQ(memory.run(replay("dead"), {}).code, 0);
+  ASSERT_EQ(mkfifo(memory.file("splinecast.fifo.spline").c_str(), 0600), 0);
+  testing::Process solver = memory.start({"solve", "living"}, {});
+  solver.await_message("waiting for a producer");
+  const auto before = memory.listing();
+  const auto looked = memory.run({"doctor"}, {});
+  EXPECT_EQ(looked.code, 1) << looked.out;  // the FIFO
+  for (const char* text :
+       {"stream dead", "its writers have ended", "splinecast doctor dead --clean", "stream living",
+        "has a living writer", "splinecast.fifo.spline is no regular file"}) {
+    EXPECT_NE(looked.out.find(text), std::string::npos) << text << " in " << looked.out;
+  }
+  EXPECT_EQ(memory.listing(), before);
+  const auto cleaned = memory.run({"doctor", "--clean", "--json"}, {});
+  EXPECT_EQ(cleaned.code, 1);
+  const auto report = nlohmann::json::parse(cleaned.out);
+  EXPECT_EQ(report["problems"], 1);
+  EXPECT_TRUE(std::ranges::any_of(report["findings"], [](const nlohmann::json& finding) {
+    return finding["check"] == "stream dead" && finding["verdict"] == "ok" &&
+           finding["means"].get<std::string>().find("removed") != std::string::npos;
+  })) << cleaned.out;
+  auto left = before;
+  std::erase_if(left, [](const auto& file) { return file.first.starts_with("splinecast.dead."); });
+  EXPECT_EQ(memory.listing(), left);
+}
+
+TEST_F(DoctorVerb, LooksAtOneStreamAloneIfItIsNamed) {
+  const PrivateSharedMemory memory("64m");
+  ASSERT_EQ(memory.run(replay("one"), {}).code, 0);
+  ASSERT_EQ(memory.run(replay("two"), {}).code, 0);
+  const auto ended = memory.run({"doctor", "one", "--clean"}, {});
+  EXPECT_EQ(ended.code, 0) << ended.out;
+  EXPECT_EQ(ended.out.find("stream two"), std::string::npos) << ended.out;
+  EXPECT_EQ(memory.run({"info", "one"}, {}).code, 4);
+  EXPECT_EQ(memory.run({"info", "two"}, {}).code, 0);
+  EXPECT_EQ(memory.run({"doctor", "three"}, {}).code, 4);
+  EXPECT_EQ(memory.run({"doctor", "a/b"}, {}).code, 2);
+}
+
+TEST_F(DoctorVerb, LeavesOtherUsersNamesAlone) {
+  REQUIRE_ROOT();
+  const PrivateSharedMemory memory("64m");
+  ASSERT_EQ(memory.run(replay("theirs"), {.user = 12345, .group = 12345}).code, 0);
+  const auto before = memory.listing();
+  const auto ended = memory.run({"doctor", "--clean"}, {});
+  EXPECT_EQ(ended.code, 0) << ended.out;
+  EXPECT_NE(ended.out.find("belongs to user 12345: left alone"), std::string::npos) << ended.out;
+  EXPECT_EQ(memory.listing(), before);
+}
+
+}  // namespace
+}  // namespace splinecast::apps

@@ -1,0 +1,159 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "apps/replay/player.hpp"
+#include "splinecast/clock.hpp"
+#include "splinecast/reader.hpp"
+#include "tests/fixtures/processes/process.hpp"
+
+/// `replay --embedded` on a live stream, played by a thread of this process.
+namespace splinecast::apps {
+namespace {
+
+using core::Time;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// Three waypoints, 1 s apart.
+WaypointTable sparse_table() {
+  WaypointTable table;
+  table.file = "sparse";
+  table.names = {"x"};
+  table.times = {Time(0), seconds(1), seconds(2)};
+  table.lines = {2, 3, 4};
+  table.positions = {0, 1, 3};
+  return table;
+}
+
+TEST(EmbeddedReplay, SettlesTheCurveBetweenWaypointsThatAreFarApart) {
+  const testing::TestStream stream;
+  // Wide margins for a busy machine: the solver is due every 200 ms, 400 ms ahead.
+  const ReplayOptions options{
+      .stream = stream.name(),
+      .lead = milliseconds(1500),
+      .embedded = true,
+      .quiet = true,
+      .solver = {.freeze_ahead = milliseconds(400), .min_splice = milliseconds(5)}};
+  const WaypointTable table = sparse_table();
+  RefusedRows refused;
+  ReplayReport report;
+  std::thread replaying([&] { report = replay_table(table, options, refused); });
+  ipc::Reader reader(stream.name(), testing::kPatience);
+  core::State state(reader.dimensions());
+  const ipc::MonotonicClock clock;
+  ipc::Head head;
+  std::array<std::size_t, ipc::kSampleStatuses> count{};
+  const Time patience = clock.now() + testing::kPatience;
+  for (Time now = clock.now(); now < patience; now = clock.now()) {
+    const ipc::SampleStatus status = reader.sample(now, state);
+    ++count[static_cast<std::size_t>(status)];
+    if (reader.head(head) && head.finished && now > head.newest_knot) break;
+    std::this_thread::sleep_for(milliseconds(1));
+  }
+  replaying.join();
+  EXPECT_EQ(report.interpolated, 3U);
+  EXPECT_GT(count[static_cast<std::size_t>(ipc::SampleStatus::settled)], 100U);
+  EXPECT_EQ(count[static_cast<std::size_t>(ipc::SampleStatus::provisional)], 0U);
+}
+
+/// Positions at 100 Hz for half a second, of a motion in seconds.
+std::string recording(double (*motion)(double)) {
+  std::string text = "t,x\n";
+  for (int i = 0; i <= 50; ++i) {
+    const double s = 0.01 * i;
+    text += fmt::format("{},{}\n", s, motion(s));
+  }
+  return text;
+}
+
+class PassedOver : public ::testing::Test {
+ protected:
+  [[nodiscard]] testing::Ended replay(double (*motion)(double),
+                                      const std::vector<std::string>& more = {}) const {
+    const testing::TestFolder folder;
+    // So far ahead that no waypoint comes too late however busy the machine is.
+    std::vector<std::string> arguments{"replay",     folder.write("a.csv", recording(motion)),
+                                       "--stream",   stream_.name(),
+                                       "--embedded", "--lead",
+                                       "1500"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return testing::run(arguments);
+  }
+  testing::TestStream stream_;
+};
+
+TEST_F(PassedOver, AreTheWaypointsBeforeTheEndOfTheEntryOfARecordingThatStartsInMidMotion) {
+  const testing::Ended ended = replay([](double s) { return s; }, {"--json"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const auto report = nlohmann::json::parse(ended.out);
+  const auto count = [&](const char* key) { return report[key].get<int>(); };
+  EXPECT_EQ(count("sent"), 51);
+  EXPECT_EQ(count("refused"), 0);
+  EXPECT_GT(count("passed_over"), 0);
+  EXPECT_GT(count("interpolated"), 0);
+  EXPECT_EQ(count("interpolated") + count("passed_over"), 51);
+  const auto solver = testing::info(stream_.name())["solver"];
+  EXPECT_EQ(solver["passed_over"], report["passed_over"]);
+  EXPECT_EQ(solver["interpolated"], report["interpolated"]);
+}
+
+TEST_F(PassedOver, AreNamedInTheSummary) {
+  const testing::Ended ended = replay([](double s) { return s; });
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const auto solver = testing::info(stream_.name())["solver"];
+  EXPECT_NE(ended.err.find(
+                fmt::format("51 waypoints sent, {} interpolated, {} passed over, 0 refused",
+                            solver["interpolated"].get<int>(), solver["passed_over"].get<int>())),
+            std::string::npos)
+      << ended.err;
+}
+
+TEST_F(PassedOver, IsNoWaypointOfARecordingThatStartsAtRestAndIsNeverLate) {
+  const testing::Ended ended = replay([](double s) { return 1 - std::cos(3 * s); }, {"--json"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const auto report = nlohmann::json::parse(ended.out);
+  EXPECT_EQ(report["interpolated"], 51);
+  EXPECT_EQ(report["passed_over"], 0);
+}
+
+TEST(EmbeddedReplay, OntoAStreamThatStillMovesWaitsForItsEnd) {
+  const testing::TestStream stream;
+  const ReplayOptions options{
+      .stream = stream.name(), .lead = milliseconds(700), .embedded = true, .quiet = true};
+  WaypointTable table = sparse_table();
+  table.times = {Time(0), milliseconds(300), milliseconds(600)};
+  RefusedRows refused;
+  std::thread replaying([&] {
+    (void)replay_table(table, options, refused);
+    (void)replay_table(table, options, refused);
+  });
+  ipc::Reader reader(stream.name(), testing::kPatience);
+  core::State state(reader.dimensions());
+  const ipc::MonotonicClock clock;
+  const Time patience = clock.now() + testing::kPatience;
+  Time now = clock.now();
+  while (now < patience && reader.sample(now, state) != ipc::SampleStatus::retired) {
+    std::this_thread::sleep_for(milliseconds(1));
+    now = clock.now();
+  }
+  ipc::Head old;  // its mapping stays
+  EXPECT_TRUE(reader.head(old));
+  EXPECT_TRUE(old.finished);
+  EXPECT_GE(now, old.newest_knot);
+  replaying.join();
+  ipc::Head second;
+  ASSERT_TRUE(ipc::Reader(stream.name()).head(second));
+  EXPECT_EQ(second.knots, 3U);
+  EXPECT_GE(second.newest_knot, old.newest_knot + *options.lead + milliseconds(600));
+}
+
+}  // namespace
+}  // namespace splinecast::apps

@@ -1,0 +1,97 @@
+#include "apps/replay/lead.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "tests/fixtures/processes/process.hpp"
+
+/// The lead of a live replay.
+namespace splinecast::apps {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::Ended;
+
+WaypointTable steady_table(milliseconds interval, std::size_t rows) {
+  WaypointTable table;
+  table.names = {"x"};
+  for (std::size_t i = 0; i < rows; ++i) {
+    table.times.push_back(static_cast<int>(i) * interval);
+    table.lines.push_back(i + 2);
+    table.positions.push_back(0);
+  }
+  return table;
+}
+
+class ReplayLead : public ::testing::Test {
+ protected:
+  ReplayLead() {
+    board_.clock = static_cast<std::uint64_t>(ipc::StreamClock::monotonic);
+    board_.settle = 8;
+    board_.freeze_ahead = 5'000'000;
+    board_.stop_time = 250'000'000;
+  }
+  /// The lead, and what is said about it.
+  core::Time lead(const WaypointTable& table, const ReplayOptions& options) {
+    ::testing::internal::CaptureStderr();
+    const core::Time lead = choose_lead(table, options, board_);
+    said_ = ::testing::internal::GetCapturedStderr();
+    return lead;
+  }
+
+  ipc::RegionHeader board_{};
+  std::string said_;
+};
+
+TEST_F(ReplayLead, StaysAt200MillisecondsWhereThatSuffices) {
+  EXPECT_EQ(lead(steady_table(milliseconds(10), 500), {.stream = "arm"}), milliseconds(200));
+  EXPECT_EQ(said_, "");
+}
+
+TEST_F(ReplayLead, IsWhatKNeedsOfASlowRecordingAndSaysWhy) {
+  EXPECT_EQ(lead(steady_table(milliseconds(40), 500), {.stream = "arm"}), milliseconds(365));
+  EXPECT_EQ(said_,
+            "splinecast: 'arm': lead 365 ms: freeze-ahead 5 ms + 9 intervals of 40 ms = 365 ms, "
+            "and jitter of 0 ms\n");
+  EXPECT_EQ(lead(steady_table(milliseconds(40), 6), {.stream = "arm"}), milliseconds(205));
+  EXPECT_EQ(lead(steady_table(milliseconds(40), 6), {.stream = "arm", .loops = 2}),
+            milliseconds(365));
+}
+
+TEST_F(ReplayLead, WarnsOfOneThatIsTooShortButTakesIt) {
+  const WaypointTable table = steady_table(milliseconds(10), 500);
+  EXPECT_EQ(lead(table, {.stream = "arm", .lead = milliseconds(60)}), milliseconds(60));
+  EXPECT_EQ(said_,
+            "splinecast: 'arm': the lead of 60 ms is less than the 95 ms that K = 8 needs; a "
+            "silence of 100 ms: runs dry for 55 ms and does not come to rest\n");
+  EXPECT_EQ(lead(table, {.stream = "arm", .lead = milliseconds(95)}), milliseconds(95));
+  EXPECT_EQ(said_, "");
+  EXPECT_EQ(lead(table, {.stream = "arm", .lead = milliseconds(60), .quiet = true}),
+            milliseconds(60));
+  EXPECT_EQ(said_, "");
+}
+
+TEST_F(ReplayLead, SaysNothingWhereItDoesNotMatter) {
+  const WaypointTable slow = steady_table(milliseconds(400), 500);
+  EXPECT_EQ(lead(slow, {.stream = "arm", .rate = std::nullopt}), milliseconds(200));
+  EXPECT_EQ(lead(steady_table(milliseconds(400), 1), {.stream = "arm"}), milliseconds(200));
+  board_.clock = static_cast<std::uint64_t>(ipc::StreamClock::recorded);
+  EXPECT_EQ(lead(slow, {.stream = "arm"}), milliseconds(200));
+  EXPECT_EQ(said_, "");
+}
+
+TEST_F(ReplayLead, IsTakenFromTheSolverOfTheStream) {
+  const testing::TestStream stream;
+  const testing::TestFolder folder;
+  const auto file = folder.write("a.csv", "t,x\n0,0\n0.1,1\n0.2,2\n0.3,1\n0.4,0\n0.5,0\n");
+  const Ended ended =
+      testing::run({"replay", file, "--stream", stream.name(), "--embedded", "--settle", "2"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.err.find("lead 305 ms: freeze-ahead 5 ms + 3 intervals of 100 ms"),
+            std::string::npos)
+      << ended.err;
+}
+
+}  // namespace
+}  // namespace splinecast::apps

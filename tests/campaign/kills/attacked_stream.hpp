@@ -1,0 +1,102 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/process/child.hpp"
+#include "splinecast/reader.hpp"
+#include "tests/campaign/findings.hpp"
+#include "tests/campaign/kills/curve_check.hpp"
+#include "tests/campaign/kills/plan.hpp"
+#include "tests/campaign/kills/ring_check.hpp"
+
+namespace splinecast::campaign {
+
+/// One stream with all of its processes: kills them, starts others in their place, watches how long
+/// it takes until there is new data to sample, and sees each life of the stream to its end.
+class AttackedStream {
+ public:
+  /// Starts all processes.
+  explicit AttackedStream(Plan plan);
+  AttackedStream(const AttackedStream&) = delete;
+  AttackedStream& operator=(const AttackedStream&) = delete;
+  /// Kills what still runs and removes the stream.
+  ~AttackedStream();
+
+  [[nodiscard]] const Plan& plan() const noexcept { return plan_; }
+  [[nodiscard]] Journal& journal() const noexcept { return *journal_; }
+  [[nodiscard]] const Findings& findings() const noexcept { return findings_; }
+
+  /// Looks after everything once; recovery is measured no finer than it is called.
+  void tick();
+
+  /// Kills a process that runs. `which` tells readers apart. Returns whether there was one.
+  bool kill(Role role, std::size_t which = 0);
+
+  /// Lets `rm` remove the stream once it has come to its end, with its solver killed, and kills
+  /// `rm` after so long, if it is still at it then. For recorded streams.
+  void kill_remover_at_end(core::Time after) { removal_ = after; }
+
+  /// Whether everybody runs, and new data has been sampled since the last kill.
+  [[nodiscard]] bool is_calm() const;
+
+  /// Lets the stream come to its end, ends all processes, and removes it. Returns what was found.
+  Findings finish();
+
+ private:
+  struct Reading {
+    std::optional<apps::Child> child;
+    std::uint64_t turns = 0;
+    core::Time moved{};  ///< when `turns` last did
+  };
+  /// What stood when a writer was killed: what is more is new.
+  struct Mark {
+    std::uint64_t stream_id = 0;
+    ipc::Word count = 0;
+  };
+
+  void start_solver();
+  void start_producer();
+  void start_reader(std::size_t which);
+  void observe();
+  void reap();
+  void reap(std::optional<apps::Child>& child, Role role);
+  void note_kill(Role role);
+  void note_recoveries(core::Time now);
+  void restart();
+  void watch(core::Time now);
+  void count_hang(const std::string& what);
+  [[nodiscard]] bool may_produce() const;
+  void end_life();
+  void count_items();
+  void remove_at_end();
+  void end(std::optional<apps::Child>& child);
+  [[nodiscard]] bool tick_until(const std::function<bool()>& condition);
+  void remove_files();
+  [[nodiscard]] std::uint64_t observed_id() const;
+  [[nodiscard]] std::optional<RingCheck> ring() const;
+
+  Plan plan_;
+  SharedJournal journal_;
+  ipc::MonotonicClock clock_;
+  std::optional<apps::Child> producer_;
+  std::optional<apps::Child> solver_;
+  std::vector<Reading> readers_;
+  std::size_t killed_reader_ = 0;
+  std::optional<ipc::Reader> observer_;
+  std::optional<CurveCheck> check_;
+  ipc::Head head_;
+  bool has_sampled_ = false;  ///< at the newest knot, in this tick
+  std::array<Mark, kRoles> marks_;
+  std::uint64_t compared_id_ = 0;  ///< stream whose end has been compared
+  Mark progress_;
+  core::Time moved_{};
+  std::optional<core::Time> removal_;
+  bool is_last_life_ = false;  ///< the next end of the stream is the last one
+  bool is_ending_ = false;     ///< nobody is started any more
+  Findings findings_;
+};
+
+}  // namespace splinecast::campaign

@@ -1,0 +1,155 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <random>
+#include <vector>
+
+#include "apps/process/exit_codes.hpp"
+#include "apps/process/signals.hpp"
+#include "splinecast/producer.hpp"
+#include "tests/campaign/kills/roles.hpp"
+
+namespace splinecast::campaign {
+namespace {
+
+using ipc::AppendStatus;
+using ipc::ItemKind;
+using std::chrono::milliseconds;
+
+constexpr core::Time kRoomSlice = milliseconds(50);
+/// How far ahead live waypoints are sent.
+constexpr core::Time kLead = milliseconds(60);
+/// Least distance of a live waypoint from what has settled: a splice may have to lead to it.
+constexpr core::Time kLeastLead = milliseconds(20);
+constexpr int kReplacementsOneIn = 300;  // ticks
+constexpr int kMostReplaced = 10;        // waypoints
+
+class ProducerRole {
+ public:
+  ProducerRole(const Plan& plan, Journal& journal)
+      : plan_(&plan), journal_(&journal), random_(static_cast<std::uint64_t>(getpid())) {
+    WithinStep making(journal, Step::make_ring);
+    producer_.emplace(plan.stream, plan.producer_options());
+    making.survived();
+  }
+
+  void run_recorded() {
+    core::Time due = clock_.now();
+    for (ipc::Word n = producer_->appended(); n < plan_->life; ++n) {
+      if (!pause(due) || !send_recorded(n)) return;
+    }
+    finish();
+  }
+
+  void run_live() {
+    next_ = plan_->payload.number_from(
+        producer_->continues() ? producer_->last_time() + core::Time(1) : clock_.now());
+    for (core::Time due = clock_.now(); pause(due);) tick();
+    finish();
+  }
+
+ private:
+  /// Keeps the pace. Returns false when the process is asked to end.
+  bool pause(core::Time& due) {
+    if (plan_->pace == core::Time::zero()) return !apps::stop_requested();
+    due = std::max(due + plan_->pace, clock_.now() - plan_->pace);
+    return apps::sleep_until(due);
+  }
+
+  AppendStatus append(ipc::Word number) {
+    const Payload::Row row = plan_->payload.position_of(number);
+    WithinStep appending(*journal_, Step::append);
+    journal_->last_sent = ItemKind::waypoint;
+    const AppendStatus status =
+        producer_->append({.time = plan_->payload.time_of(number), .position = row});
+    if (status == AppendStatus::accepted) {
+      appending.survived();
+      journal_->accepted = producer_->appended();
+    }
+    return status;
+  }
+
+  /// Returns false when the process is asked to end meanwhile.
+  bool send_recorded(ipc::Word number) {
+    for (;;) {
+      const AppendStatus status = append(number);
+      if (status == AppendStatus::accepted) return true;
+      if (status != AppendStatus::full) {
+        throw apps::Failure("waypoint " + std::to_string(number) + " of '" + plan_->stream +
+                            "' was refused: " + std::string(ipc::to_string(status)));
+      }
+      (void)producer_->wait_for_room(kRoomSlice);
+      if (apps::stop_requested()) return false;
+    }
+  }
+
+  void tick() {
+    const core::Time now = clock_.now();
+    const Step armed = journal_->armed;
+    const bool must_replace = armed == Step::replace || armed == Step::publish_replacement;
+    if (must_replace || random_() % kReplacementsOneIn == 0) return replace(now);
+    skip_past(now);
+    // What is refused is refused under its number; the motion goes on.
+    while (plan_->payload.time_of(next_) - kLead <= now) (void)append(next_++);
+  }
+
+  void skip_past(core::Time now) {
+    const core::Time earliest = std::max(now, producer_->earliest()) + kLeastLead;
+    next_ = std::max(next_, plan_->payload.number_from(earliest));
+  }
+
+  /// Replaces the future by waypoints of the same payload, from none upwards.
+  void replace(core::Time now) {
+    const core::Time t = std::max(now, producer_->earliest()) + kLeastLead;
+    const ipc::Word first = plan_->payload.number_from(t + kLeastLead);
+    const auto count = static_cast<std::size_t>(random_() % (kMostReplaced + 1));
+    std::vector<Payload::Row> rows(count);
+    std::vector<core::Waypoint> waypoints(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      rows[i] = plan_->payload.position_of(first + i);
+      waypoints[i] = {.time = plan_->payload.time_of(first + i), .position = rows[i]};
+    }
+    WithinStep replacing(*journal_, Step::replace);
+    journal_->last_sent = ItemKind::replace;
+    if (producer_->replace_from(t, waypoints) != AppendStatus::accepted) return;
+    replacing.survived();
+    journal_->accepted = producer_->appended();
+    next_ = first + count;
+  }
+
+  void finish() {
+    for (;;) {
+      WithinStep finishing(*journal_, Step::finish);
+      journal_->last_sent = ItemKind::finish;
+      const AppendStatus status = producer_->finish(end_condition());
+      if (status == AppendStatus::accepted) {
+        finishing.survived();
+        break;
+      }
+      if (status != AppendStatus::full) throw apps::Failure("'" + plan_->stream + "' cannot end");
+      (void)producer_->wait_for_room(kRoomSlice);
+    }
+    journal_->accepted = producer_->appended();
+  }
+
+  const Plan* plan_;
+  Journal* journal_;
+  ipc::MonotonicClock clock_;
+  std::mt19937_64 random_;
+  std::optional<ipc::Producer> producer_;
+  ipc::Word next_ = 0;
+};
+
+}  // namespace
+
+void run_producer(const Plan& plan, Journal& journal) {
+  ProducerRole role(plan, journal);
+  if (plan.is_live()) {
+    role.run_live();
+  } else {
+    role.run_recorded();
+  }
+}
+
+}  // namespace splinecast::campaign

@@ -1,0 +1,107 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <random>
+
+#include "apps/process/signals.hpp"
+#include "splinecast/errors.hpp"
+#include "tests/campaign/kills/curve_check.hpp"
+#include "tests/campaign/kills/ring_check.hpp"
+#include "tests/campaign/kills/roles.hpp"
+
+namespace splinecast::campaign {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr core::Time kAttachSlice = milliseconds(100);
+/// Ticks from one look at many segments to the next.
+constexpr std::uint64_t kSurveyEvery = 8;
+/// How much of a live stream a look covers, before and after now.
+constexpr core::Time kAround = milliseconds(100);
+/// How many intervals of a recorded stream it covers before what has settled: at most so many, and
+/// at most this part of the board.
+constexpr std::size_t kIntervalsBack = 24;
+constexpr std::size_t kPartOfTheBoard = 4;
+
+class ReaderRole {
+ public:
+  ReaderRole(const Plan& plan, ReaderFacts& facts)
+      : plan_(&plan),
+        facts_(&facts),
+        random_(static_cast<std::uint64_t>(getpid())),
+        reader_(plan.stream, kAttachSlice),
+        check_(plan, reader_, facts),
+        ring_(plan, facts) {}
+
+  /// Reads until the stream is retired, or the process is asked to end.
+  void run() {
+    core::Time due = clock_.now();
+    while (!apps::stop_requested()) {
+      ++facts_->turns;
+      if (plan_->tick > core::Time::zero()) {
+        due = std::max(due + plan_->tick, clock_.now() - plan_->tick);
+        if (!apps::sleep_until(due)) return;
+      }
+      const auto status = plan_->is_live() ? tick_live() : tick_recorded();
+      ring_.look(random_() % ring_.capacity());
+      if (status == ipc::SampleStatus::retired) return;
+    }
+  }
+
+ private:
+  core::Time up_to(core::Time most) {
+    return core::Time(std::uniform_int_distribution<std::int64_t>(0, most.count())(random_));
+  }
+
+  ipc::SampleStatus tick_live() {
+    const core::Time now = clock_.now();
+    const auto status = check_.tick(now);
+    check_.peek(now + up_to(kAround));
+    if (facts_->turns % kSurveyEvery == 0) check_.survey(now - kAround, now + kAround);
+    return status;
+  }
+
+  /// Follows what has settled, and looks at random into what has not.
+  ipc::SampleStatus tick_recorded() {
+    core::Time first{};
+    if (!reader_.head(head_) || head_.newest == 0 || !reader_.first_time(first)) {
+      return check_.peek(first);  // says why
+    }
+    const core::Time back = static_cast<std::int64_t>(
+                                std::min(kIntervalsBack, plan_->board_capacity / kPartOfTheBoard)) *
+                            plan_->payload.interval();
+    last_ = std::max({last_, first, head_.settled_until - core::Time(1) - up_to(back / 8)});
+    if (last_ < head_.settled_until) (void)check_.tick(last_);
+    const core::Time from = std::max(first, head_.settled_until - back);
+    if (facts_->turns % kSurveyEvery == 0) check_.survey(from, head_.newest_knot);
+    return check_.peek(from + up_to(std::max(core::Time::zero(), head_.newest_knot - from)));
+  }
+
+  const Plan* plan_;
+  ReaderFacts* facts_;
+  ipc::MonotonicClock clock_;
+  std::mt19937_64 random_;
+  ipc::Reader reader_;
+  CurveCheck check_;
+  RingCheck ring_;
+  ipc::Head head_;
+  core::Time last_ = core::Time::min();
+};
+
+}  // namespace
+
+void run_reader(const Plan& plan, ReaderFacts& facts) {
+  while (!apps::stop_requested()) {
+    ++facts.turns;
+    try {
+      ReaderRole(plan, facts).run();
+    } catch (const ipc::NoSuchStream&) {
+      continue;  // not there yet, or removed: it comes again
+    }
+  }
+}
+
+}  // namespace splinecast::campaign

@@ -1,0 +1,43 @@
+#include "tests/campaign/kills/ring_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/process/messages.hpp"
+#include "ipc/layout/header.hpp"
+
+namespace splinecast::campaign {
+
+RingCheck::RingCheck(const Plan& plan, ReaderFacts& facts)
+    : plan_(&plan),
+      facts_(&facts),
+      region_(ipc::Region::open(plan.stream, ipc::RegionKind::waypoints, false)),
+      header_(ipc::copy_header(region_.bytes())),
+      ring_(region_.bytes(), ipc::checked_ring_layout(header_, region_.bytes().size())),
+      item_(Payload::kDimensions) {}
+
+bool RingCheck::is_finished() const noexcept {
+  const ipc::Word head = ring_.head();
+  return head > 0 && ring_.kind(head - 1) == ipc::ItemKind::finish;
+}
+
+void RingCheck::look(ipc::Word back) {
+  const ipc::Word head = ring_.head();
+  if (back >= head) return;
+  const ipc::Word i = head - 1 - back;
+  if (!ring_.observe(i, item_) || item_.kind != ipc::ItemKind::waypoint) return;
+  ++facts_->items;
+  const auto number = plan_->payload.number_at(item_.time);
+  const bool is_in_order = plan_->is_live() || number == i;
+  if (number && is_in_order &&
+      std::ranges::equal(std::span(item_.values).first(Payload::kDimensions),
+                         plan_->payload.position_of(*number))) {
+    return;
+  }
+  ++facts_->torn;
+  apps::say(fmt::format("'{}': item {} of the ring, at {}, is not the one that was sent",
+                        plan_->stream, i, item_.time.count()));
+}
+
+}  // namespace splinecast::campaign

@@ -1,0 +1,34 @@
+#include <array>
+
+#include "apps/process/signals.hpp"
+#include "tests/campaign/campaigns.hpp"
+#include "tests/campaign/kills/attacked_stream.hpp"
+
+namespace splinecast::campaign {
+
+Result run_stress(const CampaignOptions& options) {
+  constexpr std::array<std::size_t, 5> kReaders{1, 2, 4, 8, 16};
+  const ipc::MonotonicClock clock;
+  const core::Time begin = clock.now();
+  Findings findings;
+  nlohmann::json measured = nlohmann::json::object();
+  for (const std::size_t readers : kReaders) {
+    const std::string number = std::to_string(readers);
+    AttackedStream stream(stress_plan(campaign_stream("stress" + number), readers));
+    const core::Time end =
+        clock.now() + core::Time(static_cast<std::int64_t>(options.seconds * 1e9));
+    while (clock.now() < end && apps::sleep_until(clock.now() + kLook)) stream.tick();
+    const Findings found = stream.finish();
+    measured["samples of " + number + " readers"] = found.samples;
+    measured["waypoints beside " + number + " readers"] = found.waypoints;
+    findings.add(found);
+  }
+  return make_result(options, {1, 3, 5},
+                     "1, 2, 4, 8 and 16 reader processes that read all they can, while a producer "
+                     "and a solver process go as fast as they can over a ring of 16 items and a "
+                     "board of 32 segments",
+                     findings.samples, "samples", findings, measured,
+                     core::to_seconds(clock.now() - begin));
+}
+
+}  // namespace splinecast::campaign

@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <list>
+
+#include "apps/process/signals.hpp"
+#include "tests/campaign/campaigns.hpp"
+#include "tests/campaign/motions/live_row.hpp"
+#include "tests/campaign/motions/rules.hpp"
+
+namespace splinecast::campaign {
+namespace {
+
+using core::Time;
+
+/// Rows at a time: three processes each.
+constexpr std::size_t kAtOnce = 6;
+constexpr std::array kLimits{10.0, 0.0};  ///< rad/s²; 0: none
+/// A process that is so late, in s, was not run in time for a lead of 50 ms to be of use.
+constexpr double kLate = 0.02;
+
+struct LiveFindings {
+  std::uint64_t limits_passed = 0;
+  std::uint64_t freezes = 0;
+  std::uint64_t refusals = 0;
+  std::uint64_t passed_although_covered = 0;
+  std::uint64_t jumps = 0;
+  std::uint64_t steps = 0;
+  std::uint64_t late_rows = 0;
+
+  void judge(const Mishap& mishap, double limit, const LiveSeen& seen) {
+    const bool is_noisy = mishap.quantum > 0;
+    const Peaks own{Sines::kPeakVelocity, Sines::kPeakAcceleration};
+    const double most =
+        limit > 0 ? limit * (1 + 1e-9) : most_without_limits(own, seen.largest_error);
+    const bool is_beyond = !is_noisy && seen.peak_acceleration > most;
+    limits_passed += is_beyond && limit > 0 ? 1U : 0U;
+    jumps += is_beyond && limit == 0 ? 1U : 0U;
+    refusals += seen.refused;
+    // A late commit is told: it changes the curve behind the reader.
+    steps += seen.late_commits == 0 ? seen.steps : 0;
+    const bool is_late =
+        seen.producer_late > kLate || seen.solver_late > kLate || seen.late_commits > 0;
+    late_rows += is_late ? 1U : 0U;
+    if (is_late) return;
+    freezes += seen.holding > kMostHolding ? 1U : 0U;
+    if (mishap.is_covered) passed_although_covered += seen.passed_over - seen.passed_at_start;
+  }
+  [[nodiscard]] nlohmann::json json() const {
+    return {{"accelerations beyond their limit", limits_passed},
+            {"rows held for more than 1 % of the time", freezes},
+            {"waypoints refused that did not come too late", refusals},
+            {"waypoints passed over although the lead covered the hiccup", passed_although_covered},
+            {"jumps without limits", jumps},
+            {"steps of the position", steps}};
+  }
+};
+
+std::string text_of(const LiveSeen& seen) {
+  return fmt::format(
+      "peaks {:.2f} rad/s, {:.2f} rad/s2; path error p99 {:.4f}, largest {:.4f} rad; passed over "
+      "{:.1f} %; holding {:.2f} %; samples {}; came late {}; kills {}; deadline misses {}, late "
+      "commits {}, samples revised {}; producer at most {:.1f} ms late, solver {:.1f} ms",
+      seen.peak_velocity, seen.peak_acceleration, seen.error_p99, seen.largest_error,
+      seen.knots > 0 ? 100 * static_cast<double>(seen.passed_over) / static_cast<double>(seen.knots)
+                     : 0,
+      100 * seen.holding, seen.samples, seen.came_late, seen.kills, seen.misses, seen.late_commits,
+      seen.revised, 1e3 * seen.producer_late, 1e3 * seen.solver_late);
+}
+
+}  // namespace
+
+Result run_live_motions(const CampaignOptions& options) {
+  constexpr Time kStart = std::chrono::milliseconds(1000);
+  const ipc::MonotonicClock clock;
+  const Time begin = clock.now();
+  const Sines motion(options.seed);
+  LiveFindings findings;
+  nlohmann::json measured;
+  std::uint64_t rows = 0;
+  const std::size_t all = mishaps().size() * kLimits.size();
+  while (rows < all && !apps::stop_requested()) {
+    const Time start = clock.now() + kStart;
+    std::list<LiveRow> live;
+    for (; rows < all && live.size() < kAtOnce; ++rows) {
+      live.emplace_back(motion, mishaps()[rows / kLimits.size()], kLimits[rows % kLimits.size()],
+                        start, campaign_stream("motion" + std::to_string(rows)));
+    }
+    const Time end = start + Time(static_cast<std::int64_t>(LiveRow::kSeconds * 1e9));
+    while (clock.now() < end && apps::sleep_until(clock.now() + kLook)) {
+      for (LiveRow& row : live) row.tick(clock.now());
+    }
+    for (LiveRow& row : live) {
+      const LiveSeen seen = row.finish();
+      findings.judge(row.mishap(), row.limit(), seen);
+      measured[fmt::format("{}, {}", row.mishap().name,
+                           row.limit() > 0 ? fmt::format("limit {} rad/s2", row.limit())
+                                           : "no limit")] = text_of(seen);
+    }
+  }
+  measured["rows in which the machine held a process up for more than 20 ms"] = findings.late_rows;
+  return make_result(options, {2, 4, 5, 8},
+                     "the mishaps of the motions in real time: producers, solvers and readers at 1 "
+                     "kHz as processes, deaths by SIGKILL",
+                     rows, "runs of 10 s", findings.json(), std::move(measured),
+                     core::to_seconds(clock.now() - begin));
+}
+
+}  // namespace splinecast::campaign

@@ -1,0 +1,325 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "apps/process/messages.hpp"
+#include "apps/process/signals.hpp"
+#include "ipc/sampling/sampler.hpp"
+#include "tests/campaign/campaigns.hpp"
+#include "tests/campaign/motions/sines.hpp"
+#include "tests/campaign/streams/random.hpp"
+#include "tests/campaign/streams/stream_plan.hpp"
+#include "tests/fixtures/streams/memory_stream.hpp"
+
+namespace splinecast::campaign {
+namespace {
+
+using core::Time;
+using std::chrono::milliseconds;
+
+constexpr Time kBegin{1'000'000'000'000};
+constexpr Time kTick = milliseconds(1);
+/// The last hiccup is over by then; the motion is known for Sines::kSeconds.
+constexpr Time kLastHiccup = std::chrono::seconds(10);
+constexpr Time kEnd = std::chrono::seconds(19);
+
+Time to_time(double seconds) { return Time(std::llround(seconds * 1e9)); }
+
+/// What happened in all runs.
+struct ReturnCounts {
+  std::uint64_t runs = 0;
+  std::uint64_t silences = 0;
+  std::uint64_t delays = 0;
+  std::uint64_t replacements = 0;
+  std::uint64_t takeovers = 0;
+  std::uint64_t starvations = 0;
+  std::uint64_t passed_over = 0;
+  std::uint64_t late_returns = 0;
+  std::uint64_t never_back = 0;
+  std::uint64_t off_path = 0;
+  std::vector<double> shares;  ///< time of the last return over the time allowed
+};
+
+/// The least acceleration of a motion in two phases that takes a time from one velocity to another
+/// over a way.
+double two_phase_acceleration(double way, double from, double to, double time) {
+  const double beside = std::abs(way - (from + to) / 2 * time);
+  const double change = to - from;
+  return (2 * beside + std::sqrt(4 * beside * beside + time * time * change * change)) /
+         (time * time);
+}
+
+/// One stream in plain memory whose producer has hiccups and then none any more.
+class ReturnRun {
+ public:
+  ReturnRun(std::uint64_t seed, ReturnCounts& counts)
+      : seed_(seed),
+        random_(seed),
+        counts_(&counts),
+        motion_(seed % kMotions + 1),
+        dimensions_(1 + random_.below(Sines::kJoints)),
+        interval_(to_time(random_.log_uniform(0.004, 0.05))),
+        limit_(Sines::kPeakAcceleration * random_.log_uniform(2, 15)),
+        stream_(dimensions_, window(), 4096, 1024, {}, {}, ipc::LiveOptions{}),
+        sampler_(stream_.board.reader, ipc::StreamClock::monotonic),
+        state_(dimensions_) {
+    const double settle = core::to_seconds(interval_) * 3 + 0.01;
+    lead_ = to_time(settle + random_.uniform(0, 0.3));
+    plan_hiccups();
+  }
+
+  void run() {
+    ++counts_->runs;
+    while (now_ < kEnd) {
+      stream_.clock.time = kBegin + now_;
+      if (now_ >= kLastHiccup && !allowed_ && !is_silent()) measure_distance();
+      if (!is_silent()) produce();
+      if (!is_dead()) solve();
+      look();
+      now_ += kTick;
+    }
+    judge();
+  }
+
+ private:
+  static constexpr std::uint64_t kMotions = 500;
+
+  enum class Hiccup { silence, delay, replacement, death };
+  struct Planned {
+    Hiccup kind{};
+    Time from{};
+    Time until{};
+  };
+
+  core::WindowOptions window() {
+    constexpr std::array<const char*, 5> kMethods{"c2", "c2", "bessel", "makima", "smoothing"};
+    core::WindowOptions how;
+    how.interpolant.method = core::find_method(kMethods[random_.below(kMethods.size())]);
+    how.settle = core::default_settle(*how.interpolant.method);
+    if (how.interpolant.method->family == core::Family::smoothing) {
+      how.interpolant.lambda = 1e-12;
+      how.settle = 8;
+      how.force_lag = true;
+    }
+    how.start = {.kind = core::ConditionKind::halt, .value = {}};
+    how.held_before_start = true;
+    how.limits.acceleration.assign(dimensions_, limit_);
+    return how;
+  }
+
+  /// Some hiccups in the first seconds, and one that ends at kLastHiccup.
+  void plan_hiccups() {
+    Time t = std::chrono::seconds(2);
+    for (std::size_t i = 1 + random_.below(4); i > 0; --i) {
+      const Time length = to_time(random_.log_uniform(0.01, 0.8));
+      hiccups_.push_back({static_cast<Hiccup>(random_.below(4)), t, t + length});
+      t += to_time(random_.uniform(1, 2));
+    }
+    const Time length = to_time(random_.log_uniform(0.05, 1));
+    const Hiccup last = random_.chance(0.7) ? Hiccup::silence : Hiccup::death;
+    hiccups_.push_back({last, kLastHiccup - length, kLastHiccup});
+    for (const Planned& hiccup : hiccups_) {
+      counts_->silences += hiccup.kind == Hiccup::silence ? 1U : 0U;
+      counts_->delays += hiccup.kind == Hiccup::delay ? 1U : 0U;
+    }
+  }
+  [[nodiscard]] bool is_in(Hiccup kind) const {
+    return std::ranges::any_of(hiccups_, [&](const Planned& hiccup) {
+      return hiccup.kind == kind && now_ >= hiccup.from && now_ < hiccup.until;
+    });
+  }
+  [[nodiscard]] bool is_silent() const { return is_in(Hiccup::silence); }
+  [[nodiscard]] bool is_dead() const { return is_in(Hiccup::death); }
+
+  [[nodiscard]] std::vector<double> positions(Time t) const {
+    std::vector<double> all = motion_.positions(core::to_seconds(t));
+    all.resize(dimensions_);
+    return all;
+  }
+  [[nodiscard]] ipc::WaypointRingWriter::Solved solved() const {
+    return {.consumed = stream_.board.reader.tail(),
+            .settled_until = stream_.board.reader.look().settled_until,
+            .clock = &stream_.clock};
+  }
+
+  void produce() {
+    for (Planned& hiccup : hiccups_) {
+      if (hiccup.kind != Hiccup::replacement || now_ < hiccup.from) continue;
+      hiccup.from = Time::max();
+      replace();
+    }
+    const bool is_late = is_in(Hiccup::delay);
+    const Time lead = is_late ? std::min<Time>(lead_, milliseconds(8)) : lead_;
+    for (; next_ <= now_ + lead && next_ < kEnd + lead_; next_ += interval_) {
+      const auto position = positions(next_);
+      const auto status =
+          stream_.ring.writer.append({.time = kBegin + next_, .position = position}, solved());
+      if (status == ipc::AppendStatus::full) return;
+    }
+  }
+  /// Sends what lies ahead once more.
+  void replace() {
+    const Time from = now_ + milliseconds(10);
+    std::vector<std::vector<double>> values;
+    std::vector<core::Waypoint> waypoints;
+    for (Time t = from + interval_; t < next_; t += interval_) values.push_back(positions(t));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const Time t = from + interval_ * static_cast<std::int64_t>(i + 1);
+      waypoints.push_back({.time = kBegin + t, .position = values[i]});
+    }
+    if (waypoints.empty()) return;
+    const Time blend = random_.chance(0.5) ? to_time(random_.uniform(0, 0.3)) : Time(0);
+    const auto status = stream_.ring.writer.replace_from(kBegin + from, waypoints, solved(), blend);
+    if (status != ipc::AppendStatus::accepted) return;
+    ++counts_->replacements;
+    next_ = waypoints.back().time - kBegin + interval_;
+  }
+
+  void solve() {
+    constexpr int kMostSteps = 8;
+    if (was_dead_) {
+      stream_.replace_solver();
+      ++counts_->takeovers;
+    }
+    was_dead_ = false;
+    for (int i = 0; i < kMostSteps; ++i) {
+      const auto result = stream_.solver.step(stream_.clock);
+      if (result.consumed == 0 && stream_.solver.due() > stream_.clock.time) return;
+    }
+  }
+
+  /// What the stream is allowed from the end of its last hiccup on: the least time in which a
+  /// motion in two phases is on the path again, twice, and half a second.
+  void measure_distance() {
+    constexpr Time kLook = milliseconds(5);
+    constexpr double kBesides = 0.5;
+    if (!ipc::has_values(sampler_.preview(kBegin + now_, state_.ref()))) return;
+    Time least = kLook;
+    while (now_ + least < kEnd && !reaches_path(core::to_seconds(least))) least += kLook;
+    allowed_ = 2 * least + to_time(kBesides);
+  }
+  [[nodiscard]] bool reaches_path(double time) const {
+    const double t = core::to_seconds(now_) + time;
+    for (std::size_t d = 0; d < dimensions_; ++d) {
+      const double needed = two_phase_acceleration(motion_.at(d, t) - state_.position()[d],
+                                                   state_.velocity()[d], motion_.at(d, t, 1), time);
+      if (needed > limit_) return false;
+    }
+    return true;
+  }
+
+  /// When the curve is on its waypoints again, and stays.
+  void look() {
+    was_dead_ = was_dead_ || is_dead();
+    const ipc::Head& head = stream_.solver.head();
+    const auto course = static_cast<ipc::Course>(head.course);
+    const bool is_on_target = course == ipc::Course::on_target && !head.starved && !is_dead();
+    if (!is_on_target) back_at_.reset();
+    if (is_on_target && !back_at_) back_at_ = now_;
+  }
+
+  void judge() {
+    const ipc::Head& head = stream_.solver.head();
+    counts_->starvations += head.underruns;
+    counts_->passed_over += head.passed_over;
+    // On its way back no later than allowed, and on the path at the end.
+    if (!back_at_ || !allowed_) {
+      ++counts_->never_back;
+      return tell("never back");
+    }
+    const Time taken = std::max(Time(0), *back_at_ - kLastHiccup);
+    const double share = core::to_seconds(taken) / core::to_seconds(*allowed_);
+    counts_->shares.push_back(share);
+    if (share > 1) {
+      ++counts_->late_returns;
+      tell(fmt::format("back after {:.3f} s, allowed {:.3f} s", core::to_seconds(taken),
+                       core::to_seconds(*allowed_)));
+    }
+    const Time at = kEnd - lead_;
+    constexpr double kNear = 1e-3;
+    if (!ipc::has_values(sampler_.preview(kBegin + at, state_.ref()))) return;
+    for (std::size_t d = 0; d < dimensions_; ++d) {
+      const double error = state_.position()[d] - motion_.at(d, core::to_seconds(at));
+      if (std::abs(error) < kNear) continue;
+      ++counts_->off_path;
+      return tell(fmt::format("{} rad beside its path at the end", error));
+    }
+  }
+  void tell(const std::string& what) const {
+    apps::say(fmt::format("seed {} ({}, {:.1f} ms, lead {:.0f} ms, limit {:.1f}): {}", seed_,
+                          stream_.window.interpolant.method->name,
+                          core::to_seconds(interval_) * 1e3, core::to_seconds(lead_) * 1e3, limit_,
+                          what));
+  }
+
+  std::uint64_t seed_;
+  Random random_;
+  ReturnCounts* counts_;
+  Sines motion_;
+  std::size_t dimensions_;
+  Time interval_;
+  Time lead_{};
+  double limit_;
+  testing::MemoryStream stream_;
+  ipc::Sampler sampler_;
+  core::State state_;
+  std::vector<Planned> hiccups_;
+  Time now_ = milliseconds(-300);
+  Time next_{};
+  bool was_dead_ = false;
+  std::optional<Time> allowed_;
+  std::optional<Time> back_at_;
+};
+
+double quantile(std::vector<double>& sorted, double share) {
+  if (sorted.empty()) return 0;
+  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+}
+
+}  // namespace
+
+Result run_returns(const CampaignOptions& options) {
+  const ipc::MonotonicClock clock;
+  const Time begin = clock.now();
+  const Time end = begin + to_time(options.seconds);
+  ReturnCounts counts;
+  const auto goes_on = [&] {
+    return options.runs > 0 ? counts.runs < options.runs : clock.now() < end;
+  };
+  for (std::uint64_t seed = options.seed; goes_on() && !apps::stop_requested(); ++seed) {
+    ReturnRun(seed, counts).run();
+  }
+  std::ranges::sort(counts.shares);
+  const std::uint64_t never_tried =
+      static_cast<std::uint64_t>(counts.silences == 0) + (counts.delays == 0 ? 1 : 0) +
+      (counts.replacements == 0 ? 1 : 0) + (counts.takeovers == 0 ? 1 : 0) +
+      (counts.starvations == 0 ? 1 : 0) + (counts.passed_over == 0 ? 1 : 0);
+  const nlohmann::json found{{"returns later than allowed", counts.late_returns},
+                             {"streams that never came back", counts.never_back},
+                             {"streams beside their path at the end", counts.off_path},
+                             {"things never tried", never_tried}};
+  const nlohmann::json measured{
+      {"simulated seconds", static_cast<double>(counts.runs) * core::to_seconds(kEnd)},
+      {"silences", counts.silences},
+      {"delays", counts.delays},
+      {"replacements", counts.replacements},
+      {"takeovers", counts.takeovers},
+      {"starvations", counts.starvations},
+      {"waypoints passed over", counts.passed_over},
+      {"time of the return over that allowed, p50", quantile(counts.shares, 0.5)},
+      {"time of the return over that allowed, p99", quantile(counts.shares, 0.99)},
+      {"time of the return over that allowed, largest", quantile(counts.shares, 1)}};
+  return make_result(options, 10,
+                     "motions with random intervals, leads, limits and methods, whose producers "
+                     "fall silent, are late, plan anew and whose solvers die; then nothing more "
+                     "happens: back on the waypoints within twice the least time of a two-phase "
+                     "motion under the same limits, and 0.5 s",
+                     counts.runs, "returns", found, measured,
+                     core::to_seconds(clock.now() - begin));
+}
+
+}  // namespace splinecast::campaign

@@ -1,0 +1,137 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "tests/campaign/campaigns.hpp"
+#include "tests/campaign/motions/rules.hpp"
+#include "tests/campaign/motions/schedule.hpp"
+#include "tests/campaign/motions/sines.hpp"
+#include "tests/campaign/motions/trace.hpp"
+#include "tests/campaign/motions/trial.hpp"
+
+namespace splinecast::campaign {
+namespace {
+
+using core::Time;
+
+constexpr std::array kLimits{5.0, 10.0, 20.0, 0.0};  ///< rad/s²; 0: none
+constexpr double kNoise = 1e-4;                      ///< rad
+
+core::WindowOptions window_within(double limit) {
+  core::WindowOptions window;
+  if (limit > 0) window.limits.acceleration.assign(Sines::kJoints, limit);
+  return window;
+}
+
+/// What must not happen in a row.
+struct MotionFindings {
+  std::uint64_t limits_passed = 0;
+  std::uint64_t freezes = 0;
+  std::uint64_t refusals = 0;
+  std::uint64_t passed_although_covered = 0;
+  std::uint64_t jumps = 0;
+
+  [[nodiscard]] nlohmann::json json() const {
+    return {{"accelerations beyond their limit", limits_passed},
+            {"rows held for more than 1 % of the time", freezes},
+            {"waypoints refused that did not come too late", refusals},
+            {"waypoints passed over although the lead covered the hiccup", passed_although_covered},
+            {"jumps without limits", jumps}};
+  }
+};
+
+void judge(const Mishap& mishap, double limit, bool has_noise, const Seen& seen,
+           MotionFindings& findings) {
+  // The spline of noisy waypoints is beyond the limits itself.
+  const bool is_noisy = has_noise || mishap.quantum > 0;
+  const bool is_beyond = limit > 0 && !is_noisy && seen.peak_acceleration() > limit * (1 + 1e-9);
+  findings.limits_passed += is_beyond ? 1U : 0U;
+  const bool jumps =
+      limit == 0 && !is_noisy &&
+      seen.peak_acceleration() >
+          most_without_limits({Sines::kPeakVelocity, Sines::kPeakAcceleration}, seen.error(1));
+  findings.jumps += jumps ? 1U : 0U;
+  findings.freezes += seen.holding > kMostHolding ? 1U : 0U;
+  findings.refusals += seen.refused;
+  if (mishap.is_covered) {
+    findings.passed_although_covered += seen.passed_over - seen.passed_at_start;
+  }
+}
+
+std::string row_name(const Mishap& mishap, double limit, bool is_noisy) {
+  return fmt::format("{}{}, {}", mishap.name, is_noisy ? ", noise of 0.1 mrad" : "",
+                     limit > 0 ? fmt::format("limit {} rad/s2", limit) : "no limit");
+}
+
+std::string row_text(const Mishap& mishap, std::size_t which_limit, bool is_noisy,
+                     const Seen& seen) {
+  std::string text = fmt::format(
+      "peaks {:.2f} rad/s, {:.2f} rad/s2, in entries {:.2f} rad/s2; path error p50 {:.4f}, p99 "
+      "{:.4f}, largest {:.4f} rad; "
+      "passed over {:.1f} %; holding {:.2f} %",
+      seen.peak_velocity(), seen.peak_acceleration(), seen.entry_acceleration, seen.error(0.5),
+      seen.error(0.99), seen.error(1),
+      100 * static_cast<double>(seen.passed_over) / static_cast<double>(seen.knots),
+      100 * seen.holding);
+  if (is_noisy || which_limit >= mishap.simulated.size()) return text;
+  const auto [p99, largest] = mishap.simulated[which_limit];
+  if (p99 > 0) text += fmt::format(" (design: p99 {}, largest {})", p99, largest);
+  return text;
+}
+
+void trace(const Sines& motion, const CampaignOptions& options) {
+  constexpr double kLimit = 10;  // rad/s²
+  Traces traces(options.trace);
+  for (const Mishap& mishap : mishaps()) {
+    if (mishap.file.empty()) continue;
+    for (const double limit : {kLimit, 0.0}) {
+      traces.add(motion, mishap, limit,
+                 {.window = window_within(limit), .quantum = mishap.quantum, .seed = options.seed});
+    }
+  }
+  traces.finish();
+}
+
+}  // namespace
+
+std::string list_motions() {
+  std::string text;
+  for (const Mishap& mishap : mishaps()) text += fmt::format("{}\t{}\n", mishap.file, mishap.name);
+  return text;
+}
+
+Result run_motions(const CampaignOptions& options) {
+  const ipc::MonotonicClock clock;
+  const Time begin = clock.now();
+  MotionFindings findings;
+  nlohmann::json measured;
+  std::uint64_t rows = 0;
+  const Sines motion(options.seed);
+  if (!options.trace.empty()) trace(motion, options);
+  for (const Mishap& mishap : mishaps()) {
+    const Schedule schedule = mishap.make(motion, options.seed);
+    for (const bool is_noisy : {false, true}) {
+      for (std::size_t i = 0; i < kLimits.size(); ++i) {
+        const Seen seen = Trial(motion, schedule,
+                                {.window = window_within(kLimits[i]),
+                                 .noise = is_noisy ? kNoise : 0,
+                                 .quantum = mishap.quantum,
+                                 .seed = options.seed})
+                              .run();
+        judge(mishap, kLimits[i], is_noisy, seen, findings);
+        measured[row_name(mishap, kLimits[i], is_noisy)] = row_text(mishap, i, is_noisy, seen);
+        ++rows;
+      }
+    }
+  }
+  return make_result(options, {2, 4, 5},
+                     "a motion of six joints whose producer is late, silent, dead or of another "
+                     "mind, with limits and without, in simulated time through the real ring, "
+                     "solver, board and sampler",
+                     rows, "runs of 20 s", findings.json(), std::move(measured),
+                     core::to_seconds(clock.now() - begin));
+}
+
+}  // namespace splinecast::campaign

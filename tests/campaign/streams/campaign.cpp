@@ -1,0 +1,92 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <cstdio>
+
+#include "apps/process/messages.hpp"
+#include "apps/process/signals.hpp"
+#include "tests/campaign/campaigns.hpp"
+#include "tests/campaign/streams/simulated_stream.hpp"
+
+namespace splinecast::campaign {
+namespace {
+
+/// No stream takes so long, s: one that does hangs, and nothing but a signal ends it.
+constexpr unsigned kHangsAfter = 120;
+
+volatile std::sig_atomic_t is_running = 0;
+std::array<char, 96> hang_text{};
+
+void tell_hang(int /*signal*/) {
+  if (is_running == 0) return;
+  std::size_t length = 0;
+  while (length < hang_text.size() && hang_text[length] != 0) ++length;
+  (void)!write(STDERR_FILENO, hang_text.data(), length);
+  _exit(3);
+}
+
+/// Ends the program, with the stream's seed, if a stream does not end.
+class HangGuard {
+ public:
+  explicit HangGuard(std::uint64_t seed) {
+    std::snprintf(hang_text.data(), hang_text.size(),
+                  "splinecast_campaign: seed %llu: hangs, a step without bound\n",
+                  static_cast<unsigned long long>(seed));
+    is_running = 1;
+    (void)std::signal(SIGALRM, tell_hang);
+    alarm(kHangsAfter);
+  }
+  HangGuard(const HangGuard&) = delete;
+  HangGuard& operator=(const HangGuard&) = delete;
+  ~HangGuard() {
+    is_running = 0;
+    alarm(0);
+  }
+};
+
+void run_stream(std::uint64_t seed, StreamFindings& findings) {
+  const HangGuard guard(seed);
+  Random random(seed);
+  const StreamPlan plan = make_plan(seed, random);
+  SimulatedStream(plan, findings, random).run();
+}
+
+nlohmann::json found(const StreamFindings& findings, bool all_streams) {
+  auto breaches = findings.found();
+  breaches["hangs"] = 0;  // one that hangs ends the program
+  if (!all_streams) return breaches;
+  const auto missing = findings.not_covered();
+  breaches["things never tried"] = missing.size();
+  for (const std::string& name : missing) apps::say(fmt::format("never happened: {}", name));
+  return breaches;
+}
+
+}  // namespace
+
+Result run_streams(const CampaignOptions& options) {
+  const ipc::MonotonicClock clock;
+  const core::Time begin = clock.now();
+  const core::Time end = begin + core::Time(static_cast<std::int64_t>(options.seconds * 1e9));
+  StreamFindings findings;
+  const auto goes_on = [&] {
+    return options.runs > 0 ? findings.streams() < options.runs : clock.now() < end;
+  };
+  for (std::uint64_t seed = options.seed; goes_on() && !apps::stop_requested(); ++seed) {
+    run_stream(seed, findings);
+  }
+  const double seconds = core::to_seconds(clock.now() - begin);
+  const auto breaches = found(findings, options.runs == 0);
+  auto measured = findings.coverage();
+  measured["simulated seconds per second"] = findings.simulated() / seconds;
+  measured["first seed"] = options.seed;
+  return make_result(
+      options, {1, 2, 3, 4, 5, 8},
+      "simulated live streams, one per seed: random producers, clocks, limits, kinds "
+      "and methods, replacements, stops, deaths and hold-ups, through the real ring, "
+      "solver, board and samplers in plain memory",
+      findings.streams(), "streams", breaches, std::move(measured), seconds);
+}
+
+}  // namespace splinecast::campaign

@@ -1,0 +1,239 @@
+#include "core/forms/stop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "core/online/sliding_window.hpp"
+#include "splinecast/state.hpp"
+#include "tests/fixtures/curves/mesh.hpp"
+
+namespace splinecast::core {
+namespace {
+
+using std::chrono::milliseconds;
+
+Time from_seconds(double seconds) { return Time(std::llround(seconds * 1e9)); }
+
+/// Calls `look` with the state at many times of a segment, both ends among them.
+template <typename Look>
+void for_each_state(const Segment& segment, std::size_t dimensions, const Look& look) {
+  constexpr int kLooks = 1000;
+  State state(dimensions);
+  const double h = to_seconds(segment.right - segment.left);
+  for (int i = 0; i <= kLooks; ++i) {
+    evaluate(segment.order, segment.coefficients, h * i / kLooks, state.ref());
+    look(state, h * i / kLooks);
+  }
+}
+
+/// Largest absolute acceleration and jerk of dimension 0.
+struct Peaks {
+  double acceleration = 0;
+  double jerk = 0;
+};
+
+Peaks sampled_peaks(Time stop_time, double v, double a) {
+  const std::array x{0.0};
+  Segment stop(1);
+  build_stop(Time(0), stop_time, x, {&v, 1}, {&a, 1}, stop);
+  Peaks peaks;
+  for_each_state(stop, 1, [&](const State& at, double) {
+    peaks.acceleration = std::max(peaks.acceleration, std::abs(at.acceleration()[0]));
+    peaks.jerk = std::max(peaks.jerk, std::abs(at.jerk()[0]));
+  });
+  return peaks;
+}
+
+Time stop_time(double v, double a, double limit, Time least = kLeastStopTime) {
+  return stop_time_within({.acceleration = {limit}}, least, std::array{v}, std::array{a});
+}
+
+TEST(StopSegment, NeverSpeedsUpNorTurnsNorGoesFurtherThanHalfItsTimeAtItsVelocity) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> exponent(-3, 3);
+  constexpr std::size_t kDimensions = 5;  // some in vectors, one behind them
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    const auto x = testing::random_values(3 * seed, kDimensions);
+    auto v = testing::random_values(3 * seed + 1, kDimensions);
+    auto a = testing::random_values(3 * seed + 2, kDimensions);
+    for (double& value : v) value *= std::pow(10, exponent(random));
+    for (double& value : a) value *= std::pow(10, 2 * exponent(random));
+    const Time time = from_seconds(std::pow(10, exponent(random) - 1));
+    Segment stop(kDimensions);
+    build_stop(Time(7), time, x, v, a, stop);
+    EXPECT_EQ(stop.left, Time(7));
+    EXPECT_EQ(stop.right, Time(7) + time);
+    std::vector<double> before = v;
+    for_each_state(stop, kDimensions, [&](const State& at, double) {
+      for (std::size_t d = 0; d < kDimensions; ++d) {
+        const double rounding = 1e-12 * std::abs(v[d]);
+        ASSERT_LE(std::abs(at.velocity()[d]), std::abs(before[d]) + rounding) << seed;
+        ASSERT_GE(at.velocity()[d] * v[d], -rounding * std::abs(v[d])) << seed;
+        before[d] = at.velocity()[d];
+        const double way = std::abs(v[d]) * to_seconds(time) / 2;
+        ASSERT_LE(std::abs(at.position()[d] - x[d]), way * (1 + 1e-9) + 1e-12) << seed;
+        ASSERT_LE(std::abs(at.acceleration()[d]),
+                  3 * std::abs(v[d]) / to_seconds(time) * (1 + 1e-9));
+      }
+    });
+  }
+}
+
+TEST(StopSegment, BeginsWithItsStateAndComesToAFullStop) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const auto x = testing::random_values(3 * seed, 3);
+    const auto v = testing::random_values(3 * seed + 1, 3);
+    std::vector<double> a(3);
+    for (std::size_t d = 0; d < 3; ++d) a[d] = -2 * v[d];  // within 0 … −3v/T
+    Segment stop(3);
+    build_stop(Time(0), milliseconds(700), x, v, a, stop);
+    State state(3);
+    evaluate(stop.order, stop.coefficients, 0, state.ref());
+    EXPECT_TRUE(std::ranges::equal(state.position(), x));
+    EXPECT_TRUE(std::ranges::equal(state.velocity(), v));
+    EXPECT_TRUE(std::ranges::equal(state.acceleration(), a));
+    evaluate(stop.order, stop.coefficients, 0.7, state.ref());
+    for (std::size_t d = 0; d < 3; ++d) {
+      EXPECT_NEAR(state.velocity()[d], 0, 1e-14);
+      EXPECT_NEAR(state.acceleration()[d], 0, 1e-13);
+      EXPECT_NEAR(state.position()[d], x[d] + v[d] * 0.7 / 2 + a[d] * 0.49 / 12, 1e-15);
+    }
+  }
+}
+
+TEST(StopSegment, ClampsItsFirstAccelerationBetweenNoneAndTheSteepestWithoutReversal) {
+  EXPECT_EQ(stop_acceleration(2, -5, 0.5), -5);
+  EXPECT_EQ(stop_acceleration(2, -12, 0.5), -12);
+  EXPECT_EQ(stop_acceleration(2, -12.1, 0.5), -12);
+  EXPECT_EQ(stop_acceleration(2, 1, 0.5), 0);
+  EXPECT_EQ(stop_acceleration(-2, 5, 0.5), 5);
+  EXPECT_EQ(stop_acceleration(-2, 100, 0.5), 12);
+  EXPECT_EQ(stop_acceleration(-2, -1, 0.5), 0);
+  EXPECT_EQ(stop_acceleration(0, 7, 0.5), 0);
+  EXPECT_EQ(stop_acceleration(0, -7, 0.5), 0);
+}
+
+TEST(StopSegment, OfAllDimensionsClampsLikeThatOfOne) {
+  for (std::size_t dimensions = 1; dimensions <= 9; ++dimensions) {
+    const auto x = testing::random_values(dimensions, dimensions);
+    const auto v = testing::random_values(dimensions + 20, dimensions);
+    auto a = testing::random_values(dimensions + 40, dimensions);
+    for (double& value : a) value *= 20;
+    Segment stop(dimensions);
+    build_stop(Time(0), milliseconds(250), x, v, a, stop);
+    for (std::size_t d = 0; d < dimensions; ++d) {
+      EXPECT_EQ(2 * stop.coefficients[2 * dimensions + d], stop_acceleration(v[d], a[d], 0.25));
+    }
+  }
+}
+
+/// A dimension that decelerates beyond its limit already must only not go beyond it any more.
+TEST(StopSegment, KeepsItsAccelerationLimitFromTheFirstInstantOn) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> value(-10, 10);
+  for (int i = 0; i < 2000; ++i) {
+    const double v = value(random);
+    const double a = i % 5 == 0 ? 0 : value(random) * (i % 3 == 0 ? 10 : 1);
+    const double limit = 1 + std::abs(value(random));
+    const Time time = stop_time(v, a, limit);
+    EXPECT_LE(sampled_peaks(time, v, a).acceleration, limit * (1 + 1e-6)) << v << ' ' << a;
+    const Time longer = time + milliseconds(1 + i % 400);
+    EXPECT_LE(sampled_peaks(longer, v, a).acceleration, limit * (1 + 1e-6)) << v << ' ' << a;
+  }
+}
+
+TEST(StopSegment, TakesNoLongerThanItsAccelerationLimitAsksFor) {
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> value(-10, 10);
+  for (int i = 0; i < 2000; ++i) {
+    const double limit = 1 + std::abs(value(random));
+    const double v = value(random);
+    // Decelerating within the limit, or accelerating, which the stop leaves out.
+    const double a = std::clamp(value(random), -limit, limit);
+    const Time time = stop_time(v, a, limit);
+    if (time == kLeastStopTime) continue;
+    const bool decelerates = v * a < 0;
+    if (!decelerates) {
+      EXPECT_NEAR(to_seconds(time), 1.5 * std::abs(v) / limit, 2e-9);
+    }
+    // From the limit itself on a stop has its peak at its beginning, whatever time it takes.
+    if (decelerates && std::abs(a) > 0.9 * limit) continue;
+    const Time shorter = from_seconds(0.99 * to_seconds(time));
+    EXPECT_GT(sampled_peaks(shorter, v, a).acceleration, limit) << v << ' ' << a << ' ' << limit;
+  }
+}
+
+TEST(StopSegment, ThatDeceleratesBeyondItsLimitTakesThreeTimesTheVelocityOverIt) {
+  EXPECT_NEAR(to_seconds(stop_time(2, -50, 10)), 0.6, 2e-9);
+  EXPECT_NEAR(to_seconds(stop_time(-2, 50, 10)), 0.6, 2e-9);
+  EXPECT_LE(sampled_peaks(stop_time(2, -50, 10), 2, -50).acceleration, 10 * (1 + 1e-9));
+}
+
+TEST(StopSegment, KeepsItsJerkLimit) {
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> value(-10, 10);
+  for (int i = 0; i < 500; ++i) {
+    const double v = value(random);
+    const double a = 10 * value(random);
+    const double limit = 1 + 10 * std::abs(value(random));
+    const Time time =
+        stop_time_within({.jerk = {limit}}, kLeastStopTime, std::array{v}, std::array{a});
+    EXPECT_LE(sampled_peaks(time, v, a).jerk, limit * (1 + 1e-6)) << v << ' ' << a;
+    const double shorter = 0.99 * to_seconds(time);
+    EXPECT_GT(sampled_peaks(from_seconds(shorter), v, 0).jerk, limit) << v;
+  }
+}
+
+TEST(StopSegment, TakesAsLongAsTheDimensionThatNeedsLongest) {
+  const std::array v{1.0, -3.0, 20.0};
+  const std::array a{0.0, 0.0, 0.0};
+  const MotionLimits limits{.acceleration = {10, 10, 0}};  // the last one has none
+  EXPECT_NEAR(to_seconds(stop_time_within(limits, kLeastStopTime, v, a)), 0.45, 2e-9);
+  EXPECT_EQ(stop_time_within(limits, milliseconds(500), v, a), milliseconds(500));
+  EXPECT_EQ(stop_time_within({}, milliseconds(250), v, a), milliseconds(250));
+}
+
+TEST(StopSegment, OfAnyStateTakesAFiniteTime) {
+  constexpr double kTiny = std::numeric_limits<double>::denorm_min();
+  const std::array values{0.0,    kTiny,   3 * kTiny, -17 * kTiny, 1e-310,
+                          1e-300, -1e-100, 1.0,       1e100,       -1e200};
+  for (const double v : values) {
+    for (const double a : values) {
+      for (const double limit : {kTiny, 1e-310, 1e-100, 1e-3, 4.0, 10.0, 1e100}) {
+        const Time time = stop_time(v, a, limit);
+        EXPECT_GE(time, kLeastStopTime);
+        EXPECT_LE(to_seconds(time), 1e6);
+        const Time with_jerk =
+            stop_time_within({.jerk = {limit}}, kLeastStopTime, std::array{v}, std::array{a});
+        EXPECT_GE(with_jerk, kLeastStopTime);
+        EXPECT_LE(to_seconds(with_jerk), 1e6);
+      }
+    }
+  }
+}
+
+/// Velocities decay by 0.27 a knot until they are denormal.
+TEST(StopSegment, FollowsOnePositionRepeatedForEver) {
+  for (const Tail tail : {Tail::natural, Tail::parabolic, Tail::bessel}) {
+    WindowOptions options{.tail = tail, .limits = {.acceleration = {10}}};
+    SlidingWindow window(1, options);
+    Segment last(1);
+    for (int i = 0; i < 2000; ++i) {
+      const double x = i < 20 ? std::sin(i) : 0;
+      window.append({.time = milliseconds(10 * i), .position = {&x, 1}});
+      window.segment(window.segments() - 1, last);
+      ASSERT_EQ(last.kind, SegmentKind::stop_tail);
+      ASSERT_GE(last.right - last.left, options.stop_time);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace splinecast::core

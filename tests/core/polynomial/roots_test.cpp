@@ -1,0 +1,104 @@
+#include "core/polynomial/roots.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace splinecast::core {
+namespace {
+
+/// Coefficients of Π (s − root), times a leading factor.
+std::vector<double> with_roots(const std::vector<double>& roots, double leading) {
+  std::vector<double> c{leading};
+  for (const double root : roots) {
+    c.insert(c.begin(), 0);
+    for (std::size_t k = 0; k + 1 < c.size(); ++k) c[k] -= root * c[k + 1];
+  }
+  return c;
+}
+
+std::vector<double> found(const std::vector<double>& c, double tolerance = 0) {
+  const Roots roots = unit_roots(c, tolerance);
+  return {roots.begin(), roots.end()};
+}
+
+TEST(Roots, OfProductsOfFactorsAreThoseOfTheFactorsInTheUnitInterval) {
+  EXPECT_TRUE(rc::check("roots", [](std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> place(0.02, 0.08);
+    const std::size_t degree = 1 + seed % 7;
+    std::vector<double> roots;
+    double at = -0.2;
+    while (roots.size() < degree) roots.push_back(at += place(random) + 0.1);
+    const auto got = found(with_roots(roots, seed % 2 == 0 ? 3 : -1e-7));
+    std::erase_if(roots, [](double s) { return s < 0 || s > 1; });
+    RC_ASSERT(got.size() == roots.size());
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+      RC_ASSERT(std::abs(got[i] - roots[i]) < 1e-9);
+    }
+  }));
+}
+
+TEST(Roots, OfNearlyLinearAndNearlyQuadraticPolynomialsKeepTheirDigits) {
+  for (const double tiny : {1e-10, -1e-16, 1e-30, 1e-300}) {
+    const auto linear = found({-0.3, 1, tiny});
+    ASSERT_EQ(linear.size(), 1U);
+    EXPECT_NEAR(linear[0], 0.3, 0.1 * std::abs(tiny) + 2e-16);
+    const auto quadratic = found({0.06, -0.5, 1, tiny});
+    ASSERT_EQ(quadratic.size(), 2U);
+    EXPECT_NEAR(quadratic[0], 0.2, std::abs(tiny) + 4e-16);
+    EXPECT_NEAR(quadratic[1], 0.3, std::abs(tiny) + 4e-16);
+  }
+}
+
+TEST(Roots, WhereItTouchesZeroAndAtTheEndsRoundingCountsAsZero) {
+  const double tolerance = 1e-15;
+  EXPECT_EQ(found({0.25 + 1e-16, -1, 1}, tolerance), std::vector{0.5});
+  EXPECT_EQ(found({0.25 + 1e-12, -1, 1}, tolerance), std::vector<double>{});
+  EXPECT_EQ(found({1e-17, 1}, tolerance), std::vector{0.0});
+  EXPECT_EQ(found({-1 - 1e-16, 1}, tolerance), std::vector{1.0});
+  const auto twice = found(with_roots({0.3, 0.3, 0.7}, 1), tolerance);
+  ASSERT_EQ(twice.size(), 2U);
+  EXPECT_NEAR(twice[0], 0.3, 1e-7);
+  EXPECT_NEAR(twice[1], 0.7, 1e-14);
+}
+
+TEST(Roots, AreFoundWhereTheyCoincideAndAtTheHighestDegree) {
+  const auto thrice = found(with_roots({0.4, 0.4, 0.4}, 1));
+  ASSERT_FALSE(thrice.empty());
+  for (const double s : thrice) EXPECT_NEAR(s, 0.4, 1e-5);
+  std::vector<double> power(kMaxRootCoefficients);  // s^27 = 1/2
+  power[0] = -0.5;
+  power.back() = 1;
+  const auto high = found(power);
+  ASSERT_EQ(high.size(), 1U);
+  EXPECT_NEAR(high[0], std::pow(0.5, 1.0 / 27), 2e-16);
+}
+
+TEST(Roots, AConstantHasNone) {
+  EXPECT_TRUE(found({}).empty());
+  EXPECT_TRUE(found({0}).empty());
+  EXPECT_TRUE(found({0, 0, 0}).empty());
+  EXPECT_TRUE(found({1, 0}).empty());
+  EXPECT_EQ(found({0, 1}), std::vector{0.0});
+}
+
+TEST(Roots, EndWhateverTheCoefficients) {
+  EXPECT_TRUE(rc::check("any coefficients", [](const std::vector<double>& some) {
+    std::vector<double> c(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                           some.size(), kMaxRootCoefficients)));
+    const auto roots = found(c);
+    RC_ASSERT(std::ranges::is_sorted(roots));
+    RC_ASSERT(std::ranges::all_of(roots, [](double s) { return s >= 0 && s <= 1; }));
+  }));
+  const double nan = std::nan("");
+  EXPECT_LE(found({nan, 1, nan, 2, nan}).size(), 5U);
+  EXPECT_LE(found({1, INFINITY, -INFINITY, 2, -3}).size(), 5U);
+}
+
+}  // namespace
+}  // namespace splinecast::core

@@ -1,0 +1,514 @@
+#include "ipc/board/knot_board.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "tests/fixtures/streams/board_words.hpp"
+#include "tests/fixtures/streams/memory_stream.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+using core::SegmentForm;
+using core::Time;
+using testing::MemoryBoard;
+
+constexpr std::size_t kDimensions = 3;
+
+Time time_of(Word number) { return Time(static_cast<std::int64_t>(number) * 100); }
+
+std::vector<double> all(double value) { return std::vector<double>(kDimensions, value); }
+
+/// Writes a knot all of whose values say which number and revision it is of.
+void write(MemoryBoard& board, Word number, bool is_new = false) {
+  const auto velocity = all(static_cast<double>(board.writer.revision() + 1));
+  const auto position = all(static_cast<double>(number));
+  board.writer.write(number, {.is_new = is_new,
+                              .note = {.form = SegmentForm::cubic, .is_waypoint = true},
+                              .time = time_of(number),
+                              .position = position,
+                              .velocity = velocity});
+}
+
+void commit(MemoryBoard& board, Word first, Word newest) {
+  Head head{.first = first, .newest = newest};
+  board.writer.commit(head);
+}
+
+bool are_all(std::span<const double> values, double value) {
+  return std::ranges::all_of(values, [=](double each) { return each == value; });
+}
+
+/// The revision that knot `number` was written by, as seen under r; 0 if it cannot be had,
+/// kRetiredTag if the copy is not whole.
+Word revision_of_knot(const KnotBoardReader& board, Word number, Word r, KnotCopy& copy) {
+  if (!board.copy_knot(number, r, copy)) return 0;
+  const auto revision = static_cast<Word>(copy.velocity()[0]);
+  const bool is_whole = are_all(copy.velocity(), static_cast<double>(revision)) &&
+                        are_all(copy.waypoint(), static_cast<double>(number)) &&
+                        copy.time == time_of(number) && revision_of(copy.tag) == revision;
+  return is_whole ? revision : kRetiredTag;
+}
+
+TEST(KnotBoard, ARevisionAppearsAtOnceAndTheOneBeforeStaysReadable) {
+  MemoryBoard board(kDimensions, 16);
+  KnotCopy copy(kDimensions, false);
+  Head head;
+  EXPECT_EQ(board.reader.revision(), 0U);
+  EXPECT_FALSE(board.reader.copy_head({}, head));
+  for (Word n = 1; n <= 5; ++n) write(board, n, true);
+  EXPECT_EQ(board.reader.revision(), 0U);
+  commit(board, 1, 5);
+  ASSERT_EQ(board.reader.revision(), 1U);
+  for (Word n = 3; n <= 6; ++n) write(board, n, n == 6);
+  for (Word n = 1; n <= 5; ++n) EXPECT_EQ(revision_of_knot(board.reader, n, 1, copy), 1U) << n;
+  commit(board, 1, 6);
+  for (Word n = 1; n <= 6; ++n) {
+    EXPECT_EQ(revision_of_knot(board.reader, n, 2, copy), n < 3 ? 1U : 2U) << n;
+    EXPECT_EQ(revision_of_knot(board.reader, n, 1, copy), n < 6 ? 1U : 0U) << n;
+  }
+  ASSERT_TRUE(board.reader.copy_head({.settled_until = {}, .revision = 1}, head));
+  EXPECT_EQ(head.newest, 5U);
+  ASSERT_TRUE(board.reader.copy_head({.settled_until = {}, .revision = 2}, head));
+  EXPECT_EQ(head.newest, 6U);
+}
+
+TEST(KnotBoard, ACopyIsCurrentUntilItsKnotIsWrittenAgain) {
+  MemoryBoard board(kDimensions, 16);
+  KnotCopy copy(kDimensions, false);
+  write(board, 1, true);
+  write(board, 2, true);
+  commit(board, 1, 2);
+  ASSERT_EQ(revision_of_knot(board.reader, 1, 1, copy), 1U);
+  write(board, 2);
+  commit(board, 1, 2);
+  EXPECT_TRUE(board.reader.is_current(copy, 2));
+  write(board, 1);
+  EXPECT_TRUE(board.reader.is_current(copy, 2));
+  commit(board, 1, 2);
+  EXPECT_FALSE(board.reader.is_current(copy, 3));
+}
+
+TEST(KnotBoard, ANewWriterRetiresWhatTheDeadOneDidNotCommit) {
+  MemoryBoard board(kDimensions, 16);
+  KnotCopy copy(kDimensions, false);
+  for (Word n = 1; n <= 3; ++n) write(board, n, true);
+  commit(board, 1, 3);
+  write(board, 2);
+  write(board, 3);  // and dies
+  board.replace_writer();
+  for (Word r = 1; r <= 4; ++r) {
+    for (Word n = 1; n <= 3; ++n) EXPECT_EQ(revision_of_knot(board.reader, n, r, copy), 1U);
+  }
+  write(board, 3);
+  commit(board, 1, 3);
+  EXPECT_EQ(revision_of_knot(board.reader, 2, 2, copy), 1U);
+  EXPECT_EQ(revision_of_knot(board.reader, 3, 2, copy), 2U);
+}
+
+TEST(KnotBoard, ASlotHoldsOneKnotAfterTheOtherOverManyRounds) {
+  constexpr Word kCapacity = 4;
+  MemoryBoard board(kDimensions, kCapacity);
+  KnotCopy copy(kDimensions, false);
+  for (Word n = 1; n <= 40; ++n) {
+    // Each append solves the knot before it again, as solvers do: three cells of a slot are written
+    // per round, so that cells and nodes come round in different ways.
+    if (n > 1) write(board, n - 1);
+    write(board, n, true);
+    commit(board, n > kCapacity ? n - kCapacity + 1 : 1, n);
+    for (Word back = 0; back < kCapacity && back < n; ++back) {
+      const Word last_written = back == 0 ? n : n - back + 1;
+      EXPECT_EQ(revision_of_knot(board.reader, n - back, n, copy), last_written) << n;
+    }
+    // The slot was written once since: under the revision before, its old knot is whole.
+    if (n > kCapacity) {
+      EXPECT_EQ(revision_of_knot(board.reader, n - kCapacity, n - 1, copy), n - kCapacity + 1);
+    }
+  }
+}
+
+TEST(KnotBoard, ACopyIsNotCurrentWhenTwoKnotsLaterItsNodeIsNamedAgain) {
+  constexpr Word kCapacity = 4;
+  MemoryBoard board(kDimensions, kCapacity);
+  KnotCopy old(kDimensions, false);
+  KnotCopy copy(kDimensions, false);
+  write(board, 1, true);
+  commit(board, 1, 1);
+  ASSERT_TRUE(board.reader.copy_knot(1, 1, old));
+  for (const Word n : {1 + kCapacity, 1 + 2 * kCapacity}) {
+    write(board, n, true);
+    commit(board, n, n);
+  }
+  ASSERT_EQ(revision_of_knot(board.reader, 1 + 2 * kCapacity, 3, copy), 3U);
+  EXPECT_EQ(copy.tag & 1, old.tag & 1);  // the node
+  EXPECT_EQ(copy.cell, old.cell);
+  EXPECT_FALSE(board.reader.is_current(old, 3));
+}
+
+TEST(KnotBoard, ANodeIsNotTouchedWhereAKnotStays) {
+  MemoryBoard board(kDimensions, 4);
+  write(board, 1, true);
+  commit(board, 1, 1);
+  const auto words = words_at(board.bytes.span(), testing::node_offset(board.layout, 1, 0),
+                              2 * board.layout.node / sizeof(Word));
+  const std::vector<Word> before(words.begin(), words.end());
+  for (int i = 0; i < 5; ++i) {
+    write(board, 1);
+    commit(board, 1, 1);
+  }
+  EXPECT_TRUE(std::ranges::equal(words, before));
+}
+
+TEST(KnotBoard, ADiscardedRevisionLeavesTheKnotsTheirTimesAndTheNextRevisionAsTheyWere) {
+  constexpr Word kCapacity = 4;
+  MemoryBoard board(kDimensions, kCapacity);
+  KnotCopy copy(kDimensions, false);
+  for (Word n = 1; n <= kCapacity; ++n) write(board, n, true);
+  commit(board, 1, kCapacity);
+  write(board, 3);
+  board.writer.write_form(4, SegmentForm::none, time_of(9));
+  write(board, 5, true);  // over knot 1
+  board.writer.discard();
+  for (Word r = 1; r <= 3; ++r) {
+    for (Word n = 1; n <= kCapacity; ++n) {
+      EXPECT_EQ(revision_of_knot(board.reader, n, r, copy), 1U) << n;
+      EXPECT_EQ(board.reader.time_hint(n), time_of(n)) << n;
+      EXPECT_EQ(board.writer.form(n), SegmentForm::cubic) << n;
+    }
+  }
+  write(board, 4);
+  write(board, 5, true);
+  commit(board, 2, 5);
+  EXPECT_EQ(revision_of_knot(board.reader, 3, 2, copy), 1U);
+  EXPECT_EQ(revision_of_knot(board.reader, 4, 2, copy), 2U);
+  EXPECT_EQ(revision_of_knot(board.reader, 5, 2, copy), 2U);
+  EXPECT_EQ(revision_of_knot(board.reader, 1, 1, copy), 1U);
+}
+
+TEST(KnotBoard, ARowStaysThatOfTheCommittedKnotWhenOneIsDiscarded) {
+  MemoryBoard board(kDimensions, 4);
+  KnotCopy copy(kDimensions, false);
+  const auto zeros = all(0);
+  const auto write_row = [&](double value) {
+    const core::Prefix prefix{.gamma = value};
+    const auto g = all(value);
+    board.writer.write(1, {.is_new = board.writer.revision() == 0,
+                           .note = {.form = SegmentForm::cubic},
+                           .time = time_of(1),
+                           .position = zeros,
+                           .velocity = zeros,
+                           .prefix = &prefix,
+                           .g = g});
+  };
+  const auto expect_row = [&](double value) {
+    std::vector<double> g(kDimensions);
+    ASSERT_TRUE(board.reader.copy_knot(1, board.reader.revision(), copy));
+    EXPECT_EQ(board.reader.copy_row(copy, g).gamma, value);
+    EXPECT_TRUE(are_all(g, value));
+  };
+  for (int round = 1; round <= 6; ++round) {
+    write_row(round);
+    commit(board, 1, 1);
+    expect_row(round);
+    write_row(-round);
+    expect_row(round);
+    if (round % 2 == 0) {
+      board.writer.discard();
+    } else {
+      board.replace_writer();
+    }
+    expect_row(round);
+    if (round % 3 != 0) continue;
+    write(board, 1);  // without a row: it keeps the one that it has
+    commit(board, 1, 1);
+    expect_row(round);
+  }
+}
+
+TEST(KnotBoard, AFormWrittenAgainLeavesTheRestOfTheKnotAndTellsWhenTheNextSegmentBegins) {
+  for (const bool smooths : {false, true}) {
+    MemoryBoard board(kDimensions, 8, smooths);
+    const auto position = all(1);
+    const auto velocity = all(2);
+    const auto acceleration = all(3);
+    const auto residual = all(4);
+    board.writer.write(
+        1, {.is_new = true,
+            .note = {.form = SegmentForm::splice, .starts = true, .newer_knots = 5},
+            .time = time_of(1),
+            .position = position,
+            .velocity = velocity,
+            .acceleration = acceleration,
+            .residual = smooths ? std::span<const double>(residual) : std::span<const double>(),
+            .item = 17});
+    commit(board, 1, 1);
+    KnotCopy copy(kDimensions, smooths);
+    for (int round = 0; round < 4; ++round) {
+      const bool is_end = round % 2 == 0;
+      board.writer.write_form(1, is_end ? SegmentForm::none : SegmentForm::splice, time_of(7));
+      EXPECT_EQ(board.writer.form(1), is_end ? SegmentForm::none : SegmentForm::splice);
+      commit(board, 1, 1);
+      ASSERT_TRUE(board.reader.copy_knot(1, board.reader.revision(), copy));
+      EXPECT_EQ(copy.note.form, is_end ? SegmentForm::none : SegmentForm::splice);
+      EXPECT_TRUE(copy.note.starts);
+      EXPECT_EQ(copy.note.newer_knots, 5U);
+      EXPECT_EQ(copy.item, 17U);
+      EXPECT_EQ(copy.time, time_of(1));
+      EXPECT_TRUE(are_all(copy.waypoint(), 1) && are_all(copy.velocity(), 2) &&
+                  are_all(copy.acceleration(), 3));
+      if (smooths) {
+        EXPECT_TRUE(are_all(copy.residual(), 4));
+      }
+      EXPECT_EQ(board.reader.time_hint(1), time_of(7));
+    }
+  }
+}
+
+TEST(KnotBoard, ANewWriterMakesThePackedTimesThoseOfTheCommittedKnots) {
+  constexpr Word kCapacity = 4;
+  MemoryBoard board(kDimensions, kCapacity);
+  for (Word n = 1; n <= kCapacity; ++n) write(board, n, true);
+  commit(board, 1, kCapacity);
+  board.writer.write_form(3, SegmentForm::none, time_of(4));
+  commit(board, 1, kCapacity);
+  write(board, 5, true);
+  board.writer.write_form(2, SegmentForm::none, time_of(9));  // and dies
+  EXPECT_EQ(board.reader.time_hint(2), time_of(9));
+  board.replace_writer();
+  EXPECT_EQ(board.reader.time_hint(1), time_of(1));
+  EXPECT_EQ(board.reader.time_hint(2), time_of(2));
+  EXPECT_EQ(board.reader.time_hint(3), time_of(4));  // no segment begins there
+  EXPECT_EQ(board.reader.time_hint(4), time_of(4));
+}
+
+TEST(KnotBoard, KeepsTheLastRefusalsWithTheirItems) {
+  MemoryBoard board(1, 16);
+  for (Word i = 0; i < 1500; ++i) {
+    board.writer.write_refusal(i, {.item = 10 * i, .reason = Refusal::not_finite});
+  }
+  for (Word i = 1500 - kRefusalsKept; i < 1500; ++i) {
+    ASSERT_EQ(board.reader.refusal(i).item, 10 * i);
+    ASSERT_EQ(board.reader.refusal(i).reason, Refusal::not_finite);
+  }
+}
+
+TEST(KnotBoard, AHeadThatCannotBeIsNotBelieved) {
+  MemoryBoard board(1, 16);
+  Head head;
+  for (const auto& [first, newest] :
+       std::vector<std::pair<Word, Word>>{{0, 5}, {6, 5}, {1, 17}, {1, kRetiredTag}}) {
+    Head lying{.first = first, .newest = newest};
+    board.writer.commit(lying);
+    EXPECT_FALSE(board.reader.copy_bounds(board.reader.look(), 0, head)) << newest;
+  }
+  for (const Time stop : {Time(-1), kLongestStop + Time(1)}) {
+    Head lying{.first = 1, .newest = 5, .stop = stop};
+    board.writer.commit(lying);
+    EXPECT_FALSE(board.reader.copy_bounds(board.reader.look(), 0, head)) << stop.count();
+  }
+}
+
+TEST(KnotBoard, AHeadIsWholeThoughOnlyWhatIsNotThereIsStored) {
+  MemoryBoard board(1, 16);
+  for (Word value = 1; value <= 12; ++value) {
+    Head head{.first = 1, .newest = 2};
+    // Members change in turn, each seldom enough to be left alone for a while.
+    head.consumed = value;
+    head.misses = value / 3;
+    head.run_frozen = value % 3;
+    head.finished = value % 4 == 3;
+    head.reasons[value % kRefusalReasons] = value;
+    head.refused = value;
+    if (value % 5 == 4) board.replace_writer();
+    board.writer.commit(head);
+    Head seen;
+    ASSERT_TRUE(board.reader.copy_head(board.reader.look(), seen));
+    EXPECT_EQ(seen.consumed, head.consumed);
+    EXPECT_EQ(seen.misses, head.misses);
+    EXPECT_EQ(seen.run_frozen, head.run_frozen);
+    EXPECT_EQ(seen.finished, head.finished);
+    EXPECT_EQ(seen.refused, head.refused);
+    EXPECT_EQ(seen.reasons, head.reasons);
+    EXPECT_EQ(seen.low_water, Time::max());
+  }
+}
+
+/// A board of which each revision changed the curve from a time of its own.
+struct Changing : MemoryBoard {
+  Changing() : MemoryBoard(1, 16) {}
+
+  /// Revision r changes the curve from 1000 − r, so that the newest one is the earliest.
+  static Time change_of(Word r) { return Time(1000) - Time(static_cast<std::int64_t>(r)); }
+  void publish_to(Word revision) {
+    while (writer.revision() < revision) {
+      Head head{.first = 1, .newest = 1, .changed_from = change_of(writer.revision() + 1)};
+      writer.commit(head);
+    }
+  }
+  /// What a reader that has seen a revision is told of those after it.
+  Time change_since(Word seen) {
+    Head head;
+    EXPECT_TRUE(reader.copy_bounds(reader.look(), seen, head));
+    return head.changed_from;
+  }
+  Word& head_tag(std::size_t c) {
+    return words_at(bytes.span(), testing::head_offset(layout, c), 1)[0];
+  }
+};
+
+TEST(RingOfChanges, SixtyThreeMissedRevisionsCountAndSixtyFourDoNot) {
+  for (const Word newest : {64U, 65U, 130U, 200U}) {
+    Changing board;
+    board.publish_to(newest);
+    EXPECT_EQ(board.change_since(newest), Time::max());
+    EXPECT_EQ(board.change_since(newest - 1), board.change_of(newest));
+    EXPECT_EQ(board.change_since(newest - 63), board.change_of(newest));
+    EXPECT_EQ(board.change_since(newest - 64), Time::min());
+  }
+}
+
+TEST(RingOfChanges, TheEarliestOfTheMissedRevisionsIsTold) {
+  MemoryBoard board(1, 16);
+  for (const int change : {50, 20, 30, 40}) {
+    Head head{.first = 1, .newest = 1, .changed_from = Time(change)};
+    board.writer.commit(head);
+  }
+  const auto change_since = [&](Word seen) {
+    Head head;
+    EXPECT_TRUE(board.reader.copy_bounds(board.reader.look(), seen, head));
+    return head.changed_from;
+  };
+  EXPECT_EQ(change_since(0), Time(20));
+  EXPECT_EQ(change_since(1), Time(20));
+  EXPECT_EQ(change_since(2), Time(30));
+  EXPECT_EQ(change_since(3), Time(40));
+}
+
+/// A writer that stored the word of the next revision and died leaves one word fewer that counts;
+/// its successor retires the tag, so that nothing says whether it had.
+TEST(RingOfChanges, TheWordOfARevisionThatWasNotCommittedIsNotTakenForTheOldestOne) {
+  Changing board;
+  board.publish_to(64);
+  const Time before = board.change_since(1);
+  const auto revision = words_at(board.bytes.span(), board.layout.control, 1);
+  board.publish_to(65);
+  revision[0] = 64;                               // as if it had died before the commit
+  EXPECT_EQ(board.change_since(1), Time::min());  // its tag stands: word 1 has been overwritten
+  board.replace_writer();
+  EXPECT_EQ(board.change_since(1), before);  // the words of revisions 2 to 64
+  EXPECT_EQ(board.change_since(0), Time::min());
+}
+
+TEST(RingOfChanges, CountsAfterADiscard) {
+  Changing board;
+  board.publish_to(70);
+  const std::vector<double> zero(1);
+  board.writer.write(1, {.is_new = true, .note = {}, .position = zero, .velocity = zero});
+  board.writer.discard();
+  EXPECT_EQ(board.change_since(7), board.change_of(70));
+  board.publish_to(71);
+  EXPECT_EQ(board.change_since(8), board.change_of(71));
+  EXPECT_EQ(board.change_since(7), Time::min());
+}
+
+/// As two writers leave it that died one after the other while a reader looked.
+TEST(RingOfChanges, SaysNothingWhereBothTagsOfTheHeadAreRetired) {
+  Changing board;
+  board.publish_to(10);
+  Head head{.changed_from = Time(5)};
+  for (const std::size_t c : {0U, 1U}) board.head_tag(c) = kRetiredTag;
+  EXPECT_FALSE(board.reader.copy_bounds(board.reader.look(), 9, head));
+  EXPECT_EQ(head.changed_from, Time(5));
+}
+
+TEST(SettledWord, IsStoredWithoutARevisionAndStaysThatOfTheNextWriter) {
+  MemoryBoard board(1, 16);
+  commit(board, 1, 1);
+  board.writer.store_settled(Time(50));
+  EXPECT_EQ(board.reader.look().settled_until, Time(50));
+  EXPECT_EQ(board.reader.look().revision, 1U);
+  board.writer.store_settled(Time(70));
+  EXPECT_EQ(board.reader.look().settled_until, Time(70));
+  EXPECT_EQ(board.reader.look().revision, 1U);
+  board.replace_writer();
+  EXPECT_EQ(board.reader.look().settled_until, Time(70));
+}
+
+TEST(StepTimes, AreCountedByTheirPowerOfTwo) {
+  MemoryBoard board(1, 16);
+  const std::vector<std::pair<std::int64_t, std::size_t>> steps{
+      {-5, 0},
+      {0, 0},
+      {1, 0},
+      {2, 1},
+      {3, 1},
+      {4, 2},
+      {1023, 9},
+      {1024, 10},
+      {std::int64_t{1} << 38, 38},
+      {(std::int64_t{1} << 40) - 1, 39},
+      {std::int64_t{1} << 40, 39},
+      {std::numeric_limits<std::int64_t>::max(), 39}};
+  std::array<Word, kStepBuckets> wanted{};
+  for (const auto& [length, bucket] : steps) {
+    board.writer.count_step(Time(length));
+    ++wanted[bucket];
+    EXPECT_EQ(board.reader.step_times(), wanted) << length;
+  }
+  board.replace_writer();
+  EXPECT_EQ(board.reader.step_times(), wanted);
+}
+
+/// One writer and several readers on one mapping, which is how ThreadSanitizer sees them. Every
+/// payload says which revision and knot it is of: all knots of one revision must agree with its
+/// head.
+TEST(KnotBoard, ThreadsReadWholeRevisionsWhileOneWrites) {
+  constexpr Word kRevisions = 20'000;
+  constexpr Word kKnots = 6;
+  MemoryBoard board(kDimensions, 8);
+  std::atomic<bool> done{false};
+  std::atomic<std::size_t> torn{0};
+  std::atomic<std::size_t> whole{0};
+  // Revision r has the knots from r on, of which the last one is new, and writes those from
+  // r + r mod 3 on.
+  const auto read = [&] {
+    KnotCopy copy(kDimensions, false);
+    Head head;
+    while (!done.load()) {
+      const Look look = board.reader.look();
+      const Word r = look.revision;
+      if (r == 0 || !board.reader.copy_head(look, head)) continue;
+      if (head.consumed != r || head.first != r) ++torn;
+      bool complete = true;
+      for (Word n = head.newest; n >= head.first && complete; --n) {
+        const Word seen = revision_of_knot(board.reader, n, r, copy);
+        complete = seen != 0;
+        Word wanted = r;
+        while (wanted > 1 && n < wanted + wanted % 3) --wanted;
+        if (complete && seen != wanted) ++torn;
+      }
+      if (complete) ++whole;
+    }
+  };
+  std::vector<std::thread> readers;
+  for (int i = 0; i < 3; ++i) readers.emplace_back(read);
+  for (Word r = 1; r <= kRevisions || whole.load() < 100; ++r) {
+    const Word newest = r + kKnots - 1;
+    for (Word n = r == 1 ? 1 : r + r % 3; n <= newest; ++n) write(board, n, r == 1 || n == newest);
+    Head head{.first = r, .newest = newest, .consumed = r};
+    board.writer.commit(head);
+  }
+  done = true;
+  for (std::thread& reader : readers) reader.join();
+  EXPECT_EQ(torn.load(), 0U);
+  EXPECT_GE(whole.load(), 100U);
+}
+
+}  // namespace
+}  // namespace splinecast::ipc

@@ -1,0 +1,116 @@
+#include "ipc/layout/limits.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "splinecast/errors.hpp"
+#include "splinecast/options.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+RegionHeader header_of(std::size_t dimensions) {
+  return make_header({.dimensions = dimensions,
+                      .names = {},
+                      .units = {},
+                      .clock = StreamClock::recorded,
+                      .start = {}},
+                     7);
+}
+
+TEST(HeaderLimits, AHeaderOfZerosHasNone) {
+  const RegionHeader header = header_of(3);
+  EXPECT_EQ(motion_limits(header), core::MotionLimits{});
+  EXPECT_EQ(beyond(header), core::Beyond::report);
+}
+
+TEST(HeaderLimits, ComeBackAsTheyWereWritten) {
+  const core::MotionLimits limits{.velocity = {1, 0, 2},
+                                  .acceleration = {},
+                                  .jerk = {0, 0, 5},
+                                  .lower = {-1, -kInfinity, 0},
+                                  .upper = {kInfinity, kInfinity, 3}};
+  RegionHeader header = header_of(3);
+  put_limits(limits, header);
+  EXPECT_EQ(motion_limits(header), limits);
+  EXPECT_EQ(header.lower_bound[1], 0);
+  EXPECT_EQ(header.upper_bound[1], 0);
+  put_limits({.upper = {0, 0, 0}}, header);
+  EXPECT_EQ(motion_limits(header).upper, (std::vector<double>{0, 0, 0}));
+  EXPECT_TRUE(motion_limits(header).lower.empty());
+  put_limits({}, header);
+  EXPECT_EQ(motion_limits(header), core::MotionLimits{});
+  EXPECT_THROW(put_limits({.velocity = {1}}, header), std::invalid_argument);
+}
+
+/// A header of a board of this stream that can be read.
+RegionHeader board_header(std::size_t dimensions) {
+  RegionHeader header = header_of(dimensions);
+  header.kind = static_cast<std::uint64_t>(RegionKind::spline);
+  header.capacity = 32;
+  header.settle = 8;
+  header.stop_time = 1;
+  header.freeze_ahead = 1;
+  header.min_splice = 1;
+  header.time_scale = 1;
+  const BoardLayout layout = BoardLayout::of(dimensions, 32, header.control, false);
+  header.stride = layout.stride;
+  header.region_bytes = layout.bytes;
+  return header;
+}
+
+TEST(HeaderLimits, ABoardWithSuchAsCannotBeIsRefused) {
+  ASSERT_NO_THROW((void)checked_board_layout(board_header(2), board_header(2).region_bytes));
+  const std::vector<std::pair<std::string, std::function<void(RegionHeader&)>>> cases{
+      {"velocity limit", [](RegionHeader& h) { h.max_velocity[1] = -1; }},
+      {"jerk limit", [](RegionHeader& h) { h.max_jerk[0] = kInfinity; }},
+      {"bounds", [](RegionHeader& h) { h.lower_bound[0] = 1; }},
+      {"bounds", [](RegionHeader& h) { h.upper_bound[0] = std::nan(""); }},
+      {"no bounds",
+       [](RegionHeader& h) {
+         h.dimension_kind[0] = static_cast<std::uint64_t>(core::DimensionKind::wrap);
+         h.period[0] = 360;
+         h.upper_bound[0] = 1;
+       }},
+      {"beyond limits", [](RegionHeader& h) { h.beyond = 2; }}};
+  for (const auto& [message, damage] : cases) {
+    RegionHeader header = board_header(2);
+    damage(header);
+    try {
+      (void)checked_board_layout(header, header.region_bytes);
+      FAIL() << message;
+    } catch (const BadRegion& error) {
+      EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(HeaderLimits, NamedOnesMeetNamesThatTheHeaderHasCut) {
+  const std::string name = "left_arm_shoulder_pan_joint_of_the_second_robot";
+  const RegionHeader header = make_header({.dimensions = 2,
+                                           .names = {name, "q2"},
+                                           .units = {},
+                                           .clock = StreamClock::recorded,
+                                           .start = {}},
+                                          7);
+  SolverOptions options;
+  options.named_limits = {{.name = name, .velocity = 2}, {.name = "q2", .acceleration = 3}};
+  options.limits = core::MotionLimits{.acceleration = {7}};
+  const core::MotionLimits limits = limits_for(options, header);
+  EXPECT_EQ(limits.velocity, (std::vector<double>{2, 0}));
+  EXPECT_EQ(limits.acceleration, (std::vector<double>{7, 7}));
+  options.limits = core::MotionLimits{.acceleration = {7, 8, 9}};
+  EXPECT_THROW((void)limits_for(options, header), BadRequest);
+}
+
+}  // namespace
+}  // namespace splinecast::ipc

@@ -1,0 +1,171 @@
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "ipc/roles/stream_files.hpp"
+#include "splinecast/method.hpp"
+#include "splinecast/producer.hpp"
+#include "splinecast/solver.hpp"
+#include "tests/fixtures/processes/allocations.hpp"
+#include "tests/fixtures/processes/process.hpp"
+#include "tests/fixtures/streams/memory_stream.hpp"
+
+/// What producers, and programs that inspect a stream, learn of the items that its solver refuses.
+namespace splinecast::ipc {
+namespace {
+
+constexpr core::Time kInterval{1'000'000};
+
+/// A stream whose solver refuses every waypoint: its method needs velocities.
+class ProducerRefusals : public ::testing::Test {
+ protected:
+  ProducerOptions options() const {
+    return {.dimensions = 1, .clock = StreamClock::recorded, .capacity = 4096};
+  }
+  void append(Producer& producer, int count) {
+    for (int i = 0; i < count; ++i) {
+      const double x = 0;
+      const core::Waypoint waypoint{.time = time_ += kInterval, .position = {&x, 1}};
+      ASSERT_EQ(producer.append(waypoint), AppendStatus::accepted);
+    }
+  }
+  void solve() {
+    solver_.attach();
+    while (solver_.step(clock_).consumed > 0) {
+    }
+  }
+  static std::vector<Word> items(const Refusals& refusals) {
+    std::vector<Word> numbers;
+    for (const ItemRefusal& refusal : refusals.items) {
+      EXPECT_EQ(refusal.reason, Refusal::lacks_derivatives);
+      numbers.push_back(refusal.item);
+    }
+    return numbers;
+  }
+
+  testing::TestStream stream_;
+  MonotonicClock clock_;
+  core::Time time_{};
+  Solver solver_{stream_.name(), {.method = core::find_method("hermite")}};
+};
+
+TEST_F(ProducerRefusals, AreToldOnceWithItemTimeAndReason) {
+  Producer producer(stream_.name(), options());
+  EXPECT_TRUE(producer.refusals().items.empty());
+  append(producer, 3);
+  ASSERT_EQ(producer.finish({}), AppendStatus::accepted);
+  solve();
+  const Refusals found = producer.refusals();
+  ASSERT_EQ(items(found), (std::vector<Word>{0, 1, 2}));
+  EXPECT_EQ(found.items[1].time, 2 * kInterval);
+  EXPECT_EQ(to_string(found.items[1]), "item 1 refused: lacks derivatives (time 2000000 ns)");
+  EXPECT_EQ(found.missed, 0U);
+  EXPECT_EQ(found.consumed, 4U);
+  EXPECT_TRUE(producer.refusals().items.empty());
+  EXPECT_EQ(producer.refusals().consumed, 4U);
+}
+
+TEST_F(ProducerRefusals, CountWhatTheBoardDoesNotKeep) {
+  Producer producer(stream_.name(), options());
+  append(producer, 2000);
+  solve();
+  const Refusals found = producer.refusals();
+  ASSERT_EQ(found.items.size(), kRefusalsKept);
+  EXPECT_EQ(found.items.front().item, 2000 - kRefusalsKept);
+  EXPECT_EQ(found.items.back().item, 1999U);
+  EXPECT_EQ(found.missed, 2000 - kRefusalsKept);
+}
+
+TEST_F(ProducerRefusals, HaveNoTimeOnceTheRingHasOverwrittenTheItem) {
+  Producer producer(stream_.name(),
+                    {.dimensions = 1, .clock = StreamClock::recorded, .capacity = 4});
+  append(producer, 3);
+  solve();
+  append(producer, 2);
+  const Refusals found = producer.refusals();
+  ASSERT_EQ(found.items.size(), 3U);
+  EXPECT_FALSE(found.items[0].time.has_value());
+  EXPECT_EQ(found.items[2].time, 3 * kInterval);
+}
+
+TEST_F(ProducerRefusals, OfAProducerThatDiedAreNotItsSuccessors) {
+  {
+    Producer dies(stream_.name(), options());
+    append(dies, 2);
+    solve();
+    append(dies, 2);
+  }
+  Producer producer(stream_.name(), options());
+  ASSERT_TRUE(producer.continues());
+  append(producer, 1);
+  solve();
+  EXPECT_EQ(items(producer.refusals()), std::vector<Word>{4});
+}
+
+TEST_F(ProducerRefusals, AllocateNothingInAResultThatIsUsedAgain) {
+  Producer producer(stream_.name(), options());
+  Refusals found;
+  append(producer, 10);
+  solve();
+  producer.refusals(found);
+  append(producer, 10);
+  solve();
+  const std::size_t before = testing::allocations();
+  producer.refusals(found);
+  EXPECT_EQ(testing::allocations(), before);
+  EXPECT_EQ(items(found).size(), 10U);
+}
+
+TEST_F(ProducerRefusals, FirstOfEachReasonIsWhatTheSolverTells) {
+  Producer producer(stream_.name(), options());
+  std::vector<ItemRefusal> told;
+  append(producer, 5);
+  solve();
+  solver_.first_refusals(told);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].item, 0U);
+  append(producer, 5);
+  ASSERT_EQ(producer.finish({}), AppendStatus::accepted);
+  solve();
+  solver_.first_refusals(told);
+  EXPECT_TRUE(told.empty());
+}
+
+TEST_F(ProducerRefusals, AreAllInspectedThatTheBoardKeeps) {
+  Producer producer(stream_.name(), options());
+  append(producer, 1500);
+  solve();
+  const StreamInfo info = inspect(stream_.name());
+  ASSERT_EQ(info.refusals.size(), kRefusalsKept);
+  EXPECT_EQ(info.refusals.front().item, 1500 - kRefusalsKept);
+  EXPECT_EQ(info.refusals.back().item, 1499U);
+}
+
+TEST(RefusalsOfABoard, EndWhereALaterOneIsBeingWritten) {
+  testing::MemoryBoard board(1, 32);
+  Head head{.first = 1};
+  for (; head.refused < kRefusalsKept + 3; ++head.refused) {
+    board.writer.write_refusal(head.refused, {.item = 2 * head.refused, .reason = Refusal::past});
+  }
+  head.consumed = 2 * head.refused;
+  board.writer.commit(head);
+  std::vector<RefusedItem> copied(kRefusalsKept);
+  EXPECT_EQ(board.reader.copy_refusals(head, 0, copied), kRefusalsKept);
+  EXPECT_EQ(copied.front().item, 6U);
+  // Two more, not committed: they are of later items than the head has consumed.
+  for (Word i = 0; i < 2; ++i) {
+    board.writer.write_refusal(head.refused + i,
+                               {.item = head.consumed + i, .reason = Refusal::past});
+  }
+  EXPECT_EQ(board.reader.copy_refusals(head, 0, copied), kRefusalsKept - 2);
+  EXPECT_EQ(copied.front().item, 10U);
+  // They were discarded, and the items taken by a later revision that refuses none.
+  head.consumed += 10;
+  board.writer.commit(head);
+  EXPECT_EQ(board.reader.copy_refusals(head, 0, copied), kRefusalsKept - 2);
+  EXPECT_EQ(board.reader.copy_refusals(head, head.refused - 1, copied), 1U);
+  EXPECT_EQ(copied.front().item, 2 * head.refused - 2);
+}
+
+}  // namespace
+}  // namespace splinecast::ipc

@@ -1,0 +1,232 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "ipc/roles/replace_preview.hpp"
+#include "ipc/verification/settled_segments.hpp"
+#include "splinecast/producer.hpp"
+#include "splinecast/reader.hpp"
+#include "splinecast/solver.hpp"
+#include "tests/fixtures/processes/process.hpp"
+#include "tests/fixtures/streams/live_stream.hpp"
+
+/// How a replacement goes over to its waypoints: not before its blend is over, and as the preview
+/// of it has told.
+namespace splinecast::ipc {
+namespace {
+
+using core::Time;
+using std::chrono::milliseconds;
+using testing::LiveStream;
+
+Time time_at(int ms) { return LiveStream::kNow + milliseconds(ms); }
+
+core::WindowOptions acceleration_limit(double acceleration) {
+  core::WindowOptions how;
+  if (acceleration > 0) how.limits.acceleration = {acceleration};
+  return how;
+}
+
+/// A stream in motion at 1 s, and a plan that leaves it from 1.1 s on.
+struct Replaced : LiveStream {
+  explicit Replaced(double limit = 0, double offset = 0.02)
+      : LiveStream(acceleration_limit(limit)) {
+    for (int ms = 50; ms <= 1300; ms += 10) {
+      clock.time = time_at(std::max(ms - 250, 0));
+      EXPECT_EQ(put(time_at(ms)), AppendStatus::accepted);
+      drain();
+    }
+    clock.time = time_at(1000);
+    drain();
+    for (int ms = 1110; ms <= 2000; ms += 10) {
+      times.push_back(time_at(ms));
+      positions.push_back(x(time_at(ms)) + offset);
+    }
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      plan.push_back({.time = times[i], .position = std::span(&positions[i], 1)});
+    }
+  }
+  ReplacePreview preview(Time blend) {
+    ReplacementPlanner planner(board.reader, window, kinds, live);
+    ReplacePreview out;
+    planner.plan(time_at(1100), plan, blend, out);
+    return out;
+  }
+  /// Replaces, and returns the entry that comes of it; with another solver after each step.
+  std::optional<SegmentCopy> replace(Time blend, bool takes_over = false) {
+    EXPECT_EQ(ring.writer.replace_from(time_at(1100), plan, solved(), blend),
+              AppendStatus::accepted);
+    for (int i = 0; i < 100; ++i) {
+      if (takes_over) replace_solver();
+      solver.step(clock);
+    }
+    drain();
+    BoardSegment segment(1, false);
+    SegmentCopy found;
+    for (Word n = solver.head().run; n <= solver.head().newest; ++n) {
+      if (segment.take(board.reader, solver.head(), n) != BoardSegment::Taken::whole) continue;
+      segment.copy_to(found);
+      if (found.kind == core::SegmentKind::splice) return found;
+    }
+    return std::nullopt;
+  }
+
+  std::vector<Time> times;
+  std::vector<double> positions;
+  std::vector<core::Waypoint> plan;
+};
+
+TEST(ReplacementEntry, DoesNotEndBeforeItsBlendIsOver) {
+  for (const bool takes_over : {false, true}) {
+    for (const int blend : {0, 5, 14, 100, 333, 890}) {
+      Replaced live(20);
+      const auto entry = live.replace(milliseconds(blend), takes_over);
+      ASSERT_TRUE(entry) << blend;
+      EXPECT_EQ(entry->left, time_at(1100));
+      EXPECT_GE(entry->right - entry->left, milliseconds(blend));
+      EXPECT_LT(entry->right - entry->left, milliseconds(std::max(blend, 200) + 20)) << blend;
+      const auto passed =
+          std::ranges::count_if(live.times, [&](Time t) { return t < entry->right; });
+      EXPECT_EQ(live.solver.head().passed_over, static_cast<Word>(passed)) << blend;
+    }
+  }
+}
+
+TEST(ReplacementEntry, GoesBeyondTheLastWaypointForABlendThatIsLonger) {
+  Replaced live(20);
+  const auto entry = live.replace(milliseconds(1500));
+  ASSERT_TRUE(entry);
+  EXPECT_GE(entry->right - entry->left, milliseconds(1500));
+  EXPECT_EQ(live.solver.head().passed_over, live.plan.size());
+}
+
+TEST(ReplacementEntry, TakesNoBlendBeyondTheMostIntervalAndANegativeOneForNone) {
+  Replaced live;
+  EXPECT_EQ(
+      live.ring.writer.replace_from(time_at(1100), live.plan, live.solved(), std::chrono::hours(2)),
+      AppendStatus::too_far_apart);
+  const auto entry = live.replace(milliseconds(-7));
+  ASSERT_TRUE(entry);
+  EXPECT_EQ(live.solver.head().controls, 1U);
+}
+
+TEST(ReplacementPreview, TellsTheEntryThatTheSolverMakes) {
+  for (const double limit : {0.0, 3.0, 20.0}) {
+    for (const int blend : {0, 100, 400, 1500}) {
+      SCOPED_TRACE(::testing::Message() << "limit " << limit << ", blend " << blend);
+      Replaced live(limit);
+      const Word revision = live.board.reader.revision();
+      const ReplacePreview told = live.preview(milliseconds(blend));
+      EXPECT_EQ(live.board.reader.revision(), revision);
+      ASSERT_TRUE(told.is_known);
+      ASSERT_TRUE(told.enters);
+      const auto entry = live.replace(milliseconds(blend));
+      ASSERT_TRUE(entry);
+      EXPECT_EQ(told.begin, entry->left);
+      EXPECT_EQ(told.duration, entry->right - entry->left);
+      EXPECT_EQ(told.passed_over, live.solver.head().passed_over);
+      if (told.waypoint) {
+        EXPECT_EQ(live.times[*told.waypoint], entry->right);
+      }
+      double peak = 0;
+      for (Time t = entry->left; t < entry->right; t += milliseconds(1)) {
+        ASSERT_TRUE(has_values(live.sampler.preview(t, live.state.ref())));
+        peak = std::max(peak, std::abs(live.state.acceleration()[0]));
+      }
+      EXPECT_NEAR(told.entry.acceleration[0], peak, 0.02 * peak);
+      EXPECT_GE(told.motion.acceleration[0], told.entry.acceleration[0]);
+      EXPECT_GE(told.motion.velocity[0], told.entry.velocity[0]);
+      EXPECT_GT(told.entry.jerk[0], 0);
+      if (limit > 0) {
+        EXPECT_LE(told.worst.ratio, 1 + 1e-9);
+        EXPECT_GT(told.worst.ratio, 0.05);
+      }
+    }
+  }
+}
+
+TEST(ReplacementPreview, OfAStopTellsHowLongItTakes) {
+  Replaced live(4);
+  live.plan.clear();
+  const ReplacePreview told = live.preview({});
+  ASSERT_TRUE(told.is_known);
+  EXPECT_FALSE(told.enters);
+  EXPECT_EQ(live.ring.writer.replace_from(time_at(1100), {}, live.solved()),
+            AppendStatus::accepted);
+  live.drain();
+  EXPECT_EQ(live.solver.head().stop, told.duration);
+}
+
+/// Waypoints at 100 Hz of a motion of two dimensions, one of which wraps.
+std::vector<std::array<double, 2>> positions_from(Time first, std::size_t count, double offset) {
+  std::vector<std::array<double, 2>> positions;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double s = core::to_seconds(first) + 0.01 * static_cast<double>(i);
+    positions.push_back({0.3 * std::sin(s) + offset, std::remainder(0.8 * s, 6.0)});
+  }
+  return positions;
+}
+
+TEST(ReplacementPreview, OfAProducerChangesNothingAndComesTrue) {
+  const testing::TestStream stream;
+  Producer producer(stream.name(),
+                    {.dimensions = 2, .kinds = {{}, {core::DimensionKind::wrap, 6.0}}});
+  Solver solver(stream.name(), {.limits = core::MotionLimits{.acceleration = {20}}});
+  const MonotonicClock clock;
+  EXPECT_FALSE(producer.preview_replace(clock.now(), {}).is_known);
+  ASSERT_TRUE(solver.attach());
+  const auto waypoints_at = [](const std::vector<std::array<double, 2>>& positions, Time first) {
+    std::vector<core::Waypoint> waypoints;
+    for (const auto& position : positions) {
+      waypoints.push_back({.time = first, .position = position});
+      first += milliseconds(10);
+    }
+    return waypoints;
+  };
+  const Time begin = clock.now() + milliseconds(200);
+  const auto motion = positions_from({}, 100, 0);
+  for (const core::Waypoint& waypoint : waypoints_at(motion, begin)) {
+    ASSERT_EQ(producer.append(waypoint), AppendStatus::accepted);
+  }
+  while (solver.step(clock).consumed > 0) continue;
+  const Time t = begin + milliseconds(500);
+  const auto other = positions_from(milliseconds(520), 60, 0.01);
+  const auto plan = waypoints_at(other, t + milliseconds(20));
+  const Word appended = producer.appended();
+  const Word passed_before = solver.head().passed_over;  // as it started in mid-motion
+  const ReplacePreview told = producer.preview_replace(t, plan, {.blend = milliseconds(100)});
+  EXPECT_EQ(producer.appended(), appended);
+  ASSERT_EQ(told.status, AppendStatus::accepted);
+  ASSERT_TRUE(told.is_known);
+  ASSERT_TRUE(told.enters);
+  EXPECT_GE(told.duration, milliseconds(100));
+  EXPECT_LE(told.entry.acceleration[0], 20);
+  EXPECT_LT(told.motion.velocity[1], 5);
+  EXPECT_EQ(producer.preview_replace(begin - std::chrono::hours(1), plan).status,
+            AppendStatus::too_late);
+  ASSERT_EQ(producer.replace_from(t, plan, {.blend = milliseconds(100)}), AppendStatus::accepted);
+  for (int i = 0; i < 100; ++i) solver.step(clock);
+  EXPECT_EQ(solver.head().passed_over - passed_before, told.passed_over);
+  Reader reader(stream.name());
+  core::State state(2);
+  ASSERT_TRUE(has_values(reader.preview(t + told.duration / 2, state)));
+  EXPECT_LT(reader.excess(state).ratio, 1);
+  EXPECT_GT(reader.excess(state).ratio, 0);
+  EXPECT_EQ(reader.limits().acceleration.size(), 2U);
+}
+
+TEST(ReplacementPreview, KnowsNothingOfAStreamWithoutACurve) {
+  LiveStream live;
+  ReplacementPlanner planner(live.board.reader, live.window, live.kinds, live.live);
+  ReplacePreview told;
+  planner.plan(time_at(100), {}, {}, told);
+  EXPECT_FALSE(told.is_known);
+}
+
+}  // namespace
+}  // namespace splinecast::ipc

@@ -1,0 +1,314 @@
+#include "ipc/roles/stream_sweep.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ipc/mapping/owner_lock.hpp"
+#include "splinecast/errors.hpp"
+#include "tests/ipc/roles/told.hpp"
+
+/// One thread's solvers of many streams, over real shared memory, within one process.
+namespace splinecast::ipc {
+namespace {
+
+using core::Time;
+using testing::append_at;
+using testing::await;
+using testing::make_producer;
+using testing::News;
+using testing::TestStream;
+using testing::Told;
+
+/// A clock that the test sets and that counts how often it is read.
+class SetClock final : public Clock {
+ public:
+  [[nodiscard]] Time now() const noexcept override {
+    ++reads;
+    return time;
+  }
+  Time time = MonotonicClock().now();
+  mutable int reads = 0;
+};
+
+TEST(StreamSweep, APatternFindsStreamsAsTheyComeAndForgetsThoseThatGo) {
+  const TestStream family;
+  const std::string stream = family.name() + ".x";
+  const TestStream other;
+  Told told({family.name() + ".*"});
+  told.sweep.sweep(told.clock);
+  EXPECT_TRUE(told.news.empty());
+  Producer unwanted = make_producer(other.name());
+  {
+    Producer producer = make_producer(stream);
+    append_at(producer, Time(0));
+    EXPECT_TRUE(told.await_news(SweepNews::solving, stream));
+    EXPECT_TRUE(await([&] {
+      told.sweep.sweep(told.clock);
+      return producer.wait_until_consumed(Time(0));
+    }));
+    EXPECT_EQ(told.sweep.solved(), 1U);
+    producer.withdraw();
+  }
+  EXPECT_TRUE(told.await_news(SweepNews::gone, stream));
+  EXPECT_EQ(told.sweep.solved(), 0U);
+  EXPECT_FALSE(is_owned(stream, RegionKind::spline));
+  EXPECT_EQ(told.count(SweepNews::solving, other.name()), 0);
+  Producer again = make_producer(stream);
+  told.news.clear();
+  EXPECT_TRUE(told.await_news(SweepNews::solving, stream));
+  again.withdraw();
+  EXPECT_TRUE(told.await_news(SweepNews::gone, stream));
+  unlink_region(stream, RegionKind::spline);
+  OwnerLock(stream, RegionKind::spline).remove_file();
+}
+
+TEST(StreamSweep, ANamedStreamIsOwnedBeforeItsProducerComes) {
+  const TestStream stream;
+  Told told({stream.name()});
+  EXPECT_EQ(told.count(SweepNews::waiting, stream.name()), 1);
+  EXPECT_TRUE(is_owned(stream.name(), RegionKind::spline));
+  EXPECT_THROW(Solver(stream.name(), {}), StreamBusy);
+  Producer producer = make_producer(stream.name());
+  EXPECT_TRUE(told.await_news(SweepNews::solving, stream.name()));
+  EXPECT_TRUE(producer.wait_for_solver(Time(1)));
+}
+
+TEST(StreamSweep, WhatAnotherSolvesIsLeftToItAndTakenOverWhenThatDies) {
+  const TestStream stream;
+  Producer producer = make_producer(stream.name());
+  std::optional<Solver> other(std::in_place, stream.name(), Told::small());
+  ASSERT_TRUE(other->attach());
+  const MonotonicClock clock;
+  append_at(producer, Time(0));
+  EXPECT_EQ(other->step(clock).consumed, 1U);
+  Told told({stream.name()});
+  for (int i = 0; i < 3; ++i) told.sweep.sweep(clock);
+  EXPECT_EQ(told.news, (News{{SweepNews::elsewhere, stream.name()}}));
+  other.reset();
+  EXPECT_TRUE(told.await_news(SweepNews::solving, stream.name()));
+  append_at(producer, Time(10'000'000));
+  EXPECT_TRUE(await([&] {
+    told.sweep.sweep(clock);
+    return producer.consumed() == 2;
+  }));
+  EXPECT_EQ(told.count(SweepNews::elsewhere, stream.name()), 1);
+}
+
+TEST(StreamSweep, AnIdleStreamCostsNoStep) {
+  const TestStream stream;
+  Producer producer = make_producer(stream.name());
+  Told told({stream.name()});
+  ASSERT_TRUE(told.await_news(SweepNews::solving, stream.name()));
+  SetClock clock;
+  told.sweep.sweep(clock);
+  clock.reads = 0;
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(told.sweep.sweep(clock));
+  EXPECT_EQ(clock.reads, 10);  // its own; a step that publishes reads the clock twice
+  append_at(producer, Time(0));
+  EXPECT_FALSE(told.sweep.sweep(clock));
+  EXPECT_EQ(clock.reads, 13);
+  EXPECT_EQ(producer.consumed(), 1U);
+}
+
+TEST(StreamSweep, AStreamThatHasLongBeenQuietIsLookedAtInOneOfSomeSweeps) {
+  const TestStream quiet;
+  const TestStream busy;
+  Producer first = make_producer(quiet.name());
+  Producer second = make_producer(busy.name());
+  Told told({quiet.name(), busy.name()});
+  ASSERT_TRUE(told.await_news(SweepNews::solving, quiet.name()));
+  ASSERT_TRUE(told.await_news(SweepNews::solving, busy.name()));
+  SetClock clock;
+  int sent = 0;
+  const auto sweeps_to_take = [&](Producer& producer) {
+    append_at(producer, std::chrono::milliseconds(++sent));
+    int sweeps = 0;
+    while (!producer.wait_until_consumed(Time(0))) {
+      told.sweep.sweep(clock);
+      ++sweeps;
+    }
+    return sweeps;
+  };
+  EXPECT_EQ(sweeps_to_take(first), 1);
+  constexpr Time kPause = std::chrono::milliseconds(1);
+  EXPECT_EQ(told.sweep.next_pause(), kPause);
+
+  int most_sweeps = 0;
+  for (int round = 0; round < 2; ++round) {
+    clock.time += StreamSweep::kQuietAfter;
+    told.sweep.sweep(clock);
+    EXPECT_EQ(told.sweep.next_pause(), StreamSweep::kQuietPause);
+    EXPECT_EQ(sweeps_to_take(second), 1);  // all are looked at after the pause
+    EXPECT_EQ(told.sweep.next_pause(), kPause);
+    EXPECT_EQ(sweeps_to_take(second), 1);
+    // In its turn, while the other one keeps the sweep awake; and from then on at once.
+    most_sweeps = std::max(most_sweeps, sweeps_to_take(first));
+    EXPECT_EQ(sweeps_to_take(first), 1);
+  }
+  EXPECT_GT(most_sweeps, 1);
+  EXPECT_LE(most_sweeps, StreamSweep::kQuietPause / kPause);
+}
+
+TEST(StreamSweep, QuietStreamsDoNotMakeALongPauseLongerNorPutOffWhatIsElsewhere) {
+  const TestStream stream;
+  Producer producer = make_producer(stream.name());
+  StreamSweep sweep(
+      {stream.name()}, Told::small(), [](auto&&...) {}, std::chrono::milliseconds(30));
+  SetClock clock;
+  EXPECT_TRUE(await([&] {
+    sweep.sweep(clock);
+    return sweep.solved() == 1;
+  }));
+  clock.time += StreamSweep::kQuietAfter;
+  sweep.sweep(clock);
+  EXPECT_EQ(sweep.next_pause(), std::chrono::milliseconds(30));
+  append_at(producer, Time(0));
+  sweep.sweep(clock);
+  EXPECT_EQ(producer.consumed(), 1U);
+
+  Told none({"no_" + stream.name() + ".*"});
+  none.sweep.sweep(clock);
+  EXPECT_EQ(none.sweep.next_pause(), std::chrono::milliseconds(1));
+}
+
+TEST(StreamSweep, ALiveStreamSettlesWithoutWaypointsUntilItRests) {
+  const TestStream stream;
+  SetClock clock;
+  Producer producer = make_producer(stream.name(), StreamClock::monotonic);
+  Told told({stream.name()});
+  ASSERT_TRUE(told.await_news(SweepNews::solving, stream.name()));
+  ASSERT_TRUE(producer.wait_for_solver(Time(1)));
+  append_at(producer, clock.time + std::chrono::milliseconds(50));
+  append_at(producer, clock.time + std::chrono::milliseconds(60));
+  told.sweep.sweep(clock);
+  Time settled = producer.earliest();
+  const Time end = clock.time + std::chrono::seconds(1);
+  int revisions = 0;
+  for (; clock.time < end; clock.time += std::chrono::milliseconds(1)) {
+    told.sweep.sweep(clock);
+    if (producer.earliest() == settled) continue;
+    EXPECT_LE(producer.earliest() - settled, std::chrono::milliseconds(3));
+    settled = producer.earliest();
+    ++revisions;
+  }
+  // Every half freeze-ahead, at 1 ms steps every 3 ms, through 60 ms of curve and 250 ms of stop.
+  EXPECT_GE(revisions, 100);
+  EXPECT_LE(revisions, 105);
+}
+
+TEST(StreamSweep, MoreThanABatchIsSweptAgainAtOnce) {
+  const TestStream stream;
+  Producer producer(stream.name(),
+                    {.dimensions = 1, .clock = StreamClock::recorded, .capacity = 512});
+  for (int i = 0; i < 300; ++i) append_at(producer, Time(1'000'000) * i);
+  Told told({stream.name()});
+  ASSERT_TRUE(told.await_news(SweepNews::solving, stream.name()));
+  while (told.sweep.sweep(told.clock)) {
+  }
+  EXPECT_TRUE(producer.wait_until_consumed(Time(0)));
+}
+
+TEST(StreamSweep, AFinishIsToldOnceAndANewStreamOfTheNameIsTakenUp) {
+  const TestStream stream;
+  Told told({stream.name()});
+  {
+    Producer producer = make_producer(stream.name());
+    append_at(producer, Time(0));
+    ASSERT_EQ(producer.finish({}), AppendStatus::accepted);
+    EXPECT_TRUE(told.await_news(SweepNews::finished, stream.name()));
+  }
+  Producer again = make_producer(stream.name());
+  append_at(again, Time(0));
+  EXPECT_TRUE(await([&] {
+    told.sweep.sweep(told.clock);
+    return again.wait_until_consumed(Time(0));
+  }));
+  EXPECT_EQ(told.count(SweepNews::solving, stream.name()), 2);
+  EXPECT_EQ(told.count(SweepNews::finished, stream.name()), 1);
+}
+
+TEST(StreamSweep, AStreamThatCannotBeSolvedIsGivenUpOnceAndTheOthersGoOn) {
+  const TestStream bad;
+  const TestStream good;
+  Producer of_bad = make_producer(bad.name());
+  Producer of_good = make_producer(good.name());
+  {
+    Solver before(bad.name(), {.settle = 3, .capacity = 64});
+    ASSERT_TRUE(before.attach());
+  }
+  Told told({bad.name(), good.name()}, {.settle = 4, .capacity = 64});
+  EXPECT_TRUE(told.await_news(SweepNews::given_up, bad.name()));
+  EXPECT_NE(told.why.find("settle lag 3, not 4"), std::string::npos) << told.why;
+  EXPECT_TRUE(told.await_news(SweepNews::solving, good.name()));
+  Producer passing = make_producer(good.name() + ".passing");  // the folder changes
+  told.sweep.sweep(told.clock);
+  passing.withdraw();
+  EXPECT_EQ(told.count(SweepNews::given_up, bad.name()), 1);
+  EXPECT_FALSE(is_owned(bad.name(), RegionKind::spline));
+}
+
+TEST(StreamSweep, OptionsThatCanBeNoStreamsAreRefusedAtOnce) {
+  EXPECT_THROW(Told({"nobody.*"}, {.capacity = 1}), BadRequest);
+  EXPECT_THROW(Told({"no/name"}), BadRequest);
+}
+
+TEST(StreamSweep, StreamsBeyondTheDescriptorsAreLeftOutUntilOthersGo) {
+  const TestStream family;
+  std::vector<std::string> names;
+  std::vector<Producer> producers;
+  for (const char* const suffix : {".0", ".1", ".2"}) {
+    names.push_back(family.name() + suffix);
+    producers.push_back(make_producer(names.back()));
+  }
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit tight{.rlim_cur = 32 + 2 * StreamSweep::kDescriptorsPerStream,
+                     .rlim_max = before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &tight), 0);
+  {
+    Told told({family.name() + ".*"});
+    EXPECT_TRUE(told.await_news(SweepNews::no_descriptors, names[2]));
+    EXPECT_EQ(told.sweep.solved(), 2U);
+    producers[0].withdraw();
+    EXPECT_TRUE(told.await_news(SweepNews::solving, names[2]));
+    EXPECT_EQ(told.count(SweepNews::no_descriptors, names[2]), 1);
+  }
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) producers[i].withdraw();
+    unlink_region(names[i], RegionKind::spline);
+    OwnerLock(names[i], RegionKind::spline).remove_file();
+  }
+}
+
+TEST(Names, PatternsAreThoseOfAShell) {
+  EXPECT_TRUE(is_pattern("arm.*"));
+  EXPECT_TRUE(is_pattern("arm.[12]"));
+  EXPECT_FALSE(is_pattern("arm.1"));
+  EXPECT_TRUE(matches("arm.*", "arm.left.1"));
+  EXPECT_TRUE(matches("arm.[12]", "arm.2"));
+  EXPECT_FALSE(matches("arm.[12]", "arm.3"));
+  EXPECT_FALSE(matches("arm.?", "arm.10"));
+}
+
+TEST(FolderWatch, NoticesFilesThatComeAndGoAndThenFallsSilent) {
+  FolderWatch watch;
+  EXPECT_TRUE(watch.has_changed());
+  const TestStream stream;
+  // Others' files may come and go as well, but not all the time.
+  EXPECT_TRUE(await([&] { return !watch.has_changed(); }));
+  Producer producer = make_producer(stream.name());
+  EXPECT_TRUE(watch.has_changed());
+  EXPECT_TRUE(await([&] { return !watch.has_changed(); }));
+  producer.withdraw();
+  EXPECT_TRUE(watch.has_changed());
+}
+
+}  // namespace
+}  // namespace splinecast::ipc

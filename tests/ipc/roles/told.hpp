@@ -1,0 +1,59 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ipc/roles/stream_sweep.hpp"
+#include "splinecast/producer.hpp"
+#include "tests/fixtures/processes/process.hpp"
+
+namespace splinecast::testing {
+
+using News = std::vector<std::pair<ipc::SweepNews, std::string>>;
+
+/// A sweep that keeps the news it tells.
+struct Told {
+  News news;
+  std::string why;
+  ipc::StreamSweep sweep;
+  ipc::MonotonicClock clock;
+
+  explicit Told(const std::vector<std::string>& wanted, const ipc::SolverOptions& options = small())
+      : sweep(wanted, options,
+              [this](ipc::SweepNews what, const std::string& stream, const ipc::Solver* /*solver*/,
+                     std::string_view reason) {
+                news.emplace_back(what, stream);
+                if (!reason.empty()) why = reason;
+              }) {}
+
+  static ipc::SolverOptions small() { return {.capacity = 64}; }
+
+  [[nodiscard]] std::ptrdiff_t count(ipc::SweepNews what, const std::string& stream) const {
+    return std::ranges::count(news, std::pair(what, stream));
+  }
+  /// Sweeps until that has been told.
+  bool await_news(ipc::SweepNews what, const std::string& stream) {
+    return await([&] {
+      sweep.sweep(clock);
+      return count(what, stream) > 0;
+    });
+  }
+};
+
+/// A producer of one dimension.
+inline ipc::Producer make_producer(const std::string& stream,
+                                   ipc::StreamClock clock = ipc::StreamClock::recorded) {
+  return {stream, {.dimensions = 1, .clock = clock, .capacity = 64}};
+}
+
+/// Appends a waypoint.
+inline void append_at(ipc::Producer& producer, core::Time t) {
+  const std::vector<double> x{1};
+  ASSERT_EQ(producer.append({.time = t, .position = x}), ipc::AppendStatus::accepted);
+}
+
+}  // namespace splinecast::testing

@@ -1,0 +1,199 @@
+/// Between any two loads of a reader, a writer may publish. Here it does so between the loads of
+/// the two tags of a slot: with 64 dimensions the cells of one slot lie on different pages, and the
+/// first access to one of them lets the writer act.
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "ipc/sampling/sampler.hpp"
+#include "tests/fixtures/processes/trapped_page.hpp"
+#include "tests/fixtures/streams/board_words.hpp"
+#include "tests/fixtures/streams/memory_stream.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+using core::Time;
+using testing::MemoryBoard;
+using testing::TrappedPage;
+
+constexpr std::size_t kDimensions = core::kMaxDimensions;
+constexpr Time kInterval{100};
+
+/// The knot between whose cells a page ends; no other knot has a cell on these two pages.
+constexpr Word kKnot = 7;
+constexpr Word kFirst = kKnot - 2;
+constexpr Word kNewest = kKnot + 1;
+
+Time time_of(Word number) { return kInterval * static_cast<int>(number); }
+
+/// A board of knots all of whose velocities are the revision that wrote them.
+struct Board : MemoryBoard {
+  Board() : MemoryBoard(kDimensions, 16) {}
+
+  void write() {
+    const std::vector<double> zeros(kDimensions);
+    const std::vector<double> velocity(kDimensions, static_cast<double>(writer.revision() + 1));
+    for (Word number = kFirst; number <= kNewest; ++number) {
+      const bool is_newest = number == kNewest;
+      writer.write(number,
+                   {.is_new = writer.revision() == 0,
+                    .note = {.form = is_newest ? core::SegmentForm::none : core::SegmentForm::cubic,
+                             .is_waypoint = true},
+                    .time = time_of(number),
+                    .begins = time_of(number),
+                    .position = zeros,
+                    .velocity = velocity});
+    }
+  }
+  void commit() {
+    Head head{.first = kFirst, .newest = kNewest};
+    writer.commit(head);
+  }
+  void publish() {
+    write();
+    commit();
+  }
+  Look look() { return reader.look(); }
+  /// The tag of a cell of the knot's slot.
+  void* tag(std::size_t cell) {
+    return bytes.span().data() + testing::cell_offset(layout, kKnot, cell);
+  }
+};
+
+/// Knots published under revisions up to `copied` and again under r = `copied` + 1, which a reader
+/// sees. At the first access to cell `trapped` the writer publishes r + 1 and begins r + 2.
+class Interleaving {
+ public:
+  Interleaving(Word copied, std::size_t trapped) : trapped_(trapped) {
+    for (Word r = 1; r <= copied; ++r) board.publish();
+  }
+
+  /// What `look` gives under r; the revision that it takes the values to be of, 0 if none.
+  template <typename Look>
+  Word run(const Look& look) {
+    board.publish();
+    const TrappedPage page(board.tag(trapped_), [&] {
+      board.publish();
+      board.write();
+    });
+    const Word seen = look();
+    has_acted = page.has_acted();
+    return seen;
+  }
+
+  Board board;
+  bool has_acted = false;
+
+ private:
+  std::size_t trapped_;
+};
+
+template <typename Test>
+void for_each_interleaving(const Test& test) {
+  for (const Word copied : {2U, 3U}) {
+    for (std::size_t trapped = 0; trapped < 2; ++trapped) {
+      SCOPED_TRACE(::testing::Message()
+                   << "copied under " << copied << ", trap at cell " << trapped);
+      test(copied, trapped);
+    }
+  }
+}
+
+TEST(KeptCopy, TheCellsOfTheKnotLieOnDifferentPages) {
+  const Board board;
+  const auto page_of = [&](std::size_t c) {
+    return testing::cell_offset(board.layout, kKnot, c) / kPage;
+  };
+  EXPECT_NE(page_of(0), page_of(1));
+}
+
+TEST(KeptCopy, IsNotCurrentWhenTwoRevisionsPassBetweenTheLoadsOfTheTags) {
+  for_each_interleaving([](Word copied, std::size_t trapped) {
+    Interleaving at(copied, trapped);
+    KnotCopy copy(kDimensions, false);
+    ASSERT_TRUE(at.board.reader.copy_knot(kKnot, copied, copy));
+    const Word seen =
+        at.run([&] { return at.board.reader.is_current(copy, copied + 1) ? copy.tag : 0; });
+    EXPECT_EQ(seen, 0U);
+    // The other cell holds r: where the writer does not act there, no second look is needed.
+    EXPECT_EQ(at.has_acted, trapped != copy.cell);
+  });
+}
+
+TEST(KeptCopy, IsOfTheRevisionAskedForOrNoneWhenTwoRevisionsPassBetweenTheTags) {
+  for_each_interleaving([](Word copied, std::size_t trapped) {
+    Interleaving knots(copied, trapped);
+    KnotCopy copy(kDimensions, false);
+    const Word knot = knots.run([&] {
+      return knots.board.reader.copy_knot(kKnot, copied + 1, copy)
+                 ? static_cast<Word>(copy.velocity()[0])
+                 : 0;
+    });
+    EXPECT_TRUE(knots.has_acted);
+    EXPECT_EQ(knot, 0U);
+    EXPECT_FALSE(copy.is_there());
+    Interleaving times(copied, trapped);
+    Time time{};
+    core::SegmentForm form{};
+    EXPECT_FALSE(times.run([&] {
+      return static_cast<Word>(times.board.reader.copy_time(kKnot, copied + 1, time, form));
+    })) << time.count();
+  });
+}
+
+TEST(KeptCopy, ASampleIsNeverOfARevisionOlderThanItsBounds) {
+  for_each_interleaving([](Word copied, std::size_t trapped) {
+    Interleaving at(copied, trapped);
+    Sampler sampler(at.board.reader, StreamClock::recorded);
+    core::State state(kDimensions);
+    const Time t = time_of(kKnot);
+    ASSERT_TRUE(has_values(sampler.sample(t, state.ref())));
+    ASSERT_EQ(state.velocity()[0], static_cast<double>(copied));
+    const Word seen = at.run([&] {
+      EXPECT_TRUE(has_values(sampler.sample(t, state.ref())));
+      return static_cast<Word>(state.velocity()[0]);
+    });
+    EXPECT_TRUE(at.has_acted);
+    EXPECT_EQ(seen, sampler.revision_seen());
+  });
+}
+
+TEST(KeptCopy, ASegmentIsMadeOfTwoKnotsOfOneRevisionWhereverTheWriterActs) {
+  for_each_interleaving([](Word copied, std::size_t trapped) {
+    for (const Word number : {kKnot - 1, kKnot}) {
+      Interleaving at(copied, trapped);
+      BoardSegment segment(kDimensions, false);
+      Head head;
+      const Word seen = at.run([&] {
+        EXPECT_TRUE(at.board.reader.copy_bounds(at.board.look(), 0, head));
+        return static_cast<Word>(segment.take(at.board.reader, head, number));
+      });
+      EXPECT_TRUE(at.has_acted);
+      EXPECT_EQ(seen, static_cast<Word>(BoardSegment::Taken::torn));
+      EXPECT_FALSE(segment.is_there());
+    }
+  });
+}
+
+/// The writer acts after the first of the times has been evaluated: all are evaluated again.
+TEST(KeptCopy, ManySamplesAreOfOneRevisionThoughTheWriterActsBetweenThem) {
+  for_each_interleaving([](Word copied, std::size_t trapped) {
+    Interleaving at(copied, trapped);
+    Sampler sampler(at.board.reader, StreamClock::recorded);
+    const std::vector<Time> times{time_of(kFirst), time_of(kKnot), time_of(kFirst)};
+    std::vector<double> values(times.size() * kDimensions);
+    std::vector<SampleStatus> status(times.size(), SampleStatus::busy);
+    const SampleBlock out{values, status, core::Derivatives::velocity};
+    ASSERT_EQ(sampler.sample_many(times, out), copied);
+    const Word seen = at.run([&] { return sampler.sample_many(times, out); });
+    EXPECT_TRUE(at.has_acted);
+    EXPECT_EQ(seen, copied + 2);
+    for (const double value : values) EXPECT_EQ(value, static_cast<double>(seen));
+    for (const SampleStatus each : status) EXPECT_TRUE(has_values(each));
+  });
+}
+
+}  // namespace
+}  // namespace splinecast::ipc

@@ -1,0 +1,35 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <span>
+
+#include "tests/fixtures/streams/memory_stream.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// The first waypoint lies where the step settles the curve: it and the next come in one step.
+TEST(FirstWaypoint, MayLieExactlyWhereTheStepThatTakesItSettles) {
+  const LiveOptions live;
+  testing::MemoryStream stream(
+      1, {.start = {.kind = core::ConditionKind::halt, .value = {}}, .held_before_start = true}, 16,
+      64, {}, {}, live);
+  stream.clock.time = seconds(100);
+  const core::Time first = stream.clock.time + live.freeze_ahead;
+  for (int i = 0; i < 3; ++i) {
+    const double x = i;
+    ASSERT_EQ(stream.append(first + milliseconds(10) * i, std::span(&x, 1)),
+              AppendStatus::accepted);
+  }
+  const StepResult result = stream.solver.step(stream.clock);
+  EXPECT_FALSE(result.damaged);
+  EXPECT_TRUE(result.published);
+  EXPECT_EQ(stream.solver.head().knots, 3U);
+  EXPECT_EQ(stream.solver.head().newest_knot, first + milliseconds(20));
+}
+
+}  // namespace
+}  // namespace splinecast::ipc

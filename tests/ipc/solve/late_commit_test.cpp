@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+#include "tests/fixtures/streams/live_stream.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+using core::Time;
+using std::chrono::milliseconds;
+using Live = testing::LiveStream;
+
+/// The process is stopped for `pause` after reading the clock for the `look`-th time, counted from
+/// 1.
+class StoppedClock final : public Clock {
+ public:
+  StoppedClock(Time now, int look, Time pause) : now_(now), look_(look), pause_(pause) {}
+  [[nodiscard]] Time now() const noexcept override {
+    return ++looks_ > look_ ? now_ + pause_ : now_;
+  }
+
+ private:
+  Time now_;
+  int look_;
+  Time pause_;
+  mutable int looks_ = 0;
+};
+
+/// A step looks when it begins, directly before the commit, and behind it.
+constexpr int kBeforeCommit = 2;
+constexpr Time kPause = milliseconds(50);
+
+/// What a reader finds on the board.
+Word late_commits(const Live& live) {
+  Head head;
+  EXPECT_TRUE(live.board.reader.copy_head(live.board.reader.look(), head));
+  return head.revisions;
+}
+
+/// The words that a solver stores behind a commit, when it has looked at the clock.
+std::span<Word> words_behind_commit(Live& live) {
+  return words_at(live.board.bytes.span(), live.board.layout.control, kChecked + 1).subspan(kLate);
+}
+
+/// A stream whose last commit came too late.
+struct LateCommit : Live {
+  LateCommit() {
+    put_all(50, 100);
+    clock.time = kNow + milliseconds(80);
+    EXPECT_EQ(put(kNow + milliseconds(110)), AppendStatus::accepted);
+    before.assign(words_behind_commit(*this).begin(), words_behind_commit(*this).end());
+    EXPECT_TRUE(solver.step(StoppedClock(clock.time, kBeforeCommit, kPause)).published);
+    clock.time += kPause;
+  }
+  /// As if the solver had died behind the commit, `stores` stores later; and another one.
+  void die_behind_commit(std::size_t stores) {
+    std::ranges::copy(before.begin() + static_cast<std::ptrdiff_t>(stores), before.end(),
+                      words_behind_commit(*this).begin() + static_cast<std::ptrdiff_t>(stores));
+    replace_solver();
+  }
+  std::vector<Word> before;
+};
+
+TEST(LateCommit, IsCountedAlsoIfNoRevisionFollows) {
+  const LateCommit live;
+  EXPECT_EQ(live.solver.head().revisions, 1U);
+  EXPECT_EQ(late_commits(live), 1U);
+}
+
+TEST(LateCommit, IsCountedAlsoIfTheNextRevisionMissesItsDeadline) {
+  LateCommit live;
+  ASSERT_EQ(live.replace(live.solved().settled_until, {}), AppendStatus::accepted);
+  EXPECT_TRUE(live.solver.step(StoppedClock(live.clock.time, 1, kPause)).missed);
+  EXPECT_EQ(live.solver.head().revisions, 1U);
+  live.clock.time += milliseconds(3);
+  live.drain();
+  EXPECT_EQ(live.solver.head().misses, 1U);
+  EXPECT_EQ(late_commits(live), 1U);
+}
+
+TEST(LateCommit, IsCountedOnceByTheNextSolverIfTheFirstDiesBehindIt) {
+  for (const std::size_t stores : {0U, 1U, 2U}) {
+    LateCommit live;
+    live.die_behind_commit(stores);
+    live.solver.step(live.clock);
+    EXPECT_EQ(late_commits(live), 1U) << stores;
+    live.clock.time += milliseconds(3);
+    live.solver.step(live.clock);
+    live.replace_solver();
+    live.clock.time += milliseconds(3);
+    live.solver.step(live.clock);
+    EXPECT_EQ(late_commits(live), 1U) << stores;
+  }
+}
+
+TEST(LateCommit, IsNotWhatComesInTimeThoughItsSolverDiesBehindIt) {
+  Live live;
+  live.put_all(50, 100);
+  std::ranges::fill(words_behind_commit(live), 0);
+  live.replace_solver();
+  live.clock.time += milliseconds(30);  // what was published begins at 50 ms
+  live.solver.step(live.clock);
+  live.clock.time += milliseconds(100);
+  live.solver.step(live.clock);
+  EXPECT_EQ(late_commits(live), 0U);
+}
+
+}  // namespace
+}  // namespace splinecast::ipc

@@ -1,0 +1,138 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "ipc/roles/refusals.hpp"
+#include "tests/fixtures/streams/live_stream.hpp"
+
+/// What becomes of waypoints with which the curve passes a limit.
+namespace splinecast::ipc {
+namespace {
+
+using core::Time;
+using std::chrono::milliseconds;
+using testing::LiveStream;
+
+Time instant(int ms) { return LiveStream::kNow + milliseconds(ms); }
+
+core::WindowOptions step_limits() {
+  core::WindowOptions how;
+  how.limits.acceleration = {4};
+  how.limits.velocity = {2};
+  return how;
+}
+
+/// A motion that keeps its limits, with steps of 5 mm at some of its waypoints.
+struct Stepping : LiveStream {
+  explicit Stepping(core::Beyond what) : LiveStream(step_limits()) {
+    beyond = what;
+    replace_solver();
+  }
+  void play(const std::vector<int>& steps_at, bool takes_over = false) {
+    for (int ms = 50; ms <= 1500; ms += 10) {
+      clock.time = instant(ms - 200);
+      const bool steps = std::ranges::find(steps_at, ms) != steps_at.end();
+      const double position = x(instant(ms)) + (steps ? 0.005 : 0);
+      EXPECT_EQ(ring.writer.append({.time = instant(ms), .position = {&position, 1}}, solved()),
+                AppendStatus::accepted);
+      if (takes_over) replace_solver();
+      drain();
+    }
+  }
+  double peak() {
+    double peak = 0;
+    for (Time t = instant(100); t < instant(1400); t += milliseconds(1)) {
+      EXPECT_TRUE(has_values(sampler.preview(t, state.ref())));
+      peak = std::max(peak, std::abs(state.acceleration()[0]));
+    }
+    return peak;
+  }
+};
+
+TEST(LimitExcess, IsReportedAndTheWaypointTaken) {
+  Stepping live(core::Beyond::report);
+  live.play({700});
+  EXPECT_EQ(live.solver.head().refused, 0U);
+  EXPECT_GT(live.peak(), 100);
+  // The step itself, and what comes back from it.
+  ASSERT_GE(live.solver.head().exceeding, 1U);
+  EXPECT_LE(live.solver.head().exceeding, 8U);
+  const auto excess = live.board.reader.excess(live.solver.head(), 0);
+  ASSERT_TRUE(excess);
+  EXPECT_EQ(excess->item, 65U);
+  EXPECT_FALSE(excess->is_refused);
+  EXPECT_EQ(excess->dimension, 0U);
+  EXPECT_GT(std::abs(excess->value), excess->limit);
+  EXPECT_GE(excess->time, instant(600));
+  EXPECT_LE(excess->time, instant(700));
+}
+
+TEST(LimitExcess, IsRefusedWithItsPlaceSoThatNothingBeyondIsPublished) {
+  for (const bool takes_over : {false, true}) {
+    Stepping live(core::Beyond::refuse);
+    live.play({700, 900, 910}, takes_over);
+    EXPECT_EQ(live.reason(Refusal::beyond_limits), 3U);
+    EXPECT_EQ(live.solver.head().refused, 3U);
+    EXPECT_EQ(live.solver.head().exceeding, 3U);
+    EXPECT_LE(live.peak(), 4 * (1 + 1e-9));
+    RefusalReader reader;
+    Refusals told;
+    reader.look(live.board.reader, live.ring.reader, told);
+    ASSERT_EQ(told.items.size(), 3U);
+    for (const ItemRefusal& refusal : told.items) {
+      ASSERT_TRUE(refusal.excess);
+      EXPECT_TRUE(refusal.excess->is_refused);
+      EXPECT_EQ(refusal.excess->item, refusal.item);
+      const std::string text = to_string(refusal);
+      for (const char* part :
+           {"beyond limits", "acceleration of dimension 0 is ", " ns, limit 4"}) {
+        EXPECT_NE(text.find(part), std::string::npos) << text;
+      }
+    }
+    EXPECT_EQ(told.items[0].item, 65U);
+  }
+}
+
+TEST(LimitExcess, DoesNotConcernAMotionWithinItsLimits) {
+  Stepping live(core::Beyond::refuse);
+  live.play({});
+  EXPECT_EQ(live.solver.head().exceeding, 0U);
+  EXPECT_EQ(live.solver.head().refused, 0U);
+  EXPECT_EQ(live.solver.head().passed_over, 0U);
+}
+
+TEST(LimitExcess, KeepsTheLastOnesOnly) {
+  testing::MemoryBoard board(1, 64);
+  Head head;
+  for (Word i = 0; i < kExcessesKept + 10; ++i) {
+    board.writer.write_excess(i, {.item = 3 * i,
+                                  .kind = core::LimitKind::jerk,
+                                  .dimension = i % core::kMaxDimensions,
+                                  .time = milliseconds(-static_cast<int>(i)),
+                                  .value = -1.5 * static_cast<double>(i),
+                                  .limit = 2});
+  }
+  head.exceeding = kExcessesKept + 10;
+  head.consumed = 3 * head.exceeding;
+  EXPECT_FALSE(board.reader.excess(head, 9));
+  EXPECT_FALSE(board.reader.excess(head, head.exceeding));
+  for (Word i = 10; i < head.exceeding; ++i) {
+    const auto excess = board.reader.excess(head, i);
+    ASSERT_TRUE(excess) << i;
+    EXPECT_EQ(excess->item, 3 * i);
+    EXPECT_EQ(excess->kind, core::LimitKind::jerk);
+    EXPECT_EQ(excess->dimension, i % core::kMaxDimensions);
+    EXPECT_EQ(excess->time, milliseconds(-static_cast<int>(i)));
+    EXPECT_EQ(excess->value, -1.5 * static_cast<double>(i));
+    EXPECT_EQ(excess->limit, 2);
+    EXPECT_EQ(board.reader.excess_of(head, 3 * i)->dimension, excess->dimension);
+  }
+  EXPECT_FALSE(board.reader.excess_of(head, 31));
+}
+
+}  // namespace
+}  // namespace splinecast::ipc

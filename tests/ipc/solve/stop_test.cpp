@@ -1,0 +1,211 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <vector>
+
+#include "tests/fixtures/streams/live_stream.hpp"
+#include "tests/fixtures/streams/live_world.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+using core::Time;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using Live = testing::LiveStream;
+using testing::LiveWorld;
+
+void expect_balance(const Head& head) {
+  EXPECT_EQ(head.consumed, head.knots + head.refused + head.withdrawn + head.controls);
+}
+
+/// Sends a stop as soon as possible and steps once: it has taken effect then.
+void expect_immediate_stop(Live& live) {
+  ASSERT_EQ(live.replace(live.solved().settled_until, {}), AppendStatus::accepted);
+  const Word stop = live.ring.writer.head() - 1;
+  EXPECT_TRUE(live.solver.step(live.clock).published);
+  const Head& head = live.solver.head();
+  EXPECT_EQ(head.consumed, stop + 1);
+  EXPECT_EQ(head.changed_from, live.clock.time + milliseconds(5));
+  EXPECT_EQ(head.newest_knot, live.clock.time + milliseconds(5));
+  expect_balance(head);
+  const Time rest = head.newest_knot + live.window.stop_time;
+  EXPECT_EQ(live.sampler.preview(rest, live.state.ref()), SampleStatus::holding);
+}
+
+TEST(Stop, TakesEffectInTheNextStepBehindAReplacementThatIsTooLate) {
+  Live live;
+  live.put_all(50, 2000);
+  const Time t = live.solved().settled_until;
+  ASSERT_EQ(live.replace(t, {t + milliseconds(500), t + milliseconds(900)}),
+            AppendStatus::accepted);
+  live.clock.time += milliseconds(10);  // it has missed its time
+  expect_immediate_stop(live);
+  EXPECT_EQ(live.reason(Refusal::too_late), 0U);
+}
+
+TEST(Stop, TakesEffectInTheNextStepBehindAReplacementThatLiesAhead) {
+  Live live({.settle = 2}, 64);
+  live.put_all(50, 2050);  // more than the board has room for
+  const Time t = Live::kNow + milliseconds(1900);
+  ASSERT_GT(t, live.solver.head().newest_knot);
+  ASSERT_EQ(live.replace(t, {t + milliseconds(10)}), AppendStatus::accepted);
+  ASSERT_EQ(live.replace(t, {}), AppendStatus::accepted);
+  EXPECT_FALSE(live.solver.step(live.clock).published);
+  live.clock.time += milliseconds(20);
+  live.solver.step(live.clock);
+  expect_immediate_stop(live);
+}
+
+TEST(Stop, DoesNotWaitForRoomOnTheBoard) {
+  Live live({.settle = 2}, 64, {.history = seconds(10)});
+  live.put_all(50, 2000);
+  const Time newest = live.solver.head().newest_knot;
+  live.clock.time = newest - milliseconds(8);
+  live.solver.step(live.clock);
+  ASSERT_LT(live.solver.head().consumed, live.ring.writer.head());
+  live.clock.time = newest - milliseconds(6);  // in the last segment before the stop tail
+  expect_immediate_stop(live);
+}
+
+/// Waypoints are withdrawn in the revision that replaces them, also if that must wait for room.
+TEST(Stop, OrReplacementThatWaitsForRoomWithdrawsNothing) {
+  Live live({.settle = 2}, 64, {.history = seconds(10)});
+  live.put_all(50, 630);
+  live.clock.time = Live::kNow + seconds(1);
+  live.drain();
+  ASSERT_EQ(live.put(Live::kNow + milliseconds(1500)), AppendStatus::accepted);
+  ASSERT_EQ(live.put(Live::kNow + milliseconds(1600)), AppendStatus::accepted);
+  ASSERT_EQ(live.replace(Live::kNow + milliseconds(1400), {Live::kNow + milliseconds(1700)}),
+            AppendStatus::accepted);
+  live.clock.time += milliseconds(3);
+  live.solver.step(live.clock);
+  EXPECT_EQ(live.solver.head().withdrawn, 0U);
+  EXPECT_EQ(live.solver.head().consumed + 4, live.ring.writer.head());
+  // Another one that the board has room for withdraws them.
+  expect_immediate_stop(live);
+  EXPECT_EQ(live.solver.head().withdrawn, 4U);
+}
+
+TEST(Stop, AtTheEndOfTimeLeavesABoardThatCanBeReadBehindAFinish) {
+  Live live;
+  live.put_all(50, 100);
+  ASSERT_EQ(live.replace(core::kLatestTime, {}), AppendStatus::accepted);
+  live.drain();
+  live.finish({.kind = core::ConditionKind::halt, .value = {}});
+  EXPECT_TRUE(live.solver.head().finished);
+  Sampler later(live.board.reader, StreamClock::monotonic);
+  EXPECT_EQ(later.sample(Live::kNow + milliseconds(80), live.state.ref()), SampleStatus::settled);
+  EXPECT_NO_THROW(live.replace_solver());
+}
+
+TEST(Stop, ThatIsCutAtTheEndOfTimeLeavesABoardThatCanBeRead) {
+  Live live;
+  live.put_all(50, 100);
+  const Time t = core::kLatestTime - live.window.stop_time / 2;
+  ASSERT_EQ(live.replace(t, {}), AppendStatus::accepted);
+  live.drain();
+  ASSERT_EQ(live.replace(core::kLatestTime, {}), AppendStatus::accepted);  // within the stop
+  live.drain();
+  Sampler later(live.board.reader, StreamClock::monotonic);
+  for (const Time at : {t - Time(1), t, t + Time(1), core::kLatestTime}) {
+    EXPECT_TRUE(has_values(later.sample(at, live.state.ref())));
+  }
+  EXPECT_NO_THROW(live.replace_solver());
+}
+
+TEST(Stop, AtATimeAheadTakesEffectThereAtTheLatest) {
+  Live live({.settle = 2}, 64, {.history = seconds(10)});
+  live.put_all(50, 2000);
+  const Time newest = live.solver.head().newest_knot;
+  const Time t = newest + milliseconds(100);
+  ASSERT_EQ(live.replace(t, {}), AppendStatus::accepted);
+  for (; live.clock.time < t - milliseconds(5); live.clock.time += milliseconds(1)) {
+    live.solver.step(live.clock);
+    ASSERT_LT(live.solver.head().consumed, live.ring.writer.head());
+  }
+  live.solver.step(live.clock);
+  EXPECT_EQ(live.solver.head().consumed, live.ring.writer.head());
+  EXPECT_EQ(live.solver.head().controls, 1U);
+  expect_balance(live.solver.head());
+}
+
+TEST(Stop, IsNeverTooLate) {
+  Live live;
+  live.put_all(50, 500);
+  for (const Time t : {Time::min(), Time(0), Live::kNow - seconds(1), Live::kNow}) {
+    ASSERT_EQ(live.replace(t, {}), AppendStatus::accepted) << t.count();
+    live.clock.time += milliseconds(7);
+    live.drain();
+  }
+  EXPECT_EQ(live.solver.head().controls, 4U);
+  EXPECT_EQ(live.solver.head().refused, 0U);
+  EXPECT_EQ(live.replace(Live::kNow + milliseconds(4), {Live::kNow + milliseconds(400)}),
+            AppendStatus::too_late);
+  // The stream goes on behind it.
+  EXPECT_EQ(live.put(live.clock.time + milliseconds(300)), AppendStatus::accepted);
+}
+
+TEST(Stop, OfAnUnknownTimeLetsAnyWaypointFollowAlsoBehindANewProducer) {
+  Live live;
+  ASSERT_EQ(live.put(Live::kNow + milliseconds(50)), AppendStatus::accepted);
+  ASSERT_EQ(live.ring.writer.replace_from(Time::min(), {}, {}), AppendStatus::accepted);
+  WaypointRingWriter next(live.ring.bytes.span(), live.ring.layout, {});
+  const double x = 0;
+  const core::Waypoint waypoint{.time = Live::kNow + milliseconds(500),
+                                .position = std::span(&x, 1)};
+  EXPECT_EQ(live.ring.writer.append(waypoint, {}), AppendStatus::accepted);
+  EXPECT_EQ(next.append(waypoint, {}), AppendStatus::accepted);
+}
+
+TEST(Stop, BeforeAStreamThatStartsInMotionTakesEffectAtItsStart) {
+  Live live;
+  const Time t = Live::kNow + milliseconds(200);
+  const std::vector<double> one{1};
+  ASSERT_EQ(live.ring.writer.start_from({t, one, one, one}, live.solved()), AppendStatus::accepted);
+  live.put_all(250, 500);
+  ASSERT_EQ(live.replace(Live::kNow + milliseconds(20), {}), AppendStatus::accepted);
+  live.solver.step(live.clock);
+  EXPECT_EQ(live.solver.head().controls, 2U);
+  EXPECT_EQ(live.solver.head().newest_knot, t);
+  EXPECT_EQ(live.sampler.preview(t + live.window.stop_time, live.state.ref()),
+            SampleStatus::holding);
+}
+
+TEST(Stop, FindsRoomInAFullRingAndTakesEffectInTheNextStep) {
+  Live live;
+  live.put_all(50, 100);
+  int ms = 110;
+  while (live.put(Live::kNow + milliseconds(ms)) == AppendStatus::accepted) ms += 10;
+  EXPECT_EQ(live.put(Live::kNow + milliseconds(ms)), AppendStatus::full);
+  live.clock.time += milliseconds(3);
+  expect_immediate_stop(live);
+}
+
+/// The bound that replace_from states, among replacements that come too late, replacements ahead,
+/// waypoints under back-pressure and a solver that is stopped meanwhile.
+TEST(Stop, TakesEffectAtTheNextSettledTimeWhateverIsQueued) {
+  for (std::uint64_t seed = 1; seed <= 60 && !HasFailure(); ++seed) {
+    LiveWorld world({.seed = seed,
+                     .dimensions = 1 + seed % 3,
+                     .replacements = 4,
+                     .solver_kills = 1,
+                     .producer_kills = 1,
+                     .pauses = 2});
+    for (int stops = 0; stops < 5; ++stops) {
+      world.run(milliseconds(300));
+      world.stop_behind_misses();
+    }
+    EXPECT_EQ(world.stops, 5U) << "seed " << seed;
+    const Head& head = world.head();
+    expect_balance(head);
+    EXPECT_EQ(world.report().changed, 0U) << "seed " << seed;
+    EXPECT_LT(world.report().position_step, 1e-11) << "seed " << seed;
+    EXPECT_LT(world.report().velocity_step, 1e-9) << "seed " << seed;
+    const Verification found = world.verify();
+    EXPECT_FALSE(found.first) << "seed " << seed << ": " << found.first->what;
+  }
+}
+
+}  // namespace
+}  // namespace splinecast::ipc

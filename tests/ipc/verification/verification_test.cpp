@@ -1,0 +1,179 @@
+#include "ipc/verification/verify.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ipc/verification/settled_segments.hpp"
+#include "tests/fixtures/curves/method_trial.hpp"
+#include "tests/fixtures/streams/live_world.hpp"
+#include "tests/fixtures/streams/memory_stream.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+using core::Condition;
+using core::ConditionKind;
+using core::Time;
+using testing::MemoryStream;
+using testing::Trial;
+
+/// A recorded stream that has been played to its end, and what was collected of it.
+class Played {
+ public:
+  explicit Played(const core::WindowOptions& how, const Condition& end = {},
+                  core::DimensionKinds kinds = {}, std::size_t knots = 150)
+      : window_(how), kinds_(std::move(kinds)), end_(end), items_(2) {
+    MemoryStream stream(2, window_, 64, 1024, {}, kinds_);
+    const Trial trial = testing::random_trial(11, knots, 2, 5);
+    SettledSegments settled(stream.board.reader);
+    for (std::size_t i = 0; i < trial.mesh.size(); ++i) {
+      items_.add(ItemKind::waypoint, trial.waypoints()[i]);
+      stream.send(trial.waypoints()[i]);
+      if (i % 3 == 0) stream.drain();
+      if (i % 7 == 0) stream.replace_solver();
+      settled.look();
+    }
+    stream.finish(end);
+    settled.look();
+    segments.assign(settled.segments().begin(), settled.segments().end());
+    head = settled.head();
+  }
+
+  [[nodiscard]] Verification verify() const { return verify(items_); }
+  [[nodiscard]] Verification verify(const SentItems& items) const {
+    return ipc::verify({.window = window_,
+                        .kinds = kinds_,
+                        .items = items,
+                        .segments = segments,
+                        .head = head,
+                        .end = end_});
+  }
+  [[nodiscard]] const SentItems& items() const { return items_; }
+
+  std::vector<SegmentCopy> segments;
+  Head head;
+
+ private:
+  core::WindowOptions window_;
+  core::DimensionKinds kinds_;
+  Condition end_;
+  SentItems items_;
+};
+
+std::string what(const Verification& found) {
+  if (!found.first) return "";
+  return std::to_string(found.first->segment) + ": " + found.first->what + ", " +
+         found.first->published + " published, " + found.first->solved + " solved";
+}
+
+void flip_last_bit(double& value) {
+  value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) ^ 1U);
+}
+
+std::vector<const core::Method*> verified_methods() {
+  std::vector<const core::Method*> all;
+  for (const core::Method& method : core::methods()) {
+    if (method.streams()) all.push_back(&method);
+  }
+  return all;
+}
+
+class VerificationOfMethods : public ::testing::TestWithParam<const core::Method*> {};
+
+TEST_P(VerificationOfMethods, SolvesEverySettledSegmentAgainToItsBits) {
+  for (const ConditionKind kind : {ConditionKind::own, ConditionKind::halt}) {
+    for (const std::size_t knots : {1U, 2U, 3U, 150U}) {
+      core::WindowOptions how = testing::plain_window(*GetParam());
+      how.start = {kind, {}};
+      const Played played(how, {kind, {}}, {}, knots);
+      const Verification found = played.verify();
+      EXPECT_EQ(what(found), "");
+      EXPECT_EQ(found.equal, knots == 1 ? 1 : knots - 1);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Streaming, VerificationOfMethods, ::testing::ValuesIn(verified_methods()),
+                         [](const auto& at) { return std::string(at.param->name); });
+
+TEST(Verification, TakesLimitsKindsAndAShortLag) {
+  const std::vector<core::Dimension> kinds{{.kind = core::DimensionKind::wrap, .period = 0.7}, {}};
+  for (const std::size_t settle : {0U, 1U, 8U}) {
+    EXPECT_EQ(what(Played({.settle = settle}, {}, core::DimensionKinds(kinds)).verify()), "");
+  }
+}
+
+TEST(Verification, FindsOneFlippedBit) {
+  const Played played(core::WindowOptions{});
+  for (const std::size_t i : {0U, 70U, 148U}) {
+    Played flipped = played;
+    flip_last_bit(flipped.segments[i].coefficients[5]);
+    const Verification found = flipped.verify();
+    ASSERT_TRUE(found.first);
+    EXPECT_EQ(found.equal, i);
+    EXPECT_EQ(found.first->segment, i + 1);
+    EXPECT_EQ(found.first->what, "coefficient 2 of dimension 1");
+    EXPECT_NE(found.first->published, found.first->solved);
+  }
+}
+
+TEST(Verification, FindsWhateverElseDiffers) {
+  const Played played(core::WindowOptions{});
+  const auto found = [&](const auto& change) {
+    Played changed = played;
+    change(changed.segments[40]);
+    const Verification verified = changed.verify();
+    return verified.first ? verified.first->what : std::string();
+  };
+  EXPECT_EQ(found([](SegmentCopy& at) { flip_last_bit(at.waypoint[1]); }), "waypoint");
+  EXPECT_EQ(found([](SegmentCopy& at) { at.right += Time(1); }), "right end");
+  EXPECT_EQ(found([](SegmentCopy& at) { at.kind = core::SegmentKind::stop_tail; }), "kind");
+  EXPECT_NE(found([](SegmentCopy& at) { at.newer_knots = 3; }), "");
+  EXPECT_NE(found([](SegmentCopy& at) { at.newer_knots = 4'000'000'000; }), "");
+  EXPECT_NE(found([](SegmentCopy& at) { at.number = 7; }), "");
+}
+
+TEST(Verification, MissesAWaypointThatIsNotOnTheCurve) {
+  const Played played(core::WindowOptions{});
+  SentItems more = played.items();
+  more.add(ItemKind::waypoint, played.items().waypoint(more.size() - 1));
+  const Verification found = played.verify(more);
+  ASSERT_TRUE(found.first);
+  EXPECT_EQ(found.first->what, "waypoint of item 150");
+  more.refuse(150);
+  EXPECT_FALSE(played.verify(more).first);
+  SentItems fewer = played.items();
+  fewer.refuse(100);
+  EXPECT_TRUE(played.verify(fewer).first);
+}
+
+/// Kills, starvation and replacement, with a local method, with smoothing, and without limits.
+TEST(Verification, HoldsInLiveWorldsOfOtherMethods) {
+  for (const char* name : {"c2", "akima", "pchip", "bessel", "smoothing"}) {
+    core::WindowOptions window = testing::plain_window(*core::find_method(name));
+    window.interpolant.lambda = name == std::string("smoothing") ? 1e-9 : 0;
+    for (std::uint64_t seed = 1; seed <= 40 && !::testing::Test::HasFailure(); ++seed) {
+      testing::LiveWorld world({.seed = seed,
+                                .dimensions = 1 + seed % 3,
+                                .window = window,
+                                .starts_in_motion = seed % 2 == 0,
+                                .starvations = 1,
+                                .replacements = 3,
+                                .solver_kills = 2,
+                                .producer_kills = 2,
+                                .pauses = 2,
+                                .has_limits = seed % 4 < 2});
+      world.run(std::chrono::milliseconds(1500));
+      const Verification found = world.verify();
+      EXPECT_EQ(what(found), "") << name << ", seed " << seed;
+      EXPECT_GT(found.equal, 0U) << name << ", seed " << seed;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace splinecast::ipc
