@@ -57,7 +57,7 @@ PATHS = [
     Path(
         title="`sample/dims:7`",
         benchmark="counted/sample",
-        entries=["splinecast::ipc::Sampler::sample*"],
+        entries=["splinecast::Reader::sample*"],
         purposes=[
             (r"core::evaluate", "the polynomial and three derivatives, 7 dimensions"),
             (r"KnotBoardReader|KnotCopy|fetch|load_values", "copies the next knot out of shared memory, once every 10 samples"),
@@ -75,7 +75,7 @@ two knots, and where these were written again their nodes; all of it is asked fo
     Path(
         title="`publish/dims:7`, K = 8: one append, solved and published",
         benchmark="counted/publish",
-        entries=["splinecast::ipc::Producer::append*", "splinecast::ipc::Solver::step*"],
+        entries=["splinecast::Producer::append*", "splinecast::Solver::step*"],
         purposes=[
             (r"KnotBoardWriter::commit", "the head, and the commit"),
             (r"KnotBoardWriter|magnitude", "writes the knots that the waypoint changes into spare cells"),

@@ -178,7 +178,7 @@ std::string motion_in_words(const Advice& advice, const AdviceSource& source) {
 }
 
 std::string way_back_in_words(const Hiccup& hiccup, const AdviceSource& source) {
-  if (hiccup.dry == core::Time::zero()) return {};
+  if (hiccup.dry == Time::zero()) return {};
   std::string text;
   for (std::size_t d = 0; d < hiccup.way_back.size(); ++d) {
     const auto& seconds = hiccup.way_back[d];
@@ -191,12 +191,10 @@ std::string way_back_in_words(const Hiccup& hiccup, const AdviceSource& source) 
 
 }  // namespace
 
-std::string in_milliseconds(core::Time t) {
-  return fmt::format("{:.6g} ms", core::to_seconds(t) * 1e3);
-}
+std::string in_milliseconds(Time t) { return fmt::format("{:.6g} ms", to_seconds(t) * 1e3); }
 
-std::string lead_in_words(const Intervals& intervals, const SolvedHow& how, core::Time lead) {
-  const core::Time depth = depth_needed(intervals.median, how);
+std::string lead_in_words(const Intervals& intervals, const SolvedHow& how, Time lead) {
+  const Time depth = depth_needed(intervals.median, how);
   std::string why = fmt::format("freeze-ahead {} + {} intervals of {} = {}, and jitter of {}",
                                 in_milliseconds(how.freeze_ahead), how.settle + 1,
                                 in_milliseconds(intervals.median), in_milliseconds(depth),
@@ -207,7 +205,7 @@ std::string lead_in_words(const Intervals& intervals, const SolvedHow& how, core
 }
 
 std::string in_words(const Hiccup& hiccup) {
-  if (hiccup.dry == core::Time::zero()) {
+  if (hiccup.dry == Time::zero()) {
     return fmt::format("nothing: {} of depth are left", in_milliseconds(hiccup.depth_left));
   }
   return fmt::format("runs dry for {} and {}", in_milliseconds(hiccup.dry),
@@ -237,7 +235,7 @@ ordered_json to_json(const Advice& advice, const AdviceSource& source) {
 
 std::string in_words(const Advice& advice, const AdviceSource& source) {
   std::string text = fmt::format("{}: {} rows, {:.6g} s\n\n", ipc::printable(source.name),
-                                 source.rows, core::to_seconds(source.length));
+                                 source.rows, to_seconds(source.length));
   text += intervals_in_words(advice, source) + solved_in_words(source) + "\n";
   text += motion_in_words(advice, source) + "\n";
   for (const Item& item : items_of(advice, source)) {

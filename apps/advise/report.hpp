@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/advise/advice.hpp"
+#include "apps/recordings/advice.hpp"
 
 namespace splinecast::apps {
 
@@ -15,16 +15,16 @@ struct AdviceSource {
   std::string name;
   std::vector<std::string> columns;  ///< names, with units in brackets
   std::size_t rows = 0;
-  core::Time length{};
+  Time length{};
   std::size_t duplicates = 0;
   std::size_t out_of_order = 0;
 
   /// Of a stream that a solver has taken up.
   struct Solved {
     SolvedHow how{};
-    core::Time stop_time{};
-    std::optional<core::Time> low_water{};  ///< least depth so far
-    std::size_t misses = 0;                 ///< revisions that were discarded or came too late
+    Time stop_time{};
+    std::optional<Time> low_water{};  ///< least depth so far
+    std::size_t misses = 0;           ///< revisions that were discarded or came too late
   };
   std::optional<Solved> solved{};
 };
@@ -35,12 +35,12 @@ struct AdviceSource {
 
 /// Why the lead is as long as advised_lead says.
 [[nodiscard]] std::string lead_in_words(const Intervals& intervals, const SolvedHow& how,
-                                        core::Time lead);
+                                        Time lead);
 
 /// What a silence of the producer does, in words.
 [[nodiscard]] std::string in_words(const Hiccup& hiccup);
 
 /// A time in milliseconds, with its unit.
-[[nodiscard]] std::string in_milliseconds(core::Time t);
+[[nodiscard]] std::string in_milliseconds(Time t);
 
 }  // namespace splinecast::apps

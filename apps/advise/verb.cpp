@@ -4,18 +4,21 @@
 #include <filesystem>
 #include <memory>
 
-#include "apps/advise/advice.hpp"
 #include "apps/advise/report.hpp"
 #include "apps/cli/options.hpp"
 #include "apps/files/kinds.hpp"
 #include "apps/output/stream.hpp"
 #include "apps/process/exit_codes.hpp"
+#include "apps/recordings/advice.hpp"
 #include "apps/recordings/recording.hpp"
 #include "apps/streams/report.hpp"
 #include "apps/streams/rows.hpp"
 #include "ipc/memory/names.hpp"
-#include "ipc/roles/stream_files.hpp"
+#include "ipc/options/curve.hpp"
+#include "ipc/roles/inspect.hpp"
+#include "ipc/solve/stream_solver.hpp"
 #include "splinecast/errors.hpp"
+#include "splinecast/streams.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -24,9 +27,9 @@ struct AdviseOptions {
   std::string source;
   TableOptions table;
   std::optional<std::size_t> settle;
-  std::optional<core::Time> freeze_ahead;
+  std::optional<Time> freeze_ahead;
   bool json = false;
-  ipc::Trust trust;
+  Trust trust;
 };
 
 /// The rows to look at, and where they come from.
@@ -36,8 +39,7 @@ struct Rows {
 };
 
 Rows rows_of_file(const AdviseOptions& options) {
-  constexpr ipc::IngestLimits kAnyInterval{.min_interval = core::Time(1),
-                                           .max_interval = core::Time::max()};
+  constexpr IngestLimits kAnyInterval{.min_interval = Time(1), .max_interval = Time::max()};
   Rows rows{.table = read_waypoints(options.source, options.table), .source = {}};
   rows.source.name = rows.table.file;
   const LateRows late = drop_unfit_rows(rows.table, kAnyInterval, LatePolicy::pass, nullptr);
@@ -52,9 +54,9 @@ std::optional<AdviceSource::Solved> solved_of(const ipc::StreamInfo& info) {
   const ipc::LiveOptions live = ipc::live_options(*info.spline).value_or(ipc::LiveOptions{});
   AdviceSource::Solved solved{
       .how = {.settle = info.spline->settle, .freeze_ahead = live.freeze_ahead},
-      .stop_time = core::Time(info.spline->stop_time),
+      .stop_time = Time(info.spline->stop_time),
       .misses = info.head.misses + info.head.revisions};
-  if (info.head.low_water < core::Time::max()) solved.low_water = info.head.low_water;
+  if (info.head.low_water < Time::max()) solved.low_water = info.head.low_water;
   return solved;
 }
 
@@ -64,18 +66,18 @@ Rows rows_of_stream(const AdviseOptions& options) {
     throw InputError(fmt::format("stream '{}' has no producer yet", options.source));
   }
   Rows rows{.table = read_stream_rows(options.source, options.trust), .source = {}};
-  const auto refused = [&](ipc::AppendStatus status) {
+  const auto refused = [&](AppendStatus status) {
     return info.refused_by_producer[static_cast<std::size_t>(status)];
   };
   rows.source.name = rows.table.file;
-  rows.source.duplicates = refused(ipc::AppendStatus::duplicate);
-  rows.source.out_of_order = refused(ipc::AppendStatus::out_of_order);
+  rows.source.duplicates = refused(AppendStatus::duplicate);
+  rows.source.out_of_order = refused(AppendStatus::out_of_order);
   rows.source.solved = solved_of(info);
   return rows;
 }
 
 bool is_stream(const std::string& name) {
-  const std::vector<std::string> streams = ipc::stream_names();
+  const std::vector<std::string> streams = stream_names();
   return std::ranges::find(streams, name) != streams.end();
 }
 
@@ -88,11 +90,11 @@ Rows rows_of(const AdviseOptions& options) {
 }
 
 /// A freeze-ahead with which revisions came too late is doubled.
-core::Time freeze_ahead_of(const AdviseOptions& options, const AdviceSource& source) {
+Time freeze_ahead_of(const AdviseOptions& options, const AdviceSource& source) {
   if (options.freeze_ahead) return *options.freeze_ahead;
   if (!source.solved) return SolvedHow{}.freeze_ahead;
-  const core::Time own = source.solved->how.freeze_ahead;
-  return source.solved->misses > 0 ? core::saturated_product(own, 2) : own;
+  const Time own = source.solved->how.freeze_ahead;
+  return source.solved->misses > 0 ? saturated_product(own, 2) : own;
 }
 
 int run_advise(const AdviseOptions& options) {

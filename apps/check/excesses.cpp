@@ -6,29 +6,29 @@
 namespace splinecast::apps {
 namespace {
 
-TimedExcess timed(const core::Excess& excess, core::Time left) {
-  return {excess, left + core::Time(std::llround(excess.u * 1e9))};
+TimedExcess timed(const Excess& excess, Time left) {
+  return {excess, left + Time(std::llround(excess.u * 1e9))};
 }
 
 /// The factor of the speed that brings a ratio of this kind down to 1.
-double slowing_for(const core::Excess& excess) {
+double slowing_for(const Excess& excess) {
   constexpr double kRounding = 1 - 1e-12;
   const double share = kRounding / excess.ratio;
   switch (excess.kind) {
-    case core::LimitKind::velocity:
+    case LimitKind::velocity:
       return share;
-    case core::LimitKind::acceleration:
+    case LimitKind::acceleration:
       return std::sqrt(share);
-    case core::LimitKind::jerk:
+    case LimitKind::jerk:
       return std::cbrt(share);
-    case core::LimitKind::position:
+    case LimitKind::position:
       break;
   }
   return 1;
 }
 
-void take_segment(const core::SegmentPart& part, core::Time left, const core::MotionLimits& limits,
-                  const core::DimensionKinds& kinds, CurveCheck& check) {
+void take_segment(const core::SegmentPart& part, Time left, const MotionLimits& limits,
+                  const DimensionKinds& kinds, CurveCheck& check) {
   const core::WorstExcesses worst = core::worst_excesses(limits, &kinds, part);
   for (std::size_t kind = 0; kind < worst.size(); ++kind) {
     std::optional<TimedExcess>& so_far = check.worst[kind];
@@ -40,17 +40,17 @@ void take_segment(const core::SegmentPart& part, core::Time left, const core::Mo
   if (!violation) return;
   ++check.segments_beyond;
   if (!check.first_violation) check.first_violation = timed(*violation, left);
-  for (const core::Excess& excess : worst) {
+  for (const Excess& excess : worst) {
     if (excess.ratio <= 1) continue;
     check.slowing = std::min(check.slowing, slowing_for(excess));
-    if (excess.kind == core::LimitKind::position) check.keeps_bounds = false;
+    if (excess.kind == LimitKind::position) check.keeps_bounds = false;
   }
 }
 
 }  // namespace
 
-CurveCheck check_curve(const core::PiecewisePolynomial& curve, const core::MotionLimits& limits,
-                       const core::DimensionKinds& kinds) {
+CurveCheck check_curve(const PiecewisePolynomial& curve, const MotionLimits& limits,
+                       const DimensionKinds& kinds) {
   CurveCheck check{.segments = curve.segments()};
   for (std::size_t i = 0; i < curve.segments(); ++i) {
     const core::SegmentPart part{.order = curve.order_of(i),

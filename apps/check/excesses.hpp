@@ -11,8 +11,8 @@ namespace splinecast::apps {
 
 /// An excess with its time on the curve.
 struct TimedExcess {
-  core::Excess excess;
-  core::Time time{};
+  Excess excess;
+  Time time{};
 };
 
 /// How a whole curve compares with limits.
@@ -20,7 +20,7 @@ struct CurveCheck {
   std::size_t segments = 0;
   std::size_t segments_beyond = 0;
   std::optional<TimedExcess> first_violation{};
-  std::array<std::optional<TimedExcess>, core::kLimitKinds> worst{};  ///< by LimitKind
+  std::array<std::optional<TimedExcess>, kLimitKinds> worst{};  ///< by LimitKind
   /// The largest factor r ≤ 1 of the speed for which velocities r·v, accelerations r²·a and jerks
   /// r³·j keep their limits; 0: none does.
   double slowing = 1;
@@ -30,9 +30,8 @@ struct CurveCheck {
 };
 
 /// Compares every segment of a curve. Steps of the acceleration where segments meet count as no
-/// jerk. The limits have passed core::require_limits.
-[[nodiscard]] CurveCheck check_curve(const core::PiecewisePolynomial& curve,
-                                     const core::MotionLimits& limits,
-                                     const core::DimensionKinds& kinds);
+/// jerk. The limits have passed require_limits.
+[[nodiscard]] CurveCheck check_curve(const PiecewisePolynomial& curve, const MotionLimits& limits,
+                                     const DimensionKinds& kinds);
 
 }  // namespace splinecast::apps

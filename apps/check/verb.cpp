@@ -26,7 +26,7 @@ using nlohmann::ordered_json;
 struct CheckOptions {
   std::string file;
   TableOptions table;
-  const core::Method* method = nullptr;
+  const Method* method = nullptr;
   CurveOptions curve;
   LimitOptions limits;
   bool json = false;
@@ -37,20 +37,19 @@ struct CheckReport {
   std::string file;
   std::vector<std::string> names;
   std::string method;
-  core::Time begin{};
-  core::Time end{};
+  Time begin{};
+  Time end{};
   CurveCheck check;
   LimitGaps gaps;
   std::vector<std::string> notes;
 };
 
 /// The limits that are asked for, for the dimensions of a table.
-core::MotionLimits limits_of(const LimitOptions& options, const LimitFile& file,
-                             const WaypointTable& table,
-                             const std::vector<core::Dimension>& kinds) {
-  core::MotionLimits limits = core::overridden(core::matched(file.joints, table.names),
-                                               core::spread(options.given, table.dimensions()));
-  core::require_limits(limits, kinds);
+MotionLimits limits_of(const LimitOptions& options, const LimitFile& file,
+                       const WaypointTable& table, const std::vector<Dimension>& kinds) {
+  MotionLimits limits = core::overridden(core::matched(file.joints, table.names),
+                                         spread(options.given, table.dimensions()));
+  require_limits(limits, kinds);
   if (limits.empty()) {
     throw InputError(
         fmt::format("{}: none of the limits is for one of its dimensions", table.file));
@@ -64,24 +63,24 @@ CheckReport checked(const CheckOptions& options) {
   continue_waypoints(table);
   LimitFile file;
   if (!options.limits.file.empty()) file = read_limit_file(options.limits.file);
-  std::vector<core::Dimension> kinds = table.kinds;
+  std::vector<Dimension> kinds = table.kinds;
   kinds.resize(table.dimensions());
-  const core::MotionLimits limits = limits_of(options.limits, file, table, kinds);
-  const core::PiecewisePolynomial curve = fit_table(table, *options.method, options.curve);
+  const MotionLimits limits = limits_of(options.limits, file, table, kinds);
+  const PiecewisePolynomial curve = fit_table(table, *options.method, options.curve);
   return {.file = table.file,
           .names = table.names,
           .method = std::string(options.method->name),
           .begin = curve.breaks().front(),
           .end = curve.breaks().back(),
-          .check = check_curve(curve, limits, core::DimensionKinds(kinds)),
+          .check = check_curve(curve, limits, DimensionKinds(kinds)),
           .gaps = limit_gaps(limits, file.joints, table.names, kinds),
           .notes = file.notes};
 }
 
 ordered_json excess_json(const std::optional<TimedExcess>& found, const CheckReport& report) {
   if (!found) return nullptr;
-  const core::Excess& excess = found->excess;
-  return {{"kind", core::to_string(excess.kind)},
+  const Excess& excess = found->excess;
+  return {{"kind", to_string(excess.kind)},
           {"dimension", excess.dimension},
           {"name", report.names[excess.dimension]},
           {"time_ns", found->time.count()},
@@ -94,7 +93,7 @@ ordered_json to_json(const CheckReport& report) {
   const CurveCheck& check = report.check;
   ordered_json worst = ordered_json::object();
   for (std::size_t kind = 0; kind < check.worst.size(); ++kind) {
-    worst[std::string(core::to_string(static_cast<core::LimitKind>(kind)))] =
+    worst[std::string(to_string(static_cast<LimitKind>(kind)))] =
         excess_json(check.worst[kind], report);
   }
   return {{"file", report.file},
@@ -114,10 +113,10 @@ ordered_json to_json(const CheckReport& report) {
 }
 
 std::string text_of(const TimedExcess& found, const CheckReport& report) {
-  const core::Excess& excess = found.excess;
+  const Excess& excess = found.excess;
   return fmt::format("{:.6g} of {:.6g} (ratio {:.6g}), '{}' at {:.9f} s", excess.value,
                      excess.limit, excess.ratio, report.names[excess.dimension],
-                     core::to_seconds(found.time));
+                     to_seconds(found.time));
 }
 
 std::string advice_of(const CurveCheck& check) {
@@ -136,15 +135,15 @@ std::string to_text(const CheckReport& report) {
   const CurveCheck& check = report.check;
   std::string text =
       fmt::format("{}: {} segments of {} from {:.9f} s to {:.9f} s\n", report.file, check.segments,
-                  report.method, core::to_seconds(report.begin), core::to_seconds(report.end));
+                  report.method, to_seconds(report.begin), to_seconds(report.end));
   for (std::size_t kind = 0; kind < check.worst.size(); ++kind) {
     const auto& worst = check.worst[kind];
-    text += fmt::format("{:<16}  {}\n", core::to_string(static_cast<core::LimitKind>(kind)),
+    text += fmt::format("{:<16}  {}\n", to_string(static_cast<LimitKind>(kind)),
                         worst ? text_of(*worst, report) : "no limit");
   }
   if (check.keeps_limits()) return text + "all limits are kept\n";
   const TimedExcess& first = *check.first_violation;
-  text += fmt::format("first violation   {} {}\n", core::to_string(first.excess.kind),
+  text += fmt::format("first violation   {} {}\n", to_string(first.excess.kind),
                       text_of(first, report));
   text += fmt::format("{} of {} segments are beyond their limits\n", check.segments_beyond,
                       check.segments);
@@ -170,13 +169,13 @@ void add_check(CLI::App& program, Action& action) {
   add_limit_options(*verb, options->limits);
   verb->add_option_function<std::string>(
           "--method", [options](const std::string& text) { options->method = &method_named(text); },
-          fmt::format("Interpolant: {} (default c2)", core::method_names(false)))
+          fmt::format("Interpolant: {} (default c2)", method_names(false)))
       ->type_name("METHOD");
   add_curve(*verb, options->curve);
   add_table_options(*verb, options->table);
   verb->add_flag("--json", options->json, "As JSON");
   verb->callback([&action, options] {
-    if (options->method == nullptr) options->method = &core::c2();
+    if (options->method == nullptr) options->method = &c2();
     require_consistent(options->curve, std::array{options->method});
     if (!options->limits.any()) {
       throw CLI::ValidationError("check",

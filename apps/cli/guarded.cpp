@@ -18,7 +18,7 @@ int run_guarded(const std::function<int()>& action) {
   } catch (const std::invalid_argument& error) {
     say(error.what());
     return kBadUsageOrInput;
-  } catch (const ipc::BadRequest& error) {
+  } catch (const BadRequest& error) {
     say(error.what());
     return kBadUsageOrInput;
   } catch (const ClosedPipe&) {
@@ -29,7 +29,7 @@ int run_guarded(const std::function<int()>& action) {
   } catch (const TimeOut& error) {
     say(error.what());
     return kNoStreamOrTimeOut;
-  } catch (const ipc::NoSuchStream& error) {
+  } catch (const NoSuchStream& error) {
     say(error.what());
     return kNoStreamOrTimeOut;
   } catch (const std::exception& error) {

@@ -95,11 +95,11 @@ void add_time_unit(CLI::App& verb, std::optional<TimeUnit>& unit) {
       ->type_name("UNIT");
 }
 
-const core::Method& method_named(const std::string& text) {
-  const core::Method* const method = core::find_method(text);
+const Method& method_named(const std::string& text) {
+  const Method* const method = find_method(text);
   if (method != nullptr) return *method;
   throw CLI::ValidationError("--method",
-                             fmt::format("'{}' is none of {}", text, core::method_names(false)));
+                             fmt::format("'{}' is none of {}", text, method_names(false)));
 }
 
 void add_lambda(CLI::App& verb, std::optional<double>& lambda, bool* automatic) {
@@ -111,7 +111,7 @@ void add_lambda(CLI::App& verb, std::optional<double>& lambda, bool* automatic) 
               return;
             }
             lambda = parse_number(text);
-            if (lambda && *lambda >= 0 && core::is_usable(*lambda)) return;
+            if (lambda && *lambda >= 0 && is_usable(*lambda)) return;
             throw CLI::ValidationError("--lambda",
                                        fmt::format("'{}' is no number from 0 to 1e100", text));
           },
@@ -131,7 +131,7 @@ void add_time_scale(CLI::App& verb, std::optional<double>& time_scale) {
       ->type_name("SECONDS");
 }
 
-void add_solver_curve(CLI::App& verb, ipc::SolverOptions& options) {
+void add_solver_curve(CLI::App& verb, SolverOptions& options) {
   verb.add_option_function<std::string>(
           "--method",
           [&options](const std::string& text) {
@@ -140,7 +140,7 @@ void add_solver_curve(CLI::App& verb, ipc::SolverOptions& options) {
             throw CLI::ValidationError(
                 "--method", fmt::format("{} needs all waypoints at once: only 'fit' has it", text));
           },
-          fmt::format("Interpolant: {} (default c2)", core::method_names(true)))
+          fmt::format("Interpolant: {} (default c2)", method_names(true)))
       ->type_name("METHOD");
   add_lambda(verb, options.lambda, nullptr);
   add_time_scale(verb, options.time_scale);
@@ -153,12 +153,12 @@ void add_force_lag(CLI::App& verb, bool& force_lag) {
   verb.add_flag("--force-lag", force_lag, "Smooth also with a settle lag too short for lambda");
 }
 
-void add_condition(CLI::App& verb, const std::string& name, std::optional<core::Condition>& value,
+void add_condition(CLI::App& verb, const std::string& name, std::optional<Condition>& value,
                    const std::string& help) {
   verb.add_option_function<std::string>(
           name,
           [&value, name](const std::string& text) {
-            value = core::parse_condition(text);
+            value = parse_condition(text);
             if (value) return;
             throw CLI::ValidationError(
                 name, fmt::format("'{}' is none of natural, rest, halt, velocity=N,..., "
@@ -169,11 +169,11 @@ void add_condition(CLI::App& verb, const std::string& name, std::optional<core::
       ->type_name("CONDITION");
 }
 
-void add_tail(CLI::App& verb, std::optional<core::Tail>& value) {
+void add_tail(CLI::App& verb, std::optional<Tail>& value) {
   verb.add_option_function<std::string>(
           "--tail",
           [&value](const std::string& text) {
-            value = core::parse_tail(text);
+            value = parse_tail(text);
             if (value) return;
             throw CLI::ValidationError(
                 "--tail", fmt::format("'{}' is none of bessel, parabolic, natural, rest", text));
@@ -198,18 +198,18 @@ void add_settle(CLI::App& verb, std::optional<std::size_t>& value) {
       ->type_name("K");
 }
 
-void add_seconds(CLI::App& verb, const std::string& name, std::optional<core::Time>& value,
+void add_seconds(CLI::App& verb, const std::string& name, std::optional<Time>& value,
                  const std::string& help, const TimeRange& range) {
   add_time(verb, name, value, TimeUnit::seconds, help, range);
 }
 
-void add_seconds(CLI::App& verb, const std::string& name, core::Time& value,
-                 const std::string& help, const TimeRange& range) {
+void add_seconds(CLI::App& verb, const std::string& name, Time& value, const std::string& help,
+                 const TimeRange& range) {
   add_time(verb, name, value, TimeUnit::seconds, help, range);
 }
 
-void add_milliseconds(CLI::App& verb, const std::string& name, core::Time& value,
-                      const std::string& help, const TimeRange& range) {
+void add_milliseconds(CLI::App& verb, const std::string& name, Time& value, const std::string& help,
+                      const TimeRange& range) {
   add_time(verb, name, value, TimeUnit::milliseconds, help, range);
 }
 
@@ -234,15 +234,15 @@ void add_rate(CLI::App& verb, const std::string& name, double& value, const std:
       ->type_name("HZ");
 }
 
-core::Time time_within(const std::string& name, const std::string& text, TimeUnit unit,
-                       const TimeRange& range) {
+Time time_within(const std::string& name, const std::string& text, TimeUnit unit,
+                 const TimeRange& range) {
   const auto time = parse_time(text, unit);
   if (time && *time >= range.least && *time <= range.most) return *time;
   const bool is_seconds = unit == TimeUnit::seconds;
   const double scale = is_seconds ? 1 : 1e3;
   throw CLI::ValidationError(
       name, fmt::format("'{}' is no time from {:.15g} to {:.15g} {}", text,
-                        core::to_seconds(range.least) * scale, core::to_seconds(range.most) * scale,
+                        to_seconds(range.least) * scale, to_seconds(range.most) * scale,
                         is_seconds ? "s" : "ms"));
 }
 
@@ -253,7 +253,7 @@ double number_within(const std::string& name, const std::string& text, const Num
       name, fmt::format("'{}' is no number from {} to {}", text, range.least, range.most));
 }
 
-void add_access(CLI::App& verb, ipc::RegionAccess& access) {
+void add_access(CLI::App& verb, RegionAccess& access) {
   verb.add_option_function<std::string>(
           "--mode",
           [&access](const std::string& text) {
@@ -283,7 +283,7 @@ void add_access(CLI::App& verb, ipc::RegionAccess& access) {
       ->type_name("GROUP");
 }
 
-void add_trust(CLI::App& verb, ipc::Trust& trust) {
+void add_trust(CLI::App& verb, Trust& trust) {
   verb.add_option_function<std::string>(
           "--owner",
           [&trust](const std::string& text) {

@@ -21,13 +21,13 @@
 #include "apps/trials/joint_motion.hpp"
 #include "apps/trials/judgement.hpp"
 #include "apps/trials/recovery.hpp"
-#include "ipc/roles/stream_files.hpp"
+#include "ipc/roles/inspect.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/reader.hpp"
 
 namespace splinecast::apps {
 namespace {
 
-using core::Time;
 using nlohmann::json;
 using std::chrono::milliseconds;
 
@@ -41,7 +41,7 @@ constexpr double kPauses = 0.7;
 json to_json(const WatchReport& report) {
   json by_status = json::object();
   for (std::size_t i = 0; i < report.by_status.size(); ++i) {
-    by_status[std::string(ipc::to_string(static_cast<ipc::SampleStatus>(i)))] = report.by_status[i];
+    by_status[std::string(to_string(static_cast<SampleStatus>(i)))] = report.by_status[i];
   }
   return {{"samples", report.samples},
           {"by_status", by_status},
@@ -57,16 +57,17 @@ json to_json(const WatchReport& report) {
 
 /// Samples as a controller until the stream has ended.
 json run_chaos_reader(const std::string& stream) {
-  ipc::Reader reader = attach_reader(stream, kPatience);
-  CurveWatch watch(reader.sampler(), reader.dimensions());
-  const ipc::MonotonicClock clock;
+  Reader reader = attach_reader(stream, kPatience);
+  CurveWatch watch(ipc::Internals::sampler(reader), reader.dimensions());
+  const MonotonicClock clock;
   ipc::Head head;
   Time due = clock.now();
   while (sleep_until(due)) {
     due = std::max(due + kTick, clock.now() - kTick);
     const Time now = clock.now();
     const auto status = watch.tick(now);
-    if (status == ipc::SampleStatus::holding && reader.head(head) && head.finished) break;
+    if (status == SampleStatus::holding && ipc::Internals::head(reader, head) && head.finished)
+      break;
   }
   return to_json(watch.report());
 }
@@ -81,7 +82,7 @@ class Chaos {
     start_producer();
     for (int r = 0; r < 2; ++r) readers_.emplace_back([&] { return run_chaos_reader(stream_); });
     reader_.emplace(attach_reader(stream_, kPatience));
-    watch_.emplace(reader_->sampler(), reader_->dimensions());
+    watch_.emplace(ipc::Internals::sampler(*reader_), reader_->dimensions());
   }
 
   json run(Time duration, bool quiet) {
@@ -113,14 +114,13 @@ class Chaos {
     producer_.emplace([this] { return run_chaos_producer(stream_, start_); });
   }
   bool happens(double per_second) {
-    return std::uniform_real_distribution<double>(0, 1)(random_) <
-           per_second * core::to_seconds(kTick);
+    return std::uniform_real_distribution<double>(0, 1)(random_) < per_second * to_seconds(kTick);
   }
 
   void tick() {
     const Time now = clock_.now();
     watch_->tick(now);
-    (void)reader_->head(head_);
+    (void)ipc::Internals::head(*reader_, head_);
     if (solver_down_.is_awaited() && head_.revision > revision_then_) solver_down_.end(now);
     if (producer_down_.is_awaited() && head_.consumed > appended_then_) producer_down_.end(now);
     if (resumes_ && now >= *resumes_) {
@@ -134,7 +134,7 @@ class Chaos {
       resumes_ = now + milliseconds(std::uniform_int_distribution<int>(1, 200)(random_));
     } else if (happens(kSolverKills)) {
       solver_.reset();  // SIGKILL
-      (void)reader_->head(head_);
+      (void)ipc::Internals::head(*reader_, head_);
       revision_then_ = head_.revision;
       solver_down_.begin(clock_.now());
       start_solver();
@@ -154,9 +154,9 @@ class Chaos {
                                "pos step", "vel step"));
     }
     print_report(fmt::format(
-        "{:>5.0f} {:>8} {:>7} {:>7} {:>7} {:>8} {:>8} {:>7} {:>9.1e} {:>9.1e}\n",
-        core::to_seconds(since), report.samples, kills(), pauses_, head_.underruns, head_.knots,
-        head_.refused, report.changed, report.position_step, report.velocity_step));
+        "{:>5.0f} {:>8} {:>7} {:>7} {:>7} {:>8} {:>8} {:>7} {:>9.1e} {:>9.1e}\n", to_seconds(since),
+        report.samples, kills(), pauses_, head_.underruns, head_.knots, head_.refused,
+        report.changed, report.position_step, report.velocity_step));
   }
 
   [[nodiscard]] std::size_t kills() const {
@@ -169,18 +169,20 @@ class Chaos {
     if (resumes_) solver_->signal(SIGCONT);
     producer_->stop();
     const json sent = producer_->result();
-    const Time end = ipc::deadline(clock_, kPatience);
-    auto status = ipc::SampleStatus::no_data;
+    const Time end = deadline(clock_, kPatience);
+    auto status = SampleStatus::no_data;
     for (Time due = clock_.now(); clock_.now() < end && sleep_until(due);
          due = clock_.now() + kTick) {
       status = watch_->tick(clock_.now());
-      if (reader_->head(head_) && head_.finished && status == ipc::SampleStatus::holding) break;
+      if (ipc::Internals::head(*reader_, head_) && head_.finished &&
+          status == SampleStatus::holding)
+        break;
     }
     json seen = json::array({to_json(watch_->report())});
     for (Child& reader : readers_) seen.push_back(reader.result());
     solver_->stop();
     solver_->result();
-    (void)reader_->head(head_);
+    (void)ipc::Internals::head(*reader_, head_);
     const ipc::StreamInfo info = ipc::inspect(stream_);
     const ipc::Word lost =
         info.appended - (head_.knots + head_.refused + head_.withdrawn + head_.controls);
@@ -207,13 +209,13 @@ class Chaos {
   }
 
   std::string stream_;
-  ipc::MonotonicClock clock_;
+  MonotonicClock clock_;
   Time start_;
   std::mt19937_64 random_;
   std::optional<Child> solver_;
   std::optional<Child> producer_;
   std::vector<Child> readers_;
-  std::optional<ipc::Reader> reader_;
+  std::optional<Reader> reader_;
   std::optional<CurveWatch> watch_;
   ipc::Head head_;
   Recovery solver_down_;

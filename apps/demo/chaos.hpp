@@ -13,7 +13,7 @@ namespace splinecast::apps {
 /// unless `quiet`. Returns what was done, what was found and how long each took to recover;
 /// `sound` is whether nothing stepped, changed or was lost; null, and `judged` false, if a stop was
 /// requested before that was known. Throws Interrupted if it came before there is anything to tell.
-nlohmann::json run_chaos(const std::string& stream, core::Time duration, bool quiet);
+nlohmann::json run_chaos(const std::string& stream, Time duration, bool quiet);
 
 /// What it found, for a person to read.
 [[nodiscard]] std::string chaos_summary(const nlohmann::json& found);

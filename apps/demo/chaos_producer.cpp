@@ -18,7 +18,6 @@
 namespace splinecast::apps {
 namespace {
 
-using core::Time;
 using std::chrono::milliseconds;
 
 constexpr Time kTick = milliseconds(1);
@@ -55,8 +54,7 @@ class ChaosProducer {
 
  private:
   bool happens(double per_second) {
-    return std::uniform_real_distribution<double>(0, 1)(random_) <
-           per_second * core::to_seconds(kTick);
+    return std::uniform_real_distribution<double>(0, 1)(random_) < per_second * to_seconds(kTick);
   }
   Time between(int low, int high) {
     return milliseconds(std::uniform_int_distribution<int>(low, high)(random_));
@@ -87,7 +85,7 @@ class ChaosProducer {
   }
 
   void send(Time t, const std::vector<double>& x) {
-    if (producer_.append({.time = t, .position = x}) == ipc::AppendStatus::accepted) ++sent_;
+    if (producer_.append({.time = t, .position = x}) == AppendStatus::accepted) ++sent_;
   }
 
   /// Other waypoints of the same motion from soon on, or none: a halt.
@@ -95,7 +93,7 @@ class ChaosProducer {
     const Time t = std::max(now, producer_.earliest()) + between(5, 100);
     const auto count = std::uniform_int_distribution<std::size_t>(0, 20)(random_);
     std::vector<std::vector<double>> positions;
-    std::vector<core::Waypoint> waypoints;
+    std::vector<Waypoint> waypoints;
     for (std::size_t i = 1; i <= count; ++i) {
       positions.push_back(motion_.at(t + kInterval * static_cast<int>(i)));
     }
@@ -103,7 +101,7 @@ class ChaosProducer {
       waypoints.push_back(
           {.time = t + kInterval * static_cast<int>(i), .position = positions[i - 1]});
     }
-    if (producer_.replace_from(t, waypoints) != ipc::AppendStatus::accepted) return;
+    if (producer_.replace_from(t, waypoints) != AppendStatus::accepted) return;
     ++replaced_;
     sent_ += count;
     lead_ = kCatchUp;
@@ -115,22 +113,22 @@ class ChaosProducer {
     core::Segment stop(JointMotion::kJoints);
     core::build_stop(next_, kStop, motion_.at(next_), motion_.at(next_, 1), motion_.at(next_, 2),
                      stop);
-    core::State state(JointMotion::kJoints);
+    State state(JointMotion::kJoints);
     for (Time t = next_; t <= next_ + kStop; t += kInterval) {
-      core::evaluate(stop.order, stop.coefficients, core::to_seconds(t - next_), state.ref());
+      core::evaluate(stop.order, stop.coefficients, to_seconds(t - next_), state.ref());
       send(t, {state.position().begin(), state.position().end()});
     }
     constexpr Time kPatience = std::chrono::seconds(10);
-    const core::Condition halt{.kind = core::ConditionKind::halt, .value = {}};
-    while (producer_.finish(halt) == ipc::AppendStatus::full) {
+    const Condition halt{.kind = ConditionKind::halt, .value = {}};
+    while (producer_.finish(halt) == AppendStatus::full) {
       if (!producer_.wait_for_room(kPatience)) return;
     }
     (void)producer_.wait_until_consumed(kPatience);  // the summary tells what was not
   }
 
   JointMotion motion_;
-  ipc::MonotonicClock clock_;
-  ipc::Producer producer_;
+  MonotonicClock clock_;
+  Producer producer_;
   std::mt19937_64 random_;
   Time next_;
   Time lead_ = kLead;

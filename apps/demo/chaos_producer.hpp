@@ -11,6 +11,6 @@ namespace splinecast::apps {
 /// instant: sends a joint motion at 100 Hz until a stop is requested, then brings it to rest and
 /// finishes. One that comes after another has been killed goes on with the same motion, which
 /// starts at `start`. Returns what it has done.
-nlohmann::json run_chaos_producer(const std::string& stream, core::Time start);
+nlohmann::json run_chaos_producer(const std::string& stream, Time start);
 
 }  // namespace splinecast::apps

@@ -9,20 +9,22 @@
 #include "apps/process/signals.hpp"
 #include "apps/streams/attach.hpp"
 #include "core/polynomial/segment.hpp"
+#include "ipc/roles/internals.hpp"
+#include "ipc/sampling/snapshot.hpp"
 #include "splinecast/reader.hpp"
 
 namespace splinecast::apps {
 namespace {
 
-constexpr core::Time kPeriod = std::chrono::milliseconds(1);
-constexpr core::Time kWait = std::chrono::seconds(15);
+constexpr Time kPeriod = std::chrono::milliseconds(1);
+constexpr Time kWait = std::chrono::seconds(15);
 /// How long after the last waypoint a reader goes on: long enough to see it hold.
-constexpr core::Time kAfterEnd = std::chrono::milliseconds(100);
+constexpr Time kAfterEnd = std::chrono::milliseconds(100);
 
 /// Largest differences in position, velocity and acceleration.
 class LargestStep {
  public:
-  void compare(const core::State& a, const core::State& b) {
+  void compare(const State& a, const State& b) {
     const std::size_t dimensions = a.dimensions();
     for (std::size_t i = 0; i < largest_.size() * dimensions; ++i) {
       double& most = largest_[i / dimensions];
@@ -54,7 +56,7 @@ class DemoReader {
         right_(reader_.dimensions()) {}
 
   nlohmann::json run() {
-    core::Time due = clock_.now();
+    Time due = clock_.now();
     while (!has_ended() && sleep_until(due)) {
       tick();
       due += kPeriod;
@@ -69,24 +71,24 @@ class DemoReader {
 
  private:
   void tick() {
-    const core::Time t = clock_.now();
+    const Time t = clock_.now();
     const auto status = reader_.sample(t, now_);
     costs_.push_back(static_cast<double>((clock_.now() - t).count()));
     ++samples_;
     ++by_status_[static_cast<std::size_t>(status)];
-    if (reader_.head(head_) && !head_.finished) {
-      ages_.push_back(core::to_seconds(t - head_.committed) * 1e3);
+    if (ipc::Internals::head(reader_, head_) && !head_.finished) {
+      ages_.push_back(to_seconds(t - head_.committed) * 1e3);
     }
-    if (ipc::has_values(status)) check(t);
+    if (has_values(status)) check(t);
   }
 
   /// The knots passed since the tick before, and the curve now at that tick against what was read
   /// then.
-  void check(core::Time t) {
+  void check(Time t) {
     if (has_before_) {
-      if (ipc::has_values(reader_.sample(before_time_, left_)))
-        of_the_past_.compare(left_, before_);
-      if (ipc::has_values(reader_.snapshot(before_time_, t, snapshot_))) check_knots();
+      if (has_values(reader_.sample(before_time_, left_))) of_the_past_.compare(left_, before_);
+      if (has_values(ipc::Internals::sampler(reader_).snapshot(before_time_, t, snapshot_)))
+        check_knots();
     }
     std::swap(now_, before_);
     before_time_ = t;
@@ -98,15 +100,15 @@ class DemoReader {
     for (std::size_t i = 1; i < segments.size(); ++i) {
       const ipc::SegmentCopy& a = segments[i - 1];
       const ipc::SegmentCopy& b = segments[i];
-      evaluate(a, core::to_seconds(a.right - a.left), left_);
+      evaluate(a, to_seconds(a.right - a.left), left_);
       evaluate(b, 0, right_);
       at_knots_.compare(left_, right_);
     }
   }
 
   /// A wrapping position is left as it is: read, it steps by a period where it goes round.
-  void evaluate(const ipc::SegmentCopy& segment, double u, core::State& out) const {
-    const core::StateRef ref = out.ref();
+  void evaluate(const ipc::SegmentCopy& segment, double u, State& out) const {
+    const StateRef ref = out.ref();
     core::evaluate(segment.order, segment.coefficients, u, ref);
     kinds_.normalise_quaternions(ref.position, ref.velocity, ref.acceleration);
   }
@@ -115,16 +117,16 @@ class DemoReader {
     return head_.finished && clock_.now() > head_.newest_knot + kAfterEnd;
   }
 
-  ipc::MonotonicClock clock_;
-  ipc::Reader reader_;
-  core::DimensionKinds kinds_;
+  MonotonicClock clock_;
+  Reader reader_;
+  DimensionKinds kinds_;
   ipc::Head head_;
-  ipc::Snapshot snapshot_;
-  core::State now_, before_, left_, right_;
-  core::Time before_time_{};
+  ipc::BoardSnapshot snapshot_;
+  State now_, before_, left_, right_;
+  Time before_time_{};
   bool has_before_ = false;
   std::size_t samples_ = 0;
-  std::array<std::size_t, ipc::kSampleStatuses> by_status_{};
+  std::array<std::size_t, kSampleStatuses> by_status_{};
   LargestStep at_knots_;
   LargestStep of_the_past_;
   std::vector<double> ages_;

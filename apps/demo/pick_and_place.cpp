@@ -22,9 +22,9 @@ constexpr std::array<Pose, 6> kPoses{{
     {-0.90, -0.20, -0.15, -1.90, -0.10, 1.70, -0.40},
 }};
 
-constexpr core::Time kCycle = std::chrono::milliseconds(10);
-constexpr core::Time kMove = std::chrono::milliseconds(900);
-constexpr core::Time kDwell = std::chrono::milliseconds(150);
+constexpr Time kCycle = std::chrono::milliseconds(10);
+constexpr Time kMove = std::chrono::milliseconds(900);
+constexpr Time kDwell = std::chrono::milliseconds(150);
 constexpr std::int64_t kJitter = 2'000'000;  // ns
 
 /// How far a minimum-jerk move has come after the fraction s of its time.
@@ -44,12 +44,12 @@ class Random {
   std::uint64_t state_ = 7;
 };
 
-Pose pose_at(core::Time t) {
-  const core::Time cycle = kMove + kDwell;
+Pose pose_at(Time t) {
+  const Time cycle = kMove + kDwell;
   const auto move = static_cast<std::size_t>(t / cycle);
   const Pose& from = kPoses[move % kPoses.size()];
   const Pose& to = kPoses[(move + 1) % kPoses.size()];
-  const double fraction = std::min(1.0, core::to_seconds(t % cycle) / core::to_seconds(kMove));
+  const double fraction = std::min(1.0, to_seconds(t % cycle) / to_seconds(kMove));
   Pose pose{};
   for (std::size_t j = 0; j < kJoints; ++j) {
     pose[j] = from[j] + (to[j] - from[j]) * minimum_jerk(fraction);
@@ -59,15 +59,15 @@ Pose pose_at(core::Time t) {
 
 }  // namespace
 
-WaypointTable pick_and_place(core::Time duration) {
+WaypointTable pick_and_place(Time duration) {
   WaypointTable table;
   table.file = "pick-and-place";
   for (std::size_t j = 0; j < kJoints; ++j) table.names.push_back("joint" + std::to_string(j + 1));
   Random random;
   std::size_t row = 1;
-  for (core::Time due{}; due <= duration; due += kCycle) {
-    const bool is_end = due == core::Time::zero() || due + kCycle > duration;
-    const core::Time t = is_end ? due : due + core::Time(random.next(kJitter));
+  for (Time due{}; due <= duration; due += kCycle) {
+    const bool is_end = due == Time::zero() || due + kCycle > duration;
+    const Time t = is_end ? due : due + Time(random.next(kJitter));
     const Pose pose = pose_at(t);
     table.times.push_back(t);
     table.lines.push_back(++row);

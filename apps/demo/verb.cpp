@@ -27,16 +27,16 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kReaders = 2;
-constexpr core::Time kDefaultLength = std::chrono::seconds(10);
+constexpr Time kDefaultLength = std::chrono::seconds(10);
 // Its waypoints, and what readers note, are kept in memory.
-constexpr core::Time kShortest = std::chrono::milliseconds(100);
-constexpr core::Time kLongest = std::chrono::hours(1);
-constexpr core::Time kLongestChaos = std::chrono::hours(24);
+constexpr Time kShortest = std::chrono::milliseconds(100);
+constexpr Time kLongest = std::chrono::hours(1);
+constexpr Time kLongestChaos = std::chrono::hours(24);
 
 struct DemoOptions {
   std::string file;
   TableOptions table;
-  std::optional<core::Time> seconds;
+  std::optional<Time> seconds;
   bool chaos = false;
   bool json = false;
 };
@@ -84,7 +84,7 @@ std::string counts_by_status(const json& by_status) {
     const auto count = by_status[i].get<std::size_t>();
     if (count == 0) continue;
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count,
-                        ipc::to_string(static_cast<ipc::SampleStatus>(i)));
+                        to_string(static_cast<SampleStatus>(i)));
   }
   return text;
 }
@@ -184,7 +184,7 @@ void add_demo(CLI::App& program, Action& action) {
     if (options->seconds && *options->seconds > kLongest && !options->chaos) {
       throw CLI::ValidationError(
           "--seconds", fmt::format("'{}' is no time from 0.1 to 3600 s, the most without --chaos",
-                                   core::to_seconds(*options->seconds)));
+                                   to_seconds(*options->seconds)));
     }
     action = [options] { return run_demo(*options); };
   });

@@ -103,11 +103,11 @@ void ColumnRoles::find_values(const std::vector<std::string>& selected, Lines re
 }
 
 void ColumnRoles::add_position(std::size_t c) {
-  if (roles_.positions.size() == core::kMaxDimensions) {
+  if (roles_.positions.size() == kMaxDimensions) {
     throw InputError(fmt::format(
         "{}: column {}, '{}', would be the position of dimension {}; at most {} dimensions are "
         "possible: select some with --columns",
-        file_, c + 1, format_.names[c], core::kMaxDimensions + 1, core::kMaxDimensions));
+        file_, c + 1, format_.names[c], kMaxDimensions + 1, kMaxDimensions));
   }
   roles_.positions.push_back(c);
 }
@@ -150,7 +150,7 @@ ColumnRoles::Columns ColumnRoles::position_columns(bool is_selected, const Lines
     }
     if (!is_selected) require_usable(c);
     columns.push_back(c);
-    if (!is_selected && columns.size() > core::kMaxDimensions) break;
+    if (!is_selected && columns.size() > kMaxDimensions) break;
   }
   return columns;
 }
@@ -187,7 +187,7 @@ void ColumnRoles::require_usable(std::size_t c) const {
     if (!has_bad_index(name, letter)) continue;
     throw InputError(fmt::format("{}: column {}, '{}', is no {}: {}[i] has an index i of 0 to {}",
                                  file_, c + 1, name, letter == "v" ? "velocity" : "acceleration",
-                                 letter, core::kMaxDimensions - 1));
+                                 letter, kMaxDimensions - 1));
   }
 }
 

@@ -14,10 +14,6 @@
 namespace splinecast::apps {
 namespace {
 
-using core::Dimension;
-using core::DimensionKind;
-using core::kQuaternionSize;
-
 constexpr std::string_view kWLast = "xyzw";
 constexpr std::string_view kWFirst = "wxyz";
 
@@ -123,8 +119,8 @@ class KindList {
   }
 
   [[noreturn]] void fail(const KindOption& option, const std::string& why) const {
-    throw InputError(fmt::format("{}: --kind {}:{}: {}", file_, option.dimension,
-                                 core::to_string(option.kind), why));
+    throw InputError(
+        fmt::format("{}: --kind {}:{}: {}", file_, option.dimension, to_string(option.kind), why));
   }
 
   const std::string& file_;
@@ -138,7 +134,7 @@ std::optional<KindOption> parse_kind_option(const std::string& text) {
   // A name may have colons of its own, and so has the kind `wrap:PERIOD`.
   for (std::size_t colon = text.find(':'); colon != std::string::npos;
        colon = text.find(':', colon + 1)) {
-    const auto kind = core::parse_dimension(std::string_view(text).substr(colon + 1));
+    const auto kind = parse_dimension(std::string_view(text).substr(colon + 1));
     if (kind && colon > 0) return KindOption{.dimension = text.substr(0, colon), .kind = *kind};
   }
   return std::nullopt;
@@ -151,12 +147,12 @@ std::vector<Dimension> resolve_kinds(const std::string& file, const ColumnNames&
   return list.filled();
 }
 
-std::optional<std::string> zero_quaternion(const WaypointTable& table,
-                                           const core::DimensionKinds& kinds, std::size_t i) {
+std::optional<std::string> zero_quaternion(const WaypointTable& table, const DimensionKinds& kinds,
+                                           std::size_t i) {
   const auto position = table.waypoint(i).position;
   if (kinds.takes(position)) return std::nullopt;
-  for (const core::QuaternionDimensions& quaternion : kinds.quaternions()) {
-    if (core::DimensionKinds::takes(position, quaternion)) continue;
+  for (const QuaternionDimensions& quaternion : kinds.quaternions()) {
+    if (DimensionKinds::takes(position, quaternion)) continue;
     const std::size_t first = quaternion.first;
     const auto four = position.subspan(first, kQuaternionSize);
     const bool is_zero = std::ranges::all_of(four, [](double value) { return value == 0; });
@@ -168,7 +164,7 @@ std::optional<std::string> zero_quaternion(const WaypointTable& table,
 }
 
 void continue_waypoints(WaypointTable& table) {
-  const core::DimensionKinds kinds(table.kinds);
+  const DimensionKinds kinds(table.kinds);
   if (kinds.all_linear()) return;
   const std::size_t dimensions = table.dimensions();
   const auto row = [&](std::vector<double>& values, std::size_t i) {
@@ -180,9 +176,9 @@ void continue_waypoints(WaypointTable& table) {
     if (const auto bad = zero_quaternion(table, kinds, i)) {
       throw InputError(fmt::format("{}: {}", table.where(i), *bad));
     }
-    const core::WaypointValues values{.position = row(table.positions, i),
-                                      .velocity = row(table.velocities, i),
-                                      .acceleration = row(table.accelerations, i)};
+    const WaypointValues values{.position = row(table.positions, i),
+                                .velocity = row(table.velocities, i),
+                                .acceleration = row(table.accelerations, i)};
     kinds.continue_from(previous, values);
     previous = values.position;
   }

@@ -23,18 +23,18 @@ struct ColumnNames {
 /// from the last letters of its columns' names; if they say nothing, last. Throws InputError,
 /// naming the file and the option, for a dimension that there is not, two kinds for one, or too few
 /// dimensions.
-[[nodiscard]] std::vector<core::Dimension> resolve_kinds(const std::string& file,
-                                                         const ColumnNames& columns,
-                                                         const std::vector<KindOption>& asked);
+[[nodiscard]] std::vector<Dimension> resolve_kinds(const std::string& file,
+                                                   const ColumnNames& columns,
+                                                   const std::vector<KindOption>& asked);
 
 /// What is wrong with the quaternions of row i, naming its columns; nothing if a rotation can be
 /// made of each.
 [[nodiscard]] std::optional<std::string> zero_quaternion(const WaypointTable& table,
-                                                         const core::DimensionKinds& kinds,
+                                                         const DimensionKinds& kinds,
                                                          std::size_t i);
 
 /// Moves each waypoint to the representative nearest to the one before, as a solver does with what
-/// it is sent: see core::DimensionKinds::continue_from. Values must be usable. Throws InputError
+/// it is sent: see DimensionKinds::continue_from. Values must be usable. Throws InputError
 /// naming the line of a quaternion of length 0.
 void continue_waypoints(WaypointTable& table);
 

@@ -49,7 +49,7 @@ std::optional<std::int64_t> rounded(const Decimal& decimal) noexcept {
 }
 
 /// The usual text of a time, digits only, in one pass. Nothing for any other: it may still be one.
-std::optional<core::Time> parse_whole_time(std::string_view text, TimeUnit unit) noexcept {
+std::optional<Time> parse_whole_time(std::string_view text, TimeUnit unit) noexcept {
   constexpr std::size_t kSafeDigits = 18;
   if (text.empty() || text.size() > kSafeDigits) return std::nullopt;
   std::int64_t value = 0;
@@ -60,7 +60,7 @@ std::optional<core::Time> parse_whole_time(std::string_view text, TimeUnit unit)
   for (int power = static_cast<int>(unit); power > 0; --power) {
     if (!push_digit(value, 0)) return std::nullopt;
   }
-  return core::Time(value);
+  return Time(value);
 }
 
 std::string_view take_digits(std::string_view& text) noexcept {
@@ -115,7 +115,7 @@ std::optional<TimeUnit> parse_time_unit(std::string_view text) noexcept {
   return std::nullopt;
 }
 
-std::optional<core::Time> parse_time(std::string_view text, TimeUnit unit) noexcept {
+std::optional<Time> parse_time(std::string_view text, TimeUnit unit) noexcept {
   text = trimmed(text);
   if (const auto whole = parse_whole_time(text, unit)) return whole;
   auto decimal = take_apart(text);
@@ -123,7 +123,7 @@ std::optional<core::Time> parse_time(std::string_view text, TimeUnit unit) noexc
   decimal->exponent += static_cast<int>(unit);
   const auto value = rounded(*decimal);
   if (!value) return std::nullopt;
-  return core::Time(decimal->negative ? -*value : *value);
+  return Time(decimal->negative ? -*value : *value);
 }
 
 std::optional<double> parse_number(std::string_view text) noexcept {

@@ -17,7 +17,7 @@ enum class TimeUnit : int { nanoseconds = 0, microseconds = 3, milliseconds = 6,
 /// Reads a decimal number of `unit`s as nanoseconds, exactly: `1403636579.763555584` seconds lose
 /// nothing. Digits beyond the nanosecond round to the nearest one, halves away from 0. Nothing for
 /// any other text or a time that 64 bits cannot hold.
-[[nodiscard]] std::optional<core::Time> parse_time(std::string_view text, TimeUnit unit) noexcept;
+[[nodiscard]] std::optional<Time> parse_time(std::string_view text, TimeUnit unit) noexcept;
 
 /// Reads a number, `nan` and `inf` included; nothing for any other text. Accepts a leading plus.
 /// What a double cannot hold becomes 0 or infinite.

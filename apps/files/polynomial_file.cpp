@@ -58,7 +58,7 @@ Format read_header(const TextFile& file, const Line& line) {
     const std::size_t caret = field.find('^');
     const auto power =
         caret == std::string_view::npos ? std::nullopt : parse_count(field.substr(caret + 1));
-    if (!power || *power >= static_cast<std::size_t>(core::kMaxPolynomialOrder)) {
+    if (!power || *power >= static_cast<std::size_t>(kMaxPolynomialOrder)) {
       fail(file, line, fmt::format("column '{}' names no power, as x^0 does", field));
     }
     const std::string name(field.substr(0, caret));
@@ -73,25 +73,25 @@ Format read_header(const TextFile& file, const Line& line) {
     format.columns.push_back(column);
     format.order = std::max<std::size_t>(format.order, *power + 1);
   }
-  if (format.names.empty() || format.names.size() > core::kMaxDimensions) {
+  if (format.names.empty() || format.names.size() > kMaxDimensions) {
     fail(file, line, fmt::format("{} dimensions; 1 to 64 can be read", format.names.size()));
   }
   return format;
 }
 
 /// Of a piece, and of all together.
-constexpr core::Time kLongestPiece = std::chrono::hours(24 * 366);
+constexpr Time kLongestPiece = std::chrono::hours(24 * 366);
 
-core::Time duration_of(const TextFile& file, const Line& line, std::string_view field) {
+Time duration_of(const TextFile& file, const Line& line, std::string_view field) {
   const auto duration = parse_time(without_blanks(field), TimeUnit::seconds);
-  if (!duration || *duration <= core::Time::zero() || *duration > kLongestPiece) {
+  if (!duration || *duration <= Time::zero() || *duration > kLongestPiece) {
     fail(file, line, fmt::format("'{}' is no duration of up to a year", without_blanks(field)));
   }
   return *duration;
 }
 
 void append_piece(const TextFile& file, const Line& line, const Format& format,
-                  core::PiecewisePolynomial& curve) {
+                  PiecewisePolynomial& curve) {
   const auto fields = fields_of(line);
   if (fields.size() != format.columns.size() + 1) {
     fail(file, line,
@@ -101,7 +101,7 @@ void append_piece(const TextFile& file, const Line& line, const Format& format,
   for (std::size_t i = 0; i < format.columns.size(); ++i) {
     const auto value = parse_number(without_blanks(fields[i + 1]));
     const Column& column = format.columns[i];
-    if (!value || !core::is_usable(*value)) {
+    if (!value || !is_usable(*value)) {
       fail(
           file, line,
           fmt::format("column '{}^{}': '{}' is no number within 1e100",
@@ -109,8 +109,8 @@ void append_piece(const TextFile& file, const Line& line, const Format& format,
     }
     coefficients[column.power * format.names.size() + column.dimension] = *value;
   }
-  const core::Time left = curve.segments() == 0 ? core::Time::zero() : curve.breaks().back();
-  const core::Time right = left + duration_of(file, line, fields[0]);
+  const Time left = curve.segments() == 0 ? Time::zero() : curve.breaks().back();
+  const Time right = left + duration_of(file, line, fields[0]);
   if (right > kLongestPiece) fail(file, line, "the trajectory lasts longer than a year");
   curve.append(left, right, static_cast<int>(format.order), coefficients);
 }
@@ -123,8 +123,7 @@ PolynomialFile read_polynomials(const std::string& path) {
   Line line;
   if (!lines.next_data(line)) throw InputError(fmt::format("{}: there is no header", file.name()));
   const Format format = read_header(file, line);
-  PolynomialFile result{.names = format.names,
-                        .curve = core::PiecewisePolynomial(format.names.size())};
+  PolynomialFile result{.names = format.names, .curve = PiecewisePolynomial(format.names.size())};
   while (lines.next_data(line)) append_piece(file, line, format, result.curve);
   if (result.curve.segments() == 0) {
     throw InputError(fmt::format("{}: there are no rows", file.name()));

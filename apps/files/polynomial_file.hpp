@@ -10,7 +10,7 @@ namespace splinecast::apps {
 /// A trajectory given as polynomials.
 struct PolynomialFile {
   std::vector<std::string> names;  ///< of its dimensions
-  core::PiecewisePolynomial curve{1};
+  PiecewisePolynomial curve{1};
 };
 
 /// Reads a file of polynomials as quadrotor planners write them: CSV with a header

@@ -36,7 +36,7 @@ class TableReader {
   }
 
   /// The kinds of the position columns.
-  [[nodiscard]] std::vector<core::Dimension> kinds(const std::vector<KindOption>& asked) const {
+  [[nodiscard]] std::vector<Dimension> kinds(const std::vector<KindOption>& asked) const {
     std::vector<std::string> aliases;
     for (const std::size_t field : roles().positions) {
       if (!format_.aliases.empty()) aliases.push_back(format_.aliases[field]);
@@ -76,10 +76,10 @@ class TableReader {
     return file_.text().size() / (length + 1) + file_.text().size() / 16 / (length + 1) + 1;
   }
 
-  [[nodiscard]] core::Time time(const std::vector<std::string_view>& fields) const {
+  [[nodiscard]] Time time(const std::vector<std::string_view>& fields) const {
     const auto time = parse_time(fields[roles().time], roles().unit);
     if (!time) fail(fields[roles().time], roles().time, "is not a time");
-    if (!core::is_time_in_range(*time)) {
+    if (!is_time_in_range(*time)) {
       fail(fields[roles().time], roles().time, "lies beyond ±(2^62 − 1) ns, about 146 years");
     }
     return *time;
@@ -115,7 +115,7 @@ void append_numbers(const TableReader& reader, const std::vector<std::string_vie
 void append_row(const TableReader& reader, const std::vector<std::string_view>& fields,
                 WaypointTable& table) {
   reader.require_width(fields);
-  const core::Time time = reader.time(fields);
+  const Time time = reader.time(fields);
   const Roles& roles = reader.roles();
   append_numbers(reader, fields, roles.positions, table.positions);
   append_numbers(reader, fields, roles.velocities, table.velocities);
@@ -152,7 +152,7 @@ std::span<const double> row_of(const std::vector<double>& values, std::size_t i,
 
 }  // namespace
 
-core::Waypoint WaypointTable::waypoint(std::size_t i) const noexcept {
+Waypoint WaypointTable::waypoint(std::size_t i) const noexcept {
   return {.time = times[i],
           .position = row_of(positions, i, dimensions()),
           .velocity = row_of(velocities, i, dimensions()),
@@ -206,9 +206,9 @@ WaypointTable read_waypoints(const std::string& path, const TableOptions& option
   return table;
 }
 
-std::vector<core::Time> read_times(const std::string& path, std::optional<TimeUnit> time_unit) {
+std::vector<Time> read_times(const std::string& path, std::optional<TimeUnit> time_unit) {
   TableReader reader(path, time_unit);
-  std::vector<core::Time> times;
+  std::vector<Time> times;
   std::vector<std::string_view> fields;
   while (reader.next(fields)) {
     reader.require_width(fields);
@@ -222,7 +222,7 @@ void require_spline_input(const WaypointTable& table) {
   for (std::size_t i = 0; i < table.size(); ++i) {
     for (std::size_t d = 0; d < dimensions; ++d) {
       const double value = table.positions[i * dimensions + d];
-      if (core::is_usable(value)) continue;
+      if (is_usable(value)) continue;
       throw InputError(fmt::format("{}: column '{}': {} is not finite, or beyond 1e100",
                                    table.where(i), table.names[d], value));
     }

@@ -19,7 +19,7 @@ namespace splinecast::apps {
 /// first.
 struct KindOption {
   std::string dimension;
-  core::Dimension kind{};
+  Dimension kind{};
 };
 
 /// How a waypoint file is to be read.
@@ -36,9 +36,9 @@ struct TableOptions {
 class WaypointTable {
  public:
   std::string file;
-  std::vector<std::string> names;      ///< of the position columns
-  std::vector<core::Dimension> kinds;  ///< of these; none: all linear
-  std::vector<core::Time> times;
+  std::vector<std::string> names;  ///< of the position columns
+  std::vector<Dimension> kinds;    ///< of these; none: all linear
+  std::vector<Time> times;
   std::vector<std::size_t> lines;     ///< line of each waypoint in the file, from 1
   std::vector<double> positions;      ///< [waypoint][dimension]
   std::vector<double> velocities;     ///< likewise, or empty if the file gives none
@@ -46,10 +46,10 @@ class WaypointTable {
 
   [[nodiscard]] std::size_t dimensions() const noexcept { return names.size(); }
   [[nodiscard]] std::size_t size() const noexcept { return times.size(); }
-  [[nodiscard]] core::Waypoint waypoint(std::size_t i) const noexcept;
+  [[nodiscard]] Waypoint waypoint(std::size_t i) const noexcept;
 
   /// A view of all of them.
-  [[nodiscard]] core::Waypoints waypoints() const noexcept {
+  [[nodiscard]] Waypoints waypoints() const noexcept {
     return {.dimensions = dimensions(),
             .times = times,
             .positions = positions,
@@ -71,8 +71,8 @@ class WaypointTable {
 [[nodiscard]] WaypointTable read_waypoints(const std::string& path, const TableOptions& options);
 
 /// Reads only the time column of such a file. Throws likewise.
-[[nodiscard]] std::vector<core::Time> read_times(const std::string& path,
-                                                 std::optional<TimeUnit> time_unit);
+[[nodiscard]] std::vector<Time> read_times(const std::string& path,
+                                           std::optional<TimeUnit> time_unit);
 
 /// Throws InputError naming the line of the first waypoint that no spline can take: not finite, or
 /// not after the one before.

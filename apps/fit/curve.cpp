@@ -14,21 +14,21 @@
 namespace splinecast::apps {
 namespace {
 
-constexpr core::ConditionKind kOwn = core::ConditionKind::own;
+constexpr ConditionKind kOwn = ConditionKind::own;
 
-core::Condition or_own(const std::optional<core::Condition>& condition) {
-  return condition.value_or(core::Condition{.kind = kOwn, .value = {}});
+Condition or_own(const std::optional<Condition>& condition) {
+  return condition.value_or(Condition{.kind = kOwn, .value = {}});
 }
 
 /// Throws InputError where a derivative is needed that the file does not give, or not as a number.
-void require_derivatives(const WaypointTable& table, const core::Method& method) {
+void require_derivatives(const WaypointTable& table, const Method& method) {
   const auto require = [&](bool needed, const std::vector<double>& values, char letter) {
     if (!needed) return;
     if (values.empty()) {
       throw InputError(fmt::format("{}: method {} needs columns {}[0] to {}[{}]", table.file,
                                    method.name, letter, letter, table.dimensions() - 1));
     }
-    const auto bad = std::ranges::find_if_not(values, core::is_usable);
+    const auto bad = std::ranges::find_if_not(values, is_usable);
     if (bad == values.end()) return;
     const auto at = static_cast<std::size_t>(bad - values.begin());
     throw InputError(fmt::format("{}: column '{}[{}]': {} is not finite, or beyond 1e100",
@@ -39,19 +39,19 @@ void require_derivatives(const WaypointTable& table, const core::Method& method)
   require(method.needs_acceleration(), table.accelerations, 'a');
 }
 
-double chosen_lambda(const core::Waypoints& waypoints, const CurveOptions& options) {
+double chosen_lambda(const Waypoints& waypoints, const CurveOptions& options) {
   if (options.lambda) return *options.lambda;
   if (options.online) {
     throw std::invalid_argument("method smoothing needs a --lambda: online it cannot be chosen");
   }
-  const double lambda = core::cross_validated_lambda(waypoints);
+  const double lambda = cross_validated_lambda(waypoints);
   say(fmt::format("lambda {} chosen by cross-validation", lambda));
   return lambda;
 }
 
 [[noreturn]] void throw_lag_too_short(const WaypointTable& table, std::size_t i,
                                       const core::WindowOptions& how) {
-  const double ahead = core::to_seconds(table.times[i] - table.times[i - how.settle]);
+  const double ahead = to_seconds(table.times[i] - table.times[i - how.settle]);
   const double mean = ahead / static_cast<double>(how.settle);
   throw InputError(fmt::format(
       "{}: settle lag {} is too short for lambda {} with waypoints {:.3g} s apart: {} or more are "
@@ -63,20 +63,20 @@ double chosen_lambda(const core::Waypoints& waypoints, const CurveOptions& optio
 
 /// Feeds the waypoints through the sliding window, as the solver does, and keeps each segment as it
 /// settles.
-core::PiecewisePolynomial fit_online(const WaypointTable& table, const core::WindowOptions& how,
-                                     const core::Condition& end) {
+PiecewisePolynomial fit_online(const WaypointTable& table, const core::WindowOptions& how,
+                               const Condition& end) {
   core::SlidingWindow window(table.dimensions(), how);
-  core::require_values(end, table.dimensions());
-  if (!core::is_online(end.kind)) {
-    throw std::invalid_argument("condition '" + core::to_string(end) +
+  require_values(end, table.dimensions());
+  if (!is_online(end.kind)) {
+    throw std::invalid_argument("condition '" + to_string(end) +
                                 "' needs all waypoints at once: it cannot be met online");
   }
-  core::PiecewisePolynomial curve(table.dimensions());
+  PiecewisePolynomial curve(table.dimensions());
   core::Segment segment(table.dimensions());
   const auto take_settled = [&] {
     while (curve.segments() < window.settled_segments()) {
       window.segment(curve.segments(), segment);
-      curve.append(segment);
+      core::append(segment, curve);
     }
   };
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -91,25 +91,24 @@ core::PiecewisePolynomial fit_online(const WaypointTable& table, const core::Win
 
 }  // namespace
 
-core::PiecewisePolynomial fit_table(const WaypointTable& table, const core::Method& method,
-                                    const CurveOptions& options) {
+PiecewisePolynomial fit_table(const WaypointTable& table, const Method& method,
+                              const CurveOptions& options) {
   require_derivatives(table, method);
-  core::DimensionKinds(table.kinds).require_end(or_own(options.end));
-  const core::Waypoints waypoints = table.waypoints();
-  core::Interpolant how{.method = &method, .lambda = 0, .time_scale = 1};
-  if (method.family == core::Family::smoothing) how.lambda = chosen_lambda(waypoints, options);
+  DimensionKinds(table.kinds).require_end(or_own(options.end));
+  const Waypoints waypoints = table.waypoints();
+  Interpolant how{.method = &method, .lambda = 0, .time_scale = 1};
+  if (method.family == Family::smoothing) how.lambda = chosen_lambda(waypoints, options);
   how.time_scale = options.time_scale.value_or(how.time_scale);
   if (!options.online) {
-    return core::fit(
-        waypoints,
-        {.interpolant = how, .start = or_own(options.start), .end = or_own(options.end)});
+    return fit(waypoints,
+               {.interpolant = how, .start = or_own(options.start), .end = or_own(options.end)});
   }
   if (options.tail && method.has_own_tail()) {
     throw std::invalid_argument("method " + std::string(method.name) + " has a tail of its own");
   }
   core::WindowOptions window{.interpolant = how,
                              .settle = options.settle.value_or(core::default_settle(method)),
-                             .tail = options.tail.value_or(core::Tail::bessel),
+                             .tail = options.tail.value_or(Tail::bessel),
                              .start = or_own(options.start),
                              .force_lag = options.force_lag};
   return fit_online(table, window, or_own(options.end));

@@ -15,19 +15,18 @@ struct CurveOptions {
   std::optional<double> lambda{};  ///< of smoothing; unset: by cross-validation
   bool lambda_is_auto = false;     ///< asked for by name
   std::optional<double> time_scale{};
-  std::optional<core::Condition> start{};
-  std::optional<core::Condition> end{};
+  std::optional<Condition> start{};
+  std::optional<Condition> end{};
   bool online = false;
   std::optional<std::size_t> settle{};
-  std::optional<core::Tail> tail{};
+  std::optional<Tail> tail{};
   bool force_lag = false;
 };
 
 /// Fits one method to a table, at once or as the solver would; a λ chosen by cross-validation is
 /// said on stderr. Throws InputError naming the line of a waypoint that the method cannot take, and
 /// std::invalid_argument for options that do not go with it.
-[[nodiscard]] core::PiecewisePolynomial fit_table(const WaypointTable& table,
-                                                  const core::Method& method,
-                                                  const CurveOptions& options);
+[[nodiscard]] PiecewisePolynomial fit_table(const WaypointTable& table, const Method& method,
+                                            const CurveOptions& options);
 
 }  // namespace splinecast::apps

@@ -29,13 +29,13 @@ constexpr double kUnmeasured = std::numeric_limits<double>::quiet_NaN();
 
 struct MethodsOptions {
   std::vector<std::string> files;
-  core::Time period{100'000'000};
+  Time period{100'000'000};
   bool json = false;
 };
 
 /// A method with a settle lag; none: at once.
 struct Choice {
-  const core::Method* method;
+  const Method* method;
   std::optional<std::size_t> settle;
   double lambda_per_h3 = 0;
 };
@@ -53,10 +53,10 @@ double largest(std::span<const double> values) {
 
 std::vector<Choice> choices() {
   std::vector<Choice> all;
-  for (const core::Method& method : core::methods()) {
-    if (method.family == core::Family::tridiagonal) {
+  for (const Method& method : methods()) {
+    if (method.family == Family::tridiagonal) {
       for (const std::size_t settle : {0U, 1U, 2U, 4U, 8U, 16U}) all.push_back({&method, settle});
-    } else if (method.family == core::Family::smoothing) {
+    } else if (method.family == Family::smoothing) {
       all.push_back({&method, 16, 0.01});
     } else if (method.streams()) {
       all.push_back({&method, core::default_settle(method)});
@@ -70,28 +70,28 @@ std::vector<Choice> choices() {
 
 /// The continuous stretches of a trajectory. Where its position jumps, by a thousandth of its unit
 /// or more, no curve through waypoints could follow it; below that the digits of such files end.
-std::vector<core::PiecewisePolynomial> stretches(const PolynomialFile& file,
-                                                 const std::string& name, core::Time period) {
+std::vector<PiecewisePolynomial> stretches(const PolynomialFile& file, const std::string& name,
+                                           Time period) {
   constexpr double kRounding = 1e-3;
-  const core::PiecewisePolynomial& curve = file.curve;
-  std::vector<core::PiecewisePolynomial> all;
+  const PiecewisePolynomial& curve = file.curve;
+  std::vector<PiecewisePolynomial> all;
   std::vector<double> jump(curve.dimensions());
-  core::Time from = curve.breaks().front();
+  Time from = curve.breaks().front();
   for (std::size_t i = 1; i < curve.segments(); ++i) {
     curve.jump(i, 0, jump);
     if (largest(jump) < kRounding) continue;
-    const core::Time at = curve.left_of(i);
+    const Time at = curve.left_of(i);
     say(fmt::format("{}: its position jumps by {:.3g} at {} s: measured before and behind", name,
-                    largest(jump), core::to_seconds(at)));
-    all.push_back(core::restricted(curve, from, at));
+                    largest(jump), to_seconds(at)));
+    all.push_back(restricted(curve, from, at));
     from = at;
   }
-  all.push_back(core::restricted(curve, from, curve.breaks().back()));
+  all.push_back(restricted(curve, from, curve.breaks().back()));
   if ((curve.breaks().back() - curve.breaks().front()) / period > kMostWaypoints) {
     throw InputError(
         fmt::format("{}: more than {} waypoints: choose a longer --every", name, kMostWaypoints));
   }
-  const auto is_too_short = [period](const core::PiecewisePolynomial& stretch) {
+  const auto is_too_short = [period](const PiecewisePolynomial& stretch) {
     return stretch.breaks().back() - stretch.breaks().front() < period;
   };
   if (std::erase_if(all, is_too_short) > 0) {
@@ -101,11 +101,11 @@ std::vector<core::PiecewisePolynomial> stretches(const PolynomialFile& file,
 }
 
 /// Waypoints every `period` from the first to the last instant, with their derivatives.
-WaypointTable sampled(const core::PiecewisePolynomial& truth, core::Time period) {
+WaypointTable sampled(const PiecewisePolynomial& truth, Time period) {
   WaypointTable table;
   table.names.resize(truth.dimensions());
-  core::State state(truth.dimensions());
-  for (core::Time t = truth.breaks().front(); t <= truth.breaks().back(); t += period) {
+  State state(truth.dimensions());
+  for (Time t = truth.breaks().front(); t <= truth.breaks().back(); t += period) {
     truth.evaluate(t, state.ref());
     table.times.push_back(t);
     table.lines.push_back(table.size());
@@ -119,19 +119,18 @@ WaypointTable sampled(const core::PiecewisePolynomial& truth, core::Time period)
   return table;
 }
 
-core::PiecewisePolynomial curve_of(const Choice& choice, const WaypointTable& table,
-                                   core::Time period) {
+PiecewisePolynomial curve_of(const Choice& choice, const WaypointTable& table, Time period) {
   CurveOptions options;
   options.online = choice.settle.has_value();
   options.settle = choice.settle;
-  const double h = core::to_seconds(period);
+  const double h = to_seconds(period);
   if (choice.lambda_per_h3 > 0) options.lambda = choice.lambda_per_h3 * h * h * h;
   // What a method makes of its ends is not what is measured: it is told their velocities.
-  const core::Family family = choice.method->family;
-  if (family == core::Family::tridiagonal || family == core::Family::local) {
+  const Family family = choice.method->family;
+  if (family == Family::tridiagonal || family == Family::local) {
     const auto velocity = [&table](std::size_t i) {
       const auto v = table.waypoint(i).velocity;
-      return core::Condition{core::ConditionKind::velocity, {v.begin(), v.end()}};
+      return Condition{ConditionKind::velocity, {v.begin(), v.end()}};
     };
     options.start = velocity(0);
     options.end = velocity(table.size() - 1);
@@ -139,15 +138,14 @@ core::PiecewisePolynomial curve_of(const Choice& choice, const WaypointTable& ta
   return fit_table(table, *choice.method, options);
 }
 
-Errors errors_of(const core::PiecewisePolynomial& curve, const core::PiecewisePolynomial& truth,
-                 core::Time period) {
+Errors errors_of(const PiecewisePolynomial& curve, const PiecewisePolynomial& truth, Time period) {
   Errors errors{};
   Errors scale{};
   const std::size_t dimensions = curve.dimensions();
-  core::State got(dimensions);
-  core::State wanted(dimensions);
-  const core::Time every = period / kComparisons;
-  for (core::Time t = curve.breaks().front(); t <= curve.breaks().back(); t += every) {
+  State got(dimensions);
+  State wanted(dimensions);
+  const Time every = period / kComparisons;
+  for (Time t = curve.breaks().front(); t <= curve.breaks().back(); t += every) {
     curve.evaluate(t, got.ref());
     truth.evaluate(t, wanted.ref());
     for (std::size_t i = 0; i < 3 * dimensions; ++i) {
@@ -165,18 +163,17 @@ Errors errors_of(const core::PiecewisePolynomial& curve, const core::PiecewisePo
   constexpr double kRounding = 1e-9;
   for (std::size_t k = 0; k < errors.size(); ++k) {
     const std::size_t r = std::min<std::size_t>(k, 2);
-    const double natural = r == 0 ? 0 : kRounding * scale[r - 1] / core::to_seconds(period);
+    const double natural = r == 0 ? 0 : kRounding * scale[r - 1] / to_seconds(period);
     errors[k] = scale[k] > natural ? errors[k] / scale[k] : kUnmeasured;
   }
   return errors;
 }
 
 /// The largest errors of a choice over all trajectories.
-Errors measured(const Choice& choice, core::Time period,
-                const std::vector<core::PiecewisePolynomial>& truths) {
+Errors measured(const Choice& choice, Time period, const std::vector<PiecewisePolynomial>& truths) {
   Errors worst;
   worst.fill(kUnmeasured);
-  for (const core::PiecewisePolynomial& truth : truths) {
+  for (const PiecewisePolynomial& truth : truths) {
     const WaypointTable table = sampled(truth, period);
     const Errors found = errors_of(curve_of(choice, table, period), truth, period);
     for (std::size_t k = 0; k < found.size(); ++k) worst[k] = std::fmax(worst[k], found[k]);
@@ -185,7 +182,7 @@ Errors measured(const Choice& choice, core::Time period,
 }
 
 ordered_json description(const Choice& choice) {
-  const core::Method& method = *choice.method;
+  const Method& method = *choice.method;
   ordered_json json{{"method", method.name},
                     {"settle", choice.settle ? ordered_json(*choice.settle) : ordered_json()},
                     {"order", method.order},
@@ -212,7 +209,7 @@ std::string text_row(const ordered_json& row) {
 }
 
 int run_methods(const MethodsOptions& options) {
-  std::vector<core::PiecewisePolynomial> truths;
+  std::vector<PiecewisePolynomial> truths;
   for (const std::string& file : options.files) {
     for (auto& stretch : stretches(read_polynomials(file), file, options.period)) {
       truths.push_back(std::move(stretch));

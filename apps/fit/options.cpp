@@ -20,7 +20,7 @@ void add_curve(CLI::App& verb, CurveOptions& options) {
   add_force_lag(verb, options.force_lag);
 }
 
-void require_consistent(const CurveOptions& curve, std::span<const core::Method* const> methods) {
+void require_consistent(const CurveOptions& curve, std::span<const Method* const> methods) {
   const auto refuse = [](const char* name, const char* why) {
     throw CLI::ValidationError(name, why);
   };

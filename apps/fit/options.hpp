@@ -12,6 +12,6 @@ namespace splinecast::apps {
 void add_curve(CLI::App& verb, CurveOptions& options);
 
 /// Throws CLI::ValidationError for options that do not go with one another or with the methods.
-void require_consistent(const CurveOptions& curve, std::span<const core::Method* const> methods);
+void require_consistent(const CurveOptions& curve, std::span<const Method* const> methods);
 
 }  // namespace splinecast::apps

@@ -15,7 +15,6 @@
 namespace splinecast::apps {
 namespace {
 
-using core::Time;
 using nlohmann::ordered_json;
 
 constexpr std::size_t kMostMarks = 4000;  // of waypoints and of knots
@@ -29,7 +28,7 @@ struct Measured {
   std::optional<std::array<double, 3>> intervals;  ///< between waypoints: least, median, greatest
 };
 
-double seconds_from(Time origin, Time t) { return core::to_seconds(t - origin); }
+double seconds_from(Time origin, Time t) { return to_seconds(t - origin); }
 
 /// Nothing for a lone waypoint.
 std::optional<std::array<double, 3>> intervals_of(std::span<const Time> times) {
@@ -37,8 +36,7 @@ std::optional<std::array<double, 3>> intervals_of(std::span<const Time> times) {
   std::vector<Time> h;
   for (std::size_t i = 1; i < times.size(); ++i) h.push_back(times[i] - times[i - 1]);
   std::ranges::sort(h);
-  return {
-      {core::to_seconds(h.front()), core::to_seconds(h[h.size() / 2]), core::to_seconds(h.back())}};
+  return {{to_seconds(h.front()), to_seconds(h[h.size() / 2]), to_seconds(h.back())}};
 }
 
 Measured measure(const Report& report) {
@@ -57,7 +55,7 @@ Measured measure(const Report& report) {
 double resolution(const Measured& all, std::size_t d, std::size_t derivative) {
   double size = 0;
   for (const ReportTable& table : all.tables) {
-    const core::Extremes& e = table.rows[d * kDerivatives].extremes;
+    const Extremes& e = table.rows[d * kDerivatives].extremes;
     size = std::max({size, std::abs(e.least.value), std::abs(e.greatest.value)});
   }
   const double h = all.intervals ? (*all.intervals)[1] : 1;
@@ -85,7 +83,7 @@ ordered_json drawn(std::span<const double> values, double resolution) {
   return json;
 }
 
-ordered_json extremum_json(const Measured& all, const core::Extremum& extremum) {
+ordered_json extremum_json(const Measured& all, const Extremum& extremum) {
   return {extremum.value, seconds_from(all.origin, extremum.time)};
 }
 

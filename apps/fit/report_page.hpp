@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "apps/output/stream.hpp"
+#include "splinecast/dimension_kind.hpp"
 #include "splinecast/piecewise_polynomial.hpp"
 #include "splinecast/waypoint.hpp"
 
@@ -12,17 +13,17 @@ namespace splinecast::apps {
 /// One of the curves of a report.
 struct ReportCurve {
   std::string name;  ///< "c2", "akima", …
-  core::PiecewisePolynomial curve;
+  PiecewisePolynomial curve;
 };
 
 /// What a report shows: curves through, or near, the same waypoints.
 struct Report {
   std::string title;
-  std::vector<std::string> names;  ///< of the dimensions
-  std::vector<std::string> units;  ///< of the positions, one per dimension; "" for an unknown one
-  core::Waypoints waypoints;       ///< at least one
-  std::vector<core::Dimension> kinds{};  ///< of the dimensions; none: all linear
-  std::vector<ReportCurve> curves;       ///< at least one, of as many dimensions; none empty
+  std::vector<std::string> names;   ///< of the dimensions
+  std::vector<std::string> units;   ///< of the positions, one per dimension; "" for an unknown one
+  Waypoints waypoints;              ///< at least one
+  std::vector<Dimension> kinds{};   ///< of the dimensions; none: all linear
+  std::vector<ReportCurve> curves;  ///< at least one, of as many dimensions; none empty
 };
 
 /// Writes a report as one HTML file that needs nothing else, no network either: for each dimension

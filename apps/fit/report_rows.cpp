@@ -6,12 +6,11 @@
 #include <limits>
 #include <utility>
 
+#include "core/polynomial/segment.hpp"
 #include "splinecast/state.hpp"
 
 namespace splinecast::apps {
 namespace {
-
-using core::Time;
 
 constexpr std::int64_t kRowsAcross = 1600;     // of the whole time, at least
 constexpr std::int64_t kMostValues = 400'000;  // of each derivative: some MB of a file
@@ -41,7 +40,7 @@ std::vector<Instant> instants_of(const std::vector<Time>& breaks, std::int64_t f
 }
 
 /// NaN outside the curve.
-void evaluate(const core::PiecewisePolynomial& curve, const Instant& at, core::State& out) {
+void evaluate(const PiecewisePolynomial& curve, const Instant& at, State& out) {
   if (at.time < curve.breaks().front() || at.time > curve.breaks().back()) {
     std::ranges::fill(out.ref().position, kNone);
     std::ranges::fill(out.ref().velocity, kNone);
@@ -51,17 +50,17 @@ void evaluate(const core::PiecewisePolynomial& curve, const Instant& at, core::S
   }
   std::size_t i = curve.segment_at(at.time);
   if (at.from_left && i > 0 && at.time == curve.left_of(i)) --i;
-  core::evaluate(curve.order_of(i), curve.coefficients(i),
-                 core::to_seconds(at.time - curve.left_of(i)), out.ref());
+  core::evaluate(curve.order_of(i), curve.coefficients(i), to_seconds(at.time - curve.left_of(i)),
+                 out.ref());
 }
 
 ReportRows sampled(std::span<const ReportCurve> curves, const std::vector<Instant>& instants) {
   ReportRows rows;
   for (const Instant& at : instants) {
-    rows.seconds.push_back(core::to_seconds(at.time - instants.front().time));
+    rows.seconds.push_back(to_seconds(at.time - instants.front().time));
   }
   const std::size_t columns = curves.front().curve.dimensions() * kDerivatives;
-  core::State state(curves.front().curve.dimensions());
+  State state(curves.front().curve.dimensions());
   rows.values.resize(curves.size() * columns * instants.size());
   for (std::size_t c = 0; c < curves.size(); ++c) {
     for (std::size_t row = 0; row < instants.size(); ++row) {
@@ -88,7 +87,7 @@ class Envelope {
   Envelope(Time first, Time bucket) : first_(first), bucket_(bucket) {}
 
   void consider(Time time, double value) {
-    core::Extremes& e = extremes_[static_cast<std::size_t>((time - first_) / bucket_)];
+    Extremes& e = extremes_[static_cast<std::size_t>((time - first_) / bucket_)];
     if (!(value >= e.least.value)) e.least = {.time = time, .value = value};
     if (!(value <= e.greatest.value)) e.greatest = {.time = time, .value = value};
   }
@@ -96,7 +95,7 @@ class Envelope {
   /// Two values per interval, NaN where none was considered.
   void write(std::span<double> out) const {
     for (std::size_t i = 0; i < kBuckets; ++i) {
-      const core::Extremes& e = extremes_[i];
+      const Extremes& e = extremes_[i];
       const bool rises = e.least.time <= e.greatest.time;
       out[2 * i] = rises ? e.least.value : e.greatest.value;
       out[2 * i + 1] = rises ? e.greatest.value : e.least.value;
@@ -106,19 +105,18 @@ class Envelope {
  private:
   Time first_;
   Time bucket_;
-  std::vector<core::Extremes> extremes_{kBuckets,
-                                        core::Extremes{.least = {.time = {}, .value = kNone},
-                                                       .greatest = {.time = {}, .value = kNone}}};
+  std::vector<Extremes> extremes_{kBuckets, Extremes{.least = {.time = {}, .value = kNone},
+                                                     .greatest = {.time = {}, .value = kNone}}};
 };
 
 /// The columns of one curve. Its greatest and least values are among them; others may be missed
 /// between samples.
-void write_envelopes(const core::PiecewisePolynomial& curve, const ReportTable& table,
+void write_envelopes(const PiecewisePolynomial& curve, const ReportTable& table,
                      const std::vector<Instant>& instants, std::span<double> out) {
   const std::size_t dimensions = curve.dimensions();
   std::vector<Envelope> envelopes(dimensions * kDerivatives,
                                   Envelope(instants.front().time, bucket_of(instants)));
-  core::State state(dimensions);
+  State state(dimensions);
   for (const Instant& at : instants) {
     evaluate(curve, at, state);
     if (std::isnan(state.values().front())) continue;
@@ -129,9 +127,8 @@ void write_envelopes(const core::PiecewisePolynomial& curve, const ReportTable& 
   for (std::size_t i = 0; i < envelopes.size(); ++i) {
     const std::size_t d = i % dimensions;
     const std::size_t r = i / dimensions;
-    const core::Extremes& all = table.rows[d * kDerivatives + r].extremes;
-    for (const core::Extremum& e : {all.least, all.greatest})
-      envelopes[i].consider(e.time, e.value);
+    const Extremes& all = table.rows[d * kDerivatives + r].extremes;
+    for (const Extremum& e : {all.least, all.greatest}) envelopes[i].consider(e.time, e.value);
     envelopes[i].write(out.subspan((d * kDerivatives + r) * 2 * kBuckets, 2 * kBuckets));
   }
 }
@@ -139,7 +136,7 @@ void write_envelopes(const core::PiecewisePolynomial& curve, const ReportTable& 
 ReportRows decimated(std::span<const ReportCurve> curves, std::span<const ReportTable> tables,
                      const std::vector<Instant>& instants) {
   ReportRows rows;
-  rows.bucket = core::to_seconds(bucket_of(instants));
+  rows.bucket = to_seconds(bucket_of(instants));
   for (std::size_t row = 0; row < 2 * kBuckets; ++row) {
     rows.seconds.push_back((static_cast<double>(row) / 2 + 0.25) * rows.bucket);
   }

@@ -11,7 +11,7 @@
 namespace splinecast::apps {
 
 /// The breaks of all curves, ascending, each once.
-[[nodiscard]] std::vector<core::Time> breaks_of(std::span<const ReportCurve> curves);
+[[nodiscard]] std::vector<Time> breaks_of(std::span<const ReportCurve> curves);
 
 /// What the charts draw: values of all curves at the same times.
 struct ReportRows {

@@ -8,25 +8,25 @@ namespace splinecast::apps {
 namespace {
 
 /// Keeps the larger one by size; on a tie the one that is there.
-void consider(core::Extremum& largest, core::Time time, double value) {
+void consider(Extremum& largest, Time time, double value) {
   if (std::abs(value) > std::abs(largest.value)) largest = {.time = time, .value = value};
 }
 
 /// The kinds, but that nothing wraps: read, a wrapping position steps by a period.
-core::DimensionKinds only_quaternions(std::span<const core::Dimension> kinds) {
-  std::vector<core::Dimension> all(kinds.begin(), kinds.end());
-  for (core::Dimension& dimension : all) {
-    if (dimension.kind == core::DimensionKind::wrap) dimension = {};
+DimensionKinds only_quaternions(std::span<const Dimension> kinds) {
+  std::vector<Dimension> all(kinds.begin(), kinds.end());
+  for (Dimension& dimension : all) {
+    if (dimension.kind == DimensionKind::wrap) dimension = {};
   }
-  return core::DimensionKinds(all);
+  return DimensionKinds(all);
 }
 
-void measure_steps(const core::PiecewisePolynomial& curve, const core::DimensionKinds& quaternions,
+void measure_steps(const PiecewisePolynomial& curve, const DimensionKinds& quaternions,
                    ReportTable& table) {
   const std::size_t dimensions = curve.dimensions();
-  core::State left(dimensions);
-  core::State right(dimensions);
-  const auto evaluate = [&](std::size_t segment, double u, core::State& out) {
+  State left(dimensions);
+  State right(dimensions);
+  const auto evaluate = [&](std::size_t segment, double u, State& out) {
     core::evaluate(curve.order_of(segment), curve.coefficients(segment), u, out.ref());
     quaternions.normalise(out.ref());
   };
@@ -43,11 +43,11 @@ void measure_steps(const core::PiecewisePolynomial& curve, const core::Dimension
   }
 }
 
-void measure_distances(const core::PiecewisePolynomial& curve, const core::Waypoints& waypoints,
+void measure_distances(const PiecewisePolynomial& curve, const Waypoints& waypoints,
                        ReportTable& table) {
   std::vector<double> position(curve.dimensions());
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
-    const core::Waypoint waypoint = waypoints[i];
+    const Waypoint waypoint = waypoints[i];
     if (waypoint.time < curve.breaks().front() || waypoint.time > curve.breaks().back()) continue;
     curve.derivative(waypoint.time, 0, position);
     for (std::size_t d = 0; d < position.size(); ++d) {
@@ -58,14 +58,13 @@ void measure_distances(const core::PiecewisePolynomial& curve, const core::Waypo
 
 }  // namespace
 
-ReportTable table_of(const core::PiecewisePolynomial& curve, const core::Waypoints& waypoints,
-                     std::span<const core::Dimension> kinds) {
-  const core::Extremum none{.time = curve.breaks().front(), .value = 0};
+ReportTable table_of(const PiecewisePolynomial& curve, const Waypoints& waypoints,
+                     std::span<const Dimension> kinds) {
+  const Extremum none{.time = curve.breaks().front(), .value = 0};
   ReportTable table;
   for (std::size_t d = 0; d < curve.dimensions(); ++d) {
     for (std::size_t r = 0; r < kDerivatives; ++r) {
-      table.rows.push_back(
-          {.extremes = core::extremes(curve, d, static_cast<int>(r)), .step = none});
+      table.rows.push_back({.extremes = extremes(curve, d, static_cast<int>(r)), .step = none});
     }
   }
   table.distance.assign(curve.dimensions(), none);

@@ -15,6 +15,7 @@
 #include "apps/output/emit.hpp"
 #include "apps/output/stream.hpp"
 #include "apps/process/exit_codes.hpp"
+#include "splinecast/fit.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -22,20 +23,20 @@ namespace {
 struct FitOptions {
   std::string file;
   TableOptions table;
-  std::vector<const core::Method*> methods;
+  std::vector<const Method*> methods;
   CurveOptions curve;
   std::string at;
-  std::optional<core::Time> dt;
+  std::optional<Time> dt;
   Emit emit = Emit::samples;
   std::string output;
   std::string report;
   std::vector<std::string> units;  ///< of positions in the report; the last one for all that follow
 };
 
-void require_inside(const std::vector<core::Time>& times, const core::PiecewisePolynomial& curve,
+void require_inside(const std::vector<Time>& times, const PiecewisePolynomial& curve,
                     const std::string& file) {
-  const core::Time first = curve.breaks().front();
-  const core::Time last = curve.breaks().back();
+  const Time first = curve.breaks().front();
+  const Time last = curve.breaks().back();
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (times[i] >= first && times[i] <= last) continue;
     throw InputError(
@@ -64,12 +65,12 @@ void write_report_of(const WaypointTable& table, std::vector<ReportCurve> curves
 }
 
 /// The samples that --dt asks for can be written in a lifetime.
-void require_samples(const core::PiecewisePolynomial& curve, core::Time dt) {
+void require_samples(const PiecewisePolynomial& curve, Time dt) {
   constexpr std::int64_t kMost = 1'000'000'000;
   const std::int64_t samples = (curve.breaks().back() - curve.breaks().front()) / dt;
   if (samples <= kMost) return;
-  throw InputError(fmt::format("--dt {} makes {} samples; the most is {}", core::to_seconds(dt),
-                               samples, kMost));
+  throw InputError(
+      fmt::format("--dt {} makes {} samples; the most is {}", to_seconds(dt), samples, kMost));
 }
 
 /// Whether all that is asked for is a report.
@@ -92,20 +93,20 @@ int run_fit(const FitOptions& options) {
   require_spline_input(table);
   continue_waypoints(table);
   std::vector<ReportCurve> curves;
-  for (const core::Method* method : options.methods) {
+  for (const Method* method : options.methods) {
     curves.push_back(
         {.name = std::string(method->name), .curve = fit_table(table, *method, options.curve)});
   }
-  const core::PiecewisePolynomial curve = curves.front().curve;
-  const auto at = options.at.empty() ? std::vector<core::Time>{}
-                                     : read_times(options.at, options.table.time_unit);
+  const PiecewisePolynomial curve = curves.front().curve;
+  const auto at =
+      options.at.empty() ? std::vector<Time>{} : read_times(options.at, options.table.time_unit);
   require_inside(at, curve, options.at);
   if (options.dt) require_samples(curve, *options.dt);
   if (!options.report.empty()) write_report_of(table, std::move(curves), options);
   if (only_reports(options)) return kOk;
   Output output(options.output);
   if (options.emit == Emit::samples) {
-    emit_samples(curve, core::DimensionKinds(table.kinds), at, options.dt, output);
+    emit_samples(curve, DimensionKinds(table.kinds), at, options.dt, output);
   } else {
     emit_json(curve, options.emit, output);
   }
@@ -131,14 +132,14 @@ void require_consistent(const FitOptions& options) {
   }
 }
 
-void add_interpolants(CLI::App& verb, std::vector<const core::Method*>& methods) {
+void add_interpolants(CLI::App& verb, std::vector<const Method*>& methods) {
   verb.add_option_function<std::vector<std::string>>(
           "--method",
           [&methods](const std::vector<std::string>& names) {
             for (const std::string& name : names) methods.push_back(&method_named(name));
           },
           fmt::format("Interpolant: {} (default c2); with --report several, separated by commas",
-                      core::method_names(false)))
+                      method_names(false)))
       ->delimiter(',')
       ->type_name("METHOD");
 }
@@ -185,7 +186,7 @@ void add_fit(CLI::App& program, Action& action) {
       ->type_name("UNIT");
   add_table_options(*verb, options->table);
   verb->callback([&action, options] {
-    if (options->methods.empty()) options->methods.push_back(&core::c2());
+    if (options->methods.empty()) options->methods.push_back(&c2());
     require_consistent(*options);
     action = [options] { return run_fit(*options); };
   });

@@ -14,8 +14,6 @@
 namespace splinecast::apps {
 namespace {
 
-using core::Time;
-
 constexpr std::uint64_t kTrips = 100'000;
 constexpr std::uint64_t kEnd = kTrips + 1;
 constexpr Time kLongest = std::chrono::milliseconds(500);
@@ -29,7 +27,7 @@ struct Lines {
 
 /// Spins until the word has moved on to `value`. Returns false after some patience.
 bool await(const std::atomic<std::uint64_t>& word, std::uint64_t value) {
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   for (Time end{};;) {
     for (int spin = 0; spin < 100'000; ++spin) {
       if (word.load(std::memory_order_acquire) >= value) return true;
@@ -40,7 +38,7 @@ bool await(const std::atomic<std::uint64_t>& word, std::uint64_t value) {
 }
 
 void ping(Lines& lines, SharedLog<Time>& trips) {
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   trips.touch();
   if (!await(lines.back, 1)) throw TimeOut("the floor's other process did not come");
   const Time end = clock.now() + kLongest;

@@ -37,7 +37,6 @@ LatencyPeer measure_iceoryx(const LatencyOptions& /*options*/) {
 namespace splinecast::apps {
 namespace {
 
-using core::Time;
 using ipc::Word;
 
 /// iceoryx's daemon, as a child that ends with this object.
@@ -124,7 +123,7 @@ void run_publisher(const LatencyOptions& options, pid_t parent, IceoryxShared& s
   const Registration registration("producer", parent);
   iox::popo::UntypedPublisher publisher(service_of(parent));
   const std::vector<double> waypoint(3 * options.dimensions, 1.0);
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   const Schedule schedule = options.schedule(shared.meeting->begin(1));
   run(
       schedule, [&](Time instant) { return wait_for_instant(instant, options.spin); },
@@ -146,7 +145,7 @@ void run_publisher(const LatencyOptions& options, pid_t parent, IceoryxShared& s
 
 /// Takes what has come; a sample k counts as revision k + 1. Returns the last one.
 Word take_all(iox::popo::UntypedSubscriber& subscriber, IceoryxShared& shared) {
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   Word last = 0;
   for (bool more = true; more;) {
     more = false;
@@ -177,7 +176,7 @@ void run_subscriber(const LatencyOptions& options, pid_t parent, IceoryxShared& 
     });
   }
   if (!shared.meeting->await_start()) throw TimeOut("the publisher did not start");
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   constexpr Time kLongestWait = std::chrono::milliseconds(50);
   constexpr Time kGrace = std::chrono::seconds(1);  // for what was published last
   Word seen = 0;

@@ -15,10 +15,10 @@ namespace splinecast::apps {
 /// What `latency` measures, and how.
 struct LatencyOptions {
   double rate = 1000;  ///< waypoints a second
-  core::Time duration = std::chrono::seconds(10);
-  core::Time warmup = std::chrono::seconds(1);
-  core::Time lead = std::chrono::milliseconds(200);  ///< of a waypoint's time before it is due
-  std::optional<core::Time> deadline{};              ///< default: a period
+  Time duration = std::chrono::seconds(10);
+  Time warmup = std::chrono::seconds(1);
+  Time lead = std::chrono::milliseconds(200);  ///< of a waypoint's time before it is due
+  std::optional<Time> deadline{};              ///< default: a period
   std::size_t dimensions = 7;
   std::optional<std::size_t> settle{};
   std::size_t readers = 1;
@@ -32,15 +32,13 @@ struct LatencyOptions {
   bool lock_memory = false;
   bool iceoryx = true;
 
-  [[nodiscard]] core::Time period() const {
-    return core::Time(static_cast<std::int64_t>(1e9 / rate));
-  }
-  [[nodiscard]] Schedule schedule(core::Time start) const {
+  [[nodiscard]] Time period() const { return Time(static_cast<std::int64_t>(1e9 / rate)); }
+  [[nodiscard]] Schedule schedule(Time start) const {
     return {.start = start,
             .period = period(),
             .count = static_cast<std::size_t>((warmup + duration) / period())};
   }
-  [[nodiscard]] Measured measured(core::Time start) const {
+  [[nodiscard]] Measured measured(Time start) const {
     return {.from = start + warmup,
             .until = start + warmup + duration,
             .deadline = deadline.value_or(period())};

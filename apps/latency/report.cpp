@@ -15,9 +15,9 @@ ordered_json cpu_json(const std::optional<int>& cpu) {
 
 ordered_json options_json(const LatencyOptions& options) {
   return {{"rate", options.rate},
-          {"duration_s", core::to_seconds(options.duration)},
-          {"warmup_s", core::to_seconds(options.warmup)},
-          {"lead_ms", core::to_seconds(options.lead) * 1e3},
+          {"duration_s", to_seconds(options.duration)},
+          {"warmup_s", to_seconds(options.warmup)},
+          {"lead_ms", to_seconds(options.lead) * 1e3},
           {"deadline_ns", options.measured({}).deadline.count()},
           {"dims", options.dimensions},
           {"settle", options.settle ? ordered_json(*options.settle) : ordered_json()},

@@ -11,6 +11,8 @@
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/signals.hpp"
 #include "apps/streams/attach.hpp"
+#include "ipc/roles/internals.hpp"
+#include "ipc/solve/stream_solver.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/reader.hpp"
 #include "splinecast/solver.hpp"
@@ -18,7 +20,6 @@
 namespace splinecast::apps {
 namespace {
 
-using core::Time;
 using ipc::Word;
 using nlohmann::json;
 using std::chrono::milliseconds;
@@ -39,7 +40,7 @@ std::size_t ring_capacity(const LatencyOptions& options) {
   return std::bit_ceil(std::max<std::size_t>(1024, waypoints_in(options, std::chrono::seconds(1))));
 }
 
-ipc::SolverOptions solver_options(const LatencyOptions& options) {
+SolverOptions solver_options(const LatencyOptions& options) {
   return {.settle = options.settle,
           .history = kHistory,
           .capacity = std::bit_ceil(
@@ -82,10 +83,10 @@ class LatencySolver {
 
   /// Returns whether there was anything to do.
   bool step() {
-    const ipc::StepResult result = solver_.step(clock_);
+    const StepResult result = solver_.step(clock_);
     if (result.published) {
       const Time published = clock_.now();
-      const ipc::Head& head = solver_.head();
+      const ipc::Head& head = ipc::Internals::head(solver_);
       push(shared_->revisions, {.revision = head.revision,
                                 .consumed = head.consumed,
                                 .solved = head.committed,
@@ -97,18 +98,18 @@ class LatencySolver {
     return result.consumed > 0 || result.missed;
   }
 
-  [[nodiscard]] bool has_finished() const { return solver_.head().finished; }
+  [[nodiscard]] bool has_finished() const { return ipc::Internals::head(solver_).finished; }
   void wait(Time timeout) { solver_.wait(timeout); }
   [[nodiscard]] json counters() const {
-    const ipc::Head& head = solver_.head();
+    const ipc::Head& head = ipc::Internals::head(solver_);
     return {{"revisions", head.revision},       {"discarded", head.misses},
             {"committed_late", head.revisions}, {"interpolated", head.interpolated()},
             {"passed_over", head.passed_over},  {"refused", head.refused}};
   }
 
  private:
-  ipc::MonotonicClock clock_;
-  ipc::Solver solver_;
+  MonotonicClock clock_;
+  Solver solver_;
   LatencyShared* shared_;
 };
 
@@ -163,7 +164,7 @@ class LatencyProducer {
   /// Sines of 2 s, each dimension in a phase of its own.
   void move_to(Time t) {
     time_ = t + options_.lead;
-    const double turns = std::fmod(core::to_seconds(t), 2.0) / 2;
+    const double turns = std::fmod(to_seconds(t), 2.0) / 2;
     for (std::size_t d = 0; d < position_.size(); ++d) {
       position_[d] = std::sin(2 * std::numbers::pi * turns + static_cast<double>(d));
     }
@@ -171,27 +172,27 @@ class LatencyProducer {
 
   void send(Time intended) {
     AppendStamp stamp{.item = producer_.appended(), .intended = intended, .begun = clock_.now()};
-    const core::Waypoint waypoint{.time = time_, .position = position_};
-    ipc::AppendStatus status = producer_.append(waypoint);
-    if (status == ipc::AppendStatus::full) ++full_;
-    while (status == ipc::AppendStatus::full && !stop_requested()) {
+    const Waypoint waypoint{.time = time_, .position = position_};
+    AppendStatus status = producer_.append(waypoint);
+    if (status == AppendStatus::full) ++full_;
+    while (status == AppendStatus::full && !stop_requested()) {
       if (solver_) solver_->step();
       status = producer_.append(waypoint);
     }
     stamp.appended = clock_.now();
-    if (status != ipc::AppendStatus::accepted) stamp.item = kRefusedItem;
+    if (status != AppendStatus::accepted) stamp.item = kRefusedItem;
     push(shared_->appends, stamp);
     if (solver_) solver_->step();
   }
 
   void finish() {
-    const core::Condition halt{.kind = core::ConditionKind::halt, .value = {}};
+    const Condition halt{.kind = ConditionKind::halt, .value = {}};
     const Time end = clock_.now() + kLatencyPatience;
-    while (producer_.finish(halt) == ipc::AppendStatus::full) pass_time(end);
+    while (producer_.finish(halt) == AppendStatus::full) pass_time(end);
     while (producer_.consumed() < producer_.appended()) pass_time(end);
-    const ipc::Refusals refusals = producer_.refusals();
+    const Refusals refusals = producer_.refusals();
     unnamed_refusals_ = refusals.missed;
-    for (const ipc::ItemRefusal& refused : refusals.items) push(shared_->refused, refused.item);
+    for (const ItemRefusal& refused : refusals.items) push(shared_->refused, refused.item);
   }
 
   void pass_time(Time end) {
@@ -205,8 +206,8 @@ class LatencyProducer {
 
   const LatencyOptions& options_;
   LatencyShared* shared_;
-  ipc::MonotonicClock clock_;
-  ipc::Producer producer_;
+  MonotonicClock clock_;
+  Producer producer_;
   std::unique_ptr<LatencySolver> solver_;
   Word unnamed_refusals_ = 0;
   Time time_{};
@@ -218,7 +219,7 @@ class LatencyProducer {
 
 bool Meeting::await_start() {
   ready.fetch_add(1, std::memory_order_relaxed);
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   const Time end = clock.now() + kLatencyPatience;
   while (start_ns.load(std::memory_order_relaxed) == 0) {
     if (clock.now() > end || !sleep_until(clock.now() + kTick)) return false;
@@ -227,7 +228,7 @@ bool Meeting::await_start() {
 }
 
 Time Meeting::begin(std::size_t count) {
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   const Time end = clock.now() + kLatencyPatience;
   while (ready.load(std::memory_order_relaxed) < count) {
     if (clock.now() > end) throw TimeOut("a process of the measurement did not come");
@@ -255,7 +256,7 @@ LatencyShared::LatencyShared(const LatencyOptions& options)
 
 bool wait_for_instant(Time instant, bool spin) {
   if (!spin) return sleep_until(instant);
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   while (clock.now() < instant) {
     if (stop_requested()) return false;
   }
@@ -275,7 +276,7 @@ json run_latency_solver(const LatencyOptions& options, const std::string& stream
   LatencySolver solver(options, stream, shared);
   if (!solver.attach()) throw TimeOut("the producer did not come");
   if (!shared.meeting->await_start()) throw TimeOut("the producer did not start");
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   while (!stop_requested() && !solver.has_finished()) {
     if (solver.step()) {
       usage.look(clock.now());
@@ -295,19 +296,19 @@ json run_latency_reader(const LatencyOptions& options, const std::string& stream
   MeasuredUsage usage(*shared.meeting, options.warmup);
   SharedLog<SeenStamp>& log = shared.seen[index];
   log.touch();
-  ipc::Reader reader = attach_reader(stream, kLatencyPatience);
-  core::State state(reader.dimensions());
+  Reader reader = attach_reader(stream, kLatencyPatience);
+  State state(reader.dimensions());
   if (!shared.meeting->await_start()) throw TimeOut("the producer did not start");
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   Word seen = 0;
   const auto is_over = [&] {
     const Word last = shared.meeting->last_revision.load(std::memory_order_acquire);
     return stop_requested() || (last != 0 && seen >= last);
   };
   for (bool again = false; !is_over();) {
-    if (!options.spin && !again && reader.wait(kLongestWait) != ipc::WaitStatus::advanced) continue;
-    again = reader.sample(clock.now(), state) == ipc::SampleStatus::busy;
-    const Word revision = reader.sampler().revision_seen();
+    if (!options.spin && !again && reader.wait(kLongestWait) != WaitStatus::advanced) continue;
+    again = reader.sample(clock.now(), state) == SampleStatus::busy;
+    const Word revision = ipc::Internals::sampler(reader).revision_seen();
     if (again || revision <= seen) continue;
     const Time now = clock.now();
     push(log, {.revision = revision, .seen = now});

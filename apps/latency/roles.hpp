@@ -15,7 +15,7 @@
 namespace splinecast::apps {
 
 /// How long a process of `latency` waits for another one.
-inline constexpr core::Time kLatencyPatience = std::chrono::seconds(10);
+inline constexpr Time kLatencyPatience = std::chrono::seconds(10);
 
 /// Where the processes of a measurement meet.
 struct Meeting {
@@ -27,7 +27,7 @@ struct Meeting {
   /// process that has nothing else to do. Returns false if that does not come.
   [[nodiscard]] bool await_start();
   /// Waits for `count` processes and starts the schedule a little later. Throws TimeOut.
-  [[nodiscard]] core::Time begin(std::size_t count);
+  [[nodiscard]] Time begin(std::size_t count);
 };
 
 /// What the processes of the pipeline share, mapped before they are forked.
@@ -47,12 +47,12 @@ struct LatencyShared {
 /// Counts of the kernel over the time that is measured.
 class MeasuredUsage {
  public:
-  MeasuredUsage(const Meeting& meeting, core::Time warmup) : meeting_(&meeting), warmup_(warmup) {}
+  MeasuredUsage(const Meeting& meeting, Time warmup) : meeting_(&meeting), warmup_(warmup) {}
 
   /// Begins to count once the warm-up is over.
-  void look(core::Time now) {
-    const core::Time start(meeting_->start_ns.load(std::memory_order_relaxed));
-    if (begun_ || start == core::Time::zero() || now < start + warmup_) return;
+  void look(Time now) {
+    const Time start(meeting_->start_ns.load(std::memory_order_relaxed));
+    if (begun_ || start == Time::zero() || now < start + warmup_) return;
     begun_ = true;
     before_ = usage_now();
   }
@@ -63,13 +63,13 @@ class MeasuredUsage {
 
  private:
   const Meeting* meeting_;
-  core::Time warmup_;
+  Time warmup_;
   bool begun_ = false;
   Usage before_;
 };
 
 /// Waits for an instant as the mode says: spinning or asleep. Returns false if a stop is requested.
-[[nodiscard]] bool wait_for_instant(core::Time instant, bool spin);
+[[nodiscard]] bool wait_for_instant(Time instant, bool spin);
 
 /// The three roles, each in a process of its own; with options.embedded the producer also solves.
 /// What they note goes to `shared`; each returns `role`, `warnings`, `usage` and its own counters.

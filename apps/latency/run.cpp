@@ -79,7 +79,7 @@ void measure_pipeline(LatencyResult& result) {
   for (const auto& log : shared.seen) seen.push_back(log.entries());
   std::vector<ipc::Word> refused(shared.refused.entries().begin(), shared.refused.entries().end());
   std::ranges::sort(refused);
-  const core::Time start(shared.meeting->start_ns.load(std::memory_order_relaxed));
+  const Time start(shared.meeting->start_ns.load(std::memory_order_relaxed));
   result.stages = latencies_of(shared.appends.entries(), shared.revisions.entries(), seen, refused,
                                result.options.measured(start));
   if (result.stages.front().intended.count() + result.stages.front().missing == 0) {
@@ -100,11 +100,11 @@ std::string throttling_warning(const LatencyOptions& options, const Environment&
     return "whether the kernel throttles SCHED_FIFO processes that spin is unknown "
            "(/proc/sys/kernel/sched_rt_runtime_us)";
   }
-  if (*stopped == core::Time::zero()) return {};
+  if (*stopped == Time::zero()) return {};
   return fmt::format(
       "the kernel stops SCHED_FIFO processes that spin for {:g} ms of each {} us "
       "(sched_rt_runtime_us is {}), which is in the figures; see 'splinecast doctor'",
-      core::to_seconds(*stopped) * 1e3, environment.rt_period, environment.rt_runtime);
+      to_seconds(*stopped) * 1e3, environment.rt_period, environment.rt_runtime);
 }
 
 LatencyResult run_latency(const LatencyOptions& options) {

@@ -27,9 +27,8 @@ Latencies make_stage(std::string name, const Measured& measured) {
           .missing = 0};
 }
 
-void add(Latencies& stage, const AppendStamp& append, core::Time reached,
-         const Measured& measured) {
-  const core::Time latency = reached - append.intended;
+void add(Latencies& stage, const AppendStamp& append, Time reached, const Measured& measured) {
+  const Time latency = reached - append.intended;
   stage.intended.record(latency);
   stage.raw.record(reached - append.begun);
   stage.over_time.record(append.intended, latency);

@@ -20,24 +20,24 @@ inline constexpr ipc::Word kRefusedItem = std::numeric_limits<ipc::Word>::max();
 
 /// A waypoint that the producer appended, or tried to.
 struct AppendStamp {
-  ipc::Word item = 0;     ///< its number in the ring, or kRefusedItem
-  core::Time intended{};  ///< when it was due
-  core::Time begun{};     ///< before the first try to append it
-  core::Time appended{};  ///< after the append
+  ipc::Word item = 0;  ///< its number in the ring, or kRefusedItem
+  Time intended{};     ///< when it was due
+  Time begun{};        ///< before the first try to append it
+  Time appended{};     ///< after the append
 };
 
 /// A revision that the solver committed.
 struct RevisionStamp {
   ipc::Word revision = 0;
   ipc::Word consumed = 0;  ///< items that it and those before it contain
-  core::Time solved{};     ///< directly before it was written to the board
-  core::Time published{};  ///< after the commit, and after waking who waits
+  Time solved{};           ///< directly before it was written to the board
+  Time published{};        ///< after the commit, and after waking who waits
 };
 
 /// A revision that a reader got a sample of, for the first time.
 struct SeenStamp {
   ipc::Word revision = 0;
-  core::Time seen{};  ///< after the sample
+  Time seen{};  ///< after the sample
 };
 
 /// The latencies of one stage of the way from the producer's append to a reader's sample.
@@ -53,9 +53,9 @@ struct Latencies {
 
 /// What is measured: waypoints due from `from` to before `until`.
 struct Measured {
-  core::Time from{};
-  core::Time until{};
-  core::Time deadline{};
+  Time from{};
+  Time until{};
+  Time deadline{};
 };
 
 /// Sorts out stamps: the latencies at the stages `append`, `solved` and `published`, and of each
@@ -70,7 +70,7 @@ struct Measured {
 [[nodiscard]] Latencies make_stage(std::string name, const Measured& measured);
 
 /// Adds one waypoint's latency at a stage.
-void add(Latencies& stage, const AppendStamp& append, core::Time reached, const Measured& measured);
+void add(Latencies& stage, const AppendStamp& append, Time reached, const Measured& measured);
 
 /// Adds one that never got there.
 void add_missing(Latencies& stage);

@@ -30,8 +30,8 @@ constexpr double kMostRate = 100'000;
 constexpr double kMostWaypoints = 1e7;
 /// Revisions that only settle are noted too, 400 a second and more.
 constexpr double kMostNoted = 2e9;
-constexpr core::Time kLongestRun = std::chrono::hours(4);
-constexpr core::Time kLongestLead = std::chrono::minutes(1);  ///< the board holds it
+constexpr Time kLongestRun = std::chrono::hours(4);
+constexpr Time kLongestLead = std::chrono::minutes(1);  ///< the board holds it
 constexpr int kMostCpus = 1024;
 constexpr double kDefaultThreshold = 20;  // percent
 constexpr double kDefaultFloor = 1;       // µs
@@ -72,7 +72,7 @@ void require_cpu_each(const LatencyOptions& options) {
 }
 
 void require_measurable(const LatencyOptions& options) {
-  const double waypoints = options.rate * core::to_seconds(options.warmup + options.duration);
+  const double waypoints = options.rate * to_seconds(options.warmup + options.duration);
   if (waypoints > kMostWaypoints) {
     throw InputError(fmt::format("{:.0f} waypoints are more than {:.0f}, the most of a measurement",
                                  waypoints, kMostWaypoints));
@@ -82,7 +82,7 @@ void require_measurable(const LatencyOptions& options) {
     throw InputError(fmt::format(
         "{} s with {} readers would note {:.0f} bytes; the most is {:.0f}: choose a "
         "shorter --duration",
-        core::to_seconds(options.warmup + options.duration), options.readers, bytes, kMostNoted));
+        to_seconds(options.warmup + options.duration), options.readers, bytes, kMostNoted));
   }
   require_cpu_each(options);
 }
@@ -155,12 +155,12 @@ void add_cpu(CLI::App& verb, const std::string& name, std::optional<int>& cpu,
 void add_work(CLI::App& verb, LatencyOptions& options) {
   add_rate(verb, "--rate", options.rate, "Waypoints a second (default 1000)", {1, kMostRate});
   add_seconds(verb, "--duration", options.duration, "How long to measure (default 10)",
-              {core::Time(1), kLongestRun});
+              {Time(1), kLongestRun});
   add_seconds(verb, "--warmup", options.warmup, "How long to run before that (default 1)",
-              {core::Time::zero(), kLongestRun});
+              {Time::zero(), kLongestRun});
   add_milliseconds(verb, "--lead", options.lead,
                    "How far ahead of now waypoints are sent, at most 60000 (default 200)",
-                   {core::Time::zero(), kLongestLead});
+                   {Time::zero(), kLongestLead});
   verb.add_option_function<std::string>(
           "--deadline",
           [&options](const std::string& text) {
@@ -169,7 +169,7 @@ void add_work(CLI::App& verb, LatencyOptions& options) {
           "A latency beyond this is a missed deadline (default: a period)")
       ->type_name("MS");
   verb.add_option("--dims", options.dimensions, "Dimensions, 1 to 64 (default 7)")
-      ->check(CLI::Range(std::size_t{1}, core::kMaxDimensions))
+      ->check(CLI::Range(std::size_t{1}, kMaxDimensions))
       ->type_name("N");
   add_settle(verb, options.settle);
   verb.add_option("--readers", options.readers, "Readers, 1 to 64 (default 1)")

@@ -23,7 +23,7 @@ LimitFile read_limit_file(const std::string& path) {
 }
 
 double limit_value(const std::string& where, std::string_view what, double value) {
-  if (core::is_usable(value) && value >= 0) return value;
+  if (is_usable(value) && value >= 0) return value;
   throw InputError(fmt::format("{}: {} {} is no number from 0 to 1e100", where, what, value));
 }
 

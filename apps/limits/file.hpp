@@ -10,7 +10,7 @@ namespace splinecast::apps {
 
 /// What a file says of the limits of joints.
 struct LimitFile {
-  std::vector<core::NamedLimits> joints;
+  std::vector<NamedLimits> joints;
   std::vector<std::string> notes;  ///< parts that are not used, with file and line
 };
 

@@ -50,7 +50,7 @@ void add_list(CLI::App& verb, const std::string& name, const std::string& type,
 }
 
 /// `LO:HI`, of which either may be missing, or neither.
-bool parse_bounds(std::string_view field, core::MotionLimits& limits) {
+bool parse_bounds(std::string_view field, MotionLimits& limits) {
   const std::size_t colon = field.find(':');
   const bool is_none = field.empty() || field == "none";
   if (!is_none && colon == std::string_view::npos) return false;
@@ -62,7 +62,7 @@ bool parse_bounds(std::string_view field, core::MotionLimits& limits) {
   return true;
 }
 
-void add_bounds(CLI::App& verb, core::MotionLimits& limits) {
+void add_bounds(CLI::App& verb, MotionLimits& limits) {
   verb.add_option_function<std::string>(
           "--bounds",
           [&limits](const std::string& text) {
@@ -104,7 +104,7 @@ void add_limit_options(CLI::App& verb, LimitOptions& options, const std::string&
       ->type_name("FILE");
 }
 
-void add_beyond(CLI::App& verb, std::optional<core::Beyond>& beyond) {
+void add_beyond(CLI::App& verb, std::optional<Beyond>& beyond) {
   verb.add_option_function<std::string>(
           "--beyond",
           [&beyond](const std::string& text) {
@@ -112,7 +112,7 @@ void add_beyond(CLI::App& verb, std::optional<core::Beyond>& beyond) {
               throw CLI::ValidationError("--beyond",
                                          fmt::format("'{}' is neither report nor refuse", text));
             }
-            beyond = text == "refuse" ? core::Beyond::refuse : core::Beyond::report;
+            beyond = text == "refuse" ? Beyond::refuse : Beyond::report;
           },
           "What to do about a waypoint with which the curve passes a limit: report it (default), "
           "or "
@@ -120,8 +120,8 @@ void add_beyond(CLI::App& verb, std::optional<core::Beyond>& beyond) {
       ->type_name("WHAT");
 }
 
-LimitGaps limit_gaps(const core::MotionLimits& limits, std::span<const core::NamedLimits> joints,
-                     std::span<const std::string> names, std::span<const core::Dimension> kinds) {
+LimitGaps limit_gaps(const MotionLimits& limits, std::span<const NamedLimits> joints,
+                     std::span<const std::string> names, std::span<const Dimension> kinds) {
   LimitGaps gaps{.unmatched = core::unmatched(joints, names), .without = {}};
   for (const std::size_t d : core::without_limits(limits, kinds)) {
     const bool has_name = d < names.size() && !names[d].empty();

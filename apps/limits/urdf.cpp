@@ -106,7 +106,7 @@ LimitFile read_urdf(const std::string& name, const std::string& text) {
   for (const auto& [joint_name, joint] : model->joints_) {
     if (!is_dimension(*joint)) continue;
     const std::string at = fmt::format("{}:{}", name, lines.at(joint_name));
-    core::NamedLimits limits{.name = joint_name};
+    NamedLimits limits{.name = joint_name};
     if (joint->limits) {
       limits.velocity = limit_value(at, "velocity", joint->limits->velocity);
       if (limits.velocity == 0) {

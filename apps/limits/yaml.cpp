@@ -56,7 +56,7 @@ class Reader {
       if (!seen_.insert(joint).second) {
         refuse(entry.first, fmt::format("joint '{}' comes twice", joint));
       }
-      core::NamedLimits limits = joint_limits(joint, entry.second);
+      NamedLimits limits = joint_limits(joint, entry.second);
       limits.velocity *= velocity_share;
       limits.acceleration *= acceleration_share;
       file_.joints.push_back(std::move(limits));
@@ -80,7 +80,7 @@ class Reader {
   [[nodiscard]] double number(const YAML::Node& node, std::string_view key) const {
     const std::string text = node.IsScalar() ? node.Scalar() : "a list or map";
     const auto value = parse_number(text);
-    if (!value || !core::is_usable(*value)) {
+    if (!value || !is_usable(*value)) {
       refuse(node, fmt::format("{}: '{}' is no number up to 1e100", key, text));
     }
     return *value;
@@ -118,16 +118,16 @@ class Reader {
     return 0;
   }
 
-  core::NamedLimits joint_limits(const std::string& name, const YAML::Node& joint) {
+  NamedLimits joint_limits(const std::string& name, const YAML::Node& joint) {
     for (const auto& entry : joint) {
       const auto key = entry.first.Scalar();
       if (kJointKeys.contains(key) || kOtherKeys.contains(key)) continue;
       note(entry.first, fmt::format("'{}' of joint '{}' is not known", key, name));
     }
-    core::NamedLimits limits{.name = name,
-                             .velocity = magnitude(joint, "velocity"),
-                             .acceleration = magnitude(joint, "acceleration"),
-                             .jerk = magnitude(joint, "jerk")};
+    NamedLimits limits{.name = name,
+                       .velocity = magnitude(joint, "velocity"),
+                       .acceleration = magnitude(joint, "acceleration"),
+                       .jerk = magnitude(joint, "jerk")};
     limits.lower = value(joint, "has_position_limits", "min_position").value_or(limits.lower);
     limits.upper = value(joint, "has_position_limits", "max_position").value_or(limits.upper);
     if (limits.lower >= limits.upper) {

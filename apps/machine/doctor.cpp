@@ -15,9 +15,10 @@
 #include "ipc/layout/header.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
-#include "ipc/roles/stream_files.hpp"
+#include "ipc/options/stream.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/options.hpp"
+#include "splinecast/streams.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -86,14 +87,14 @@ Finding finding_of(const LeftName& name) {
 Finding clean(const LeftName& name) {
   const std::string check = fmt::format("stream {}", name.stream);
   try {
-    ipc::remove_stream(name.stream);
+    remove_stream(name.stream);
     return {.check = check,
             .means = fmt::format("its writers had ended: removed ({} bytes)", name.bytes)};
-  } catch (const ipc::NoSuchStream&) {
+  } catch (const NoSuchStream&) {
     return {.check = check, .means = "somebody else removed it"};
-  } catch (const ipc::StreamBusy& error) {
+  } catch (const StreamBusy& error) {
     return {.check = check, .means = error.what()};
-  } catch (const ipc::StreamError& error) {
+  } catch (const StreamError& error) {
     return {.check = check,
             .verdict = Verdict::problem,
             .means = error.what(),
@@ -105,9 +106,9 @@ Finding clean(const LeftName& name) {
 std::optional<LeftName> look(const std::string& stream) {
   try {
     return look_at_name(stream);
-  } catch (const ipc::NoSuchStream&) {
+  } catch (const NoSuchStream&) {
     return std::nullopt;
-  } catch (const ipc::StreamError& error) {
+  } catch (const StreamError& error) {
     return LeftName{.stream = stream, .state = NameState::unknown, .why = error.what()};
   }
 }
@@ -115,7 +116,7 @@ std::optional<LeftName> look(const std::string& stream) {
 std::vector<LeftName> names_to_look_at(const DoctorOptions& options) {
   if (options.stream) return {look_at_name(*options.stream)};
   std::vector<LeftName> names;
-  for (const std::string& stream : ipc::stream_names()) {
+  for (const std::string& stream : stream_names()) {
     if (auto name = look(stream)) names.push_back(std::move(*name));
   }
   return names;
@@ -125,7 +126,7 @@ std::vector<LeftName> names_to_look_at(const DoctorOptions& options) {
 std::optional<ipc::RegionHeader> peek(const std::string& stream) {
   try {
     return ipc::peek_header(stream, ipc::RegionKind::waypoints, {});
-  } catch (const ipc::StreamError&) {
+  } catch (const StreamError&) {
     return std::nullopt;
   }
 }
@@ -137,7 +138,7 @@ std::optional<Finding> clock_finding(const std::string& stream) {
   try {
     ipc::require_same_clock(*header, stream);
     return std::nullopt;
-  } catch (const ipc::BadRegion& error) {
+  } catch (const BadRegion& error) {
     return Finding{.check = fmt::format("time namespace of {}", stream),
                    .verdict = Verdict::problem,
                    .means = error.what(),

@@ -91,12 +91,12 @@ Environment read_environment(const fs::path& root) {
           .rt_period = first_line(root / "proc/sys/kernel/sched_rt_period_us")};
 }
 
-std::optional<core::Time> throttled_time(const Environment& environment) {
-  if (environment.rt_runtime == "-1") return core::Time::zero();
+std::optional<Time> throttled_time(const Environment& environment) {
+  if (environment.rt_runtime == "-1") return Time::zero();
   const auto runtime = parse_time(environment.rt_runtime, TimeUnit::microseconds);
   const auto period = parse_time(environment.rt_period, TimeUnit::microseconds);
   if (!runtime || !period) return std::nullopt;
-  return std::max(*period - *runtime, core::Time::zero());
+  return std::max(*period - *runtime, Time::zero());
 }
 
 nlohmann::ordered_json to_json(const Environment& environment) {

@@ -29,7 +29,7 @@ struct Environment {
 
 /// How long in each period the kernel stops SCHED_FIFO processes that would take a whole CPU, so
 /// that others run. Zero if it does not; nothing if the machine does not say.
-[[nodiscard]] std::optional<core::Time> throttled_time(const Environment& environment);
+[[nodiscard]] std::optional<Time> throttled_time(const Environment& environment);
 
 /// Reads it from /proc and /sys under `root`. Never throws for a file that is missing.
 [[nodiscard]] Environment read_environment(const std::filesystem::path& root = "/");

@@ -89,10 +89,10 @@ std::uint64_t inode_of(const fs::path& file) {
   return stat(file.c_str(), &status) == 0 ? status.st_ino : 0;
 }
 
-core::Time measure_clock() {
+Time measure_clock() {
   constexpr int kReadings = 1000;
-  const ipc::MonotonicClock clock;
-  const core::Time begin = clock.now();
+  const MonotonicClock clock;
+  const Time begin = clock.now();
   for (int i = 1; i < kReadings; ++i) (void)clock.now();
   return (clock.now() - begin) / kReadings;
 }

@@ -41,7 +41,7 @@ struct MachineFacts {
   std::string clock_offsets;         ///< /proc/self/timens_offsets
   std::string shared_huge_pages;     ///< …/transparent_hugepage/shmem_enabled
   std::string cpu_times;             ///< /proc/stat
-  core::Time clock_cost{};           ///< of one reading of CLOCK_MONOTONIC, mean
+  Time clock_cost{};                 ///< of one reading of CLOCK_MONOTONIC, mean
 };
 
 /// Reads them, files under `root`. Takes less than a millisecond. Never throws for a file that is

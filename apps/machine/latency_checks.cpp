@@ -110,14 +110,14 @@ Finding check_throttling(const MachineFacts& facts) {
     const auto why = unread(facts, {kRuntime, kPeriod});
     return unknown(check, why.empty() ? "the kernel does not say" : why);
   }
-  if (*stopped == core::Time::zero()) {
+  if (*stopped == Time::zero()) {
     return {.check = check, .means = "is off: a SCHED_FIFO process may take a whole CPU"};
   }
   return {.check = check,
           .verdict = Verdict::note,
           .means = fmt::format("a SCHED_FIFO process that spins is stopped for {:g} ms of each {} "
                                "us (sched_rt_runtime_us is {})",
-                               core::to_seconds(*stopped) * 1e3, facts.environment.rt_period,
+                               to_seconds(*stopped) * 1e3, facts.environment.rt_period,
                                facts.environment.rt_runtime),
           .mend =
               "let it sleep; or sysctl -w kernel.sched_rt_runtime_us=-1, where none can run away "

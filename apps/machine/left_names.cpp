@@ -56,7 +56,7 @@ LeftName look_at_name(const std::string& stream) {
       judge_file(path, status, name);
     }
   }
-  if (!stands) throw ipc::NoSuchStream(fmt::format("there is no stream '{}'", stream));
+  if (!stands) throw NoSuchStream(fmt::format("there is no stream '{}'", stream));
   if (name.state == NameState::dead && has_writer(stream)) name.state = NameState::living;
   return name;
 }

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "apps/output/samples.hpp"
 #include "splinecast/b_spline.hpp"
 #include "splinecast/bezier.hpp"
 #include "splinecast/calculus.hpp"
@@ -12,9 +13,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json breaks_json(const core::PiecewisePolynomial& curve) {
+ordered_json breaks_json(const PiecewisePolynomial& curve) {
   ordered_json breaks = ordered_json::array();
-  for (const core::Time t : curve.breaks()) breaks.push_back(t.count());
+  for (const Time t : curve.breaks()) breaks.push_back(t.count());
   return breaks;
 }
 
@@ -40,7 +41,7 @@ ordered_json coefficients_json(std::span<const double> coefficients, std::size_t
   return segment;
 }
 
-ordered_json pp_json(const core::PiecewisePolynomial& curve) {
+ordered_json pp_json(const PiecewisePolynomial& curve) {
   ordered_json segments = ordered_json::array();
   for (std::size_t i = 0; i < curve.segments() && !curve.is_hold(); ++i) {
     segments.push_back(coefficients_json(curve.coefficients(i), curve.dimensions()));
@@ -48,25 +49,25 @@ ordered_json pp_json(const core::PiecewisePolynomial& curve) {
   return {{"breaks_ns", breaks_json(curve)}, {"coefficients", std::move(segments)}};
 }
 
-ordered_json bezier_json(const core::PiecewisePolynomial& curve) {
+ordered_json bezier_json(const PiecewisePolynomial& curve) {
   ordered_json segments = ordered_json::array();
   if (!curve.is_hold()) {
-    for (const core::BezierSegment& segment : core::to_bezier(curve)) {
+    for (const BezierSegment& segment : to_bezier(curve)) {
       segments.push_back(points_json(segment.control_points, curve.dimensions()));
     }
   }
   return {{"breaks_ns", breaks_json(curve)}, {"segments", std::move(segments)}};
 }
 
-ordered_json b_spline_json(const core::PiecewisePolynomial& curve) {
-  core::BSpline spline{.degree = curve.order() - 1,
-                       .dimensions = curve.dimensions(),
-                       .origin = curve.breaks().front(),
-                       .knots = {},
-                       .control_points = {}};
-  if (!curve.is_hold()) spline = core::to_b_spline(curve);
+ordered_json b_spline_json(const PiecewisePolynomial& curve) {
+  BSpline spline{.degree = curve.order() - 1,
+                 .dimensions = curve.dimensions(),
+                 .origin = curve.breaks().front(),
+                 .knots = {},
+                 .control_points = {}};
+  if (!curve.is_hold()) spline = to_b_spline(curve);
   ordered_json knots = ordered_json::array();
-  for (const core::Time knot : spline.knots) knots.push_back(core::to_seconds(knot));
+  for (const Time knot : spline.knots) knots.push_back(to_seconds(knot));
   return {{"degree", spline.degree},
           {"origin_ns", spline.origin.count()},
           {"knots", std::move(knots)},
@@ -83,24 +84,24 @@ std::optional<Emit> parse_emit(std::string_view text) noexcept {
   return std::nullopt;
 }
 
-void emit_samples(const core::PiecewisePolynomial& curve, const core::DimensionKinds& kinds,
-                  const std::vector<core::Time>& at, std::optional<core::Time> dt, Output& output) {
+void emit_samples(const PiecewisePolynomial& curve, const DimensionKinds& kinds,
+                  const std::vector<Time>& at, std::optional<Time> dt, Output& output) {
   SampleWriter writer(output, curve.dimensions(), kinds, false);
-  core::State state(curve.dimensions());
-  const auto write = [&](core::Time t) {
+  State state(curve.dimensions());
+  const auto write = [&](Time t) {
     curve.evaluate(t, state.ref());
     kinds.normalise(state.ref());
     writer.write(t, state);
   };
-  for (const core::Time t : at) write(t);
+  for (const Time t : at) write(t);
   if (!dt) return;
-  const core::Time last = curve.breaks().back();
-  core::Time t = curve.breaks().front();
+  const Time last = curve.breaks().back();
+  Time t = curve.breaks().front();
   for (write(t); last - t >= *dt; write(t)) t += *dt;
 }
 
-void emit_json(const core::PiecewisePolynomial& curve, Emit what, Output& output) {
-  const auto even = core::raised(curve, curve.order());
+void emit_json(const PiecewisePolynomial& curve, Emit what, Output& output) {
+  const auto even = raised(curve, curve.order());
   const auto json = [&] {
     switch (what) {
       case Emit::bezier:

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/output/stream.hpp"
+#include "splinecast/dimension_kind.hpp"
 #include "splinecast/piecewise_polynomial.hpp"
 
 namespace splinecast::apps {
@@ -23,8 +24,8 @@ enum class Emit {
 
 /// Writes samples at the given times, then, given `dt`, every dt from the first to the last break,
 /// in the form in which dimensions of these kinds are read.
-void emit_samples(const core::PiecewisePolynomial& curve, const core::DimensionKinds& kinds,
-                  const std::vector<core::Time>& at, std::optional<core::Time> dt, Output& output);
+void emit_samples(const PiecewisePolynomial& curve, const DimensionKinds& kinds,
+                  const std::vector<Time>& at, std::optional<Time> dt, Output& output);
 
 /// Writes a line of JSON, all segments raised to the highest order. A single waypoint has no
 /// segment that a polynomial or a knot vector could span: then there are the waypoint's time and
@@ -34,6 +35,6 @@ void emit_samples(const core::PiecewisePolynomial& curve, const core::DimensionK
 /// - `bezier`: `breaks_ns`, `segments[segment][0…order−1][dimension]`.
 /// - `bspline`: `degree`, `origin_ns`, `knots` in seconds from the origin,
 ///   `control_points[i][dimension]`.
-void emit_json(const core::PiecewisePolynomial& curve, Emit what, Output& output);
+void emit_json(const PiecewisePolynomial& curve, Emit what, Output& output);
 
 }  // namespace splinecast::apps

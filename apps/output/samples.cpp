@@ -5,7 +5,7 @@
 
 namespace splinecast::apps {
 
-SampleWriter::SampleWriter(Output& output, std::size_t dimensions, core::DimensionKinds kinds,
+SampleWriter::SampleWriter(Output& output, std::size_t dimensions, DimensionKinds kinds,
                            bool with_status)
     : output_(&output), kinds_(std::move(kinds)), motions_(kinds_.quaternions().size()) {
   auto to = std::back_inserter(line_);
@@ -20,17 +20,17 @@ SampleWriter::SampleWriter(Output& output, std::size_t dimensions, core::Dimensi
   output_->write({line_.data(), line_.size()});
 }
 
-void SampleWriter::write(core::Time time, const core::State& state, std::string_view status) {
+void SampleWriter::write(Time time, const State& state, std::string_view status) {
   line_.clear();
   auto to = std::back_inserter(line_);
   fmt::format_to(to, "{}", time.count());
   for (const double value : state.values()) fmt::format_to(to, ",{}", value);
   for (std::size_t q = 0; q < motions_.size(); ++q) {
-    motions_[q] = core::angular_motion(kinds_.quaternions()[q], state.position(), state.velocity(),
-                                       state.acceleration());
+    motions_[q] = angular_motion(kinds_.quaternions()[q], state.position(), state.velocity(),
+                                 state.acceleration());
   }
-  for (const auto part : {&core::AngularMotion::velocity, &core::AngularMotion::acceleration}) {
-    for (const core::AngularMotion& motion : motions_) {
+  for (const auto part : {&AngularMotion::velocity, &AngularMotion::acceleration}) {
+    for (const AngularMotion& motion : motions_) {
       for (const double value : motion.*part) fmt::format_to(to, ",{}", value);
     }
   }

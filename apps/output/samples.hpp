@@ -18,16 +18,15 @@ namespace splinecast::apps {
 class SampleWriter {
  public:
   /// Writes the header, with a last column `status` if asked for.
-  SampleWriter(Output& output, std::size_t dimensions, core::DimensionKinds kinds,
-               bool with_status);
+  SampleWriter(Output& output, std::size_t dimensions, DimensionKinds kinds, bool with_status);
 
   /// Writes a row, of a state as it is read. An empty `status` writes none.
-  void write(core::Time time, const core::State& state, std::string_view status = {});
+  void write(Time time, const State& state, std::string_view status = {});
 
  private:
   Output* output_;
-  core::DimensionKinds kinds_;
-  std::vector<core::AngularMotion> motions_;  ///< of the quaternions
+  DimensionKinds kinds_;
+  std::vector<AngularMotion> motions_;  ///< of the quaternions
   fmt::memory_buffer line_;
 };
 

@@ -24,7 +24,7 @@ namespace {
 
 /// How long after a signal to the parent its children may take to end in order. Less than the
 /// parent's own time, so that it can still clean up.
-constexpr core::Time kGrace = std::chrono::seconds(3);
+constexpr Time kGrace = std::chrono::seconds(3);
 
 [[noreturn]] void run_child(const std::function<nlohmann::json()>& run, int pipe, pid_t parent) {
   int code = kOk;

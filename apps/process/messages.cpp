@@ -20,9 +20,9 @@ Progress::~Progress() {
 
 void Progress::show(std::string_view text) {
   if (!terminal_) return;
-  const core::Time now = ipc::MonotonicClock().now();
+  const Time now = MonotonicClock().now();
   if (now < next_) return;
-  constexpr core::Time kPeriod = std::chrono::milliseconds(100);
+  constexpr Time kPeriod = std::chrono::milliseconds(100);
   next_ = now + kPeriod;
   shown_ = true;
   fmt::print(stderr, "\r\033[K{}", text);

@@ -20,7 +20,7 @@ class Progress {
  private:
   bool terminal_;
   bool shown_ = false;
-  core::Time next_{};
+  Time next_{};
 };
 
 /// A message on stderr: `splinecast: …`. What its lines hold of other people's names and texts is

@@ -50,7 +50,7 @@ void end_at_once(int /*signal*/) {
 // Only async-signal-safe functions from here on.
 void request_stop(int /*signal*/) {
   const int error = errno;
-  stopped_at.store(ipc::MonotonicClock().now().count(), std::memory_order_relaxed);
+  stopped_at.store(MonotonicClock().now().count(), std::memory_order_relaxed);
   stop.store(true, std::memory_order_relaxed);
   for (const int signal : kStopSignals) {
     if (handler_of(signal) == request_stop) set_handler(signal, SIG_DFL);
@@ -87,19 +87,19 @@ void catch_stop_signals_as_child_of(pid_t waiting) {
 
 bool stop_requested() noexcept { return stop.load(std::memory_order_relaxed); }
 
-core::Time time_since_stop() noexcept {
-  if (!stop_requested()) return core::Time::zero();
-  return ipc::MonotonicClock().now() - core::Time(stopped_at.load(std::memory_order_relaxed));
+Time time_since_stop() noexcept {
+  if (!stop_requested()) return Time::zero();
+  return MonotonicClock().now() - Time(stopped_at.load(std::memory_order_relaxed));
 }
 
-bool sleep_until(core::Time instant) noexcept {
+bool sleep_until(Time instant) noexcept {
   // In slices: a signal that comes just before a sleep does not end it.
-  constexpr core::Time kSlice = std::chrono::milliseconds(50);
+  constexpr Time kSlice = std::chrono::milliseconds(50);
   constexpr std::int64_t kSecond = 1'000'000'000;
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   for (;;) {
     if (stop_requested()) return false;
-    const core::Time now = clock.now();
+    const Time now = clock.now();
     if (now >= instant) return true;
     const std::int64_t until = std::min(instant, now + kSlice).count();
     const timespec time{.tv_sec = until / kSecond, .tv_nsec = until % kSecond};

@@ -19,9 +19,9 @@ void catch_stop_signals_as_child_of(pid_t parent);
 [[nodiscard]] bool stop_requested() noexcept;
 
 /// How long ago the first one came; zero if none has.
-[[nodiscard]] core::Time time_since_stop() noexcept;
+[[nodiscard]] Time time_since_stop() noexcept;
 
 /// Sleeps until an instant of CLOCK_MONOTONIC. Returns false at once when a stop is requested.
-bool sleep_until(core::Time instant) noexcept;
+bool sleep_until(Time instant) noexcept;
 
 }  // namespace splinecast::apps

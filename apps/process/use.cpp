@@ -36,7 +36,7 @@ std::optional<ProcessUse> process_use(pid_t pid) {
                     .descriptors = static_cast<std::size_t>(count)};
 }
 
-core::Time cpu_time(pid_t pid) noexcept {
+Time cpu_time(pid_t pid) noexcept {
   clockid_t clock{};
   timespec time{};
   if (clock_getcpuclockid(pid, &clock) != 0 || clock_gettime(clock, &time) != 0) return {};

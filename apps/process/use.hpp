@@ -21,7 +21,7 @@ struct ProcessUse {
 [[nodiscard]] std::optional<ProcessUse> process_use(pid_t pid);
 
 /// CPU time that a process has taken so far, all of its threads together; 0 if there is none.
-[[nodiscard]] core::Time cpu_time(pid_t pid) noexcept;
+[[nodiscard]] Time cpu_time(pid_t pid) noexcept;
 
 /// Whether something stays flat over a run: the largest value of its second half, after a quarter
 /// for warming up, against the largest of the first half.

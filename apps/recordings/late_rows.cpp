@@ -38,21 +38,21 @@ std::string_view to_string(LatePolicy policy) noexcept {
   return "unknown";
 }
 
-void LateRows::count(ipc::Word LateRows::*kind, core::Time lateness) noexcept {
+void LateRows::count(ipc::Word LateRows::*kind, Time lateness) noexcept {
   ++(this->*kind);
   largest = std::max(largest, lateness);
 }
 
-void LateRows::shift(core::Time by) noexcept {
+void LateRows::shift(Time by) noexcept {
   ++shifts;
-  shifted = core::saturated_sum(shifted, by);
+  shifted = saturated_sum(shifted, by);
 }
 
 LateRows& LateRows::operator+=(const LateRows& other) noexcept {
   for (const auto& [name, kind] : kLateKinds) this->*kind += other.*kind;
   left_out += other.left_out;
   shifts += other.shifts;
-  shifted = core::saturated_sum(shifted, other.shifted);
+  shifted = saturated_sum(shifted, other.shifted);
   largest = std::max(largest, other.largest);
   return *this;
 }
@@ -75,11 +75,11 @@ std::string in_words(const LateRows& late) {
   }
   if (rows == 0) return {};
   std::string text =
-      fmt::format("{} late ({}), at most {:.6g} s", rows, kinds, core::to_seconds(late.largest));
+      fmt::format("{} late ({}), at most {:.6g} s", rows, kinds, to_seconds(late.largest));
   if (late.left_out > 0) text += fmt::format("; {} left out", late.left_out);
   if (late.shifts > 0) {
-    text += fmt::format("; shifted {} times, {:.6g} s in all", late.shifts,
-                        core::to_seconds(late.shifted));
+    text +=
+        fmt::format("; shifted {} times, {:.6g} s in all", late.shifts, to_seconds(late.shifted));
   }
   return text;
 }

@@ -30,14 +30,14 @@ struct LateRows {
   ipc::Word past = 0;          ///< settled when it could be sent; live streams only
   ipc::Word left_out = 0;      ///< of all these, rows that were neither sent nor refused
   ipc::Word shifts = 0;        ///< how often the rest of the recording was moved
-  core::Time shifted{};        ///< by how much in all
-  core::Time largest{};        ///< largest lateness of a row
+  Time shifted{};              ///< by how much in all
+  Time largest{};              ///< largest lateness of a row
 
   /// Counts a row of a kind that is late by so much.
-  void count(ipc::Word LateRows::*kind, core::Time lateness) noexcept;
+  void count(ipc::Word LateRows::*kind, Time lateness) noexcept;
 
   /// Moves the rest of the recording once more.
-  void shift(core::Time by) noexcept;
+  void shift(Time by) noexcept;
 
   LateRows& operator+=(const LateRows& other) noexcept;
   friend bool operator==(const LateRows&, const LateRows&) = default;

@@ -21,12 +21,12 @@ namespace splinecast::apps {
 namespace {
 
 std::string value_in_row(const WaypointTable& table, std::size_t i) {
-  const core::Waypoint row = table.waypoint(i);
+  const Waypoint row = table.waypoint(i);
   const std::array<const char*, 3> letters{"", "v of ", "a of "};
   const std::array parts{row.position, row.velocity, row.acceleration};
   for (std::size_t p = 0; p < 3; ++p) {
     for (std::size_t d = 0; d < parts[p].size(); ++d) {
-      if (core::is_usable(parts[p][d])) continue;
+      if (is_usable(parts[p][d])) continue;
       return fmt::format("column '{}{}': {}", letters[p], table.names[d], parts[p][d]);
     }
   }
@@ -40,7 +40,7 @@ bool are_same(std::span<const double> a, std::span<const double> b) {
 /// Goes through the rows of a table in order and decides about each, before anything is sent.
 class RowFilter {
  public:
-  RowFilter(WaypointTable& table, const ipc::IngestLimits& limits, LatePolicy policy,
+  RowFilter(WaypointTable& table, const IngestLimits& limits, LatePolicy policy,
             RefusedRows* skipped)
       : table_(&table),
         kinds_(table.kinds),
@@ -73,13 +73,13 @@ class RowFilter {
   };
 
   [[nodiscard]] std::optional<Objection> judge_values(std::size_t i) const {
-    const core::Waypoint row = table_->waypoint(i);
+    const Waypoint row = table_->waypoint(i);
     if (!ipc::is_finite(row.position) || !ipc::is_finite(row.velocity) ||
         !ipc::is_finite(row.acceleration)) {
-      return objection(i, ipc::AppendStatus::not_finite, value_in_row(*table_, i));
+      return objection(i, AppendStatus::not_finite, value_in_row(*table_, i));
     }
     if (const auto bad = zero_quaternion(*table_, kinds_, i)) {
-      return Objection{ipc::to_string(ipc::Refusal::zero_quaternion),
+      return Objection{to_string(Refusal::zero_quaternion),
                        fmt::format("{}: waypoint refused: {}", table_->where(i), *bad)};
     }
     return std::nullopt;
@@ -87,26 +87,26 @@ class RowFilter {
 
   [[nodiscard]] std::optional<Objection> judge_time(std::size_t i) const {
     if (kept_ == 0) return std::nullopt;
-    const core::Time time = table_->times[i];
+    const Time time = table_->times[i];
     auto status = ipc::judge_interval(time - last_, limits_);
-    if (!core::is_time_in_range(moved(time))) status = ipc::AppendStatus::too_far_apart;
-    if (status == ipc::AppendStatus::accepted) return std::nullopt;
+    if (!is_time_in_range(moved(time))) status = AppendStatus::too_far_apart;
+    if (status == AppendStatus::accepted) return std::nullopt;
     return objection(i, status,
                      fmt::format("time {} ns, {} ns after the waypoint before", time.count(),
                                  (time - last_).count()));
   }
 
-  [[nodiscard]] Objection objection(std::size_t i, ipc::AppendStatus status,
+  [[nodiscard]] Objection objection(std::size_t i, AppendStatus status,
                                     const std::string& value) const {
-    const std::string_view why = ipc::to_string(status);
+    const std::string_view why = to_string(status);
     return {why, fmt::format("{}: waypoint refused: {}: {}", table_->where(i), why, value)};
   }
 
   [[nodiscard]] bool is_late(std::size_t i) const { return kept_ > 0 && table_->times[i] <= last_; }
 
   void count_late(std::size_t i) {
-    const core::Time lateness = last_ - table_->times[i];
-    const bool is_duplicate = lateness == core::Time::zero();
+    const Time lateness = last_ - table_->times[i];
+    const bool is_duplicate = lateness == Time::zero();
     late_.count(is_duplicate ? &LateRows::duplicate : &LateRows::out_of_order, lateness);
   }
 
@@ -115,10 +115,10 @@ class RowFilter {
       ++late_.left_out;
       return false;
     }
-    const core::Time time = table_->times[i];
-    const core::Time by = core::saturated_sum(last_ - time, step_);
-    if (!core::is_time_in_range(core::saturated_sum(moved(time), by))) {
-      refuse(i, objection(i, ipc::AppendStatus::too_far_apart,
+    const Time time = table_->times[i];
+    const Time by = saturated_sum(last_ - time, step_);
+    if (!is_time_in_range(saturated_sum(moved(time), by))) {
+      refuse(i, objection(i, AppendStatus::too_far_apart,
                           fmt::format("time {} ns, to be shifted", time.count())));
       return false;
     }
@@ -127,15 +127,13 @@ class RowFilter {
   }
 
   [[nodiscard]] bool is_copy_of_last(std::size_t i) const {
-    const core::Waypoint row = table_->waypoint(i);
-    const core::Waypoint last = table_->waypoint(kept_ - 1);
+    const Waypoint row = table_->waypoint(i);
+    const Waypoint last = table_->waypoint(kept_ - 1);
     return table_->times[i] == last_ && are_same(row.position, last.position) &&
            are_same(row.velocity, last.velocity) && are_same(row.acceleration, last.acceleration);
   }
 
-  [[nodiscard]] core::Time moved(core::Time time) const {
-    return core::saturated_sum(time, late_.shifted);
-  }
+  [[nodiscard]] Time moved(Time time) const { return saturated_sum(time, late_.shifted); }
 
   bool keep(std::size_t i) {
     last_ = table_->times[i];
@@ -151,24 +149,22 @@ class RowFilter {
   }
 
   WaypointTable* table_;
-  core::DimensionKinds kinds_;
-  ipc::IngestLimits limits_;
+  DimensionKinds kinds_;
+  IngestLimits limits_;
   LatePolicy policy_;
   RefusedRows* skipped_;
-  core::Time step_;  ///< from the row before to a row that is moved behind it
+  Time step_;  ///< from the row before to a row that is moved behind it
   LateRows late_;
   std::size_t kept_ = 0;
-  core::Time last_{};  ///< of the last row that was kept, as recorded
+  Time last_{};  ///< of the last row that was kept, as recorded
 };
 
 }  // namespace
 
-void select_rows(WaypointTable& table, std::optional<core::Time> from,
-                 std::optional<core::Time> duration) {
-  const core::Time first =
-      core::saturated_sum(table.times.front(), from.value_or(core::Time::zero()));
-  const auto is_in = [&](core::Time t) {
-    return (!from || t >= first) && (!duration || t <= core::saturated_sum(first, *duration));
+void select_rows(WaypointTable& table, std::optional<Time> from, std::optional<Time> duration) {
+  const Time first = saturated_sum(table.times.front(), from.value_or(Time::zero()));
+  const auto is_in = [&](Time t) {
+    return (!from || t >= first) && (!duration || t <= saturated_sum(first, *duration));
   };
   table.keep_rows([&](std::size_t i) { return is_in(table.times[i]); });
   if (table.size() == 0) {
@@ -178,23 +174,23 @@ void select_rows(WaypointTable& table, std::optional<core::Time> from,
 
 void change_rate(WaypointTable& table, double rate) {
   if (rate == 1.0) return;
-  const core::Time first = table.times.front();
-  const double seconds = core::to_seconds(table.times.back() - first) / rate;
-  if (seconds > core::to_seconds(kLongestTime)) {
+  const Time first = table.times.front();
+  const double seconds = to_seconds(table.times.back() - first) / rate;
+  if (seconds > to_seconds(kLongestTime)) {
     throw InputError(fmt::format("{}: at --rate {} it takes {} s; the most is {} s", table.file,
-                                 rate, seconds, core::to_seconds(kLongestTime)));
+                                 rate, seconds, to_seconds(kLongestTime)));
   }
-  for (core::Time& t : table.times) {
+  for (Time& t : table.times) {
     constexpr double kMost = 9.2e18;  // what llround can return; no stream takes so late a time
     const double since = std::min(static_cast<double>((t - first).count()) / rate, kMost);
-    t = core::saturated_sum(first, core::Time(std::llround(since)));
+    t = saturated_sum(first, Time(std::llround(since)));
   }
   for (double& v : table.velocities) v *= rate;
   for (double& a : table.accelerations) a *= rate * rate;
 }
 
-core::Time median_interval(const WaypointTable& table) {
-  std::vector<core::Time> intervals;
+Time median_interval(const WaypointTable& table) {
+  std::vector<Time> intervals;
   for (std::size_t i = 1; i < table.size(); ++i) {
     if (table.times[i] <= table.times[i - 1]) continue;
     intervals.push_back(table.times[i] - table.times[i - 1]);
@@ -205,7 +201,7 @@ core::Time median_interval(const WaypointTable& table) {
   return *middle;
 }
 
-LateRows drop_unfit_rows(WaypointTable& table, const ipc::IngestLimits& limits, LatePolicy policy,
+LateRows drop_unfit_rows(WaypointTable& table, const IngestLimits& limits, LatePolicy policy,
                          RefusedRows* skipped) {
   RowFilter filter(table, limits, policy, skipped);
   table.keep_rows([&](std::size_t i) { return filter.keeps(i); });

@@ -21,8 +21,8 @@ std::string_view to_string(RefusedBy by) {
 
 }  // namespace
 
-nlohmann::ordered_json to_json(const ipc::LimitExcess& excess) {
-  return {{"kind", core::to_string(excess.kind)},
+nlohmann::ordered_json to_json(const LimitExcess& excess) {
+  return {{"kind", to_string(excess.kind)},
           {"dimension", excess.dimension},
           {"time_ns", excess.time.count()},
           {"value", excess.value},

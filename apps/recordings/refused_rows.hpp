@@ -13,7 +13,7 @@
 namespace splinecast::apps {
 
 /// `kind`, `dimension`, `time_ns`, `value`, `limit`.
-[[nodiscard]] nlohmann::ordered_json to_json(const ipc::LimitExcess& excess);
+[[nodiscard]] nlohmann::ordered_json to_json(const LimitExcess& excess);
 
 /// Who refused a row.
 enum class RefusedBy : std::uint8_t {
@@ -26,11 +26,11 @@ inline constexpr std::size_t kRefusedBy = 3;
 /// A row of a recording that is not interpolated.
 struct RefusedRow {
   RefusedBy by{};
-  std::string_view reason;            ///< `unreadable`, or as ipc::to_string has it
-  std::optional<std::size_t> line{};  ///< in the file, from 1; unset: the item is no row of ours
-  std::optional<ipc::Word> item{};    ///< number in the ring; of the solver's only
-  std::optional<std::size_t> loop{};  ///< from 1; of what was played only
-  std::optional<ipc::LimitExcess> excess{};  ///< of one beyond limits
+  std::string_view reason;              ///< `unreadable`, or as to_string has it
+  std::optional<std::size_t> line{};    ///< in the file, from 1; unset: the item is no row of ours
+  std::optional<ipc::Word> item{};      ///< number in the ring; of the solver's only
+  std::optional<std::size_t> loop{};    ///< from 1; of what was played only
+  std::optional<LimitExcess> excess{};  ///< of one beyond limits
 };
 
 /// The rows of a recording that are not interpolated. Each is named on standard error as soon as it

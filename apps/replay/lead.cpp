@@ -7,13 +7,14 @@
 
 #include "apps/advise/report.hpp"
 #include "apps/process/messages.hpp"
+#include "ipc/options/curve.hpp"
 
 namespace splinecast::apps {
 namespace {
 
 /// Warns if a lead is less than what K needs, and says what a silence of 100 ms does with it.
-void judge_lead(core::Time lead, core::Time needed, core::Time interval, const SolvedHow& how,
-                const ReplayOptions& options, core::Time stop_time) {
+void judge_lead(Time lead, Time needed, Time interval, const SolvedHow& how,
+                const ReplayOptions& options, Time stop_time) {
   if (lead >= needed) return;
   const Hiccup hiccup = foresee(lead, std::chrono::milliseconds(100), interval, how.freeze_ahead,
                                 {}, {.stop_time = stop_time});
@@ -24,23 +25,21 @@ void judge_lead(core::Time lead, core::Time needed, core::Time interval, const S
 
 }  // namespace
 
-core::Time choose_lead(const WaypointTable& table, const ReplayOptions& options,
-                       const ipc::RegionHeader& board) {
+Time choose_lead(const WaypointTable& table, const ReplayOptions& options,
+                 const ipc::RegionHeader& board) {
   const auto live = ipc::live_options(board);
   if (!live || !options.rate || table.size() < 2) return options.lead.value_or(kLeastLead);
   const SolvedHow how{.settle = board.settle, .freeze_ahead = live->freeze_ahead};
   const Intervals intervals = measure_intervals(table.times);
-  const core::Time length =
-      options.loops > 1 ? core::Time::max() : table.times.back() - table.times.front();
+  const Time length = options.loops > 1 ? Time::max() : table.times.back() - table.times.front();
   if (options.lead) {
-    const core::Time needed = depth_needed(intervals.median, length, how);
+    const Time needed = depth_needed(intervals.median, length, how);
     if (!options.quiet) {
-      judge_lead(*options.lead, needed, intervals.median, how, options,
-                 core::Time(board.stop_time));
+      judge_lead(*options.lead, needed, intervals.median, how, options, Time(board.stop_time));
     }
     return *options.lead;
   }
-  const core::Time lead = advised_lead(intervals, length, how);
+  const Time lead = advised_lead(intervals, length, how);
   if (lead != kLeastLead && !options.quiet) {
     say(fmt::format("'{}': lead {}: {}", options.stream, in_milliseconds(lead),
                     lead_in_words(intervals, how, lead)));

@@ -16,14 +16,16 @@
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/roles/old_motion.hpp"
-#include "ipc/roles/stream_files.hpp"
+
+#include "ipc/options/curve.hpp"
+#include "ipc/solve/stream_solver.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/producer.hpp"
 
 namespace splinecast::apps {
 namespace {
 
-constexpr core::Time kSlice = std::chrono::milliseconds(50);
+constexpr Time kSlice = std::chrono::milliseconds(50);
 
 /// Throws BadRegion instead, if what stands under the board's name is what keeps a solver from it.
 [[noreturn]] void throw_no_solver(const ReplayOptions& options) {
@@ -31,15 +33,15 @@ constexpr core::Time kSlice = std::chrono::milliseconds(50);
     (void)ipc::open_board(options.stream, false, options.trust);
   }
   throw TimeOut(fmt::format("no solver for stream '{}' within {} s: run 'splinecast solve {}'",
-                            options.stream, core::to_seconds(options.wait), options.stream));
+                            options.stream, to_seconds(options.wait), options.stream));
 }
 
 /// A finished stream is made again only once there is a solver for the new one: until then its
 /// curve can still be read. Returns false if a stop is requested meanwhile.
 bool await_solver_of_finished(const ReplayOptions& options) {
   if (!ipc::region_exists(options.stream, ipc::RegionKind::spline)) return true;
-  const ipc::MonotonicClock clock;
-  const core::Time end = ipc::deadline(clock, options.wait);
+  const MonotonicClock clock;
+  const Time end = deadline(clock, options.wait);
   while (!ipc::is_owned(options.stream, ipc::RegionKind::spline)) {
     if (clock.now() >= end) throw_no_solver(options);
     if (!sleep_until(clock.now() + std::chrono::milliseconds(2))) return false;
@@ -55,7 +57,7 @@ class Replay {
         options_(options),
         refused_(refused),
         solver_(options.embedded
-                    ? std::optional<ipc::Solver>(std::in_place, options.stream, options.solver)
+                    ? std::optional<Solver>(std::in_place, options.stream, options.solver)
                     : std::nullopt),
         producer_(options.stream, producer_options()) {}
 
@@ -69,7 +71,7 @@ class Replay {
     if (!producer_.is_memory_locked() && !options_.quiet) {
       say(fmt::format("'{}': pages are not locked into memory (RLIMIT_MEMLOCK)", options_.stream));
     }
-    const core::Time base = first_time();
+    const Time base = first_time();
     require_continuation(base);
     const bool played = play(base);
     finish();
@@ -103,15 +105,14 @@ class Replay {
   [[nodiscard]] std::size_t planned() const { return table_.size() * options_.loops; }
 
   /// Sends all loops; false if a stop is requested or a refused row stops it.
-  bool play(core::Time base) {
-    const core::Time shift =
-        core::saturated_sum(table_.times.back() - table_.times.front(), median_interval(table_));
+  bool play(Time base) {
+    const Time shift =
+        saturated_sum(table_.times.back() - table_.times.front(), median_interval(table_));
     Progress progress;
     next_item_ = producer_.appended();
     for (std::size_t loop = 0; loop < options_.loops; ++loop) {
-      const core::Time offset =
-          core::saturated_sum(base - table_.times.front(),
-                              core::saturated_product(shift, static_cast<std::int64_t>(loop)));
+      const Time offset = saturated_sum(base - table_.times.front(),
+                                        saturated_product(shift, static_cast<std::int64_t>(loop)));
       for (std::size_t i = 0; i < table_.size(); ++i) {
         if (!send({.row = i, .loop = loop}, offset, progress)) return false;
       }
@@ -119,7 +120,7 @@ class Replay {
     return true;
   }
 
-  [[nodiscard]] ipc::ProducerOptions producer_options() const {
+  [[nodiscard]] ProducerOptions producer_options() const {
     return {.dimensions = table_.dimensions(),
             .names = table_.names,
             .kinds = table_.kinds,
@@ -131,12 +132,12 @@ class Replay {
             .trust = options_.trust};
   }
 
-  [[nodiscard]] core::Condition end() const { return options_.end.value_or(unasked()); }
+  [[nodiscard]] Condition end() const { return options_.end.value_or(unasked()); }
 
   /// The condition at an end that none was asked for.
-  [[nodiscard]] core::Condition unasked() const {
-    const bool live = options_.clock == ipc::StreamClock::monotonic;
-    return {.kind = live ? core::ConditionKind::halt : core::ConditionKind::own, .value = {}};
+  [[nodiscard]] Condition unasked() const {
+    const bool live = options_.clock == StreamClock::monotonic;
+    return {.kind = live ? ConditionKind::halt : ConditionKind::own, .value = {}};
   }
 
   /// Lets the embedded solver work off what the ring holds.
@@ -150,9 +151,8 @@ class Replay {
 
   /// Waits for a solver; false if a stop is requested meanwhile.
   bool await_solver() {
-    const core::Time old = old_motion();
-    const core::Time end =
-        ipc::deadline(clock_, old + std::min(options_.wait, core::Time::max() - old));
+    const Time old = old_motion();
+    const Time end = deadline(clock_, old + std::min(options_.wait, Time::max() - old));
     while (!stop_requested()) {
       solve();
       if (producer_.wait_for_solver(slice())) return true;
@@ -163,15 +163,14 @@ class Replay {
 
   /// How long the old motion of a stream that was made again still lasts: no solver takes the
   /// stream up before its end.
-  [[nodiscard]] core::Time old_motion() const {
-    const core::Time end =
-        ipc::end_of_old_motion(options_.stream, producer_.stream_id(), options_.trust);
-    const core::Time now = clock_.now();
+  [[nodiscard]] Time old_motion() const {
+    const Time end = ipc::end_of_old_motion(options_.stream, producer_.stream_id(), options_.trust);
+    const Time now = clock_.now();
     ipc::require_near_end(options_.stream, end, now);
-    if (end <= now) return core::Time::zero();
+    if (end <= now) return Time::zero();
     if (!options_.quiet) {
       say(fmt::format("'{}': waits {:.1f} s for the end of the earlier motion", options_.stream,
-                      core::to_seconds(end - now)));
+                      to_seconds(end - now)));
     }
     return end - now;
   }
@@ -181,9 +180,8 @@ class Replay {
   }
 
   /// Time of the first waypoint on the stream's clock.
-  [[nodiscard]] core::Time first_time() const {
-    return options_.clock == ipc::StreamClock::monotonic ? clock_.now() + lead_
-                                                         : table_.times.front();
+  [[nodiscard]] Time first_time() const {
+    return options_.clock == StreamClock::monotonic ? clock_.now() + lead_ : table_.times.front();
   }
 
   /// What a producer before this one sent is not known, so that nothing behind it can be solved.
@@ -197,7 +195,7 @@ class Replay {
     log_.emplace(options_.stream, producer_.stream_id(), options_.trust);
   }
 
-  void require_continuation(core::Time first) const {
+  void require_continuation(Time first) const {
     if (!producer_.continues() || first > producer_.last_time()) return;
     throw InputError(fmt::format(
         "stream '{}' was left unfinished by its producer at {} ns; this recording begins at {} "
@@ -206,13 +204,13 @@ class Replay {
   }
 
   /// Sends a row at its time. Returns false if a stop is requested or a refused row stops it.
-  bool send(const Sent& next, core::Time offset, Progress& progress) {
-    core::Waypoint waypoint = table_.waypoint(next.row);
-    waypoint.time = core::saturated_sum(waypoint.time, core::saturated_sum(offset, late_.shifted));
+  bool send(const Sent& next, Time offset, Progress& progress) {
+    Waypoint waypoint = table_.waypoint(next.row);
+    waypoint.time = saturated_sum(waypoint.time, saturated_sum(offset, late_.shifted));
     if (stop_requested() || (options_.rate && !pace(waypoint.time))) return false;
-    const ipc::AppendStatus status = append_when_there_is_room(waypoint);
-    if (status == ipc::AppendStatus::full) return false;
-    if (status == ipc::AppendStatus::accepted) {
+    const AppendStatus status = append_when_there_is_room(waypoint);
+    if (status == AppendStatus::full) return false;
+    if (status == AppendStatus::accepted) {
       ++sent_;
       in_ring_.push_back(next);
       if (log_) log_->sent(waypoint);
@@ -231,11 +229,11 @@ class Replay {
 
   /// Appends a waypoint, moved if it is late and to be shifted. Returns `full` if a stop is
   /// requested while it waits for room.
-  ipc::AppendStatus append_when_there_is_room(core::Waypoint& waypoint) {
-    const core::Time intended = waypoint.time;
-    core::Time lateness = shift_if_late(waypoint);
-    ipc::AppendStatus status = append(waypoint);
-    while (status == ipc::AppendStatus::full) {
+  AppendStatus append_when_there_is_room(Waypoint& waypoint) {
+    const Time intended = waypoint.time;
+    Time lateness = shift_if_late(waypoint);
+    AppendStatus status = append(waypoint);
+    while (status == AppendStatus::full) {
       if (stop_requested() || !await_room()) return status;
       lateness = std::max(lateness, shift_if_late(waypoint));
       status = append(waypoint);
@@ -246,45 +244,45 @@ class Replay {
 
   /// How much a waypoint is late that can be sent now: how long before the end of what settles now
   /// it lies; 0 if it does not. With `--late shift` it is given the lead again.
-  core::Time shift_if_late(core::Waypoint& waypoint) {
-    if (options_.clock != ipc::StreamClock::monotonic) return {};
-    const core::Time now = clock_.now();
-    const core::Time settled = std::max(producer_.earliest(), now + freeze_ahead_);
-    const core::Time lateness = std::max(settled - waypoint.time, core::Time::zero());
-    if (lateness > core::Time::zero() && options_.late == LatePolicy::shift) {
+  Time shift_if_late(Waypoint& waypoint) {
+    if (options_.clock != StreamClock::monotonic) return {};
+    const Time now = clock_.now();
+    const Time settled = std::max(producer_.earliest(), now + freeze_ahead_);
+    const Time lateness = std::max(settled - waypoint.time, Time::zero());
+    if (lateness > Time::zero() && options_.late == LatePolicy::shift) {
       waypoint.time = std::max(waypoint.time, now + lead_);
     }
     return lateness;
   }
 
   /// Counts a waypoint that was late and moves those behind it as it was moved.
-  void note_lateness(core::Time lateness, core::Time moved_by) {
-    if (lateness == core::Time::zero()) return;
+  void note_lateness(Time lateness, Time moved_by) {
+    if (lateness == Time::zero()) return;
     late_.count(&LateRows::past, lateness);
-    if (moved_by > core::Time::zero()) late_.shift(moved_by);
+    if (moved_by > Time::zero()) late_.shift(moved_by);
   }
 
   /// Appends a waypoint unless so many items before it are undecided that a refusal could be
   /// overwritten unseen. (In a ring of more items than the board keeps refusals, there may be
   /// more.)
-  ipc::AppendStatus append(const core::Waypoint& waypoint) {
+  AppendStatus append(const Waypoint& waypoint) {
     look_for_refusals();
     const bool is_behind = producer_.appended() - found_.consumed >= ipc::kRefusalsKept &&
                            options_.capacity <= ipc::kRefusalsKept;
     if (!is_behind) return producer_.append(waypoint);
     (void)board_->head();  // throws if there is none: then nothing would become known any more
-    return ipc::AppendStatus::full;
+    return AppendStatus::full;
   }
 
   /// What the append refused is not in the ring.
-  void note_refusal(const Sent& row, core::Time time, ipc::AppendStatus status) {
+  void note_refusal(const Sent& row, Time time, AppendStatus status) {
     ++refused_by_producer_;
     note({.by = RefusedBy::producer,
-          .reason = ipc::to_string(status),
+          .reason = to_string(status),
           .line = table_.lines[row.row],
           .loop = row.loop + 1},
          fmt::format("{}: waypoint refused: {} (time {} ns)", table_.where(row.row),
-                     ipc::to_string(status), time.count()));
+                     to_string(status), time.count()));
   }
 
   /// The board keeps the last refusals only: so this is called with every waypoint, and costs next
@@ -293,14 +291,14 @@ class Replay {
     if (log_) log_->look();
     producer_.refusals(found_);
     missed_ += found_.missed;
-    for (const ipc::ItemRefusal& refused : found_.items) note_refusal(refused);
+    for (const ItemRefusal& refused : found_.items) note_refusal(refused);
     for (; next_item_ < found_.consumed && !in_ring_.empty(); ++next_item_) in_ring_.pop_front();
   }
 
-  void note_refusal(const ipc::ItemRefusal& refused) {
+  void note_refusal(const ItemRefusal& refused) {
     if (log_) log_->refused(refused.item);
     RefusedRow row{
-        .by = RefusedBy::solver, .reason = ipc::to_string(refused.reason), .item = refused.item};
+        .by = RefusedBy::solver, .reason = to_string(refused.reason), .item = refused.item};
     std::string where = "the end";
     const ipc::Word i = refused.item - next_item_;
     if (i < in_ring_.size()) {
@@ -312,7 +310,7 @@ class Replay {
                                       row.reason, refused.item);
     if (refused.excess) {
       row.excess = refused.excess;
-      message += ": " + ipc::in_words(*refused.excess, table_.names);
+      message += ": " + in_words(*refused.excess, table_.names);
     }
     note(row, message);
   }
@@ -324,8 +322,8 @@ class Replay {
 
   /// Waits until it is time to send: `lead` before a live waypoint's time, or, for a recorded
   /// stream, as long after the first one as it was recorded.
-  bool pace(core::Time waypoint_time) {
-    if (options_.clock == ipc::StreamClock::monotonic) {
+  bool pace(Time waypoint_time) {
+    if (options_.clock == StreamClock::monotonic) {
       return wait_until(waypoint_time - lead_);
     }
     if (sent_ == 0) recorded_start_ = clock_.now() - waypoint_time;
@@ -334,9 +332,9 @@ class Replay {
 
   /// Sleeps until an instant, but steps the embedded solver each time it is due. Returns false if a
   /// stop is requested.
-  bool wait_until(core::Time instant) {
+  bool wait_until(Time instant) {
     if (!solver_) return sleep_until(instant);
-    for (core::Time now = clock_.now(); now < instant; now = clock_.now()) {
+    for (Time now = clock_.now(); now < instant; now = clock_.now()) {
       if (stop_requested()) return false;
       solve();
       solver_->wait(instant - now);
@@ -347,26 +345,26 @@ class Replay {
   [[nodiscard]] bool is_solver_due() const { return solver_ && solver_->due() <= clock_.now(); }
 
   /// Longest that this process may block: an embedded solver must be stepped by its due time.
-  [[nodiscard]] core::Time slice() const {
+  [[nodiscard]] Time slice() const {
     if (!solver_) return kSlice;
-    return std::clamp(solver_->due() - clock_.now(), core::Time::zero(), kSlice);
+    return std::clamp(solver_->due() - clock_.now(), Time::zero(), kSlice);
   }
 
   /// Waits while the solver has something to do; false if a stop is requested. A solver that lives
   /// may take its time; without one, only --wait.
   template <typename Wait>
   bool await(const Wait& wait) {
-    core::Time end = ipc::deadline(clock_, options_.wait);
+    Time end = deadline(clock_, options_.wait);
     for (;;) {
       solve();
       if (board_) look_for_refusals();
       if (wait()) return true;
       if (stop_requested()) return false;
       if (producer_.solver_alive()) {
-        end = ipc::deadline(clock_, options_.wait);
+        end = deadline(clock_, options_.wait);
       } else if (clock_.now() >= end) {
         throw TimeOut(fmt::format("the solver of stream '{}' has gone and none came within {} s",
-                                  options_.stream, core::to_seconds(options_.wait)));
+                                  options_.stream, to_seconds(options_.wait)));
       }
     }
   }
@@ -378,7 +376,7 @@ class Replay {
   }
 
   void finish() {
-    while (producer_.finish(end()) == ipc::AppendStatus::full) {
+    while (producer_.finish(end()) == AppendStatus::full) {
       if (!await_room()) return;
     }
     solve();
@@ -414,15 +412,15 @@ class Replay {
   const WaypointTable& table_;
   const ReplayOptions& options_;
   RefusedRows& refused_;
-  ipc::MonotonicClock clock_;
-  std::optional<ipc::Solver> solver_;  ///< first: if there is another one, nothing has been made
-  ipc::Producer producer_;
-  core::Time recorded_start_{};
-  core::Time lead_{};
-  core::Time freeze_ahead_{};
+  MonotonicClock clock_;
+  std::optional<Solver> solver_;  ///< first: if there is another one, nothing has been made
+  Producer producer_;
+  Time recorded_start_{};
+  Time lead_{};
+  Time freeze_ahead_{};
   LateRows late_;
   std::optional<OwnBoard> board_;  ///< once there is one
-  ipc::Refusals found_;            ///< by the last look
+  Refusals found_;                 ///< by the last look
   ipc::Word missed_ = 0;
   std::optional<StreamLog> log_;  ///< if it is to be verified
   ipc::Head before_;              ///< what a producer left whose stream is continued

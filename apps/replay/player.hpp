@@ -20,24 +20,24 @@ struct ReplayOptions {
   std::string stream{};
   std::optional<double> rate = 1.0;  ///< unset: as fast as it goes
   std::size_t loops = 1;
-  std::optional<core::Time> from{};
-  std::optional<core::Time> duration{};
-  ipc::StreamClock clock = ipc::StreamClock::monotonic;
-  std::optional<core::Time> lead{};  ///< unset: what the recording and the settle lag need
-  std::optional<core::Condition> start{};
-  std::optional<core::Condition> end{};
+  std::optional<Time> from{};
+  std::optional<Time> duration{};
+  StreamClock clock = StreamClock::monotonic;
+  std::optional<Time> lead{};  ///< unset: what the recording and the settle lag need
+  std::optional<Condition> start{};
+  std::optional<Condition> end{};
   LatePolicy late = LatePolicy::refuse;
   bool skip_bad = false;
-  core::Time wait{10'000'000'000};
+  Time wait{10'000'000'000};
   bool embedded = false;
   bool verify = false;  ///< solve what settles again, and compare
   bool json = false;
   bool quiet = false;
   std::size_t capacity = 1024;
-  ipc::IngestLimits limits{};
-  ipc::RegionAccess access{};
-  ipc::Trust trust{};
-  ipc::SolverOptions solver{};  ///< of the embedded solver
+  IngestLimits limits{};
+  RegionAccess access{};
+  Trust trust{};
+  SolverOptions solver{};  ///< of the embedded solver
 };
 
 /// What became of a replay.
@@ -47,7 +47,7 @@ struct ReplayReport {
   ipc::Word interpolated = 0;  ///< of these, by the solver
   ipc::Word passed_over = 0;   ///< of these, by entries: taken, but the curve does not meet them
   ipc::Word refused = 0;       ///< of these, by the solver, with a reason
-  std::array<ipc::Word, ipc::kRefusals> refused_by_reason{};
+  std::array<ipc::Word, kRefusals> refused_by_reason{};
   LateRows late{};                     ///< rows that were late when they could be sent
   std::optional<RefusedBy> stopped{};  ///< who refused the row at which --on-error stop stopped it
   bool interrupted = false;

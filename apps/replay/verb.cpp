@@ -28,10 +28,10 @@ ordered_json skipped_by_reason(const RefusedRows& refused) {
     return refused.count(RefusedBy::file, reason) + refused.count(RefusedBy::producer, reason);
   };
   ordered_json json{{kUnreadable, count(kUnreadable)}};
-  for (std::uint8_t i = 1; i < ipc::kAppendStatuses; ++i) {
-    const auto status = static_cast<ipc::AppendStatus>(i);
-    if (status == ipc::AppendStatus::full) continue;  // sent again until there is room
-    json[std::string(ipc::to_string(status))] = count(ipc::to_string(status));
+  for (std::uint8_t i = 1; i < kAppendStatuses; ++i) {
+    const auto status = static_cast<AppendStatus>(i);
+    if (status == AppendStatus::full) continue;  // sent again until there is room
+    json[std::string(to_string(status))] = count(to_string(status));
   }
   return json;
 }
@@ -40,8 +40,8 @@ ordered_json skipped_by_reason(const RefusedRows& refused) {
 ordered_json refused_by_reason(const ReplayReport& report) {
   ordered_json json = ordered_json::object();
   for (std::size_t i = 1; i < report.refused_by_reason.size(); ++i) {
-    const auto reason = static_cast<ipc::Refusal>(i);
-    json[std::string(ipc::to_string(reason))] = report.refused_by_reason[i];
+    const auto reason = static_cast<Refusal>(i);
+    json[std::string(to_string(reason))] = report.refused_by_reason[i];
   }
   return json;
 }
@@ -135,8 +135,7 @@ void add_playback_options(CLI::App& verb, ReplayOptions& options) {
               throw CLI::ValidationError("--clock",
                                          fmt::format("'{}' is neither live nor recorded", text));
             }
-            options.clock =
-                text == "live" ? ipc::StreamClock::monotonic : ipc::StreamClock::recorded;
+            options.clock = text == "live" ? StreamClock::monotonic : StreamClock::recorded;
           },
           "live (default): now on this host's clock; recorded: the file's own stamps")
       ->type_name("CLOCK");
@@ -156,8 +155,7 @@ void add_playback_options(CLI::App& verb, ReplayOptions& options) {
       "for c2 is halt)");
 }
 
-void add_interval(CLI::App& verb, const std::string& name, core::Time& value,
-                  const std::string& help) {
+void add_interval(CLI::App& verb, const std::string& name, Time& value, const std::string& help) {
   verb.add_option_function<std::string>(
           name,
           [&value, name](const std::string& text) {
@@ -170,11 +168,11 @@ void add_interval(CLI::App& verb, const std::string& name, core::Time& value,
 /// All loops together may not take longer than times can say.
 void require_loops(const WaypointTable& table, std::size_t loops) {
   if (loops == 1) return;
-  const core::Time once = table.times.back() - table.times.front() + median_interval(table);
-  const double seconds = static_cast<double>(loops) * core::to_seconds(once);
-  if (seconds <= core::to_seconds(kLongestTime)) return;
+  const Time once = table.times.back() - table.times.front() + median_interval(table);
+  const double seconds = static_cast<double>(loops) * to_seconds(once);
+  if (seconds <= to_seconds(kLongestTime)) return;
   throw InputError(fmt::format("{}: --loop {} takes {} s; the most is {} s", table.file, loops,
-                               seconds, core::to_seconds(kLongestTime)));
+                               seconds, to_seconds(kLongestTime)));
 }
 
 }  // namespace
@@ -185,16 +183,16 @@ LateRows prepare_replay(WaypointTable& table, const ReplayOptions& options, Refu
   const LateRows late =
       drop_unfit_rows(table, options.limits, options.late, options.skip_bad ? &refused : nullptr);
   require_loops(table, options.loops);
-  const core::Condition none;
-  core::require_values(options.start.value_or(none), table.dimensions());
-  core::require_values(options.end.value_or(none), table.dimensions());
-  core::DimensionKinds(table.kinds).require_end(options.end.value_or(none));
+  const Condition none;
+  require_values(options.start.value_or(none), table.dimensions());
+  require_values(options.end.value_or(none), table.dimensions());
+  DimensionKinds(table.kinds).require_end(options.end.value_or(none));
   for (const auto& condition : {options.start, options.end}) {
-    if (condition && !core::is_online(condition->kind)) {
+    if (condition && !is_online(condition->kind)) {
       throw InputError(
           fmt::format("condition '{}' needs all waypoints at once: a stream cannot "
                       "meet it",
-                      core::to_string(*condition)));
+                      to_string(*condition)));
     }
   }
   return late;
@@ -257,15 +255,15 @@ void add_replay(CLI::App& program, Action& action) {
   add_access(*verb, options->access);
   add_trust(*verb, options->trust);
   verb->callback([&action, options] {
-    const ipc::SolverOptions& curve = options->solver;
+    const SolverOptions& curve = options->solver;
     const bool shapes = curve.method != nullptr || curve.lambda || curve.time_scale ||
                         curve.settle || curve.tail || curve.force_lag;
     if (shapes && !options->embedded) {
       throw CLI::ValidationError("--method, --lambda, --time-scale, --settle, --tail, --force-lag",
                                  "go with --embedded; else tell 'solve'");
     }
-    const bool is_live = options->clock == ipc::StreamClock::monotonic;
-    if (is_live && options->end && !core::is_at_rest(options->end->kind)) {
+    const bool is_live = options->clock == StreamClock::monotonic;
+    if (is_live && options->end && !is_at_rest(options->end->kind)) {
       throw CLI::ValidationError("--end", "a live stream ends at rest: rest or halt");
     }
     options->solver.access = options->access;

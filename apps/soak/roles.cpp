@@ -9,13 +9,13 @@
 #include "apps/streams/attach.hpp"
 #include "apps/trials/curve_watch.hpp"
 #include "apps/trials/joint_motion.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/reader.hpp"
 
 namespace splinecast::apps {
 namespace {
 
-using core::Time;
 using std::chrono::milliseconds;
 
 constexpr Time kProducerTick = milliseconds(2);
@@ -39,15 +39,14 @@ class SoakProducer {
     while (next_ - kLead <= now) {
       const std::vector<double> x = motion.at(next_);
       const auto status = producer_.append({.time = next_, .position = x});
-      ++(status == ipc::AppendStatus::accepted ? sent_ : refused_);
+      ++(status == AppendStatus::accepted ? sent_ : refused_);
       next_ += interval_;
     }
   }
 
   /// Ends the stream. Returns false if the ring has had no room for it until `end`.
-  bool finish(const ipc::Clock& clock, Time end) {
-    while (producer_.finish({.kind = core::ConditionKind::halt, .value = {}}) ==
-           ipc::AppendStatus::full) {
+  bool finish(const Clock& clock, Time end) {
+    while (producer_.finish({.kind = ConditionKind::halt, .value = {}}) == AppendStatus::full) {
       if (!producer_.wait_for_room(end - clock.now())) return false;
     }
     return true;
@@ -71,7 +70,7 @@ class SoakProducer {
     if (next_ < earliest) next_ += interval_ * ((earliest - next_) / interval_ + 1);
   }
 
-  ipc::Producer producer_;
+  Producer producer_;
   Time next_;
   Time interval_;
   std::size_t sent_ = 0;
@@ -81,18 +80,19 @@ class SoakProducer {
 /// One stream as a reader process sees it.
 struct WatchedStream {
   explicit WatchedStream(const std::string& stream)
-      : reader(attach_reader(stream, kPatience)), watch(reader.sampler(), reader.dimensions()) {}
+      : reader(attach_reader(stream, kPatience)),
+        watch(ipc::Internals::sampler(reader), reader.dimensions()) {}
 
-  ipc::Reader reader;
+  Reader reader;
   CurveWatch watch;
 };
 
 }  // namespace
 
 nlohmann::json run_soak_producers(const std::vector<std::string>& streams, double rate,
-                                  core::Time start) {
+                                  Time start) {
   raise_descriptor_limit();
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   const JointMotion motion(start);
   const Time interval{std::llround(1e9 / rate)};
   std::vector<SoakProducer> producers;
@@ -120,7 +120,7 @@ nlohmann::json run_soak_producers(const std::vector<std::string>& streams, doubl
 
 nlohmann::json run_soak_reader(const std::vector<std::string>& streams) {
   raise_descriptor_limit();
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   std::vector<std::unique_ptr<WatchedStream>> watched;
   watched.reserve(streams.size());
   for (const std::string& stream : streams) {
@@ -139,9 +139,9 @@ nlohmann::json run_soak_reader(const std::vector<std::string>& streams) {
     const WatchReport& report = stream->watch.report();
     samples += report.samples;
     for (std::size_t i = 0; i < report.by_status.size(); ++i) {
-      const auto status = static_cast<ipc::SampleStatus>(i);
-      if (ipc::has_values(status)) with_values += report.by_status[i];
-      if (status == ipc::SampleStatus::revised) revised += report.by_status[i];
+      const auto status = static_cast<SampleStatus>(i);
+      if (has_values(status)) with_values += report.by_status[i];
+      if (status == SampleStatus::revised) revised += report.by_status[i];
     }
     changed += report.changed;
     joins += report.knots;

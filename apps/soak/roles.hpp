@@ -13,7 +13,7 @@ namespace splinecast::apps {
 /// What a soak is told.
 struct SoakOptions {
   std::size_t streams = 100;
-  core::Time seconds = std::chrono::seconds(60);
+  Time seconds = std::chrono::seconds(60);
   double rate = 100;        ///< waypoints a second and stream
   std::size_t readers = 2;  ///< processes, each of which reads all streams
   bool json = false;
@@ -21,8 +21,7 @@ struct SoakOptions {
 
 /// A producer process: makes these streams, or goes on with them, and sends a joint motion that
 /// begins at `start` until a stop is requested; then finishes them. Returns what it has sent.
-nlohmann::json run_soak_producers(const std::vector<std::string>& streams, double rate,
-                                  core::Time start);
+nlohmann::json run_soak_producers(const std::vector<std::string>& streams, double rate, Time start);
 
 /// A reader process: samples each of these streams at 50 Hz and checks what it reads until a stop
 /// is requested. Returns what it saw.

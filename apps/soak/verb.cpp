@@ -21,13 +21,13 @@
 #include "apps/streams/remover.hpp"
 #include "apps/streams/solve.hpp"
 #include "apps/trials/judgement.hpp"
-#include "ipc/roles/stream_files.hpp"
+#include "ipc/roles/inspect.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/reader.hpp"
 
 namespace splinecast::apps {
 namespace {
 
-using core::Time;
 using nlohmann::json;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -109,7 +109,7 @@ class Soak {
     Time next_line = begin;
     for (Time due = begin; due < end && sleep_until(due); due += look) {
       const Time now = clock_.now();
-      const double share = core::to_seconds(now - begin) / core::to_seconds(options_.seconds);
+      const double share = to_seconds(now - begin) / to_seconds(options_.seconds);
       for (Role* role : roles()) role->look(share);
       if (!options_.json && now >= next_line) {
         print_line(now - begin);
@@ -119,8 +119,8 @@ class Soak {
       kill_a_producer();
       next_kill = now + kBetweenKills;
     }
-    const double took = core::to_seconds(std::max(clock_.now() - begin, Time(1)));
-    return finish(took, core::to_seconds(cpu_time(solver_.processes.front()->pid())) / took);
+    const double took = to_seconds(std::max(clock_.now() - begin, Time(1)));
+    return finish(took, to_seconds(cpu_time(solver_.processes.front()->pid())) / took);
   }
 
  private:
@@ -149,8 +149,8 @@ class Soak {
   [[nodiscard]] json counted() const {
     ipc::Head sum;
     ipc::Head head;
-    for (const ipc::Reader& reader : heads_) {
-      if (!reader.head(head)) continue;
+    for (const Reader& reader : heads_) {
+      if (!ipc::Internals::head(reader, head)) continue;
       sum.consumed += head.consumed;
       sum.knots += head.knots;
       sum.passed_over += head.passed_over;
@@ -181,7 +181,7 @@ class Soak {
     const json sum = counted();
     const auto count = [&](const char* key) { return sum[key].get<ipc::Word>(); };
     print_report(fmt::format("{:>7.0f} {:>6} {:>10} {:>8} {:>6} {:>18} {:>18} {:>18}\n",
-                             core::to_seconds(since), kills_, count("consumed"), count("refused"),
+                             to_seconds(since), kills_, count("consumed"), count("refused"),
                              count("underruns"), use(solver_), use(producers_), use(readers_)));
   }
 
@@ -230,13 +230,13 @@ class Soak {
 
   SoakOptions options_;
   std::vector<std::string> streams_;
-  ipc::MonotonicClock clock_;
+  MonotonicClock clock_;
   Time start_;
   std::vector<std::vector<std::string>> groups_;  ///< the streams of each producer process
   Role solver_{"solver"};
   Role producers_{"producers"};
   Role readers_{"readers"};
-  std::vector<ipc::Reader> heads_;
+  std::vector<Reader> heads_;
   std::size_t kills_ = 0;
   std::size_t lines_ = 0;
 };

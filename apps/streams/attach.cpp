@@ -12,15 +12,15 @@
 
 namespace splinecast::apps {
 
-ipc::Reader attach_reader(const std::string& stream, core::Time wait, const ipc::Trust& trust) {
-  constexpr core::Time kSlice = std::chrono::milliseconds(50);  // so that a stop ends the wait
-  const ipc::MonotonicClock clock;
-  const core::Time end = ipc::deadline(clock, wait);
+Reader attach_reader(const std::string& stream, Time wait, const Trust& trust) {
+  constexpr Time kSlice = std::chrono::milliseconds(50);  // so that a stop ends the wait
+  const MonotonicClock clock;
+  const Time end = deadline(clock, wait);
   for (;;) {
-    const core::Time left = std::max(end - clock.now(), core::Time::zero());
+    const Time left = std::max(end - clock.now(), Time::zero());
     try {
-      return ipc::Reader(stream, std::min(kSlice, left), trust);
-    } catch (const ipc::NoSuchStream&) {
+      return Reader(stream, std::min(kSlice, left), trust);
+    } catch (const NoSuchStream&) {
       if (stop_requested()) {
         throw Interrupted(fmt::format("interrupted before stream '{}' was there", stream));
       }

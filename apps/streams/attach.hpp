@@ -7,9 +7,8 @@
 
 namespace splinecast::apps {
 
-/// A reader of a stream, which is waited for as long as `wait`. Throws what ipc::Reader throws, and
+/// A reader of a stream, which is waited for as long as `wait`. Throws what Reader throws, and
 /// Interrupted when a stop is requested before the stream exists.
-[[nodiscard]] ipc::Reader attach_reader(const std::string& stream, core::Time wait,
-                                        const ipc::Trust& trust = {});
+[[nodiscard]] Reader attach_reader(const std::string& stream, Time wait, const Trust& trust = {});
 
 }  // namespace splinecast::apps

@@ -8,7 +8,7 @@
 #include "apps/streams/report.hpp"
 #include "apps/streams/rows.hpp"
 #include "ipc/memory/names.hpp"
-#include "ipc/roles/stream_files.hpp"
+#include "ipc/roles/inspect.hpp"
 #include "splinecast/clock.hpp"
 
 namespace splinecast::apps {
@@ -37,7 +37,7 @@ std::string table_of(const ordered_json& json, int indent) {
 /// What a person asks first, in words.
 std::string age_of(const ipc::StreamInfo& info) {
   if (info.head.revision == 0) return {};
-  const double age = core::to_seconds(ipc::MonotonicClock().now() - info.head.committed);
+  const double age = to_seconds(MonotonicClock().now() - info.head.committed);
   return fmt::format("{:<26}  {:.3f} s ago\n", "last published", age);
 }
 
@@ -47,7 +47,7 @@ void add_info(CLI::App& program, Action& action) {
   struct Options {
     std::string stream;
     bool json = false;
-    ipc::Trust trust;
+    Trust trust;
   };
   auto options = std::make_shared<Options>();
   auto* verb = program.add_subcommand("info", "Show all that is known about one stream");

@@ -2,18 +2,20 @@
 
 #include <fmt/format.h>
 
+#include "ipc/options/curve.hpp"
+#include "ipc/options/stream.hpp"
 #include "splinecast/options.hpp"
 
 namespace splinecast::apps {
 
 using nlohmann::ordered_json;
 
-StreamLog::StreamLog(const std::string& stream, std::uint64_t stream_id, const ipc::Trust& trust)
+StreamLog::StreamLog(const std::string& stream, std::uint64_t stream_id, const Trust& trust)
     : board_(stream, stream_id, trust),
-      settled_(board_.reader(), ipc::stream_clock(board_.header()) == ipc::StreamClock::monotonic),
+      settled_(board_.reader(), ipc::stream_clock(board_.header()) == StreamClock::monotonic),
       items_(board_.reader().dimensions()) {}
 
-ipc::Verification StreamLog::verify(const core::Condition& end) {
+ipc::Verification StreamLog::verify(const Condition& end) {
   look();
   return ipc::verify({.window = ipc::window_options(board_.header()),
                       .kinds = ipc::dimension_kinds(board_.header()),

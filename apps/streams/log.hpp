@@ -19,10 +19,10 @@ class StreamLog {
  public:
   /// Opens the board of the stream with this id, which has been sent nothing yet. Throws as
   /// OwnBoard does.
-  StreamLog(const std::string& stream, std::uint64_t stream_id, const ipc::Trust& trust);
+  StreamLog(const std::string& stream, std::uint64_t stream_id, const Trust& trust);
 
   /// Notes a waypoint that the ring has accepted.
-  void sent(const core::Waypoint& waypoint) { items_.add(ipc::ItemKind::waypoint, waypoint); }
+  void sent(const Waypoint& waypoint) { items_.add(ipc::ItemKind::waypoint, waypoint); }
 
   /// Notes an item that the solver has refused.
   void refused(ipc::Word item) noexcept { items_.refuse(item); }
@@ -32,7 +32,7 @@ class StreamLog {
 
   /// Solves all that was collected again, of a stream that was finished with `end`. See
   /// ipc::verify.
-  [[nodiscard]] ipc::Verification verify(const core::Condition& end);
+  [[nodiscard]] ipc::Verification verify(const Condition& end);
 
  private:
   OwnBoard board_;

@@ -7,8 +7,9 @@
 #include "apps/process/exit_codes.hpp"
 #include "apps/streams/report.hpp"
 #include "ipc/memory/names.hpp"
-#include "ipc/roles/stream_files.hpp"
+#include "ipc/roles/inspect.hpp"
 #include "splinecast/errors.hpp"
+#include "splinecast/streams.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -16,12 +17,12 @@ namespace {
 using nlohmann::ordered_json;
 
 /// A stream for the list; one that cannot be read is listed with the reason.
-ordered_json list_entry(const std::string& stream, const ipc::Trust& trust) {
+ordered_json list_entry(const std::string& stream, const Trust& trust) {
   try {
     return to_json(ipc::inspect(stream, trust));
-  } catch (const ipc::NoSuchStream&) {
+  } catch (const NoSuchStream&) {
     return {{"stream", stream}, {"state", "waiting for a producer"}};
-  } catch (const ipc::StreamError& error) {
+  } catch (const StreamError& error) {
     return {{"stream", stream}, {"state", "unusable"}, {"error", error.what()}};
   }
 }
@@ -40,9 +41,9 @@ std::string row(const ordered_json& entry) {
                               : entry["state"].get<std::string>());
 }
 
-int list_streams(bool as_json, const ipc::Trust& trust) {
+int list_streams(bool as_json, const Trust& trust) {
   ordered_json list = ordered_json::array();
-  for (const std::string& stream : ipc::stream_names()) list.push_back(list_entry(stream, trust));
+  for (const std::string& stream : stream_names()) list.push_back(list_entry(stream, trust));
   if (as_json) {
     print_report(pretty(list));
     return kOk;
@@ -59,7 +60,7 @@ int list_streams(bool as_json, const ipc::Trust& trust) {
 void add_ls(CLI::App& program, Action& action) {
   struct Options {
     bool json = false;
-    ipc::Trust trust;
+    Trust trust;
   };
   auto options = std::make_shared<Options>();
   auto* verb = program.add_subcommand("ls", "List the streams of this host");

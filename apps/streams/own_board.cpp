@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include "apps/process/exit_codes.hpp"
-#include "ipc/roles/stream_files.hpp"
 #include "splinecast/errors.hpp"
+#include "splinecast/streams.hpp"
 
 namespace splinecast::apps {
 namespace {
 
 ipc::CheckedRegion<ipc::BoardLayout> open_own_board(const std::string& stream,
-                                                    std::uint64_t stream_id,
-                                                    const ipc::Trust& trust) {
+                                                    std::uint64_t stream_id, const Trust& trust) {
   auto board = ipc::open_board(stream, false, trust);
   if (board.header.stream_id != stream_id) {
     throw Failure(fmt::format("stream '{}' has been made anew by another producer", stream));
@@ -21,25 +20,24 @@ ipc::CheckedRegion<ipc::BoardLayout> open_own_board(const std::string& stream,
 
 }  // namespace
 
-OwnBoard::OwnBoard(const std::string& stream, std::uint64_t stream_id, const ipc::Trust& trust)
+OwnBoard::OwnBoard(const std::string& stream, std::uint64_t stream_id, const Trust& trust)
     : board_(open_own_board(stream, stream_id, trust)),
       reader_(board_.region.bytes(), board_.layout) {}
 
-void remove_board_without_ring(const std::string& stream, const ipc::Trust& trust) {
+void remove_board_without_ring(const std::string& stream, const Trust& trust) {
   if (ipc::region_exists(stream, ipc::RegionKind::waypoints)) return;
   try {
-    ipc::remove_stream(stream, trust);
-  } catch (const ipc::StreamError&) {
+    remove_stream(stream, trust);
+  } catch (const StreamError&) {
     return;  // what failed before is what is told
   }
 }
 
 ipc::Head OwnBoard::head() const {
-  constexpr int kTries = 1000;
+  constexpr int kTries = 64;
   ipc::Head head;
   for (int attempt = 0; attempt < kTries; ++attempt) {
-    const ipc::Look look = reader_.look();
-    if (look.revision == 0 || reader_.copy_head(look, head)) return head;
+    if (reader_.copy_newest_head(head) || reader_.look().revision == 0) return head;
   }
   throw Failure("the board has no head of its newest revision");
 }

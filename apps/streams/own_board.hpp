@@ -13,7 +13,7 @@ class OwnBoard {
  public:
   /// Opens the board of the stream with this id. Throws NoSuchStream, BadRegion, or Failure if
   /// another stream stands under the name.
-  OwnBoard(const std::string& stream, std::uint64_t stream_id, const ipc::Trust& trust);
+  OwnBoard(const std::string& stream, std::uint64_t stream_id, const Trust& trust);
 
   [[nodiscard]] const ipc::RegionHeader& header() const noexcept { return board_.header; }
   /// The newest head; that of revision 0 if there is none yet.
@@ -27,6 +27,6 @@ class OwnBoard {
 
 /// Removes the board that an embedded solver of this process made for a ring that has been
 /// withdrawn. Does nothing where there is a ring, or where the board is somebody else's by now.
-void remove_board_without_ring(const std::string& stream, const ipc::Trust& trust);
+void remove_board_without_ring(const std::string& stream, const Trust& trust);
 
 }  // namespace splinecast::apps

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "apps/process/messages.hpp"
-#include "ipc/roles/stream_files.hpp"
+#include "splinecast/streams.hpp"
 
 namespace splinecast::apps {
 
@@ -13,7 +13,7 @@ StreamRemover::StreamRemover(std::vector<std::string> streams) : streams_(std::m
 StreamRemover::~StreamRemover() {
   for (const std::string& stream : streams_) {
     try {
-      ipc::remove_stream(stream);
+      remove_stream(stream);
     } catch (const std::exception& error) {
       say(error.what());
     }

@@ -7,6 +7,8 @@
 
 #include "apps/recordings/refused_rows.hpp"
 #include "ipc/layout/limits.hpp"
+#include "ipc/options/curve.hpp"
+#include "ipc/options/stream.hpp"
 #include "splinecast/boundary_condition.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/status.hpp"
@@ -17,13 +19,13 @@ namespace {
 using nlohmann::ordered_json;
 
 std::string clock_name(const ipc::RegionHeader& header) {
-  return ipc::stream_clock(header) == ipc::StreamClock::monotonic ? "live" : "recorded";
+  return ipc::stream_clock(header) == StreamClock::monotonic ? "live" : "recorded";
 }
 
 ordered_json kinds_json(const ipc::RegionHeader& header) {
   ordered_json kinds = ordered_json::array();
-  for (const core::Dimension& dimension : ipc::dimensions_of(header)) {
-    kinds.push_back(core::to_string(dimension));
+  for (const Dimension& dimension : ipc::dimensions_of(header)) {
+    kinds.push_back(to_string(dimension));
   }
   return kinds;
 }
@@ -36,7 +38,7 @@ ordered_json stream_json(const ipc::RegionHeader& header) {
       {"names", ipc::dimension_names(header)},
       {"kinds", kinds_json(header)},
       {"clock", clock_name(header)},
-      {"start", core::to_string(ipc::start_condition(header))},
+      {"start", to_string(ipc::start_condition(header))},
       {"min_interval_ns", header.min_interval},
       {"max_interval_ns", header.max_interval},
   };
@@ -45,8 +47,7 @@ ordered_json stream_json(const ipc::RegionHeader& header) {
 ordered_json producer_json(const ipc::StreamInfo& info) {
   ordered_json refused = ordered_json::object();
   for (std::size_t i = 1; i < info.refused_by_producer.size(); ++i) {
-    refused[std::string(ipc::to_string(static_cast<ipc::AppendStatus>(i)))] =
-        info.refused_by_producer[i];
+    refused[std::string(to_string(static_cast<AppendStatus>(i)))] = info.refused_by_producer[i];
   }
   return {
       {"alive", info.producer_alive},
@@ -62,14 +63,14 @@ ordered_json producer_json(const ipc::StreamInfo& info) {
 ordered_json refusals_json(const ipc::StreamInfo& info) {
   ordered_json list = ordered_json::array();
   for (const ipc::RefusedItem& refusal : info.refusals) {
-    list.push_back({{"item", refusal.item}, {"reason", ipc::to_string(refusal.reason)}});
+    list.push_back({{"item", refusal.item}, {"reason", to_string(refusal.reason)}});
   }
   return list;
 }
 
 ordered_json excesses_json(const ipc::StreamInfo& info) {
   ordered_json list = ordered_json::array();
-  for (const ipc::LimitExcess& excess : info.excesses) {
+  for (const LimitExcess& excess : info.excesses) {
     ordered_json json{{"item", excess.item}, {"refused", excess.is_refused}};
     json.update(to_json(excess));
     list.push_back(std::move(json));
@@ -79,7 +80,7 @@ ordered_json excesses_json(const ipc::StreamInfo& info) {
 
 /// A value per dimension, null for none; an empty list if no dimension has a limit of the kind.
 ordered_json limits_json(const ipc::RegionHeader& header) {
-  const core::MotionLimits limits = ipc::motion_limits(header);
+  const MotionLimits limits = ipc::motion_limits(header);
   const auto list = [](const std::vector<double>& values) {
     ordered_json out = ordered_json::array();
     for (const double value : values) {
@@ -93,7 +94,7 @@ ordered_json limits_json(const ipc::RegionHeader& header) {
       {"jerk", list(limits.jerk)},
       {"lower", limits.lower},  // what is infinite becomes null
       {"upper", limits.upper},
-      {"beyond", ipc::beyond(header) == core::Beyond::refuse ? "refuse" : "report"},
+      {"beyond", ipc::beyond(header) == Beyond::refuse ? "refuse" : "report"},
   };
 }
 
@@ -106,8 +107,8 @@ ordered_json shown_json(const ipc::StreamInfo& info) {
 /// Time from now to the newest knot; null where that means nothing.
 ordered_json depth(const ipc::StreamInfo& info) {
   if (clock_name(*info.spline) == "recorded" || info.head.newest == 0) return nullptr;
-  const core::Time left = info.head.newest_knot - ipc::MonotonicClock().now();
-  return std::max(left, core::Time::zero()).count();
+  const Time left = info.head.newest_knot - MonotonicClock().now();
+  return std::max(left, Time::zero()).count();
 }
 
 /// How long the solver's steps took, from reading the clock to the commit: pairs of the least time
@@ -121,12 +122,12 @@ ordered_json step_times_json(const ipc::StreamInfo& info) {
 }
 
 ordered_json solver_json(const ipc::StreamInfo& info) {
-  const bool has_low_water = info.head.low_water < core::Time::max();
+  const bool has_low_water = info.head.low_water < Time::max();
   const ipc::Head& head = info.head;
-  const core::Method& method = *ipc::window_options(*info.spline).interpolant.method;
+  const Method& method = *ipc::window_options(*info.spline).interpolant.method;
   ordered_json refused = ordered_json::object();
-  for (std::size_t i = 1; i < ipc::kRefusals; ++i) {
-    refused[std::string(ipc::to_string(static_cast<ipc::Refusal>(i)))] = head.reasons[i];
+  for (std::size_t i = 1; i < kRefusals; ++i) {
+    refused[std::string(to_string(static_cast<Refusal>(i)))] = head.reasons[i];
   }
   return {
       {"alive", info.solver_alive},
@@ -136,7 +137,7 @@ ordered_json solver_json(const ipc::StreamInfo& info) {
       {"lambda", info.spline->lambda},
       {"time_scale", info.spline->time_scale},
       {"settle", info.spline->settle},
-      {"tail", core::to_string(static_cast<core::Tail>(info.spline->tail))},
+      {"tail", to_string(static_cast<Tail>(info.spline->tail))},
       {"stop_time_ns", info.spline->stop_time},
       {"board_capacity", info.spline->capacity},
       {"region_bytes", info.spline->region_bytes},

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "ipc/roles/stream_files.hpp"
+#include "ipc/roles/inspect.hpp"
 
 namespace splinecast::apps {
 

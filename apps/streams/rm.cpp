@@ -4,13 +4,13 @@
 #include "apps/cli/guarded.hpp"
 #include "apps/cli/options.hpp"
 #include "apps/process/exit_codes.hpp"
-#include "ipc/roles/stream_files.hpp"
+#include "splinecast/streams.hpp"
 
 namespace splinecast::apps {
 void add_rm(CLI::App& program, Action& action) {
   struct Options {
     std::vector<std::string> streams;
-    ipc::Trust trust;
+    Trust trust;
   };
   auto options = std::make_shared<Options>();
   auto* verb = program.add_subcommand("rm", "Remove streams whose writers have ended");
@@ -22,7 +22,7 @@ void add_rm(CLI::App& program, Action& action) {
       for (const std::string& stream : options->streams) {
         // What hinders one does not keep the others.
         code = std::max(code, run_guarded([&] {
-                          ipc::remove_stream(stream, options->trust);
+                          remove_stream(stream, options->trust);
                           return kOk;
                         }));
       }

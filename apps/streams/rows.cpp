@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "apps/recordings/advice.hpp"
 #include "apps/streams/report.hpp"
 #include "ipc/mapping/checked_region.hpp"
+#include "ipc/options/curve.hpp"
+#include "ipc/options/stream.hpp"
 #include "ipc/ring/waypoint_ring.hpp"
 #include "splinecast/errors.hpp"
 
@@ -23,7 +26,7 @@ std::vector<std::string> names_with_units(const ipc::RegionHeader& header) {
 }
 
 /// Takes back the rows that a replacement from time t withdraws.
-void withdraw_from(WaypointTable& table, core::Time t) {
+void withdraw_from(WaypointTable& table, Time t) {
   while (!table.times.empty() && table.times.back() > t) {
     table.times.pop_back();
     table.lines.pop_back();
@@ -34,10 +37,10 @@ void withdraw_from(WaypointTable& table, core::Time t) {
 void take_item(const ipc::RingItem& item, ipc::Word number, WaypointTable& table) {
   if (item.kind == ipc::ItemKind::replace) withdraw_from(table, item.time);
   if (item.kind != ipc::ItemKind::waypoint) return;
-  const core::Waypoint waypoint = item.waypoint();
+  const Waypoint waypoint = item.waypoint();
   // A producer writes no others, but the bytes of a region can be anything.
   const bool follows = table.times.empty() || waypoint.time > table.times.back();
-  if (!follows || !core::is_time_in_range(waypoint.time) || !ipc::is_finite(waypoint)) return;
+  if (!follows || !is_time_in_range(waypoint.time) || !ipc::is_finite(waypoint)) return;
   table.times.push_back(waypoint.time);
   table.lines.push_back(number);
   table.positions.insert(table.positions.end(), waypoint.position.begin(), waypoint.position.end());
@@ -45,7 +48,7 @@ void take_item(const ipc::RingItem& item, ipc::Word number, WaypointTable& table
 
 }  // namespace
 
-WaypointTable read_stream_rows(const std::string& stream, const ipc::Trust& trust) {
+WaypointTable read_stream_rows(const std::string& stream, const Trust& trust) {
   const auto [region, header, layout] = ipc::open_ring(stream, false, trust);
   const ipc::WaypointRingReader ring(region.bytes(), layout);
   WaypointTable table;
@@ -60,28 +63,28 @@ WaypointTable read_stream_rows(const std::string& stream, const ipc::Trust& trus
   return table;
 }
 
-std::string depth_warning(const ipc::StreamInfo& info, const ipc::Trust& trust) {
-  const bool is_measured = info.head.low_water < core::Time::max() && state_of(info) == "running";
+std::string depth_warning(const ipc::StreamInfo& info, const Trust& trust) {
+  const bool is_measured = info.head.low_water < Time::max() && state_of(info) == "running";
   const auto live = is_measured ? ipc::live_options(*info.spline) : std::nullopt;
   if (!live) return {};
   WaypointTable table;
   try {
     table = read_stream_rows(info.stream, trust);
-  } catch (const ipc::StreamError&) {
+  } catch (const StreamError&) {
     return {};  // it has ended meanwhile
   }
   if (table.size() < 2) return {};
-  const core::Time interval = measure_intervals(table.times).median;
-  const core::Time needed =
+  const Time interval = measure_intervals(table.times).median;
+  const Time needed =
       depth_needed(interval, {.settle = info.spline->settle, .freeze_ahead = live->freeze_ahead});
   // Before a waypoint is taken the depth is an interval less; half of one is left for jitter.
-  const core::Time usual = needed - interval;
+  const Time usual = needed - interval;
   if (info.head.low_water >= usual - interval / 2) return {};
   return fmt::format(
       "least depth {:.6g} ms: K = {} needs {:.6g} ms with a waypoint each {:.6g} ms; give more "
       "lead",
-      core::to_seconds(info.head.low_water) * 1e3, info.spline->settle,
-      core::to_seconds(usual) * 1e3, core::to_seconds(interval) * 1e3);
+      to_seconds(info.head.low_water) * 1e3, info.spline->settle, to_seconds(usual) * 1e3,
+      to_seconds(interval) * 1e3);
 }
 
 }  // namespace splinecast::apps

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "apps/files/waypoint_table.hpp"
-#include "ipc/roles/stream_files.hpp"
+#include "ipc/roles/inspect.hpp"
 
 namespace splinecast::apps {
 
@@ -11,10 +11,10 @@ namespace splinecast::apps {
 /// lines are the items' numbers; without those that a replacement withdrew. Reads as any passive
 /// observer does and changes nothing. A name has its unit behind it in brackets, where the stream
 /// gives one. Throws NoSuchStream or BadRegion as ipc::open_ring does.
-[[nodiscard]] WaypointTable read_stream_rows(const std::string& stream, const ipc::Trust& trust);
+[[nodiscard]] WaypointTable read_stream_rows(const std::string& stream, const Trust& trust);
 
 /// Says so if the least depth of a running live stream is less than its settle lag needs; empty if
 /// it is not, or if that cannot be told. Reads the stream's ring.
-[[nodiscard]] std::string depth_warning(const ipc::StreamInfo& info, const ipc::Trust& trust);
+[[nodiscard]] std::string depth_warning(const ipc::StreamInfo& info, const Trust& trust);
 
 }  // namespace splinecast::apps

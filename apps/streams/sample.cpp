@@ -14,6 +14,7 @@
 #include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
 #include "apps/streams/attach.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/reader.hpp"
 
@@ -27,14 +28,14 @@ struct SampleOptions {
   double rate = 0;
   std::size_t count = 0;
   std::string output;
-  core::Time wait{10'000'000'000};
-  ipc::Trust trust;
+  Time wait{10'000'000'000};
+  Trust trust;
 };
 
 /// Samples one stream to a file, attaching again when it is made anew.
 class Sampling {
  public:
-  Sampling(const SampleOptions& options, std::vector<core::Time> times)
+  Sampling(const SampleOptions& options, std::vector<Time> times)
       : options_(options),
         times_(std::move(times)),
         reader_(attach_reader(options.stream, options.wait, options.trust)),
@@ -57,27 +58,26 @@ class Sampling {
   /// Returns false if a stop is requested before that, as those it calls do.
   bool write_all() {
     if (!options_.at.empty()) {
-      return std::ranges::all_of(times_, [this](core::Time t) { return write(t); });
+      return std::ranges::all_of(times_, [this](Time t) { return write(t); });
     }
-    return reader_.clock() == ipc::StreamClock::monotonic ? follow_live()
-                                                          : step_through_recording();
+    return reader_.clock() == StreamClock::monotonic ? follow_live() : step_through_recording();
   }
 
-  static void fill_with_nan(core::State& state) {
-    const core::StateRef all = state.ref();
+  static void fill_with_nan(State& state) {
+    const StateRef all = state.ref();
     for (const auto part : {all.position, all.velocity, all.acceleration, all.jerk}) {
       std::ranges::fill(part, std::numeric_limits<double>::quiet_NaN());
     }
   }
 
-  [[nodiscard]] core::Time period_times(std::size_t k) const {
-    return core::Time(std::llround(static_cast<double>(k) * 1e9 / options_.rate));
+  [[nodiscard]] Time period_times(std::size_t k) const {
+    return Time(std::llround(static_cast<double>(k) * 1e9 / options_.rate));
   }
 
   bool follow_live() {
-    const core::Time start = clock_.now();
+    const Time start = clock_.now();
     for (std::size_t k = 0; k < options_.count; ++k) {
-      const core::Time t = start + period_times(k);
+      const Time t = start + period_times(k);
       if (clock_.now() < t) output_.flush();  // whoever reads it has each line before the next
       if (!sleep_until(t) || !write(t)) return false;
     }
@@ -85,7 +85,7 @@ class Sampling {
   }
 
   bool step_through_recording() {
-    const core::Time start = first_knot();
+    const Time start = first_knot();
     for (std::size_t k = 0; k < options_.count; ++k) {
       if (!write(start + period_times(k))) return false;
     }
@@ -93,11 +93,10 @@ class Sampling {
   }
 
   /// Time of the oldest knot that the board keeps.
-  core::Time first_knot() {
-    const core::Time end = ipc::deadline(clock_, options_.wait);
+  Time first_knot() {
+    const Time end = deadline(clock_, options_.wait);
     for (;;) {
-      core::Time first{};
-      if (reader_.first_time(first)) return first;
+      if (const auto first = reader_.first_time()) return *first;
       if (stop_requested()) throw Interrupted("interrupted");
       if (clock_.now() >= end) {
         throw TimeOut(fmt::format("stream '{}' has no waypoints", options_.stream));
@@ -106,72 +105,71 @@ class Sampling {
     }
   }
 
-  bool write(core::Time t) {
+  bool write(Time t) {
     if (stop_requested()) return false;
     const auto status = sample(t);
     if (!status) return false;
-    writer_.write(t, ipc::has_values(*status) ? state_ : none_, ipc::to_string(*status));
+    writer_.write(t, has_values(*status) ? state_ : none_, to_string(*status));
     return true;
   }
 
   /// A recorded stream is sampled where it is final, as long as it goes on: what is not settled yet
   /// is waited for, until nothing new has come for --wait. Nothing if a stop is requested
   /// meanwhile.
-  std::optional<ipc::SampleStatus> sample(core::Time t) {
-    core::Time end = ipc::deadline(clock_, options_.wait);
+  std::optional<SampleStatus> sample(Time t) {
+    Time end = deadline(clock_, options_.wait);
     for (;;) {
       const auto status = reader_.sample(t, state_);
-      const bool has_answered =
-          status != ipc::SampleStatus::retired && status != ipc::SampleStatus::busy;
+      const bool has_answered = status != SampleStatus::retired && status != SampleStatus::busy;
       if (stop_requested() && !(has_answered && is_final(status))) return std::nullopt;
-      if (status == ipc::SampleStatus::retired) {
+      if (status == SampleStatus::retired) {
         reattach();
         continue;
       }
-      if (status == ipc::SampleStatus::busy && clock_.now() < end) {
+      if (status == SampleStatus::busy && clock_.now() < end) {
         (void)reader_.wait(std::chrono::milliseconds(1));
         continue;
       }
       if (!patient_ || is_final(status)) return status;
       output_.flush();
-      if (reader_.wait(std::chrono::milliseconds(20)) == ipc::WaitStatus::advanced) {
-        end = ipc::deadline(clock_, options_.wait);
+      if (reader_.wait(std::chrono::milliseconds(20)) == WaitStatus::advanced) {
+        end = deadline(clock_, options_.wait);
       } else if (clock_.now() >= end) {
         patient_ = false;
         say(fmt::format("stream '{}': nothing new for {} s; from {} ns on samples are not settled",
-                        options_.stream, core::to_seconds(options_.wait), t.count()));
+                        options_.stream, to_seconds(options_.wait), t.count()));
       }
     }
   }
 
-  [[nodiscard]] bool is_final(ipc::SampleStatus status) const {
-    if (reader_.clock() == ipc::StreamClock::monotonic) return true;
-    if (status == ipc::SampleStatus::settled || status == ipc::SampleStatus::before_history) {
+  [[nodiscard]] bool is_final(SampleStatus status) const {
+    if (reader_.clock() == StreamClock::monotonic) return true;
+    if (status == SampleStatus::settled || status == SampleStatus::before_history) {
       return true;
     }
     ipc::Head head;
-    return reader_.head(head) && head.finished;
+    return ipc::Internals::head(reader_, head) && head.finished;
   }
 
   void reattach() {
-    const auto dimensions = ipc::dimensions_of(reader_.header());
+    const auto dimensions = ipc::dimensions_of(ipc::Internals::header(reader_));
     reader_ = attach_reader(options_.stream, options_.wait, options_.trust);
     if (reader_.dimensions() != dimensions.size()) {
       throw Failure(fmt::format("stream '{}' was made anew with {} dimensions, not {}",
                                 options_.stream, reader_.dimensions(), dimensions.size()));
     }
-    if (ipc::dimensions_of(reader_.header()) == dimensions) return;
+    if (ipc::dimensions_of(ipc::Internals::header(reader_)) == dimensions) return;
     throw Failure(
         fmt::format("stream '{}' was made anew with other dimension kinds", options_.stream));
   }
 
   const SampleOptions& options_;
-  std::vector<core::Time> times_;  ///< of --at
-  ipc::MonotonicClock clock_;
-  ipc::Reader reader_;
+  std::vector<Time> times_;  ///< of --at
+  MonotonicClock clock_;
+  Reader reader_;
   Output output_;
-  core::State state_;
-  core::State none_;
+  State state_;
+  State none_;
   SampleWriter writer_;
   bool patient_ = true;  ///< whether what is not settled is still waited for
 };
@@ -180,7 +178,7 @@ class Sampling {
 void require_span(const SampleOptions& options) {
   if (options.count == 0) return;  // --at
   const double seconds = static_cast<double>(options.count - 1) / options.rate;
-  const double most = core::to_seconds(kLongestTime);
+  const double most = to_seconds(kLongestTime);
   if (seconds <= most) return;
   throw CLI::ValidationError(
       "--count", fmt::format("{} samples at {} Hz take {} s; the most is {} s", options.count,
@@ -190,8 +188,7 @@ void require_span(const SampleOptions& options) {
 int run_sample(const SampleOptions& options) {
   require_separate(std::array{options.output}, std::array{options.at});
   // Before the output is opened; a signal may end the process meanwhile, wherever it waits.
-  auto times =
-      options.at.empty() ? std::vector<core::Time>{} : read_times(options.at, options.time_unit);
+  auto times = options.at.empty() ? std::vector<Time>{} : read_times(options.at, options.time_unit);
   catch_stop_signals();
   return Sampling(options, std::move(times)).run();
 }

@@ -18,15 +18,17 @@
 #include "apps/process/signals.hpp"
 #include "apps/streams/report.hpp"
 #include "ipc/layout/limits.hpp"
+#include "ipc/options/stream.hpp"
+#include "ipc/roles/internals.hpp"
 #include "ipc/roles/stream_sweep.hpp"
 
 namespace splinecast::apps {
 namespace {
 
 /// Longest sleep on one stream; a signal that comes just before a sleep waits this long.
-constexpr core::Time kLongestWait = std::chrono::milliseconds(50);
+constexpr Time kLongestWait = std::chrono::milliseconds(50);
 
-constexpr TimeRange kSweeps{core::Time(1), std::chrono::seconds(1)};
+constexpr TimeRange kSweeps{Time(1), std::chrono::seconds(1)};
 
 /// Tells what becomes of each stream.
 class Announcer {
@@ -36,10 +38,10 @@ class Announcer {
         many_(is_one_of_many),
         limits_(&options.limits),
         joints_(options.solver.named_limits) {
-    for (core::NamedLimits& joint : joints_) joint.name = ipc::header_name(joint.name);
+    for (NamedLimits& joint : joints_) joint.name = ipc::header_name(joint.name);
   }
 
-  void tell(ipc::SweepNews news, const std::string& stream, const ipc::Solver* solver,
+  void tell(ipc::SweepNews news, const std::string& stream, const Solver* solver,
             std::string_view why = {}) {
     using enum ipc::SweepNews;
     const bool is_lost = news == no_descriptors || news == postponed || news == given_up;
@@ -57,7 +59,7 @@ class Announcer {
   [[nodiscard]] bool has_lost() const { return !lost_.empty(); }
 
  private:
-  [[nodiscard]] static std::string text(ipc::SweepNews news, const ipc::Solver* solver,
+  [[nodiscard]] static std::string text(ipc::SweepNews news, const Solver* solver,
                                         std::string_view why) {
     switch (news) {
       case ipc::SweepNews::waiting:
@@ -66,9 +68,9 @@ class Announcer {
         return solver->took_over() ? "taken over" : "solving";
       case ipc::SweepNews::finished:
         return fmt::format("finished; {} waypoints interpolated{}, {} items refused",
-                           solver->head().interpolated(),
-                           passed_over_in_words(solver->head().passed_over),
-                           solver->head().refused);
+                           ipc::Internals::head(*solver).interpolated(),
+                           passed_over_in_words(ipc::Internals::head(*solver).passed_over),
+                           ipc::Internals::head(*solver).refused);
       case ipc::SweepNews::elsewhere:
         return "left to the process that solves it";
       case ipc::SweepNews::no_descriptors:
@@ -91,8 +93,8 @@ class Announcer {
   }
 
   /// Names that matched nothing, and dimensions without a limit.
-  void tell_limits(const std::string& stream, const ipc::Solver& solver) const {
-    const ipc::RegionHeader& header = solver.board();
+  void tell_limits(const std::string& stream, const Solver& solver) const {
+    const ipc::RegionHeader& header = ipc::Internals::board(solver);
     const std::vector<std::string> names = ipc::dimension_names(header);
     const LimitGaps gaps =
         limit_gaps(ipc::motion_limits(header), joints_, names, ipc::dimensions_of(header));
@@ -102,22 +104,22 @@ class Announcer {
   bool quiet_;
   bool many_;
   const LimitOptions* limits_;
-  std::vector<core::NamedLimits> joints_;
+  std::vector<NamedLimits> joints_;
   std::set<std::string> lost_;
 };
 
 /// Solves one stream; sleeps on its ring while there is nothing to do.
 int solve_one(const SolveOptions& options) {
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   Announcer announcer(options, false);
-  ipc::Solver solver(options.wanted.front(), options.solver);
+  Solver solver(options.wanted.front(), options.solver);
   const auto tell = [&](ipc::SweepNews news, std::string_view why = {}) {
     announcer.tell(news, solver.stream(), &solver, why);
   };
   tell(ipc::SweepNews::waiting);
   bool was_attached = false;
   bool was_finished = false;
-  std::vector<ipc::ItemRefusal> refused;
+  std::vector<ItemRefusal> refused;
   while (!stop_requested()) {
     if (!solver.attached()) {
       if (was_attached) tell(ipc::SweepNews::waiting);
@@ -125,15 +127,15 @@ int solve_one(const SolveOptions& options) {
       was_finished = false;
       if (was_attached) tell(ipc::SweepNews::solving);
     }
-    const ipc::StepResult result = solver.step(clock);
+    const StepResult result = solver.step(clock);
     solver.first_refusals(refused);
-    for (const ipc::ItemRefusal& refusal : refused) {
+    for (const ItemRefusal& refusal : refused) {
       tell(ipc::SweepNews::refused, to_string(refusal));
     }
     if (const auto excess = solver.first_excess()) {
       tell(ipc::SweepNews::beyond_limits, solver.in_words(*excess));
     }
-    if (solver.attached() && solver.head().finished && !was_finished) {
+    if (solver.attached() && ipc::Internals::head(solver).finished && !was_finished) {
       was_finished = true;
       tell(ipc::SweepNews::finished);
     }
@@ -144,15 +146,15 @@ int solve_one(const SolveOptions& options) {
 
 /// Solves many streams; looks at them from time to time.
 int solve_many(const SolveOptions& options) {
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   raise_descriptor_limit();
   Announcer announcer(options, true);
   ipc::StreamSweep sweep(
       options.wanted, options.solver,
-      [&announcer](ipc::SweepNews news, const std::string& stream, const ipc::Solver* solver,
+      [&announcer](ipc::SweepNews news, const std::string& stream, const Solver* solver,
                    std::string_view why) { announcer.tell(news, stream, solver, why); },
       options.sweep);
-  core::Time due = clock.now();
+  Time due = clock.now();
   while (!stop_requested()) {
     if (sweep.sweep(clock)) continue;
     due = std::max(due + sweep.next_pause(), clock.now());
@@ -171,7 +173,7 @@ int run_solve(const SolveOptions& options) {
 namespace {
 
 /// What concerns live streams.
-void add_live_options(CLI::App& verb, ipc::SolverOptions& options) {
+void add_live_options(CLI::App& verb, SolverOptions& options) {
   verb.add_option_function<std::string>(
           "--freeze-ahead",
           [&options](const std::string& text) {
@@ -185,7 +187,7 @@ void add_live_options(CLI::App& verb, ipc::SolverOptions& options) {
 
 /// Reads the file of limits, and gives the solver all of them.
 void take_limits(SolveOptions& options) {
-  if (options.limits.given != core::MotionLimits{}) options.solver.limits = options.limits.given;
+  if (options.limits.given != MotionLimits{}) options.solver.limits = options.limits.given;
   if (options.limits.file.empty()) return;
   LimitFile file = read_limit_file(options.limits.file);
   if (!options.quiet) std::ranges::for_each(file.notes, say);

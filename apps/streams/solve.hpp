@@ -11,9 +11,9 @@ namespace splinecast::apps {
 /// What `solve` is told.
 struct SolveOptions {
   std::vector<std::string> wanted{};  ///< streams, and patterns of their names
-  ipc::SolverOptions solver{};
-  LimitOptions limits{};        ///< the given ones are told of; `solver` has them too
-  core::Time sweep{1'000'000};  ///< pause between looks at several streams
+  SolverOptions solver{};
+  LimitOptions limits{};  ///< the given ones are told of; `solver` has them too
+  Time sweep{1'000'000};  ///< pause between looks at several streams
   bool quiet = false;
 };
 

@@ -12,14 +12,14 @@ namespace splinecast::apps {
 ClockMeasure measure_clock() {
   constexpr std::size_t kBatches = 201;
   constexpr int kReadings = 200;
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   std::array<double, kBatches> costs{};
-  core::Time least = core::Time::max();
+  Time least = Time::max();
   for (double& cost : costs) {
-    const core::Time first = clock.now();
-    core::Time last = first;
+    const Time first = clock.now();
+    Time last = first;
     for (int i = 0; i < kReadings; ++i) {
-      const core::Time now = clock.now();
+      const Time now = clock.now();
       if (now > last) least = std::min(least, now - last);
       last = now;
     }

@@ -23,7 +23,7 @@ std::string twelve_digits(double share) {
   return fmt::format("{}.{:012}", digits / kOne, digits % kOne);
 }
 
-double in_units(core::Time time) { return static_cast<double>(time.count()) / kUnit; }
+double in_units(Time time) { return static_cast<double>(time.count()) / kUnit; }
 
 }  // namespace
 
@@ -36,7 +36,7 @@ void for_each_percentile(const Histogram& histogram,
   for (std::size_t cell = 0; cell < counts.size(); ++cell) {
     if (counts[cell] == 0) continue;
     up_to += counts[cell];
-    const core::Time value(Histogram::last_of(cell));
+    const Time value(Histogram::last_of(cell));
     const double reached = 100 * static_cast<double>(up_to) / all;
     // The last cell takes one step, however many levels it reaches, and then the one to 100 %.
     while (reached >= level) {
@@ -52,7 +52,7 @@ std::string percentile_text(const Histogram& histogram) {
   std::string text = fmt::format("{:>12} {:>14} {:>10} {:>14}\n\n", "Value", "Percentile",
                                  "TotalCount", "1/(1-Percentile)");
   const auto to = std::back_inserter(text);
-  core::Time greatest{};
+  Time greatest{};
   for_each_percentile(histogram, [&](const PercentileStep& step) {
     greatest = step.value;
     const double share = step.level / 100;

@@ -9,7 +9,7 @@ namespace splinecast::apps {
 
 /// One step along the percentiles of a histogram.
 struct PercentileStep {
-  core::Time value{};       ///< end of the cell that reaches the level
+  Time value{};             ///< end of the cell that reaches the level
   double level = 0;         ///< percent that were asked for; 100 at the last step
   std::uint64_t up_to = 0;  ///< times that do not exceed the value
 };

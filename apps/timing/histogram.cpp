@@ -39,13 +39,13 @@ std::int64_t Histogram::last_of(std::size_t cell) noexcept {
   return first_of(cell) + (std::int64_t{1} << width_bits_of_cell(cell)) - 1;
 }
 
-void Histogram::record(core::Time time) {
+void Histogram::record(Time time) {
   const std::int64_t ns = std::clamp<std::int64_t>(time.count(), 0, kLongest);
   const std::size_t cell = cell_of(ns);
   if (cell >= counts_.size()) counts_.resize(cell + 1);
   ++counts_[cell];
-  least_ = count_ == 0 ? core::Time(ns) : std::min(least_, core::Time(ns));
-  greatest_ = std::max(greatest_, core::Time(ns));
+  least_ = count_ == 0 ? Time(ns) : std::min(least_, Time(ns));
+  greatest_ = std::max(greatest_, Time(ns));
   ++count_;
 }
 
@@ -69,11 +69,11 @@ double Histogram::deviation() const noexcept {
   return std::sqrt(sum / static_cast<double>(count_));
 }
 
-core::Time Histogram::at_rank(std::uint64_t rank) const noexcept {
+Time Histogram::at_rank(std::uint64_t rank) const noexcept {
   std::uint64_t below = 0;
   for (std::size_t cell = 0; cell < counts_.size(); ++cell) {
     below += counts_[cell];
-    if (below >= rank) return std::min(core::Time(last_of(cell)), greatest_);
+    if (below >= rank) return std::min(Time(last_of(cell)), greatest_);
   }
   return greatest_;
 }

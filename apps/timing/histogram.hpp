@@ -21,13 +21,13 @@ class Histogram {
   /// Halves that it takes to get there, as HdrHistogram counts its buckets.
   static constexpr int kBuckets = 62 - kCellBits + 1;
 
-  void record(core::Time time);
+  void record(Time time);
 
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
 
   /// The exact least and greatest time; 0 if there is none.
-  [[nodiscard]] core::Time least() const noexcept { return least_; }
-  [[nodiscard]] core::Time greatest() const noexcept { return greatest_; }
+  [[nodiscard]] Time least() const noexcept { return least_; }
+  [[nodiscard]] Time greatest() const noexcept { return greatest_; }
 
   /// Mean and standard deviation in ns, of the cells' middles; 0 if there is no time.
   [[nodiscard]] double mean() const noexcept;
@@ -35,7 +35,7 @@ class Histogram {
 
   /// The time that `rank` of the times do not exceed, 1 ≤ rank ≤ count(): the end of its cell, or
   /// greatest() if that is less. O(cells).
-  [[nodiscard]] core::Time at_rank(std::uint64_t rank) const noexcept;
+  [[nodiscard]] Time at_rank(std::uint64_t rank) const noexcept;
 
   /// The counts by cell, up to the last one that is not 0.
   [[nodiscard]] const std::vector<std::uint64_t>& counts() const noexcept { return counts_; }
@@ -47,8 +47,8 @@ class Histogram {
  private:
   std::vector<std::uint64_t> counts_;
   std::uint64_t count_ = 0;
-  core::Time least_{};
-  core::Time greatest_{};
+  Time least_{};
+  Time greatest_{};
 };
 
 }  // namespace splinecast::apps

@@ -8,11 +8,11 @@ namespace splinecast::apps {
 
 /// When waypoints are due: an open-loop schedule, fixed before anything runs.
 struct Schedule {
-  core::Time start{};
-  core::Time period{};
+  Time start{};
+  Time period{};
   std::size_t count = 0;
 
-  [[nodiscard]] core::Time intended(std::size_t k) const noexcept {
+  [[nodiscard]] Time intended(std::size_t k) const noexcept {
     return start + period * static_cast<std::int64_t>(k);
   }
 };
@@ -25,7 +25,7 @@ struct Schedule {
 template <typename WaitUntil, typename Send>
 void run(const Schedule& schedule, WaitUntil&& wait_until, Send&& send) {
   for (std::size_t k = 0; k < schedule.count; ++k) {
-    const core::Time intended = schedule.intended(k);
+    const Time intended = schedule.intended(k);
     if (!wait_until(intended)) return;
     send(k, intended);
   }

@@ -16,7 +16,7 @@ inline constexpr std::uint64_t kEnoughAbove = 10;
 
 struct Percentile {
   double percent = 0;
-  core::Time value{};
+  Time value{};
   std::uint64_t above = 0;  ///< how many times rank above it
   [[nodiscard]] bool has_enough() const noexcept { return above >= kEnoughAbove; }
 };

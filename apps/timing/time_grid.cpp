@@ -6,19 +6,19 @@
 namespace splinecast::apps {
 namespace {
 
-std::size_t bin_of(core::Time latency) {
+std::size_t bin_of(Time latency) {
   const auto ns = static_cast<double>(std::max<std::int64_t>(latency.count(), 1));
   return static_cast<std::size_t>(std::floor(TimeGrid::kBinsPerOctave * std::log2(ns)));
 }
 
 }  // namespace
 
-TimeGrid::TimeGrid(core::Time from, core::Time until)
+TimeGrid::TimeGrid(Time from, Time until)
     : from_(from),
-      window_((until - from) / static_cast<std::int64_t>(kWindows) + core::Time(1)),
+      window_((until - from) / static_cast<std::int64_t>(kWindows) + Time(1)),
       windows_(kWindows) {}
 
-void TimeGrid::record(core::Time at, core::Time latency) {
+void TimeGrid::record(Time at, Time latency) {
   const auto last = static_cast<std::int64_t>(kWindows) - 1;
   Window& window =
       windows_[static_cast<std::size_t>(std::clamp<std::int64_t>((at - from_) / window_, 0, last))];
@@ -40,7 +40,7 @@ nlohmann::ordered_json TimeGrid::json() const {
       if (window.counts[bin] > 0) cells.push_back({w, bin, window.counts[bin]});
     }
   }
-  return {{"window_s", core::to_seconds(window_)},
+  return {{"window_s", to_seconds(window_)},
           {"bins_per_octave", kBinsPerOctave},
           {"greatest_ns", std::move(greatest)},
           {"cells", std::move(cells)}};

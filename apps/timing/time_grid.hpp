@@ -17,9 +17,9 @@ class TimeGrid {
   static constexpr int kBinsPerOctave = 4;
 
   /// Covers [from, until); what lies outside counts in the first or last window.
-  TimeGrid(core::Time from, core::Time until);
+  TimeGrid(Time from, Time until);
 
-  void record(core::Time at, core::Time latency);
+  void record(Time at, Time latency);
 
   /// `window_s`, `bins_per_octave`, `greatest_ns` per window (null where nothing was recorded),
   /// and `cells`, a list of [window, bin, count] without the empty ones: a bin b holds latencies
@@ -29,10 +29,10 @@ class TimeGrid {
  private:
   struct Window {
     std::vector<std::uint64_t> counts;
-    core::Time greatest{-1};
+    Time greatest{-1};
   };
-  core::Time from_;
-  core::Time window_;
+  Time from_;
+  Time window_;
   std::vector<Window> windows_;
 };
 

@@ -33,20 +33,20 @@ CurveWatch::CurveWatch(ipc::Sampler& sampler, std::size_t dimensions)
   for (Seen& seen : seen_) seen.values.resize(4 * dimensions);
 }
 
-ipc::SampleStatus CurveWatch::tick(core::Time now) {
-  const ipc::SampleStatus status = sampler_->sample(now, now_.ref());
+SampleStatus CurveWatch::tick(Time now) {
+  const SampleStatus status = sampler_->sample(now, now_.ref());
   ++report_.samples;
   ++report_.by_status[static_cast<std::size_t>(status)];
-  if (!ipc::has_values(status)) {
+  if (!has_values(status)) {
     kept_ = 0;
     return status;
   }
   // At rest nothing settles any more: there is nothing left that could move.
-  const bool is_settled = status == ipc::SampleStatus::settled ||
-                          status == ipc::SampleStatus::holding || now < sampler_->settled_until();
+  const bool is_settled = status == SampleStatus::settled || status == SampleStatus::holding ||
+                          now < sampler_->settled_until();
   if (!is_settled) ++report_.unsettled;
   for (const double a : now_.acceleration()) raise(report_.acceleration, a);
-  if (status == ipc::SampleStatus::revised) kept_ = 0;
+  if (status == SampleStatus::revised) kept_ = 0;
   if (kept_ > 0) {
     check_joins(seen_[(kept_ - 1) % kKept].time, now);
     read_again(1);
@@ -61,25 +61,25 @@ ipc::SampleStatus CurveWatch::tick(core::Time now) {
 void CurveWatch::read_again(std::size_t back) {
   const Seen& seen = seen_[(kept_ - back) % kKept];
   const auto status = sampler_->preview(seen.time, left_.ref());
-  if (!ipc::has_values(status)) return;
+  if (!has_values(status)) return;
   if (!std::ranges::equal(left_.values(), seen.values)) ++report_.changed;
 }
 
-void CurveWatch::check_joins(core::Time from, core::Time to) {
-  if (!ipc::has_values(sampler_->snapshot(from, to, snapshot_))) return;
+void CurveWatch::check_joins(Time from, Time to) {
+  if (!has_values(sampler_->snapshot(from, to, snapshot_))) return;
   const auto segments = snapshot_.segments();
   for (std::size_t i = 1; i < segments.size(); ++i) check_join(segments[i - 1], segments[i]);
 }
 
 /// As readers see it, but that a wrapping position is left as it is: read, it steps by a period.
-void CurveWatch::evaluate(const ipc::SegmentCopy& segment, double u, core::State& out) const {
-  const core::StateRef ref = out.ref();
+void CurveWatch::evaluate(const ipc::SegmentCopy& segment, double u, State& out) const {
+  const StateRef ref = out.ref();
   core::evaluate(segment.order, segment.coefficients, u, ref);
   sampler_->kinds().normalise_quaternions(ref.position, ref.velocity, ref.acceleration);
 }
 
 void CurveWatch::check_join(const ipc::SegmentCopy& before, const ipc::SegmentCopy& after) {
-  evaluate(before, core::to_seconds(before.right - before.left), left_);
+  evaluate(before, to_seconds(before.right - before.left), left_);
   evaluate(after, 0, right_);
   ++report_.knots;
   for (std::size_t d = 0; d < now_.dimensions(); ++d) {

@@ -12,7 +12,7 @@ namespace splinecast::apps {
 /// What a watch has found. Steps are absolute, in the stream's units.
 struct WatchReport {
   std::uint64_t samples = 0;
-  std::array<std::uint64_t, ipc::kSampleStatuses> by_status{};
+  std::array<std::uint64_t, kSampleStatuses> by_status{};
   std::uint64_t changed = 0;     ///< earlier samples that read otherwise later, without `revised`
   std::uint64_t unsettled = 0;   ///< samples in motion that had not settled at their instant
   std::uint64_t knots = 0;       ///< joins between segments that were compared
@@ -35,30 +35,30 @@ class CurveWatch {
   explicit CurveWatch(ipc::Sampler& sampler, std::size_t dimensions);
 
   /// Samples at `now` and checks everything since the tick before. Returns the sample's status.
-  ipc::SampleStatus tick(core::Time now);
+  SampleStatus tick(Time now);
 
   /// The last sample; of use if its status had values.
-  [[nodiscard]] const core::State& state() const noexcept { return now_; }
+  [[nodiscard]] const State& state() const noexcept { return now_; }
   [[nodiscard]] const WatchReport& report() const noexcept { return report_; }
 
  private:
   /// Ticks whose samples are kept to be read again.
   static constexpr std::size_t kKept = 256;
   struct Seen {
-    core::Time time{};
+    Time time{};
     std::vector<double> values;
   };
 
   void read_again(std::size_t back);
-  void check_joins(core::Time from, core::Time to);
-  void evaluate(const ipc::SegmentCopy& segment, double u, core::State& out) const;
+  void check_joins(Time from, Time to);
+  void evaluate(const ipc::SegmentCopy& segment, double u, State& out) const;
   void check_join(const ipc::SegmentCopy& before, const ipc::SegmentCopy& after);
 
   ipc::Sampler* sampler_;
-  core::State now_;
-  core::State left_;
-  core::State right_;
-  ipc::Snapshot snapshot_;
+  State now_;
+  State left_;
+  State right_;
+  ipc::BoardSnapshot snapshot_;
   std::vector<Seen> seen_;
   std::size_t kept_ = 0;  ///< ticks since the curve was last new to this watch
   WatchReport report_;

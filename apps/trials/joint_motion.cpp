@@ -11,9 +11,9 @@ double frequency(std::size_t joint) { return 2.1 + 0.47 * static_cast<double>(jo
 
 }  // namespace
 
-std::vector<double> JointMotion::at(core::Time t, int derivative) const {
+std::vector<double> JointMotion::at(Time t, int derivative) const {
   std::vector<double> values(kJoints);
-  const double s = core::to_seconds(t - start_);
+  const double s = to_seconds(t - start_);
   for (std::size_t j = 0; j < kJoints; ++j) {
     const double w = frequency(j);
     values[j] = amplitude(j) * std::pow(w, derivative) *

@@ -12,16 +12,16 @@ namespace splinecast::apps {
 class JointMotion {
  public:
   static constexpr std::size_t kJoints = 7;
-  explicit JointMotion(core::Time start) : start_(start) {}
+  explicit JointMotion(Time start) : start_(start) {}
 
   /// The derivative-th derivative (0 to 2) of every joint at t.
-  [[nodiscard]] std::vector<double> at(core::Time t, int derivative = 0) const;
+  [[nodiscard]] std::vector<double> at(Time t, int derivative = 0) const;
 
   /// The largest acceleration of every joint, rad/s².
   [[nodiscard]] static std::vector<double> peak_acceleration();
 
  private:
-  core::Time start_;
+  Time start_;
 };
 
 }  // namespace splinecast::apps

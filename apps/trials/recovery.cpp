@@ -5,8 +5,8 @@
 
 namespace splinecast::apps {
 
-void Recovery::end(core::Time now) {
-  took_ms_.push_back(core::to_seconds(now - *since_) * 1e3);
+void Recovery::end(Time now) {
+  took_ms_.push_back(to_seconds(now - *since_) * 1e3);
   since_.reset();
 }
 

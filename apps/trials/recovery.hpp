@@ -12,10 +12,10 @@ namespace splinecast::apps {
 class Recovery {
  public:
   /// It was killed at this instant. What was awaited before is not awaited any more.
-  void begin(core::Time now) { since_ = now; }
+  void begin(Time now) { since_ = now; }
 
   /// It is back, at this instant; it must have been awaited.
-  void end(core::Time now);
+  void end(Time now);
 
   /// It does not matter any more.
   void forget() { since_.reset(); }
@@ -23,7 +23,7 @@ class Recovery {
   [[nodiscard]] bool is_awaited() const { return since_.has_value(); }
 
   /// Since when it has been away, if it is.
-  [[nodiscard]] std::optional<core::Time> since() const { return since_; }
+  [[nodiscard]] std::optional<Time> since() const { return since_; }
 
   /// Counts what another one has measured as its own.
   void add(const Recovery& other);
@@ -33,7 +33,7 @@ class Recovery {
   [[nodiscard]] nlohmann::json result() const;
 
  private:
-  std::optional<core::Time> since_;
+  std::optional<Time> since_;
   std::vector<double> took_ms_;
 };
 

@@ -7,6 +7,7 @@
 #include "bench/harness/bench_stream.hpp"
 #include "bench/harness/trips.hpp"
 #include "bench/harness/writer.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/reader.hpp"
 
 namespace splinecast::bench {
@@ -15,10 +16,10 @@ namespace {
 constexpr std::size_t kAttachments = 500;
 
 /// The newest settled time of a stream.
-core::Time settled_until(const std::string& stream) {
-  ipc::Reader reader(stream);
-  core::State state(kWrittenDimensions);
-  (void)reader.sample(core::Time{}, state);
+Time settled_until(const std::string& stream) {
+  Reader reader(stream);
+  State state(kWrittenDimensions);
+  (void)reader.sample(Time{}, state);
   return reader.settled_until();
 }
 
@@ -30,16 +31,16 @@ void attach(benchmark::State& bench) {
   for (auto _ : bench) {
     apps::Child writer([&] { return write_stream(stream, kWrittenKnots, std::nullopt, lines[0]); });
     await(lines[0], 1);
-    const core::Time t = settled_until(stream);
-    const ipc::MonotonicClock clock;
-    core::State state(kWrittenDimensions);
+    const Time t = settled_until(stream);
+    const MonotonicClock clock;
+    State state(kWrittenDimensions);
     Trips attachments(kAttachments);
     for (std::size_t i = 0; i < kAttachments; ++i) {
-      const core::Time start = clock.now();
-      ipc::Reader reader(stream);
-      const ipc::SampleStatus status = reader.sample(t, state);
+      const Time start = clock.now();
+      Reader reader(stream);
+      const SampleStatus status = reader.sample(t, state);
       attachments.add(clock.now() - start);
-      if (!ipc::has_values(status)) throw std::runtime_error("a first sample had no values");
+      if (!has_values(status)) throw std::runtime_error("a first sample had no values");
     }
     report(bench, attachments.summary());
     writer.stop();
@@ -51,9 +52,9 @@ void attach(benchmark::State& bench) {
 void board_bytes(benchmark::State& bench) {
   const Waypoints waypoints(kWrittenKnots, kWrittenDimensions);
   const BenchStream stream(waypoints);
-  const ipc::Reader reader(stream.name());
-  for (auto _ : bench) benchmark::DoNotOptimize(reader.header());
-  bench.counters["region_bytes"] = static_cast<double>(reader.header().region_bytes);
+  const Reader reader(stream.name());
+  for (auto _ : bench) benchmark::DoNotOptimize(ipc::Internals::header(reader));
+  bench.counters["region_bytes"] = static_cast<double>(ipc::Internals::header(reader).region_bytes);
 }
 
 BENCHMARK(attach)->Name("attach/dims:7/knots:4096")->Iterations(1)->UseManualTime();

@@ -14,10 +14,10 @@ namespace {
 void floor_eval(benchmark::State& bench) {
   const auto dimensions = static_cast<std::size_t>(bench.range(0));
   const std::vector<double> coefficients(4 * dimensions, 0.25);
-  core::State state(dimensions);
+  State state(dimensions);
   double u = 0;
   for (auto _ : bench) {
-    core::evaluate(core::kCubicOrder, coefficients, u, state.ref());
+    core::evaluate(kCubicOrder, coefficients, u, state.ref());
     benchmark::DoNotOptimize(state.values().data());
     u += 1e-9;
   }

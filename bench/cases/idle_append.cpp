@@ -14,7 +14,6 @@
 namespace splinecast::bench {
 namespace {
 
-using core::Time;
 using std::chrono::milliseconds;
 
 constexpr std::size_t kStreams = 1'000;
@@ -24,19 +23,19 @@ constexpr Time kPatience = std::chrono::seconds(60);
 /// How far ahead of now a waypoint lies.
 constexpr Time kLead = milliseconds(200);
 
-void append(ipc::Producer& producer, Time t, double x) {
+void append(Producer& producer, Time t, double x) {
   std::array<double, kDimensions> position{};
   position.fill(x);
-  if (producer.append({.time = t, .position = position}) != ipc::AppendStatus::accepted) {
+  if (producer.append({.time = t, .position = position}) != AppendStatus::accepted) {
     throw std::runtime_error("a waypoint of an idle stream was refused");
   }
 }
 
 /// Waits until the curve moves at t.
-void await_motion(ipc::Reader& reader, Time t, core::State& state) {
-  const ipc::MonotonicClock clock;
+void await_motion(Reader& reader, Time t, State& state) {
+  const MonotonicClock clock;
   for (const Time end = clock.now() + kPatience; clock.now() < end;) {
-    if (reader.preview(t, state) == ipc::SampleStatus::provisional) return;
+    if (reader.preview(t, state) == SampleStatus::provisional) return;
     if (apps::stop_requested()) break;
   }
   throw std::runtime_error("the waypoint of an idle stream was not solved");
@@ -44,12 +43,11 @@ void await_motion(ipc::Reader& reader, Time t, core::State& state) {
 
 /// From an append to a stream of many, idle for a second and more, to its knot in a reader. The
 /// appends come at random instants, so that they meet the solver's looks at any phase.
-nlohmann::json append_to_idle(std::vector<ipc::Producer>& producers,
-                              std::vector<ipc::Reader>& readers) {
-  const ipc::MonotonicClock clock;
+nlohmann::json append_to_idle(std::vector<Producer>& producers, std::vector<Reader>& readers) {
+  const MonotonicClock clock;
   std::mt19937_64 random(1);
   std::uniform_int_distribution<Time::rep> pause(0, ipc::StreamSweep::kQuietPause.count());
-  core::State state(kDimensions);
+  State state(kDimensions);
   Trips trips(kAppends);
   for (std::size_t i = 0; i < kAppends; ++i) {
     apps::sleep_until(clock.now() + Time(pause(random)));
@@ -62,19 +60,18 @@ nlohmann::json append_to_idle(std::vector<ipc::Producer>& producers,
 }
 
 void idle_append(benchmark::State& bench) {
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   for (auto _ : bench) {
     const SolvedStreams solved(kStreams, {.capacity = kBusyCapacity, .wake = false});
-    std::vector<ipc::Producer> producers;
+    std::vector<Producer> producers;
     producers.reserve(kStreams);
     for (const std::string& stream : solved.streams()) {
-      producers.emplace_back(stream,
-                             ipc::ProducerOptions{.dimensions = kDimensions, .capacity = 256});
+      producers.emplace_back(stream, ProducerOptions{.dimensions = kDimensions, .capacity = 256});
     }
-    std::vector<ipc::Reader> readers = solved.attach_readers(kPatience);
+    std::vector<Reader> readers = solved.attach_readers(kPatience);
     const Time first = clock.now() + kLead;
-    for (ipc::Producer& producer : producers) append(producer, first, 0);
-    for (ipc::Producer& producer : producers) {
+    for (Producer& producer : producers) append(producer, first, 0);
+    for (Producer& producer : producers) {
       if (!producer.wait_until_consumed(kPatience)) {
         throw std::runtime_error("the first waypoint of an idle stream was not solved");
       }

@@ -12,11 +12,10 @@
 namespace splinecast::bench {
 namespace {
 
-using core::Time;
 using std::chrono::milliseconds;
 
 /// A clock that stands where it is set.
-class SetClock final : public ipc::Clock {
+class SetClock final : public Clock {
  public:
   [[nodiscard]] Time now() const noexcept override { return time; }
   Time time{};
@@ -56,7 +55,7 @@ class PlannedStream {
   /// Sends what has been held back, and times each step until an entry has been found.
   void return_to_path(Trips& trips, Time cost) {
     constexpr int kMostSteps = 200;
-    const ipc::MonotonicClock real;
+    const MonotonicClock real;
     send_until(clock_.time + kLead);
     for (int i = 0; i < kMostSteps; ++i) {
       const Time before = real.now();
@@ -75,7 +74,7 @@ class PlannedStream {
 
   static core::WindowOptions window(std::size_t dimensions, double limit) {
     core::WindowOptions how;
-    how.start = {.kind = core::ConditionKind::halt, .value = {}};
+    how.start = {.kind = ConditionKind::halt, .value = {}};
     how.held_before_start = true;
     if (limit > 0) how.limits.acceleration.assign(dimensions, limit);
     return how;
@@ -91,7 +90,7 @@ class PlannedStream {
                                                    .settled_until = board_.look().settled_until,
                                                    .clock = &clock_};
       const auto status = ring_writer_.append({.time = time, .position = next_->position}, solved);
-      if (status == ipc::AppendStatus::full) solver_.step(clock_);
+      if (status == AppendStatus::full) solver_.step(clock_);
       next_.reset();
     }
   }
@@ -107,7 +106,7 @@ class PlannedStream {
   ipc::StreamSolver solver_;
   SetClock clock_;
   Feed feed_;
-  std::optional<core::Waypoint> next_;
+  std::optional<Waypoint> next_;
   std::optional<Time> begin_;
 };
 

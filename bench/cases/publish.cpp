@@ -19,11 +19,11 @@ namespace {
 
 /// Samples the newest settled time at 1 kHz until a stop is requested.
 void poll_at_1_khz(const std::string& stream, std::atomic<std::uint64_t>& ready) {
-  ipc::Reader reader(stream);
-  core::State state(reader.dimensions());
+  Reader reader(stream);
+  State state(reader.dimensions());
   ready.fetch_add(1);
-  const ipc::MonotonicClock clock;
-  for (core::Time next = clock.now(); apps::sleep_until(next); next += core::Time(1'000'000)) {
+  const MonotonicClock clock;
+  for (Time next = clock.now(); apps::sleep_until(next); next += Time(1'000'000)) {
     benchmark::DoNotOptimize(reader.sample(reader.settled_until(), state));
   }
 }
@@ -47,11 +47,11 @@ void publish(benchmark::State& bench) {
   const Pinned pin(kNear);
   Feed feed(dimensions);
   const StreamName stream;
-  ipc::Producer producer(
-      stream, {.dimensions = dimensions, .clock = ipc::StreamClock::recorded, .start = {}});
-  ipc::Solver solver(stream, {.wake = false});
+  Producer producer(stream,
+                    {.dimensions = dimensions, .clock = StreamClock::recorded, .start = {}});
+  Solver solver(stream, {.wake = false});
   solver.attach();
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   const auto append = [&] {
     benchmark::DoNotOptimize(producer.append(feed.next()));
     solver.step(clock);

@@ -19,10 +19,10 @@ constexpr std::uint64_t kTrips = 20'000;
 }  // namespace
 
 nlohmann::json measure(const std::function<bool(std::uint64_t)>& trip) {
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   Trips trips(kTrips);
   for (std::uint64_t i = 2; i < 2 + kWarmUp + kTrips; ++i) {
-    const core::Time start = clock.now();
+    const Time start = clock.now();
     if (!trip(i)) throw std::runtime_error("the round trips were interrupted");
     if (i >= 2 + kWarmUp) trips.add(clock.now() - start);
   }
@@ -31,38 +31,36 @@ nlohmann::json measure(const std::function<bool(std::uint64_t)>& trip) {
 
 namespace {
 
-constexpr core::Time kPatience{10'000'000'000};
+constexpr Time kPatience{10'000'000'000};
 
 /// A time that only waypoint i gives a curve to: before it, the stop tail of the one before stands
 /// there.
-core::Time asked_for(std::uint64_t i) { return time_of(i) - kTripInterval / 2; }
+Time asked_for(std::uint64_t i) { return time_of(i) - kTripInterval / 2; }
 
 /// Appends the waypoints of the round trips to a stream of this process.
 class Appender {
  public:
   explicit Appender(const std::string& stream)
-      : producer_(
-            stream,
-            {.dimensions = kTripDimensions, .clock = ipc::StreamClock::recorded, .start = {}}) {}
+      : producer_(stream,
+                  {.dimensions = kTripDimensions, .clock = StreamClock::recorded, .start = {}}) {}
   void append(std::uint64_t i) {
     position_.fill(static_cast<double>(i % 16));
-    if (producer_.append({.time = time_of(i), .position = position_}) !=
-        ipc::AppendStatus::accepted) {
+    if (producer_.append({.time = time_of(i), .position = position_}) != AppendStatus::accepted) {
       throw std::runtime_error("a waypoint of the round trips was refused");
     }
   }
-  ipc::Producer& producer() { return producer_; }
+  Producer& producer() { return producer_; }
 
  private:
-  ipc::Producer producer_;
+  Producer producer_;
   std::array<double, kTripDimensions> position_{};
 };
 
 /// Samples until the curve reaches to waypoint i; false if a stop is requested.
-bool await_waypoint(ipc::Reader& reader, core::State& state, std::uint64_t i) {
+bool await_waypoint(Reader& reader, State& state, std::uint64_t i) {
   for (;;) {
-    const ipc::SampleStatus status = reader.sample(asked_for(i), state);
-    if (status == ipc::SampleStatus::provisional || status == ipc::SampleStatus::settled) {
+    const SampleStatus status = reader.sample(asked_for(i), state);
+    if (status == SampleStatus::provisional || status == SampleStatus::settled) {
       benchmark::DoNotOptimize(state.values().data());
       return true;
     }
@@ -102,9 +100,9 @@ void roundtrip_embedded(benchmark::State& bench, std::optional<std::size_t> sett
     apps::Child near([&] {
       const Pinned pin(kNear);
       Appender appender(stream);
-      ipc::Solver solver(stream, {.settle = settle, .wake = false});
+      Solver solver(stream, {.settle = settle, .wake = false});
       solver.attach();
-      const ipc::MonotonicClock clock;
+      const MonotonicClock clock;
       const auto publish = [&](std::uint64_t i) {
         appender.append(i);
         solver.step(clock);
@@ -118,8 +116,8 @@ void roundtrip_embedded(benchmark::State& bench, std::optional<std::size_t> sett
     });
     apps::Child far([&]() -> nlohmann::json {
       const Pinned pin(kFar);
-      ipc::Reader reader(stream, kPatience);
-      core::State state(kTripDimensions);
+      Reader reader(stream, kPatience);
+      State state(kTripDimensions);
       lines[kFarIsReady].store(1, std::memory_order_release);
       for (std::uint64_t i = 2; await_waypoint(reader, state, i); ++i) {
         lines[kBack].store(i, std::memory_order_release);
@@ -140,8 +138,8 @@ void roundtrip_solver(benchmark::State& bench) {
       const Pinned pin(kNear);
       Appender appender(stream);
       appender.append(1);
-      ipc::Reader reader(stream, kPatience);
-      core::State state(kTripDimensions);
+      Reader reader(stream, kPatience);
+      State state(kTripDimensions);
       if (!appender.producer().wait_until_consumed(kPatience)) {
         throw std::runtime_error("the solver of the round trips did not come");
       }
@@ -152,9 +150,9 @@ void roundtrip_solver(benchmark::State& bench) {
     });
     apps::Child far([&]() -> nlohmann::json {
       const Pinned pin(kFar);
-      ipc::Solver solver(stream, {.wake = false});
-      while (!solver.attach() && !apps::stop_requested()) solver.wait(core::Time(1'000'000));
-      const ipc::MonotonicClock clock;
+      Solver solver(stream, {.wake = false});
+      while (!solver.attach() && !apps::stop_requested()) solver.wait(Time(1'000'000));
+      const MonotonicClock clock;
       while (!apps::stop_requested()) solver.step(clock);
       return nullptr;
     });

@@ -30,15 +30,15 @@ const Recorded& recorded(std::size_t count, std::size_t dimensions) {
 void sample(benchmark::State& bench) {
   const auto dimensions = static_cast<std::size_t>(bench.range(0));
   const Recorded& from = recorded(4096, dimensions);
-  ipc::Reader reader(from.stream.name());
-  core::State state(dimensions);
-  const core::Time last = from.waypoints.times.back();
-  core::Time t{};
+  Reader reader(from.stream.name());
+  State state(dimensions);
+  const Time last = from.waypoints.times.back();
+  Time t{};
   for (auto _ : bench) {
     benchmark::DoNotOptimize(reader.sample(t, state));
     benchmark::DoNotOptimize(state.values().data());
-    t += core::Time(1'000'000);
-    if (t > last) t = core::Time{};
+    t += Time(1'000'000);
+    if (t > last) t = Time{};
   }
 }
 
@@ -46,9 +46,9 @@ void sample(benchmark::State& bench) {
 void sample_random(benchmark::State& bench) {
   const auto dimensions = static_cast<std::size_t>(bench.range(0));
   const Recorded& from = recorded(kRandomSegments, dimensions);
-  ipc::Reader reader(from.stream.name());
-  core::State state(dimensions);
-  const std::vector<core::Time> times = random_times(from.waypoints.times.back());
+  Reader reader(from.stream.name());
+  State state(dimensions);
+  const std::vector<Time> times = random_times(from.waypoints.times.back());
   std::size_t i = 0;
   for (auto _ : bench) {
     benchmark::DoNotOptimize(reader.sample(times[i++ % times.size()], state));
@@ -58,10 +58,10 @@ void sample_random(benchmark::State& bench) {
 
 /// Times 2 ms apart, the first one 1 ms later from call to call, as a predictive controller at 1
 /// kHz asks for; by parity of the call, so that each call takes a part of one of them.
-std::array<std::vector<core::Time>, 2> horizons_until(core::Time end) {
-  constexpr core::Time kApart{2'000'000};
-  std::array<std::vector<core::Time>, 2> times;
-  for (core::Time t{}; t + kApart / 2 <= end; t += kApart) {
+std::array<std::vector<Time>, 2> horizons_until(Time end) {
+  constexpr Time kApart{2'000'000};
+  std::array<std::vector<Time>, 2> times;
+  for (Time t{}; t + kApart / 2 <= end; t += kApart) {
     times[0].push_back(t);
     times[1].push_back(t + kApart / 2);
   }
@@ -74,9 +74,9 @@ void sample_many(benchmark::State& bench) {
   const auto dimensions = static_cast<std::size_t>(bench.range(0));
   const auto count = static_cast<std::size_t>(bench.range(1));
   const Recorded& from = recorded(4096, dimensions);
-  ipc::Reader reader(from.stream.name());
-  std::vector<double> values(count * core::State(dimensions).values().size());
-  std::vector<ipc::SampleStatus> status(count);
+  Reader reader(from.stream.name());
+  std::vector<double> values(count * State(dimensions).values().size());
+  std::vector<SampleStatus> status(count);
   const auto times = horizons_until(from.waypoints.times.back());
   const std::size_t calls = 2 * (times[0].size() - count);
   std::size_t i = 0;
@@ -86,8 +86,8 @@ void sample_many(benchmark::State& bench) {
     benchmark::ClobberMemory();
     i = i + 1 < calls ? i + 1 : 0;
   }
-  for (const ipc::SampleStatus one : status) {
-    if (!ipc::has_values(one)) bench.SkipWithError("a time of a horizon had no values");
+  for (const SampleStatus one : status) {
+    if (!has_values(one)) bench.SkipWithError("a time of a horizon had no values");
   }
   bench.counters["times"] = static_cast<double>(count);
 }

@@ -10,6 +10,7 @@
 #include "bench/harness/csv_recording.hpp"
 #include "bench/harness/trips.hpp"
 #include "bench/harness/writer.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/reader.hpp"
 
 /// Samples where the board is written as fast as this machine can.
@@ -17,7 +18,7 @@ namespace splinecast::bench {
 namespace {
 
 constexpr std::size_t kSamples = 1'000'000;
-constexpr core::Time kPatience{10'000'000'000};
+constexpr Time kPatience{10'000'000'000};
 
 /// `replay --embedded --rate max` on the far core, until a stop is requested.
 nlohmann::json replay_for_ever(const std::string& stream) {
@@ -26,7 +27,7 @@ nlohmann::json replay_for_ever(const std::string& stream) {
                               .stream = stream,
                               .rate = {},
                               .loops = 1'000'000,
-                              .clock = ipc::StreamClock::recorded,
+                              .clock = StreamClock::recorded,
                               .embedded = true,
                               .quiet = true};
   apps::WaypointTable table = apps::read_waypoints(options.file, options.table);
@@ -40,33 +41,32 @@ nlohmann::json replay_for_ever(const std::string& stream) {
 /// alone.
 nlohmann::json sample_open_segments(const std::string& stream) {
   constexpr std::size_t kSegments = 8;
-  constexpr core::Time kInterval{10'000'000};
-  ipc::Reader reader(stream, kPatience);
-  core::State state(kWrittenDimensions);
-  const ipc::MonotonicClock clock;
-  const core::Time cost = clock_cost();
-  while (!ipc::has_values(reader.preview(reader.settled_until(), state))) {
+  constexpr Time kInterval{10'000'000};
+  Reader reader(stream, kPatience);
+  State state(kWrittenDimensions);
+  const MonotonicClock clock;
+  const Time cost = clock_cost();
+  while (!has_values(reader.preview(reader.settled_until(), state))) {
   }
   Trips all(kSamples);
-  std::array<std::size_t, ipc::kSampleStatuses> by_status{};
+  std::array<std::size_t, kSampleStatuses> by_status{};
   std::size_t revisions = 0;
   for (std::size_t i = 0; i < kSamples; ++i) {
-    const ipc::Word seen = reader.sampler().revision_seen();
+    const ipc::Word seen = ipc::Internals::sampler(reader).revision_seen();
     const auto segment = static_cast<int>(i % kSegments);
-    const core::Time start = clock.now();
-    const ipc::SampleStatus status =
-        reader.preview(reader.settled_until() + segment * kInterval, state);
+    const Time start = clock.now();
+    const SampleStatus status = reader.preview(reader.settled_until() + segment * kInterval, state);
     all.add(clock.now() - start - cost);
     ++by_status[static_cast<std::size_t>(status)];
-    if (reader.sampler().revision_seen() != seen) ++revisions;
+    if (ipc::Internals::sampler(reader).revision_seen() != seen) ++revisions;
   }
   nlohmann::json summary = all.summary();
   const auto share = [](std::size_t count) { return static_cast<double>(count) / kSamples; };
-  const auto share_with = [&](ipc::SampleStatus status) {
+  const auto share_with = [&](SampleStatus status) {
     return share(by_status[static_cast<std::size_t>(status)]);
   };
-  summary["busy_share"] = share_with(ipc::SampleStatus::busy);
-  summary["before_history_share"] = share_with(ipc::SampleStatus::before_history);
+  summary["busy_share"] = share_with(SampleStatus::busy);
+  summary["before_history_share"] = share_with(SampleStatus::before_history);
   summary["new_revision_share"] = share(revisions);
   return summary;
 }
@@ -96,7 +96,7 @@ BENCHMARK_CAPTURE(sample_overtaken, replay,
 /// The same with a revision for each waypoint: what overtakes readers most often.
 BENCHMARK_CAPTURE(sample_overtaken, publish,
                   [](const std::string& stream, std::atomic<std::uint64_t>& ready) {
-                    return write_stream(stream, kWrittenKnots, core::Time::zero(), ready);
+                    return write_stream(stream, kWrittenKnots, Time::zero(), ready);
                   })
     ->Name("sample/dims:7/beside:publish")
     ->Iterations(1)

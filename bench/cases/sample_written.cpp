@@ -9,6 +9,7 @@
 #include "bench/harness/bench_stream.hpp"
 #include "bench/harness/trips.hpp"
 #include "bench/harness/writer.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/reader.hpp"
 
 namespace splinecast::bench {
@@ -17,39 +18,41 @@ namespace {
 constexpr std::size_t kSamples = 2'000'000;
 /// First samples of a new revision that a run needs at least.
 constexpr std::size_t kFirstSamples = 100;
-constexpr core::Time kPatience{10'000'000'000};
+constexpr Time kPatience{10'000'000'000};
 
 /// Samples at 1 kHz steps, again and again, from 20 s before what is settled to behind the newest
 /// knot.
 class Walk {
  public:
   explicit Walk(const std::string& stream) : reader_(stream, kPatience) {
-    (void)reader_.sample(core::Time{}, state_);  // what is settled is known by now
+    (void)reader_.sample(Time{}, state_);  // what is settled is known by now
   }
 
   /// Goes on to the time of the next sample.
   void step() {
-    t_ += core::Time(1'000'000);
+    t_ += Time(1'000'000);
     if (t_ < end_) return;
-    t_ = reader_.settled_until() - core::Time(20'000'000'000);
-    end_ = reader_.settled_until() + core::Time(100'000'000);
+    t_ = reader_.settled_until() - Time(20'000'000'000);
+    end_ = reader_.settled_until() + Time(100'000'000);
   }
-  [[nodiscard]] ipc::SampleStatus sample() { return reader_.sample(t_, state_); }
-  [[nodiscard]] ipc::Word revision_seen() { return reader_.sampler().revision_seen(); }
+  [[nodiscard]] SampleStatus sample() { return reader_.sample(t_, state_); }
+  [[nodiscard]] ipc::Word revision_seen() {
+    return ipc::Internals::sampler(reader_).revision_seen();
+  }
 
  private:
-  ipc::Reader reader_;
-  core::State state_{kWrittenDimensions};
-  core::Time t_{};
-  core::Time end_{};
+  Reader reader_;
+  State state_{kWrittenDimensions};
+  Time t_{};
+  Time end_{};
 };
 
-void require_values(ipc::SampleStatus status) {
-  if (!ipc::has_values(status)) throw std::runtime_error("a sample had no values");
+void require_values(SampleStatus status) {
+  if (!has_values(status)) throw std::runtime_error("a sample had no values");
 }
 
 /// CPU time of this thread.
-core::Time cpu_now() {
+Time cpu_now() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec);
@@ -57,7 +60,7 @@ core::Time cpu_now() {
 
 /// CPU time of a sample [ns], the mean of many: the clock is too coarse for a single one.
 double mean_time(Walk& walk) {
-  const core::Time start = cpu_now();
+  const Time start = cpu_now();
   for (std::size_t i = 0; i < kSamples; ++i) {
     walk.step();
     require_values(walk.sample());
@@ -68,16 +71,16 @@ double mean_time(Walk& walk) {
 /// Times every sample alone. Of a stream `is_written` meanwhile those are reported as well that
 /// found a new revision.
 nlohmann::json time_alone(Walk& walk, bool is_written) {
-  const ipc::MonotonicClock clock;
-  const core::Time cost = clock_cost();
+  const MonotonicClock clock;
+  const Time cost = clock_cost();
   Trips all(kSamples);
   Trips first_of_revision(kFirstSamples);
   while (all.size() < kSamples || (is_written && first_of_revision.size() < kFirstSamples)) {
     walk.step();
     const ipc::Word seen = walk.revision_seen();
-    const core::Time start = clock.now();
-    const ipc::SampleStatus status = walk.sample();
-    const core::Time took = clock.now() - start - cost;
+    const Time start = clock.now();
+    const SampleStatus status = walk.sample();
+    const Time took = clock.now() - start - cost;
     require_values(status);
     if (all.size() < kSamples) all.add(took);
     if (walk.revision_seen() != seen) first_of_revision.add(took);
@@ -88,7 +91,7 @@ nlohmann::json time_alone(Walk& walk, bool is_written) {
 }
 
 /// A sample while another process publishes.
-void sample_written(benchmark::State& bench, std::optional<core::Time> interval) {
+void sample_written(benchmark::State& bench, std::optional<Time> interval) {
   const Pinned pin(kNear);
   const StreamName stream;
   const SharedLines lines;
@@ -108,11 +111,11 @@ BENCHMARK_CAPTURE(sample_written, quiet, std::nullopt)
     ->Name("sample/dims:7/writer:quiet")
     ->Iterations(1)
     ->UseManualTime();
-BENCHMARK_CAPTURE(sample_written, slow, core::Time(10'000'000))
+BENCHMARK_CAPTURE(sample_written, slow, Time(10'000'000))
     ->Name("sample/dims:7/writer:100Hz")
     ->Iterations(1)
     ->UseManualTime();
-BENCHMARK_CAPTURE(sample_written, fast, core::Time(1'000'000))
+BENCHMARK_CAPTURE(sample_written, fast, Time(1'000'000))
     ->Name("sample/dims:7/writer:1kHz")
     ->Iterations(1)
     ->UseManualTime();

@@ -9,6 +9,7 @@
 #include "apps/process/use.hpp"
 #include "apps/soak/roles.hpp"
 #include "bench/harness/solved_streams.hpp"
+#include "ipc/roles/internals.hpp"
 #include "ipc/roles/stream_sweep.hpp"
 
 /// What many streams of seven dimensions cost the one process that solves them. The time of these
@@ -16,7 +17,6 @@
 namespace splinecast::bench {
 namespace {
 
-using core::Time;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
@@ -28,7 +28,7 @@ constexpr Time kWindow = seconds(1);
 class ManyStreams {
  public:
   /// Their motion begins in a second, or, if they are idle, never.
-  ManyStreams(std::size_t count, bool are_idle, const ipc::SolverOptions& options)
+  ManyStreams(std::size_t count, bool are_idle, const SolverOptions& options)
       : solved_(count, options), producers_([&] {
           const Time begin = clock_.now() + (are_idle ? seconds(1'000'000) : seconds(1));
           return apps::run_soak_producers(solved_.streams(), kRate, begin);
@@ -47,7 +47,7 @@ class ManyStreams {
   }
 
   [[nodiscard]] pid_t solver() const { return solved_.solver(); }
-  [[nodiscard]] std::vector<ipc::Reader>& readers() { return readers_; }
+  [[nodiscard]] std::vector<Reader>& readers() { return readers_; }
 
   /// Waypoints that the solver has taken so far, and deadlines that it has missed.
   struct Solved {
@@ -57,8 +57,8 @@ class ManyStreams {
   [[nodiscard]] Solved solved() const {
     Solved sum;
     ipc::Head head;
-    for (const ipc::Reader& reader : readers_) {
-      if (!reader.head(head)) continue;
+    for (const Reader& reader : readers_) {
+      if (!ipc::Internals::head(reader, head)) continue;
       sum.waypoints += static_cast<double>(head.knots);
       sum.missed += static_cast<double>(head.misses + head.revisions);
     }
@@ -69,16 +69,16 @@ class ManyStreams {
   /// Whether every stream has what it needs to move.
   [[nodiscard]] bool all_move() const {
     ipc::Head head;
-    for (const ipc::Reader& reader : readers_) {
-      if (!reader.head(head) || head.knots < 2) return false;
+    for (const Reader& reader : readers_) {
+      if (!ipc::Internals::head(reader, head) || head.knots < 2) return false;
     }
     return true;
   }
 
-  ipc::MonotonicClock clock_;
+  MonotonicClock clock_;
   SolvedStreams solved_;
   apps::Child producers_;
-  std::vector<ipc::Reader> readers_;
+  std::vector<Reader> readers_;
 };
 
 /// How the streams of a row are.
@@ -89,7 +89,7 @@ struct Row {
   Time freeze_ahead = milliseconds(5);
 };
 
-ipc::SolverOptions options_of(const Row& row) {
+SolverOptions options_of(const Row& row) {
   return {.freeze_ahead = row.freeze_ahead, .capacity = kBusyCapacity, .wake = row.wakes};
 }
 
@@ -97,7 +97,7 @@ ipc::SolverOptions options_of(const Row& row) {
 /// long that the solver takes them for idle.
 void solve(benchmark::State& bench, Row row) {
   ManyStreams world(row.streams, row.is_idle, options_of(row));
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   if (row.is_idle) apps::sleep_until(clock.now() + 2 * ipc::StreamSweep::kQuietAfter);
   const auto before = world.solved();
   double cpu = 0;
@@ -106,8 +106,8 @@ void solve(benchmark::State& bench, Row row) {
     const Time begin = clock.now();
     const Time taken = apps::cpu_time(world.solver());
     apps::sleep_until(begin + kWindow);
-    const double taken_now = core::to_seconds(apps::cpu_time(world.solver()) - taken);
-    const double passed = core::to_seconds(clock.now() - begin);
+    const double taken_now = to_seconds(apps::cpu_time(world.solver()) - taken);
+    const double passed = to_seconds(clock.now() - begin);
     bench.SetIterationTime(taken_now / passed);
     cpu += taken_now;
     wall += passed;
@@ -127,8 +127,8 @@ void solve(benchmark::State& bench, Row row) {
 /// A reader of all streams: one sample, each time of another stream.
 void sample(benchmark::State& bench, Row row) {
   ManyStreams world(row.streams, row.is_idle, options_of(row));
-  const ipc::MonotonicClock clock;
-  core::State state(world.readers().front().dimensions());
+  const MonotonicClock clock;
+  State state(world.readers().front().dimensions());
   std::size_t i = 0;
   for (auto _ : bench) {
     benchmark::DoNotOptimize(world.readers()[i].sample(clock.now(), state));

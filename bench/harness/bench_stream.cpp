@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <exception>
 
-#include "ipc/roles/stream_files.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/solver.hpp"
+#include "splinecast/streams.hpp"
 
 namespace splinecast::bench {
 
@@ -17,25 +17,25 @@ void all_dimensions(benchmark::internal::Benchmark* bench) {
 }
 
 Waypoints::Waypoints(std::size_t count, std::size_t dims) : dimensions(dims) {
-  core::Time t{};
+  Time t{};
   for (std::size_t i = 0; i < count; ++i) {
     times.push_back(t);
     for (std::size_t d = 0; d < dims; ++d) {
       positions.push_back(std::sin(2e-9 * static_cast<double>(t.count()) + static_cast<double>(d)));
     }
-    t += core::Time(9'000'000 + static_cast<std::int64_t>(i * 7919 % 2'000'000));
+    t += Time(9'000'000 + static_cast<std::int64_t>(i * 7919 % 2'000'000));
   }
 }
 
 Feed::Feed(std::size_t dimensions) : waypoints_(4096, dimensions) {}
 
-core::Waypoint Feed::next() {
+Waypoint Feed::next() {
   if (i_ == waypoints_.times.size()) {
     i_ = 0;
-    offset_ += waypoints_.times.back() + core::Time(10'000'000);
+    offset_ += waypoints_.times.back() + Time(10'000'000);
   }
-  const core::Waypoint waypoint{.time = offset_ + waypoints_.times[i_],
-                                .position = waypoints_.position(i_)};
+  const Waypoint waypoint{.time = offset_ + waypoints_.times[i_],
+                          .position = waypoints_.position(i_)};
   ++i_;
   return waypoint;
 }
@@ -47,24 +47,23 @@ StreamName::StreamName() {
 
 StreamName::~StreamName() {
   try {
-    ipc::remove_stream(name_);
+    remove_stream(name_);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "splinecast_bench: stream %s stays: %s\n", name_.c_str(), error.what());
   }
 }
 
 BenchStream::BenchStream(const Waypoints& waypoints) {
-  ipc::Producer producer(
-      name_,
-      {.dimensions = waypoints.dimensions, .clock = ipc::StreamClock::recorded, .start = {}});
-  ipc::Solver solver(name_, {.capacity = waypoints.times.size()});
+  Producer producer(
+      name_, {.dimensions = waypoints.dimensions, .clock = StreamClock::recorded, .start = {}});
+  Solver solver(name_, {.capacity = waypoints.times.size()});
   solver.attach();
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   for (std::size_t i = 0; i < waypoints.times.size(); ++i) {
-    const core::Waypoint waypoint{.time = waypoints.times[i], .position = waypoints.position(i)};
-    while (producer.append(waypoint) == ipc::AppendStatus::full) solver.step(clock);
+    const Waypoint waypoint{.time = waypoints.times[i], .position = waypoints.position(i)};
+    while (producer.append(waypoint) == AppendStatus::full) solver.step(clock);
   }
-  while (producer.finish({}) == ipc::AppendStatus::full) solver.step(clock);
+  while (producer.finish({}) == AppendStatus::full) solver.step(clock);
   while (solver.step(clock).consumed > 0) {
   }
 }

@@ -16,7 +16,7 @@ void all_dimensions(benchmark::internal::Benchmark* bench);
 /// Waypoints of a smooth motion at 100 Hz with jitter: what every benchmark is fed.
 struct Waypoints {
   std::size_t dimensions;
-  std::vector<core::Time> times;
+  std::vector<Time> times;
   std::vector<double> positions;  ///< [waypoint][dimension]
 
   Waypoints(std::size_t count, std::size_t dims);
@@ -29,12 +29,12 @@ struct Waypoints {
 class Feed {
  public:
   explicit Feed(std::size_t dimensions);
-  core::Waypoint next();
+  Waypoint next();
 
  private:
   Waypoints waypoints_;
   std::size_t i_ = 0;
-  core::Time offset_{};
+  Time offset_{};
 };
 
 /// A name for a stream of this process, never given twice; whatever stands under it is removed at

@@ -17,7 +17,7 @@ CsvRecording::CsvRecording(std::size_t dimensions)
   for (std::size_t d = 0; d < dimensions; ++d) file << ",q" << d;
   Feed feed(dimensions);
   for (std::size_t i = 0; i < kRows; ++i) {
-    const core::Waypoint waypoint = feed.next();
+    const Waypoint waypoint = feed.next();
     file << '\n' << waypoint.time.count();
     for (const double x : waypoint.position) file << fmt::format(",{}", static_cast<float>(x));
   }

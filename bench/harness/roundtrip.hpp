@@ -13,13 +13,13 @@
 namespace splinecast::bench {
 
 inline constexpr std::size_t kTripDimensions = 7;
-inline constexpr core::Time kTripInterval{10'000'000};
+inline constexpr Time kTripInterval{10'000'000};
 
 /// Lines of SharedLines: one each way, and one that says that the far side is there.
 enum Line : std::size_t { kThere, kBack, kFarIsReady };
 
 /// Time of the i-th waypoint, i ≥ 1.
-[[nodiscard]] inline core::Time time_of(std::uint64_t i) {
+[[nodiscard]] inline Time time_of(std::uint64_t i) {
   return kTripInterval * static_cast<std::int64_t>(i);
 }
 

@@ -19,7 +19,7 @@ std::vector<std::string> names(std::size_t count) {
 
 }  // namespace
 
-SolvedStreams::SolvedStreams(std::size_t count, const ipc::SolverOptions& options)
+SolvedStreams::SolvedStreams(std::size_t count, const SolverOptions& options)
     : streams_(names(count)), remover_(streams_), solver_([&, wanted = prefix() + "*"] {
         return nlohmann::json(apps::run_solve(
             {.wanted = {wanted}, .solver = options, .sweep = kSweep, .quiet = true}));
@@ -32,8 +32,8 @@ SolvedStreams::~SolvedStreams() {
   (void)solver_.result();
 }
 
-std::vector<ipc::Reader> SolvedStreams::attach_readers(core::Time patience) const {
-  std::vector<ipc::Reader> readers;
+std::vector<Reader> SolvedStreams::attach_readers(Time patience) const {
+  std::vector<Reader> readers;
   readers.reserve(streams_.size());
   for (const std::string& stream : streams_) readers.emplace_back(stream, patience);
   return readers;

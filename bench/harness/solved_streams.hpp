@@ -17,14 +17,14 @@ namespace splinecast::bench {
 inline constexpr std::size_t kBusyCapacity = 256;
 
 /// Pause between two looks of the solver process at the streams on which something happens.
-inline constexpr core::Time kSweep{1'000'000};
+inline constexpr Time kSweep{1'000'000};
 
 /// Names for many streams, and one process that solves them as `solve` does once they have
 /// producers. Raises this process's limit of open files. Removes the streams at the end, when
 /// their producers must have ended.
 class SolvedStreams {
  public:
-  SolvedStreams(std::size_t count, const ipc::SolverOptions& options);
+  SolvedStreams(std::size_t count, const SolverOptions& options);
   SolvedStreams(const SolvedStreams&) = delete;
   SolvedStreams& operator=(const SolvedStreams&) = delete;
   ~SolvedStreams();
@@ -33,7 +33,7 @@ class SolvedStreams {
   [[nodiscard]] pid_t solver() const { return solver_.pid(); }
 
   /// A reader of each stream, in their order. Waits up to `patience` for each.
-  [[nodiscard]] std::vector<ipc::Reader> attach_readers(core::Time patience) const;
+  [[nodiscard]] std::vector<Reader> attach_readers(Time patience) const;
 
  private:
   std::vector<std::string> streams_;

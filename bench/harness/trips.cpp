@@ -35,15 +35,15 @@ nlohmann::json Trips::summary() {
   return {{"p50_ns", quantile(0.5)}, {"p99_ns", quantile(0.99)}, {"trips", ns_.size()}};
 }
 
-core::Time clock_cost() {
-  const ipc::MonotonicClock clock;
+Time clock_cost() {
+  const MonotonicClock clock;
   constexpr std::size_t kPairs = 10'001;
   Trips pairs(kPairs);
   for (std::size_t i = 0; i < kPairs; ++i) {
-    const core::Time start = clock.now();
+    const Time start = clock.now();
     pairs.add(clock.now() - start);
   }
-  return core::Time(static_cast<std::int64_t>(pairs.quantile(0.5)));
+  return Time(static_cast<std::int64_t>(pairs.quantile(0.5)));
 }
 
 void report(benchmark::State& bench, const nlohmann::json& summary) {

@@ -32,7 +32,7 @@ class Pinned {
 class Trips {
  public:
   explicit Trips(std::size_t count) { ns_.reserve(count); }
-  void add(core::Time trip) { ns_.push_back(trip.count()); }
+  void add(Time trip) { ns_.push_back(trip.count()); }
   [[nodiscard]] std::size_t size() const { return ns_.size(); }
   /// The value that a share q of the trips does not exceed; there must be some.
   [[nodiscard]] double quantile(double q);
@@ -44,7 +44,7 @@ class Trips {
 };
 
 /// What reading the clock twice costs: to be taken off what is timed alone.
-[[nodiscard]] core::Time clock_cost();
+[[nodiscard]] Time clock_cost();
 
 /// Makes p50 the benchmark's time and p99 a counter. The benchmark has one iteration, which has
 /// run.

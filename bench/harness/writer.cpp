@@ -12,32 +12,32 @@ namespace splinecast::bench {
 namespace {
 
 /// Sleeps at most this long at a time while there is nothing to publish.
-constexpr core::Time kLongestSleep{3'600'000'000'000};
+constexpr Time kLongestSleep{3'600'000'000'000};
 
 }  // namespace
 
 nlohmann::json write_stream(const std::string& stream, std::size_t capacity,
-                            std::optional<core::Time> interval, std::atomic<std::uint64_t>& ready) {
+                            std::optional<Time> interval, std::atomic<std::uint64_t>& ready) {
   const Pinned pin(kFar);
   Feed feed(kWrittenDimensions);
-  ipc::Producer producer(
-      stream, {.dimensions = kWrittenDimensions, .clock = ipc::StreamClock::recorded, .start = {}});
-  ipc::Solver solver(stream, {.capacity = capacity, .wake = false});
+  Producer producer(
+      stream, {.dimensions = kWrittenDimensions, .clock = StreamClock::recorded, .start = {}});
+  Solver solver(stream, {.capacity = capacity, .wake = false});
   solver.attach();
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   const auto publish = [&] {
-    if (producer.append(feed.next()) != ipc::AppendStatus::accepted) {
+    if (producer.append(feed.next()) != AppendStatus::accepted) {
       throw std::runtime_error("a waypoint was refused");
     }
     solver.step(clock);
   };
   for (std::size_t i = 0; i < kWrittenKnots; ++i) publish();
   ready.store(1, std::memory_order_release);
-  core::Time next = clock.now();
+  Time next = clock.now();
   while (!apps::stop_requested()) {
     if (!interval) {
       apps::sleep_until(clock.now() + kLongestSleep);
-    } else if (*interval == core::Time::zero() || apps::sleep_until(next += *interval)) {
+    } else if (*interval == Time::zero() || apps::sleep_until(next += *interval)) {
       publish();
     }
   }

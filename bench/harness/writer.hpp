@@ -19,6 +19,6 @@ inline constexpr std::size_t kWrittenKnots = 4096;
 /// more in each `interval`, as fast as it can if that is 0, or none if it is unset, until a stop is
 /// requested. Runs on the far core.
 nlohmann::json write_stream(const std::string& stream, std::size_t capacity,
-                            std::optional<core::Time> interval, std::atomic<std::uint64_t>& ready);
+                            std::optional<Time> interval, std::atomic<std::uint64_t>& ready);
 
 }  // namespace splinecast::bench

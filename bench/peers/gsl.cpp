@@ -15,7 +15,7 @@ namespace {
 class Splines {
  public:
   explicit Splines(const Waypoints& waypoints) : count_(waypoints.times.size()) {
-    for (const core::Time t : waypoints.times) x_.push_back(core::to_seconds(t));
+    for (const Time t : waypoints.times) x_.push_back(to_seconds(t));
     for (std::size_t d = 0; d < waypoints.dimensions; ++d) {
       std::vector<double> y;
       for (std::size_t i = 0; i < count_; ++i) y.push_back(waypoints.position(i)[d]);
@@ -56,12 +56,12 @@ void sample(benchmark::State& bench) {
   const Waypoints waypoints(4096, static_cast<std::size_t>(bench.range(0)));
   const Splines splines(waypoints);
   std::vector<double> out(3 * waypoints.dimensions);
-  core::Time t{};
+  Time t{};
   for (auto _ : bench) {
-    splines.sample(core::to_seconds(t), out.data());
+    splines.sample(to_seconds(t), out.data());
     benchmark::DoNotOptimize(out.data());
-    t += core::Time(1'000'000);
-    if (t > waypoints.times.back()) t = core::Time{};
+    t += Time(1'000'000);
+    if (t > waypoints.times.back()) t = Time{};
   }
 }
 
@@ -70,10 +70,10 @@ void sample_random(benchmark::State& bench) {
   static const Waypoints waypoints(kRandomSegments, 7);
   static const Splines splines(waypoints);
   std::vector<double> out(3 * waypoints.dimensions);
-  const std::vector<core::Time> times = random_times(waypoints.times.back());
+  const std::vector<Time> times = random_times(waypoints.times.back());
   std::size_t i = 0;
   for (auto _ : bench) {
-    splines.sample(core::to_seconds(times[i++ % times.size()]), out.data());
+    splines.sample(to_seconds(times[i++ % times.size()]), out.data());
     benchmark::DoNotOptimize(out.data());
   }
 }

@@ -23,8 +23,8 @@ std::vector<Makima> make(Feed& feed, std::size_t dimensions) {
   x.reserve(kMost);
   for (auto& values : y) values.reserve(kMost);
   for (std::size_t i = 0; i < kFirst; ++i) {
-    const core::Waypoint waypoint = feed.next();
-    x.push_back(core::to_seconds(waypoint.time));
+    const Waypoint waypoint = feed.next();
+    x.push_back(to_seconds(waypoint.time));
     for (std::size_t d = 0; d < dimensions; ++d) y[d].push_back(waypoint.position[d]);
   }
   std::vector<Makima> all;
@@ -44,8 +44,8 @@ void append(benchmark::State& bench) {
   std::vector<Makima> all = make(feed, dimensions);
   std::size_t points = kFirst;
   for (auto _ : bench) {
-    const core::Waypoint waypoint = feed.next();
-    const double t = core::to_seconds(waypoint.time);
+    const Waypoint waypoint = feed.next();
+    const double t = to_seconds(waypoint.time);
     for (std::size_t d = 0; d < dimensions; ++d) all[d].push_back(t, waypoint.position[d]);
     benchmark::ClobberMemory();
     if (++points < kMost) continue;

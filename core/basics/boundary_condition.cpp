@@ -9,7 +9,7 @@
 #include "core/basics/number_text.hpp"
 #include "splinecast/waypoint.hpp"
 
-namespace splinecast::core {
+namespace splinecast {
 namespace {
 
 constexpr std::array<std::pair<ConditionKind, std::string_view>, 8> kConditionNames{{
@@ -60,7 +60,7 @@ std::string to_string(const Condition& condition) {
   char separator = '=';
   for (const double value : condition.value) {
     text.push_back(std::exchange(separator, ','));
-    text += number_text(value);
+    text += core::number_text(value);
   }
   return text;
 }
@@ -106,4 +106,4 @@ void require_values(const Condition& condition, std::size_t dimensions) {
   }
 }
 
-}  // namespace splinecast::core
+}  // namespace splinecast

@@ -9,7 +9,7 @@
 
 #include "splinecast/waypoint.hpp"
 
-namespace splinecast::core {
+namespace splinecast {
 namespace {
 
 using Quaternion = std::array<double, kQuaternionSize>;
@@ -285,4 +285,4 @@ AngularMotion angular_motion(const QuaternionDimensions& at, std::span<const dou
           .acceleration = body_rate(q, load(acceleration, at.first), at.w_first)};
 }
 
-}  // namespace splinecast::core
+}  // namespace splinecast

@@ -184,7 +184,7 @@ PiecewisePolynomial c2_by_accelerations(const Waypoints& waypoints, const Condit
       write_cubic_part(system.at(i), system.at(i + 1), system.h(i), segment);
     }
     write_acceleration_step(knots, i, interval, false, segment.acceleration_step);
-    curve.append(segment);
+    append(segment, curve);
   }
   return curve;
 }

@@ -7,23 +7,23 @@
 #include "core/solvers/smoothing_mesh.hpp"
 #include "splinecast/fit.hpp"
 
-namespace splinecast::core {
+namespace splinecast {
 namespace {
 
 /// Σ(x_i − f(t_i))² over all dimensions.
-double squared_residuals(const BatchSmoothing& system, std::size_t dimensions) {
+double squared_residuals(const core::BatchSmoothing& system, std::size_t dimensions) {
   double sum = 0;
   for (std::size_t d = 0; d < dimensions; ++d) {
-    for (const DoubleDouble residual : system.solve(d).residual) {
+    for (const core::DoubleDouble residual : system.solve(d).residual) {
       sum += static_cast<double>(residual) * static_cast<double>(residual);
     }
   }
   return sum;
 }
 
-double score_of(const SmoothingMesh& mesh, double lambda) {
-  const KnotRing& knots = mesh.knots();
-  const BatchSmoothing system(mesh, lambda);
+double score_of(const core::SmoothingMesh& mesh, double lambda) {
+  const core::KnotRing& knots = mesh.knots();
+  const core::BatchSmoothing system(mesh, lambda);
   const double trace = system.residual_trace();
   return static_cast<double>(knots.size()) * squared_residuals(system, knots.dimensions()) /
          (trace * trace);
@@ -60,21 +60,21 @@ double minimum_between(double low, double high, const Function& f) {
 }  // namespace
 
 double cross_validation_score(const Waypoints& waypoints, double lambda) {
-  require_waypoints(waypoints);
+  core::require_waypoints(waypoints);
   if (waypoints.size() < 3) {
     throw std::invalid_argument("cross-validation needs 3 waypoints; there are " +
                                 std::to_string(waypoints.size()));
   }
   require_parameters({.method = find_method("smoothing"), .lambda = lambda, .time_scale = 1});
-  const KnotRing knots = measure_knots(waypoints, false);
-  return score_of(SmoothingMesh(knots), lambda);
+  const core::KnotRing knots = core::measure_knots(waypoints, false);
+  return score_of(core::SmoothingMesh(knots), lambda);
 }
 
 double cross_validated_lambda(const Waypoints& waypoints) {
-  require_waypoints(waypoints);
+  core::require_waypoints(waypoints);
   if (waypoints.size() < 3) return 0;
-  const KnotRing knots = measure_knots(waypoints, false);
-  const SmoothingMesh mesh(knots);
+  const core::KnotRing knots = core::measure_knots(waypoints, false);
+  const core::SmoothingMesh mesh(knots);
   double shortest = knots.row(0).h;
   for (std::size_t i = 1; i < knots.newest(); ++i) shortest = std::min(shortest, knots.row(i).h);
   // From what smooths nothing to what leaves nothing but a line: λ/h³ tells the one,
@@ -101,4 +101,4 @@ double cross_validated_lambda(const Waypoints& waypoints) {
       minimum_between(std::max(lowest, middle - step), std::min(highest, middle + step), score));
 }
 
-}  // namespace splinecast::core
+}  // namespace splinecast

@@ -7,7 +7,7 @@
 #include "core/batch/c2.hpp"
 #include "core/batch/knots.hpp"
 
-namespace splinecast::core {
+namespace splinecast {
 namespace {
 
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
@@ -19,7 +19,7 @@ void require_given(const Waypoints& waypoints, const Method& method) {
       throw std::invalid_argument("method " + std::string(method.name) + " needs a " + what +
                                   " with every waypoint");
     }
-    require_values_of(waypoints, values, what);
+    core::require_values_of(waypoints, values, what);
   };
   require(method.needs_velocity(), waypoints.velocities, "velocity");
   require(method.needs_acceleration(), waypoints.accelerations, "acceleration");
@@ -47,11 +47,11 @@ PiecewisePolynomial normalized(const Waypoints& waypoints) {
     unit_times.emplace_back(static_cast<std::int64_t>(i) * kNanosecondsPerSecond);
   }
   const std::size_t dimensions = waypoints.dimensions;
-  const auto unit =
-      c2_spline({.dimensions = dimensions, .times = unit_times, .positions = waypoints.positions},
-                {}, {}, C2Form::acceleration);
+  const auto unit = core::c2_spline(
+      {.dimensions = dimensions, .times = unit_times, .positions = waypoints.positions}, {}, {},
+      core::C2Form::acceleration);
   PiecewisePolynomial curve(dimensions);
-  Segment segment(dimensions);
+  core::Segment segment(dimensions);
   for (std::size_t i = 0; i < unit.segments(); ++i) {
     segment.left = waypoints.times[i];
     segment.right = waypoints.times[i + 1];
@@ -64,7 +64,7 @@ PiecewisePolynomial normalized(const Waypoints& waypoints) {
       }
       stretch *= h;
     }
-    curve.append(segment);
+    core::append(segment, curve);
   }
   return curve;
 }
@@ -74,16 +74,17 @@ PiecewisePolynomial normalized(const Waypoints& waypoints) {
 PiecewisePolynomial fit(const Waypoints& waypoints, const FitOptions& options) {
   const Method& method = *options.interpolant.method;
   if (method.family == Family::tridiagonal) {
-    return c2_spline(waypoints, options.start, options.end);
+    return core::c2_spline(waypoints, options.start, options.end);
   }
-  require_waypoints(waypoints);
+  core::require_waypoints(waypoints);
   require_given(waypoints, method);
   require_parameters(options.interpolant);
   require_condition(options.start, method, waypoints.dimensions);
   require_condition(options.end, method, waypoints.dimensions);
-  if (waypoints.size() == 1) return hold_at(waypoints);
+  if (waypoints.size() == 1) return core::hold_at(waypoints);
   if (method.family == Family::unit) return normalized(waypoints);
-  return curve_of(solve_knots(waypoints, options.interpolant, options.start, options.end));
+  return core::curve_of(
+      core::solve_knots(waypoints, options.interpolant, options.start, options.end));
 }
 
-}  // namespace splinecast::core
+}  // namespace splinecast

@@ -65,7 +65,7 @@ PiecewisePolynomial hold_at(const Waypoints& waypoints) {
   PiecewisePolynomial curve(waypoints.dimensions);
   Segment segment(waypoints.dimensions);
   build_hold(waypoints.times[0], waypoints.times[0], waypoints[0].position, segment);
-  curve.append(segment);
+  append(segment, curve);
   return curve;
 }
 
@@ -76,7 +76,7 @@ PiecewisePolynomial curve_of(const KnotRing& knots) {
     const Interval interval = knots.interval(i);
     build_segment(interval, segment);
     write_acceleration_step(knots, i, interval, false, segment.acceleration_step);
-    curve.append(segment);
+    append(segment, curve);
   }
   return curve;
 }

@@ -155,12 +155,6 @@ void take_rotation_excesses(const Comparison& comparison, const QuaternionDimens
 
 }  // namespace
 
-std::string_view to_string(LimitKind kind) noexcept {
-  constexpr std::array<std::string_view, kLimitKinds> kNames{"velocity", "acceleration", "jerk",
-                                                             "position"};
-  return kNames[static_cast<std::size_t>(kind)];
-}
-
 bool keeps_within(const MotionLimits& limits, const DimensionKinds* kinds, const SegmentPart& part,
                   const Allowance& allowance) noexcept {
   const Comparison comparison{limits, part, allowance};

@@ -31,23 +31,6 @@
 /// Every function is O(D), allocates nothing and throws nothing; safe from any thread.
 namespace splinecast::core {
 
-enum class LimitKind : std::uint8_t { velocity = 0, acceleration = 1, jerk = 2, position = 3 };
-inline constexpr std::size_t kLimitKinds = 4;
-[[nodiscard]] std::string_view to_string(LimitKind kind) noexcept;
-
-/// Where a segment comes nearest to a limit, or is farthest beyond it.
-struct Excess {
-  /// Value over limit. Of a position: its distance from the middle of its bounds over half their
-  /// distance; where one bound only is finite, 1 plus what is beyond it over its size, or over 1 if
-  /// that is larger. Negative: there is no limit; infinite: the value is no number.
-  double ratio = -1;
-  LimitKind kind = LimitKind::velocity;
-  std::size_t dimension = 0;  ///< of a quaternion its first
-  double value = 0;           ///< with its sign; of a quaternion the bound of its magnitude
-  double limit = 0;           ///< the limit, what is allowed instead, or the bound of a position
-  double u = 0;               ///< seconds after the left knot
-};
-
 /// Values that are allowed although they exceed a limit: one per dimension, or none. A motion that
 /// begins beyond its limit may stay there. A value below the limit changes nothing.
 struct Allowance {

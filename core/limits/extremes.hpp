@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <span>
 
-#include "core/basics/derivatives.hpp"
 #include "core/polynomial/segment.hpp"
+#include "splinecast/state.hpp"
 
 /// Least and greatest values of a segment and its derivatives.
 ///

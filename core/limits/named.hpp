@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,16 +10,6 @@
 /// Limits of joints by name, as robot descriptions give them, and how they become those of a
 /// curve's dimensions.
 namespace splinecast::core {
-
-/// The limits of one joint, as in MotionLimits.
-struct NamedLimits {
-  std::string name;
-  double velocity = 0;
-  double acceleration = 0;
-  double jerk = 0;
-  double lower = -std::numeric_limits<double>::infinity();
-  double upper = std::numeric_limits<double>::infinity();
-};
 
 /// Whether a dimension's name is that of a joint: the same, or the same before a unit in brackets,
 /// as in `q1 [rad]` or `q1 (rad)`.

@@ -8,7 +8,7 @@
 #include "splinecast/limits.hpp"
 #include "splinecast/waypoint.hpp"
 
-namespace splinecast::core {
+namespace splinecast {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -123,4 +123,10 @@ MotionLimits spread(const MotionLimits& limits, std::size_t dimensions) {
   return out;
 }
 
-}  // namespace splinecast::core
+std::string_view to_string(LimitKind kind) noexcept {
+  constexpr std::array<std::string_view, kLimitKinds> kNames{"velocity", "acceleration", "jerk",
+                                                             "position"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+}  // namespace splinecast

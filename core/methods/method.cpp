@@ -5,9 +5,10 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/methods/slope_rule.hpp"
 #include "splinecast/waypoint.hpp"
 
-namespace splinecast::core {
+namespace splinecast {
 namespace {
 
 constexpr std::array kSolved{
@@ -43,7 +44,7 @@ constexpr std::array kSolved{
 
 std::vector<Method> all_methods() {
   std::vector<Method> all(kSolved.begin(), kSolved.end());
-  for (const SlopeRule& rule : slope_rules()) {
+  for (const core::SlopeRule& rule : core::slope_rules()) {
     all.push_back({.name = rule.name,
                    .number = rule.number,
                    .family = Family::local,
@@ -94,4 +95,4 @@ void require_parameters(const Interpolant& interpolant) {
   }
 }
 
-}  // namespace splinecast::core
+}  // namespace splinecast

@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "core/basics/laws.hpp"
+#include "splinecast/method.hpp"
 
 /// Slope rules: the local methods. Each finds a knot's velocity from a few intervals around it.
 namespace splinecast::core {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/forms/knot_segment.hpp"
+#include "core/methods/slope_rule.hpp"
 #include "core/polynomial/segment.hpp"
 #include "core/solvers/knot_ring.hpp"
 #include "core/solvers/knot_solver.hpp"

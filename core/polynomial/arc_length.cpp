@@ -4,11 +4,11 @@
 #include <utility>
 #include <vector>
 
-#include "core/polynomial/measures.hpp"
 #include "core/polynomial/roots.hpp"
+#include "core/polynomial/segment.hpp"
 #include "splinecast/calculus.hpp"
 
-namespace splinecast::core {
+namespace splinecast {
 namespace {
 
 /// Positive nodes and weights of ten-point Gauss–Legendre on [−1, 1]: exact up to degree 19.
@@ -42,9 +42,9 @@ class UnitPath {
 
   /// The length, between the minima and maxima of the speed.
   double length() {
-    Roots ends = unit_roots(slope_of_squared_speed(), 0);
+    core::Roots ends = core::unit_roots(slope_of_squared_speed(), 0);
     if (ends.count == 0 || ends.values[ends.count - 1] < 1) ends.values[ends.count++] = 1;
-    std::array<double, kMaxRootCoefficients + 1> rough{};
+    std::array<double, core::kMaxRootCoefficients + 1> rough{};
     double from = 0;
     for (std::size_t i = 0; i < ends.count; ++i) {
       rough[i] = gauss(std::exchange(from, ends.values[i]), ends.values[i]);
@@ -61,7 +61,7 @@ class UnitPath {
 
  private:
   double speed(double s) {
-    evaluate_derivative(order_, coefficients_, s, 1, velocity_);
+    core::evaluate_derivative(order_, coefficients_, s, 1, velocity_);
     double sum = 0;
     for (const double v : velocity_) sum += v * v;
     return std::sqrt(sum);
@@ -119,4 +119,4 @@ double arc_length(const PiecewisePolynomial& curve, Time from, Time to) {
   return length;
 }
 
-}  // namespace splinecast::core
+}  // namespace splinecast

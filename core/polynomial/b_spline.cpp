@@ -9,7 +9,7 @@
 #include "core/polynomial/continuity.hpp"
 #include "splinecast/calculus.hpp"
 
-namespace splinecast::core {
+namespace splinecast {
 namespace {
 
 /// The knots of a B-spline while it is built, and the segment on the right of each.
@@ -28,7 +28,7 @@ KnotVector knots_of(const PiecewisePolynomial& curve, int degree) {
   const Time origin = curve.breaks().front();
   result.push(Time(0), 0, degree + 1);
   for (std::size_t i = 1; i < curve.segments(); ++i) {
-    const int smooth = std::min(continuity(curve, i), degree - 1);
+    const int smooth = std::min(core::continuity(curve, i), degree - 1);
     result.push(curve.left_of(i) - origin, i, degree - smooth);
   }
   result.push(curve.breaks().back() - origin, curve.segments(), degree + 1);
@@ -73,7 +73,7 @@ void append_blossom(std::span<const double> c, std::span<const double> arguments
   for (std::size_t d = 0; d < dimensions; ++d) {
     double sum = 0;
     for (std::size_t k = arguments.size() + 1; k-- > 0;) {
-      sum += c[k * dimensions + d] * (e[k] / binomial(arguments.size(), k));
+      sum += c[k * dimensions + d] * (e[k] / core::binomial(arguments.size(), k));
     }
     out.push_back(sum);
   }
@@ -107,4 +107,4 @@ BSpline to_b_spline(const PiecewisePolynomial& curve) {
   return spline;
 }
 
-}  // namespace splinecast::core
+}  // namespace splinecast

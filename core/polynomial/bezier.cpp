@@ -2,7 +2,7 @@
 
 #include "core/basics/binomial.hpp"
 
-namespace splinecast::core {
+namespace splinecast {
 namespace {
 
 /// With b_j the control points, n the degree and h the length, Δ^k b_0 = c_k h^k / C(n, k). Between
@@ -12,7 +12,7 @@ void scale_to_differences(std::span<double> c, std::size_t dimensions, double h)
   double power_of_h = 1;
   for (std::size_t k = 0; k <= degree; ++k) {
     for (std::size_t d = 0; d < dimensions; ++d) {
-      c[k * dimensions + d] *= power_of_h / binomial(degree, k);
+      c[k * dimensions + d] *= power_of_h / core::binomial(degree, k);
     }
     power_of_h *= h;
   }
@@ -34,7 +34,7 @@ void scale_to_coefficients(std::span<double> c, std::size_t dimensions, double h
   const std::size_t degree = c.size() / dimensions - 1;
   double power_of_h = 1;
   for (std::size_t k = 0; k <= degree; ++k) {
-    const double factor = h > 0 ? binomial(degree, k) / power_of_h : (k == 0 ? 1 : 0);
+    const double factor = h > 0 ? core::binomial(degree, k) / power_of_h : (k == 0 ? 1 : 0);
     for (std::size_t d = 0; d < dimensions; ++d) c[k * dimensions + d] *= factor;
     power_of_h *= h;
   }
@@ -71,4 +71,4 @@ PiecewisePolynomial from_bezier(std::size_t dimensions, std::span<const BezierSe
   return curve;
 }
 
-}  // namespace splinecast::core
+}  // namespace splinecast

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace splinecast::core {
+#include "core/polynomial/segment.hpp"
+
+namespace splinecast {
 namespace {
 
 std::string in_ns(Time t) { return std::to_string(t.count()) + " ns"; }
@@ -67,7 +69,7 @@ PiecewisePolynomial integrated(const PiecewisePolynomial& curve) {
       sums.push_back(c[k] / static_cast<double>(power));
     }
     result.append(curve.left_of(i), curve.right_of(i), order, sums);
-    evaluate_derivative(order, sums, curve.seconds(i), 0, area);
+    core::evaluate_derivative(order, sums, curve.seconds(i), 0, area);
   }
   return result;
 }
@@ -128,4 +130,4 @@ PiecewisePolynomial raised(const PiecewisePolynomial& curve, int order) {
   return result;
 }
 
-}  // namespace splinecast::core
+}  // namespace splinecast

@@ -5,7 +5,7 @@
 
 #include "splinecast/b_spline.hpp"
 
-namespace splinecast::core {
+namespace splinecast {
 namespace {
 
 void require_knots(const BSpline& spline) {
@@ -114,4 +114,4 @@ PiecewisePolynomial from_b_spline(const BSpline& spline) {
   return curve;
 }
 
-}  // namespace splinecast::core
+}  // namespace splinecast

@@ -1,4 +1,4 @@
-#include "core/polynomial/measures.hpp"
+#include "splinecast/calculus.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 #include "core/polynomial/roots.hpp"
 
-namespace splinecast::core {
+namespace splinecast {
 namespace {
 
 /// What counts as equal, of the largest terms.
@@ -72,15 +72,15 @@ Extremes extremes_of_segment(const PiecewisePolynomial& curve, std::size_t segme
     throw std::invalid_argument("derivative " + std::to_string(derivative) + " is negative");
   }
   const auto p = unit_polynomial(curve, segment, dimension, derivative);
-  const Extremum left{curve.left_of(segment), value_at(p.coefficients(), 0)};
+  const Extremum left{curve.left_of(segment), core::value_at(p.coefficients(), 0)};
   Extremes result{.least = left, .greatest = left};
   const auto consider = [&](double s) {
-    const Extremum here{time_at(curve, segment, s), value_at(p.coefficients(), s)};
+    const Extremum here{time_at(curve, segment, s), core::value_at(p.coefficients(), s)};
     if (here.value < result.least.value) result.least = here;
     if (here.value > result.greatest.value) result.greatest = here;
   };
   const auto slope = unit_polynomial(curve, segment, dimension, derivative + 1);
-  for (const double s : unit_roots(slope.coefficients(), 0)) consider(s);
+  for (const double s : core::unit_roots(slope.coefficients(), 0)) consider(s);
   consider(1);
   return result;
 }
@@ -104,12 +104,12 @@ std::vector<Time> crossings(const PiecewisePolynomial& curve, std::size_t dimens
     const double tolerance = kRounding * (std::abs(value) + size_of(p));
     p.values[0] -= value;
     if (before * p.values[0] < 0) times.push_back(curve.left_of(i));
-    before = value_at(p.coefficients(), 1);
+    before = core::value_at(p.coefficients(), 1);
     if (size_of(p) <= tolerance) {
       times.insert(times.end(), {curve.left_of(i), curve.right_of(i)});
       continue;
     }
-    for (const double s : unit_roots(p.coefficients(), tolerance)) {
+    for (const double s : core::unit_roots(p.coefficients(), tolerance)) {
       times.push_back(time_at(curve, i, s));
     }
   }
@@ -117,4 +117,4 @@ std::vector<Time> crossings(const PiecewisePolynomial& curve, std::size_t dimens
   return times;
 }
 
-}  // namespace splinecast::core
+}  // namespace splinecast

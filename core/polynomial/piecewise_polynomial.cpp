@@ -4,7 +4,9 @@
 #include <stdexcept>
 #include <string>
 
-namespace splinecast::core {
+#include "core/polynomial/segment.hpp"
+
+namespace splinecast {
 namespace {
 
 std::string in_ns(Time t) { return std::to_string(t.count()) + " ns"; }
@@ -13,15 +15,6 @@ std::string in_ns(Time t) { return std::to_string(t.count()) + " ns"; }
 
 int PiecewisePolynomial::order() const noexcept {
   return orders_.empty() ? kCubicOrder : *std::ranges::max_element(orders_);
-}
-
-void PiecewisePolynomial::append(const Segment& segment) {
-  if (segment.coefficients.size() != static_cast<std::size_t>(kMaxOrder) * dimensions_) {
-    throw std::invalid_argument("segment has other dimensions than the curve it is appended to");
-  }
-  const auto powers = static_cast<std::size_t>(std::clamp(segment.order, 0, kMaxOrder));
-  append(segment.left, segment.right, segment.order,
-         std::span(segment.coefficients).first(powers * dimensions_));
 }
 
 void PiecewisePolynomial::append(Time left, Time right, int order,
@@ -67,14 +60,14 @@ void PiecewisePolynomial::evaluate(Time t, const StateRef& out) const noexcept {
 
 void PiecewisePolynomial::derivative(Time t, int r, std::span<double> out) const noexcept {
   const std::size_t i = segment_at(t);
-  evaluate_derivative(orders_[i], coefficients(i), to_seconds(t - breaks_[i]), r, out);
+  core::evaluate_derivative(orders_[i], coefficients(i), to_seconds(t - breaks_[i]), r, out);
 }
 
 void PiecewisePolynomial::jump(std::size_t segment, int r, std::span<double> out) const noexcept {
   std::ranges::fill(out, 0.0);
   if (segment == 0) return;
   const std::size_t before = segment - 1;
-  evaluate_derivative(orders_[before], coefficients(before), seconds(before), r, out);
+  core::evaluate_derivative(orders_[before], coefficients(before), seconds(before), r, out);
   double factorial = 1;
   for (int k = 2; k <= r; ++k) factorial *= k;
   for (std::size_t d = 0; d < dimensions_; ++d) {
@@ -86,4 +79,4 @@ void PiecewisePolynomial::jump(std::size_t segment, int r, std::span<double> out
   }
 }
 
-}  // namespace splinecast::core
+}  // namespace splinecast

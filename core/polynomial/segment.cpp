@@ -205,4 +205,13 @@ void build_hold(Time from, Time to, std::span<const double> position, Segment& o
   std::ranges::copy(position, powers.begin());
 }
 
+void append(const Segment& segment, PiecewisePolynomial& curve) {
+  if (segment.coefficients.size() != static_cast<std::size_t>(kMaxOrder) * curve.dimensions()) {
+    throw std::invalid_argument("segment has other dimensions than the curve it is appended to");
+  }
+  const auto powers = static_cast<std::size_t>(std::clamp(segment.order, 0, kMaxOrder));
+  curve.append(segment.left, segment.right, segment.order,
+               std::span(segment.coefficients).first(powers * curve.dimensions()));
+}
+
 }  // namespace splinecast::core

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/basics/derivatives.hpp"
+#include "splinecast/piecewise_polynomial.hpp"
 #include "splinecast/state.hpp"
 #include "splinecast/time.hpp"
 
@@ -14,22 +14,6 @@
 /// Coefficients are laid out [power][dimension], lowest power first, so that loops run over
 /// contiguous dimensions. Source: doc 003 eq 4-3, 4-4 (with the exponent it omits).
 namespace splinecast::core {
-
-/// Coefficients per dimension: 4 for a cubic; 6 at splices, halts and stop tails.
-inline constexpr int kCubicOrder = 4;
-inline constexpr int kMaxOrder = 6;
-
-/// Highest order of a polynomial that is evaluated: a quintic integrated or raised leaves room.
-inline constexpr int kMaxPolynomialOrder = 16;
-
-/// What a segment is for; readers derive a sample's status from it.
-enum class SegmentKind : std::uint8_t {
-  spline = 0,     ///< between two waypoints
-  splice = 1,     ///< order-6 entry from a given state
-  stop_tail = 2,  ///< stop segment: behind the newest knot, ends at rest
-  hold = 3,       ///< at rest: between a stop tail and a splice, or, of no length, the one waypoint
-                  ///< of a finished stream
-};
 
 /// One polynomial piece of a curve with D dimensions.
 struct Segment {
@@ -101,5 +85,8 @@ void write_acceleration_jump(const Interval& before, const Interval& after,
 
 /// Writes the segment that holds `position` between two times, which may be the same.
 void build_hold(Time from, Time to, std::span<const double> position, Segment& out) noexcept;
+
+/// Appends a segment to a curve; throws as PiecewisePolynomial::append does. Allocates.
+void append(const Segment& segment, PiecewisePolynomial& curve);
 
 }  // namespace splinecast::core

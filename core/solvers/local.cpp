@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/methods/slope_rule.hpp"
 #include "core/solvers/families.hpp"
 
 namespace splinecast::core {

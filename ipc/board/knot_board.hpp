@@ -57,17 +57,6 @@ struct RefusedItem {
   Refusal reason{};
 };
 
-/// Where a limit was passed: of the first segment beyond one, the place that is farthest beyond.
-struct LimitExcess {
-  Word item = 0;            ///< of the waypoint
-  bool is_refused = false;  ///< else it was taken
-  core::LimitKind kind{};
-  std::size_t dimension = 0;  ///< of a quaternion its first
-  core::Time time{};
-  double value = 0;  ///< with its sign; of a quaternion a bound of its magnitude
-  double limit = 0;  ///< or the bound of a position
-};
-
 /// What goes with a knot besides its values.
 struct KnotNote {
   core::SegmentForm form{};     ///< of the segment that begins here
@@ -81,8 +70,8 @@ struct KnotNote {
 struct KnotRecord {
   bool is_new = false;  ///< the knot comes to stand in its slot; else only its cell is written
   KnotNote note;
-  core::Time time{};                       ///< of a new knot
-  core::Time begins{};                     ///< when the next segment begins, if none begins here
+  Time time{};                             ///< of a new knot
+  Time begins{};                           ///< when the next segment begins, if none begins here
   std::span<const double> position;        ///< of a new knot: its waypoint, else of the curve
   std::span<const double> velocity;        ///<
   std::span<const double> acceleration{};  ///< iff the note says that there is one
@@ -129,7 +118,7 @@ class KnotBoardWriter {
 
   /// Writes a committed knot again with another form, and, where that is `none`, with the time at
   /// which the next segment begins. Else nothing changes; readers see that its segment has. O(D).
-  void write_form(Word number, core::SegmentForm form, core::Time begins = {}) noexcept;
+  void write_form(Word number, core::SegmentForm form, Time begins = {}) noexcept;
 
   /// The form of a knot's segment, as the next revision will have it.
   [[nodiscard]] core::SegmentForm form(Word number) const noexcept;
@@ -155,7 +144,7 @@ class KnotBoardWriter {
 
   /// Promises that no later revision changes anything before t: S1. Stores nothing where that has
   /// been said already.
-  void store_settled(core::Time t) noexcept {
+  void store_settled(Time t) noexcept {
     const Word word = to_word(t);
     if (word == settled_) return;
     settled_ = word;
@@ -166,7 +155,7 @@ class KnotBoardWriter {
   [[nodiscard]] Word& settled_word() noexcept { return control_[kSettledUntil]; }
 
   /// Loads the settled word, which a SettledRaise may have raised.
-  [[nodiscard]] core::Time take_up_settled() noexcept {
+  [[nodiscard]] Time take_up_settled() noexcept {
     settled_ = load(control_[kSettledUntil], std::memory_order_relaxed);
     return to_time(settled_);
   }
@@ -177,7 +166,7 @@ class KnotBoardWriter {
   }
 
   /// Counts a step of so many nanoseconds.
-  void count_step(core::Time length) noexcept;
+  void count_step(Time length) noexcept;
 
   /// Notes, behind the commit, that the newest revision was compared with the clock, and whether it
   /// came too late.
@@ -199,7 +188,7 @@ class KnotBoardWriter {
   [[nodiscard]] const Word& revision_word() const noexcept { return control_[kRevision]; }
 
  private:
-  /// Largest sum of magnitudes of what one revision writes. Values within ±core::kLargestValue at
+  /// Largest sum of magnitudes of what one revision writes. Values within ±kLargestValue at
   /// the shortest intervals make none so large, and within it every segment stays within what
   /// readers accept, whatever the interval.
   static constexpr double kLargestSum = 1e150;
@@ -264,7 +253,7 @@ class KnotBoardWriter {
   [[nodiscard]] std::span<const WrittenSlot> written() const noexcept {
     return std::span(written_).first(at_.written_count);
   }
-  void note_time(Word number, core::Time time) noexcept;
+  void note_time(Word number, Time time) noexcept;
   void read_state() noexcept;
   void restore_times() noexcept;
   void forget_written() noexcept;
@@ -290,7 +279,7 @@ class KnotBoardWriter {
 
 /// What a reader saw of the commit word and of the settled word, in this order of loads: S2, R1.
 struct Look {
-  core::Time settled_until{};
+  Time settled_until{};
   Word revision = 0;
 };
 
@@ -330,7 +319,7 @@ class KnotCopy {
   std::size_t cell = 0;  ///< of its slot, 0 or 1
   std::size_t slot = 0;
   Word number = 0;
-  core::Time time{};
+  Time time{};
   KnotNote note;
   Word item = 0;  ///< as the layout has it beside the acceleration
 
@@ -360,7 +349,7 @@ class KnotBoardReader {
 
   /// S2 and R1: how far the curve is settled, and the newest revision; 0: none yet.
   [[nodiscard]] Look look() const noexcept {
-    const core::Time settled = to_time(load(control_[kSettledUntil], std::memory_order_acquire));
+    const Time settled = to_time(load(control_[kSettledUntil], std::memory_order_acquire));
     return {settled, load(control_[kRevision], std::memory_order_acquire)};
   }
   [[nodiscard]] Word revision() const noexcept {
@@ -401,6 +390,10 @@ class KnotBoardReader {
   /// Copies the whole head. Upon failure `out` stays as it is.
   [[nodiscard]] bool copy_head(const Look& look, Head& out) const noexcept;
 
+  /// Copies the head of the newest revision, in a bounded number of tries. Returns false, and
+  /// leaves `out` as it is, if there is no revision or if the writer overtook every try.
+  [[nodiscard]] bool copy_newest_head(Head& out) const noexcept;
+
   /// Copies knot `number` under r: it must stand on the board then. Upon failure `out.tag` is 0 and
   /// the rest of no use. O(D).
   [[nodiscard]] bool copy_knot(Word number, Word r, KnotCopy& out) const noexcept;
@@ -421,11 +414,11 @@ class KnotBoardReader {
   }
 
   /// Copies a knot's time and the form of the segment that begins there, under r.
-  [[nodiscard]] bool copy_time(Word number, Word r, core::Time& time,
+  [[nodiscard]] bool copy_time(Word number, Word r, Time& time,
                                core::SegmentForm& form) const noexcept;
 
   /// When the segment of knot `number` begins, from the packed times: a hint, to be confirmed.
-  [[nodiscard]] core::Time time_hint(Word number) const noexcept {
+  [[nodiscard]] Time time_hint(Word number) const noexcept {
     return to_time(load(times_[number & (layout_.capacity - 1)], std::memory_order_relaxed));
   }
 
@@ -465,7 +458,7 @@ class KnotBoardReader {
   [[nodiscard]] SlotView<const Word> head_cells() const noexcept {
     return {control_.data() + kHeadSlot, kHeadWords};
   }
-  [[nodiscard]] core::Time earliest_change(Word seen, Word r) const noexcept;
+  [[nodiscard]] Time earliest_change(Word seen, Word r) const noexcept;
 
   BoardLayout layout_;
   std::size_t slot_words_;

@@ -16,17 +16,17 @@ constexpr std::size_t kBoundsWords = word_of(kHeadFields, "finished");
 
 /// Whether a knot of ours can stand at a time: a waypoint, or, behind the last one, the end of a
 /// stop or of the way back from there.
-bool is_knot_time(core::Time time) noexcept {
-  return time >= -core::kLatestTime && time <= core::kLatestTime + 2 * kLongestStop;
+bool is_knot_time(Time time) noexcept {
+  return time >= -kLatestTime && time <= kLatestTime + 2 * kLongestStop;
 }
 
 /// Whether the knots of a head can all lie on a board, and its times are some; no writer of ours
 /// says otherwise.
 bool has_sane_bounds(const Head& head, std::size_t capacity) noexcept {
-  if (!core::is_time_in_range(head.settled_until)) return false;
+  if (!is_time_in_range(head.settled_until)) return false;
   if (head.newest == 0) return true;
   return head.first >= 1 && head.first <= head.newest && head.newest - head.first < capacity &&
-         head.newest <= std::numeric_limits<Word>::max() / 2 && head.stop >= core::Time::zero() &&
+         head.newest <= std::numeric_limits<Word>::max() / 2 && head.stop >= Time::zero() &&
          head.stop <= kLongestStop;
 }
 
@@ -73,10 +73,10 @@ void KnotBoardReader::prefetch_segment(Word number) const noexcept {
 
 /// C2: the earliest of the times that the revisions after `seen` up to r changed the curve from;
 /// min() where not all of these are there any more.
-core::Time KnotBoardReader::earliest_change(Word seen, Word r) const noexcept {
+Time KnotBoardReader::earliest_change(Word seen, Word r) const noexcept {
   const Word missed = r - seen;  // very many if the commit word went back: no writer of ours does
-  if (missed >= kChangesKept) return core::Time::min();
-  core::Time earliest = core::Time::max();
+  if (missed >= kChangesKept) return Time::min();
+  Time earliest = Time::max();
   for (Word back = 0; back < missed; ++back) {
     const Word& word = control_[kChanges + (r - back) % kChangesKept];
     earliest = std::min(earliest, to_time(load(word, std::memory_order_acquire)));
@@ -87,15 +87,15 @@ core::Time KnotBoardReader::earliest_change(Word seen, Word r) const noexcept {
   bool stands = false;
   for (const Word tag : tags.of) {
     if (tag == kRetiredTag) continue;
-    if (revision_of(tag) > seen + kChangesKept - 1) return core::Time::min();
+    if (revision_of(tag) > seen + kChangesKept - 1) return Time::min();
     stands = true;
   }
-  return stands ? earliest : core::Time::min();
+  return stands ? earliest : Time::min();
 }
 
 bool KnotBoardReader::copy_bounds(const Look& look, Word seen, Head& out) const noexcept {
   const Word r = look.revision;
-  const core::Time changed_from = earliest_change(seen, r);
+  const Time changed_from = earliest_change(seen, r);
   const auto view = head_cells();
   const Tags tags = view.tags(std::memory_order_acquire);
   if (!tags.holds_any(r)) return false;
@@ -123,7 +123,7 @@ bool KnotBoardReader::copy_bounds(const Look& look, Word seen, Head& out) const 
 
 bool KnotBoardReader::copy_head(const Look& look, Head& out) const noexcept {
   const Word r = look.revision;
-  const core::Time changed_from = earliest_change(r - 1, r);
+  const Time changed_from = earliest_change(r - 1, r);
   const auto view = head_cells();
   const Tags tags = view.tags(std::memory_order_acquire);
   if (!tags.holds_any(r)) return false;
@@ -138,14 +138,24 @@ bool KnotBoardReader::copy_head(const Look& look, Head& out) const noexcept {
   head.revision = r;
   head.settled_until = look.settled_until;
   head.changed_from = changed_from;
-  if (!has_sane_bounds(head, layout_.capacity) || !core::is_time_in_range(head.newest_knot) ||
-      !core::is_time_in_range(head.committed)) {
+  if (!has_sane_bounds(head, layout_.capacity) || !is_time_in_range(head.newest_knot) ||
+      !is_time_in_range(head.committed)) {
     return false;
   }
   const bool is_late = r > 0 && load(control_[kLate], std::memory_order_relaxed) == r;
   head.revisions += is_late ? 1 : 0;
   out = head;
   return true;
+}
+
+bool KnotBoardReader::copy_newest_head(Head& out) const noexcept {
+  constexpr int kTries = 16;
+  for (int attempt = 0; attempt < kTries; ++attempt) {
+    const Look seen = look();
+    if (seen.revision == 0) return false;
+    if (copy_head(seen, out)) return true;
+  }
+  return false;
 }
 
 bool KnotBoardReader::copy_knot(Word number, Word r, KnotCopy& out) const noexcept {
@@ -195,7 +205,7 @@ inline bool KnotBoardReader::copy_slot(std::size_t index, Word r, KnotCopy& out)
   return true;
 }
 
-bool KnotBoardReader::copy_time(Word number, Word r, core::Time& time,
+bool KnotBoardReader::copy_time(Word number, Word r, Time& time,
                                 core::SegmentForm& form) const noexcept {
   const auto view = cells(number);
   const Tags tags = view.tags(std::memory_order_acquire);
@@ -235,15 +245,14 @@ std::optional<LimitExcess> KnotBoardReader::excess(const Head& head, Word index)
   const auto words = excesses_.subspan(index % kExcessesKept * kExcessWords, kExcessWords);
   const Word tag = load(words[0], std::memory_order_acquire);
   constexpr Word kKindMask = 7;
-  constexpr Word kDimensionMask = core::kMaxDimensions - 1;
-  const LimitExcess found{
-      .item = tag >> kExcessItemShift,
-      .is_refused = (tag & 1U) != 0,
-      .kind = static_cast<core::LimitKind>((tag >> 1U & kKindMask) % core::kLimitKinds),
-      .dimension = tag >> kExcessDimensionShift & kDimensionMask,
-      .time = to_time(load(words[1], std::memory_order_acquire)),
-      .value = to_double(load(words[2], std::memory_order_acquire)),
-      .limit = to_double(load(words[3], std::memory_order_acquire))};
+  constexpr Word kDimensionMask = kMaxDimensions - 1;
+  const LimitExcess found{.item = tag >> kExcessItemShift,
+                          .is_refused = (tag & 1U) != 0,
+                          .kind = static_cast<LimitKind>((tag >> 1U & kKindMask) % kLimitKinds),
+                          .dimension = tag >> kExcessDimensionShift & kDimensionMask,
+                          .time = to_time(load(words[1], std::memory_order_acquire)),
+                          .value = to_double(load(words[2], std::memory_order_acquire)),
+                          .limit = to_double(load(words[3], std::memory_order_acquire))};
   const bool is_whole = tag != 0 && load(words[0], std::memory_order_relaxed) == tag;
   return is_whole && found.item < head.consumed ? std::optional(found) : std::nullopt;
 }

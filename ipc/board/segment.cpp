@@ -69,7 +69,7 @@ bool BoardSegment::take_last(const KnotBoardReader& board, const Head& head) noe
 /// Mostly: a cubic between two waypoints, neither cut nor smoothed.
 inline bool BoardSegment::build_cubic() noexcept {
   const Word length = to_word(right_.time) - to_word(left_.time);
-  if (right_.time <= left_.time || length > to_word(core::Time::max())) return false;
+  if (right_.time <= left_.time || length > to_word(Time::max())) return false;
   next_ = left_.number + 1;
   right_end_ = right_.time;
   return core::build_cubic({.left = left_.time,
@@ -91,14 +91,14 @@ bool BoardSegment::build(const Head& head) noexcept {
   next_ = left_.number + 1;
   if (!right_.is_there()) {
     if (form != SegmentForm::stop && form != SegmentForm::hold) return false;
-    right.time = left_.time + (form == SegmentForm::stop ? head.stop : core::Time::zero());
+    right.time = left_.time + (form == SegmentForm::stop ? head.stop : Time::zero());
   } else if (!has_arrival(form, right_.note)) {
     return false;
   }
   const bool may_be_empty = form == SegmentForm::hold;
   if (may_be_empty ? right.time < left_.time : right.time <= left_.time) return false;
   // Its length must be a time as well.
-  if (to_word(right.time) - to_word(left_.time) > to_word(core::Time::max())) return false;
+  if (to_word(right.time) - to_word(left_.time) > to_word(Time::max())) return false;
   right_end_ = right.time;
   if (after_.is_there()) {
     next_ = after_.number;
@@ -156,7 +156,7 @@ void BoardSegment::write_accelerations(std::span<double> start,
   core::write_end_accelerations(left_.note.form, left_.end(), right, start, end);
   if (right_end_ == segment_.right) return;
   core::evaluate_derivative(segment_.order, segment_.coefficients,
-                            core::to_seconds(right_end_ - segment_.left), 2, end);
+                            to_seconds(right_end_ - segment_.left), 2, end);
 }
 
 void BoardSegment::copy_to(SegmentCopy& out) const {
@@ -191,7 +191,7 @@ std::optional<Word> segment_before(const KnotBoardReader& board, const Head& hea
   // At most one knot at which none begins lies between two at which one does.
   constexpr Word kLookBack = 2;
   for (Word back = 1; back <= kLookBack && number >= head.first + back; ++back) {
-    core::Time time{};
+    Time time{};
     core::SegmentForm form{};
     if (!board.copy_time(number - back, head.revision, time, form)) return std::nullopt;
     if (form != core::SegmentForm::none) return number - back;

@@ -22,11 +22,11 @@ struct SegmentOrigin {
 struct SegmentCopy {
   Word number = 0;  ///< of the knot that it begins at
   Word next = 0;    ///< of the segment behind it, if there is one
-  core::Time left{};
-  core::Time right{};
-  core::Time natural_right{};  ///< where it would end had it not been cut
-  int order = core::kCubicOrder;
-  core::SegmentKind kind{};
+  Time left{};
+  Time right{};
+  Time natural_right{};  ///< where it would end had it not been cut
+  int order = kCubicOrder;
+  SegmentKind kind{};
   std::uint32_t newer_knots = 0;  ///< that its left knot had seen when it was last solved
   SegmentOrigin origin{};
   bool has_waypoint = false;                ///< whether its left end is a waypoint
@@ -67,11 +67,11 @@ class BoardSegment {
   [[nodiscard]] bool is_there() const noexcept { return is_there_; }
   [[nodiscard]] Word number() const noexcept { return left_.number; }
   [[nodiscard]] Word next() const noexcept { return next_; }
-  [[nodiscard]] core::Time left() const noexcept { return segment_.left; }
-  [[nodiscard]] core::Time right() const noexcept { return right_end_; }
-  [[nodiscard]] core::Time natural_right() const noexcept { return segment_.right; }
+  [[nodiscard]] Time left() const noexcept { return segment_.left; }
+  [[nodiscard]] Time right() const noexcept { return right_end_; }
+  [[nodiscard]] Time natural_right() const noexcept { return segment_.right; }
   [[nodiscard]] int order() const noexcept { return segment_.order; }
-  [[nodiscard]] core::SegmentKind kind() const noexcept { return segment_.kind; }
+  [[nodiscard]] SegmentKind kind() const noexcept { return segment_.kind; }
   [[nodiscard]] std::span<const double> coefficients() const noexcept {
     return segment_.coefficients;
   }
@@ -101,7 +101,7 @@ class BoardSegment {
   KnotCopy left_;
   KnotCopy right_;  ///< not copied: none follows
   KnotCopy after_;  ///< where no segment begins at the right knot
-  core::Time right_end_{};
+  Time right_end_{};
   Word next_ = 0;
   bool is_there_ = false;
 };

@@ -128,7 +128,7 @@ void KnotBoardWriter::prefetch(Word first, Word newest) const noexcept {
   __builtin_prefetch(held_times_.data(), 1);
 }
 
-void KnotBoardWriter::note_time(Word number, core::Time time) noexcept {
+void KnotBoardWriter::note_time(Word number, Time time) noexcept {
   Word& hint = times_[index_of(number)];
   held_times_.push_back({index_of(number), load(hint, std::memory_order_relaxed)});
   // A hint only: readers confirm it, so no ordering is needed.
@@ -203,7 +203,7 @@ inline void KnotBoardWriter::write_slot(std::size_t index, const KnotRecord& kno
   row_sum_ += row_sum;
 }
 
-void KnotBoardWriter::write_form(Word number, core::SegmentForm form, core::Time begins) noexcept {
+void KnotBoardWriter::write_form(Word number, core::SegmentForm form, Time begins) noexcept {
   const std::size_t c = (states_[index_of(number)] & kCellBit) != 0 ? 1 : 0;
   const Word* const committed = cells(number).cell(c);
   KnotNote note = note_of(load(committed[kCellTag], std::memory_order_relaxed));
@@ -290,7 +290,7 @@ void KnotBoardWriter::commit(Head& head) noexcept {
   forget_written();
 }
 
-void KnotBoardWriter::count_step(core::Time length) noexcept {
+void KnotBoardWriter::count_step(Time length) noexcept {
   const auto ns = static_cast<Word>(std::max<std::int64_t>(length.count(), 1));
   const std::size_t bucket = std::min<std::size_t>(std::bit_width(ns) - 1, kStepBuckets - 1);
   Word& count = control_[kStepTimes + bucket];

@@ -39,10 +39,10 @@ void require_range(const char* what, std::uint64_t found, std::uint64_t least, s
 
 void require_dimension_kinds(const RegionHeader& header) {
   for (std::size_t d = 0; d < header.dimensions; ++d) {
-    require_range("kind of dimension", header.dimension_kind[d], 0, core::kDimensionKinds - 1);
+    require_range("kind of dimension", header.dimension_kind[d], 0, kDimensionKinds - 1);
   }
   try {
-    (void)core::DimensionKinds(dimensions_of(header));
+    (void)DimensionKinds(dimensions_of(header));
   } catch (const std::invalid_argument& error) {
     throw BadRegion(std::string("region has dimensions that cannot be: ") + error.what());
   }
@@ -75,7 +75,7 @@ void require_common(const RegionHeader& header, RegionKind kind, std::size_t rea
   require_this_layout(header);
   require(header.kind == static_cast<std::uint64_t>(kind), "kind", header.kind,
           static_cast<std::uint64_t>(kind));
-  require_range("dimensions", header.dimensions, core::kMinDimensions, core::kMaxDimensions);
+  require_range("dimensions", header.dimensions, kMinDimensions, kMaxDimensions);
   require_dimension_kinds(header);
   require_range("capacity", header.capacity, 2, max_capacity);
   require(std::has_single_bit(header.capacity), "capacity", header.capacity,
@@ -86,13 +86,13 @@ void require_common(const RegionHeader& header, RegionKind kind, std::size_t rea
           round_up(header.control, kSeparation));
   require_range("clock", header.clock, 0, 1);
   require_range("start condition", header.start_kind, 0,
-                static_cast<std::uint64_t>(core::ConditionKind::own));
-  if (!core::is_online(static_cast<core::ConditionKind>(header.start_kind))) {
+                static_cast<std::uint64_t>(ConditionKind::own));
+  if (!is_online(static_cast<ConditionKind>(header.start_kind))) {
     throw BadRegion("region has start condition " + std::to_string(header.start_kind) +
                     ", which is none for streams");
   }
   for (std::size_t d = 0; d < header.dimensions; ++d) {
-    if (core::is_usable(header.start_value[d])) continue;
+    if (is_usable(header.start_value[d])) continue;
     throw BadRegion("region has start value " + std::to_string(header.start_value[d]));
   }
   require_range("least interval", static_cast<std::uint64_t>(header.min_interval), 1,
@@ -104,7 +104,7 @@ void require_common(const RegionHeader& header, RegionKind kind, std::size_t rea
 
 /// What shapes the curve: SlidingWindow refuses all else as well, but not as a bad region.
 void require_curve(const RegionHeader& header) {
-  const core::Method* const method = core::find_method(header.method);
+  const Method* const method = find_method(header.method);
   if (method == nullptr || !method->streams()) {
     throw BadRegion("region has method " + std::to_string(header.method) +
                     ", which is none for streams");
@@ -121,7 +121,7 @@ void require_curve(const RegionHeader& header) {
 
 void require_motion_limits(const RegionHeader& header) {
   try {
-    core::require_limits(motion_limits(header), dimensions_of(header));
+    require_limits(motion_limits(header), dimensions_of(header));
   } catch (const std::invalid_argument& error) {
     throw BadRegion(std::string("region has bad limits: ") + error.what());
   }
@@ -199,15 +199,15 @@ void write_header(std::span<std::byte> region, const RegionHeader& header) noexc
 }
 
 bool smooths(const RegionHeader& header) noexcept {
-  const core::Method* const method = core::find_method(header.method);
-  return method != nullptr && method->family == core::Family::smoothing;
+  const Method* const method = find_method(header.method);
+  return method != nullptr && method->family == Family::smoothing;
 }
 
-std::vector<core::Dimension> dimensions_of(const RegionHeader& header) {
-  std::vector<core::Dimension> dimensions;
+std::vector<Dimension> dimensions_of(const RegionHeader& header) {
+  std::vector<Dimension> dimensions;
   for (std::size_t d = 0; d < header.dimensions; ++d) {
-    dimensions.push_back({.kind = static_cast<core::DimensionKind>(header.dimension_kind[d]),
-                          .period = header.period[d]});
+    dimensions.push_back(
+        {.kind = static_cast<DimensionKind>(header.dimension_kind[d]), .period = header.period[d]});
   }
   return dimensions;
 }
@@ -225,14 +225,14 @@ BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_by
   require_curve(header);
   const auto layout =
       BoardLayout::of(header.dimensions, header.capacity, header.control, smooths(header));
-  require_range("tail", header.tail, 0, static_cast<std::uint64_t>(core::Tail::rest));
+  require_range("tail", header.tail, 0, static_cast<std::uint64_t>(Tail::rest));
   require_range("freeze-ahead", static_cast<std::uint64_t>(header.freeze_ahead), 1,
                 kLongestNanoseconds);
   require_range("history", static_cast<std::uint64_t>(header.history), 0, kLongestNanoseconds);
   require_range("shortest splice", static_cast<std::uint64_t>(header.min_splice), 1,
                 kLongestNanoseconds);
   require_range("word for what is beyond limits", header.beyond, 0,
-                static_cast<std::uint64_t>(core::Beyond::refuse));
+                static_cast<std::uint64_t>(Beyond::refuse));
   require_motion_limits(header);
   require_range("stop time", static_cast<std::uint64_t>(header.stop_time), 1,
                 static_cast<std::uint64_t>(kLongestStop.count()));

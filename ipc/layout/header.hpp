@@ -55,10 +55,10 @@ struct RegionHeader {
   std::uint64_t stride;          ///< bytes from one ring item or knot slot to the next
   std::int64_t min_interval;     ///< ns between waypoints
   std::int64_t max_interval;
-  std::uint64_t start_kind;  ///< core::ConditionKind at the first waypoint
-  std::uint64_t method;      ///< core::Method::number; 0: c2
+  std::uint64_t start_kind;  ///< ConditionKind at the first waypoint
+  std::uint64_t method;      ///< Method::number; 0: c2
   std::uint64_t settle;      ///< settle lag K
-  std::uint64_t tail;        ///< core::Tail
+  std::uint64_t tail;        ///< Tail
   std::int64_t stop_time;    ///< ns
   std::uint64_t epoch;       ///< number of the owner's life, from 1
   std::uint64_t owner_pid;
@@ -69,17 +69,17 @@ struct RegionHeader {
   std::int64_t freeze_ahead;  ///< ns that a live stream settles ahead of now
   std::int64_t history;       ///< ns before now that a live stream keeps
   std::int64_t min_splice;    ///< ns: length of the shortest splice
-  std::array<double, core::kMaxDimensions> start_value;
-  std::array<std::uint64_t, core::kMaxDimensions> dimension_kind;  ///< core::DimensionKind
-  std::array<double, core::kMaxDimensions> period;                 ///< of `wrap`; else 0
-  std::array<std::array<char, kNameBytes>, core::kMaxDimensions> name;
-  std::array<std::array<char, kUnitBytes>, core::kMaxDimensions> unit;
-  std::array<double, core::kMaxDimensions> max_velocity;  ///< 0: no limit, as in the next two
-  std::array<double, core::kMaxDimensions> max_acceleration;
-  std::array<double, core::kMaxDimensions> max_jerk;
-  std::array<double, core::kMaxDimensions> lower_bound;  ///< both bounds 0: none
-  std::array<double, core::kMaxDimensions> upper_bound;
-  std::uint64_t beyond;  ///< core::Beyond
+  std::array<double, kMaxDimensions> start_value;
+  std::array<std::uint64_t, kMaxDimensions> dimension_kind;  ///< DimensionKind
+  std::array<double, kMaxDimensions> period;                 ///< of `wrap`; else 0
+  std::array<std::array<char, kNameBytes>, kMaxDimensions> name;
+  std::array<std::array<char, kUnitBytes>, kMaxDimensions> unit;
+  std::array<double, kMaxDimensions> max_velocity;  ///< 0: no limit, as in the next two
+  std::array<double, kMaxDimensions> max_acceleration;
+  std::array<double, kMaxDimensions> max_jerk;
+  std::array<double, kMaxDimensions> lower_bound;  ///< both bounds 0: none
+  std::array<double, kMaxDimensions> upper_bound;
+  std::uint64_t beyond;  ///< Beyond
 };
 
 inline constexpr std::tuple kHeaderRows{
@@ -245,7 +245,7 @@ struct Head {
   Word revision = 0;  ///< the revision that this head is of; 0: none yet
   Word first = 0;     ///< oldest knot on the board; a segment begins there
   Word newest = 0;    ///< newest knot; 0: none. Of a stream that goes on its stop begins there
-  core::Time stop{};  ///< length of the stop, if that is the newest segment
+  Time stop{};        ///< length of the stop, if that is the newest segment
   bool finished = false;
   Word run = 1;        ///< first knot of the run
   Word run_knots = 0;  ///< waypoints of the run
@@ -253,26 +253,26 @@ struct Head {
   Word course = 0;     ///< Course
   Word met = 0;    ///< waypoints of the run before the piece of the target that ends at `newest`
   Word unmet = 0;  ///< waypoints of the run before those that the open entry passes over
-  core::Time blend_until{};   ///< no entry of the run ends before
+  Time blend_until{};         ///< no entry of the run ends before
   Word passed_over = 0;       ///< waypoints that entries pass over, of all runs
   Word consumed = 0;          ///< ring items taken
   Word knots = 0;             ///< waypoints taken, replaced ones too
-  core::Time newest_knot{};   ///< time of the newest waypoint, or of the state that a run begins in
-  core::Time committed{};     ///< the solver's clock at the commit; of a recorded stream, roughly
+  Time newest_knot{};         ///< time of the newest waypoint, or of the state that a run begins in
+  Time committed{};           ///< the solver's clock at the commit; of a recorded stream, roughly
   Word run_frozen = 0;        ///< waypoints of the run that were frozen when this revision was made
   bool is_later_run = false;  ///< the run is not the stream's first, or begins in a given state
   bool starved = false;       ///< a live stream's settled time has passed its newest knot
-  core::Time low_water = core::Time::max();  ///< least depth so far; max() before there was any
-  Word underruns = 0;                        ///< times that a live stream has starved
-  Word misses = 0;                           ///< revisions discarded because they came too late
-  Word revisions = 0;  ///< revisions committed too late, this one too: readers are told
-  Word withdrawn = 0;  ///< items that a replacement withdrew unread
-  Word controls = 0;   ///< replacements, start states and finishes carried out
+  Time low_water = Time::max();  ///< least depth so far; max() before there was any
+  Word underruns = 0;            ///< times that a live stream has starved
+  Word misses = 0;               ///< revisions discarded because they came too late
+  Word revisions = 0;            ///< revisions committed too late, this one too: readers are told
+  Word withdrawn = 0;            ///< items that a replacement withdrew unread
+  Word controls = 0;             ///< replacements, start states and finishes carried out
   Word exceeding = 0;  ///< waypoints that brought the curve, or would have, beyond a limit
   Word refused = 0;    ///< items refused
   std::array<Word, kRefusalReasons> reasons{};  ///< of these, by Refusal
-  core::Time settled_until{};  ///< no time before it ever changes; not of the revision alone
-  core::Time changed_from{};   ///< earliest time whose curve this revision changed
+  Time settled_until{};  ///< no time before it ever changes; not of the revision alone
+  Time changed_from{};   ///< earliest time whose curve this revision changed
 
   /// Waypoints that the curve interpolates, replaced ones too.
   [[nodiscard]] Word interpolated() const noexcept { return knots - passed_over; }
@@ -522,7 +522,7 @@ inline constexpr std::size_t kMaxRingCapacity = std::size_t{1} << 24;
 inline constexpr std::size_t kMaxBoardCapacity = std::size_t{1} << 22;
 
 /// Longest stop tail: so short that a stop, and the way back behind it, can be added to any time.
-inline constexpr core::Time kLongestStop{std::int64_t{1} << 60};
+inline constexpr Time kLongestStop{std::int64_t{1} << 60};
 
 /// Whether a header's method smooths: then its board's cells and rows have more words.
 [[nodiscard]] bool smooths(const RegionHeader& header) noexcept;
@@ -545,7 +545,7 @@ BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_by
 void write_header(std::span<std::byte> region, const RegionHeader& header) noexcept;
 
 /// The kinds of a header's dimensions, one each; the header's numbers must be kinds.
-[[nodiscard]] std::vector<core::Dimension> dimensions_of(const RegionHeader& header);
+[[nodiscard]] std::vector<Dimension> dimensions_of(const RegionHeader& header);
 
 /// A name or unit of a header, up to its first zero byte.
 template <std::size_t N>

@@ -12,7 +12,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The values of a stream's dimensions; none if all of them say "none".
-std::vector<double> values_or_none(const std::array<double, core::kMaxDimensions>& values,
+std::vector<double> values_or_none(const std::array<double, kMaxDimensions>& values,
                                    std::size_t dimensions, double none) {
   const auto of_stream = std::span(values).first(dimensions);
   if (std::ranges::all_of(of_stream, [none](double value) { return value == none; })) return {};
@@ -21,13 +21,13 @@ std::vector<double> values_or_none(const std::array<double, core::kMaxDimensions
 
 /// Writes one value per dimension, or `none` for all.
 void put_values(const std::vector<double>& values, std::size_t dimensions, double none,
-                std::array<double, core::kMaxDimensions>& out) noexcept {
+                std::array<double, kMaxDimensions>& out) noexcept {
   for (std::size_t d = 0; d < dimensions; ++d) out[d] = values.empty() ? none : values[d];
 }
 
 }  // namespace
 
-core::MotionLimits motion_limits(const RegionHeader& header) {
+MotionLimits motion_limits(const RegionHeader& header) {
   RegionHeader bounds = header;
   for (std::size_t d = 0; d < header.dimensions; ++d) {
     if (header.lower_bound[d] != 0 || header.upper_bound[d] != 0) continue;
@@ -41,12 +41,10 @@ core::MotionLimits motion_limits(const RegionHeader& header) {
           .upper = values_or_none(bounds.upper_bound, header.dimensions, kInfinity)};
 }
 
-core::Beyond beyond(const RegionHeader& header) noexcept {
-  return static_cast<core::Beyond>(header.beyond);
-}
+Beyond beyond(const RegionHeader& header) noexcept { return static_cast<Beyond>(header.beyond); }
 
-void put_limits(const core::MotionLimits& limits, RegionHeader& header) {
-  core::require_limits(limits, dimensions_of(header));
+void put_limits(const MotionLimits& limits, RegionHeader& header) {
+  require_limits(limits, dimensions_of(header));
   put_values(limits.velocity, header.dimensions, 0, header.max_velocity);
   put_values(limits.acceleration, header.dimensions, 0, header.max_acceleration);
   put_values(limits.jerk, header.dimensions, 0, header.max_jerk);

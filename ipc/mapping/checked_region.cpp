@@ -1,12 +1,19 @@
 #include "ipc/mapping/checked_region.hpp"
 
+#include <unistd.h>
+
 #include <utility>
 
 #include "ipc/mapping/owner_lock.hpp"
+#include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
 
 namespace splinecast::ipc {
 namespace {
+
+void store_header_word(std::span<std::byte> region, std::size_t word, Word value) noexcept {
+  store(words_at(region, word * sizeof(Word), 1)[0], value, std::memory_order_relaxed);
+}
 
 template <typename Layout>
 CheckedRegion<Layout> open_checked(std::string_view stream, RegionKind kind, bool writable,
@@ -34,6 +41,12 @@ CheckedRegion<RingLayout> open_ring(std::string_view stream, bool writable, cons
 
 CheckedRegion<BoardLayout> open_board(std::string_view stream, bool writable, const Trust& trust) {
   return open_checked(stream, RegionKind::spline, writable, trust, checked_board_layout);
+}
+
+void enter_owner(std::span<std::byte> region, const RegionHeader& before) noexcept {
+  store_header_word(region, word_of(kHeaderFields, "process id"), static_cast<Word>(getpid()));
+  store_header_word(region, word_of(kHeaderFields, "since"), to_word(MonotonicClock().now()));
+  store_header_word(region, word_of(kHeaderFields, "epoch"), before.epoch + 1);
 }
 
 }  // namespace splinecast::ipc

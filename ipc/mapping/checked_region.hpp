@@ -5,7 +5,7 @@
 #include "ipc/layout/header.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
-#include "ipc/memory/trust.hpp"
+#include "splinecast/options.hpp"
 
 namespace splinecast::ipc {
 
@@ -25,5 +25,9 @@ struct CheckedRegion {
                                                   const Trust& trust);
 [[nodiscard]] CheckedRegion<BoardLayout> open_board(std::string_view stream, bool writable,
                                                     const Trust& trust);
+
+/// Enters this process as the region's owner and counts its epoch up. Relaxed, like copy_header:
+/// the three words are for people, and a copy made meanwhile may hold some of the owner before.
+void enter_owner(std::span<std::byte> region, const RegionHeader& before) noexcept;
 
 }  // namespace splinecast::ipc

@@ -170,7 +170,7 @@ bool region_owner_lives(int descriptor) noexcept {
   std::array<Word, kHeaderWords> words{};
   if (pread(descriptor, words.data(), sizeof words, 0) != sizeof words) return false;
   const RegionHeader header = decode_header(words);
-  return process_lives(header.owner_pid, core::Time(header.owner_since));
+  return process_lives(header.owner_pid, Time(header.owner_since));
 }
 
 }  // namespace splinecast::ipc

@@ -12,15 +12,9 @@
 
 #include "ipc/layout/header.hpp"
 #include "ipc/memory/names.hpp"
-#include "ipc/memory/trust.hpp"
+#include "splinecast/options.hpp"
 
 namespace splinecast::ipc {
-
-/// Who may use the regions that this process makes.
-struct RegionAccess {
-  mode_t mode = 0600;            ///< permission bits; nobody but the owner ever writes
-  std::optional<gid_t> group{};  ///< group to give it to; unset: this process's
-};
 
 /// A mapped region of shared memory. Moves; unmaps and closes when it dies; does not unlink.
 class Region {

@@ -12,9 +12,9 @@ namespace splinecast::ipc {
 namespace {
 
 /// Linux stamps files by its tick, of 10 ms at most.
-constexpr core::Time kStampStep = std::chrono::milliseconds(20);
+constexpr Time kStampStep = std::chrono::milliseconds(20);
 
-core::Time to_time(const timespec& time) noexcept {
+Time to_time(const timespec& time) noexcept {
   return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
 }
 
@@ -26,7 +26,7 @@ bool FolderWatch::has_changed() noexcept {
   clock_gettime(CLOCK_REALTIME, &now);  // before the stamp: a change after this look is seen next
   struct stat status {};
   if (stat(folder.c_str(), &status) != 0) return true;
-  const core::Time modified = to_time(status.st_mtim);
+  const Time modified = to_time(status.st_mtim);
   const bool is_same = modified == modified_ && !was_fresh_;
   modified_ = modified;
   was_fresh_ = to_time(now) - modified < kStampStep;

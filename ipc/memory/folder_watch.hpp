@@ -12,7 +12,7 @@ class FolderWatch {
   [[nodiscard]] bool has_changed() noexcept;
 
  private:
-  core::Time modified_ = core::Time::min();
+  Time modified_ = Time::min();
   bool was_fresh_ = false;  ///< what came after the last look may bear the same stamp
 };
 

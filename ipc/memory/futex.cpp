@@ -17,7 +17,7 @@ static_assert(std::endian::native == std::endian::little);
 
 namespace {
 
-timespec to_timespec(core::Time time) noexcept {
+timespec to_timespec(Time time) noexcept {
   constexpr std::int64_t kSecond = 1'000'000'000;
   const std::int64_t bounded = time.count() > 0 ? time.count() : 0;
   return {.tv_sec = bounded / kSecond, .tv_nsec = bounded % kSecond};
@@ -29,12 +29,12 @@ std::uint32_t bit_of(Word revision) noexcept { return std::uint32_t{1} << revisi
 
 }  // namespace
 
-void wait_while_equal(const Word& word, Word seen, core::Time timeout) noexcept {
+void wait_while_equal(const Word& word, Word seen, Time timeout) noexcept {
   const timespec relative = to_timespec(timeout);
   syscall(SYS_futex, &word, FUTEX_WAIT, static_cast<std::uint32_t>(seen), &relative, nullptr, 0);
 }
 
-bool wait_for_change(const Word& revision, Word seen, core::Time timeout) noexcept {
+bool wait_for_change(const Word& revision, Word seen, Time timeout) noexcept {
   const timespec end = to_timespec(deadline(MonotonicClock(), timeout));
   const bool is_woken = syscall(SYS_futex, &revision, FUTEX_WAIT_BITSET,
                                 static_cast<std::uint32_t>(seen), &end, nullptr, bit_of(seen)) == 0;

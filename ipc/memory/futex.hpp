@@ -10,7 +10,7 @@ namespace splinecast::ipc {
 /// the low 32 bits take part, which lie first on the little-endian hosts this builds for; a word
 /// that moves on by 2³² between the look and the sleep would be missed, and the timeout bounds it.
 /// std::atomic::wait would not do: it parks on a process-private address.
-void wait_while_equal(const Word& word, Word seen, core::Time timeout) noexcept;
+void wait_while_equal(const Word& word, Word seen, Time timeout) noexcept;
 
 /// Wakes every process that waits on `word`. One system call, whose cost grows with how many wait
 /// (about 4 µs each): not for a writer that any number of readers may wait for.
@@ -29,6 +29,6 @@ int wake_some(const Word& revision) noexcept;
 /// revision. A thread that waits on the word in another way, or dies when woken, wakes nobody, and
 /// those behind it sleep until their timeout: choose one that bounds this delay. Returns whether it
 /// was woken, by a revision or spuriously by another process.
-bool wait_for_change(const Word& revision, Word seen, core::Time timeout) noexcept;
+bool wait_for_change(const Word& revision, Word seen, Time timeout) noexcept;
 
 }  // namespace splinecast::ipc

@@ -10,6 +10,7 @@
 
 #include "ipc/memory/system_failure.hpp"
 #include "splinecast/errors.hpp"
+#include "splinecast/streams.hpp"
 
 namespace splinecast::ipc {
 namespace {
@@ -120,17 +121,22 @@ bool matches(const std::string& pattern, const std::string& stream) noexcept {
   return fnmatch(pattern.c_str(), stream.c_str(), 0) == 0;
 }
 
+}  // namespace splinecast::ipc
+
+namespace splinecast {
+
 std::vector<std::string> stream_names() {
   std::set<std::string> names;
   std::error_code error;
-  std::filesystem::directory_iterator entry(kSharedMemoryFolder, error);
+  std::filesystem::directory_iterator entry(ipc::kSharedMemoryFolder, error);
   for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
     const std::string file = entry->path().filename();
-    const std::string_view stream = stream_of(file);
+    const std::string_view stream = ipc::stream_of(file);
     if (!stream.empty()) names.emplace(stream);
   }
-  if (error) throw_failure("cannot read " + std::string(kSharedMemoryFolder), error.value());
+  if (error)
+    ipc::throw_failure("cannot read " + std::string(ipc::kSharedMemoryFolder), error.value());
   return {names.begin(), names.end()};
 }
 
-}  // namespace splinecast::ipc
+}  // namespace splinecast

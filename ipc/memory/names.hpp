@@ -41,9 +41,4 @@ void require_stream_name(std::string_view stream);
 /// Whether a stream's name matches a pattern (fnmatch).
 [[nodiscard]] bool matches(const std::string& pattern, const std::string& stream) noexcept;
 
-/// Names of all streams of which any region or lock exists on this host, sorted. Ignores files
-/// whose names no stream can have, which any user can create. Throws OutOfResources or BadRegion if
-/// the folder cannot be read.
-[[nodiscard]] std::vector<std::string> stream_names();
-
 }  // namespace splinecast::ipc

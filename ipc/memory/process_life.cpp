@@ -18,7 +18,7 @@
 namespace splinecast::ipc {
 namespace {
 
-core::Time now_by(clockid_t clock) noexcept {
+Time now_by(clockid_t clock) noexcept {
   timespec now{};
   clock_gettime(clock, &now);
   return std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec);
@@ -26,7 +26,7 @@ core::Time now_by(clockid_t clock) noexcept {
 
 struct ProcessStat {
   char state = '?';
-  core::Time started{};  ///< by CLOCK_BOOTTIME
+  Time started{};  ///< by CLOCK_BOOTTIME
 };
 
 /// Of the text of /proc/PID/stat, see proc(5): the state follows the name in brackets, and the
@@ -66,15 +66,15 @@ std::optional<ProcessStat> read_stat(std::uint64_t pid) noexcept {
 
 }  // namespace
 
-bool process_lives(std::uint64_t pid, core::Time since) noexcept {
+bool process_lives(std::uint64_t pid, Time since) noexcept {
   if (pid == 0 || pid > std::numeric_limits<pid_t>::max()) return false;
   if (kill(static_cast<pid_t>(pid), 0) != 0 && errno == ESRCH) return false;
   const auto stat = read_stat(pid);
   if (!stat) return true;
   if (stat->state == 'Z' || stat->state == 'X') return false;
   // Compares ages, because only CLOCK_BOOTTIME runs while the machine is suspended.
-  const core::Time now = now_by(CLOCK_MONOTONIC);
-  const core::Time owned = now - std::clamp(since, core::Time::zero(), now);
+  const Time now = now_by(CLOCK_MONOTONIC);
+  const Time owned = now - std::clamp(since, Time::zero(), now);
   return now_by(CLOCK_BOOTTIME) - stat->started >= owned;
 }
 

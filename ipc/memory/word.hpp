@@ -46,12 +46,10 @@ inline void store(Word& word, Word value, std::memory_order order) noexcept {
 }
 
 [[nodiscard]] inline Word to_word(double value) noexcept { return std::bit_cast<Word>(value); }
-[[nodiscard]] inline Word to_word(core::Time value) noexcept {
-  return static_cast<Word>(value.count());
-}
+[[nodiscard]] inline Word to_word(Time value) noexcept { return static_cast<Word>(value.count()); }
 [[nodiscard]] inline double to_double(Word word) noexcept { return std::bit_cast<double>(word); }
-[[nodiscard]] inline core::Time to_time(Word word) noexcept {
-  return core::Time(static_cast<std::int64_t>(word));
+[[nodiscard]] inline Time to_time(Word word) noexcept {
+  return Time(static_cast<std::int64_t>(word));
 }
 
 /// Asks for the cache lines of some memory. Loads nothing.

@@ -1,12 +1,10 @@
 # Installs the libraries, the program, a CMake package and a pkg-config file.
 include(CMakePackageConfigHelpers)
 
-install(TARGETS splinecast_core splinecast_ipc EXPORT splinecast-targets
+install(TARGETS splinecast_core splinecast_ipc splinecast EXPORT splinecast-targets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY core/include/ ipc/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(DIRECTORY core ipc DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp
-        PATTERN include EXCLUDE)
 if(TARGET splinecast_program)
   install(TARGETS splinecast_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()

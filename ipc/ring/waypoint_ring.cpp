@@ -18,7 +18,7 @@ constexpr unsigned kConditionShift = 16;
 constexpr unsigned kCountShift = 32;
 
 /// The time of a stop if the producer knows no settled time: before every waypoint that can follow.
-constexpr core::Time kEarliestStop = -core::kLatestTime;
+constexpr Time kEarliestStop = -kLatestTime;
 
 std::size_t words_per_item(const RingLayout& layout) noexcept {
   return layout.stride / sizeof(Word);
@@ -32,29 +32,28 @@ bool fits(std::span<const double> values, std::size_t dimensions) noexcept {
 
 bool is_finite(std::span<const double> values) noexcept {
   // Mostly even their sum is usable.
-  return core::is_usable(core::magnitude_of(values)) ||
-         std::ranges::all_of(values, core::is_usable);
+  return is_usable(core::magnitude_of(values)) || std::ranges::all_of(values, is_usable);
 }
 
-bool is_finite(const core::Waypoint& waypoint) noexcept {
+bool is_finite(const Waypoint& waypoint) noexcept {
   return is_finite(waypoint.position) &&
          (waypoint.velocity.empty() || is_finite(waypoint.velocity)) &&
          (waypoint.acceleration.empty() || is_finite(waypoint.acceleration));
 }
 
-core::Waypoint RingItem::waypoint() const noexcept {
+Waypoint RingItem::waypoint() const noexcept {
   const std::size_t dimensions = values.size() / 3;
   const auto all = std::span<const double>(values);
-  core::Waypoint waypoint{.time = time, .position = all.first(dimensions)};
+  Waypoint waypoint{.time = time, .position = all.first(dimensions)};
   if (has_velocity) waypoint.velocity = all.subspan(dimensions, dimensions);
   if (has_acceleration) waypoint.acceleration = all.last(dimensions);
   return waypoint;
 }
 
-core::WaypointValues RingItem::waypoint_values() noexcept {
+WaypointValues RingItem::waypoint_values() noexcept {
   const std::size_t dimensions = values.size() / 3;
   const auto all = std::span(values);
-  core::WaypointValues waypoint{.position = all.first(dimensions)};
+  WaypointValues waypoint{.position = all.first(dimensions)};
   if (has_velocity) waypoint.velocity = all.subspan(dimensions, dimensions);
   if (has_acceleration) waypoint.acceleration = all.last(dimensions);
   return waypoint;
@@ -79,13 +78,13 @@ WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLa
     last_time_ = past.time(head_ - back);
     has_last_ = is_found && last_time_ != kEarliestStop;
   }
-  if (!core::is_time_in_range(last_time_)) {
+  if (!is_time_in_range(last_time_)) {
     throw BadRegion("the ring's last item has time " + std::to_string(last_time_.count()) +
                     " ns, not within 2^62 ns of 0");
   }
 }
 
-AppendStatus WaypointRingWriter::check_form(const core::Waypoint& waypoint) const noexcept {
+AppendStatus WaypointRingWriter::check_form(const Waypoint& waypoint) const noexcept {
   const std::size_t dimensions = layout_.dimensions;
   if (finished_) return AppendStatus::finished;
   if (waypoint.position.size() != dimensions || !fits(waypoint.velocity, dimensions) ||
@@ -93,11 +92,10 @@ AppendStatus WaypointRingWriter::check_form(const core::Waypoint& waypoint) cons
     return AppendStatus::wrong_dimension;
   }
   if (!is_finite(waypoint)) return AppendStatus::not_finite;
-  return core::is_time_in_range(waypoint.time) ? AppendStatus::accepted
-                                               : AppendStatus::too_far_apart;
+  return is_time_in_range(waypoint.time) ? AppendStatus::accepted : AppendStatus::too_far_apart;
 }
 
-AppendStatus WaypointRingWriter::check(const core::Waypoint& waypoint,
+AppendStatus WaypointRingWriter::check(const Waypoint& waypoint,
                                        const Solved& solved) const noexcept {
   AppendStatus status = check_form(waypoint);
   if (status == AppendStatus::accepted && has_last_) {
@@ -113,23 +111,22 @@ AppendStatus WaypointRingWriter::check(const core::Waypoint& waypoint,
 }
 
 /// Whether a waypoint comes too late to shape the target. The clock is read only if it is late.
-bool WaypointRingWriter::is_past(core::Time time, const Solved& solved) const noexcept {
+bool WaypointRingWriter::is_past(Time time, const Solved& solved) const noexcept {
   if (time >= solved.settled_until) return false;
   if (!has_last_) return true;
-  const core::Time now = solved.clock != nullptr ? solved.clock->now() : solved.settled_until;
+  const Time now = solved.clock != nullptr ? solved.clock->now() : solved.settled_until;
   return time + kMostLate < std::max(now, solved.settled_until);
 }
 
 /// A live stream may continue after a pause of any length: its clock runs also while nothing moves.
-bool WaypointRingWriter::follows_pause(core::Time time, const Solved& solved) const noexcept {
-  const auto follows = [&](core::Time since) {
+bool WaypointRingWriter::follows_pause(Time time, const Solved& solved) const noexcept {
+  const auto follows = [&](Time since) {
     return since > last_time_ && time - since <= limits_.max_interval;
   };
   return follows(solved.settled_until) || (solved.clock != nullptr && follows(solved.clock->now()));
 }
 
-AppendStatus WaypointRingWriter::append(const core::Waypoint& waypoint,
-                                        const Solved& solved) noexcept {
+AppendStatus WaypointRingWriter::append(const Waypoint& waypoint, const Solved& solved) noexcept {
   const AppendStatus status = check(waypoint, solved);
   if (status != AppendStatus::accepted) return counted(status);
   put_item(0, static_cast<Word>(ItemKind::waypoint), waypoint);
@@ -137,20 +134,18 @@ AppendStatus WaypointRingWriter::append(const core::Waypoint& waypoint,
   return status;
 }
 
-AppendStatus WaypointRingWriter::check_replacement(core::Time t,
-                                                   std::span<const core::Waypoint> waypoints,
+AppendStatus WaypointRingWriter::check_replacement(Time t, std::span<const Waypoint> waypoints,
                                                    const Solved& solved,
-                                                   core::Time blend) const noexcept {
+                                                   Time blend) const noexcept {
   if (waypoints.empty()) return check_stop(t, solved);
   if (finished_) return AppendStatus::finished;
-  if (!core::is_time_in_range(t) || blend > limits_.max_interval)
-    return AppendStatus::too_far_apart;
+  if (!is_time_in_range(t) || blend > limits_.max_interval) return AppendStatus::too_far_apart;
   if (t < solved.settled_until) return AppendStatus::too_late;
   if (solved.clock != nullptr && t < solved.clock->now()) return AppendStatus::too_late;
   const std::size_t items = 1 + waypoints.size();
   if (items + control_reserve(layout_.capacity) > layout_.capacity) return AppendStatus::too_many;
-  core::Time before = t;
-  for (const core::Waypoint& waypoint : waypoints) {
+  Time before = t;
+  for (const Waypoint& waypoint : waypoints) {
     AppendStatus status = check_form(waypoint);
     if (status == AppendStatus::accepted) status = judge_interval(waypoint.time - before, limits_);
     if (status != AppendStatus::accepted) return status;
@@ -160,16 +155,15 @@ AppendStatus WaypointRingWriter::check_replacement(core::Time t,
                                                                     : AppendStatus::full;
 }
 
-AppendStatus WaypointRingWriter::replace_from(core::Time t,
-                                              std::span<const core::Waypoint> waypoints,
-                                              const Solved& solved, core::Time blend) noexcept {
+AppendStatus WaypointRingWriter::replace_from(Time t, std::span<const Waypoint> waypoints,
+                                              const Solved& solved, Time blend) noexcept {
   if (waypoints.empty()) return counted(stop_from(t, solved));
   const AppendStatus status = check_replacement(t, waypoints, solved, blend);
   if (status != AppendStatus::accepted) return counted(status);
   claim(1 + waypoints.size());
   const Word kind = static_cast<Word>(ItemKind::replace) | waypoints.size() << kCountShift;
   put_item(0, kind, {.time = t, .position = {}});
-  store(item_words(0)[kItemValues], to_word(std::max(blend, core::Time::zero())),
+  store(item_words(0)[kItemValues], to_word(std::max(blend, Time::zero())),
         std::memory_order_release);
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
     put_item(1 + i, static_cast<Word>(ItemKind::waypoint), waypoints[i]);
@@ -179,14 +173,14 @@ AppendStatus WaypointRingWriter::replace_from(core::Time t,
 }
 
 /// A stop is never too late: if t has settled, it takes effect where the settled part ends.
-core::Time WaypointRingWriter::stop_time(core::Time t, const Solved& solved) noexcept {
+Time WaypointRingWriter::stop_time(Time t, const Solved& solved) noexcept {
   return std::max({t, solved.settled_until, kEarliestStop});
 }
 
-AppendStatus WaypointRingWriter::check_stop(core::Time t, const Solved& solved) const noexcept {
+AppendStatus WaypointRingWriter::check_stop(Time t, const Solved& solved) const noexcept {
   if (finished_) return AppendStatus::finished;
-  const core::Time from = stop_time(t, solved);
-  if (!core::is_time_in_range(from)) return AppendStatus::too_far_apart;
+  const Time from = stop_time(t, solved);
+  if (!is_time_in_range(from)) return AppendStatus::too_far_apart;
   if (repeats_stop(from, solved)) return AppendStatus::accepted;
   // Stops ahead leave an item for a stop that takes effect at once; all stops leave one for finish.
   const bool is_ahead = from > solved.settled_until;
@@ -195,9 +189,9 @@ AppendStatus WaypointRingWriter::check_stop(core::Time t, const Solved& solved) 
   return has_place ? AppendStatus::accepted : AppendStatus::full;
 }
 
-AppendStatus WaypointRingWriter::stop_from(core::Time t, const Solved& solved) noexcept {
+AppendStatus WaypointRingWriter::stop_from(Time t, const Solved& solved) noexcept {
   const AppendStatus status = check_stop(t, solved);
-  const core::Time from = stop_time(t, solved);
+  const Time from = stop_time(t, solved);
   if (status != AppendStatus::accepted || repeats_stop(from, solved)) return status;
   claim(1);
   put_item(0, static_cast<Word>(ItemKind::replace), {.time = from, .position = {}});
@@ -208,13 +202,12 @@ AppendStatus WaypointRingWriter::stop_from(core::Time t, const Solved& solved) n
 }
 
 /// Whether a stop would change nothing: the newest item is one, and waits.
-bool WaypointRingWriter::repeats_stop(core::Time from, const Solved& solved) const noexcept {
+bool WaypointRingWriter::repeats_stop(Time from, const Solved& solved) const noexcept {
   return ends_with_stop_ && solved.consumed < head_ && from >= last_time_;
 }
 
-AppendStatus WaypointRingWriter::start_from(const core::Instant& state,
-                                            const Solved& solved) noexcept {
-  const core::Waypoint values{state.time, state.position, state.velocity, state.acceleration};
+AppendStatus WaypointRingWriter::start_from(const Instant& state, const Solved& solved) noexcept {
+  const Waypoint values{state.time, state.position, state.velocity, state.acceleration};
   AppendStatus status = check_form(values);
   if (status == AppendStatus::accepted && (state.velocity.empty() || state.acceleration.empty())) {
     status = AppendStatus::wrong_dimension;
@@ -229,12 +222,12 @@ AppendStatus WaypointRingWriter::start_from(const core::Instant& state,
   return status;
 }
 
-AppendStatus WaypointRingWriter::finish(const core::Condition& end, const Solved& solved) noexcept {
+AppendStatus WaypointRingWriter::finish(const Condition& end, const Solved& solved) noexcept {
   if (finished_) return AppendStatus::finished;
   if (!has_room(1, solved, 0)) return AppendStatus::full;
   const Word kind = static_cast<Word>(ItemKind::finish) | static_cast<Word>(end.kind)
                                                               << kConditionShift;
-  const bool is_velocity = end.kind == core::ConditionKind::velocity;
+  const bool is_velocity = end.kind == ConditionKind::velocity;
   const std::span<const double> value(end.value);
   put_item(0, kind,
            {.time = last_time_,
@@ -262,7 +255,7 @@ std::span<Word> WaypointRingWriter::item_words(Word index) const noexcept {
 
 /// Writes the item that lies so many behind `head`: P1.
 void WaypointRingWriter::put_item(Word index, Word kind_and_flags,
-                                  const core::Waypoint& values) noexcept {
+                                  const Waypoint& values) noexcept {
   const auto words = item_words(index);
   const Word flags = (values.velocity.empty() ? 0 : kHasVelocity) |
                      (values.acceleration.empty() ? 0 : kHasAcceleration);
@@ -274,7 +267,7 @@ void WaypointRingWriter::put_item(Word index, Word kind_and_flags,
   store_values(rest.data() + 2 * layout_.dimensions, values.acceleration);
 }
 
-void WaypointRingWriter::publish(Word items, core::Time last) noexcept {
+void WaypointRingWriter::publish(Word items, Time last) noexcept {
   head_ += items;
   has_last_ = true;
   ends_with_stop_ = false;
@@ -306,12 +299,12 @@ void WaypointRingReader::copy(Word i, RingItem& out) const noexcept {
   out.kind = static_cast<ItemKind>(kind & kKindMask);
   out.has_velocity = (kind & kHasVelocity) != 0;
   out.has_acceleration = (kind & kHasAcceleration) != 0;
-  out.condition = static_cast<core::ConditionKind>((kind >> kConditionShift) & kKindMask);
+  out.condition = static_cast<ConditionKind>((kind >> kConditionShift) & kKindMask);
   out.count = static_cast<std::uint32_t>(kind >> kCountShift);
   out.time = to_time(load(words[kItemTime], std::memory_order_acquire));
   out.blend = out.kind == ItemKind::replace && out.count > 0
                   ? to_time(load(words[kItemValues], std::memory_order_acquire))
-                  : core::Time::zero();
+                  : Time::zero();
   const bool is_bare = out.kind == ItemKind::waypoint && !out.has_velocity && !out.has_acceleration;
   const std::size_t values = is_bare ? layout_.dimensions : out.values.size();
   load_values(std::span(out.values).first(values), &words[kItemValues]);
@@ -328,7 +321,7 @@ bool WaypointRingReader::is_stop(Word i) const noexcept {
   return (kind & kKindMask) == static_cast<Word>(ItemKind::replace) && kind >> kCountShift == 0;
 }
 
-core::Time WaypointRingReader::time(Word i) const noexcept {
+Time WaypointRingReader::time(Word i) const noexcept {
   const Word& word = items_[(i & (layout_.capacity - 1)) * words_per_item(layout_) + kItemTime];
   return to_time(load(word, std::memory_order_acquire));
 }
@@ -338,9 +331,9 @@ bool WaypointRingReader::observe(Word i, RingItem& out) const noexcept {
   return is_kept(i);
 }
 
-std::optional<core::Time> WaypointRingReader::observe_time(Word i) const noexcept {
+std::optional<Time> WaypointRingReader::observe_time(Word i) const noexcept {
   if (i >= head()) return std::nullopt;
-  const core::Time at = time(i);
+  const Time at = time(i);
   return is_kept(i) ? std::optional(at) : std::nullopt;
 }
 

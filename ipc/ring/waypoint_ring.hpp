@@ -12,6 +12,7 @@
 #include "ipc/layout/header.hpp"
 #include "splinecast/boundary_condition.hpp"
 #include "splinecast/clock.hpp"
+#include "splinecast/options.hpp"
 #include "splinecast/status.hpp"
 #include "splinecast/waypoint.hpp"
 
@@ -55,7 +56,7 @@ namespace splinecast::ipc {
 /// How late a waypoint of a live stream may come, before what has settled, and still shape the
 /// target that an entry leads back to: the straight line behind the one before it is over by then.
 /// It is passed over.
-inline constexpr core::Time kMostLate = core::Extrapolation::kLine;
+inline constexpr Time kMostLate = core::Extrapolation::kLine;
 
 /// What a ring item says.
 enum class ItemKind : std::uint8_t {
@@ -72,21 +73,15 @@ struct RingItem {
   ItemKind kind = ItemKind::waypoint;
   bool has_velocity = false;
   bool has_acceleration = false;
-  core::ConditionKind condition{};  ///< of a finish
-  std::uint32_t count = 0;          ///< of a replacement: waypoints that belong to it
-  core::Time blend{};               ///< of one with waypoints: its entry takes at least so long
-  core::Time time{};
+  ConditionKind condition{};  ///< of a finish
+  std::uint32_t count = 0;    ///< of a replacement: waypoints that belong to it
+  Time blend{};               ///< of one with waypoints: its entry takes at least so long
+  Time time{};
   std::vector<double> values;  ///< positions, velocities, accelerations: those that it has
 
   /// The item's waypoint or state; and its values, which may be changed. Both view `values`.
-  [[nodiscard]] core::Waypoint waypoint() const noexcept;
-  [[nodiscard]] core::WaypointValues waypoint_values() noexcept;
-};
-
-/// The checks that a waypoint must pass, wherever it comes from.
-struct IngestLimits {
-  core::Time min_interval{1'000};              ///< 1 µs
-  core::Time max_interval{3'600'000'000'000};  ///< 1 h
+  [[nodiscard]] Waypoint waypoint() const noexcept;
+  [[nodiscard]] WaypointValues waypoint_values() noexcept;
 };
 
 /// Items that waypoints leave free in a ring, for stops and a finish: these must not wait until the
@@ -110,13 +105,13 @@ class WaypointRingWriter {
   /// then a live stream's clock says how long it has paused.
   struct Solved {
     Word consumed = 0;
-    core::Time settled_until = core::Time::min();
+    Time settled_until = Time::min();
     const Clock* clock = nullptr;  ///< of a live stream
   };
 
   /// Appends a waypoint if its form is right and there is room besides control_reserve. O(D),
   /// wait-free.
-  [[nodiscard]] AppendStatus append(const core::Waypoint& waypoint, const Solved& solved) noexcept;
+  [[nodiscard]] AppendStatus append(const Waypoint& waypoint, const Solved& solved) noexcept;
 
   /// Replaces all that lies behind t: `waypoints`, which may be none, must be later than it, and
   /// together with the replacement itself fit into the ring besides control_reserve. One store of
@@ -125,27 +120,26 @@ class WaypointRingWriter {
   /// is a stop, for which
   /// there is the reserve. A t that has settled means the earliest time possible; a stop that
   /// repeats the newest item, a stop that still waits, at the same time or later takes no item.
-  [[nodiscard]] AppendStatus replace_from(core::Time t, std::span<const core::Waypoint> waypoints,
-                                          const Solved& solved, core::Time blend = {}) noexcept;
+  [[nodiscard]] AppendStatus replace_from(Time t, std::span<const Waypoint> waypoints,
+                                          const Solved& solved, Time blend = {}) noexcept;
 
   /// What `replace_from` would answer, of a stop as well. Changes nothing.
-  [[nodiscard]] AppendStatus check_replacement(core::Time t,
-                                               std::span<const core::Waypoint> waypoints,
+  [[nodiscard]] AppendStatus check_replacement(Time t, std::span<const Waypoint> waypoints,
                                                const Solved& solved,
-                                               core::Time blend = {}) const noexcept;
+                                               Time blend = {}) const noexcept;
 
   /// Says in which state the stream starts: before its first waypoint, which must be later.
-  [[nodiscard]] AppendStatus start_from(const core::Instant& state, const Solved& solved) noexcept;
+  [[nodiscard]] AppendStatus start_from(const Instant& state, const Solved& solved) noexcept;
 
   /// Appends the end of the stream. The condition's values must have been checked.
-  [[nodiscard]] AppendStatus finish(const core::Condition& end, const Solved& solved) noexcept;
+  [[nodiscard]] AppendStatus finish(const Condition& end, const Solved& solved) noexcept;
 
   /// Items appended so far.
   [[nodiscard]] Word head() const noexcept { return head_; }
   [[nodiscard]] bool finished() const noexcept { return finished_; }
 
   /// The time that the next waypoint must be later than, once there is one.
-  [[nodiscard]] core::Time last_time() const noexcept { return last_time_; }
+  [[nodiscard]] Time last_time() const noexcept { return last_time_; }
 
   /// The word that waiting solvers watch.
   [[nodiscard]] const Word& head_word() const noexcept { return control_[kHead]; }
@@ -154,22 +148,21 @@ class WaypointRingWriter {
   void retire() noexcept;
 
  private:
-  [[nodiscard]] AppendStatus check_form(const core::Waypoint& waypoint) const noexcept;
-  [[nodiscard]] AppendStatus check(const core::Waypoint& waypoint,
-                                   const Solved& solved) const noexcept;
+  [[nodiscard]] AppendStatus check_form(const Waypoint& waypoint) const noexcept;
+  [[nodiscard]] AppendStatus check(const Waypoint& waypoint, const Solved& solved) const noexcept;
   [[nodiscard]] bool has_room(Word items, const Solved& solved, std::size_t free) const noexcept {
     return head_ - solved.consumed + items + free <= layout_.capacity;
   }
-  [[nodiscard]] bool repeats_stop(core::Time from, const Solved& solved) const noexcept;
-  [[nodiscard]] bool is_past(core::Time time, const Solved& solved) const noexcept;
-  [[nodiscard]] bool follows_pause(core::Time time, const Solved& solved) const noexcept;
-  [[nodiscard]] static core::Time stop_time(core::Time t, const Solved& solved) noexcept;
-  [[nodiscard]] AppendStatus check_stop(core::Time t, const Solved& solved) const noexcept;
-  [[nodiscard]] AppendStatus stop_from(core::Time t, const Solved& solved) noexcept;
+  [[nodiscard]] bool repeats_stop(Time from, const Solved& solved) const noexcept;
+  [[nodiscard]] bool is_past(Time time, const Solved& solved) const noexcept;
+  [[nodiscard]] bool follows_pause(Time time, const Solved& solved) const noexcept;
+  [[nodiscard]] static Time stop_time(Time t, const Solved& solved) noexcept;
+  [[nodiscard]] AppendStatus check_stop(Time t, const Solved& solved) const noexcept;
+  [[nodiscard]] AppendStatus stop_from(Time t, const Solved& solved) noexcept;
   void claim(Word items) noexcept;
   [[nodiscard]] std::span<Word> item_words(Word index) const noexcept;
-  void put_item(Word index, Word kind_and_flags, const core::Waypoint& values) noexcept;
-  void publish(Word items, core::Time last) noexcept;
+  void put_item(Word index, Word kind_and_flags, const Waypoint& values) noexcept;
+  void publish(Word items, Time last) noexcept;
   [[nodiscard]] AppendStatus counted(AppendStatus status) noexcept;
 
   RingLayout layout_;
@@ -180,7 +173,7 @@ class WaypointRingWriter {
   bool finished_ = false;
   bool has_last_ = false;
   bool ends_with_stop_ = false;  ///< the newest item is a stop
-  core::Time last_time_{};
+  Time last_time_{};
 };
 
 /// The solver's side, and any passive observer's. No function blocks, allocates or stores.
@@ -218,7 +211,7 @@ class WaypointRingReader {
   [[nodiscard]] ItemKind kind(Word i) const noexcept;
   /// Whether it is a replacement without waypoints.
   [[nodiscard]] bool is_stop(Word i) const noexcept;
-  [[nodiscard]] core::Time time(Word i) const noexcept;
+  [[nodiscard]] Time time(Word i) const noexcept;
 
   /// Copies item i for an observer whom the producer does not wait for. Returns false if the item
   /// is, or may be, overwritten (O2); then `out` is of no use. Wait-free: O(D).
@@ -226,7 +219,7 @@ class WaypointRingReader {
 
   /// The time of item i for such an observer; nothing if the item is, or may be, overwritten, or
   /// has not been appended.
-  [[nodiscard]] std::optional<core::Time> observe_time(Word i) const noexcept;
+  [[nodiscard]] std::optional<Time> observe_time(Word i) const noexcept;
 
   /// Items that the producer itself refused with this status.
   [[nodiscard]] Word refused(AppendStatus status) const noexcept;
@@ -240,17 +233,17 @@ class WaypointRingReader {
 };
 
 /// Whether a waypoint may follow another one this much earlier: `accepted`, or why not.
-[[nodiscard]] constexpr AppendStatus judge_interval(core::Time interval,
+[[nodiscard]] constexpr AppendStatus judge_interval(Time interval,
                                                     const IngestLimits& limits) noexcept {
-  if (interval == core::Time::zero()) return AppendStatus::duplicate;
-  if (interval < core::Time::zero()) return AppendStatus::out_of_order;
+  if (interval == Time::zero()) return AppendStatus::duplicate;
+  if (interval < Time::zero()) return AppendStatus::out_of_order;
   if (interval < limits.min_interval) return AppendStatus::too_close;
   if (interval > limits.max_interval) return AppendStatus::too_far_apart;
   return AppendStatus::accepted;
 }
 
-/// Whether all values are numbers within ±core::kLargestValue.
+/// Whether all values are numbers within ±kLargestValue.
 [[nodiscard]] bool is_finite(std::span<const double> values) noexcept;
-[[nodiscard]] bool is_finite(const core::Waypoint& waypoint) noexcept;
+[[nodiscard]] bool is_finite(const Waypoint& waypoint) noexcept;
 
 }  // namespace splinecast::ipc

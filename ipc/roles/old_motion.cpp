@@ -2,6 +2,7 @@
 
 #include "ipc/board/segment.hpp"
 #include "ipc/mapping/checked_region.hpp"
+#include "ipc/options/stream.hpp"
 #include "ipc/ring/waypoint_ring.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/options.hpp"
@@ -13,10 +14,10 @@ constexpr int kHeadTries = 16;
 
 }  // namespace
 
-core::Time end_of_motion(const RegionHeader& header, const KnotBoardReader& board) noexcept {
+Time end_of_motion(const RegionHeader& header, const KnotBoardReader& board) noexcept {
   if (stream_clock(header) == StreamClock::recorded || header.time_namespace != time_namespace() ||
       board.retired()) {
-    return core::Time::min();
+    return Time::min();
   }
   BoardSegment last(board.dimensions(), board.smooths());
   // Tries again, because the board's solver may overtake an observer.
@@ -28,26 +29,25 @@ core::Time end_of_motion(const RegionHeader& header, const KnotBoardReader& boar
     if (head.newest == 0) break;
     if (last.take_last(board, head)) return last.right();
   }
-  return core::Time::min();
+  return Time::min();
 }
 
-void require_near_end(const std::string& stream, core::Time end, core::Time now) {
+void require_near_end(const std::string& stream, Time end, Time now) {
   if (end <= now || end - now <= kLongestOldMotion) return;
   throw BadRegion("stream '" + stream + "' was made again, but its old motion ends only at " +
                   std::to_string(end.count()) + " ns, more than an hour from now; 'splinecast rm " +
                   stream + "' removes it, once its writers have been stopped");
 }
 
-core::Time end_of_old_motion(const std::string& stream, std::uint64_t stream_id,
-                             const Trust& trust) {
+Time end_of_old_motion(const std::string& stream, std::uint64_t stream_id, const Trust& trust) {
   try {
     const auto peeked = peek_header(stream, RegionKind::spline, trust);
-    if (!peeked || peeked->stream_id == stream_id) return core::Time::min();
+    if (!peeked || peeked->stream_id == stream_id) return Time::min();
     const auto [region, header, layout] = open_board(stream, false, trust);
-    if (header.stream_id == stream_id) return core::Time::min();
+    if (header.stream_id == stream_id) return Time::min();
     return end_of_motion(header, KnotBoardReader(region.bytes(), layout));
   } catch (const StreamError&) {
-    return core::Time::min();  // it went meanwhile, or no solver of ours can use it either
+    return Time::min();  // it went meanwhile, or no solver of ours can use it either
   }
 }
 

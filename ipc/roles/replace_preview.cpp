@@ -20,7 +20,6 @@ void clear(MotionPeaks& peaks, std::size_t dimensions) {
 }
 
 void take_peaks(const core::SegmentPart& part, MotionPeaks& peaks) {
-  using core::Derivatives;
   for (std::size_t d = 0; d < part.dimensions; ++d) {
     std::array<core::SegmentRange, 4> ranges;
     core::write_ranges(
@@ -37,12 +36,11 @@ void take_peaks(const core::SegmentPart& part, MotionPeaks& peaks) {
 }  // namespace
 
 ReplacementPlanner::ReplacementPlanner(const KnotBoardReader& board, core::WindowOptions options,
-                                       core::DimensionKinds kinds,
-                                       const std::optional<LiveOptions>& live)
+                                       DimensionKinds kinds, const std::optional<LiveOptions>& live)
     : board_(&board),
       options_(std::move(options)),
       kinds_(std::move(kinds)),
-      min_splice_(live ? live->min_splice : core::Time::zero()),
+      min_splice_(live ? live->min_splice : Time::zero()),
       is_live_(live.has_value()),
       sampler_(board, is_live_ ? StreamClock::monotonic : StreamClock::recorded, kinds_),
       shown_(board),
@@ -53,7 +51,7 @@ ReplacementPlanner::ReplacementPlanner(const KnotBoardReader& board, core::Windo
       values_(3 * board.dimensions()) {}
 
 /// Reads the state at t and what the motion before has shown.
-bool ReplacementPlanner::read_state(core::Time t) {
+bool ReplacementPlanner::read_state(Time t) {
   if (!has_values(sampler_.preview(t, state_.ref()))) return false;
   Head head;
   for (int i = 0; i < kTries; ++i) {
@@ -66,16 +64,16 @@ bool ReplacementPlanner::read_state(core::Time t) {
 }
 
 /// Appends a waypoint in the form that is nearest to the one before, as the solver does.
-void ReplacementPlanner::append(const core::Waypoint& waypoint) {
+void ReplacementPlanner::append(const Waypoint& waypoint) {
   const std::size_t dimensions = window_.dimensions();
   const auto copy = [&](std::size_t part, std::span<const double> from) {
     const auto to = std::span(values_).subspan(part * dimensions, from.size());
     std::ranges::copy(from, to.begin());
     return to;
   };
-  const core::WaypointValues values{.position = copy(0, waypoint.position),
-                                    .velocity = copy(1, waypoint.velocity),
-                                    .acceleration = copy(2, waypoint.acceleration)};
+  const WaypointValues values{.position = copy(0, waypoint.position),
+                              .velocity = copy(1, waypoint.velocity),
+                              .acceleration = copy(2, waypoint.acceleration)};
   const std::size_t knots = window_.knots();
   kinds_.continue_from(knots > 0 ? window_.knot(knots - 1).waypoint : state_.position(), values);
   window_.append({.time = waypoint.time,
@@ -90,12 +88,12 @@ void ReplacementPlanner::take(const core::Segment& segment, MotionPeaks* entry,
   const core::SegmentPart part = core::part_of(segment);
   take_peaks(part, out.motion);
   if (entry != nullptr) take_peaks(part, *entry);
-  const core::Excess excess = core::worst_excess(options_.limits, &kinds_, part);
+  const Excess excess = core::worst_excess(options_.limits, &kinds_, part);
   if (excess.ratio > out.worst.ratio) out.worst = excess;
 }
 
-void ReplacementPlanner::take_stop(ReplacePreview& out, const core::Instant& from) {
-  const core::Time length =
+void ReplacementPlanner::take_stop(ReplacePreview& out, const Instant& from) {
+  const Time length =
       core::stop_time_within(options_.limits, options_.stop_time, from.velocity, from.acceleration);
   core::build_stop(from.time, length, from.position, from.velocity, from.acceleration, segment_);
   take(segment_, out.enters ? nullptr : &out.entry, out);
@@ -131,9 +129,8 @@ void ReplacementPlanner::take_segments(std::size_t end, ReplacePreview& out) {
 
 /// Appends the waypoints and looks for an entry behind each, as the solver does; then without what
 /// may still come.
-bool ReplacementPlanner::find_entry(const core::Instant& from,
-                                    std::span<const core::Waypoint> waypoints, core::Time blend,
-                                    ReplacePreview& out) {
+bool ReplacementPlanner::find_entry(const Instant& from, std::span<const Waypoint> waypoints,
+                                    Time blend, ReplacePreview& out) {
   core::EntryRules rules{.limits = &options_.limits,
                          .shown = is_live_ ? &shown_.limits() : nullptr,
                          .least = std::max(min_splice_, blend),
@@ -150,7 +147,7 @@ bool ReplacementPlanner::find_entry(const core::Instant& from,
   };
   search_.restart(0);
   next_segment_.reset();
-  for (const core::Waypoint& waypoint : waypoints) {
+  for (const Waypoint& waypoint : waypoints) {
     append(waypoint);
     if (!is_found) search();
     take_segments(window_.settled_segments(), out);
@@ -164,8 +161,8 @@ bool ReplacementPlanner::find_entry(const core::Instant& from,
   return is_found;
 }
 
-void ReplacementPlanner::plan(core::Time t, std::span<const core::Waypoint> waypoints,
-                              core::Time blend, ReplacePreview& out) {
+void ReplacementPlanner::plan(Time t, std::span<const Waypoint> waypoints, Time blend,
+                              ReplacePreview& out) {
   out.is_known = read_state(t);
   out.begin = t;
   out.duration = {};
@@ -176,7 +173,7 @@ void ReplacementPlanner::plan(core::Time t, std::span<const core::Waypoint> wayp
   clear(out.entry, window_.dimensions());
   clear(out.motion, window_.dimensions());
   if (!out.is_known) return;
-  const core::Instant from{t, state_.position(), state_.velocity(), state_.acceleration()};
+  const Instant from{t, state_.position(), state_.velocity(), state_.acceleration()};
   if (find_entry(from, waypoints, blend, out)) return;
   out.passed_over = waypoints.size();
   take_stop(out, from);

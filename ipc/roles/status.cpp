@@ -1,6 +1,6 @@
 #include "splinecast/status.hpp"
 
-namespace splinecast::ipc {
+namespace splinecast {
 
 Refusal to_refusal(AppendStatus interval) noexcept {
   switch (interval) {
@@ -107,4 +107,4 @@ std::string_view to_string(SampleStatus status) noexcept {
   return "unknown";
 }
 
-}  // namespace splinecast::ipc
+}  // namespace splinecast

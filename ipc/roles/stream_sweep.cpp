@@ -12,12 +12,14 @@
 
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/mapping/region.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/errors.hpp"
+#include "splinecast/streams.hpp"
 
 namespace splinecast::ipc {
 namespace {
 
-constexpr core::Time kLookAround = std::chrono::milliseconds(50);
+constexpr Time kLookAround = std::chrono::milliseconds(50);
 
 /// Streams that are tried at once, and streams of other processes that are looked at each time.
 /// When one of these has died, the rest follow at once: they were mostly the same process's.
@@ -25,7 +27,7 @@ constexpr std::size_t kTries = 16;
 
 /// How often one of the streams that lack memory or descriptors is tried again; once one has
 /// succeeded, the next look tries another.
-constexpr core::Time kRetry = std::chrono::milliseconds(100);
+constexpr Time kRetry = std::chrono::milliseconds(100);
 
 /// Descriptors for all else that the process does.
 constexpr std::size_t kOtherDescriptors = 32;
@@ -47,7 +49,7 @@ bool is_passing(const std::exception& error) noexcept {
 }  // namespace
 
 StreamSweep::StreamSweep(const std::vector<std::string>& wanted, SolverOptions options, Tell tell,
-                         core::Time pause)
+                         Time pause)
     : options_(std::move(options)),
       tell_(std::move(tell)),
       most_owned_(most_streams(kDescriptorsPerStream)),
@@ -68,7 +70,7 @@ StreamSweep::StreamSweep(const std::vector<std::string>& wanted, SolverOptions o
   }
 }
 
-core::Time StreamSweep::next_pause() const noexcept {
+Time StreamSweep::next_pause() const noexcept {
   return all_quiet_ ? std::max(pause_, kQuietPause) : pause_;
 }
 
@@ -105,12 +107,12 @@ void StreamSweep::take_up(const Clock& clock) {
 void StreamSweep::collect_calling() {
   ++sweeps_;
   const bool looks_at_all = all_quiet_;
-  const core::Time quiet_since = now_ - kQuietAfter;
+  const Time quiet_since = now_ - kQuietAfter;
   all_quiet_ = !watches_.empty();
   calling_.clear();
   for (std::size_t i = 0; i < watches_.size(); ++i) {
     Watch& watch = watches_[i];
-    const bool is_quiet = watch.active <= quiet_since && watch.solver.due() == core::Time::max();
+    const bool is_quiet = watch.active <= quiet_since && watch.solver.due() == Time::max();
     const bool is_looked_at = !is_quiet || looks_at_all || (sweeps_ + i) % quiet_sweeps_ == 0;
     all_quiet_ = all_quiet_ && is_quiet;
     const bool calls = is_looked_at && watch.solver.calls();
@@ -123,14 +125,14 @@ void StreamSweep::collect_calling() {
 /// Asks for what the steps behind the i-th calling stream's go through, while that one is stepped:
 /// of many streams nothing stays in the caches from one step to the next.
 void StreamSweep::prefetch_behind(std::size_t i) const noexcept {
-  const auto ask = [&](std::size_t ahead, Solver::Stage stage) {
+  const auto ask = [&](std::size_t ahead, Internals::Stage stage) {
     if (i + ahead >= calling_.size()) return;
-    served_[calling_[i + ahead]].solver->prefetch(stage);
+    Internals::prefetch(*served_[calling_[i + ahead]].solver, stage);
   };
   if (i + 4 < calling_.size()) __builtin_prefetch(served_[calling_[i + 4]].solver.get());
-  ask(3, Solver::Stage::self);
-  ask(2, Solver::Stage::parts);
-  ask(1, Solver::Stage::stream);
+  ask(3, Internals::Stage::self);
+  ask(2, Internals::Stage::parts);
+  ask(1, Internals::Stage::stream);
 }
 
 /// Steps one stream. Returns whether it has more to do.
@@ -146,9 +148,9 @@ bool StreamSweep::serve(std::size_t index, const Clock& clock) {
     has_detached_ = true;
     return false;
   }
-  watches_[index] = {.solver = served.solver->watch(), .active = now_};
+  watches_[index] = {.solver = Internals::watch(*served.solver), .active = now_};
   tell_first_refusals(*served.solver);
-  if (!served.was_finished && served.solver->head().finished) {
+  if (!served.was_finished && Internals::head(*served.solver).finished) {
     served.was_finished = true;
     tell(SweepNews::finished, served.solver->stream(), served.solver.get(), {});
   }
@@ -242,8 +244,8 @@ void StreamSweep::note_ends_of_motion() {
   std::erase_if(moving_, [&](const std::string& stream) {
     const auto found = members_.find(stream);
     if (found == members_.end() || !found->second.waiting) return true;
-    const core::Time end = found->second.waiting->due();
-    if (end > now_) return end == core::Time::max();
+    const Time end = found->second.waiting->due();
+    if (end > now_) return end == Time::max();
     to_take_.push_back(stream);
     return true;
   });
@@ -308,7 +310,7 @@ void StreamSweep::look_at_postponed() {
 void StreamSweep::hold_regions() noexcept {
   is_any_unheld_ = false;
   for (const Served& served : served_) {
-    if (!served.solver->hold_region()) is_any_unheld_ = true;
+    if (!Internals::hold_region(*served.solver)) is_any_unheld_ = true;
   }
 }
 
@@ -352,7 +354,7 @@ bool StreamSweep::attach(const std::string& stream, Member& member, const Clock&
   try {
     if (!member.waiting->attach(clock)) {
       const bool is_noted = std::ranges::find(moving_, stream) != moving_.end();
-      if (member.waiting->due() < core::Time::max() && !is_noted) moving_.push_back(stream);
+      if (member.waiting->due() < Time::max() && !is_noted) moving_.push_back(stream);
       become(stream, member, State::waiting, SweepNews::waiting);
       return false;
     }
@@ -363,8 +365,8 @@ bool StreamSweep::attach(const std::string& stream, Member& member, const Clock&
   }
   if (member.state == State::postponed) next_retry_ = now_;
   served_.push_back({.solver = std::move(member.waiting)});
-  watches_.push_back({.solver = served_.back().solver->watch(), .active = now_});
-  is_any_unheld_ = is_any_unheld_ || !served_.back().solver->hold_region();
+  watches_.push_back({.solver = Internals::watch(*served_.back().solver), .active = now_});
+  is_any_unheld_ = is_any_unheld_ || !Internals::hold_region(*served_.back().solver);
   become(stream, member, State::solved, SweepNews::solving, served_.back().solver.get());
   return true;
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "ipc/memory/folder_watch.hpp"
+#include "ipc/roles/solver_watch.hpp"
 #include "splinecast/solver.hpp"
 
 namespace splinecast::ipc {
@@ -53,7 +54,7 @@ class StreamSweep {
   /// Throws BadRequest for options or names that cannot be; `tell` is called here already.
   /// `pause` is what lies between two sweeps.
   StreamSweep(const std::vector<std::string>& wanted, SolverOptions options, Tell tell,
-              core::Time pause = std::chrono::milliseconds(1));
+              Time pause = std::chrono::milliseconds(1));
 
   /// Looks after every stream once. Returns whether one of them has more to do than was done:
   /// sweep again at once. A stream that fails is given up or postponed; the others continue.
@@ -61,11 +62,11 @@ class StreamSweep {
 
   /// How long to wait for the next sweep: `pause`, or kQuietPause if that is longer, while nothing
   /// happens on any stream. The next sweep then looks at all of them.
-  [[nodiscard]] core::Time next_pause() const noexcept;
+  [[nodiscard]] Time next_pause() const noexcept;
 
   /// A stream on which nothing has happened for so long is looked at once in so long.
-  static constexpr core::Time kQuietAfter = std::chrono::seconds(1);
-  static constexpr core::Time kQuietPause = std::chrono::milliseconds(20);
+  static constexpr Time kQuietAfter = std::chrono::seconds(1);
+  static constexpr Time kQuietPause = std::chrono::milliseconds(20);
 
   /// Streams that are solved here.
   [[nodiscard]] std::size_t solved() const noexcept { return served_.size(); }
@@ -103,7 +104,7 @@ class StreamSweep {
   /// What a sweep reads of a stream that has nothing to do.
   struct Watch {
     SolverWatch solver;
-    core::Time active;  ///< when it was last stepped
+    Time active;  ///< when it was last stepped
   };
 
   static Files files_of(const std::string& stream);
@@ -138,9 +139,9 @@ class StreamSweep {
   std::vector<std::string> patterns_;
   std::map<std::string, Member> members_;
   FolderWatch folder_;
-  core::Time next_look_ = core::Time::min();
+  Time next_look_ = Time::min();
   bool looks_again_ = false;  ///< the last look for names was not finished
-  core::Time next_retry_ = core::Time::min();
+  Time next_retry_ = Time::min();
   std::string last_retried_;            ///< of the postponed streams
   bool is_any_unheld_ = false;          ///< whether a board may lack its region lock
   std::vector<std::string> to_take_;    ///< streams to try next, the first one last
@@ -151,8 +152,8 @@ class StreamSweep {
   std::vector<Served> served_;          ///< likewise, index by index
   std::vector<std::size_t> calling_;    ///< of these, those that this sweep steps
   std::vector<ItemRefusal> refused_;    ///< scratch
-  core::Time now_{};                    ///< of this sweep
-  core::Time pause_;
+  Time now_{};                          ///< of this sweep
+  Time pause_;
   std::size_t quiet_sweeps_;  ///< of so many, one looks at a quiet stream
   std::size_t sweeps_ = 0;
   bool all_quiet_ = false;

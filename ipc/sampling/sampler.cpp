@@ -15,20 +15,19 @@ namespace {
 constexpr int kTries = 16;
 
 /// Seconds from a segment's left end; whatever the region holds, without signed overflow.
-double seconds_after(core::Time left, core::Time t) noexcept {
-  return core::to_seconds(to_time(to_word(t) - to_word(left)));
+double seconds_after(Time left, Time t) noexcept {
+  return to_seconds(to_time(to_word(t) - to_word(left)));
 }
 
 /// Copies the derivatives asked for, one behind the other.
-void copy_asked(const core::State& state, core::Derivatives asked, std::span<double> out) noexcept {
-  using core::Derivatives;
+void copy_asked(const State& state, Derivatives asked, std::span<double> out) noexcept {
   const std::array<std::pair<Derivatives, std::span<const double>>, 4> parts{
       {{Derivatives::position, state.position()},
        {Derivatives::velocity, state.velocity()},
        {Derivatives::acceleration, state.acceleration()},
        {Derivatives::jerk, state.jerk()}}};
   for (const auto& [derivative, values] : parts) {
-    if (!core::contains(asked, derivative)) continue;
+    if (!contains(asked, derivative)) continue;
     std::ranges::copy(values, out.begin());
     out = out.subspan(values.size());
   }
@@ -40,7 +39,7 @@ void subtract(std::span<double> from, std::span<const double> values) noexcept {
 }
 
 /// Sets velocity, acceleration and jerk to 0: at rest.
-void come_to_rest(const core::StateRef& out) noexcept {
+void come_to_rest(const StateRef& out) noexcept {
   std::ranges::fill(out.velocity, 0.0);
   std::ranges::fill(out.acceleration, 0.0);
   std::ranges::fill(out.jerk, 0.0);
@@ -48,7 +47,7 @@ void come_to_rest(const core::StateRef& out) noexcept {
 
 }  // namespace
 
-Sampler::Sampler(const KnotBoardReader& board, StreamClock clock, core::DimensionKinds kinds)
+Sampler::Sampler(const KnotBoardReader& board, StreamClock clock, DimensionKinds kinds)
     : board_(&board),
       clock_(clock),
       kinds_(std::move(kinds)),
@@ -62,7 +61,7 @@ Sampler::Sampler(const KnotBoardReader& board, StreamClock clock, core::Dimensio
 }
 
 /// Whether each span has one value per dimension.
-inline bool Sampler::fits(const core::StateRef& out) const noexcept {
+inline bool Sampler::fits(const StateRef& out) const noexcept {
   const std::size_t wanted = board_->dimensions();
   return ((out.position.size() ^ wanted) | (out.velocity.size() ^ wanted) |
           (out.acceleration.size() ^ wanted) | (out.jerk.size() ^ wanted)) == 0;
@@ -70,7 +69,7 @@ inline bool Sampler::fits(const core::StateRef& out) const noexcept {
 
 /// The sample at t. Mostly nothing has been published since the last one, and t lies in the segment
 /// used last: then there is nothing to look up.
-inline SampleStatus Sampler::find(core::Time t, const core::StateRef& out) noexcept {
+inline SampleStatus Sampler::find(Time t, const StateRef& out) noexcept {
   if (board_->retired()) return SampleStatus::retired;
   const Look look = board_->look();
   const bool is_at_hand = look.revision == confirmed_ && t >= at_hand_.left && t < at_hand_.right;
@@ -85,7 +84,7 @@ inline SampleStatus Sampler::find(core::Time t, const core::StateRef& out) noexc
 }
 
 /// A sample that counts as executed.
-inline SampleStatus Sampler::execute(core::Time t, const core::StateRef& out) noexcept {
+inline SampleStatus Sampler::execute(Time t, const StateRef& out) noexcept {
   const SampleStatus status = find(t, out);
   if (clock_ == StreamClock::recorded || !has_values(status)) return status;
   const bool is_revised = revised_;
@@ -94,18 +93,18 @@ inline SampleStatus Sampler::execute(core::Time t, const core::StateRef& out) no
   return is_revised ? SampleStatus::revised : status;
 }
 
-SampleStatus Sampler::sample(core::Time t, const core::StateRef& out) noexcept {
+SampleStatus Sampler::sample(Time t, const StateRef& out) noexcept {
   return fits(out) ? execute(t, out) : SampleStatus::wrong_dimension;
 }
 
-SampleStatus Sampler::sample(core::Time t, core::State& out) noexcept {
+SampleStatus Sampler::sample(Time t, State& out) noexcept {
   const bool fits = out.dimensions() == board_->dimensions();
   return fits ? execute(t, out.ref()) : SampleStatus::wrong_dimension;
 }
 
 /// Makes the next segment of the same revision the current one if t may lie there. Returns whether
 /// t lies where it moves.
-bool Sampler::goes_on(core::Time t) noexcept {
+bool Sampler::goes_on(Time t) noexcept {
   if (confirmed_ != head_.revision || !current().is_there() || t < current().right()) return false;
   const Word next = current().next();
   if (next > head_.newest || !take(next)) return false;
@@ -118,7 +117,7 @@ bool Sampler::see(const Look& look) noexcept {
   const Head before = head_;
   if (!board_->copy_bounds(look, before.revision, head_)) return false;
   if (revised_ || before.revision == 0 || sampled_until_ < head_.changed_from) return true;
-  if (head_.changed_from > core::Time::min()) {
+  if (head_.changed_from > Time::min()) {
     revised_ = true;
     return true;
   }
@@ -187,26 +186,25 @@ bool Sampler::is_unchanged(const BoardSegment& segment, const Head& before) noex
 /// latest time sampled. Copies the segment behind it in its place.
 Sampler::Compared Sampler::compare_rest(BoardSegment& last) noexcept {
   const auto rest = state_.ref().position;
-  const core::Time right = last.right();
+  const Time right = last.right();
   core::evaluate_derivative(last.order(), last.coefficients(), seconds_after(last.left(), right), 0,
                             rest);
   BoardSegment& next = last;
   const BoardSegment::Taken taken = next.take(*board_, head_, last.next());
   if (taken == BoardSegment::Taken::torn) return Compared::torn;
-  const bool rests = taken == BoardSegment::Taken::whole &&
-                     next.kind() == core::SegmentKind::hold && next.left() == right &&
-                     sampled_until_ < next.right() &&
+  const bool rests = taken == BoardSegment::Taken::whole && next.kind() == SegmentKind::hold &&
+                     next.left() == right && sampled_until_ < next.right() &&
                      std::ranges::equal(next.coefficients().first(rest.size()), rest);
   return rests ? Compared::same : Compared::changed;
 }
 
-SampleStatus Sampler::preview(core::Time t, const core::StateRef& out) noexcept {
+SampleStatus Sampler::preview(Time t, const StateRef& out) noexcept {
   return fits(out) ? find(t, out) : SampleStatus::wrong_dimension;
 }
 
 /// Makes head_ that of the newest revision; t is the time that will be looked up in it. Returns
 /// `settled` if there is a curve, `busy` if the writer has gone on, else the reason for none.
-SampleStatus Sampler::see_newest(core::Time t) noexcept {
+SampleStatus Sampler::see_newest(Time t) noexcept {
   if (board_->retired()) return SampleStatus::retired;
   const Look look = board_->look();
   if (look.revision == 0) return SampleStatus::no_data;
@@ -220,7 +218,7 @@ SampleStatus Sampler::see_newest(core::Time t) noexcept {
   return head_.newest == 0 ? SampleStatus::no_data : SampleStatus::settled;
 }
 
-SampleStatus Sampler::look_up(core::Time t, const core::StateRef& out) noexcept {
+SampleStatus Sampler::look_up(Time t, const StateRef& out) noexcept {
   for (int attempt = 0; attempt < kTries; ++attempt) {
     const SampleStatus seen = see_newest(t);
     if (seen == SampleStatus::busy) continue;
@@ -237,7 +235,7 @@ SampleStatus Sampler::look_up(core::Time t, const core::StateRef& out) noexcept 
 }
 
 /// The segment of t if it is the copied one or, by its length, the next; else 0.
-Word Sampler::near(const BoardSegment& copy, core::Time t) noexcept {
+Word Sampler::near(const BoardSegment& copy, Time t) noexcept {
   if (!copy.is_there() || t < copy.left()) return 0;
   if (t < copy.right()) return copy.number();
   const Word length = to_word(copy.right()) - to_word(copy.left());
@@ -245,7 +243,7 @@ Word Sampler::near(const BoardSegment& copy, core::Time t) noexcept {
 }
 
 /// Makes current() the segment of `t` under head_.revision.
-Sampler::Found Sampler::locate(core::Time t) noexcept {
+Sampler::Found Sampler::locate(Time t) noexcept {
   const BoardSegment& last = current();
   if (is_confirmed()) {
     if (spans(last, t)) return Found::segment;
@@ -292,8 +290,7 @@ void Sampler::confirm() noexcept {
   confirmed_ = head_.revision;
   copied_settled_until_ = head_.settled_until;
   const BoardSegment& own = current();
-  const bool moves =
-      own.kind() == core::SegmentKind::spline || own.kind() == core::SegmentKind::splice;
+  const bool moves = own.kind() == SegmentKind::spline || own.kind() == SegmentKind::splice;
   at_hand_ = {
       .left = own.left(), .right = moves ? own.right() : own.left(), .is_finished = head_.finished};
 }
@@ -323,13 +320,13 @@ bool Sampler::take(Word number) noexcept {
 
 /// Whether a time belongs to a segment: a time on a knot to the one on its right; all times behind
 /// the last segment to that one.
-bool Sampler::spans(const BoardSegment& segment, core::Time t) const noexcept {
+bool Sampler::spans(const BoardSegment& segment, Time t) const noexcept {
   return t >= segment.left() && (t < segment.right() || segment.is_last(head_));
 }
 
 /// Where a time would lie if the knots came at an even pace: a segment of the head.
-Word Sampler::guess_by_pace(core::Time t) const noexcept {
-  const core::Time oldest = board_->time_hint(head_.first);
+Word Sampler::guess_by_pace(Time t) const noexcept {
+  const Time oldest = board_->time_hint(head_.first);
   const double share =
       seconds_after(oldest, t) / seconds_after(oldest, board_->time_hint(head_.newest));
   const auto intervals = static_cast<double>(head_.newest - head_.first);
@@ -341,7 +338,7 @@ Word Sampler::guess_by_pace(core::Time t) const noexcept {
 /// The last knot at or before whose time a segment begins, by the packed times; 0 if t is before
 /// all. From the guess in steps that double, then by halves: a look or two at an even pace, and
 /// never more than 2 log n.
-Word Sampler::number_by_hint(core::Time t) const noexcept {
+Word Sampler::number_by_hint(Time t) const noexcept {
   Word low = head_.first;
   Word high = head_.newest + 1;
   const auto is_behind = [&](Word number) { return board_->time_hint(number) > t; };
@@ -378,7 +375,7 @@ Word Sampler::number_by_hint(core::Time t) const noexcept {
 
 /// When the segment at knot `number` begins, or, where none does, the next one; at the end of a
 /// finished curve, when that ends. Returns false if a knot was written meanwhile.
-bool Sampler::begin_of(Word number, core::Time& begin, bool& is_end) const noexcept {
+bool Sampler::begin_of(Word number, Time& begin, bool& is_end) const noexcept {
   core::SegmentForm form{};
   if (!board_->copy_time(number, head_.revision, begin, form)) return false;
   is_end = form == core::SegmentForm::none;
@@ -388,13 +385,13 @@ bool Sampler::begin_of(Word number, core::Time& begin, bool& is_end) const noexc
 
 /// The same by the knots, under the revision of the head. Returns false if one was written
 /// meanwhile.
-bool Sampler::number_by_cells(core::Time t, Word& number) const noexcept {
+bool Sampler::number_by_cells(Time t, Word& number) const noexcept {
   Word low = head_.first;
   Word high = head_.newest + 1;
   bool is_end = false;
   while (low < high) {
     const Word middle = low + (high - low) / 2;
-    core::Time begin{};
+    Time begin{};
     if (!begin_of(middle, begin, is_end)) return false;
     if (begin <= t) {
       low = middle + 1;
@@ -404,7 +401,7 @@ bool Sampler::number_by_cells(core::Time t, Word& number) const noexcept {
   }
   number = low == head_.first ? 0 : low - 1;
   if (number > head_.first && number == head_.newest) {
-    core::Time begin{};
+    Time begin{};
     if (!begin_of(number, begin, is_end)) return false;
     if (is_end) --number;
   }
@@ -412,29 +409,28 @@ bool Sampler::number_by_cells(core::Time t, Word& number) const noexcept {
 }
 
 /// Evaluates a segment u seconds after its left end, in the form in which dimensions are read.
-void Sampler::read(const BoardSegment& segment, double u,
-                   const core::StateRef& out) const noexcept {
+void Sampler::read(const BoardSegment& segment, double u, const StateRef& out) const noexcept {
   core::evaluate(segment.order(), segment.coefficients(), u, out);
   if (!all_linear_) kinds_.normalise(out);
 }
 
-SampleStatus Sampler::evaluate(const BoardSegment& segment, core::Time t,
-                               const core::StateRef& out) const noexcept {
-  const core::Time right = segment.right();
-  const bool past_end = t > right || segment.kind() == core::SegmentKind::hold ||
-                        (t == right && segment.kind() == core::SegmentKind::stop_tail);
-  const core::Time at = past_end ? right : t;
+SampleStatus Sampler::evaluate(const BoardSegment& segment, Time t,
+                               const StateRef& out) const noexcept {
+  const Time right = segment.right();
+  const bool past_end = t > right || segment.kind() == SegmentKind::hold ||
+                        (t == right && segment.kind() == SegmentKind::stop_tail);
+  const Time at = past_end ? right : t;
   read(segment, seconds_after(segment.left(), at), out);
   if (past_end) come_to_rest(out);
   if (head_.finished && t <= right) return SampleStatus::settled;
   if (past_end) return SampleStatus::holding;
-  if (segment.kind() == core::SegmentKind::stop_tail) return SampleStatus::stopping;
+  if (segment.kind() == SegmentKind::stop_tail) return SampleStatus::stopping;
   return t < head_.settled_until ? SampleStatus::settled : SampleStatus::provisional;
 }
 
 /// Before the first waypoint of a live stream the machine stands where it will start, unless it
 /// starts in motion.
-SampleStatus Sampler::hold_first(const core::StateRef& out) noexcept {
+SampleStatus Sampler::hold_first(const StateRef& out) noexcept {
   const std::size_t dimensions = board_->dimensions();
   const auto velocity = current().coefficients().subspan(dimensions, dimensions);
   if (std::ranges::any_of(velocity, [](double v) { return v != 0; })) return SampleStatus::no_data;
@@ -447,7 +443,7 @@ SampleStatus Sampler::hold_first(const core::StateRef& out) noexcept {
 
 /// What a reader may still say when the writer has overtaken every try: a time inside its own copy
 /// and before the settled_until copied with it can no longer change.
-SampleStatus Sampler::from_own_copy(core::Time t, const core::StateRef& out) noexcept {
+SampleStatus Sampler::from_own_copy(Time t, const StateRef& out) noexcept {
   const BoardSegment& own = current();
   if (!own.is_there() || t < own.left() || t >= own.right() || t >= copied_settled_until_) {
     return SampleStatus::busy;
@@ -456,12 +452,12 @@ SampleStatus Sampler::from_own_copy(core::Time t, const core::StateRef& out) noe
   return SampleStatus::settled;
 }
 
-Word Sampler::sample_many(std::span<const core::Time> times, const SampleBlock& out) noexcept {
-  const std::size_t values = core::count(out.derivatives) * board_->dimensions();
+Word Sampler::sample_many(std::span<const Time> times, const SampleBlock& out) noexcept {
+  const std::size_t values = count(out.derivatives) * board_->dimensions();
   const bool fits = out.status.size() == times.size() && out.values.size() == times.size() * values;
   SampleStatus seen = fits ? SampleStatus::busy : SampleStatus::wrong_dimension;
   for (int attempt = 0; attempt < kTries && seen == SampleStatus::busy; ++attempt) {
-    seen = see_newest(times.empty() ? core::Time{} : times.front());
+    seen = see_newest(times.empty() ? Time{} : times.front());
     if (seen != SampleStatus::settled) continue;
     if (evaluate_many(times, out)) return head_.revision;
     seen = SampleStatus::busy;
@@ -471,9 +467,9 @@ Word Sampler::sample_many(std::span<const core::Time> times, const SampleBlock& 
 }
 
 /// Evaluates all times under head_.revision. Returns false if the writer has gone on meanwhile.
-bool Sampler::evaluate_many(std::span<const core::Time> times, const SampleBlock& out) noexcept {
+bool Sampler::evaluate_many(std::span<const Time> times, const SampleBlock& out) noexcept {
   const std::size_t dimensions = board_->dimensions();
-  const std::size_t stride = core::count(out.derivatives) * dimensions;
+  const std::size_t stride = count(out.derivatives) * dimensions;
   for (std::size_t i = 0; i < times.size();) {
     const Found found = goes_on(times[i]) ? Found::segment : locate(times[i]);
     if (found == Found::torn) return false;
@@ -499,16 +495,16 @@ bool Sampler::evaluate_many(std::span<const core::Time> times, const SampleBlock
 
 /// Evaluates as many of the times from `first` on as lie on the current copy, where it moves and
 /// needs no more than its polynomial. Returns how many.
-std::size_t Sampler::evaluate_moving(std::span<const core::Time> times, std::size_t first,
+std::size_t Sampler::evaluate_moving(std::span<const Time> times, std::size_t first,
                                      std::size_t stride, const SampleBlock& out) noexcept {
   if (!all_linear_) return 0;
   const BoardSegment& own = current();
-  const core::Time settled_until = at_hand_.is_finished ? core::Time::max() : head_.settled_until;
+  const Time settled_until = at_hand_.is_finished ? Time::max() : head_.settled_until;
   // Not cleared first: that would take as long as the lookup.
   std::array<double, 16> u;  // NOLINT(*-member-init)
   std::size_t n = 0;
   while (n < u.size() && first + n < times.size()) {
-    const core::Time t = times[first + n];
+    const Time t = times[first + n];
     if (t < at_hand_.left || t >= at_hand_.right) break;
     u[n] = seconds_after(at_hand_.left, t);
     out.status[first + n] = t < settled_until ? SampleStatus::settled : SampleStatus::provisional;
@@ -520,7 +516,7 @@ std::size_t Sampler::evaluate_moving(std::span<const core::Time> times, std::siz
 }
 
 /// Copies the segments from one to another under head_.revision, with their acceleration steps.
-bool Sampler::copy_segments(Word oldest, Word newest, Snapshot& out) {
+bool Sampler::copy_segments(Word oldest, Word newest, BoardSnapshot& out) {
   BoardSegment& copy = spare();
   std::size_t count = 0;
   // The newest first: they are the ones that the writer will overwrite first.
@@ -569,7 +565,7 @@ bool Sampler::finish_oldest_step(SegmentCopy& oldest) {
   return true;
 }
 
-SampleStatus Sampler::snapshot(core::Time from, core::Time to, Snapshot& out) {
+SampleStatus Sampler::snapshot(Time from, Time to, BoardSnapshot& out) {
   out.size_ = 0;
   if (out.dimensions() != board_->dimensions()) return SampleStatus::wrong_dimension;
   for (int attempt = 0; attempt < kTries; ++attempt) {

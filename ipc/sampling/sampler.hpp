@@ -5,45 +5,17 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/basics/derivatives.hpp"
 #include "ipc/board/knot_board.hpp"
 #include "ipc/board/segment.hpp"
+#include "ipc/sampling/snapshot.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/dimension_kind.hpp"
+#include "splinecast/snapshot.hpp"
 #include "splinecast/state.hpp"
 #include "splinecast/status.hpp"
 #include "splinecast/time.hpp"
 
 namespace splinecast::ipc {
-
-/// Several segments of one revision: a consistent piece of the curve, whole or not at all.
-class Snapshot {
- public:
-  /// Allocates as it grows; reuse one to allocate no more.
-  explicit Snapshot(std::size_t dimensions) : dimensions_(dimensions) {}
-
-  [[nodiscard]] std::size_t dimensions() const noexcept { return dimensions_; }
-  [[nodiscard]] const Head& head() const noexcept { return head_; }
-
-  /// The segments, oldest first.
-  [[nodiscard]] std::span<const SegmentCopy> segments() const noexcept {
-    return std::span(segments_).first(size_);
-  }
-
- private:
-  friend class Sampler;
-  std::size_t dimensions_;
-  Head head_;
-  std::size_t size_ = 0;
-  std::vector<SegmentCopy> segments_;
-};
-
-/// Where `sample_many` writes: N times, D dimensions, and as many derivatives as are asked for.
-struct SampleBlock {
-  std::span<double> values;        ///< [time][derivative asked for, position first][dimension]
-  std::span<SampleStatus> status;  ///< one per time; those without values leave theirs undefined
-  core::Derivatives derivatives = core::Derivatives::all;
-};
 
 /// The reader without its region: looks a time up on a knot board and evaluates the curve.
 ///
@@ -63,7 +35,7 @@ class Sampler {
 
   /// `board` is read as often as sampled; `clock` says whether a hold stands before the first
   /// waypoint; `kinds` are those of the board's dimensions.
-  Sampler(const KnotBoardReader& board, StreamClock clock, core::DimensionKinds kinds = {});
+  Sampler(const KnotBoardReader& board, StreamClock clock, DimensionKinds kinds = {});
   Sampler(const Sampler&) = delete;
   Sampler& operator=(const Sampler&) = delete;
   Sampler(Sampler&&) noexcept = default;
@@ -88,11 +60,11 @@ class Sampler {
   /// own copy, and whether a rest continues as a hold. If so, the sample is not `revised`. If they
   /// differ, or cannot be compared because the board no longer keeps them or there are more than
   /// kMostCompared, it is: a change is never missed.
-  [[nodiscard]] SampleStatus sample(core::Time t, const core::StateRef& out) noexcept;
-  [[nodiscard]] SampleStatus sample(core::Time t, core::State& out) noexcept;
+  [[nodiscard]] SampleStatus sample(Time t, const StateRef& out) noexcept;
+  [[nodiscard]] SampleStatus sample(Time t, State& out) noexcept;
 
   /// The same for a look ahead: what it gives does not count as executed.
-  [[nodiscard]] SampleStatus preview(core::Time t, const core::StateRef& out) noexcept;
+  [[nodiscard]] SampleStatus preview(Time t, const StateRef& out) noexcept;
 
   /// Evaluates the curve at any number of times, increasing or not, all of *one* revision: for
   /// controllers that look ahead, whose horizon must not mix two. Returns that revision, which is
@@ -101,21 +73,21 @@ class Sampler {
   /// each O(N·D) where the times follow each other, and O(N·(log n + D)) at most. A writer that
   /// publishes faster than a try takes leaves `busy`. Where the block's sizes are not those of the
   /// times and of the curve it is `wrong_dimension`.
-  Word sample_many(std::span<const core::Time> times, const SampleBlock& out) noexcept;
+  Word sample_many(std::span<const Time> times, const SampleBlock& out) noexcept;
 
   /// The time before which what the last sample saw never changes, whatever its status.
-  [[nodiscard]] core::Time settled_until() const noexcept { return head_.settled_until; }
+  [[nodiscard]] Time settled_until() const noexcept { return head_.settled_until; }
 
   /// Copies every segment that has a part between `from` and `to` (inclusive), all under one
   /// revision. Returns `settled` or `provisional` for the whole; `before_history`, `no_data`,
   /// `busy`, `retired` or `wrong_dimension` leave `out` without segments. The segments are the
-  /// curve as it was solved, before core::DimensionKinds::normalise; their acceleration steps are
+  /// curve as it was solved, before DimensionKinds::normalise; their acceleration steps are
   /// those of what readers see. The step at the left end of the oldest segment on the board is not
   /// known (empty): begin one segment earlier. Allocates if `out` must grow.
-  [[nodiscard]] SampleStatus snapshot(core::Time from, core::Time to, Snapshot& out);
+  [[nodiscard]] SampleStatus snapshot(Time from, Time to, BoardSnapshot& out);
 
   /// The kinds of the board's dimensions.
-  [[nodiscard]] const core::DimensionKinds& kinds() const noexcept { return kinds_; }
+  [[nodiscard]] const DimensionKinds& kinds() const noexcept { return kinds_; }
 
   /// The revision that the last sample saw; 0 before the first.
   [[nodiscard]] Word revision_seen() const noexcept { return head_.revision; }
@@ -139,53 +111,52 @@ class Sampler {
     return places_[number % kSegmentsKept];
   }
   [[nodiscard]] bool is_confirmed() noexcept;
-  [[nodiscard]] bool goes_on(core::Time t) noexcept;
+  [[nodiscard]] bool goes_on(Time t) noexcept;
   void confirm() noexcept;
   void confirm(Kept& copy) noexcept;
-  [[nodiscard]] Found locate(core::Time t) noexcept;
+  [[nodiscard]] Found locate(Time t) noexcept;
   [[nodiscard]] bool take(Word number) noexcept;
-  [[nodiscard]] bool spans(const BoardSegment& segment, core::Time t) const noexcept;
-  [[nodiscard]] static Word near(const BoardSegment& copy, core::Time t) noexcept;
-  [[nodiscard]] Word guess_by_pace(core::Time t) const noexcept;
-  [[nodiscard]] Word number_by_hint(core::Time t) const noexcept;
-  [[nodiscard]] bool begin_of(Word number, core::Time& begin, bool& is_end) const noexcept;
-  [[nodiscard]] bool number_by_cells(core::Time t, Word& number) const noexcept;
-  void read(const BoardSegment& segment, double u, const core::StateRef& out) const noexcept;
-  [[nodiscard]] SampleStatus evaluate(const BoardSegment& segment, core::Time t,
-                                      const core::StateRef& out) const noexcept;
-  [[nodiscard]] SampleStatus execute(core::Time t, const core::StateRef& out) noexcept;
-  [[nodiscard]] SampleStatus find(core::Time t, const core::StateRef& out) noexcept;
-  [[nodiscard]] SampleStatus look_up(core::Time t, const core::StateRef& out) noexcept;
-  [[nodiscard]] SampleStatus hold_first(const core::StateRef& out) noexcept;
+  [[nodiscard]] bool spans(const BoardSegment& segment, Time t) const noexcept;
+  [[nodiscard]] static Word near(const BoardSegment& copy, Time t) noexcept;
+  [[nodiscard]] Word guess_by_pace(Time t) const noexcept;
+  [[nodiscard]] Word number_by_hint(Time t) const noexcept;
+  [[nodiscard]] bool begin_of(Word number, Time& begin, bool& is_end) const noexcept;
+  [[nodiscard]] bool number_by_cells(Time t, Word& number) const noexcept;
+  void read(const BoardSegment& segment, double u, const StateRef& out) const noexcept;
+  [[nodiscard]] SampleStatus evaluate(const BoardSegment& segment, Time t,
+                                      const StateRef& out) const noexcept;
+  [[nodiscard]] SampleStatus execute(Time t, const StateRef& out) noexcept;
+  [[nodiscard]] SampleStatus find(Time t, const StateRef& out) noexcept;
+  [[nodiscard]] SampleStatus look_up(Time t, const StateRef& out) noexcept;
+  [[nodiscard]] SampleStatus hold_first(const StateRef& out) noexcept;
   [[nodiscard]] bool see(const Look& look) noexcept;
   [[nodiscard]] Compared compare_with(const Head& before) noexcept;
   [[nodiscard]] Compared compare_rest(BoardSegment& last) noexcept;
   [[nodiscard]] bool is_ahead(const BoardSegment& first, const Head& before) noexcept;
   [[nodiscard]] bool is_unchanged(const BoardSegment& segment, const Head& before) noexcept;
-  [[nodiscard]] bool fits(const core::StateRef& out) const noexcept;
-  [[nodiscard]] bool copy_segments(Word oldest, Word newest, Snapshot& out);
+  [[nodiscard]] bool fits(const StateRef& out) const noexcept;
+  [[nodiscard]] bool copy_segments(Word oldest, Word newest, BoardSnapshot& out);
   [[nodiscard]] bool finish_oldest_step(SegmentCopy& oldest);
-  [[nodiscard]] SampleStatus from_own_copy(core::Time t, const core::StateRef& out) noexcept;
-  [[nodiscard]] SampleStatus see_newest(core::Time t) noexcept;
-  [[nodiscard]] bool evaluate_many(std::span<const core::Time> times,
-                                   const SampleBlock& out) noexcept;
-  [[nodiscard]] std::size_t evaluate_moving(std::span<const core::Time> times, std::size_t first,
+  [[nodiscard]] SampleStatus from_own_copy(Time t, const StateRef& out) noexcept;
+  [[nodiscard]] SampleStatus see_newest(Time t) noexcept;
+  [[nodiscard]] bool evaluate_many(std::span<const Time> times, const SampleBlock& out) noexcept;
+  [[nodiscard]] std::size_t evaluate_moving(std::span<const Time> times, std::size_t first,
                                             std::size_t stride, const SampleBlock& out) noexcept;
 
   const KnotBoardReader* board_;
   StreamClock clock_;
-  core::DimensionKinds kinds_;
+  DimensionKinds kinds_;
   bool all_linear_;
-  Head head_;                                     ///< bounds under the revision last seen whole
-  core::Time sampled_until_ = core::Time::min();  ///< latest time sampled as executed
-  bool revised_ = false;  ///< the curve before that time has been changed: not yet told
-  Word confirmed_ = 0;    ///< current_->known_by
-  core::Time copied_settled_until_{};  ///< settled_until of that revision
+  Head head_;                         ///< bounds under the revision last seen whole
+  Time sampled_until_ = Time::min();  ///< latest time sampled as executed
+  bool revised_ = false;              ///< the curve before that time has been changed: not yet told
+  Word confirmed_ = 0;                ///< current_->known_by
+  Time copied_settled_until_{};       ///< settled_until of that revision
   /// What most samples need of the current copy, as confirmed: where on it the curve moves, and
   /// whether all of it is settled. Nowhere, unless it lies between two waypoints.
   struct AtHand {
-    core::Time left{};
-    core::Time right{};
+    Time left{};
+    Time right{};
     bool is_finished = false;
   };
   AtHand at_hand_;
@@ -193,7 +164,7 @@ class Sampler {
   std::array<std::uint8_t, kSegmentsKept> places_{};  ///< which copy, by number mod kSegmentsKept
   std::size_t spare_ = kSegmentsKept;
   Kept* current_;                           ///< the one used last
-  core::State state_;                       ///< scratch
+  State state_;                             ///< scratch
   std::vector<double> start_acceleration_;  ///< scratch
   std::vector<double> end_acceleration_;    ///< scratch
 };

@@ -12,11 +12,11 @@ namespace {
 
 using core::SegmentForm;
 
-constexpr std::array<double, core::kMaxDimensions> kZeros{};
+constexpr std::array<double, kMaxDimensions> kZeros{};
 
 }  // namespace
 
-Word segment_at(const KnotBoardReader& board, const Head& head, core::Time t) noexcept {
+Word segment_at(const KnotBoardReader& board, const Head& head, Time t) noexcept {
   Word low = head.first;
   Word high = head.newest;
   while (low < high) {
@@ -30,8 +30,7 @@ Word segment_at(const KnotBoardReader& board, const Head& head, core::Time t) no
   return low;
 }
 
-CurveCut::CurveCut(KnotBoardWriter& board, const KnotBoardReader& published,
-                   core::DimensionKinds kinds)
+CurveCut::CurveCut(KnotBoardWriter& board, const KnotBoardReader& published, DimensionKinds kinds)
     : board_(&board),
       published_(&published),
       kinds_(std::move(kinds)),
@@ -39,7 +38,7 @@ CurveCut::CurveCut(KnotBoardWriter& board, const KnotBoardReader& published,
       state_(published.dimensions()),
       position_(published.dimensions()) {}
 
-core::Instant CurveCut::state() const noexcept {
+Instant CurveCut::state() const noexcept {
   return {.time = time_,
           .position = state_.position(),
           .velocity = state_.velocity(),
@@ -48,10 +47,10 @@ core::Instant CurveCut::state() const noexcept {
 
 bool CurveCut::read(Word number) noexcept {
   return segment_.take(*published_, head_, number) == BoardSegment::Taken::whole &&
-         core::is_time_in_range(segment_.left());
+         is_time_in_range(segment_.left());
 }
 
-bool CurveCut::find(const Head& head, core::Time t) noexcept {
+bool CurveCut::find(const Head& head, Time t) noexcept {
   head_ = head;
   time_ = t;
   cut_ = segment_at(*published_, head, t);
@@ -79,17 +78,17 @@ bool CurveCut::find(const Head& head, core::Time t) noexcept {
     is_held_ = t > segment_.right();
     next_ = cut_ + (is_held_ ? 2 : 1);
   } else {
-    keeps_right_ = segment_.kind() != core::SegmentKind::hold;
+    keeps_right_ = segment_.kind() != SegmentKind::hold;
     next_ = cut_ + (keeps_right_ ? 2 : 1);
   }
-  const core::StateRef state = state_.ref();
+  const StateRef state = state_.ref();
   if (next_ > 1) kinds_.normalise_quaternions(state.position, state.velocity, state.acceleration);
   return true;
 }
 
-std::span<const double> CurveCut::position_at(core::Time t) noexcept {
+std::span<const double> CurveCut::position_at(Time t) noexcept {
   core::evaluate_derivative(segment_.order(), segment_.coefficients(),
-                            core::to_seconds(t - segment_.left()), 0, position_);
+                            to_seconds(t - segment_.left()), 0, position_);
   return position_;
 }
 
@@ -103,14 +102,14 @@ void CurveCut::write() noexcept {
     board_->write_form(cut_ + 1, SegmentForm::none, time_);
   } else if (keeps_right_) {
     // A stop: how long it would have taken stands at its right knot.
-    const core::Time end = segment_.natural_right();
+    const Time end = segment_.natural_right();
     write_rest(cut_ + 1, SegmentForm::none, end, position_at(end), time_);
   }
   board_->write_form(cut_, segment_.left_knot().note.form);
 }
 
-void CurveCut::write_rest(Word number, SegmentForm form, core::Time time,
-                          std::span<const double> position, core::Time begins) noexcept {
+void CurveCut::write_rest(Word number, SegmentForm form, Time time,
+                          std::span<const double> position, Time begins) noexcept {
   const auto zeros = std::span(kZeros).first(position.size());
   board_->write(number, {.is_new = true,
                          .note = {.form = form},

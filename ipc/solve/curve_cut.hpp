@@ -22,35 +22,35 @@ namespace splinecast::ipc {
 class CurveCut {
  public:
   /// Both are sides of one board, and outlive the cut.
-  CurveCut(KnotBoardWriter& board, const KnotBoardReader& published, core::DimensionKinds kinds);
+  CurveCut(KnotBoardWriter& board, const KnotBoardReader& published, DimensionKinds kinds);
 
   /// Finds the cut at t through the curve of a committed head, which has a segment there. Returns
   /// false if what was read back from the board was nothing that a solver had written.
-  [[nodiscard]] bool find(const Head& head, core::Time t) noexcept;
+  [[nodiscard]] bool find(const Head& head, Time t) noexcept;
 
   /// What goes on from the cut that was found: the state there, and the number of the knot that
   /// begins the new curve.
-  [[nodiscard]] core::Instant state() const noexcept;
+  [[nodiscard]] Instant state() const noexcept;
   [[nodiscard]] Word next() const noexcept { return next_; }
 
   /// Writes what the cut that was found makes of the segment before it.
   void write() noexcept;
 
   /// Writes a new knot at rest at which no waypoint stands.
-  void write_rest(Word number, core::SegmentForm form, core::Time time,
-                  std::span<const double> position, core::Time begins = {}) noexcept;
+  void write_rest(Word number, core::SegmentForm form, Time time, std::span<const double> position,
+                  Time begins = {}) noexcept;
 
  private:
   [[nodiscard]] bool read(Word number) noexcept;
-  [[nodiscard]] std::span<const double> position_at(core::Time t) noexcept;
+  [[nodiscard]] std::span<const double> position_at(Time t) noexcept;
 
   KnotBoardWriter* board_;
   const KnotBoardReader* published_;
-  core::DimensionKinds kinds_;
+  DimensionKinds kinds_;
   Head head_;
   BoardSegment segment_;  ///< that is cut, or lies before the cut
-  core::State state_;
-  core::Time time_{};
+  State state_;
+  Time time_{};
   Word cut_ = 0;                  ///< segment before the cut; 0: nothing stands there
   Word next_ = 0;                 ///< number of the knot that goes on
   bool ends_ = false;             ///< that segment ends at its natural end
@@ -61,7 +61,6 @@ class CurveCut {
 
 /// The last committed segment of a head whose left end is at or before t; else the first one. By
 /// the packed times, which are the writer's own: for the writer only.
-[[nodiscard]] Word segment_at(const KnotBoardReader& board, const Head& head,
-                              core::Time t) noexcept;
+[[nodiscard]] Word segment_at(const KnotBoardReader& board, const Head& head, Time t) noexcept;
 
 }  // namespace splinecast::ipc

@@ -18,7 +18,7 @@ static_assert(kPassedSlots >= core::kMaxSettle + core::kMaxReach + 3);
 }  // namespace
 
 PublishedCurve::PublishedCurve(KnotBoardWriter& board, const KnotBoardReader& published,
-                               const core::WindowOptions& options, core::DimensionKinds kinds,
+                               const core::WindowOptions& options, DimensionKinds kinds,
                                const EntryOptions& entries)
     : board_(&board),
       published_(&published),
@@ -47,12 +47,12 @@ void PublishedCurve::prefetch() const noexcept {
   if (is_on_line()) board_->prefetch(number_of(std::max(open_, met_)), newest_ + 1);
 }
 
-core::Time PublishedCurve::newest_time() const noexcept {
+Time PublishedCurve::newest_time() const noexcept {
   if (window_.knots() > 0) return window_.time(window_.knots() - 1);
   return origin_.time;
 }
 
-core::Time PublishedCurve::settled_until() const noexcept {
+Time PublishedCurve::settled_until() const noexcept {
   const std::size_t knots = window_.knots();
   if (knots == 0 || !is_on_line()) return origin_.time;
   return window_.time(std::min(window_.settled_segments(), knots - 1));
@@ -63,22 +63,22 @@ std::span<const double> PublishedCurve::newest_position() const noexcept {
   return window_.is_later_run() ? origin_state_.position() : std::span<const double>{};
 }
 
-core::Instant PublishedCurve::origin_state() const noexcept {
+Instant PublishedCurve::origin_state() const noexcept {
   return {.time = origin_.time,
           .position = origin_state_.position(),
           .velocity = origin_state_.velocity(),
           .acceleration = origin_state_.acceleration()};
 }
 
-void PublishedCurve::set_origin(Word number, const core::Instant& state) noexcept {
+void PublishedCurve::set_origin(Word number, const Instant& state) noexcept {
   origin_ = {.number = number, .time = state.time, .is_new = true};
-  const core::StateRef to = origin_state_.ref();
+  const StateRef to = origin_state_.ref();
   std::ranges::copy(state.position, to.position.begin());
   std::ranges::copy(state.velocity, to.velocity.begin());
   std::ranges::copy(state.acceleration, to.acceleration.begin());
 }
 
-void PublishedCurve::freeze(core::Time t) noexcept {
+void PublishedCurve::freeze(Time t) noexcept {
   is_prepared_ = false;
   const std::size_t knots = window_.knots();
   if (course_ == Course::entering && t >= entry_end_) {
@@ -123,19 +123,17 @@ void PublishedCurve::keep_settled() noexcept {
   open_ = std::min(kept_, std::max<std::size_t>(placed_, 1) - 1);
 }
 
-bool PublishedCurve::has_room(std::size_t knots, core::Time keep) const noexcept {
+bool PublishedCurve::has_room(std::size_t knots, Time keep) const noexcept {
   const bool is_counted = has_changes_ && is_on_line() && window_.knots() > 0;
   return has_room_behind(is_counted ? number_of(window_.knots()) : newest_, knots, keep);
 }
 
-bool PublishedCurve::has_room_to_cut(core::Time t, std::size_t knots,
-                                     core::Time keep) const noexcept {
+bool PublishedCurve::has_room_to_cut(Time t, std::size_t knots, Time keep) const noexcept {
   return has_room_behind(segment_at(*published_, head_, t), knots, keep);
 }
 
-bool PublishedCurve::has_room_behind(Word number, std::size_t knots,
-                                     core::Time keep) const noexcept {
-  if (keep == core::Time::max()) return true;  // a recorded stream keeps nothing
+bool PublishedCurve::has_room_behind(Word number, std::size_t knots, Time keep) const noexcept {
+  if (keep == Time::max()) return true;  // a recorded stream keeps nothing
   const Word newest = number + knots;
   const Word lost = newest - std::min<Word>(newest, board_->capacity());
   if (lost < std::max<Word>(first_, 1) || lost >= newest_) return true;
@@ -143,28 +141,28 @@ bool PublishedCurve::has_room_behind(Word number, std::size_t knots,
 }
 
 /// For the cut, the entry, the piece of the target that is still in the window, and a stop.
-bool PublishedCurve::has_room_to_enter(core::Time keep) const noexcept {
+bool PublishedCurve::has_room_to_enter(Time keep) const noexcept {
   const std::size_t added = window_.knots() - window_.oldest_segment() + 3 + kAddedByStop;
   return newest_ == 0 || has_room_behind(newest_, added, keep);
 }
 
-core::Time PublishedCurve::earliest_cut() const noexcept {
-  core::Time left{};
+Time PublishedCurve::earliest_cut() const noexcept {
+  Time left{};
   SegmentForm form{};
   if (newest_ == 0 || !published_->copy_time(first_, board_->revision(), left, form)) {
-    return core::Time::max();
+    return Time::max();
   }
   const bool is_held =
       first_ == 1 && !window_.is_later_run() && window_.options().held_before_start;
-  return is_held ? core::Time::min() : left;
+  return is_held ? Time::min() : left;
 }
 
-void PublishedCurve::note_change(core::Time from) noexcept {
+void PublishedCurve::note_change(Time from) noexcept {
   changed_from_ = std::min(changed_from_, from);
   has_changes_ = true;
 }
 
-void PublishedCurve::begin(const core::Instant& state) noexcept {
+void PublishedCurve::begin(const Instant& state) noexcept {
   window_.begin_run();
   committed_knots_ = 0;
   wait_for_entry();
@@ -172,7 +170,7 @@ void PublishedCurve::begin(const core::Instant& state) noexcept {
   note_change(state.time);
 }
 
-void PublishedCurve::begin_run(core::Time t, core::Time blend) noexcept {
+void PublishedCurve::begin_run(Time t, Time blend) noexcept {
   is_damaged_ = is_damaged_ || !cut_.find(head_, t);
   if (is_damaged_) return;
   cut_.write();
@@ -187,7 +185,7 @@ void PublishedCurve::begin_run(core::Time t, core::Time blend) noexcept {
   is_searching_ = is_entry_new_ = is_prepared_ = false;
   committed_shown_ = shown_;
   has_forgotten_ = true;
-  shown_.forget_after(t - core::Time(1));
+  shown_.forget_after(t - Time(1));
   kept_ = 0;
   open_ = 0;
   note_change(t);
@@ -198,7 +196,7 @@ void PublishedCurve::begin_run(core::Time t, core::Time blend) noexcept {
 /// than the motion behind them, the stream starts by an entry.
 std::size_t PublishedCurve::first_compared() const noexcept {
   const bool starts_at_rest = !window_.is_later_run() && window_.options().held_before_start &&
-                              window_.options().start.kind == core::ConditionKind::halt;
+                              window_.options().start.kind == ConditionKind::halt;
   const std::size_t frozen = window_.frozen_knots();
   return std::max({is_on_line() ? met_ : unmet_, frozen - std::min<std::size_t>(frozen, 1),
                    window_.oldest_segment(), starts_at_rest ? core::kStartFades : 0});
@@ -211,7 +209,7 @@ std::span<const core::Knot> PublishedCurve::knots_to_go_on() noexcept {
   return std::span(knots_).first(window_.knots() - first);
 }
 
-std::optional<LimitExcess> PublishedCurve::find_excess(const core::Waypoint& waypoint) noexcept {
+std::optional<LimitExcess> PublishedCurve::find_excess(const Waypoint& waypoint) noexcept {
   const auto knots = knots_to_go_on();
   if (window_.is_later_run()) {
     trial_.restore_run(passed_first(), knots);
@@ -220,27 +218,27 @@ std::optional<LimitExcess> PublishedCurve::find_excess(const core::Waypoint& way
   }
   trial_.freeze_knots(window_.frozen_knots());
   trial_.append(waypoint);
-  const core::MotionLimits& limits = window_.options().limits;
+  const MotionLimits& limits = window_.options().limits;
   for (std::size_t i = std::max(first_compared(), trial_.oldest_segment()); i + 1 < trial_.knots();
        ++i) {
     trial_.segment(i, segment_);
     if (core::keeps_within(limits, &kinds_, segment_)) continue;
-    const core::Excess found = core::worst_excess(limits, &kinds_, segment_);
-    const core::Time left = segment_.left;
+    const Excess found = core::worst_excess(limits, &kinds_, segment_);
+    const Time left = segment_.left;
     if (i + 1 < window_.knots()) {
       window_.segment(i, segment_);
       if (!core::keeps_within(limits, &kinds_, segment_)) continue;
     }
     return LimitExcess{.kind = found.kind,
                        .dimension = found.dimension,
-                       .time = left + core::from_seconds(found.u),
+                       .time = left + from_seconds(found.u),
                        .value = found.value,
                        .limit = found.limit};
   }
   return std::nullopt;
 }
 
-void PublishedCurve::append(const core::Waypoint& waypoint, Word item) noexcept {
+void PublishedCurve::append(const Waypoint& waypoint, Word item) noexcept {
   if (window_.knots() == 0) run_item_ = item + 1;
   window_.append(waypoint);
   if (entries_.is_live) shown_.note(waypoint.time, waypoint.position);
@@ -272,10 +270,10 @@ void PublishedCurve::find_shown() noexcept {
   if (knows_shown_ || !entries_.is_live) return;
   knows_shown_ = true;
   if (course_ == Course::on_target) {  // the start: the waypoints on the board are the window's
-    shown_.restore(window_, *published_, head_, core::Time::min(), 0);
+    shown_.restore(window_, *published_, head_, Time::min(), 0);
     return;
   }
-  const core::Time end = origin_.number > 0 ? origin_.time : core::Time::max();
+  const Time end = origin_.number > 0 ? origin_.time : Time::max();
   const bool starts_stream = !window_.is_later_run() && origin_.number == 1;
   shown_.restore(window_, *published_, head_, end, starts_stream ? 0 : unmet_);
 }
@@ -288,7 +286,7 @@ bool PublishedCurve::needs_entry() const noexcept {
 bool PublishedCurve::is_start_open() const noexcept {
   return course_ == Course::on_target && !window_.is_later_run() &&
          window_.options().held_before_start &&
-         window_.options().start.kind == core::ConditionKind::halt && window_.knots() >= 2 &&
+         window_.options().start.kind == ConditionKind::halt && window_.knots() >= 2 &&
          window_.oldest_segment() == 0 && window_.frozen_knots() == 0;
 }
 
@@ -300,9 +298,9 @@ void PublishedCurve::check_start() noexcept {
   if (entries_.is_live) shown_.look(window_.options().stop_time);
   if (search_.keeps_start(window_, entry_rules())) return;
   const core::Knot first = window_.knot(0);
-  constexpr std::array<double, core::kMaxDimensions> kZeros{};
+  constexpr std::array<double, kMaxDimensions> kZeros{};
   const auto zeros = std::span(kZeros).first(window_.dimensions());
-  const core::Instant rest{first.time, first.position, zeros, zeros};
+  const Instant rest{first.time, first.position, zeros, zeros};
   course_ = Course::waiting;
   met_ = placed_ = knots;
   unmet_ = 1;
@@ -315,20 +313,19 @@ void PublishedCurve::check_start() noexcept {
 
 /// Finds the state from which an entry begins: the one from which the open one will begin, if that
 /// has not settled, else that of the committed curve at `settled`.
-bool PublishedCurve::find_state(core::Time settled) noexcept {
+bool PublishedCurve::find_state(Time settled) noexcept {
   uses_cut_ = origin_.number == 0 || (!origin_.is_new && settled > origin_.time);
   if (!uses_cut_) return true;
   // A knot that the curve has met stays.
   const std::size_t met = is_on_line() ? window_.knots() : unmet_;
   const bool is_in_window = met > window_.oldest_segment();
-  const core::Time t =
-      is_in_window ? std::max(settled, window_.time(met - 1) + core::Time(1)) : settled;
+  const Time t = is_in_window ? std::max(settled, window_.time(met - 1) + Time(1)) : settled;
   is_damaged_ = is_damaged_ || !cut_.find(head_, t);
   return !is_damaged_;
 }
 
 /// The state is found once in a step; what the motion shows follows each waypoint.
-bool PublishedCurve::prepare(core::Time settled) noexcept {
+bool PublishedCurve::prepare(Time settled) noexcept {
   find_shown();
   if (entries_.is_live) shown_.look(window_.options().stop_time);
   is_prepared_ = is_prepared_ || find_state(settled);
@@ -336,7 +333,7 @@ bool PublishedCurve::prepare(core::Time settled) noexcept {
 }
 
 core::EntryRules PublishedCurve::entry_rules() const noexcept {
-  const core::Time from = uses_cut_ ? cut_.state().time : origin_.time;
+  const Time from = uses_cut_ ? cut_.state().time : origin_.time;
   const bool blends = blend_until_ > from;  // of a run that none has been cut for it lies long ago
   return {
       .limits = &window_.options().limits,
@@ -344,8 +341,7 @@ core::EntryRules PublishedCurve::entry_rules() const noexcept {
       .least = blends ? std::max(entries_.min_splice, blend_until_ - from) : entries_.min_splice};
 }
 
-void PublishedCurve::look_for_entry(core::Time settled, core::Time keep, bool is_last,
-                                    int& tries) noexcept {
+void PublishedCurve::look_for_entry(Time settled, Time keep, bool is_last, int& tries) noexcept {
   if (is_damaged_ || is_ending_ || ends_there_ || window_.finished()) return;
   // With as many waypoints as a window shows, or, of a live stream, with those that are known when
   // the start is about to settle.
@@ -390,7 +386,7 @@ void PublishedCurve::enter() noexcept {
     behind_ = {.end = end.state.time, .line_end = end.line_end, .rest = end.rest};
     known_ = end.known;
     ends_at_known_ = behind_.end == window_.time(known_ - 1);
-    const core::StateRef to = beyond_.ref();
+    const StateRef to = beyond_.ref();
     std::ranges::copy(end.state.position, to.position.begin());
     std::ranges::copy(end.state.velocity, to.velocity.begin());
     std::ranges::copy(end.state.acceleration, to.acceleration.begin());
@@ -405,12 +401,11 @@ void PublishedCurve::enter_before_end() noexcept {
   rules.newer = 1;
   int tries = static_cast<int>(window_.knots() - window_.oldest_segment());
   search_.restart(unmet_);
-  const core::Instant from = uses_cut_ ? cut_.state() : origin_state();
+  const Instant from = uses_cut_ ? cut_.state() : origin_state();
   if (search_.search(window_, from, rules, tries) == core::EntrySearch::Outcome::found) enter();
 }
 
-bool PublishedCurve::finish(const core::Condition& end, core::Time settled, core::Time keep,
-                            int& tries) noexcept {
+bool PublishedCurve::finish(const Condition& end, Time settled, Time keep, int& tries) noexcept {
   const std::size_t knots = window_.knots();
   if (knots == 0) return true;  // it ends with the stop that it is
   if (is_start_open()) check_start();
@@ -425,10 +420,10 @@ bool PublishedCurve::finish(const core::Condition& end, core::Time settled, core
     return true;
   }
   if (!prepare(settled)) return true;
-  const core::Instant from = uses_cut_ ? cut_.state() : origin_state();
+  const Instant from = uses_cut_ ? cut_.state() : origin_state();
   const core::Knot newest = window_.knot(knots - 1);
   std::ranges::fill(values_, 0.0);
-  const core::Instant rest{newest.time, newest.position, values_, values_};
+  const Instant rest{newest.time, newest.position, values_, values_};
   const auto is_zero = [](double value) { return value == 0; };
   if (std::ranges::equal(from.position, rest.position) &&
       std::ranges::all_of(from.velocity, is_zero) &&

@@ -15,9 +15,9 @@ namespace splinecast::ipc {
 
 /// How a published curve comes back to its target.
 struct EntryOptions {
-  bool is_live = false;     ///< else an entry is looked for once K newer waypoints are known
-  core::Time min_splice{};  ///< length of the shortest entry
-  core::Time notice{};      ///< how long before it settles a live stream's start is decided
+  bool is_live = false;  ///< else an entry is looked for once K newer waypoints are known
+  Time min_splice{};     ///< length of the shortest entry
+  Time notice{};         ///< how long before it settles a live stream's start is decided
 };
 
 /// The curve of one stream: the window that is being solved, which is the *target*, and the board
@@ -47,7 +47,7 @@ class PublishedCurve {
   /// Both are sides of one board, and outlive the curve. Throws std::invalid_argument for window
   /// options out of range.
   PublishedCurve(KnotBoardWriter& board, const KnotBoardReader& published,
-                 const core::WindowOptions& options, core::DimensionKinds kinds,
+                 const core::WindowOptions& options, DimensionKinds kinds,
                  const EntryOptions& entries);
 
   /// Whether what was read back from the board was nothing that this class had written: then the
@@ -61,7 +61,7 @@ class PublishedCurve {
   void prefetch() const noexcept;
 
   [[nodiscard]] const core::SlidingWindow& window() const noexcept { return window_; }
-  [[nodiscard]] const core::DimensionKinds& kinds() const noexcept { return kinds_; }
+  [[nodiscard]] const DimensionKinds& kinds() const noexcept { return kinds_; }
   [[nodiscard]] Course course() const noexcept { return course_; }
 
   /// The position that the next waypoint is to be near: of the newest waypoint of the run, or of
@@ -76,10 +76,10 @@ class PublishedCurve {
 
   /// The time that the next waypoint must be later than: of the newest knot of the run, or the one
   /// from which the run was entered. There must be a run.
-  [[nodiscard]] core::Time newest_time() const noexcept;
+  [[nodiscard]] Time newest_time() const noexcept;
 
   /// The time before which no append changes the run: of the first knot that has not converged.
-  [[nodiscard]] core::Time settled_until() const noexcept;
+  [[nodiscard]] Time settled_until() const noexcept;
 
   /// Whether the run is a stop from a given state, and no waypoint has come since.
   [[nodiscard]] bool is_stop() const noexcept {
@@ -87,50 +87,49 @@ class PublishedCurve {
   }
 
   /// When a live stream's start has to be decided, before it settles; max() if nothing is to be.
-  [[nodiscard]] core::Time start_decision() const noexcept {
-    return is_start_open() ? window_.time(0) - entries_.notice : core::Time::max();
+  [[nodiscard]] Time start_decision() const noexcept {
+    return is_start_open() ? window_.time(0) - entries_.notice : Time::max();
   }
 
   /// When the curve has come to rest.
-  [[nodiscard]] core::Time end_of_motion() const noexcept { return end_; }
+  [[nodiscard]] Time end_of_motion() const noexcept { return end_; }
 
   /// Keeps everything up to the right end of the segment that contains t as it has been committed.
   /// Where the newest knot has settled, an entry becomes necessary.
-  void freeze(core::Time t) noexcept;
+  void freeze(Time t) noexcept;
 
   /// Whether the board can take so many more knots without losing a segment that ends after `keep`;
   /// likewise where the committed curve is cut at t first.
-  [[nodiscard]] bool has_room(std::size_t knots, core::Time keep) const noexcept;
-  [[nodiscard]] bool has_room_to_cut(core::Time t, std::size_t knots,
-                                     core::Time keep) const noexcept;
+  [[nodiscard]] bool has_room(std::size_t knots, Time keep) const noexcept;
+  [[nodiscard]] bool has_room_to_cut(Time t, std::size_t knots, Time keep) const noexcept;
 
   /// Begins the curve in a given state, instead of with a waypoint.
-  void begin(const core::Instant& state) noexcept;
+  void begin(const Instant& state) noexcept;
 
   /// The first time at which the committed curve can be cut: where it begins; min() if it is held
   /// before, max() if there is none.
-  [[nodiscard]] core::Time earliest_cut() const noexcept;
+  [[nodiscard]] Time earliest_cut() const noexcept;
 
   /// Cuts the committed curve at t, where there is one, and begins a run that goes on from there,
   /// by an entry that does not end before t + `blend`. There must be no uncommitted changes.
   /// Changes nothing if the board is damaged.
-  void begin_run(core::Time t, core::Time blend) noexcept;
+  void begin_run(Time t, Time blend) noexcept;
 
   /// The first segment that would be beyond a limit with this waypoint, and would not be so
   /// without, where it is farthest beyond; of the segments that it changes, as far as the curve may
   /// come to follow them. Without limits O(1), else O(K·D). Changes nothing of the curve.
-  [[nodiscard]] std::optional<LimitExcess> excess_with(const core::Waypoint& waypoint) noexcept {
+  [[nodiscard]] std::optional<LimitExcess> excess_with(const Waypoint& waypoint) noexcept {
     return has_limits_ && window_.knots() > 0 ? find_excess(waypoint) : std::nullopt;
   }
 
   /// Appends a waypoint to the run: the ring's item of this number.
-  void append(const core::Waypoint& waypoint, Word item) noexcept;
+  void append(const Waypoint& waypoint, Word item) noexcept;
 
   /// Looks for an entry if one is needed, from `settled` on or from where the open one will begin.
   /// `tries` is counted down: see kTriesPerStep. `is_last`: no waypoint waits, so that those that
   /// are known decide.
   /// Segments that end after `keep` are not lost by it.
-  void plan(core::Time settled, core::Time keep, bool is_last, int& tries) noexcept {
+  void plan(Time settled, Time keep, bool is_last, int& tries) noexcept {
     if (is_searching_ || window_.options().held_before_start) {
       look_for_entry(settled, keep, is_last, tries);
     }
@@ -145,8 +144,7 @@ class PublishedCurve {
   /// there, an entry does, from `settled` on, at the knot's time or as late as it takes. Returns
   /// false if no such entry has been found yet: then nothing has changed.
   /// Segments that end after `keep` are not lost by it.
-  [[nodiscard]] bool finish(const core::Condition& end, core::Time settled, core::Time keep,
-                            int& tries) noexcept;
+  [[nodiscard]] bool finish(const Condition& end, Time settled, Time keep, int& tries) noexcept;
 
   /// Writes what has been changed to the board, and to `head` all that it says of the curve.
   void write(Head& head) noexcept;
@@ -158,7 +156,7 @@ class PublishedCurve {
   /// The state from which an entry, or the stop of a run without waypoints, begins.
   struct Origin {
     Word number = 0;  ///< of its knot; 0: none stands at the end of the curve
-    core::Time time{};
+    Time time{};
     bool is_new = false;  ///< the board does not hold it yet
   };
 
@@ -170,27 +168,26 @@ class PublishedCurve {
   [[nodiscard]] bool is_on_line() const noexcept {
     return course_ == Course::on_target || course_ == Course::entering;
   }
-  [[nodiscard]] bool has_room_behind(Word number, std::size_t knots,
-                                     core::Time keep) const noexcept;
-  [[nodiscard]] bool has_room_to_enter(core::Time keep) const noexcept;
-  [[nodiscard]] core::Instant origin_state() const noexcept;
-  void set_origin(Word number, const core::Instant& state) noexcept;
+  [[nodiscard]] bool has_room_behind(Word number, std::size_t knots, Time keep) const noexcept;
+  [[nodiscard]] bool has_room_to_enter(Time keep) const noexcept;
+  [[nodiscard]] Instant origin_state() const noexcept;
+  void set_origin(Word number, const Instant& state) noexcept;
   void wait_for_entry() noexcept;
   [[nodiscard]] bool is_start_open() const noexcept;
   void check_start() noexcept;
   void restart_search() noexcept;
   void find_shown() noexcept;
   [[nodiscard]] bool needs_entry() const noexcept;
-  [[nodiscard]] bool find_state(core::Time settled) noexcept;
-  [[nodiscard]] bool prepare(core::Time settled) noexcept;
+  [[nodiscard]] bool find_state(Time settled) noexcept;
+  [[nodiscard]] bool prepare(Time settled) noexcept;
   [[nodiscard]] core::EntryRules entry_rules() const noexcept;
   [[nodiscard]] std::size_t first_compared() const noexcept;
   [[nodiscard]] std::span<const core::Knot> knots_to_go_on() noexcept;
-  void look_for_entry(core::Time settled, core::Time keep, bool is_last, int& tries) noexcept;
-  [[nodiscard]] std::optional<LimitExcess> find_excess(const core::Waypoint& waypoint) noexcept;
+  void look_for_entry(Time settled, Time keep, bool is_last, int& tries) noexcept;
+  [[nodiscard]] std::optional<LimitExcess> find_excess(const Waypoint& waypoint) noexcept;
   void enter() noexcept;
   void enter_before_end() noexcept;
-  void note_change(core::Time from) noexcept;
+  void note_change(Time from) noexcept;
   void keep_settled() noexcept;
   void write_origin() noexcept;
   void write_beyond() noexcept;
@@ -227,7 +224,7 @@ class PublishedCurve {
   const KnotBoardReader* published_;
   core::SlidingWindow window_;
   core::SlidingWindow trial_;  ///< scratch: the window with one more waypoint
-  core::DimensionKinds kinds_;
+  DimensionKinds kinds_;
   EntryOptions entries_;
   std::size_t look_ahead_;  ///< how many rows before the newest knot an append may change
   bool has_plain_knots_;    ///< the method changes the velocities of knots and no more
@@ -249,9 +246,9 @@ class PublishedCurve {
   Word run_item_ = 0;  ///< item of the run's first waypoint, plus 1
   Word first_ = 0;
   Word newest_ = 0;
-  core::Time end_{};
-  core::Time stop_{};  ///< length of the stop, if the newest segment is one
-  core::Time changed_from_ = core::Time::max();
+  Time end_{};
+  Time stop_{};  ///< length of the stop, if the newest segment is one
+  Time changed_from_ = Time::max();
   std::size_t kept_ = 0;  ///< leading knots of the run that nothing has changed since the commit
   std::size_t open_ = 0;  ///< leading knots of the run that are written for good
 
@@ -267,10 +264,10 @@ class PublishedCurve {
   std::size_t passed_committed_ = 0;  ///< hold or held, and those committed of them
   Word passed_before_ = 0;            ///< waypoints passed over by entries that are over
   Origin origin_;
-  core::State origin_state_;
-  core::Time blend_until_ = core::Time::min();  ///< no entry of the run ends before
-  core::Time entry_end_{};                      ///< of one that ends at a waypoint
-  core::State beyond_;                          ///< end of an entry beyond the newest waypoint
+  State origin_state_;
+  Time blend_until_ = Time::min();  ///< no entry of the run ends before
+  Time entry_end_{};                ///< of one that ends at a waypoint
+  State beyond_;                    ///< end of an entry beyond the newest waypoint
   BehindEntry behind_;
   Word known_ = 0;              ///< of an entry beyond the newest waypoint: how many the run had
   bool ends_at_known_ = false;  ///< at the newest waypoint that it knew, which is not met yet

@@ -20,16 +20,15 @@ void ReplacementQueue::note(Word consumed, Word available) noexcept {
   }
 }
 
-std::optional<Word> ReplacementQueue::due(core::Time settled_until,
-                                          core::Time newest) const noexcept {
+std::optional<Word> ReplacementQueue::due(Time settled_until, Time newest) const noexcept {
   std::optional<Word> found;
-  core::Time earliest = core::Time::max();
+  Time earliest = Time::max();
   for (std::size_t i = first_; i < items_.size(); ++i) {
-    const core::Time t = ring_->time(items_[i]);
+    const Time t = ring_->time(items_[i]);
     const bool is_stop = ring_->is_stop(items_[i]);
     const bool applies =
         is_stop ? t <= std::max(newest, settled_until) : t >= settled_until && t <= newest;
-    const core::Time effect = std::max(t, settled_until);
+    const Time effect = std::max(t, settled_until);
     if (!applies || effect > earliest) continue;
     earliest = effect;
     found = items_[i];

@@ -27,7 +27,7 @@ class ReplacementQueue {
   /// last one of those with the earliest effect. A replacement with waypoints takes effect at its
   /// time t, which must not have settled; a stop, which has none, at max(t, settled_until). Nothing
   /// is found while all of them lie behind the newest knot, or are too late. O(replacements).
-  [[nodiscard]] std::optional<Word> due(core::Time settled_until, core::Time newest) const noexcept;
+  [[nodiscard]] std::optional<Word> due(Time settled_until, Time newest) const noexcept;
 
  private:
   const WaypointRingReader* ring_;

@@ -19,7 +19,7 @@ bool are_numbers(std::span<const double> values) noexcept {
 /// Whether a knot that was read back can be gone on from.
 bool is_sound(const core::Knot& knot) noexcept {
   const core::Prefix& prefix = knot.prefix;
-  return core::is_time_in_range(knot.time) &&
+  return is_time_in_range(knot.time) &&
          are_numbers(std::array{prefix.gamma, prefix.smoothing.pivot, prefix.smoothing.lower1,
                                 prefix.smoothing.lower2}) &&
          are_numbers(knot.waypoint) && are_numbers(knot.g) && are_numbers(knot.position) &&
@@ -44,7 +44,7 @@ void PublishedCurve::restore(const Head& head) noexcept {
   has_changes_ = false;
   is_entry_new_ = is_searching_ = is_ending_ = seeks_end_ = ends_there_ = is_prepared_ = false;
   knows_shown_ = knows_shown_ || head.revision == 0;
-  changed_from_ = core::Time::max();
+  changed_from_ = Time::max();
   blend_until_ = head.blend_until;
   head_ = head;
   run_ = head.run;
@@ -126,7 +126,7 @@ bool PublishedCurve::find_knot(std::size_t i, Word& line) noexcept {
   const Word item = run_item_ << kPassedItemShift | i;
   const bool is_passed = published_->copy_passed(i, board_->revision(), knot_) &&
                          knot_.item == item && knot_.note.is_waypoint;
-  const core::Time time = knot_.time;
+  const Time time = knot_.time;
   const Word revision = revision_of(knot_.tag);
   const bool is_on_line = find_on_line() && !(is_passed && knot_.time < time);
   if (is_damaged_) return false;
@@ -197,7 +197,7 @@ bool PublishedCurve::restore_beyond(Word& number) noexcept {
   if (!knot_.note.arrives && (number < 2 || !read_knot(--number))) return false;
   is_damaged_ = is_damaged_ || !knot_.note.arrives || number < 2;
   behind_ = {.end = knot_.time};
-  const core::StateRef to = beyond_.ref();
+  const StateRef to = beyond_.ref();
   std::ranges::copy(knot_.waypoint(), to.position.begin());
   std::ranges::copy(knot_.velocity(), to.velocity.begin());
   if (knot_.note.arrives) std::ranges::copy(knot_.acceleration(), to.acceleration.begin());

@@ -6,22 +6,21 @@
 
 namespace splinecast::ipc {
 
-void evaluate_at_cut(const CutSegment& segment, core::Time t, core::State& out) noexcept {
-  const core::Time at = std::clamp(t, segment.left, segment.right);
-  core::evaluate(segment.order, segment.coefficients, core::to_seconds(at - segment.left),
-                 out.ref());
+void evaluate_at_cut(const CutSegment& segment, Time t, State& out) noexcept {
+  const Time at = std::clamp(t, segment.left, segment.right);
+  core::evaluate(segment.order, segment.coefficients, to_seconds(at - segment.left), out.ref());
   if (t >= segment.left && t < segment.right) return;
   std::ranges::fill(out.ref().velocity, 0.0);
   std::ranges::fill(out.ref().acceleration, 0.0);
 }
 
-core::Time BehindEntry::stop_length() const noexcept {
+Time BehindEntry::stop_length() const noexcept {
   return std::max(rest - stop_begin(), core::kLeastStopTime);
 }
 
 void BehindEntry::write_line_end(std::span<const double> position, std::span<const double> velocity,
                                  std::span<double> out) const noexcept {
-  const double line = core::to_seconds(line_end - end);
+  const double line = to_seconds(line_end - end);
   for (std::size_t d = 0; d < out.size(); ++d) out[d] = position[d] + line * velocity[d];
 }
 

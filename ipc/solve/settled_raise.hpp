@@ -16,14 +16,14 @@ class SettledRaise {
 
   /// `stands` is what the word holds. Nothing is raised up to `limit` or beyond, where the solver
   /// itself has something to do: it starves, or comes to rest.
-  SettledRaise(Word& word, core::Time stands, core::Time freeze_ahead, core::Time limit) noexcept
+  SettledRaise(Word& word, Time stands, Time freeze_ahead, Time limit) noexcept
       : word_(&word), stands_(stands), freeze_ahead_(freeze_ahead), limit_(limit) {}
 
   /// Says at `now` that the curve is settled until now + freeze-ahead. Returns whether that was all
   /// there is to do; else nothing is stored.
-  bool raise(core::Time now) noexcept {
+  bool raise(Time now) noexcept {
     if (word_ == nullptr || now >= limit_ - freeze_ahead_) return false;
-    const core::Time t = now + freeze_ahead_;
+    const Time t = now + freeze_ahead_;
     if (t <= stands_) return true;
     stands_ = t;
     store(*word_, to_word(t), std::memory_order_release);
@@ -31,13 +31,13 @@ class SettledRaise {
   }
 
   /// How long after one raise the next one is due.
-  [[nodiscard]] core::Time interval() const noexcept { return freeze_ahead_ / 2; }
+  [[nodiscard]] Time interval() const noexcept { return freeze_ahead_ / 2; }
 
  private:
   Word* word_ = nullptr;
-  core::Time stands_{};
-  core::Time freeze_ahead_{};
-  core::Time limit_{};
+  Time stands_{};
+  Time freeze_ahead_{};
+  Time limit_{};
 };
 
 }  // namespace splinecast::ipc

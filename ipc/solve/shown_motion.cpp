@@ -19,7 +19,7 @@ ShownMotion::ShownMotion(const KnotBoardReader& board)
   limits_.acceleration.resize(dimensions_);
 }
 
-void ShownMotion::take(core::Time time, std::span<const double> position) noexcept {
+void ShownMotion::take(Time time, std::span<const double> position) noexcept {
   const std::size_t at = count_++ % kMost;
   first_ = std::max(first_, count_ - std::min(count_, kMost));
   times_[at] = time;
@@ -30,11 +30,11 @@ void ShownMotion::take(core::Time time, std::span<const double> position) noexce
 
 void ShownMotion::forget_all() noexcept {
   count_ = first_ = 0;
-  next_ = core::Time::min();
+  next_ = Time::min();
   has_looked_ = false;
 }
 
-void ShownMotion::forget_after(core::Time t) noexcept {
+void ShownMotion::forget_after(Time t) noexcept {
   if (count_ == first_ || times_[place(0)] <= t) return;
   while (count_ > first_ && times_[place(0)] > t) --count_;
   has_looked_ = false;
@@ -42,13 +42,13 @@ void ShownMotion::forget_after(core::Time t) noexcept {
   next_ = (times_[place(0)] / kStep + 1) * kStep;
 }
 
-void ShownMotion::restore(const KnotBoardReader& board, const Head& head, core::Time end) noexcept {
+void ShownMotion::restore(const KnotBoardReader& board, const Head& head, Time end) noexcept {
   forget_all();
   if (head.newest > 0) take_met(board, head, end);
 }
 
 void ShownMotion::restore(const core::SlidingWindow& window, const KnotBoardReader& board,
-                          const Head& head, core::Time end, std::size_t first) noexcept {
+                          const Head& head, Time end, std::size_t first) noexcept {
   restore(board, head, end);
   if (window.knots() == 0) return;
   take_passed(board, head, first, window.oldest_segment());
@@ -59,14 +59,13 @@ void ShownMotion::restore(const core::SlidingWindow& window, const KnotBoardRead
 }
 
 /// Back from `end` by the packed times: the first knot at or after each multiple of kStep.
-void ShownMotion::take_met(const KnotBoardReader& board, const Head& head,
-                           core::Time end) noexcept {
-  const core::Time newest = std::min(end, board.time_hint(head.newest));
-  if (!core::is_time_in_range(newest)) return;
-  core::Time t = (newest / kStep + 1) * kStep;
+void ShownMotion::take_met(const KnotBoardReader& board, const Head& head, Time end) noexcept {
+  const Time newest = std::min(end, board.time_hint(head.newest));
+  if (!is_time_in_range(newest)) return;
+  Time t = (newest / kStep + 1) * kStep;
   std::size_t found = 0;
   for (std::size_t i = 0; i < kMost; ++i, t -= kStep) {
-    const Word before = segment_at(board, head, t - core::Time(1));
+    const Word before = segment_at(board, head, t - Time(1));
     const bool is_first = before == head.first && board.time_hint(before) >= t;
     const Word number = std::min(is_first ? before : before + 1, head.newest);
     if (found == 0 || number != numbers_[found - 1]) numbers_[found++] = number;
@@ -101,15 +100,15 @@ double ShownMotion::quantile(std::size_t count) noexcept {
   return *at;
 }
 
-void ShownMotion::look(core::Time stop_time) noexcept {
+void ShownMotion::look(Time stop_time) noexcept {
   if (has_looked_) return;
   has_looked_ = true;
   std::size_t kept = count_ - first_;
   while (kept > 0 && times_[place(0)] - times_[place(kept - 1)] > kSpan) --kept;
   const std::size_t chords = kept - std::min<std::size_t>(kept, 1);
-  const double stop = core::to_seconds(stop_time);
+  const double stop = to_seconds(stop_time);
   const auto interval = [&](std::size_t i) {
-    return core::to_seconds(times_[place(i)] - times_[place(i + 1)]);
+    return to_seconds(times_[place(i)] - times_[place(i + 1)]);
   };
   for (std::size_t d = 0; d < dimensions_; ++d) {
     const auto position = [&](std::size_t i) { return positions_[place(i) * dimensions_ + d]; };

@@ -19,57 +19,57 @@ namespace splinecast::ipc {
 /// Allocates when made only; one thread uses it.
 class ShownMotion {
  public:
-  static constexpr core::Time kSpan{5'000'000'000};
-  static constexpr core::Time kStep{100'000'000};
+  static constexpr Time kSpan{5'000'000'000};
+  static constexpr Time kStep{100'000'000};
   static constexpr double kFactor = 3;
 
   explicit ShownMotion(const KnotBoardReader& board);
 
   /// Takes a waypoint if it is the first one at or after a multiple of kStep: which ones are taken
   /// does not depend on where that began. Mostly one comparison; else O(D).
-  void note(core::Time time, std::span<const double> position) noexcept {
+  void note(Time time, std::span<const double> position) noexcept {
     if (time >= next_) take(time, position);
   }
 
   /// Forgets the waypoints behind a time.
-  void forget_after(core::Time t) noexcept;
+  void forget_after(Time t) noexcept;
 
   /// Forgets everything, and takes the waypoints that the curve meets before `end`, by what the
   /// board holds under a head. Anybody may look: what a writer changes meanwhile is left out.
   /// O(kSpan/kStep·(log n + D)).
-  void restore(const KnotBoardReader& board, const Head& head, core::Time end) noexcept;
+  void restore(const KnotBoardReader& board, const Head& head, Time end) noexcept;
 
   /// The same for the writer, and then those of the run from number `first` on: from the slots of
   /// those that are passed over, and from the window. O((kSpan/kStep + kPassedSlots)·D).
   void restore(const core::SlidingWindow& window, const KnotBoardReader& board, const Head& head,
-               core::Time end, std::size_t first) noexcept;
+               Time end, std::size_t first) noexcept;
 
   /// Finds the limits, if a waypoint has been taken since they were found. `stop_time` is the
   /// length of a stop, always the same. O(kSpan/kStep·D).
-  void look(core::Time stop_time) noexcept;
+  void look(Time stop_time) noexcept;
 
   /// As `look` has found them.
-  [[nodiscard]] const core::MotionLimits& limits() const noexcept { return limits_; }
+  [[nodiscard]] const MotionLimits& limits() const noexcept { return limits_; }
 
  private:
   static constexpr std::size_t kMost = kSpan / kStep + 1;
 
-  void take_met(const KnotBoardReader& board, const Head& head, core::Time end) noexcept;
+  void take_met(const KnotBoardReader& board, const Head& head, Time end) noexcept;
   void take_passed(const KnotBoardReader& board, const Head& head, std::size_t first,
                    std::size_t end) noexcept;
-  void take(core::Time time, std::span<const double> position) noexcept;
+  void take(Time time, std::span<const double> position) noexcept;
   void forget_all() noexcept;
   /// Where the i-th waypoint before the newest one lies.
   [[nodiscard]] std::size_t place(std::size_t i) const noexcept { return (count_ - 1 - i) % kMost; }
   [[nodiscard]] double quantile(std::size_t count) noexcept;
 
   std::size_t dimensions_;
-  core::MotionLimits limits_;
+  MotionLimits limits_;
   std::size_t count_ = 0;  ///< waypoints taken so far
   std::size_t first_ = 0;  ///< the oldest one of them that is kept, at most kMost before the newest
-  bool has_looked_ = false;              ///< the limits are those of what has been taken
-  core::Time next_ = core::Time::min();  ///< from when on the next one is taken
-  std::vector<core::Time> times_;
+  bool has_looked_ = false;  ///< the limits are those of what has been taken
+  Time next_ = Time::min();  ///< from when on the next one is taken
+  std::vector<Time> times_;
   std::vector<double> positions_;  ///< [waypoint][dimension]
   std::vector<double> values_;     ///< scratch
   std::vector<Word> numbers_;      ///< scratch

@@ -33,8 +33,8 @@ std::size_t StreamSolver::min_capacity(std::size_t settle) noexcept {
 
 StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& board,
                            const KnotBoardReader& published, const core::WindowOptions& window,
-                           const IngestLimits& limits, core::DimensionKinds kinds,
-                           const std::optional<LiveOptions>& live, core::Beyond beyond)
+                           const IngestLimits& limits, DimensionKinds kinds,
+                           const std::optional<LiveOptions>& live, Beyond beyond)
     : ring_(&ring),
       board_(&board),
       published_(&published),
@@ -43,8 +43,8 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& boar
       beyond_(beyond),
       curve_(board, published, window, std::move(kinds),
              {.is_live = live.has_value(),
-              .min_splice = live ? live->min_splice : core::Time::zero(),
-              .notice = live ? live->freeze_ahead : core::Time::zero()}),
+              .min_splice = live ? live->min_splice : Time::zero(),
+              .notice = live ? live->freeze_ahead : Time::zero()}),
       max_batch_(std::min(kMaxBatch, board.capacity() / 2 - changed_besides(window.settle))),
       item_(ring.dimensions()),
       replacements_(ring) {
@@ -72,12 +72,12 @@ void StreamSolver::restore() {
   curve_.restore(head_);
 }
 
-core::Time StreamSolver::due() const noexcept {
+Time StreamSolver::due() const noexcept {
   if (live_ && (curve_.is_planning() || is_finish_postponed_)) return settled_at_;
   const bool settles =
       live_ && !head_.finished && head_.newest > 0 && head_.settled_until < curve_.end_of_motion();
   const bool waits = live_ && seen_ != head_.consumed;
-  return settles || waits ? settled_at_ + live_->freeze_ahead / 2 : core::Time::max();
+  return settles || waits ? settled_at_ + live_->freeze_ahead / 2 : Time::max();
 }
 
 void StreamSolver::prefetch() const noexcept {
@@ -89,7 +89,7 @@ SettledRaise StreamSolver::settled_raise() const noexcept {
   const bool settles = live_ && !head_.finished && !head_.starved && head_.newest > 0;
   const bool is_busy = curve_.is_planning() || curve_.course() == Course::waiting;
   if (!settles || is_busy || seen_ != head_.consumed) return {};
-  const core::Time limit =
+  const Time limit =
       std::min({curve_.newest_time(), curve_.end_of_motion(), curve_.start_decision()});
   return {board_->settled_word(), head_.settled_until, live_->freeze_ahead, limit};
 }
@@ -99,7 +99,7 @@ StepResult StreamSolver::step(const Clock& clock) noexcept {
   if (live_) head_.settled_until = std::max(head_.settled_until, board_->take_up_settled());
   is_timed_ = live_ || board_->revision() % kTimedEvery == 0;
   if (is_timed_) started_ = clock.now();
-  const core::Time now = live_ ? started_ : core::Time::min();
+  const Time now = live_ ? started_ : Time::min();
   if (live_ && !board_->is_checked()) check_commit(now);
   // Each try takes half the items of the one before; the last try takes one item and refuses it.
   constexpr int kMostTries = 12;
@@ -114,7 +114,7 @@ StepResult StreamSolver::step(const Clock& clock) noexcept {
 }
 
 /// Makes a revision of the next items and publishes it, unless it is unsound.
-StepResult StreamSolver::make_revision(const Clock& clock, core::Time now) noexcept {
+StepResult StreamSolver::make_revision(const Clock& clock, Time now) noexcept {
   freeze(now);
   const Word consumed = consume(now);
   if (is_damaged()) return {.damaged = true};
@@ -126,7 +126,7 @@ StepResult StreamSolver::make_revision(const Clock& clock, core::Time now) noexc
   return {};
 }
 
-void StreamSolver::store_settled(core::Time t) noexcept {
+void StreamSolver::store_settled(Time t) noexcept {
   head_.settled_until = std::max(head_.settled_until, t);
   board_->store_settled(head_.settled_until);
 }
@@ -151,15 +151,14 @@ void StreamSolver::suspect_items() noexcept {
 }
 
 /// Fixes what this step leaves alone.
-void StreamSolver::freeze(core::Time now) noexcept {
+void StreamSolver::freeze(Time now) noexcept {
   settled_until_ = head_.settled_until;
   has_starved_ = false;
   if (!live_) return;
   settled_until_ = std::max(settled_until_, now + live_->freeze_ahead);
   if (!curve_.has_begun() || head_.finished) return;
   curve_.freeze(settled_until_);
-  head_.low_water =
-      std::min(head_.low_water, std::max(core::Time::zero(), curve_.newest_time() - now));
+  head_.low_water = std::min(head_.low_water, std::max(Time::zero(), curve_.newest_time() - now));
   if (head_.starved || !is_starved()) return;
   has_starved_ = true;
   head_.starved = true;
@@ -182,11 +181,11 @@ Word StreamSolver::reachable(Word head) const noexcept {
   return head_.consumed + (goes_back ? 0 : std::min<Word>(waiting, ring_->capacity()));
 }
 
-Word StreamSolver::consume(core::Time now) noexcept {
+Word StreamSolver::consume(Time now) noexcept {
   const Word head = ring_->head();
   available_ = reachable(head);
   const Word before = head_.consumed;
-  keep_ = live_ ? now - live_->history : core::Time::max();
+  keep_ = live_ ? now - live_->history : Time::max();
   withdraw();
   bool is_blocked = false;
   is_finish_postponed_ = false;
@@ -232,7 +231,7 @@ void StreamSolver::withdraw() noexcept {
   if (!curve_.has_begun() || head_.finished) return;
   replacements_.note(head_.consumed, available_);
   if (replacements_.empty()) return;
-  const core::Time earliest = std::max(settled_until_, curve_.earliest_cut());
+  const Time earliest = std::max(settled_until_, curve_.earliest_cut());
   const auto replacement = replacements_.due(earliest, curve_.newest_time());
   if (!replacement) return;
   ring_->copy(*replacement, item_);
@@ -261,21 +260,21 @@ void StreamSolver::take(Word number) noexcept {
 }
 
 /// The producer has checked most of this; but what another process wrote is never trusted.
-std::optional<Refusal> StreamSolver::has_right_form(const core::Waypoint& waypoint) const noexcept {
+std::optional<Refusal> StreamSolver::has_right_form(const Waypoint& waypoint) const noexcept {
   if (!is_finite(waypoint)) return Refusal::not_finite;
   if (!curve_.kinds().takes(waypoint.position)) return Refusal::zero_quaternion;
   if (!curve_.window().takes(waypoint)) return Refusal::lacks_derivatives;
-  if (!core::is_time_in_range(waypoint.time)) return Refusal::too_far_apart;
+  if (!is_time_in_range(waypoint.time)) return Refusal::too_far_apart;
   return std::nullopt;
 }
 
-std::optional<Refusal> StreamSolver::judge_time(core::Time time) const noexcept {
+std::optional<Refusal> StreamSolver::judge_time(Time time) const noexcept {
   if (!curve_.has_begun()) {
     if (live_ && time < settled_until_) return Refusal::past;
     return std::nullopt;
   }
-  const core::Time newest = curve_.newest_time();
-  const core::Time earliest = is_starved() ? settled_until_ : newest;
+  const Time newest = curve_.newest_time();
+  const Time earliest = is_starved() ? settled_until_ : newest;
   const auto status = judge_interval(time - newest, limits_);
   if (status == AppendStatus::too_far_apart && time - earliest > limits_.max_interval) {
     return Refusal::too_far_apart;
@@ -288,7 +287,7 @@ std::optional<Refusal> StreamSolver::judge_time(core::Time time) const noexcept 
 }
 
 void StreamSolver::take_waypoint(Word number) noexcept {
-  const core::Waypoint waypoint = item_.waypoint();
+  const Waypoint waypoint = item_.waypoint();
   if (const auto refusal = has_right_form(waypoint)) return refuse(number, *refusal);
   if (const auto refusal = judge_time(waypoint.time)) return refuse(number, *refusal);
   if (!curve_.kinds().all_linear()) {
@@ -304,11 +303,11 @@ void StreamSolver::take_waypoint(Word number) noexcept {
 }
 
 /// Notes where the curve passes a limit with a waypoint. Returns whether to take it all the same.
-bool StreamSolver::is_within_limits(const core::Waypoint& waypoint, Word number) noexcept {
+bool StreamSolver::is_within_limits(const Waypoint& waypoint, Word number) noexcept {
   auto excess = curve_.excess_with(waypoint);
   if (!excess) return true;
   excess->item = number;
-  excess->is_refused = beyond_ == core::Beyond::refuse;
+  excess->is_refused = beyond_ == Beyond::refuse;
   board_->write_excess(head_.exceeding++, *excess);
   return !excess->is_refused;
 }
@@ -316,11 +315,10 @@ bool StreamSolver::is_within_limits(const core::Waypoint& waypoint, Word number)
 void StreamSolver::take_replacement(Word number) noexcept {
   // A stop is never too late: it takes effect as soon as possible, in a revision of its own, which
   // is committed sooner than a full batch.
-  const core::Time t =
+  const Time t =
       is_stop() ? std::max({item_.time, settled_until_, curve_.earliest_cut()}) : item_.time;
   const bool has_begun = curve_.has_begun();  // else there is nothing to replace
-  if (has_begun &&
-      (t < settled_until_ || !core::is_time_in_range(t) || t < curve_.earliest_cut())) {
+  if (has_begun && (t < settled_until_ || !is_time_in_range(t) || t < curve_.earliest_cut())) {
     return refuse_replacement(number, Refusal::too_late);
   }
   ++head_.controls;
@@ -331,7 +329,7 @@ void StreamSolver::take_replacement(Word number) noexcept {
   if (!has_begun) return;
   // A stop behind another one changes nothing.
   if (is_stop() && curve_.is_stop() && t >= curve_.newest_time()) return;
-  curve_.begin_run(t, std::clamp(item_.blend, core::Time::zero(), limits_.max_interval));
+  curve_.begin_run(t, std::clamp(item_.blend, Time::zero(), limits_.max_interval));
   head_.starved = false;
   head_.newest_knot = t;
 }
@@ -345,14 +343,14 @@ void StreamSolver::refuse_replacement(Word number, Refusal reason) noexcept {
 }
 
 void StreamSolver::take_start_state(Word number) noexcept {
-  const core::Waypoint state = item_.waypoint();
+  const Waypoint state = item_.waypoint();
   if (curve_.has_begun()) return refuse(number, Refusal::already_started);
   if (!is_finite(state)) return refuse(number, Refusal::not_finite);
   if (!curve_.kinds().takes(state.position)) return refuse(number, Refusal::zero_quaternion);
   if (state.velocity.empty() || state.acceleration.empty()) {
     return refuse(number, Refusal::lacks_derivatives);
   }
-  if (!core::is_time_in_range(state.time)) return refuse(number, Refusal::too_far_apart);
+  if (!is_time_in_range(state.time)) return refuse(number, Refusal::too_far_apart);
   if (live_ && state.time < settled_until_) return refuse(number, Refusal::past);
   ++head_.controls;
   curve_.begin({.time = state.time,
@@ -366,11 +364,11 @@ void StreamSolver::take_finish(Word number) noexcept {
   end_.kind = item_.condition;
   end_.value.clear();
   const std::size_t dimensions = ring_->dimensions();
-  if (!core::is_online(item_.condition)) {
+  if (!is_online(item_.condition)) {
     return refuse(number, Refusal::unknown_kind);
   }
-  const bool is_velocity = item_.condition == core::ConditionKind::velocity;
-  if (is_velocity || item_.condition == core::ConditionKind::acceleration) {
+  const bool is_velocity = item_.condition == ConditionKind::velocity;
+  if (is_velocity || item_.condition == ConditionKind::acceleration) {
     const auto values =
         std::span(item_.values).subspan((is_velocity ? 1 : 2) * dimensions, dimensions);
     if (!is_finite(values)) return refuse(number, Refusal::not_finite);
@@ -390,23 +388,22 @@ void StreamSolver::refuse(Word number, Refusal reason) noexcept {
 /// A commit is late if the process was stopped between reading the clock and the commit; readers
 /// find out by changed_from. Stored at once: the next revision may be discarded, may never come, or
 /// may be another solver's.
-void StreamSolver::check_commit(core::Time now) noexcept {
-  const bool is_late = head_.changed_from <= now && head_.changed_from < core::Time::max();
+void StreamSolver::check_commit(Time now) noexcept {
+  const bool is_late = head_.changed_from <= now && head_.changed_from < Time::max();
   if (is_late && !board_->is_late()) ++head_.revisions;
   board_->store_checked(is_late);
 }
 
 /// Up to where the curve that has been committed never changes.
-core::Time StreamSolver::settled_by_commit() const noexcept {
+Time StreamSolver::settled_by_commit() const noexcept {
   if (!live_) return curve_.settled_until();
   // What is finished changes no more: it has settled to its end.
-  return head_.finished
-             ? std::min(std::max(settled_until_, curve_.end_of_motion()), core::kLatestTime)
-             : settled_until_;
+  return head_.finished ? std::min(std::max(settled_until_, curve_.end_of_motion()), kLatestTime)
+                        : settled_until_;
 }
 
 StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
-  head_.changed_from = core::Time::max();
+  head_.changed_from = Time::max();
   curve_.write(head_);
   if (!board_->is_sound()) return {};
   // Nothing is compared with the commit time of a recorded stream.
@@ -422,7 +419,7 @@ StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   if (is_timed_) board_->count_step(head_.committed - started_);
   curve_.committed(head_);
   most_items_ = std::min<Word>(2 * most_items_, max_batch_);
-  const bool changes = head_.changed_from < core::Time::max();
+  const bool changes = head_.changed_from < Time::max();
   if (live_) check_commit(changes ? clock.now() : head_.committed);
   return {.consumed = consumed, .published = true};
 }

@@ -12,22 +12,15 @@
 #include "ipc/solve/settled_raise.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/dimension_kind.hpp"
+#include "splinecast/status.hpp"
 
 namespace splinecast::ipc {
 
-/// What one step of a solver did.
-struct StepResult {
-  Word consumed = 0;       ///< ring items taken
-  bool published = false;  ///< whether a revision was committed
-  bool missed = false;     ///< whether one was discarded because it came too late: step again
-  bool damaged = false;    ///< whether somebody else has written to the board: nothing is done
-};
-
 /// How a live stream is solved.
 struct LiveOptions {
-  core::Time freeze_ahead{5'000'000};  ///< what lies this long before now + this never changes
-  core::Time history{1'000'000'000};   ///< what ends after now − this is not overwritten
-  core::Time min_splice{5'000'000};    ///< length of the shortest splice
+  Time freeze_ahead{5'000'000};  ///< what lies this long before now + this never changes
+  Time history{1'000'000'000};   ///< what ends after now − this is not overwritten
+  Time min_splice{5'000'000};    ///< length of the shortest splice
 };
 
 /// The solver without its regions: takes items from a ring, solves the window, publishes knots on a
@@ -61,9 +54,9 @@ class StreamSolver {
   /// if the board holds no curve that a solver can go on with.
   StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& board,
                const KnotBoardReader& published, const core::WindowOptions& window,
-               const IngestLimits& limits, core::DimensionKinds kinds = {},
+               const IngestLimits& limits, DimensionKinds kinds = {},
                const std::optional<LiveOptions>& live = std::nullopt,
-               core::Beyond beyond = core::Beyond::report);
+               Beyond beyond = Beyond::report);
 
   /// Takes what the ring holds, up to a bounded batch, and publishes the result as one revision; on
   /// a live stream also says how far the curve is settled, when that is due, which is no revision.
@@ -79,7 +72,7 @@ class StreamSolver {
   [[nodiscard]] Word seen() const noexcept { return seen_; }
 
   /// When the next step is due even if no item comes; max() for never.
-  [[nodiscard]] core::Time due() const noexcept;
+  [[nodiscard]] Time due() const noexcept;
 
   /// Asks for the memory outside this object that the next step goes through if it takes one
   /// waypoint. Loads nothing of that.
@@ -93,11 +86,11 @@ class StreamSolver {
 
  private:
   void restore();
-  void freeze(core::Time now) noexcept;
-  [[nodiscard]] StepResult make_revision(const Clock& clock, core::Time now) noexcept;
+  void freeze(Time now) noexcept;
+  [[nodiscard]] StepResult make_revision(const Clock& clock, Time now) noexcept;
   void take_back(Word misses) noexcept;
   void suspect_items() noexcept;
-  [[nodiscard]] Word consume(core::Time now) noexcept;
+  [[nodiscard]] Word consume(Time now) noexcept;
   [[nodiscard]] bool is_damaged() const noexcept { return lacks_head_ || curve_.is_damaged(); }
   [[nodiscard]] Word reachable(Word head) const noexcept;
   [[nodiscard]] bool has_room() const noexcept;
@@ -108,19 +101,18 @@ class StreamSolver {
   }
   void take(Word number) noexcept;
   void take_waypoint(Word number) noexcept;
-  [[nodiscard]] bool is_within_limits(const core::Waypoint& waypoint, Word number) noexcept;
+  [[nodiscard]] bool is_within_limits(const Waypoint& waypoint, Word number) noexcept;
   void take_replacement(Word number) noexcept;
   void refuse_replacement(Word number, Refusal reason) noexcept;
   void take_start_state(Word number) noexcept;
   void take_finish(Word number) noexcept;
   [[nodiscard]] bool is_starved() const noexcept;
-  [[nodiscard]] std::optional<Refusal> has_right_form(
-      const core::Waypoint& waypoint) const noexcept;
-  [[nodiscard]] std::optional<Refusal> judge_time(core::Time time) const noexcept;
+  [[nodiscard]] std::optional<Refusal> has_right_form(const Waypoint& waypoint) const noexcept;
+  [[nodiscard]] std::optional<Refusal> judge_time(Time time) const noexcept;
   void refuse(Word number, Refusal reason) noexcept;
-  void check_commit(core::Time now) noexcept;
-  void store_settled(core::Time t) noexcept;
-  [[nodiscard]] core::Time settled_by_commit() const noexcept;
+  void check_commit(Time now) noexcept;
+  void store_settled(Time t) noexcept;
+  [[nodiscard]] Time settled_by_commit() const noexcept;
   StepResult publish(const Clock& clock, Word consumed) noexcept;
 
   const WaypointRingReader* ring_;
@@ -128,21 +120,21 @@ class StreamSolver {
   const KnotBoardReader* published_;
   IngestLimits limits_;
   std::optional<LiveOptions> live_;
-  core::Beyond beyond_;
+  Beyond beyond_;
   PublishedCurve curve_;
   std::size_t max_batch_;
   Head head_;
   bool lacks_head_ = false;  ///< the board has none of its revision: somebody else wrote to it
-  core::Time settled_until_ = core::Time::min();  ///< what this step leaves alone lies before it
-  core::Time keep_ = core::Time::max();        ///< what ends after it this step does not overwrite
-  bool is_timed_ = false;                      ///< this step
-  core::Time started_{};                       ///< the clock when it began, if it is timed
-  core::Time settled_at_ = core::Time::min();  ///< the clock when settled_until was last stored
-  bool has_starved_ = false;                   ///< in this step
+  Time settled_until_ = Time::min();  ///< what this step leaves alone lies before it
+  Time keep_ = Time::max();           ///< what ends after it this step does not overwrite
+  bool is_timed_ = false;             ///< this step
+  Time started_{};                    ///< the clock when it began, if it is timed
+  Time settled_at_ = Time::min();     ///< the clock when settled_until was last stored
+  bool has_starved_ = false;          ///< in this step
   int tries_ = 0;                     ///< candidates of an entry that this step may still try
   bool is_finish_postponed_ = false;  ///< no entry to the last waypoint has been found yet
   RingItem item_;
-  core::Condition end_;
+  Condition end_;
   Word seen_ = 0;
   Word batch_ = 0;        ///< items taken for this revision, one by one
   Word batch_limit_ = 0;  ///< of this revision

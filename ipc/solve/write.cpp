@@ -11,7 +11,7 @@ namespace {
 
 using core::SegmentForm;
 
-constexpr std::array<double, core::kMaxDimensions> kZeros{};
+constexpr std::array<double, kMaxDimensions> kZeros{};
 
 /// Knots of a run whose rows an append may change however far back its method looks.
 constexpr std::size_t kFirstKnots = 4;
@@ -80,7 +80,7 @@ void PublishedCurve::write_ending() noexcept {
                           .velocity = zeros,
                           .acceleration = zeros,
                           .residual = zeros.first(published_->smooths() ? zeros.size() : 0)});
-  stop_ = core::Time::zero();
+  stop_ = Time::zero();
   end_ = behind_.end;
 }
 
@@ -192,7 +192,7 @@ void PublishedCurve::write_course(Head& head) noexcept {
 
 void PublishedCurve::write(Head& head) noexcept {
   head.changed_from = changed_from_;
-  changed_from_ = core::Time::max();
+  changed_from_ = Time::max();
   head.run_frozen = window_.frozen_knots();
   write_course(head);
   const std::size_t knots = window_.knots();
@@ -206,7 +206,7 @@ void PublishedCurve::write(Head& head) noexcept {
     write_knots(std::max(open_, met_), knots);
     newest_ = number_of(knots - 1);
     if (window_.finished()) {
-      stop_ = core::Time::zero();
+      stop_ = Time::zero();
       end_ = window_.time(knots - 1);
     }
   } else {
@@ -221,7 +221,7 @@ void PublishedCurve::write(Head& head) noexcept {
     if (knots > 0) write_unmet(knots);
   }
   head.changed_from = std::min(head.changed_from, changed_from_);
-  changed_from_ = core::Time::max();
+  changed_from_ = Time::max();
   // Never back: a replacement drops knots, but the slots that they took are not given back.
   const Word kept = newest_ - std::min<Word>(newest_, board_->capacity()) + 1;
   if (kept > first_) {

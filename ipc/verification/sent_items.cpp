@@ -4,7 +4,7 @@
 
 namespace splinecast::ipc {
 
-void SentItems::add(ItemKind kind, const core::Waypoint& values) {
+void SentItems::add(ItemKind kind, const Waypoint& values) {
   items_.push_back({.kind = kind,
                     .has_velocity = !values.velocity.empty(),
                     .has_acceleration = !values.acceleration.empty(),
@@ -26,7 +26,7 @@ std::optional<Word> SentItems::find(ItemKind kind, Word from, Word end) const no
   return std::nullopt;
 }
 
-core::Waypoint SentItems::waypoint(Word item) const noexcept {
+Waypoint SentItems::waypoint(Word item) const noexcept {
   const Item& at = items_[item];
   auto rest = std::span(values_).subspan(at.values);
   const auto take = [&](bool is_given) {
@@ -34,7 +34,7 @@ core::Waypoint SentItems::waypoint(Word item) const noexcept {
     rest = rest.subspan(part.size());
     return part;
   };
-  core::Waypoint waypoint{.time = at.time};
+  Waypoint waypoint{.time = at.time};
   waypoint.position = take(at.kind != ItemKind::replace && at.kind != ItemKind::finish);
   waypoint.velocity = take(at.has_velocity);
   waypoint.acceleration = take(at.has_acceleration);

@@ -23,7 +23,7 @@ class SentItems {
 
   /// Adds the next item, with a copy of its values: of a start state all three, of a replacement
   /// the time only.
-  void add(ItemKind kind, const core::Waypoint& values);
+  void add(ItemKind kind, const Waypoint& values);
 
   /// Notes that the solver refused an item: one of these, else nothing happens.
   void refuse(Word item) noexcept;
@@ -40,7 +40,7 @@ class SentItems {
   [[nodiscard]] std::optional<Word> find(ItemKind kind, Word from, Word end) const noexcept;
 
   /// An item's values: a view, good until the next `add`.
-  [[nodiscard]] core::Waypoint waypoint(Word item) const noexcept;
+  [[nodiscard]] Waypoint waypoint(Word item) const noexcept;
 
  private:
   struct Item {
@@ -48,7 +48,7 @@ class SentItems {
     bool is_refused = false;
     bool has_velocity = false;
     bool has_acceleration = false;
-    core::Time time{};
+    Time time{};
     std::size_t values = 0;  ///< where its own begin
   };
   std::size_t dimensions_;

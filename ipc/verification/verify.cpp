@@ -14,8 +14,6 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::SegmentKind;
-
 /// How often a state may have been put to unit length by runs that took each other's place.
 constexpr int kNormalisations = 4;
 
@@ -33,7 +31,7 @@ std::string text(double value) {
   return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
 }
 
-std::string text(core::Time time) { return std::to_string(time.count()) + " ns"; }
+std::string text(Time time) { return std::to_string(time.count()) + " ns"; }
 
 std::string text(SegmentKind kind) {
   constexpr std::array<const char*, 4> kNames{"spline", "splice", "stop tail", "hold"};
@@ -228,7 +226,7 @@ class Resolver {
     for (Word item = first;;) {
       const auto next = record_.items.find(ItemKind::waypoint, item, replaced);
       if (!next) return;
-      const core::Time time = record_.items.waypoint(*next).time;
+      const Time time = record_.items.waypoint(*next).time;
       if (!run_items_.empty() && time <= record_.items.waypoint(run_items_.back()).time) return;
       run_items_.push_back(*next);
       item = *next + 1;
@@ -242,7 +240,7 @@ class Resolver {
   }
 
   /// The waypoint of the run at a time.
-  [[nodiscard]] std::optional<std::size_t> index_of(core::Time time) const noexcept {
+  [[nodiscard]] std::optional<std::size_t> index_of(Time time) const noexcept {
     const auto time_of = [this](Word item) { return record_.items.waypoint(item).time; };
     const auto at = std::ranges::lower_bound(run_items_, time, {}, time_of);
     if (at == run_items_.end() || time_of(*at) != time) return std::nullopt;
@@ -263,7 +261,7 @@ class Resolver {
     return true;
   }
 
-  bool note_met(std::size_t s, core::Time time, std::size_t newer) {
+  bool note_met(std::size_t s, Time time, std::size_t newer) {
     const auto index = index_of(time);
     if (!index) return differ(s, "waypoint", text(time), "none of the run at that time");
     if (met_.empty() || met_.back().index < *index) met_.push_back({*index, 0});
@@ -325,8 +323,8 @@ class Resolver {
   /// The stop from the state that a run begins in.
   bool solve_state_stop(std::size_t s) {
     const core::WindowOptions& options = window_.options();
-    const core::Time length = core::stop_time_within(options.limits, options.stop_time,
-                                                     state_.velocity(), state_.acceleration());
+    const Time length = core::stop_time_within(options.limits, options.stop_time, state_.velocity(),
+                                               state_.acceleration());
     core::build_stop(segments_[s].left, length, state_.position(), state_.velocity(),
                      state_.acceleration(), solved_);
     return compare(s);
@@ -335,7 +333,7 @@ class Resolver {
   bool solve_entry(std::size_t s) {
     const SegmentCopy& segment = segments_[s];
     find_state(s);
-    core::Instant end = state_at(segment.natural_right);
+    Instant end = state_at(segment.natural_right);
     if (segment.origin.ends_at_waypoint) {
       const auto index = index_of(segment.natural_right);
       if (!index) return differ(s, "right end", text(segment.natural_right), "no waypoint");
@@ -406,16 +404,16 @@ class Resolver {
   }
 
   void append(Word item) noexcept {
-    const core::Waypoint sent = record_.items.waypoint(item);
+    const Waypoint sent = record_.items.waypoint(item);
     const std::size_t dimensions = window_.dimensions();
     const auto copy = [&](std::size_t part, std::span<const double> from) {
       const auto to = std::span(values_).subspan(part * dimensions, from.size());
       std::ranges::copy(from, to.begin());
       return to;
     };
-    const core::WaypointValues values{.position = copy(0, sent.position),
-                                      .velocity = copy(1, sent.velocity),
-                                      .acceleration = copy(2, sent.acceleration)};
+    const WaypointValues values{.position = copy(0, sent.position),
+                                .velocity = copy(1, sent.velocity),
+                                .acceleration = copy(2, sent.acceleration)};
     record_.kinds.continue_from(newest_position(), values);
     window_.append({.time = sent.time,
                     .position = values.position,
@@ -448,7 +446,7 @@ class Resolver {
     for (int n = 1; n < kNormalisations && !is_state_of(segment); ++n) normalise();
   }
 
-  [[nodiscard]] core::Instant state_at(core::Time t) const noexcept {
+  [[nodiscard]] Instant state_at(Time t) const noexcept {
     return {.time = t,
             .position = state_.position(),
             .velocity = state_.velocity(),
@@ -460,12 +458,12 @@ class Resolver {
   }
 
   void normalise() noexcept {
-    const core::StateRef state = state_.ref();
+    const StateRef state = state_.ref();
     record_.kinds.normalise_quaternions(state.position, state.velocity, state.acceleration);
   }
 
   void take_item(Word item) noexcept {
-    const core::Waypoint start = record_.items.waypoint(item);
+    const Waypoint start = record_.items.waypoint(item);
     std::ranges::copy(start.position, state_.ref().position.begin());
     std::ranges::copy(start.velocity, state_.ref().velocity.begin());
     std::ranges::copy(start.acceleration, state_.ref().acceleration.begin());
@@ -479,7 +477,7 @@ class Resolver {
   }
 
   [[nodiscard]] bool is_state_of(const SegmentCopy& segment) const {
-    core::State state(window_.dimensions());
+    State state(window_.dimensions());
     core::evaluate(segment.order, segment.coefficients, 0, state.ref());
     const bool may_step = segment.kind == SegmentKind::stop_tail;
     return same_bits(state.position(), state_.position()) &&
@@ -547,8 +545,8 @@ class Resolver {
   std::span<const SegmentCopy> segments_;
   core::SlidingWindow window_;
   core::Segment solved_;
-  core::State state_;  ///< that an entry, or the stop of a run, begins in
-  core::State end_;    ///< that an entry ends in
+  State state_;  ///< that an entry, or the stop of a run, begins in
+  State end_;    ///< that an entry ends in
   core::Extrapolation extrapolation_;
   BehindEntry behind_;
   std::vector<double> values_;
@@ -557,7 +555,7 @@ class Resolver {
   std::vector<Word> run_items_;  ///< of the present run's waypoints
   std::vector<MetKnot> met_;     ///< of the present run
   std::size_t frozen_met_ = 0;   ///< those of them that have been frozen
-  core::Time natural_right_{};   ///< of the segment before, had it not been cut
+  Time natural_right_{};         ///< of the segment before, had it not been cut
   std::size_t next_ = 0;         ///< segment to be compared next
   std::size_t equal_ = 0;
   Word used_ = 0;  ///< items before this one are known to the curve, or replaced

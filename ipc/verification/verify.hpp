@@ -16,18 +16,18 @@ namespace splinecast::ipc {
 /// A stream as it went: what it was sent, how it was solved, and what came out.
 struct StreamRecord {
   core::WindowOptions window;
-  core::DimensionKinds kinds;
+  DimensionKinds kinds;
   const SentItems& items;
   std::span<const SegmentCopy> segments;  ///< settled ones from number 1
   Head head;                              ///< the last one
-  core::Condition end;                    ///< that the stream was finished with
+  Condition end;                          ///< that the stream was finished with
 };
 
 /// The first thing in which a stream is not what its items and decisions make it.
 struct Difference {
   Word segment = 0;
-  core::Time left{};   ///< its ends, as published
-  core::Time right{};  ///<
+  Time left{};         ///< its ends, as published
+  Time right{};        ///<
   std::string what{};  ///< such as `coefficient 3 of dimension 0`
   std::string published{};
   std::string solved{};

@@ -4,17 +4,18 @@
 #include <string>
 #include <vector>
 
-#include "ipc/roles/stream_files.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/reader.hpp"
 #include "splinecast/solver.hpp"
+#include "splinecast/streams.hpp"
 
 /// `bits write STREAM` solves a fixed recording into a stream, `bits read STREAM` prints a hash of
 /// everything it samples there, `bits remove STREAM` removes it. However writer and reader were
 /// compiled, the hash must be the same.
 namespace {
 
-using splinecast::core::Time;
+using splinecast::Time;
 namespace ipc = splinecast::ipc;
 
 constexpr std::size_t kDimensions = 5;
@@ -34,25 +35,25 @@ class Random {
 };
 
 void write(const std::string& stream) {
-  using splinecast::core::DimensionKind;
-  std::vector<splinecast::core::Dimension> kinds(kDimensions, {.kind = DimensionKind::quaternion});
+  using splinecast::DimensionKind;
+  std::vector<splinecast::Dimension> kinds(kDimensions, {.kind = DimensionKind::quaternion});
   kinds[0] = {.kind = DimensionKind::wrap, .period = 0.3};
-  ipc::Producer producer(stream, {.dimensions = kDimensions,
-                                  .kinds = kinds,
-                                  .clock = ipc::StreamClock::recorded,
-                                  .start = {splinecast::core::ConditionKind::halt, {}}});
-  ipc::Solver solver(stream, {});
+  Producer producer(stream, {.dimensions = kDimensions,
+                             .kinds = kinds,
+                             .clock = StreamClock::recorded,
+                             .start = {splinecast::ConditionKind::halt, {}}});
+  Solver solver(stream, {});
   solver.attach();
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   Random random;
   std::vector<double> x(kDimensions);
   Time t{1'403'636'579'763'555'584};
   for (int i = 0; i < kWaypoints; ++i) {
     for (double& value : x) value += 0.1 * random.unit();
     t += Time(1'000'000 + random.next() % 9'000'000);
-    while (producer.append({t, x, {}, {}}) == ipc::AppendStatus::full) solver.step(clock);
+    while (producer.append({t, x, {}, {}}) == AppendStatus::full) solver.step(clock);
   }
-  while (producer.finish({splinecast::core::ConditionKind::halt, {}}) == ipc::AppendStatus::full) {
+  while (producer.finish({splinecast::ConditionKind::halt, {}}) == AppendStatus::full) {
     solver.step(clock);
   }
   while (solver.step(clock).consumed > 0) {
@@ -60,17 +61,18 @@ void write(const std::string& stream) {
 }
 
 void read(const std::string& stream) {
-  ipc::Reader reader(stream);
-  splinecast::core::State state(kDimensions);
-  ipc::Head head;
-  Time first{};
-  if (!reader.head(head) || !reader.first_time(first)) std::abort();
-  const auto length = static_cast<std::uint64_t>((head.newest_knot - first).count());
+  Reader reader(stream);
+  splinecast::State state(kDimensions);
+  const auto oldest = reader.first_time();
+  const auto progress = reader.progress();
+  if (!oldest || !progress) std::abort();
+  const Time first = *oldest;
+  const auto length = static_cast<std::uint64_t>((progress->newest - first).count());
   Random random;
   std::uint64_t hash = 0xcbf29ce484222325;
   for (int i = 0; i < 100'000; ++i) {
     const Time t = first + Time(static_cast<std::int64_t>(random.next() % length));
-    if (reader.sample(t, state) != ipc::SampleStatus::settled) std::abort();
+    if (reader.sample(t, state) != SampleStatus::settled) std::abort();
     for (const double value : state.values()) {
       std::uint64_t bits = 0;
       std::memcpy(&bits, &value, sizeof bits);
@@ -87,6 +89,6 @@ int main(int argc, char** argv) {
   const std::string verb = argv[1];
   if (verb == "write") write(argv[2]);
   if (verb == "read") read(argv[2]);
-  if (verb == "remove") ipc::remove_stream(argv[2]);
+  if (verb == "remove") remove_stream(argv[2]);
   return 0;
 }

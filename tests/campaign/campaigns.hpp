@@ -92,6 +92,6 @@ struct CampaignOptions {
 [[nodiscard]] std::string campaign_stream(const std::string& what);
 
 /// Between two looks at all streams of a campaign, and so the resolution of its times.
-inline constexpr core::Time kLook{500'000};
+inline constexpr Time kLook{500'000};
 
 }  // namespace splinecast::campaign

@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "apps/streams/report.hpp"
-#include "ipc/roles/stream_files.hpp"
+#include "ipc/roles/inspect.hpp"
+#include "ipc/roles/internals.hpp"
+#include "ipc/sampling/snapshot.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/reader.hpp"
@@ -20,7 +22,6 @@ namespace splinecast::fuzz {
 namespace {
 
 using namespace std::chrono_literals;
-using core::Time;
 
 constexpr std::size_t kDimensions = 5;
 constexpr std::size_t kSegments = 256;
@@ -29,10 +30,10 @@ constexpr Time kLead = 50ms;
 /// Lets a millisecond pass.
 void rest() { poll(nullptr, 0, 1); }
 
-ipc::ProducerOptions producer_options() {
-  ipc::ProducerOptions options{.dimensions = kDimensions, .capacity = 64};
-  options.kinds.assign(kDimensions, {.kind = core::DimensionKind::quaternion});
-  options.kinds[0] = {.kind = core::DimensionKind::wrap, .period = 6};
+ProducerOptions producer_options() {
+  ProducerOptions options{.dimensions = kDimensions, .capacity = 64};
+  options.kinds.assign(kDimensions, {.kind = DimensionKind::quaternion});
+  options.kinds[0] = {.kind = DimensionKind::wrap, .period = 6};
   return options;
 }
 
@@ -43,10 +44,10 @@ class FlipReader {
       : stream_(stream), random_(seed), counters_(&counters) {}
 
   void attach_and_read() {
-    ipc::Reader reader(stream_);
+    Reader reader(stream_);
     ++counters_->attached;
-    core::State state(reader.dimensions());
-    ipc::Snapshot snapshot(reader.dimensions());
+    State state(reader.dimensions());
+    ipc::BoardSnapshot snapshot(reader.dimensions());
     constexpr int kSamples = 2'000;
     for (int i = 0; i < kSamples && !counters_->stop; ++i) {
       const Time t =
@@ -61,26 +62,26 @@ class FlipReader {
   }
 
  private:
-  void count(ipc::SampleStatus status, const core::State& state) {
+  void count(SampleStatus status, const State& state) {
     ++counters_->samples;
-    if (!ipc::has_values(status)) return;
+    if (!has_values(status)) return;
     ++counters_->with_values;
     const bool are_numbers =
         std::ranges::all_of(state.values(), [](double value) { return std::isfinite(value); });
     if (!are_numbers) ++counters_->not_numbers;
   }
 
-  void look_ahead(ipc::Reader& reader) {
+  void look_ahead(Reader& reader) {
     std::array<Time, 16> times{};
     for (Time t = clock_.now() - kLead; Time & time : times) time = t += kLead / 4;
-    std::array<ipc::SampleStatus, times.size()> statuses{};
+    std::array<SampleStatus, times.size()> statuses{};
     const std::size_t stride = reader.dimensions();
     std::vector<double> values(times.size() * stride);
-    (void)reader.sampler().sample_many(
-        times, {.values = values, .status = statuses, .derivatives = core::Derivatives::position});
+    (void)ipc::Internals::sampler(reader).sample_many(
+        times, {.values = values, .status = statuses, .derivatives = Derivatives::position});
     for (std::size_t i = 0; i < times.size(); ++i) {
       ++counters_->samples;
-      if (!ipc::has_values(statuses[i])) continue;
+      if (!has_values(statuses[i])) continue;
       ++counters_->with_values;
       const auto at = std::span(values).subspan(i * stride, stride);
       const bool are_numbers =
@@ -89,10 +90,11 @@ class FlipReader {
     }
   }
 
-  void take_snapshot(ipc::Reader& reader, ipc::Snapshot& snapshot) {
+  void take_snapshot(Reader& reader, ipc::BoardSnapshot& snapshot) {
     const Time now = clock_.now();
     ++counters_->snapshots;
-    if (!ipc::has_values(reader.snapshot(now - kLead, now + kLead, snapshot))) return;
+    if (!has_values(ipc::Internals::sampler(reader).snapshot(now - kLead, now + kLead, snapshot)))
+      return;
     for (const ipc::SegmentCopy& segment : snapshot.segments()) {
       const auto used = static_cast<std::size_t>(segment.order) * snapshot.dimensions();
       const auto values = std::span(segment.coefficients).first(used);
@@ -110,43 +112,43 @@ class FlipReader {
   std::string stream_;
   std::mt19937_64 random_;
   FlipCounters* counters_;
-  ipc::MonotonicClock clock_;
+  MonotonicClock clock_;
 };
 
 }  // namespace
 
 bool produce_until_stopped(const std::string& stream, FlipCounters& counters) {
   try {
-    ipc::Producer producer(stream, producer_options());
-    const ipc::MonotonicClock clock;
+    Producer producer(stream, producer_options());
+    const MonotonicClock clock;
     std::vector<double> position(kDimensions);
     while (!counters.stop) {
       const Time t = clock.now() + kLead;
       for (std::size_t d = 0; d < kDimensions; ++d) {
-        position[d] = std::sin(core::to_seconds(t) * static_cast<double>(1 + d));
+        position[d] = std::sin(to_seconds(t) * static_cast<double>(1 + d));
       }
-      if (producer.append({.time = t, .position = position}) == ipc::AppendStatus::accepted) {
+      if (producer.append({.time = t, .position = position}) == AppendStatus::accepted) {
         ++counters.appended;
       }
       rest();
     }
     return true;
-  } catch (const ipc::StreamError&) {
+  } catch (const StreamError&) {
     return false;
   }
 }
 
 bool solve_until_stopped(const std::string& stream, FlipCounters& counters) {
   try {
-    ipc::Solver solver(stream, {.history = 50ms, .capacity = kSegments});
-    const ipc::MonotonicClock clock;
+    Solver solver(stream, {.history = 50ms, .capacity = kSegments});
+    const MonotonicClock clock;
     while (!counters.stop) {
       if (!solver.attach()) rest();
       if (solver.step(clock).published) ++counters.revisions;
       solver.wait(5ms);
     }
     return true;
-  } catch (const ipc::StreamError&) {
+  } catch (const StreamError&) {
     return false;
   } catch (const std::invalid_argument&) {
     return false;
@@ -158,9 +160,9 @@ bool read_until_stopped(const std::string& stream, std::uint64_t seed, FlipCount
   while (!counters.stop) {
     try {
       reader.attach_and_read();
-    } catch (const ipc::NoSuchStream&) {
+    } catch (const NoSuchStream&) {
       rest();
-    } catch (const ipc::StreamError&) {
+    } catch (const StreamError&) {
       ++counters.refused;
       rest();
     }

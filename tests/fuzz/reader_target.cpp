@@ -1,6 +1,7 @@
 #include <array>
 #include <vector>
 
+#include "ipc/options/stream.hpp"
 #include "ipc/roles/old_motion.hpp"
 #include "ipc/verification/settled_segments.hpp"
 #include "splinecast/errors.hpp"
@@ -32,16 +33,16 @@ void look_around(const ipc::KnotBoardReader& board) {
 
 /// Looks ahead at a few times, mostly one behind the other.
 void look_ahead(Script& script, Sampling& sampling) {
-  std::vector<core::Time> times(script.byte() % 40);
-  core::Time t = sampling.pick(script);
+  std::vector<Time> times(script.byte() % 40);
+  Time t = sampling.pick(script);
   const auto step = static_cast<ipc::Word>(script.byte()) << script.byte() % 32U;
-  for (core::Time& time : times) {
+  for (Time& time : times) {
     time = t;
     t = ipc::to_time(ipc::to_word(t) + step);
   }
   if (!times.empty() && script.byte() % 4 == 0) times.back() = sampling.pick(script);
-  const auto asked = 1 + script.byte() % static_cast<int>(core::Derivatives::all);
-  sampling.sample_many(times, static_cast<core::Derivatives>(asked));
+  const auto asked = 1 + script.byte() % static_cast<int>(Derivatives::all);
+  sampling.sample_many(times, static_cast<Derivatives>(asked));
 }
 
 void play(Script& script, GuardedBytes& bytes, const ipc::KnotBoardReader& board,
@@ -96,7 +97,7 @@ void try_reader(const StreamImage& image) {
     Script script(image.script);
     play(script, bytes, board, sampling);
     sampling.tour();
-  } catch (const ipc::BadRegion&) {
+  } catch (const BadRegion&) {
     // Refused: that is an answer.
     return;
   }

@@ -6,11 +6,15 @@
 #include <string>
 
 #include "apps/streams/report.hpp"
-#include "ipc/roles/stream_files.hpp"
+#include "ipc/mapping/region.hpp"
+#include "ipc/options/stream.hpp"
+#include "ipc/roles/inspect.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/reader.hpp"
 #include "splinecast/solver.hpp"
+#include "splinecast/streams.hpp"
 #include "tests/fuzz/region_targets.hpp"
 #include "tests/fuzz/script.hpp"
 
@@ -60,7 +64,7 @@ class Files {
 void attempt(const auto& action) {
   try {
     action();
-  } catch (const ipc::StreamError&) {
+  } catch (const StreamError&) {
     return;
   } catch (const std::invalid_argument&) {
     return;
@@ -68,18 +72,18 @@ void attempt(const auto& action) {
 }
 
 void read(const std::string& name) {
-  ipc::Reader reader(name);
-  core::State state(reader.dimensions());
-  core::Time first{};
+  Reader reader(name);
+  State state(reader.dimensions());
+  const Time first = reader.first_time().value_or(Time(0));
   ipc::Head head;
-  if (!reader.first_time(first) || !reader.head(head)) first = core::Time(0);
-  for (const core::Time t : {first, head.settled_until, head.newest_knot, core::Time::max()}) {
-    if (!ipc::has_values(reader.sample(t, state))) continue;
+  (void)ipc::Internals::head(reader, head);
+  for (const Time t : {first, head.settled_until, head.newest_knot, Time::max()}) {
+    if (!has_values(reader.sample(t, state))) continue;
     for (const double value : state.values()) {
       require(value - value == 0, "a status with values has numbers in all dimensions");
     }
   }
-  (void)reader.wait(core::Time(0));
+  (void)reader.wait(Time(0));
   (void)reader.alive();
   (void)reader.names();
 }
@@ -90,18 +94,18 @@ void tell(const std::string& name) {
 }
 
 void solve(const std::string& name) {
-  ipc::Solver solver(name, {});
-  const ipc::MonotonicClock clock;
+  Solver solver(name, {});
+  const MonotonicClock clock;
   constexpr int kSteps = 4;
   for (int i = 0; i < kSteps && solver.attach(); ++i) {
     (void)solver.step(clock);
-    solver.wait(core::Time(0));
+    solver.wait(Time(0));
   }
 }
 
-ipc::ProducerOptions options_of(const std::string& name) {
+ProducerOptions options_of(const std::string& name) {
   const auto header = ipc::peek_header(name, kWaypoints, {});
-  if (!header || header->dimensions < 1 || header->dimensions > core::kMaxDimensions) return {};
+  if (!header || header->dimensions < 1 || header->dimensions > kMaxDimensions) return {};
   return {.dimensions = header->dimensions,
           .names = ipc::dimension_names(*header),
           .units = ipc::dimension_units(*header),
@@ -113,8 +117,8 @@ ipc::ProducerOptions options_of(const std::string& name) {
 }
 
 void produce(const std::string& name, Script script) {
-  const ipc::ProducerOptions options = options_of(name);
-  ipc::Producer producer(name, options);
+  const ProducerOptions options = options_of(name);
+  Producer producer(name, options);
   std::vector<double> values(options.dimensions);
   constexpr int kAppends = 4;
   for (int i = 0; i < kAppends; ++i) {
@@ -123,8 +127,8 @@ void produce(const std::string& name, Script script) {
     (void)producer.earliest();
   }
   (void)producer.replace_from(script.near(producer.last_time()), {});
-  (void)producer.wait_for_room(core::Time(0));
-  (void)producer.finish({.kind = core::ConditionKind::halt, .value = {}});
+  (void)producer.wait_for_room(Time(0));
+  (void)producer.finish({.kind = ConditionKind::halt, .value = {}});
 }
 
 }  // namespace
@@ -138,7 +142,7 @@ void try_roles(const StreamImage& image) {
   attempt([&] { produce(name, Script(image.script)); });
   attempt([&] { solve(name); });
   attempt([&] { read(name); });
-  attempt([&] { ipc::remove_stream(name); });
+  attempt([&] { remove_stream(name); });
 }
 
 void try_all(const StreamImage& image) {

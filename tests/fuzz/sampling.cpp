@@ -28,8 +28,8 @@ bool Sampling::find_marks(const ipc::Head& head, ipc::Word number, Marks& marks)
   require(are_numbers(segment_.coefficients().first(used)), "a segment's coefficients are numbers");
   require(segment_.left() <= segment_.right() && segment_.right() <= segment_.natural_right(),
           "a segment does not end before it begins");
-  const core::Time left = segment_.left();
-  const core::Time right = segment_.right();
+  const Time left = segment_.left();
+  const Time right = segment_.right();
   marks = {left, right, segment_.natural_right(),
            ipc::to_time(ipc::to_word(left) / 2 + ipc::to_word(right) / 2)};
   return true;
@@ -43,27 +43,27 @@ void Sampling::tour() {
     for (ipc::Word number = oldest; number <= head.newest; ++number) {
       Marks marks{};
       if (!find_marks(head, number, marks)) continue;
-      for (const core::Time t : marks) sample(t, false);
+      for (const Time t : marks) sample(t, false);
       sample(ipc::to_time(ipc::to_word(marks[0]) - 1), false);
-      sample_many(marks, core::Derivatives::all);
+      sample_many(marks, Derivatives::all);
     }
     snapshot(head.settled_until, head.newest_knot);
   }
-  for (const core::Time t : std::array{core::Time::min(), core::Time(0), core::Time::max()}) {
+  for (const Time t : std::array{Time::min(), Time(0), Time::max()}) {
     sample(t, true);
   }
-  snapshot(core::Time::min(), core::Time::max());
+  snapshot(Time::min(), Time::max());
 }
 
-void Sampling::sample(core::Time t, bool preview) {
+void Sampling::sample(Time t, bool preview) {
   const double untouched = std::numeric_limits<double>::quiet_NaN();
-  const core::StateRef all = state_.ref();
+  const StateRef all = state_.ref();
   for (const auto part : {all.position, all.velocity, all.acceleration, all.jerk}) {
     std::ranges::fill(part, untouched);
   }
   const auto status = preview ? sampler_->preview(t, all) : sampler_->sample(t, all);
-  require(status < ipc::SampleStatus::wrong_dimension, "a sample has a status");
-  if (ipc::has_values(status)) {
+  require(status < SampleStatus::wrong_dimension, "a sample has a status");
+  if (has_values(status)) {
     require(are_numbers(state_.values()), "a status with values has numbers in all dimensions");
   } else {
     require(std::ranges::all_of(state_.values(), [](double value) { return std::isnan(value); }),
@@ -71,31 +71,31 @@ void Sampling::sample(core::Time t, bool preview) {
   }
 }
 
-void Sampling::sample_many(std::span<const core::Time> times, core::Derivatives asked) {
-  const std::size_t stride = core::count(asked) * board_->dimensions();
+void Sampling::sample_many(std::span<const Time> times, Derivatives asked) {
+  const std::size_t stride = count(asked) * board_->dimensions();
   values_.assign(times.size() * stride, std::numeric_limits<double>::quiet_NaN());
-  statuses_.assign(times.size(), ipc::SampleStatus::wrong_dimension);
+  statuses_.assign(times.size(), SampleStatus::wrong_dimension);
   const ipc::Word r =
       sampler_->sample_many(times, {.values = values_, .status = statuses_, .derivatives = asked});
   for (std::size_t i = 0; i < times.size(); ++i) {
     const auto values = std::span(values_).subspan(i * stride, stride);
-    require(statuses_[i] < ipc::SampleStatus::wrong_dimension, "each time has a status");
-    if (r > 0 && ipc::has_values(statuses_[i])) {
+    require(statuses_[i] < SampleStatus::wrong_dimension, "each time has a status");
+    if (r > 0 && has_values(statuses_[i])) {
       require(are_numbers(values), "a time with values has numbers in all of them");
     } else {
-      require(!ipc::has_values(statuses_[i]), "without a revision no time has values");
+      require(!has_values(statuses_[i]), "without a revision no time has values");
     }
   }
   if (times.empty()) return;
-  const ipc::SampleBlock too_few{.values = std::span(values_).first(values_.size() - 1),
-                                 .status = statuses_,
-                                 .derivatives = asked};
+  const SampleBlock too_few{.values = std::span(values_).first(values_.size() - 1),
+                            .status = statuses_,
+                            .derivatives = asked};
   require(sampler_->sample_many(times, too_few) == 0, "a block of another size gets no values");
 }
 
-void Sampling::snapshot(core::Time from, core::Time to) {
+void Sampling::snapshot(Time from, Time to) {
   const auto status = sampler_->snapshot(from, to, snapshot_);
-  if (!ipc::has_values(status)) {
+  if (!has_values(status)) {
     require(snapshot_.segments().empty(), "a snapshot without values has no segments");
     return;
   }
@@ -109,7 +109,7 @@ void Sampling::snapshot(core::Time from, core::Time to) {
   }
 }
 
-core::Time Sampling::pick(Script& script) {
+Time Sampling::pick(Script& script) {
   Marks marks{};
   ipc::Head head;
   if (board_->copy_head(board_->look(), head) && head.newest > 0) {

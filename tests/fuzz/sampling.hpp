@@ -20,29 +20,29 @@ class Sampling {
   void tour();
 
   /// Once at t, as executed or not. With values, none may be infinite or no number.
-  void sample(core::Time t, bool preview);
+  void sample(Time t, bool preview);
 
   /// At these times under one revision, with these derivatives.
-  void sample_many(std::span<const core::Time> times, core::Derivatives asked);
+  void sample_many(std::span<const Time> times, Derivatives asked);
 
   /// Segments between two times.
-  void snapshot(core::Time from, core::Time to);
+  void snapshot(Time from, Time to);
 
   /// A time near an end of a segment, or any.
-  [[nodiscard]] core::Time pick(Script& script);
+  [[nodiscard]] Time pick(Script& script);
 
  private:
   /// The ends of a segment, and where it would end had it not been cut, and the middle.
-  using Marks = std::array<core::Time, 4>;
+  using Marks = std::array<Time, 4>;
   [[nodiscard]] bool find_marks(const ipc::Head& head, ipc::Word number, Marks& marks);
 
   const ipc::KnotBoardReader* board_;
   ipc::Sampler* sampler_;
-  core::State state_;
-  ipc::Snapshot snapshot_;
+  State state_;
+  ipc::BoardSnapshot snapshot_;
   ipc::BoardSegment segment_;
   std::vector<double> values_;
-  std::vector<ipc::SampleStatus> statuses_;
+  std::vector<SampleStatus> statuses_;
 };
 
 }  // namespace splinecast::fuzz

@@ -35,7 +35,7 @@ class Script {
     return value;
   }
   /// A time near another one, or any.
-  core::Time near(core::Time t) {
+  Time near(Time t) {
     const auto choice = byte();
     if (choice == 255) return ipc::to_time(word());
     const auto offset = static_cast<std::int8_t>(byte());

@@ -7,15 +7,15 @@
 #include <functional>
 #include <stdexcept>
 
-#include "ipc/roles/stream_files.hpp"
+#include "ipc/mapping/region.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/solver.hpp"
+#include "splinecast/streams.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
 namespace splinecast::fuzz {
 namespace {
 
-using core::Time;
 using ipc::RegionKind;
 using ipc::Word;
 
@@ -51,7 +51,7 @@ std::vector<Word> words_of(const std::string& stream, RegionKind kind) {
 /// A stream between a real producer and a real solver, in simulated time.
 class Recorder {
  public:
-  Recorder(ipc::ProducerOptions options, const ipc::SolverOptions& how)
+  Recorder(ProducerOptions options, const SolverOptions& how)
       : name_("fuzzseed" + std::to_string(getpid())),
         dimensions_(options.dimensions),
         producer_(name_, std::move(options)),
@@ -86,11 +86,11 @@ class Recorder {
   }
   void replace_from(Time t, Time next) {
     const auto values = motion(next, 2);
-    const core::Waypoint waypoint{.time = next, .position = std::span(values).first(dimensions_)};
+    const Waypoint waypoint{.time = next, .position = std::span(values).first(dimensions_)};
     (void)producer_.replace_from(t, std::span(&waypoint, next > t ? 1 : 0));
     step();
   }
-  void finish(core::ConditionKind end = core::ConditionKind::halt) {
+  void finish(ConditionKind end = ConditionKind::halt) {
     (void)producer_.finish({.kind = end, .value = {}});
     step();
   }
@@ -106,7 +106,7 @@ class Recorder {
 
  private:
   [[nodiscard]] std::vector<double> motion(Time t, double scale) const {
-    const double s = core::to_seconds(t - kBegin);
+    const double s = to_seconds(t - kBegin);
     std::vector<double> values;
     for (const int derivative : {0, 1, 2}) {
       for (std::size_t d = 0; d < dimensions_; ++d) {
@@ -120,31 +120,31 @@ class Recorder {
 
   std::string name_;
   std::size_t dimensions_;
-  ipc::Producer producer_;
-  ipc::Solver solver_;
+  Producer producer_;
+  Solver solver_;
 };
 
-ipc::ProducerOptions recorded(std::size_t dimensions) {
+ProducerOptions recorded(std::size_t dimensions) {
   return {.dimensions = dimensions,
           .names = {},
           .units = {},
           .kinds = {},
-          .clock = ipc::StreamClock::recorded,
+          .clock = StreamClock::recorded,
           .start = {},
           .limits = {},
           .capacity = 8};
 }
 
-ipc::ProducerOptions live(std::size_t dimensions) {
+ProducerOptions live(std::size_t dimensions) {
   auto options = recorded(dimensions);
-  options.clock = ipc::StreamClock::monotonic;
-  options.start = {.kind = core::ConditionKind::halt, .value = {}};
+  options.clock = StreamClock::monotonic;
+  options.start = {.kind = ConditionKind::halt, .value = {}};
   return options;
 }
 
-ipc::SolverOptions with(const char* method, std::size_t settle, std::size_t capacity) {
-  ipc::SolverOptions how;
-  how.method = core::find_method(method);
+SolverOptions with(const char* method, std::size_t settle, std::size_t capacity) {
+  SolverOptions how;
+  how.method = find_method(method);
   how.settle = settle;
   how.capacity = capacity;
   return how;
@@ -152,8 +152,8 @@ ipc::SolverOptions with(const char* method, std::size_t settle, std::size_t capa
 
 struct Plan {
   const char* name;
-  ipc::ProducerOptions options;
-  ipc::SolverOptions how;
+  ProducerOptions options;
+  SolverOptions how;
   std::function<void(Recorder&)> play;
 };
 
@@ -165,12 +165,12 @@ std::vector<Plan> plans() {
   auto live_smoothing = with("smoothing", 16, 64);
   live_smoothing.lambda = 1e-9;
   auto kinds = recorded(5);
-  kinds.kinds.assign(5, {.kind = core::DimensionKind::quaternion});
-  kinds.kinds[0] = {.kind = core::DimensionKind::wrap, .period = 1.5};
+  kinds.kinds.assign(5, {.kind = DimensionKind::quaternion});
+  kinds.kinds[0] = {.kind = DimensionKind::wrap, .period = 1.5};
   kinds.names = {"heading", "qx", "qy", "qz", "qw"};
   kinds.units = {"rad", "", "", "", ""};
   auto moving = recorded(1);
-  moving.start = {.kind = core::ConditionKind::velocity, .value = {2.0}};
+  moving.start = {.kind = ConditionKind::velocity, .value = {2.0}};
   // So wide that the two waypoints are joined from rest to rest, without an entry.
   auto wide = with("c2", 2, 32);
   wide.limits = {.acceleration = {1e6, 1e6}};
@@ -253,7 +253,7 @@ std::vector<Seed> make_seeds() {
       name = recorder.name();
       seeds.push_back({.name = plan.name, .image = recorder.image(script_of(seeds.size()))});
     }
-    ipc::remove_stream(name);
+    remove_stream(name);
   }
   return seeds;
 }

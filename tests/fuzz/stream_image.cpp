@@ -127,7 +127,7 @@ Range control_of(std::span<const Word> region, std::size_t first, std::size_t co
 ipc::BoardLayout layout_of(std::span<const Word> region) {
   if (region.size() < kBody) return {};
   const ipc::RegionHeader header = ipc::decode_header(region);
-  const bool has_size = header.dimensions >= 1 && header.dimensions <= core::kMaxDimensions &&
+  const bool has_size = header.dimensions >= 1 && header.dimensions <= kMaxDimensions &&
                         header.capacity >= 1 && header.capacity <= kMaxWords;
   if (!has_size) return {};
   const auto layout = ipc::BoardLayout::of(header.dimensions, header.capacity, header.control,

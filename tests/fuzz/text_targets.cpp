@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/advise/advice.hpp"
 #include "apps/cli/options.hpp"
 #include "apps/files/kinds.hpp"
 #include "apps/files/numbers.hpp"
@@ -15,6 +14,7 @@
 #include "apps/files/table_format.hpp"
 #include "apps/limits/file.hpp"
 #include "apps/process/exit_codes.hpp"
+#include "apps/recordings/advice.hpp"
 #include "apps/recordings/recording.hpp"
 #include "ipc/memory/names.hpp"
 #include "ipc/ring/waypoint_ring.hpp"
@@ -78,7 +78,7 @@ apps::TableOptions options_of(const std::string& line) {
 
 void require_whole(const apps::WaypointTable& table) {
   const std::size_t dimensions = table.dimensions();
-  require(dimensions >= 1 && dimensions <= core::kMaxDimensions, "a table has 1 to 64 dimensions");
+  require(dimensions >= 1 && dimensions <= kMaxDimensions, "a table has 1 to 64 dimensions");
   require(table.lines.size() == table.size() && table.kinds.size() == dimensions,
           "a table has a line for each row and a kind for each dimension");
   for (const auto* values : {&table.velocities, &table.accelerations}) {
@@ -86,7 +86,7 @@ void require_whole(const apps::WaypointTable& table) {
             "a derivative is given for all positions or none");
   }
   require(table.positions.size() == table.size() * dimensions, "each row has each position");
-  for (const core::Time t : table.times) require(core::is_time_in_range(t), "times are in range");
+  for (const Time t : table.times) require(is_time_in_range(t), "times are in range");
 }
 
 /// What `replay` does with a table before it sends it, and what `advise` makes of it.
@@ -129,8 +129,8 @@ void try_times(std::string_view text) {
   const apps::TableOptions options = options_of(take_line(text));
   const MemoryFile file(text);
   try {
-    for (const core::Time t : apps::read_times(file.path(), options.time_unit)) {
-      require(core::is_time_in_range(t), "times are in range");
+    for (const Time t : apps::read_times(file.path(), options.time_unit)) {
+      require(is_time_in_range(t), "times are in range");
     }
   } catch (const apps::InputError&) {
     return;
@@ -142,7 +142,7 @@ void try_polynomials(std::string_view text) {
   try {
     const apps::PolynomialFile read = apps::read_polynomials(file.path());
     require(read.curve.segments() > 0, "a file of polynomials has a piece");
-    require(read.names.size() <= core::kMaxDimensions, "a file has at most 64 dimensions");
+    require(read.names.size() <= kMaxDimensions, "a file has at most 64 dimensions");
   } catch (const apps::InputError&) {
     return;
   }
@@ -152,13 +152,13 @@ void try_limits(std::string_view text) {
   const MemoryFile file(text);
   try {
     const apps::LimitFile read = apps::read_limit_file(file.path());
-    for (const core::NamedLimits& joint : read.joints) {
-      core::require_limits({.velocity = {joint.velocity},
-                            .acceleration = {joint.acceleration},
-                            .jerk = {joint.jerk},
-                            .lower = {joint.lower},
-                            .upper = {joint.upper}},
-                           1);
+    for (const NamedLimits& joint : read.joints) {
+      require_limits({.velocity = {joint.velocity},
+                      .acceleration = {joint.acceleration},
+                      .jerk = {joint.jerk},
+                      .lower = {joint.lower},
+                      .upper = {joint.upper}},
+                     1);
     }
   } catch (const apps::InputError&) {
     return;
@@ -173,18 +173,18 @@ void try_words(std::string_view text) {
     (void)apps::parse_number(line);
     (void)apps::parse_count(line);
     (void)apps::unit_of_time_column(line);
-    if (const auto kind = core::parse_dimension(line)) {
-      require(core::parse_dimension(core::to_string(*kind)) == kind, "a kind reads back as it is");
+    if (const auto kind = parse_dimension(line)) {
+      require(parse_dimension(to_string(*kind)) == kind, "a kind reads back as it is");
     }
-    if (const auto condition = core::parse_condition(line)) {
-      require(core::parse_condition(core::to_string(*condition)) == condition,
+    if (const auto condition = parse_condition(line)) {
+      require(parse_condition(to_string(*condition)) == condition,
               "a condition reads back as it is");
     }
     try {
       ipc::require_stream_name(line);
       require(line.find('/') == std::string::npos && line.front() != '.',
               "a stream's name leads to no other folder");
-    } catch (const ipc::BadRequest&) {
+    } catch (const BadRequest&) {
       continue;
     }
   }

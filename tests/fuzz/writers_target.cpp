@@ -1,6 +1,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "ipc/options/curve.hpp"
+#include "ipc/options/stream.hpp"
 #include "ipc/solve/stream_solver.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/options.hpp"
@@ -92,13 +94,13 @@ class Stream {
   [[nodiscard]] ipc::WaypointRingWriter::Solved solved() {
     ipc::WaypointRingWriter::Solved known{.consumed = published_.tail()};
     const ipc::Look look = published_.look();
-    const bool is_known = look.revision > 0 && core::is_time_in_range(look.settled_until);
+    const bool is_known = look.revision > 0 && is_time_in_range(look.settled_until);
     if (ipc::live_options(board_header_) && is_known) known.settled_until = look.settled_until;
     return known;
   }
 
   /// A waypoint with all that a method may need, behind the last one.
-  core::Waypoint waypoint(Script& script) {
+  Waypoint waypoint(Script& script) {
     for (double& value : state_) {
       const auto byte = script.byte();
       value = byte == 255 ? ipc::to_double(script.word()) : static_cast<std::int8_t>(byte) / 16.0;
@@ -114,13 +116,13 @@ class Stream {
   void append(Script& script) { (void)producer_->append(waypoint(script), solved()); }
 
   void replace(Script& script) {
-    core::Waypoint next = waypoint(script);
-    const core::Time from = script.near(next.time);
+    Waypoint next = waypoint(script);
+    const Time from = script.near(next.time);
     (void)producer_->replace_from(from, std::span(&next, 1), solved());
   }
 
   void start(Script& script) {
-    const core::Waypoint at = waypoint(script);
+    const Waypoint at = waypoint(script);
     (void)producer_->start_from({.time = at.time,
                                  .position = at.position,
                                  .velocity = at.velocity,
@@ -129,9 +131,9 @@ class Stream {
   }
 
   void finish(Script& script) {
-    const auto kind = static_cast<core::ConditionKind>(script.byte() % 5);
-    core::Condition end{.kind = kind, .value = {}};
-    if (kind == core::ConditionKind::velocity || kind == core::ConditionKind::acceleration) {
+    const auto kind = static_cast<ConditionKind>(script.byte() % 5);
+    Condition end{.kind = kind, .value = {}};
+    if (kind == ConditionKind::velocity || kind == ConditionKind::acceleration) {
       end.value.assign(ring_layout_.dimensions, static_cast<double>(script.byte()));
     }
     (void)producer_->finish(end, solved());
@@ -139,8 +141,8 @@ class Stream {
 
   void step(Script& script) {
     const auto later = std::int64_t{script.byte()} << script.byte() % 24U;
-    clock_.time += core::Time(later);
-    const ipc::StepResult result = solver_->step(clock_);
+    clock_.time += Time(later);
+    const StepResult result = solver_->step(clock_);
     require(result.consumed <= ring_layout_.capacity, "a step takes no more than a ring holds");
     sampling_.sample(sampling_.pick(script), false);
   }
@@ -168,7 +170,7 @@ void try_writers(const StreamImage& image) {
   try {
     Stream stream(image);
     stream.play(Script(image.script));
-  } catch (const ipc::BadRegion&) {
+  } catch (const BadRegion&) {
     return;  // refused
   } catch (const std::invalid_argument&) {
     return;  // refused: options that a window cannot have

@@ -9,7 +9,10 @@
 #include <limits>
 #include <random>
 
+#include "ipc/board/knot_board.hpp"
 #include "ipc/layout/publication.hpp"
+#include "ipc/mapping/region.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/reader.hpp"
 #include "splinecast/solver.hpp"
 #include "tests/fixtures/processes/confined.hpp"
@@ -21,7 +24,6 @@
 namespace splinecast::testing {
 namespace {
 
-using core::Time;
 using namespace std::chrono_literals;
 
 constexpr std::size_t kDimensions = 64;  // most of a revision's time is its publication
@@ -111,10 +113,10 @@ std::int64_t cpu_time() {
 }
 
 void read_above(const std::string& stream, Confined& process) {
-  ipc::Reader reader(stream, 60s);
+  Reader reader(stream, 60s);
   PublicationWatch watch(stream);
-  const ipc::MonotonicClock clock;
-  core::State state(kDimensions);
+  const MonotonicClock clock;
+  State state(kDimensions);
   Alarm alarm;
   const sched_param above{.sched_priority = kPriority};
   if (sched_setscheduler(0, SCHED_FIFO, &above) != 0) _exit(kForbidden);
@@ -125,9 +127,9 @@ void read_above(const std::string& stream, Confined& process) {
     if (watch.is_midway()) ++page.midway;
     const std::int64_t before = cpu_time();
     for (int i = 0; i < kBurst; ++i) {
-      const ipc::SampleStatus status = reader.sample(clock.now(), state);
-      if (ipc::has_values(status)) ++page.answered;
-      if (status == ipc::SampleStatus::busy) ++page.busy;
+      const SampleStatus status = reader.sample(clock.now(), state);
+      if (has_values(status)) ++page.answered;
+      if (status == SampleStatus::busy) ++page.busy;
       ++page.rounds;
     }
     page.cpu_ns += static_cast<std::uint64_t>(cpu_time() - before);
@@ -140,16 +142,16 @@ TEST(PreemptedWriter, AReaderOfHigherPriorityOnItsCoreNeverWaitsForIt) {
   const TestStream stream;
   const OneCore core;
   Sending sending(stream.name(), kDimensions);
-  ipc::Solver solver(stream.name(), {.history = Time::zero(), .wake = false});
+  Solver solver(stream.name(), {.history = Time::zero(), .wake = false});
   ASSERT_TRUE(solver.attach());
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   const auto work = [&] {
     for (int i = 0; i < 100; ++i) {
       sending.send();
       solver.step(clock);
     }
   };
-  while (solver.head().knots < 100) work();
+  while (ipc::Internals::head(solver).knots < 100) work();
   const ConfinedEnd end =
       run_confined([&](Confined& process) { read_above(stream.name(), process); }, work);
   if (end.code == kForbidden) GTEST_SKIP() << "SCHED_FIFO takes CAP_SYS_NICE or RLIMIT_RTPRIO";

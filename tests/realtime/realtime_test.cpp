@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "ipc/roles/internals.hpp"
 #include "splinecast/reader.hpp"
 #include "splinecast/solver.hpp"
 #include "tests/fixtures/processes/confined.hpp"
@@ -19,7 +20,6 @@
 namespace splinecast::testing {
 namespace {
 
-using core::Time;
 using namespace std::chrono_literals;
 
 constexpr std::size_t kDimensions = 7;
@@ -29,7 +29,7 @@ constexpr std::uint64_t kWarmUp = 2'000;
 constexpr Time kWarmUpTime = 300ms;
 constexpr std::uint64_t kRounds = 20'000;
 constexpr std::size_t kHorizon = 40;  ///< times of a look ahead
-const ipc::SolverOptions kSolving{.history = Time::zero(), .wake = false};
+const SolverOptions kSolving{.history = Time::zero(), .wake = false};
 
 void expect_undisturbed(const ConfinedEnd& end) {
   EXPECT_EQ(end.signal, 0);
@@ -52,7 +52,7 @@ class RealTime : public ::testing::Test {
  protected:
   void SetUp() override {
     const ConfinedEnd end = run_confined([](Confined& process) {
-      const ipc::MonotonicClock clock;
+      const MonotonicClock clock;
       (void)clock.now();
       process.confine();
       for (int i = 0; i < 1000; ++i) (void)clock.now();
@@ -66,9 +66,9 @@ class RealTime : public ::testing::Test {
 TEST_F(RealTime, SamplingMakesNoSystemCallNoAllocationAndNoPageFault) {
   const TestStream stream;
   Sending sending(stream.name(), kDimensions);
-  ipc::Solver solver(stream.name(), kSolving);
+  Solver solver(stream.name(), kSolving);
   ASSERT_TRUE(solver.attach());
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   const auto work = [&] {
     sending.send();
     solver.step(clock);
@@ -76,26 +76,27 @@ TEST_F(RealTime, SamplingMakesNoSystemCallNoAllocationAndNoPageFault) {
   for (int i = 0; i < 200; ++i) work();
   const ConfinedEnd end = run_confined(
       [&](Confined& process) {
-        ipc::Reader reader(stream.name(), 60s);
-        core::State state(kDimensions);
+        Reader reader(stream.name(), 60s);
+        State state(kDimensions);
         std::mt19937_64 random(1);
         std::array<Time, kHorizon> times{};
-        std::array<ipc::SampleStatus, kHorizon> statuses{};
+        std::array<SampleStatus, kHorizon> statuses{};
         std::vector<double> values(kHorizon * state.values().size());
         const auto look_ahead = [&](Time now) {
           for (std::size_t i = 0; i < kHorizon; ++i) {
             times[i] = now + static_cast<std::int64_t>(i) * Sending::kInterval / 2;
           }
-          (void)reader.sampler().sample_many(times, {.values = values, .status = statuses});
+          (void)ipc::Internals::sampler(reader).sample_many(times,
+                                                            {.values = values, .status = statuses});
         };
         const auto round = [&] {
           const Time now = clock.now();
           const Time jump =
               Sending::kInterval * (static_cast<std::int64_t>(random() % 4000) - 2000);
-          const ipc::SampleStatus status =
+          const SampleStatus status =
               random() % 4 == 0 ? reader.preview(now + jump, state) : reader.sample(now, state);
-          if (ipc::has_values(status)) ++process.page().answered;
-          if (status == ipc::SampleStatus::busy) ++process.page().busy;
+          if (has_values(status)) ++process.page().answered;
+          if (status == SampleStatus::busy) ++process.page().busy;
           if (random() % 16 == 0) look_ahead(now);
           ++process.page().rounds;
         };
@@ -113,8 +114,8 @@ TEST_F(RealTime, SamplingMakesNoSystemCallNoAllocationAndNoPageFault) {
 
 TEST_F(RealTime, AppendingMakesNoSystemCallNoAllocationAndNoPageFault) {
   const TestStream stream;
-  ipc::Solver solver(stream.name(), kSolving);
-  const ipc::MonotonicClock clock;
+  Solver solver(stream.name(), kSolving);
+  const MonotonicClock clock;
   const ConfinedEnd end = run_confined(
       [&](Confined& process) {
         Sending sending(stream.name(), kDimensions);
@@ -143,14 +144,14 @@ TEST_F(RealTime, AppendingMakesNoSystemCallNoAllocationAndNoPageFault) {
 TEST_F(RealTime, SolvingMakesNoSystemCallNoAllocationAndNoPageFault) {
   const TestStream stream;
   Sending sending(stream.name(), kDimensions);
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   const ConfinedEnd end = run_confined(
       [&](Confined& process) {
-        ipc::Solver solver(stream.name(), kSolving);
+        Solver solver(stream.name(), kSolving);
         if (!solver.attach()) _exit(1);
         const auto solve = [&](std::uint64_t waypoints) {
-          const ipc::Word enough = solver.head().knots + waypoints;
-          while (solver.head().knots < enough) {
+          const ipc::Word enough = ipc::Internals::head(solver).knots + waypoints;
+          while (ipc::Internals::head(solver).knots < enough) {
             if (solver.step(clock).published) ++process.page().answered;
             ++process.page().rounds;
           }
@@ -171,11 +172,11 @@ TEST_F(RealTime, ASolverThatWakesReadersDoesCallTheSystem) {
   Sending sending(stream.name(), kDimensions);
   const ConfinedEnd end = run_confined(
       [&](Confined& process) {
-        ipc::SolverOptions waking = kSolving;
+        SolverOptions waking = kSolving;
         waking.wake = true;
-        ipc::Solver solver(stream.name(), waking);
+        Solver solver(stream.name(), waking);
         if (!solver.attach()) _exit(1);
-        const ipc::MonotonicClock clock;
+        const MonotonicClock clock;
         process.confine();
         for (;;) solver.step(clock);
       },

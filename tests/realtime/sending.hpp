@@ -15,20 +15,20 @@ namespace splinecast::testing {
 /// future. Allocates when made only.
 class Sending {
  public:
-  static constexpr core::Time kInterval = std::chrono::microseconds(50);
+  static constexpr Time kInterval = std::chrono::microseconds(50);
 
   Sending(const std::string& stream, std::size_t dimensions)
       : producer_(stream, {.dimensions = dimensions}), position_(dimensions) {
-    for (core::Waypoint& waypoint : replacing_) waypoint.position = position_;
+    for (Waypoint& waypoint : replacing_) waypoint.position = position_;
   }
 
-  [[nodiscard]] ipc::Producer& producer() { return producer_; }
+  [[nodiscard]] Producer& producer() { return producer_; }
 
   /// Appends a waypoint, or replaces the future by a few. Returns false if the ring is full, or
   /// enough has been sent ahead.
   bool send() {
-    const core::Time now = clock_.now();
-    const core::Time earliest = std::max(producer_.earliest(), now) + kMargin;
+    const Time now = clock_.now();
+    const Time earliest = std::max(producer_.earliest(), now) + kMargin;
     next_ = std::max(next_, earliest);
     if (next_ > now + kLead) return false;
     position_[0] = 1e-9 * static_cast<double>(next_.count() % 1'000'000'000);
@@ -36,31 +36,31 @@ class Sending {
     const bool accepted =
         producer_.append(
             {.time = next_, .position = position_, .velocity = {}, .acceleration = {}}) ==
-        ipc::AppendStatus::accepted;
+        AppendStatus::accepted;
     if (accepted) next_ += kInterval;
     return accepted;
   }
 
  private:
-  static constexpr core::Time kLead = std::chrono::milliseconds(100);
-  static constexpr core::Time kMargin = std::chrono::milliseconds(20);
+  static constexpr Time kLead = std::chrono::milliseconds(100);
+  static constexpr Time kMargin = std::chrono::milliseconds(20);
 
-  bool replace(core::Time from) {
-    core::Time time = from + kMargin / 2;
-    for (core::Waypoint& waypoint : replacing_) {
+  bool replace(Time from) {
+    Time time = from + kMargin / 2;
+    for (Waypoint& waypoint : replacing_) {
       waypoint.time = time;
       time += kInterval;
     }
-    const bool accepted = producer_.replace_from(from, replacing_) == ipc::AppendStatus::accepted;
+    const bool accepted = producer_.replace_from(from, replacing_) == AppendStatus::accepted;
     if (accepted) next_ = time;
     return accepted;
   }
 
-  ipc::Producer producer_;
-  ipc::MonotonicClock clock_;
+  Producer producer_;
+  MonotonicClock clock_;
   std::vector<double> position_;
-  std::array<core::Waypoint, 4> replacing_{};
-  core::Time next_{};
+  std::array<Waypoint, 4> replacing_{};
+  Time next_{};
   std::uint64_t sent_ = 0;
 };
 

@@ -5,7 +5,7 @@
 
 #include "splinecast/piecewise_polynomial.hpp"
 
-namespace splinecast::core {
+namespace [[gnu::visibility("default")]] splinecast {
 
 /// A curve as a B-spline: Σ P_i N_i(t), N_i over knots i … i + degree + 1.
 struct BSpline {
@@ -32,4 +32,4 @@ struct BSpline {
 /// with the control points, and if no interval is left. O(n·k²·(k + D)); allocates.
 [[nodiscard]] PiecewisePolynomial from_b_spline(const BSpline& spline);
 
-}  // namespace splinecast::core
+}  // namespace gnu::visibility("default")]]splinecast

@@ -6,7 +6,7 @@
 
 #include "splinecast/piecewise_polynomial.hpp"
 
-namespace splinecast::core {
+namespace [[gnu::visibility("default")]] splinecast {
 
 /// A segment by its control points: as many as its order, the first and the last on the curve,
 /// which lies within their convex hull.
@@ -28,4 +28,4 @@ struct BezierSegment {
 [[nodiscard]] PiecewisePolynomial from_bezier(std::size_t dimensions,
                                               std::span<const BezierSegment> segments);
 
-}  // namespace splinecast::core
+}  // namespace gnu::visibility("default")]]splinecast

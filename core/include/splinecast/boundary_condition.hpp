@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace splinecast::core {
+namespace [[gnu::visibility("default")]] splinecast {
 
 /// What holds at the first or the last waypoint of a spline.
 enum class ConditionKind {
@@ -63,4 +63,4 @@ enum class Tail {
 /// per dimension where its kind takes values, and none where it takes none.
 void require_values(const Condition& condition, std::size_t dimensions);
 
-}  // namespace splinecast::core
+}  // namespace gnu::visibility("default")]]splinecast

@@ -18,7 +18,7 @@
 /// and that angle a turn later do, or a quaternion and its negative, each waypoint is first moved
 /// to the *representative* nearest to the waypoint before; and what is read off the curve is put
 /// back into one form: an angle into [−P/2, P/2), a quaternion to unit length.
-namespace splinecast::core {
+namespace [[gnu::visibility("default")]] splinecast {
 
 enum class DimensionKind : std::uint8_t {
   linear = 0,
@@ -138,4 +138,4 @@ struct AngularMotion {
                                            std::span<const double> velocity,
                                            std::span<const double> acceleration) noexcept;
 
-}  // namespace splinecast::core
+}  // namespace gnu::visibility("default")]]splinecast

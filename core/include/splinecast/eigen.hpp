@@ -7,7 +7,7 @@
 
 /// Inline views for programs that use Eigen. No Eigen type crosses a compiled interface, because
 /// its alignment depends on compiler flags.
-namespace splinecast::core {
+namespace [[gnu::visibility("default")]] splinecast {
 
 /// Views the values of one derivative as a column vector of `Dimensions` rows; no copy. The span
 /// must hold `Dimensions` values (any number for Eigen::Dynamic) and outlive the view.
@@ -33,4 +33,4 @@ struct EigenState {
   }
 };
 
-}  // namespace splinecast::core
+}  // namespace gnu::visibility("default")]]splinecast

@@ -5,7 +5,7 @@
 #include "splinecast/piecewise_polynomial.hpp"
 #include "splinecast/waypoint.hpp"
 
-namespace splinecast::core {
+namespace [[gnu::visibility("default")]] splinecast {
 
 /// What shapes a curve that is solved at once.
 struct FitOptions {
@@ -34,4 +34,4 @@ struct FitOptions {
 /// leaves: what cross_validated_lambda minimises. At least three waypoints. O(n·D).
 [[nodiscard]] double cross_validation_score(const Waypoints& waypoints, double lambda);
 
-}  // namespace splinecast::core
+}  // namespace gnu::visibility("default")]]splinecast

@@ -6,11 +6,26 @@
 #include <string>
 #include <string_view>
 
-#include "core/basics/laws.hpp"
-#include "core/methods/slope_rule.hpp"
-#include "core/polynomial/segment.hpp"
+#include "splinecast/piecewise_polynomial.hpp"
 
 namespace splinecast::core {
+struct SlopeRule;
+}  // namespace splinecast::core
+
+namespace [[gnu::visibility("default")]] splinecast {
+
+/// What a method promises of its curves; the tests hold every method to it.
+struct Laws {
+  int continuity;            ///< C^0, C^1 or C^2 at the knots
+  int degree;                ///< highest degree of the polynomials in time that it reproduces on
+                             ///< any mesh, given the right ends
+  int order_of_convergence;  ///< error in position O(h^this) away from the ends, on regular
+                             ///< meshes, for a smooth function without extrema
+  bool is_interpolating = true;  ///< passes through its waypoints
+  bool is_linear = true;  ///< equivariant to every affine map of x, also between dimensions; else
+                          ///< to those of each dimension alone
+  bool is_scale_free = true;  ///< equivariant to scaling of x; else to shifts and mirroring only
+};
 
 /// Where a method's knot velocities come from.
 enum class Family : std::uint8_t {
@@ -26,9 +41,9 @@ struct Method {
   std::string_view name;
   std::uint64_t number = 0;  ///< names it in shared memory: never given to another
   Family family{};
-  const SlopeRule* rule = nullptr;  ///< of a local method
-  int order = kCubicOrder;          ///< of its segments; 6 also takes accelerations
-  std::size_t look_ahead = 0;       ///< knots after which a knot is exact; 0: never quite
+  const core::SlopeRule* rule = nullptr;  ///< of a local method
+  int order = kCubicOrder;                ///< of its segments; 6 also takes accelerations
+  std::size_t look_ahead = 0;             ///< knots after which a knot is exact; 0: never quite
   Laws laws{};
 
   /// Whether it can be solved while waypoints come.
@@ -72,4 +87,4 @@ struct Interpolant {
 /// Throws std::invalid_argument, naming the value, for a parameter out of range.
 void require_parameters(const Interpolant& interpolant);
 
-}  // namespace splinecast::core
+}  // namespace gnu::visibility("default")]]splinecast

@@ -1,12 +1,30 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
-#include "core/polynomial/segment.hpp"
+#include "splinecast/state.hpp"
+#include "splinecast/time.hpp"
 
-namespace splinecast::core {
+namespace [[gnu::visibility("default")]] splinecast {
+
+/// Coefficients per dimension: 4 for a cubic; 6 at splices, halts and stop tails.
+inline constexpr int kCubicOrder = 4;
+inline constexpr int kMaxOrder = 6;
+
+/// Highest order of a polynomial that is evaluated: a quintic integrated or raised leaves room.
+inline constexpr int kMaxPolynomialOrder = 16;
+
+/// What a segment is for; readers derive a sample's status from it.
+enum class SegmentKind : std::uint8_t {
+  spline = 0,     ///< between two waypoints
+  splice = 1,     ///< order-6 entry from a given state
+  stop_tail = 2,  ///< stop segment: behind the newest knot, ends at rest
+  hold = 3,       ///< at rest: between a stop tail and a splice, or, of no length, the one waypoint
+                  ///< of a finished stream
+};
 
 /// A curve of consecutive segments with D dimensions: n breaks, n − 1 polynomials of any order k
 /// from 1 to kMaxPolynomialOrder, each local to its left break (doc 003 §4.4, there MGPPRep). One
@@ -26,10 +44,6 @@ class PiecewisePolynomial {
 
   /// Highest order of its segments; 4 if it has none.
   [[nodiscard]] int order() const noexcept;
-
-  /// Appends a segment that begins where the last one ends. A hold of no length stands alone.
-  /// Throws std::invalid_argument if it does not fit.
-  void append(const Segment& segment);
 
   /// Appends a polynomial of order·D coefficients, [power][dimension], lowest power first, in
   /// seconds from `left`. Throws std::invalid_argument, with the values, for an order out of range,
@@ -77,4 +91,4 @@ class PiecewisePolynomial {
   std::vector<double> coefficients_;
 };
 
-}  // namespace splinecast::core
+}  // namespace gnu::visibility("default")]]splinecast

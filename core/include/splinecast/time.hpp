@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace splinecast::core {
+namespace [[gnu::visibility("default")]] splinecast {
 
 /// A stream's time and its differences: integer nanoseconds, so that epoch stamps lose nothing.
 using Time = std::chrono::nanoseconds;
@@ -37,4 +37,4 @@ using Time = std::chrono::nanoseconds;
   return a < Time::zero() ? Time::min() : Time::max();
 }
 
-}  // namespace splinecast::core
+}  // namespace gnu::visibility("default")]]splinecast

@@ -5,7 +5,7 @@
 
 #include "splinecast/time.hpp"
 
-namespace splinecast::core {
+namespace [[gnu::visibility("default")]] splinecast {
 
 /// The largest magnitude of a position, velocity or acceleration. Far beyond any use, and so far
 /// below a double's range that no formula overflows on the way.
@@ -32,6 +32,14 @@ struct Waypoint {
   std::span<const double> acceleration{};
 };
 
+/// A state at an instant. Spans hold one value per dimension; does not own them.
+struct Instant {
+  Time time{};
+  std::span<const double> position;
+  std::span<const double> velocity;
+  std::span<const double> acceleration;
+};
+
 /// Waypoints of a whole recording: values are [waypoint][dimension], `velocities` and
 /// `accelerations` empty if not given. A view: it owns nothing.
 struct Waypoints {
@@ -53,4 +61,4 @@ struct Waypoints {
   }
 };
 
-}  // namespace splinecast::core
+}  // namespace gnu::visibility("default")]]splinecast

@@ -5,7 +5,7 @@
 
 #include "splinecast/time.hpp"
 
-namespace splinecast::ipc {
+namespace [[gnu::visibility("default")]] splinecast {
 
 /// Which clock a stream's times are read against.
 enum class StreamClock : std::uint64_t {
@@ -22,32 +22,30 @@ class Clock {
   Clock& operator=(const Clock&) = delete;
   virtual ~Clock() = default;
 
-  [[nodiscard]] virtual core::Time now() const noexcept = 0;
+  [[nodiscard]] virtual Time now() const noexcept = 0;
 
   /// The same to within some milliseconds, never later: cheaper where that is enough.
-  [[nodiscard]] virtual core::Time about_now() const noexcept { return now(); }
+  [[nodiscard]] virtual Time about_now() const noexcept { return now(); }
 };
 
 /// The instant when a timeout that begins now has passed; the end of time for very long ones.
-[[nodiscard]] inline core::Time deadline(const Clock& clock, core::Time timeout) noexcept {
-  const core::Time now = clock.now();
-  return now + std::min(timeout, core::Time::max() - now);
+[[nodiscard]] inline Time deadline(const Clock& clock, Time timeout) noexcept {
+  const Time now = clock.now();
+  return now + std::min(timeout, Time::max() - now);
 }
 
 /// CLOCK_MONOTONIC.
 class MonotonicClock final : public Clock {
  public:
-  [[nodiscard]] core::Time now() const noexcept override { return read(CLOCK_MONOTONIC); }
-  [[nodiscard]] core::Time about_now() const noexcept override {
-    return read(CLOCK_MONOTONIC_COARSE);
-  }
+  [[nodiscard]] Time now() const noexcept override { return read(CLOCK_MONOTONIC); }
+  [[nodiscard]] Time about_now() const noexcept override { return read(CLOCK_MONOTONIC_COARSE); }
 
  private:
-  [[nodiscard]] static core::Time read(clockid_t clock) noexcept {
+  [[nodiscard]] static Time read(clockid_t clock) noexcept {
     timespec time{};
     clock_gettime(clock, &time);
-    return core::Time(std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec);
+    return Time(std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec);
   }
 };
 
-}  // namespace splinecast::ipc
+}  // namespace gnu::visibility("default")]]splinecast

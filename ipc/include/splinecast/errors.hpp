@@ -4,7 +4,7 @@
 
 /// What opening, attaching and removing may throw. Appending, solving and sampling never throw:
 /// they return statuses.
-namespace splinecast::ipc {
+namespace [[gnu::visibility("default")]] splinecast {
 
 /// Base of the errors below. The message names the stream and the offending values.
 class StreamError : public std::runtime_error {
@@ -43,4 +43,4 @@ class BadRequest : public StreamError {
   using StreamError::StreamError;
 };
 
-}  // namespace splinecast::ipc
+}  // namespace gnu::visibility("default")]]splinecast

@@ -1,23 +1,74 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
-#include "ipc/roles/refusals.hpp"
-#include "ipc/roles/replace_preview.hpp"
+#include "splinecast/boundary_condition.hpp"
+#include "splinecast/limits.hpp"
 #include "splinecast/options.hpp"
 #include "splinecast/status.hpp"
 #include "splinecast/waypoint.hpp"
 
-namespace splinecast::ipc {
+namespace [[gnu::visibility("default")]] splinecast {
+
+/// An item that the ring had accepted and the solver refused.
+struct ItemRefusal {
+  std::uint64_t item = 0;      ///< number of the item: Producer::appended() before its append
+  std::optional<Time> time{};  ///< of the item; unset if the ring has overwritten it
+  Refusal reason{};
+  std::optional<LimitExcess> excess{};  ///< of `beyond_limits`, unless the board has it no more
+};
+
+/// `item 17 refused: too late (time 123 ns)`; of one beyond a limit also where.
+[[nodiscard]] std::string to_string(const ItemRefusal& refusal);
+
+/// `acceleration of dimension 2 (wrist) is 12.5 at 456 ns, limit 10`, with the dimension's name if
+/// there is one among these.
+[[nodiscard]] std::string in_words(const LimitExcess& excess,
+                                   std::span<const std::string> names = {});
+
+/// What a solver has refused since it was asked the last time.
+struct Refusals {
+  std::vector<ItemRefusal> items{};  ///< in the order of the ring; at most 1,024
+  std::uint64_t missed = 0;  ///< further refusals, before these, that the board no longer has
+  std::uint64_t consumed =
+      0;  ///< items below this number are decided: refused ones are told by now
+};
+
+/// Largest magnitudes along a motion, one value per dimension; of a quaternion those of its
+/// components' derivatives.
+struct MotionPeaks {
+  std::vector<double> velocity;
+  std::vector<double> acceleration;
+  std::vector<double> jerk;
+};
+
+/// What a replacement would do to the curve.
+struct ReplacePreview {
+  AppendStatus status{};  ///< what `replace_from` would answer now; if not `accepted`, no more
+  bool is_known = false;  ///< a curve stands whose state at t could be read; else no more
+  Time begin{};           ///< of the motion: t, or what has settled if a stop is asked for later
+  Time duration{};        ///< of the entry onto the waypoints; of a stop, until it rests
+  bool enters = false;    ///< there is an entry; else the curve comes to rest from t on
+  std::optional<std::size_t> waypoint{};  ///< at which it ends; none: it ends beyond the last one
+  std::size_t passed_over = 0;            ///< waypoints that lie before its end
+  MotionPeaks entry;                      ///< of the entry, or of the stop instead
+  MotionPeaks motion;                     ///< of all from t until the curve rests
+  Excess worst{};  ///< where that is nearest to a limit or farthest beyond; `u` counts from
+                   ///< the segment's beginning. A ratio below 0: there are no limits
+};
 
 /// How a replacement goes over from the old motion to the new one.
 struct ReplaceOptions {
   /// The entry onto the new waypoints takes at least so long: those before its end are passed over.
   /// 0 or less: to the first one, or, with limits, to the first at which they can be kept. At most
   /// the stream's most interval.
-  core::Time blend{};
+  Time blend{};
 };
 
 /// The role that appends waypoints: the one writer of a stream's waypoint ring.
@@ -39,7 +90,7 @@ class Producer {
   /// Appends a waypoint. O(D), never blocks or allocates; one system call where it wakes a sleeping
   /// solver. Until a solver has come each call looks for one, which is a system call and may
   /// allocate. `full` asks to try again later.
-  [[nodiscard]] AppendStatus append(const core::Waypoint& waypoint) noexcept;
+  [[nodiscard]] AppendStatus append(const Waypoint& waypoint) noexcept;
 
   /// Replaces all that lies behind time t by these waypoints, from none upwards, as one revision:
   /// the curve goes on from its state at t by an entry, as ReplaceOptions has it, or, without a
@@ -54,7 +105,7 @@ class Producer {
   /// most. A stop at a t behind the newest knot waits for its turn, and at the latest for
   /// settled_until to reach t. A ring of 16 items or more keeps room for stops and for `finish`:
   /// when it is full of waypoints it takes them.
-  [[nodiscard]] AppendStatus replace_from(core::Time t, std::span<const core::Waypoint> waypoints,
+  [[nodiscard]] AppendStatus replace_from(Time t, std::span<const Waypoint> waypoints,
                                           const ReplaceOptions& options = {}) noexcept;
 
   /// What `replace_from` with these arguments would do, without changing anything: how long the
@@ -63,26 +114,25 @@ class Producer {
   /// plan it now: what is published meanwhile, and the time that passes, may change it. O(n·K·D),
   /// and reads the board; no system call but the search for a solver, as in append. Allocates: the
   /// second form reuses its memory. From the producer's thread. Throws std::bad_alloc only.
-  [[nodiscard]] ReplacePreview preview_replace(core::Time t,
-                                               std::span<const core::Waypoint> waypoints,
+  [[nodiscard]] ReplacePreview preview_replace(Time t, std::span<const Waypoint> waypoints,
                                                const ReplaceOptions& options = {});
-  void preview_replace(core::Time t, std::span<const core::Waypoint> waypoints,
-                       const ReplaceOptions& options, ReplacePreview& out);
+  void preview_replace(Time t, std::span<const Waypoint> waypoints, const ReplaceOptions& options,
+                       ReplacePreview& out);
 
   /// Says in which state the stream starts, before its first waypoint, which must be later:
   /// velocity and acceleration have one value per dimension. Otherwise as append.
-  [[nodiscard]] AppendStatus start_from(const core::Instant& state) noexcept;
+  [[nodiscard]] AppendStatus start_from(const Instant& state) noexcept;
 
   /// The earliest time that may still be changed: of a live stream what its solver has settled;
   /// min() of a recorded one, or while there is no solver.
-  [[nodiscard]] core::Time earliest() noexcept;
+  [[nodiscard]] Time earliest() noexcept;
 
   /// Ends the stream at its last waypoint; a live one at rest there. The last waypoint is the last
   /// one that the solver does not refuse: see refusals(). If that knot is frozen
   /// already, the stop tail runs and a splice goes back to it. Throws std::invalid_argument if the
   /// condition's values do not fit the dimensions or ask for motion in a quaternion's, BadRequest
   /// if a stream cannot meet it; otherwise as append.
-  [[nodiscard]] AppendStatus finish(const core::Condition& end);
+  [[nodiscard]] AppendStatus finish(const Condition& end);
 
   /// What the solver has refused since the last call, of the items that this producer appended:
   /// `accepted` says only that the ring has an item. All is known of an item once
@@ -95,26 +145,26 @@ class Producer {
   void refusals(Refusals& out);
 
   /// Waits until a solver has taken the stream up. Returns false after the timeout.
-  [[nodiscard]] bool wait_for_solver(core::Time timeout);
+  [[nodiscard]] bool wait_for_solver(Time timeout);
 
   /// Waits until the ring has room for a waypoint, or until the solver has consumed everything.
   /// Returns false after the timeout. Look at solver_alive() before waiting again.
-  [[nodiscard]] bool wait_for_room(core::Time timeout);
-  [[nodiscard]] bool wait_until_consumed(core::Time timeout);
+  [[nodiscard]] bool wait_for_room(Time timeout);
+  [[nodiscard]] bool wait_until_consumed(Time timeout);
 
   /// Whether a solver process lives; true where no descriptor is left to look with. System calls.
   [[nodiscard]] bool solver_alive() const;
 
   /// Items appended and, of these, consumed by the solver.
-  [[nodiscard]] Word appended() const noexcept;
-  [[nodiscard]] Word consumed() const noexcept;
+  [[nodiscard]] std::uint64_t appended() const noexcept;
+  [[nodiscard]] std::uint64_t consumed() const noexcept;
 
   /// The stream's random number, the same in both of its regions.
   [[nodiscard]] std::uint64_t stream_id() const noexcept;
 
   /// Whether waypoints of a producer that died stand in the ring, and the last one's time.
   [[nodiscard]] bool continues() const noexcept;
-  [[nodiscard]] core::Time last_time() const noexcept;
+  [[nodiscard]] Time last_time() const noexcept;
 
   [[nodiscard]] bool is_memory_locked() const noexcept;
 
@@ -126,4 +176,4 @@ class Producer {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace splinecast::ipc
+}  // namespace gnu::visibility("default")]]splinecast

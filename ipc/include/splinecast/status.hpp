@@ -4,7 +4,10 @@
 #include <cstdint>
 #include <string_view>
 
-namespace splinecast::ipc {
+#include "splinecast/limits.hpp"
+#include "splinecast/time.hpp"
+
+namespace [[gnu::visibility("default")]] splinecast {
 
 /// What `append` answers. Only `accepted` changes anything.
 enum class AppendStatus : std::uint8_t {
@@ -13,7 +16,7 @@ enum class AppendStatus : std::uint8_t {
   past,             ///< the time lies before what has settled; live streams only
   duplicate,        ///< the time is that of the waypoint before
   out_of_order,     ///< the time is earlier than that of the waypoint before
-  not_finite,       ///< a value is infinite, not a number, or beyond ±core::kLargestValue
+  not_finite,       ///< a value is infinite, not a number, or beyond ±kLargestValue
   too_close,        ///< less than the least interval after the waypoint before
   too_far_apart,    ///< more than the most interval after the waypoint before (on a live stream:
                     ///< after it, after what has settled and after now), or not within ±2⁶² ns
@@ -60,6 +63,25 @@ enum class SampleStatus : std::uint8_t {
 
 inline constexpr std::size_t kSampleStatuses = 10;
 
+/// Where a limit was passed: of the first segment beyond one, the place that is farthest beyond.
+struct LimitExcess {
+  std::uint64_t item = 0;   ///< of the waypoint
+  bool is_refused = false;  ///< else it was taken
+  LimitKind kind{};
+  std::size_t dimension = 0;  ///< of a quaternion its first
+  Time time{};
+  double value = 0;  ///< with its sign; of a quaternion a bound of its magnitude
+  double limit = 0;  ///< or the bound of a position
+};
+
+/// What one step of a solver did.
+struct StepResult {
+  std::uint64_t consumed = 0;  ///< ring items taken
+  bool published = false;      ///< whether a revision was committed
+  bool missed = false;         ///< whether one was discarded because it came too late: step again
+  bool damaged = false;        ///< whether somebody else has written to the board: nothing is done
+};
+
 /// Whether a sample of this status has values.
 [[nodiscard]] constexpr bool has_values(SampleStatus status) noexcept {
   return status <= SampleStatus::revised;
@@ -73,4 +95,4 @@ inline constexpr std::size_t kSampleStatuses = 10;
 [[nodiscard]] std::string_view to_string(Refusal refusal) noexcept;
 [[nodiscard]] std::string_view to_string(SampleStatus status) noexcept;
 
-}  // namespace splinecast::ipc
+}  // namespace gnu::visibility("default")]]splinecast

@@ -69,16 +69,16 @@ TEST(Advise, RefusesWhatItCannotRead) {
 /// A live stream at 100 Hz whose first waypoints are sent at once, so long before their time.
 class AdviseStream : public ::testing::Test {
  protected:
-  void send(core::Time lead, int rows) {
+  void send(Time lead, int rows) {
     Process& solver = solver_;
     solver.await_message("waiting");
-    ipc::Producer& producer = *producer_;
+    Producer& producer = *producer_;
     ASSERT_TRUE(producer.wait_for_solver(testing::kPatience));
-    const core::Time start = ipc::MonotonicClock().now() + lead;
+    const Time start = MonotonicClock().now() + lead;
     for (int i = 0; i < rows; ++i) {
       const double x = 0.01 * i;
       ASSERT_EQ(producer.append({.time = start + i * milliseconds(10), .position = {&x, 1}}),
-                ipc::AppendStatus::accepted);
+                AppendStatus::accepted);
       ASSERT_TRUE(producer.wait_until_consumed(testing::kPatience));
     }
   }
@@ -90,8 +90,8 @@ class AdviseStream : public ::testing::Test {
 
   TestStream stream_;
   Process solver_{{"solve", stream_.name(), "--settle", "6", "--freeze-ahead", "10"}};
-  std::optional<ipc::Producer> producer_{std::in_place, stream_.name(),
-                                         ipc::ProducerOptions{.names = {"x"}, .units = {"m"}}};
+  std::optional<Producer> producer_{std::in_place, stream_.name(),
+                                    ProducerOptions{.names = {"x"}, .units = {"m"}}};
 };
 
 TEST_F(AdviseStream, TakesWhatTheRingHoldsAndTheStreamsOwnOptions) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "splinecast/b_spline.hpp"
 #include "tests/fixtures/curves/mesh.hpp"
 #include "tests/fixtures/curves/recordings.hpp"
 #include "tests/fixtures/processes/process.hpp"
@@ -46,7 +47,7 @@ TEST(BSpline, SciPyEvaluatesTheEmittedCurveAndItsControlPointsToTheSamples) {
   for (const Arguments& how :
        {Arguments{}, {"--start", "halt", "--end", "halt"}, {"--online", "--settle", "2"}}) {
     const Arguments fit = Arguments{"fit", file} + how;
-    Arguments paths{std::string(SPLINECAST_SOURCE) + "/tests/apps/scipy_check.py"};
+    Arguments paths{std::string(SPLINECAST_SOURCE) + "/tests/apps/fit/scipy_check.py"};
     for (const Arguments& emit :
          {Arguments{"--emit", "bspline"}, {"--emit", "bezier"}, {"--at", at}}) {
       paths.push_back(folder.path(emit[1].substr(emit[1].find_last_of('/') + 1) + ".out"));

@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "apps/process/exit_codes.hpp"
-#include "ipc/roles/stream_files.hpp"
 #include "splinecast/errors.hpp"
+#include "splinecast/streams.hpp"
 #include "tests/apps/streams/life.hpp"
 
 /// A signal ends whatever runs: in order if it can, and if not, by force.
@@ -275,7 +275,7 @@ TEST_P(EveryVerb, OfManyProcessesEndsWithAllOfThemAndWith130) {
     ASSERT_TRUE(await([&] { return interpolated() > 10; })) << arguments[0];
     EXPECT_EQ(code_after(process, GetParam()), kInterrupted) << arguments[0];
     EXPECT_TRUE(has_no_children()) << arguments[0];
-    EXPECT_THROW(ipc::remove_stream(stream), ipc::NoSuchStream) << "left behind";
+    EXPECT_THROW(remove_stream(stream), NoSuchStream) << "left behind";
   }
 }
 
@@ -288,8 +288,8 @@ TEST_P(EveryVerb, OfManyProcessesEndsWithAllOfThemAtASecondSignal) {
   EXPECT_EQ(code_after(process, GetParam()) & ~127, 128);
   EXPECT_TRUE(has_no_children());
   try {
-    ipc::remove_stream(stream);
-  } catch (const ipc::NoSuchStream&) {  // the first signal was enough
+    remove_stream(stream);
+  } catch (const NoSuchStream&) {  // the first signal was enough
   }
 }
 

@@ -152,13 +152,13 @@ TEST_F(Ingest, WhatTheAppendRefusesIsNamedAndSkippedOrEndsTheStream) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", "t,x\n5.0000005,0\n6,1\n7,2\n8,1\n");
   const auto leave_unfinished = [&] {
-    ipc::Producer dies(name(), {.dimensions = 1,
-                                .names = {"x"},
-                                .clock = ipc::StreamClock::recorded,
-                                .start = {.kind = core::ConditionKind::own, .value = {}}});
+    Producer dies(name(), {.dimensions = 1,
+                           .names = {"x"},
+                           .clock = StreamClock::recorded,
+                           .start = {.kind = ConditionKind::own, .value = {}}});
     const double x = 0;
-    ASSERT_EQ(dies.append({.time = core::Time(5'000'000'000), .position = {&x, 1}}),
-              ipc::AppendStatus::accepted);
+    ASSERT_EQ(dies.append({.time = Time(5'000'000'000), .position = {&x, 1}}),
+              AppendStatus::accepted);
   };
   const std::string message = "a.csv:2: waypoint refused: too close (time 5000000500 ns)";
   Process solver({"solve", name()});
@@ -242,7 +242,7 @@ TEST_F(Ingest, AProducerThatWakesLateIsToldWhatHasGoneBy) {
   };
   ASSERT_TRUE(testing::await([&] { return solved("interpolated") > 20; }));
   replaying.signal(SIGSTOP);
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   ASSERT_TRUE(
       testing::await([&] { return clock.now().count() > solved("newest_knot_ns") + 400'000'000; }));
   replaying.signal(SIGCONT);
@@ -276,9 +276,8 @@ class LateIngest : public Ingest {
     };
     EXPECT_TRUE(testing::await([&] { return solver("interpolated") > 40; }));
     replaying.signal(SIGSTOP);
-    EXPECT_TRUE(testing::await([&] {
-      return ipc::MonotonicClock().now().count() > solver("newest_knot_ns") + 100'000'000;
-    }));
+    EXPECT_TRUE(testing::await(
+        [&] { return MonotonicClock().now().count() > solver("newest_knot_ns") + 100'000'000; }));
     replaying.signal(SIGCONT);
     return replaying.wait();
   }

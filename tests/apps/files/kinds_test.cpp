@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "splinecast/calculus.hpp"
 #include "tests/fixtures/curves/recordings.hpp"
 #include "tests/fixtures/curves/rotation.hpp"
 #include "tests/fixtures/processes/process.hpp"
@@ -22,8 +23,6 @@
 namespace splinecast::apps {
 namespace {
 
-using core::Dimension;
-using core::DimensionKind;
 using testing::Ended;
 using testing::Process;
 using testing::run;
@@ -40,7 +39,7 @@ std::string kinds_of(const Names& names, const Names& asked = {}, const Names& a
   try {
     for (const Dimension& kind : resolve_kinds("f.csv", {names, aliases}, options)) {
       if (!text.empty()) text += " ";
-      text += core::to_string(kind);
+      text += to_string(kind);
     }
   } catch (const InputError& error) {
     return error.what();

@@ -16,8 +16,6 @@
 namespace splinecast::apps {
 namespace {
 
-using core::Time;
-
 TEST(Numbers, TimesAreReadExactlyInEveryUnit) {
   const std::vector<std::tuple<const char*, TimeUnit, std::int64_t>> cases{
       {"1403636579.763555584", TimeUnit::seconds, 1403636579763555584},

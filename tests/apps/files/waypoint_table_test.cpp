@@ -10,7 +10,6 @@
 namespace splinecast::apps {
 namespace {
 
-using core::Time;
 using testing::TestFolder;
 
 std::string error_of(const std::string& path, const TableOptions& options = {}) {

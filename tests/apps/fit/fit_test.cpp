@@ -117,7 +117,7 @@ TEST(Fit, AddingAnEpochToAllTimesChangesNoBitButTheTimes) {
     near.insert(near.end(), how.begin(), how.end());
     const auto wanted = run(near);
     auto moved = mesh;
-    for (auto& t : moved.times) t += core::Time(1'700'000'000'000'000'000);
+    for (auto& t : moved.times) t += Time(1'700'000'000'000'000'000);
     auto far = std::vector<std::string>{"fit", folder.write("b.csv", to_csv(moved)), "--at",
                                         folder.write("bt.csv", testing::times_csv(moved, 4))};
     far.insert(far.end(), how.begin(), how.end());

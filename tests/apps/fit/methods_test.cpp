@@ -32,7 +32,7 @@ Arguments operator+(Arguments a, const Arguments& b) {
 /// A recording with velocities and accelerations, about `interval` apart.
 std::string recording(const TestFolder& folder, std::size_t knots) {
   const testing::Trial trial = testing::random_trial(3, knots, 2, 4);
-  const core::Waypoints all = trial.waypoints();
+  const Waypoints all = trial.waypoints();
   std::string text = "t_ns,x,y,v[0],v[1],a[0],a[1]\n";
   for (std::size_t i = 0; i < knots; ++i) {
     text += std::to_string(all.times[i].count());
@@ -45,16 +45,16 @@ std::string recording(const TestFolder& folder, std::size_t knots) {
 }
 
 /// What shapes the curve, beside the method.
-Arguments parameters(const core::Method& method) {
-  if (method.family == core::Family::smoothing) return {"--lambda", "1e-9"};
+Arguments parameters(const Method& method) {
+  if (method.family == Family::smoothing) return {"--lambda", "1e-9"};
   if (!method.laws.is_scale_free) return {"--time-scale", "0.5"};
   return {};
 }
 
-class MethodsOfTheProgram : public ::testing::TestWithParam<const core::Method*> {};
+class MethodsOfTheProgram : public ::testing::TestWithParam<const Method*> {};
 
 TEST_P(MethodsOfTheProgram, GoThroughThreeProcessesBitForBit) {
-  const core::Method& method = *GetParam();
+  const Method& method = *GetParam();
   const TestFolder folder;
   const auto file = recording(folder, 2000);
   const auto curve = Arguments{"--method", std::string(method.name)} + parameters(method);
@@ -87,9 +87,9 @@ TEST_P(MethodsOfTheProgram, GoThroughThreeProcessesBitForBit) {
   EXPECT_EQ(solver.wait().code, 0);
 }
 
-std::vector<const core::Method*> all_methods() {
-  std::vector<const core::Method*> all;
-  for (const core::Method& method : core::methods()) all.push_back(&method);
+std::vector<const Method*> all_methods() {
+  std::vector<const Method*> all;
+  for (const Method& method : methods()) all.push_back(&method);
   return all;
 }
 
@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(Every, MethodsOfTheProgram, ::testing::ValuesIn(all_met
 TEST(MethodsVerb, ListsEveryMethod) {
   const Ended listed = run({"methods"});
   ASSERT_EQ(listed.code, 0) << listed.err;
-  for (const core::Method& method : core::methods()) {
+  for (const Method& method : methods()) {
     EXPECT_NE(listed.out.find(method.name), std::string::npos) << method.name;
   }
 }
@@ -113,7 +113,7 @@ TEST(MethodsVerb, MeasuresAgainstATrajectory) {
   const Ended measured = run({"methods", "--against", cubic, "--every", "0.05", "--json"});
   ASSERT_EQ(measured.code, 0) << measured.err;
   for (const json& row : json::parse(measured.out)) {
-    const bool reproduces = core::find_method(row["method"].get<std::string>())->laws.degree >= 3;
+    const bool reproduces = find_method(row["method"].get<std::string>())->laws.degree >= 3;
     const double error = row["errors"][0];
     if (reproduces && (row["settle"].is_null() || row["settle"] == 1 || row["settle"] == 16)) {
       EXPECT_LT(error, row["method"] == "c2" && row["settle"] == 1 ? 1e-4 : 1e-9) << row.dump();

@@ -12,7 +12,8 @@
 
 #include "apps/fit/report_table.hpp"
 #include "apps/output/stream.hpp"
-#include "core/polynomial/measures.hpp"
+#include "core/polynomial/segment.hpp"
+#include "splinecast/calculus.hpp"
 #include "splinecast/fit.hpp"
 #include "tests/fixtures/curves/mesh.hpp"
 #include "tests/fixtures/curves/recordings.hpp"
@@ -23,7 +24,6 @@
 namespace splinecast::apps {
 namespace {
 
-using core::Time;
 using nlohmann::json;
 using testing::data_of;
 using testing::Ended;
@@ -34,7 +34,7 @@ using testing::TestFolder;
 /// drag from 0.4 to 0.6 of the first velocity chart, and after a double click.
 json facts_of(const TestFolder& folder, const std::string& page,
               const std::string& hash = "draw=all") {
-  return testing::facts_of(folder, page, "report_facts.js", hash);
+  return testing::facts_of(folder, page, "fit/report_facts.js", hash);
 }
 
 /// Waypoints that all curves of a report share, and the page of that report.
@@ -51,9 +51,9 @@ class Recording {
   Recording& operator=(const Recording&) = delete;
 
   void add(const std::string& method, double lambda = 0) {
-    core::FitOptions options;
-    options.interpolant = {.method = core::find_method(method), .lambda = lambda};
-    report_.curves.push_back({.name = method, .curve = core::fit(report_.waypoints, options)});
+    FitOptions options;
+    options.interpolant = {.method = find_method(method), .lambda = lambda};
+    report_.curves.push_back({.name = method, .curve = fit(report_.waypoints, options)});
   }
 
   [[nodiscard]] std::string page(const TestFolder& folder) const {
@@ -80,15 +80,15 @@ TEST(Report, StepsOfAQuaternionAreThoseOfItsUnitLength) {
     const auto q = coning.quaternion(0.01 * i);
     positions.insert(positions.end(), q.begin(), q.end());
   }
-  const core::Waypoints waypoints{.dimensions = 4, .times = times, .positions = positions};
-  core::FitOptions options;
-  options.interpolant.method = core::find_method("pchip");
-  const auto curve = core::fit(waypoints, options);
-  const std::vector<core::Dimension> kinds(4, {.kind = core::DimensionKind::quaternion});
-  const core::DimensionKinds quaternion{kinds};
+  const Waypoints waypoints{.dimensions = 4, .times = times, .positions = positions};
+  FitOptions options;
+  options.interpolant.method = find_method("pchip");
+  const auto curve = fit(waypoints, options);
+  const std::vector<Dimension> kinds(4, {.kind = DimensionKind::quaternion});
+  const DimensionKinds quaternion{kinds};
   std::array<double, 4> largest{};
-  core::State left(4);
-  core::State right(4);
+  State left(4);
+  State right(4);
   for (std::size_t i = 1; i < curve.segments(); ++i) {
     core::evaluate(4, curve.coefficients(i - 1), curve.seconds(i - 1), left.ref());
     core::evaluate(4, curve.coefficients(i), 0, right.ref());
@@ -192,7 +192,7 @@ TEST(Report, OverlaysCurvesAndItsTableHasTheirExactExtremes) {
     ASSERT_EQ(section.at("table").size(), 12U);
     for (std::size_t i = 0; i < 12; ++i) {
       const auto& curve = recording.report().curves[i / 4].curve;
-      const auto exact = core::extremes(curve, d, static_cast<int>(i % 4));
+      const auto exact = extremes(curve, d, static_cast<int>(i % 4));
       const json& values = section["table"][i].at("values");
       EXPECT_EQ(values.at(0), exact.least.value);
       EXPECT_EQ(values.at(1), exact.greatest.value);
@@ -210,7 +210,7 @@ TEST(Report, TheTableOfAParabolaOfTwoPiecesIsTheOneWorkedOutByHand) {
   REQUIRE_BROWSER();
   const TestFolder folder;
   Recording recording({Time(0), Time(1'000'000'000), Time(2'000'000'000)}, {0, 1, 0}, 1);
-  core::PiecewisePolynomial curve(1);
+  PiecewisePolynomial curve(1);
   curve.append(Time(0), Time(1'000'000'000), 4, std::vector<double>{0, 2, -1, 0});
   curve.append(Time(1'000'000'000), Time(2'000'000'000), 4, std::vector<double>{1, 0, 0, -1});
   recording.report().curves.push_back({.name = "by hand", .curve = curve});
@@ -255,7 +255,7 @@ TEST(Report, KeepsThePeaksOfALongRecordingInASmallFile) {
   EXPECT_EQ(data.at("stride"), 5);
   EXPECT_LE(data.at("seconds").size(), 4000U);
   for (int r = 0; r < 4; ++r) {
-    const auto exact = core::extremes(recording.report().curves[0].curve, 0, r);
+    const auto exact = extremes(recording.report().curves[0].curve, 0, r);
     const json& drawn =
         data.at("dimensions")[0].at("curves")[0].at("values")[static_cast<std::size_t>(r)];
     const double tolerance = 1e-6 * (exact.greatest.value - exact.least.value);

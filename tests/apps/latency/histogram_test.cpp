@@ -11,8 +11,6 @@
 namespace splinecast::apps {
 namespace {
 
-using core::Time;
-
 /// The times of tests/data/histogram.hgrm: Park and Miller's generator over 20 octaves.
 Histogram reference_times() {
   Histogram histogram;

@@ -10,7 +10,6 @@
 namespace splinecast::apps {
 namespace {
 
-using core::Time;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;

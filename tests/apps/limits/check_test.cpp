@@ -161,7 +161,7 @@ TEST_F(Check, FindsTheVelocitiesOfAFlightThatIsKnown) {
   const auto path = testing::shared_file("data/crazyswarm2_poly/figure8.csv");
   REQUIRE_SHARED_FILE(path);
   const PolynomialTrajectory flight(path);
-  const auto file = folder_.write("flight.csv", to_csv(flight.sampled(core::Time(50'000'000))));
+  const auto file = folder_.write("flight.csv", to_csv(flight.sampled(Time(50'000'000))));
   const auto peaks = peaks_of(flight, 1);
   const auto keeps = folder_.write("keeps.urdf", urdf_of(peaks, 1.01));
   const Ended kept = run({"check", file, "--limits", keeps, "--json"});

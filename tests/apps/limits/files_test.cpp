@@ -88,7 +88,7 @@ TEST_F(LimitFiles, AJointLimitsFileGivesScaledVelocityAndAccelerationJerkAndBoun
   const LimitFile file = read("joint_limits.yaml", kMoveIt);
   ASSERT_EQ(file.joints.size(), 2U);
   EXPECT_TRUE(file.notes.empty());
-  const core::NamedLimits& shoulder = file.joints[0];
+  const NamedLimits& shoulder = file.joints[0];
   EXPECT_EQ(shoulder.name, "shoulder");
   EXPECT_EQ(shoulder.velocity, 1);
   EXPECT_EQ(shoulder.acceleration, 3);
@@ -171,17 +171,16 @@ TEST_F(LimitFiles, BadRobotsAreRefusedWithLineAndValue) {
 }
 
 TEST(NamedLimits, BelongToTheDimensionOfTheirNameWithOrWithoutItsUnit) {
-  const std::vector<core::NamedLimits> joints{{.name = "q1", .velocity = 1, .upper = 3},
-                                              {.name = "q3", .velocity = 2}};
+  const std::vector<NamedLimits> joints{{.name = "q1", .velocity = 1, .upper = 3},
+                                        {.name = "q3", .velocity = 2}};
   const std::vector<std::string> names{"q1 [rad]", "q2"};
-  const core::MotionLimits limits = core::matched(joints, names);
+  const MotionLimits limits = core::matched(joints, names);
   EXPECT_EQ(limits.velocity, (std::vector<double>{1, 0}));
   EXPECT_TRUE(limits.lower.empty());
   EXPECT_EQ(limits.upper[0], 3);
   EXPECT_EQ(core::unmatched(joints, names), std::vector<std::string>{"q3"});
-  EXPECT_EQ(core::without_limits(limits, std::vector<core::Dimension>(2)),
-            std::vector<std::size_t>{1});
-  const std::vector<core::NamedLimits> twice{{.name = "q1"}, {.name = "q1 [rad]"}};
+  EXPECT_EQ(core::without_limits(limits, std::vector<Dimension>(2)), std::vector<std::size_t>{1});
+  const std::vector<NamedLimits> twice{{.name = "q1"}, {.name = "q1 [rad]"}};
   EXPECT_THROW((void)core::matched(twice, names), std::invalid_argument);
 }
 

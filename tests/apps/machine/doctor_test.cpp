@@ -49,7 +49,7 @@ MachineFacts good_machine() {
           .clock_offsets = "monotonic 0 0\nboottime 0 0\n",
           .shared_huge_pages = "always within_size advise [never] deny force\n",
           .cpu_times = "cpu  100 0 100 800 0 0 0 1 0 0\ncpu0 1 2 3\n",
-          .clock_cost = core::Time(20)};
+          .clock_cost = Time(20)};
 }
 
 constexpr std::size_t kNeeded = std::size_t{1} << 24U;
@@ -319,7 +319,7 @@ TEST(Doctor, ReadsFactsFromTheFilesOfAnyMachine) {
 
 TEST(Doctor, TellsLivingNamesFromDeadOnes) {
   const TestStream stream;
-  EXPECT_THROW((void)look_at_name(stream.name()), ipc::NoSuchStream);
+  EXPECT_THROW((void)look_at_name(stream.name()), NoSuchStream);
   {
     const ipc::OwnerLock lock(stream.name(), ipc::RegionKind::spline);
     EXPECT_EQ(look_at_name(stream.name()).state, NameState::living);

@@ -75,9 +75,9 @@ TEST(Environment, KnowsWhetherRealTimeProcessesAreThrottled) {
   environment.rt_runtime = "950000";
   EXPECT_EQ(throttled_time(environment), std::chrono::milliseconds(50));
   environment.rt_runtime = "1000000";
-  EXPECT_EQ(throttled_time(environment), core::Time::zero());
+  EXPECT_EQ(throttled_time(environment), Time::zero());
   environment.rt_runtime = "-1";
-  EXPECT_EQ(throttled_time(environment), core::Time::zero());
+  EXPECT_EQ(throttled_time(environment), Time::zero());
 }
 
 TEST(Environment, TellsBareMetalFromWhatIsVirtualAndPreemptionFromNone) {

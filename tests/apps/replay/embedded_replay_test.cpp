@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/replay/player.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/reader.hpp"
 #include "tests/fixtures/processes/process.hpp"
@@ -18,7 +19,6 @@
 namespace splinecast::apps {
 namespace {
 
-using core::Time;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
@@ -46,22 +46,22 @@ TEST(EmbeddedReplay, SettlesTheCurveBetweenWaypointsThatAreFarApart) {
   RefusedRows refused;
   ReplayReport report;
   std::thread replaying([&] { report = replay_table(table, options, refused); });
-  ipc::Reader reader(stream.name(), testing::kPatience);
-  core::State state(reader.dimensions());
-  const ipc::MonotonicClock clock;
+  Reader reader(stream.name(), testing::kPatience);
+  State state(reader.dimensions());
+  const MonotonicClock clock;
   ipc::Head head;
-  std::array<std::size_t, ipc::kSampleStatuses> count{};
+  std::array<std::size_t, kSampleStatuses> count{};
   const Time patience = clock.now() + testing::kPatience;
   for (Time now = clock.now(); now < patience; now = clock.now()) {
-    const ipc::SampleStatus status = reader.sample(now, state);
+    const SampleStatus status = reader.sample(now, state);
     ++count[static_cast<std::size_t>(status)];
-    if (reader.head(head) && head.finished && now > head.newest_knot) break;
+    if (ipc::Internals::head(reader, head) && head.finished && now > head.newest_knot) break;
     std::this_thread::sleep_for(milliseconds(1));
   }
   replaying.join();
   EXPECT_EQ(report.interpolated, 3U);
-  EXPECT_GT(count[static_cast<std::size_t>(ipc::SampleStatus::settled)], 100U);
-  EXPECT_EQ(count[static_cast<std::size_t>(ipc::SampleStatus::provisional)], 0U);
+  EXPECT_GT(count[static_cast<std::size_t>(SampleStatus::settled)], 100U);
+  EXPECT_EQ(count[static_cast<std::size_t>(SampleStatus::provisional)], 0U);
 }
 
 /// Positions at 100 Hz for half a second, of a motion in seconds.
@@ -135,22 +135,22 @@ TEST(EmbeddedReplay, OntoAStreamThatStillMovesWaitsForItsEnd) {
     (void)replay_table(table, options, refused);
     (void)replay_table(table, options, refused);
   });
-  ipc::Reader reader(stream.name(), testing::kPatience);
-  core::State state(reader.dimensions());
-  const ipc::MonotonicClock clock;
+  Reader reader(stream.name(), testing::kPatience);
+  State state(reader.dimensions());
+  const MonotonicClock clock;
   const Time patience = clock.now() + testing::kPatience;
   Time now = clock.now();
-  while (now < patience && reader.sample(now, state) != ipc::SampleStatus::retired) {
+  while (now < patience && reader.sample(now, state) != SampleStatus::retired) {
     std::this_thread::sleep_for(milliseconds(1));
     now = clock.now();
   }
   ipc::Head old;  // its mapping stays
-  EXPECT_TRUE(reader.head(old));
+  EXPECT_TRUE(ipc::Internals::head(reader, old));
   EXPECT_TRUE(old.finished);
   EXPECT_GE(now, old.newest_knot);
   replaying.join();
   ipc::Head second;
-  ASSERT_TRUE(ipc::Reader(stream.name()).head(second));
+  ASSERT_TRUE(ipc::Internals::head(Reader(stream.name()), second));
   EXPECT_EQ(second.knots, 3U);
   EXPECT_GE(second.newest_knot, old.newest_knot + *options.lead + milliseconds(600));
 }

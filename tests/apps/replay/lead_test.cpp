@@ -27,15 +27,15 @@ WaypointTable steady_table(milliseconds interval, std::size_t rows) {
 class ReplayLead : public ::testing::Test {
  protected:
   ReplayLead() {
-    board_.clock = static_cast<std::uint64_t>(ipc::StreamClock::monotonic);
+    board_.clock = static_cast<std::uint64_t>(StreamClock::monotonic);
     board_.settle = 8;
     board_.freeze_ahead = 5'000'000;
     board_.stop_time = 250'000'000;
   }
   /// The lead, and what is said about it.
-  core::Time lead(const WaypointTable& table, const ReplayOptions& options) {
+  Time lead(const WaypointTable& table, const ReplayOptions& options) {
     ::testing::internal::CaptureStderr();
-    const core::Time lead = choose_lead(table, options, board_);
+    const Time lead = choose_lead(table, options, board_);
     said_ = ::testing::internal::GetCapturedStderr();
     return lead;
   }
@@ -76,7 +76,7 @@ TEST_F(ReplayLead, SaysNothingWhereItDoesNotMatter) {
   const WaypointTable slow = steady_table(milliseconds(400), 500);
   EXPECT_EQ(lead(slow, {.stream = "arm", .rate = std::nullopt}), milliseconds(200));
   EXPECT_EQ(lead(steady_table(milliseconds(400), 1), {.stream = "arm"}), milliseconds(200));
-  board_.clock = static_cast<std::uint64_t>(ipc::StreamClock::recorded);
+  board_.clock = static_cast<std::uint64_t>(StreamClock::recorded);
   EXPECT_EQ(lead(slow, {.stream = "arm"}), milliseconds(200));
   EXPECT_EQ(said_, "");
 }

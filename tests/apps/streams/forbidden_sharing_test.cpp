@@ -118,14 +118,14 @@ TEST_F(ForbiddenSharing, AChildThatAnOwnerForkedStopsNoTakeover) {
   ASSERT_EQ(pipe(pipe_ends.data()), 0);
   const pid_t owner = fork();
   if (owner == 0) {
-    ipc::Producer producer(stream.name(), {.dimensions = 1, .clock = ipc::StreamClock::recorded});
-    ipc::Solver solver(stream.name(), {});
+    Producer producer(stream.name(), {.dimensions = 1, .clock = StreamClock::recorded});
+    Solver solver(stream.name(), {});
     if (!solver.attach()) _exit(1);
     const std::array<double, 1> one{1};
-    if (producer.append({.time = core::Time(0), .position = one}) != ipc::AppendStatus::accepted) {
+    if (producer.append({.time = Time(0), .position = one}) != AppendStatus::accepted) {
       _exit(1);
     }
-    (void)solver.step(ipc::MonotonicClock());
+    (void)solver.step(MonotonicClock());
     const pid_t child = fork();
     if (child != 0 && write(pipe_ends[1], &child, sizeof child) != sizeof child) _exit(1);
     for (;;) pause();
@@ -143,7 +143,7 @@ TEST_F(ForbiddenSharing, AChildThatAnOwnerForkedStopsNoTakeover) {
   next.await_message("taken over");
   next.signal(SIGTERM);
   judge(next.wait(), "solve", 0, {"taken over"});
-  ipc::Producer producer(stream.name(), {.dimensions = 1, .clock = ipc::StreamClock::recorded});
+  Producer producer(stream.name(), {.dimensions = 1, .clock = StreamClock::recorded});
   EXPECT_TRUE(producer.continues());
   EXPECT_EQ(kill(child, 0), 0) << "the child has ended too early to show anything";
   kill(child, SIGKILL);

@@ -7,8 +7,9 @@
 
 #include "ipc/memory/names.hpp"
 #include "ipc/ring/waypoint_ring.hpp"
-#include "ipc/roles/stream_files.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/reader.hpp"
+#include "splinecast/streams.hpp"
 #include "tests/apps/streams/life.hpp"
 
 /// A stream's life with real processes: who may come first, who may pause, who is refused.
@@ -76,14 +77,13 @@ TEST_F(Life, APausedProducerHoldsNobodyElseUp) {
     const auto now = info(name());
     return now["producer"]["appended"] == now["solver"]["consumed"];
   }));
-  ipc::Reader reader(name());
-  core::State state(reader.dimensions());
+  Reader reader(name());
+  State state(reader.dimensions());
   ipc::Head head;
-  ASSERT_TRUE(reader.head(head));
-  EXPECT_EQ(reader.sample(head.newest_knot - core::Time(1), state), ipc::SampleStatus::provisional);
-  EXPECT_EQ(reader.sample(head.newest_knot, state), ipc::SampleStatus::stopping);
-  EXPECT_EQ(reader.sample(head.newest_knot + core::Time(1'000'000'000), state),
-            ipc::SampleStatus::holding);
+  ASSERT_TRUE(ipc::Internals::head(reader, head));
+  EXPECT_EQ(reader.sample(head.newest_knot - Time(1), state), SampleStatus::provisional);
+  EXPECT_EQ(reader.sample(head.newest_knot, state), SampleStatus::stopping);
+  EXPECT_EQ(reader.sample(head.newest_knot + Time(1'000'000'000), state), SampleStatus::holding);
   EXPECT_TRUE(reader.alive().producer);
   EXPECT_TRUE(reader.alive().solver);
   replaying.signal(SIGCONT);
@@ -126,13 +126,13 @@ TEST_F(Life, RemovingAStreamTellsItsReadersToAttachAgain) {
     Process solver(solve());
     ASSERT_EQ(run(replay()).code, 0);
   }
-  ipc::Reader reader(name());
-  core::State state(reader.dimensions());
-  EXPECT_EQ(reader.sample(core::Time(1000), state), ipc::SampleStatus::settled);
+  Reader reader(name());
+  State state(reader.dimensions());
+  EXPECT_EQ(reader.sample(Time(1000), state), SampleStatus::settled);
   EXPECT_FALSE(reader.alive().solver);
   ASSERT_EQ(run({"rm", name()}).code, 0);
-  EXPECT_EQ(reader.sample(core::Time(1000), state), ipc::SampleStatus::retired);
-  EXPECT_EQ(reader.wait(core::Time(1)), ipc::WaitStatus::retired);
+  EXPECT_EQ(reader.sample(Time(1000), state), SampleStatus::retired);
+  EXPECT_EQ(reader.wait(Time(1)), WaitStatus::retired);
   for (const RegionKind kind : {RegionKind::waypoints, RegionKind::spline}) {
     EXPECT_FALSE(std::filesystem::exists(ipc::region_path(name(), kind)));
     EXPECT_FALSE(std::filesystem::exists(ipc::lock_path(name(), kind)));
@@ -147,11 +147,11 @@ TEST_F(Life, AReaderIsWokenWhenItsStreamIsRemoved) {
     Process solver(solve());
     ASSERT_EQ(run(replay()).code, 0);
   }
-  ipc::Reader reader(name());
-  EXPECT_EQ(reader.wait(core::Time(1)), ipc::WaitStatus::advanced);
-  EXPECT_EQ(reader.wait(core::Time(1)), ipc::WaitStatus::timed_out);
+  Reader reader(name());
+  EXPECT_EQ(reader.wait(Time(1)), WaitStatus::advanced);
+  EXPECT_EQ(reader.wait(Time(1)), WaitStatus::timed_out);
   Process removal({"rm", name()});
-  EXPECT_EQ(reader.wait(core::Time(60'000'000'000)), ipc::WaitStatus::retired);
+  EXPECT_EQ(reader.wait(Time(60'000'000'000)), WaitStatus::retired);
   EXPECT_EQ(removal.wait().code, 0);
 }
 
@@ -159,14 +159,14 @@ TEST_F(Life, AReplayOntoAFinishedStreamMakesItAnewAndReadersAttachAgain) {
   Process solver(solve());
   ASSERT_EQ(run(replay()).code, 0);
   const auto first = info(name());
-  ipc::Reader reader(name());
-  core::State state(reader.dimensions());
+  Reader reader(name());
+  State state(reader.dimensions());
   Process again(replay());
   expect_all_sent(again);
   EXPECT_NE(info(name())["stream_id"], first["stream_id"]);
-  EXPECT_EQ(reader.sample(core::Time(1000), state), ipc::SampleStatus::retired);
-  reader = ipc::Reader(name());
-  EXPECT_EQ(reader.sample(core::Time(1000), state), ipc::SampleStatus::settled);
+  EXPECT_EQ(reader.sample(Time(1000), state), SampleStatus::retired);
+  reader = Reader(name());
+  EXPECT_EQ(reader.sample(Time(1000), state), SampleStatus::settled);
   Process sampling(sample());
   expect_all_sampled(sampling);
 }
@@ -183,9 +183,9 @@ TEST_F(Life, AReplayOntoAFinishedStreamLeavesItAloneUntilASolverComes) {
   EXPECT_EQ(info(name())["stream_id"], first["stream_id"]);
   EXPECT_EQ(info(name())["state"], "finished");
   Process again(replay());
-  ipc::Reader reader(name());
-  core::State state(reader.dimensions());
-  EXPECT_EQ(reader.sample(core::Time(1000), state), ipc::SampleStatus::settled);
+  Reader reader(name());
+  State state(reader.dimensions());
+  EXPECT_EQ(reader.sample(Time(1000), state), SampleStatus::settled);
   Process solver(solve());
   expect_all_sent(again);
   EXPECT_NE(info(name())["stream_id"], first["stream_id"]);
@@ -208,21 +208,22 @@ TEST_F(Life, ALoopShiftsTimesByTheDurationPlusTheMedianInterval) {
 TEST_F(Life, ALiveStreamPlaysNowFromHaltToHalt) {
   Process solver(solve());
   Process replaying({"replay", file_, "--stream", name(), "--duration", "1", "--lead", "3000"});
-  ipc::Reader reader(name(), core::Time(30'000'000'000));
-  core::State state(reader.dimensions());
-  while (reader.sample(core::Time(0), state) == ipc::SampleStatus::no_data) {
-    ASSERT_NE(reader.wait(core::Time(60'000'000'000)), ipc::WaitStatus::timed_out);
+  Reader reader(name(), Time(30'000'000'000));
+  State state(reader.dimensions());
+  while (reader.sample(Time(0), state) == SampleStatus::no_data) {
+    ASSERT_NE(reader.wait(Time(60'000'000'000)), WaitStatus::timed_out);
   }
-  const core::Time now = ipc::MonotonicClock().now();
-  EXPECT_EQ(reader.sample(core::Time(0), state), ipc::SampleStatus::holding);
-  core::Time first{};
-  ASSERT_TRUE(reader.first_time(first));
-  EXPECT_LT(first - now, core::Time(3'000'000'000));
+  const Time now = MonotonicClock().now();
+  EXPECT_EQ(reader.sample(Time(0), state), SampleStatus::holding);
+  const auto oldest = reader.first_time();
+  ASSERT_TRUE(oldest.has_value());
+  const Time first = *oldest;
+  EXPECT_LT(first - now, Time(3'000'000'000));
   ASSERT_EQ(replaying.wait().code, 0);
   ipc::Head head;
-  ASSERT_TRUE(reader.head(head));
-  for (const core::Time end : {first, head.newest_knot}) {
-    EXPECT_TRUE(ipc::has_values(reader.sample(end, state)));
+  ASSERT_TRUE(ipc::Internals::head(reader, head));
+  for (const Time end : {first, head.newest_knot}) {
+    EXPECT_TRUE(has_values(reader.sample(end, state)));
     for (const double v : state.velocity()) EXPECT_NEAR(v, 0, 1e-9);
     for (const double a : state.acceleration()) EXPECT_NEAR(a, 0, 1e-5);
   }
@@ -330,7 +331,7 @@ TEST_F(Life, TheDemoEndsWithASummaryAndLeavesNothingBehind) {
   EXPECT_EQ(summary["readers"].size(), 2U);
   EXPECT_GT(summary["all_readers"]["by_status"][0], 100);
   EXPECT_LT(summary["all_readers"]["step_at_knots"][1], 1e-9);
-  for (const std::string& stream : ipc::stream_names()) {
+  for (const std::string& stream : stream_names()) {
     EXPECT_FALSE(stream.starts_with("demo.")) << stream;
   }
 }

@@ -107,7 +107,7 @@ TEST(Pipeline, QuadrotorPolynomialsAt100HzComeThroughBitForBit) {
     const auto path = testing::shared_file(std::string("data/crazyswarm2_poly/") + name);
     REQUIRE_SHARED_FILE(path);
     const TestFolder folder;
-    const auto mesh = testing::PolynomialTrajectory(path).sampled(core::Time(10'000'000));
+    const auto mesh = testing::PolynomialTrajectory(path).sampled(Time(10'000'000));
     const auto file = folder.write("a.csv", testing::to_csv(mesh));
     const auto at = folder.write("at.csv", testing::times_csv(mesh, 2));
     for (const Shape& shape : shapes()) expect_same_bits(file, {}, at, shape);
@@ -134,11 +134,11 @@ TEST(Pipeline, ASolverKilledInTheMiddleIsTakenOverBitForBit) {
   auto mesh = testing::random_mesh(3, 3000, 2, 5);
   // Paced, about 2 s long, so that every solver is killed somewhere inside the stream.
   const double scale = 2e9 / static_cast<double>(mesh.times.back().count());
-  for (core::Time& t : mesh.times) {
-    t = core::Time(std::llround(static_cast<double>(t.count()) * scale));
+  for (Time& t : mesh.times) {
+    t = Time(std::llround(static_cast<double>(t.count()) * scale));
   }
   for (std::size_t i = 1; i < mesh.size(); ++i) {
-    mesh.times[i] = std::max(mesh.times[i], mesh.times[i - 1] + core::Time(1000));
+    mesh.times[i] = std::max(mesh.times[i], mesh.times[i - 1] + Time(1000));
   }
   const auto file = folder.write("a.csv", testing::to_csv(mesh));
   const auto at = folder.write("at.csv", testing::times_csv(mesh, 2));

@@ -39,8 +39,8 @@ TEST(Chaos, NoReaderNoticesThatEverybodyIsKilledAndStarved) {
 
 TEST(Chaos, IsNotJudgedIfItIsInterruptedAndNoReaderSpins) {
   constexpr int kMoving = 200;  // waypoints until the motion has begun: it takes time to end
-  const ipc::MonotonicClock clock;
-  const core::Time begin = clock.now();
+  const MonotonicClock clock;
+  const Time begin = clock.now();
   testing::Process demo({"demo", "--chaos", "--seconds", "1000", "--json"});
   const std::string stream = "demo." + std::to_string(demo.pid());
   ASSERT_TRUE(testing::await([&] {

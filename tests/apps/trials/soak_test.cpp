@@ -15,6 +15,7 @@
 #include "ipc/memory/names.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/producer.hpp"
+#include "splinecast/streams.hpp"
 #include "tests/apps/streams/life.hpp"
 
 /// Many streams in few real processes.
@@ -25,19 +26,17 @@ TEST_F(Life, OneProcessSolvesWhatAPatternFindsAndASecondTakesOverWhenItIsKilled)
   const std::string pattern = name() + "*";
   const TestStream another;
   Process first({"solve", pattern, "--capacity", "4096"});
-  ipc::Producer producer(name(),
-                         {.dimensions = 1, .clock = ipc::StreamClock::recorded, .start = {}});
+  Producer producer(name(), {.dimensions = 1, .clock = StreamClock::recorded, .start = {}});
   first.await_message("'" + name() + "': solving");
   Process second({"solve", pattern, another.name()});
   second.await_message("'" + name() + "': left to the process that solves it");
-  ASSERT_TRUE(producer.wait_for_solver(core::Time(1)));
+  ASSERT_TRUE(producer.wait_for_solver(Time(1)));
   const std::vector<double> x{1};
-  ASSERT_EQ(producer.append({.time = core::Time(0), .position = x}), ipc::AppendStatus::accepted);
+  ASSERT_EQ(producer.append({.time = Time(0), .position = x}), AppendStatus::accepted);
   EXPECT_TRUE(producer.wait_until_consumed(testing::kPatience));
   first.signal(SIGKILL);
   second.await_message("'" + name() + "': taken over");
-  ASSERT_EQ(producer.append({.time = core::Time(10'000'000), .position = x}),
-            ipc::AppendStatus::accepted);
+  ASSERT_EQ(producer.append({.time = Time(10'000'000), .position = x}), AppendStatus::accepted);
   EXPECT_TRUE(producer.wait_until_consumed(testing::kPatience));
   second.signal(SIGINT);
   EXPECT_EQ(second.wait().code, 0);
@@ -98,7 +97,7 @@ TEST_F(Soak, ShowsATableAndRemovesItsStreams) {
   EXPECT_NE(ended.out.find("consumed"), std::string::npos) << ended.out;
   EXPECT_NE(ended.out.find("streams that lost one: 0"), std::string::npos) << ended.out;
   EXPECT_TRUE(std::ranges::none_of(
-      ipc::stream_names(), [&](const std::string& stream) { return stream.starts_with(mine); }));
+      stream_names(), [&](const std::string& stream) { return stream.starts_with(mine); }));
 }
 
 TEST_F(Soak, IsNotJudgedIfItIsInterrupted) {
@@ -127,7 +126,7 @@ TEST_F(Life, AProducerOfSoakThatHasRunDryGoesOn) {
   constexpr ipc::Word kMore = 20;
   Process solver(solve());
   const Child producer(
-      [this] { return run_soak_producers({name()}, 100, ipc::MonotonicClock().now()); });
+      [this] { return run_soak_producers({name()}, 100, MonotonicClock().now()); });
   ASSERT_TRUE(await([this] { return field("solver", "interpolated") > kMore; }));
   producer.signal(SIGSTOP);
   ASSERT_TRUE(await([this] { return field("solver", "underruns") > 0; }));
@@ -168,11 +167,11 @@ TEST(ProcessUse, CountsADescriptorAndMemoryThatAreTaken) {
 TEST(ProcessUse, CpuTimeIsThatOfTheProcess) {
   constexpr pid_t kNoProcess = 4'194'305;  // beyond what Linux gives
 
-  const core::Time before = cpu_time(getpid());
+  const Time before = cpu_time(getpid());
   EXPECT_TRUE(
       testing::await([&] { return cpu_time(getpid()) - before >= std::chrono::milliseconds(20); }));
   EXPECT_FALSE(process_use(-1));
-  EXPECT_EQ(cpu_time(kNoProcess), core::Time::zero());
+  EXPECT_EQ(cpu_time(kNoProcess), Time::zero());
 }
 
 }  // namespace

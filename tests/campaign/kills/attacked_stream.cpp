@@ -11,15 +11,16 @@
 
 #include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
-#include "ipc/roles/stream_files.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/errors.hpp"
+#include "splinecast/streams.hpp"
 #include "tests/campaign/kills/roles.hpp"
 
 namespace splinecast::campaign {
 namespace {
 
 /// Between two looks of a wait.
-constexpr core::Time kTick = std::chrono::microseconds(500);
+constexpr Time kTick = std::chrono::microseconds(500);
 
 constexpr std::size_t index_of(Role role) { return static_cast<std::size_t>(role); }
 
@@ -64,7 +65,7 @@ void AttackedStream::start_reader(std::size_t which) {
 void AttackedStream::tick() {
   observe();
   reap();
-  const core::Time now = clock_.now();
+  const Time now = clock_.now();
   note_recoveries(now);
   if (!plan_.is_live() && head_.finished && observed_id() != compared_id_ && !producer_) {
     end_life();
@@ -75,14 +76,14 @@ void AttackedStream::tick() {
 }
 
 std::uint64_t AttackedStream::observed_id() const {
-  return observer_ ? observer_->header().stream_id : 0;
+  return observer_ ? ipc::Internals::header(*observer_).stream_id : 0;
 }
 
 /// The stream's ring as it stands, if it does.
 std::optional<RingCheck> AttackedStream::ring() const {
   try {
     return RingCheck(plan_, journal_->observer);
-  } catch (const ipc::NoSuchStream&) {
+  } catch (const NoSuchStream&) {
     return std::nullopt;
   }
 }
@@ -95,13 +96,13 @@ void AttackedStream::observe() {
       observer_.emplace(plan_.stream);
       check_.emplace(plan_, *observer_, journal_->observer);
     }
-  } catch (const ipc::NoSuchStream&) {
+  } catch (const NoSuchStream&) {
     return;
   }
-  const bool has_head = observer_->head(head_);
-  const ipc::SampleStatus status = check_->peek(head_.newest_knot);
-  has_sampled_ = has_head && ipc::has_values(status);
-  if (status != ipc::SampleStatus::retired) return;
+  const bool has_head = ipc::Internals::head(*observer_, head_);
+  const SampleStatus status = check_->peek(head_.newest_knot);
+  has_sampled_ = has_head && has_values(status);
+  if (status != SampleStatus::retired) return;
   check_.reset();
   observer_.reset();
   head_ = {};
@@ -147,7 +148,7 @@ void AttackedStream::note_kill(Role role) {
   }
 }
 
-void AttackedStream::note_recoveries(core::Time now) {
+void AttackedStream::note_recoveries(Time now) {
   for (const Role role : {Role::producer, Role::solver}) {
     apps::Recovery& recovery = findings_.recovery[index_of(role)];
     if (!recovery.is_awaited() || !has_sampled_) continue;
@@ -174,7 +175,7 @@ bool AttackedStream::may_produce() const {
   return !left || !left->is_finished() || left->stream_id() == compared_id_;
 }
 
-void AttackedStream::watch(core::Time now) {
+void AttackedStream::watch(Time now) {
   for (std::size_t which = 0; which < readers_.size(); ++which) {
     Reading& reading = readers_[which];
     const std::uint64_t turns = journal_->readers[which].turns;
@@ -214,9 +215,8 @@ bool AttackedStream::is_calm() const {
 /// it.
 void AttackedStream::end_life() {
   count_items();
-  core::Time first{};
   const std::uint64_t before = journal_->observer.segments;
-  if (observer_->first_time(first)) check_->survey(first, head_.newest_knot);
+  if (const auto first = observer_->first_time()) check_->survey(*first, head_.newest_knot);
   if (journal_->observer.segments - before != plan_.reference.size() || head_.refused > 0) {
     ++journal_->observer.wrong;
     apps::say(fmt::format("'{}': {} segments of {}, {} items refused", plan_.stream,
@@ -254,7 +254,7 @@ void AttackedStream::remove_at_end() {
     run_remover(plan_, *journal_);
     return nullptr;
   });
-  const core::Time end = clock_.now() + *removal_;
+  const Time end = clock_.now() + *removal_;
   removal_.reset();
   std::optional<int> code;
   while (!(code = remover->ended()) && clock_.now() < end) apps::sleep_until(clock_.now() + kTick);
@@ -265,7 +265,7 @@ void AttackedStream::remove_at_end() {
 }
 
 bool AttackedStream::tick_until(const std::function<bool()>& condition) {
-  const core::Time end = ipc::deadline(clock_, kPatience);
+  const Time end = deadline(clock_, kPatience);
   while (!condition()) {
     if (clock_.now() > end) return false;
     tick();
@@ -279,9 +279,9 @@ void AttackedStream::end(std::optional<apps::Child>& child) {
   if (!child) return;
   child->stop();
   std::optional<int> code;
-  const core::Time deadline = ipc::deadline(clock_, kPatience);
+  const Time end = deadline(clock_, kPatience);
   while (!(code = child->ended())) {
-    if (clock_.now() > deadline) {
+    if (clock_.now() > end) {
       count_hang("a process does not end");
       break;
     }
@@ -323,8 +323,8 @@ void AttackedStream::remove_files() {
   check_.reset();
   observer_.reset();
   try {
-    ipc::remove_stream(plan_.stream);
-  } catch (const ipc::NoSuchStream&) {
+    remove_stream(plan_.stream);
+  } catch (const NoSuchStream&) {
     // it has been removed
   } catch (const std::exception& error) {
     apps::say(error.what());

@@ -37,7 +37,7 @@ class AttackedStream {
 
   /// Lets `rm` remove the stream once it has come to its end, with its solver killed, and kills
   /// `rm` after so long, if it is still at it then. For recorded streams.
-  void kill_remover_at_end(core::Time after) { removal_ = after; }
+  void kill_remover_at_end(Time after) { removal_ = after; }
 
   /// Whether everybody runs, and new data has been sampled since the last kill.
   [[nodiscard]] bool is_calm() const;
@@ -49,7 +49,7 @@ class AttackedStream {
   struct Reading {
     std::optional<apps::Child> child;
     std::uint64_t turns = 0;
-    core::Time moved{};  ///< when `turns` last did
+    Time moved{};  ///< when `turns` last did
   };
   /// What stood when a writer was killed: what is more is new.
   struct Mark {
@@ -64,9 +64,9 @@ class AttackedStream {
   void reap();
   void reap(std::optional<apps::Child>& child, Role role);
   void note_kill(Role role);
-  void note_recoveries(core::Time now);
+  void note_recoveries(Time now);
   void restart();
-  void watch(core::Time now);
+  void watch(Time now);
   void count_hang(const std::string& what);
   [[nodiscard]] bool may_produce() const;
   void end_life();
@@ -80,20 +80,20 @@ class AttackedStream {
 
   Plan plan_;
   SharedJournal journal_;
-  ipc::MonotonicClock clock_;
+  MonotonicClock clock_;
   std::optional<apps::Child> producer_;
   std::optional<apps::Child> solver_;
   std::vector<Reading> readers_;
   std::size_t killed_reader_ = 0;
-  std::optional<ipc::Reader> observer_;
+  std::optional<Reader> observer_;
   std::optional<CurveCheck> check_;
   ipc::Head head_;
   bool has_sampled_ = false;  ///< at the newest knot, in this tick
   std::array<Mark, kRoles> marks_;
   std::uint64_t compared_id_ = 0;  ///< stream whose end has been compared
   Mark progress_;
-  core::Time moved_{};
-  std::optional<core::Time> removal_;
+  Time moved_{};
+  std::optional<Time> removal_;
   bool is_last_life_ = false;  ///< the next end of the stream is the last one
   bool is_ending_ = false;     ///< nobody is started any more
   Findings findings_;

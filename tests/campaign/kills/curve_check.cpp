@@ -8,6 +8,7 @@
 
 #include "apps/process/messages.hpp"
 #include "core/polynomial/segment.hpp"
+#include "ipc/roles/internals.hpp"
 
 namespace splinecast::campaign {
 namespace {
@@ -25,11 +26,11 @@ bool differ(std::span<const double> a, std::span<const double> b, double roundin
 
 }  // namespace
 
-CurveCheck::CurveCheck(const Plan& plan, ipc::Reader& reader, ReaderFacts& facts)
+CurveCheck::CurveCheck(const Plan& plan, Reader& reader, ReaderFacts& facts)
     : plan_(&plan),
       reader_(&reader),
       facts_(&facts),
-      watch_(reader.sampler(), reader.dimensions()),
+      watch_(ipc::Internals::sampler(reader), reader.dimensions()),
       state_(reader.dimensions()),
       left_(reader.dimensions()),
       right_(reader.dimensions()),
@@ -40,11 +41,11 @@ void CurveCheck::found(std::atomic<std::uint64_t>& counter, const std::string& w
   apps::say(fmt::format("'{}': {}", plan_->stream, what));
 }
 
-ipc::SampleStatus CurveCheck::tick(core::Time t) {
+SampleStatus CurveCheck::tick(Time t) {
   const apps::WatchReport before = watch_.report();
-  const ipc::SampleStatus status = watch_.tick(t);
-  if (status == ipc::SampleStatus::busy) ++facts_->busy;
-  if (!ipc::has_values(status)) return status;
+  const SampleStatus status = watch_.tick(t);
+  if (status == SampleStatus::busy) ++facts_->busy;
+  if (!has_values(status)) return status;
   ++facts_->samples;
   ++facts_->life_samples;
   check_state(watch_.state(), t);
@@ -52,7 +53,7 @@ ipc::SampleStatus CurveCheck::tick(core::Time t) {
   return status;
 }
 
-void CurveCheck::check_steps(const apps::WatchReport& before, core::Time t) {
+void CurveCheck::check_steps(const apps::WatchReport& before, Time t) {
   const apps::WatchReport& now = watch_.report();
   if (now.changed > before.changed) {
     found(facts_->changed, fmt::format("what was read before {} reads otherwise", t.count()));
@@ -69,23 +70,23 @@ void CurveCheck::check_steps(const apps::WatchReport& before, core::Time t) {
   }
 }
 
-ipc::SampleStatus CurveCheck::peek(core::Time t) {
-  const ipc::SampleStatus status = reader_->preview(t, state_);
-  if (status == ipc::SampleStatus::busy) ++facts_->busy;
-  if (!ipc::has_values(status)) return status;
+SampleStatus CurveCheck::peek(Time t) {
+  const SampleStatus status = reader_->preview(t, state_);
+  if (status == SampleStatus::busy) ++facts_->busy;
+  if (!has_values(status)) return status;
   ++facts_->samples;
   ++facts_->life_samples;
   check_state(state_, t);
   return status;
 }
 
-void CurveCheck::check_state(const core::State& state, core::Time t) {
+void CurveCheck::check_state(const State& state, Time t) {
   if (Payload::is_whole(state.values())) return;
   found(facts_->torn, fmt::format("a sample at {} is torn", t.count()));
 }
 
-void CurveCheck::survey(core::Time from, core::Time to) {
-  if (!ipc::has_values(reader_->snapshot(from, to, snapshot_))) return;
+void CurveCheck::survey(Time from, Time to) {
+  if (!has_values(ipc::Internals::sampler(*reader_).snapshot(from, to, snapshot_))) return;
   const auto segments = snapshot_.segments();
   for (std::size_t i = 0; i < segments.size(); ++i) {
     check_segment(segments[i]);
@@ -138,7 +139,7 @@ void CurveCheck::check_reference(const ipc::SegmentCopy& segment) {
 }
 
 void CurveCheck::check_join(const ipc::SegmentCopy& before, const ipc::SegmentCopy& after) {
-  core::evaluate(before.order, before.coefficients, core::to_seconds(before.right - before.left),
+  core::evaluate(before.order, before.coefficients, to_seconds(before.right - before.left),
                  left_.ref());
   core::evaluate(after.order, after.coefficients, 0, right_.ref());
   if (before.right != after.left ||
@@ -154,8 +155,8 @@ void CurveCheck::check_end(const ipc::SegmentCopy& segment) {
   const ipc::Head& head = snapshot_.head();
   if (segment.number != head.newest || (head.finished && !plan_->is_live())) return;
   ++facts_->ends;
-  core::evaluate(segment.order, segment.coefficients,
-                 core::to_seconds(segment.right - segment.left), right_.ref());
+  core::evaluate(segment.order, segment.coefficients, to_seconds(segment.right - segment.left),
+                 right_.ref());
   const std::vector<double> rest(reader_->dimensions());
   if (differ(right_.velocity(), rest, kVelocityRounding) ||
       differ(right_.acceleration(), rest, kAccelerationRounding)) {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "apps/trials/curve_watch.hpp"
+#include "ipc/sampling/snapshot.hpp"
 #include "splinecast/reader.hpp"
 #include "tests/campaign/kills/plan.hpp"
 
@@ -13,36 +14,36 @@ namespace splinecast::campaign {
 class CurveCheck {
  public:
   /// All outlive the check, which is the reader's only user.
-  CurveCheck(const Plan& plan, ipc::Reader& reader, ReaderFacts& facts);
+  CurveCheck(const Plan& plan, Reader& reader, ReaderFacts& facts);
 
   /// Samples at t as a controller does, t never going back: the sample is of one version, what was
   /// settled reads as it did, and nothing steps between t and the tick before.
-  ipc::SampleStatus tick(core::Time t);
+  SampleStatus tick(Time t);
 
   /// Samples at t, anywhere: of one version, whatever its status.
-  ipc::SampleStatus peek(core::Time t);
+  SampleStatus peek(Time t);
 
   /// Copies all segments between two times: each is of one version, begins at its waypoint, joins
   /// the one before, and is, once settled, the one that it must be; the newest one ends at rest.
-  void survey(core::Time from, core::Time to);
+  void survey(Time from, Time to);
 
  private:
-  void check_state(const core::State& state, core::Time t);
+  void check_state(const State& state, Time t);
   void check_segment(const ipc::SegmentCopy& segment);
   void check_join(const ipc::SegmentCopy& before, const ipc::SegmentCopy& after);
   void check_end(const ipc::SegmentCopy& segment);
   void check_reference(const ipc::SegmentCopy& segment);
-  void check_steps(const apps::WatchReport& before, core::Time t);
+  void check_steps(const apps::WatchReport& before, Time t);
   void found(std::atomic<std::uint64_t>& counter, const std::string& what);
 
   const Plan* plan_;
-  ipc::Reader* reader_;
+  Reader* reader_;
   ReaderFacts* facts_;
   apps::CurveWatch watch_;
-  core::State state_;
-  core::State left_;
-  core::State right_;
-  ipc::Snapshot snapshot_;
+  State state_;
+  State left_;
+  State right_;
+  ipc::BoardSnapshot snapshot_;
 };
 
 }  // namespace splinecast::campaign

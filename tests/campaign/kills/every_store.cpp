@@ -80,7 +80,7 @@ class Sweep {
 
   template <typename Condition>
   void tick_until(const Condition& condition) {
-    const core::Time end = ipc::deadline(clock_, 2 * kPatience);
+    const Time end = deadline(clock_, 2 * kPatience);
     while (!condition()) {
       if (clock_.now() > end || !apps::sleep_until(clock_.now() + kLook)) {
         throw apps::Failure("'" + stream_.plan().stream + "' does not come to the step");
@@ -89,7 +89,7 @@ class Sweep {
     }
   }
 
-  ipc::MonotonicClock clock_;
+  MonotonicClock clock_;
   AttackedStream stream_;
 };
 
@@ -97,8 +97,8 @@ class Sweep {
 
 Result run_every_store(const CampaignOptions& options) {
   if (!has_hooks()) throw apps::InputError("--every-store needs a build with SPLINECAST_HOOKS");
-  const ipc::MonotonicClock clock;
-  const core::Time begin = clock.now();
+  const MonotonicClock clock;
+  const Time begin = clock.now();
   Findings findings;
   nlohmann::json measured = nlohmann::json::object();
   const auto sweep = [&](const char* kind, Plan plan, std::initializer_list<Step> steps) {
@@ -120,7 +120,7 @@ Result run_every_store(const CampaignOptions& options) {
   return make_result(options, {1, 2, 4, 5, 8},
                      "SIGKILL before every single store of every step of producer, solver and rm",
                      findings.all_kills(), "kills", findings, measured,
-                     core::to_seconds(clock.now() - begin));
+                     to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

@@ -19,27 +19,27 @@ double rough(ipc::Word number) noexcept {
 
 }  // namespace
 
-Payload::Payload(core::Time origin, core::Time interval, Shape shape)
+Payload::Payload(Time origin, Time interval, Shape shape)
     : origin_(origin), interval_(interval), shape_(shape) {}
 
-core::Time Payload::time_of(ipc::Word number) const noexcept {
+Time Payload::time_of(ipc::Word number) const noexcept {
   return origin_ + interval_ * static_cast<std::int64_t>(number);
 }
 
-std::optional<ipc::Word> Payload::number_at(core::Time t) const noexcept {
+std::optional<ipc::Word> Payload::number_at(Time t) const noexcept {
   const ipc::Word number = number_from(t);
   return time_of(number) == t ? std::optional(number) : std::nullopt;
 }
 
-ipc::Word Payload::number_from(core::Time t) const noexcept {
-  const core::Time since = std::max(t - origin_, core::Time::zero());
-  return static_cast<ipc::Word>((since + interval_ - core::Time(1)) / interval_);
+ipc::Word Payload::number_from(Time t) const noexcept {
+  const Time since = std::max(t - origin_, Time::zero());
+  return static_cast<ipc::Word>((since + interval_ - Time(1)) / interval_);
 }
 
 Payload::Row Payload::position_of(ipc::Word number) const noexcept {
   const double x = shape_ == Shape::rough
                        ? rough(number)
-                       : std::cos(kAngularFrequency * core::to_seconds(time_of(number) - origin_));
+                       : std::cos(kAngularFrequency * to_seconds(time_of(number) - origin_));
   Row row = kFactors;
   for (double& value : row) value *= x;
   return row;

@@ -28,16 +28,16 @@ class Payload {
     smooth,  ///< a cosine in time, for a stream that is spliced
   };
 
-  Payload(core::Time origin, core::Time interval, Shape shape);
+  Payload(Time origin, Time interval, Shape shape);
 
-  [[nodiscard]] core::Time interval() const noexcept { return interval_; }
-  [[nodiscard]] core::Time time_of(ipc::Word number) const noexcept;
+  [[nodiscard]] Time interval() const noexcept { return interval_; }
+  [[nodiscard]] Time time_of(ipc::Word number) const noexcept;
 
   /// The waypoint at a time, if one may stand there.
-  [[nodiscard]] std::optional<ipc::Word> number_at(core::Time t) const noexcept;
+  [[nodiscard]] std::optional<ipc::Word> number_at(Time t) const noexcept;
 
   /// The first waypoint at or after a time.
-  [[nodiscard]] ipc::Word number_from(core::Time t) const noexcept;
+  [[nodiscard]] ipc::Word number_from(Time t) const noexcept;
 
   [[nodiscard]] Row position_of(ipc::Word number) const noexcept;
 
@@ -45,8 +45,8 @@ class Payload {
   [[nodiscard]] static bool is_whole(std::span<const double> rows) noexcept;
 
  private:
-  core::Time origin_;
-  core::Time interval_;
+  Time origin_;
+  Time interval_;
   Shape shape_;
 };
 

@@ -10,16 +10,16 @@ namespace {
 
 using std::chrono::milliseconds;
 
-core::Condition start_condition(ipc::StreamClock clock) {
-  const bool is_live = clock == ipc::StreamClock::monotonic;
-  return {.kind = is_live ? core::ConditionKind::halt : core::ConditionKind::natural, .value = {}};
+Condition start_condition(StreamClock clock) {
+  const bool is_live = clock == StreamClock::monotonic;
+  return {.kind = is_live ? ConditionKind::halt : ConditionKind::natural, .value = {}};
 }
 
-Payload rough_payload() { return {core::Time::zero(), milliseconds(10), Payload::Shape::rough}; }
+Payload rough_payload() { return {Time::zero(), milliseconds(10), Payload::Shape::rough}; }
 
 /// What an undisturbed solve of the stream gives.
 std::vector<core::Segment> solve(const Payload& payload, ipc::Word life) {
-  std::vector<core::Time> times;
+  std::vector<Time> times;
   std::vector<double> positions;
   for (ipc::Word n = 0; n < life; ++n) {
     times.push_back(payload.time_of(n));
@@ -28,21 +28,21 @@ std::vector<core::Segment> solve(const Payload& payload, ipc::Word life) {
   }
   return testing::settled_segments(
       {.dimensions = Payload::kDimensions, .times = times, .positions = positions},
-      {.start = start_condition(ipc::StreamClock::recorded)}, end_condition());
+      {.start = start_condition(StreamClock::recorded)}, end_condition());
 }
 
 }  // namespace
 
-core::Condition end_condition() { return {.kind = core::ConditionKind::halt, .value = {}}; }
+Condition end_condition() { return {.kind = ConditionKind::halt, .value = {}}; }
 
-ipc::ProducerOptions Plan::producer_options() const {
+ProducerOptions Plan::producer_options() const {
   return {.dimensions = Payload::kDimensions,
           .clock = clock,
           .start = start_condition(clock),
           .capacity = ring_capacity};
 }
 
-ipc::SolverOptions Plan::solver_options() const { return {.capacity = board_capacity}; }
+SolverOptions Plan::solver_options() const { return {.capacity = board_capacity}; }
 
 Plan recorded_plan(std::string stream, ipc::Word life) {
   const Payload payload = rough_payload();
@@ -59,13 +59,13 @@ Plan stress_plan(std::string stream, std::size_t readers) {
           .ring_capacity = 16,
           .board_capacity = 32,
           .readers = readers,
-          .tick = core::Time::zero()};
+          .tick = Time::zero()};
 }
 
 Plan live_plan(std::string stream) {
-  const core::Time start = ipc::MonotonicClock().now() + milliseconds(200);
+  const Time start = MonotonicClock().now() + milliseconds(200);
   return {.stream = std::move(stream),
-          .clock = ipc::StreamClock::monotonic,
+          .clock = StreamClock::monotonic,
           .payload = Payload(start, milliseconds(2), Payload::Shape::smooth),
           .pace = milliseconds(1)};
 }

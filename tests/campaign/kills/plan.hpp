@@ -14,26 +14,26 @@
 namespace splinecast::campaign {
 
 /// How long anything that must happen may take on a busy machine before it counts as hung.
-inline constexpr core::Time kPatience{30'000'000'000};
+inline constexpr Time kPatience{30'000'000'000};
 
 /// A stream to be attacked, known to all of its processes.
 struct Plan {
   std::string stream;
-  ipc::StreamClock clock = ipc::StreamClock::recorded;
+  StreamClock clock = StreamClock::recorded;
   Payload payload;
   /// Waypoints of a recorded stream, which is then finished and made anew.
   ipc::Word life = std::numeric_limits<ipc::Word>::max();
-  core::Time pace{};  ///< real time from one append to the next; 0 for as fast as it goes
+  Time pace{};  ///< real time from one append to the next; 0 for as fast as it goes
   std::size_t ring_capacity = 64;
   std::size_t board_capacity = 2048;
   std::size_t readers = 2;
-  core::Time tick{1'000'000};  ///< of the readers; 0 for as fast as they can
+  Time tick{1'000'000};  ///< of the readers; 0 for as fast as they can
   /// The segments that a recorded stream ends with; none to compare with if empty.
   std::vector<core::Segment> reference{};
 
-  [[nodiscard]] bool is_live() const noexcept { return clock == ipc::StreamClock::monotonic; }
-  [[nodiscard]] ipc::ProducerOptions producer_options() const;
-  [[nodiscard]] ipc::SolverOptions solver_options() const;
+  [[nodiscard]] bool is_live() const noexcept { return clock == StreamClock::monotonic; }
+  [[nodiscard]] ProducerOptions producer_options() const;
+  [[nodiscard]] SolverOptions solver_options() const;
 };
 
 /// A recorded stream of `life` waypoints, and the segments that it must end with.
@@ -46,6 +46,6 @@ struct Plan {
 [[nodiscard]] Plan live_plan(std::string stream);
 
 /// The condition that streams end with: at rest.
-[[nodiscard]] core::Condition end_condition();
+[[nodiscard]] Condition end_condition();
 
 }  // namespace splinecast::campaign

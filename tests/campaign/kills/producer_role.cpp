@@ -13,15 +13,14 @@
 namespace splinecast::campaign {
 namespace {
 
-using ipc::AppendStatus;
 using ipc::ItemKind;
 using std::chrono::milliseconds;
 
-constexpr core::Time kRoomSlice = milliseconds(50);
+constexpr Time kRoomSlice = milliseconds(50);
 /// How far ahead live waypoints are sent.
-constexpr core::Time kLead = milliseconds(60);
+constexpr Time kLead = milliseconds(60);
 /// Least distance of a live waypoint from what has settled: a splice may have to lead to it.
-constexpr core::Time kLeastLead = milliseconds(20);
+constexpr Time kLeastLead = milliseconds(20);
 constexpr int kReplacementsOneIn = 300;  // ticks
 constexpr int kMostReplaced = 10;        // waypoints
 
@@ -35,7 +34,7 @@ class ProducerRole {
   }
 
   void run_recorded() {
-    core::Time due = clock_.now();
+    Time due = clock_.now();
     for (ipc::Word n = producer_->appended(); n < plan_->life; ++n) {
       if (!pause(due) || !send_recorded(n)) return;
     }
@@ -43,16 +42,16 @@ class ProducerRole {
   }
 
   void run_live() {
-    next_ = plan_->payload.number_from(
-        producer_->continues() ? producer_->last_time() + core::Time(1) : clock_.now());
-    for (core::Time due = clock_.now(); pause(due);) tick();
+    next_ = plan_->payload.number_from(producer_->continues() ? producer_->last_time() + Time(1)
+                                                              : clock_.now());
+    for (Time due = clock_.now(); pause(due);) tick();
     finish();
   }
 
  private:
   /// Keeps the pace. Returns false when the process is asked to end.
-  bool pause(core::Time& due) {
-    if (plan_->pace == core::Time::zero()) return !apps::stop_requested();
+  bool pause(Time& due) {
+    if (plan_->pace == Time::zero()) return !apps::stop_requested();
     due = std::max(due + plan_->pace, clock_.now() - plan_->pace);
     return apps::sleep_until(due);
   }
@@ -77,7 +76,7 @@ class ProducerRole {
       if (status == AppendStatus::accepted) return true;
       if (status != AppendStatus::full) {
         throw apps::Failure("waypoint " + std::to_string(number) + " of '" + plan_->stream +
-                            "' was refused: " + std::string(ipc::to_string(status)));
+                            "' was refused: " + std::string(to_string(status)));
       }
       (void)producer_->wait_for_room(kRoomSlice);
       if (apps::stop_requested()) return false;
@@ -85,7 +84,7 @@ class ProducerRole {
   }
 
   void tick() {
-    const core::Time now = clock_.now();
+    const Time now = clock_.now();
     const Step armed = journal_->armed;
     const bool must_replace = armed == Step::replace || armed == Step::publish_replacement;
     if (must_replace || random_() % kReplacementsOneIn == 0) return replace(now);
@@ -94,18 +93,18 @@ class ProducerRole {
     while (plan_->payload.time_of(next_) - kLead <= now) (void)append(next_++);
   }
 
-  void skip_past(core::Time now) {
-    const core::Time earliest = std::max(now, producer_->earliest()) + kLeastLead;
+  void skip_past(Time now) {
+    const Time earliest = std::max(now, producer_->earliest()) + kLeastLead;
     next_ = std::max(next_, plan_->payload.number_from(earliest));
   }
 
   /// Replaces the future by waypoints of the same payload, from none upwards.
-  void replace(core::Time now) {
-    const core::Time t = std::max(now, producer_->earliest()) + kLeastLead;
+  void replace(Time now) {
+    const Time t = std::max(now, producer_->earliest()) + kLeastLead;
     const ipc::Word first = plan_->payload.number_from(t + kLeastLead);
     const auto count = static_cast<std::size_t>(random_() % (kMostReplaced + 1));
     std::vector<Payload::Row> rows(count);
-    std::vector<core::Waypoint> waypoints(count);
+    std::vector<Waypoint> waypoints(count);
     for (std::size_t i = 0; i < count; ++i) {
       rows[i] = plan_->payload.position_of(first + i);
       waypoints[i] = {.time = plan_->payload.time_of(first + i), .position = rows[i]};
@@ -135,9 +134,9 @@ class ProducerRole {
 
   const Plan* plan_;
   Journal* journal_;
-  ipc::MonotonicClock clock_;
+  MonotonicClock clock_;
   std::mt19937_64 random_;
-  std::optional<ipc::Producer> producer_;
+  std::optional<Producer> producer_;
   ipc::Word next_ = 0;
 };
 

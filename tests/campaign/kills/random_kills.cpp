@@ -16,9 +16,9 @@ constexpr ipc::Word kLife = 1400;
 constexpr std::size_t kStreamsOfEachClock = 2;
 /// From one kill on a stream to the next: up to the first, now and then, to strike those who have
 /// hardly begun; else up to the second.
-constexpr core::Time kSoon = microseconds(6'000);
-constexpr core::Time kLater = microseconds(80'000);
-constexpr core::Time kRemoval = microseconds(3'000);
+constexpr Time kSoon = microseconds(6'000);
+constexpr Time kLater = microseconds(80'000);
+constexpr Time kRemoval = microseconds(3'000);
 
 /// A stream and when somebody of it is to be killed.
 class Victim {
@@ -26,7 +26,7 @@ class Victim {
   Victim(Plan plan, std::uint64_t seed) : stream_(std::move(plan)), random_(seed) {}
 
   /// Looks after the stream, and kills when it is time. Returns how many were killed.
-  void tick(core::Time now) {
+  void tick(Time now) {
     stream_.tick();
     if (now < next_) return;
     next_ = now + up_to(random_() % 4 == 0 ? kSoon : kLater);
@@ -46,20 +46,20 @@ class Victim {
   Findings finish() { return stream_.finish(); }
 
  private:
-  core::Time up_to(core::Time most) {
-    return core::Time(std::uniform_int_distribution<std::int64_t>(0, most.count())(random_));
+  Time up_to(Time most) {
+    return Time(std::uniform_int_distribution<std::int64_t>(0, most.count())(random_));
   }
 
   AttackedStream stream_;
   std::mt19937_64 random_;
-  core::Time next_{};
+  Time next_{};
 };
 
 }  // namespace
 
 Result run_random_kills(const CampaignOptions& options) {
-  const ipc::MonotonicClock clock;
-  const core::Time begin = clock.now();
+  const MonotonicClock clock;
+  const Time begin = clock.now();
   std::list<Victim> victims;
   for (std::size_t i = 0; i < kStreamsOfEachClock; ++i) {
     const std::string number = std::to_string(i);
@@ -81,8 +81,7 @@ Result run_random_kills(const CampaignOptions& options) {
       options, {1, 2, 4, 5, 8},
       "SIGKILL at random instants, also while starting, taking over and removing, of producers, "
       "solvers, readers and rm of two live and two recorded streams",
-      findings.all_kills(), "kills", findings, findings.killing(),
-      core::to_seconds(clock.now() - begin));
+      findings.all_kills(), "kills", findings, findings.killing(), to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

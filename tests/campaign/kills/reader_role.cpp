@@ -6,6 +6,7 @@
 #include <random>
 
 #include "apps/process/signals.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/errors.hpp"
 #include "tests/campaign/kills/curve_check.hpp"
 #include "tests/campaign/kills/ring_check.hpp"
@@ -16,11 +17,11 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr core::Time kAttachSlice = milliseconds(100);
+constexpr Time kAttachSlice = milliseconds(100);
 /// Ticks from one look at many segments to the next.
 constexpr std::uint64_t kSurveyEvery = 8;
 /// How much of a live stream a look covers, before and after now.
-constexpr core::Time kAround = milliseconds(100);
+constexpr Time kAround = milliseconds(100);
 /// How many intervals of a recorded stream it covers before what has settled: at most so many, and
 /// at most this part of the board.
 constexpr std::size_t kIntervalsBack = 24;
@@ -38,26 +39,26 @@ class ReaderRole {
 
   /// Reads until the stream is retired, or the process is asked to end.
   void run() {
-    core::Time due = clock_.now();
+    Time due = clock_.now();
     while (!apps::stop_requested()) {
       ++facts_->turns;
-      if (plan_->tick > core::Time::zero()) {
+      if (plan_->tick > Time::zero()) {
         due = std::max(due + plan_->tick, clock_.now() - plan_->tick);
         if (!apps::sleep_until(due)) return;
       }
       const auto status = plan_->is_live() ? tick_live() : tick_recorded();
       ring_.look(random_() % ring_.capacity());
-      if (status == ipc::SampleStatus::retired) return;
+      if (status == SampleStatus::retired) return;
     }
   }
 
  private:
-  core::Time up_to(core::Time most) {
-    return core::Time(std::uniform_int_distribution<std::int64_t>(0, most.count())(random_));
+  Time up_to(Time most) {
+    return Time(std::uniform_int_distribution<std::int64_t>(0, most.count())(random_));
   }
 
-  ipc::SampleStatus tick_live() {
-    const core::Time now = clock_.now();
+  SampleStatus tick_live() {
+    const Time now = clock_.now();
     const auto status = check_.tick(now);
     check_.peek(now + up_to(kAround));
     if (facts_->turns % kSurveyEvery == 0) check_.survey(now - kAround, now + kAround);
@@ -65,30 +66,31 @@ class ReaderRole {
   }
 
   /// Follows what has settled, and looks at random into what has not.
-  ipc::SampleStatus tick_recorded() {
-    core::Time first{};
-    if (!reader_.head(head_) || head_.newest == 0 || !reader_.first_time(first)) {
-      return check_.peek(first);  // says why
+  SampleStatus tick_recorded() {
+    const auto oldest = reader_.first_time();
+    if (!oldest || !ipc::Internals::head(reader_, head_) || head_.newest == 0) {
+      return check_.peek(Time{});  // says why
     }
-    const core::Time back = static_cast<std::int64_t>(
-                                std::min(kIntervalsBack, plan_->board_capacity / kPartOfTheBoard)) *
-                            plan_->payload.interval();
-    last_ = std::max({last_, first, head_.settled_until - core::Time(1) - up_to(back / 8)});
+    const Time first = *oldest;
+    const Time back = static_cast<std::int64_t>(
+                          std::min(kIntervalsBack, plan_->board_capacity / kPartOfTheBoard)) *
+                      plan_->payload.interval();
+    last_ = std::max({last_, first, head_.settled_until - Time(1) - up_to(back / 8)});
     if (last_ < head_.settled_until) (void)check_.tick(last_);
-    const core::Time from = std::max(first, head_.settled_until - back);
+    const Time from = std::max(first, head_.settled_until - back);
     if (facts_->turns % kSurveyEvery == 0) check_.survey(from, head_.newest_knot);
-    return check_.peek(from + up_to(std::max(core::Time::zero(), head_.newest_knot - from)));
+    return check_.peek(from + up_to(std::max(Time::zero(), head_.newest_knot - from)));
   }
 
   const Plan* plan_;
   ReaderFacts* facts_;
-  ipc::MonotonicClock clock_;
+  MonotonicClock clock_;
   std::mt19937_64 random_;
-  ipc::Reader reader_;
+  Reader reader_;
   CurveCheck check_;
   RingCheck ring_;
   ipc::Head head_;
-  core::Time last_ = core::Time::min();
+  Time last_ = Time::min();
 };
 
 }  // namespace
@@ -98,7 +100,7 @@ void run_reader(const Plan& plan, ReaderFacts& facts) {
     ++facts.turns;
     try {
       ReaderRole(plan, facts).run();
-    } catch (const ipc::NoSuchStream&) {
+    } catch (const NoSuchStream&) {
       continue;  // not there yet, or removed: it comes again
     }
   }

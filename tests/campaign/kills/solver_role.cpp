@@ -1,14 +1,14 @@
 #include <chrono>
 
 #include "apps/process/signals.hpp"
-#include "ipc/roles/stream_files.hpp"
 #include "splinecast/solver.hpp"
+#include "splinecast/streams.hpp"
 #include "tests/campaign/kills/roles.hpp"
 
 namespace splinecast::campaign {
 namespace {
 
-constexpr core::Time kLongestWait = std::chrono::milliseconds(50);
+constexpr Time kLongestWait = std::chrono::milliseconds(50);
 
 Step publishing(ipc::ItemKind kind) {
   switch (kind) {
@@ -21,21 +21,21 @@ Step publishing(ipc::ItemKind kind) {
   }
 }
 
-bool attach(ipc::Solver& solver, Journal& journal) {
+bool attach(Solver& solver, Journal& journal) {
   WithinStep attaching(journal, Step::make_board);
   if (!solver.attach()) return false;
   attaching.survived();
   return true;
 }
 
-bool step(ipc::Solver& solver, Journal& journal, const ipc::Clock& clock) {
+bool step(Solver& solver, Journal& journal, const Clock& clock) {
   WithinStep stepping(journal, publishing(journal.last_sent));
-  const ipc::StepResult result = solver.step(clock);
+  const StepResult result = solver.step(clock);
   if (result.consumed > 0) stepping.survived();
   return result.consumed > 0 || result.missed;
 }
 
-void sleep(ipc::Solver& solver, Journal& journal) {
+void sleep(Solver& solver, Journal& journal) {
   WithinStep sleeping(journal, Step::sleep);
   solver.wait(kLongestWait);
   if (solver.attached()) sleeping.survived();
@@ -44,8 +44,8 @@ void sleep(ipc::Solver& solver, Journal& journal) {
 }  // namespace
 
 void run_solver(const Plan& plan, Journal& journal) {
-  const ipc::MonotonicClock clock;
-  ipc::Solver solver(plan.stream, plan.solver_options());
+  const MonotonicClock clock;
+  Solver solver(plan.stream, plan.solver_options());
   while (!apps::stop_requested()) {
     const bool is_attached = solver.attached() || attach(solver, journal);
     if (!is_attached || !step(solver, journal, clock)) sleep(solver, journal);
@@ -54,7 +54,7 @@ void run_solver(const Plan& plan, Journal& journal) {
 
 void run_remover(const Plan& plan, Journal& journal) {
   WithinStep removing(journal, Step::remove);
-  ipc::remove_stream(plan.stream);
+  remove_stream(plan.stream);
   removing.survived();
 }
 

@@ -8,15 +8,14 @@ namespace splinecast::campaign {
 
 Result run_stress(const CampaignOptions& options) {
   constexpr std::array<std::size_t, 5> kReaders{1, 2, 4, 8, 16};
-  const ipc::MonotonicClock clock;
-  const core::Time begin = clock.now();
+  const MonotonicClock clock;
+  const Time begin = clock.now();
   Findings findings;
   nlohmann::json measured = nlohmann::json::object();
   for (const std::size_t readers : kReaders) {
     const std::string number = std::to_string(readers);
     AttackedStream stream(stress_plan(campaign_stream("stress" + number), readers));
-    const core::Time end =
-        clock.now() + core::Time(static_cast<std::int64_t>(options.seconds * 1e9));
+    const Time end = clock.now() + Time(static_cast<std::int64_t>(options.seconds * 1e9));
     while (clock.now() < end && apps::sleep_until(clock.now() + kLook)) stream.tick();
     const Findings found = stream.finish();
     measured["samples of " + number + " readers"] = found.samples;
@@ -28,7 +27,7 @@ Result run_stress(const CampaignOptions& options) {
                      "and a solver process go as fast as they can over a ring of 16 items and a "
                      "board of 32 segments",
                      findings.samples, "samples", findings, measured,
-                     core::to_seconds(clock.now() - begin));
+                     to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

@@ -23,13 +23,12 @@ std::vector<Data> all_data() {
 /// Every tail of `c2`, and smoothing with about the largest λ whose lag a window has at 1 kHz.
 std::vector<Curve> all_curves(double rate) {
   std::vector<Curve> curves;
-  for (const core::Tail tail :
-       {core::Tail::bessel, core::Tail::parabolic, core::Tail::natural, core::Tail::rest}) {
-    curves.push_back({fmt::format("c2, {}", core::to_string(tail)), {.tail = tail}});
+  for (const Tail tail : {Tail::bessel, Tail::parabolic, Tail::natural, Tail::rest}) {
+    curves.push_back({fmt::format("c2, {}", to_string(tail)), {.tail = tail}});
   }
   constexpr double kLambda = 5e-7;
   core::WindowOptions smooth;
-  smooth.interpolant = {.method = core::find_method("smoothing"), .lambda = kLambda};
+  smooth.interpolant = {.method = find_method("smoothing"), .lambda = kLambda};
   smooth.settle = static_cast<std::size_t>(std::ceil(core::smoothing_lag(kLambda, 1 / rate)) + 1);
   curves.push_back({"smoothing, lambda 5e-7 s3", smooth});
   return curves;
@@ -64,8 +63,8 @@ std::string text_of(const StopMeasures& m) {
 
 Result run_stops(const CampaignOptions& options) {
   constexpr double kSame = 1e-12;  // rad
-  const ipc::MonotonicClock clock;
-  const core::Time begin = clock.now();
+  const MonotonicClock clock;
+  const Time begin = clock.now();
   const Sines motion(options.seed);
   std::mt19937_64 random(options.seed);
   std::uniform_real_distribution<> instant(2, 3);
@@ -94,7 +93,7 @@ Result run_stops(const CampaignOptions& options) {
                      "live waypoints of encoders, and exact ones, that end at any millisecond: the "
                      "published stop of every tail",
                      stops, "stops of six joints", found, std::move(measured),
-                     core::to_seconds(clock.now() - begin));
+                     to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

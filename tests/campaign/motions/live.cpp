@@ -11,8 +11,6 @@
 namespace splinecast::campaign {
 namespace {
 
-using core::Time;
-
 /// Rows at a time: three processes each.
 constexpr std::size_t kAtOnce = 6;
 constexpr std::array kLimits{10.0, 0.0};  ///< rad/s²; 0: none
@@ -72,7 +70,7 @@ std::string text_of(const LiveSeen& seen) {
 
 Result run_live_motions(const CampaignOptions& options) {
   constexpr Time kStart = std::chrono::milliseconds(1000);
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   const Time begin = clock.now();
   const Sines motion(options.seed);
   LiveFindings findings;
@@ -103,7 +101,7 @@ Result run_live_motions(const CampaignOptions& options) {
                      "the mishaps of the motions in real time: producers, solvers and readers at 1 "
                      "kHz as processes, deaths by SIGKILL",
                      rows, "runs of 10 s", findings.json(), std::move(measured),
-                     core::to_seconds(clock.now() - begin));
+                     to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

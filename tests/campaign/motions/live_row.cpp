@@ -9,14 +9,15 @@
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
-#include "ipc/roles/stream_files.hpp"
+#include "core/online/sliding_window.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/solver.hpp"
+#include "splinecast/streams.hpp"
 
 namespace splinecast::campaign {
 namespace {
 
-using core::Time;
 using std::chrono::milliseconds;
 
 constexpr Time kTick = milliseconds(1);
@@ -40,12 +41,12 @@ class Samples {
  public:
   Samples(const Sines& motion, const Schedule& schedule) : motion_(motion), schedule_(schedule) {}
 
-  void add(double t, ipc::SampleStatus status, const core::State& state) {
+  void add(double t, SampleStatus status, const State& state) {
     ++samples_;
-    revised_ += status == ipc::SampleStatus::revised ? 1U : 0U;
+    revised_ += status == SampleStatus::revised ? 1U : 0U;
     if (!is_in(schedule_.pauses, t) && !is_in(schedule_.deaths, t)) {
       ++judged_;
-      held_ += status == ipc::SampleStatus::holding ? 1U : 0U;
+      held_ += status == SampleStatus::holding ? 1U : 0U;
     }
     double error = 0;
     for (std::size_t joint = 0; joint < Sines::kJoints; ++joint) {
@@ -79,7 +80,7 @@ class Samples {
  private:
   /// A position may differ from what both velocities make of it by the trapezoidal rule by what a
   /// change of the acceleration by 2·kMost within the interval explains.
-  void look_for_step(double t, const core::State& state) {
+  void look_for_step(double t, const State& state) {
     constexpr double kMost = 1000;  // rad/s²
     const double h = t - before_t_;
     for (std::size_t joint = 0; has_before_ && joint < Sines::kJoints; ++joint) {
@@ -104,7 +105,7 @@ class Samples {
   std::uint64_t revised_ = 0;
   bool has_before_ = false;
   double before_t_ = 0;
-  core::State before_{Sines::kJoints};
+  State before_{Sines::kJoints};
 };
 
 }  // namespace
@@ -131,7 +132,7 @@ LiveRow::~LiveRow() {
   reader_.reset();
   observer_.reset();
   try {
-    ipc::remove_stream(stream_);
+    remove_stream(stream_);
   } catch (const std::exception& error) {
     apps::say(error.what());
   }
@@ -156,10 +157,10 @@ void LiveRow::start_reader() {
 }
 
 void LiveRow::run_solver() const {
-  const ipc::MonotonicClock clock;
-  ipc::SolverOptions options{.stop_time = core::WindowOptions{}.stop_time};
-  if (limit_ > 0) options.limits = core::MotionLimits{.acceleration = {limit_}};
-  ipc::Solver solver(stream_, options);
+  const MonotonicClock clock;
+  SolverOptions options{.stop_time = core::WindowOptions{}.stop_time};
+  if (limit_ > 0) options.limits = MotionLimits{.acceleration = {limit_}};
+  Solver solver(stream_, options);
   while (!apps::stop_requested()) {
     if (!solver.attached() && !solver.attach()) {
       solver.wait(milliseconds(5));
@@ -173,8 +174,8 @@ void LiveRow::run_solver() const {
 }
 
 void LiveRow::run_producer() const {
-  const ipc::MonotonicClock clock;
-  ipc::Producer producer(stream_, {.dimensions = Sines::kJoints, .capacity = 4096});
+  const MonotonicClock clock;
+  Producer producer(stream_, {.dimensions = Sines::kJoints, .capacity = 4096});
   if (!producer.wait_for_solver(kPatience)) throw apps::Failure("no solver for '" + stream_ + "'");
   const Time last = producer.continues() ? producer.last_time() : Time::min();
   while (facts_->calls < schedule_.calls.size()) {
@@ -187,9 +188,9 @@ void LiveRow::run_producer() const {
   }
 }
 
-void LiveRow::send(ipc::Producer& producer, const Call& call) const {
+void LiveRow::send(Producer& producer, const Call& call) const {
   std::vector<std::vector<double>> positions = call.positions;
-  std::vector<core::Waypoint> waypoints;
+  std::vector<Waypoint> waypoints;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     for (double& x : positions[i]) {
       if (mishap_.quantum > 0) x = std::round(x / mishap_.quantum) * mishap_.quantum;
@@ -200,31 +201,31 @@ void LiveRow::send(ipc::Producer& producer, const Call& call) const {
     count(producer.replace_from(stream_time(*call.replaces_from), waypoints));
     return;
   }
-  for (const core::Waypoint& waypoint : waypoints) count(producer.append(waypoint));
+  for (const Waypoint& waypoint : waypoints) count(producer.append(waypoint));
 }
 
-void LiveRow::count(ipc::AppendStatus status) const {
-  if (status == ipc::AppendStatus::accepted) return;
-  const bool is_late = status == ipc::AppendStatus::past || status == ipc::AppendStatus::too_late;
+void LiveRow::count(AppendStatus status) const {
+  if (status == AppendStatus::accepted) return;
+  const bool is_late = status == AppendStatus::past || status == AppendStatus::too_late;
   ++(is_late ? facts_->late_calls : facts_->refused_calls);
 }
 
 nlohmann::json LiveRow::run_reader() const {
-  const ipc::MonotonicClock clock;
-  ipc::Reader reader(stream_, kPatience);
-  core::State state(Sines::kJoints);
+  const MonotonicClock clock;
+  Reader reader(stream_, kPatience);
+  State state(Sines::kJoints);
   Samples samples(motion_, schedule_);
   for (Time due = begin_; due < stream_time(kEnd); due = std::max(due + kTick, clock.now())) {
     if (!apps::sleep_until(due)) break;
     const Time now = clock.now();
     const auto status = reader.sample(now, state);
-    if (ipc::has_values(status)) samples.add(core::to_seconds(now - begin_), status, state);
+    if (has_values(status)) samples.add(to_seconds(now - begin_), status, state);
   }
   return samples.json();
 }
 
 void LiveRow::tick(Time now) {
-  const double t = core::to_seconds(now - begin_);
+  const double t = to_seconds(now - begin_);
   const auto keep = [&](std::optional<apps::Child>& child, const auto& deaths, auto start) {
     const bool is_dead = is_in(deaths, t);
     if (is_dead && child) {
@@ -240,20 +241,21 @@ void LiveRow::tick(Time now) {
   if (!observer_) {
     try {
       observer_.emplace(stream_);
-    } catch (const ipc::NoSuchStream&) {
+    } catch (const NoSuchStream&) {
       return;
     }
   }
-  if (observer_->head(head_) && t <= kSettling) passed_at_start_ = head_.passed_over;
+  if (ipc::Internals::head(*observer_, head_) && t <= kSettling)
+    passed_at_start_ = head_.passed_over;
 }
 
 LiveSeen LiveRow::finish() {
   const nlohmann::json read = reader_->result();
-  if (observer_) (void)observer_->head(head_);
-  const auto reason = [&](ipc::Refusal refusal) {
+  if (observer_) (void)ipc::Internals::head(*observer_, head_);
+  const auto reason = [&](Refusal refusal) {
     return head_.reasons[static_cast<std::size_t>(refusal)];
   };
-  const std::uint64_t late = reason(ipc::Refusal::past) + reason(ipc::Refusal::too_late);
+  const std::uint64_t late = reason(Refusal::past) + reason(Refusal::too_late);
   return {.peak_velocity = read.at("velocity"),
           .peak_acceleration = read.at("acceleration"),
           .error_p99 = read.at("p99"),

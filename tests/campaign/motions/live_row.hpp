@@ -7,6 +7,7 @@
 #include <string>
 
 #include "apps/process/child.hpp"
+#include "ipc/layout/header.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/reader.hpp"
 #include "tests/campaign/motions/schedule.hpp"
@@ -53,8 +54,7 @@ class LiveRow {
 
   /// Starts the processes. The motion begins at `begin` on CLOCK_MONOTONIC. `limit` in rad/s², 0:
   /// none. The arguments outlive it.
-  LiveRow(const Sines& motion, const Mishap& mishap, double limit, core::Time begin,
-          std::string stream);
+  LiveRow(const Sines& motion, const Mishap& mishap, double limit, Time begin, std::string stream);
   LiveRow(const LiveRow&) = delete;
   LiveRow& operator=(const LiveRow&) = delete;
   /// Kills what still runs and removes the stream.
@@ -64,7 +64,7 @@ class LiveRow {
   [[nodiscard]] double limit() const noexcept { return limit_; }
 
   /// Kills and starts who is to be. To be called every few ms, until the motion has ended.
-  void tick(core::Time now);
+  void tick(Time now);
 
   /// Ends all processes once the reader has read to the end. Returns what it saw.
   [[nodiscard]] LiveSeen finish();
@@ -76,14 +76,14 @@ class LiveRow {
   void run_solver() const;
   void run_producer() const;
   [[nodiscard]] nlohmann::json run_reader() const;
-  void send(ipc::Producer& producer, const Call& call) const;
-  void count(ipc::AppendStatus status) const;
-  [[nodiscard]] core::Time stream_time(double t) const;
+  void send(Producer& producer, const Call& call) const;
+  void count(AppendStatus status) const;
+  [[nodiscard]] Time stream_time(double t) const;
 
   const Sines& motion_;
   const Mishap& mishap_;
   double limit_;
-  core::Time begin_;
+  Time begin_;
   std::string stream_;
   Schedule schedule_;
   boost::interprocess::mapped_region memory_;
@@ -91,7 +91,7 @@ class LiveRow {
   std::optional<apps::Child> solver_;
   std::optional<apps::Child> producer_;
   std::optional<apps::Child> reader_;
-  std::optional<ipc::Reader> observer_;
+  std::optional<Reader> observer_;
   ipc::Head head_;
   std::uint64_t passed_at_start_ = 0;
   std::uint64_t kills_ = 0;

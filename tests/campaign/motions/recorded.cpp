@@ -10,8 +10,6 @@
 
 namespace splinecast::campaign {
 
-using core::Time;
-
 Recorded Recorded::from_waypoints(const std::filesystem::path& file,
                                   const std::vector<std::string>& columns) {
   const auto table = apps::read_waypoints(file, {.columns = columns});
@@ -43,9 +41,9 @@ Recorded Recorded::from_polynomials(const std::filesystem::path& file) {
 
 Recorded::Recorded(std::size_t dimensions, std::vector<Time> times,
                    const std::vector<double>& positions)
-    : curve_(core::fit({.dimensions = dimensions, .times = times, .positions = positions}, {})) {}
+    : curve_(fit({.dimensions = dimensions, .times = times, .positions = positions}, {})) {}
 
-double Recorded::seconds() const noexcept { return core::to_seconds(curve_.breaks().back()); }
+double Recorded::seconds() const noexcept { return to_seconds(curve_.breaks().back()); }
 
 double Recorded::at(std::size_t joint, double t, int derivative) const {
   std::vector<double> values(joints());
@@ -67,7 +65,7 @@ double Recorded::peak(std::size_t joint, int derivative) const {
 Schedule Recorded::schedule(double lead, std::vector<std::pair<double, double>> gaps) const {
   Schedule schedule;
   for (const Time time : curve_.breaks()) {
-    const double t = core::to_seconds(time);
+    const double t = to_seconds(time);
     const auto lacks = [&](const auto& gap) { return t >= gap.first && t < gap.second; };
     if (std::ranges::any_of(gaps, lacks)) continue;
     schedule.calls.push_back({.at = t - lead, .times = {t}, .positions = {positions(t)}});

@@ -31,10 +31,9 @@ class Recorded final : public Motion {
   [[nodiscard]] Schedule schedule(double lead, std::vector<std::pair<double, double>> gaps) const;
 
  private:
-  Recorded(std::size_t dimensions, std::vector<core::Time> times,
-           const std::vector<double>& positions);
+  Recorded(std::size_t dimensions, std::vector<Time> times, const std::vector<double>& positions);
 
-  core::PiecewisePolynomial curve_;
+  PiecewisePolynomial curve_;
 };
 
 }  // namespace splinecast::campaign

@@ -92,7 +92,7 @@ struct RecordingFindings {
   std::uint64_t refusals = 0;
   std::uint64_t jumps = 0;
 
-  void judge(const Recorded& motion, const core::MotionLimits& limits, const Seen& seen) {
+  void judge(const Recorded& motion, const MotionLimits& limits, const Seen& seen) {
     velocities += beyond(seen.peak_velocities, limits.velocity);
     accelerations += beyond(seen.peak_accelerations, limits.acceleration);
     freezes += seen.holding > kMostHolding ? 1U : 0U;
@@ -127,8 +127,8 @@ bool has_recordings() { return std::filesystem::exists(data_folder()); }
 
 Result run_recordings(const CampaignOptions& options) {
   constexpr double kLead = 0.05;  // s
-  const ipc::MonotonicClock clock;
-  const core::Time begin = clock.now();
+  const MonotonicClock clock;
+  const Time begin = clock.now();
   RecordingFindings findings;
   nlohmann::json measured;
   std::uint64_t rows = 0;
@@ -156,7 +156,7 @@ Result run_recordings(const CampaignOptions& options) {
                      "and without, in simulated time through the real ring, solver, board and "
                      "sampler",
                      rows, "runs", findings.json(), std::move(measured),
-                     core::to_seconds(clock.now() - begin));
+                     to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

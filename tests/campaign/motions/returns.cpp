@@ -18,7 +18,6 @@
 namespace splinecast::campaign {
 namespace {
 
-using core::Time;
 using std::chrono::milliseconds;
 
 constexpr Time kBegin{1'000'000'000'000};
@@ -65,9 +64,9 @@ class ReturnRun {
         interval_(to_time(random_.log_uniform(0.004, 0.05))),
         limit_(Sines::kPeakAcceleration * random_.log_uniform(2, 15)),
         stream_(dimensions_, window(), 4096, 1024, {}, {}, ipc::LiveOptions{}),
-        sampler_(stream_.board.reader, ipc::StreamClock::monotonic),
+        sampler_(stream_.board.reader, StreamClock::monotonic),
         state_(dimensions_) {
-    const double settle = core::to_seconds(interval_) * 3 + 0.01;
+    const double settle = to_seconds(interval_) * 3 + 0.01;
     lead_ = to_time(settle + random_.uniform(0, 0.3));
     plan_hiccups();
   }
@@ -98,14 +97,14 @@ class ReturnRun {
   core::WindowOptions window() {
     constexpr std::array<const char*, 5> kMethods{"c2", "c2", "bessel", "makima", "smoothing"};
     core::WindowOptions how;
-    how.interpolant.method = core::find_method(kMethods[random_.below(kMethods.size())]);
+    how.interpolant.method = find_method(kMethods[random_.below(kMethods.size())]);
     how.settle = core::default_settle(*how.interpolant.method);
-    if (how.interpolant.method->family == core::Family::smoothing) {
+    if (how.interpolant.method->family == Family::smoothing) {
       how.interpolant.lambda = 1e-12;
       how.settle = 8;
       how.force_lag = true;
     }
-    how.start = {.kind = core::ConditionKind::halt, .value = {}};
+    how.start = {.kind = ConditionKind::halt, .value = {}};
     how.held_before_start = true;
     how.limits.acceleration.assign(dimensions_, limit_);
     return how;
@@ -136,7 +135,7 @@ class ReturnRun {
   [[nodiscard]] bool is_dead() const { return is_in(Hiccup::death); }
 
   [[nodiscard]] std::vector<double> positions(Time t) const {
-    std::vector<double> all = motion_.positions(core::to_seconds(t));
+    std::vector<double> all = motion_.positions(to_seconds(t));
     all.resize(dimensions_);
     return all;
   }
@@ -158,14 +157,14 @@ class ReturnRun {
       const auto position = positions(next_);
       const auto status =
           stream_.ring.writer.append({.time = kBegin + next_, .position = position}, solved());
-      if (status == ipc::AppendStatus::full) return;
+      if (status == AppendStatus::full) return;
     }
   }
   /// Sends what lies ahead once more.
   void replace() {
     const Time from = now_ + milliseconds(10);
     std::vector<std::vector<double>> values;
-    std::vector<core::Waypoint> waypoints;
+    std::vector<Waypoint> waypoints;
     for (Time t = from + interval_; t < next_; t += interval_) values.push_back(positions(t));
     for (std::size_t i = 0; i < values.size(); ++i) {
       const Time t = from + interval_ * static_cast<std::int64_t>(i + 1);
@@ -174,7 +173,7 @@ class ReturnRun {
     if (waypoints.empty()) return;
     const Time blend = random_.chance(0.5) ? to_time(random_.uniform(0, 0.3)) : Time(0);
     const auto status = stream_.ring.writer.replace_from(kBegin + from, waypoints, solved(), blend);
-    if (status != ipc::AppendStatus::accepted) return;
+    if (status != AppendStatus::accepted) return;
     ++counts_->replacements;
     next_ = waypoints.back().time - kBegin + interval_;
   }
@@ -197,13 +196,13 @@ class ReturnRun {
   void measure_distance() {
     constexpr Time kLook = milliseconds(5);
     constexpr double kBesides = 0.5;
-    if (!ipc::has_values(sampler_.preview(kBegin + now_, state_.ref()))) return;
+    if (!has_values(sampler_.preview(kBegin + now_, state_.ref()))) return;
     Time least = kLook;
-    while (now_ + least < kEnd && !reaches_path(core::to_seconds(least))) least += kLook;
+    while (now_ + least < kEnd && !reaches_path(to_seconds(least))) least += kLook;
     allowed_ = 2 * least + to_time(kBesides);
   }
   [[nodiscard]] bool reaches_path(double time) const {
-    const double t = core::to_seconds(now_) + time;
+    const double t = to_seconds(now_) + time;
     for (std::size_t d = 0; d < dimensions_; ++d) {
       const double needed = two_phase_acceleration(motion_.at(d, t) - state_.position()[d],
                                                    state_.velocity()[d], motion_.at(d, t, 1), time);
@@ -232,18 +231,18 @@ class ReturnRun {
       return tell("never back");
     }
     const Time taken = std::max(Time(0), *back_at_ - kLastHiccup);
-    const double share = core::to_seconds(taken) / core::to_seconds(*allowed_);
+    const double share = to_seconds(taken) / to_seconds(*allowed_);
     counts_->shares.push_back(share);
     if (share > 1) {
       ++counts_->late_returns;
-      tell(fmt::format("back after {:.3f} s, allowed {:.3f} s", core::to_seconds(taken),
-                       core::to_seconds(*allowed_)));
+      tell(fmt::format("back after {:.3f} s, allowed {:.3f} s", to_seconds(taken),
+                       to_seconds(*allowed_)));
     }
     const Time at = kEnd - lead_;
     constexpr double kNear = 1e-3;
-    if (!ipc::has_values(sampler_.preview(kBegin + at, state_.ref()))) return;
+    if (!has_values(sampler_.preview(kBegin + at, state_.ref()))) return;
     for (std::size_t d = 0; d < dimensions_; ++d) {
-      const double error = state_.position()[d] - motion_.at(d, core::to_seconds(at));
+      const double error = state_.position()[d] - motion_.at(d, to_seconds(at));
       if (std::abs(error) < kNear) continue;
       ++counts_->off_path;
       return tell(fmt::format("{} rad beside its path at the end", error));
@@ -251,9 +250,8 @@ class ReturnRun {
   }
   void tell(const std::string& what) const {
     apps::say(fmt::format("seed {} ({}, {:.1f} ms, lead {:.0f} ms, limit {:.1f}): {}", seed_,
-                          stream_.window.interpolant.method->name,
-                          core::to_seconds(interval_) * 1e3, core::to_seconds(lead_) * 1e3, limit_,
-                          what));
+                          stream_.window.interpolant.method->name, to_seconds(interval_) * 1e3,
+                          to_seconds(lead_) * 1e3, limit_, what));
   }
 
   std::uint64_t seed_;
@@ -266,7 +264,7 @@ class ReturnRun {
   double limit_;
   testing::MemoryStream stream_;
   ipc::Sampler sampler_;
-  core::State state_;
+  State state_;
   std::vector<Planned> hiccups_;
   Time now_ = milliseconds(-300);
   Time next_{};
@@ -283,7 +281,7 @@ double quantile(std::vector<double>& sorted, double share) {
 }  // namespace
 
 Result run_returns(const CampaignOptions& options) {
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   const Time begin = clock.now();
   const Time end = begin + to_time(options.seconds);
   ReturnCounts counts;
@@ -303,7 +301,7 @@ Result run_returns(const CampaignOptions& options) {
                              {"streams beside their path at the end", counts.off_path},
                              {"things never tried", never_tried}};
   const nlohmann::json measured{
-      {"simulated seconds", static_cast<double>(counts.runs) * core::to_seconds(kEnd)},
+      {"simulated seconds", static_cast<double>(counts.runs) * to_seconds(kEnd)},
       {"silences", counts.silences},
       {"delays", counts.delays},
       {"replacements", counts.replacements},
@@ -318,8 +316,7 @@ Result run_returns(const CampaignOptions& options) {
                      "fall silent, are late, plan anew and whose solvers die; then nothing more "
                      "happens: back on the waypoints within twice the least time of a two-phase "
                      "motion under the same limits, and 0.5 s",
-                     counts.runs, "returns", found, measured,
-                     core::to_seconds(clock.now() - begin));
+                     counts.runs, "returns", found, measured, to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

@@ -14,8 +14,6 @@
 namespace splinecast::campaign {
 namespace {
 
-using core::Time;
-
 constexpr std::array kLimits{5.0, 10.0, 20.0, 0.0};  ///< rad/s²; 0: none
 constexpr double kNoise = 1e-4;                      ///< rad
 
@@ -103,7 +101,7 @@ std::string list_motions() {
 }
 
 Result run_motions(const CampaignOptions& options) {
-  const ipc::MonotonicClock clock;
+  const MonotonicClock clock;
   const Time begin = clock.now();
   MotionFindings findings;
   nlohmann::json measured;
@@ -131,7 +129,7 @@ Result run_motions(const CampaignOptions& options) {
                      "mind, with limits and without, in simulated time through the real ring, "
                      "solver, board and sampler",
                      rows, "runs of 20 s", findings.json(), std::move(measured),
-                     core::to_seconds(clock.now() - begin));
+                     to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/limits/extremes.hpp"
+#include "ipc/sampling/snapshot.hpp"
 
 namespace splinecast::campaign {
 namespace {
@@ -24,7 +25,7 @@ struct Look {
   const ipc::SegmentCopy& segment;
   std::size_t dimensions;
 
-  [[nodiscard]] double seconds() const { return core::to_seconds(segment.right - segment.left); }
+  [[nodiscard]] double seconds() const { return to_seconds(segment.right - segment.left); }
   [[nodiscard]] core::SegmentRange range(std::size_t joint, int derivative) const {
     return core::range_of(segment.order, segment.coefficients, dimensions, joint, derivative, 0,
                           seconds());
@@ -39,7 +40,7 @@ struct Look {
   }
 };
 
-double seconds_at(core::Time t) { return core::to_seconds(t - Trial::stream_time(0)); }
+double seconds_at(Time t) { return to_seconds(t - Trial::stream_time(0)); }
 
 class Measuring {
  public:
@@ -47,9 +48,8 @@ class Measuring {
 
   /// Measures what is published: the two newest segments.
   void look(std::span<const ipc::SegmentCopy> segments) {
-    const bool is_stop = segments.size() >= 2 &&
-                         segments.back().kind == core::SegmentKind::stop_tail &&
-                         segments[segments.size() - 2].kind == core::SegmentKind::spline;
+    const bool is_stop = segments.size() >= 2 && segments.back().kind == SegmentKind::stop_tail &&
+                         segments[segments.size() - 2].kind == SegmentKind::spline;
     if (!is_stop) {
       ++measures_.in_entries;
       return;
@@ -121,9 +121,9 @@ TrialOptions options_of(const Data& data, const Curve& curve) {
 }
 
 /// The two newest segments that are published.
-bool take_newest(Trial& trial, ipc::Snapshot& out) {
-  const core::Time newest = trial.head().newest_knot;
-  return ipc::has_values(trial.sampler().snapshot(newest - core::Time(1), newest, out));
+bool take_newest(Trial& trial, ipc::BoardSnapshot& out) {
+  const Time newest = trial.head().newest_knot;
+  return has_values(trial.sampler().snapshot(newest - Time(1), newest, out));
 }
 
 }  // namespace
@@ -137,7 +137,7 @@ StopMeasures measure_stops(const Sines& motion, const Data& data, const Curve& c
     if (sight.t >= kMeasured) measuring.read(sight);
   };
   Trial trial(motion, schedule, std::move(options));
-  ipc::Snapshot newest(Sines::kJoints);
+  ipc::BoardSnapshot newest(Sines::kJoints);
   while (trial.now() < Sines::kSeconds - 2 * kLead) {
     trial.tick();
     if (trial.now() >= kMeasured && take_newest(trial, newest)) measuring.look(newest.segments());
@@ -157,10 +157,10 @@ double cut_off(const Sines& motion, const Data& data, const Curve& curve, double
     rest.assign(sight.state->position().begin(), sight.state->position().end());
   };
   Trial trial(motion, schedule, std::move(options));
-  ipc::Snapshot newest(Sines::kJoints);
+  ipc::BoardSnapshot newest(Sines::kJoints);
   while (trial.now() < cut) trial.tick();
   const bool is_stop = take_newest(trial, newest) && !newest.segments().empty() &&
-                       newest.segments().back().kind == core::SegmentKind::stop_tail;
+                       newest.segments().back().kind == SegmentKind::stop_tail;
   if (!is_stop) return 0;
   const Look stop{newest.segments().back(), Sines::kJoints};
   while (trial.now() < cut + kAtRest) trial.tick();

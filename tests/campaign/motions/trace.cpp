@@ -22,10 +22,10 @@ constexpr double kTick = 1e-3;                ///< s
 /// A sample, kept.
 struct Row {
   double t = 0;
-  ipc::SampleStatus status{};
+  SampleStatus status{};
   bool is_entry = false;
   std::uint64_t starvations = 0;
-  core::State state{Sines::kJoints};
+  State state{Sines::kJoints};
   double error = 0;  ///< rad, the largest of all joints; from 0 s on
 };
 
@@ -35,7 +35,7 @@ double error_of(const Row& row, const Motion& motion, const Schedule& schedule, 
 }
 
 bool is_at_rest(const Row& row) {
-  return row.status == ipc::SampleStatus::stopping || row.status == ipc::SampleStatus::holding;
+  return row.status == SampleStatus::stopping || row.status == SampleStatus::holding;
 }
 
 /// When the first mishap begins: the stream runs dry, or its future is replaced, or the start.
@@ -111,7 +111,7 @@ std::string csv_of(std::span<const Row> rows, const Motion& motion, const Schedu
     }
     fmt::format_to(to, ",{:.6f},{:.6f},{:.6f},{}\n", row.state.position()[joint],
                    row.state.velocity()[joint], row.state.acceleration()[joint],
-                   row.is_entry ? "entry" : ipc::to_string(row.status));
+                   row.is_entry ? "entry" : to_string(row.status));
   }
   return text;
 }
@@ -177,8 +177,8 @@ void Traces::add(const Sines& motion, const Mishap& mishap, double limit, TrialO
   const std::size_t joint = worst_joint(shown, motion, schedule);
   const std::string name = fmt::format("{}_{}", mishap.file, limit > 0 ? "limit" : "no_limit");
   write_file(folder_ / (name + ".csv"), csv_of(shown, motion, schedule, joint));
-  const auto is_stopping = [](const Row& row) { return row.status == ipc::SampleStatus::stopping; };
-  const auto is_holding = [](const Row& row) { return row.status == ipc::SampleStatus::holding; };
+  const auto is_stopping = [](const Row& row) { return row.status == SampleStatus::stopping; };
+  const auto is_holding = [](const Row& row) { return row.status == SampleStatus::holding; };
   const auto is_entry = [](const Row& row) { return row.is_entry; };
   rows_.push_back({{"file", name},
                    {"mishap", mishap.name},

@@ -6,8 +6,6 @@
 namespace splinecast::campaign {
 namespace {
 
-using core::Time;
-
 constexpr int kMilliseconds = 1000;
 constexpr int kLead = 500;       ///< ms: the first call may be so early
 constexpr double kSettling = 2;  ///< s, after which the start is not measured any more
@@ -16,7 +14,7 @@ Time to_time(double seconds) { return Time(std::llround(seconds * 1e9)); }
 
 core::WindowOptions live(core::WindowOptions window) {
   window.held_before_start = true;
-  window.start.kind = core::ConditionKind::halt;
+  window.start.kind = ConditionKind::halt;
   return window;
 }
 
@@ -36,7 +34,7 @@ Trial::Trial(const Motion& motion, const Schedule& schedule, TrialOptions option
       options_(std::move(options)),
       random_(options_.seed),
       stream_(motion.joints(), live(options_.window), 4096, 4096, {}, {}, ipc::LiveOptions{}),
-      sampler_(stream_.board.reader, ipc::StreamClock::monotonic, {}),
+      sampler_(stream_.board.reader, StreamClock::monotonic, {}),
       snapshot_(motion.joints()),
       state_(motion.joints()),
       ms_(-kLead) {
@@ -47,7 +45,7 @@ Trial::Trial(const Motion& motion, const Schedule& schedule, TrialOptions option
 Seen Trial::run() {
   const int end = static_cast<int>(motion_.seconds() * kMilliseconds);
   while (ms_ < end) tick();
-  const auto past = head().reasons[static_cast<std::size_t>(ipc::Refusal::past)];
+  const auto past = head().reasons[static_cast<std::size_t>(Refusal::past)];
   seen_.past += past;
   seen_.refused = head().refused - past + refused_;
   seen_.knots = head().knots;
@@ -77,7 +75,7 @@ void Trial::produce() {
 void Trial::send(const Call& call) {
   std::vector<std::vector<double>> positions = call.positions;
   std::normal_distribution<> noise(0, options_.noise);
-  std::vector<core::Waypoint> waypoints;
+  std::vector<Waypoint> waypoints;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     for (double& x : positions[i]) {
       if (options_.noise > 0) x += noise(random_);
@@ -93,14 +91,14 @@ void Trial::send(const Call& call) {
     count(stream_.ring.writer.replace_from(stream_time(*call.replaces_from), waypoints, solved));
     return;
   }
-  for (const core::Waypoint& waypoint : waypoints) {
+  for (const Waypoint& waypoint : waypoints) {
     count(stream_.ring.writer.append(waypoint, solved));
   }
 }
 
-void Trial::count(ipc::AppendStatus status) {
-  seen_.past += status == ipc::AppendStatus::past ? 1U : 0U;
-  const bool is_fine = status == ipc::AppendStatus::accepted || status == ipc::AppendStatus::past;
+void Trial::count(AppendStatus status) {
+  seen_.past += status == AppendStatus::past ? 1U : 0U;
+  const bool is_fine = status == AppendStatus::accepted || status == AppendStatus::past;
   refused_ += is_fine ? 0U : 1U;
 }
 
@@ -119,7 +117,7 @@ void Trial::solve() {
 
 void Trial::read() {
   const auto status = sampler_.sample(stream_.clock.time, state_);
-  if (!ipc::has_values(status)) return;
+  if (!has_values(status)) return;
   const bool enters = is_entry();
   if (options_.watch) options_.watch({now_, status, enters, head().underruns, &state_});
   if (now_ < 0) return;
@@ -127,7 +125,7 @@ void Trial::read() {
   if (std::ranges::none_of(schedule_.pauses, is_now) &&
       std::ranges::none_of(schedule_.deaths, is_now)) {
     ++samples_;
-    held_ += status == ipc::SampleStatus::holding ? 1U : 0U;
+    held_ += status == SampleStatus::holding ? 1U : 0U;
   }
   double error = 0;
   const double offset = schedule_.offset(now_);
@@ -148,9 +146,9 @@ void Trial::read() {
 
 bool Trial::is_entry() {
   const Time t = stream_.clock.time;
-  if (!ipc::has_values(sampler_.snapshot(t, t, snapshot_))) return false;
+  if (!has_values(sampler_.snapshot(t, t, snapshot_))) return false;
   return std::ranges::any_of(snapshot_.segments(), [&](const ipc::SegmentCopy& segment) {
-    return segment.left <= t && t < segment.right && segment.kind == core::SegmentKind::splice;
+    return segment.left <= t && t < segment.right && segment.kind == SegmentKind::splice;
   });
 }
 

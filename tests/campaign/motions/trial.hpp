@@ -37,10 +37,10 @@ struct Seen {
 /// A sample of a 1 kHz reader. The state is valid during the call that hands it over.
 struct Sight {
   double t = 0;
-  ipc::SampleStatus status{};
+  SampleStatus status{};
   bool is_entry = false;
   std::uint64_t starvations = 0;  ///< so far
-  const core::State* state = nullptr;
+  const State* state = nullptr;
 };
 
 /// How a schedule is carried out.
@@ -67,12 +67,12 @@ class Trial {
   [[nodiscard]] double now() const noexcept { return now_; }
   [[nodiscard]] const ipc::Head& head() const noexcept { return stream_.solver.head(); }
   [[nodiscard]] ipc::Sampler& sampler() noexcept { return sampler_; }
-  [[nodiscard]] static core::Time stream_time(double t);
+  [[nodiscard]] static Time stream_time(double t);
 
  private:
   void produce();
   void send(const Call& call);
-  void count(ipc::AppendStatus status);
+  void count(AppendStatus status);
   void solve();
   void read();
   [[nodiscard]] bool is_entry();
@@ -83,8 +83,8 @@ class Trial {
   std::mt19937_64 random_;
   testing::MemoryStream stream_;
   ipc::Sampler sampler_;
-  ipc::Snapshot snapshot_;
-  core::State state_;
+  ipc::BoardSnapshot snapshot_;
+  State state_;
   Seen seen_;
   int ms_;
   double now_ = 0;

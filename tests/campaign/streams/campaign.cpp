@@ -66,9 +66,9 @@ nlohmann::json found(const StreamFindings& findings, bool all_streams) {
 }  // namespace
 
 Result run_streams(const CampaignOptions& options) {
-  const ipc::MonotonicClock clock;
-  const core::Time begin = clock.now();
-  const core::Time end = begin + core::Time(static_cast<std::int64_t>(options.seconds * 1e9));
+  const MonotonicClock clock;
+  const Time begin = clock.now();
+  const Time end = begin + Time(static_cast<std::int64_t>(options.seconds * 1e9));
   StreamFindings findings;
   const auto goes_on = [&] {
     return options.runs > 0 ? findings.streams() < options.runs : clock.now() < end;
@@ -76,7 +76,7 @@ Result run_streams(const CampaignOptions& options) {
   for (std::uint64_t seed = options.seed; goes_on() && !apps::stop_requested(); ++seed) {
     run_stream(seed, findings);
   }
-  const double seconds = core::to_seconds(clock.now() - begin);
+  const double seconds = to_seconds(clock.now() - begin);
   const auto breaches = found(findings, options.runs == 0);
   auto measured = findings.coverage();
   measured["simulated seconds per second"] = findings.simulated() / seconds;

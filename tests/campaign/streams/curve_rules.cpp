@@ -13,7 +13,7 @@ namespace {
 constexpr double kShortest = 1e-3;
 
 double length_of(const ipc::SegmentCopy& segment) {
-  return core::to_seconds(segment.right - segment.left);
+  return to_seconds(segment.right - segment.left);
 }
 
 /// Sums of the magnitudes that make up a segment's derivatives in one dimension.
@@ -33,7 +33,7 @@ std::array<double, 3> scales(const ipc::SegmentCopy& segment, std::size_t dimens
   return all;
 }
 
-void evaluate_end(const ipc::SegmentCopy& segment, core::State& out) {
+void evaluate_end(const ipc::SegmentCopy& segment, State& out) {
   core::evaluate(segment.order, segment.coefficients, length_of(segment), out.ref());
 }
 
@@ -56,29 +56,29 @@ CurveRules::Step CurveRules::step(const ipc::SegmentCopy& before, const ipc::Seg
   const std::size_t dimensions = left_.dimensions();
   evaluate_end(before, left_);
   core::evaluate(after.order, after.coefficients, 0, right_.ref());
-  std::array<double, core::kMaxDimensions> position{};
-  std::array<double, core::kMaxDimensions> velocity{};
+  std::array<double, kMaxDimensions> position{};
+  std::array<double, kMaxDimensions> velocity{};
   for (std::size_t d = 0; d < dimensions; ++d) {
     const auto b = scales(before, dimensions, d);
     const auto a = scales(after, dimensions, d);
     position[d] = std::max(b[0], a[0]);
     velocity[d] = std::max(b[1], a[1]);
   }
-  for (const core::QuaternionDimensions& quaternion : kinds_->quaternions()) {
+  for (const QuaternionDimensions& quaternion : kinds_->quaternions()) {
     const auto at = [&](std::span<const double> values) {
-      return values.subspan(quaternion.first, core::kQuaternionSize);
+      return values.subspan(quaternion.first, kQuaternionSize);
     };
     const double shortest = std::min(norm(at(left_.position())), norm(at(right_.position())));
-    const auto all_p = std::span(position).subspan(quaternion.first, core::kQuaternionSize);
-    const auto all_v = std::span(velocity).subspan(quaternion.first, core::kQuaternionSize);
+    const auto all_p = std::span(position).subspan(quaternion.first, kQuaternionSize);
+    const auto all_v = std::span(velocity).subspan(quaternion.first, kQuaternionSize);
     const double p = std::ranges::max(all_p) / shortest;
     const double v = std::ranges::max(all_v) / shortest;
     const bool is_far_off = !(shortest > kShortest);
     std::ranges::fill(all_p, is_far_off ? HUGE_VAL : p);
     std::ranges::fill(all_v, is_far_off ? HUGE_VAL : v * (1 + p));
   }
-  for (core::State* state : {&left_, &right_}) {
-    const core::StateRef ref = state->ref();
+  for (State* state : {&left_, &right_}) {
+    const StateRef ref = state->ref();
     kinds_->normalise_quaternions(ref.position, ref.velocity, ref.acceleration);
   }
   Step most;
@@ -102,24 +102,24 @@ bool CurveRules::ends_at_rest(const ipc::SegmentCopy& segment, bool halts) {
 }
 
 bool CurveRules::passes(const ipc::SegmentCopy& segment, bool at_end,
-                        std::span<const double> position, std::span<const core::Dimension> of) {
+                        std::span<const double> position, std::span<const Dimension> of) {
   const std::size_t dimensions = left_.dimensions();
   core::evaluate(segment.order, segment.coefficients, at_end ? length_of(segment) : 0, left_.ref());
   for (std::size_t d = 0; d < dimensions; ++d) {
     const double x = left_.position()[d];
     const double scale = std::max(scales(segment, dimensions, d)[0], std::abs(position[d]));
-    if (of[d].kind >= core::DimensionKind::quaternion) {
-      const auto sent = position.subspan(d, core::kQuaternionSize);
-      const auto read = left_.position().subspan(d, core::kQuaternionSize);
+    if (of[d].kind >= DimensionKind::quaternion) {
+      const auto sent = position.subspan(d, kQuaternionSize);
+      const auto read = left_.position().subspan(d, kQuaternionSize);
       const double n = norm(sent);
       double same = 0;
       double opposite = 0;
-      for (std::size_t k = 0; k < core::kQuaternionSize; ++k) {
+      for (std::size_t k = 0; k < kQuaternionSize; ++k) {
         same = std::max(same, std::abs(read[k] - sent[k] / n));
         opposite = std::max(opposite, std::abs(read[k] + sent[k] / n));
       }
       if (!(std::min(same, opposite) <= kRounding * std::max(scale, 1.0))) return false;
-      d += core::kQuaternionSize - 1;
+      d += kQuaternionSize - 1;
       continue;
     }
     const double period = of[d].period;

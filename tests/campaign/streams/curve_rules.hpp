@@ -14,7 +14,7 @@ class CurveRules {
  public:
   static constexpr double kRounding = 1e-10;
 
-  explicit CurveRules(const core::DimensionKinds& kinds, std::size_t dimensions)
+  explicit CurveRules(const DimensionKinds& kinds, std::size_t dimensions)
       : kinds_(&kinds), left_(dimensions), right_(dimensions) {}
 
   /// By how much more than rounding position and velocity step where `after` follows `before`; at
@@ -30,12 +30,12 @@ class CurveRules {
 
   /// Whether a segment begins, or at `at_end` ends, at a waypoint's position.
   [[nodiscard]] bool passes(const ipc::SegmentCopy& segment, bool at_end,
-                            std::span<const double> position, std::span<const core::Dimension> of);
+                            std::span<const double> position, std::span<const Dimension> of);
 
  private:
-  const core::DimensionKinds* kinds_;
-  core::State left_;
-  core::State right_;
+  const DimensionKinds* kinds_;
+  State left_;
+  State right_;
 };
 
 }  // namespace splinecast::campaign

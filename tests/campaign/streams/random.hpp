@@ -35,14 +35,13 @@ class Random {
   [[nodiscard]] std::size_t below(std::size_t n) noexcept {
     return static_cast<std::size_t>(next() % n);
   }
-  [[nodiscard]] core::Time between(core::Time low, core::Time high) noexcept {
-    return low + core::Time(
-                     static_cast<std::int64_t>(unit() * static_cast<double>((high - low).count())));
+  [[nodiscard]] Time between(Time low, Time high) noexcept {
+    return low +
+           Time(static_cast<std::int64_t>(unit() * static_cast<double>((high - low).count())));
   }
   /// A part of a time, from low to high times as long.
-  [[nodiscard]] core::Time part(core::Time time, double low, double high) noexcept {
-    return core::Time(
-        static_cast<std::int64_t>(static_cast<double>(time.count()) * uniform(low, high)));
+  [[nodiscard]] Time part(Time time, double low, double high) noexcept {
+    return Time(static_cast<std::int64_t>(static_cast<double>(time.count()) * uniform(low, high)));
   }
 
  private:

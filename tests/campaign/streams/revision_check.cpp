@@ -33,7 +33,7 @@ void RevisionCheck::breach(Breach breach, const std::string& what) {
                           head_.unmet, head_.newest));
 }
 
-void RevisionCheck::look(core::Time now, bool is_complete) {
+void RevisionCheck::look(Time now, bool is_complete) {
   const auto& board = stream_->board.reader;
   const ipc::Look look = board.look();
   const Head before = head_;
@@ -43,7 +43,7 @@ void RevisionCheck::look(core::Time now, bool is_complete) {
                              fmt::format("no head of revision {}", look.revision));
   }
   // A solver that dies behind its commit has not said how far that settles the curve.
-  check_settled_until(before, is_complete ? now : core::Time::min() / 2);
+  check_settled_until(before, is_complete ? now : Time::min() / 2);
   if (look.revision == before.revision) {
     settled_.look();
     return check_settled_segments();
@@ -77,15 +77,15 @@ void RevisionCheck::check_counts(const Head& before) {
            fmt::format("{} items in one step", head_.consumed - before.consumed));
   }
   findings_->count(Event::excesses, head_.exceeding - before.exceeding);
-  for (std::size_t i = 0; i < ipc::kRefusals; ++i) {
+  for (std::size_t i = 0; i < kRefusals; ++i) {
     for (Word n = before.reasons[i]; n < head_.reasons[i]; ++n) {
-      findings_->count(static_cast<ipc::Refusal>(i));
+      findings_->count(static_cast<Refusal>(i));
     }
   }
 }
 
 /// What is settled never shrinks; a revision settles what lies freeze_ahead before it.
-void RevisionCheck::check_settled_until(const Head& before, core::Time now) {
+void RevisionCheck::check_settled_until(const Head& before, Time now) {
   const bool had_curve = before.newest > 0;
   const bool is_back = had_curve && head_.settled_until < before.settled_until;
   const bool is_late = head_.revision != before.revision && head_.newest > 0 && !head_.finished &&
@@ -116,7 +116,7 @@ void RevisionCheck::count_events(const Head& before) {
   findings_->count(Event::deadline_misses, head_.misses - before.misses);
   if (!head_.finished || before.finished) return;
   findings_->count(Event::finishes);
-  if (copy_.kind == core::SegmentKind::splice) findings_->count(Event::returns_after_finish);
+  if (copy_.kind == SegmentKind::splice) findings_->count(Event::returns_after_finish);
 }
 
 /// A board that has overwritten the waypoints before a splice shapes it without them, of which its
@@ -133,7 +133,7 @@ void RevisionCheck::take_items(const Head& before) {
   const auto& items = items_.items();
   const bool withdraws = head_.withdrawn > before.withdrawn;
   for (Word item = before.consumed; item < head_.consumed; ++item) {
-    const core::Time t = items.waypoint(item).time;
+    const Time t = items.waypoint(item).time;
     if (items.is_taken(item, ItemKind::waypoint)) last_taken_ = item;
     if (items.is_taken(item, ItemKind::waypoint)) pending_.push_back({.item = item, .time = t});
     if (!items.is_taken(item, ItemKind::replace)) continue;
@@ -161,7 +161,7 @@ void RevisionCheck::forget_from(Word item) {
 /// along the segments.
 void RevisionCheck::check_passed(const Head& before) {
   if (head_.course != 0 || head_.passed_over != before.passed_over) return;
-  if (plan_->window.interpolant.method->family == core::Family::smoothing) return;
+  if (plan_->window.interpolant.method->family == Family::smoothing) return;
   bool has_copy = copy(head_.newest);
   for (auto waypoint = pending_.rbegin();
        waypoint != pending_.rend() && waypoint->item >= before.consumed; ++waypoint) {
@@ -169,7 +169,7 @@ void RevisionCheck::check_passed(const Head& before) {
       has_copy = copy(copy_.number - 1);
     }
     const bool at_end = waypoint->time != copy_.left;
-    const core::Waypoint sent = items_.items().waypoint(waypoint->item);
+    const Waypoint sent = items_.items().waypoint(waypoint->item);
     const bool is_there = has_copy && (!at_end || waypoint->time == copy_.right);
     if (is_there && rules_.passes(copy_, at_end, sent.position, plan_->dimensions)) continue;
     breach(
@@ -184,8 +184,8 @@ void RevisionCheck::check_settled_segments() {
   const auto segments = settled_.segments();
   for (; joined_ < segments.size(); ++joined_) {
     const ipc::SegmentCopy& segment = segments[joined_];
-    if (segment.kind == core::SegmentKind::splice) check_entry(segment);
-    if (segment.kind == core::SegmentKind::stop_tail) check_stop_segment(segment);
+    if (segment.kind == SegmentKind::splice) check_entry(segment);
+    if (segment.kind == SegmentKind::stop_tail) check_stop_segment(segment);
     const Word expected = joined_ > 0 ? segments[joined_ - 1].next : 1;
     if (segment.number != expected) {
       has_gap_ = true;
@@ -210,7 +210,7 @@ void RevisionCheck::check_settled_segments() {
 
 /// Waypoints up to the left end of a settled segment are where they were sent to.
 void RevisionCheck::check_waypoint_at(const ipc::SegmentCopy& segment) {
-  const bool smooths = plan_->window.interpolant.method->family == core::Family::smoothing;
+  const bool smooths = plan_->window.interpolant.method->family == Family::smoothing;
   while (!pending_.empty() && pending_.front().time <= segment.left) {
     const Pending waypoint = pending_.front();
     pending_.pop_front();
@@ -236,9 +236,9 @@ void RevisionCheck::check_entry(const ipc::SegmentCopy& segment) {
   if (segment.origin.known > 0) findings_->count(Event::extrapolated_ends);
   if (segment.right < segment.natural_right) findings_->count(Event::entries_replaced);
   const auto& limits = plan_->window.limits.acceleration;
-  const double length = core::to_seconds(segment.right - segment.left);
+  const double length = to_seconds(segment.right - segment.left);
   for (std::size_t d = 0; d < limits.size(); ++d) {
-    if (limits[d] <= 0 || plan_->dimensions[d].kind >= core::DimensionKind::quaternion) continue;
+    if (limits[d] <= 0 || plan_->dimensions[d].kind >= DimensionKind::quaternion) continue;
     const auto range =
         core::range_of(segment.order, segment.coefficients, limits.size(), d, 2, 0, length);
     const double begin = 2 * std::abs(segment.coefficients[2 * limits.size() + d]);
@@ -255,7 +255,7 @@ void RevisionCheck::check_entry(const ipc::SegmentCopy& segment) {
 void RevisionCheck::check_stop_segment(const ipc::SegmentCopy& segment) {
   findings_->count(Event::stop_segments);
   const std::size_t dimensions = plan_->dimensions.size();
-  const double whole = core::to_seconds(segment.natural_right - segment.left);
+  const double whole = to_seconds(segment.natural_right - segment.left);
   constexpr double kSlack = 1 + 1e-9;
   for (std::size_t d = 0; d < dimensions; ++d) {
     const double v = segment.coefficients[dimensions + d];
@@ -280,7 +280,7 @@ void RevisionCheck::check_stop_segment(const ipc::SegmentCopy& segment) {
 }
 
 void RevisionCheck::check_last_waypoint(const ipc::SegmentCopy& segment) {
-  const bool smooths = plan_->window.interpolant.method->family == core::Family::smoothing;
+  const bool smooths = plan_->window.interpolant.method->family == Family::smoothing;
   while (!pending_.empty()) {
     const Pending waypoint = pending_.front();
     pending_.pop_front();
@@ -297,7 +297,7 @@ void RevisionCheck::check_last_waypoint(const ipc::SegmentCopy& segment) {
                        waypoint.time.count(), head_.passed_over));
   }
   const bool comes_late =
-      last_passed_ && last_passed_ == last_taken_ && segment.kind != core::SegmentKind::spline &&
+      last_passed_ && last_passed_ == last_taken_ && segment.kind != SegmentKind::spline &&
       (smooths || rules_.passes(segment, true, items_.items().waypoint(*last_passed_).position,
                                 plan_->dimensions));
   const Word passed = passed_seen_ - (comes_late ? 1 : 0);
@@ -314,10 +314,10 @@ void RevisionCheck::check_end() {
   }
   end_ = copy_.right;
   const bool is_open = !head_.finished;
-  const bool is_stop = copy_.kind == core::SegmentKind::stop_tail;
-  const bool halts = is_stop || copy_.kind != core::SegmentKind::spline ||
-                     plan_->end.kind == core::ConditionKind::halt;
-  const bool rests = halts || plan_->end.kind == core::ConditionKind::rest;
+  const bool is_stop = copy_.kind == SegmentKind::stop_tail;
+  const bool halts =
+      is_stop || copy_.kind != SegmentKind::spline || plan_->end.kind == ConditionKind::halt;
+  const bool rests = halts || plan_->end.kind == ConditionKind::rest;
   if ((is_open && !is_stop) || (rests && !rules_.ends_at_rest(copy_, halts))) {
     breach(Breach::not_at_rest, fmt::format("segment {}", copy_.number));
   }
@@ -335,7 +335,7 @@ void RevisionCheck::check_stop() {
   if (!had_curve_ && head_.consumed <= stop.item) return;
   const bool is_due = head_.settled_until > stop.time;
   if (head_.consumed <= stop.item && (!is_due || due_stop_->steps_due++ == 0)) return;
-  const core::Time effect = std::max(stop.time, head_.settled_until);
+  const Time effect = std::max(stop.time, head_.settled_until);
   due_stop_.reset();
   if (!copy(head_.newest)) return;
   const auto above = std::span(copy_.coefficients)

@@ -23,10 +23,10 @@ class RevisionCheck {
 
   /// Checks the newest revision, if it is a new one: after each step of a solver, which read the
   /// clock as `now` first.
-  void look(core::Time now, bool is_complete = true);
+  void look(Time now, bool is_complete = true);
 
   /// A stop that the ring has accepted as this item: takes effect in the step that begins next.
-  void expect_stop(ipc::Word item, core::Time t) {
+  void expect_stop(ipc::Word item, Time t) {
     accepted_stop_ = Stop{.item = item, .time = t};
     findings_->count(Event::stops);
   }
@@ -45,23 +45,23 @@ class RevisionCheck {
 
   /// The newest revision's head, and when its curve has come to rest.
   [[nodiscard]] const ipc::Head& head() const noexcept { return head_; }
-  [[nodiscard]] core::Time end_of_motion() const noexcept { return end_; }
+  [[nodiscard]] Time end_of_motion() const noexcept { return end_; }
   [[nodiscard]] const ipc::SentItems& items() const noexcept { return items_.items(); }
 
  private:
   struct Pending {
     ipc::Word item = 0;
-    core::Time time{};
+    Time time{};
   };
   struct Stop {
     ipc::Word item = 0;
-    core::Time time{};
+    Time time{};
     int steps_due = 0;  ///< in which it was not taken although its time had come
   };
 
   void check_counts(const ipc::Head& before);
   [[nodiscard]] bool copy(ipc::Word number);
-  void check_settled_until(const ipc::Head& before, core::Time now);
+  void check_settled_until(const ipc::Head& before, Time now);
   void count_events(const ipc::Head& before);
   void take_items(const ipc::Head& before);
   void forget_from(ipc::Word item);
@@ -92,7 +92,7 @@ class RevisionCheck {
   ipc::BoardSegment board_segment_;
   ipc::SegmentCopy copy_;
   ipc::Head head_;
-  core::Time end_{};
+  Time end_{};
   std::optional<Stop> accepted_stop_;
   std::optional<Stop> due_stop_;
   bool had_curve_ = false;  ///< before the step

@@ -25,11 +25,11 @@ class RevisionLog {
   }
 
   /// When the curve begins, as far as the board still said so.
-  [[nodiscard]] core::Time start() const noexcept { return start_; }
+  [[nodiscard]] Time start() const noexcept { return start_; }
 
   /// The earliest change of the revisions after `seen` up to r.
-  [[nodiscard]] core::Time earliest(ipc::Word seen, ipc::Word r) const {
-    core::Time earliest = core::Time::max();
+  [[nodiscard]] Time earliest(ipc::Word seen, ipc::Word r) const {
+    Time earliest = Time::max();
     for (ipc::Word i = seen; i < std::min<ipc::Word>(r, changed_from_.size()); ++i) {
       earliest = std::min(earliest, changed_from_[i]);
     }
@@ -38,8 +38,8 @@ class RevisionLog {
 
  private:
   const ipc::KnotBoardReader* board_;
-  std::vector<core::Time> changed_from_;
-  core::Time start_ = core::Time::max();
+  std::vector<Time> changed_from_;
+  Time start_ = Time::max();
 };
 
 }  // namespace splinecast::campaign

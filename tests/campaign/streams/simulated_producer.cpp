@@ -10,9 +10,6 @@
 namespace splinecast::campaign {
 namespace {
 
-using core::Time;
-using ipc::AppendStatus;
-
 /// Shares of a producer's acts.
 constexpr double kReplaces = 0.04;
 constexpr double kStops = 0.01;
@@ -72,7 +69,7 @@ void SimulatedProducer::start(Time now) {
   lead_ = plan_->live.freeze_ahead + plan_->live.min_splice + plan_->interval;
   next_waypoint_ = now + lead_;
   if (!plan_->starts_in_motion) return;
-  const core::Waypoint state = source_.smooth_at(now + lead_);
+  const Waypoint state = source_.smooth_at(now + lead_);
   const auto status = answered(stream_->ring.writer.start_from(
       {state.time, state.position, state.velocity, state.acceleration}, solved()));
   if (status == AppendStatus::accepted) findings_->count(Event::starts_in_motion);
@@ -168,7 +165,7 @@ void SimulatedProducer::replace(Time now) {
   const std::size_t most = std::min(kMostReplaced, plan_->ring_capacity - 1);
   const std::size_t count = random_->below(most + 1);
   std::vector<std::vector<double>> values;
-  std::vector<core::Waypoint> waypoints;
+  std::vector<Waypoint> waypoints;
   const auto keep = [&values](std::span<const double> from) {
     values.emplace_back(from.begin(), from.end());
     return std::span<const double>(values.back());
@@ -177,7 +174,7 @@ void SimulatedProducer::replace(Time now) {
   Time at = t + random_->part(plan_->live.min_splice, 0.5, 4);
   for (std::size_t i = 0; i < count; ++i) {
     at += random_->part(plan_->interval, 0.5, 1.5);
-    const core::Waypoint waypoint = source_.at(at);
+    const Waypoint waypoint = source_.at(at);
     waypoints.push_back({.time = at,
                          .position = keep(waypoint.position),
                          .velocity = keep(waypoint.velocity),
@@ -208,7 +205,7 @@ void SimulatedProducer::stop(Time now) {
 /// A call that is refused.
 void SimulatedProducer::make_mistake(Time now) {
   auto& writer = stream_->ring.writer;
-  core::Waypoint waypoint = source_.at(next_waypoint_);
+  Waypoint waypoint = source_.at(next_waypoint_);
   std::vector<double> position(waypoint.position.begin(), waypoint.position.end());
   switch (random_->below(7)) {
     case 0:
@@ -237,10 +234,10 @@ void SimulatedProducer::make_mistake(Time now) {
 }
 
 void SimulatedProducer::replace_too_many(Time now) {
-  const std::vector<core::Waypoint> waypoints(plan_->ring_capacity);
+  const std::vector<Waypoint> waypoints(plan_->ring_capacity);
   const Time later = std::max(now, check_->head().settled_until) + plan_->interval;
   (void)answered(stream_->ring.writer.replace_from(later, waypoints, solved()));
-  const core::Waypoint state = source_.smooth_at(now);
+  const Waypoint state = source_.smooth_at(now);
   (void)answered(stream_->ring.writer.start_from(
       {state.time, state.position, state.velocity, state.acceleration}, solved()));
 }
@@ -280,7 +277,7 @@ void SimulatedProducer::observe() {
   const ipc::Word item = items.size() - 1 - back;
   if (!stream_->ring.reader.observe(item, observed_)) return;
   findings_->count(Event::items_observed);
-  const core::Waypoint sent = items.waypoint(item);
+  const Waypoint sent = items.waypoint(item);
   const bool is_waypoint = observed_.kind == ipc::ItemKind::waypoint;
   const bool is_same =
       observed_.kind == items.kind(item) && observed_.time == sent.time &&

@@ -16,30 +16,30 @@ class SimulatedProducer {
                     StreamFindings& findings, Random& random);
 
   /// When it wants to act next.
-  [[nodiscard]] core::Time next() const noexcept { return next_; }
+  [[nodiscard]] Time next() const noexcept { return next_; }
 
-  void act(core::Time now);
+  void act(Time now);
 
   [[nodiscard]] bool has_finished() const { return stream_->ring.writer.finished(); }
 
  private:
   enum class Phase { steady, jittered, late, silent, burst };
 
-  void start(core::Time now);
-  void change_phase(core::Time now);
-  void send_due(core::Time now);
+  void start(Time now);
+  void change_phase(Time now);
+  void send_due(Time now);
   void send_next();
-  void do_something_else(core::Time now);
-  void replace(core::Time now);
-  void stop(core::Time now);
-  [[nodiscard]] core::Time replacement_time(core::Time now);
-  void make_mistake(core::Time now);
-  void replace_too_many(core::Time now);
-  void die(core::Time now);
-  void finish(core::Time now);
+  void do_something_else(Time now);
+  void replace(Time now);
+  void stop(Time now);
+  [[nodiscard]] Time replacement_time(Time now);
+  void make_mistake(Time now);
+  void replace_too_many(Time now);
+  void die(Time now);
+  void finish(Time now);
   void observe();
   [[nodiscard]] ipc::WaypointRingWriter::Solved solved();
-  ipc::AppendStatus answered(ipc::AppendStatus status);
+  AppendStatus answered(AppendStatus status);
 
   const StreamPlan* plan_;
   testing::MemoryStream* stream_;
@@ -50,11 +50,11 @@ class SimulatedProducer {
   WaypointSource source_;
   ipc::RingItem observed_;
   Phase phase_ = Phase::steady;
-  core::Time phase_end_{};
-  core::Time next_{};
-  core::Time next_waypoint_{};
-  core::Time lead_{};
-  core::Time last_sent_{};  ///< time of the last waypoint that was accepted
+  Time phase_end_{};
+  Time next_{};
+  Time next_waypoint_{};
+  Time lead_{};
+  Time last_sent_{};  ///< time of the last waypoint that was accepted
   bool is_full_ = false;
   bool has_started_ = false;
 };

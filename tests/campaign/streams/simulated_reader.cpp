@@ -10,8 +10,6 @@
 namespace splinecast::campaign {
 namespace {
 
-using ipc::SampleStatus;
-
 constexpr std::size_t kExecutedKept = 8;
 /// Of the samples that are offered once a memory is full, the share that is taken.
 constexpr double kShareKept = 0.1;
@@ -36,7 +34,7 @@ std::string difference(std::span<const double> a, std::span<const double> b) {
 SampleMemory::SampleMemory(std::size_t size, std::size_t dimensions)
     : seen_(size, Seen{.time = {}, .values = std::vector<double>(4 * dimensions)}) {}
 
-void SampleMemory::offer(core::Time t, const core::State& state, Random& random) {
+void SampleMemory::offer(Time t, const State& state, Random& random) {
   const bool is_full = used_ == seen_.size();
   if (is_full && !random.chance(kShareKept)) return;
   Seen& seen = seen_[is_full ? random.below(used_) : used_++];
@@ -50,17 +48,17 @@ SimulatedReader::SimulatedReader(const ipc::KnotBoardReader& board, const Stream
       findings_(&findings),
       random_(&random),
       log_(&log),
-      sampler_(board, ipc::StreamClock::monotonic, plan.kinds),
+      sampler_(board, StreamClock::monotonic, plan.kinds),
       state_(plan.dimensions.size()),
       again_(plan.dimensions.size()),
       executed_(kExecutedKept, plan.dimensions.size()) {}
 
-SampleStatus SimulatedReader::sample(core::Time t, SampleMemory& settled) {
+SampleStatus SimulatedReader::sample(Time t, SampleMemory& settled) {
   const ipc::Word seen = sampler_.revision_seen();
   const SampleStatus status = sampler_.sample(t, state_.ref());
   note_revisions(seen);
   check_values(t, status, settled);
-  if (!ipc::has_values(status)) return status;
+  if (!has_values(status)) return status;
   const bool is_revised = status == SampleStatus::revised;
   judge_revised(t, is_revised);
   if (!is_open_start(t)) executed_.offer(t, state_, *random_);
@@ -68,7 +66,7 @@ SampleStatus SimulatedReader::sample(core::Time t, SampleMemory& settled) {
   return status;
 }
 
-SampleStatus SimulatedReader::preview(core::Time t, SampleMemory& settled) {
+SampleStatus SimulatedReader::preview(Time t, SampleMemory& settled) {
   const ipc::Word seen = sampler_.revision_seen();
   const SampleStatus status = sampler_.preview(t, state_.ref());
   note_revisions(seen);
@@ -78,9 +76,9 @@ SampleStatus SimulatedReader::preview(core::Time t, SampleMemory& settled) {
 
 /// Whether t is before a start that the first waypoint alone does not fix: its position, if the
 /// method smooths, and whether it is at rest.
-bool SimulatedReader::is_open_start(core::Time t) const {
-  const bool is_fixed = core::is_at_rest(plan_->window.start.kind) &&
-                        plan_->window.interpolant.method->family != core::Family::smoothing;
+bool SimulatedReader::is_open_start(Time t) const {
+  const bool is_fixed = is_at_rest(plan_->window.start.kind) &&
+                        plan_->window.interpolant.method->family != Family::smoothing;
   return !is_fixed && t < log_->start();
 }
 
@@ -98,7 +96,7 @@ void SimulatedReader::note_revisions(ipc::Word seen) {
   settled_until_seen_ = sampler_.settled_until();
 }
 
-void SimulatedReader::judge_revised(core::Time t, bool is_revised) {
+void SimulatedReader::judge_revised(Time t, bool is_revised) {
   if (is_revised && !may_be_revised_) {
     findings_->breach(Breach::false_revised,
                       fmt::format("at {}, sampled until {}, revision {}", t.count(),
@@ -113,7 +111,7 @@ void SimulatedReader::read_executed_again() {
   const auto all = executed_.seen();
   if (all.empty()) return;
   const SampleMemory::Seen& seen = all[random_->below(all.size())];
-  if (!ipc::has_values(sampler_.preview(seen.time, again_.ref()))) return;
+  if (!has_values(sampler_.preview(seen.time, again_.ref()))) return;
   if (same_bits(again_.values(), seen.values)) return;
   findings_->breach(
       Breach::change_not_told,
@@ -122,34 +120,32 @@ void SimulatedReader::read_executed_again() {
   executed_.clear();
 }
 
-void SimulatedReader::check_values(core::Time t, SampleStatus status, SampleMemory& settled) {
+void SimulatedReader::check_values(Time t, SampleStatus status, SampleMemory& settled) {
   findings_->count(status);
   if (status == SampleStatus::busy || status == SampleStatus::retired) {
-    findings_->breach(Breach::no_answer,
-                      fmt::format("{} at {}", ipc::to_string(status), t.count()));
+    findings_->breach(Breach::no_answer, fmt::format("{} at {}", to_string(status), t.count()));
   }
-  if (!ipc::has_values(status)) return;
+  if (!has_values(status)) return;
   has_read_ = has_read_ || !is_open_start(t);
   double sum = 0;
   for (const double value : state_.values()) sum += value * 0;
   if (sum != 0) {
-    findings_->breach(Breach::not_finite,
-                      fmt::format("{} at {}", ipc::to_string(status), t.count()));
+    findings_->breach(Breach::not_finite, fmt::format("{} at {}", to_string(status), t.count()));
   }
   if (t < sampler_.settled_until() && !is_open_start(t)) settled.offer(t, state_, *random_);
 }
 
 void read_settled_again(const ipc::KnotBoardReader& board, const StreamPlan& plan,
                         const SampleMemory& settled, StreamFindings& findings) {
-  ipc::Sampler fresh(board, ipc::StreamClock::monotonic, plan.kinds);
-  core::State state(plan.dimensions.size());
+  ipc::Sampler fresh(board, StreamClock::monotonic, plan.kinds);
+  State state(plan.dimensions.size());
   for (const SampleMemory::Seen& seen : settled.seen()) {
     const SampleStatus status = fresh.preview(seen.time, state.ref());
     if (status == SampleStatus::before_history) continue;
     findings.count(Event::settled_samples_read_again);
-    if (ipc::has_values(status) && same_bits(state.values(), seen.values)) continue;
+    if (has_values(status) && same_bits(state.values(), seen.values)) continue;
     findings.breach(Breach::settled_changed,
-                    fmt::format("at {}: {}, {}", seen.time.count(), ipc::to_string(status),
+                    fmt::format("at {}: {}, {}", seen.time.count(), to_string(status),
                                 difference(seen.values, state.values())));
     return;
   }

@@ -14,10 +14,10 @@ class SampleMemory {
   SampleMemory(std::size_t size, std::size_t dimensions);
 
   struct Seen {
-    core::Time time{};
+    Time time{};
     std::vector<double> values;
   };
-  void offer(core::Time t, const core::State& state, Random& random);
+  void offer(Time t, const State& state, Random& random);
   void clear() noexcept { used_ = 0; }
   [[nodiscard]] std::span<const Seen> seen() const { return std::span(seen_).first(used_); }
 
@@ -33,32 +33,32 @@ class SimulatedReader {
                   StreamFindings& findings, Random& random);
 
   /// Samples as a controller does. What is settled goes to `settled`.
-  ipc::SampleStatus sample(core::Time t, SampleMemory& settled);
+  SampleStatus sample(Time t, SampleMemory& settled);
 
   /// Looks ahead or back.
-  ipc::SampleStatus preview(core::Time t, SampleMemory& settled);
+  SampleStatus preview(Time t, SampleMemory& settled);
 
-  [[nodiscard]] core::Time settled_until() const noexcept { return sampler_.settled_until(); }
+  [[nodiscard]] Time settled_until() const noexcept { return sampler_.settled_until(); }
   /// Whether a sample has had values.
   [[nodiscard]] bool has_read() const noexcept { return has_read_; }
 
  private:
-  [[nodiscard]] bool is_open_start(core::Time t) const;
-  void judge_revised(core::Time t, bool is_revised);
+  [[nodiscard]] bool is_open_start(Time t) const;
+  void judge_revised(Time t, bool is_revised);
   void note_revisions(ipc::Word seen);
   void read_executed_again();
-  void check_values(core::Time t, ipc::SampleStatus status, SampleMemory& settled);
+  void check_values(Time t, SampleStatus status, SampleMemory& settled);
 
   const StreamPlan* plan_;
   StreamFindings* findings_;
   Random* random_;
   RevisionLog* log_;
   ipc::Sampler sampler_;
-  core::State state_;
-  core::State again_;
+  State state_;
+  State again_;
   SampleMemory executed_;  ///< since the last `revised`
-  core::Time sampled_until_ = core::Time::min();
-  core::Time settled_until_seen_ = core::Time::min();  ///< under the revision seen last
+  Time sampled_until_ = Time::min();
+  Time settled_until_seen_ = Time::min();  ///< under the revision seen last
   bool may_be_revised_ = false;
   bool has_read_ = false;
 };

@@ -11,8 +11,6 @@
 namespace splinecast::campaign {
 namespace {
 
-using core::Time;
-
 constexpr std::size_t kSettledKept = 48;
 /// Readings of the clock in one step.
 constexpr std::size_t kMostReadings = 4;
@@ -92,17 +90,16 @@ void SimulatedStream::read_now() {
   (void)log_.catch_up();
   const bool had_values = controller_.has_read();
   const auto status = controller_.sample(now_, settled_);
-  if (had_values && !ipc::has_values(status) && status != ipc::SampleStatus::busy) {
+  if (had_values && !has_values(status) && status != SampleStatus::busy) {
     findings_->breach(Breach::no_answer,
-                      fmt::format("{} at now, {}", ipc::to_string(status), now_.count()));
+                      fmt::format("{} at now, {}", to_string(status), now_.count()));
   }
   check_kept_up(status);
 }
 
 /// What a controller reads at now has settled, or rests, if the solver has been stepped in time.
-void SimulatedStream::check_kept_up(ipc::SampleStatus status) {
-  const bool is_unsettled =
-      status == ipc::SampleStatus::provisional || status == ipc::SampleStatus::stopping;
+void SimulatedStream::check_kept_up(SampleStatus status) {
+  const bool is_unsettled = status == SampleStatus::provisional || status == SampleStatus::stopping;
   if (!is_unsettled || now_ >= kept_up_until_ || now_ < controller_.settled_until()) return;
   findings_->breach(Breach::unsettled_at_now, fmt::format("{}, settled until {}", now_.count(),
                                                           controller_.settled_until().count()));
@@ -160,7 +157,7 @@ void SimulatedStream::step() {
                     fmt::format("{} steps discarded at {}", kMostMisses, now_.count()));
 }
 
-void SimulatedStream::check_step(const ipc::StepResult& result, ipc::Word misses, ipc::Word late) {
+void SimulatedStream::check_step(const StepResult& result, ipc::Word misses, ipc::Word late) {
   const Time began = clock_.first_reading();
   if (result.damaged) findings_->breach(Breach::board_refused, "damaged in a step");
   if (clock_.readings() > kMostReadings) {

@@ -21,11 +21,11 @@ class SimulatedStream {
   void run();
 
  private:
-  void advance_to(core::Time t);
+  void advance_to(Time t);
   void read_now();
   void read_seldom();
   void look_around();
-  void check_kept_up(ipc::SampleStatus status);
+  void check_kept_up(SampleStatus status);
 
   [[nodiscard]] bool is_over() const;
   void work();
@@ -33,14 +33,14 @@ class SimulatedStream {
   void step();
   void step_in_trouble();
   void step_and_die();
-  void check_step(const ipc::StepResult& result, ipc::Word misses, ipc::Word late);
+  void check_step(const StepResult& result, ipc::Word misses, ipc::Word late);
   void replace_solver();
   void schedule_solver();
 
   StreamPlan plan_;
   StreamFindings* findings_;
   Random* random_;
-  core::Time now_{};
+  Time now_{};
   testing::SimulatedClock clock_;
   testing::MemoryStream stream_;
   RevisionCheck check_;
@@ -51,12 +51,12 @@ class SimulatedStream {
   SimulatedReader seldom_;      ///< samples at now, many revisions later
   SimulatedReader eager_;       ///< samples ahead of what has settled
   SimulatedReader previewer_;   ///< looks ahead and back
-  core::Time next_tick_{};
-  core::Time next_seldom_{};
-  core::Time next_look_{};
-  core::Time next_step_{};
-  core::Time pace_{};            ///< between two steps of the solver
-  core::Time kept_up_until_{};   ///< up to which the last steps have settled the curve
+  Time next_tick_{};
+  Time next_seldom_{};
+  Time next_look_{};
+  Time next_step_{};
+  Time pace_{};                  ///< between two steps of the solver
+  Time kept_up_until_{};         ///< up to which the last steps have settled the curve
   bool has_taken_over_ = false;  ///< no revision has been committed since
   bool was_in_time_ = true;      ///< the last revision was committed when its step began
 };

@@ -64,15 +64,15 @@ constexpr std::array<std::string_view, kEvents> kEventNames{"streams",
 
 /// Refusals that a producer that is no attacker can come by.
 constexpr std::array kRefusalsToSee{
-    ipc::Refusal::past,          ipc::Refusal::duplicate,       ipc::Refusal::out_of_order,
-    ipc::Refusal::too_close,     ipc::Refusal::too_far_apart,   ipc::Refusal::too_late,
-    ipc::Refusal::lag_too_short, ipc::Refusal::zero_quaternion, ipc::Refusal::lacks_derivatives,
-    ipc::Refusal::beyond_limits};
+    Refusal::past,          Refusal::duplicate,       Refusal::out_of_order,
+    Refusal::too_close,     Refusal::too_far_apart,   Refusal::too_late,
+    Refusal::lag_too_short, Refusal::zero_quaternion, Refusal::lacks_derivatives,
+    Refusal::beyond_limits};
 /// Statuses of samples, but for those that take another process at the same time.
-constexpr std::array kStatusesToSee{
-    ipc::SampleStatus::settled,       ipc::SampleStatus::provisional, ipc::SampleStatus::stopping,
-    ipc::SampleStatus::holding,       ipc::SampleStatus::revised,     ipc::SampleStatus::no_data,
-    ipc::SampleStatus::before_history};
+constexpr std::array kStatusesToSee{SampleStatus::settled,       SampleStatus::provisional,
+                                    SampleStatus::stopping,      SampleStatus::holding,
+                                    SampleStatus::revised,       SampleStatus::no_data,
+                                    SampleStatus::before_history};
 
 constexpr std::array<std::string_view, kLimitClasses> kLimitNames{"no", "generous", "tight"};
 
@@ -106,7 +106,7 @@ void StreamFindings::begin_stream(const StreamPlan& plan) {
   count(Event::streams);
   ++methods_[std::string(plan.window.interpolant.method->name)];
   ++limits_[static_cast<std::size_t>(plan.limit_class)];
-  for (const core::Dimension& dimension : plan.dimensions) {
+  for (const Dimension& dimension : plan.dimensions) {
     ++kinds_[static_cast<std::size_t>(dimension.kind)];
   }
 }
@@ -129,19 +129,18 @@ nlohmann::json StreamFindings::found() const {
 std::map<std::string, std::uint64_t> StreamFindings::required() const {
   std::map<std::string, std::uint64_t> all;
   for (std::size_t i = 0; i < kEvents; ++i) all.emplace(kEventNames[i], events_[i]);
-  for (const ipc::SampleStatus status : kStatusesToSee) {
-    all.emplace(fmt::format("samples {}", ipc::to_string(status)),
+  for (const SampleStatus status : kStatusesToSee) {
+    all.emplace(fmt::format("samples {}", to_string(status)),
                 statuses_[static_cast<std::size_t>(status)]);
   }
-  for (const ipc::Refusal refusal : kRefusalsToSee) {
-    all.emplace(fmt::format("refused as {}", ipc::to_string(refusal)),
+  for (const Refusal refusal : kRefusalsToSee) {
+    all.emplace(fmt::format("refused as {}", to_string(refusal)),
                 refusals_[static_cast<std::size_t>(refusal)]);
   }
-  for (std::size_t i = 0; i < ipc::kAppendStatuses; ++i) {
-    all.emplace(fmt::format("calls {}", ipc::to_string(static_cast<ipc::AppendStatus>(i))),
-                answers_[i]);
+  for (std::size_t i = 0; i < kAppendStatuses; ++i) {
+    all.emplace(fmt::format("calls {}", to_string(static_cast<AppendStatus>(i))), answers_[i]);
   }
-  for (const core::Method* method : streaming_methods()) {
+  for (const Method* method : streaming_methods()) {
     const auto found = methods_.find(std::string(method->name));
     all.emplace(fmt::format("streams of {}", method->name),
                 found == methods_.end() ? 0 : found->second);
@@ -163,7 +162,7 @@ nlohmann::json StreamFindings::coverage() const {
   all["refusals"] = sum(refusals_);
   for (std::size_t i = 0; i < refusals_.size(); ++i) {
     if (refusals_[i] == 0) continue;
-    all[fmt::format("refused as {}", ipc::to_string(static_cast<ipc::Refusal>(i)))] = refusals_[i];
+    all[fmt::format("refused as {}", to_string(static_cast<Refusal>(i)))] = refusals_[i];
   }
   return all;
 }

@@ -85,10 +85,10 @@ class StreamFindings {
   void count(Event event, std::uint64_t times = 1) noexcept {
     events_[static_cast<std::size_t>(event)] += times;
   }
-  void count(ipc::SampleStatus status) noexcept { ++statuses_[static_cast<std::size_t>(status)]; }
-  void count(ipc::AppendStatus status) noexcept { ++answers_[static_cast<std::size_t>(status)]; }
-  void count(ipc::Refusal refusal) noexcept { ++refusals_[static_cast<std::size_t>(refusal)]; }
-  void count_simulated(core::Time time) noexcept { simulated_ += core::to_seconds(time); }
+  void count(SampleStatus status) noexcept { ++statuses_[static_cast<std::size_t>(status)]; }
+  void count(AppendStatus status) noexcept { ++answers_[static_cast<std::size_t>(status)]; }
+  void count(Refusal refusal) noexcept { ++refusals_[static_cast<std::size_t>(refusal)]; }
+  void count_simulated(Time time) noexcept { simulated_ += to_seconds(time); }
 
   /// Counts a breach, says on standard error what it is and of which seed; the stream has failed.
   void breach(Breach breach, const std::string& what);
@@ -116,10 +116,10 @@ class StreamFindings {
   double simulated_ = 0;
   std::array<std::uint64_t, kBreaches> breaches_{};
   std::array<std::uint64_t, kEvents> events_{};
-  std::array<std::uint64_t, ipc::kSampleStatuses> statuses_{};
-  std::array<std::uint64_t, ipc::kAppendStatuses> answers_{};
+  std::array<std::uint64_t, kSampleStatuses> statuses_{};
+  std::array<std::uint64_t, kAppendStatuses> answers_{};
   std::array<std::uint64_t, 64> refusals_{};
-  std::array<std::uint64_t, core::kDimensionKinds> kinds_{};
+  std::array<std::uint64_t, kDimensionKinds> kinds_{};
   std::array<std::uint64_t, kLimitClasses> limits_{};
   std::map<std::string, std::uint64_t> methods_;
 };

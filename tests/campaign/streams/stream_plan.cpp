@@ -12,7 +12,6 @@
 namespace splinecast::campaign {
 namespace {
 
-using core::Time;
 using std::chrono::hours;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
@@ -28,22 +27,21 @@ Time log_between(Random& random, Time low, Time high) {
       random.log_uniform(static_cast<double>(low.count()), static_cast<double>(high.count()))));
 }
 
-std::vector<core::Dimension> make_dimensions(Random& random) {
+std::vector<Dimension> make_dimensions(Random& random) {
   const std::size_t count = 1 + random.below(kMostDimensions);
   const bool all_linear = random.chance(0.5);
-  std::vector<core::Dimension> dimensions;
+  std::vector<Dimension> dimensions;
   while (dimensions.size() < count) {
     if (all_linear) {
       dimensions.push_back({});
-    } else if (count - dimensions.size() >= core::kQuaternionSize &&
-               random.chance(kShareOfQuaternions)) {
-      const auto kind = random.chance(0.5) ? core::DimensionKind::quaternion
-                                           : core::DimensionKind::quaternion_wxyz;
-      dimensions.insert(dimensions.end(), core::kQuaternionSize, {.kind = kind});
+    } else if (count - dimensions.size() >= kQuaternionSize && random.chance(kShareOfQuaternions)) {
+      const auto kind =
+          random.chance(0.5) ? DimensionKind::quaternion : DimensionKind::quaternion_wxyz;
+      dimensions.insert(dimensions.end(), kQuaternionSize, {.kind = kind});
     } else if (random.chance(kShareOfWraps)) {
       constexpr std::array kPeriods{1.0, 6.283185307179586, 360.0, 1e-6};
       dimensions.push_back(
-          {.kind = core::DimensionKind::wrap, .period = kPeriods[random.below(kPeriods.size())]});
+          {.kind = DimensionKind::wrap, .period = kPeriods[random.below(kPeriods.size())]});
     } else {
       dimensions.push_back({});
     }
@@ -51,19 +49,19 @@ std::vector<core::Dimension> make_dimensions(Random& random) {
   return dimensions;
 }
 
-core::Interpolant make_interpolant(std::uint64_t seed, Time interval, Random& random) {
+Interpolant make_interpolant(std::uint64_t seed, Time interval, Random& random) {
   const auto& methods = streaming_methods();
-  core::Interpolant interpolant{.method = methods[seed % methods.size()]};
+  Interpolant interpolant{.method = methods[seed % methods.size()]};
   interpolant.time_scale = random.log_uniform(1e-3, 1e3);
-  const double h = core::to_seconds(interval);
+  const double h = to_seconds(interval);
   interpolant.lambda = random.chance(0.1) ? 0 : h * h * h * random.log_uniform(1e-3, 1e3);
   return interpolant;
 }
 
-std::size_t make_settle(const core::Interpolant& interpolant, Random& random, bool& forced) {
-  const core::Method& method = *interpolant.method;
+std::size_t make_settle(const Interpolant& interpolant, Random& random, bool& forced) {
+  const Method& method = *interpolant.method;
   if (random.chance(0.4)) return core::default_settle(method);
-  if (method.family == core::Family::smoothing) {
+  if (method.family == Family::smoothing) {
     forced = random.chance(0.3);
     const auto least = static_cast<std::size_t>(core::smoothing_lag(0, 1));
     return forced ? random.below(core::kMaxSettle + 1)
@@ -73,25 +71,23 @@ std::size_t make_settle(const core::Interpolant& interpolant, Random& random, bo
   return method.look_ahead + random.below(4);
 }
 
-core::Condition make_start(Random& random) {
-  constexpr std::array kKinds{core::ConditionKind::rest, core::ConditionKind::natural,
-                              core::ConditionKind::own};
-  if (random.chance(0.8)) return {.kind = core::ConditionKind::halt, .value = {}};
+Condition make_start(Random& random) {
+  constexpr std::array kKinds{ConditionKind::rest, ConditionKind::natural, ConditionKind::own};
+  if (random.chance(0.8)) return {.kind = ConditionKind::halt, .value = {}};
   return {.kind = kKinds[random.below(kKinds.size())], .value = {}};
 }
 
 /// An end condition; where it has values they are small, and 0 in quaternions.
-core::Condition make_end(const StreamPlan& plan, Random& random) {
-  constexpr std::array kKinds{core::ConditionKind::rest, core::ConditionKind::natural,
-                              core::ConditionKind::own, core::ConditionKind::velocity,
-                              core::ConditionKind::acceleration};
-  if (random.chance(0.6)) return {.kind = core::ConditionKind::halt, .value = {}};
-  core::Condition end{.kind = kKinds[random.below(kKinds.size())], .value = {}};
-  if (end.kind < core::ConditionKind::velocity || end.kind > core::ConditionKind::acceleration) {
+Condition make_end(const StreamPlan& plan, Random& random) {
+  constexpr std::array kKinds{ConditionKind::rest, ConditionKind::natural, ConditionKind::own,
+                              ConditionKind::velocity, ConditionKind::acceleration};
+  if (random.chance(0.6)) return {.kind = ConditionKind::halt, .value = {}};
+  Condition end{.kind = kKinds[random.below(kKinds.size())], .value = {}};
+  if (end.kind < ConditionKind::velocity || end.kind > ConditionKind::acceleration) {
     return end;
   }
-  for (const core::Dimension& dimension : plan.dimensions) {
-    const bool turns = dimension.kind >= core::DimensionKind::quaternion;
+  for (const Dimension& dimension : plan.dimensions) {
+    const bool turns = dimension.kind >= DimensionKind::quaternion;
     end.value.push_back(turns ? 0 : plan.magnitude * random.uniform(-1, 1));
   }
   return end;
@@ -100,10 +96,10 @@ core::Condition make_end(const StreamPlan& plan, Random& random) {
 /// Limits of `times` times the accelerations of the motion; some dimensions may have none.
 std::vector<double> make_limits(const StreamPlan& plan, double times, Random& random) {
   std::vector<double> limits;
-  for (const core::Dimension& dimension : plan.dimensions) {
+  for (const Dimension& dimension : plan.dimensions) {
     double size = plan.magnitude;
-    if (dimension.kind == core::DimensionKind::wrap) size = dimension.period;
-    if (dimension.kind >= core::DimensionKind::quaternion) size = 1;
+    if (dimension.kind == DimensionKind::wrap) size = dimension.period;
+    if (dimension.kind >= DimensionKind::quaternion) size = 1;
     const double limit = size * plan.frequency * plan.frequency * times;
     limits.push_back(random.chance(0.1) ? 0 : std::clamp(limit, 1e-90, 1e90));
   }
@@ -113,8 +109,7 @@ std::vector<double> make_limits(const StreamPlan& plan, double times, Random& ra
 core::WindowOptions make_window(const StreamPlan& plan, Random& random) {
   core::WindowOptions window{.interpolant = make_interpolant(plan.seed, plan.interval, random)};
   window.settle = make_settle(window.interpolant, random, window.force_lag);
-  constexpr std::array kTails{core::Tail::bessel, core::Tail::parabolic, core::Tail::natural,
-                              core::Tail::rest};
+  constexpr std::array kTails{Tail::bessel, Tail::parabolic, Tail::natural, Tail::rest};
   window.tail = kTails[random.below(kTails.size())];
   window.start = make_start(random);
   window.held_before_start = true;
@@ -145,7 +140,7 @@ void choose_times(StreamPlan& plan, Random& random) {
 }
 
 void choose_motion(StreamPlan& plan, Random& random) {
-  plan.frequency = 1 / (core::to_seconds(plan.interval) * random.uniform(2, 30));
+  plan.frequency = 1 / (to_seconds(plan.interval) * random.uniform(2, 30));
   plan.magnitude = random.log_uniform(1e-3, 1e3);
   if (random.chance(0.2)) plan.magnitude = random.log_uniform(1e-12, 1e12);
   if (random.chance(0.2)) plan.magnitude = random.log_uniform(1e-300, 1e90);
@@ -154,10 +149,10 @@ void choose_motion(StreamPlan& plan, Random& random) {
 
 }  // namespace
 
-const std::vector<const core::Method*>& streaming_methods() {
-  static const std::vector<const core::Method*> kMethods = [] {
-    std::vector<const core::Method*> found;
-    for (const core::Method& method : core::methods()) {
+const std::vector<const Method*>& streaming_methods() {
+  static const std::vector<const Method*> kMethods = [] {
+    std::vector<const Method*> found;
+    for (const Method& method : methods()) {
       if (method.streams()) found.push_back(&method);
     }
     return found;
@@ -167,7 +162,7 @@ const std::vector<const core::Method*>& streaming_methods() {
 
 StreamPlan make_plan(std::uint64_t seed, Random& random) {
   StreamPlan plan{.seed = seed, .dimensions = make_dimensions(random)};
-  plan.kinds = core::DimensionKinds(plan.dimensions);
+  plan.kinds = DimensionKinds(plan.dimensions);
   choose_times(plan, random);
   choose_motion(plan, random);
   const double limits = random.unit();
@@ -182,7 +177,7 @@ StreamPlan make_plan(std::uint64_t seed, Random& random) {
   plan.starts_in_motion = random.chance(0.3);
   plan.end = make_end(plan, random);
   constexpr std::uint64_t kOneOf = 8;
-  plan.beyond = seed % kOneOf == kOneOf / 2 ? core::Beyond::refuse : core::Beyond::report;
+  plan.beyond = seed % kOneOf == kOneOf / 2 ? Beyond::refuse : Beyond::report;
   return plan;
 }
 

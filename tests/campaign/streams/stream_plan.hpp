@@ -18,31 +18,31 @@ inline constexpr std::size_t kLimitClasses = 3;
 /// Everything that is fixed about one simulated live stream.
 struct StreamPlan {
   std::uint64_t seed = 0;
-  std::vector<core::Dimension> dimensions{};
-  core::DimensionKinds kinds{};
+  std::vector<Dimension> dimensions{};
+  DimensionKinds kinds{};
   core::WindowOptions window{};
   LimitClass limit_class = LimitClass::none;
   ipc::LiveOptions live{};
-  ipc::IngestLimits ingest{};
+  IngestLimits ingest{};
   std::size_t ring_capacity = 0;
   std::size_t board_capacity = 0;
-  core::Time begin{};       ///< the clock when the stream is made
-  core::Time interval{};    ///< between two waypoints
-  core::Time length{};      ///< until its producer finishes
-  core::Time tick{};        ///< of the controller
+  Time begin{};             ///< the clock when the stream is made
+  Time interval{};          ///< between two waypoints
+  Time length{};            ///< until its producer finishes
+  Time tick{};              ///< of the controller
   double frequency = 0;     ///< of the motion, rad/s
   double magnitude = 1;     ///< of positions
   double offset = 0;        ///< of positions, in magnitudes
   double step_trouble = 0;  ///< share of the solver's steps in which something goes wrong
   bool starts_in_motion = false;
-  core::Beyond beyond{};
-  core::Condition end{};  ///< that it is finished with
+  Beyond beyond{};
+  Condition end{};  ///< that it is finished with
 };
 
 /// The plan of a seed; `random` is of that seed, too.
 [[nodiscard]] StreamPlan make_plan(std::uint64_t seed, Random& random);
 
 /// The methods that a live stream can have.
-[[nodiscard]] const std::vector<const core::Method*>& streaming_methods();
+[[nodiscard]] const std::vector<const Method*>& streaming_methods();
 
 }  // namespace splinecast::campaign

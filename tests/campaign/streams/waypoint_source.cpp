@@ -20,15 +20,15 @@ WaypointSource::WaypointSource(const StreamPlan& plan, Random& random)
       position_(plan.dimensions.size()),
       velocity_(plan.dimensions.size()),
       acceleration_(plan.dimensions.size()) {
-  for (const core::Dimension& dimension : plan.dimensions) {
+  for (const Dimension& dimension : plan.dimensions) {
     Wave wave{.amplitude = plan.magnitude * random.uniform(0.2, 1),
               .frequency = plan.frequency * random.uniform(0.5, 1),
               .phase = random.uniform(0, 6.28),
               .offset = plan.offset * plan.magnitude};
-    if (dimension.kind == core::DimensionKind::wrap) {
+    if (dimension.kind == DimensionKind::wrap) {
       wave.amplitude = dimension.period * random.uniform(0.1, 3);
       wave.offset = dimension.period * random.uniform(-2, 2);
-    } else if (dimension.kind >= core::DimensionKind::quaternion) {
+    } else if (dimension.kind >= DimensionKind::quaternion) {
       wave.amplitude = random.uniform(0.1, 3);
       wave.offset = 0;
     }
@@ -51,20 +51,20 @@ WaypointSource::Values WaypointSource::wave_at(const Wave& wave, double s) {
           .a = -v * wave.frequency * std::sin(angle)};
 }
 
-core::Waypoint WaypointSource::view(core::Time t, bool with_derivatives) const {
-  core::Waypoint waypoint{.time = t, .position = position_};
+Waypoint WaypointSource::view(Time t, bool with_derivatives) const {
+  Waypoint waypoint{.time = t, .position = position_};
   if (!with_derivatives) return waypoint;
   waypoint.velocity = velocity_;
   waypoint.acceleration = acceleration_;
   return waypoint;
 }
 
-core::Waypoint WaypointSource::smooth_at(core::Time t) {
+Waypoint WaypointSource::smooth_at(Time t) {
   write_motion(t);
   return view(t, true);
 }
 
-core::Waypoint WaypointSource::at(core::Time t) {
+Waypoint WaypointSource::at(Time t) {
   if (mode_ == Mode::repeated) {
     std::ranges::fill(velocity_, 0.0);
     std::ranges::fill(acceleration_, 0.0);
@@ -77,13 +77,13 @@ core::Waypoint WaypointSource::at(core::Time t) {
   return view(t, needs ? !random_->chance(kLacksDerivatives) : random_->chance(0.1));
 }
 
-void WaypointSource::write_motion(core::Time t) {
-  const double s = core::to_seconds(t - plan_->begin);
+void WaypointSource::write_motion(Time t) {
+  const double s = to_seconds(t - plan_->begin);
   for (std::size_t d = 0; d < waves_.size(); ++d) {
     const Values values = wave_at(waves_[d], s);
-    if (plan_->dimensions[d].kind >= core::DimensionKind::quaternion) {
+    if (plan_->dimensions[d].kind >= DimensionKind::quaternion) {
       write_quaternion(d, values);
-      d += core::kQuaternionSize - 1;
+      d += kQuaternionSize - 1;
       continue;
     }
     position_[d] = values.x;
@@ -99,7 +99,7 @@ void WaypointSource::write_quaternion(std::size_t d, const Values& angle) {
   const double rate = angle.v / 2;
   const double axis = 0.6;
   const std::array factors{axis, 0.8, 0.0};
-  const bool w_first = plan_->dimensions[d].kind == core::DimensionKind::quaternion_wxyz;
+  const bool w_first = plan_->dimensions[d].kind == DimensionKind::quaternion_wxyz;
   const std::size_t w = w_first ? d : d + 3;
   const std::size_t first = w_first ? d + 1 : d;
   const double bend = angle.a / 2;
@@ -116,13 +116,13 @@ void WaypointSource::write_quaternion(std::size_t d, const Values& angle) {
 /// Makes of the smooth motion what the mode says.
 void WaypointSource::spoil() {
   for (std::size_t d = 0; d < waves_.size(); ++d) {
-    if (plan_->dimensions[d].kind >= core::DimensionKind::quaternion) {
-      const auto turn = std::span(position_).subspan(d, core::kQuaternionSize);
+    if (plan_->dimensions[d].kind >= DimensionKind::quaternion) {
+      const auto turn = std::span(position_).subspan(d, kQuaternionSize);
       double length = random_->chance(0.2) ? -1 : 1;
       if (random_->chance(kOtherLength)) length *= random_->log_uniform(1e-3, 1e3);
       if (random_->chance(kZeroQuaternion)) length = 0;
       for (double& x : turn) x *= length;
-      d += core::kQuaternionSize - 1;
+      d += kQuaternionSize - 1;
       continue;
     }
     const Wave& wave = waves_[d];

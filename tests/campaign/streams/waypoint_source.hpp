@@ -16,10 +16,10 @@ class WaypointSource {
   void change_mode();
 
   /// The waypoint at t, with derivatives if the method takes them; a view until the next call.
-  [[nodiscard]] core::Waypoint at(core::Time t);
+  [[nodiscard]] Waypoint at(Time t);
 
   /// The state of the smooth motion at t, with all derivatives; a view until the next call.
-  [[nodiscard]] core::Waypoint smooth_at(core::Time t);
+  [[nodiscard]] Waypoint smooth_at(Time t);
 
  private:
   enum class Mode { smooth, quantised, repeated, noisy };
@@ -33,10 +33,10 @@ class WaypointSource {
     double x = 0, v = 0, a = 0;
   };
   [[nodiscard]] static Values wave_at(const Wave& wave, double s);
-  void write_motion(core::Time t);
+  void write_motion(Time t);
   void write_quaternion(std::size_t d, const Values& angle);
   void spoil();
-  [[nodiscard]] core::Waypoint view(core::Time t, bool with_derivatives) const;
+  [[nodiscard]] Waypoint view(Time t, bool with_derivatives) const;
 
   const StreamPlan* plan_;
   Random* random_;

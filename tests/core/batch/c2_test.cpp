@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/polynomial/segment.hpp"
 #include "tests/fixtures/curves/dense_spline.hpp"
 #include "tests/fixtures/curves/mesh.hpp"
 

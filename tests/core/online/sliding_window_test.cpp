@@ -34,7 +34,7 @@ std::vector<Segment> online_segments(const Mesh& mesh, const WindowOptions& how,
 
 PiecewisePolynomial joined(const std::vector<Segment>& segments) {
   PiecewisePolynomial curve(segments.front().acceleration_step.size());
-  for (const Segment& segment : segments) curve.append(segment);
+  for (const Segment& segment : segments) append(segment, curve);
   return curve;
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/polynomial/segment.hpp"
 #include "tests/fixtures/curves/curves.hpp"
 
 namespace splinecast::core {
@@ -67,7 +68,7 @@ TEST(Bezier, AHoldStaysOneAndAWrongNumberOfPointsIsRefused) {
   PiecewisePolynomial hold(2);
   Segment segment(2);
   build_hold(Time(5), Time(5), std::vector{3.0, 4.0}, segment);
-  hold.append(segment);
+  append(segment, hold);
   const auto segments = to_bezier(hold);
   EXPECT_EQ(segments[0].control_points, (std::vector<double>{3, 4, 3, 4, 3, 4, 3, 4}));
   const auto back = from_bezier(2, segments);

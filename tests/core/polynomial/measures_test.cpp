@@ -1,4 +1,4 @@
-#include "core/polynomial/measures.hpp"
+#include "splinecast/calculus.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/polynomial/segment.hpp"
 #include "tests/fixtures/curves/curves.hpp"
 
 namespace splinecast::core {
@@ -25,8 +26,8 @@ Segment constant(std::int64_t left, std::int64_t right, double value) {
 
 TEST(PiecewisePolynomial, AKnotBelongsToTheSegmentOnItsRightAndTheLastToTheOneOnItsLeft) {
   PiecewisePolynomial curve(1);
-  curve.append(constant(0, 10, 1));
-  curve.append(constant(10, 20, 2));
+  append(constant(0, 10, 1), curve);
+  append(constant(10, 20, 2), curve);
   State state(1);
   for (const auto& [t, value] :
        std::vector<std::pair<int, double>>{{0, 1}, {9, 1}, {10, 2}, {19, 2}, {20, 2}}) {
@@ -37,18 +38,18 @@ TEST(PiecewisePolynomial, AKnotBelongsToTheSegmentOnItsRightAndTheLastToTheOneOn
 
 TEST(PiecewisePolynomial, RefusesAGapOtherDimensionsAndAnythingBehindAHold) {
   PiecewisePolynomial curve(1);
-  curve.append(constant(0, 10, 1));
-  EXPECT_THROW(curve.append(constant(11, 20, 2)), std::invalid_argument);
-  EXPECT_THROW(curve.append(Segment(2)), std::invalid_argument);
+  append(constant(0, 10, 1), curve);
+  EXPECT_THROW(append(constant(11, 20, 2), curve), std::invalid_argument);
+  EXPECT_THROW(append(Segment(2), curve), std::invalid_argument);
   PiecewisePolynomial held(1);
   Segment hold(1);
   build_hold(Time(5), Time(5), std::vector{3.0}, hold);
-  held.append(hold);
+  append(hold, held);
   EXPECT_EQ(held.breaks().size(), 1U);
   State state(1);
   held.evaluate(Time(5), state.ref());
   EXPECT_EQ(state.position()[0], 3.0);
-  EXPECT_THROW(held.append(constant(5, 20, 2)), std::invalid_argument);
+  EXPECT_THROW(append(constant(5, 20, 2), held), std::invalid_argument);
 }
 
 TEST(PiecewisePolynomial, NamesTheSegmentAndTheValueItRefuses) {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "ipc/options/stream.hpp"
 #include "ipc/sampling/sampler.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/options.hpp"
@@ -14,7 +15,6 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Time;
 using testing::head_word;
 using testing::MemoryRing;
 using testing::MemoryStream;
@@ -87,24 +87,23 @@ TEST(HostileRegions, AKnotThatIsNoNumberIsNeverEvaluated) {
         set_nodes(stream, 3, kNodePosition, to_word(value));
       }
       Sampler sampler(stream.board.reader, StreamClock::recorded);
-      core::State state(1);
+      State state(1);
       // Both segments at the knot are made of it.
       EXPECT_EQ(sampler.sample(kTick + Time(1), state.ref()), SampleStatus::busy);
       EXPECT_EQ(sampler.sample(2 * kTick + Time(1), state.ref()), SampleStatus::busy);
       EXPECT_EQ(sampler.sample(4 * kTick + Time(1), state.ref()), SampleStatus::provisional);
-      Snapshot snapshot(1);
+      BoardSnapshot snapshot(1);
       EXPECT_EQ(sampler.snapshot(Time(0), 4 * kTick, snapshot), SampleStatus::busy);
     }
   }
 }
 
 TEST(HostileRegions, ASegmentThatEndsBeforeItBeginsIsNeverEvaluated) {
-  for (const Time time :
-       {Time::min(), 3 * kTick, 4 * kTick, core::kLatestTime + Time(1), Time::max()}) {
+  for (const Time time : {Time::min(), 3 * kTick, 4 * kTick, kLatestTime + Time(1), Time::max()}) {
     SolvedStream stream;
     set_nodes(stream, 3, kNodeTime, to_word(time));
     Sampler sampler(stream.board.reader, StreamClock::recorded);
-    core::State state(1);
+    State state(1);
     EXPECT_EQ(sampler.sample(2 * kTick, state.ref()), SampleStatus::busy) << time.count();
   }
 }
@@ -122,17 +121,17 @@ TEST(HostileRegions, AFormThatNoKnotOfThisStreamHasIsNeverEvaluated) {
     SolvedStream stream;
     flip_tag_bits(stream, 3, (kCubic ^ form) << kFormShift);
     Sampler sampler(stream.board.reader, StreamClock::recorded);
-    core::State state(1);
+    State state(1);
     // Where none begins, the segment before it would end behind its own right knot.
     EXPECT_EQ(sampler.sample(2 * kTick + Time(1), state.ref()), SampleStatus::busy) << form;
   }
 }
 
 TEST(HostileRegions, ADerivativeOutOfAllProportionLeavesAQuaternionOfNumbers) {
-  const std::vector<core::Dimension> four(4, {.kind = core::DimensionKind::quaternion});
-  const core::DimensionKinds kinds(four);
-  core::State state(4);
-  const core::StateRef all = state.ref();
+  const std::vector<Dimension> four(4, {.kind = DimensionKind::quaternion});
+  const DimensionKinds kinds(four);
+  State state(4);
+  const StateRef all = state.ref();
   all.position[3] = 1e-99;
   all.velocity[0] = 1e190;
   kinds.normalise(all);
@@ -146,7 +145,7 @@ TEST(HostileRegions, TheLastOfAllRevisionsIsReadInBoundedTime) {
   EXPECT_TRUE(stream.board.reader.copy_bounds({.settled_until = {}, .revision = kLargestWord},
                                               kLargestWord, head));
   Sampler sampler(stream.board.reader, StreamClock::recorded);
-  core::State state(1);
+  State state(1);
   EXPECT_EQ(sampler.sample(kTick, state.ref()), SampleStatus::settled);
   EXPECT_THROW(stream.replace_solver(), BadRegion);
 }
@@ -248,7 +247,7 @@ TEST(HostileRegions, ARingAndABoardOfDifferentStreamsAreNotSolved) {
   EXPECT_THROW(require_same_stream(ring, make_header({.dimensions = 2}, 8)), BadRegion);
   EXPECT_THROW(require_same_stream(ring, make_header({.dimensions = 3}, 7)), BadRegion);
   RegionHeader board = ring;
-  board.dimension_kind[1] = static_cast<std::uint64_t>(core::DimensionKind::wrap);
+  board.dimension_kind[1] = static_cast<std::uint64_t>(DimensionKind::wrap);
   board.period[1] = 1;
   EXPECT_THROW(require_same_stream(ring, board), BadRegion);
   board = ring;

@@ -16,7 +16,6 @@ namespace splinecast::ipc {
 namespace {
 
 using core::SegmentForm;
-using core::Time;
 using testing::MemoryBoard;
 
 constexpr std::size_t kDimensions = 3;

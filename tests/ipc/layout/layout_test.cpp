@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "ipc/options/stream.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/options.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
@@ -398,7 +399,7 @@ TEST(Layout, AHeaderComesBackAsItWasWritten) {
                                 .names = {"left", "a name far too long for its thirty-one bytes"},
                                 .units = {"rad", "m"},
                                 .clock = StreamClock::recorded,
-                                .start = {core::ConditionKind::velocity, {1, -2}}};
+                                .start = {ConditionKind::velocity, {1, -2}}};
   write_header(bytes.span(), make_header(options, 5));
   const RegionHeader header = copy_header(bytes.span());
   EXPECT_EQ(header.stream_id, 5U);

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "ipc/options/curve.hpp"
+#include "ipc/options/stream.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/options.hpp"
 
@@ -29,16 +31,16 @@ RegionHeader header_of(std::size_t dimensions) {
 
 TEST(HeaderLimits, AHeaderOfZerosHasNone) {
   const RegionHeader header = header_of(3);
-  EXPECT_EQ(motion_limits(header), core::MotionLimits{});
-  EXPECT_EQ(beyond(header), core::Beyond::report);
+  EXPECT_EQ(motion_limits(header), MotionLimits{});
+  EXPECT_EQ(beyond(header), Beyond::report);
 }
 
 TEST(HeaderLimits, ComeBackAsTheyWereWritten) {
-  const core::MotionLimits limits{.velocity = {1, 0, 2},
-                                  .acceleration = {},
-                                  .jerk = {0, 0, 5},
-                                  .lower = {-1, -kInfinity, 0},
-                                  .upper = {kInfinity, kInfinity, 3}};
+  const MotionLimits limits{.velocity = {1, 0, 2},
+                            .acceleration = {},
+                            .jerk = {0, 0, 5},
+                            .lower = {-1, -kInfinity, 0},
+                            .upper = {kInfinity, kInfinity, 3}};
   RegionHeader header = header_of(3);
   put_limits(limits, header);
   EXPECT_EQ(motion_limits(header), limits);
@@ -48,7 +50,7 @@ TEST(HeaderLimits, ComeBackAsTheyWereWritten) {
   EXPECT_EQ(motion_limits(header).upper, (std::vector<double>{0, 0, 0}));
   EXPECT_TRUE(motion_limits(header).lower.empty());
   put_limits({}, header);
-  EXPECT_EQ(motion_limits(header), core::MotionLimits{});
+  EXPECT_EQ(motion_limits(header), MotionLimits{});
   EXPECT_THROW(put_limits({.velocity = {1}}, header), std::invalid_argument);
 }
 
@@ -77,7 +79,7 @@ TEST(HeaderLimits, ABoardWithSuchAsCannotBeIsRefused) {
       {"bounds", [](RegionHeader& h) { h.upper_bound[0] = std::nan(""); }},
       {"no bounds",
        [](RegionHeader& h) {
-         h.dimension_kind[0] = static_cast<std::uint64_t>(core::DimensionKind::wrap);
+         h.dimension_kind[0] = static_cast<std::uint64_t>(DimensionKind::wrap);
          h.period[0] = 360;
          h.upper_bound[0] = 1;
        }},
@@ -104,11 +106,11 @@ TEST(HeaderLimits, NamedOnesMeetNamesThatTheHeaderHasCut) {
                                           7);
   SolverOptions options;
   options.named_limits = {{.name = name, .velocity = 2}, {.name = "q2", .acceleration = 3}};
-  options.limits = core::MotionLimits{.acceleration = {7}};
-  const core::MotionLimits limits = limits_for(options, header);
+  options.limits = MotionLimits{.acceleration = {7}};
+  const MotionLimits limits = limits_for(options, header);
   EXPECT_EQ(limits.velocity, (std::vector<double>{2, 0}));
   EXPECT_EQ(limits.acceleration, (std::vector<double>{7, 7}));
-  options.limits = core::MotionLimits{.acceleration = {7, 8, 9}};
+  options.limits = MotionLimits{.acceleration = {7, 8, 9}};
   EXPECT_THROW((void)limits_for(options, header), BadRequest);
 }
 

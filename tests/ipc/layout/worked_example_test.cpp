@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "ipc/options/stream.hpp"
 #include "ipc/solve/stream_solver.hpp"
 #include "splinecast/options.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
@@ -13,7 +14,6 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Time;
 using testing::RegionBytes;
 
 /// The stream of the example: one dimension, two waypoints 0.1 s apart, a finish.

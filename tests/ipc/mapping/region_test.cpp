@@ -14,8 +14,8 @@
 
 #include "ipc/layout/header.hpp"
 #include "ipc/mapping/owner_lock.hpp"
-#include "ipc/roles/stream_files.hpp"
 #include "splinecast/errors.hpp"
+#include "splinecast/streams.hpp"
 #include "tests/fixtures/processes/process.hpp"
 
 namespace splinecast::ipc {

@@ -10,7 +10,6 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Time;
 using testing::MemoryRing;
 
 constexpr Time kMillisecond{1'000'000};
@@ -68,21 +67,21 @@ TEST(WaypointRing, RefusesBadFormWithTheReasonAndCountsIt) {
 
 TEST(WaypointRing, TheEarliestAndTheLatestTimeAreInOrder) {
   MemoryRing ring(1, 8);
-  EXPECT_EQ(append(ring, -core::kLatestTime - Time(1), {0}), AppendStatus::too_far_apart);
-  EXPECT_EQ(append(ring, -core::kLatestTime, {0}), AppendStatus::accepted);
-  EXPECT_EQ(append(ring, core::kLatestTime + Time(1), {0}), AppendStatus::too_far_apart);
-  EXPECT_EQ(append(ring, core::kLatestTime, {0}), AppendStatus::too_far_apart);
+  EXPECT_EQ(append(ring, -kLatestTime - Time(1), {0}), AppendStatus::too_far_apart);
+  EXPECT_EQ(append(ring, -kLatestTime, {0}), AppendStatus::accepted);
+  EXPECT_EQ(append(ring, kLatestTime + Time(1), {0}), AppendStatus::too_far_apart);
+  EXPECT_EQ(append(ring, kLatestTime, {0}), AppendStatus::too_far_apart);
   const IngestLimits any{.min_interval = Time(1), .max_interval = Time::max()};
   testing::MemoryStream stream(1, {}, 8, 64, any);
   stream.ring.writer = WaypointRingWriter(stream.ring.bytes.span(), stream.ring.layout, any);
   const std::vector<double> x{0, 1};
-  EXPECT_EQ(stream.append(-core::kLatestTime, std::span(x).first(1)), AppendStatus::accepted);
-  EXPECT_EQ(stream.append(core::kLatestTime, std::span(x).last(1)), AppendStatus::accepted);
+  EXPECT_EQ(stream.append(-kLatestTime, std::span(x).first(1)), AppendStatus::accepted);
+  EXPECT_EQ(stream.append(kLatestTime, std::span(x).last(1)), AppendStatus::accepted);
   stream.drain();
   EXPECT_EQ(stream.solver.head().knots, 2U);
   KnotCopy knot(1, false);
   ASSERT_TRUE(stream.board.reader.copy_knot(1, stream.board.reader.revision(), knot));
-  EXPECT_NEAR(knot.velocity()[0] * 2 * core::to_seconds(core::kLatestTime), 1, 1e-12);
+  EXPECT_NEAR(knot.velocity()[0] * 2 * to_seconds(kLatestTime), 1, 1e-12);
 }
 
 TEST(WaypointRing, IsFullUntilTheSolverConsumesAndLosesNothing) {
@@ -122,8 +121,8 @@ TEST(WaypointRing, APassiveObserverKeepsNothingThatAReplacementInWritingOverwrit
     ASSERT_EQ(append(ring, Time(10'000 * (i + 1)), {1.0 * i}), AppendStatus::accepted);
   }
   const std::vector<double> x{-1};
-  const std::vector<core::Waypoint> replacing{{.time = Time(200'000), .position = x},
-                                              {.time = Time(300'000), .position = x}};
+  const std::vector<Waypoint> replacing{{.time = Time(200'000), .position = x},
+                                        {.time = Time(300'000), .position = x}};
   ASSERT_EQ(ring.writer.replace_from(Time(100'000), replacing, {8}), AppendStatus::accepted);
   // As the region was before the one store that appended all of it.
   const auto control = words_at(ring.bytes.span(), ring.layout.control, kClaimed + 1);
@@ -140,14 +139,13 @@ TEST(WaypointRing, APassiveObserverKeepsNothingThatAReplacementInWritingOverwrit
 TEST(WaypointRing, NothingFollowsAFinishAndItCarriesItsCondition) {
   MemoryRing ring(2, 4);
   ASSERT_EQ(append(ring, kMillisecond, {1, 2}), AppendStatus::accepted);
-  ASSERT_EQ(ring.writer.finish({core::ConditionKind::velocity, {3, 4}}, {}),
-            AppendStatus::accepted);
+  ASSERT_EQ(ring.writer.finish({ConditionKind::velocity, {3, 4}}, {}), AppendStatus::accepted);
   EXPECT_EQ(append(ring, 2 * kMillisecond, {1, 2}), AppendStatus::finished);
   EXPECT_EQ(ring.writer.finish({}, {}), AppendStatus::finished);
   RingItem item(2);
   ring.reader.copy(1, item);
   EXPECT_EQ(item.kind, ItemKind::finish);
-  EXPECT_EQ(item.condition, core::ConditionKind::velocity);
+  EXPECT_EQ(item.condition, ConditionKind::velocity);
   EXPECT_EQ(item.values[2], 3);
   EXPECT_EQ(item.values[3], 4);
 }
@@ -178,7 +176,7 @@ TEST(WaypointRing, KeepsRoomForStopsAndAFinish) {
   MemoryRing ring(1, 64);
   ASSERT_EQ(fill(ring), 60U);
   const std::vector<double> x{0};
-  const core::Waypoint waypoint{.time = 10'000 * kMillisecond, .position = x};
+  const Waypoint waypoint{.time = 10'000 * kMillisecond, .position = x};
   const auto stop = [&](Time t) { return ring.writer.replace_from(t, {}, {0, 5 * kMillisecond}); };
   const auto replace = ring.writer.replace_from(9'000 * kMillisecond, {&waypoint, 1}, {});
   EXPECT_EQ(replace, AppendStatus::full);
@@ -214,7 +212,7 @@ TEST(WaypointRing, AStopThatRepeatsOneThatWaitsTakesNoItem) {
 TEST(WaypointRing, AReplacementThatLeavesNoRoomForAStopIsTooLong) {
   MemoryRing ring(1, 64);
   const std::vector<double> x{0};
-  std::vector<core::Waypoint> waypoints;
+  std::vector<Waypoint> waypoints;
   for (int i = 1; i <= 60; ++i) {
     waypoints.push_back({.time = i * kMillisecond, .position = x});
   }

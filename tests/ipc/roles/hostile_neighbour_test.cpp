@@ -17,11 +17,13 @@
 
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/mapping/region.hpp"
-#include "ipc/roles/stream_files.hpp"
+#include "ipc/roles/inspect.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/reader.hpp"
 #include "splinecast/solver.hpp"
+#include "splinecast/streams.hpp"
 #include "tests/fixtures/processes/few_descriptors.hpp"
 #include "tests/fixtures/processes/process.hpp"
 
@@ -210,9 +212,9 @@ TEST(HostileNeighbour, AReadLockHidesNoNewOwnerFromThoseWhoCannotOpenItsLock) {
   EXPECT_TRUE(next.took_over());
   EXPECT_FALSE(is_region_locked(observer.get()));
   EXPECT_TRUE(region_owner_lives(observer.get()));
-  EXPECT_FALSE(next.hold_region());
+  EXPECT_FALSE(Internals::hold_region(next));
   ASSERT_TRUE(hostile.lock(F_UNLCK));
-  next.wait(core::Time(0));
+  next.wait(Time(0));
   EXPECT_TRUE(is_region_locked(observer.get()));
   EXPECT_FALSE(hostile.lock(F_RDLCK));
 }
@@ -246,7 +248,7 @@ TEST(HostileNeighbour, WithoutFreeDescriptorsNobodyIsTakenForDead) {
   const TestStream stream;
   const Producer producer(stream.name(), kRecorded);
   const Solver solver = solve(stream.name());
-  const Reader reader(stream.name(), core::Time(0));
+  const Reader reader(stream.name(), Time(0));
   const FewDescriptors none(0);
   for (const RegionKind kind : {RegionKind::waypoints, RegionKind::spline}) {
     EXPECT_THROW((void)is_owned(stream.name(), kind), OutOfResources);

@@ -19,11 +19,10 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Time;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr core::Condition kHalt{.kind = core::ConditionKind::halt, .value = {}};
+constexpr Condition kHalt{.kind = ConditionKind::halt, .value = {}};
 
 class OldMotion : public ::testing::Test {
  protected:
@@ -52,7 +51,7 @@ TEST_F(OldMotion, OfAFinishedStreamEndsBeforeItIsMadeAgain) {
   ASSERT_EQ(producer->finish(kHalt), AppendStatus::accepted);
   solver.step(clock_);
   Reader reader(stream_.name());
-  core::State state(1);
+  State state(1);
   clock_.time = milliseconds(1450);
   ASSERT_EQ(reader.sample(clock_.time, state), SampleStatus::settled);
   ASSERT_GT(std::abs(state.velocity()[0]), 0.5);

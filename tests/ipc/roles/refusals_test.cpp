@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "ipc/roles/stream_files.hpp"
+#include "ipc/roles/inspect.hpp"
 #include "splinecast/method.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/solver.hpp"
@@ -14,7 +14,7 @@
 namespace splinecast::ipc {
 namespace {
 
-constexpr core::Time kInterval{1'000'000};
+constexpr Time kInterval{1'000'000};
 
 /// A stream whose solver refuses every waypoint: its method needs velocities.
 class ProducerRefusals : public ::testing::Test {
@@ -25,7 +25,7 @@ class ProducerRefusals : public ::testing::Test {
   void append(Producer& producer, int count) {
     for (int i = 0; i < count; ++i) {
       const double x = 0;
-      const core::Waypoint waypoint{.time = time_ += kInterval, .position = {&x, 1}};
+      const Waypoint waypoint{.time = time_ += kInterval, .position = {&x, 1}};
       ASSERT_EQ(producer.append(waypoint), AppendStatus::accepted);
     }
   }
@@ -45,8 +45,8 @@ class ProducerRefusals : public ::testing::Test {
 
   testing::TestStream stream_;
   MonotonicClock clock_;
-  core::Time time_{};
-  Solver solver_{stream_.name(), {.method = core::find_method("hermite")}};
+  Time time_{};
+  Solver solver_{stream_.name(), {.method = find_method("hermite")}};
 };
 
 TEST_F(ProducerRefusals, AreToldOnceWithItemTimeAndReason) {

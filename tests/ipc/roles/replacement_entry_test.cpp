@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "ipc/roles/internals.hpp"
 #include "ipc/roles/replace_preview.hpp"
 #include "ipc/verification/settled_segments.hpp"
 #include "splinecast/producer.hpp"
@@ -20,7 +21,6 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Time;
 using std::chrono::milliseconds;
 using testing::LiveStream;
 
@@ -71,14 +71,14 @@ struct Replaced : LiveStream {
     for (Word n = solver.head().run; n <= solver.head().newest; ++n) {
       if (segment.take(board.reader, solver.head(), n) != BoardSegment::Taken::whole) continue;
       segment.copy_to(found);
-      if (found.kind == core::SegmentKind::splice) return found;
+      if (found.kind == SegmentKind::splice) return found;
     }
     return std::nullopt;
   }
 
   std::vector<Time> times;
   std::vector<double> positions;
-  std::vector<core::Waypoint> plan;
+  std::vector<Waypoint> plan;
 };
 
 TEST(ReplacementEntry, DoesNotEndBeforeItsBlendIsOver) {
@@ -166,7 +166,7 @@ TEST(ReplacementPreview, OfAStopTellsHowLongItTakes) {
 std::vector<std::array<double, 2>> positions_from(Time first, std::size_t count, double offset) {
   std::vector<std::array<double, 2>> positions;
   for (std::size_t i = 0; i < count; ++i) {
-    const double s = core::to_seconds(first) + 0.01 * static_cast<double>(i);
+    const double s = to_seconds(first) + 0.01 * static_cast<double>(i);
     positions.push_back({0.3 * std::sin(s) + offset, std::remainder(0.8 * s, 6.0)});
   }
   return positions;
@@ -174,14 +174,13 @@ std::vector<std::array<double, 2>> positions_from(Time first, std::size_t count,
 
 TEST(ReplacementPreview, OfAProducerChangesNothingAndComesTrue) {
   const testing::TestStream stream;
-  Producer producer(stream.name(),
-                    {.dimensions = 2, .kinds = {{}, {core::DimensionKind::wrap, 6.0}}});
-  Solver solver(stream.name(), {.limits = core::MotionLimits{.acceleration = {20}}});
+  Producer producer(stream.name(), {.dimensions = 2, .kinds = {{}, {DimensionKind::wrap, 6.0}}});
+  Solver solver(stream.name(), {.limits = MotionLimits{.acceleration = {20}}});
   const MonotonicClock clock;
   EXPECT_FALSE(producer.preview_replace(clock.now(), {}).is_known);
   ASSERT_TRUE(solver.attach());
   const auto waypoints_at = [](const std::vector<std::array<double, 2>>& positions, Time first) {
-    std::vector<core::Waypoint> waypoints;
+    std::vector<Waypoint> waypoints;
     for (const auto& position : positions) {
       waypoints.push_back({.time = first, .position = position});
       first += milliseconds(10);
@@ -190,7 +189,7 @@ TEST(ReplacementPreview, OfAProducerChangesNothingAndComesTrue) {
   };
   const Time begin = clock.now() + milliseconds(200);
   const auto motion = positions_from({}, 100, 0);
-  for (const core::Waypoint& waypoint : waypoints_at(motion, begin)) {
+  for (const Waypoint& waypoint : waypoints_at(motion, begin)) {
     ASSERT_EQ(producer.append(waypoint), AppendStatus::accepted);
   }
   while (solver.step(clock).consumed > 0) continue;
@@ -198,7 +197,7 @@ TEST(ReplacementPreview, OfAProducerChangesNothingAndComesTrue) {
   const auto other = positions_from(milliseconds(520), 60, 0.01);
   const auto plan = waypoints_at(other, t + milliseconds(20));
   const Word appended = producer.appended();
-  const Word passed_before = solver.head().passed_over;  // as it started in mid-motion
+  const Word passed_before = Internals::head(solver).passed_over;  // as it started in mid-motion
   const ReplacePreview told = producer.preview_replace(t, plan, {.blend = milliseconds(100)});
   EXPECT_EQ(producer.appended(), appended);
   ASSERT_EQ(told.status, AppendStatus::accepted);
@@ -211,9 +210,9 @@ TEST(ReplacementPreview, OfAProducerChangesNothingAndComesTrue) {
             AppendStatus::too_late);
   ASSERT_EQ(producer.replace_from(t, plan, {.blend = milliseconds(100)}), AppendStatus::accepted);
   for (int i = 0; i < 100; ++i) solver.step(clock);
-  EXPECT_EQ(solver.head().passed_over - passed_before, told.passed_over);
+  EXPECT_EQ(Internals::head(solver).passed_over - passed_before, told.passed_over);
   Reader reader(stream.name());
-  core::State state(2);
+  State state(2);
   ASSERT_TRUE(has_values(reader.preview(t + told.duration / 2, state)));
   EXPECT_LT(reader.excess(state).ratio, 1);
   EXPECT_GT(reader.excess(state).ratio, 0);

@@ -9,11 +9,14 @@
 #include <thread>
 #include <vector>
 
-#include "ipc/roles/stream_files.hpp"
+#include "ipc/mapping/region.hpp"
+#include "ipc/options/stream.hpp"
+#include "ipc/roles/internals.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/reader.hpp"
 #include "splinecast/solver.hpp"
+#include "splinecast/streams.hpp"
 #include "tests/fixtures/curves/mesh.hpp"
 #include "tests/fixtures/processes/process.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
@@ -22,7 +25,6 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Time;
 using testing::TestStream;
 
 constexpr Time kSecond{1'000'000'000};
@@ -40,7 +42,7 @@ TEST(Roles, AWaypointTravelsFromProducerToReader) {
   ASSERT_TRUE(solver.attach());
   EXPECT_TRUE(producer.wait_for_solver(kSecond));
   Reader reader(stream.name());
-  core::State state(2);
+  State state(2);
   EXPECT_EQ(reader.sample(Time(0), state), SampleStatus::no_data);
   const std::vector<double> x{1, -2};
   ASSERT_EQ(producer.append({Time(0), x, {}, {}}), AppendStatus::accepted);
@@ -75,12 +77,12 @@ TEST(Roles, TheDescriptionTravelsWithTheStream) {
   options.names = {"shoulder", "elbow"};
   options.units = {"rad", "rad"};
   Producer producer(stream.name(), options);
-  Solver solver(stream.name(), {.settle = 3, .tail = core::Tail::rest});
+  Solver solver(stream.name(), {.settle = 3, .tail = Tail::rest});
   ASSERT_TRUE(solver.attach());
   const Reader reader(stream.name());
   EXPECT_EQ(reader.names(), options.names);
-  EXPECT_EQ(dimension_units(reader.header()), options.units);
-  EXPECT_EQ(reader.header().settle, 3U);
+  EXPECT_EQ(dimension_units(Internals::header(reader)), options.units);
+  EXPECT_EQ(Internals::header(reader).settle, 3U);
 }
 
 TEST(Roles, ASleepingSolverIsWokenByAnAppend) {
@@ -102,7 +104,7 @@ TEST(Roles, ASleepingSolverIsWokenByAnAppend) {
   const MonotonicClock clock;
   while (solver.step(clock).consumed == 0) solver.wait(60 * kSecond);
   appending.join();
-  EXPECT_EQ(solver.head().knots, 1U);
+  EXPECT_EQ(Internals::head(solver).knots, 1U);
 }
 
 TEST(Roles, AReaderThatWaitsIsWokenByARevision) {
@@ -147,7 +149,7 @@ TEST(Roles, SolversThatComeOneAfterTheOtherShareOneBoard) {
   Producer producer(stream.name(), recorded(1));
   const MonotonicClock clock;
   std::optional<Reader> reader;
-  core::State state(1);
+  State state(1);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     Solver solver(stream.name(), {});
     ASSERT_TRUE(solver.attach());
@@ -158,7 +160,7 @@ TEST(Roles, SolversThatComeOneAfterTheOtherShareOneBoard) {
     EXPECT_EQ(reader->sample(mesh.times[i], state), SampleStatus::stopping);
     EXPECT_EQ(state.position()[0], mesh.position(i)[0]);
   }
-  EXPECT_EQ(reader->header().epoch, 1U);
+  EXPECT_EQ(Internals::header(*reader).epoch, 1U);
 }
 
 TEST(Roles, AForkedChildThatEndsItsCopyOfASolverTakesNothingAway) {

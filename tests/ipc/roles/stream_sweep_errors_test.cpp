@@ -20,7 +20,6 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Time;
 using testing::append_at;
 using testing::FewDescriptors;
 using testing::make_producer;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ipc/mapping/owner_lock.hpp"
+#include "ipc/mapping/region.hpp"
 #include "splinecast/errors.hpp"
 #include "tests/ipc/roles/told.hpp"
 
@@ -17,7 +18,6 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Time;
 using testing::append_at;
 using testing::await;
 using testing::make_producer;

@@ -20,17 +20,17 @@ struct Told {
   News news;
   std::string why;
   ipc::StreamSweep sweep;
-  ipc::MonotonicClock clock;
+  MonotonicClock clock;
 
-  explicit Told(const std::vector<std::string>& wanted, const ipc::SolverOptions& options = small())
+  explicit Told(const std::vector<std::string>& wanted, const SolverOptions& options = small())
       : sweep(wanted, options,
-              [this](ipc::SweepNews what, const std::string& stream, const ipc::Solver* /*solver*/,
+              [this](ipc::SweepNews what, const std::string& stream, const Solver* /*solver*/,
                      std::string_view reason) {
                 news.emplace_back(what, stream);
                 if (!reason.empty()) why = reason;
               }) {}
 
-  static ipc::SolverOptions small() { return {.capacity = 64}; }
+  static SolverOptions small() { return {.capacity = 64}; }
 
   [[nodiscard]] std::ptrdiff_t count(ipc::SweepNews what, const std::string& stream) const {
     return std::ranges::count(news, std::pair(what, stream));
@@ -45,15 +45,15 @@ struct Told {
 };
 
 /// A producer of one dimension.
-inline ipc::Producer make_producer(const std::string& stream,
-                                   ipc::StreamClock clock = ipc::StreamClock::recorded) {
+inline Producer make_producer(const std::string& stream,
+                              StreamClock clock = StreamClock::recorded) {
   return {stream, {.dimensions = 1, .clock = clock, .capacity = 64}};
 }
 
 /// Appends a waypoint.
-inline void append_at(ipc::Producer& producer, core::Time t) {
+inline void append_at(Producer& producer, Time t) {
   const std::vector<double> x{1};
-  ASSERT_EQ(producer.append({.time = t, .position = x}), ipc::AppendStatus::accepted);
+  ASSERT_EQ(producer.append({.time = t, .position = x}), AppendStatus::accepted);
 }
 
 }  // namespace splinecast::testing

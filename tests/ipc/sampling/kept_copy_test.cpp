@@ -14,11 +14,10 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Time;
 using testing::MemoryBoard;
 using testing::TrappedPage;
 
-constexpr std::size_t kDimensions = core::kMaxDimensions;
+constexpr std::size_t kDimensions = kMaxDimensions;
 constexpr Time kInterval{100};
 
 /// The knot between whose cells a page ends; no other knot has a cell on these two pages.
@@ -147,7 +146,7 @@ TEST(KeptCopy, ASampleIsNeverOfARevisionOlderThanItsBounds) {
   for_each_interleaving([](Word copied, std::size_t trapped) {
     Interleaving at(copied, trapped);
     Sampler sampler(at.board.reader, StreamClock::recorded);
-    core::State state(kDimensions);
+    State state(kDimensions);
     const Time t = time_of(kKnot);
     ASSERT_TRUE(has_values(sampler.sample(t, state.ref())));
     ASSERT_EQ(state.velocity()[0], static_cast<double>(copied));
@@ -185,7 +184,7 @@ TEST(KeptCopy, ManySamplesAreOfOneRevisionThoughTheWriterActsBetweenThem) {
     const std::vector<Time> times{time_of(kFirst), time_of(kKnot), time_of(kFirst)};
     std::vector<double> values(times.size() * kDimensions);
     std::vector<SampleStatus> status(times.size(), SampleStatus::busy);
-    const SampleBlock out{values, status, core::Derivatives::velocity};
+    const SampleBlock out{values, status, Derivatives::velocity};
     ASSERT_EQ(sampler.sample_many(times, out), copied);
     const Word seen = at.run([&] { return sampler.sample_many(times, out); });
     EXPECT_TRUE(at.has_acted);

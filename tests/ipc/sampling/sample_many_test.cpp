@@ -16,8 +16,6 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Derivatives;
-using core::Time;
 using std::chrono::milliseconds;
 using testing::LiveStream;
 using testing::MemoryStream;
@@ -33,17 +31,17 @@ struct Block {
   Derivatives derivatives;
 
   Block(std::size_t times, std::size_t dimensions, Derivatives asked = Derivatives::all)
-      : values(times * core::count(asked) * dimensions, kUntouched),
+      : values(times * count(asked) * dimensions, kUntouched),
         status(times, SampleStatus::busy),
         derivatives(asked) {}
   SampleBlock out() { return {values, status, derivatives}; }
 };
 
 /// What a block holds of a state: the derivatives asked for, in their order.
-std::vector<double> asked_of(const core::State& state, Derivatives asked) {
+std::vector<double> asked_of(const State& state, Derivatives asked) {
   std::vector<double> values;
   const auto add = [&](Derivatives one, std::span<const double> from) {
-    if (core::contains(asked, one)) values.insert(values.end(), from.begin(), from.end());
+    if (contains(asked, one)) values.insert(values.end(), from.begin(), from.end());
   };
   add(Derivatives::position, state.position());
   add(Derivatives::velocity, state.velocity());
@@ -53,16 +51,15 @@ std::vector<double> asked_of(const core::State& state, Derivatives asked) {
 }
 
 /// Expects the bits and statuses of previews at the same times, of the revision of the board.
-void expect_previews(const KnotBoardReader& board, StreamClock clock,
-                     const core::DimensionKinds& kinds, const std::vector<Time>& times,
-                     Derivatives asked = Derivatives::all) {
+void expect_previews(const KnotBoardReader& board, StreamClock clock, const DimensionKinds& kinds,
+                     const std::vector<Time>& times, Derivatives asked = Derivatives::all) {
   const std::size_t dimensions = board.dimensions();
   Sampler many(board, clock, kinds);
   Sampler single(board, clock, kinds);
   Block block(times.size(), dimensions, asked);
   ASSERT_EQ(many.sample_many(times, block.out()), board.revision());
-  const std::size_t stride = core::count(asked) * dimensions;
-  core::State state(dimensions);
+  const std::size_t stride = count(asked) * dimensions;
+  State state(dimensions);
   for (std::size_t i = 0; i < times.size(); ++i) {
     SCOPED_TRACE(::testing::Message() << "time " << times[i].count());
     const SampleStatus status = single.preview(times[i], state.ref());
@@ -82,7 +79,7 @@ struct Runs : LiveStream {
     put_all(50, 150);
     // Where it rests by then, so that the first one is met.
     const double rest = position_at(kNow + milliseconds(450));
-    std::vector<core::Waypoint> waypoints;
+    std::vector<Waypoint> waypoints;
     for (const int ms : {520, 530, 545}) {
       waypoints.push_back({.time = kNow + milliseconds(ms), .position = {&rest, 1}});
     }
@@ -176,14 +173,14 @@ TEST(SampleMany, GivesTheDerivativesAskedForInTheirOrder) {
 }
 
 TEST(SampleMany, PutsDimensionsIntoTheFormInWhichTheyAreRead) {
-  const std::vector<core::Dimension> dimensions{
-      {.kind = core::DimensionKind::quaternion},
-      {.kind = core::DimensionKind::quaternion},
-      {.kind = core::DimensionKind::quaternion},
-      {.kind = core::DimensionKind::quaternion},
-      {.kind = core::DimensionKind::wrap, .period = 2 * std::numbers::pi},
+  const std::vector<Dimension> dimensions{
+      {.kind = DimensionKind::quaternion},
+      {.kind = DimensionKind::quaternion},
+      {.kind = DimensionKind::quaternion},
+      {.kind = DimensionKind::quaternion},
+      {.kind = DimensionKind::wrap, .period = 2 * std::numbers::pi},
       {}};
-  const core::DimensionKinds kinds(dimensions);
+  const DimensionKinds kinds(dimensions);
   MemoryStream stream(6, {}, 64, 1024, {}, kinds);
   std::vector<Time> times;
   for (int i = 0; i < 50; ++i) {

@@ -13,7 +13,6 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Time;
 using testing::Mesh;
 using testing::random_mesh;
 
@@ -28,17 +27,17 @@ struct Stream : testing::MemoryStream {
       solver.step(clock);
     }
   }
-  void finish() { MemoryStream::finish({core::ConditionKind::halt, {}}); }
+  void finish() { MemoryStream::finish({ConditionKind::halt, {}}); }
 };
 
 TEST(Sampler, GivesEachStatusItsTime) {
   const Mesh mesh = random_mesh(1, 20, 2, 2);
   Stream stream(2, {.settle = 4,
-                    .start = {.kind = core::ConditionKind::halt, .value = {}},
+                    .start = {.kind = ConditionKind::halt, .value = {}},
                     .stop_time = Time(1'000'000)});
   Sampler live(stream.board.reader, StreamClock::monotonic);
   Sampler recorded(stream.board.reader, StreamClock::recorded);
-  core::State state(2);
+  State state(2);
   EXPECT_EQ(live.sample(Time(5), state.ref()), SampleStatus::no_data);
   stream.send(mesh, 0, mesh.size());
   const Time newest = mesh.times.back();
@@ -53,7 +52,7 @@ TEST(Sampler, GivesEachStatusItsTime) {
   EXPECT_EQ(live.sample(newest - Time(1), state.ref()), SampleStatus::provisional);
   EXPECT_EQ(live.sample(newest, state.ref()), SampleStatus::stopping);
   EXPECT_EQ(live.sample(newest + Time(999'999), state.ref()), SampleStatus::stopping);
-  core::State held(2);
+  State held(2);
   for (const Time t : {newest + Time(1'000'000), newest + Time(5'000'000'000)}) {
     EXPECT_EQ(live.sample(t, held.ref()), SampleStatus::holding);
     for (std::size_t d = 0; d < 2; ++d) {
@@ -78,13 +77,13 @@ TEST(Sampler, JumpsGiveTheSameBitsAsAdvancingTime) {
   stream.finish();
   Sampler advancing(stream.board.reader, StreamClock::recorded);
   const auto times = testing::query_times(mesh, 4);
-  std::vector<core::State> wanted;
+  std::vector<State> wanted;
   for (const Time t : times) {
     wanted.emplace_back(3);
     ASSERT_EQ(advancing.sample(t, wanted.back().ref()), SampleStatus::settled);
   }
   Sampler jumping(stream.board.reader, StreamClock::recorded);
-  core::State state(3);
+  State state(3);
   std::mt19937_64 random(7);
   for (int i = 0; i < 5000; ++i) {
     const std::size_t at = random() % times.size();
@@ -99,8 +98,8 @@ TEST(Sampler, FindsTheSegmentWhenThePackedTimesLie) {
   stream.send(mesh, 0, mesh.size());
   stream.finish();
   Sampler honest(stream.board.reader, StreamClock::recorded);
-  core::State wanted(1);
-  core::State state(1);
+  State wanted(1);
+  State state(1);
   std::mt19937_64 random(9);
   const auto hints = words_at(stream.board.bytes.span(), stream.board.layout.times, 1024);
   const std::vector<Word> truth(hints.begin(), hints.end());
@@ -120,7 +119,7 @@ TEST(Sampler, ASnapshotIsTheCurveOfOneRevision) {
   Stream stream(2, {.settle = 8});
   stream.send(mesh, 0, mesh.size());
   Sampler sampler(stream.board.reader, StreamClock::recorded);
-  Snapshot snapshot(2);
+  BoardSnapshot snapshot(2);
   ASSERT_EQ(sampler.snapshot(mesh.times[10], mesh.times[20], snapshot), SampleStatus::settled);
   ASSERT_EQ(snapshot.segments().size(), 11U);
   EXPECT_EQ(snapshot.segments().front().left, mesh.times[10]);
@@ -130,7 +129,7 @@ TEST(Sampler, ASnapshotIsTheCurveOfOneRevision) {
   }
   ASSERT_EQ(sampler.snapshot(mesh.times[30], mesh.times.back() + Time(1), snapshot),
             SampleStatus::provisional);
-  EXPECT_EQ(snapshot.segments().back().kind, core::SegmentKind::stop_tail);
+  EXPECT_EQ(snapshot.segments().back().kind, SegmentKind::stop_tail);
   EXPECT_EQ(sampler.snapshot(mesh.times[0] - Time(1), mesh.times[5], snapshot),
             SampleStatus::before_history);
   EXPECT_TRUE(snapshot.segments().empty());
@@ -144,14 +143,14 @@ TEST(Sampler, SpansOfAnotherSizeGetNoValuesAndStayAsTheyWere) {
   Sampler sampler(stream.board.reader, StreamClock::recorded);
   const Time t = mesh.times[10] + Time(1);
   // Guarded on both sides: a value written outside of a span is seen as well.
-  std::vector<double> memory(4 * core::kMaxDimensions + 8, 42.0);
+  std::vector<double> memory(4 * kMaxDimensions + 8, 42.0);
   for (std::size_t part = 0; part < 4; ++part) {
     for (const std::size_t size : {0U, 1U, 2U, 4U, 64U}) {
       std::array<std::span<double>, 4> spans;
       for (std::size_t i = 0; i < 4; ++i) {
-        spans[i] = std::span(memory).subspan(4 + i * core::kMaxDimensions, i == part ? size : 3);
+        spans[i] = std::span(memory).subspan(4 + i * kMaxDimensions, i == part ? size : 3);
       }
-      const core::StateRef out{spans[0], spans[1], spans[2], spans[3]};
+      const StateRef out{spans[0], spans[1], spans[2], spans[3]};
       EXPECT_EQ(sampler.sample(t, out), SampleStatus::wrong_dimension) << part << ' ' << size;
       EXPECT_EQ(sampler.preview(t, out), SampleStatus::wrong_dimension) << part << ' ' << size;
     }
@@ -159,7 +158,7 @@ TEST(Sampler, SpansOfAnotherSizeGetNoValuesAndStayAsTheyWere) {
   EXPECT_TRUE(std::ranges::all_of(memory, [](double value) { return value == 42; }));
   EXPECT_FALSE(has_values(SampleStatus::wrong_dimension));
   EXPECT_EQ(to_string(SampleStatus::wrong_dimension), "wrong dimension");
-  core::State state(3);
+  State state(3);
   EXPECT_EQ(sampler.sample(t, state.ref()), SampleStatus::settled);
 }
 
@@ -172,8 +171,8 @@ TEST(Sampler, AStateOrSnapshotOfAnotherStreamIsRefused) {
   Stream wider(5);
   wider.send(wider_mesh, 0, wider_mesh.size());
   wider.finish();
-  core::State state(3);
-  Snapshot snapshot(3);
+  State state(3);
+  BoardSnapshot snapshot(3);
   Sampler sampler(stream.board.reader, StreamClock::recorded);
   ASSERT_EQ(sampler.sample(mesh.times[5], state.ref()), SampleStatus::settled);
   ASSERT_EQ(sampler.snapshot(mesh.times[5], mesh.times[8], snapshot), SampleStatus::settled);
@@ -189,7 +188,7 @@ TEST(Sampler, SamplingAllocatesNothing) {
   Stream stream(7);
   stream.send(mesh, 0, 50);
   Sampler sampler(stream.board.reader, StreamClock::monotonic);
-  core::State state(7);
+  State state(7);
   const auto times = testing::query_times(mesh, 5);
   const std::size_t before = testing::allocations();
   std::size_t answered = 0;
@@ -216,8 +215,8 @@ TEST(Sampler, ThreadsReadTheFinalBitsWhileTheSolverRuns) {
     std::mt19937_64 random(seed);
     Sampler sampler(stream.board.reader, StreamClock::recorded);
     Sampler reference(whole.board.reader, StreamClock::recorded);
-    core::State got(2);
-    core::State wanted(2);
+    State got(2);
+    State wanted(2);
     while (!done.load()) {
       const Time t = mesh.times[random() % 899] + Time(7);
       if (sampler.sample(t, got.ref()) != SampleStatus::settled) continue;

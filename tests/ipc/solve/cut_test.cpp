@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "ipc/sampling/snapshot.hpp"
 #include "tests/fixtures/streams/live_stream.hpp"
 
 /// A replacement cuts a published segment: what lies before the cut keeps its bits, its kind and
@@ -12,8 +13,6 @@ namespace splinecast::ipc {
 namespace {
 
 using core::SegmentForm;
-using core::SegmentKind;
-using core::Time;
 using std::chrono::milliseconds;
 using Live = testing::LiveStream;
 
@@ -21,7 +20,7 @@ Time at(int ms) { return Live::kNow + milliseconds(ms); }
 
 /// All segments on the board.
 std::vector<SegmentCopy> segments_of(Live& live) {
-  Snapshot snapshot(1);
+  BoardSnapshot snapshot(1);
   KnotCopy knot(1, live.board.reader.smooths());
   const Head& head = live.solver.head();
   EXPECT_TRUE(live.board.reader.copy_knot(head.first, head.revision, knot));
@@ -55,7 +54,7 @@ void expect_times_in_order(Live& live) {
 /// Cuts the curve at t and expects that of what was before `t` nothing changes but where its last
 /// segment ends.
 void cut(Live& live, Time t, int waypoints = 3) {
-  SCOPED_TRACE(::testing::Message() << "cut at " << core::to_seconds(t - Live::kNow) << " s");
+  SCOPED_TRACE(::testing::Message() << "cut at " << to_seconds(t - Live::kNow) << " s");
   auto before = segments_of(live);
   std::vector<Time> times;
   for (int i = 1; i <= waypoints; ++i) times.push_back(t + i * milliseconds(10));
@@ -88,12 +87,12 @@ void cut(Live& live, Time t, int waypoints = 3) {
     }
   }
   // The curve goes on without a gap, and from the state in which it was cut.
-  core::State left(1);
-  core::State right(1);
+  State left(1);
+  State right(1);
   for (std::size_t k = 1; k < after.size(); ++k) {
     EXPECT_EQ(after[k].left, after[k - 1].right);
     EXPECT_EQ(after[k].number, after[k - 1].next);
-    const double length = core::to_seconds(after[k].left - after[k - 1].left);
+    const double length = to_seconds(after[k].left - after[k - 1].left);
     core::evaluate(after[k - 1].order, after[k - 1].coefficients, length, left.ref());
     core::evaluate(after[k].order, after[k].coefficients, 0, right.ref());
     EXPECT_NEAR(left.position()[0], right.position()[0], 1e-12);
@@ -130,13 +129,13 @@ std::size_t count_forms(Live& live, SegmentForm wanted) {
 }
 
 /// Every method that takes waypoints without derivatives.
-std::vector<core::WindowOptions> methods() {
+std::vector<core::WindowOptions> windows_of_all_methods() {
   std::vector<core::WindowOptions> all;
-  for (const core::Method& method : core::methods()) {
+  for (const Method& method : methods()) {
     if (!method.streams() || method.needs_velocity()) continue;
     core::WindowOptions how;
     how.interpolant.method = &method;
-    if (method.family == core::Family::smoothing) how.interpolant.lambda = 1e-6;
+    if (method.family == Family::smoothing) how.interpolant.lambda = 1e-6;
     how.settle = core::default_settle(method);
     how.force_lag = true;
     all.push_back(how);
@@ -146,7 +145,7 @@ std::vector<core::WindowOptions> methods() {
 
 template <typename Test>
 void for_each_method(const Test& test) {
-  for (const core::WindowOptions& how : methods()) {
+  for (const core::WindowOptions& how : windows_of_all_methods()) {
     SCOPED_TRACE(std::string(how.interpolant.method->name));
     Live live(how);
     live.put_all(50, 150);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "ipc/options/stream.hpp"
 #include "ipc/sampling/sampler.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/options.hpp"
@@ -23,20 +24,16 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Dimension;
-using core::DimensionKind;
-using core::Time;
-
 constexpr Time kPeriod = std::chrono::milliseconds(10);
 constexpr double kH = 0.01;
 constexpr int kWaypoints = 500;
 constexpr std::size_t kSettle = 16;
 
 /// The linear dimension beside the quaternion shows that it is left alone.
-core::DimensionKinds pose_kinds() {
+DimensionKinds pose_kinds() {
   std::vector<Dimension> dimensions(5, {.kind = DimensionKind::quaternion});
   dimensions[0] = {};
-  return core::DimensionKinds(dimensions);
+  return DimensionKinds(dimensions);
 }
 
 /// A stream of `pose_kinds` that has been sent a coning rotation.
@@ -44,8 +41,8 @@ class ConingStream {
  public:
   /// With `flips`, every waypoint has a random sign and length; the solver is replaced half-way.
   explicit ConingStream(bool flips, std::string_view method = "c2")
-      : stream_(5, {.interpolant = {.method = core::find_method(method)}, .settle = kSettle}, 64,
-                1024, {}, pose_kinds()),
+      : stream_(5, {.interpolant = {.method = find_method(method)}, .settle = kSettle}, 64, 1024,
+                {}, pose_kinds()),
         sampler_(stream_.board.reader, StreamClock::recorded, pose_kinds()) {
     std::mt19937_64 random(7);  // NOLINT(*-msc51-cpp): the same flips in every run
     for (int i = 0; i < kWaypoints; ++i) {
@@ -59,11 +56,11 @@ class ConingStream {
         stream_.replace_solver();
       }
     }
-    stream_.finish({.kind = core::ConditionKind::natural});
+    stream_.finish({.kind = ConditionKind::natural});
   }
 
-  [[nodiscard]] core::State at(Time t) {
-    core::State state(5);
+  [[nodiscard]] State at(Time t) {
+    State state(5);
     EXPECT_EQ(sampler_.sample(t, state.ref()), SampleStatus::settled);
     return state;
   }
@@ -76,14 +73,13 @@ class ConingStream {
   Sampler sampler_;
 };
 
-core::AngularMotion motion_of(const core::State& state) {
-  return core::angular_motion({.first = 1}, state.position(), state.velocity(),
-                              state.acceleration());
+AngularMotion motion_of(const State& state) {
+  return angular_motion({.first = 1}, state.position(), state.velocity(), state.acceleration());
 }
 
 /// What readers see of a segment at u seconds.
-core::State seen_at(const SegmentCopy& segment, double u) {
-  core::State state(5);
+State seen_at(const SegmentCopy& segment, double u) {
+  State state(5);
   core::evaluate(segment.order, segment.coefficients, u, state.ref());
   pose_kinds().normalise(state.ref());
   return state;
@@ -92,7 +88,7 @@ core::State seen_at(const SegmentCopy& segment, double u) {
 TEST(QuaternionStream, AccelerationStepsOfASnapshotAreThoseThatReadersSee) {
   for (const std::string_view method : {"c2", "akima", "pchip", "bessel"}) {
     ConingStream stream(true, method);
-    Snapshot snapshot(5);
+    BoardSnapshot snapshot(5);
     ASSERT_EQ(stream.sampler().snapshot(100 * kPeriod, 200 * kPeriod, snapshot),
               SampleStatus::settled);
     double largest = 0;
@@ -100,8 +96,8 @@ TEST(QuaternionStream, AccelerationStepsOfASnapshotAreThoseThatReadersSee) {
     for (std::size_t i = 1; i < snapshot.segments().size(); ++i) {
       const SegmentCopy& before = snapshot.segments()[i - 1];
       const SegmentCopy& after = snapshot.segments()[i];
-      const core::State left = seen_at(before, core::to_seconds(before.right - before.left));
-      const core::State right = seen_at(after, 0);
+      const State left = seen_at(before, to_seconds(before.right - before.left));
+      const State right = seen_at(after, 0);
       for (std::size_t d = 0; d < 5; ++d) {
         const double seen = right.acceleration()[d] - left.acceleration()[d];
         largest = std::max(largest, std::abs(seen));
@@ -126,9 +122,9 @@ TEST(QuaternionStream, AngularMotionIsThatOfTheRotationToTheOrderOfTheSpline) {
   double off_unit = 0;
   // Away from the ends, whose condition is not the rotation's: 0.27 per waypoint, 2e-17 after 30.
   for (Time t = 30 * kPeriod; t <= (kWaypoints - 30) * kPeriod; t += Time(1'234'567)) {
-    const core::State state = stream.at(t);
-    const core::AngularMotion got = motion_of(state);
-    const core::AngularMotion wanted = stream.coning().motion(core::to_seconds(t));
+    const State state = stream.at(t);
+    const AngularMotion got = motion_of(state);
+    const AngularMotion wanted = stream.coning().motion(to_seconds(t));
     velocity = std::max(velocity, testing::difference(got.velocity, wanted.velocity));
     acceleration =
         std::max(acceleration, testing::difference(got.acceleration, wanted.acceleration));
@@ -155,10 +151,10 @@ TEST(QuaternionStream, SignsAndLengthsOfTheWaypointsDoNotMatter) {
       plain.at(Time(0)).position()[4] * flipped.at(Time(0)).position()[4] < 0 ? -1 : 1;
   double difference = 0;
   double step = 0;
-  core::State before = flipped.at(Time(0));
+  State before = flipped.at(Time(0));
   for (Time t{}; t < (kWaypoints - 1) * kPeriod; t += Time(1'000'000)) {
-    const core::State one = plain.at(t);
-    const core::State other = flipped.at(t);
+    const State one = plain.at(t);
+    const State other = flipped.at(t);
     for (std::size_t d = 0; d < 5; ++d) {
       const double factor = d == 0 ? 1 : sign;
       difference = std::max(difference, std::abs(one.position()[d] - factor * other.position()[d]));
@@ -172,9 +168,9 @@ TEST(QuaternionStream, SignsAndLengthsOfTheWaypointsDoNotMatter) {
 }
 
 TEST(QuaternionStream, GivenVelocitiesTurnWithTheirQuaternion) {
-  const core::Method* const method = core::find_method("hermite");
+  const Method* const method = find_method("hermite");
   const std::vector<Dimension> four(4, {.kind = DimensionKind::quaternion});
-  const core::DimensionKinds kinds(four);
+  const DimensionKinds kinds(four);
   testing::MemoryStream stream(4, {.interpolant = {.method = method}, .settle = 1}, 64, 1024, {},
                                kinds);
   const testing::Coning coning;
@@ -190,14 +186,14 @@ TEST(QuaternionStream, GivenVelocitiesTurnWithTheirQuaternion) {
     }
     stream.send({.time = i * kPeriod, .position = x, .velocity = v});
   }
-  stream.finish({.kind = core::ConditionKind::own});
+  stream.finish({.kind = ConditionKind::own});
   Sampler sampler(stream.board.reader, StreamClock::recorded, kinds);
-  core::State state(4);
+  State state(4);
   for (Time t{}; t < 49 * kPeriod; t += Time(777'777)) {
     ASSERT_EQ(sampler.sample(t, state.ref()), SampleStatus::settled);
     const auto motion =
-        core::angular_motion({}, state.position(), state.velocity(), state.acceleration());
-    const auto wanted = coning.motion(core::to_seconds(t));
+        angular_motion({}, state.position(), state.velocity(), state.acceleration());
+    const auto wanted = coning.motion(to_seconds(t));
     EXPECT_LT(testing::difference(motion.velocity, wanted.velocity), 1e-4) << t.count();
   }
 }
@@ -215,8 +211,7 @@ TEST(QuaternionStream, AQuaternionOfLengthZeroIsRefusedUnderItsNumber) {
 }
 
 TEST(QuaternionStream, HoldsAndStopsAtUnitLength) {
-  const core::WindowOptions how{.settle = 2,
-                                .start = {.kind = core::ConditionKind::halt, .value = {}}};
+  const core::WindowOptions how{.settle = 2, .start = {.kind = ConditionKind::halt, .value = {}}};
   testing::MemoryStream stream(5, how, 64, 1024, {}, pose_kinds());
   const testing::Coning coning;
   for (int i = 0; i < 20; ++i) {
@@ -226,13 +221,13 @@ TEST(QuaternionStream, HoldsAndStopsAtUnitLength) {
   }
   stream.drain();
   Sampler sampler(stream.board.reader, StreamClock::monotonic, pose_kinds());
-  core::State state(5);
+  State state(5);
   for (const Time t : {Time(-5), 19 * kPeriod + Time(100'000'000), 100 * kPeriod}) {
     ASSERT_TRUE(has_values(sampler.sample(t, state.ref())));
     EXPECT_NEAR(length_of(state.position().subspan(1)), 1, 1e-15);
   }
   EXPECT_EQ(sampler.sample(100 * kPeriod, state.ref()), SampleStatus::holding);
-  EXPECT_EQ(motion_of(state).velocity, core::Vector3{});
+  EXPECT_EQ(motion_of(state).velocity, Vector3{});
 }
 
 /// A heading that turns on at a steady rate, as a compass gives it: wrapped into [0, P).
@@ -240,7 +235,7 @@ TEST(WrappingStream, AHeadingGoesRoundAndRound) {
   EXPECT_TRUE(rc::check([] {
     const double period = *rc::gen::element(360.0, 6.283185307179586, 1.0);
     const double rate = period * (*rc::gen::inRange(-90, 91) / 10.0);  // turns a second
-    const core::DimensionKinds kinds(
+    const DimensionKinds kinds(
         std::vector<Dimension>{{.kind = DimensionKind::wrap, .period = period}});
     testing::MemoryStream stream(1, {}, 64, 1024, {}, kinds);
     const auto wrapped = [&](double x) { return x - period * std::floor(x / period); };
@@ -248,15 +243,15 @@ TEST(WrappingStream, AHeadingGoesRoundAndRound) {
       const double heading = wrapped(rate * i * kH);
       stream.send({.time = i * kPeriod, .position = std::span(&heading, 1)});
     }
-    stream.finish({.kind = core::ConditionKind::natural});
+    stream.finish({.kind = ConditionKind::natural});
     Sampler sampler(stream.board.reader, StreamClock::recorded, kinds);
-    core::State state(1);
+    State state(1);
     for (Time t{}; t <= 199 * kPeriod; t += Time(3'333'333)) {
       RC_ASSERT(sampler.sample(t, state.ref()) == SampleStatus::settled);
       const double x = state.position()[0];
       RC_ASSERT(x >= -period / 2);
       RC_ASSERT(x < period / 2);
-      RC_ASSERT(std::abs(std::remainder(x - rate * core::to_seconds(t), period)) < 1e-9 * period);
+      RC_ASSERT(std::abs(std::remainder(x - rate * to_seconds(t), period)) < 1e-9 * period);
       RC_ASSERT(std::abs(state.velocity()[0] - rate) < 1e-8 * period);
     }
   }));

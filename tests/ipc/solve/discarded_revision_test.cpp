@@ -17,7 +17,6 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Time;
 using std::chrono::milliseconds;
 using testing::Trial;
 
@@ -56,15 +55,15 @@ class Stream {
   /// Appends waypoints one by one, replaces the future with a run of `entered` waypoints, goes on,
   /// and finishes. Returns all segments.
   std::vector<SegmentCopy> play(std::size_t entered) {
-    const core::Waypoints waypoints = trial_.waypoints();
+    const Waypoints waypoints = trial_.waypoints();
     for (std::size_t i = 0; i < kFirstKnots; ++i) append(waypoints[i]);
-    std::vector<core::Waypoint> replacing;
+    std::vector<Waypoint> replacing;
     for (std::size_t i = 0; i < entered; ++i) replacing.push_back(waypoints[kFirstKnots + i]);
     const Time from = trial_.mesh.times[kFirstKnots - 1] - kTick / 2;
     EXPECT_EQ(stream_.ring.writer.replace_from(from, replacing, solved()), AppendStatus::accepted);
     step();
     for (std::size_t i = kFirstKnots + entered; i < kKnots; ++i) append(waypoints[i]);
-    EXPECT_EQ(stream_.ring.writer.finish({core::ConditionKind::own, {}}, solved()),
+    EXPECT_EQ(stream_.ring.writer.finish({ConditionKind::own, {}}, solved()),
               AppendStatus::accepted);
     step();
     EXPECT_TRUE(stream_.solver.head().finished);
@@ -83,7 +82,7 @@ class Stream {
   [[nodiscard]] WaypointRingWriter::Solved solved() {
     return {stream_.board.reader.tail(), stream_.board.reader.look().settled_until, &stream_.clock};
   }
-  void append(const core::Waypoint& waypoint) {
+  void append(const Waypoint& waypoint) {
     EXPECT_EQ(stream_.ring.writer.append(waypoint, solved()), AppendStatus::accepted);
     step();
     stream_.clock.time += kTick;
@@ -131,9 +130,9 @@ void expect_same(const std::vector<SegmentCopy>& got, const std::vector<SegmentC
   }
 }
 
-class DiscardedRevision : public ::testing::TestWithParam<const core::Method*> {
+class DiscardedRevision : public ::testing::TestWithParam<const Method*> {
  protected:
-  static core::WindowOptions options(std::size_t settle, core::Tail tail = core::Tail::bessel) {
+  static core::WindowOptions options(std::size_t settle, Tail tail = Tail::bessel) {
     core::WindowOptions how = testing::plain_window(*GetParam());
     how.settle = std::max(settle, GetParam()->converges() ? 0 : GetParam()->look_ahead);
     how.tail = tail;
@@ -155,8 +154,7 @@ TEST_P(DiscardedRevision, LeavesNoTraceWhateverTheLag) {
 }
 
 TEST_P(DiscardedRevision, LeavesNoTraceWhateverTheTail) {
-  for (const core::Tail tail :
-       {core::Tail::bessel, core::Tail::parabolic, core::Tail::natural, core::Tail::rest}) {
+  for (const Tail tail : {Tail::bessel, Tail::parabolic, Tail::natural, Tail::rest}) {
     expect_no_trace(options(4, tail), 2);
   }
 }
@@ -171,8 +169,7 @@ TEST_P(DiscardedRevision, LeavesNoTraceInRunsOfOneToFiveKnots) {
 class Curve {
  public:
   explicit Curve(const core::WindowOptions& how)
-      : how_(how),
-        board_(kDimensions, 64, how.interpolant.method->family == core::Family::smoothing) {
+      : how_(how), board_(kDimensions, 64, how.interpolant.method->family == Family::smoothing) {
     take_over();
   }
 
@@ -225,7 +222,7 @@ class Curve {
  private:
   void take_over() {
     board_.replace_writer();
-    curve_.emplace(board_.writer, board_.reader, how_, core::DimensionKinds(),
+    curve_.emplace(board_.writer, board_.reader, how_, DimensionKinds(),
                    EntryOptions{.is_live = true});
     curve_->restore(head_);
   }
@@ -238,7 +235,7 @@ class Curve {
   }
   void expect_finish() {
     int tries = kTries;
-    EXPECT_TRUE(curve_->finish({core::ConditionKind::halt, {}}, Time::min(), Time::max(), tries));
+    EXPECT_TRUE(curve_->finish({ConditionKind::halt, {}}, Time::min(), Time::max(), tries));
   }
 
   static constexpr int kTries = 1000;  // a search is never interrupted
@@ -302,8 +299,7 @@ void expect_no_trace_of_others(core::WindowOptions how, std::uint64_t seed, bool
 
 TEST_P(DiscardedRevision, OfOtherWaypointsLeavesNoTrace) {
   std::uint64_t seed = 1;
-  for (const core::Tail tail :
-       {core::Tail::bessel, core::Tail::parabolic, core::Tail::natural, core::Tail::rest}) {
+  for (const Tail tail : {Tail::bessel, Tail::parabolic, Tail::natural, Tail::rest}) {
     for (const std::size_t settle : {0U, 1U, 2U, 3U, 8U, 20U}) {
       for (int round = 0; round < 3; ++round) {
         expect_no_trace_of_others(options(settle, tail), seed, false);
@@ -314,9 +310,9 @@ TEST_P(DiscardedRevision, OfOtherWaypointsLeavesNoTrace) {
   }
 }
 
-std::vector<const core::Method*> streaming_methods() {
-  std::vector<const core::Method*> all;
-  for (const core::Method& method : core::methods()) {
+std::vector<const Method*> streaming_methods() {
+  std::vector<const Method*> all;
+  for (const Method& method : methods()) {
     if (method.streams()) all.push_back(&method);
   }
   return all;

@@ -20,17 +20,15 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::SegmentKind;
-using core::Time;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using testing::LiveStream;
 
-constexpr core::Condition kHalt{.kind = core::ConditionKind::halt, .value = {}};
+constexpr Condition kHalt{.kind = ConditionKind::halt, .value = {}};
 
 /// A motion that begins at rest 50 ms after the start: up to 1 /s and 1 /s².
 double motion(Time t) {
-  const double s = core::to_seconds(t - LiveStream::kNow) - 0.05;
+  const double s = to_seconds(t - LiveStream::kNow) - 0.05;
   return 0.5 * s - 0.25 * std::sin(2 * s);
 }
 
@@ -128,19 +126,18 @@ struct Watched : LiveStream {
   /// Where the curve ends no segment begins.
   [[nodiscard]] bool ends_at(const Sent& waypoint) const {
     const SegmentCopy& last = collected.segments().back();
-    core::State end(1);
-    core::evaluate(last.order, last.coefficients, core::to_seconds(last.right - last.left),
-                   end.ref());
+    State end(1);
+    core::evaluate(last.order, last.coefficients, to_seconds(last.right - last.left), end.ref());
     return waypoint.time == sent.back().time &&
            std::abs(end.position()[0] - waypoint.position) < 1e-9;
   }
   /// The largest derivative of what the solver has chosen itself: entries, stops and the like.
   [[nodiscard]] double peak(int derivative) const {
-    core::State at(1);
+    State at(1);
     double most = 0;
     for (const SegmentCopy& s : collected.segments()) {
       if (s.kind == SegmentKind::spline && s.has_waypoint) continue;
-      const double h = core::to_seconds(s.right - s.left);
+      const double h = to_seconds(s.right - s.left);
       for (int i = 0; i <= 50; ++i) {
         core::evaluate(s.order, s.coefficients, h * i / 50, at.ref());
         const auto values = derivative == 1 ? at.velocity() : at.acceleration();
@@ -165,13 +162,13 @@ struct Watched : LiveStream {
 
 void expect_continuous(const Watched& live) {
   const auto segments = live.collected.segments();
-  core::State left(1);
-  core::State right(1);
+  State left(1);
+  State right(1);
   for (std::size_t i = 1; i < segments.size(); ++i) {
     const SegmentCopy& before = segments[i - 1];
     ASSERT_EQ(before.right, segments[i].left);
     ASSERT_EQ(before.next, segments[i].number);
-    core::evaluate(before.order, before.coefficients, core::to_seconds(before.right - before.left),
+    core::evaluate(before.order, before.coefficients, to_seconds(before.right - before.left),
                    left.ref());
     core::evaluate(segments[i].order, segments[i].coefficients, 0, right.ref());
     EXPECT_NEAR(left.position()[0], right.position()[0], 1e-11);
@@ -237,7 +234,7 @@ TEST(Entry, MeetsTheFirstWaypointThatItsLimitsAllowAndNotTheOnesBefore) {
   const auto entry =
       std::ranges::find(live.collected.segments(), SegmentKind::splice, &SegmentCopy::kind);
   ASSERT_NE(entry, live.collected.segments().end());
-  const double took = core::to_seconds(entry->right - entry->left);
+  const double took = to_seconds(entry->right - entry->left);
   EXPECT_GE(took, least - 1e-6);
   EXPECT_LE(took, least + 0.02 + 1e-6);  // two knots' distance at most
   EXPECT_LE(live.peak(2), 8 * (1 + 1e-6));
@@ -312,7 +309,7 @@ TEST(Entry, WithoutAWaypointInReachGoesBeyondTheNewestOneAlongALineToAStop) {
   EXPECT_EQ(live.solver.head().passed_over, 3U);
   // The line, where there still is one, goes on from the newest waypoint at its velocity.
   const Time line_end = at(920) + core::Extrapolation::kLine;
-  core::State end(1);
+  State end(1);
   EXPECT_TRUE(has_values(live.sampler.preview(line_end, end.ref())));
   live.run_to(3000);
   EXPECT_EQ(live.sampler.sample(at(2900), live.state.ref()), SampleStatus::holding);
@@ -480,8 +477,8 @@ TEST(Entry, ToTheLastWaypointEndsAsLateAsTheLimitAsksFor) {
   live.end();
   const Time end = live.solver.head().settled_until;
   const double least = std::sqrt(10 / std::sqrt(3.0) * 29.5);
-  EXPECT_GT(core::to_seconds(end - at(1500)), 0.9 * least);
-  EXPECT_LT(core::to_seconds(end - at(1500)), 1.3 * least);
+  EXPECT_GT(to_seconds(end - at(1500)), 0.9 * least);
+  EXPECT_LT(to_seconds(end - at(1500)), 1.3 * least);
   EXPECT_NEAR(live.position_at(end), 30, 1e-9);
   EXPECT_LE(live.peak(2), 1 + 1e-6);
   EXPECT_EQ(live.verified(), "");

@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "ipc/options/stream.hpp"
 #include "ipc/sampling/sampler.hpp"
+#include "splinecast/calculus.hpp"
 #include "splinecast/waypoint.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
@@ -17,8 +19,6 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::ConditionKind;
-using core::Time;
 using std::chrono::milliseconds;
 using testing::MemoryStream;
 
@@ -35,16 +35,16 @@ void expect_balance(const Head& head) {
 /// A stream whose producer takes intervals from 1 ns.
 struct FastStream : MemoryStream {
   explicit FastStream(const core::WindowOptions& how,
-                      const std::vector<core::Dimension>& dimension_kinds = {},
+                      const std::vector<Dimension>& dimension_kinds = {},
                       std::optional<LiveOptions> how_live = std::nullopt)
       : MemoryStream(std::max<std::size_t>(dimension_kinds.size(), 1), how, 64, 256, kNanosecond,
-                     core::DimensionKinds(dimension_kinds), how_live) {
+                     DimensionKinds(dimension_kinds), how_live) {
     ring.writer = WaypointRingWriter(ring.bytes.span(), ring.layout, kNanosecond);
   }
   /// Every sample between two times has values, and these are numbers.
   void expect_finite_samples(Time from, Time to) {
     Sampler sampler(board.reader, live ? StreamClock::monotonic : StreamClock::recorded);
-    core::State state(ring.reader.dimensions());
+    State state(ring.reader.dimensions());
     for (int i = 0; i <= 20; ++i) {
       const Time t = from + (to - from) / 20 * i;
       const SampleStatus status = sampler.preview(t, state.ref());
@@ -57,7 +57,7 @@ struct FastStream : MemoryStream {
 };
 
 TEST(FiniteValues, AQuaternionTooShortForItsVelocityIsRefused) {
-  const std::vector<core::Dimension> kinds(4, {.kind = core::DimensionKind::quaternion});
+  const std::vector<Dimension> kinds(4, {.kind = DimensionKind::quaternion});
   FastStream stream({}, kinds);
   const auto send = [&](int ms, double length, double speed) {
     const std::vector<double> q{0, 0, 0, length};
@@ -79,7 +79,7 @@ TEST(FiniteValues, AQuaternionTooShortForItsVelocityIsRefused) {
 }
 
 core::WindowOptions smoothing(double lambda) {
-  return {.interpolant = {.method = core::find_method("smoothing"), .lambda = lambda},
+  return {.interpolant = {.method = find_method("smoothing"), .lambda = lambda},
           .settle = 10,
           .force_lag = true};
 }
@@ -135,19 +135,19 @@ TEST(FiniteValues, WhatIsRefusedLeavesNoTrace) {
   EXPECT_EQ(other.solver.head().refused, 0U);
   Sampler sampler(stream.board.reader, StreamClock::recorded);
   Sampler wanted(other.board.reader, StreamClock::recorded);
-  core::State got(1);
-  core::State want(1);
+  State got(1);
+  State want(1);
   for (const auto& [time, x] : stream.sent) {
     ASSERT_EQ(sampler.preview(time, got.ref()), wanted.preview(time, want.ref()));
     ASSERT_TRUE(std::ranges::equal(got.values(), want.values())) << time.count();
   }
 }
 
-class AnyValues : public ::testing::TestWithParam<const core::Method*> {};
+class AnyValues : public ::testing::TestWithParam<const Method*> {};
 
-std::vector<const core::Method*> methods_tried() {
-  std::vector<const core::Method*> all;
-  for (const core::Method& method : core::methods()) {
+std::vector<const Method*> methods_tried() {
+  std::vector<const Method*> all;
+  for (const Method& method : methods()) {
     if (method.streams()) all.push_back(&method);
   }
   return all;
@@ -179,10 +179,10 @@ class Extremes {
   std::mt19937_64 random_;
 };
 
-core::WindowOptions window_of(const core::Method& method, Extremes& extremes) {
+core::WindowOptions window_of(const Method& method, Extremes& extremes) {
   core::WindowOptions how{.interpolant = {.method = &method}};
   how.settle = core::default_settle(method);
-  if (method.family == core::Family::smoothing) {
+  if (method.family == Family::smoothing) {
     constexpr std::array kLambdas{0.0, 1e-30, 1.0, 1e6, 1e100};
     how.interpolant.lambda = kLambdas[extremes.pick(kLambdas.size())];
     how.settle = 10;
@@ -194,11 +194,11 @@ core::WindowOptions window_of(const core::Method& method, Extremes& extremes) {
 }
 
 TEST_P(AnyValues, LeaveTheBoardFiniteAndRestorableAfterEveryStep) {
-  const std::vector<core::Dimension> kinds{{},
-                                           {.kind = core::DimensionKind::quaternion},
-                                           {.kind = core::DimensionKind::quaternion},
-                                           {.kind = core::DimensionKind::quaternion},
-                                           {.kind = core::DimensionKind::quaternion}};
+  const std::vector<Dimension> kinds{{},
+                                     {.kind = DimensionKind::quaternion},
+                                     {.kind = DimensionKind::quaternion},
+                                     {.kind = DimensionKind::quaternion},
+                                     {.kind = DimensionKind::quaternion}};
   for (std::uint64_t seed = 1; seed <= 150 && !HasFatalFailure(); ++seed) {
     SCOPED_TRACE(seed);
     Extremes extremes(seed);
@@ -214,7 +214,7 @@ TEST_P(AnyValues, LeaveTheBoardFiniteAndRestorableAfterEveryStep) {
       const auto x = extremes.values(5);
       const auto v = extremes.values(5);
       const auto a = extremes.values(5);
-      const core::Waypoint waypoint{.time = t, .position = x, .velocity = v, .acceleration = a};
+      const Waypoint waypoint{.time = t, .position = x, .velocity = v, .acceleration = a};
       const WaypointRingWriter::Solved solved{stream.board.reader.tail()};
       if (i == 0 && extremes.pick(4) == 0) {
         (void)stream.ring.writer.start_from({t, x, v, a}, solved);

@@ -15,10 +15,10 @@ using std::chrono::seconds;
 TEST(FirstWaypoint, MayLieExactlyWhereTheStepThatTakesItSettles) {
   const LiveOptions live;
   testing::MemoryStream stream(
-      1, {.start = {.kind = core::ConditionKind::halt, .value = {}}, .held_before_start = true}, 16,
-      64, {}, {}, live);
+      1, {.start = {.kind = ConditionKind::halt, .value = {}}, .held_before_start = true}, 16, 64,
+      {}, {}, live);
   stream.clock.time = seconds(100);
-  const core::Time first = stream.clock.time + live.freeze_ahead;
+  const Time first = stream.clock.time + live.freeze_ahead;
   for (int i = 0; i < 3; ++i) {
     const double x = i;
     ASSERT_EQ(stream.append(first + milliseconds(10) * i, std::span(&x, 1)),

@@ -9,7 +9,6 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Time;
 using std::chrono::milliseconds;
 using Live = testing::LiveStream;
 

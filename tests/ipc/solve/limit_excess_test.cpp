@@ -13,7 +13,6 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Time;
 using std::chrono::milliseconds;
 using testing::LiveStream;
 
@@ -28,7 +27,7 @@ core::WindowOptions step_limits() {
 
 /// A motion that keeps its limits, with steps of 5 mm at some of its waypoints.
 struct Stepping : LiveStream {
-  explicit Stepping(core::Beyond what) : LiveStream(step_limits()) {
+  explicit Stepping(Beyond what) : LiveStream(step_limits()) {
     beyond = what;
     replace_solver();
   }
@@ -54,7 +53,7 @@ struct Stepping : LiveStream {
 };
 
 TEST(LimitExcess, IsReportedAndTheWaypointTaken) {
-  Stepping live(core::Beyond::report);
+  Stepping live(Beyond::report);
   live.play({700});
   EXPECT_EQ(live.solver.head().refused, 0U);
   EXPECT_GT(live.peak(), 100);
@@ -73,7 +72,7 @@ TEST(LimitExcess, IsReportedAndTheWaypointTaken) {
 
 TEST(LimitExcess, IsRefusedWithItsPlaceSoThatNothingBeyondIsPublished) {
   for (const bool takes_over : {false, true}) {
-    Stepping live(core::Beyond::refuse);
+    Stepping live(Beyond::refuse);
     live.play({700, 900, 910}, takes_over);
     EXPECT_EQ(live.reason(Refusal::beyond_limits), 3U);
     EXPECT_EQ(live.solver.head().refused, 3U);
@@ -98,7 +97,7 @@ TEST(LimitExcess, IsRefusedWithItsPlaceSoThatNothingBeyondIsPublished) {
 }
 
 TEST(LimitExcess, DoesNotConcernAMotionWithinItsLimits) {
-  Stepping live(core::Beyond::refuse);
+  Stepping live(Beyond::refuse);
   live.play({});
   EXPECT_EQ(live.solver.head().exceeding, 0U);
   EXPECT_EQ(live.solver.head().refused, 0U);
@@ -110,8 +109,8 @@ TEST(LimitExcess, KeepsTheLastOnesOnly) {
   Head head;
   for (Word i = 0; i < kExcessesKept + 10; ++i) {
     board.writer.write_excess(i, {.item = 3 * i,
-                                  .kind = core::LimitKind::jerk,
-                                  .dimension = i % core::kMaxDimensions,
+                                  .kind = LimitKind::jerk,
+                                  .dimension = i % kMaxDimensions,
                                   .time = milliseconds(-static_cast<int>(i)),
                                   .value = -1.5 * static_cast<double>(i),
                                   .limit = 2});
@@ -124,8 +123,8 @@ TEST(LimitExcess, KeepsTheLastOnesOnly) {
     const auto excess = board.reader.excess(head, i);
     ASSERT_TRUE(excess) << i;
     EXPECT_EQ(excess->item, 3 * i);
-    EXPECT_EQ(excess->kind, core::LimitKind::jerk);
-    EXPECT_EQ(excess->dimension, i % core::kMaxDimensions);
+    EXPECT_EQ(excess->kind, LimitKind::jerk);
+    EXPECT_EQ(excess->dimension, i % kMaxDimensions);
     EXPECT_EQ(excess->time, milliseconds(-static_cast<int>(i)));
     EXPECT_EQ(excess->value, -1.5 * static_cast<double>(i));
     EXPECT_EQ(excess->limit, 2);

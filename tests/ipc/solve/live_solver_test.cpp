@@ -11,7 +11,6 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Time;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
@@ -211,7 +210,7 @@ TEST(LiveSolver, AFinishBehindASettledKnotGoesBackToIt) {
     const Time newest = Live::kNow + milliseconds(600);
     live.clock.time = newest - milliseconds(4) + milliseconds(late);
     live.solver.step(live.clock);
-    live.finish({.kind = core::ConditionKind::halt, .value = {}});
+    live.finish({.kind = ConditionKind::halt, .value = {}});
     for (int i = 0; i < 20 && !live.solver.head().finished; ++i) live.solver.step(live.clock);
     EXPECT_TRUE(live.solver.head().finished);
     EXPECT_GT(live.solver.head().changed_from, live.clock.time);
@@ -281,7 +280,7 @@ TEST(LiveSolver, DiscardsARevisionThatComesTooLateAndMakesItAnew) {
 TEST(LiveSolver, AReaderThatSampledWhatWasChangedIsToldOnce) {
   Live live;
   live.put_all(50, 100);
-  core::State& state = live.state;
+  State& state = live.state;
   live.clock.time = Live::kNow + milliseconds(60);
   live.solver.step(live.clock);
   // Ahead of what is settled, as if the commit had come late.

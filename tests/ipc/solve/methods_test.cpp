@@ -14,22 +14,19 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Condition;
-using core::ConditionKind;
-using core::Time;
 using testing::MemoryStream;
 using testing::Trial;
 
-class MethodsThroughRegions : public ::testing::TestWithParam<const core::Method*> {
+class MethodsThroughRegions : public ::testing::TestWithParam<const Method*> {
  protected:
   [[nodiscard]] static core::WindowOptions options() { return testing::plain_window(*GetParam()); }
 
   /// Expects every sample of a finished stream to have the bits of a curve.
   static void expect_same_bits(MemoryStream& stream, const Trial& trial,
-                               const core::PiecewisePolynomial& wanted) {
+                               const PiecewisePolynomial& wanted) {
     Sampler sampler(stream.board.reader, StreamClock::recorded);
-    core::State got(2);
-    core::State want(2);
+    State got(2);
+    State want(2);
     for (const Time t : testing::query_times(trial.mesh, 3)) {
       ASSERT_EQ(sampler.sample(t, got.ref()), SampleStatus::settled) << t.count();
       wanted.evaluate(t, want.ref());
@@ -49,10 +46,10 @@ TEST_P(MethodsThroughRegions, GiveTheBitsOfTheWindowAndIfLocalOfTheBatch) {
     stream.finish(end);
     expect_same_bits(stream, trial, testing::online(trial.waypoints(), how, end));
     if (GetParam()->converges()) continue;
-    core::FitOptions at_once = testing::plain_options(*GetParam());
+    FitOptions at_once = testing::plain_options(*GetParam());
     at_once.start = end;
     at_once.end = end;
-    expect_same_bits(stream, trial, core::fit(trial.waypoints(), at_once));
+    expect_same_bits(stream, trial, fit(trial.waypoints(), at_once));
   }
 }
 
@@ -85,9 +82,9 @@ TEST_P(MethodsThroughRegions, RefuseWaypointsThatLackWhatTheyNeed) {
             lacks ? 3U : 0U);
 }
 
-std::vector<const core::Method*> streaming_methods() {
-  std::vector<const core::Method*> all;
-  for (const core::Method& method : core::methods()) {
+std::vector<const Method*> streaming_methods() {
+  std::vector<const Method*> all;
+  for (const Method& method : methods()) {
     if (method.streams()) all.push_back(&method);
   }
   return all;
@@ -97,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(Every, MethodsThroughRegions, ::testing::ValuesIn(strea
                          [](const auto& tested) { return std::string(tested.param->name); });
 
 TEST(StreamSolver, RefusesWaypointsTooCloseForItsLagAndLambda) {
-  core::WindowOptions how{.interpolant = {.method = core::find_method("smoothing"), .lambda = 1e-5},
+  core::WindowOptions how{.interpolant = {.method = find_method("smoothing"), .lambda = 1e-5},
                           .settle = 20};
   MemoryStream stream(1, how);  // λ/h³ = 10 at 10 ms asks for a lag of 24
   const double x = 0;

@@ -9,7 +9,6 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Time;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using Live = testing::LiveStream;
@@ -90,9 +89,9 @@ TEST(Stop, OrReplacementThatWaitsForRoomWithdrawsNothing) {
 TEST(Stop, AtTheEndOfTimeLeavesABoardThatCanBeReadBehindAFinish) {
   Live live;
   live.put_all(50, 100);
-  ASSERT_EQ(live.replace(core::kLatestTime, {}), AppendStatus::accepted);
+  ASSERT_EQ(live.replace(kLatestTime, {}), AppendStatus::accepted);
   live.drain();
-  live.finish({.kind = core::ConditionKind::halt, .value = {}});
+  live.finish({.kind = ConditionKind::halt, .value = {}});
   EXPECT_TRUE(live.solver.head().finished);
   Sampler later(live.board.reader, StreamClock::monotonic);
   EXPECT_EQ(later.sample(Live::kNow + milliseconds(80), live.state.ref()), SampleStatus::settled);
@@ -102,13 +101,13 @@ TEST(Stop, AtTheEndOfTimeLeavesABoardThatCanBeReadBehindAFinish) {
 TEST(Stop, ThatIsCutAtTheEndOfTimeLeavesABoardThatCanBeRead) {
   Live live;
   live.put_all(50, 100);
-  const Time t = core::kLatestTime - live.window.stop_time / 2;
+  const Time t = kLatestTime - live.window.stop_time / 2;
   ASSERT_EQ(live.replace(t, {}), AppendStatus::accepted);
   live.drain();
-  ASSERT_EQ(live.replace(core::kLatestTime, {}), AppendStatus::accepted);  // within the stop
+  ASSERT_EQ(live.replace(kLatestTime, {}), AppendStatus::accepted);  // within the stop
   live.drain();
   Sampler later(live.board.reader, StreamClock::monotonic);
-  for (const Time at : {t - Time(1), t, t + Time(1), core::kLatestTime}) {
+  for (const Time at : {t - Time(1), t, t + Time(1), kLatestTime}) {
     EXPECT_TRUE(has_values(later.sample(at, live.state.ref())));
   }
   EXPECT_NO_THROW(live.replace_solver());
@@ -152,8 +151,7 @@ TEST(Stop, OfAnUnknownTimeLetsAnyWaypointFollowAlsoBehindANewProducer) {
   ASSERT_EQ(live.ring.writer.replace_from(Time::min(), {}, {}), AppendStatus::accepted);
   WaypointRingWriter next(live.ring.bytes.span(), live.ring.layout, {});
   const double x = 0;
-  const core::Waypoint waypoint{.time = Live::kNow + milliseconds(500),
-                                .position = std::span(&x, 1)};
+  const Waypoint waypoint{.time = Live::kNow + milliseconds(500), .position = std::span(&x, 1)};
   EXPECT_EQ(live.ring.writer.append(waypoint, {}), AppendStatus::accepted);
   EXPECT_EQ(next.append(waypoint, {}), AppendStatus::accepted);
 }

@@ -14,23 +14,20 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Time;
 using testing::MemoryStream;
 using testing::Mesh;
 using testing::random_mesh;
 
 /// The segments that a window gives when it is fed directly.
-core::PiecewisePolynomial direct(const Mesh& mesh, const core::WindowOptions& how,
-                                 const core::Condition& end) {
+PiecewisePolynomial direct(const Mesh& mesh, const core::WindowOptions& how, const Condition& end) {
   return testing::online(
       {.dimensions = mesh.dimensions, .times = mesh.times, .positions = mesh.positions}, how, end);
 }
 
-void expect_same_bits(MemoryStream& stream, const Mesh& mesh,
-                      const core::PiecewisePolynomial& wanted) {
+void expect_same_bits(MemoryStream& stream, const Mesh& mesh, const PiecewisePolynomial& wanted) {
   Sampler sampler(stream.board.reader, StreamClock::recorded);
-  core::State a(mesh.dimensions);
-  core::State b(mesh.dimensions);
+  State a(mesh.dimensions);
+  State b(mesh.dimensions);
   for (const Time t : testing::query_times(mesh, 3)) {
     ASSERT_EQ(sampler.sample(t, a.ref()), SampleStatus::settled) << t.count();
     wanted.evaluate(t, b.ref());
@@ -42,7 +39,7 @@ TEST(StreamSolver, PublishesTheBitsOfTheWindowHoweverTheItemsAreBatched) {
   for (const std::size_t settle : {0U, 1U, 8U}) {
     const core::WindowOptions how{.settle = settle};
     const Mesh mesh = random_mesh(settle + 1, 300, 3, 5);
-    const core::Condition halt{core::ConditionKind::halt, {}};
+    const Condition halt{ConditionKind::halt, {}};
     const auto wanted = direct(mesh, how, halt);
     for (const std::size_t batch : {1U, 7U, 300U}) {
       MemoryStream stream(3, how);
@@ -127,7 +124,7 @@ TEST(StreamSolver, KeepsAsMuchHistoryAsTheBoardHolds) {
   EXPECT_EQ(head.newest, 500U);
   EXPECT_EQ(head.newest - head.first + 1, 64U);  // knots: a segment fewer
   Sampler sampler(stream.board.reader, StreamClock::recorded);
-  core::State state(1);
+  State state(1);
   EXPECT_EQ(sampler.sample(mesh.times[500 - 64] - Time(1), state.ref()),
             SampleStatus::before_history);
   EXPECT_EQ(sampler.sample(mesh.times[500 - 64], state.ref()), SampleStatus::settled);
@@ -145,11 +142,11 @@ TEST(StreamSolver, AFinishOfItsOwnGivesNoSegmentBackThatTheBoardHasLost) {
     EXPECT_EQ(stream.solver.head().newest, 300U);
     EXPECT_EQ(stream.solver.head().first, 269U);
     Sampler sampler(stream.board.reader, StreamClock::recorded);
-    core::State state(1);
+    State state(1);
     EXPECT_EQ(sampler.sample(Time(0), state.ref()), SampleStatus::before_history);
     EXPECT_EQ(sampler.sample(mesh.times[268] - Time(1), state.ref()), SampleStatus::before_history);
     EXPECT_EQ(sampler.sample(mesh.times[268], state.ref()), SampleStatus::settled);
-    Snapshot snapshot(1);
+    BoardSnapshot snapshot(1);
     EXPECT_EQ(sampler.snapshot(mesh.times[268], mesh.times[299], snapshot), SampleStatus::settled);
     EXPECT_EQ(snapshot.segments().size(), 31U);
   }
@@ -160,7 +157,7 @@ TEST(StreamSolver, AFinishWithoutWaypointsEndsAStreamWithoutData) {
   stream.finish();
   EXPECT_TRUE(stream.solver.head().finished);
   Sampler sampler(stream.board.reader, StreamClock::recorded);
-  core::State state(1);
+  State state(1);
   EXPECT_EQ(sampler.sample(Time(0), state.ref()), SampleStatus::no_data);
 }
 

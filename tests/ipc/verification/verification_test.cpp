@@ -15,9 +15,6 @@
 namespace splinecast::ipc {
 namespace {
 
-using core::Condition;
-using core::ConditionKind;
-using core::Time;
 using testing::MemoryStream;
 using testing::Trial;
 
@@ -25,7 +22,7 @@ using testing::Trial;
 class Played {
  public:
   explicit Played(const core::WindowOptions& how, const Condition& end = {},
-                  core::DimensionKinds kinds = {}, std::size_t knots = 150)
+                  DimensionKinds kinds = {}, std::size_t knots = 150)
       : window_(how), kinds_(std::move(kinds)), end_(end), items_(2) {
     MemoryStream stream(2, window_, 64, 1024, {}, kinds_);
     const Trial trial = testing::random_trial(11, knots, 2, 5);
@@ -59,7 +56,7 @@ class Played {
 
  private:
   core::WindowOptions window_;
-  core::DimensionKinds kinds_;
+  DimensionKinds kinds_;
   Condition end_;
   SentItems items_;
 };
@@ -74,15 +71,15 @@ void flip_last_bit(double& value) {
   value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) ^ 1U);
 }
 
-std::vector<const core::Method*> verified_methods() {
-  std::vector<const core::Method*> all;
-  for (const core::Method& method : core::methods()) {
+std::vector<const Method*> verified_methods() {
+  std::vector<const Method*> all;
+  for (const Method& method : methods()) {
     if (method.streams()) all.push_back(&method);
   }
   return all;
 }
 
-class VerificationOfMethods : public ::testing::TestWithParam<const core::Method*> {};
+class VerificationOfMethods : public ::testing::TestWithParam<const Method*> {};
 
 TEST_P(VerificationOfMethods, SolvesEverySettledSegmentAgainToItsBits) {
   for (const ConditionKind kind : {ConditionKind::own, ConditionKind::halt}) {
@@ -101,9 +98,9 @@ INSTANTIATE_TEST_SUITE_P(Streaming, VerificationOfMethods, ::testing::ValuesIn(v
                          [](const auto& at) { return std::string(at.param->name); });
 
 TEST(Verification, TakesLimitsKindsAndAShortLag) {
-  const std::vector<core::Dimension> kinds{{.kind = core::DimensionKind::wrap, .period = 0.7}, {}};
+  const std::vector<Dimension> kinds{{.kind = DimensionKind::wrap, .period = 0.7}, {}};
   for (const std::size_t settle : {0U, 1U, 8U}) {
-    EXPECT_EQ(what(Played({.settle = settle}, {}, core::DimensionKinds(kinds)).verify()), "");
+    EXPECT_EQ(what(Played({.settle = settle}, {}, DimensionKinds(kinds)).verify()), "");
   }
 }
 
@@ -131,7 +128,7 @@ TEST(Verification, FindsWhateverElseDiffers) {
   };
   EXPECT_EQ(found([](SegmentCopy& at) { flip_last_bit(at.waypoint[1]); }), "waypoint");
   EXPECT_EQ(found([](SegmentCopy& at) { at.right += Time(1); }), "right end");
-  EXPECT_EQ(found([](SegmentCopy& at) { at.kind = core::SegmentKind::stop_tail; }), "kind");
+  EXPECT_EQ(found([](SegmentCopy& at) { at.kind = SegmentKind::stop_tail; }), "kind");
   EXPECT_NE(found([](SegmentCopy& at) { at.newer_knots = 3; }), "");
   EXPECT_NE(found([](SegmentCopy& at) { at.newer_knots = 4'000'000'000; }), "");
   EXPECT_NE(found([](SegmentCopy& at) { at.number = 7; }), "");
@@ -154,7 +151,7 @@ TEST(Verification, MissesAWaypointThatIsNotOnTheCurve) {
 /// Kills, starvation and replacement, with a local method, with smoothing, and without limits.
 TEST(Verification, HoldsInLiveWorldsOfOtherMethods) {
   for (const char* name : {"c2", "akima", "pchip", "bessel", "smoothing"}) {
-    core::WindowOptions window = testing::plain_window(*core::find_method(name));
+    core::WindowOptions window = testing::plain_window(*find_method(name));
     window.interpolant.lambda = name == std::string("smoothing") ? 1e-9 : 0;
     for (std::uint64_t seed = 1; seed <= 40 && !::testing::Test::HasFailure(); ++seed) {
       testing::LiveWorld world({.seed = seed,

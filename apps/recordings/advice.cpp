@@ -1,4 +1,4 @@
-#include "apps/advise/advice.hpp"
+#include "apps/recordings/advice.hpp"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,6 @@
 
 namespace splinecast::apps {
 namespace {
-
-using core::Time;
 
 Time rounded_up_to_ms(Time t) noexcept {
   constexpr Time kMillisecond = std::chrono::milliseconds(1);
@@ -44,18 +42,17 @@ std::optional<double> way_back(double v, double dry, double stop, double max_vel
 }  // namespace
 
 Time depth_needed(Time interval, const SolvedHow& how) noexcept {
-  return core::saturated_sum(
-      how.freeze_ahead,
-      core::saturated_product(interval, static_cast<std::int64_t>(how.settle) + 1));
+  return saturated_sum(how.freeze_ahead,
+                       saturated_product(interval, static_cast<std::int64_t>(how.settle) + 1));
 }
 
 Time depth_needed(Time interval, Time length, const SolvedHow& how) noexcept {
-  return std::min(depth_needed(interval, how), core::saturated_sum(how.freeze_ahead, length));
+  return std::min(depth_needed(interval, how), saturated_sum(how.freeze_ahead, length));
 }
 
 Time advised_lead(const Intervals& intervals, Time length, const SolvedHow& how) noexcept {
   const Time depth = depth_needed(intervals.median, length, how);
-  return std::max(kLeastLead, rounded_up_to_ms(core::saturated_sum(depth, intervals.jitter)));
+  return std::max(kLeastLead, rounded_up_to_ms(saturated_sum(depth, intervals.jitter)));
 }
 
 std::size_t advised_settle(const Intervals& intervals, Time freeze_ahead) noexcept {
@@ -91,16 +88,15 @@ AdvisedLimits advised_limits(std::span<const DimensionMotion> motion) {
 
 Hiccup foresee(Time lead, Time silence, Time interval, Time freeze_ahead,
                std::span<const DimensionMotion> motion, const AdvisedLimits& limits) {
-  const Time left =
-      std::max(core::saturated_sum(core::saturated_sum(lead, -interval), -silence), -Time::max());
+  const Time left = std::max(saturated_sum(saturated_sum(lead, -interval), -silence), -Time::max());
   Hiccup hiccup{.lead = lead,
                 .silence = silence,
                 .depth_left = std::max(left, Time::zero()),
-                .dry = std::max(core::saturated_sum(freeze_ahead, -left), Time::zero())};
+                .dry = std::max(saturated_sum(freeze_ahead, -left), Time::zero())};
   hiccup.comes_to_rest = hiccup.dry >= limits.stop_time;
   for (std::size_t d = 0; d < motion.size(); ++d) {
-    hiccup.way_back.push_back(way_back(motion[d].peak_velocity, core::to_seconds(hiccup.dry),
-                                       core::to_seconds(limits.stop_time), limits.velocity[d],
+    hiccup.way_back.push_back(way_back(motion[d].peak_velocity, to_seconds(hiccup.dry),
+                                       to_seconds(limits.stop_time), limits.velocity[d],
                                        limits.acceleration[d]));
   }
   return hiccup;

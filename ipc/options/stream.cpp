@@ -1,14 +1,14 @@
-#include "splinecast/options.hpp"
-
-#include <unistd.h>
+#include "ipc/options/stream.hpp"
 
 #include <algorithm>
 #include <cstring>
 #include <span>
 #include <stdexcept>
 
-#include "ipc/layout/limits.hpp"
+#include "ipc/mapping/region.hpp"
+#include "ipc/memory/process_life.hpp"
 #include "splinecast/errors.hpp"
+#include "splinecast/waypoint.hpp"
 
 namespace splinecast::ipc {
 namespace {
@@ -26,7 +26,7 @@ std::string cut(const std::string& text, std::size_t most) {
 
 template <std::size_t N>
 void put_texts(const std::vector<std::string>& texts, std::size_t dimensions, const char* what,
-               std::array<std::array<char, N>, core::kMaxDimensions>& out) {
+               std::array<std::array<char, N>, kMaxDimensions>& out) {
   if (!texts.empty() && texts.size() != dimensions) {
     throw BadRequest(std::to_string(texts.size()) + ' ' + what + " for " +
                      std::to_string(dimensions) + " dimensions");
@@ -37,21 +37,21 @@ void put_texts(const std::vector<std::string>& texts, std::size_t dimensions, co
 }
 
 template <std::size_t N>
-std::vector<std::string> texts_of(
-    const std::array<std::array<char, N>, core::kMaxDimensions>& texts, std::size_t dimensions) {
+std::vector<std::string> texts_of(const std::array<std::array<char, N>, kMaxDimensions>& texts,
+                                  std::size_t dimensions) {
   std::vector<std::string> out;
   for (std::size_t d = 0; d < dimensions; ++d) out.push_back(text_of(texts[d]));
   return out;
 }
 
 void put_kinds(const ProducerOptions& options, RegionHeader& header) {
-  const std::vector<core::Dimension>& kinds = options.kinds;
+  const std::vector<Dimension>& kinds = options.kinds;
   if (!kinds.empty() && kinds.size() != options.dimensions) {
     throw BadRequest(std::to_string(kinds.size()) + " kinds for " +
                      std::to_string(options.dimensions) + " dimensions");
   }
   try {
-    (void)core::DimensionKinds(kinds);
+    (void)DimensionKinds(kinds);
   } catch (const std::invalid_argument& error) {
     throw BadRequest(error.what());
   }
@@ -61,26 +61,22 @@ void put_kinds(const ProducerOptions& options, RegionHeader& header) {
   }
 }
 
-void store_header_word(std::span<std::byte> region, std::size_t word, Word value) noexcept {
-  store(words_at(region, word * sizeof(Word), 1)[0], value, std::memory_order_relaxed);
-}
-
 }  // namespace
 
 RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id) {
-  if (options.dimensions < core::kMinDimensions || options.dimensions > core::kMaxDimensions) {
+  if (options.dimensions < kMinDimensions || options.dimensions > kMaxDimensions) {
     throw BadRequest("a stream has 1 to 64 dimensions, not " + std::to_string(options.dimensions));
   }
-  if (options.limits.min_interval < core::Time(1) ||
+  if (options.limits.min_interval < Time(1) ||
       options.limits.max_interval < options.limits.min_interval ||
-      options.limits.max_interval > core::kLatestTime / 2) {
+      options.limits.max_interval > kLatestTime / 2) {
     throw BadRequest("intervals from " + std::to_string(options.limits.min_interval.count()) +
                      " ns to " + std::to_string(options.limits.max_interval.count()) +
                      " ns are no range of positive times");
   }
-  core::require_values(options.start, options.dimensions);
-  if (!core::is_online(options.start.kind)) {
-    throw BadRequest("start condition '" + core::to_string(options.start) +
+  require_values(options.start, options.dimensions);
+  if (!is_online(options.start.kind)) {
+    throw BadRequest("start condition '" + to_string(options.start) +
                      "' needs all waypoints at once: a stream cannot meet it");
   }
   RegionHeader header{};
@@ -102,10 +98,9 @@ RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id
   return header;
 }
 
-core::Condition start_condition(const RegionHeader& header) {
-  core::Condition start{.kind = static_cast<core::ConditionKind>(header.start_kind), .value = {}};
-  if (start.kind == core::ConditionKind::velocity ||
-      start.kind == core::ConditionKind::acceleration) {
+Condition start_condition(const RegionHeader& header) {
+  Condition start{.kind = static_cast<ConditionKind>(header.start_kind), .value = {}};
+  if (start.kind == ConditionKind::velocity || start.kind == ConditionKind::acceleration) {
     const auto values = std::span(header.start_value).first(header.dimensions);
     start.value.assign(values.begin(), values.end());
   }
@@ -120,55 +115,19 @@ std::vector<std::string> dimension_units(const RegionHeader& header) {
   return texts_of(header.unit, header.dimensions);
 }
 
-core::DimensionKinds dimension_kinds(const RegionHeader& header) {
-  return core::DimensionKinds(dimensions_of(header));
+DimensionKinds dimension_kinds(const RegionHeader& header) {
+  return DimensionKinds(dimensions_of(header));
 }
 
 IngestLimits ingest_limits(const RegionHeader& header) noexcept {
-  return {.min_interval = core::Time(header.min_interval),
-          .max_interval = core::Time(header.max_interval)};
+  return {.min_interval = Time(header.min_interval), .max_interval = Time(header.max_interval)};
 }
 
 StreamClock stream_clock(const RegionHeader& header) noexcept {
   return static_cast<StreamClock>(header.clock);
 }
 
-std::optional<LiveOptions> live_options(const RegionHeader& header) noexcept {
-  if (stream_clock(header) != StreamClock::monotonic) return std::nullopt;
-  return LiveOptions{.freeze_ahead = core::Time(header.freeze_ahead),
-                     .history = core::Time(header.history),
-                     .min_splice = core::Time(header.min_splice)};
-}
-
-core::WindowOptions window_options(const RegionHeader& header) {
-  return {.interpolant = {.method = core::find_method(header.method),
-                          .lambda = header.lambda,
-                          .time_scale = header.time_scale},
-          .settle = header.settle,
-          .tail = static_cast<core::Tail>(header.tail),
-          .start = start_condition(header),
-          .stop_time = core::Time(header.stop_time),
-          .limits = motion_limits(header),
-          .held_before_start = stream_clock(header) == StreamClock::monotonic,
-          .force_lag = header.force_lag != 0};
-}
-
 std::string header_name(const std::string& name) { return cut(name, kNameBytes - 1); }
-
-core::MotionLimits limits_for(const SolverOptions& options, const RegionHeader& header) {
-  std::vector<core::NamedLimits> named = options.named_limits;
-  for (core::NamedLimits& joint : named) joint.name = header_name(joint.name);
-  try {
-    const core::MotionLimits given =
-        core::spread(options.limits.value_or(core::MotionLimits{}), header.dimensions);
-    core::MotionLimits limits =
-        core::overridden(core::matched(named, dimension_names(header)), given);
-    core::require_limits(limits, dimensions_of(header));
-    return limits;
-  } catch (const std::invalid_argument& error) {
-    throw BadRequest(error.what());
-  }
-}
 
 void require_same_clock(const RegionHeader& header, const std::string& stream) {
   if (stream_clock(header) != StreamClock::monotonic || header.time_namespace == time_namespace()) {
@@ -190,10 +149,29 @@ void require_same_stream(const RegionHeader& ring, const RegionHeader& board) {
   require(start_condition(ring) == start_condition(board), "the start condition");
 }
 
-void enter_owner(std::span<std::byte> region, const RegionHeader& before) noexcept {
-  store_header_word(region, word_of(kHeaderFields, "process id"), static_cast<Word>(getpid()));
-  store_header_word(region, word_of(kHeaderFields, "since"), to_word(MonotonicClock().now()));
-  store_header_word(region, word_of(kHeaderFields, "epoch"), before.epoch + 1);
+void require_same_options(const std::string& stream, const RegionHeader& stands,
+                          const ProducerOptions& options) {
+  const auto contradict = [&](const std::string& what) {
+    throw BadRequest("stream '" + stream + "' was left unfinished by its producer and has " + what +
+                     "; 'splinecast rm " + stream +
+                     "' removes it, once its solver has been stopped");
+  };
+  const RegionHeader wanted = make_header(options, stands.stream_id);
+  if (wanted.dimensions != stands.dimensions) {
+    contradict(std::to_string(stands.dimensions) + " dimensions, not " +
+               std::to_string(wanted.dimensions));
+  }
+  if (wanted.clock != stands.clock) contradict("another clock");
+  if (start_condition(wanted) != start_condition(stands)) {
+    contradict("start condition " + to_string(start_condition(stands)) + ", not " +
+               to_string(options.start));
+  }
+  if (dimensions_of(wanted) != dimensions_of(stands)) contradict("other dimension kinds");
+  if (wanted.name != stands.name) contradict("other dimension names");
+  if (wanted.unit != stands.unit) contradict("other units");
+  if (wanted.min_interval != stands.min_interval || wanted.max_interval != stands.max_interval) {
+    contradict("other interval limits");
+  }
 }
 
 }  // namespace splinecast::ipc

@@ -1,4 +1,4 @@
-#include "apps/advise/measures.hpp"
+#include "apps/recordings/measures.hpp"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,6 @@
 
 namespace splinecast::apps {
 namespace {
-
-using core::Time;
 
 /// The value of rank ⌈fraction · count⌉; 0 without values.
 template <typename T>
@@ -39,8 +37,7 @@ class Chords {
   /// The end of the shortest chord from row i, if one begins there.
   [[nodiscard]] std::optional<std::size_t> end(std::size_t i) const {
     const auto first = table_->times.begin() + static_cast<std::ptrdiff_t>(i);
-    const auto at =
-        std::lower_bound(first, table_->times.end(), core::saturated_sum(*first, kChord));
+    const auto at = std::lower_bound(first, table_->times.end(), saturated_sum(*first, kChord));
     const auto j = static_cast<std::size_t>(at - table_->times.begin());
     return j < table_->size() && run_[i] == run_[j] ? std::optional(j) : std::nullopt;
   }
@@ -58,20 +55,20 @@ double position(const WaypointTable& table, std::size_t i, std::size_t d) {
 
 double chord_velocity(const WaypointTable& table, std::size_t i, std::size_t j, std::size_t d) {
   return (position(table, j, d) - position(table, i, d)) /
-         core::to_seconds(table.times[j] - table.times[i]);
+         to_seconds(table.times[j] - table.times[i]);
 }
 
 /// The third divided difference of rows i to i + 3, such that independent errors of the positions
 /// with standard deviation 1 give it the standard deviation 1.
 double third_difference(const WaypointTable& table, std::size_t i, std::size_t d) {
-  const double unit = core::to_seconds(table.times[i + 3] - table.times[i]);
+  const double unit = to_seconds(table.times[i + 3] - table.times[i]);
   double sum = 0;
   double squares = 0;
   for (std::size_t k = i; k < i + 4; ++k) {
     double weight = 1;
     for (std::size_t other = i; other < i + 4; ++other) {
       if (other == k) continue;
-      weight *= unit / core::to_seconds(table.times[k] - table.times[other]);
+      weight *= unit / to_seconds(table.times[k] - table.times[other]);
     }
     sum += weight * (position(table, k, d) - position(table, i, d));
     squares += weight * weight;
@@ -139,7 +136,7 @@ void measure_dimension(const WaypointTable& table, const std::vector<ChordPair>&
     const double before = chord_velocity(table, i, j, d);
     const double after = chord_velocity(table, j, k, d);
     velocities.push_back(std::max(std::abs(before), std::abs(after)));
-    const double between = core::to_seconds(table.times[k] - table.times[i]) / 2;
+    const double between = to_seconds(table.times[k] - table.times[i]) / 2;
     accelerations.push_back(std::abs(after - before) / between);
   }
   out.velocity = quantile(velocities, 0.95);
@@ -178,8 +175,7 @@ std::vector<DimensionMotion> measure_motion(const WaypointTable& table,
     throw InputError(fmt::format(
         "{}: {} rows are too few to tell an acceleration: that takes three rows, {} s apart from "
         "each other, without a gap of more than {} s",
-        table.file, table.size(), core::to_seconds(kChord),
-        core::to_seconds(intervals.gap_from())));
+        table.file, table.size(), to_seconds(kChord), to_seconds(intervals.gap_from())));
   }
   for (std::size_t d = 0; d < motion.size(); ++d) measure_dimension(table, pairs, d, motion[d]);
   return motion;

@@ -12,28 +12,26 @@
 namespace splinecast::apps {
 
 /// Velocities are those of chords at least this long.
-inline constexpr core::Time kChord{50'000'000};
+inline constexpr Time kChord{50'000'000};
 
 /// A gap is an interval of more than this many medians.
 inline constexpr std::int64_t kGapFactor = 5;
 
 /// The intervals between rows.
 struct Intervals {
-  core::Time median{};
-  core::Time p5{};  ///< 5 % quantile
-  core::Time p95{};
-  core::Time largest{};
-  core::Time jitter{};  ///< 95 % quantile of |interval − median|
+  Time median{};
+  Time p5{};  ///< 5 % quantile
+  Time p95{};
+  Time largest{};
+  Time jitter{};  ///< 95 % quantile of |interval − median|
   std::size_t gaps = 0;
-  core::Time longest_gap{};  ///< 0 if there are none
+  Time longest_gap{};  ///< 0 if there are none
 
-  [[nodiscard]] core::Time gap_from() const noexcept {
-    return core::saturated_product(median, kGapFactor);
-  }
+  [[nodiscard]] Time gap_from() const noexcept { return saturated_product(median, kGapFactor); }
 };
 
 /// Measures at least one interval; times increase.
-[[nodiscard]] Intervals measure_intervals(std::span<const core::Time> times);
+[[nodiscard]] Intervals measure_intervals(std::span<const Time> times);
 
 /// What one dimension does, in its unit and seconds.
 struct DimensionMotion {

@@ -1,4 +1,4 @@
-#include "apps/advise/advice.hpp"
+#include "apps/recordings/advice.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,6 @@
 namespace splinecast::apps {
 namespace {
 
-using core::Time;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -26,7 +25,7 @@ WaypointTable table_of(const std::vector<Time>& times, const Function& x) {
   for (const Time t : times) {
     table.times.push_back(t);
     table.lines.push_back(table.lines.size() + 2);
-    table.positions.push_back(x(core::to_seconds(t)));
+    table.positions.push_back(x(to_seconds(t)));
   }
   return table;
 }
@@ -95,7 +94,7 @@ TEST(Advice, FindsTheNoiseAlsoBetweenUnevenTimes) {
 }
 
 TEST(Advice, TakesAnyTimesAndValuesThatAFileCanHave) {
-  const Time last = core::kLatestTime;
+  const Time last = kLatestTime;
   for (const double x : {1e100, 1e-300}) {
     const Advice found = advise(
         table_of({-last, -last + Time(1), Time(0), last}, [&](double t) { return t < 0 ? -x : x; }),

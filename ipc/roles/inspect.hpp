@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ipc/board/knot_board.hpp"
+#include "splinecast/limits.hpp"
 #include "splinecast/options.hpp"
 #include "splinecast/status.hpp"
 
@@ -22,7 +23,7 @@ struct StreamInfo {
   std::array<Word, kAppendStatuses> refused_by_producer{};  ///< by AppendStatus
   Head head;                                                ///< revision 0: nothing solved yet
   std::array<Word, kStepBuckets> step_times{};  ///< steps of the solver that took 2ⁱ to 2ⁱ⁺¹ ns
-  std::optional<core::MotionLimits> shown;      ///< of a live stream: what its motion shows, by the
+  std::optional<MotionLimits> shown;            ///< of a live stream: what its motion shows, by the
                                                 ///< waypoints on the board; see ShownMotion
   std::vector<RefusedItem> refusals;  ///< the last items refused, oldest first: kRefusalsKept,
                                       ///< fewer if the solver has overwritten some meanwhile
@@ -32,10 +33,5 @@ struct StreamInfo {
 /// Looks at a stream. Throws NoSuchStream if nothing of it stands, BadRegion if a region cannot
 /// be used.
 [[nodiscard]] StreamInfo inspect(const std::string& stream, const Trust& trust = {});
-
-/// Removes a stream: takes both locks, says `retired` to its readers and wakes them, unlinks
-/// regions and lock files. Throws NoSuchStream, StreamBusy if a writer of it lives, or BadRegion if
-/// a file under its names is not to be trusted; then nothing has been changed.
-void remove_stream(const std::string& stream, const Trust& trust = {});
 
 }  // namespace splinecast::ipc

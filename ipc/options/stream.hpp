@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ipc/layout/header.hpp"
+#include "splinecast/boundary_condition.hpp"
+#include "splinecast/clock.hpp"
+#include "splinecast/dimension_kind.hpp"
+#include "splinecast/options.hpp"
+
+/// The options of a stream, which its producer gives: written to a header, read from one, compared.
+namespace splinecast::ipc {
+
+/// A header for a new region, all but what depends on its kind and capacity.
+[[nodiscard]] RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id);
+
+/// What a header says of the stream: the options that its producer gave.
+[[nodiscard]] Condition start_condition(const RegionHeader& header);
+
+[[nodiscard]] std::vector<std::string> dimension_names(const RegionHeader& header);
+
+[[nodiscard]] std::vector<std::string> dimension_units(const RegionHeader& header);
+
+[[nodiscard]] DimensionKinds dimension_kinds(const RegionHeader& header);
+
+[[nodiscard]] IngestLimits ingest_limits(const RegionHeader& header) noexcept;
+
+[[nodiscard]] StreamClock stream_clock(const RegionHeader& header) noexcept;
+
+/// The name that a header has of a dimension: cut to kNameBytes − 1 bytes, between characters.
+[[nodiscard]] std::string header_name(const std::string& name);
+
+/// Throws BadRegion, naming both, if a live stream's clock is another time namespace's.
+void require_same_clock(const RegionHeader& header, const std::string& stream);
+
+/// Throws BadRegion, naming what differs, unless a board describes the stream of this ring as the
+/// ring does: stream id, dimensions, their kinds, clock and start.
+void require_same_stream(const RegionHeader& ring, const RegionHeader& board);
+
+/// Throws BadRequest, naming what differs, if a producer's options contradict the header of the
+/// stream that it is to continue.
+void require_same_options(const std::string& stream, const RegionHeader& stands,
+                          const ProducerOptions& options);
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,63 @@
+#include "ipc/roles/inspect.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "ipc/mapping/checked_region.hpp"
+#include "ipc/mapping/owner_lock.hpp"
+#include "ipc/options/curve.hpp"
+#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/solve/shown_motion.hpp"
+#include "splinecast/errors.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+void inspect_waypoints(StreamInfo& info, const Trust& trust) {
+  const auto [region, header, layout] = open_ring(info.stream, false, trust);
+  info.waypoints = header;
+  const WaypointRingReader ring(region.bytes(), layout);
+  info.appended = ring.head();
+  for (std::size_t i = 0; i < info.refused_by_producer.size(); ++i) {
+    info.refused_by_producer[i] = ring.refused(static_cast<AppendStatus>(i));
+  }
+}
+
+void inspect_spline(StreamInfo& info, const Trust& trust) {
+  const auto [region, header, layout] = open_board(info.stream, false, trust);
+  info.spline = header;
+  const KnotBoardReader board(region.bytes(), layout);
+  (void)board.copy_newest_head(info.head);
+  info.step_times = board.step_times();
+  if (live_options(header)) {
+    ShownMotion shown(board);
+    shown.restore(board, info.head, Time::max());
+    shown.look(Time(header.stop_time));
+    info.shown = shown.limits();
+  }
+  info.refusals.resize(kRefusalsKept);
+  info.refusals.resize(board.copy_refusals(info.head, 0, info.refusals));
+  const Word excesses = info.head.exceeding;
+  for (Word i = excesses - std::min<Word>(excesses, kExcessesKept); i < excesses; ++i) {
+    if (const auto excess = board.excess(info.head, i)) info.excesses.push_back(*excess);
+  }
+}
+
+}  // namespace
+
+StreamInfo inspect(const std::string& stream, const Trust& trust) {
+  StreamInfo info;
+  info.stream = stream;
+  const bool has_waypoints = region_exists(stream, RegionKind::waypoints);
+  const bool has_spline = region_exists(stream, RegionKind::spline);
+  if (!has_waypoints && !has_spline) {
+    throw NoSuchStream("there is no stream '" + stream + "'");
+  }
+  info.producer_alive = owner_lives(stream, RegionKind::waypoints);
+  info.solver_alive = owner_lives(stream, RegionKind::spline);
+  if (has_waypoints) inspect_waypoints(info, trust);
+  if (has_spline) inspect_spline(info, trust);
+  return info;
+}
+
+}  // namespace splinecast::ipc

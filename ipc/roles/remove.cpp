@@ -1,0 +1,89 @@
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "ipc/mapping/checked_region.hpp"
+#include "ipc/mapping/owner_lock.hpp"
+#include "ipc/memory/futex.hpp"
+#include "splinecast/errors.hpp"
+#include "splinecast/streams.hpp"
+
+namespace splinecast {
+namespace ipc {
+namespace {
+
+/// A file under a region's name that this process may remove.
+struct Removable {
+  RegionKind kind;
+  std::optional<Region> region{};  ///< none: it cannot be used as a region, so nobody waits for it
+  std::size_t control = 0;         ///< where its control lines are
+};
+
+template <typename Layout>
+Removable as_removable(RegionKind kind, CheckedRegion<Layout> opened) {
+  return {.kind = kind, .region = std::move(opened.region), .control = opened.layout.control};
+}
+
+/// Whether a file's header and size are those of a region.
+bool describes_region(const RegionFile& file, RegionKind kind) {
+  if (!file.header) return false;
+  try {
+    if (kind == RegionKind::waypoints) checked_ring_layout(*file.header, file.bytes);
+    if (kind == RegionKind::spline) checked_board_layout(*file.header, file.bytes);
+    return true;
+  } catch (const BadRegion&) {
+    return false;
+  }
+}
+
+Removable removable(const std::string& stream, RegionKind kind, const Trust& trust) {
+  const RegionFile file = look_at_region(stream, kind, trust);
+  if (file.is_own && !describes_region(file, kind)) return {.kind = kind};
+  return kind == RegionKind::waypoints ? as_removable(kind, open_ring(stream, true, trust))
+                                       : as_removable(kind, open_board(stream, true, trust));
+}
+
+/// Says that a region is of no more use to whoever has it mapped.
+void retire(const Removable& file) noexcept {
+  if (!file.region) return;
+  const auto words = words_at(file.region->bytes(), file.control, kRetired + 1);
+  store(words[kRetired], 1, std::memory_order_release);
+  wake_all(words[0]);  // head or revision: what its readers wait on
+}
+
+}  // namespace
+}  // namespace ipc
+
+void remove_stream(const std::string& stream, const Trust& trust) {
+  constexpr std::array kKinds{ipc::RegionKind::waypoints, ipc::RegionKind::spline};
+  const bool stands = std::ranges::any_of(kKinds, [&](ipc::RegionKind kind) {
+    return ipc::region_exists(stream, kind) ||
+           std::filesystem::exists(ipc::lock_path(stream, kind));
+  });
+  if (!stands) throw NoSuchStream("there is no stream '" + stream + "'");
+  ipc::OwnerLock producer_lock(stream, ipc::RegionKind::waypoints);
+  std::optional<ipc::OwnerLock> solver_lock;
+  std::vector<ipc::Removable> files;
+  try {
+    solver_lock.emplace(stream, ipc::RegionKind::spline);
+    // All are looked at before any is touched.
+    for (const ipc::RegionKind kind : kKinds) {
+      if (ipc::region_exists(stream, kind)) files.push_back(ipc::removable(stream, kind, trust));
+    }
+  } catch (const StreamError&) {
+    if (solver_lock) solver_lock->remove_litter();
+    producer_lock.remove_litter();
+    throw;
+  }
+  for (const ipc::Removable& file : files) {
+    ipc::retire(file);
+    ipc::unlink_region(stream, file.kind);
+  }
+  producer_lock.remove_file();
+  solver_lock->remove_file();
+}
+
+}  // namespace splinecast
