@@ -16,6 +16,19 @@ const T* first_from(std::span<const T> entries, std::size_t& at, const Reached& 
   return at < entries.size() ? &entries[at] : nullptr;
 }
 
+/// Append, solved, published, and one per reader, all empty.
+std::vector<Latencies> make_stages(std::size_t readers, const Measured& measured) {
+  std::vector<Latencies> stages;
+  stages.push_back(make_stage("append", measured));
+  stages.push_back(make_stage("solved", measured));
+  stages.push_back(make_stage("published", measured));
+  for (std::size_t r = 0; r < readers; ++r) {
+    stages.push_back(
+        make_stage(readers == 1 ? "seen" : fmt::format("seen by reader {}", r), measured));
+  }
+  return stages;
+}
+
 }  // namespace
 
 Latencies make_stage(std::string name, const Measured& measured) {
@@ -44,14 +57,7 @@ std::vector<Latencies> latencies_of(std::span<const AppendStamp> appends,
                                     std::span<const RevisionStamp> revisions,
                                     const std::vector<std::span<const SeenStamp>>& readers,
                                     std::span<const ipc::Word> refused, const Measured& measured) {
-  std::vector<Latencies> stages;
-  stages.push_back(make_stage("append", measured));
-  stages.push_back(make_stage("solved", measured));
-  stages.push_back(make_stage("published", measured));
-  for (std::size_t r = 0; r < readers.size(); ++r) {
-    stages.push_back(
-        make_stage(readers.size() == 1 ? "seen" : fmt::format("seen by reader {}", r), measured));
-  }
+  std::vector<Latencies> stages = make_stages(readers.size(), measured);
   std::size_t revision_at = 0;
   std::vector<std::size_t> seen_at(readers.size());
   for (const AppendStamp& append : appends) {

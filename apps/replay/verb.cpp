@@ -112,7 +112,7 @@ int run_replay(ReplayOptions options) {
   return exit_code(report);
 }
 
-void add_playback_options(CLI::App& verb, ReplayOptions& options) {
+void add_rate(CLI::App& verb, ReplayOptions& options) {
   verb.add_option_function<std::string>(
           "--rate",
           [&options](const std::string& text) {
@@ -124,10 +124,9 @@ void add_playback_options(CLI::App& verb, ReplayOptions& options) {
           },
           "Play R times as fast as recorded (default 1), or as fast as it goes: max")
       ->type_name("R|max");
-  add_count(verb, "--loop", options.loops, "Play the recording N times (default 1)",
-            {1, 1'000'000'000});
-  add_seconds(verb, "--from", options.from, "Begin this long after the first waypoint");
-  add_seconds(verb, "--duration", options.duration, "Play only so much of the recording");
+}
+
+void add_clock(CLI::App& verb, ReplayOptions& options) {
   verb.add_option_function<std::string>(
           "--clock",
           [&options](const std::string& text) {
@@ -139,6 +138,15 @@ void add_playback_options(CLI::App& verb, ReplayOptions& options) {
           },
           "live (default): now on this host's clock; recorded: the file's own stamps")
       ->type_name("CLOCK");
+}
+
+void add_playback_options(CLI::App& verb, ReplayOptions& options) {
+  add_rate(verb, options);
+  add_count(verb, "--loop", options.loops, "Play the recording N times (default 1)",
+            {1, 1'000'000'000});
+  add_seconds(verb, "--from", options.from, "Begin this long after the first waypoint");
+  add_seconds(verb, "--duration", options.duration, "Play only so much of the recording");
+  add_clock(verb, options);
   verb.add_option_function<std::string>(
           "--lead",
           [&options](const std::string& text) {
@@ -204,6 +212,64 @@ int exit_code(const ReplayReport& report) {
   return report.interrupted ? kInterrupted : kOk;
 }
 
+namespace {
+
+void add_row_policies(CLI::App& verb, ReplayOptions& options) {
+  verb.add_option_function<std::string>(
+          "--on-error",
+          [&options](const std::string& text) {
+            if (text != "skip" && text != "stop") {
+              throw CLI::ValidationError("--on-error",
+                                         fmt::format("'{}' is neither skip nor stop", text));
+            }
+            options.skip_bad = text == "skip";
+          },
+          "What to do about a row that is refused: stop (default) the replay there, or skip the "
+          "row and go on")
+      ->type_name("skip|stop");
+  verb.add_option_function<std::string>(
+          "--late",
+          [&options](const std::string& text) {
+            const auto policy = parse_late_policy(text);
+            if (!policy) {
+              throw CLI::ValidationError("--late",
+                                         fmt::format("'{}' is none of pass, shift, refuse", text));
+            }
+            options.late = *policy;
+          },
+          "What to do about a row whose time is not after the row before, or has settled when it "
+          "can be sent: refuse (default) it; pass: leave it out, or send it as it is; shift: move "
+          "it and all rows behind it")
+      ->type_name("pass|shift|refuse");
+}
+
+void add_ring_options(CLI::App& verb, ReplayOptions& options) {
+  add_count(verb, "--capacity", options.capacity,
+            "Waypoints that the ring holds (default 1024; rounded up to a power of two)");
+  add_seconds(verb, "--wait", options.wait, "Wait this long for a solver (default 10)");
+  add_interval(verb, "--min-interval", options.limits.min_interval,
+               "Least time between waypoints (default 1e-6)");
+  add_interval(verb, "--max-interval", options.limits.max_interval,
+               "Most time between waypoints (default 3600)");
+}
+
+/// Throws for options that do not go together.
+void require_agreeing(const ReplayOptions& options) {
+  const SolverOptions& curve = options.solver;
+  const bool shapes = curve.method != nullptr || curve.lambda || curve.time_scale || curve.settle ||
+                      curve.tail || curve.force_lag;
+  if (shapes && !options.embedded) {
+    throw CLI::ValidationError("--method, --lambda, --time-scale, --settle, --tail, --force-lag",
+                               "go with --embedded; else tell 'solve'");
+  }
+  const bool is_live = options.clock == StreamClock::monotonic;
+  if (is_live && options.end && !is_at_rest(options.end->kind)) {
+    throw CLI::ValidationError("--end", "a live stream ends at rest: rest or halt");
+  }
+}
+
+}  // namespace
+
 void add_replay(CLI::App& program, Action& action) {
   auto options = std::make_shared<ReplayOptions>();
   auto* verb = program.add_subcommand("replay", "Send a recorded stream to a solver");
@@ -211,39 +277,8 @@ void add_replay(CLI::App& program, Action& action) {
       ->required();
   verb->add_option("--stream", options->stream, "Stream to produce")->required();
   add_playback_options(*verb, *options);
-  verb->add_option_function<std::string>(
-          "--on-error",
-          [options](const std::string& text) {
-            if (text != "skip" && text != "stop") {
-              throw CLI::ValidationError("--on-error",
-                                         fmt::format("'{}' is neither skip nor stop", text));
-            }
-            options->skip_bad = text == "skip";
-          },
-          "What to do about a row that is refused: stop (default) the replay there, or skip the "
-          "row and go on")
-      ->type_name("skip|stop");
-  verb->add_option_function<std::string>(
-          "--late",
-          [options](const std::string& text) {
-            const auto policy = parse_late_policy(text);
-            if (!policy) {
-              throw CLI::ValidationError("--late",
-                                         fmt::format("'{}' is none of pass, shift, refuse", text));
-            }
-            options->late = *policy;
-          },
-          "What to do about a row whose time is not after the row before, or has settled when it "
-          "can be sent: refuse (default) it; pass: leave it out, or send it as it is; shift: move "
-          "it and all rows behind it")
-      ->type_name("pass|shift|refuse");
-  add_count(*verb, "--capacity", options->capacity,
-            "Waypoints that the ring holds (default 1024; rounded up to a power of two)");
-  add_seconds(*verb, "--wait", options->wait, "Wait this long for a solver (default 10)");
-  add_interval(*verb, "--min-interval", options->limits.min_interval,
-               "Least time between waypoints (default 1e-6)");
-  add_interval(*verb, "--max-interval", options->limits.max_interval,
-               "Most time between waypoints (default 3600)");
+  add_row_policies(*verb, *options);
+  add_ring_options(*verb, *options);
   verb->add_flag("--embedded", options->embedded, "Solve in this process");
   verb->add_flag(
       "--verify", options->verify,
@@ -255,17 +290,7 @@ void add_replay(CLI::App& program, Action& action) {
   add_access(*verb, options->access);
   add_trust(*verb, options->trust);
   verb->callback([&action, options] {
-    const SolverOptions& curve = options->solver;
-    const bool shapes = curve.method != nullptr || curve.lambda || curve.time_scale ||
-                        curve.settle || curve.tail || curve.force_lag;
-    if (shapes && !options->embedded) {
-      throw CLI::ValidationError("--method, --lambda, --time-scale, --settle, --tail, --force-lag",
-                                 "go with --embedded; else tell 'solve'");
-    }
-    const bool is_live = options->clock == StreamClock::monotonic;
-    if (is_live && options->end && !is_at_rest(options->end->kind)) {
-      throw CLI::ValidationError("--end", "a live stream ends at rest: rest or halt");
-    }
+    require_agreeing(*options);
     options->solver.access = options->access;
     options->solver.trust = options->trust;
     action = [options] { return run_replay(*options); };

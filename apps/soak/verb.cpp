@@ -185,6 +185,18 @@ class Soak {
                              count("underruns"), use(solver_), use(producers_), use(readers_)));
   }
 
+  /// Lets everybody end. Returns whether the solver has ended well; adds what the readers say.
+  bool end_all(json& seen) {
+    for (auto& producer : producers_.processes) producer->stop();
+    for (auto& producer : producers_.processes) (void)producer->result();
+    for (auto& reader : readers_.processes) {
+      reader->stop();
+      seen.push_back(reader->result());
+    }
+    solver_.processes.front()->stop();
+    return solver_.processes.front()->result() == kOk;
+  }
+
   /// Lets everybody end and adds up.
   json finish(double took, double solver_share) {
     json found = {{"streams", streams_.size()},
@@ -197,15 +209,8 @@ class Soak {
       found[role->name] = role->result();
       is_flat = is_flat && !role->has_grown();
     }
-    for (auto& producer : producers_.processes) producer->stop();
-    for (auto& producer : producers_.processes) (void)producer->result();
     json seen = json::array();
-    for (auto& reader : readers_.processes) {
-      reader->stop();
-      seen.push_back(reader->result());
-    }
-    solver_.processes.front()->stop();
-    const bool has_solved = solver_.processes.front()->result() == kOk;
+    const bool has_solved = end_all(seen);
     found["counters"] = counted();
     found["read"] = seen;
     ipc::Word appended = 0;
@@ -241,29 +246,41 @@ class Soak {
   std::size_t lines_ = 0;
 };
 
-std::string soak_summary(const json& found) {
-  const auto line = [](const char* what, const std::string& text) {
-    return fmt::format("  {:<26} {}\n", what, text);
-  };
-  const auto count = [](const json& of, const char* key) { return of[key].get<std::uint64_t>(); };
-  const json& sum = found["counters"];
-  const auto role = [&](const char* name) {
-    const json& of = found[name];
-    return line(
-        name, fmt::format("{} processes; {:.2f} then {:.2f} MB, {} then {} files{}",
-                          count(of, "processes"), of["private_bytes"][0].get<double>() / kMegabyte,
-                          of["private_bytes"][1].get<double>() / kMegabyte,
-                          of["descriptors"][0].get<int>(), of["descriptors"][1].get<int>(),
-                          of["grown"].get<bool>() ? ": GROWN" : ""));
-  };
+std::uint64_t count_of(const json& of, const char* key) { return of[key].get<std::uint64_t>(); }
+
+std::string summary_line(const char* what, const std::string& text) {
+  return fmt::format("  {:<26} {}\n", what, text);
+}
+
+/// The processes of a role, and what they use of memory and files.
+std::string role_summary(const json& found, const char* name) {
+  const json& of = found[name];
+  return summary_line(
+      name,
+      fmt::format("{} processes; {:.2f} then {:.2f} MB, {} then {} files{}",
+                  count_of(of, "processes"), of["private_bytes"][0].get<double>() / kMegabyte,
+                  of["private_bytes"][1].get<double>() / kMegabyte, of["descriptors"][0].get<int>(),
+                  of["descriptors"][1].get<int>(), of["grown"].get<bool>() ? ": GROWN" : ""));
+}
+
+/// What all readers have sampled.
+std::string samples_summary(const json& found) {
   std::uint64_t samples = 0;
   std::uint64_t changed = 0;
   std::uint64_t unsound = 0;
   for (const json& reader : found["read"]) {
-    samples += count(reader, "samples");
-    changed += count(reader, "changed");
-    unsound += count(reader, "unsound_streams");
+    samples += count_of(reader, "samples");
+    changed += count_of(reader, "changed");
+    unsound += count_of(reader, "unsound_streams");
   }
+  return summary_line("samples", fmt::format("{}; {} read otherwise later; streams with a step: {}",
+                                             samples, changed, unsound));
+}
+
+std::string soak_summary(const json& found) {
+  const auto& line = summary_line;
+  const auto& count = count_of;
+  const json& sum = found["counters"];
   return "\n" +
          line("streams",
               fmt::format("{} for {:.0f} s, {} waypoints a second each; the solver took "
@@ -281,9 +298,8 @@ std::string soak_summary(const json& found) {
          line("ran dry", fmt::format("{} times; deadlines missed {}, committed too late {}",
                                      count(sum, "underruns"), count(sum, "deadline_misses"),
                                      count(sum, "late_commits"))) +
-         line("samples", fmt::format("{}; {} read otherwise later; streams with a step: {}",
-                                     samples, changed, unsound)) +
-         role("solver") + role("producers") + role("readers") + line("sound", judgement(found));
+         samples_summary(found) + role_summary(found, "solver") + role_summary(found, "producers") +
+         role_summary(found, "readers") + line("sound", judgement(found));
 }
 
 }  // namespace

@@ -121,38 +121,50 @@ ordered_json step_times_json(const ipc::StreamInfo& info) {
   return list;
 }
 
-ordered_json solver_json(const ipc::StreamInfo& info) {
-  const bool has_low_water = info.head.low_water < Time::max();
-  const ipc::Head& head = info.head;
-  const Method& method = *ipc::window_options(*info.spline).interpolant.method;
+/// How many waypoints the solver has refused for each reason.
+ordered_json refused_json(const ipc::Head& head) {
   ordered_json refused = ordered_json::object();
   for (std::size_t i = 1; i < kRefusals; ++i) {
     refused[std::string(to_string(static_cast<Refusal>(i)))] = head.reasons[i];
   }
+  return refused;
+}
+
+/// Who solves the stream, and how.
+ordered_json solving_json(const ipc::StreamInfo& info) {
+  const ipc::RegionHeader& header = *info.spline;
   return {
       {"alive", info.solver_alive},
-      {"pid", info.spline->owner_pid},
-      {"epoch", info.spline->epoch},
-      {"method", method.name},
-      {"lambda", info.spline->lambda},
-      {"time_scale", info.spline->time_scale},
-      {"settle", info.spline->settle},
-      {"tail", to_string(static_cast<Tail>(info.spline->tail))},
-      {"stop_time_ns", info.spline->stop_time},
-      {"board_capacity", info.spline->capacity},
-      {"region_bytes", info.spline->region_bytes},
-      {"max_acceleration", ipc::motion_limits(*info.spline).acceleration},
-      {"limits", limits_json(*info.spline)},
+      {"pid", header.owner_pid},
+      {"epoch", header.epoch},
+      {"method", ipc::window_options(header).interpolant.method->name},
+      {"lambda", header.lambda},
+      {"time_scale", header.time_scale},
+      {"settle", header.settle},
+      {"tail", to_string(static_cast<Tail>(header.tail))},
+      {"stop_time_ns", header.stop_time},
+      {"board_capacity", header.capacity},
+      {"region_bytes", header.region_bytes},
+      {"max_acceleration", ipc::motion_limits(header).acceleration},
+      {"limits", limits_json(header)},
       {"shown", shown_json(info)},
-      {"freeze_ahead_ns", info.spline->freeze_ahead},
-      {"history_ns", info.spline->history},
-      {"min_splice_ns", info.spline->min_splice},
+      {"freeze_ahead_ns", header.freeze_ahead},
+      {"history_ns", header.history},
+      {"min_splice_ns", header.min_splice},
+  };
+}
+
+ordered_json solver_json(const ipc::StreamInfo& info) {
+  const bool has_low_water = info.head.low_water < Time::max();
+  const ipc::Head& head = info.head;
+  ordered_json found = solving_json(info);
+  found.update(ordered_json{
       {"revision", head.revision},
       {"consumed", head.consumed},
       {"interpolated", head.interpolated()},
       {"passed_over", head.passed_over},
       {"refused", head.refused},
-      {"refused_by_reason", refused},
+      {"refused_by_reason", refused_json(head)},
       {"refusals", refusals_json(info)},
       {"exceeding", head.exceeding},
       {"excesses", excesses_json(info)},
@@ -171,7 +183,8 @@ ordered_json solver_json(const ipc::StreamInfo& info) {
       {"late_commits", head.revisions},
       {"finished", head.finished},
       {"step_times_ns", step_times_json(info)},
-  };
+  });
+  return found;
 }
 
 }  // namespace

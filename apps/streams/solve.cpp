@@ -185,6 +185,19 @@ void add_live_options(CLI::App& verb, SolverOptions& options) {
               "Keep what ended less than this ago; then consume no more (default 1)");
 }
 
+/// What concerns a process that solves several streams.
+void add_sweep(CLI::App& verb, SolveOptions& options) {
+  verb.add_option_function<std::string>(
+          "--sweep",
+          [&options](const std::string& text) {
+            options.sweep = time_within("--sweep", text, TimeUnit::milliseconds, kSweeps);
+          },
+          "Pause between looks at several streams (default 1, at most 1000); 20 if that is longer "
+          "for "
+          "those on which nothing has happened for a second")
+      ->type_name("MS");
+}
+
 /// Reads the file of limits, and gives the solver all of them.
 void take_limits(SolveOptions& options) {
   if (options.limits.given != MotionLimits{}) options.solver.limits = options.limits.given;
@@ -217,15 +230,7 @@ void add_solve(CLI::App& program, Action& action) {
   add_beyond(*verb, options->solver.beyond);
   verb->add_flag("!--no-wake", options->solver.wake,
                  "Wake no waiting readers: for hosts where every reader polls");
-  verb->add_option_function<std::string>(
-          "--sweep",
-          [options](const std::string& text) {
-            options->sweep = time_within("--sweep", text, TimeUnit::milliseconds, kSweeps);
-          },
-          "Pause between looks at several streams (default 1, at most 1000); 20 if that is longer "
-          "for "
-          "those on which nothing has happened for a second")
-      ->type_name("MS");
+  add_sweep(*verb, *options);
   verb->add_flag("--quiet", options->quiet, "Say nothing of what becomes of the streams");
   add_access(*verb, options->solver.access);
   add_trust(*verb, options->solver.trust);

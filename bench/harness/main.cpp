@@ -3,35 +3,53 @@
 #include <charconv>
 #include <cstdio>
 #include <exception>
+#include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 
 #include "bench/harness/blocks.hpp"
+
+namespace {
+
+/// What this program understands besides Google Benchmark's options.
+struct Arguments {
+  int blocks = 0;  ///< 0: an ordinary run
+  std::string_view out{};
+};
+
+/// Nothing, and a message on standard error, if they are not understood.
+std::optional<Arguments> parse(std::span<char* const> given) {
+  Arguments arguments;
+  for (const std::string_view argument : given) {
+    const auto value = argument.substr(argument.find('=') + 1);
+    if (argument.starts_with("--blocks=")) {
+      std::from_chars(value.data(), value.data() + value.size(), arguments.blocks);
+    } else if (argument.starts_with("--out=")) {
+      arguments.out = value;
+    } else {
+      std::fprintf(stderr, "splinecast_bench: unknown argument %s\n", argument.data());
+      return std::nullopt;
+    }
+  }
+  if ((arguments.blocks > 0) == arguments.out.empty()) {
+    std::fprintf(stderr, "splinecast_bench: --blocks=N and --out=FILE belong together\n");
+    return std::nullopt;
+  }
+  return arguments;
+}
+
+}  // namespace
 
 /// Without `--blocks` this is an ordinary program of Google Benchmark's, with its options.
 ///   splinecast_bench --blocks=N --out=FILE [--benchmark_min_time=S]
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  int blocks = 0;
-  std::string_view out;
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view argument = argv[i];
-    const auto value = argument.substr(argument.find('=') + 1);
-    if (argument.starts_with("--blocks=")) {
-      std::from_chars(value.data(), value.data() + value.size(), blocks);
-    } else if (argument.starts_with("--out=")) {
-      out = value;
-    } else {
-      std::fprintf(stderr, "splinecast_bench: unknown argument %s\n", argv[i]);
-      return 2;
-    }
-  }
-  if ((blocks > 0) == out.empty()) {
-    std::fprintf(stderr, "splinecast_bench: --blocks=N and --out=FILE belong together\n");
-    return 2;
-  }
+  const auto arguments = parse(std::span(argv, static_cast<std::size_t>(argc)).subspan(1));
+  if (!arguments) return 2;
   try {
-    if (blocks > 0) {
-      splinecast::bench::run_blocks(blocks, std::string(out));
+    if (arguments->blocks > 0) {
+      splinecast::bench::run_blocks(arguments->blocks, std::string(arguments->out));
     } else {
       benchmark::RunSpecifiedBenchmarks();
     }

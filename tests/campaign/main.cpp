@@ -31,53 +31,90 @@ int report(const Result& result, const std::string& path) {
   return result.is_sound ? apps::kOk : apps::kFellShort;
 }
 
+/// What the command line asks for.
+struct Asked {
+  CampaignOptions options{};
+  std::string path{};  ///< of the result; empty: standard output
+  bool every_store = false;
+  bool has_encoders = false;
+  bool is_recorded = false;
+  bool has_processes = false;
+  bool lists = false;
+};
+
+using Run = Result (*)(const CampaignOptions&);
+
+void add_kill(CLI::App& program, Asked& asked) {
+  auto* verb = program.add_subcommand("kill", "SIGKILL to every process of a stream");
+  verb->add_option("--kills", asked.options.kills, "How many, at random instants")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--seed", asked.options.seed, "Of the random instants")->capture_default_str();
+  verb->add_flag("--every-store", asked.every_store,
+                 "Before each store to shared memory instead; needs a build with hooks");
+}
+
+void add_stress(CLI::App& program, Asked& asked) {
+  auto* verb = program.add_subcommand("stress", "1 to 16 readers against the fastest writers");
+  verb->add_option("--seconds", asked.options.seconds, "For each number of readers")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+}
+
+void add_streams(CLI::App& program, Asked& asked) {
+  auto* verb = program.add_subcommand("streams", "Simulated live streams, one per seed");
+  verb->add_option("--seconds", asked.options.seconds, "How long")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--seed", asked.options.seed, "Of the first stream; the next has the next one")
+      ->capture_default_str();
+  verb->add_option("--runs", asked.options.runs, "Number of streams to simulate instead");
+}
+
+void add_motions(CLI::App& program, Asked& asked) {
+  auto* verb = program.add_subcommand("motions", "A motion whose producer meets mishaps");
+  verb->add_option("--seed", asked.options.seed, "Of the motion")->capture_default_str();
+  verb->add_flag("--encoders", asked.has_encoders, "Measure stops behind each tail instead");
+  verb->add_option("--runs", asked.options.runs, "Instants at which encoders end, per row; 0: 200");
+  verb->add_flag("--recordings", asked.is_recorded,
+                 "Play recordings with gaps instead; does nothing where there are none");
+  verb->add_flag("--processes", asked.has_processes, "In real time, with processes, instead");
+  verb->add_flag("--list", asked.lists, "Print the names of the plots and the mishaps, and end");
+  verb->add_option("--trace", asked.options.trace,
+                   "Folder for what readers see around each mishap, as CSV");
+}
+
+void add_returns(CLI::App& program, Asked& asked) {
+  auto* verb = program.add_subcommand("returns", "Ways back onto the waypoints, one per seed");
+  verb->add_option("--seconds", asked.options.seconds, "How long")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--seed", asked.options.seed, "Of the first run")->capture_default_str();
+  verb->add_option("--runs", asked.options.runs, "Number of runs instead");
+}
+
+/// The campaign of the verb that was given.
+Run run_of(const CLI::App& program, const Asked& asked) {
+  if (asked.has_encoders) return run_stops;
+  if (asked.is_recorded) return run_recordings;
+  if (asked.has_processes) return run_live_motions;
+  if (program.got_subcommand("motions")) return run_motions;
+  if (program.got_subcommand("returns")) return run_returns;
+  if (program.got_subcommand("streams")) return run_streams;
+  if (program.got_subcommand("stress")) return run_stress;
+  return asked.every_store ? run_every_store : run_random_kills;
+}
+
 int run_program(int argc, char** argv) {
   CLI::App program("Attacks streams of its own and counts what breaks", "splinecast_campaign");
   program.require_subcommand(1);
-  CampaignOptions options{.command = joined(argc, argv)};
-  std::string path;
-  bool every_store = false;
-  auto* kill = program.add_subcommand("kill", "SIGKILL to every process of a stream");
-  kill->add_option("--kills", options.kills, "How many, at random instants")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  kill->add_option("--seed", options.seed, "Of the random instants")->capture_default_str();
-  kill->add_flag("--every-store", every_store,
-                 "Before each store to shared memory instead; needs a build with hooks");
-  auto* stress = program.add_subcommand("stress", "1 to 16 readers against the fastest writers");
-  stress->add_option("--seconds", options.seconds, "For each number of readers")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  auto* streams = program.add_subcommand("streams", "Simulated live streams, one per seed");
-  streams->add_option("--seconds", options.seconds, "How long")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  streams->add_option("--seed", options.seed, "Of the first stream; the next has the next one")
-      ->capture_default_str();
-  streams->add_option("--runs", options.runs, "Number of streams to simulate instead");
-  auto* motions = program.add_subcommand("motions", "A motion whose producer meets mishaps");
-  motions->add_option("--seed", options.seed, "Of the motion")->capture_default_str();
-  bool has_encoders = false;
-  motions->add_flag("--encoders", has_encoders, "Measure stops behind each tail instead");
-  motions->add_option("--runs", options.runs, "Instants at which encoders end, per row; 0: 200");
-  bool is_recorded = false;
-  motions->add_flag("--recordings", is_recorded,
-                    "Play recordings with gaps instead; does nothing where there are none");
-  bool has_processes = false;
-  motions->add_flag("--processes", has_processes, "In real time, with processes, instead");
-  bool lists = false;
-  motions->add_flag("--list", lists, "Print the names of the plots and the mishaps, and end");
-  motions->add_option("--trace", options.trace,
-                      "Folder for what readers see around each mishap, as CSV");
-  auto* returns = program.add_subcommand("returns", "Ways back onto the waypoints, one per seed");
-  returns->add_option("--seconds", options.seconds, "How long")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  returns->add_option("--seed", options.seed, "Of the first run")->capture_default_str();
-  returns->add_option("--runs", options.runs, "Number of runs instead");
-  for (CLI::App* verb : {kill, stress, streams, motions, returns}) {
-    verb->add_option("--json", path, "File for the result; else standard output");
-    verb->add_option("--command", options.command, "What the result says that runs it again");
+  Asked asked{.options = {.command = joined(argc, argv)}};
+  for (const auto& add : {add_kill, add_stress, add_streams, add_motions, add_returns}) {
+    add(program, asked);
+  }
+  for (CLI::App* verb : program.get_subcommands({})) {
+    verb->add_option("--json", asked.path, "File for the result; else standard output");
+    verb->add_option("--command", asked.options.command, "What the result says that runs it again");
   }
   try {
     program.parse(argc, argv);
@@ -86,24 +123,15 @@ int run_program(int argc, char** argv) {
   }
   return apps::run_guarded([&] {
     apps::catch_stop_signals();
-    if (lists) {
+    if (asked.lists) {
       apps::print_report(list_motions());
       return apps::kOk;
     }
-    if (is_recorded && !has_recordings()) {
+    if (asked.is_recorded && !has_recordings()) {
       apps::say("there are no recordings on this machine");
       return apps::kOk;
     }
-    const Result result = has_encoders    ? run_stops(options)
-                          : is_recorded   ? run_recordings(options)
-                          : has_processes ? run_live_motions(options)
-                          : *motions      ? run_motions(options)
-                          : *returns      ? run_returns(options)
-                          : *streams      ? run_streams(options)
-                          : *stress       ? run_stress(options)
-                          : every_store   ? run_every_store(options)
-                                          : run_random_kills(options);
-    return report(result, path);
+    return report(run_of(program, asked)(asked.options), asked.path);
   });
 }
 

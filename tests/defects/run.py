@@ -6,7 +6,8 @@
     run.py --check        exits 1 if a patch does not apply, or the page is not what patches and results make of it
     run.py --tree FOLDER  where the copy of the sources and its build go (build/defects)
 
-A file tests/defects/NAME.patch, applied with patch -p1, takes one correction out. Above its diff are the lines
+A file NAME.patch in tests/defects/core, ipc or apps, by the layer that was corrected, takes one correction out,
+applied with patch -p1. Above its diff are the lines
 
     Defect:      what a user saw
     Cause:       why
@@ -39,7 +40,7 @@ HANG = "did not end"
 
 HEAD = """# Defects: each correction, and the test that fails without it
 
-`tests/defects/run.py` applies each patch in this folder, which takes one correction out again, builds, and runs the
+`tests/defects/run.py` applies each patch under this folder, which takes one correction out again, builds, and runs the
 tests named here. Its last run: {failed} of {all} patches made their test fail, in {minutes} min.
 
 Nothing is tried on the curve's own window any more, and the time of a stop is a formula: defects of those have no patch, as there is
@@ -69,14 +70,24 @@ def read_patch(path):
     return fields
 
 
+def find_patches():
+    """The path of each patch by its name."""
+    found = {}
+    for path in sorted(DEFECTS.rglob("*.patch"), key=lambda path: path.name):
+        if path.stem in found:
+            sys.exit(f"{path} has the name of {found[path.stem]}")
+        found[path.stem] = path
+    return found
+
+
 def read_patches():
-    return {path.stem: read_patch(path) for path in sorted(DEFECTS.glob("*.patch"))}
+    return {name: read_patch(path) for name, path in find_patches().items()}
 
 
-def patch(tree, name, *options):
+def patch(tree, path, *options):
     """Applies a patch to a folder. Returns what patch says, or None where it applied."""
     ended = subprocess.run(["patch", "-p1", "--force", "--no-backup-if-mismatch", "--reject-file=-", *options,
-                            "-i", str(DEFECTS / f"{name}.patch")], cwd=tree, text=True, check=False,
+                            "-i", str(path)], cwd=tree, text=True, check=False,
                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     return None if ended.returncode == 0 else ended.stdout
 
@@ -148,7 +159,8 @@ def why_failed(output, code):
 
 def take_out(tree, name, tests):
     """Runs the tests of one correction without it."""
-    refused = patch(tree, name, "--dry-run") or patch(tree, name)
+    path = find_patches()[name]
+    refused = patch(tree, path, "--dry-run") or patch(tree, path)
     if refused is not None:
         raise Unusable(f"{name}.patch does not apply:\n{refused}")
     try:
@@ -157,7 +169,7 @@ def take_out(tree, name, tests):
             raise Unusable(f"without the correction the tree does not build:\n{output[-4000:]}")
         return {test: run_test(tree, test) for test in tests}
     finally:
-        patch(tree, name, "-R")
+        patch(tree, path, "-R")
 
 
 def fails_as_it_is(tree, tests):
@@ -236,8 +248,8 @@ def make_page():
 
 def check():
     """Whether every patch still applies, and the page is up to date."""
-    refused = [f"{name}.patch does not apply:\n{said}" for name in read_patches()
-               if (said := patch(PROJECT, name, "--dry-run")) is not None]
+    refused = [f"{name}.patch does not apply:\n{said}" for name, path in find_patches().items()
+               if (said := patch(PROJECT, path, "--dry-run")) is not None]
     if PAGE.read_text(encoding="utf-8") != make_page():
         refused.append(f"{PAGE} is not what patches and results make of it: run run.py --page")
     sys.exit("\n".join(refused) or 0)

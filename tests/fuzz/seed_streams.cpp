@@ -157,78 +157,106 @@ struct Plan {
   std::function<void(Recorder&)> play;
 };
 
+SolverOptions limited() {
+  auto how = with("c2", 2, 32);
+  how.limits = {.acceleration = {5.0, 0.0}};
+  return how;
+}
+
+/// So wide that two waypoints are joined from rest to rest, without an entry.
+SolverOptions wide() {
+  auto how = with("c2", 2, 32);
+  how.limits = {.acceleration = {1e6, 1e6}};
+  return how;
+}
+
+SolverOptions smoothing() {
+  auto how = with("smoothing", 16, 64);
+  how.lambda = 1e-9;
+  return how;
+}
+
+/// A dimension that wraps, and a quaternion.
+ProducerOptions kinds() {
+  auto options = recorded(5);
+  options.kinds.assign(5, {.kind = DimensionKind::quaternion});
+  options.kinds[0] = {.kind = DimensionKind::wrap, .period = 1.5};
+  options.names = {"heading", "qx", "qy", "qz", "qw"};
+  options.units = {"rad", "", "", "", ""};
+  return options;
+}
+
+ProducerOptions moving() {
+  auto options = recorded(1);
+  options.start = {.kind = ConditionKind::velocity, .value = {2.0}};
+  return options;
+}
+
+void finish_behind_a_refusal(Recorder& r) {
+  r.send_many(kBegin, 12);
+  r.send(kBegin);  // refused: out of order
+  r.finish();
+}
+
+void send_two_and_finish(Recorder& r) {
+  r.send_many(kBegin + 2 * kTick, 2);
+  r.finish();
+}
+
+void starve(Recorder& r) {
+  r.send_many(kBegin + 2 * kTick, 4);
+  r.clock.time += 200 * kTick;
+  r.step();
+}
+
+void enter(Recorder& r) {
+  starve(r);
+  r.send_many(r.clock.time + 2 * kTick, 3);
+}
+
+void replace(Recorder& r) {
+  r.start_from(kBegin + kTick);
+  r.send_many(kBegin + 3 * kTick, 6);
+  r.replace_from(kBegin + 6 * kTick, kBegin + 9 * kTick);
+  r.replace_from(kBegin + 8 * kTick, kBegin);
+}
+
+void cut(Recorder& r) {
+  r.send_many(kBegin + 2 * kTick, 8);
+  r.replace_from(kBegin + 8 * kTick + kTick / 2, kBegin + 10 * kTick);  // within a segment
+  r.replace_from(kBegin + 9 * kTick, kBegin);                           // within a splice
+  r.replace_from(kBegin + 10 * kTick, kBegin + 12 * kTick);             // within the stop
+  r.send_many(kBegin + 13 * kTick, 3);
+  r.finish();
+}
+
+void starve_and_cut(Recorder& r) {
+  starve(r);
+  r.send_many(r.clock.time + 2 * kTick, 6);
+  r.replace_from(r.clock.time + 4 * kTick + kTick / 4, r.clock.time + 6 * kTick);
+}
+
+void starve_and_finish(Recorder& r) {
+  starve(r);
+  r.finish();
+}
+
 std::vector<Plan> plans() {
-  auto limited = with("c2", 2, 32);
-  limited.limits = {.acceleration = {5.0, 0.0}};
-  auto smoothing = with("smoothing", 16, 64);
-  smoothing.lambda = 1e-9;
-  auto live_smoothing = with("smoothing", 16, 64);
-  live_smoothing.lambda = 1e-9;
-  auto kinds = recorded(5);
-  kinds.kinds.assign(5, {.kind = DimensionKind::quaternion});
-  kinds.kinds[0] = {.kind = DimensionKind::wrap, .period = 1.5};
-  kinds.names = {"heading", "qx", "qy", "qz", "qw"};
-  kinds.units = {"rad", "", "", "", ""};
-  auto moving = recorded(1);
-  moving.start = {.kind = ConditionKind::velocity, .value = {2.0}};
-  // So wide that the two waypoints are joined from rest to rest, without an entry.
-  auto wide = with("c2", 2, 32);
-  wide.limits = {.acceleration = {1e6, 1e6}};
-  const auto starve = [](Recorder& r) {
-    r.send_many(kBegin + 2 * kTick, 4);
-    r.clock.time += 200 * kTick;
-    r.step();
-  };
   return {
       {"c2_running", recorded(1), with("c2", 2, 32), [](Recorder& r) { r.send_many(kBegin, 40); }},
-      {"c2_finished", moving, with("c2", 8, 32),
-       [](Recorder& r) {
-         r.send_many(kBegin, 12);
-         r.send(kBegin);  // refused: out of order
-         r.finish();
-       }},
-      {"two_waypoints", live(2), wide,
-       [](Recorder& r) {
-         r.send_many(kBegin + 2 * kTick, 2);
-         r.finish();
-       }},
-      {"live_running", live(2), limited, [](Recorder& r) { r.send_many(kBegin + 2 * kTick, 10); }},
+      {"c2_finished", moving(), with("c2", 8, 32), finish_behind_a_refusal},
+      {"two_waypoints", live(2), wide(), send_two_and_finish},
+      {"live_running", live(2), limited(),
+       [](Recorder& r) { r.send_many(kBegin + 2 * kTick, 10); }},
       {"live_starved", live(1), with("c2", 2, 32), starve},
-      {"live_entered", live(1), with("makima", 2, 32),
-       [starve](Recorder& r) {
-         starve(r);
-         r.send_many(r.clock.time + 2 * kTick, 3);
-       }},
-      {"live_replaced", live(2), limited,
-       [](Recorder& r) {
-         r.start_from(kBegin + kTick);
-         r.send_many(kBegin + 3 * kTick, 6);
-         r.replace_from(kBegin + 6 * kTick, kBegin + 9 * kTick);
-         r.replace_from(kBegin + 8 * kTick, kBegin);
-       }},
-      {"live_cut", live(2), with("c2", 3, 32),
-       [](Recorder& r) {
-         r.send_many(kBegin + 2 * kTick, 8);
-         r.replace_from(kBegin + 8 * kTick + kTick / 2, kBegin + 10 * kTick);  // within a segment
-         r.replace_from(kBegin + 9 * kTick, kBegin);                           // within a splice
-         r.replace_from(kBegin + 10 * kTick, kBegin + 12 * kTick);             // within the stop
-         r.send_many(kBegin + 13 * kTick, 3);
-         r.finish();
-       }},
-      {"smoothing_cut", live(1), live_smoothing,
-       [starve](Recorder& r) {
-         starve(r);
-         r.send_many(r.clock.time + 2 * kTick, 6);
-         r.replace_from(r.clock.time + 4 * kTick + kTick / 4, r.clock.time + 6 * kTick);
-       }},
-      {"live_way_back", live(1), with("pchip", 1, 16),
-       [starve](Recorder& r) {
-         starve(r);
-         r.finish();
-       }},
+      {"live_entered", live(1), with("makima", 2, 32), enter},
+      {"live_replaced", live(2), limited(), replace},
+      {"live_cut", live(2), with("c2", 3, 32), cut},
+      {"smoothing_cut", live(1), smoothing(), starve_and_cut},
+      {"live_way_back", live(1), with("pchip", 1, 16), starve_and_finish},
       {"quintic", recorded(1), with("quintic", 1, 16), [](Recorder& r) { r.send_many(kBegin, 5); }},
-      {"smoothing", recorded(1), smoothing, [](Recorder& r) { r.send_many(kBegin, 24); }},
-      {"kinds", kinds, with("rounded", 1, 16), [](Recorder& r) { r.send_many(kBegin, 6); }},
+      {"smoothing", recorded(1), smoothing(), [](Recorder& r) { r.send_many(kBegin, 24); }},
+      {"kinds", kinds(), with("rounded", 1, 16), [](Recorder& r) { r.send_many(kBegin, 6); }},
       {"empty", live(3), with("hermite", 1, 16), [](Recorder& r) { r.step(); }},
   };
 }

@@ -62,27 +62,29 @@ void for_each_stretch(std::span<const Word> words, const auto& visit) {
 
 std::size_t below(std::size_t limit, std::mt19937_64& random) { return random() % limit; }
 
+/// Values at the ends of their ranges.
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::array<double, 12> kDoubles{
+    0,     -0.0,   1,      -1,    1e100,     -1e100,
+    1e300, 1e-300, 1e-320, 1e200, kInfinity, std::numeric_limits<double>::quiet_NaN()};
+constexpr std::array<Word, 16> kWords{0,
+                                      1,
+                                      2,
+                                      3,
+                                      4,
+                                      6,
+                                      64,
+                                      65,
+                                      1U << 10U,
+                                      1ULL << 32U,
+                                      1ULL << 61U,
+                                      1ULL << 62U,
+                                      1ULL << 63U,
+                                      (1ULL << 63U) - 1,
+                                      std::numeric_limits<Word>::max(),
+                                      std::numeric_limits<Word>::max() - 1};
+
 Word interesting(std::mt19937_64& random, Word before, std::span<const Word> region) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  constexpr std::array<double, 12> kDoubles{
-      0,     -0.0,   1,      -1,    1e100,     -1e100,
-      1e300, 1e-300, 1e-320, 1e200, kInfinity, std::numeric_limits<double>::quiet_NaN()};
-  constexpr std::array<Word, 16> kWords{0,
-                                        1,
-                                        2,
-                                        3,
-                                        4,
-                                        6,
-                                        64,
-                                        65,
-                                        1U << 10U,
-                                        1ULL << 32U,
-                                        1ULL << 61U,
-                                        1ULL << 62U,
-                                        1ULL << 63U,
-                                        (1ULL << 63U) - 1,
-                                        std::numeric_limits<Word>::max(),
-                                        std::numeric_limits<Word>::max() - 1};
   switch (below(9, random)) {
     case 0:
       return kWords[below(kWords.size(), random)];

@@ -63,6 +63,42 @@ class RealTime : public ::testing::Test {
   }
 };
 
+/// Samples now and at random times around it, and looks ahead now and then.
+class RandomSampling {
+ public:
+  RandomSampling(const std::string& stream, ConfinedPage& page)
+      : page_(page), reader_(stream, 60s), values_(kHorizon * state_.values().size()) {}
+
+  void round() {
+    const Time now = clock_.now();
+    const Time jump = Sending::kInterval * (static_cast<std::int64_t>(random_() % 4000) - 2000);
+    const SampleStatus status =
+        random_() % 4 == 0 ? reader_.preview(now + jump, state_) : reader_.sample(now, state_);
+    if (has_values(status)) ++page_.answered;
+    if (status == SampleStatus::busy) ++page_.busy;
+    if (random_() % 16 == 0) look_ahead(now);
+    ++page_.rounds;
+  }
+
+ private:
+  void look_ahead(Time now) {
+    for (std::size_t i = 0; i < kHorizon; ++i) {
+      times_[i] = now + static_cast<std::int64_t>(i) * Sending::kInterval / 2;
+    }
+    (void)ipc::Internals::sampler(reader_).sample_many(times_,
+                                                       {.values = values_, .status = statuses_});
+  }
+
+  ConfinedPage& page_;
+  MonotonicClock clock_;
+  Reader reader_;
+  State state_{kDimensions};
+  std::mt19937_64 random_{1};
+  std::array<Time, kHorizon> times_{};
+  std::array<SampleStatus, kHorizon> statuses_{};
+  std::vector<double> values_;
+};
+
 TEST_F(RealTime, SamplingMakesNoSystemCallNoAllocationAndNoPageFault) {
   const TestStream stream;
   Sending sending(stream.name(), kDimensions);
@@ -76,34 +112,11 @@ TEST_F(RealTime, SamplingMakesNoSystemCallNoAllocationAndNoPageFault) {
   for (int i = 0; i < 200; ++i) work();
   const ConfinedEnd end = run_confined(
       [&](Confined& process) {
-        Reader reader(stream.name(), 60s);
-        State state(kDimensions);
-        std::mt19937_64 random(1);
-        std::array<Time, kHorizon> times{};
-        std::array<SampleStatus, kHorizon> statuses{};
-        std::vector<double> values(kHorizon * state.values().size());
-        const auto look_ahead = [&](Time now) {
-          for (std::size_t i = 0; i < kHorizon; ++i) {
-            times[i] = now + static_cast<std::int64_t>(i) * Sending::kInterval / 2;
-          }
-          (void)ipc::Internals::sampler(reader).sample_many(times,
-                                                            {.values = values, .status = statuses});
-        };
-        const auto round = [&] {
-          const Time now = clock.now();
-          const Time jump =
-              Sending::kInterval * (static_cast<std::int64_t>(random() % 4000) - 2000);
-          const SampleStatus status =
-              random() % 4 == 0 ? reader.preview(now + jump, state) : reader.sample(now, state);
-          if (has_values(status)) ++process.page().answered;
-          if (status == SampleStatus::busy) ++process.page().busy;
-          if (random() % 16 == 0) look_ahead(now);
-          ++process.page().rounds;
-        };
-        for (const Time warm = clock.now() + kWarmUpTime; clock.now() < warm;) round();
+        RandomSampling sampling(stream.name(), process.page());
+        for (const Time warm = clock.now() + kWarmUpTime; clock.now() < warm;) sampling.round();
         process.page().rounds = process.page().answered = process.page().busy = 0;
         process.confine();
-        for (std::uint64_t i = 0; i < 10 * kRounds; ++i) round();
+        for (std::uint64_t i = 0; i < 10 * kRounds; ++i) sampling.round();
         process.finish();
       },
       work);

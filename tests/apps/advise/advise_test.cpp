@@ -8,6 +8,7 @@
 #include "splinecast/clock.hpp"
 #include "splinecast/producer.hpp"
 #include "tests/fixtures/processes/process.hpp"
+#include "tests/fixtures/processes/shared_files.hpp"
 
 /// The verb `advise`, and what `info` says of a depth that is too small.
 namespace splinecast::apps {
@@ -16,14 +17,11 @@ namespace {
 using nlohmann::json;
 using std::chrono::milliseconds;
 using testing::Ended;
+using testing::own_file;
 using testing::Process;
 using testing::run;
 using testing::TestFolder;
 using testing::TestStream;
-
-std::string own_file(const std::string& name) {
-  return std::string(SPLINECAST_SOURCE) + "/tests/data/" + name;
-}
 
 TEST(Advise, TellsOfAFileWhatItFoundAndWhatFollows) {
   const Ended ended = run({"advise", own_file("duplicates.csv"), "--json"});

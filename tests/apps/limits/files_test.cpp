@@ -215,14 +215,18 @@ TEST_F(LimitFiles, SolveGivesLimitsToTheStreamAndInfoShowsThem) {
   const Process agreeing({"solve", stream.name(), "--limits", limits});
 }
 
-TEST_F(LimitFiles, SolveReportsWaypointsBeyondThemOrRefusesThemWithTheirPlace) {
-  // One row leaves the slow motion.
+/// 40 rows, of which one leaves the slow motion.
+std::string slow_rows_but_one() {
   std::string rows = "t,shoulder,wrist\n";
   for (int i = 0; i < 40; ++i) {
     rows += std::to_string(i) + "," + std::to_string(0.01 * i) + "," +
             (i == 20 ? "5" : std::to_string(0.02 * i)) + "\n";
   }
-  const auto moves = folder_.write("steps.csv", rows);
+  return rows;
+}
+
+TEST_F(LimitFiles, SolveReportsWaypointsBeyondThemOrRefusesThemWithTheirPlace) {
+  const auto moves = folder_.write("steps.csv", slow_rows_but_one());
   for (const std::string beyond : {"report", "refuse"}) {
     const TestStream stream;
     Process solver({"solve", stream.name(), "--max-acceleration", "0.2", "--beyond", beyond});

@@ -70,51 +70,53 @@ struct Case {
   std::function<void(MachineFacts&)> change;
 };
 
+/// What limits a machine.
+const std::vector<Case> kLimits{
+    {"/dev/shm", Verdict::problem, "not mounted", [](auto& m) { m.mounts = ""; }},
+    {"/dev/shm", Verdict::problem, "is ext4",
+     [](auto& m) { m.mounts = "/dev/sda1 /dev/shm ext4 rw 0 0\n"; }},
+    {"/dev/shm", Verdict::problem, "read-only",
+     [](auto& m) { m.mounts += "tmpfs /dev/shm tmpfs nosuid,ro 0 0\n"; }},
+    {"/dev/shm", Verdict::problem, "may not make files",
+     [](auto& m) { m.may_write_shared = false; }},
+    {"room in /dev/shm", Verdict::problem, "needs about 16.0 MiB",
+     [](auto& m) { m.room->free = kNeeded - 1; }},
+    {"room in /dev/shm", Verdict::note, "64.0 MiB in all",
+     [](auto& m) { m.room = Room{.total = 64 << 20U, .free = 64 << 20U}; }},
+    {"locked memory", Verdict::note, "RLIMIT_MEMLOCK is 0.1 MiB",
+     [](auto& m) { m.lockable = 64 << 10U; }},
+    {"real-time priority", Verdict::note, "RLIMIT_RTPRIO is 0", [](auto& m) { m.priority = 0; }},
+    {"RemoveIPC", Verdict::note, "is on", [](auto& m) { m.logind = ""; }},
+    {"RemoveIPC", Verdict::note, "is on",
+     [](auto& m) { m.logind += "[Login]\n RemoveIPC = yes\n"; }},
+    {"container", Verdict::note, "share its /dev/shm", [](auto& m) { m.in_container = true; }},
+    {"container", Verdict::note, "process namespace of its own",
+     [](auto& m) { m.pid_namespace = 4026532000; }},
+    {"time namespace", Verdict::note, "clock 1000.000000005 s ahead",
+     [](auto& m) {
+       m.time_namespace = 4026532001;
+       m.clock_offsets = "monotonic        1000         5\nboottime 0 0\n";
+     }},
+    {"clock", Verdict::note, "hpet, 20 ns a reading: each reading of it is a system call",
+     [](auto& m) { m.environment.clock = "hpet"; }},
+    {"cpu governor", Verdict::note, "powersave",
+     [](auto& m) { m.environment.governor = "powersave"; }},
+    {"isolated cpus", Verdict::note, "none", [](auto& m) { m.environment.isolated = ""; }},
+    {"kernel preemption", Verdict::note, "PREEMPT_DYNAMIC",
+     [](auto& m) { m.environment.preemption = "PREEMPT_DYNAMIC"; }},
+    {"real-time throttling", Verdict::note, "stopped for 50 ms of each 1000000 us",
+     [](auto& m) { m.environment.rt_runtime = "950000"; }},
+    {"huge pages", Verdict::note, "always for shared memory",
+     [](auto& m) { m.shared_huge_pages = "[always] within_size advise never\n"; }},
+    {"hypervisor", Verdict::note, "KVM; 10.00 % of the CPUs' time stolen",
+     [](auto& m) {
+       m.environment.hypervisor = "KVM";
+       m.cpu_times = "cpu  100 0 100 700 0 0 0 100 0 0\n";
+     }},
+};
+
 TEST(Doctor, FindsEachLimitByItself) {
-  const std::vector<Case> cases{
-      {"/dev/shm", Verdict::problem, "not mounted", [](auto& m) { m.mounts = ""; }},
-      {"/dev/shm", Verdict::problem, "is ext4",
-       [](auto& m) { m.mounts = "/dev/sda1 /dev/shm ext4 rw 0 0\n"; }},
-      {"/dev/shm", Verdict::problem, "read-only",
-       [](auto& m) { m.mounts += "tmpfs /dev/shm tmpfs nosuid,ro 0 0\n"; }},
-      {"/dev/shm", Verdict::problem, "may not make files",
-       [](auto& m) { m.may_write_shared = false; }},
-      {"room in /dev/shm", Verdict::problem, "needs about 16.0 MiB",
-       [](auto& m) { m.room->free = kNeeded - 1; }},
-      {"room in /dev/shm", Verdict::note, "64.0 MiB in all",
-       [](auto& m) { m.room = Room{.total = 64 << 20U, .free = 64 << 20U}; }},
-      {"locked memory", Verdict::note, "RLIMIT_MEMLOCK is 0.1 MiB",
-       [](auto& m) { m.lockable = 64 << 10U; }},
-      {"real-time priority", Verdict::note, "RLIMIT_RTPRIO is 0", [](auto& m) { m.priority = 0; }},
-      {"RemoveIPC", Verdict::note, "is on", [](auto& m) { m.logind = ""; }},
-      {"RemoveIPC", Verdict::note, "is on",
-       [](auto& m) { m.logind += "[Login]\n RemoveIPC = yes\n"; }},
-      {"container", Verdict::note, "share its /dev/shm", [](auto& m) { m.in_container = true; }},
-      {"container", Verdict::note, "process namespace of its own",
-       [](auto& m) { m.pid_namespace = 4026532000; }},
-      {"time namespace", Verdict::note, "clock 1000.000000005 s ahead",
-       [](auto& m) {
-         m.time_namespace = 4026532001;
-         m.clock_offsets = "monotonic        1000         5\nboottime 0 0\n";
-       }},
-      {"clock", Verdict::note, "hpet, 20 ns a reading: each reading of it is a system call",
-       [](auto& m) { m.environment.clock = "hpet"; }},
-      {"cpu governor", Verdict::note, "powersave",
-       [](auto& m) { m.environment.governor = "powersave"; }},
-      {"isolated cpus", Verdict::note, "none", [](auto& m) { m.environment.isolated = ""; }},
-      {"kernel preemption", Verdict::note, "PREEMPT_DYNAMIC",
-       [](auto& m) { m.environment.preemption = "PREEMPT_DYNAMIC"; }},
-      {"real-time throttling", Verdict::note, "stopped for 50 ms of each 1000000 us",
-       [](auto& m) { m.environment.rt_runtime = "950000"; }},
-      {"huge pages", Verdict::note, "always for shared memory",
-       [](auto& m) { m.shared_huge_pages = "[always] within_size advise never\n"; }},
-      {"hypervisor", Verdict::note, "KVM; 10.00 % of the CPUs' time stolen",
-       [](auto& m) {
-         m.environment.hypervisor = "KVM";
-         m.cpu_times = "cpu  100 0 100 700 0 0 0 100 0 0\n";
-       }},
-  };
-  for (const Case& one : cases) {
+  for (const Case& one : kLimits) {
     MachineFacts machine = good_machine();
     one.change(machine);
     for (const Finding& finding : check_machine(machine, kNeeded)) {
@@ -129,91 +131,95 @@ TEST(Doctor, FindsEachLimitByItself) {
   }
 }
 
+/// Makes a file one that may not be read.
+std::function<void(MachineFacts&)> hide(const char* file) {
+  return [file](MachineFacts& m) { m.unread[file] = "Permission denied"; };
+}
+
+/// Facts that cannot be known, and why.
+const std::vector<Case> kHidden{
+    {"/dev/shm",
+     {},
+     "/proc/self/mounts: Permission denied",
+     [](auto& m) {
+       m.mounts = "";
+       hide("/proc/self/mounts")(m);
+     }},
+    {"room in /dev/shm", {}, "does not say", [](auto& m) { m.room.reset(); }},
+    {"locked memory",
+     {},
+     "/proc/self/status: Permission denied",
+     [](auto& m) {
+       m.lockable = 0;
+       m.status = "";
+       hide("/proc/self/status")(m);
+     }},
+    {"real-time priority",
+     {},
+     "/proc/self/status: Permission denied",
+     [](auto& m) {
+       m.priority = 0;
+       m.status = "";
+       hide("/proc/self/status")(m);
+     }},
+    {"RemoveIPC",
+     {},
+     "/etc/systemd/logind.conf: Permission denied",
+     hide("/etc/systemd/logind.conf")},
+    {"clock",
+     {},
+     "current_clocksource: Permission denied",
+     [](auto& m) {
+       m.environment.clock = "";
+       hide("/sys/devices/system/clocksource/clocksource0/current_clocksource")(m);
+     }},
+    {"cpu governor",
+     {},
+     "under the hypervisor",
+     [](auto& m) {
+       m.environment.governor = "";
+       m.environment.hypervisor = "KVM";
+     }},
+    {"isolated cpus",
+     {},
+     "isolated: Permission denied",
+     [](auto& m) {
+       m.environment.isolated = "";
+       hide("/sys/devices/system/cpu/isolated")(m);
+     }},
+    {"kernel preemption",
+     {},
+     "/proc/sys/kernel/version: Permission denied",
+     [](auto& m) {
+       m.environment.preemption = "";
+       hide("/proc/sys/kernel/version")(m);
+     }},
+    {"real-time throttling",
+     {},
+     "sched_rt_runtime_us: Permission denied",
+     [](auto& m) {
+       m.environment.rt_runtime = "";
+       hide("/proc/sys/kernel/sched_rt_runtime_us")(m);
+     }},
+    {"huge pages",
+     {},
+     "shmem_enabled: Permission denied",
+     [](auto& m) {
+       m.shared_huge_pages = "";
+       hide("/sys/kernel/mm/transparent_hugepage/shmem_enabled")(m);
+     }},
+    {"hypervisor",
+     {},
+     "/proc/stat: Permission denied",
+     [](auto& m) {
+       m.cpu_times = "";
+       hide("/proc/stat")(m);
+     }},
+};
+
 /// What cannot be known is not `ok`, and nothing else changes.
 TEST(Doctor, SaysUnknownAndWhyWhereNothingCanBeKnown) {
-  const auto hide = [](const char* file) {
-    return [file](auto& m) { m.unread[file] = "Permission denied"; };
-  };
-  const std::vector<Case> cases{
-      {"/dev/shm",
-       {},
-       "/proc/self/mounts: Permission denied",
-       [&](auto& m) {
-         m.mounts = "";
-         hide("/proc/self/mounts")(m);
-       }},
-      {"room in /dev/shm", {}, "does not say", [](auto& m) { m.room.reset(); }},
-      {"locked memory",
-       {},
-       "/proc/self/status: Permission denied",
-       [&](auto& m) {
-         m.lockable = 0;
-         m.status = "";
-         hide("/proc/self/status")(m);
-       }},
-      {"real-time priority",
-       {},
-       "/proc/self/status: Permission denied",
-       [&](auto& m) {
-         m.priority = 0;
-         m.status = "";
-         hide("/proc/self/status")(m);
-       }},
-      {"RemoveIPC",
-       {},
-       "/etc/systemd/logind.conf: Permission denied",
-       hide("/etc/systemd/logind.conf")},
-      {"clock",
-       {},
-       "current_clocksource: Permission denied",
-       [&](auto& m) {
-         m.environment.clock = "";
-         hide("/sys/devices/system/clocksource/clocksource0/current_clocksource")(m);
-       }},
-      {"cpu governor",
-       {},
-       "under the hypervisor",
-       [](auto& m) {
-         m.environment.governor = "";
-         m.environment.hypervisor = "KVM";
-       }},
-      {"isolated cpus",
-       {},
-       "isolated: Permission denied",
-       [&](auto& m) {
-         m.environment.isolated = "";
-         hide("/sys/devices/system/cpu/isolated")(m);
-       }},
-      {"kernel preemption",
-       {},
-       "/proc/sys/kernel/version: Permission denied",
-       [&](auto& m) {
-         m.environment.preemption = "";
-         hide("/proc/sys/kernel/version")(m);
-       }},
-      {"real-time throttling",
-       {},
-       "sched_rt_runtime_us: Permission denied",
-       [&](auto& m) {
-         m.environment.rt_runtime = "";
-         hide("/proc/sys/kernel/sched_rt_runtime_us")(m);
-       }},
-      {"huge pages",
-       {},
-       "shmem_enabled: Permission denied",
-       [&](auto& m) {
-         m.shared_huge_pages = "";
-         hide("/sys/kernel/mm/transparent_hugepage/shmem_enabled")(m);
-       }},
-      {"hypervisor",
-       {},
-       "/proc/stat: Permission denied",
-       [&](auto& m) {
-         m.cpu_times = "";
-         hide("/proc/stat")(m);
-       }},
-  };
-  for (const Case& one : cases) {
+  for (const Case& one : kHidden) {
     MachineFacts machine = good_machine();
     one.change(machine);
     for (const Finding& finding : check_machine(machine, kNeeded)) {

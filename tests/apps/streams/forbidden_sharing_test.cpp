@@ -63,17 +63,8 @@ TEST_F(ForbiddenSharing, AGroupReadsAndNobodyElse) {
   attack_in_vain(memory, into_the_group, 1, {"cannot give the region to group 54321"}, stranger_);
 }
 
-TEST_F(ForbiddenSharing, AReaderThatLocksAllItCanStopsNoTakeover) {
-  REQUIRE_ROOT();
-  const PrivateSharedMemory memory("64m");
-  auto solver = std::make_unique<Process>(memory.start(shared({"solve", "a"}), writer_));
-  solver->await_message("waiting for a producer");
-  auto sending = shared(
-      {"replay", file_, "--stream", "a", "--clock", "recorded", "--rate", "0.001", "--wait", "60"});
-  Process producer = memory.start(sending, writer_);
-  solver->await_message("solving");
-  // Each kind of lock, on each file that it may open in any way.
-  const std::string script = R"(
+/// Takes each kind of lock, on each file that it may open in any way.
+constexpr const char* kLocker = R"(
 import fcntl, os, signal, struct, sys
 held = []
 for name in sorted(os.listdir('/dev/shm')):
@@ -97,7 +88,17 @@ signal.signal(signal.SIGUSR1, hold_again)
 print('locked', len(held), file=sys.stderr, flush=True)
 while True: signal.pause()
 )";
-  Process locker = memory.start("/usr/bin/python3", {"-c", script}, member_);
+
+TEST_F(ForbiddenSharing, AReaderThatLocksAllItCanStopsNoTakeover) {
+  REQUIRE_ROOT();
+  const PrivateSharedMemory memory("64m");
+  auto solver = std::make_unique<Process>(memory.start(shared({"solve", "a"}), writer_));
+  solver->await_message("waiting for a producer");
+  auto sending = shared(
+      {"replay", file_, "--stream", "a", "--clock", "recorded", "--rate", "0.001", "--wait", "60"});
+  Process producer = memory.start(sending, writer_);
+  solver->await_message("solving");
+  Process locker = memory.start("/usr/bin/python3", {"-c", kLocker}, member_);
   locker.await_message("locked 2");  // both regions, to read; neither lock file
   solver->signal(SIGKILL);
   solver->wait();

@@ -151,6 +151,32 @@ nlohmann::json replacements_within(const Schedule& schedule, std::span<const Row
   return within(found, rows);
 }
 
+/// How long the samples show each state of the curve, and how far it is from the path.
+nlohmann::json shown_json(std::span<const Row> shown) {
+  const auto is_stopping = [](const Row& row) { return row.status == SampleStatus::stopping; };
+  const auto is_holding = [](const Row& row) { return row.status == SampleStatus::holding; };
+  const auto is_entry = [](const Row& row) { return row.is_entry; };
+  return {{"stopping [s]", seconds_of(shown, is_stopping)},
+          {"holding [s]", seconds_of(shown, is_holding)},
+          {"in entries [s]", seconds_of(shown, is_entry)},
+          {"largest path error shown [rad]", largest_error(shown)}};
+}
+
+/// What a whole trial has seen.
+nlohmann::json seen_json(const Seen& seen) {
+  return {{"largest path error [rad]", seen.error(1)},
+          {"path error p99 [rad]", seen.error(0.99)},
+          {"peak velocity [rad/s]", seen.peak_velocity()},
+          {"peak acceleration [rad/s2]", seen.peak_acceleration()},
+          {"peak acceleration in entries [rad/s2]", seen.entry_acceleration},
+          {"waypoints", seen.knots},
+          {"passed over", seen.passed_over},
+          {"refused as past", seen.past},
+          {"refused otherwise", seen.refused},
+          {"ran dry", seen.starvations},
+          {"holding besides the pauses [%]", 100 * seen.holding}};
+}
+
 }  // namespace
 
 Traces::Traces(std::filesystem::path folder) : folder_(std::move(folder)) {
@@ -177,34 +203,19 @@ void Traces::add(const Sines& motion, const Mishap& mishap, double limit, TrialO
   const std::size_t joint = worst_joint(shown, motion, schedule);
   const std::string name = fmt::format("{}_{}", mishap.file, limit > 0 ? "limit" : "no_limit");
   write_file(folder_ / (name + ".csv"), csv_of(shown, motion, schedule, joint));
-  const auto is_stopping = [](const Row& row) { return row.status == SampleStatus::stopping; };
-  const auto is_holding = [](const Row& row) { return row.status == SampleStatus::holding; };
-  const auto is_entry = [](const Row& row) { return row.is_entry; };
-  rows_.push_back({{"file", name},
-                   {"mishap", mishap.name},
-                   {"section", mishap.file},
-                   {"limit [rad/s2]", limit},
-                   {"joint", joint + 1},
-                   {"mishap at [s]", window.mishap},
-                   {"silences [s]", within(schedule.pauses, shown)},
-                   {"solver dead [s]", within(schedule.deaths, shown)},
-                   {"replacements [s]", replacements_within(schedule, shown)},
-                   {"stopping [s]", seconds_of(shown, is_stopping)},
-                   {"holding [s]", seconds_of(shown, is_holding)},
-                   {"in entries [s]", seconds_of(shown, is_entry)},
-                   {"back on the path after [s]", window.back},
-                   {"largest path error shown [rad]", largest_error(shown)},
-                   {"largest path error [rad]", seen.error(1)},
-                   {"path error p99 [rad]", seen.error(0.99)},
-                   {"peak velocity [rad/s]", seen.peak_velocity()},
-                   {"peak acceleration [rad/s2]", seen.peak_acceleration()},
-                   {"peak acceleration in entries [rad/s2]", seen.entry_acceleration},
-                   {"waypoints", seen.knots},
-                   {"passed over", seen.passed_over},
-                   {"refused as past", seen.past},
-                   {"refused otherwise", seen.refused},
-                   {"ran dry", seen.starvations},
-                   {"holding besides the pauses [%]", 100 * seen.holding}});
+  nlohmann::json row{{"file", name},
+                     {"mishap", mishap.name},
+                     {"section", mishap.file},
+                     {"limit [rad/s2]", limit},
+                     {"joint", joint + 1},
+                     {"mishap at [s]", window.mishap},
+                     {"silences [s]", within(schedule.pauses, shown)},
+                     {"solver dead [s]", within(schedule.deaths, shown)},
+                     {"replacements [s]", replacements_within(schedule, shown)},
+                     {"back on the path after [s]", window.back}};
+  row.update(shown_json(shown));
+  row.update(seen_json(seen));
+  rows_.push_back(std::move(row));
 }
 
 void Traces::finish() const { write_file(folder_ / "rows.json", rows_.dump(1) + "\n"); }

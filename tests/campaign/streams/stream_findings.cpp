@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/process/messages.hpp"
+#include "tests/fixtures/curves/streaming_methods.hpp"
 
 namespace splinecast::campaign {
 namespace {
@@ -140,7 +141,7 @@ std::map<std::string, std::uint64_t> StreamFindings::required() const {
   for (std::size_t i = 0; i < kAppendStatuses; ++i) {
     all.emplace(fmt::format("calls {}", to_string(static_cast<AppendStatus>(i))), answers_[i]);
   }
-  for (const Method* method : streaming_methods()) {
+  for (const Method* method : testing::streaming_methods()) {
     const auto found = methods_.find(std::string(method->name));
     all.emplace(fmt::format("streams of {}", method->name),
                 found == methods_.end() ? 0 : found->second);

@@ -8,6 +8,7 @@
 #include "core/forms/stop.hpp"
 #include "core/solvers/smoothing_rows.hpp"
 #include "splinecast/limits.hpp"
+#include "tests/fixtures/curves/streaming_methods.hpp"
 
 namespace splinecast::campaign {
 namespace {
@@ -50,7 +51,7 @@ std::vector<Dimension> make_dimensions(Random& random) {
 }
 
 Interpolant make_interpolant(std::uint64_t seed, Time interval, Random& random) {
-  const auto& methods = streaming_methods();
+  const auto& methods = testing::streaming_methods();
   Interpolant interpolant{.method = methods[seed % methods.size()]};
   interpolant.time_scale = random.log_uniform(1e-3, 1e3);
   const double h = to_seconds(interval);
@@ -148,17 +149,6 @@ void choose_motion(StreamPlan& plan, Random& random) {
 }
 
 }  // namespace
-
-const std::vector<const Method*>& streaming_methods() {
-  static const std::vector<const Method*> kMethods = [] {
-    std::vector<const Method*> found;
-    for (const Method& method : methods()) {
-      if (method.streams()) found.push_back(&method);
-    }
-    return found;
-  }();
-  return kMethods;
-}
 
 StreamPlan make_plan(std::uint64_t seed, Random& random) {
   StreamPlan plan{.seed = seed, .dimensions = make_dimensions(random)};

@@ -42,7 +42,4 @@ struct StreamPlan {
 /// The plan of a seed; `random` is of that seed, too.
 [[nodiscard]] StreamPlan make_plan(std::uint64_t seed, Random& random);
 
-/// The methods that a live stream can have.
-[[nodiscard]] const std::vector<const Method*>& streaming_methods();
-
 }  // namespace splinecast::campaign

@@ -9,6 +9,7 @@
 #include "splinecast/fit.hpp"
 #include "tests/fixtures/curves/method_trial.hpp"
 #include "tests/fixtures/curves/online.hpp"
+#include "tests/fixtures/curves/streaming_methods.hpp"
 
 // Every method in the sliding window: what it gives there is what it gives at once.
 namespace splinecast::core {
@@ -139,15 +140,7 @@ TEST_P(StreamingMethods, RefuseALagShorterThanTheirLookAhead) {
   EXPECT_THROW(SlidingWindow(2, how), std::invalid_argument);
 }
 
-std::vector<const Method*> streaming_methods() {
-  std::vector<const Method*> all;
-  for (const Method& method : methods()) {
-    if (method.streams()) all.push_back(&method);
-  }
-  return all;
-}
-
-INSTANTIATE_TEST_SUITE_P(Every, StreamingMethods, ::testing::ValuesIn(streaming_methods()),
+INSTANTIATE_TEST_SUITE_P(Every, StreamingMethods, ::testing::ValuesIn(testing::streaming_methods()),
                          [](const auto& tested) { return std::string(tested.param->name); });
 
 TEST(SlidingWindow, RefusesWhatNeedsAllWaypointsAtOnce) {

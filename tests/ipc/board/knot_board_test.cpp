@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <atomic>
-#include <limits>
+#include <cstdint>
+#include <span>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "tests/fixtures/streams/board_words.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
+/// Which knots a reader finds on a board, under which revision.
 namespace splinecast::ipc {
 namespace {
 
@@ -286,183 +287,42 @@ TEST(KnotBoard, ANewWriterMakesThePackedTimesThoseOfTheCommittedKnots) {
   EXPECT_EQ(board.reader.time_hint(4), time_of(4));
 }
 
-TEST(KnotBoard, KeepsTheLastRefusalsWithTheirItems) {
-  MemoryBoard board(1, 16);
-  for (Word i = 0; i < 1500; ++i) {
-    board.writer.write_refusal(i, {.item = 10 * i, .reason = Refusal::not_finite});
-  }
-  for (Word i = 1500 - kRefusalsKept; i < 1500; ++i) {
-    ASSERT_EQ(board.reader.refusal(i).item, 10 * i);
-    ASSERT_EQ(board.reader.refusal(i).reason, Refusal::not_finite);
-  }
-}
+/// What several readers of one board count while it is written. Revision r has the knots from r on,
+/// of which the last one is new, and writes those from r + r mod 3 on.
+class Readers {
+ public:
+  explicit Readers(const KnotBoardReader& board) : board_(board) {}
 
-TEST(KnotBoard, AHeadThatCannotBeIsNotBelieved) {
-  MemoryBoard board(1, 16);
-  Head head;
-  for (const auto& [first, newest] :
-       std::vector<std::pair<Word, Word>>{{0, 5}, {6, 5}, {1, 17}, {1, kRetiredTag}}) {
-    Head lying{.first = first, .newest = newest};
-    board.writer.commit(lying);
-    EXPECT_FALSE(board.reader.copy_bounds(board.reader.look(), 0, head)) << newest;
-  }
-  for (const Time stop : {Time(-1), kLongestStop + Time(1)}) {
-    Head lying{.first = 1, .newest = 5, .stop = stop};
-    board.writer.commit(lying);
-    EXPECT_FALSE(board.reader.copy_bounds(board.reader.look(), 0, head)) << stop.count();
-  }
-}
-
-TEST(KnotBoard, AHeadIsWholeThoughOnlyWhatIsNotThereIsStored) {
-  MemoryBoard board(1, 16);
-  for (Word value = 1; value <= 12; ++value) {
-    Head head{.first = 1, .newest = 2};
-    // Members change in turn, each seldom enough to be left alone for a while.
-    head.consumed = value;
-    head.misses = value / 3;
-    head.run_frozen = value % 3;
-    head.finished = value % 4 == 3;
-    head.reasons[value % kRefusalReasons] = value;
-    head.refused = value;
-    if (value % 5 == 4) board.replace_writer();
-    board.writer.commit(head);
-    Head seen;
-    ASSERT_TRUE(board.reader.copy_head(board.reader.look(), seen));
-    EXPECT_EQ(seen.consumed, head.consumed);
-    EXPECT_EQ(seen.misses, head.misses);
-    EXPECT_EQ(seen.run_frozen, head.run_frozen);
-    EXPECT_EQ(seen.finished, head.finished);
-    EXPECT_EQ(seen.refused, head.refused);
-    EXPECT_EQ(seen.reasons, head.reasons);
-    EXPECT_EQ(seen.low_water, Time::max());
-  }
-}
-
-/// A board of which each revision changed the curve from a time of its own.
-struct Changing : MemoryBoard {
-  Changing() : MemoryBoard(1, 16) {}
-
-  /// Revision r changes the curve from 1000 − r, so that the newest one is the earliest.
-  static Time change_of(Word r) { return Time(1000) - Time(static_cast<std::int64_t>(r)); }
-  void publish_to(Word revision) {
-    while (writer.revision() < revision) {
-      Head head{.first = 1, .newest = 1, .changed_from = change_of(writer.revision() + 1)};
-      writer.commit(head);
+  /// Reads until it is stopped.
+  void read() {
+    KnotCopy copy(kDimensions, false);
+    Head head;
+    while (!done_.load()) {
+      const Look look = board_.look();
+      const Word r = look.revision;
+      if (r == 0 || !board_.copy_head(look, head)) continue;
+      if (head.consumed != r || head.first != r) ++torn_;
+      bool complete = true;
+      for (Word n = head.newest; n >= head.first && complete; --n) {
+        const Word seen = revision_of_knot(board_, n, r, copy);
+        complete = seen != 0;
+        Word wanted = r;
+        while (wanted > 1 && n < wanted + wanted % 3) --wanted;
+        if (complete && seen != wanted) ++torn_;
+      }
+      if (complete) ++whole_;
     }
   }
-  /// What a reader that has seen a revision is told of those after it.
-  Time change_since(Word seen) {
-    Head head;
-    EXPECT_TRUE(reader.copy_bounds(reader.look(), seen, head));
-    return head.changed_from;
-  }
-  Word& head_tag(std::size_t c) {
-    return words_at(bytes.span(), testing::head_offset(layout, c), 1)[0];
-  }
+  void stop() { done_ = true; }
+  [[nodiscard]] std::size_t torn() const { return torn_.load(); }
+  [[nodiscard]] std::size_t whole() const { return whole_.load(); }
+
+ private:
+  const KnotBoardReader& board_;
+  std::atomic<bool> done_{false};
+  std::atomic<std::size_t> torn_{0};
+  std::atomic<std::size_t> whole_{0};
 };
-
-TEST(RingOfChanges, SixtyThreeMissedRevisionsCountAndSixtyFourDoNot) {
-  for (const Word newest : {64U, 65U, 130U, 200U}) {
-    Changing board;
-    board.publish_to(newest);
-    EXPECT_EQ(board.change_since(newest), Time::max());
-    EXPECT_EQ(board.change_since(newest - 1), board.change_of(newest));
-    EXPECT_EQ(board.change_since(newest - 63), board.change_of(newest));
-    EXPECT_EQ(board.change_since(newest - 64), Time::min());
-  }
-}
-
-TEST(RingOfChanges, TheEarliestOfTheMissedRevisionsIsTold) {
-  MemoryBoard board(1, 16);
-  for (const int change : {50, 20, 30, 40}) {
-    Head head{.first = 1, .newest = 1, .changed_from = Time(change)};
-    board.writer.commit(head);
-  }
-  const auto change_since = [&](Word seen) {
-    Head head;
-    EXPECT_TRUE(board.reader.copy_bounds(board.reader.look(), seen, head));
-    return head.changed_from;
-  };
-  EXPECT_EQ(change_since(0), Time(20));
-  EXPECT_EQ(change_since(1), Time(20));
-  EXPECT_EQ(change_since(2), Time(30));
-  EXPECT_EQ(change_since(3), Time(40));
-}
-
-/// A writer that stored the word of the next revision and died leaves one word fewer that counts;
-/// its successor retires the tag, so that nothing says whether it had.
-TEST(RingOfChanges, TheWordOfARevisionThatWasNotCommittedIsNotTakenForTheOldestOne) {
-  Changing board;
-  board.publish_to(64);
-  const Time before = board.change_since(1);
-  const auto revision = words_at(board.bytes.span(), board.layout.control, 1);
-  board.publish_to(65);
-  revision[0] = 64;                               // as if it had died before the commit
-  EXPECT_EQ(board.change_since(1), Time::min());  // its tag stands: word 1 has been overwritten
-  board.replace_writer();
-  EXPECT_EQ(board.change_since(1), before);  // the words of revisions 2 to 64
-  EXPECT_EQ(board.change_since(0), Time::min());
-}
-
-TEST(RingOfChanges, CountsAfterADiscard) {
-  Changing board;
-  board.publish_to(70);
-  const std::vector<double> zero(1);
-  board.writer.write(1, {.is_new = true, .note = {}, .position = zero, .velocity = zero});
-  board.writer.discard();
-  EXPECT_EQ(board.change_since(7), board.change_of(70));
-  board.publish_to(71);
-  EXPECT_EQ(board.change_since(8), board.change_of(71));
-  EXPECT_EQ(board.change_since(7), Time::min());
-}
-
-/// As two writers leave it that died one after the other while a reader looked.
-TEST(RingOfChanges, SaysNothingWhereBothTagsOfTheHeadAreRetired) {
-  Changing board;
-  board.publish_to(10);
-  Head head{.changed_from = Time(5)};
-  for (const std::size_t c : {0U, 1U}) board.head_tag(c) = kRetiredTag;
-  EXPECT_FALSE(board.reader.copy_bounds(board.reader.look(), 9, head));
-  EXPECT_EQ(head.changed_from, Time(5));
-}
-
-TEST(SettledWord, IsStoredWithoutARevisionAndStaysThatOfTheNextWriter) {
-  MemoryBoard board(1, 16);
-  commit(board, 1, 1);
-  board.writer.store_settled(Time(50));
-  EXPECT_EQ(board.reader.look().settled_until, Time(50));
-  EXPECT_EQ(board.reader.look().revision, 1U);
-  board.writer.store_settled(Time(70));
-  EXPECT_EQ(board.reader.look().settled_until, Time(70));
-  EXPECT_EQ(board.reader.look().revision, 1U);
-  board.replace_writer();
-  EXPECT_EQ(board.reader.look().settled_until, Time(70));
-}
-
-TEST(StepTimes, AreCountedByTheirPowerOfTwo) {
-  MemoryBoard board(1, 16);
-  const std::vector<std::pair<std::int64_t, std::size_t>> steps{
-      {-5, 0},
-      {0, 0},
-      {1, 0},
-      {2, 1},
-      {3, 1},
-      {4, 2},
-      {1023, 9},
-      {1024, 10},
-      {std::int64_t{1} << 38, 38},
-      {(std::int64_t{1} << 40) - 1, 39},
-      {std::int64_t{1} << 40, 39},
-      {std::numeric_limits<std::int64_t>::max(), 39}};
-  std::array<Word, kStepBuckets> wanted{};
-  for (const auto& [length, bucket] : steps) {
-    board.writer.count_step(Time(length));
-    ++wanted[bucket];
-    EXPECT_EQ(board.reader.step_times(), wanted) << length;
-  }
-  board.replace_writer();
-  EXPECT_EQ(board.reader.step_times(), wanted);
-}
 
 /// One writer and several readers on one mapping, which is how ThreadSanitizer sees them. Every
 /// payload says which revision and knot it is of: all knots of one revision must agree with its
@@ -471,42 +331,19 @@ TEST(KnotBoard, ThreadsReadWholeRevisionsWhileOneWrites) {
   constexpr Word kRevisions = 20'000;
   constexpr Word kKnots = 6;
   MemoryBoard board(kDimensions, 8);
-  std::atomic<bool> done{false};
-  std::atomic<std::size_t> torn{0};
-  std::atomic<std::size_t> whole{0};
-  // Revision r has the knots from r on, of which the last one is new, and writes those from
-  // r + r mod 3 on.
-  const auto read = [&] {
-    KnotCopy copy(kDimensions, false);
-    Head head;
-    while (!done.load()) {
-      const Look look = board.reader.look();
-      const Word r = look.revision;
-      if (r == 0 || !board.reader.copy_head(look, head)) continue;
-      if (head.consumed != r || head.first != r) ++torn;
-      bool complete = true;
-      for (Word n = head.newest; n >= head.first && complete; --n) {
-        const Word seen = revision_of_knot(board.reader, n, r, copy);
-        complete = seen != 0;
-        Word wanted = r;
-        while (wanted > 1 && n < wanted + wanted % 3) --wanted;
-        if (complete && seen != wanted) ++torn;
-      }
-      if (complete) ++whole;
-    }
-  };
+  Readers reading(board.reader);
   std::vector<std::thread> readers;
-  for (int i = 0; i < 3; ++i) readers.emplace_back(read);
-  for (Word r = 1; r <= kRevisions || whole.load() < 100; ++r) {
+  for (int i = 0; i < 3; ++i) readers.emplace_back([&] { reading.read(); });
+  for (Word r = 1; r <= kRevisions || reading.whole() < 100; ++r) {
     const Word newest = r + kKnots - 1;
     for (Word n = r == 1 ? 1 : r + r % 3; n <= newest; ++n) write(board, n, r == 1 || n == newest);
     Head head{.first = r, .newest = newest, .consumed = r};
     board.writer.commit(head);
   }
-  done = true;
+  reading.stop();
   for (std::thread& reader : readers) reader.join();
-  EXPECT_EQ(torn.load(), 0U);
-  EXPECT_GE(whole.load(), 100U);
+  EXPECT_EQ(reading.torn(), 0U);
+  EXPECT_GE(reading.whole(), 100U);
 }
 
 }  // namespace

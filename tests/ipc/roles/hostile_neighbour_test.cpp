@@ -138,6 +138,11 @@ TEST(HostileNeighbour, AnOpenWaitsForNoLease) {
   EXPECT_THROW(OwnerLock(name, RegionKind::spline), BadRegion);
 }
 
+/// Opens each fifo for both directions, which ends the wait of whoever opens it for one.
+void free_openers(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths) close(open(path.c_str(), O_RDWR | O_NONBLOCK));
+}
+
 TEST(HostileNeighbour, AFifoThatTakesTheRegionsPlaceWhileItIsOpenedHangsNobody) {
   const TestStream stream;
   const Region region = Region::create(4 * kPage, {});
@@ -157,9 +162,7 @@ TEST(HostileNeighbour, AFifoThatTakesTheRegionsPlaceWhileItIsOpenedHangsNobody) 
       std::this_thread::sleep_for(std::chrono::seconds(2));
       hung = !done && looks == before;
     }
-    while (!done)
-      close(open(other.c_str(), O_RDWR | O_NONBLOCK)),
-          close(open(path.c_str(), O_RDWR | O_NONBLOCK));
+    while (!done) free_openers({other, path});
   });
   int regular = 0;
   int refused = 0;

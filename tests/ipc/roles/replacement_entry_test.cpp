@@ -172,6 +172,17 @@ std::vector<std::array<double, 2>> positions_from(Time first, std::size_t count,
   return positions;
 }
 
+/// The same with their times; they must outlive them.
+std::vector<Waypoint> waypoints_at(const std::vector<std::array<double, 2>>& positions,
+                                   Time first) {
+  std::vector<Waypoint> waypoints;
+  for (const auto& position : positions) {
+    waypoints.push_back({.time = first, .position = position});
+    first += milliseconds(10);
+  }
+  return waypoints;
+}
+
 TEST(ReplacementPreview, OfAProducerChangesNothingAndComesTrue) {
   const testing::TestStream stream;
   Producer producer(stream.name(), {.dimensions = 2, .kinds = {{}, {DimensionKind::wrap, 6.0}}});
@@ -179,14 +190,6 @@ TEST(ReplacementPreview, OfAProducerChangesNothingAndComesTrue) {
   const MonotonicClock clock;
   EXPECT_FALSE(producer.preview_replace(clock.now(), {}).is_known);
   ASSERT_TRUE(solver.attach());
-  const auto waypoints_at = [](const std::vector<std::array<double, 2>>& positions, Time first) {
-    std::vector<Waypoint> waypoints;
-    for (const auto& position : positions) {
-      waypoints.push_back({.time = first, .position = position});
-      first += milliseconds(10);
-    }
-    return waypoints;
-  };
   const Time begin = clock.now() + milliseconds(200);
   const auto motion = positions_from({}, 100, 0);
   for (const Waypoint& waypoint : waypoints_at(motion, begin)) {

@@ -51,6 +51,43 @@ void expect_times_in_order(Live& live) {
   }
 }
 
+/// Expects segments to be as they were before a cut at t, but for where the last one ends.
+void expect_kept(const std::vector<SegmentCopy>& before, const std::vector<SegmentCopy>& after,
+                 Time t) {
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_EQ(after[i].number, before[i].number);
+    EXPECT_EQ(after[i].left, before[i].left);
+    EXPECT_EQ(after[i].right, std::min(before[i].right, t));
+    EXPECT_EQ(after[i].kind, before[i].kind);
+    EXPECT_EQ(after[i].order, before[i].order);
+    EXPECT_EQ(after[i].coefficients, before[i].coefficients);
+    EXPECT_EQ(after[i].has_waypoint, before[i].has_waypoint);
+    EXPECT_EQ(after[i].waypoint, before[i].waypoint);
+    if (i > 0 || before[i].number == 1) {  // else the segment before it may be lost now
+      EXPECT_EQ(after[i].acceleration_step, before[i].acceleration_step);
+    }
+    EXPECT_EQ(after[i].newer_knots, before[i].newer_knots);
+    if (after[i].kind != SegmentKind::hold) {
+      EXPECT_EQ(after[i].natural_right, before[i].natural_right);
+    }
+  }
+}
+
+/// Expects the curve to go on without a gap, also from the state in which it was cut.
+void expect_no_gap(const std::vector<SegmentCopy>& after) {
+  State left(1);
+  State right(1);
+  for (std::size_t k = 1; k < after.size(); ++k) {
+    EXPECT_EQ(after[k].left, after[k - 1].right);
+    EXPECT_EQ(after[k].number, after[k - 1].next);
+    const double length = to_seconds(after[k].left - after[k - 1].left);
+    core::evaluate(after[k - 1].order, after[k - 1].coefficients, length, left.ref());
+    core::evaluate(after[k].order, after[k].coefficients, 0, right.ref());
+    EXPECT_NEAR(left.position()[0], right.position()[0], 1e-12);
+    EXPECT_NEAR(left.velocity()[0], right.velocity()[0], 1e-9);
+  }
+}
+
 /// Cuts the curve at t and expects that of what was before `t` nothing changes but where its last
 /// segment ends.
 void cut(Live& live, Time t, int waypoints = 3) {
@@ -69,35 +106,8 @@ void cut(Live& live, Time t, int waypoints = 3) {
   });
   ASSERT_FALSE(before.empty());
   ASSERT_LT(before.size(), after.size());
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    EXPECT_EQ(after[i].number, before[i].number);
-    EXPECT_EQ(after[i].left, before[i].left);
-    EXPECT_EQ(after[i].right, std::min(before[i].right, t));
-    EXPECT_EQ(after[i].kind, before[i].kind);
-    EXPECT_EQ(after[i].order, before[i].order);
-    EXPECT_EQ(after[i].coefficients, before[i].coefficients);
-    EXPECT_EQ(after[i].has_waypoint, before[i].has_waypoint);
-    EXPECT_EQ(after[i].waypoint, before[i].waypoint);
-    if (i > 0 || before[i].number == 1) {  // else the segment before it may be lost now
-      EXPECT_EQ(after[i].acceleration_step, before[i].acceleration_step);
-    }
-    EXPECT_EQ(after[i].newer_knots, before[i].newer_knots);
-    if (after[i].kind != SegmentKind::hold) {
-      EXPECT_EQ(after[i].natural_right, before[i].natural_right);
-    }
-  }
-  // The curve goes on without a gap, and from the state in which it was cut.
-  State left(1);
-  State right(1);
-  for (std::size_t k = 1; k < after.size(); ++k) {
-    EXPECT_EQ(after[k].left, after[k - 1].right);
-    EXPECT_EQ(after[k].number, after[k - 1].next);
-    const double length = to_seconds(after[k].left - after[k - 1].left);
-    core::evaluate(after[k - 1].order, after[k - 1].coefficients, length, left.ref());
-    core::evaluate(after[k].order, after[k].coefficients, 0, right.ref());
-    EXPECT_NEAR(left.position()[0], right.position()[0], 1e-12);
-    EXPECT_NEAR(left.velocity()[0], right.velocity()[0], 1e-9);
-  }
+  expect_kept(before, after, t);
+  expect_no_gap(after);
 }
 
 /// The segment that contains t.

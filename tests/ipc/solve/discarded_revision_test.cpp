@@ -10,6 +10,7 @@
 #include "ipc/solve/published_curve.hpp"
 #include "ipc/verification/settled_segments.hpp"
 #include "tests/fixtures/curves/method_trial.hpp"
+#include "tests/fixtures/curves/streaming_methods.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
 /// A revision that is discarded, because it came too late or its solver died, leaves no trace in
@@ -251,6 +252,27 @@ Time before_waypoint(const Trial& trial, std::size_t from) {
   return trial.mesh.times[from - 1] - (trial.mesh.times[from - 1] - trial.mesh.times[from - 2]) / 3;
 }
 
+/// Other waypoints than a trial's, each a nanosecond later.
+Trial beside(const Trial& trial, std::uint64_t seed) {
+  Trial other = testing::random_trial(seed, trial.mesh.size(), kDimensions, 4);
+  for (std::size_t i = 0; i < trial.mesh.size(); ++i) {
+    other.mesh.times[i] = trial.mesh.times[i] + Time(1);
+  }
+  return other;
+}
+
+/// Discards up to two revisions of other waypoints from `next` on.
+void disturb_at_random(Curve& disturbed, const Trial& trial, const Trial& other, std::size_t next,
+                       std::mt19937_64& random, bool takes_over) {
+  for (int times = static_cast<int>(random() % 3); times > 0; --times) {
+    const std::size_t end = std::min<std::size_t>(next + 1 + random() % 4, kKnots);
+    const bool enters = next > 3 && random() % 3 == 0;
+    disturbed.disturb(other, next, end,
+                      enters ? std::optional(before_waypoint(trial, next)) : std::nullopt,
+                      random() % 4 == 0, random() % 2 == 0 && takes_over);
+  }
+}
+
 /// Publishes waypoints in revisions of one to three, enters runs of one to five knots, and
 /// finishes; beside it the same with revisions of other waypoints that are discarded. A solver that
 /// takes over knows less of what the motion has shown: then there are limits.
@@ -259,10 +281,7 @@ void expect_no_trace_of_others(core::WindowOptions how, std::uint64_t seed, bool
   SCOPED_TRACE(::testing::Message() << "lag " << how.settle << ", seed " << seed);
   constexpr std::size_t kMore = 3;  // behind the last one that is published
   const Trial trial = testing::random_trial(seed, kKnots + kMore, kDimensions, 4);
-  Trial other = testing::random_trial(seed + 1000, kKnots + kMore, kDimensions, 4);
-  for (std::size_t i = 0; i < kKnots + kMore; ++i) {
-    other.mesh.times[i] = trial.mesh.times[i] + Time(1);
-  }
+  const Trial other = beside(trial, seed + 1000);
   std::mt19937_64 random(seed);
   Curve disturbed(how);
   Curve undisturbed(how);
@@ -276,13 +295,7 @@ void expect_no_trace_of_others(core::WindowOptions how, std::uint64_t seed, bool
       since_entry = 0;
     }
     const std::size_t to = std::min(next + count, kKnots);
-    for (int times = static_cast<int>(random() % 3); times > 0; --times) {
-      const std::size_t end = std::min<std::size_t>(next + 1 + random() % 4, kKnots);
-      const bool enters = next > 3 && random() % 3 == 0;
-      disturbed.disturb(other, next, end,
-                        enters ? std::optional(before_waypoint(trial, next)) : std::nullopt,
-                        random() % 4 == 0, random() % 2 == 0 && takes_over);
-    }
+    disturb_at_random(disturbed, trial, other, next, random, takes_over);
     disturbed.publish(trial, next, to, entry);
     undisturbed.publish(trial, next, to, entry);
     expect_same(disturbed.segments(), undisturbed.segments());
@@ -310,15 +323,7 @@ TEST_P(DiscardedRevision, OfOtherWaypointsLeavesNoTrace) {
   }
 }
 
-std::vector<const Method*> streaming_methods() {
-  std::vector<const Method*> all;
-  for (const Method& method : methods()) {
-    if (method.streams()) all.push_back(&method);
-  }
-  return all;
-}
-
-INSTANTIATE_TEST_SUITE_P(Of, DiscardedRevision, ::testing::ValuesIn(streaming_methods()),
+INSTANTIATE_TEST_SUITE_P(Of, DiscardedRevision, ::testing::ValuesIn(testing::streaming_methods()),
                          [](const auto& tested) { return std::string(tested.param->name); });
 
 }  // namespace

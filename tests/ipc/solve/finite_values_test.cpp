@@ -13,6 +13,7 @@
 #include "ipc/sampling/sampler.hpp"
 #include "splinecast/calculus.hpp"
 #include "splinecast/waypoint.hpp"
+#include "tests/fixtures/curves/streaming_methods.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
 // What is published is finite, whatever is sent.
@@ -145,14 +146,6 @@ TEST(FiniteValues, WhatIsRefusedLeavesNoTrace) {
 
 class AnyValues : public ::testing::TestWithParam<const Method*> {};
 
-std::vector<const Method*> methods_tried() {
-  std::vector<const Method*> all;
-  for (const Method& method : methods()) {
-    if (method.streams()) all.push_back(&method);
-  }
-  return all;
-}
-
 /// Values and intervals from the ends of their ranges.
 class Extremes {
  public:
@@ -193,6 +186,23 @@ core::WindowOptions window_of(const Method& method, Extremes& extremes) {
   return how;
 }
 
+/// Appends a waypoint at t, or replaces the future by it; the first one may be a state to start
+/// from.
+void send_any(FastStream& stream, Extremes& extremes, Time t, bool is_first) {
+  const auto x = extremes.values(5);
+  const auto v = extremes.values(5);
+  const auto a = extremes.values(5);
+  const Waypoint waypoint{.time = t, .position = x, .velocity = v, .acceleration = a};
+  const WaypointRingWriter::Solved solved{stream.board.reader.tail()};
+  if (is_first && extremes.pick(4) == 0) {
+    (void)stream.ring.writer.start_from({t, x, v, a}, solved);
+  } else if (extremes.pick(8) == 0) {
+    (void)stream.ring.writer.replace_from(t - Time(1), {&waypoint, 1}, solved);
+  } else {
+    (void)stream.ring.writer.append(waypoint, solved);
+  }
+}
+
 TEST_P(AnyValues, LeaveTheBoardFiniteAndRestorableAfterEveryStep) {
   const std::vector<Dimension> kinds{{},
                                      {.kind = DimensionKind::quaternion},
@@ -211,18 +221,7 @@ TEST_P(AnyValues, LeaveTheBoardFiniteAndRestorableAfterEveryStep) {
     Time t = stream.clock.time + milliseconds(100);
     for (int i = 0; i < 40; ++i) {
       t += extremes.interval();
-      const auto x = extremes.values(5);
-      const auto v = extremes.values(5);
-      const auto a = extremes.values(5);
-      const Waypoint waypoint{.time = t, .position = x, .velocity = v, .acceleration = a};
-      const WaypointRingWriter::Solved solved{stream.board.reader.tail()};
-      if (i == 0 && extremes.pick(4) == 0) {
-        (void)stream.ring.writer.start_from({t, x, v, a}, solved);
-      } else if (extremes.pick(8) == 0) {
-        (void)stream.ring.writer.replace_from(t - Time(1), {&waypoint, 1}, solved);
-      } else {
-        (void)stream.ring.writer.append(waypoint, solved);
-      }
+      send_any(stream, extremes, t, i == 0);
       if (extremes.pick(3) == 0) continue;
       stream.clock.time += extremes.pick(4) == 0 ? milliseconds(50) : Time(1000);
       for (int step = 0; step < 100 && stream.solver.step(stream.clock).consumed > 0; ++step) {
@@ -237,7 +236,7 @@ TEST_P(AnyValues, LeaveTheBoardFiniteAndRestorableAfterEveryStep) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, AnyValues, ::testing::ValuesIn(methods_tried()),
+INSTANTIATE_TEST_SUITE_P(Every, AnyValues, ::testing::ValuesIn(testing::streaming_methods()),
                          [](const auto& tested) { return std::string(tested.param->name); });
 
 }  // namespace

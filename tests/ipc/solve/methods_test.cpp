@@ -8,6 +8,7 @@
 #include "splinecast/fit.hpp"
 #include "tests/fixtures/curves/method_trial.hpp"
 #include "tests/fixtures/curves/online.hpp"
+#include "tests/fixtures/curves/streaming_methods.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
 // Every method that streams, through ring and board.
@@ -82,15 +83,8 @@ TEST_P(MethodsThroughRegions, RefuseWaypointsThatLackWhatTheyNeed) {
             lacks ? 3U : 0U);
 }
 
-std::vector<const Method*> streaming_methods() {
-  std::vector<const Method*> all;
-  for (const Method& method : methods()) {
-    if (method.streams()) all.push_back(&method);
-  }
-  return all;
-}
-
-INSTANTIATE_TEST_SUITE_P(Every, MethodsThroughRegions, ::testing::ValuesIn(streaming_methods()),
+INSTANTIATE_TEST_SUITE_P(Every, MethodsThroughRegions,
+                         ::testing::ValuesIn(testing::streaming_methods()),
                          [](const auto& tested) { return std::string(tested.param->name); });
 
 TEST(StreamSolver, RefusesWaypointsTooCloseForItsLagAndLambda) {

@@ -9,6 +9,7 @@
 
 #include "ipc/verification/settled_segments.hpp"
 #include "tests/fixtures/curves/method_trial.hpp"
+#include "tests/fixtures/curves/streaming_methods.hpp"
 #include "tests/fixtures/streams/live_world.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
@@ -71,14 +72,6 @@ void flip_last_bit(double& value) {
   value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) ^ 1U);
 }
 
-std::vector<const Method*> verified_methods() {
-  std::vector<const Method*> all;
-  for (const Method& method : methods()) {
-    if (method.streams()) all.push_back(&method);
-  }
-  return all;
-}
-
 class VerificationOfMethods : public ::testing::TestWithParam<const Method*> {};
 
 TEST_P(VerificationOfMethods, SolvesEverySettledSegmentAgainToItsBits) {
@@ -94,7 +87,8 @@ TEST_P(VerificationOfMethods, SolvesEverySettledSegmentAgainToItsBits) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Streaming, VerificationOfMethods, ::testing::ValuesIn(verified_methods()),
+INSTANTIATE_TEST_SUITE_P(Streaming, VerificationOfMethods,
+                         ::testing::ValuesIn(testing::streaming_methods()),
                          [](const auto& at) { return std::string(at.param->name); });
 
 TEST(Verification, TakesLimitsKindsAndAShortLag) {

@@ -1,0 +1,84 @@
+#include "apps/replay/sent_rows.hpp"
+
+#include <fmt/format.h>
+
+#include "splinecast/errors.hpp"
+
+namespace splinecast::apps {
+
+void SentRows::begin() {
+  producer_.refusals(found_);
+  if (options_.verify) begin_log();
+}
+
+/// What a producer before this one sent is not known, so that nothing behind it can be solved.
+void SentRows::begin_log() {
+  if (producer_.appended() > 0) {
+    throw InputError(fmt::format(
+        "stream '{}' was left unfinished by its producer, so that --verify lacks what it was "
+        "sent; 'splinecast rm {}' removes it, once its solver has been stopped",
+        options_.stream, options_.stream));
+  }
+  log_.emplace(options_.stream, producer_.stream_id(), options_.trust);
+}
+
+void SentRows::note_sent(const PlayedRow& row, const Waypoint& waypoint) {
+  ++sent_;
+  in_ring_.push_back(row);
+  if (log_) log_->sent(waypoint);
+}
+
+void SentRows::note_refusal(const PlayedRow& row, Time time, AppendStatus status) {
+  ++refused_by_producer_;
+  note({.by = RefusedBy::producer,
+        .reason = to_string(status),
+        .line = table_.lines[row.row],
+        .loop = row.loop + 1},
+       fmt::format("{}: waypoint refused: {} (time {} ns)", table_.where(row.row),
+                   to_string(status), time.count()));
+}
+
+void SentRows::look() {
+  if (log_) log_->look();
+  producer_.refusals(found_);
+  missed_ += found_.missed;
+  for (const ItemRefusal& refused : found_.items) note_refusal(refused);
+  for (; next_item_ < found_.consumed && !in_ring_.empty(); ++next_item_) in_ring_.pop_front();
+}
+
+void SentRows::finish() {
+  look();
+  refused_.add_unnamed(missed_);
+}
+
+std::optional<ipc::Verification> SentRows::verify(const Condition& end) {
+  if (!log_) return std::nullopt;
+  return log_->verify(end);
+}
+
+void SentRows::note_refusal(const ItemRefusal& refused) {
+  if (log_) log_->refused(refused.item);
+  RefusedRow row{
+      .by = RefusedBy::solver, .reason = to_string(refused.reason), .item = refused.item};
+  std::string where = "the end";
+  const ipc::Word i = refused.item - next_item_;
+  if (i < in_ring_.size()) {
+    row.line = table_.lines[in_ring_[i].row];
+    row.loop = in_ring_[i].loop + 1;
+    where = table_.where(in_ring_[i].row);
+  }
+  std::string message = fmt::format("{}: waypoint refused by the solver: {} (item {})", where,
+                                    row.reason, refused.item);
+  if (refused.excess) {
+    row.excess = refused.excess;
+    message += ": " + in_words(*refused.excess, table_.names);
+  }
+  note(row, message);
+}
+
+void SentRows::note(const RefusedRow& row, const std::string& message) {
+  refused_.add(row, message);
+  if (!options_.skip_bad && !stopped_) stopped_ = row.by;
+}
+
+}  // namespace splinecast::apps

@@ -1,0 +1,48 @@
+#include "apps/replay/solver_wait.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "apps/process/messages.hpp"
+#include "apps/process/signals.hpp"
+#include "ipc/mapping/checked_region.hpp"
+#include "ipc/mapping/owner_lock.hpp"
+#include "ipc/roles/old_motion.hpp"
+#include "splinecast/clock.hpp"
+#include "splinecast/errors.hpp"
+
+namespace splinecast::apps {
+
+void throw_no_solver(const ReplayOptions& options) {
+  if (ipc::region_exists(options.stream, ipc::RegionKind::spline)) {
+    (void)ipc::open_board(options.stream, false, options.trust);
+  }
+  throw TimeOut(fmt::format("no solver for stream '{}' within {} s: run 'splinecast solve {}'",
+                            options.stream, to_seconds(options.wait), options.stream));
+}
+
+bool await_solver_of_finished(const ReplayOptions& options) {
+  if (!ipc::region_exists(options.stream, ipc::RegionKind::spline)) return true;
+  const MonotonicClock clock;
+  const Time end = deadline(clock, options.wait);
+  while (!ipc::is_owned(options.stream, ipc::RegionKind::spline)) {
+    if (clock.now() >= end) throw_no_solver(options);
+    if (!sleep_until(clock.now() + std::chrono::milliseconds(2))) return false;
+  }
+  return true;
+}
+
+Time rest_of_old_motion(const ReplayOptions& options, std::uint64_t stream_id) {
+  const Time end = ipc::end_of_old_motion(options.stream, stream_id, options.trust);
+  const Time now = MonotonicClock().now();
+  ipc::require_near_end(options.stream, end, now);
+  if (end <= now) return Time::zero();
+  if (!options.quiet) {
+    say(fmt::format("'{}': waits {:.1f} s for the end of the earlier motion", options.stream,
+                    to_seconds(end - now)));
+  }
+  return end - now;
+}
+
+}  // namespace splinecast::apps

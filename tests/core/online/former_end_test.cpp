@@ -1,0 +1,98 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "tests/core/online/entry_trial.hpp"
+
+/// A search that is begun again takes the end that it had before.
+namespace splinecast::core::entries {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// The durations beyond the newest knot of a target that is 0.5 away, and the first that passes.
+class FormerEnd : public ::testing::Test {
+ protected:
+  [[nodiscard]] Found look(std::optional<Time> former_end, int at_once = kAny) {
+    return look_for(search_, target_, from_, {.limits = &limits_, .goes_beyond = true}, at_once,
+                    former_end);
+  }
+  [[nodiscard]] bool passes(Time end) {
+    Extrapolation extrapolation(1);
+    extrapolation.begin(target_);
+    State at(1);
+    extrapolation.state_at(end, at.ref());
+    Segment quintic(1);
+    build_splice(from_.instant(), {end, at.position(), at.velocity(), at.acceleration()}, quintic);
+    return keeps_within(limits_, nullptr, quintic);
+  }
+  /// A time after the last duration that does not pass and before the first one that does, which
+  /// passes or not.
+  [[nodiscard]] Time between(bool passing) {
+    const Time found = look(std::nullopt).end.state.time;
+    const auto before = Time(
+        std::llround(static_cast<double>((found - from_.time).count()) / EntrySearch::kGrowth));
+    for (int i = 1; i < 100; ++i) {
+      const Time end = from_.time + before + (found - from_.time - before) * i / 100;
+      if (passes(end) == passing) return end;
+    }
+    ADD_FAILURE() << "there is none";
+    return {};
+  }
+
+  const MotionLimits limits_{.acceleration = {4}};
+  const SlidingWindow target_ = target_of(1, sine, 5, limits_);
+  const From from_ = at_rest(milliseconds(90), {sine(0.09, 0) - 0.5});
+  EntrySearch search_{1, {}};
+};
+
+TEST_F(FormerEnd, IsTakenAgainBeforeTheNextLongerDuration) {
+  const Found anew = look(std::nullopt);
+  ASSERT_EQ(anew.outcome, Outcome::found);
+  ASSERT_FALSE(anew.end.knot);
+  const Time former = between(true);
+  ASSERT_LT(former, anew.end.state.time);
+  for (const int at_once : {kAny, 4, 1}) {
+    const Found found = look(former, at_once);
+    ASSERT_EQ(found.outcome, Outcome::found);
+    EXPECT_FALSE(found.end.knot);
+    EXPECT_EQ(found.end.state.time, former);
+    expect_leads(found.entry, from_, found.end.state);
+  }
+}
+
+TEST_F(FormerEnd, ThatDoesNotPassIsTriedOnceAndDelaysTheSearchByNothingElse) {
+  const Found anew = look(std::nullopt);
+  const Found found = look(between(false));
+  ASSERT_EQ(found.outcome, Outcome::found);
+  // The next duration grows from the former end: it is no longer than the one that was found plus
+  // one step.
+  EXPECT_GT(found.end.state.time, anew.end.state.time);
+  EXPECT_LE(found.end.state.time - from_.time,
+            (anew.end.state.time - from_.time) * EntrySearch::kGrowth);
+  EXPECT_LE(found.tried, anew.tried + 1);
+}
+
+TEST_F(FormerEnd, ThatLiesBeforeTheNewestKnotOrBehindAShorterDurationThatPassesIsNotTaken) {
+  const Found anew = look(std::nullopt);
+  for (const Time former :
+       {from_.time - milliseconds(1), target_.time(2), target_.time(4),
+        anew.end.state.time + milliseconds(1), anew.end.state.time + std::chrono::seconds(9)}) {
+    const Found found = look(former);
+    ASSERT_EQ(found.outcome, Outcome::found);
+    EXPECT_EQ(found.end.state.time, anew.end.state.time) << former.count();
+    EXPECT_EQ(found.tried, anew.tried) << former.count();
+  }
+}
+
+TEST_F(FormerEnd, IsForgottenByTheNextRestart) {
+  const Found anew = look(std::nullopt);
+  const Time former = between(true);
+  ASSERT_EQ(look(former).end.state.time, former);
+  EXPECT_EQ(look(std::nullopt).end.state.time, anew.end.state.time);
+}
+
+}  // namespace
+}  // namespace splinecast::core::entries

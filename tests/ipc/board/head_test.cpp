@@ -1,0 +1,67 @@
+#include <gtest/gtest.h>
+
+#include <utility>
+#include <vector>
+
+#include "tests/fixtures/streams/memory_stream.hpp"
+
+/// Heads and refusals on a board.
+namespace splinecast::ipc {
+namespace {
+
+using testing::MemoryBoard;
+
+TEST(KnotBoard, KeepsTheLastRefusalsWithTheirItems) {
+  MemoryBoard board(1, 16);
+  for (Word i = 0; i < 1500; ++i) {
+    board.writer.write_refusal(i, {.item = 10 * i, .reason = Refusal::not_finite});
+  }
+  for (Word i = 1500 - kRefusalsKept; i < 1500; ++i) {
+    ASSERT_EQ(board.reader.refusal(i).item, 10 * i);
+    ASSERT_EQ(board.reader.refusal(i).reason, Refusal::not_finite);
+  }
+}
+
+TEST(KnotBoard, AHeadThatCannotBeIsNotBelieved) {
+  MemoryBoard board(1, 16);
+  Head head;
+  for (const auto& [first, newest] :
+       std::vector<std::pair<Word, Word>>{{0, 5}, {6, 5}, {1, 17}, {1, kRetiredTag}}) {
+    Head lying{.first = first, .newest = newest};
+    board.writer.commit(lying);
+    EXPECT_FALSE(board.reader.copy_bounds(board.reader.look(), 0, head)) << newest;
+  }
+  for (const Time stop : {Time(-1), kLongestStop + Time(1)}) {
+    Head lying{.first = 1, .newest = 5, .stop = stop};
+    board.writer.commit(lying);
+    EXPECT_FALSE(board.reader.copy_bounds(board.reader.look(), 0, head)) << stop.count();
+  }
+}
+
+TEST(KnotBoard, AHeadIsWholeThoughOnlyWhatIsNotThereIsStored) {
+  MemoryBoard board(1, 16);
+  for (Word value = 1; value <= 12; ++value) {
+    Head head{.first = 1, .newest = 2};
+    // Members change in turn, each seldom enough to be left alone for a while.
+    head.consumed = value;
+    head.misses = value / 3;
+    head.run_frozen = value % 3;
+    head.finished = value % 4 == 3;
+    head.reasons[value % kRefusalReasons] = value;
+    head.refused = value;
+    if (value % 5 == 4) board.replace_writer();
+    board.writer.commit(head);
+    Head seen;
+    ASSERT_TRUE(board.reader.copy_head(board.reader.look(), seen));
+    EXPECT_EQ(seen.consumed, head.consumed);
+    EXPECT_EQ(seen.misses, head.misses);
+    EXPECT_EQ(seen.run_frozen, head.run_frozen);
+    EXPECT_EQ(seen.finished, head.finished);
+    EXPECT_EQ(seen.refused, head.refused);
+    EXPECT_EQ(seen.reasons, head.reasons);
+    EXPECT_EQ(seen.low_water, Time::max());
+  }
+}
+
+}  // namespace
+}  // namespace splinecast::ipc

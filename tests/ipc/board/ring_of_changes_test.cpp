@@ -1,0 +1,104 @@
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "tests/fixtures/streams/board_words.hpp"
+#include "tests/fixtures/streams/memory_stream.hpp"
+
+/// From when on the curve has changed since a revision that a reader has seen.
+namespace splinecast::ipc {
+namespace {
+
+using testing::MemoryBoard;
+
+/// A board of which each revision changed the curve from a time of its own.
+struct Changing : MemoryBoard {
+  Changing() : MemoryBoard(1, 16) {}
+
+  /// Revision r changes the curve from 1000 − r, so that the newest one is the earliest.
+  static Time change_of(Word r) { return Time(1000) - Time(static_cast<std::int64_t>(r)); }
+  void publish_to(Word revision) {
+    while (writer.revision() < revision) {
+      Head head{.first = 1, .newest = 1, .changed_from = change_of(writer.revision() + 1)};
+      writer.commit(head);
+    }
+  }
+  /// What a reader that has seen a revision is told of those after it.
+  Time change_since(Word seen) {
+    Head head;
+    EXPECT_TRUE(reader.copy_bounds(reader.look(), seen, head));
+    return head.changed_from;
+  }
+  Word& head_tag(std::size_t c) {
+    return words_at(bytes.span(), testing::head_offset(layout, c), 1)[0];
+  }
+};
+
+TEST(RingOfChanges, SixtyThreeMissedRevisionsCountAndSixtyFourDoNot) {
+  for (const Word newest : {64U, 65U, 130U, 200U}) {
+    Changing board;
+    board.publish_to(newest);
+    EXPECT_EQ(board.change_since(newest), Time::max());
+    EXPECT_EQ(board.change_since(newest - 1), board.change_of(newest));
+    EXPECT_EQ(board.change_since(newest - 63), board.change_of(newest));
+    EXPECT_EQ(board.change_since(newest - 64), Time::min());
+  }
+}
+
+TEST(RingOfChanges, TheEarliestOfTheMissedRevisionsIsTold) {
+  MemoryBoard board(1, 16);
+  for (const int change : {50, 20, 30, 40}) {
+    Head head{.first = 1, .newest = 1, .changed_from = Time(change)};
+    board.writer.commit(head);
+  }
+  const auto change_since = [&](Word seen) {
+    Head head;
+    EXPECT_TRUE(board.reader.copy_bounds(board.reader.look(), seen, head));
+    return head.changed_from;
+  };
+  EXPECT_EQ(change_since(0), Time(20));
+  EXPECT_EQ(change_since(1), Time(20));
+  EXPECT_EQ(change_since(2), Time(30));
+  EXPECT_EQ(change_since(3), Time(40));
+}
+
+/// A writer that stored the word of the next revision and died leaves one word fewer that counts;
+/// its successor retires the tag, so that nothing says whether it had.
+TEST(RingOfChanges, TheWordOfARevisionThatWasNotCommittedIsNotTakenForTheOldestOne) {
+  Changing board;
+  board.publish_to(64);
+  const Time before = board.change_since(1);
+  const auto revision = words_at(board.bytes.span(), board.layout.control, 1);
+  board.publish_to(65);
+  revision[0] = 64;                               // as if it had died before the commit
+  EXPECT_EQ(board.change_since(1), Time::min());  // its tag stands: word 1 has been overwritten
+  board.replace_writer();
+  EXPECT_EQ(board.change_since(1), before);  // the words of revisions 2 to 64
+  EXPECT_EQ(board.change_since(0), Time::min());
+}
+
+TEST(RingOfChanges, CountsAfterADiscard) {
+  Changing board;
+  board.publish_to(70);
+  const std::vector<double> zero(1);
+  board.writer.write(1, {.is_new = true, .note = {}, .position = zero, .velocity = zero});
+  board.writer.discard();
+  EXPECT_EQ(board.change_since(7), board.change_of(70));
+  board.publish_to(71);
+  EXPECT_EQ(board.change_since(8), board.change_of(71));
+  EXPECT_EQ(board.change_since(7), Time::min());
+}
+
+/// As two writers leave it that died one after the other while a reader looked.
+TEST(RingOfChanges, SaysNothingWhereBothTagsOfTheHeadAreRetired) {
+  Changing board;
+  board.publish_to(10);
+  Head head{.changed_from = Time(5)};
+  for (const std::size_t c : {0U, 1U}) board.head_tag(c) = kRetiredTag;
+  EXPECT_FALSE(board.reader.copy_bounds(board.reader.look(), 9, head));
+  EXPECT_EQ(head.changed_from, Time(5));
+}
+
+}  // namespace
+}  // namespace splinecast::ipc

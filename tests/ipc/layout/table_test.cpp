@@ -1,0 +1,90 @@
+#include "ipc/layout/header.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <span>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+/// Members of a struct lie at the words that the rows of its table name.
+namespace splinecast::ipc {
+namespace {
+
+/// Fills the bytes of one member with what no other member has, and expects them, and nothing else,
+/// at the words that its row says; and back.
+template <typename Struct, auto Member>
+void expect_member_at_its_place(const auto& rows, std::span<const Field> fields,
+                                const MemberRow<Member>& row) {
+  using Value = typename detail::MemberOf<Member>::type;
+  constexpr std::size_t kWords = detail::MemberOf<Member>::words;
+  SCOPED_TRACE(row.name);
+  Extent offset;
+  for (const Field& field : fields) {
+    if (field.name == row.name) offset = field.offset;
+  }
+  Struct from{};
+  std::vector<Word> words(size_of(fields).words);
+  encode(rows, from, words.data());
+  const std::vector<Word> empty = words;
+  std::vector<Word> wanted(kWords);
+  if constexpr (std::is_same_v<Value, bool>) {
+    from.*Member = !(from.*Member);
+    wanted[0] = from.*Member ? 1 : 0;
+  } else {
+    for (std::size_t i = 0; i < kWords; ++i) wanted[i] = 0x0102030405060708 * (i + 1);
+    std::memcpy(static_cast<void*>(&(from.*Member)), wanted.data(), sizeof(Value));
+  }
+  encode(rows, from, words.data());
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const bool is_own = i >= offset.words && i < offset.words + kWords;
+    EXPECT_EQ(words[i], is_own ? wanted[i - offset.words] : empty[i]) << i;
+  }
+  Struct back{};
+  decode(rows, words.data(), back);
+  EXPECT_EQ(std::memcmp(static_cast<const void*>(&(back.*Member)),
+                        static_cast<const void*>(&(from.*Member)), sizeof(Value)),
+            0);
+}
+
+template <typename Struct>
+void expect_member_at_its_place(const auto& /*rows*/, std::span<const Field> /*fields*/,
+                                const FieldRow& /*row*/) {}
+
+template <typename Struct, typename Rows>
+void expect_members_at_their_places(const Rows& rows, std::span<const Field> fields) {
+  std::apply(
+      [&](const auto&... row) { (expect_member_at_its_place<Struct>(rows, fields, row), ...); },
+      rows);
+}
+
+TEST(LayoutTable, EveryMemberOfTheHeaderComesBackFromTheWordsThatItsRowNames) {
+  expect_members_at_their_places<RegionHeader>(kHeaderRows, kHeaderFields);
+}
+
+TEST(LayoutTable, EveryMemberOfTheHeadComesBackFromTheWordsThatItsRowNames) {
+  expect_members_at_their_places<Head>(kHeadRows, kHeadFields);
+}
+
+/// A member without a row would be lost on the way through shared memory.
+TEST(LayoutTable, TheRowsOfHeaderAndHeadNameAllTheirMembers) {
+  const auto count = [](const auto&... row) {
+    const auto bytes = []<typename Row>(const Row& each) -> std::size_t {
+      if constexpr (std::is_same_v<Row, FieldRow>) {
+        return 0;
+      } else {
+        return each.name.empty() ? 0 : detail::as_row(each).size.words * sizeof(Word);
+      }
+    };
+    return (bytes(row) + ...);
+  };
+  EXPECT_EQ(std::apply(count, kHeaderRows), sizeof(RegionHeader));
+  // Three members are not of the revision alone and lie elsewhere; two flags share a word here.
+  constexpr std::size_t kElsewhere =
+      sizeof(Head::revision) + sizeof(Head::settled_until) + sizeof(Head::changed_from);
+  EXPECT_EQ(std::apply(count, kHeadRows) + kElsewhere, sizeof(Head) + sizeof(Word));
+}
+
+}  // namespace
+}  // namespace splinecast::ipc

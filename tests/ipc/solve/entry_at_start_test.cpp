@@ -1,0 +1,53 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/ipc/solve/watched_stream.hpp"
+
+/// Whether a stream begins with an entry.
+namespace splinecast::ipc::entries {
+namespace {
+
+/// A start from rest whose first interval asks for more than the limit, however many waypoints the
+/// first step finds.
+TEST(Entry, BeginsAStreamWhoseFirstIntervalAsksForMoreThanItsLimit) {
+  for (const double limit : {5.0, 0.0}) {
+    for (const int at_once : {2, 8, 31}) {
+      SCOPED_TRACE(::testing::Message() << "limit " << limit << ", " << at_once << " at once");
+      Watched live(limited(limit));
+      const auto send = [&](int ms) { live.send(ms, 1e-3 * ms); };  // at once at 1 /s
+      for (int i = 0; i < at_once; ++i) send(300 + 10 * i);
+      live.drain();
+      for (int ms = 300 + 10 * at_once; ms <= 2000; ms += 10) {
+        live.run_to(ms - 300);
+        send(ms);
+      }
+      live.end();
+      const Head& head = live.solver.head();
+      EXPECT_GE(head.passed_over, 1U);
+      EXPECT_EQ(live.met(), head.interpolated());
+      ASSERT_FALSE(live.collected.segments().empty());
+      EXPECT_NE(live.collected.segments()[0].kind, SegmentKind::spline);
+      EXPECT_EQ(live.collected.segments()[0].left, at(300));
+      if (limit > 0) {
+        EXPECT_LE(live.peak(2), limit * (1 + 1e-6));
+      }
+      EXPECT_EQ(live.verified(), "");
+    }
+  }
+}
+
+TEST(Entry, IsNotNeededByAStartThatKeepsItsLimit) {
+  Watched live(limited(5));
+  for (int ms = 100; ms <= 1500; ms += 10) {
+    live.run_to(ms - 100);
+    live.send(ms, 1 - std::cos(1e-3 * (ms - 100)));
+  }
+  live.end();
+  EXPECT_EQ(live.solver.head().passed_over, 0U);
+  EXPECT_EQ(live.entries(), 0U);
+  EXPECT_EQ(live.verified(), "");
+}
+
+}  // namespace
+}  // namespace splinecast::ipc::entries

@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <random>
+
+#include "tests/ipc/solve/watched_stream.hpp"
+
+/// What a curve makes of waypoints that come late, or are refused while it looks for an entry.
+namespace splinecast::ipc::entries {
+namespace {
+
+TEST(Entry, OfAStreamThatIsLateLeavesTheCountsThatItsSegmentsShow) {
+  for (const double limit : {0.0, 5.0}) {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+      SCOPED_TRACE(::testing::Message() << "limit " << limit << ", seed " << seed);
+      std::mt19937_64 random(seed);
+      Watched live(limited(limit));
+      int ms = 100;
+      while (ms < 4000) {
+        // Each up to 40 ms too late, or with lead.
+        live.run_to(ms - 60 + static_cast<int>(random() % 100));
+        live.send(ms);
+        ms += 20 + static_cast<int>(random() % 20) + (random() % 20 == 0 ? 300 : 0);
+      }
+      live.end();
+      const Head& head = live.solver.head();
+      EXPECT_EQ(head.knots + head.refused, live.sent.size());
+      EXPECT_EQ(live.met(), head.interpolated());
+      expect_continuous(live);
+      EXPECT_EQ(live.verified(), "");
+      if (limit > 0) {
+        EXPECT_LE(live.peak(2), limit * (1 + 1e-6));
+      }
+    }
+  }
+}
+
+TEST(Entry, IsShapedByAWaypointThatComesAQuarterSecondLateAndByNoneThatIsOlder) {
+  for (const int late : {1, 100, 250, 251, 400}) {
+    Watched live;
+    live.send_all(50, 300, 60);
+    live.run_to(1000);
+    live.send(1005 - late);  // settled is 1005
+    live.step();
+    const Head& head = live.solver.head();
+    const bool is_taken = late <= 250;
+    EXPECT_EQ(live.reason(Refusal::past), is_taken ? 0U : 1U) << late;
+    EXPECT_EQ(head.refused, is_taken ? 0U : 1U) << late;
+    EXPECT_EQ(head.passed_over, is_taken ? 1U : 0U) << late;
+    EXPECT_EQ(head.knots, is_taken ? 27U : 26U) << late;
+  }
+}
+
+TEST(Entry, IsNotLedToAWaypointThatWasLate) {
+  Watched live;
+  live.send_all(50, 300, 60);
+  live.run_to(1000);
+  const double before = live.position_at(at(1005));
+  live.send(900);
+  live.step();
+  EXPECT_EQ(live.position_at(at(1005)), before);  // nothing of what has settled
+  live.send_all(1100, 2000, 60);
+  live.end();
+  EXPECT_EQ(live.met(), live.solver.head().interpolated());
+  EXPECT_EQ(live.verified(), "");
+}
+
+TEST(Entry, IgnoresWaypointsThatAreRefusedWhileItIsBeingLookedFor) {
+  Watched live(limited(1));
+  live.send_all(50, 300, 60);
+  live.run_to(800);
+  live.send(900);
+  live.step();
+  // What the producer did not know to be one.
+  live.replace_producer();
+  const double x = 0.3;
+  const auto send_blindly = [&](int ms) {
+    WaypointRingWriter blind(live.ring.bytes.span(), live.ring.layout,
+                             {.min_interval = Time::min()});
+    return blind.append({.time = at(ms), .position = {&x, 1}}, {});
+  };
+  for (const int ms : {900, 890}) {
+    const Word before = live.solver.head().refused;
+    const Word passed = live.solver.head().passed_over;
+    if (send_blindly(ms) != AppendStatus::accepted) continue;
+    live.step();
+    EXPECT_EQ(live.solver.head().refused, before + 1) << ms;
+    EXPECT_EQ(live.solver.head().passed_over, passed) << ms;
+  }
+}
+
+}  // namespace
+}  // namespace splinecast::ipc::entries

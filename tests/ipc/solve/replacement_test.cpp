@@ -1,0 +1,115 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <vector>
+
+#include "ipc/sampling/sampler.hpp"
+#include "tests/fixtures/streams/live_stream.hpp"
+
+/// What replacing the future of a live stream changes.
+namespace splinecast::ipc {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+using Live = testing::LiveStream;
+
+TEST(LiveSolver, ReplacesTheFutureInOneRevisionAndLeavesWhatIsBeforeIt) {
+  Live live;
+  live.put_all(50, 800);
+  const Time t = Live::kNow + milliseconds(423);
+  const double before = live.position_at(t - milliseconds(1));
+  const Word revision = live.board.reader.revision();
+  std::vector<Time> times;
+  for (int ms = 20; ms <= 380; ms += 13) times.push_back(t + milliseconds(ms));
+  ASSERT_EQ(live.replace(t, times), AppendStatus::accepted);
+  EXPECT_TRUE(live.solver.step(live.clock).published);
+  EXPECT_EQ(live.board.reader.revision(), revision + 1);
+  EXPECT_EQ(live.solver.head().changed_from, t);
+  EXPECT_EQ(live.solver.head().newest_knot, times.back());
+  EXPECT_EQ(live.position_at(t - milliseconds(1)), before);
+  live.drain();
+  const Head& head = live.solver.head();
+  EXPECT_EQ(static_cast<Course>(head.course), Course::entering);
+  for (std::size_t i = head.passed_over; i < times.size(); ++i) {
+    EXPECT_NEAR(live.position_at(times[i]), Live::x(times[i]), 1e-12) << i;
+  }
+  EXPECT_LT(head.passed_over, times.size());
+  EXPECT_EQ(live.sampler.preview(times.back() + milliseconds(7), live.state.ref()),
+            SampleStatus::stopping);
+}
+
+TEST(LiveSolver, AReplacementByNothingIsAStopTailFromThere) {
+  Live live;
+  live.put_all(50, 500);
+  const Time t = Live::kNow + milliseconds(250);
+  ASSERT_EQ(live.replace(t, {}), AppendStatus::accepted);
+  live.drain();
+  EXPECT_EQ(live.sampler.preview(t, live.state.ref()), SampleStatus::stopping);
+  EXPECT_NEAR(live.state.velocity()[0], Live::velocity(t), 1e-3);
+  EXPECT_EQ(live.sampler.preview(t + milliseconds(251), live.state.ref()), SampleStatus::holding);
+}
+
+TEST(LiveSolver, AReplacementThatComesTooLateIsRefusedWithAllThatBelongsToIt) {
+  Live live;
+  live.put_all(50, 500);
+  EXPECT_EQ(live.replace(Live::kNow + milliseconds(4), {Live::kNow + milliseconds(30)}),
+            AppendStatus::too_late);
+  const Time t = Live::kNow + milliseconds(10);
+  ASSERT_EQ(live.replace(t, {t + milliseconds(20), t + milliseconds(30)}), AppendStatus::accepted);
+  ASSERT_EQ(live.put(Live::kNow + milliseconds(510)), AppendStatus::accepted);
+  live.clock.time += milliseconds(20);  // the solver wakes when it is too late
+  live.drain();
+  EXPECT_EQ(live.reason(Refusal::too_late), 3U);
+  EXPECT_EQ(live.solver.head().newest_knot, Live::kNow + milliseconds(510));
+  EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(400)),
+              Live::x(Live::kNow + milliseconds(400)), 1e-12);
+}
+
+TEST(LiveSolver, KeepsItsHistoryAndWithdrawsWhatHasNotBeenTaken) {
+  Live live({.settle = 2}, 64, {.history = seconds(1)});
+  live.put_all(50, 2050);
+  const Head& head = live.solver.head();
+  EXPECT_LT(head.newest, 65U);
+  EXPECT_LT(head.consumed, live.ring.writer.head());
+  EXPECT_EQ(head.first, 1U);
+  EXPECT_FALSE(live.solver.step(live.clock).published);  // full: nothing may be overwritten
+  const Time t = Live::kNow + milliseconds(300);
+  ASSERT_EQ(live.replace(t, {}), AppendStatus::accepted);
+  live.drain();
+  EXPECT_EQ(head.consumed, live.ring.writer.head());
+  EXPECT_GT(head.withdrawn, 100U);
+  EXPECT_EQ(head.consumed, head.knots + head.refused + head.withdrawn + head.controls);
+  EXPECT_EQ(live.sampler.preview(t + milliseconds(300), live.state.ref()), SampleStatus::holding);
+}
+
+/// As a producer does that replaces the future with each chunk, the first one too.
+TEST(LiveSolver, AReplacementOnAStreamWithoutWaypointsStartsIt) {
+  for (const bool stops_first : {false, true}) {
+    Live live;
+    if (stops_first) {
+      ASSERT_EQ(live.replace(Live::kNow, {}), AppendStatus::accepted);
+      live.drain();
+      EXPECT_EQ(live.solver.head().newest, 0U);
+    }
+    Live appended;
+    std::vector<Time> times;
+    for (int ms = 50; ms <= 200; ms += 10) times.push_back(Live::kNow + milliseconds(ms));
+    ASSERT_EQ(live.replace(Live::kNow + milliseconds(40), times), AppendStatus::accepted);
+    live.drain();
+    appended.put_all(50, 200);
+    const Head& head = live.solver.head();
+    EXPECT_EQ(head.refused, 0U);
+    EXPECT_EQ(head.controls, stops_first ? 2U : 1U);
+    EXPECT_EQ(head.knots, times.size());
+    EXPECT_EQ(head.consumed, head.knots + head.controls);
+    for (int ms = 0; ms < 400; ++ms) {
+      const Time t = Live::kNow + milliseconds(ms);
+      EXPECT_EQ(live.position_at(t), appended.position_at(t)) << ms;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace splinecast::ipc

@@ -1,0 +1,92 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "ipc/sampling/sampler.hpp"
+#include "tests/fixtures/streams/live_stream.hpp"
+
+/// Up to when a live stream has settled, without and with a step of its solver.
+namespace splinecast::ipc {
+namespace {
+
+using std::chrono::milliseconds;
+
+using Live = testing::LiveStream;
+
+TEST(LiveSolver, SettlesByTimeAndSaysSoWithoutWaypointsOrRevisionsUntilTheMotionEnds) {
+  Live live;
+  live.put_all(50, 200);
+  const auto settled = [&] { return live.board.reader.look().settled_until; };
+  const Word revision = live.board.reader.revision();
+  EXPECT_EQ(settled(), Live::kNow + milliseconds(5));
+  EXPECT_EQ(live.solver.due(), Live::kNow + Time(2'500'000));
+  EXPECT_FALSE(live.solver.step(live.clock).published);
+  EXPECT_EQ(settled(), Live::kNow + milliseconds(5));
+  live.clock.time += milliseconds(3);
+  EXPECT_FALSE(live.solver.step(live.clock).published);
+  EXPECT_EQ(settled(), Live::kNow + milliseconds(8));
+  EXPECT_EQ(live.solver.head().settled_until, settled());
+  EXPECT_EQ(live.solver.due(), live.clock.time + Time(2'500'000));
+  EXPECT_EQ(live.board.reader.revision(), revision);
+  live.clock.time = Live::kNow + milliseconds(445);     // the stop ends at 450
+  EXPECT_TRUE(live.solver.step(live.clock).published);  // it has starved
+  EXPECT_EQ(settled(), Live::kNow + milliseconds(450));
+  EXPECT_EQ(live.solver.due(), Time::max());
+  EXPECT_EQ(live.sampler.sample(Live::kNow + milliseconds(460), live.state.ref()),
+            SampleStatus::holding);
+}
+
+TEST(LiveSolver, ItsNextStepTakesUpWhatHasBeenRaisedWithoutOne) {
+  Live live;
+  live.put_all(50, 200);
+  const auto settled = [&] { return live.board.reader.look().settled_until; };
+  SettledRaise raise = live.solver.settled_raise();
+  EXPECT_TRUE(raise.raise(Live::kNow + milliseconds(20)));
+  EXPECT_EQ(settled(), Live::kNow + milliseconds(25));
+  EXPECT_TRUE(raise.raise(Live::kNow + milliseconds(10)));  // never back
+  EXPECT_EQ(settled(), Live::kNow + milliseconds(25));
+  live.clock.time += milliseconds(15);
+  const Time early = settled() - Time(1);
+  ASSERT_EQ(live.replace(settled(), {settled() + milliseconds(20)}), AppendStatus::accepted);
+  live.drain();
+  EXPECT_EQ(live.solver.head().controls, 1U);
+  EXPECT_GT(live.solver.head().changed_from, early);
+  EXPECT_EQ(settled(), Live::kNow + milliseconds(25));
+}
+
+TEST(LiveSolver, NothingIsRaisedWhereAStepHasMoreToDo) {
+  Live live;
+  EXPECT_FALSE(live.solver.settled_raise().raise(Live::kNow));  // there is no curve
+  live.put_all(50, 200);
+  const Time newest = live.solver.head().newest_knot;
+  SettledRaise raise = live.solver.settled_raise();
+  EXPECT_TRUE(raise.raise(newest - milliseconds(5) - Time(1)));
+  EXPECT_FALSE(raise.raise(newest - milliseconds(5)));  // there it starves
+  live.clock.time = newest - milliseconds(5);
+  EXPECT_TRUE(live.solver.step(live.clock).published);
+  EXPECT_TRUE(live.solver.head().starved);
+  EXPECT_FALSE(live.solver.settled_raise().raise(live.clock.time + milliseconds(1)));
+}
+
+TEST(LiveSolver, ASolverThatTakesOverGoesOnFromTheSettledTimeThatWasToldLast) {
+  Live live;
+  live.put_all(50, 200);
+  live.clock.time += milliseconds(20);
+  EXPECT_FALSE(live.solver.step(live.clock).published);
+  const Time settled = Live::kNow + milliseconds(25);
+  EXPECT_EQ(live.board.reader.look().settled_until, settled);
+  live.replace_solver();
+  EXPECT_EQ(live.solver.head().settled_until, settled);
+  // Whatever its clock says.
+  live.clock.time = Live::kNow;
+  live.drain();
+  EXPECT_EQ(live.board.reader.look().settled_until, settled);
+  EXPECT_EQ(live.replace(settled - Time(1), {settled + milliseconds(20)}), AppendStatus::too_late);
+  ASSERT_EQ(live.replace(settled, {settled + milliseconds(20)}), AppendStatus::accepted);
+  live.drain();
+  EXPECT_EQ(live.solver.head().controls, 1U);
+  EXPECT_EQ(live.solver.head().changed_from, settled);
+}
+
+}  // namespace
+}  // namespace splinecast::ipc

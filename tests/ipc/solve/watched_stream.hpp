@@ -1,0 +1,178 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ipc/verification/settled_segments.hpp"
+#include "ipc/verification/verify.hpp"
+#include "tests/fixtures/streams/item_record.hpp"
+#include "tests/fixtures/streams/live_stream.hpp"
+
+namespace splinecast::ipc::entries {
+
+using std::chrono::milliseconds;
+using testing::LiveStream;
+
+/// How the streams end.
+inline constexpr Condition kHalt{.kind = ConditionKind::halt, .value = {}};
+
+/// A motion that begins at rest 50 ms after the start: up to 1 /s and 1 /s².
+inline double motion(Time t) {
+  const double s = to_seconds(t - LiveStream::kNow) - 0.05;
+  return 0.5 * s - 0.25 * std::sin(2 * s);
+}
+
+/// So long after the start.
+inline Time at(int ms) { return LiveStream::kNow + milliseconds(ms); }
+
+/// 0: without a limit.
+inline core::WindowOptions limited(double acceleration) {
+  core::WindowOptions how;
+  how.limits.acceleration = {acceleration};
+  return how;
+}
+
+/// A live stream whose curve, items and refusals are all kept.
+struct Watched : LiveStream {
+  struct Sent {
+    Time time{};
+    double position = 0;
+  };
+
+  explicit Watched(core::WindowOptions how = {}, bool takes_over = false)
+      : LiveStream(std::move(how), 1024, {.history = std::chrono::seconds(2)}),
+        items(1),
+        collected(board.reader, true),
+        takes_over_each_step(takes_over) {}
+
+  void step() {
+    note();
+    if ((takes_over_each_step && !is_searching) || clock.time >= takes_over_at) {
+      replace_solver();
+      takes_over_at = Time::max();
+    }
+    solver.step(clock);
+    is_searching = solver.due() <= clock.time;
+    note();
+    const Head& head = solver.head();
+    EXPECT_EQ(head.consumed, head.knots + head.refused + head.withdrawn + head.controls);
+    EXPECT_LE(head.passed_over, head.knots);
+  }
+  void note() {
+    items.note_items(ring.reader);
+    items.note_refusals(board.reader, solver.head().refused);
+    collected.look();
+  }
+  void run_to(int ms) {
+    for (; clock.time < at(ms); clock.time += milliseconds(1)) step();
+  }
+  /// Sends a waypoint whatever the producer knows.
+  void send(int ms, double position) {
+    ASSERT_EQ(
+        ring.writer.append({.time = at(ms), .position = {&position, 1}}, {board.reader.tail()}),
+        AppendStatus::accepted)
+        << ms;
+    sent.push_back({at(ms), position});
+  }
+  void send(int ms) { send(ms, motion(at(ms))); }
+  /// One every 10 ms, each `lead` before its time, while the clock goes on.
+  void send_all(int from_ms, int to_ms, int lead) {
+    for (int ms = from_ms; ms <= to_ms; ms += 10) {
+      run_to(ms - lead);
+      send(ms);
+    }
+    step();
+  }
+  void end() {
+    while (ring.writer.finish(kHalt, {board.reader.tail()}) == AppendStatus::full) step();
+    for (int i = 0; i < 5000 && !solver.head().finished; ++i) {
+      step();
+      clock.time += milliseconds(1);
+    }
+    ASSERT_TRUE(solver.head().finished);
+    note();
+  }
+  [[nodiscard]] std::string verified() {
+    const Verification found = verify({.window = window,
+                                       .kinds = kinds,
+                                       .items = items.items(),
+                                       .segments = collected.segments(),
+                                       .head = collected.head(),
+                                       .end = kHalt});
+    if (!found.first) return found.equal > 0 ? "" : "nothing was compared";
+    return std::to_string(found.first->segment) + ": " + found.first->what + ", " +
+           found.first->published + " published, " + found.first->solved + " solved";
+  }
+  /// Sent waypoints that the curve passes at their time, or ends at.
+  [[nodiscard]] Word met() const {
+    Word count = 0;
+    for (const Sent& waypoint : sent) count += is_met(waypoint) || ends_at(waypoint) ? 1U : 0U;
+    return count;
+  }
+  [[nodiscard]] bool is_met(const Sent& waypoint) const {
+    return std::ranges::any_of(collected.segments(), [&](const SegmentCopy& s) {
+      const double begin = s.has_waypoint ? s.waypoint[0] : s.coefficients[0];
+      return s.left == waypoint.time && begin == waypoint.position;
+    });
+  }
+  /// Where the curve ends no segment begins.
+  [[nodiscard]] bool ends_at(const Sent& waypoint) const {
+    const SegmentCopy& last = collected.segments().back();
+    State end(1);
+    core::evaluate(last.order, last.coefficients, to_seconds(last.right - last.left), end.ref());
+    return waypoint.time == sent.back().time &&
+           std::abs(end.position()[0] - waypoint.position) < 1e-9;
+  }
+  /// The largest derivative of what the solver has chosen itself: entries, stops and the like.
+  [[nodiscard]] double peak(int derivative) const {
+    State at(1);
+    double most = 0;
+    for (const SegmentCopy& s : collected.segments()) {
+      if (s.kind == SegmentKind::spline && s.has_waypoint) continue;
+      const double h = to_seconds(s.right - s.left);
+      for (int i = 0; i <= 50; ++i) {
+        core::evaluate(s.order, s.coefficients, h * i / 50, at.ref());
+        const auto values = derivative == 1 ? at.velocity() : at.acceleration();
+        most = std::max(most, std::abs(values[0]));
+      }
+    }
+    return most;
+  }
+  [[nodiscard]] std::size_t entries() const {
+    return static_cast<std::size_t>(
+        std::ranges::count(collected.segments(), SegmentKind::splice, &SegmentCopy::kind));
+  }
+  [[nodiscard]] Course course() const { return static_cast<Course>(solver.head().course); }
+
+  std::vector<Sent> sent;
+  testing::ItemRecord items;
+  SettledSegments collected;
+  bool takes_over_each_step;  ///< but not within a search, which the next solver begins again
+  bool is_searching = false;
+  Time takes_over_at = Time::max();  ///< once
+};
+
+/// Expects each segment to begin where the one before it ends, at its velocity.
+inline void expect_continuous(const Watched& live) {
+  const auto segments = live.collected.segments();
+  State left(1);
+  State right(1);
+  for (std::size_t i = 1; i < segments.size(); ++i) {
+    const SegmentCopy& before = segments[i - 1];
+    ASSERT_EQ(before.right, segments[i].left);
+    ASSERT_EQ(before.next, segments[i].number);
+    core::evaluate(before.order, before.coefficients, to_seconds(before.right - before.left),
+                   left.ref());
+    core::evaluate(segments[i].order, segments[i].coefficients, 0, right.ref());
+    EXPECT_NEAR(left.position()[0], right.position()[0], 1e-11);
+    EXPECT_NEAR(left.velocity()[0], right.velocity()[0], 1e-9);
+  }
+}
+
+}  // namespace splinecast::ipc::entries
