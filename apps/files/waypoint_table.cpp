@@ -10,7 +10,6 @@
 #include "apps/files/kinds.hpp"
 #include "apps/files/table_format.hpp"
 #include "apps/files/text_file.hpp"
-#include "ipc/ring/waypoint_ring.hpp"
 
 namespace splinecast::apps {
 namespace {

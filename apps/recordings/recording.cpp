@@ -15,6 +15,7 @@
 #include "apps/cli/options.hpp"
 #include "apps/files/kinds.hpp"
 #include "apps/process/exit_codes.hpp"
+#include "ipc/ring/item.hpp"
 #include "splinecast/status.hpp"
 
 namespace splinecast::apps {

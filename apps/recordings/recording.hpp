@@ -3,7 +3,7 @@
 #include "apps/files/waypoint_table.hpp"
 #include "apps/recordings/late_rows.hpp"
 #include "apps/recordings/refused_rows.hpp"
-#include "ipc/ring/waypoint_ring.hpp"
+#include "splinecast/options.hpp"
 
 /// What is done to a recording before it is sent.
 namespace splinecast::apps {

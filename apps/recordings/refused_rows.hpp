@@ -8,7 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "ipc/board/knot_board.hpp"
+#include "ipc/memory/word.hpp"
+#include "splinecast/status.hpp"
 
 namespace splinecast::apps {
 

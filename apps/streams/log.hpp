@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/streams/own_board.hpp"
+#include "ipc/ring/item.hpp"
 #include "ipc/verification/sent_items.hpp"
 #include "ipc/verification/settled_segments.hpp"
 #include "ipc/verification/verify.hpp"

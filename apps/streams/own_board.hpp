@@ -3,7 +3,10 @@
 #include <cstdint>
 #include <string>
 
-#include "ipc/board/knot_board.hpp"
+#include "ipc/board/reader.hpp"
+#include "ipc/layout/header.hpp"
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/summary.hpp"
 #include "ipc/mapping/checked_region.hpp"
 
 namespace splinecast::apps {

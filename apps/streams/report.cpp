@@ -6,7 +6,10 @@
 #include <vector>
 
 #include "apps/recordings/refused_rows.hpp"
+#include "ipc/board/refused_item.hpp"
+#include "ipc/layout/header.hpp"
 #include "ipc/layout/limits.hpp"
+#include "ipc/layout/summary.hpp"
 #include "ipc/options/curve.hpp"
 #include "ipc/options/stream.hpp"
 #include "splinecast/boundary_condition.hpp"

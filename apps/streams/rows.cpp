@@ -7,10 +7,12 @@
 
 #include "apps/recordings/advice.hpp"
 #include "apps/streams/report.hpp"
+#include "ipc/layout/header.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/options/curve.hpp"
 #include "ipc/options/stream.hpp"
-#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/ring/item.hpp"
+#include "ipc/ring/reader.hpp"
 #include "splinecast/errors.hpp"
 
 namespace splinecast::apps {

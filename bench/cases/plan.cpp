@@ -6,7 +6,14 @@
 
 #include "bench/harness/bench_stream.hpp"
 #include "bench/harness/trips.hpp"
+#include "ipc/board/reader.hpp"
+#include "ipc/board/writer.hpp"
+#include "ipc/layout/areas.hpp"
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/waypoint_items.hpp"
 #include "ipc/mapping/region.hpp"
+#include "ipc/ring/reader.hpp"
+#include "ipc/ring/writer.hpp"
 #include "ipc/solve/stream_solver.hpp"
 
 namespace splinecast::bench {

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "core/polynomial/segment.hpp"
-#include "ipc/board/knot_board.hpp"
+#include "ipc/board/knot.hpp"
+#include "ipc/board/reader.hpp"
+#include "ipc/layout/summary.hpp"
 
 namespace splinecast::ipc {
 

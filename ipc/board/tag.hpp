@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ipc/board/knot_board.hpp"
+#include "ipc/board/knot.hpp"
 
 /// The lower bits of a cell's tag: see kCellRows.
 namespace splinecast::ipc {

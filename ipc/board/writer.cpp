@@ -1,83 +1,15 @@
+#include "ipc/board/writer.hpp"
+
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
 #include "core/basics/magnitude.hpp"
-#include "ipc/board/knot_board.hpp"
 #include "ipc/board/tag.hpp"
+#include "ipc/layout/separation.hpp"
 
 namespace splinecast::ipc {
-namespace {
-
-constexpr unsigned kRefusalItemShift = 8;
-
-}  // namespace
-
-KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout& layout)
-    : layout_(layout),
-      control_(words_at(region, layout.control, kBoardControlWords)),
-      refusals_(words_at(region, layout.refusals, kRefusalsKept)),
-      excesses_(words_at(region, layout.excesses, kExcessesKept * kExcessWords)),
-      times_(words_at(region, layout.times, layout.capacity)),
-      revision_(load(control_[kRevision], std::memory_order_relaxed)),
-      settled_(load(control_[kSettledUntil], std::memory_order_relaxed)),
-      late_(load(control_[kLate], std::memory_order_relaxed)),
-      checked_(load(control_[kChecked], std::memory_order_relaxed)),
-      states_(layout.capacity + kPassedSlots),
-      written_(states_.size()),
-      at_{.words =
-              words_at(region, layout.slots, states_.size() * layout.stride / sizeof(Word)).data(),
-          .mask = layout.capacity - 1,
-          .slot_words = layout.stride / sizeof(Word),
-          .cell_words = layout.cell / sizeof(Word),
-          .states = states_.data(),
-          .written = written_.data()} {
-  held_times_.reserve(layout.capacity);
-  retire_uncommitted(head_cells(), revision_);
-  for (std::size_t i = 0; i < states_.size(); ++i) retire_uncommitted(cells_at(i), revision_);
-  read_state();
-  restore_times();
-}
-
-SlotView<Word> KnotBoardWriter::head_cells() const noexcept {
-  return {control_.data() + kHeadSlot, kHeadWords};
-}
-
-/// What lies on the board.
-void KnotBoardWriter::read_state() noexcept {
-  for (std::size_t c = 0; c < 2; ++c) {
-    for (std::size_t i = 0; i < kHeadWords; ++i) {
-      head_[c][i] = load(head_cells().cell(c)[i], std::memory_order_relaxed);
-    }
-  }
-  head_cell_ = head_cells().tags(std::memory_order_relaxed).newest(revision_);
-  for (std::size_t i = 0; i < states_.size(); ++i) {
-    const Tags tags = cells_at(i).tags(std::memory_order_relaxed);
-    const std::size_t c = tags.newest(revision_);
-    states_[i] = static_cast<SlotState>(tags.of[c] & kTagPartsMask) | (c == 0 ? 0 : kCellBit);
-  }
-}
-
-/// Packed times that a writer before this one had stored for a revision that it did not commit
-/// would mislead lookups for as long as those knots stand.
-void KnotBoardWriter::restore_times() noexcept {
-  Head head;
-  decode(kHeadRows, head_[head_cell_].data(), head);
-  if (head.newest == 0 || head.newest - head.first >= layout_.capacity) return;
-  Word begins = 0;
-  for (Word number = head.newest; number >= head.first && number > 0; --number) {
-    const std::size_t c = (states_[index_of(number)] & kCellBit) != 0 ? 1 : 0;
-    const Word tag = load(cells(number).cell(c)[kCellTag], std::memory_order_relaxed);
-    const Word* const node =
-        slot(number) + (layout_.nodes + node_of(tag) * layout_.node) / sizeof(Word);
-    const bool is_end = note_of(tag).form == core::SegmentForm::none && number < head.newest;
-    if (!is_end) begins = load(node[kNodeTime], std::memory_order_relaxed);
-    Word& hint = times_[index_of(number)];
-    if (load(hint, std::memory_order_relaxed) != begins) {
-      store(hint, begins, std::memory_order_relaxed);
-    }
-  }
-}
 
 /// The entry of a slot that has been written for the next revision.
 KnotBoardWriter::WrittenSlot& KnotBoardWriter::written_slot(const Slots& slots,
@@ -231,79 +163,11 @@ core::SegmentForm KnotBoardWriter::form(Word number) const noexcept {
   return note_of(load(cells(number).cell(c)[kCellTag], std::memory_order_relaxed)).form;
 }
 
-void KnotBoardWriter::discard() noexcept {
-  retire_uncommitted(head_cells(), revision_);
-  for (const WrittenSlot& slot : written()) {
-    retire_uncommitted(cells_at(slot.index), revision_);
-    states_[slot.index] &= ~kWrittenBit;
-  }
-  // The oldest last: a time may have been stored to twice.
-  for (std::size_t i = held_times_.size(); i-- > 0;) {
-    store(times_[held_times_[i].index], held_times_[i].time, std::memory_order_relaxed);
-  }
-  forget_written();
-}
-
-void KnotBoardWriter::forget_written() noexcept {
-  at_.written_count = 0;
-  held_times_.clear();
-  written_sum_ = 0;
-  row_sum_ = 0;
-}
-
-void KnotBoardWriter::write_refusal(Word index, const RefusedItem& refusal) noexcept {
-  // One word, so that it is never torn; published by the commit of the head that counts it.
-  put(refusals_[index % kRefusalsKept],
-      refusal.item << kRefusalItemShift | static_cast<Word>(refusal.reason));
-}
-
-void KnotBoardWriter::write_excess(Word index, const LimitExcess& excess) noexcept {
-  const auto words = excesses_.subspan(index % kExcessesKept * kExcessWords, kExcessWords);
-  const std::array values{to_word(excess.time), to_word(excess.value), to_word(excess.limit)};
-  store(words[0], 0, std::memory_order_release);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    store(words[i + 1], values[i], std::memory_order_release);
-  }
-  store(words[0],
-        excess.item << kExcessItemShift | excess.dimension << kExcessDimensionShift |
-            static_cast<Word>(excess.kind) << 1U | (excess.is_refused ? 1 : 0),
-        std::memory_order_release);
-}
-
-void KnotBoardWriter::commit(Head& head) noexcept {
-  const Word r = revision_ + 1;
-  head.revision = r;
-  const std::size_t spare = 1 - head_cell_;
-  std::array<Word, kHeadWords>& held = head_[spare];
-  Word* const cell = head_cells().cell(spare);
-  held[0] = r << kTagRevisionShift;
-  store(cell[0], held[0], std::memory_order_release);                      // W1
-  put(control_[kChanges + r % kChangesKept], to_word(head.changed_from));  // C1
-  // What the cell holds already stands: it was stored before this revision's tag was, by this
-  // writer or by one whose lock it has taken over, and whoever acquires that tag sees it.
-  encode_changes(kHeadRows, head, held.data(),
-                 [cell](std::size_t i, Word word) { put(cell[i], word); });
-  store(control_[kRevision], r, std::memory_order_release);  // W3
-  revision_ = r;
-  head_cell_ = spare;
-  for (const WrittenSlot& slot : written()) states_[slot.index] = slot.next;
-  forget_written();
-}
-
 void KnotBoardWriter::count_step(Time length) noexcept {
   const auto ns = static_cast<Word>(std::max<std::int64_t>(length.count(), 1));
   const std::size_t bucket = std::min<std::size_t>(std::bit_width(ns) - 1, kStepBuckets - 1);
   Word& count = control_[kStepTimes + bucket];
   store(count, load(count, std::memory_order_relaxed) + 1, std::memory_order_relaxed);
-}
-
-void KnotBoardWriter::store_checked(bool is_late) noexcept {
-  if (is_late) {
-    late_ = revision_;
-    store(control_[kLate], revision_, std::memory_order_relaxed);
-  }
-  checked_ = revision_;
-  store(control_[kChecked], revision_, std::memory_order_release);
 }
 
 }  // namespace splinecast::ipc

@@ -1,8 +1,16 @@
 #include "ipc/layout/table.hpp"
 
+#include <array>
 #include <sstream>
 
+#include "ipc/layout/areas.hpp"
+#include "ipc/layout/board_control.hpp"
 #include "ipc/layout/header.hpp"
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/mark.hpp"
+#include "ipc/layout/ring_control.hpp"
+#include "ipc/layout/summary.hpp"
+#include "ipc/layout/waypoint_items.hpp"
 
 namespace splinecast::ipc {
 namespace {

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "ipc/layout/check.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"

@@ -3,6 +3,8 @@
 #include <string_view>
 
 #include "ipc/layout/header.hpp"
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/waypoint_items.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
 #include "splinecast/options.hpp"

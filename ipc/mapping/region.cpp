@@ -14,7 +14,8 @@
 #include <system_error>
 #include <utility>
 
-#include "ipc/layout/header.hpp"
+#include "ipc/layout/areas.hpp"
+#include "ipc/layout/separation.hpp"
 #include "ipc/memory/descriptor.hpp"
 #include "ipc/memory/mode_text.hpp"
 #include "ipc/memory/system_failure.hpp"

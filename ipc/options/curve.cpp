@@ -9,6 +9,7 @@
 
 #include "core/forms/stop.hpp"
 #include "core/limits/named.hpp"
+#include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/limits.hpp"
 #include "ipc/options/stream.hpp"
 #include "splinecast/errors.hpp"

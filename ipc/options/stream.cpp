@@ -5,6 +5,10 @@
 #include <span>
 #include <stdexcept>
 
+#include "ipc/layout/areas.hpp"
+#include "ipc/layout/common_control.hpp"
+#include "ipc/layout/mark.hpp"
+#include "ipc/layout/separation.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/process_life.hpp"
 #include "splinecast/errors.hpp"

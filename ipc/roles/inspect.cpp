@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "ipc/board/reader.hpp"
+#include "ipc/layout/knot_slots.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/options/curve.hpp"
-#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/ring/reader.hpp"
 #include "ipc/solve/shown_motion.hpp"
 #include "splinecast/errors.hpp"
 

@@ -5,7 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "ipc/board/knot_board.hpp"
+#include "ipc/board/refused_item.hpp"
+#include "ipc/layout/board_control.hpp"
+#include "ipc/layout/header.hpp"
+#include "ipc/layout/summary.hpp"
 #include "splinecast/limits.hpp"
 #include "splinecast/options.hpp"
 #include "splinecast/status.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "ipc/board/knot_board.hpp"
 #include "ipc/layout/header.hpp"
+#include "ipc/layout/summary.hpp"
 #include "ipc/sampling/sampler.hpp"
 #include "ipc/solve/settled_raise.hpp"
 #include "splinecast/reader.hpp"

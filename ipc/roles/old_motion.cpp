@@ -1,9 +1,10 @@
 #include "ipc/roles/old_motion.hpp"
 
+#include "ipc/board/reader.hpp"
 #include "ipc/board/segment.hpp"
+#include "ipc/layout/summary.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/options/stream.hpp"
-#include "ipc/ring/waypoint_ring.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/options.hpp"
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "ipc/board/knot_board.hpp"
+#include "ipc/board/reader.hpp"
 #include "ipc/layout/header.hpp"
 #include "splinecast/options.hpp"
 #include "splinecast/time.hpp"

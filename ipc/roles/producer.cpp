@@ -6,16 +6,19 @@
 #include <thread>
 #include <utility>
 
-#include "ipc/board/knot_board.hpp"
+#include "ipc/board/reader.hpp"
+#include "ipc/layout/header.hpp"
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/waypoint_items.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/memory/futex.hpp"
 #include "ipc/options/curve.hpp"
 #include "ipc/options/stream.hpp"
-#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/ring/reader.hpp"
+#include "ipc/ring/writer.hpp"
 #include "ipc/roles/refusals.hpp"
 #include "ipc/roles/replace_preview.hpp"
-
 #include "splinecast/errors.hpp"
 
 namespace splinecast {

@@ -6,13 +6,14 @@
 #include <utility>
 
 #include "core/limits/check.hpp"
+#include "ipc/board/reader.hpp"
+#include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/limits.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/memory/futex.hpp"
 #include "ipc/options/stream.hpp"
 #include "ipc/roles/internals.hpp"
-
 #include "splinecast/errors.hpp"
 
 namespace splinecast {

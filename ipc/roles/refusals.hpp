@@ -2,8 +2,11 @@
 
 #include <vector>
 
-#include "ipc/board/knot_board.hpp"
-#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/board/reader.hpp"
+#include "ipc/board/refused_item.hpp"
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/summary.hpp"
+#include "ipc/ring/reader.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/status.hpp"
 #include "splinecast/time.hpp"

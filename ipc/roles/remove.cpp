@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "ipc/layout/check.hpp"
+#include "ipc/layout/common_control.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/memory/futex.hpp"

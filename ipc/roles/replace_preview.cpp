@@ -7,6 +7,7 @@
 
 #include "core/forms/stop.hpp"
 #include "core/limits/extremes.hpp"
+#include "ipc/layout/summary.hpp"
 
 namespace splinecast::ipc {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/limits/check.hpp"
 #include "core/online/entry_search.hpp"
 #include "core/online/sliding_window.hpp"
-#include "ipc/board/knot_board.hpp"
+#include "ipc/board/reader.hpp"
 #include "ipc/sampling/sampler.hpp"
 #include "ipc/solve/shown_motion.hpp"
 #include "ipc/solve/stream_solver.hpp"

@@ -8,7 +8,9 @@
 #include <utility>
 #include <variant>
 
+#include "ipc/board/writer.hpp"
 #include "ipc/layout/limits.hpp"
+#include "ipc/layout/waypoint_items.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/memory/futex.hpp"

@@ -2,7 +2,8 @@
 
 #include <span>
 
-#include "ipc/layout/header.hpp"
+#include "ipc/layout/common_control.hpp"
+#include "ipc/layout/ring_control.hpp"
 #include "ipc/memory/word.hpp"
 #include "ipc/solve/settled_raise.hpp"
 #include "splinecast/time.hpp"

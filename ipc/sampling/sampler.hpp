@@ -5,8 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "ipc/board/knot_board.hpp"
+#include "ipc/board/reader.hpp"
 #include "ipc/board/segment.hpp"
+#include "ipc/layout/summary.hpp"
 #include "ipc/sampling/snapshot.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/dimension_kind.hpp"

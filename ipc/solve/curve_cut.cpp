@@ -5,7 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/board/reader.hpp"
+#include "ipc/board/writer.hpp"
+#include "ipc/layout/summary.hpp"
 
 namespace splinecast::ipc {
 namespace {

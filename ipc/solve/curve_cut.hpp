@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "core/forms/splice.hpp"
-#include "ipc/board/knot_board.hpp"
+#include "ipc/board/reader.hpp"
 #include "ipc/board/segment.hpp"
+#include "ipc/board/writer.hpp"
+#include "ipc/layout/summary.hpp"
 #include "ipc/solve/run_edges.hpp"
 #include "splinecast/dimension_kind.hpp"
 #include "splinecast/state.hpp"

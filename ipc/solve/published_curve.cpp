@@ -5,7 +5,10 @@
 #include <utility>
 
 #include "core/forms/stop.hpp"
-#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/board/reader.hpp"
+#include "ipc/board/writer.hpp"
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/summary.hpp"
 
 namespace splinecast::ipc {
 namespace {

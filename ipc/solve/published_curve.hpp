@@ -6,7 +6,10 @@
 
 #include "core/online/entry_search.hpp"
 #include "core/online/sliding_window.hpp"
-#include "ipc/board/knot_board.hpp"
+#include "ipc/board/knot.hpp"
+#include "ipc/board/reader.hpp"
+#include "ipc/board/writer.hpp"
+#include "ipc/layout/summary.hpp"
 #include "ipc/solve/curve_cut.hpp"
 #include "ipc/solve/shown_motion.hpp"
 #include "splinecast/dimension_kind.hpp"

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ipc/ring/item.hpp"
+
 namespace splinecast::ipc {
 
 ReplacementQueue::ReplacementQueue(const WaypointRingReader& ring) : ring_(&ring) {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/ring/reader.hpp"
 
 namespace splinecast::ipc {
 

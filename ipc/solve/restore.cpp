@@ -3,7 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/summary.hpp"
 #include "ipc/solve/published_curve.hpp"
 
 /// How a published curve is taken up again from the board.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/board/reader.hpp"
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/summary.hpp"
 #include "ipc/solve/curve_cut.hpp"
 
 namespace splinecast::ipc {

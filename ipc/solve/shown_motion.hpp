@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "core/online/sliding_window.hpp"
-#include "ipc/board/knot_board.hpp"
+#include "ipc/board/knot.hpp"
+#include "ipc/board/reader.hpp"
+#include "ipc/layout/summary.hpp"
 #include "splinecast/limits.hpp"
 
 namespace splinecast::ipc {

@@ -5,8 +5,11 @@
 #include <vector>
 
 #include "core/online/sliding_window.hpp"
-#include "ipc/board/knot_board.hpp"
-#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/board/reader.hpp"
+#include "ipc/board/writer.hpp"
+#include "ipc/layout/summary.hpp"
+#include "ipc/ring/item.hpp"
+#include "ipc/ring/reader.hpp"
 #include "ipc/solve/published_curve.hpp"
 #include "ipc/solve/replacement_queue.hpp"
 #include "ipc/solve/settled_raise.hpp"

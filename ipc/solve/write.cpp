@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/forms/stop.hpp"
+#include "ipc/layout/knot_slots.hpp"
 #include "ipc/solve/published_curve.hpp"
 
 /// How a published curve becomes knots on the board.

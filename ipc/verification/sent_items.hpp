@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ipc/memory/word.hpp"
-#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/ring/item.hpp"
 #include "splinecast/waypoint.hpp"
 
 namespace splinecast::ipc {

@@ -17,6 +17,7 @@
 
 #include "apps/output/stream.hpp"
 #include "apps/process/messages.hpp"
+#include "ipc/layout/areas.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
 #include "tests/fuzz/byteflip_roles.hpp"

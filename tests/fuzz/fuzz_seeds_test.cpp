@@ -7,7 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "ipc/board/knot.hpp"
+#include "ipc/board/reader.hpp"
 #include "ipc/board/segment.hpp"
+#include "ipc/layout/check.hpp"
+#include "ipc/layout/header.hpp"
+#include "ipc/layout/summary.hpp"
 #include "tests/fixtures/processes/process.hpp"
 #include "tests/fuzz/region_targets.hpp"
 #include "tests/fuzz/seed_streams.hpp"

@@ -8,7 +8,7 @@
 #include <new>
 #include <span>
 
-#include "ipc/layout/header.hpp"
+#include "ipc/layout/separation.hpp"
 
 namespace splinecast::fuzz {
 

@@ -1,6 +1,12 @@
 #include <array>
 #include <vector>
 
+#include "ipc/board/reader.hpp"
+#include "ipc/board/refused_item.hpp"
+#include "ipc/layout/board_control.hpp"
+#include "ipc/layout/check.hpp"
+#include "ipc/layout/header.hpp"
+#include "ipc/layout/summary.hpp"
 #include "ipc/options/stream.hpp"
 #include "ipc/roles/old_motion.hpp"
 #include "ipc/verification/settled_segments.hpp"

@@ -7,6 +7,10 @@
 #include <functional>
 #include <stdexcept>
 
+#include "ipc/layout/areas.hpp"
+#include "ipc/layout/board_control.hpp"
+#include "ipc/layout/header.hpp"
+#include "ipc/layout/separation.hpp"
 #include "ipc/mapping/region.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/solver.hpp"

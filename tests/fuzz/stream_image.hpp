@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "ipc/layout/header.hpp"
+#include "ipc/memory/word.hpp"
 
 /// What a fuzzer feeds: the two regions of a stream as bytes, and a script of what is done with
 /// them. A seed is a stream that real roles have made; a mutation of it changes words.

@@ -17,10 +17,10 @@
 #include "apps/recordings/advice.hpp"
 #include "apps/recordings/recording.hpp"
 #include "ipc/memory/names.hpp"
-#include "ipc/ring/waypoint_ring.hpp"
 #include "splinecast/boundary_condition.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/limits.hpp"
+#include "splinecast/waypoint.hpp"
 #include "tests/fuzz/script.hpp"
 
 namespace splinecast::fuzz {

@@ -1,8 +1,16 @@
 #include <optional>
 #include <stdexcept>
 
+#include "ipc/board/reader.hpp"
+#include "ipc/board/writer.hpp"
+#include "ipc/layout/check.hpp"
+#include "ipc/layout/header.hpp"
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/waypoint_items.hpp"
 #include "ipc/options/curve.hpp"
 #include "ipc/options/stream.hpp"
+#include "ipc/ring/reader.hpp"
+#include "ipc/ring/writer.hpp"
 #include "ipc/solve/stream_solver.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/options.hpp"

@@ -1,4 +1,4 @@
-/* The hand-over of ipc/waypoint_ring.hpp: a producer that appends items singly or several by one store of
+/* The hand-over of ipc/ring/writer.hpp: a producer that appends items singly or several by one store of
  * `head`, dies at any store and is taken over; a solver that consumes, sleeps and is woken; and a passive
  * observer that nobody waits for. Steps interleave one load or store at a time, in program order: this
  * checks the algorithm, not its memory orderings.

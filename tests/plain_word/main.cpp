@@ -4,6 +4,11 @@
 #include <map>
 #include <string>
 
+#include "ipc/layout/board_control.hpp"
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/ring_control.hpp"
+#include "ipc/layout/summary.hpp"
+#include "ipc/layout/waypoint_items.hpp"
 #include "tests/fixtures/streams/threaded_stream.hpp"
 
 /// Runs a stream's threads with one of its words as plain memory:

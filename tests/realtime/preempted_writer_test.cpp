@@ -9,8 +9,12 @@
 #include <limits>
 #include <random>
 
-#include "ipc/board/knot_board.hpp"
+#include "ipc/board/reader.hpp"
+#include "ipc/layout/check.hpp"
+#include "ipc/layout/header.hpp"
+#include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/publication.hpp"
+#include "ipc/layout/summary.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/roles/internals.hpp"
 #include "splinecast/reader.hpp"

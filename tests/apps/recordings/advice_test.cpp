@@ -7,7 +7,7 @@
 #include <random>
 
 #include "apps/process/exit_codes.hpp"
-#include "ipc/ring/waypoint_ring.hpp"
+#include "splinecast/waypoint.hpp"
 
 namespace splinecast::apps {
 namespace {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ipc/layout/header.hpp"
+#include "ipc/layout/mark.hpp"
 #include "tests/apps/streams/forbidden.hpp"
 
 /// Files under a stream's names that are not what they should be.

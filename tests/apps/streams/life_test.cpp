@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "ipc/layout/summary.hpp"
 #include "ipc/memory/names.hpp"
-#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/ring/writer.hpp"
 #include "ipc/roles/internals.hpp"
 #include "splinecast/reader.hpp"
 #include "splinecast/streams.hpp"

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/ring/item.hpp"
 
 namespace splinecast::campaign {
 

@@ -5,7 +5,8 @@
 #include <algorithm>
 
 #include "apps/process/messages.hpp"
-#include "ipc/layout/header.hpp"
+#include "ipc/layout/check.hpp"
+#include "ipc/ring/item.hpp"
 
 namespace splinecast::campaign {
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "ipc/layout/header.hpp"
 #include "ipc/mapping/region.hpp"
-#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/ring/item.hpp"
+#include "ipc/ring/reader.hpp"
 #include "tests/campaign/kills/plan.hpp"
 
 namespace splinecast::campaign {

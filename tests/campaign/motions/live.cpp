@@ -4,6 +4,8 @@
 #include <list>
 
 #include "apps/process/signals.hpp"
+#include "ipc/layout/board_control.hpp"
+#include "ipc/layout/header.hpp"
 #include "tests/campaign/campaigns.hpp"
 #include "tests/campaign/motions/live_row.hpp"
 #include "tests/campaign/motions/rules.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "apps/process/child.hpp"
-#include "ipc/layout/header.hpp"
+#include "ipc/layout/summary.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/reader.hpp"
 #include "tests/campaign/motions/schedule.hpp"

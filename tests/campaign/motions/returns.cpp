@@ -8,6 +8,9 @@
 
 #include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/summary.hpp"
+#include "ipc/ring/writer.hpp"
 #include "ipc/sampling/sampler.hpp"
 #include "tests/campaign/campaigns.hpp"
 #include "tests/campaign/motions/sines.hpp"

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "ipc/board/knot_board.hpp"
+#include "ipc/board/reader.hpp"
+#include "ipc/layout/summary.hpp"
 
 namespace splinecast::campaign {
 

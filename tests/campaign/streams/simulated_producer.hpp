@@ -3,6 +3,8 @@
 #include <functional>
 #include <vector>
 
+#include "ipc/ring/item.hpp"
+#include "ipc/ring/writer.hpp"
 #include "tests/campaign/streams/revision_check.hpp"
 #include "tests/campaign/streams/waypoint_source.hpp"
 

@@ -5,7 +5,8 @@
 #include <bit>
 #include <cmath>
 
-#include "ipc/layout/header.hpp"
+#include "ipc/board/reader.hpp"
+#include "ipc/layout/board_control.hpp"
 
 namespace splinecast::campaign {
 namespace {

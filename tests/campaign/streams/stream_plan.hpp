@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "core/online/sliding_window.hpp"
-#include "ipc/ring/waypoint_ring.hpp"
 #include "ipc/solve/stream_solver.hpp"
 #include "splinecast/dimension_kind.hpp"
+#include "splinecast/options.hpp"
 #include "tests/campaign/streams/random.hpp"
 
 namespace splinecast::campaign {

@@ -3,6 +3,8 @@
 #include <utility>
 #include <vector>
 
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/summary.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
 /// Heads and refusals on a board.

@@ -4,7 +4,17 @@
 #include <limits>
 #include <vector>
 
+#include "ipc/board/reader.hpp"
+#include "ipc/layout/areas.hpp"
+#include "ipc/layout/board_control.hpp"
+#include "ipc/layout/header.hpp"
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/ring_control.hpp"
+#include "ipc/layout/summary.hpp"
+#include "ipc/layout/waypoint_items.hpp"
 #include "ipc/options/stream.hpp"
+#include "ipc/ring/item.hpp"
+#include "ipc/ring/writer.hpp"
 #include "ipc/sampling/sampler.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/options.hpp"

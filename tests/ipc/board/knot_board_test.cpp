@@ -1,4 +1,4 @@
-#include "ipc/board/knot_board.hpp"
+#include "ipc/board/knot.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "ipc/board/reader.hpp"
+#include "ipc/layout/summary.hpp"
 #include "tests/fixtures/streams/board_words.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 

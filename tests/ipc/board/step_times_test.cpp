@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "ipc/layout/board_control.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
 namespace splinecast::ipc {

@@ -1,4 +1,4 @@
-#include "ipc/layout/header.hpp"
+#include "ipc/layout/table.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,10 +9,16 @@
 #include <utility>
 #include <vector>
 
+#include "ipc/layout/areas.hpp"
+#include "ipc/layout/check.hpp"
+#include "ipc/layout/mark.hpp"
+#include "ipc/layout/separation.hpp"
+#include "ipc/layout/waypoint_items.hpp"
+#include "ipc/memory/names.hpp"
+#include "ipc/options/stream.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/options.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
-#include "ipc/options/stream.hpp"
 
 /// Which headers of regions are accepted, and what is said of the others.
 namespace splinecast::ipc {

@@ -10,6 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "ipc/layout/check.hpp"
+#include "ipc/layout/header.hpp"
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/memory/names.hpp"
 #include "ipc/options/curve.hpp"
 #include "ipc/options/stream.hpp"
 #include "splinecast/errors.hpp"

@@ -1,4 +1,4 @@
-#include "ipc/layout/header.hpp"
+#include "ipc/layout/common_control.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,8 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+
+#include "ipc/layout/mark.hpp"
 
 /// The page of the layout is written from its tables.
 namespace splinecast::ipc {

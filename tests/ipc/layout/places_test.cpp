@@ -1,4 +1,4 @@
-#include "ipc/layout/header.hpp"
+#include "ipc/layout/areas.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,14 @@
 #include <string>
 #include <string_view>
 
-#include "splinecast/options.hpp"
+#include "ipc/layout/board_control.hpp"
+#include "ipc/layout/common_control.hpp"
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/ring_control.hpp"
+#include "ipc/layout/separation.hpp"
+#include "ipc/layout/waypoint_items.hpp"
 #include "ipc/options/stream.hpp"
+#include "splinecast/options.hpp"
 
 /// Where the parts of regions lie, and how large they are.
 namespace splinecast::ipc {

@@ -8,6 +8,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "ipc/layout/summary.hpp"
+
 /// Members of a struct lie at the words that the rows of its table name.
 namespace splinecast::ipc {
 namespace {

@@ -5,7 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "ipc/board/reader.hpp"
+#include "ipc/board/writer.hpp"
+#include "ipc/layout/header.hpp"
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/waypoint_items.hpp"
+#include "ipc/memory/names.hpp"
 #include "ipc/options/stream.hpp"
+#include "ipc/ring/reader.hpp"
+#include "ipc/ring/writer.hpp"
 #include "ipc/solve/stream_solver.hpp"
 #include "splinecast/options.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "ipc/layout/header.hpp"
+#include "ipc/layout/separation.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/streams.hpp"

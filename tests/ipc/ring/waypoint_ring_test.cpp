@@ -1,10 +1,12 @@
-#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/ring/writer.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <vector>
 
+#include "ipc/layout/ring_control.hpp"
+#include "ipc/ring/item.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
 namespace splinecast::ipc {

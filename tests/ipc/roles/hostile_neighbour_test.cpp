@@ -15,6 +15,7 @@
 #include <string>
 #include <thread>
 
+#include "ipc/layout/separation.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/roles/inspect.hpp"

@@ -2,6 +2,9 @@
 
 #include <vector>
 
+#include "ipc/board/refused_item.hpp"
+#include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/summary.hpp"
 #include "ipc/roles/inspect.hpp"
 #include "splinecast/method.hpp"
 #include "splinecast/producer.hpp"

@@ -9,6 +9,9 @@
 #include <thread>
 #include <vector>
 
+#include "ipc/board/reader.hpp"
+#include "ipc/layout/check.hpp"
+#include "ipc/layout/header.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/options/stream.hpp"
 #include "ipc/roles/internals.hpp"

@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "ipc/layout/check.hpp"
 #include "ipc/layout/header.hpp"
+#include "ipc/layout/knot_slots.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/mapping/region.hpp"
 #include "tests/fixtures/processes/few_descriptors.hpp"

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "ipc/board/knot_board.hpp"
+#include "ipc/board/reader.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/memory/futex.hpp"
 #include "splinecast/producer.hpp"

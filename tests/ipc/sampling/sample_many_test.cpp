@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "ipc/board/reader.hpp"
+#include "ipc/layout/knot_slots.hpp"
 #include "ipc/sampling/sampler.hpp"
 #include "tests/fixtures/curves/mesh.hpp"
 #include "tests/fixtures/processes/allocations.hpp"

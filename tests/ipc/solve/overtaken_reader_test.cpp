@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "ipc/layout/board_control.hpp"
 #include "ipc/sampling/sampler.hpp"
 #include "tests/fixtures/streams/live_stream.hpp"
 #include "tests/ipc/solve/running_clock.hpp"

@@ -1,63 +1,24 @@
-#include "ipc/ring/waypoint_ring.hpp"
+#include "ipc/ring/writer.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <string>
 
-#include "core/basics/magnitude.hpp"
+#include "ipc/layout/common_control.hpp"
+#include "ipc/ring/item_words.hpp"
+#include "ipc/ring/reader.hpp"
 #include "splinecast/errors.hpp"
 
 namespace splinecast::ipc {
 namespace {
 
-// Word kItemKind of an item.
-constexpr Word kKindMask = 0xff;
-constexpr Word kHasVelocity = 1U << 8;
-constexpr Word kHasAcceleration = 1U << 9;
-constexpr unsigned kConditionShift = 16;
-constexpr unsigned kCountShift = 32;
-
 /// The time of a stop if the producer knows no settled time: before every waypoint that can follow.
 constexpr Time kEarliestStop = -kLatestTime;
-
-std::size_t words_per_item(const RingLayout& layout) noexcept {
-  return layout.stride / sizeof(Word);
-}
 
 bool fits(std::span<const double> values, std::size_t dimensions) noexcept {
   return values.empty() || values.size() == dimensions;
 }
 
 }  // namespace
-
-bool is_finite(std::span<const double> values) noexcept {
-  // Mostly even their sum is usable.
-  return is_usable(core::magnitude_of(values)) || std::ranges::all_of(values, is_usable);
-}
-
-bool is_finite(const Waypoint& waypoint) noexcept {
-  return is_finite(waypoint.position) &&
-         (waypoint.velocity.empty() || is_finite(waypoint.velocity)) &&
-         (waypoint.acceleration.empty() || is_finite(waypoint.acceleration));
-}
-
-Waypoint RingItem::waypoint() const noexcept {
-  const std::size_t dimensions = values.size() / 3;
-  const auto all = std::span<const double>(values);
-  Waypoint waypoint{.time = time, .position = all.first(dimensions)};
-  if (has_velocity) waypoint.velocity = all.subspan(dimensions, dimensions);
-  if (has_acceleration) waypoint.acceleration = all.last(dimensions);
-  return waypoint;
-}
-
-WaypointValues RingItem::waypoint_values() noexcept {
-  const std::size_t dimensions = values.size() / 3;
-  const auto all = std::span(values);
-  WaypointValues waypoint{.position = all.first(dimensions)};
-  if (has_velocity) waypoint.velocity = all.subspan(dimensions, dimensions);
-  if (has_acceleration) waypoint.acceleration = all.last(dimensions);
-  return waypoint;
-}
 
 WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLayout& layout,
                                        const IngestLimits& limits)
@@ -284,69 +245,6 @@ AppendStatus WaypointRingWriter::counted(AppendStatus status) noexcept {
 
 void WaypointRingWriter::retire() noexcept {
   store(control_[kRetired], 1, std::memory_order_release);
-}
-
-WaypointRingReader::WaypointRingReader(std::span<const std::byte> region,
-                                       const RingLayout& layout) noexcept
-    : layout_(layout),
-      control_(words_at(region, layout.control, kRingControlWords)),
-      items_(words_at(region, layout.items, layout.capacity * words_per_item(layout))) {}
-
-void WaypointRingReader::copy(Word i, RingItem& out) const noexcept {
-  const std::size_t stride = words_per_item(layout_);
-  const auto words = items_.subspan((i & (layout_.capacity - 1)) * stride, stride);
-  const Word kind = load(words[kItemKind], std::memory_order_acquire);
-  out.kind = static_cast<ItemKind>(kind & kKindMask);
-  out.has_velocity = (kind & kHasVelocity) != 0;
-  out.has_acceleration = (kind & kHasAcceleration) != 0;
-  out.condition = static_cast<ConditionKind>((kind >> kConditionShift) & kKindMask);
-  out.count = static_cast<std::uint32_t>(kind >> kCountShift);
-  out.time = to_time(load(words[kItemTime], std::memory_order_acquire));
-  out.blend = out.kind == ItemKind::replace && out.count > 0
-                  ? to_time(load(words[kItemValues], std::memory_order_acquire))
-                  : Time::zero();
-  const bool is_bare = out.kind == ItemKind::waypoint && !out.has_velocity && !out.has_acceleration;
-  const std::size_t values = is_bare ? layout_.dimensions : out.values.size();
-  load_values(std::span(out.values).first(values), &words[kItemValues]);
-}
-
-ItemKind WaypointRingReader::kind(Word i) const noexcept {
-  const Word& word = items_[(i & (layout_.capacity - 1)) * words_per_item(layout_) + kItemKind];
-  return static_cast<ItemKind>(load(word, std::memory_order_acquire) & kKindMask);
-}
-
-bool WaypointRingReader::is_stop(Word i) const noexcept {
-  const Word& word = items_[(i & (layout_.capacity - 1)) * words_per_item(layout_) + kItemKind];
-  const Word kind = load(word, std::memory_order_acquire);
-  return (kind & kKindMask) == static_cast<Word>(ItemKind::replace) && kind >> kCountShift == 0;
-}
-
-Time WaypointRingReader::time(Word i) const noexcept {
-  const Word& word = items_[(i & (layout_.capacity - 1)) * words_per_item(layout_) + kItemTime];
-  return to_time(load(word, std::memory_order_acquire));
-}
-
-bool WaypointRingReader::observe(Word i, RingItem& out) const noexcept {
-  copy(i, out);
-  return is_kept(i);
-}
-
-std::optional<Time> WaypointRingReader::observe_time(Word i) const noexcept {
-  if (i >= head()) return std::nullopt;
-  const Time at = time(i);
-  return is_kept(i) ? std::optional(at) : std::nullopt;
-}
-
-/// O2, for what has been loaded of item i.
-bool WaypointRingReader::is_kept(Word i) const noexcept {
-  const Word next = i + layout_.capacity;  // the item that comes into its place
-  return load(control_[kHead], std::memory_order_relaxed) < next &&
-         load(control_[kClaimed], std::memory_order_relaxed) <= next;
-}
-
-Word WaypointRingReader::refused(AppendStatus status) const noexcept {
-  return load(control_[kProducerCounters + static_cast<std::size_t>(status)],
-              std::memory_order_relaxed);
 }
 
 }  // namespace splinecast::ipc

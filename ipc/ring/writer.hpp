@@ -2,18 +2,18 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
-#include <optional>
 #include <span>
-#include <vector>
 
-#include "core/forms/splice.hpp"
-#include "core/online/extrapolation.hpp"
-#include "ipc/layout/header.hpp"
+#include "ipc/layout/ring_control.hpp"
+#include "ipc/layout/waypoint_items.hpp"
+#include "ipc/memory/word.hpp"
+#include "ipc/ring/item.hpp"
 #include "splinecast/boundary_condition.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/options.hpp"
+#include "splinecast/state.hpp"
 #include "splinecast/status.hpp"
+#include "splinecast/time.hpp"
 #include "splinecast/waypoint.hpp"
 
 /// The waypoint ring: items from one producer to one solver, over a span of bytes.
@@ -52,37 +52,6 @@
 /// `retired` is stored with release and loaded with acquire: nothing depends on more than the word
 /// itself. The counters of refusals are relaxed: each is a number of its own.
 namespace splinecast::ipc {
-
-/// How late a waypoint of a live stream may come, before what has settled, and still shape the
-/// target that an entry leads back to: the straight line behind the one before it is over by then.
-/// It is passed over.
-inline constexpr Time kMostLate = core::Extrapolation::kLine;
-
-/// What a ring item says.
-enum class ItemKind : std::uint8_t {
-  waypoint = 1,
-  replace = 2,      ///< withdraws the future from a time on; so many waypoints follow
-  start_state = 3,  ///< the state that a stream starts in
-  finish = 4,       ///< the stream ends at its last waypoint, with a condition there
-};
-
-/// A ring item with memory of its own. Allocates when made only.
-struct RingItem {
-  explicit RingItem(std::size_t dimensions) : values(3 * dimensions) {}
-
-  ItemKind kind = ItemKind::waypoint;
-  bool has_velocity = false;
-  bool has_acceleration = false;
-  ConditionKind condition{};  ///< of a finish
-  std::uint32_t count = 0;    ///< of a replacement: waypoints that belong to it
-  Time blend{};               ///< of one with waypoints: its entry takes at least so long
-  Time time{};
-  std::vector<double> values;  ///< positions, velocities, accelerations: those that it has
-
-  /// The item's waypoint or state; and its values, which may be changed. Both view `values`.
-  [[nodiscard]] Waypoint waypoint() const noexcept;
-  [[nodiscard]] WaypointValues waypoint_values() noexcept;
-};
 
 /// Items that waypoints leave free in a ring, for stops and a finish: these must not wait until the
 /// board has room for what is queued before them.
@@ -175,75 +144,5 @@ class WaypointRingWriter {
   bool ends_with_stop_ = false;  ///< the newest item is a stop
   Time last_time_{};
 };
-
-/// The solver's side, and any passive observer's. No function blocks, allocates or stores.
-class WaypointRingReader {
- public:
-  /// `region` holds a ring of this layout and outlives the reader.
-  WaypointRingReader(std::span<const std::byte> region, const RingLayout& layout) noexcept;
-
-  [[nodiscard]] std::size_t dimensions() const noexcept { return layout_.dimensions; }
-  [[nodiscard]] std::size_t capacity() const noexcept { return layout_.capacity; }
-
-  /// Items appended so far; S1, or seq_cst for a solver about to sleep.
-  [[nodiscard]] Word head(std::memory_order order = std::memory_order_acquire) const noexcept {
-    return load(control_[kHead], order);
-  }
-  [[nodiscard]] const Word& head_word() const noexcept { return control_[kHead]; }
-  [[nodiscard]] bool retired() const noexcept {
-    return load(control_[kRetired], std::memory_order_acquire) != 0;
-  }
-
-  /// `head` and `retired`, which lie in one cache line: all that has to be looked at of a ring to
-  /// which nothing happens.
-  [[nodiscard]] std::span<const Word, 2> polled() const noexcept { return control_.first<2>(); }
-
-  /// Asks for the lines of item i. Loads nothing.
-  void prefetch(Word i) const noexcept {
-    prefetch_lines(&items_[(i & (layout_.capacity - 1)) * (layout_.stride / sizeof(Word))],
-                   layout_.stride / 2);
-  }
-
-  /// Copies item i < head(), of which the consumer has not yet stored a tail beyond it.
-  void copy(Word i, RingItem& out) const noexcept;
-
-  /// Kind and time of item i, of which the same holds.
-  [[nodiscard]] ItemKind kind(Word i) const noexcept;
-  /// Whether it is a replacement without waypoints.
-  [[nodiscard]] bool is_stop(Word i) const noexcept;
-  [[nodiscard]] Time time(Word i) const noexcept;
-
-  /// Copies item i for an observer whom the producer does not wait for. Returns false if the item
-  /// is, or may be, overwritten (O2); then `out` is of no use. Wait-free: O(D).
-  [[nodiscard]] bool observe(Word i, RingItem& out) const noexcept;
-
-  /// The time of item i for such an observer; nothing if the item is, or may be, overwritten, or
-  /// has not been appended.
-  [[nodiscard]] std::optional<Time> observe_time(Word i) const noexcept;
-
-  /// Items that the producer itself refused with this status.
-  [[nodiscard]] Word refused(AppendStatus status) const noexcept;
-
- private:
-  [[nodiscard]] bool is_kept(Word i) const noexcept;
-
-  RingLayout layout_;
-  std::span<const Word> control_;
-  std::span<const Word> items_;
-};
-
-/// Whether a waypoint may follow another one this much earlier: `accepted`, or why not.
-[[nodiscard]] constexpr AppendStatus judge_interval(Time interval,
-                                                    const IngestLimits& limits) noexcept {
-  if (interval == Time::zero()) return AppendStatus::duplicate;
-  if (interval < Time::zero()) return AppendStatus::out_of_order;
-  if (interval < limits.min_interval) return AppendStatus::too_close;
-  if (interval > limits.max_interval) return AppendStatus::too_far_apart;
-  return AppendStatus::accepted;
-}
-
-/// Whether all values are numbers within ±kLargestValue.
-[[nodiscard]] bool is_finite(std::span<const double> values) noexcept;
-[[nodiscard]] bool is_finite(const Waypoint& waypoint) noexcept;
 
 }  // namespace splinecast::ipc

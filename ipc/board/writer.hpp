@@ -4,18 +4,21 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-#include <limits>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/forms/knot_segment.hpp"
 #include "core/limits/check.hpp"
 #include "core/solvers/knot_ring.hpp"
-#include "ipc/layout/header.hpp"
+#include "ipc/board/knot.hpp"
+#include "ipc/board/refused_item.hpp"
+#include "ipc/layout/board_control.hpp"
+#include "ipc/layout/common_control.hpp"
+#include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/publication.hpp"
-#include "splinecast/status.hpp"
+#include "ipc/layout/summary.hpp"
+#include "ipc/memory/word.hpp"
+#include "splinecast/time.hpp"
 
 /// The knot board: the knots of a stream and the head that goes with each revision, over a span of
 /// bytes. One solver writes it, by publication.hpp; anybody reads. Knots are numbered from 1; knot
@@ -29,7 +32,7 @@
 /// Orderings of the words outside the slots; those of the slots, of `settled until` and of the ring
 /// of changes are publication.hpp's:
 ///
-/// - `tail` and `sleeping`: S3, P3 and the sleep of waypoint_ring.hpp. `tail` follows the commit,
+/// - `tail` and `sleeping`: S3, P3 and the sleep of ring/writer.hpp. `tail` follows the commit,
 ///   so that a solver that dies between the two has its items consumed: the next one stores it
 ///   again.
 /// - `late` and `checked`, which are stored after the commit, when it is known whether it came too
@@ -50,36 +53,6 @@
 /// - What the writer loads of its own board is relaxed: it made these stores itself, or its
 ///   predecessor did, whose death the kernel told by giving the owner's lock away.
 namespace splinecast::ipc {
-
-/// An item that the solver refused.
-struct RefusedItem {
-  Word item = 0;
-  Refusal reason{};
-};
-
-/// What goes with a knot besides its values.
-struct KnotNote {
-  core::SegmentForm form{};     ///< of the segment that begins here
-  bool is_waypoint = false;     ///< whether a waypoint stands here
-  bool arrives = false;         ///< the acceleration is that of the segment that ends here,
-  bool starts = false;          ///< of the one that begins here, or of both
-  std::uint32_t newer_knots{};  ///< that it had seen when it was solved: 0 … 127
-};
-
-/// A knot as a revision writes it. Spans hold one value per dimension.
-struct KnotRecord {
-  bool is_new = false;  ///< the knot comes to stand in its slot; else only its cell is written
-  KnotNote note;
-  Time time{};                             ///< of a new knot
-  Time begins{};                           ///< when the next segment begins, if none begins here
-  std::span<const double> position;        ///< of a new knot: its waypoint, else of the curve
-  std::span<const double> velocity;        ///<
-  std::span<const double> acceleration{};  ///< iff the note says that there is one
-  std::span<const double> residual{};      ///< iff the board smooths
-  Word item = 0;                           ///< as the layout has it beside the acceleration
-  const core::Prefix* prefix = nullptr;    ///< with `g`: the knot's row, where it has changed
-  std::span<const double> g{};
-};
 
 /// The solver's side. One thread of one process uses it; no function but the constructor allocates,
 /// and none blocks.
@@ -176,7 +149,7 @@ class KnotBoardWriter {
   [[nodiscard]] bool is_checked() const noexcept { return checked_ == revision_; }
   [[nodiscard]] bool is_late() const noexcept { return revision_ > 0 && late_ == revision_; }
 
-  /// For a solver about to sleep, or awake again: seq_cst, see waypoint_ring.hpp.
+  /// For a solver about to sleep, or awake again: seq_cst, see ring/writer.hpp.
   void store_sleeping(bool sleeping) noexcept {
     store(control_[kSleeping], sleeping ? 1 : 0, std::memory_order_seq_cst);
   }
@@ -244,7 +217,9 @@ class KnotBoardWriter {
   [[nodiscard]] SlotView<Word> cells(Word number) const noexcept {
     return cells_at(index_of(number));
   }
-  [[nodiscard]] SlotView<Word> head_cells() const noexcept;
+  [[nodiscard]] SlotView<Word> head_cells() const noexcept {
+    return {control_.data() + kHeadSlot, kHeadWords};
+  }
   [[nodiscard]] static Claimed claim(Slots& slots, std::size_t index, Word tag,
                                      SlotState changed) noexcept;
   void write_slot(std::size_t index, const KnotRecord& knot) noexcept;
@@ -256,7 +231,12 @@ class KnotBoardWriter {
   void note_time(Word number, Time time) noexcept;
   void read_state() noexcept;
   void restore_times() noexcept;
-  void forget_written() noexcept;
+  void forget_written() noexcept {
+    at_.written_count = 0;
+    held_times_.clear();
+    written_sum_ = 0;
+    row_sum_ = 0;
+  }
 
   BoardLayout layout_;
   std::span<Word> control_;
@@ -275,199 +255,6 @@ class KnotBoardWriter {
   std::vector<HeldTime> held_times_;
   double written_sum_ = 0;  ///< of the magnitudes of what readers see of the next revision
   double row_sum_ = 0;      ///< of those of its rows
-};
-
-/// What a reader saw of the commit word and of the settled word, in this order of loads: S2, R1.
-struct Look {
-  Time settled_until{};
-  Word revision = 0;
-};
-
-/// A reader's own copy of a knot. Allocates when made only.
-class KnotCopy {
- public:
-  KnotCopy(std::size_t dimensions, bool smooths)
-      : dimensions_(dimensions), smooths_(smooths), values_((smooths ? 4 : 3) * dimensions) {}
-
-  /// Takes over another copy of a knot of the same board: O(D).
-  void assign(const KnotCopy& other) noexcept {
-    tag = other.tag;
-    cell = other.cell;
-    slot = other.slot;
-    number = other.number;
-    time = other.time;
-    note = other.note;
-    item = other.item;
-    const std::size_t used = smooths_ ? 4 : note.arrives || note.starts ? 3 : 2;
-    std::memcpy(values_.data(), other.values_.data(), used * dimensions_ * sizeof(double));
-  }
-
-  [[nodiscard]] bool is_there() const noexcept { return tag != 0; }
-  [[nodiscard]] std::span<const double> waypoint() const noexcept { return values(0); }
-  [[nodiscard]] std::span<const double> velocity() const noexcept { return values(1); }
-  [[nodiscard]] std::span<const double> acceleration() const noexcept {
-    return note.arrives || note.starts ? values(2) : std::span<const double>{};
-  }
-  [[nodiscard]] std::span<const double> residual() const noexcept {
-    return smooths_ ? values(3) : std::span<const double>{};
-  }
-  [[nodiscard]] core::SegmentEnd end() const noexcept {
-    return {time, waypoint(), velocity(), acceleration(), residual()};
-  }
-
-  Word tag = 0;          ///< of the cell that it was copied from; 0: nothing copied
-  std::size_t cell = 0;  ///< of its slot, 0 or 1
-  std::size_t slot = 0;
-  Word number = 0;
-  Time time{};
-  KnotNote note;
-  Word item = 0;  ///< as the layout has it beside the acceleration
-
- private:
-  friend class KnotBoardReader;
-  [[nodiscard]] std::span<const double> values(std::size_t which) const noexcept {
-    return {values_.data() + which * dimensions_, dimensions_};
-  }
-
-  std::size_t dimensions_;
-  bool smooths_;
-  std::vector<double> values_;  ///< waypoint, velocity, acceleration, residual
-};
-
-/// A reader's side; no function blocks, allocates or stores. Every copy is taken under a revision
-/// `r` that the caller has loaded, and fails if the writer has gone on too far meanwhile, or if
-/// what lies there is nothing that a solver writes: whatever the bytes are, each call takes a
-/// bounded number of steps within the region.
-class KnotBoardReader {
- public:
-  /// `region` holds a board of this layout and outlives the reader.
-  KnotBoardReader(std::span<const std::byte> region, const BoardLayout& layout) noexcept;
-
-  [[nodiscard]] std::size_t dimensions() const noexcept { return layout_.dimensions; }
-  [[nodiscard]] std::size_t capacity() const noexcept { return layout_.capacity; }
-  [[nodiscard]] bool smooths() const noexcept { return layout_.smooths; }
-
-  /// S2 and R1: how far the curve is settled, and the newest revision; 0: none yet.
-  [[nodiscard]] Look look() const noexcept {
-    const Time settled = to_time(load(control_[kSettledUntil], std::memory_order_acquire));
-    return {settled, load(control_[kRevision], std::memory_order_acquire)};
-  }
-  [[nodiscard]] Word revision() const noexcept {
-    return load(control_[kRevision], std::memory_order_acquire);
-  }
-  [[nodiscard]] const Word& revision_word() const noexcept { return control_[kRevision]; }
-  [[nodiscard]] bool retired() const noexcept {
-    return load(control_[kRetired], std::memory_order_acquire) != 0;
-  }
-
-  /// Items consumed, which the producer may overwrite: P3.
-  [[nodiscard]] Word tail() const noexcept {
-    return load(control_[kTail], std::memory_order_acquire);
-  }
-  /// Whether the solver sleeps; seq_cst, see waypoint_ring.hpp.
-  [[nodiscard]] bool sleeping() const noexcept {
-    return load(control_[kSleeping], std::memory_order_seq_cst) != 0;
-  }
-
-  /// How many of the solver's steps took 2ⁱ to 2ⁱ⁺¹ ns, at i.
-  [[nodiscard]] std::array<Word, kStepBuckets> step_times() const noexcept;
-
-  /// Asks for the lines that a reader will load to get segment `number` of a revision that it has
-  /// not seen, all at once: each may have to come from the writer's core, and would else be waited
-  /// for one after the other. Loads nothing.
-  void prefetch(Word r, Word number) const noexcept;
-
-  /// Likewise for a segment anywhere: its knots' cells and nodes, of both revisions each, because
-  /// the tags, which say which ones count, would else be waited for first.
-  void prefetch_segment(Word number) const noexcept;
-
-  /// Copies what lookups need of the head under a look's revision: revision, first, newest, stop,
-  /// finished, settled_until; and the earliest changed_from of the revisions after `seen` up to
-  /// that one, min() if that many are not kept. The other members stay, and upon failure all of
-  /// them.
-  [[nodiscard]] bool copy_bounds(const Look& look, Word seen, Head& out) const noexcept;
-
-  /// Copies the whole head. Upon failure `out` stays as it is.
-  [[nodiscard]] bool copy_head(const Look& look, Head& out) const noexcept;
-
-  /// Copies the head of the newest revision, in a bounded number of tries. Returns false, and
-  /// leaves `out` as it is, if there is no revision or if the writer overtook every try.
-  [[nodiscard]] bool copy_newest_head(Head& out) const noexcept;
-
-  /// Copies knot `number` under r: it must stand on the board then. Upon failure `out.tag` is 0 and
-  /// the rest of no use. O(D).
-  [[nodiscard]] bool copy_knot(Word number, Word r, KnotCopy& out) const noexcept;
-
-  /// Whether a copy is what the board holds under r too: no words are copied again. K1 and K2; r is
-  /// no older than the revision that the copy was made under, and the knot stands under r.
-  [[nodiscard]] bool is_current(const KnotCopy& copy, Word r) const noexcept {
-    return copy.tag != 0 && is_newest(cells(copy.number), copy.cell, copy.tag, r);
-  }
-
-  /// Copies waypoint `i` of a run from the slots of those that entries pass over: what lies there
-  /// may be another one's, as its item says. For the one writer only, who races with nobody.
-  [[nodiscard]] bool copy_passed(Word i, Word r, KnotCopy& out) const noexcept;
-
-  /// The same where `copy` may be of another knot.
-  [[nodiscard]] bool is_current(const KnotCopy& copy, Word number, Word r) const noexcept {
-    return copy.number == number && is_current(copy, r);
-  }
-
-  /// Copies a knot's time and the form of the segment that begins there, under r.
-  [[nodiscard]] bool copy_time(Word number, Word r, Time& time,
-                               core::SegmentForm& form) const noexcept;
-
-  /// When the segment of knot `number` begins, from the packed times: a hint, to be confirmed.
-  [[nodiscard]] Time time_hint(Word number) const noexcept {
-    return to_time(load(times_[number & (layout_.capacity - 1)], std::memory_order_relaxed));
-  }
-
-  /// The refusal noted at `index`, counted from 0 over the stream's life; only the last
-  /// kRefusalsKept are there.
-  [[nodiscard]] RefusedItem refusal(Word index) const noexcept;
-
-  /// Copies the refusals that `head` counts from `from` on, oldest first. Returns how many there
-  /// still are, at most out.size(): these are the last ones, and those before them have been
-  /// overwritten.
-  [[nodiscard]] std::size_t copy_refusals(const Head& head, Word from,
-                                          std::span<RefusedItem> out) const noexcept;
-
-  /// The excess noted at `index` < head.exceeding; nothing if it has been overwritten, or is
-  /// being.
-  [[nodiscard]] std::optional<LimitExcess> excess(const Head& head, Word index) const noexcept;
-
-  /// That of an item, if it is one of the last kExcessesKept. O(kExcessesKept).
-  [[nodiscard]] std::optional<LimitExcess> excess_of(const Head& head, Word item) const noexcept;
-
-  /// Copies the row of a knot that has been copied, into `g`, and returns its scalars. For the one
-  /// writer only, who races with nobody.
-  [[nodiscard]] core::Prefix copy_row(const KnotCopy& knot, std::span<double> g) const noexcept;
-
- private:
-  [[nodiscard]] std::size_t index_of(Word number) const noexcept {
-    return number & (layout_.capacity - 1);
-  }
-  [[nodiscard]] const Word* slot_at(std::size_t index) const noexcept {
-    return slots_.data() + index * slot_words_;
-  }
-  [[nodiscard]] const Word* slot(Word number) const noexcept { return slot_at(index_of(number)); }
-  [[nodiscard]] bool copy_slot(std::size_t index, Word r, KnotCopy& out) const noexcept;
-  [[nodiscard]] SlotView<const Word> cells(Word number) const noexcept {
-    return {slot(number), cell_words_};
-  }
-  [[nodiscard]] SlotView<const Word> head_cells() const noexcept {
-    return {control_.data() + kHeadSlot, kHeadWords};
-  }
-  [[nodiscard]] Time earliest_change(Word seen, Word r) const noexcept;
-
-  BoardLayout layout_;
-  std::size_t slot_words_;
-  std::size_t cell_words_;
-  std::span<const Word> control_;
-  std::span<const Word> refusals_;
-  std::span<const Word> excesses_;
-  std::span<const Word> times_;
-  std::span<const Word> slots_;
 };
 
 }  // namespace splinecast::ipc

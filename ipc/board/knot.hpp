@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "core/forms/knot_segment.hpp"
+#include "core/solvers/knot_ring.hpp"
+#include "ipc/memory/word.hpp"
+#include "splinecast/time.hpp"
+
+namespace splinecast::ipc {
+
+/// What goes with a knot besides its values.
+struct KnotNote {
+  core::SegmentForm form{};     ///< of the segment that begins here
+  bool is_waypoint = false;     ///< whether a waypoint stands here
+  bool arrives = false;         ///< the acceleration is that of the segment that ends here,
+  bool starts = false;          ///< of the one that begins here, or of both
+  std::uint32_t newer_knots{};  ///< that it had seen when it was solved: 0 … 127
+};
+
+/// A knot as a revision writes it. Spans hold one value per dimension.
+struct KnotRecord {
+  bool is_new = false;  ///< the knot comes to stand in its slot; else only its cell is written
+  KnotNote note;
+  Time time{};                             ///< of a new knot
+  Time begins{};                           ///< when the next segment begins, if none begins here
+  std::span<const double> position;        ///< of a new knot: its waypoint, else of the curve
+  std::span<const double> velocity;        ///<
+  std::span<const double> acceleration{};  ///< iff the note says that there is one
+  std::span<const double> residual{};      ///< iff the board smooths
+  Word item = 0;                           ///< as the layout has it beside the acceleration
+  const core::Prefix* prefix = nullptr;    ///< with `g`: the knot's row, where it has changed
+  std::span<const double> g{};
+};
+
+/// A reader's own copy of a knot. Allocates when made only.
+class KnotCopy {
+ public:
+  KnotCopy(std::size_t dimensions, bool smooths)
+      : dimensions_(dimensions), smooths_(smooths), values_((smooths ? 4 : 3) * dimensions) {}
+
+  /// Takes over another copy of a knot of the same board: O(D).
+  void assign(const KnotCopy& other) noexcept {
+    tag = other.tag;
+    cell = other.cell;
+    slot = other.slot;
+    number = other.number;
+    time = other.time;
+    note = other.note;
+    item = other.item;
+    const std::size_t used = smooths_ ? 4 : note.arrives || note.starts ? 3 : 2;
+    std::memcpy(values_.data(), other.values_.data(), used * dimensions_ * sizeof(double));
+  }
+
+  [[nodiscard]] bool is_there() const noexcept { return tag != 0; }
+  [[nodiscard]] std::span<const double> waypoint() const noexcept { return values(0); }
+  [[nodiscard]] std::span<const double> velocity() const noexcept { return values(1); }
+  [[nodiscard]] std::span<const double> acceleration() const noexcept {
+    return note.arrives || note.starts ? values(2) : std::span<const double>{};
+  }
+  [[nodiscard]] std::span<const double> residual() const noexcept {
+    return smooths_ ? values(3) : std::span<const double>{};
+  }
+  [[nodiscard]] core::SegmentEnd end() const noexcept {
+    return {time, waypoint(), velocity(), acceleration(), residual()};
+  }
+
+  Word tag = 0;          ///< of the cell that it was copied from; 0: nothing copied
+  std::size_t cell = 0;  ///< of its slot, 0 or 1
+  std::size_t slot = 0;
+  Word number = 0;
+  Time time{};
+  KnotNote note;
+  Word item = 0;  ///< as the layout has it beside the acceleration
+
+ private:
+  friend class KnotBoardReader;
+  [[nodiscard]] std::span<const double> values(std::size_t which) const noexcept {
+    return {values_.data() + which * dimensions_, dimensions_};
+  }
+
+  std::size_t dimensions_;
+  bool smooths_;
+  std::vector<double> values_;  ///< waypoint, velocity, acceleration, residual
+};
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,83 @@
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "ipc/board/reader.hpp"
+#include "ipc/board/writer.hpp"
+#include "splinecast/dimension_kind.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+constexpr unsigned kRefusalItemShift = 8;
+constexpr Word kByteMask = 0xff;
+
+}  // namespace
+
+void KnotBoardWriter::write_refusal(Word index, const RefusedItem& refusal) noexcept {
+  // One word, so that it is never torn; published by the commit of the head that counts it.
+  put(refusals_[index % kRefusalsKept],
+      refusal.item << kRefusalItemShift | static_cast<Word>(refusal.reason));
+}
+
+void KnotBoardWriter::write_excess(Word index, const LimitExcess& excess) noexcept {
+  const auto words = excesses_.subspan(index % kExcessesKept * kExcessWords, kExcessWords);
+  const std::array values{to_word(excess.time), to_word(excess.value), to_word(excess.limit)};
+  store(words[0], 0, std::memory_order_release);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    store(words[i + 1], values[i], std::memory_order_release);
+  }
+  store(words[0],
+        excess.item << kExcessItemShift | excess.dimension << kExcessDimensionShift |
+            static_cast<Word>(excess.kind) << 1U | (excess.is_refused ? 1 : 0),
+        std::memory_order_release);
+}
+
+RefusedItem KnotBoardReader::refusal(Word index) const noexcept {
+  const Word word = load(refusals_[index % kRefusalsKept], std::memory_order_acquire);
+  return {.item = word >> kRefusalItemShift, .reason = static_cast<Refusal>(word & kByteMask)};
+}
+
+std::size_t KnotBoardReader::copy_refusals(const Head& head, Word from,
+                                           std::span<RefusedItem> out) const noexcept {
+  const Word wanted = head.refused - std::min(from, head.refused);
+  const std::size_t most = std::min<Word>({wanted, kRefusalsKept, out.size()});
+  Word next = head.consumed;  // the item before which this one must come
+  std::size_t count = 0;
+  for (; count < most; ++count) {
+    const RefusedItem item = refusal(head.refused - 1 - count);
+    if (item.item >= next) break;  // overwritten, and so are all before it
+    next = item.item;
+    out[count] = item;
+  }
+  std::ranges::reverse(out.first(count));
+  return count;
+}
+
+std::optional<LimitExcess> KnotBoardReader::excess(const Head& head, Word index) const noexcept {
+  if (index >= head.exceeding || head.exceeding - index > kExcessesKept) return std::nullopt;
+  const auto words = excesses_.subspan(index % kExcessesKept * kExcessWords, kExcessWords);
+  const Word tag = load(words[0], std::memory_order_acquire);
+  constexpr Word kKindMask = 7;
+  constexpr Word kDimensionMask = kMaxDimensions - 1;
+  const LimitExcess found{.item = tag >> kExcessItemShift,
+                          .is_refused = (tag & 1U) != 0,
+                          .kind = static_cast<LimitKind>((tag >> 1U & kKindMask) % kLimitKinds),
+                          .dimension = tag >> kExcessDimensionShift & kDimensionMask,
+                          .time = to_time(load(words[1], std::memory_order_acquire)),
+                          .value = to_double(load(words[2], std::memory_order_acquire)),
+                          .limit = to_double(load(words[3], std::memory_order_acquire))};
+  const bool is_whole = tag != 0 && load(words[0], std::memory_order_relaxed) == tag;
+  return is_whole && found.item < head.consumed ? std::optional(found) : std::nullopt;
+}
+
+std::optional<LimitExcess> KnotBoardReader::excess_of(const Head& head, Word item) const noexcept {
+  const Word kept = std::min<Word>(head.exceeding, kExcessesKept);
+  for (Word back = 1; back <= kept; ++back) {
+    const auto found = excess(head, head.exceeding - back);
+    if (found && found->item == item) return found;
+  }
+  return std::nullopt;
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "ipc/board/reader.hpp"
+#include "ipc/board/writer.hpp"
+#include "splinecast/waypoint.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+/// Whether the knots of a head can all lie on a board, and its times are some; no writer of ours
+/// says otherwise.
+bool has_sane_bounds(const Head& head, std::size_t capacity) noexcept {
+  if (!is_time_in_range(head.settled_until)) return false;
+  if (head.newest == 0) return true;
+  return head.first >= 1 && head.first <= head.newest && head.newest - head.first < capacity &&
+         head.newest <= std::numeric_limits<Word>::max() / 2 && head.stop >= Time::zero() &&
+         head.stop <= kLongestStop;
+}
+
+}  // namespace
+
+void KnotBoardWriter::commit(Head& head) noexcept {
+  const Word r = revision_ + 1;
+  head.revision = r;
+  const std::size_t spare = 1 - head_cell_;
+  std::array<Word, kHeadWords>& held = head_[spare];
+  Word* const cell = head_cells().cell(spare);
+  held[0] = r << kTagRevisionShift;
+  store(cell[0], held[0], std::memory_order_release);                      // W1
+  put(control_[kChanges + r % kChangesKept], to_word(head.changed_from));  // C1
+  // What the cell holds already stands: it was stored before this revision's tag was, by this
+  // writer or by one whose lock it has taken over, and whoever acquires that tag sees it.
+  encode_changes(kHeadRows, head, held.data(),
+                 [cell](std::size_t i, Word word) { put(cell[i], word); });
+  store(control_[kRevision], r, std::memory_order_release);  // W3
+  revision_ = r;
+  head_cell_ = spare;
+  for (const WrittenSlot& slot : written()) states_[slot.index] = slot.next;
+  forget_written();
+}
+
+void KnotBoardWriter::store_checked(bool is_late) noexcept {
+  if (is_late) {
+    late_ = revision_;
+    store(control_[kLate], revision_, std::memory_order_relaxed);
+  }
+  checked_ = revision_;
+  store(control_[kChecked], revision_, std::memory_order_release);
+}
+
+/// C2: the earliest of the times that the revisions after `seen` up to r changed the curve from;
+/// min() where not all of these are there any more.
+Time KnotBoardReader::earliest_change(Word seen, Word r) const noexcept {
+  const Word missed = r - seen;  // very many if the commit word went back: no writer of ours does
+  if (missed >= kChangesKept) return Time::min();
+  Time earliest = Time::max();
+  for (Word back = 0; back < missed; ++back) {
+    const Word& word = control_[kChanges + (r - back) % kChangesKept];
+    earliest = std::min(earliest, to_time(load(word, std::memory_order_acquire)));
+  }
+  // C3. One word fewer than there are counts: a writer that died may have stored the next one. And
+  // where both tags have been retired since, nothing says how far writers have come.
+  const Tags tags = head_cells().tags(std::memory_order_acquire);
+  bool stands = false;
+  for (const Word tag : tags.of) {
+    if (tag == kRetiredTag) continue;
+    if (revision_of(tag) > seen + kChangesKept - 1) return Time::min();
+    stands = true;
+  }
+  return stands ? earliest : Time::min();
+}
+
+bool KnotBoardReader::copy_bounds(const Look& look, Word seen, Head& out) const noexcept {
+  const Word r = look.revision;
+  const Time changed_from = earliest_change(seen, r);
+  const auto view = head_cells();
+  const Tags tags = view.tags(std::memory_order_acquire);
+  if (!tags.holds_any(r)) return false;
+  const std::size_t c = tags.newest(r);
+  const Word* const cell = view.cell(c);
+  std::array<Word, kBoundsWords> words{};
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    words[i] = load(cell[i], std::memory_order_acquire);
+  }
+  if (load(cell[0], std::memory_order_relaxed) != tags.of[c]) return false;
+  Head bounds;
+  decode(kBoundsRows, words.data(), bounds);
+  bounds.settled_until = look.settled_until;
+  if (!has_sane_bounds(bounds, layout_.capacity)) return false;
+  decode(kBoundsRows, words.data(), out);
+  out.revision = r;
+  out.settled_until = look.settled_until;
+  out.changed_from = changed_from;
+  return true;
+}
+
+bool KnotBoardReader::copy_head(const Look& look, Head& out) const noexcept {
+  const Word r = look.revision;
+  const Time changed_from = earliest_change(r - 1, r);
+  const auto view = head_cells();
+  const Tags tags = view.tags(std::memory_order_acquire);
+  if (!tags.holds_any(r)) return false;
+  const std::size_t c = tags.newest(r);
+  std::array<Word, kHeadWords> words{};
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    words[i] = load(view.cell(c)[i], std::memory_order_acquire);
+  }
+  if (load(view.cell(c)[0], std::memory_order_relaxed) != tags.of[c]) return false;
+  Head head;
+  decode(kHeadRows, words.data(), head);
+  head.revision = r;
+  head.settled_until = look.settled_until;
+  head.changed_from = changed_from;
+  if (!has_sane_bounds(head, layout_.capacity) || !is_time_in_range(head.newest_knot) ||
+      !is_time_in_range(head.committed)) {
+    return false;
+  }
+  const bool is_late = r > 0 && load(control_[kLate], std::memory_order_relaxed) == r;
+  head.revisions += is_late ? 1 : 0;
+  out = head;
+  return true;
+}
+
+bool KnotBoardReader::copy_newest_head(Head& out) const noexcept {
+  constexpr int kTries = 16;
+  for (int attempt = 0; attempt < kTries; ++attempt) {
+    const Look seen = look();
+    if (seen.revision == 0) return false;
+    if (copy_head(seen, out)) return true;
+  }
+  return false;
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,81 @@
+#include "ipc/board/tag.hpp"
+#include "ipc/board/writer.hpp"
+
+namespace splinecast::ipc {
+
+KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout& layout)
+    : layout_(layout),
+      control_(words_at(region, layout.control, kBoardControlWords)),
+      refusals_(words_at(region, layout.refusals, kRefusalsKept)),
+      excesses_(words_at(region, layout.excesses, kExcessesKept * kExcessWords)),
+      times_(words_at(region, layout.times, layout.capacity)),
+      revision_(load(control_[kRevision], std::memory_order_relaxed)),
+      settled_(load(control_[kSettledUntil], std::memory_order_relaxed)),
+      late_(load(control_[kLate], std::memory_order_relaxed)),
+      checked_(load(control_[kChecked], std::memory_order_relaxed)),
+      states_(layout.capacity + kPassedSlots),
+      written_(states_.size()),
+      at_{.words =
+              words_at(region, layout.slots, states_.size() * layout.stride / sizeof(Word)).data(),
+          .mask = layout.capacity - 1,
+          .slot_words = layout.stride / sizeof(Word),
+          .cell_words = layout.cell / sizeof(Word),
+          .states = states_.data(),
+          .written = written_.data()} {
+  held_times_.reserve(layout.capacity);
+  retire_uncommitted(head_cells(), revision_);
+  for (std::size_t i = 0; i < states_.size(); ++i) retire_uncommitted(cells_at(i), revision_);
+  read_state();
+  restore_times();
+}
+
+/// What lies on the board.
+void KnotBoardWriter::read_state() noexcept {
+  for (std::size_t c = 0; c < 2; ++c) {
+    for (std::size_t i = 0; i < kHeadWords; ++i) {
+      head_[c][i] = load(head_cells().cell(c)[i], std::memory_order_relaxed);
+    }
+  }
+  head_cell_ = head_cells().tags(std::memory_order_relaxed).newest(revision_);
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const Tags tags = cells_at(i).tags(std::memory_order_relaxed);
+    const std::size_t c = tags.newest(revision_);
+    states_[i] = static_cast<SlotState>(tags.of[c] & kTagPartsMask) | (c == 0 ? 0 : kCellBit);
+  }
+}
+
+/// Packed times that a writer before this one had stored for a revision that it did not commit
+/// would mislead lookups for as long as those knots stand.
+void KnotBoardWriter::restore_times() noexcept {
+  Head head;
+  decode(kHeadRows, head_[head_cell_].data(), head);
+  if (head.newest == 0 || head.newest - head.first >= layout_.capacity) return;
+  Word begins = 0;
+  for (Word number = head.newest; number >= head.first && number > 0; --number) {
+    const std::size_t c = (states_[index_of(number)] & kCellBit) != 0 ? 1 : 0;
+    const Word tag = load(cells(number).cell(c)[kCellTag], std::memory_order_relaxed);
+    const Word* const node =
+        slot(number) + (layout_.nodes + node_of(tag) * layout_.node) / sizeof(Word);
+    const bool is_end = note_of(tag).form == core::SegmentForm::none && number < head.newest;
+    if (!is_end) begins = load(node[kNodeTime], std::memory_order_relaxed);
+    Word& hint = times_[index_of(number)];
+    if (load(hint, std::memory_order_relaxed) != begins) {
+      store(hint, begins, std::memory_order_relaxed);
+    }
+  }
+}
+
+void KnotBoardWriter::discard() noexcept {
+  retire_uncommitted(head_cells(), revision_);
+  for (const WrittenSlot& slot : written()) {
+    retire_uncommitted(cells_at(slot.index), revision_);
+    states_[slot.index] &= ~kWrittenBit;
+  }
+  // The oldest last: a time may have been stored to twice.
+  for (std::size_t i = held_times_.size(); i-- > 0;) {
+    store(times_[held_times_[i].index], held_times_[i].time, std::memory_order_relaxed);
+  }
+  forget_written();
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <tuple>
+
+#include "ipc/layout/header.hpp"
+#include "ipc/layout/separation.hpp"
+#include "ipc/layout/table.hpp"
+#include "ipc/memory/word.hpp"
+
+namespace splinecast::ipc {
+
+/// Where the parts of a region lie that all regions have.
+inline constexpr std::tuple kRegionRows{
+    FieldRow{"header",
+             {.words = 2 * kPage / sizeof(Word)},
+             FieldWriter::maker,
+             "see below; the rest is 0"},
+    FieldRow{"control area",
+             {.words = 2 * kPage / sizeof(Word)},
+             FieldWriter::owner,
+             "the control block lies in it, at 8192 + 128 · (stream id mod 49), so that those of "
+             "many streams do not fall into one cache set"},
+    FieldRow{"body",
+             {},
+             FieldWriter::owner,
+             "ring items; or the refusals, times and slots of a "
+             "board"}};
+inline constexpr auto kRegionFields = place(kRegionRows);
+inline constexpr std::size_t kHeaderBytes = word_of(kRegionFields, "control area") * sizeof(Word);
+inline constexpr std::size_t kBodyOffset = word_of(kRegionFields, "body") * sizeof(Word);
+static_assert(kHeaderWords * sizeof(Word) <= kHeaderBytes);
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,162 @@
+#include "ipc/layout/check.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+#include "core/online/sliding_window.hpp"
+#include "ipc/layout/areas.hpp"
+#include "ipc/layout/common_control.hpp"
+#include "ipc/layout/limits.hpp"
+#include "ipc/layout/mark.hpp"
+#include "ipc/layout/separation.hpp"
+#include "ipc/memory/names.hpp"
+#include "splinecast/boundary_condition.hpp"
+#include "splinecast/errors.hpp"
+#include "splinecast/method.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+/// More than any interval needs, and little enough to be added to any time.
+constexpr std::uint64_t kLongestNanoseconds = std::uint64_t{1} << 61U;
+
+/// kByteOrder as a machine with the other byte order writes it.
+constexpr std::uint32_t kOtherByteOrder = 0x04030201;
+
+void require(bool holds, const char* what, std::uint64_t found, std::uint64_t wanted) {
+  if (holds) return;
+  throw BadRegion("region has " + std::string(what) + ' ' + std::to_string(found) + ", not " +
+                  std::to_string(wanted));
+}
+
+void require_range(const char* what, std::uint64_t found, std::uint64_t least, std::uint64_t most) {
+  if (found >= least && found <= most) return;
+  throw BadRegion("region has " + std::string(what) + ' ' + std::to_string(found) +
+                  ", not between " + std::to_string(least) + " and " + std::to_string(most));
+}
+
+void require_dimension_kinds(const RegionHeader& header) {
+  for (std::size_t d = 0; d < header.dimensions; ++d) {
+    require_range("kind of dimension", header.dimension_kind[d], 0, kDimensionKinds - 1);
+  }
+  try {
+    (void)DimensionKinds(dimensions_of(header));
+  } catch (const std::invalid_argument& error) {
+    throw BadRegion(std::string("region has dimensions that cannot be: ") + error.what());
+  }
+}
+
+/// Two versions of splinecast that meet at one stream: which they are, and how to go on.
+void require_this_layout(const RegionHeader& header) {
+  const std::uint32_t version = header.mark.version;
+  if (version != kLayoutVersion) {
+    throw BadRegion("region has layout version " + std::to_string(version) +
+                    ", this splinecast has version " + std::to_string(kLayoutVersion) +
+                    "; use one splinecast for all processes of the stream, or stop those of the "
+                    "other version and remove its regions with `splinecast rm`");
+  }
+  if (header.layout_hash == layout_hash()) return;
+  throw BadRegion("region has layout version " + std::to_string(version) + " with hash " +
+                  std::to_string(header.layout_hash) + ", this splinecast has version " +
+                  std::to_string(kLayoutVersion) + " with hash " + std::to_string(layout_hash()) +
+                  "; use one build for all processes of the stream, or stop those of the other one "
+                  "and remove its regions with `splinecast rm`");
+}
+
+/// What both kinds of region share.
+void require_common(const RegionHeader& header, RegionKind kind, std::size_t real_bytes,
+                    std::size_t max_capacity) {
+  const std::uint32_t order = header.mark.byte_order;
+  require(order != kOtherByteOrder, "byte order", order, kByteOrder);
+  require(header.magic == kMagic, "magic number", header.magic, kMagic);
+  require(order == kByteOrder, "byte order", order, kByteOrder);
+  require_this_layout(header);
+  require(header.kind == static_cast<std::uint64_t>(kind), "kind", header.kind,
+          static_cast<std::uint64_t>(kind));
+  require_range("dimensions", header.dimensions, kMinDimensions, kMaxDimensions);
+  require_dimension_kinds(header);
+  require_range("capacity", header.capacity, 2, max_capacity);
+  require(std::has_single_bit(header.capacity), "capacity", header.capacity,
+          std::bit_ceil(header.capacity));
+  require_range("control offset", header.control, kHeaderBytes,
+                kHeaderBytes + (kControlPositions - 1) * kSeparation);
+  require(header.control % kSeparation == 0, "control offset", header.control,
+          round_up(header.control, kSeparation));
+  require_range("clock", header.clock, 0, 1);
+  require_range("start condition", header.start_kind, 0,
+                static_cast<std::uint64_t>(ConditionKind::own));
+  if (!is_online(static_cast<ConditionKind>(header.start_kind))) {
+    throw BadRegion("region has start condition " + std::to_string(header.start_kind) +
+                    ", which is none for streams");
+  }
+  for (std::size_t d = 0; d < header.dimensions; ++d) {
+    if (is_usable(header.start_value[d])) continue;
+    throw BadRegion("region has start value " + std::to_string(header.start_value[d]));
+  }
+  require_range("least interval", static_cast<std::uint64_t>(header.min_interval), 1,
+                kLongestNanoseconds);
+  require_range("most interval", static_cast<std::uint64_t>(header.max_interval), 1,
+                kLongestNanoseconds);
+  require(header.region_bytes == real_bytes, "size", real_bytes, header.region_bytes);
+}
+
+/// What shapes the curve: SlidingWindow refuses all else as well, but not as a bad region.
+void require_curve(const RegionHeader& header) {
+  const Method* const method = find_method(header.method);
+  if (method == nullptr || !method->streams()) {
+    throw BadRegion("region has method " + std::to_string(header.method) +
+                    ", which is none for streams");
+  }
+  if (!std::isfinite(header.lambda) || header.lambda < 0) {
+    throw BadRegion("region has lambda " + std::to_string(header.lambda));
+  }
+  if (!std::isfinite(header.time_scale) || header.time_scale <= 0) {
+    throw BadRegion("region has time scale " + std::to_string(header.time_scale));
+  }
+  require_range("settle lag", header.settle, method->converges() ? 0 : method->look_ahead,
+                core::kMaxSettle);
+}
+
+void require_motion_limits(const RegionHeader& header) {
+  try {
+    require_limits(motion_limits(header), dimensions_of(header));
+  } catch (const std::invalid_argument& error) {
+    throw BadRegion(std::string("region has bad limits: ") + error.what());
+  }
+}
+
+}  // namespace
+
+RingLayout checked_ring_layout(const RegionHeader& header, std::size_t real_bytes) {
+  require_common(header, RegionKind::waypoints, real_bytes, kMaxRingCapacity);
+  const auto layout = RingLayout::of(header.dimensions, header.capacity, header.control);
+  require(header.stride == layout.stride, "item size", header.stride, layout.stride);
+  require(real_bytes == layout.bytes, "size", real_bytes, layout.bytes);
+  return layout;
+}
+
+BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_bytes) {
+  require_common(header, RegionKind::spline, real_bytes, kMaxBoardCapacity);
+  require_curve(header);
+  const auto layout =
+      BoardLayout::of(header.dimensions, header.capacity, header.control, smooths(header));
+  require_range("tail", header.tail, 0, static_cast<std::uint64_t>(Tail::rest));
+  require_range("freeze-ahead", static_cast<std::uint64_t>(header.freeze_ahead), 1,
+                kLongestNanoseconds);
+  require_range("history", static_cast<std::uint64_t>(header.history), 0, kLongestNanoseconds);
+  require_range("shortest splice", static_cast<std::uint64_t>(header.min_splice), 1,
+                kLongestNanoseconds);
+  require_range("word for what is beyond limits", header.beyond, 0,
+                static_cast<std::uint64_t>(Beyond::refuse));
+  require_motion_limits(header);
+  require_range("stop time", static_cast<std::uint64_t>(header.stop_time), 1,
+                static_cast<std::uint64_t>(kLongestStop.count()));
+  require(header.stride == layout.stride, "slot size", header.stride, layout.stride);
+  require(real_bytes == layout.bytes, "size", real_bytes, layout.bytes);
+  return layout;
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+
+#include "ipc/layout/areas.hpp"
+#include "ipc/layout/board_control.hpp"
+#include "ipc/layout/ring_control.hpp"
+#include "ipc/layout/separation.hpp"
+#include "ipc/layout/table.hpp"
+#include "ipc/memory/word.hpp"
+
+namespace splinecast::ipc {
+
+/// The word by which a region is said to be of no use, in both control blocks.
+inline constexpr std::size_t kRetired = word_of(kBoardControlFields, "retired");
+static_assert(word_of(kRingControlFields, "retired") == kRetired);
+static_assert(kRevision == 0 && kHead == 0);  // what waiting processes watch
+
+/// How many positions the control block may have within the control area.
+inline constexpr std::size_t kControlPositions =
+    (kBodyOffset - kHeaderBytes - kBoardControlWords * sizeof(Word)) / kSeparation + 1;
+static_assert(kRingControlWords <= kBoardControlWords);
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+
+/// What tells a stream's region from other files, and one layout from another. Where every word of
+/// the two regions lies say the tables of this folder. layout.md of the folder above is the same in
+/// words, and is made from them. Whoever adds, moves or changes a row adds 1 to kLayoutVersion.
+namespace splinecast::ipc {
+
+inline constexpr std::uint64_t kMagic = 0x54534143'4e4c5053;  // "SPLNCAST" in memory order
+inline constexpr std::uint32_t kLayoutVersion = 5;
+inline constexpr std::uint32_t kByteOrder = 0x01020304;
+
+/// The two numbers of the header's second word, which no layout moves: every version finds out by
+/// them that another one has made a region.
+struct LayoutMark {
+  std::uint32_t version = kLayoutVersion;
+  std::uint32_t byte_order = kByteOrder;
+};
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+
+#include "ipc/layout/separation.hpp"
+#include "ipc/layout/table.hpp"
+#include "ipc/memory/word.hpp"
+#include "splinecast/time.hpp"
+
+namespace splinecast::ipc {
+
+inline constexpr std::size_t kRefusalReasons = 16;
+
+/// Where the end of the published curve stands to the *target*, the spline through the waypoints of
+/// a run.
+enum class Course : std::uint8_t {
+  on_target = 0,  ///< it is the target
+  waiting = 1,    ///< it ends in a stop beside the target: no entry has been found
+  entering = 2,   ///< an entry ends at a waypoint of the run, and the target follows
+  beyond = 3,     ///< an entry ends beyond the newest waypoint, and a stop follows
+};
+inline constexpr int kCourses = 4;
+
+/// What holds for a whole revision.
+struct Head {
+  Word revision = 0;  ///< the revision that this head is of; 0: none yet
+  Word first = 0;     ///< oldest knot on the board; a segment begins there
+  Word newest = 0;    ///< newest knot; 0: none. Of a stream that goes on its stop begins there
+  Time stop{};        ///< length of the stop, if that is the newest segment
+  bool finished = false;
+  Word run = 1;        ///< first knot of the run
+  Word run_knots = 0;  ///< waypoints of the run
+  Word run_item = 0;   ///< the ring's item of its first waypoint, plus 1; 0: none yet
+  Word course = 0;     ///< Course
+  Word met = 0;    ///< waypoints of the run before the piece of the target that ends at `newest`
+  Word unmet = 0;  ///< waypoints of the run before those that the open entry passes over
+  Time blend_until{};         ///< no entry of the run ends before
+  Word passed_over = 0;       ///< waypoints that entries pass over, of all runs
+  Word consumed = 0;          ///< ring items taken
+  Word knots = 0;             ///< waypoints taken, replaced ones too
+  Time newest_knot{};         ///< time of the newest waypoint, or of the state that a run begins in
+  Time committed{};           ///< the solver's clock at the commit; of a recorded stream, roughly
+  Word run_frozen = 0;        ///< waypoints of the run that were frozen when this revision was made
+  bool is_later_run = false;  ///< the run is not the stream's first, or begins in a given state
+  bool starved = false;       ///< a live stream's settled time has passed its newest knot
+  Time low_water = Time::max();  ///< least depth so far; max() before there was any
+  Word underruns = 0;            ///< times that a live stream has starved
+  Word misses = 0;               ///< revisions discarded because they came too late
+  Word revisions = 0;            ///< revisions committed too late, this one too: readers are told
+  Word withdrawn = 0;            ///< items that a replacement withdrew unread
+  Word controls = 0;             ///< replacements, start states and finishes carried out
+  Word exceeding = 0;  ///< waypoints that brought the curve, or would have, beyond a limit
+  Word refused = 0;    ///< items refused
+  std::array<Word, kRefusalReasons> reasons{};  ///< of these, by Refusal
+  Time settled_until{};  ///< no time before it ever changes; not of the revision alone
+  Time changed_from{};   ///< earliest time whose curve this revision changed
+
+  /// Waypoints that the curve interpolates, replaced ones too.
+  [[nodiscard]] Word interpolated() const noexcept { return knots - passed_over; }
+};
+
+/// What lookups need of a head, in one cache line: the first rows of its cell.
+inline constexpr std::tuple kBoundsRows{
+    FieldRow{"tag", {.words = 1}, FieldWriter::owner, "revision · 65,536"},
+    MemberRow<&Head::first>{"first", FieldWriter::owner,
+                            "oldest knot on the board; a segment begins there"},
+    MemberRow<&Head::newest>{"newest", FieldWriter::owner, "newest knot; 0: none"},
+    MemberRow<&Head::stop>{"stop", FieldWriter::owner,
+                           "ns: length of the stop, while it is the newest segment"},
+    MemberRow<&Head::finished>{"finished", FieldWriter::owner, "1: nothing follows"}};
+inline constexpr std::size_t kBoundsWords = size_of(place(kBoundsRows)).words;
+static_assert(kBoundsWords <= kCacheLine / sizeof(Word));
+
+/// What else holds for a revision. What changes rarely comes last: a revision stores what is not in
+/// the cell already.
+inline constexpr std::tuple kFurtherRows{
+    MemberRow<&Head::run>{"run", FieldWriter::owner, "first knot of the run"},
+    MemberRow<&Head::run_knots>{"knots of the run", FieldWriter::owner, "its waypoints"},
+    MemberRow<&Head::run_item>{"item of the run", FieldWriter::owner,
+                               "number of its first waypoint's item, plus 1; 0: none yet"},
+    MemberRow<&Head::course>{"course", FieldWriter::owner,
+                             "0 on the target, 1 waiting, 2 entering at a waypoint, 3 beyond the "
+                             "newest one"},
+    MemberRow<&Head::met>{"met", FieldWriter::owner,
+                          "waypoints of the run before the piece of the target that ends at the "
+                          "newest knot"},
+    MemberRow<&Head::unmet>{"unmet", FieldWriter::owner,
+                            "waypoints of the run before those that the open entry passes over"},
+    MemberRow<&Head::blend_until>{"blend until", FieldWriter::owner,
+                                  "ns: no entry of the run ends before"},
+    MemberRow<&Head::passed_over>{"passed over", FieldWriter::owner,
+                                  "waypoints that entries pass over"},
+    MemberRow<&Head::consumed>{"consumed", FieldWriter::owner, "items taken"},
+    MemberRow<&Head::knots>{"knots", FieldWriter::owner, "waypoints taken"},
+    MemberRow<&Head::newest_knot>{"newest time", FieldWriter::owner,
+                                  "time of the newest waypoint, or of the state that a run begins "
+                                  "in, ns"},
+    MemberRow<&Head::committed>{"committed", FieldWriter::owner,
+                                "the solver's clock at the commit, ns; of a recorded stream to "
+                                "within some milliseconds"},
+    MemberRow<&Head::run_frozen>{"frozen", FieldWriter::owner,
+                                 "waypoints of the run that were frozen when this revision was "
+                                 "made"},
+    MemberRow<&Head::is_later_run>{"later run", FieldWriter::owner,
+                                   "1: the run is not the stream's first, or begins in a given "
+                                   "state"},
+    MemberRow<&Head::starved>{"starved", FieldWriter::owner,
+                              "1: the settled time of a live stream has passed its newest knot"},
+    MemberRow<&Head::low_water>{"least depth", FieldWriter::owner, "so far, ns"},
+    MemberRow<&Head::underruns>{"underruns", FieldWriter::owner, "times starved"},
+    MemberRow<&Head::misses>{"misses", FieldWriter::owner, "revisions discarded as too late"},
+    MemberRow<&Head::revisions>{"late revisions", FieldWriter::owner,
+                                "revisions before this one that were committed too late"},
+    MemberRow<&Head::withdrawn>{"withdrawn", FieldWriter::owner, "items withdrawn unread"},
+    MemberRow<&Head::controls>{"controls", FieldWriter::owner,
+                               "replacements, start states and finishes carried out"},
+    MemberRow<&Head::exceeding>{"exceeding", FieldWriter::owner,
+                                "waypoints that brought the curve, or would have, beyond a limit"},
+    MemberRow<&Head::refused>{"refused", FieldWriter::owner, "items refused"},
+    MemberRow<&Head::reasons>{"reasons", FieldWriter::owner, "items refused, by reason"},
+    padding(4)};
+
+/// A cell of the head's slot. All that goes with a field is its member of Head and its row here.
+inline constexpr auto kHeadRows = std::tuple_cat(kBoundsRows, kFurtherRows);
+inline constexpr auto kHeadFields = place(kHeadRows);
+inline constexpr std::size_t kHeadWords = size_of(kHeadFields).words;
+static_assert(kHeadWords % (kCacheLine / sizeof(Word)) == 0);
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,38 @@
+#include "ipc/ring/item.hpp"
+
+#include <algorithm>
+
+#include "core/basics/magnitude.hpp"
+
+namespace splinecast::ipc {
+
+bool is_finite(std::span<const double> values) noexcept {
+  // Mostly even their sum is usable.
+  return is_usable(core::magnitude_of(values)) || std::ranges::all_of(values, is_usable);
+}
+
+bool is_finite(const Waypoint& waypoint) noexcept {
+  return is_finite(waypoint.position) &&
+         (waypoint.velocity.empty() || is_finite(waypoint.velocity)) &&
+         (waypoint.acceleration.empty() || is_finite(waypoint.acceleration));
+}
+
+Waypoint RingItem::waypoint() const noexcept {
+  const std::size_t dimensions = values.size() / 3;
+  const auto all = std::span<const double>(values);
+  Waypoint waypoint{.time = time, .position = all.first(dimensions)};
+  if (has_velocity) waypoint.velocity = all.subspan(dimensions, dimensions);
+  if (has_acceleration) waypoint.acceleration = all.last(dimensions);
+  return waypoint;
+}
+
+WaypointValues RingItem::waypoint_values() noexcept {
+  const std::size_t dimensions = values.size() / 3;
+  const auto all = std::span(values);
+  WaypointValues waypoint{.position = all.first(dimensions)};
+  if (has_velocity) waypoint.velocity = all.subspan(dimensions, dimensions);
+  if (has_acceleration) waypoint.acceleration = all.last(dimensions);
+  return waypoint;
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "ipc/layout/common_control.hpp"
+#include "ipc/layout/ring_control.hpp"
+#include "ipc/layout/waypoint_items.hpp"
+#include "ipc/memory/word.hpp"
+#include "ipc/ring/item.hpp"
+#include "splinecast/status.hpp"
+#include "splinecast/time.hpp"
+
+namespace splinecast::ipc {
+
+/// The solver's side of a waypoint ring, and any passive observer's: the orderings S1 to O2 of
+/// writer.hpp. No function blocks, allocates or stores.
+class WaypointRingReader {
+ public:
+  /// `region` holds a ring of this layout and outlives the reader.
+  WaypointRingReader(std::span<const std::byte> region, const RingLayout& layout) noexcept;
+
+  [[nodiscard]] std::size_t dimensions() const noexcept { return layout_.dimensions; }
+  [[nodiscard]] std::size_t capacity() const noexcept { return layout_.capacity; }
+
+  /// Items appended so far; S1, or seq_cst for a solver about to sleep.
+  [[nodiscard]] Word head(std::memory_order order = std::memory_order_acquire) const noexcept {
+    return load(control_[kHead], order);
+  }
+  [[nodiscard]] const Word& head_word() const noexcept { return control_[kHead]; }
+  [[nodiscard]] bool retired() const noexcept {
+    return load(control_[kRetired], std::memory_order_acquire) != 0;
+  }
+
+  /// `head` and `retired`, which lie in one cache line: all that has to be looked at of a ring to
+  /// which nothing happens.
+  [[nodiscard]] std::span<const Word, 2> polled() const noexcept { return control_.first<2>(); }
+
+  /// Asks for the lines of item i. Loads nothing.
+  void prefetch(Word i) const noexcept {
+    prefetch_lines(&items_[(i & (layout_.capacity - 1)) * (layout_.stride / sizeof(Word))],
+                   layout_.stride / 2);
+  }
+
+  /// Copies item i < head(), of which the consumer has not yet stored a tail beyond it.
+  void copy(Word i, RingItem& out) const noexcept;
+
+  /// Kind and time of item i, of which the same holds.
+  [[nodiscard]] ItemKind kind(Word i) const noexcept;
+  /// Whether it is a replacement without waypoints.
+  [[nodiscard]] bool is_stop(Word i) const noexcept;
+  [[nodiscard]] Time time(Word i) const noexcept;
+
+  /// Copies item i for an observer whom the producer does not wait for. Returns false if the item
+  /// is, or may be, overwritten (O2); then `out` is of no use. Wait-free: O(D).
+  [[nodiscard]] bool observe(Word i, RingItem& out) const noexcept;
+
+  /// The time of item i for such an observer; nothing if the item is, or may be, overwritten, or
+  /// has not been appended.
+  [[nodiscard]] std::optional<Time> observe_time(Word i) const noexcept;
+
+  /// Items that the producer itself refused with this status.
+  [[nodiscard]] Word refused(AppendStatus status) const noexcept;
+
+ private:
+  [[nodiscard]] bool is_kept(Word i) const noexcept;
+
+  RingLayout layout_;
+  std::span<const Word> control_;
+  std::span<const Word> items_;
+};
+
+}  // namespace splinecast::ipc
