@@ -3,7 +3,9 @@
 #include <span>
 #include <vector>
 
+#include "ipc/board/reader.hpp"
 #include "ipc/board/segment.hpp"
+#include "ipc/layout/summary.hpp"
 
 namespace splinecast::ipc {
 

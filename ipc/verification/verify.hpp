@@ -2,36 +2,11 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
-#include <string>
 
-#include "core/online/sliding_window.hpp"
-#include "ipc/board/segment.hpp"
-#include "ipc/verification/sent_items.hpp"
-#include "splinecast/boundary_condition.hpp"
-#include "splinecast/dimension_kind.hpp"
+#include "ipc/verification/difference.hpp"
+#include "ipc/verification/stream_record.hpp"
 
 namespace splinecast::ipc {
-
-/// A stream as it went: what it was sent, how it was solved, and what came out.
-struct StreamRecord {
-  core::WindowOptions window;
-  DimensionKinds kinds;
-  const SentItems& items;
-  std::span<const SegmentCopy> segments;  ///< settled ones from number 1
-  Head head;                              ///< the last one
-  Condition end;                          ///< that the stream was finished with
-};
-
-/// The first thing in which a stream is not what its items and decisions make it.
-struct Difference {
-  Word segment = 0;
-  Time left{};         ///< its ends, as published
-  Time right{};        ///<
-  std::string what{};  ///< such as `coefficient 3 of dimension 0`
-  std::string published{};
-  std::string solved{};
-};
 
 struct Verification {
   std::size_t equal = 0;  ///< segments found equal, before the first difference

@@ -1,0 +1,68 @@
+#include "ipc/verification/begin_state.hpp"
+
+#include <algorithm>
+
+#include "core/polynomial/segment.hpp"
+#include "ipc/ring/item.hpp"
+#include "ipc/verification/difference.hpp"
+#include "splinecast/waypoint.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+/// How often a state may have been put to unit length by runs that took each other's place.
+constexpr int kNormalisations = 4;
+
+}  // namespace
+
+void BeginState::find(std::size_t i, Time natural_right) noexcept {
+  const SegmentCopy& segment = segments_[i];
+  if (i == 0) {
+    const auto start = record_.items.find(ItemKind::start_state, 0, record_.items.size());
+    start ? take_item(*start) : take_state_of(segment);
+    return;
+  }
+  const bool begins_on_knot =
+      segment.left == natural_right && (segments_[i - 1].kind == SegmentKind::spline ||
+                                        segments_[i - 1].kind == SegmentKind::splice);
+  if (begins_on_knot) return take_state_of(segment);
+  CutSegment cut = cut_of(segments_[i - 1]);
+  cut.right = natural_right;
+  evaluate_at_cut(cut, segment.left, state_);
+  normalise();
+  for (int n = 1; n < kNormalisations && !is_state_of(segment); ++n) normalise();
+}
+
+void BeginState::take_cut(std::size_t i, Time t) noexcept {
+  evaluate_at_cut(cut_of(segments_[i]), t, state_);
+}
+
+void BeginState::normalise() noexcept {
+  const StateRef state = state_.ref();
+  record_.kinds.normalise_quaternions(state.position, state.velocity, state.acceleration);
+}
+
+void BeginState::take_item(Word item) noexcept {
+  const Waypoint start = record_.items.waypoint(item);
+  std::ranges::copy(start.position, state_.ref().position.begin());
+  std::ranges::copy(start.velocity, state_.ref().velocity.begin());
+  std::ranges::copy(start.acceleration, state_.ref().acceleration.begin());
+}
+
+void BeginState::take_state_of(const SegmentCopy& segment) noexcept {
+  core::evaluate(segment.order, segment.coefficients, 0, state_.ref());
+  // Evaluation makes a negative 0 positive.
+  std::ranges::copy(std::span(segment.coefficients).first(record_.items.dimensions()),
+                    state_.ref().position.begin());
+}
+
+bool BeginState::is_state_of(const SegmentCopy& segment) const {
+  State state(record_.items.dimensions());
+  core::evaluate(segment.order, segment.coefficients, 0, state.ref());
+  const bool may_step = segment.kind == SegmentKind::stop_tail;
+  return same_bits(state.position(), state_.position()) &&
+         same_bits(state.velocity(), state_.velocity()) &&
+         (may_step || same_bits(state.acceleration(), state_.acceleration()));
+}
+
+}  // namespace splinecast::ipc

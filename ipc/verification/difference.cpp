@@ -1,0 +1,85 @@
+#include "ipc/verification/difference.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstdint>
+#include <utility>
+
+namespace splinecast::ipc {
+namespace {
+
+std::optional<Difference> differ(std::string what, std::string published, std::string solved) {
+  return Difference{
+      .what = std::move(what), .published = std::move(published), .solved = std::move(solved)};
+}
+
+/// Whether a segment ends where it was solved to, or was cut there.
+bool may_end(const SegmentCopy& published, const core::Segment& solved, bool may_be_cut) noexcept {
+  if (published.right == solved.right) return true;
+  return may_be_cut && published.right > solved.left && published.right < solved.right;
+}
+
+/// Compares coefficients [power][dimension].
+std::optional<Difference> compare_coefficients(std::span<const double> published,
+                                               std::span<const double> solved,
+                                               std::size_t dimensions) {
+  for (std::size_t k = 0; k < published.size(); ++k) {
+    if (same_bits(published[k], solved[k])) continue;
+    const bool has_powers = published.size() > dimensions;
+    std::string which = "coefficient";
+    if (has_powers) which.append(" ").append(std::to_string(k / dimensions));
+    which.append(" of dimension ").append(std::to_string(k % dimensions));
+    return differ(std::move(which), in_words(published[k]), in_words(solved[k]));
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+bool same_bits(double a, double b) noexcept {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+bool same_bits(std::span<const double> a, std::span<const double> b) noexcept {
+  return std::ranges::equal(a, b, [](double x, double y) { return same_bits(x, y); });
+}
+
+std::string in_words(double value) {
+  std::array<char, 32> buffer{};
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+}
+
+std::string in_words(Time time) { return std::to_string(time.count()) + " ns"; }
+
+std::string in_words(SegmentKind kind) {
+  constexpr std::array<const char*, 4> kNames{"spline", "splice", "stop tail", "hold"};
+  const auto i = static_cast<std::size_t>(kind);
+  return i < kNames.size() ? kNames[i] : "unknown";
+}
+
+std::string first_in_words(std::span<const double> values) {
+  return std::string("[").append(in_words(values[0])).append(", …]");
+}
+
+std::optional<Difference> compare(const SegmentCopy& published, const core::Segment& solved,
+                                  std::size_t dimensions, bool may_be_cut) {
+  if (published.left != solved.left) {
+    return differ("left end", in_words(published.left), in_words(solved.left));
+  }
+  if (!may_end(published, solved, may_be_cut)) {
+    return differ("right end", in_words(published.right), in_words(solved.right));
+  }
+  if (published.kind != solved.kind) {
+    return differ("kind", in_words(published.kind), in_words(solved.kind));
+  }
+  if (published.order != solved.order) {
+    return differ("order", std::to_string(published.order), std::to_string(solved.order));
+  }
+  const std::size_t count = static_cast<std::size_t>(solved.order) * dimensions;
+  return compare_coefficients(std::span(published.coefficients).first(count), solved.coefficients,
+                              dimensions);
+}
+
+}  // namespace splinecast::ipc

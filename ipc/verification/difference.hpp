@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/polynomial/segment.hpp"
+#include "ipc/board/segment.hpp"
+#include "ipc/memory/word.hpp"
+#include "splinecast/state.hpp"
+#include "splinecast/time.hpp"
+
+namespace splinecast::ipc {
+
+/// The first thing in which a stream is not what its items and decisions make it.
+struct Difference {
+  Word segment = 0;
+  Time left{};         ///< its ends, as published
+  Time right{};        ///<
+  std::string what{};  ///< such as `coefficient 3 of dimension 0`
+  std::string published{};
+  std::string solved{};
+};
+
+/// Whether values have the same bits: 0 and -0 do not.
+[[nodiscard]] bool same_bits(double a, double b) noexcept;
+[[nodiscard]] bool same_bits(std::span<const double> a, std::span<const double> b) noexcept;
+
+/// Values as a Difference says them: the shortest text that reads back exactly, `5 ns`, `stop
+/// tail`.
+[[nodiscard]] std::string in_words(double value);
+[[nodiscard]] std::string in_words(Time time);
+[[nodiscard]] std::string in_words(SegmentKind kind);
+/// The first of several values, at least one.
+[[nodiscard]] std::string first_in_words(std::span<const double> values);
+
+/// Compares a published segment with what has been solved, bit by bit; `may_be_cut`: it may also
+/// end before that. Returns the first thing that differs, without the segment's number and ends;
+/// nothing if it is equal. O(D).
+[[nodiscard]] std::optional<Difference> compare(const SegmentCopy& published,
+                                                const core::Segment& solved, std::size_t dimensions,
+                                                bool may_be_cut);
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,92 @@
+#include "ipc/verification/run_target.hpp"
+
+#include <algorithm>
+
+#include "ipc/ring/item.hpp"
+#include "splinecast/waypoint.hpp"
+
+namespace splinecast::ipc {
+
+void RunTarget::forget_waypoints() noexcept {
+  items_.clear();
+  met_.clear();
+  frozen_met_ = 0;
+}
+
+void RunTarget::list_waypoints(Word first) {
+  const Word items = record_.items.size();
+  const Word replaced = record_.items.find(ItemKind::replace, first, items).value_or(items);
+  items_.clear();
+  for (Word item = first;;) {
+    const auto next = record_.items.find(ItemKind::waypoint, item, replaced);
+    if (!next) return;
+    const Time time = record_.items.waypoint(*next).time;
+    if (!items_.empty() && time <= record_.items.waypoint(items_.back()).time) return;
+    items_.push_back(*next);
+    item = *next + 1;
+  }
+}
+
+std::optional<std::size_t> RunTarget::index_of(Time time) const noexcept {
+  const auto time_of = [this](Word item) { return record_.items.waypoint(item).time; };
+  const auto at = std::ranges::lower_bound(items_, time, {}, time_of);
+  if (at == items_.end() || time_of(*at) != time) return std::nullopt;
+  return static_cast<std::size_t>(at - items_.begin());
+}
+
+void RunTarget::note_met(std::size_t index, std::size_t newer) {
+  if (met_.empty() || met_.back().index < index) met_.push_back({index, 0});
+  // Said twice where there is a segment on both sides: of a knot behind a cut only once.
+  if (met_.back().index == index) met_.back().newest = index + newer;
+}
+
+std::optional<std::size_t> RunTarget::newest_of(std::size_t index) const noexcept {
+  const auto at = std::ranges::lower_bound(met_, index, {}, &MetKnot::index);
+  if (at == met_.end() || at->index != index) return std::nullopt;
+  return at->newest;
+}
+
+bool RunTarget::append_until(std::size_t count) {
+  while (window_.knots() < count) {
+    const std::size_t k = window_.knots();
+    if (k >= items_.size()) return false;
+    for (; frozen_met_ < met_.size() && met_[frozen_met_].newest < k; ++frozen_met_) {
+      window_.freeze_knots(met_[frozen_met_].index + 1);
+    }
+    append(items_[k]);
+    used_ = items_[k] + 1;
+  }
+  return true;
+}
+
+void RunTarget::finish_last_run() noexcept {
+  if (window_.knots() != record_.head.run_knots || window_.finished()) return;
+  window_.freeze_knots(record_.head.run_frozen);
+  if (window_.frozen_knots() < window_.knots()) window_.finish(record_.end);
+}
+
+void RunTarget::append(Word item) noexcept {
+  const Waypoint sent = record_.items.waypoint(item);
+  const std::size_t dimensions = window_.dimensions();
+  const auto copy = [&](std::size_t part, std::span<const double> from) {
+    const auto to = std::span(values_).subspan(part * dimensions, from.size());
+    std::ranges::copy(from, to.begin());
+    return to;
+  };
+  const WaypointValues values{.position = copy(0, sent.position),
+                              .velocity = copy(1, sent.velocity),
+                              .acceleration = copy(2, sent.acceleration)};
+  record_.kinds.continue_from(newest_position(), values);
+  window_.append({.time = sent.time,
+                  .position = values.position,
+                  .velocity = values.velocity,
+                  .acceleration = values.acceleration});
+}
+
+std::span<const double> RunTarget::newest_position() const noexcept {
+  if (window_.knots() > 0) return window_.knot(window_.knots() - 1).waypoint;
+  return window_.is_later_run() ? std::span<const double>(begin_position_)
+                                : std::span<const double>{};
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,161 @@
+#include "ipc/verification/stream_replay.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "ipc/ring/item.hpp"
+#include "ipc/verification/difference.hpp"
+#include "splinecast/waypoint.hpp"
+
+namespace splinecast::ipc {
+
+StreamReplay::StreamReplay(const StreamRecord& record)
+    : record_(record),
+      segments_(record.segments),
+      decisions_(record),
+      target_(record),
+      begin_(record),
+      solved_(record.items.dimensions()),
+      end_(record.items.dimensions()),
+      extrapolation_(record.items.dimensions()),
+      values_(record.items.dimensions()) {}
+
+Verification StreamReplay::run() {
+  while (!first_ && next_ < segments_.size()) solve_part();
+  if (!first_ && record_.head.finished && !rests_at_last_waypoint()) {
+    (void)expect_all_used(record_.items.size());
+  }
+  return {.equal = equal_, .first = std::move(first_)};
+}
+
+void StreamReplay::solve_part() {
+  const std::size_t i = next_;
+  if (!follows(i)) return;
+  if (decisions_.is_ending(i)) return solve_ending(i);
+  if (decisions_.begins_run(i, run_item_)) return solve_run(i);
+  if (segments_[i].kind == SegmentKind::hold && !segments_[i].has_waypoint) return solve_hold(i);
+  (void)differ(i, "kind: it belongs to no run", in_words(segments_[i].kind), "none");
+}
+
+/// Whether a segment takes up where the one before it ends.
+bool StreamReplay::follows(std::size_t i) {
+  const SegmentCopy& segment = segments_[i];
+  const Word number = i > 0 ? segments_[i - 1].next : segment.number;
+  if (segment.number != number) {
+    return differ(i, "number: segments between were lost before they were collected",
+                  std::to_string(segment.number), std::to_string(number));
+  }
+  if (i == 0 || segment.left == segments_[i - 1].right) return true;
+  return differ(i, "left end", in_words(segment.left), in_words(segments_[i - 1].right));
+}
+
+/// The segments of one run: those on its target, and the entries that lead there.
+void StreamReplay::solve_run(std::size_t i) {
+  if (!begin_run(i)) return;
+  const std::size_t end = decisions_.end_of_run(i, run_item_);
+  if (!list_met(i, end)) return;
+  for (std::size_t s = i; s < end; ++s) {
+    if (!follows(s) || !solve_in_run(s)) return;
+    advance();
+  }
+  if (target_.window().knots() > 0 && is_last_run()) (void)append_until(record_.head.run_knots);
+}
+
+bool StreamReplay::begin_run(std::size_t i) {
+  const SegmentCopy& segment = segments_[i];
+  const Word items = record_.items.size();
+  begin_.find(i, natural_right_);
+  const bool is_later = i > 0 || decisions_.begins_elsewhere(i);
+  // A run that has no waypoint yet is the same wherever it is cut again.
+  const Word first_items = segment.origin.item.value_or(items);
+  const bool is_same_run =
+      i > 0 && target_.window().knots() == 0 &&
+      (target_.window().is_later_run() || !record_.items.find(ItemKind::replace, 0, first_items));
+  if (is_later && !is_same_run) target_.begin_run();
+  if (!is_same_run || decisions_.begins_at_cut(i)) target_.begin_at(begin_.position());
+  target_.forget_waypoints();
+  run_item_ = segment.origin.item;
+  if (!run_item_ && segment.has_waypoint) {
+    run_item_ = record_.items.find(ItemKind::waypoint, target_.used(), items);
+  }
+  if (!run_item_) return true;
+  if (!expect_all_used(*run_item_)) return false;
+  target_.list_waypoints(*run_item_);
+  return true;
+}
+
+/// Lists the knots that segments of a run meet, with what they say of when they were solved.
+bool StreamReplay::list_met(std::size_t begin, std::size_t end) {
+  for (std::size_t s = begin; s < end; ++s) {
+    const SegmentCopy& segment = segments_[s];
+    if (segment.has_waypoint && !note_met(s, segment.left, segment.newer_knots)) return false;
+    const bool arrives = segment.origin.ends_at_waypoint && segment.kind != SegmentKind::stop_tail;
+    if (arrives && !note_met(s, segment.natural_right, segment.origin.right_newer_knots)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool StreamReplay::note_met(std::size_t s, Time time, std::size_t newer) {
+  const auto index = target_.index_of(time);
+  if (!index) return differ(s, "waypoint", in_words(time), "none of the run at that time");
+  target_.note_met(*index, newer);
+  return true;
+}
+
+/// Appends waypoints of the run until the target has `count` knots.
+bool StreamReplay::append_until(std::size_t count) {
+  if (target_.append_until(count)) return true;
+  return differ(next_, "waypoints known", std::to_string(count),
+                std::to_string(target_.window().knots()));
+}
+
+/// Whether no segment leads to the last run, as the curve rests where that ends already.
+bool StreamReplay::rests_at_last_waypoint() {
+  const Word run_item = record_.head.run_item;
+  if (segments_.empty() || run_item == 0 || run_item_ == run_item - 1) return false;
+  if (!expect_all_used(run_item - 1)) return false;
+  begin_.take_cut(segments_.size() - 1, segments_.back().right);
+  target_.begin_at(begin_.position());
+  target_.begin_run();
+  target_.forget_waypoints();
+  target_.list_waypoints(run_item - 1);
+  const core::SlidingWindow& window = target_.window();
+  return append_until(record_.head.run_knots) && window.knots() > 0 &&
+         same_bits(window.knot(window.knots() - 1).position, begin_.position());
+}
+
+/// No waypoint may lie between what is on the curve and item `end`, unless it was replaced.
+bool StreamReplay::expect_all_used(Word end) {
+  const auto missed = record_.items.find(ItemKind::waypoint, target_.used(), end);
+  if (!missed || record_.items.find(ItemKind::replace, *missed, end)) return true;
+  const std::size_t last = segments_.empty() ? 0 : std::min(next_, segments_.size() - 1);
+  return differ(last, std::string("waypoint of item ") + std::to_string(*missed), "none",
+                in_words(record_.items.waypoint(*missed).time));
+}
+
+void StreamReplay::advance() noexcept {
+  natural_right_ = solved_.right;
+  ++next_;
+  ++equal_;
+}
+
+bool StreamReplay::differ(std::size_t i, std::string what, std::string published,
+                          std::string solved) {
+  return differ(
+      i, {.what = std::move(what), .published = std::move(published), .solved = std::move(solved)});
+}
+
+bool StreamReplay::differ(std::size_t i, Difference difference) {
+  first_.emplace(std::move(difference));
+  if (i < segments_.size()) {
+    first_->segment = segments_[i].number;
+    first_->left = segments_[i].left;
+    first_->right = segments_[i].right;
+  }
+  return false;
+}
+
+}  // namespace splinecast::ipc

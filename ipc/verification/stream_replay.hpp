@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/online/extrapolation.hpp"
+#include "core/polynomial/segment.hpp"
+#include "ipc/board/segment.hpp"
+#include "ipc/memory/word.hpp"
+#include "ipc/solve/run_edges.hpp"
+#include "ipc/verification/begin_state.hpp"
+#include "ipc/verification/recorded_decisions.hpp"
+#include "ipc/verification/run_target.hpp"
+#include "ipc/verification/stream_record.hpp"
+#include "ipc/verification/verify.hpp"
+#include "splinecast/state.hpp"
+#include "splinecast/time.hpp"
+
+namespace splinecast::ipc {
+
+/// Solves the record of one stream again, segment by segment, by the decisions that it holds, up to
+/// the first segment that differs. Used once, by one thread.
+class StreamReplay {
+ public:
+  /// The record outlives this. Throws std::invalid_argument for window options out of range.
+  explicit StreamReplay(const StreamRecord& record);
+
+  [[nodiscard]] Verification run();
+
+ private:
+  // Parts of a curve, and what leads from one to the next.
+  void solve_part();
+  bool follows(std::size_t i);
+  void solve_run(std::size_t i);
+  bool begin_run(std::size_t i);
+  bool list_met(std::size_t begin, std::size_t end);
+  bool note_met(std::size_t s, Time time, std::size_t newer);
+  bool append_until(std::size_t count);
+  bool rests_at_last_waypoint();
+  bool expect_all_used(Word end);
+  [[nodiscard]] bool is_last_run() const noexcept { return decisions_.is_last_run(run_item_); }
+  [[nodiscard]] bool begins_at_end(std::size_t i) const noexcept;
+
+  // One segment: solved into solved_, and compared.
+  bool solve_in_run(std::size_t s);
+  bool solve_on_target(std::size_t s);
+  bool solve_entry(std::size_t s);
+  bool solve_behind_entry(std::size_t s);
+  bool solve_state_stop(std::size_t s);
+  bool solve_hold_behind(std::size_t s);
+  void solve_hold(std::size_t i);
+  void solve_ending(std::size_t i);
+  bool compare_solved(std::size_t i);
+  void advance() noexcept;
+  bool differ(std::size_t i, std::string what, std::string published, std::string solved);
+  bool differ(std::size_t i, Difference difference);
+
+  const StreamRecord& record_;
+  std::span<const SegmentCopy> segments_;
+  RecordedDecisions decisions_;
+  RunTarget target_;
+  BeginState begin_;
+  core::Segment solved_;
+  State end_;  ///< that an entry ends in
+  core::Extrapolation extrapolation_;
+  BehindEntry behind_;
+  std::vector<double> values_;  ///< scratch
+  std::optional<Word> run_item_{};
+  Time natural_right_{};  ///< of the segment before, had it not been cut
+  std::size_t next_ = 0;  ///< segment to be compared next
+  std::size_t equal_ = 0;
+  std::optional<Difference> first_;
+};
+
+}  // namespace splinecast::ipc
