@@ -20,7 +20,7 @@
 #include "ipc/layout/limits.hpp"
 #include "ipc/options/stream.hpp"
 #include "ipc/roles/internals.hpp"
-#include "ipc/roles/stream_sweep.hpp"
+#include "ipc/sweep/many_streams.hpp"
 
 namespace splinecast::apps {
 namespace {

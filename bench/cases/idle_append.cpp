@@ -8,7 +8,7 @@
 #include "apps/process/signals.hpp"
 #include "bench/harness/solved_streams.hpp"
 #include "bench/harness/trips.hpp"
-#include "ipc/roles/stream_sweep.hpp"
+#include "ipc/sweep/many_streams.hpp"
 #include "splinecast/producer.hpp"
 
 namespace splinecast::bench {

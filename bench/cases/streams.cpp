@@ -10,7 +10,7 @@
 #include "apps/soak/roles.hpp"
 #include "bench/harness/solved_streams.hpp"
 #include "ipc/roles/internals.hpp"
-#include "ipc/roles/stream_sweep.hpp"
+#include "ipc/sweep/many_streams.hpp"
 
 /// What many streams of seven dimensions cost the one process that solves them. The time of these
 /// rows is the CPU time that this process takes for a second: 10 ms are 1 % of a core.

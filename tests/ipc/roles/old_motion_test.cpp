@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "ipc/roles/stream_sweep.hpp"
+#include "ipc/sweep/many_streams.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/reader.hpp"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "ipc/roles/stream_sweep.hpp"
+#include "ipc/sweep/many_streams.hpp"
 #include "splinecast/producer.hpp"
 #include "tests/fixtures/processes/process.hpp"
 

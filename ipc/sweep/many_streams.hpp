@@ -75,6 +75,14 @@ class StreamSweep {
   static constexpr std::size_t kDescriptorsPerStream = 2;
 
  private:
+  /// Streams that are tried at once, and streams of other processes that are looked at each time.
+  /// When one of these has died, the rest follow at once: they were mostly the same process's.
+  static constexpr std::size_t kTries = 16;
+
+  /// How often one of the streams that lack memory or descriptors is tried again; once one has
+  /// succeeded, the next look tries another.
+  static constexpr Time kRetry = std::chrono::milliseconds(100);
+
   enum class State : std::uint8_t {
     unowned,
     waiting,
@@ -107,32 +115,39 @@ class StreamSweep {
     Time active;  ///< when it was last stepped
   };
 
-  static Files files_of(const std::string& stream);
+  // Which streams are wanted and could be taken up: discovery.cpp.
+  void look_around();
+  void look_for_names();
+  [[nodiscard]] bool is_wanted(const std::string& stream) const;
+  [[nodiscard]] static bool may_be_taken(const std::string& stream, Member& member, bool stands);
+  [[nodiscard]] static Files files_of(const std::string& stream);
+  void note_ends_of_motion();
+  void look_elsewhere();
+  void look_at_postponed();
+
+  // Taking streams up, and giving them up: taking_up.cpp.
+  void take_next(const Clock& clock);
+  [[nodiscard]] bool own(const std::string& stream, Member& member);
+  [[nodiscard]] bool attach(const std::string& stream, Member& member, const Clock& clock);
+  void make_room();
+  void hold_regions() noexcept;
+  void release(Served& served);
+  void drop(const std::string& stream, Member& member, const std::exception& error);
+
+  // Stepping those that have something to do: stepping.cpp.
   void take_up(const Clock& clock);
   void collect_calling();
   void prefetch_behind(std::size_t i) const noexcept;
-  bool serve(std::size_t index, const Clock& clock);
+  [[nodiscard]] bool serve(std::size_t index, const Clock& clock);
   void tell_first_refusals(Solver& solver) noexcept;
   void release_detached();
-  void release(Served& served);
-  void look_around();
-  void look_for_names();
-  [[nodiscard]] static bool may_be_taken(const std::string& stream, Member& member, bool stands);
-  void look_elsewhere();
-  void look_at_postponed();
-  void hold_regions() noexcept;
-  void take_next(const Clock& clock);
-  void note_ends_of_motion();
-  bool own(const std::string& stream, Member& member);
-  bool attach(const std::string& stream, Member& member, const Clock& clock);
-  void make_room();
-  void drop(const std::string& stream, Member& member, const std::exception& error);
+
+  // What becomes of them.
   void become(const std::string& stream, Member& member, State state, SweepNews news,
               const Solver* solver = nullptr, std::string_view why = {}) noexcept;
   void tell(SweepNews news, const std::string& stream, const Solver* solver,
             std::string_view why) noexcept;
   [[nodiscard]] std::size_t owned() const noexcept;
-  [[nodiscard]] bool is_wanted(const std::string& stream) const;
 
   SolverOptions options_;
   Tell tell_;

@@ -10,13 +10,12 @@
 #include <vector>
 
 #include "ipc/layout/check.hpp"
-#include "ipc/layout/header.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/mapping/region.hpp"
 #include "tests/fixtures/processes/few_descriptors.hpp"
 #include "tests/fixtures/streams/board_words.hpp"
-#include "tests/ipc/roles/told.hpp"
+#include "tests/ipc/sweep/told.hpp"
 
 /// What goes wrong with one stream of a sweep, and what somebody else does to it: the others go on.
 namespace splinecast::ipc {

@@ -1,4 +1,4 @@
-#include "ipc/roles/stream_sweep.hpp"
+#include "ipc/sweep/many_streams.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -12,7 +12,7 @@
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/mapping/region.hpp"
 #include "splinecast/errors.hpp"
-#include "tests/ipc/roles/told.hpp"
+#include "tests/ipc/sweep/told.hpp"
 
 /// One thread's solvers of many streams, over real shared memory, within one process.
 namespace splinecast::ipc {

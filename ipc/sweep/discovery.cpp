@@ -1,0 +1,125 @@
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "ipc/mapping/owner_lock.hpp"
+#include "ipc/mapping/region.hpp"
+#include "ipc/memory/names.hpp"
+#include "ipc/sweep/many_streams.hpp"
+#include "splinecast/streams.hpp"
+
+namespace splinecast::ipc {
+
+void StreamSweep::look_around() {
+  const bool has_changed = folder_.has_changed();
+  if (has_changed || looks_again_) {
+    looks_again_ = true;
+    look_for_names();
+    looks_again_ = false;
+  }
+  note_ends_of_motion();
+  if (to_take_.empty()) look_elsewhere();
+  if (to_take_.empty()) look_at_postponed();
+  if (is_any_unheld_) hold_regions();
+}
+
+/// Notes which streams are to be taken up, and forgets those that patterns found and that have
+/// gone.
+void StreamSweep::look_for_names() {
+  to_take_.clear();
+  std::vector<std::string> standing = stream_names();
+  std::erase_if(standing, [](const std::string& stream) {
+    return !region_exists(stream, RegionKind::waypoints);
+  });
+  for (const std::string& stream : standing) {
+    if (is_wanted(stream)) members_.try_emplace(stream);
+  }
+  std::erase_if(members_, [&](const auto& entry) {
+    const auto& [stream, member] = entry;
+    const bool stands = std::ranges::binary_search(standing, stream);
+    if (member.state == State::solved || stands || member.is_named) return false;
+    tell(SweepNews::gone, stream, nullptr, {});
+    return true;
+  });
+  for (auto& [stream, member] : members_) {
+    const bool stands = std::ranges::binary_search(standing, stream);
+    if (may_be_taken(stream, member, stands)) to_take_.push_back(stream);
+  }
+  std::ranges::reverse(to_take_);
+}
+
+bool StreamSweep::is_wanted(const std::string& stream) const {
+  return std::ranges::any_of(patterns_,
+                             [&](const std::string& pattern) { return matches(pattern, stream); });
+}
+
+/// Whether a stream is to be tried now. One that was given up is tried once other files exist under
+/// its names: then it is reported as another stream.
+bool StreamSweep::may_be_taken(const std::string& stream, Member& member, bool stands) {
+  if (!stands && !member.is_named) return false;
+  if (member.state == State::given_up && files_of(stream) != member.files) {
+    member.state = State::unowned;
+  }
+  return member.state == State::unowned || member.state == State::waiting ||
+         member.state == State::no_descriptors;
+}
+
+StreamSweep::Files StreamSweep::files_of(const std::string& stream) {
+  const auto status_of = [](const std::string& path) {
+    struct stat status {};
+    if (lstat(path.c_str(), &status) != 0) status = {};
+    return status;
+  };
+  const auto lock = status_of(lock_path(stream, RegionKind::spline));
+  return {status_of(region_path(stream, RegionKind::waypoints)).st_ino,
+          status_of(region_path(stream, RegionKind::spline)).st_ino,
+          lock.st_uid != geteuid() ? lock.st_ino : 0};
+}
+
+/// Streams whose earlier motion has ended are tried again: nothing else tells.
+void StreamSweep::note_ends_of_motion() {
+  std::erase_if(moving_, [&](const std::string& stream) {
+    const auto found = members_.find(stream);
+    if (found == members_.end() || !found->second.waiting) return true;
+    const Time end = found->second.waiting->due();
+    if (end > now_) return end == Time::max();
+    to_take_.push_back(stream);
+    return true;
+  });
+}
+
+/// Looks whether streams of others have lost their solver, some each time.
+void StreamSweep::look_elsewhere() {
+  if (elsewhere_.empty()) {
+    for (const auto& [stream, member] : members_) {
+      if (member.state == State::elsewhere) elsewhere_.push_back(stream);
+    }
+  }
+  for (std::size_t looks = 0; looks < kTries && !elsewhere_.empty(); ++looks) {
+    const std::string stream = std::move(elsewhere_.back());
+    elsewhere_.pop_back();
+    const auto found = members_.find(stream);
+    if (found == members_.end() || found->second.state != State::elsewhere) continue;
+    if (is_owned(stream, RegionKind::spline)) continue;
+    to_take_.push_back(stream);
+    looks = 0;
+  }
+}
+
+/// Takes up again the next of the streams that lacked memory or descriptors.
+void StreamSweep::look_at_postponed() {
+  if (now_ < next_retry_) return;
+  next_retry_ = now_ + kRetry;
+  const auto is_postponed = [](const auto& entry) {
+    return entry.second.state == State::postponed;
+  };
+  auto next = std::find_if(members_.upper_bound(last_retried_), members_.end(), is_postponed);
+  if (next == members_.end()) next = std::ranges::find_if(members_, is_postponed);
+  if (next == members_.end()) return;
+  to_take_.push_back(next->first);
+  last_retried_ = next->first;
+}
+
+}  // namespace splinecast::ipc

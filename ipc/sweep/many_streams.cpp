@@ -1,0 +1,75 @@
+#include "ipc/sweep/many_streams.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "ipc/memory/names.hpp"
+#include "splinecast/streams.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+/// Descriptors for all else that the process does.
+constexpr std::size_t kOtherDescriptors = 32;
+
+std::size_t most_streams(std::size_t descriptors_each) {
+  rlimit limit{};
+  getrlimit(RLIMIT_NOFILE, &limit);
+  const std::size_t all = limit.rlim_cur;
+  return all > kOtherDescriptors ? (all - kOtherDescriptors) / descriptors_each : 0;
+}
+
+}  // namespace
+
+StreamSweep::StreamSweep(const std::vector<std::string>& wanted, SolverOptions options, Tell tell,
+                         Time pause)
+    : options_(std::move(options)),
+      tell_(std::move(tell)),
+      most_owned_(most_streams(kDescriptorsPerStream)),
+      pause_(pause),
+      quiet_sweeps_(static_cast<std::size_t>(std::max<std::int64_t>(kQuietPause / pause, 1))) {
+  for (const std::string& text : wanted) {
+    if (is_pattern(text)) {
+      patterns_.push_back(text);
+      continue;
+    }
+    require_stream_name(text);
+    members_[text].is_named = true;
+  }
+  Solver::require(options_);
+  // Owned at once, and taken up one after the other by the sweeps.
+  for (auto& [stream, member] : members_) {
+    if (own(stream, member)) become(stream, member, State::waiting, SweepNews::waiting);
+  }
+}
+
+Time StreamSweep::next_pause() const noexcept {
+  return all_quiet_ ? std::max(pause_, kQuietPause) : pause_;
+}
+
+/// Notes what has become of a stream, and tells it if that is news.
+void StreamSweep::become(const std::string& stream, Member& member, State state, SweepNews news,
+                         const Solver* solver, std::string_view why) noexcept {
+  const bool is_news = member.state != state;
+  member.state = state;
+  if (is_news) tell(news, stream, solver, why);
+}
+
+void StreamSweep::tell(SweepNews news, const std::string& stream, const Solver* solver,
+                       std::string_view why) noexcept {
+  try {
+    tell_(news, stream, solver, why);
+  } catch (...) {
+    return;  // a message that fails changes nothing for the streams
+  }
+}
+
+std::size_t StreamSweep::owned() const noexcept {
+  const auto waiting = std::ranges::count_if(
+      members_, [](const auto& entry) { return entry.second.waiting != nullptr; });
+  return served_.size() + static_cast<std::size_t>(waiting);
+}
+
+}  // namespace splinecast::ipc

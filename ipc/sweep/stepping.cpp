@@ -1,0 +1,125 @@
+#include <algorithm>
+#include <chrono>
+#include <exception>
+
+#include "ipc/roles/internals.hpp"
+#include "ipc/sweep/many_streams.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+constexpr Time kLookAround = std::chrono::milliseconds(50);
+
+}  // namespace
+
+bool StreamSweep::sweep(const Clock& clock) {
+  now_ = clock.now();
+  try {
+    take_up(clock);
+  } catch (const std::exception&) {
+    looks_again_ = true;  // the process lacks memory or descriptors; streams that are solved go on
+  }
+  collect_calling();
+  bool has_more = false;
+  for (std::size_t i = 0; i < calling_.size(); ++i) {
+    prefetch_behind(i);
+    has_more = serve(calling_[i], clock) || has_more;
+  }
+  if (has_detached_) release_detached();
+  return has_more || !to_take_.empty();
+}
+
+void StreamSweep::take_up(const Clock& clock) {
+  // Not while streams are being taken up: that makes files, for which it would look each time.
+  if (to_take_.empty() && now_ >= next_look_) {
+    next_look_ = now_ + kLookAround;
+    look_around();
+    // However many files others make there, the looks take a bounded share of the time.
+    constexpr int kShare = 20;
+    next_look_ = std::max(next_look_, clock.now() + kShare * (clock.now() - now_));
+  }
+  if (!to_take_.empty()) take_next(clock);
+}
+
+/// Notes which streams have something to do.
+void StreamSweep::collect_calling() {
+  ++sweeps_;
+  const bool looks_at_all = all_quiet_;
+  const Time quiet_since = now_ - kQuietAfter;
+  all_quiet_ = !watches_.empty();
+  calling_.clear();
+  for (std::size_t i = 0; i < watches_.size(); ++i) {
+    Watch& watch = watches_[i];
+    const bool is_quiet = watch.active <= quiet_since && watch.solver.due() == Time::max();
+    const bool is_looked_at = !is_quiet || looks_at_all || (sweeps_ + i) % quiet_sweeps_ == 0;
+    all_quiet_ = all_quiet_ && is_quiet;
+    const bool calls = is_looked_at && watch.solver.calls();
+    const bool needs_step = calls || (watch.solver.is_due(now_) && !watch.solver.settle(now_));
+    if (needs_step) calling_.push_back(i);
+  }
+  all_quiet_ = all_quiet_ && calling_.empty();
+}
+
+/// Asks for what the steps behind the i-th calling stream's go through, while that one is stepped:
+/// of many streams nothing stays in the caches from one step to the next.
+void StreamSweep::prefetch_behind(std::size_t i) const noexcept {
+  const auto ask = [&](std::size_t ahead, Internals::Stage stage) {
+    if (i + ahead >= calling_.size()) return;
+    Internals::prefetch(*served_[calling_[i + ahead]].solver, stage);
+  };
+  if (i + 4 < calling_.size()) __builtin_prefetch(served_[calling_[i + 4]].solver.get());
+  ask(3, Internals::Stage::self);
+  ask(2, Internals::Stage::parts);
+  ask(1, Internals::Stage::stream);
+}
+
+/// Steps one stream. Returns whether it has more to do.
+bool StreamSweep::serve(std::size_t index, const Clock& clock) {
+  Served& served = served_[index];
+  StepResult result;
+  try {
+    result = served.solver->step(clock);
+  } catch (const std::exception&) {
+    served.failure = std::current_exception();
+  }
+  if (served.failure || !served.solver->attached()) {
+    has_detached_ = true;
+    return false;
+  }
+  watches_[index] = {.solver = Internals::watch(*served.solver), .active = now_};
+  tell_first_refusals(*served.solver);
+  if (!served.was_finished && Internals::head(*served.solver).finished) {
+    served.was_finished = true;
+    tell(SweepNews::finished, served.solver->stream(), served.solver.get(), {});
+  }
+  return result.missed || watches_[index].solver.has_items();
+}
+
+void StreamSweep::tell_first_refusals(Solver& solver) noexcept {
+  try {
+    solver.first_refusals(refused_);
+    for (const ItemRefusal& refusal : refused_) {
+      tell_(SweepNews::refused, solver.stream(), &solver, to_string(refusal));
+    }
+    if (const auto excess = solver.first_excess()) {
+      tell_(SweepNews::beyond_limits, solver.stream(), &solver, solver.in_words(*excess));
+    }
+  } catch (...) {
+    return;  // as in tell()
+  }
+}
+
+void StreamSweep::release_detached() {
+  for (std::size_t i = served_.size(); i-- > 0;) {
+    if (!served_[i].failure && served_[i].solver->attached()) continue;
+    release(served_[i]);
+    served_.erase(served_.begin() + static_cast<std::ptrdiff_t>(i));
+    watches_.erase(watches_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  has_detached_ = false;
+  // Now, as a stream may already be there again.
+  looks_again_ = true;
+  next_look_ = now_;
+}
+
+}  // namespace splinecast::ipc

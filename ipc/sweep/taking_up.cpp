@@ -1,0 +1,130 @@
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <utility>
+
+#include "ipc/mapping/owner_lock.hpp"
+#include "ipc/mapping/region.hpp"
+#include "ipc/roles/internals.hpp"
+#include "ipc/sweep/many_streams.hpp"
+#include "splinecast/errors.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+/// Whether what failed may succeed later without other files under the stream's name.
+bool is_passing(const std::exception& error) noexcept {
+  return dynamic_cast<const OutOfResources*>(&error) != nullptr ||
+         dynamic_cast<const StreamBusy*>(&error) != nullptr ||
+         dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+}
+
+}  // namespace
+
+/// Takes up the next stream that can be.
+void StreamSweep::take_next(const Clock& clock) {
+  for (std::size_t tries = 0; tries < kTries && !to_take_.empty(); ++tries) {
+    const std::string stream = std::move(to_take_.back());
+    to_take_.pop_back();
+    const auto found = members_.find(stream);
+    if (found == members_.end() || found->second.state == State::solved) continue;
+    if (own(stream, found->second) && attach(stream, found->second, clock)) return;
+  }
+}
+
+/// Becomes the stream's solver, unless another process is.
+bool StreamSweep::own(const std::string& stream, Member& member) {
+  if (member.waiting) return true;
+  if (owned() >= most_owned_) {
+    become(stream, member, State::no_descriptors, SweepNews::no_descriptors);
+    return false;
+  }
+  try {
+    // Looks before it locks, because the lock makes a file and there may be many streams that
+    // cannot be solved.
+    if (!member.is_named) (void)look_at_region(stream, RegionKind::waypoints, options_.trust);
+    if (is_owned(stream, RegionKind::spline)) throw StreamBusy(stream);
+    member.waiting = std::make_unique<Solver>(stream, options_);
+    return true;
+  } catch (const StreamBusy&) {
+    become(stream, member, State::elsewhere, SweepNews::elsewhere);
+  } catch (const NoSuchStream&) {
+    looks_again_ = true;  // it has just gone
+  } catch (const std::exception& error) {
+    drop(stream, member, error);
+  }
+  return false;
+}
+
+/// Takes the stream up if it stands. Returns whether it did.
+bool StreamSweep::attach(const std::string& stream, Member& member, const Clock& clock) {
+  try {
+    if (!member.waiting->attach(clock)) {
+      const bool is_noted = std::ranges::find(moving_, stream) != moving_.end();
+      if (member.waiting->due() < Time::max() && !is_noted) moving_.push_back(stream);
+      become(stream, member, State::waiting, SweepNews::waiting);
+      return false;
+    }
+    make_room();
+  } catch (const std::exception& error) {
+    drop(stream, member, error);
+    return false;
+  }
+  if (member.state == State::postponed) next_retry_ = now_;
+  served_.push_back({.solver = std::move(member.waiting)});
+  watches_.push_back({.solver = Internals::watch(*served_.back().solver), .active = now_});
+  is_any_unheld_ = is_any_unheld_ || !Internals::hold_region(*served_.back().solver);
+  become(stream, member, State::solved, SweepNews::solving, served_.back().solver.get());
+  return true;
+}
+
+/// Makes room for one more stream that is solved, so that taking it up cannot fail half-way.
+void StreamSweep::make_room() {
+  const std::size_t needed = served_.size() + 1;
+  if (calling_.capacity() >= needed) return;
+  const std::size_t room = 2 * needed;
+  served_.reserve(room);
+  watches_.reserve(room);
+  calling_.reserve(room);
+}
+
+/// Boards whose region lock somebody kept from this process when it took them over.
+void StreamSweep::hold_regions() noexcept {
+  is_any_unheld_ = false;
+  for (const Served& served : served_) {
+    if (!Internals::hold_region(*served.solver)) is_any_unheld_ = true;
+  }
+}
+
+/// A stream that has been retired waits for a producer again; one whose step failed is given up.
+void StreamSweep::release(Served& served) {
+  const auto found = members_.find(served.solver->stream());
+  auto& [stream, member] = *found;
+  if (!served.failure) {
+    member.waiting = std::move(served.solver);
+    become(stream, member, State::waiting, SweepNews::waiting);
+    return;
+  }
+  served.solver.reset();
+  try {
+    std::rethrow_exception(served.failure);
+  } catch (const std::exception& error) {
+    drop(stream, member, error);
+  }
+}
+
+/// Gives a stream up for a reason, or postpones it if that may pass. A named one that is postponed
+/// keeps its lock.
+void StreamSweep::drop(const std::string& stream, Member& member, const std::exception& error) {
+  if (is_passing(error)) {
+    if (!member.is_named) member.waiting.reset();
+    next_retry_ = now_ + kRetry;
+    become(stream, member, State::postponed, SweepNews::postponed, nullptr, error.what());
+    return;
+  }
+  member.waiting.reset();
+  member.files = files_of(stream);
+  become(stream, member, State::given_up, SweepNews::given_up, nullptr, error.what());
+}
+
+}  // namespace splinecast::ipc
