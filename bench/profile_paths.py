@@ -59,6 +59,7 @@ PATHS = [
         benchmark="counted/sample",
         entries=["splinecast::Reader::sample*"],
         purposes=[
+            (r"KeptSegments::|ipc::number_(near|by)", "looks whether there is a new revision, finds the segment, time within it, status"),
             (r"core::evaluate", "the polynomial and three derivatives, 7 dimensions"),
             (r"KnotBoardReader|KnotCopy|fetch|load_values", "copies the next knot out of shared memory, once every 10 samples"),
             (r"BoardSegment|build_segment|build_cubic|magnitude", "makes the segment of its knots, once every 10 samples"),

@@ -1,13 +1,15 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "ipc/board/reader.hpp"
 #include "ipc/board/segment.hpp"
 #include "ipc/layout/summary.hpp"
+#include "ipc/memory/word.hpp"
+#include "ipc/sampling/comparison.hpp"
+#include "ipc/sampling/kept_segments.hpp"
 #include "ipc/sampling/snapshot.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/dimension_kind.hpp"
@@ -29,10 +31,10 @@ namespace splinecast::ipc {
 class Sampler {
  public:
   /// How many segments it keeps copies of: the horizon of a controller that looks ahead, mostly.
-  static constexpr std::size_t kSegmentsKept = 16;
+  static constexpr std::size_t kSegmentsKept = KeptSegments::kMost;
 
   /// How many segments a sample compares at most after missing many revisions.
-  static constexpr int kMostCompared = 16;
+  static constexpr int kMostCompared = ipc::kMostCompared;
 
   /// `board` is read as often as sampled; `clock` says whether a hold stands before the first
   /// waypoint; `kinds` are those of the board's dimensions.
@@ -94,35 +96,16 @@ class Sampler {
   [[nodiscard]] Word revision_seen() const noexcept { return head_.revision; }
 
  private:
+  /// How often a sample tries again when the writer overtakes it. A try takes well under a
+  /// microsecond and fails only if a whole revision was written within it.
+  static constexpr int kTries = 16;
+
   /// Result of looking a time up under one revision.
   enum class Found { segment, before_first, torn };
-  /// What a comparison with the curve seen before has found.
-  enum class Compared { same, changed, torn };
 
-  /// A copy of a segment, and the newest revision that it is known to be part of.
-  struct Kept {
-    BoardSegment segment;
-    Word known_by = 0;
-  };
-  [[nodiscard]] const BoardSegment& current() const noexcept { return current_->segment; }
-  /// One that is not kept, to copy into.
-  [[nodiscard]] BoardSegment& spare() noexcept { return copies_[spare_].segment; }
-  /// Which copy segment `number` is, if it is kept.
-  [[nodiscard]] std::uint8_t& place_of(Word number) noexcept {
-    return places_[number % kSegmentsKept];
-  }
-  [[nodiscard]] bool is_confirmed() noexcept;
   [[nodiscard]] bool goes_on(Time t) noexcept;
-  void confirm() noexcept;
-  void confirm(Kept& copy) noexcept;
   [[nodiscard]] Found locate(Time t) noexcept;
-  [[nodiscard]] bool take(Word number) noexcept;
   [[nodiscard]] bool spans(const BoardSegment& segment, Time t) const noexcept;
-  [[nodiscard]] static Word near(const BoardSegment& copy, Time t) noexcept;
-  [[nodiscard]] Word guess_by_pace(Time t) const noexcept;
-  [[nodiscard]] Word number_by_hint(Time t) const noexcept;
-  [[nodiscard]] bool begin_of(Word number, Time& begin, bool& is_end) const noexcept;
-  [[nodiscard]] bool number_by_cells(Time t, Word& number) const noexcept;
   void read(const BoardSegment& segment, double u, const StateRef& out) const noexcept;
   [[nodiscard]] SampleStatus evaluate(const BoardSegment& segment, Time t,
                                       const StateRef& out) const noexcept;
@@ -131,13 +114,7 @@ class Sampler {
   [[nodiscard]] SampleStatus look_up(Time t, const StateRef& out) noexcept;
   [[nodiscard]] SampleStatus hold_first(const StateRef& out) noexcept;
   [[nodiscard]] bool see(const Look& look) noexcept;
-  [[nodiscard]] Compared compare_with(const Head& before) noexcept;
-  [[nodiscard]] Compared compare_rest(BoardSegment& last) noexcept;
-  [[nodiscard]] bool is_ahead(const BoardSegment& first, const Head& before) noexcept;
-  [[nodiscard]] bool is_unchanged(const BoardSegment& segment, const Head& before) noexcept;
   [[nodiscard]] bool fits(const StateRef& out) const noexcept;
-  [[nodiscard]] bool copy_segments(Word oldest, Word newest, BoardSnapshot& out);
-  [[nodiscard]] bool finish_oldest_step(SegmentCopy& oldest);
   [[nodiscard]] SampleStatus from_own_copy(Time t, const StateRef& out) noexcept;
   [[nodiscard]] SampleStatus see_newest(Time t) noexcept;
   [[nodiscard]] bool evaluate_many(std::span<const Time> times, const SampleBlock& out) noexcept;
@@ -151,20 +128,7 @@ class Sampler {
   Head head_;                         ///< bounds under the revision last seen whole
   Time sampled_until_ = Time::min();  ///< latest time sampled as executed
   bool revised_ = false;              ///< the curve before that time has been changed: not yet told
-  Word confirmed_ = 0;                ///< current_->known_by
-  Time copied_settled_until_{};       ///< settled_until of that revision
-  /// What most samples need of the current copy, as confirmed: where on it the curve moves, and
-  /// whether all of it is settled. Nowhere, unless it lies between two waypoints.
-  struct AtHand {
-    Time left{};
-    Time right{};
-    bool is_finished = false;
-  };
-  AtHand at_hand_;
-  std::vector<Kept> copies_;                          ///< kSegmentsKept of them, and a spare one
-  std::array<std::uint8_t, kSegmentsKept> places_{};  ///< which copy, by number mod kSegmentsKept
-  std::size_t spare_ = kSegmentsKept;
-  Kept* current_;                           ///< the one used last
+  KeptSegments kept_;
   State state_;                             ///< scratch
   std::vector<double> start_acceleration_;  ///< scratch
   std::vector<double> end_acceleration_;    ///< scratch

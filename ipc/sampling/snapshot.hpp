@@ -4,9 +4,24 @@
 #include <span>
 #include <vector>
 
+#include "ipc/board/reader.hpp"
 #include "ipc/board/segment.hpp"
+#include "ipc/layout/summary.hpp"
+#include "ipc/memory/word.hpp"
+#include "splinecast/dimension_kind.hpp"
 
 namespace splinecast::ipc {
+
+/// Where the segments of a snapshot are copied from, and what that takes.
+struct SnapshotSource {
+  const KnotBoardReader& board;
+  const Head& head;             ///< of the revision
+  const DimensionKinds& kinds;  ///< of the board's dimensions
+  bool is_live;
+  BoardSegment& copy;                    ///< scratch
+  std::span<double> start_acceleration;  ///< scratch, as the next
+  std::span<double> end_acceleration;
+};
 
 /// Several segments of one revision: a consistent piece of the curve, whole or not at all.
 class BoardSnapshot {
@@ -24,6 +39,8 @@ class BoardSnapshot {
 
  private:
   friend class Sampler;
+  [[nodiscard]] bool copy_segments(const SnapshotSource& source, Word oldest, Word newest);
+
   std::size_t dimensions_;
   Head head_;
   std::size_t size_ = 0;

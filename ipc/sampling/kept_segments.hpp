@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "ipc/board/reader.hpp"
+#include "ipc/board/segment.hpp"
+#include "ipc/layout/summary.hpp"
+#include "ipc/memory/word.hpp"
+#include "splinecast/time.hpp"
+
+namespace splinecast::ipc {
+
+/// A reader's own copies of the segments it used last: the knots, with the tags of the revisions
+/// that wrote them, and the polynomials made from them. While those tags stand, one of them is
+/// taken again without copying anything. One thread uses it. Allocates when made only.
+class KeptSegments {
+ public:
+  /// How many are kept; one more is there to copy into.
+  static constexpr std::size_t kMost = 16;
+
+  /// What most samples need of the current copy, as confirmed: where on it the curve moves, and
+  /// whether all of it is settled. Nowhere, unless it lies between two waypoints.
+  struct AtHand {
+    Time left{};
+    Time right{};
+    bool is_finished = false;
+  };
+
+  KeptSegments(std::size_t dimensions, bool smooths);
+  KeptSegments(const KeptSegments&) = delete;
+  KeptSegments& operator=(const KeptSegments&) = delete;
+  KeptSegments(KeptSegments&&) noexcept = default;
+  KeptSegments& operator=(KeptSegments&&) noexcept = default;
+  ~KeptSegments() = default;
+
+  /// The copy used last; may be no segment, or one that stands no more.
+  [[nodiscard]] const BoardSegment& current() const noexcept { return current_->segment; }
+
+  /// The newest revision that the current copy is known to be part of; 0: none.
+  [[nodiscard]] Word confirmed_by() const noexcept { return confirmed_; }
+
+  [[nodiscard]] const AtHand& at_hand() const noexcept { return at_hand_; }
+
+  /// settled_until of that revision, as last seen.
+  [[nodiscard]] Time settled_until() const noexcept { return settled_until_; }
+  void see_settled(Time settled_until) noexcept { settled_until_ = settled_until; }
+
+  /// One that is not kept, to copy into.
+  [[nodiscard]] BoardSegment& spare() noexcept { return copies_[spare_].segment; }
+
+  /// Whether the current copy is what the head's revision holds, without copying it again: then it
+  /// is confirmed.
+  [[nodiscard]] bool is_confirmed(const KnotBoardReader& board, const Head& head) noexcept;
+
+  /// Makes the segment that begins at knot `number`, or at the one before if none begins there, the
+  /// current copy; keeps the one before if that fails. O(D), and O(1) if it is kept.
+  [[nodiscard]] bool take(const KnotBoardReader& board, const Head& head, Word number) noexcept;
+
+ private:
+  /// A copy of a segment, and the newest revision that it is known to be part of.
+  struct Kept {
+    BoardSegment segment;
+    Word known_by = 0;
+  };
+
+  /// Which copy segment `number` is, if it is kept.
+  [[nodiscard]] std::uint8_t& place_of(Word number) noexcept { return places_[number % kMost]; }
+  void confirm(const Head& head) noexcept;
+  void confirm(Kept& copy, const Head& head) noexcept;
+
+  Word confirmed_ = 0;    ///< current_->known_by
+  Time settled_until_{};  ///< of that revision
+  AtHand at_hand_;
+  std::vector<Kept> copies_;                  ///< kMost of them, and a spare one
+  std::array<std::uint8_t, kMost> places_{};  ///< which copy, by number mod kMost
+  std::size_t spare_ = kMost;
+  Kept* current_;  ///< the one used last
+};
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,99 @@
+#include "ipc/sampling/lookup.hpp"
+
+#include "core/forms/knot_segment.hpp"
+#include "ipc/sampling/seconds.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+/// Where a time would lie if the knots came at an even pace: a segment of the head.
+Word guess_by_pace(const KnotBoardReader& board, const Head& head, Time t) noexcept {
+  const Time oldest = board.time_hint(head.first);
+  const double share =
+      seconds_after(oldest, t) / seconds_after(oldest, board.time_hint(head.newest));
+  const auto intervals = static_cast<double>(head.newest - head.first);
+  // Written so that what is no number, or not on the board, becomes an end of it.
+  if (!(share > 0)) return head.first;
+  return share < 1 ? head.first + static_cast<Word>(share * intervals) : head.newest;
+}
+
+/// When the segment at knot `number` begins, or, where none does, the next one; at the end of a
+/// finished curve, when that ends. Returns false if a knot was written meanwhile.
+bool begin_of(const KnotBoardReader& board, const Head& head, Word number, Time& begin,
+              bool& is_end) noexcept {
+  core::SegmentForm form{};
+  if (!board.copy_time(number, head.revision, begin, form)) return false;
+  is_end = form == core::SegmentForm::none;
+  if (!is_end || number == head.newest) return true;
+  return board.copy_time(number + 1, head.revision, begin, form);
+}
+
+}  // namespace
+
+Word number_near(const BoardSegment& copy, Time t) noexcept {
+  if (!copy.is_there() || t < copy.left()) return 0;
+  if (t < copy.right()) return copy.number();
+  const Word length = to_word(copy.right()) - to_word(copy.left());
+  return to_word(t) - to_word(copy.right()) < length ? copy.next() : 0;
+}
+
+Word number_by_hint(const KnotBoardReader& board, const Head& head, Time t) noexcept {
+  Word low = head.first;
+  Word high = head.newest + 1;
+  const auto is_behind = [&](Word number) { return board.time_hint(number) > t; };
+  const Word guess = guess_by_pace(board, head, t);
+  if (is_behind(guess)) {
+    high = guess;
+    for (Word step = 1; step <= high - low; step *= 2) {
+      if (!is_behind(high - step)) {
+        low = high - step + 1;
+        break;
+      }
+      high -= step;
+    }
+  } else {
+    low = guess + 1;
+    for (Word step = 1; step <= high - low; step *= 2) {
+      if (is_behind(low + step - 1)) {
+        high = low + step - 1;
+        break;
+      }
+      low += step;
+    }
+  }
+  while (low < high) {
+    const Word middle = low + (high - low) / 2;
+    if (is_behind(middle)) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  return low == head.first ? 0 : low - 1;
+}
+
+bool number_by_cells(const KnotBoardReader& board, const Head& head, Time t,
+                     Word& number) noexcept {
+  Word low = head.first;
+  Word high = head.newest + 1;
+  bool is_end = false;
+  while (low < high) {
+    const Word middle = low + (high - low) / 2;
+    Time begin{};
+    if (!begin_of(board, head, middle, begin, is_end)) return false;
+    if (begin <= t) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  number = low == head.first ? 0 : low - 1;
+  if (number > head.first && number == head.newest) {
+    Time begin{};
+    if (!begin_of(board, head, number, begin, is_end)) return false;
+    if (is_end) --number;
+  }
+  return true;
+}
+
+}  // namespace splinecast::ipc

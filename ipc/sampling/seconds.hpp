@@ -1,0 +1,13 @@
+#pragma once
+
+#include "ipc/memory/word.hpp"
+#include "splinecast/time.hpp"
+
+namespace splinecast::ipc {
+
+/// Seconds from a segment's left end; whatever the region holds, without signed overflow.
+[[nodiscard]] inline double seconds_after(Time left, Time t) noexcept {
+  return to_seconds(to_time(to_word(t) - to_word(left)));
+}
+
+}  // namespace splinecast::ipc
