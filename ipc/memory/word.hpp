@@ -59,21 +59,10 @@ inline void prefetch_lines(const void* from, std::size_t bytes) noexcept {
   for (std::size_t at = 0; at < bytes; at += kLine) __builtin_prefetch(first + at);
 }
 
-/// Calls `copy(to[i], from[i])` for each i < n, in any order: a load and a store each, and one jump
-/// for the last eight instead of a test for each.
+/// Calls `copy(to[i], from[i])` for each i < n ≤ 8, by one jump.
 template <typename To, typename From, typename Copy>
-[[gnu::always_inline]] inline void copy_each(To* to, const From* from, std::size_t n,
+[[gnu::always_inline]] inline void copy_last(To* to, const From* from, std::size_t n,
                                              const Copy& copy) noexcept {
-  for (; n > 8; n -= 8, to += 8, from += 8) {
-    copy(to[0], from[0]);
-    copy(to[1], from[1]);
-    copy(to[2], from[2]);
-    copy(to[3], from[3]);
-    copy(to[4], from[4]);
-    copy(to[5], from[5]);
-    copy(to[6], from[6]);
-    copy(to[7], from[7]);
-  }
   switch (n) {
     case 8:
       copy(to[7], from[7]);
@@ -102,6 +91,24 @@ template <typename To, typename From, typename Copy>
     default:
       break;
   }
+}
+
+/// Calls `copy(to[i], from[i])` for each i < n, in any order: a load and a store each, and one jump
+/// for the last eight instead of a test for each.
+template <typename To, typename From, typename Copy>
+[[gnu::always_inline]] inline void copy_each(To* to, const From* from, std::size_t n,
+                                             const Copy& copy) noexcept {
+  for (; n > 8; n -= 8, to += 8, from += 8) {
+    copy(to[0], from[0]);
+    copy(to[1], from[1]);
+    copy(to[2], from[2]);
+    copy(to[3], from[3]);
+    copy(to[4], from[4]);
+    copy(to[5], from[5]);
+    copy(to[6], from[6]);
+    copy(to[7], from[7]);
+  }
+  copy_last(to, from, n, copy);
 }
 
 /// Stores values with release, each in a word of its own from `to` on.
