@@ -6,13 +6,14 @@
 
 #include "apps/advise/report.hpp"
 #include "apps/cli/options.hpp"
-#include "apps/files/kinds.hpp"
+#include "apps/cli/verb.hpp"
 #include "apps/output/stream.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "apps/recordings/advice.hpp"
 #include "apps/recordings/recording.hpp"
 #include "apps/streams/report.hpp"
 #include "apps/streams/rows.hpp"
+#include "apps/tables/kinds.hpp"
 #include "ipc/memory/names.hpp"
 #include "ipc/options/curve.hpp"
 #include "ipc/roles/inspect.hpp"
@@ -112,33 +113,34 @@ int run_advise(const AdviseOptions& options) {
   return kOk;
 }
 
-}  // namespace
-
-void add_advise(CLI::App& program, Action& action) {
+void add_advise(CLI::App& verb, Action& action) {
   auto options = std::make_shared<AdviseOptions>();
-  auto* verb = program.add_subcommand(
-      "advise", "Recommend lead, settle lag, freeze-ahead, stop time and limits, and say why");
-  verb->add_option(
-          "FILE|STREAM", options->source,
-          "Waypoint file, CSV or TUM text, - for standard input; or a stream, of which the "
-          "waypoints in its ring are looked at (write ./NAME for a file of that name)")
+  verb.add_option("FILE|STREAM", options->source,
+                  "Waypoint file, CSV or TUM text, - for standard input; or a stream, of which the "
+                  "waypoints in its ring are looked at (write ./NAME for a file of that name)")
       ->required();
-  add_settle(*verb, options->settle);
-  verb->get_option("--settle")
+  add_settle(verb, options->settle);
+  verb.get_option("--settle")
       ->description(
           "Settle lag of the solver, 0 to 64 (default the stream's own; of a file 8, or "
           "fewer where 8 would need a lead of more than 1 s)");
-  verb->add_option_function<std::string>(
+  verb.add_option_function<std::string>(
           "--freeze-ahead",
           [options](const std::string& text) {
             options->freeze_ahead = time_within("--freeze-ahead", text, TimeUnit::milliseconds);
           },
           "What lies this long ahead of now is settled (default 5, or the stream's own)")
       ->type_name("MS");
-  verb->add_flag("--json", options->json, "Report as JSON on standard output");
-  add_table_options(*verb, options->table);
-  add_trust(*verb, options->trust);
-  verb->callback([&action, options] { action = [options] { return run_advise(*options); }; });
+  verb.add_flag("--json", options->json, "Report as JSON on standard output");
+  add_table_options(verb, options->table);
+  add_trust(verb, options->trust);
+  verb.callback([&action, options] { action = [options] { return run_advise(*options); }; });
 }
+
+const Verb advise_verb(
+    "advise", 80, "Recommend lead, settle lag, freeze-ahead, stop time and limits, and say why",
+    add_advise);
+
+}  // namespace
 
 }  // namespace splinecast::apps

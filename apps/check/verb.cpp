@@ -8,7 +8,7 @@
 
 #include "apps/check/excesses.hpp"
 #include "apps/cli/options.hpp"
-#include "apps/files/kinds.hpp"
+#include "apps/cli/verb.hpp"
 #include "apps/fit/curve.hpp"
 #include "apps/fit/options.hpp"
 #include "apps/limits/file.hpp"
@@ -17,6 +17,7 @@
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
 #include "apps/streams/report.hpp"
+#include "apps/tables/kinds.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -158,23 +159,19 @@ int run_check(const CheckOptions& options) {
   return report.check.keeps_limits() ? kOk : kFellShort;
 }
 
-}  // namespace
-
-void add_check(CLI::App& program, Action& action) {
+void add_check(CLI::App& verb, Action& action) {
   auto options = std::make_shared<CheckOptions>();
-  auto* verb = program.add_subcommand(
-      "check", "Compare the spline through a file with limits; exit code 3 if it is beyond them");
-  verb->add_option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
+  verb.add_option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
       ->required();
-  add_limit_options(*verb, options->limits);
-  verb->add_option_function<std::string>(
+  add_limit_options(verb, options->limits);
+  verb.add_option_function<std::string>(
           "--method", [options](const std::string& text) { options->method = &method_named(text); },
           fmt::format("Interpolant: {} (default c2)", method_names(false)))
       ->type_name("METHOD");
-  add_curve(*verb, options->curve);
-  add_table_options(*verb, options->table);
-  verb->add_flag("--json", options->json, "As JSON");
-  verb->callback([&action, options] {
+  add_curve(verb, options->curve);
+  add_table_options(verb, options->table);
+  verb.add_flag("--json", options->json, "As JSON");
+  verb.callback([&action, options] {
     if (options->method == nullptr) options->method = &c2();
     require_consistent(options->curve, std::array{options->method});
     if (!options->limits.any()) {
@@ -185,5 +182,11 @@ void add_check(CLI::App& program, Action& action) {
     action = [options] { return run_check(*options); };
   });
 }
+
+const Verb check_verb(
+    "check", 60, "Compare the spline through a file with limits; exit code 3 if it is beyond them",
+    add_check);
+
+}  // namespace
 
 }  // namespace splinecast::apps

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "apps/cli/guarded.hpp"
-#include "apps/cli/options.hpp"
+#include "apps/cli/verb.hpp"
 #include "apps/cli/version.hpp"
 #include "apps/process/exit_codes.hpp"
 
@@ -18,7 +18,7 @@ int run_program(int argc, char** argv) {
   program.set_version_flag("--version", std::string("splinecast ") + kVersion);
   program.require_subcommand(1);
   Action action;
-  add_verbs(program, action);
+  Verb::add_all(program, action);
   try {
     // CLI11 would only say that a subcommand is missing.
     const std::string verb = argc > 1 ? argv[1] : "";

@@ -8,9 +8,9 @@
 #include <charconv>
 #include <chrono>
 
-#include "apps/files/kinds.hpp"
 #include "apps/files/numbers.hpp"
 #include "apps/process/exit_codes.hpp"
+#include "apps/tables/kinds.hpp"
 
 namespace splinecast::apps {
 namespace {

@@ -8,34 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "apps/files/waypoint_table.hpp"
+#include "apps/tables/waypoints.hpp"
 #include "core/online/sliding_window.hpp"
 #include "splinecast/boundary_condition.hpp"
 #include "splinecast/options.hpp"
 
 namespace splinecast::apps {
-
-/// A verb: what it runs once its arguments are parsed. Returns the exit code.
-using Action = std::function<int()>;
-
-/// Each adds its verb to the program and sets `action` when that verb is chosen.
-void add_advise(CLI::App& program, Action& action);
-void add_check(CLI::App& program, Action& action);
-void add_demo(CLI::App& program, Action& action);
-void add_doctor(CLI::App& program, Action& action);
-void add_fit(CLI::App& program, Action& action);
-void add_info(CLI::App& program, Action& action);
-void add_latency(CLI::App& program, Action& action);
-void add_ls(CLI::App& program, Action& action);
-void add_methods(CLI::App& program, Action& action);
-void add_replay(CLI::App& program, Action& action);
-void add_rm(CLI::App& program, Action& action);
-void add_sample(CLI::App& program, Action& action);
-void add_soak(CLI::App& program, Action& action);
-void add_solve(CLI::App& program, Action& action);
-
-/// Adds every verb, in the order in which the help lists them.
-void add_verbs(CLI::App& program, Action& action);
 
 /// `--columns`, `--kind` and `--time-unit`.
 void add_table_options(CLI::App& verb, TableOptions& options);

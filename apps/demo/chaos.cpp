@@ -164,20 +164,23 @@ class Chaos {
            producer_down_.result()["kills"].get<std::size_t>();
   }
 
+  /// Reads the curve until the stream has ended and rests, for as long as it may take.
+  void watch_until_rest() {
+    const Time end = deadline(clock_, kPatience);
+    for (Time due = clock_.now(); clock_.now() < end && sleep_until(due);
+         due = clock_.now() + kTick) {
+      const SampleStatus status = watch_->tick(clock_.now());
+      const bool has_ended = ipc::Internals::head(*reader_, head_) && head_.finished;
+      if (has_ended && status == SampleStatus::holding) break;
+    }
+  }
+
   /// Lets the producer end the stream; everybody must see it come to rest, unless interrupted.
   json finish() {
     if (resumes_) solver_->signal(SIGCONT);
     producer_->stop();
     const json sent = producer_->result();
-    const Time end = deadline(clock_, kPatience);
-    auto status = SampleStatus::no_data;
-    for (Time due = clock_.now(); clock_.now() < end && sleep_until(due);
-         due = clock_.now() + kTick) {
-      status = watch_->tick(clock_.now());
-      if (ipc::Internals::head(*reader_, head_) && head_.finished &&
-          status == SampleStatus::holding)
-        break;
-    }
+    watch_until_rest();
     json seen = json::array({to_json(watch_->report())});
     for (Child& reader : readers_) seen.push_back(reader.result());
     solver_->stop();

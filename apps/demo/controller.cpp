@@ -8,6 +8,7 @@
 
 #include "apps/process/signals.hpp"
 #include "apps/streams/attach.hpp"
+#include "core/basics/quantile.hpp"
 #include "core/polynomial/segment.hpp"
 #include "ipc/roles/internals.hpp"
 #include "ipc/sampling/snapshot.hpp"
@@ -37,13 +38,6 @@ class LargestStep {
   std::array<double, 3> largest_{};
 };
 
-double percentile(std::vector<double>& values, double fraction) {
-  if (values.empty()) return 0;
-  const auto at = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
-  std::ranges::nth_element(values, values.begin() + at);
-  return values[static_cast<std::size_t>(at)];
-}
-
 class DemoReader {
  public:
   explicit DemoReader(const std::string& stream)
@@ -61,12 +55,14 @@ class DemoReader {
       tick();
       due += kPeriod;
     }
-    return {{"samples", samples_},
-            {"by_status", by_status_},
-            {"step_at_knots", at_knots_.json()},
-            {"change_of_the_past", of_the_past_.json()},
-            {"age_ms", {percentile(ages_, 0.5), percentile(ages_, 1.0)}},
-            {"sample_ns", {percentile(costs_, 0.5), percentile(costs_, 0.99)}}};
+    return {
+        {"samples", samples_},
+        {"by_status", by_status_},
+        {"step_at_knots", at_knots_.json()},
+        {"change_of_the_past", of_the_past_.json()},
+        {"age_ms", {core::quantile(std::span(ages_), 0.5), core::quantile(std::span(ages_), 1.0)}},
+        {"sample_ns",
+         {core::quantile(std::span(costs_), 0.5), core::quantile(std::span(costs_), 0.99)}}};
   }
 
  private:

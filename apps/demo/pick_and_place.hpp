@@ -1,6 +1,6 @@
 #pragma once
 
-#include "apps/files/waypoint_table.hpp"
+#include "apps/tables/waypoints.hpp"
 #include "splinecast/time.hpp"
 
 namespace splinecast::apps {

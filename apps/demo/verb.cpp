@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/cli/options.hpp"
+#include "apps/cli/verb.hpp"
 #include "apps/demo/chaos.hpp"
 #include "apps/demo/controller.hpp"
 #include "apps/demo/pick_and_place.hpp"
@@ -160,27 +161,22 @@ int run_demo(const DemoOptions& options) {
   return sent["exit_code"].get<int>();
 }
 
-}  // namespace
-
-void add_demo(CLI::App& program, Action& action) {
+void add_demo(CLI::App& verb, Action& action) {
   auto options = std::make_shared<DemoOptions>();
-  auto* verb = program.add_subcommand(
-      "demo", "Show it: a producer, a solver and two readers as processes, and what they saw");
-  verb->add_option("--file", options->file,
-                   "Waypoint file to play (default: a pick-and-place of seven joints)")
+  verb.add_option("--file", options->file,
+                  "Waypoint file to play (default: a pick-and-place of seven joints)")
       ->type_name("FILE");
   add_seconds(
-      *verb, "--seconds", options->seconds,
+      verb, "--seconds", options->seconds,
       "How much to play, 0.1 to 86400, without --chaos 3600 (default 10, or the whole file)",
       {kShortest, kLongestChaos});
-  verb->add_flag(
-          "--chaos", options->chaos,
-          "Kill, stop and starve everybody meanwhile, and show that no reader notices; exits "
-          "with 3 if one does")
+  verb.add_flag("--chaos", options->chaos,
+                "Kill, stop and starve everybody meanwhile, and show that no reader notices; exits "
+                "with 3 if one does")
       ->excludes("--file");
-  verb->add_flag("--json", options->json, "As JSON");
-  add_table_options(*verb, options->table);
-  verb->callback([&action, options] {
+  verb.add_flag("--json", options->json, "As JSON");
+  add_table_options(verb, options->table);
+  verb.callback([&action, options] {
     if (options->seconds && *options->seconds > kLongest && !options->chaos) {
       throw CLI::ValidationError(
           "--seconds", fmt::format("'{}' is no time from 0.1 to 3600 s, the most without --chaos",
@@ -189,5 +185,11 @@ void add_demo(CLI::App& program, Action& action) {
     action = [options] { return run_demo(*options); };
   });
 }
+
+const Verb demo_verb(
+    "demo", 10, "Show it: a producer, a solver and two readers as processes, and what they saw",
+    add_demo);
+
+}  // namespace
 
 }  // namespace splinecast::apps

@@ -6,8 +6,8 @@
 #include <cctype>
 #include <chrono>
 
+#include "apps/files/lines.hpp"
 #include "apps/files/numbers.hpp"
-#include "apps/files/table_format.hpp"
 #include "apps/files/text_file.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "splinecast/waypoint.hpp"
@@ -37,7 +37,7 @@ struct Format {
 /// The fields of a line, without one that a comma at the end of the line would begin.
 std::vector<std::string_view> fields_of(const Line& line) {
   std::vector<std::string_view> fields;
-  split(line.text, true, fields);
+  split_at_commas(line.text, fields);
   if (without_blanks(fields.back()).empty()) fields.pop_back();
   return fields;
 }

@@ -97,7 +97,7 @@ PiecewisePolynomial fit_table(const WaypointTable& table, const Method& method,
   DimensionKinds(table.kinds).require_end(or_own(options.end));
   const Waypoints waypoints = table.waypoints();
   Interpolant how{.method = &method, .lambda = 0, .time_scale = 1};
-  if (method.family == Family::smoothing) how.lambda = chosen_lambda(waypoints, options);
+  if (method.smooths()) how.lambda = chosen_lambda(waypoints, options);
   how.time_scale = options.time_scale.value_or(how.time_scale);
   if (!options.online) {
     return fit(waypoints,

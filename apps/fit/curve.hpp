@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "apps/files/waypoint_table.hpp"
+#include "apps/tables/waypoints.hpp"
 #include "core/online/sliding_window.hpp"
 #include "splinecast/boundary_condition.hpp"
 #include "splinecast/method.hpp"

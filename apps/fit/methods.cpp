@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/cli/options.hpp"
+#include "apps/cli/verb.hpp"
 #include "apps/files/polynomial_file.hpp"
 #include "apps/fit/curve.hpp"
 #include "apps/output/stream.hpp"
@@ -54,9 +55,9 @@ double largest(std::span<const double> values) {
 std::vector<Choice> choices() {
   std::vector<Choice> all;
   for (const Method& method : methods()) {
-    if (method.family == Family::tridiagonal) {
+    if (method.converges() && !method.smooths()) {
       for (const std::size_t settle : {0U, 1U, 2U, 4U, 8U, 16U}) all.push_back({&method, settle});
-    } else if (method.family == Family::smoothing) {
+    } else if (method.smooths()) {
       all.push_back({&method, 16, 0.01});
     } else if (method.streams()) {
       all.push_back({&method, core::default_settle(method)});
@@ -126,8 +127,8 @@ PiecewisePolynomial curve_of(const Choice& choice, const WaypointTable& table, T
   const double h = to_seconds(period);
   if (choice.lambda_per_h3 > 0) options.lambda = choice.lambda_per_h3 * h * h * h;
   // What a method makes of its ends is not what is measured: it is told their velocities.
-  const Family family = choice.method->family;
-  if (family == Family::tridiagonal || family == Family::local) {
+  const Method& method = *choice.method;
+  if (method.streams() && !method.needs_velocity() && !method.smooths()) {
     const auto velocity = [&table](std::size_t i) {
       const auto v = table.waypoint(i).velocity;
       return Condition{ConditionKind::velocity, {v.begin(), v.end()}};
@@ -239,22 +240,24 @@ int run_methods(const MethodsOptions& options) {
   return kOk;
 }
 
-}  // namespace
-
-void add_methods(CLI::App& program, Action& action) {
+void add_methods(CLI::App& verb, Action& action) {
   auto options = std::make_shared<MethodsOptions>();
-  auto* verb = program.add_subcommand(
-      "methods", "List the interpolants, and measure them against known trajectories");
-  verb->add_option("--against", options->files,
-                   "Trajectories as polynomials (CSV: duration,x^0,x^1,...): the largest errors of "
-                   "each method in position, velocity and acceleration, and its largest "
-                   "acceleration step, over all of them, as fractions of the trajectory's largest "
-                   "position, velocity and acceleration")
+  verb.add_option("--against", options->files,
+                  "Trajectories as polynomials (CSV: duration,x^0,x^1,...): the largest errors of "
+                  "each method in position, velocity and acceleration, and its largest "
+                  "acceleration step, over all of them, as fractions of the trajectory's largest "
+                  "position, velocity and acceleration")
       ->type_name("FILE...");
-  add_seconds(*verb, "--every", options->period, "Time between waypoints (default 0.1)",
+  add_seconds(verb, "--every", options->period, "Time between waypoints (default 0.1)",
               {std::chrono::microseconds(1), kLongestTime});
-  verb->add_flag("--json", options->json, "As JSON");
-  verb->callback([&action, options] { action = [options] { return run_methods(*options); }; });
+  verb.add_flag("--json", options->json, "As JSON");
+  verb.callback([&action, options] { action = [options] { return run_methods(*options); }; });
 }
+
+const Verb methods_verb("methods", 70,
+                        "List the interpolants, and measure them against known trajectories",
+                        add_methods);
+
+}  // namespace
 
 }  // namespace splinecast::apps

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "apps/cli/options.hpp"
-#include "apps/files/kinds.hpp"
+#include "apps/cli/verb.hpp"
 #include "apps/files/numbers.hpp"
 #include "apps/files/unit_of_name.hpp"
 #include "apps/fit/curve.hpp"
@@ -15,6 +15,7 @@
 #include "apps/output/emit.hpp"
 #include "apps/output/stream.hpp"
 #include "apps/process/exit_codes.hpp"
+#include "apps/tables/kinds.hpp"
 #include "splinecast/fit.hpp"
 
 namespace splinecast::apps {
@@ -160,36 +161,37 @@ void add_emit(CLI::App& verb, Emit& value) {
       ->type_name("WHAT");
 }
 
-}  // namespace
-
-void add_fit(CLI::App& program, Action& action) {
+void add_fit(CLI::App& verb, Action& action) {
   auto options = std::make_shared<FitOptions>();
-  auto* verb = program.add_subcommand("fit", "Fit a spline to a file, without shared memory");
-  verb->add_option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
+  verb.add_option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
       ->required();
-  add_interpolants(*verb, options->methods);
-  add_curve(*verb, options->curve);
-  auto* at = verb->add_option("--at", options->at, "File with a time column: where to sample")
+  add_interpolants(verb, options->methods);
+  add_curve(verb, options->curve);
+  auto* at = verb.add_option("--at", options->at, "File with a time column: where to sample")
                  ->type_name("FILE");
-  add_seconds(*verb, "--dt", options->dt, "Sample this often, from the first waypoint on",
+  add_seconds(verb, "--dt", options->dt, "Sample this often, from the first waypoint on",
               kPositiveTime);
-  verb->get_option("--dt")->excludes(at);
-  add_emit(*verb, options->emit);
-  verb->add_option("-o,--output", options->output, "File to write (default: standard output)")
+  verb.get_option("--dt")->excludes(at);
+  add_emit(verb, options->emit);
+  verb.add_option("-o,--output", options->output, "File to write (default: standard output)")
       ->type_name("OUT");
-  verb->add_option("--report", options->report, "Page of charts to write, HTML")->type_name("OUT");
-  verb->add_option(
+  verb.add_option("--report", options->report, "Page of charts to write, HTML")->type_name("OUT");
+  verb.add_option(
           "--unit", options->units,
           "Unit of the positions in the report, or one per column (default: what a column's "
           "name has in brackets)")
       ->delimiter(',')
       ->type_name("UNIT");
-  add_table_options(*verb, options->table);
-  verb->callback([&action, options] {
+  add_table_options(verb, options->table);
+  verb.callback([&action, options] {
     if (options->methods.empty()) options->methods.push_back(&c2());
     require_consistent(*options);
     action = [options] { return run_fit(*options); };
   });
 }
+
+const Verb fit_verb("fit", 50, "Fit a spline to a file, without shared memory", add_fit);
+
+}  // namespace
 
 }  // namespace splinecast::apps

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "apps/cli/options.hpp"
+#include "apps/cli/verb.hpp"
 #include "apps/files/numbers.hpp"
 #include "apps/latency/compare.hpp"
 #include "apps/latency/page.hpp"
@@ -235,28 +236,30 @@ void add_compare(CLI::App& verb, const std::shared_ptr<CompareCommand>& command)
   compare->add_flag("--json", command->json, "As JSON");
 }
 
-}  // namespace
-
-void add_latency(CLI::App& program, Action& action) {
+void add_latency(CLI::App& verb, Action& action) {
   auto command = std::make_shared<LatencyCommand>();
   auto compared = std::make_shared<CompareCommand>();
-  auto* verb = program.add_subcommand(
-      "latency", "Measure the way from a producer's append to a reader's sample, in processes");
-  add_work(*verb, command->options);
-  add_processes(*verb, command->options);
-  verb->add_flag("--json", command->json, "As JSON");
-  verb->add_option("--hgrm", command->hgrm,
-                   "Write HdrHistogram percentile text, PREFIX.STAGE.hgrm for each stage")
+  add_work(verb, command->options);
+  add_processes(verb, command->options);
+  verb.add_flag("--json", command->json, "As JSON");
+  verb.add_option("--hgrm", command->hgrm,
+                  "Write HdrHistogram percentile text, PREFIX.STAGE.hgrm for each stage")
       ->type_name("PREFIX");
-  verb->add_option("--report", command->report, "Write a page with charts")->type_name("OUT.html");
-  add_compare(*verb, compared);
-  verb->callback([&action, verb, command, compared] {
-    if (verb->got_subcommand("compare")) {
+  verb.add_option("--report", command->report, "Write a page with charts")->type_name("OUT.html");
+  add_compare(verb, compared);
+  verb.callback([&action, &verb, command, compared] {
+    if (verb.got_subcommand("compare")) {
       action = [compared] { return run_compare(*compared); };
     } else {
       action = [command] { return run_latency_command(*command); };
     }
   });
 }
+
+const Verb latency_verb(
+    "latency", 90, "Measure the way from a producer's append to a reader's sample, in processes",
+    add_latency);
+
+}  // namespace
 
 }  // namespace splinecast::apps

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "apps/cli/options.hpp"
+#include "apps/cli/verb.hpp"
 #include "apps/machine/checks.hpp"
 #include "apps/machine/facts.hpp"
 #include "apps/machine/left_names.hpp"
@@ -195,16 +196,18 @@ int run_doctor(const DoctorOptions& options) {
   return problems == 0 ? kOk : kFailed;
 }
 
-}  // namespace
-
-void add_doctor(CLI::App& program, Action& action) {
+void add_doctor(CLI::App& verb, Action& action) {
   auto options = std::make_shared<DoctorOptions>();
-  auto* verb = program.add_subcommand(
-      "doctor", "Check this machine's limits, say how to mend them, find names left behind");
-  verb->add_option("STREAM", options->stream, "Look at this stream's name only");
-  verb->add_flag("--clean", options->clean, "Remove streams whose writers are proven dead");
-  verb->add_flag("--json", options->json, "As JSON");
-  verb->callback([&action, options] { action = [options] { return run_doctor(*options); }; });
+  verb.add_option("STREAM", options->stream, "Look at this stream's name only");
+  verb.add_flag("--clean", options->clean, "Remove streams whose writers are proven dead");
+  verb.add_flag("--json", options->json, "As JSON");
+  verb.callback([&action, options] { action = [options] { return run_doctor(*options); }; });
 }
+
+const Verb doctor_verb("doctor", 130,
+                       "Check this machine's limits, say how to mend them, find names left behind",
+                       add_doctor);
+
+}  // namespace
 
 }  // namespace splinecast::apps

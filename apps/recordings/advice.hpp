@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "apps/files/waypoint_table.hpp"
 #include "apps/recordings/measures.hpp"
+#include "apps/tables/waypoints.hpp"
 #include "splinecast/time.hpp"
 
 /// Which lead, settle lag, stop time and limits follow from what a recording shows, and what a

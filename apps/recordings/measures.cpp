@@ -9,20 +9,10 @@
 #include <optional>
 
 #include "apps/process/exit_codes.hpp"
+#include "core/basics/quantile.hpp"
 
 namespace splinecast::apps {
 namespace {
-
-/// The value of rank ⌈fraction · count⌉; 0 without values.
-template <typename T>
-T quantile(std::vector<T>& values, double fraction) {
-  if (values.empty()) return T{};
-  const double rank = std::ceil(fraction * static_cast<double>(values.size()));
-  const auto at =
-      values.begin() + std::max(static_cast<std::ptrdiff_t>(rank) - 1, std::ptrdiff_t{0});
-  std::ranges::nth_element(values, at);
-  return *at;
-}
 
 /// Rows i, i + 1, … of a table such that chords of at least kChord go from one to the next; no gap
 /// lies between them.
@@ -92,7 +82,7 @@ double measure_noise(const WaypointTable& table, const Chords& chords, std::size
     if (chords.is_joined(i, i + 3)) differences.push_back(third_difference(table, i, d));
   }
   constexpr double kSigmaPerMedian = 1.4826;  // of a normal distribution
-  const double median = quantile(differences, 0.5);
+  const double median = core::quantile(std::span(differences), 0.5);
   return median > 0 ? kSigmaPerMedian * median : rounding_noise(table, d);
 }
 
@@ -139,9 +129,9 @@ void measure_dimension(const WaypointTable& table, const std::vector<ChordPair>&
     const double between = to_seconds(table.times[k] - table.times[i]) / 2;
     accelerations.push_back(std::abs(after - before) / between);
   }
-  out.velocity = quantile(velocities, 0.95);
+  out.velocity = core::quantile(std::span(velocities), 0.95);
   out.peak_velocity = std::ranges::max(velocities);
-  out.acceleration = quantile(accelerations, 0.95);
+  out.acceleration = core::quantile(std::span(accelerations), 0.95);
   out.peak_acceleration = std::ranges::max(accelerations);
 }
 
@@ -150,16 +140,16 @@ void measure_dimension(const WaypointTable& table, const std::vector<ChordPair>&
 Intervals measure_intervals(std::span<const Time> times) {
   std::vector<Time> all;
   for (std::size_t i = 1; i < times.size(); ++i) all.push_back(times[i] - times[i - 1]);
-  Intervals found{.median = quantile(all, 0.5),
-                  .p5 = quantile(all, 0.05),
-                  .p95 = quantile(all, 0.95),
+  Intervals found{.median = core::quantile(std::span(all), 0.5),
+                  .p5 = core::quantile(std::span(all), 0.05),
+                  .p95 = core::quantile(std::span(all), 0.95),
                   .largest = std::ranges::max(all)};
   for (Time& interval : all) {
     if (interval > found.gap_from()) ++found.gaps;
     interval = std::chrono::abs(interval - found.median);
   }
   if (found.gaps > 0) found.longest_gap = found.largest;
-  found.jitter = quantile(all, 0.95);
+  found.jitter = core::quantile(std::span(all), 0.95);
   return found;
 }
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "apps/files/waypoint_table.hpp"
+#include "apps/tables/waypoints.hpp"
 #include "splinecast/time.hpp"
 
 /// What a recording shows of its producer and of its motion. Everything allocates.

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "apps/cli/options.hpp"
-#include "apps/files/kinds.hpp"
 #include "apps/process/exit_codes.hpp"
+#include "apps/tables/kinds.hpp"
 #include "ipc/ring/item.hpp"
 #include "splinecast/status.hpp"
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "apps/files/waypoint_table.hpp"
 #include "apps/recordings/late_rows.hpp"
 #include "apps/recordings/refused_rows.hpp"
+#include "apps/tables/waypoints.hpp"
 #include "splinecast/options.hpp"
 
 /// What is done to a recording before it is sent.

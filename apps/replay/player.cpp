@@ -14,10 +14,10 @@
 #include "apps/replay/sent_rows.hpp"
 #include "apps/replay/solver_wait.hpp"
 #include "apps/streams/own_board.hpp"
-#include "splinecast/errors.hpp"
-#include "splinecast/producer.hpp"
 #include "ipc/options/curve.hpp"
 #include "ipc/solve/stream_solver.hpp"
+#include "splinecast/errors.hpp"
+#include "splinecast/producer.hpp"
 
 namespace splinecast::apps {
 namespace {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "apps/files/waypoint_table.hpp"
 #include "apps/recordings/late_rows.hpp"
 #include "apps/recordings/refused_rows.hpp"
+#include "apps/tables/waypoints.hpp"
 #include "ipc/verification/verify.hpp"
 #include "splinecast/options.hpp"
 #include "splinecast/solver.hpp"

@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "apps/files/waypoint_table.hpp"
 #include "apps/recordings/refused_rows.hpp"
 #include "apps/replay/player.hpp"
 #include "apps/streams/log.hpp"
+#include "apps/tables/waypoints.hpp"
 #include "splinecast/producer.hpp"
 
 namespace splinecast::apps {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/cli/options.hpp"
+#include "apps/cli/verb.hpp"
 #include "apps/output/stream.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
@@ -268,33 +269,34 @@ void require_agreeing(const ReplayOptions& options) {
   }
 }
 
-}  // namespace
-
-void add_replay(CLI::App& program, Action& action) {
+void add_replay(CLI::App& verb, Action& action) {
   auto options = std::make_shared<ReplayOptions>();
-  auto* verb = program.add_subcommand("replay", "Send a recorded stream to a solver");
-  verb->add_option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
+  verb.add_option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
       ->required();
-  verb->add_option("--stream", options->stream, "Stream to produce")->required();
-  add_playback_options(*verb, *options);
-  add_row_policies(*verb, *options);
-  add_ring_options(*verb, *options);
-  verb->add_flag("--embedded", options->embedded, "Solve in this process");
-  verb->add_flag(
+  verb.add_option("--stream", options->stream, "Stream to produce")->required();
+  add_playback_options(verb, *options);
+  add_row_policies(verb, *options);
+  add_ring_options(verb, *options);
+  verb.add_flag("--embedded", options->embedded, "Solve in this process");
+  verb.add_flag(
       "--verify", options->verify,
       "Solve what was sent again, with the decisions that the stream records, and compare "
       "every segment bit by bit: exit code 3 if one differs");
-  add_solver_curve(*verb, options->solver);
-  verb->add_flag("--json", options->json, "Report as JSON on standard output");
-  add_table_options(*verb, options->table);
-  add_access(*verb, options->access);
-  add_trust(*verb, options->trust);
-  verb->callback([&action, options] {
+  add_solver_curve(verb, options->solver);
+  verb.add_flag("--json", options->json, "Report as JSON on standard output");
+  add_table_options(verb, options->table);
+  add_access(verb, options->access);
+  add_trust(verb, options->trust);
+  verb.callback([&action, options] {
     require_agreeing(*options);
     options->solver.access = options->access;
     options->solver.trust = options->trust;
     action = [options] { return run_replay(*options); };
   });
 }
+
+const Verb replay_verb("replay", 30, "Send a recorded stream to a solver", add_replay);
+
+}  // namespace
 
 }  // namespace splinecast::apps

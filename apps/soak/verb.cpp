@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "apps/cli/options.hpp"
+#include "apps/cli/verb.hpp"
 #include "apps/output/stream.hpp"
 #include "apps/process/child.hpp"
 #include "apps/process/descriptors.hpp"
@@ -314,22 +315,20 @@ json run_soak(const SoakOptions& options) {
   return Soak(options, streams).run();
 }
 
-void add_soak(CLI::App& program, Action& action) {
+namespace {
+
+void add_soak(CLI::App& verb, Action& action) {
   auto options = std::make_shared<SoakOptions>();
-  auto* verb = program.add_subcommand(
-      "soak",
-      "Run many streams at once for long, kill producers meanwhile, and see that nothing "
-      "grows and nothing is lost; exits with 1 if something does");
-  add_count(*verb, "--streams", options->streams, "Streams at once, 1 to 10000 (default 100)",
+  add_count(verb, "--streams", options->streams, "Streams at once, 1 to 10000 (default 100)",
             {1, kMostStreams});
-  add_seconds(*verb, "--seconds", options->seconds, "How long, from 1 on (default 60)",
+  add_seconds(verb, "--seconds", options->seconds, "How long, from 1 on (default 60)",
               {seconds(1), kLongestTime});
-  add_rate(*verb, "--rate", options->rate, "Waypoints a second and stream (default 100)",
+  add_rate(verb, "--rate", options->rate, "Waypoints a second and stream (default 100)",
            {1, kMostRate});
-  add_count(*verb, "--readers", options->readers,
+  add_count(verb, "--readers", options->readers,
             "Processes that each read all streams, 1 to 64 (default 2)", {1, kMostReaders});
-  verb->add_flag("--json", options->json, "As JSON, and no table");
-  verb->callback([&action, options] {
+  verb.add_flag("--json", options->json, "As JSON, and no table");
+  verb.callback([&action, options] {
     action = [options] {
       catch_stop_signals();
       return print_judgement([&] { return run_soak(*options); }, options->json, soak_summary,
@@ -337,5 +336,12 @@ void add_soak(CLI::App& program, Action& action) {
     };
   });
 }
+
+const Verb soak_verb("soak", 140,
+                     "Run many streams at once for long, kill producers meanwhile, and see that "
+                     "nothing grows and nothing is lost; exits with 1 if something does",
+                     add_soak);
+
+}  // namespace
 
 }  // namespace splinecast::apps

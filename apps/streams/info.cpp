@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "apps/cli/options.hpp"
+#include "apps/cli/verb.hpp"
 #include "apps/output/stream.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "apps/streams/report.hpp"
@@ -41,20 +42,17 @@ std::string age_of(const ipc::StreamInfo& info) {
   return fmt::format("{:<26}  {:.3f} s ago\n", "last published", age);
 }
 
-}  // namespace
-
-void add_info(CLI::App& program, Action& action) {
+void add_info(CLI::App& verb, Action& action) {
   struct Options {
     std::string stream;
     bool json = false;
     Trust trust;
   };
   auto options = std::make_shared<Options>();
-  auto* verb = program.add_subcommand("info", "Show all that is known about one stream");
-  verb->add_option("STREAM", options->stream, "Stream to show")->required();
-  verb->add_flag("--json", options->json, "As JSON");
-  add_trust(*verb, options->trust);
-  verb->callback([&action, options] {
+  verb.add_option("STREAM", options->stream, "Stream to show")->required();
+  verb.add_flag("--json", options->json, "As JSON");
+  add_trust(verb, options->trust);
+  verb.callback([&action, options] {
     action = [options] {
       const ipc::StreamInfo info = ipc::inspect(options->stream, options->trust);
       ordered_json json = to_json(info);
@@ -69,5 +67,9 @@ void add_info(CLI::App& program, Action& action) {
     };
   });
 }
+
+const Verb info_verb("info", 110, "Show all that is known about one stream", add_info);
+
+}  // namespace
 
 }  // namespace splinecast::apps

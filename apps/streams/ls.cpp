@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "apps/cli/options.hpp"
+#include "apps/cli/verb.hpp"
 #include "apps/output/stream.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "apps/streams/report.hpp"
@@ -55,20 +56,21 @@ int list_streams(bool as_json, const Trust& trust) {
   return kOk;
 }
 
-}  // namespace
-
-void add_ls(CLI::App& program, Action& action) {
+void add_ls(CLI::App& verb, Action& action) {
   struct Options {
     bool json = false;
     Trust trust;
   };
   auto options = std::make_shared<Options>();
-  auto* verb = program.add_subcommand("ls", "List the streams of this host");
-  verb->add_flag("--json", options->json, "As JSON");
-  add_trust(*verb, options->trust);
-  verb->callback([&action, options] {
+  verb.add_flag("--json", options->json, "As JSON");
+  add_trust(verb, options->trust);
+  verb.callback([&action, options] {
     action = [options] { return list_streams(options->json, options->trust); };
   });
 }
+
+const Verb ls_verb("ls", 100, "List the streams of this host", add_ls);
+
+}  // namespace
 
 }  // namespace splinecast::apps

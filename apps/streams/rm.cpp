@@ -3,20 +3,22 @@
 
 #include "apps/cli/guarded.hpp"
 #include "apps/cli/options.hpp"
+#include "apps/cli/verb.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "splinecast/streams.hpp"
 
 namespace splinecast::apps {
-void add_rm(CLI::App& program, Action& action) {
+namespace {
+
+void add_rm(CLI::App& verb, Action& action) {
   struct Options {
     std::vector<std::string> streams;
     Trust trust;
   };
   auto options = std::make_shared<Options>();
-  auto* verb = program.add_subcommand("rm", "Remove streams whose writers have ended");
-  verb->add_option("STREAM", options->streams, "Streams to remove")->required();
-  add_trust(*verb, options->trust);
-  verb->callback([&action, options] {
+  verb.add_option("STREAM", options->streams, "Streams to remove")->required();
+  add_trust(verb, options->trust);
+  verb.callback([&action, options] {
     action = [options] {
       int code = kOk;
       for (const std::string& stream : options->streams) {
@@ -30,5 +32,9 @@ void add_rm(CLI::App& program, Action& action) {
     };
   });
 }
+
+const Verb rm_verb("rm", 120, "Remove streams whose writers have ended", add_rm);
+
+}  // namespace
 
 }  // namespace splinecast::apps

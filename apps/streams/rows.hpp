@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "apps/files/waypoint_table.hpp"
+#include "apps/tables/waypoints.hpp"
 #include "ipc/roles/inspect.hpp"
 
 namespace splinecast::apps {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/cli/options.hpp"
+#include "apps/cli/verb.hpp"
 #include "apps/output/samples.hpp"
 #include "apps/output/stream.hpp"
 #include "apps/process/exit_codes.hpp"
@@ -193,31 +194,28 @@ int run_sample(const SampleOptions& options) {
   return Sampling(options, std::move(times)).run();
 }
 
-}  // namespace
-
-void add_sample(CLI::App& program, Action& action) {
+void add_sample(CLI::App& verb, Action& action) {
   auto options = std::make_shared<SampleOptions>();
-  auto* verb = program.add_subcommand("sample", "Read a stream's curve and write it as CSV");
-  verb->add_option("STREAM", options->stream, "Stream to read")->required();
-  auto* at = verb->add_option("--at", options->at, "File with a time column: where to sample")
+  verb.add_option("STREAM", options->stream, "Stream to read")->required();
+  auto* at = verb.add_option("--at", options->at, "File with a time column: where to sample")
                  ->type_name("FILE");
-  auto* rate = verb->add_option_function<std::string>(
+  auto* rate = verb.add_option_function<std::string>(
       "--rate",
       [options](const std::string& text) { options->rate = number_within("--rate", text); },
       "Samples a second");
   rate->type_name("HZ");
-  add_count(*verb, "--count", options->count, "Number of samples");
-  auto* count = verb->get_option("--count");
+  add_count(verb, "--count", options->count, "Number of samples");
+  auto* count = verb.get_option("--count");
   rate->needs(count)->excludes(at);
   count->needs(rate);
-  verb->add_option("-o,--output", options->output, "File to write (default: standard output)")
+  verb.add_option("-o,--output", options->output, "File to write (default: standard output)")
       ->type_name("OUT");
-  add_seconds(*verb, "--wait", options->wait,
+  add_seconds(verb, "--wait", options->wait,
               "Wait this long for the stream, and for what a recorded one has yet to settle "
               "(default 10)");
-  add_time_unit(*verb, options->time_unit);
-  add_trust(*verb, options->trust);
-  verb->callback([&action, options, at, rate] {
+  add_time_unit(verb, options->time_unit);
+  add_trust(verb, options->trust);
+  verb.callback([&action, options, at, rate] {
     if (at->empty() && rate->empty()) {
       throw CLI::ValidationError("sample", "needs --at, or --rate with --count");
     }
@@ -225,5 +223,9 @@ void add_sample(CLI::App& program, Action& action) {
     action = [options] { return run_sample(*options); };
   });
 }
+
+const Verb sample_verb("sample", 40, "Read a stream's curve and write it as CSV", add_sample);
+
+}  // namespace
 
 }  // namespace splinecast::apps

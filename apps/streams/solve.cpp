@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/cli/options.hpp"
+#include "apps/cli/verb.hpp"
 #include "apps/limits/file.hpp"
 #include "apps/process/descriptors.hpp"
 #include "apps/process/exit_codes.hpp"
@@ -207,34 +208,31 @@ void take_limits(SolveOptions& options) {
   options.solver.named_limits = std::move(file.joints);
 }
 
-}  // namespace
-
-void add_solve(CLI::App& program, Action& action) {
+void add_solve(CLI::App& verb, Action& action) {
   auto options = std::make_shared<SolveOptions>();
-  auto* verb = program.add_subcommand("solve", "Turn the waypoints of streams into splines");
-  verb->add_option("STREAM", options->wanted,
-                   "Streams to solve, in one process: names, and patterns such as 'arm.*' for all "
-                   "that come and go")
+  verb.add_option("STREAM", options->wanted,
+                  "Streams to solve, in one process: names, and patterns such as 'arm.*' for all "
+                  "that come and go")
       ->required();
-  add_solver_curve(*verb, options->solver);
+  add_solver_curve(verb, options->solver);
   add_seconds(
-      *verb, "--stop-time", options->solver.stop_time,
+      verb, "--stop-time", options->solver.stop_time,
       "Time in which a stream that dries up comes to rest (default 0.25); longer where a limit "
       "of acceleration or jerk asks for it");
-  add_count(*verb, "--capacity", options->solver.capacity,
+  add_count(verb, "--capacity", options->solver.capacity,
             "Segments that the board holds (default 4096; rounded up to a power of two)");
-  add_live_options(*verb, options->solver);
-  add_limit_options(*verb, options->limits,
+  add_live_options(verb, options->solver);
+  add_limit_options(verb, options->limits,
                     ". Entries and stops keep it; the spline through the waypoints is not changed "
                     "by it: see --beyond");
-  add_beyond(*verb, options->solver.beyond);
-  verb->add_flag("!--no-wake", options->solver.wake,
-                 "Wake no waiting readers: for hosts where every reader polls");
-  add_sweep(*verb, *options);
-  verb->add_flag("--quiet", options->quiet, "Say nothing of what becomes of the streams");
-  add_access(*verb, options->solver.access);
-  add_trust(*verb, options->solver.trust);
-  verb->callback([&action, options] {
+  add_beyond(verb, options->solver.beyond);
+  verb.add_flag("!--no-wake", options->solver.wake,
+                "Wake no waiting readers: for hosts where every reader polls");
+  add_sweep(verb, *options);
+  verb.add_flag("--quiet", options->quiet, "Say nothing of what becomes of the streams");
+  add_access(verb, options->solver.access);
+  add_trust(verb, options->solver.trust);
+  verb.callback([&action, options] {
     const std::set<std::string> distinct(options->wanted.begin(), options->wanted.end());
     if (distinct.size() != options->wanted.size()) {
       throw CLI::ValidationError("STREAM", "a stream is named twice");
@@ -246,5 +244,9 @@ void add_solve(CLI::App& program, Action& action) {
     };
   });
 }
+
+const Verb solve_verb("solve", 20, "Turn the waypoints of streams into splines", add_solve);
+
+}  // namespace
 
 }  // namespace splinecast::apps

@@ -1,7 +1,7 @@
 #include <benchmark/benchmark.h>
 
-#include "apps/files/waypoint_table.hpp"
 #include "apps/replay/player.hpp"
+#include "apps/tables/waypoints.hpp"
 #include "bench/harness/bench_stream.hpp"
 #include "bench/harness/csv_recording.hpp"
 

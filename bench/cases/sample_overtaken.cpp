@@ -3,9 +3,9 @@
 #include <array>
 #include <functional>
 
-#include "apps/files/waypoint_table.hpp"
 #include "apps/process/child.hpp"
 #include "apps/replay/player.hpp"
+#include "apps/tables/waypoints.hpp"
 #include "bench/harness/bench_stream.hpp"
 #include "bench/harness/csv_recording.hpp"
 #include "bench/harness/trips.hpp"

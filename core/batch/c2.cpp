@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/batch/at_once.hpp"
 #include "core/batch/knots.hpp"
 
 namespace splinecast::core {
@@ -95,6 +96,11 @@ PiecewisePolynomial c2_spline(std::span<const Time> times, std::span<const doubl
                               std::size_t dimensions, const Condition& start,
                               const Condition& end) {
   return c2_spline({.dimensions = dimensions, .times = times, .positions = positions}, start, end);
+}
+
+PiecewisePolynomial fit_c2(const Waypoints& waypoints, const Condition& start,
+                           const Condition& end) {
+  return c2_spline(waypoints, start, end);
 }
 
 }  // namespace splinecast::core

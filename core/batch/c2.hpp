@@ -10,7 +10,7 @@ namespace splinecast::core {
 
 /// What the C² cubic spline's unknowns are. Both forms give the same curve to rounding.
 enum class C2Form {
-  velocity,      ///< knot velocities, by the rows of tridiagonal.hpp (doc 003 eq 4-9)
+  velocity,      ///< knot velocities, by the rows of tridiagonal_system.hpp (doc 003 eq 4-9)
   acceleration,  ///< knot accelerations (doc 003 eq 4-10, 4-15)
 };
 

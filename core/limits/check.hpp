@@ -14,7 +14,7 @@
 
 /// Compares segments with limits of motion.
 ///
-/// Every dimension is compared by its extremes (segment_extremes.hpp); a value beyond its limit by
+/// Every dimension is compared by its extremes (extremes.hpp); a value beyond its limit by
 /// no more than their rounding keeps it. A value that is no number keeps no limit.
 ///
 /// The four dimensions of a quaternion q are one rotation, compared under the first of them with

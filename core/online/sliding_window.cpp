@@ -22,8 +22,7 @@ void require_lag(const WindowOptions& options) {
                                 ", not " + std::to_string(options.settle));
   }
   const double shortest = smoothing_lag(0, 1);
-  if (method.family == Family::smoothing && !options.force_lag &&
-      static_cast<double>(options.settle) < shortest) {
+  if (method.smooths() && !options.force_lag && static_cast<double>(options.settle) < shortest) {
     throw std::invalid_argument("settle lag " + std::to_string(options.settle) +
                                 " is too short to smooth with: " +
                                 std::to_string(static_cast<int>(shortest)) + " or more are needed");
@@ -62,7 +61,7 @@ WindowOptions checked(WindowOptions options, std::size_t dimensions) {
 
 std::size_t default_settle(const Method& method) noexcept {
   constexpr std::size_t kDefaultSettle = 8;
-  if (method.family == Family::smoothing) return kMaxSettle;
+  if (method.smooths()) return kMaxSettle;
   return method.converges() ? kDefaultSettle : method.look_ahead;
 }
 
@@ -109,7 +108,7 @@ bool SlidingWindow::takes(const Waypoint& waypoint) const noexcept {
 
 bool SlidingWindow::lag_suffices(Time time) const noexcept {
   const std::size_t lag = options_.settle;
-  const bool smooths = options_.interpolant.method->family == Family::smoothing;
+  const bool smooths = options_.interpolant.method->smooths();
   if (!smooths || options_.force_lag || knots() < lag) return true;
   const double ahead = to_seconds(time - knots_.row(knots() - lag).time);
   return static_cast<double>(lag) >=
@@ -180,9 +179,8 @@ void SlidingWindow::finish(const Condition& end) noexcept {
   if (newest == 0 && is_later_run_) return rest_at_only_knot();
   // Until K knots have followed it, knot 0 too is still open.
   const bool from_start = newest < options_.settle || is_start_open(newest);
-  const bool is_halt =
-      end.kind == ConditionKind::own && options_.interpolant.method->family == Family::tridiagonal;
-  solve(is_halt ? Condition{.kind = ConditionKind::halt, .value = {}} : end,
+  const ConditionKind own_end = options_.interpolant.method->traits.own_end;
+  solve(end.kind == ConditionKind::own ? Condition{.kind = own_end, .value = {}} : end,
         from_start ? 0 : newest - (reach() - 1));
 }
 

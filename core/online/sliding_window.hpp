@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/forms/knot_segment.hpp"
-#include "core/methods/slope_rule.hpp"
 #include "core/polynomial/segment.hpp"
+#include "core/slopes/rule.hpp"
 #include "core/solvers/knot_ring.hpp"
 #include "core/solvers/knot_solver.hpp"
 #include "splinecast/boundary_condition.hpp"

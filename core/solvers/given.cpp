@@ -65,7 +65,7 @@ class GivenSolver final : public KnotSolver {
 }  // namespace
 
 std::unique_ptr<KnotSolver> make_given_solver(const Interpolant& how, const Condition& start,
-                                              std::size_t dimensions) {
+                                              std::size_t dimensions, Use /*use*/) {
   return std::make_unique<GivenSolver>(how, start, dimensions);
 }
 

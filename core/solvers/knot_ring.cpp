@@ -16,7 +16,7 @@ namespace {
 constexpr std::array<double, kMaxDimensions> kZeros{};
 
 std::size_t values_kept(const Method& method) noexcept {
-  if (method.family == Family::smoothing) return KnotRing::kPositionChord + 1;
+  if (method.smooths()) return KnotRing::kPositionChord + 1;
   return method.needs_acceleration() ? KnotRing::kAcceleration + 1 : KnotRing::kVelocity + 1;
 }
 
@@ -30,7 +30,7 @@ std::size_t padded(std::size_t dimensions) noexcept {
 KnotRing::KnotRing(std::size_t dimensions, std::size_t capacity, const Method& method,
                    bool halts_at_start)
     : dimensions_(dimensions),
-      smooths_(method.family == Family::smoothing),
+      smooths_(method.smooths()),
       has_accelerations_(method.needs_acceleration()),
       halts_at_start_(halts_at_start),
       mask_(std::bit_ceil(capacity) - 1),

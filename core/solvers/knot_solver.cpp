@@ -6,24 +6,12 @@
 #include "core/simd/clones.hpp"
 #include "core/simd/lanes.hpp"
 #include "core/solvers/back_substitution.hpp"
-#include "core/solvers/families.hpp"
 
 namespace splinecast::core {
 
 std::unique_ptr<KnotSolver> make_knot_solver(const Interpolant& how, const Condition& start,
                                              std::size_t dimensions, Use use) {
-  switch (how.method->family) {
-    case Family::local:
-      return make_local_solver(how, start, dimensions);
-    case Family::given:
-      return make_given_solver(how, start, dimensions);
-    case Family::smoothing:
-      return make_smoothing_solver(how, start, dimensions, use);
-    case Family::tridiagonal:
-    case Family::unit:
-      break;
-  }
-  return make_tridiagonal_solver(start, dimensions);
+  return how.method->solver(how, start, dimensions, use);
 }
 
 void solve_lone_knot(KnotRing& knots, const Condition& start) noexcept {

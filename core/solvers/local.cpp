@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/methods/slope_rule.hpp"
+#include "core/slopes/rule.hpp"
 #include "core/solvers/families.hpp"
 
 namespace splinecast::core {
@@ -120,7 +120,7 @@ class LocalSolver final : public KnotSolver {
 }  // namespace
 
 std::unique_ptr<KnotSolver> make_local_solver(const Interpolant& how, const Condition& start,
-                                              std::size_t dimensions) {
+                                              std::size_t dimensions, Use /*use*/) {
   return std::make_unique<LocalSolver>(how, start, dimensions);
 }
 

@@ -1,6 +1,6 @@
 #include "core/solvers/run_start.hpp"
 
-#include "core/methods/slope_rule.hpp"
+#include "core/slopes/rule.hpp"
 
 namespace splinecast::core {
 

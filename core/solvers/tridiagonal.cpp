@@ -115,8 +115,9 @@ class TridiagonalSolver final : public KnotSolver {
 
 }  // namespace
 
-std::unique_ptr<KnotSolver> make_tridiagonal_solver(const Condition& start,
-                                                    std::size_t dimensions) {
+std::unique_ptr<KnotSolver> make_tridiagonal_solver(const Interpolant& /*how*/,
+                                                    const Condition& start, std::size_t dimensions,
+                                                    Use /*use*/) {
   return std::make_unique<TridiagonalSolver>(start, dimensions);
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "core/methods/slope_rule.hpp"
+#include "core/slopes/rule.hpp"
 #include "splinecast/boundary_condition.hpp"
 
-/// The rows of tridiagonal.hpp in one dimension or several at once.
+/// The rows of tridiagonal_system.hpp in one dimension or several at once.
 namespace splinecast::core {
 
 /// What the dimensions share of an interior row: lengths of the intervals around its knot, and its

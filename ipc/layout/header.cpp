@@ -33,7 +33,7 @@ void write_header(std::span<std::byte> region, const RegionHeader& header) noexc
 
 bool smooths(const RegionHeader& header) noexcept {
   const Method* const method = find_method(header.method);
-  return method != nullptr && method->family == Family::smoothing;
+  return method != nullptr && method->smooths();
 }
 
 std::vector<Dimension> dimensions_of(const RegionHeader& header) {

@@ -94,7 +94,7 @@ std::uint64_t layout_hash() noexcept {
 std::string layout_page() {
   std::ostringstream page;
   page << "# The bytes of a stream's regions, layout version " << kLayoutVersion
-       << "\n\nMade from the tables of `layout.hpp`, by which the code reads and writes them; a "
+       << "\n\nMade from the tables of `ipc/layout`, by which the code reads and writes them; a "
           "test "
           "compares. Layout hash: `"
        << std::hex << layout_hash() << std::dec

@@ -66,9 +66,7 @@ void require_time(const char* what, const std::optional<Time>& time, Time least,
                    std::to_string(most.count()) + " ns, not " + std::to_string(time->count()));
 }
 
-}  // namespace
-
-void require_options(const SolverOptions& options) {
+void require_times(const SolverOptions& options) {
   if (options.stop_time &&
       (*options.stop_time <= Time::zero() || *options.stop_time > kLongestStop)) {
     throw BadRequest("stop time must be positive and at most 2^60 ns, not " +
@@ -77,14 +75,17 @@ void require_options(const SolverOptions& options) {
   require_time("freeze-ahead", options.freeze_ahead, Time(1), kLongestFreeze);
   require_time("history", options.history, Time::zero(), kLongestHistory);
   require_time("shortest splice", options.min_splice, Time(1), kLongestFreeze);
-  const Method& method = method_of(options);
-  if (method.family == Family::smoothing && !options.lambda) {
+}
+
+/// The options that some methods take and others do not.
+void require_parameters_of(const Method& method, const SolverOptions& options) {
+  if (method.smooths() && !options.lambda) {
     throw BadRequest("method smoothing needs a lambda: online it cannot be chosen");
   }
-  if (options.lambda && method.family != Family::smoothing) {
+  if (options.lambda && !method.smooths()) {
     throw BadRequest("lambda is for method smoothing, not for " + std::string(method.name));
   }
-  if (options.force_lag && method.family != Family::smoothing) {
+  if (options.force_lag && !method.smooths()) {
     throw BadRequest("a lag is forced for method smoothing only, not for " +
                      std::string(method.name));
   }
@@ -95,6 +96,13 @@ void require_options(const SolverOptions& options) {
     throw BadRequest("method " + std::string(method.name) + " has a tail of its own, not '" +
                      std::string(to_string(*options.tail)) + "'");
   }
+}
+
+}  // namespace
+
+void require_options(const SolverOptions& options) {
+  require_times(options);
+  require_parameters_of(method_of(options), options);
   // How many dimensions there will be is not known yet, nor their kinds.
   SolverOptions curve = options;
   curve.limits.reset();

@@ -1,7 +1,7 @@
 # Installs the libraries, the program, a CMake package and a pkg-config file.
 include(CMakePackageConfigHelpers)
 
-install(TARGETS splinecast_core splinecast_ipc splinecast EXPORT splinecast-targets
+install(TARGETS splinecast splinecast_static EXPORT splinecast-targets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY core/include/ ipc/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

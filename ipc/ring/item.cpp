@@ -26,13 +26,4 @@ Waypoint RingItem::waypoint() const noexcept {
   return waypoint;
 }
 
-WaypointValues RingItem::waypoint_values() noexcept {
-  const std::size_t dimensions = values.size() / 3;
-  const auto all = std::span(values);
-  WaypointValues waypoint{.position = all.first(dimensions)};
-  if (has_velocity) waypoint.velocity = all.subspan(dimensions, dimensions);
-  if (has_acceleration) waypoint.acceleration = all.last(dimensions);
-  return waypoint;
-}
-
 }  // namespace splinecast::ipc

@@ -35,15 +35,15 @@ struct RingItem {
   Time time{};
   std::vector<double> values;  ///< positions, velocities, accelerations: those that it has
 
-  /// The item's waypoint or state; and its values, which may be changed. Both view `values`.
+  /// The item's waypoint or state, a view of `values`.
   [[nodiscard]] Waypoint waypoint() const noexcept;
-  [[nodiscard]] WaypointValues waypoint_values() noexcept;
 };
 
 /// How late a waypoint of a live stream may come, before what has settled, and still shape the
 /// target that an entry leads back to: the straight line behind the one before it is over by then.
 /// It is passed over.
 inline constexpr Time kMostLate = core::Extrapolation::kLine;
+static_assert(kMostLate == Time{250'000'000});  // as Refusal::past says
 
 /// Whether a waypoint may follow another one this much earlier: `accepted`, or why not.
 [[nodiscard]] constexpr AppendStatus judge_interval(Time interval,

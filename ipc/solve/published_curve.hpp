@@ -23,6 +23,26 @@ struct EntryOptions {
   Time notice{};         ///< how long before it settles a live stream's start is decided
 };
 
+/// What a published curve adds to the summary of a revision; see the members of Head.
+struct CurveSummary {
+  Word first = 0;
+  Word newest = 0;
+  Time stop{};
+  Word run = 1;
+  Word run_knots = 0;
+  Word run_item = 0;
+  Word run_frozen = 0;
+  bool is_later_run = false;
+  Course course{};
+  Word met = 0;
+  Word unmet = 0;
+  Time blend_until{};
+  Word passed_over = 0;
+};
+
+/// Puts that into a summary; its counters stay.
+void put_summary(const CurveSummary& curve, Head& head) noexcept;
+
 /// The curve of one stream: the window that is being solved, which is the *target*, and the board
 /// that knots are published on. Knows neither ring nor clock; what a waypoint must be like is
 /// checked before.
@@ -149,8 +169,12 @@ class PublishedCurve {
   /// Segments that end after `keep` are not lost by it.
   [[nodiscard]] bool finish(const Condition& end, Time settled, Time keep, int& tries) noexcept;
 
-  /// Writes what has been changed to the board, and to `head` all that it says of the curve.
-  void write(Head& head) noexcept;
+  /// Writes what has been changed to the board. Returns the earliest time whose curve that changes;
+  /// max() for none.
+  [[nodiscard]] Time write() noexcept;
+
+  /// What the board's summary is to say of the curve as it has been written.
+  [[nodiscard]] CurveSummary summary() const noexcept;
 
   /// After the commit of that head.
   void committed(const Head& head) noexcept;
@@ -201,7 +225,12 @@ class PublishedCurve {
   void write_knots(std::size_t first, std::size_t end) noexcept;
   void write_knot(std::size_t i) noexcept;
   void give_row(std::size_t i, const core::Knot& knot, KnotRecord& record) const noexcept;
-  void write_course(Head& head) noexcept;
+  void write_off_line(bool writes_origin) noexcept;
+  void write_on_line() noexcept;
+  void drop_oldest() noexcept;
+  void finish_on_line(const Condition& end) noexcept;
+  void end_at_newest() noexcept;
+  void enter_end(const Instant& from) noexcept;
   [[nodiscard]] std::size_t passed_over() const noexcept;
   void restore_course() noexcept;
   void restore_run() noexcept;

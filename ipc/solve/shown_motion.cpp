@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/basics/quantile.hpp"
 #include "ipc/board/reader.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/summary.hpp"
@@ -93,13 +94,7 @@ void ShownMotion::take_passed(const KnotBoardReader& board, const Head& head, st
 
 /// The 95 % quantile of the first `count` values; 0 if there are none.
 double ShownMotion::quantile(std::size_t count) noexcept {
-  if (count == 0) return 0;
-  constexpr double kShare = 0.95;
-  const auto rank = static_cast<std::size_t>(std::ceil(kShare * static_cast<double>(count))) - 1;
-  const auto values = std::span(values_).first(count);
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return core::quantile(std::span(values_).first(count), 0.95);
 }
 
 void ShownMotion::look(Time stop_time) noexcept {

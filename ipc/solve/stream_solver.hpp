@@ -104,6 +104,7 @@ class StreamSolver {
   }
   void take(Word number) noexcept;
   void take_waypoint(Word number) noexcept;
+  [[nodiscard]] Waypoint unwrapped(const Waypoint& given) noexcept;
   [[nodiscard]] bool is_within_limits(const Waypoint& waypoint, Word number) noexcept;
   void take_replacement(Word number) noexcept;
   void refuse_replacement(Word number, Refusal reason) noexcept;
@@ -137,6 +138,7 @@ class StreamSolver {
   int tries_ = 0;                     ///< candidates of an entry that this step may still try
   bool is_finish_postponed_ = false;  ///< no entry to the last waypoint has been found yet
   RingItem item_;
+  std::vector<double> unwrapped_;  ///< scratch: position, velocity, acceleration
   Condition end_;
   Word seen_ = 0;
   Word batch_ = 0;        ///< items taken for this revision, one by one

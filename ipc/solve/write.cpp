@@ -183,60 +183,86 @@ void PublishedCurve::write_knot(std::size_t i) noexcept {
   }
 }
 
-void PublishedCurve::write_course(Head& head) noexcept {
-  head.course = static_cast<Word>(course_);
-  head.met = met_;
-  head.unmet = unmet_;
-  head.blend_until = blend_until_;
-  head.passed_over = passed_before_ + passed_over();
+/// Writes what changed of a curve that is not on the line, and the stop that it ends with.
+void PublishedCurve::write_off_line(bool writes_origin) noexcept {
+  if (is_entry_new_) write_beyond();
+  if (writes_origin && course_ == Course::waiting) {
+    newest_ = origin_.number;
+    const core::WindowOptions& options = window_.options();
+    stop_ = core::stop_time_within(options.limits, options.stop_time, origin_state_.velocity(),
+                                   origin_state_.acceleration());
+    end_ = origin_.time + stop_;
+  }
+  if (window_.knots() > 0) write_unmet(window_.knots());
 }
 
-void PublishedCurve::write(Head& head) noexcept {
-  head.changed_from = changed_from_;
-  changed_from_ = Time::max();
-  head.run_frozen = window_.frozen_knots();
-  write_course(head);
+/// Writes what changed of a curve that ends with a piece of the target.
+void PublishedCurve::write_on_line() noexcept {
   const std::size_t knots = window_.knots();
-  if (!has_changes_ || (knots == 0 && !window_.is_later_run())) return;
-  const bool writes_origin = origin_.number > 0 && (origin_.is_new || is_entry_new_);
-  if (writes_origin) write_origin();
-  if (is_ending_) {
-    write_ending();
-  } else if (is_on_line()) {
-    if (is_entry_new_) write_unmet(met_);
-    write_knots(std::max(open_, met_), knots);
-    newest_ = number_of(knots - 1);
-    if (window_.finished()) {
-      stop_ = Time::zero();
-      end_ = window_.time(knots - 1);
-    }
-  } else {
-    if (is_entry_new_) write_beyond();
-    if (writes_origin && course_ == Course::waiting) {
-      newest_ = origin_.number;
-      const core::WindowOptions& options = window_.options();
-      stop_ = core::stop_time_within(options.limits, options.stop_time, origin_state_.velocity(),
-                                     origin_state_.acceleration());
-      end_ = origin_.time + stop_;
-    }
-    if (knots > 0) write_unmet(knots);
-  }
-  head.changed_from = std::min(head.changed_from, changed_from_);
-  changed_from_ = Time::max();
+  if (is_entry_new_) write_unmet(met_);
+  write_knots(std::max(open_, met_), knots);
+  newest_ = number_of(knots - 1);
+  if (!window_.finished()) return;
+  stop_ = Time::zero();
+  end_ = window_.time(knots - 1);
+}
+
+/// What the newest knots have taken the place of is no longer on the board.
+void PublishedCurve::drop_oldest() noexcept {
   // Never back: a replacement drops knots, but the slots that they took are not given back.
   const Word kept = newest_ - std::min<Word>(newest_, board_->capacity()) + 1;
-  if (kept > first_) {
-    first_ = kept;
-    // A segment begins at the first knot: where none does, the one before has been lost.
-    if (first_ < newest_ && board_->form(first_) == SegmentForm::none) ++first_;
+  if (kept <= first_) return;
+  first_ = kept;
+  // A segment begins at the first knot: where none does, the one before has been lost.
+  if (first_ < newest_ && board_->form(first_) == SegmentForm::none) ++first_;
+}
+
+Time PublishedCurve::write() noexcept {
+  if (has_changes_ && (window_.knots() > 0 || window_.is_later_run())) {
+    const bool writes_origin = origin_.number > 0 && (origin_.is_new || is_entry_new_);
+    if (writes_origin) write_origin();
+    if (is_ending_) {
+      write_ending();
+    } else if (is_on_line()) {
+      write_on_line();
+    } else {
+      write_off_line(writes_origin);
+    }
+    drop_oldest();
   }
-  head.newest = newest_;
-  head.stop = stop_;
-  head.run = run_;
-  head.run_knots = knots;
-  head.run_item = run_item_;
-  head.is_later_run = window_.is_later_run();
-  head.first = first_;
+  return std::exchange(changed_from_, Time::max());
+}
+
+CurveSummary PublishedCurve::summary() const noexcept {
+  return {.first = first_,
+          .newest = newest_,
+          .stop = stop_,
+          .run = run_,
+          .run_knots = window_.knots(),
+          .run_item = run_item_,
+          .run_frozen = window_.frozen_knots(),
+          .is_later_run = window_.is_later_run(),
+          .course = course_,
+          .met = met_,
+          .unmet = unmet_,
+          .blend_until = blend_until_,
+          .passed_over = passed_before_ + passed_over()};
+}
+
+void put_summary(const CurveSummary& curve, Head& head) noexcept {
+  head.first = curve.first;
+  head.newest = curve.newest;
+  head.stop = curve.stop;
+  head.run = curve.run;
+  head.run_knots = curve.run_knots;
+  head.run_item = curve.run_item;
+  head.run_frozen = curve.run_frozen;
+  head.is_later_run = curve.is_later_run;
+  head.course = static_cast<Word>(curve.course);
+  head.met = curve.met;
+  head.unmet = curve.unmet;
+  head.blend_until = curve.blend_until;
+  head.passed_over = curve.passed_over;
 }
 
 }  // namespace splinecast::ipc

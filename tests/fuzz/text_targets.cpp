@@ -7,15 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "apps/cli/options.hpp"
-#include "apps/files/kinds.hpp"
+#include "apps/cli/verb.hpp"
 #include "apps/files/numbers.hpp"
 #include "apps/files/polynomial_file.hpp"
-#include "apps/files/table_format.hpp"
 #include "apps/limits/file.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "apps/recordings/advice.hpp"
 #include "apps/recordings/recording.hpp"
+#include "apps/tables/format.hpp"
+#include "apps/tables/kinds.hpp"
+#include "apps/tables/time_column.hpp"
 #include "ipc/memory/names.hpp"
 #include "splinecast/boundary_condition.hpp"
 #include "splinecast/errors.hpp"
@@ -65,7 +66,7 @@ std::string take_line(std::string_view& text) {
 apps::TableOptions options_of(const std::string& line) {
   apps::TableOptions options;
   std::vector<std::string_view> words;
-  apps::split(line, false, words);
+  apps::split_at_blanks(line, words);
   for (const std::string_view word : words) {
     const auto kind = apps::parse_kind_option(std::string(word));
     const auto unit = apps::parse_time_unit(word);
@@ -194,7 +195,7 @@ void try_arguments(std::string_view text) {
   CLI::App program("Fuzzed", "splinecast");
   program.require_subcommand(1);
   apps::Action action;
-  apps::add_verbs(program, action);
+  apps::Verb::add_all(program, action);
   auto arguments = lines_of(text);
   std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
   try {

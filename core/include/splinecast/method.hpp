@@ -2,14 +2,28 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "splinecast/boundary_condition.hpp"
 #include "splinecast/piecewise_polynomial.hpp"
 
+namespace splinecast {
+struct Interpolant;
+struct Waypoints;
+}  // namespace splinecast
+
+/// How a method is solved: of no use outside of the library.
 namespace splinecast::core {
+class KnotSolver;
+enum class Use : std::uint8_t;
 struct SlopeRule;
+using MakeSolver = std::unique_ptr<KnotSolver> (*)(const Interpolant& how, const Condition& start,
+                                                   std::size_t dimensions, Use use);
+using FitAtOnce = PiecewisePolynomial (*)(const Waypoints& waypoints, const Condition& start,
+                                          const Condition& end);
 }  // namespace splinecast::core
 
 namespace [[gnu::visibility("default")]] splinecast {
@@ -27,39 +41,40 @@ struct Laws {
   bool is_scale_free = true;  ///< equivariant to scaling of x; else to shifts and mirroring only
 };
 
-/// Where a method's knot velocities come from.
-enum class Family : std::uint8_t {
-  tridiagonal,  ///< a tridiagonal system over all knots: `c2`
-  local,        ///< a slope rule
-  given,        ///< the waypoints themselves: `hermite`, `quintic`
-  smoothing,    ///< a pentadiagonal system over all knots, which moves the knots too
-  unit,         ///< the tridiagonal system on unit intervals: `normalized`
+/// What follows from how a method finds its knot velocities. Defaults are those of a method that
+/// finds them from the positions around a knot.
+struct MethodTraits {
+  bool converges = false;       ///< a longer settle lag makes it more accurate
+  bool needs_velocity = false;  ///< of the waypoints; one of order 6 needs their accelerations too
+  bool has_own_tail = false;    ///< at the newest knot, which no option changes
+  bool smooths = false;         ///< it takes λ, and moves the knots too
+  ConditionKind own_end = ConditionKind::own;  ///< at the end of a stream, if nothing is asked for
 };
 
 /// An interpolant. There is one object for each; compare by address.
 struct Method {
   std::string_view name;
-  std::uint64_t number = 0;  ///< names it in shared memory: never given to another
-  Family family{};
+  std::uint64_t number = 0;           ///< names it in shared memory: never given to another
+  core::MakeSolver solver = nullptr;  ///< makes its solver; null: it needs all waypoints at once
+  core::FitAtOnce fit_at_once = nullptr;  ///< makes its curve of all waypoints; null: by its solver
+  MethodTraits traits{};
   const core::SlopeRule* rule = nullptr;  ///< of a local method
   int order = kCubicOrder;                ///< of its segments; 6 also takes accelerations
   std::size_t look_ahead = 0;             ///< knots after which a knot is exact; 0: never quite
   Laws laws{};
 
   /// Whether it can be solved while waypoints come.
-  [[nodiscard]] bool streams() const noexcept { return family != Family::unit; }
+  [[nodiscard]] bool streams() const noexcept { return solver != nullptr; }
   /// Whether a longer settle lag makes it more accurate.
-  [[nodiscard]] bool converges() const noexcept {
-    return family == Family::tridiagonal || family == Family::smoothing;
-  }
-  [[nodiscard]] bool needs_velocity() const noexcept { return family == Family::given; }
+  [[nodiscard]] bool converges() const noexcept { return traits.converges; }
+  [[nodiscard]] bool needs_velocity() const noexcept { return traits.needs_velocity; }
   [[nodiscard]] bool needs_acceleration() const noexcept {
-    return family == Family::given && order == kMaxOrder;
+    return traits.needs_velocity && order == kMaxOrder;
   }
   /// Whether it has a tail of its own at the newest knot, which no option changes.
-  [[nodiscard]] bool has_own_tail() const noexcept {
-    return family == Family::given || family == Family::smoothing;
-  }
+  [[nodiscard]] bool has_own_tail() const noexcept { return traits.has_own_tail; }
+  /// Whether it takes λ and passes near its waypoints, not through them.
+  [[nodiscard]] bool smooths() const noexcept { return traits.smooths; }
 };
 
 /// All methods, `c2` first.

@@ -70,7 +70,7 @@ struct SolverOptions {
   std::optional<Time> min_splice{};         ///< live: shortest splice; default as freeze_ahead
   std::optional<std::size_t> capacity{};    ///< segments of history; default 4,096
   bool wake = true;  ///< wake waiting readers: one system call a revision, which wakes
-                     ///< at most kWokenAtOnce threads
+                     ///< at most eight threads
   RegionAccess access{};
   Trust trust{};
 };

@@ -18,7 +18,7 @@ struct Internals;
 
 namespace [[gnu::visibility("default")]] splinecast {
 
-/// The role that turns waypoints into segments: the one writer of a stream's segment board.
+/// The role that turns waypoints into segments: the one writer of a stream's knot board.
 ///
 /// Runs in a process of its own or inside the producer's: the same code and the same regions. One
 /// thread uses it; it has none of its own. While it lives, no other process can become the solver
@@ -51,7 +51,7 @@ class Solver {
   /// no stream, and while the curve of an earlier live stream has not come to rest, which readers
   /// still follow: due() is when it will have. Throws BadRequest if the options contradict a board
   /// that is taken over, BadRegion if a region cannot be used, continued or made, or if that curve
-  /// moves for more than kLongestOldMotion. System calls; does nothing if attached. `clock`, by
+  /// moves for more than an hour. System calls; does nothing if attached. `clock`, by
   /// default CLOCK_MONOTONIC, is the one that steps are given.
   bool attach();
   bool attach(const Clock& clock);
@@ -59,7 +59,7 @@ class Solver {
 
   /// Takes what waypoints there are and publishes; detaches when the stream has been retired or
   /// made again. No system call but the clock's and, with SolverOptions::wake, one wake a revision,
-  /// of bounded cost however many readers wait (wake_some). Throws BadRegion if another process has
+  /// of bounded cost however many readers wait. Throws BadRegion if another process has
   /// written to the board.
   StepResult step(const Clock& clock);
 

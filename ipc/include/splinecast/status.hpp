@@ -30,7 +30,7 @@ inline constexpr std::uint8_t kAppendStatuses = 13;
 
 /// Why the solver refused an item that the ring had accepted. Counted one by one.
 enum class Refusal : std::uint8_t {
-  past = 1,  ///< more than kMostLate before what has settled; live streams only
+  past = 1,  ///< more than 250 ms before what has settled; live streams only
   duplicate = 2,
   out_of_order = 3,
   not_finite = 4,  ///< a value is not usable, or the curve would have one that is not finite

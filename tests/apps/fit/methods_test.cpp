@@ -46,7 +46,7 @@ std::string recording(const TestFolder& folder, std::size_t knots) {
 
 /// What shapes the curve, beside the method.
 Arguments parameters(const Method& method) {
-  if (method.family == Family::smoothing) return {"--lambda", "1e-9"};
+  if (method.smooths()) return {"--lambda", "1e-9"};
   if (!method.laws.is_scale_free) return {"--time-scale", "0.5"};
   return {};
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "apps/files/polynomial_file.hpp"
-#include "apps/files/waypoint_table.hpp"
+#include "apps/tables/waypoints.hpp"
 #include "core/limits/extremes.hpp"
 #include "splinecast/fit.hpp"
 

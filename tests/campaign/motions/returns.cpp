@@ -102,7 +102,7 @@ class ReturnRun {
     core::WindowOptions how;
     how.interpolant.method = find_method(kMethods[random_.below(kMethods.size())]);
     how.settle = core::default_settle(*how.interpolant.method);
-    if (how.interpolant.method->family == Family::smoothing) {
+    if (how.interpolant.method->smooths()) {
       how.interpolant.lambda = 1e-12;
       how.settle = 8;
       how.force_lag = true;

@@ -161,7 +161,7 @@ void RevisionCheck::forget_from(Word item) {
 /// along the segments.
 void RevisionCheck::check_passed(const Head& before) {
   if (head_.course != 0 || head_.passed_over != before.passed_over) return;
-  if (plan_->window.interpolant.method->family == Family::smoothing) return;
+  if (plan_->window.interpolant.method->smooths()) return;
   bool has_copy = copy(head_.newest);
   for (auto waypoint = pending_.rbegin();
        waypoint != pending_.rend() && waypoint->item >= before.consumed; ++waypoint) {
@@ -210,7 +210,7 @@ void RevisionCheck::check_settled_segments() {
 
 /// Waypoints up to the left end of a settled segment are where they were sent to.
 void RevisionCheck::check_waypoint_at(const ipc::SegmentCopy& segment) {
-  const bool smooths = plan_->window.interpolant.method->family == Family::smoothing;
+  const bool smooths = plan_->window.interpolant.method->smooths();
   while (!pending_.empty() && pending_.front().time <= segment.left) {
     const Pending waypoint = pending_.front();
     pending_.pop_front();
@@ -280,7 +280,7 @@ void RevisionCheck::check_stop_segment(const ipc::SegmentCopy& segment) {
 }
 
 void RevisionCheck::check_last_waypoint(const ipc::SegmentCopy& segment) {
-  const bool smooths = plan_->window.interpolant.method->family == Family::smoothing;
+  const bool smooths = plan_->window.interpolant.method->smooths();
   while (!pending_.empty()) {
     const Pending waypoint = pending_.front();
     pending_.pop_front();

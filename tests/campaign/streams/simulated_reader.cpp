@@ -78,8 +78,8 @@ SampleStatus SimulatedReader::preview(Time t, SampleMemory& settled) {
 /// Whether t is before a start that the first waypoint alone does not fix: its position, if the
 /// method smooths, and whether it is at rest.
 bool SimulatedReader::is_open_start(Time t) const {
-  const bool is_fixed = is_at_rest(plan_->window.start.kind) &&
-                        plan_->window.interpolant.method->family != Family::smoothing;
+  const bool is_fixed =
+      is_at_rest(plan_->window.start.kind) && !plan_->window.interpolant.method->smooths();
   return !is_fixed && t < log_->start();
 }
 

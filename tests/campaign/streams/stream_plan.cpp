@@ -62,7 +62,7 @@ Interpolant make_interpolant(std::uint64_t seed, Time interval, Random& random) 
 std::size_t make_settle(const Interpolant& interpolant, Random& random, bool& forced) {
   const Method& method = *interpolant.method;
   if (random.chance(0.4)) return core::default_settle(method);
-  if (method.family == Family::smoothing) {
+  if (method.smooths()) {
     forced = random.chance(0.3);
     const auto least = static_cast<std::size_t>(core::smoothing_lag(0, 1));
     return forced ? random.below(core::kMaxSettle + 1)

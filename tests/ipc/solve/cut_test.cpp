@@ -145,7 +145,7 @@ std::vector<core::WindowOptions> windows_of_all_methods() {
     if (!method.streams() || method.needs_velocity()) continue;
     core::WindowOptions how;
     how.interpolant.method = &method;
-    if (method.family == Family::smoothing) how.interpolant.lambda = 1e-6;
+    if (method.smooths()) how.interpolant.lambda = 1e-6;
     how.settle = core::default_settle(method);
     how.force_lag = true;
     all.push_back(how);

@@ -175,7 +175,7 @@ class Extremes {
 core::WindowOptions window_of(const Method& method, Extremes& extremes) {
   core::WindowOptions how{.interpolant = {.method = &method}};
   how.settle = core::default_settle(method);
-  if (method.family == Family::smoothing) {
+  if (method.smooths()) {
     constexpr std::array kLambdas{0.0, 1e-30, 1.0, 1e6, 1e100};
     how.interpolant.lambda = kLambdas[extremes.pick(kLambdas.size())];
     how.settle = 10;

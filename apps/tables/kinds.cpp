@@ -1,4 +1,4 @@
-#include "apps/files/kinds.hpp"
+#include "apps/tables/kinds.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

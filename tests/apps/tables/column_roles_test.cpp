@@ -1,4 +1,4 @@
-#include "apps/files/column_roles.hpp"
+#include "apps/tables/column_roles.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/files/waypoint_table.hpp"
+#include "apps/tables/waypoints.hpp"
 #include "tests/fixtures/processes/allocations.hpp"
 #include "tests/fixtures/processes/process.hpp"
 

@@ -1,4 +1,4 @@
-#include "apps/files/waypoint_table.hpp"
+#include "apps/tables/waypoints.hpp"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <string_view>
 #include <utility>
 
-#include "apps/files/column_roles.hpp"
-#include "apps/files/kinds.hpp"
-#include "apps/files/table_format.hpp"
 #include "apps/files/text_file.hpp"
+#include "apps/tables/column_roles.hpp"
+#include "apps/tables/format.hpp"
+#include "apps/tables/kinds.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -20,7 +20,7 @@ class TableReader {
   TableReader(const std::string& path, std::optional<TimeUnit> time_unit)
       : file_(path),
         lines_(file_.text()),
-        format_(read_format(file_, lines_)),
+        format_(InputFormat::of(file_, lines_)),
         columns_(file_.name(), format_, time_unit) {}
   TableReader(const TableReader&) = delete;
   TableReader& operator=(const TableReader&) = delete;
@@ -57,7 +57,7 @@ class TableReader {
     } else if (!lines_.next_data(line_)) {
       return false;
     }
-    split(line_.text, format_.at_commas, fields);
+    format_.split(line_.text, fields);
     return true;
   }
   void require_width(const std::vector<std::string_view>& fields) const {

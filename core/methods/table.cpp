@@ -5,7 +5,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/methods/slope_rule.hpp"
+#include "core/batch/at_once.hpp"
+#include "core/slopes/rule.hpp"
+#include "core/solvers/families.hpp"
 #include "splinecast/waypoint.hpp"
 
 namespace splinecast {
@@ -14,28 +16,33 @@ namespace {
 constexpr std::array kSolved{
     Method{.name = "c2",
            .number = 0,
-           .family = Family::tridiagonal,
+           .solver = core::make_tridiagonal_solver,
+           .fit_at_once = core::fit_c2,
+           .traits = {.converges = true, .own_end = ConditionKind::halt},
            .laws = {.continuity = 2, .degree = 3, .order_of_convergence = 4}},
     Method{.name = "hermite",
            .number = 1,
-           .family = Family::given,
+           .solver = core::make_given_solver,
+           .traits = {.needs_velocity = true, .has_own_tail = true},
            .look_ahead = 1,
            .laws = {.continuity = 1, .degree = 3, .order_of_convergence = 4}},
     Method{.name = "quintic",
            .number = 2,
-           .family = Family::given,
+           .solver = core::make_given_solver,
+           .traits = {.needs_velocity = true, .has_own_tail = true},
            .order = kMaxOrder,
            .look_ahead = 1,
            .laws = {.continuity = 2, .degree = 5, .order_of_convergence = 6}},
     // Reproduces lines on regular meshes only: time is no linear function of its parameter.
     Method{.name = "normalized",
            .number = 3,
-           .family = Family::unit,
+           .fit_at_once = core::fit_normalized,
            .laws = {.continuity = 0, .degree = 0, .order_of_convergence = 4}},
     // The order is that of its limit λ → 0.
     Method{.name = "smoothing",
            .number = 4,
-           .family = Family::smoothing,
+           .solver = core::make_smoothing_solver,
+           .traits = {.converges = true, .has_own_tail = true, .smooths = true},
            .laws = {.continuity = 2,
                     .degree = 1,
                     .order_of_convergence = 4,
@@ -47,7 +54,7 @@ std::vector<Method> all_methods() {
   for (const core::SlopeRule& rule : core::slope_rules()) {
     all.push_back({.name = rule.name,
                    .number = rule.number,
-                   .family = Family::local,
+                   .solver = core::make_local_solver,
                    .rule = &rule,
                    .look_ahead = static_cast<std::size_t>(rule.ahead),
                    .laws = rule.laws});

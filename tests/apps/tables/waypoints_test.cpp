@@ -1,4 +1,4 @@
-#include "apps/files/waypoint_table.hpp"
+#include "apps/tables/waypoints.hpp"
 
 #include <gtest/gtest.h>
 

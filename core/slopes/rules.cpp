@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/methods/slope_rule.hpp"
+#include "core/slopes/rule.hpp"
 
 // A rule is its formula and a line of the registry at the end of this file.
 namespace splinecast::core {

@@ -1,4 +1,4 @@
-#include "apps/files/column_roles.hpp"
+#include "apps/tables/column_roles.hpp"
 
 #include <fmt/format.h>
 
@@ -9,6 +9,7 @@
 
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
+#include "apps/tables/time_column.hpp"
 #include "splinecast/state.hpp"
 
 namespace splinecast::apps {
@@ -165,7 +166,7 @@ std::vector<bool> ColumnRoles::numeric_columns(Lines rest) const {
   Line line = format_.first_row;
   if (line.number == 0) return is_numeric;
   do {
-    split(line.text, format_.at_commas, fields);
+    format_.split(line.text, fields);
     std::erase_if(open, [&](std::size_t c) {
       if (c < fields.size() && parse_number(fields[c])) is_numeric[c] = true;
       return is_numeric[c];

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/files/waypoint_table.hpp"
+#include "apps/tables/waypoints.hpp"
 #include "splinecast/dimension_kind.hpp"
 
 namespace splinecast::apps {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/files/numbers.hpp"
-#include "apps/files/table_format.hpp"
+#include "apps/tables/format.hpp"
 
 namespace splinecast::apps {
 

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+namespace splinecast::apps {
+
+/// One line of a file.
+struct Line {
+  std::size_t number = 0;  ///< from 1; 0: there is none
+  std::string_view text;
+};
+
+/// Walks over the lines of a text; takes `\n` and `\r\n`, and a last line without either.
+class Lines {
+ public:
+  explicit Lines(std::string_view text);
+  bool next(Line& line);
+  /// The next line that is neither blank nor a comment.
+  bool next_data(Line& line);
+
+ private:
+  std::string_view rest_;
+  std::size_t number_ = 0;
+};
+
+/// Splits a line into its fields, which are views into the line.
+using Split = void (*)(std::string_view line, std::vector<std::string_view>& fields);
+
+/// At runs of blanks; and at commas that are not within double quotes.
+void split_at_blanks(std::string_view line, std::vector<std::string_view>& fields);
+void split_at_commas(std::string_view line, std::vector<std::string_view>& fields);
+
+}  // namespace splinecast::apps

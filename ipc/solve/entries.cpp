@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <array>
+
+#include "ipc/solve/published_curve.hpp"
+
+/// How a published curve plans the entries that lead back to its target, and takes them up. A plan
+/// is made in scratch memory; `enter` makes it part of the curve.
+namespace splinecast::ipc {
+
+void PublishedCurve::restart_search() noexcept {
+  if (course_ != Course::beyond) return search_.restart(unmet_);
+  search_.restart(unmet_, origin_state(),
+                  {behind_.end, beyond_.position(), beyond_.velocity(), beyond_.acceleration()});
+}
+
+/// A solver that takes over reads back from the board what the motion shows, when an entry is
+/// needed.
+void PublishedCurve::find_shown() noexcept {
+  if (knows_shown_ || !entries_.is_live) return;
+  knows_shown_ = true;
+  if (course_ == Course::on_target) {  // the start: the waypoints on the board are the window's
+    shown_.restore(window_, *published_, head_, Time::min(), 0);
+    return;
+  }
+  const Time end = origin_.number > 0 ? origin_.time : Time::max();
+  const bool starts_stream = !window_.is_later_run() && origin_.number == 1;
+  shown_.restore(window_, *published_, head_, end, starts_stream ? 0 : unmet_);
+}
+
+bool PublishedCurve::needs_entry() const noexcept {
+  return is_searching_ && (course_ == Course::waiting || course_ == Course::beyond);
+}
+
+/// Whether the stream starts at rest with its first waypoint, and that can still be changed.
+bool PublishedCurve::is_start_open() const noexcept {
+  return course_ == Course::on_target && !window_.is_later_run() &&
+         window_.options().held_before_start &&
+         window_.options().start.kind == ConditionKind::halt && window_.knots() >= 2 &&
+         window_.oldest_segment() == 0 && window_.frozen_knots() == 0;
+}
+
+/// The first interval of a stream that starts at rest may ask for more than the motion behind it:
+/// then it starts by an entry, from rest.
+void PublishedCurve::check_start() noexcept {
+  const std::size_t knots = window_.knots();
+  find_shown();
+  if (entries_.is_live) shown_.look(window_.options().stop_time);
+  if (search_.keeps_start(window_, entry_rules())) return;
+  const core::Knot first = window_.knot(0);
+  constexpr std::array<double, kMaxDimensions> kZeros{};
+  const auto zeros = std::span(kZeros).first(window_.dimensions());
+  const Instant rest{first.time, first.position, zeros, zeros};
+  course_ = Course::waiting;
+  met_ = placed_ = knots;
+  unmet_ = 1;
+  passed_lowest_ = passed_written_ = passed_committed_ = 0;
+  set_origin(1, rest);
+  note_change(first.time);
+  search_.restart(1);
+  is_searching_ = true;
+}
+
+/// Finds the state from which an entry begins: the one from which the open one will begin, if that
+/// has not settled, else that of the committed curve at `settled`.
+bool PublishedCurve::find_state(Time settled) noexcept {
+  uses_cut_ = origin_.number == 0 || (!origin_.is_new && settled > origin_.time);
+  if (!uses_cut_) return true;
+  // A knot that the curve has met stays.
+  const std::size_t met = is_on_line() ? window_.knots() : unmet_;
+  const bool is_in_window = met > window_.oldest_segment();
+  const Time t = is_in_window ? std::max(settled, window_.time(met - 1) + Time(1)) : settled;
+  is_damaged_ = is_damaged_ || !cut_.find(head_, t);
+  return !is_damaged_;
+}
+
+/// The state is found once in a step; what the motion shows follows each waypoint.
+bool PublishedCurve::prepare(Time settled) noexcept {
+  find_shown();
+  if (entries_.is_live) shown_.look(window_.options().stop_time);
+  is_prepared_ = is_prepared_ || find_state(settled);
+  return is_prepared_;
+}
+
+core::EntryRules PublishedCurve::entry_rules() const noexcept {
+  const Time from = uses_cut_ ? cut_.state().time : origin_.time;
+  const bool blends = blend_until_ > from;  // of a run that none has been cut for it lies long ago
+  return {
+      .limits = &window_.options().limits,
+      .shown = entries_.is_live ? &shown_.limits() : nullptr,
+      .least = blends ? std::max(entries_.min_splice, blend_until_ - from) : entries_.min_splice};
+}
+
+void PublishedCurve::look_for_entry(Time settled, Time keep, bool is_last, int& tries) noexcept {
+  if (is_damaged_ || is_ending_ || ends_there_ || window_.finished()) return;
+  // With as many waypoints as a window shows, or, of a live stream, with those that are known when
+  // the start is about to settle.
+  if (is_start_open() && (window_.knots() == window_.options().settle + 2 ||
+                          (is_last && start_decision() <= settled))) {
+    check_start();
+  }
+  if (!needs_entry() || window_.knots() <= unmet_ || tries <= 0) return;
+  if (!has_room_to_enter(keep) || !prepare(settled)) return;
+  core::EntryRules rules = entry_rules();
+  rules.goes_beyond = is_last && entries_.is_live;
+  rules.newer = rules.goes_beyond ? 0 : window_.options().settle;
+  const auto outcome =
+      search_.search(window_, uses_cut_ ? cut_.state() : origin_state(), rules, tries);
+  if (outcome == core::EntrySearch::Outcome::found) enter();
+  const bool is_over = outcome == core::EntrySearch::Outcome::none && rules.goes_beyond;
+  if (is_over) is_searching_ = false;
+}
+
+/// Makes the entry that has been found part of the curve.
+void PublishedCurve::enter() noexcept {
+  if (uses_cut_) {
+    cut_.write();
+    set_origin(cut_.next(), cut_.state());
+    // The cut writes the newest knot that was met again, but not its row: see find_knot.
+    passed_written_ = passed_lowest_;
+  }
+  is_searching_ = is_prepared_ = false;
+  is_entry_new_ = true;
+  const core::EntryEnd& end = search_.end();
+  if (end.knot) {
+    course_ = Course::entering;
+    met_ = placed_ = *end.knot;
+    met_number_ = origin_.number + 1;
+    window_.freeze_knots(met_ + 1);
+    entry_end_ = end.state.time;
+    std::ranges::copy(end.state.acceleration, beyond_.ref().acceleration.begin());
+    kept_ = open_ = met_;
+  } else {
+    course_ = Course::beyond;
+    met_ = placed_ = window_.knots();
+    behind_ = {.end = end.state.time, .line_end = end.line_end, .rest = end.rest};
+    known_ = end.known;
+    ends_at_known_ = behind_.end == window_.time(known_ - 1);
+    const StateRef to = beyond_.ref();
+    std::ranges::copy(end.state.position, to.position.begin());
+    std::ranges::copy(end.state.velocity, to.velocity.begin());
+    std::ranges::copy(end.state.acceleration, to.acceleration.begin());
+  }
+  note_change(origin_.time);
+}
+
+/// Enters the run at a waypoint before its last one, if one of them passes: no newer ones come. The
+/// state to begin from must have been found. Tries at most the window's knots.
+void PublishedCurve::enter_before_end() noexcept {
+  core::EntryRules rules = entry_rules();
+  rules.newer = 1;
+  int tries = static_cast<int>(window_.knots() - window_.oldest_segment());
+  search_.restart(unmet_);
+  const Instant from = uses_cut_ ? cut_.state() : origin_state();
+  if (search_.search(window_, from, rules, tries) == core::EntrySearch::Outcome::found) enter();
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,169 @@
+#include <algorithm>
+
+#include "ipc/solve/stream_solver.hpp"
+
+/// How a solver takes or refuses the items of a ring.
+namespace splinecast::ipc {
+
+void StreamSolver::take(Word number) noexcept {
+  if (head_.finished) return refuse(number, Refusal::after_finish);
+  if (number == unsound_item_) {
+    return item_.kind == ItemKind::replace ? refuse_replacement(number, Refusal::not_finite)
+                                           : refuse(number, Refusal::not_finite);
+  }
+  switch (item_.kind) {
+    case ItemKind::waypoint:
+      return take_waypoint(number);
+    case ItemKind::replace:
+      return take_replacement(number);
+    case ItemKind::start_state:
+      return take_start_state(number);
+    case ItemKind::finish:
+      return take_finish(number);
+  }
+  refuse(number, Refusal::unknown_kind);
+}
+
+/// The producer has checked most of this; but what another process wrote is never trusted.
+std::optional<Refusal> StreamSolver::has_right_form(const Waypoint& waypoint) const noexcept {
+  if (!is_finite(waypoint)) return Refusal::not_finite;
+  if (!curve_.kinds().takes(waypoint.position)) return Refusal::zero_quaternion;
+  if (!curve_.window().takes(waypoint)) return Refusal::lacks_derivatives;
+  if (!is_time_in_range(waypoint.time)) return Refusal::too_far_apart;
+  return std::nullopt;
+}
+
+std::optional<Refusal> StreamSolver::judge_time(Time time) const noexcept {
+  if (!curve_.has_begun()) {
+    if (live_ && time < settled_until_) return Refusal::past;
+    return std::nullopt;
+  }
+  const Time newest = curve_.newest_time();
+  const Time earliest = is_starved() ? settled_until_ : newest;
+  const auto status = judge_interval(time - newest, limits_);
+  if (status == AppendStatus::too_far_apart && time - earliest > limits_.max_interval) {
+    return Refusal::too_far_apart;
+  }
+  if (status != AppendStatus::accepted && status != AppendStatus::too_far_apart) {
+    return to_refusal(status);
+  }
+  if (is_starved() && time < settled_until_ - kMostLate) return Refusal::past;
+  return curve_.window().lag_suffices(time) ? std::nullopt : std::optional(Refusal::lag_too_short);
+}
+
+void StreamSolver::take_waypoint(Word number) noexcept {
+  Waypoint waypoint = item_.waypoint();
+  if (const auto refusal = has_right_form(waypoint)) return refuse(number, *refusal);
+  if (const auto refusal = judge_time(waypoint.time)) return refuse(number, *refusal);
+  if (!curve_.kinds().all_linear()) {
+    waypoint = unwrapped(waypoint);
+    if (!is_finite(waypoint)) return refuse(number, Refusal::not_finite);
+  }
+  if (!is_within_limits(waypoint, number)) return refuse(number, Refusal::beyond_limits);
+  curve_.append(waypoint, number);
+  if (waypoint.time > settled_until_) head_.starved = false;
+  ++head_.knots;
+  head_.newest_knot = waypoint.time;
+}
+
+/// The waypoint's representative nearest to the curve; in memory of this solver until the next one.
+Waypoint StreamSolver::unwrapped(const Waypoint& given) noexcept {
+  const auto copy = [this](std::span<const double> from, std::size_t part) {
+    const auto to = std::span(unwrapped_).subspan(part * ring_->dimensions(), from.size());
+    std::ranges::copy(from, to.begin());
+    return to;
+  };
+  const WaypointValues values{.position = copy(given.position, 0),
+                              .velocity = copy(given.velocity, 1),
+                              .acceleration = copy(given.acceleration, 2)};
+  curve_.kinds().continue_from(curve_.newest_position(), values);
+  return {.time = given.time,
+          .position = values.position,
+          .velocity = values.velocity,
+          .acceleration = values.acceleration};
+}
+
+/// Notes where the curve passes a limit with a waypoint. Returns whether to take it all the same.
+bool StreamSolver::is_within_limits(const Waypoint& waypoint, Word number) noexcept {
+  auto excess = curve_.excess_with(waypoint);
+  if (!excess) return true;
+  excess->item = number;
+  excess->is_refused = beyond_ == Beyond::refuse;
+  board_->write_excess(head_.exceeding++, *excess);
+  return !excess->is_refused;
+}
+
+void StreamSolver::take_replacement(Word number) noexcept {
+  // A stop is never too late: it takes effect as soon as possible, in a revision of its own, which
+  // is committed sooner than a full batch.
+  const Time t =
+      is_stop() ? std::max({item_.time, settled_until_, curve_.earliest_cut()}) : item_.time;
+  const bool has_begun = curve_.has_begun();  // else there is nothing to replace
+  if (has_begun && (t < settled_until_ || !is_time_in_range(t) || t < curve_.earliest_cut())) {
+    return refuse_replacement(number, Refusal::too_late);
+  }
+  ++head_.controls;
+  // One revision, as far as the board has room.
+  const bool may_follow = number >= suspected_;
+  const Word followers = may_follow ? std::min<Word>(item_.count, board_->capacity() / 2) : 0;
+  batch_limit_ = is_stop() ? 0 : batch_limit_ + followers;
+  if (!has_begun) return;
+  // A stop behind another one changes nothing.
+  if (is_stop() && curve_.is_stop() && t >= curve_.newest_time()) return;
+  curve_.begin_run(t, std::clamp(item_.blend, Time::zero(), limits_.max_interval));
+  head_.starved = false;
+  head_.newest_knot = t;
+}
+
+/// Refuses a replacement, and in the same revision its waypoints, so that no other solver takes
+/// them for appended ones.
+void StreamSolver::refuse_replacement(Word number, Refusal reason) noexcept {
+  refuse(number, reason);
+  const Word end = head_.consumed + std::min<Word>(item_.count, available_ - head_.consumed);
+  while (head_.consumed < end) refuse(head_.consumed++, reason);
+}
+
+void StreamSolver::take_start_state(Word number) noexcept {
+  const Waypoint state = item_.waypoint();
+  if (curve_.has_begun()) return refuse(number, Refusal::already_started);
+  if (!is_finite(state)) return refuse(number, Refusal::not_finite);
+  if (!curve_.kinds().takes(state.position)) return refuse(number, Refusal::zero_quaternion);
+  if (state.velocity.empty() || state.acceleration.empty()) {
+    return refuse(number, Refusal::lacks_derivatives);
+  }
+  if (!is_time_in_range(state.time)) return refuse(number, Refusal::too_far_apart);
+  if (live_ && state.time < settled_until_) return refuse(number, Refusal::past);
+  ++head_.controls;
+  curve_.begin({.time = state.time,
+                .position = state.position,
+                .velocity = state.velocity,
+                .acceleration = state.acceleration});
+  head_.newest_knot = state.time;
+}
+
+void StreamSolver::take_finish(Word number) noexcept {
+  end_.kind = item_.condition;
+  end_.value.clear();
+  const std::size_t dimensions = ring_->dimensions();
+  if (!is_online(item_.condition)) {
+    return refuse(number, Refusal::unknown_kind);
+  }
+  const bool is_velocity = item_.condition == ConditionKind::velocity;
+  if (is_velocity || item_.condition == ConditionKind::acceleration) {
+    const auto values =
+        std::span(item_.values).subspan((is_velocity ? 1 : 2) * dimensions, dimensions);
+    if (!is_finite(values)) return refuse(number, Refusal::not_finite);
+    end_.value.assign(values.begin(), values.end());
+  }
+  is_finish_postponed_ = curve_.has_begun() && !curve_.finish(end_, settled_until_, keep_, tries_);
+  if (is_finish_postponed_) return;
+  head_.finished = true;
+  ++head_.controls;
+}
+
+void StreamSolver::refuse(Word number, Refusal reason) noexcept {
+  board_->write_refusal(head_.refused++, {.item = number, .reason = reason});
+  ++head_.reasons[static_cast<std::size_t>(reason)];
+}
+
+}  // namespace splinecast::ipc

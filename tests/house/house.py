@@ -1,0 +1,245 @@
+#!/usr/bin/env python3
+"""Measures how the code is laid out, and checks it against limits.
+
+    house.py rooms                 files and lines of each folder
+    house.py files                 lines per file, and the longest files
+    house.py functions             the longest functions
+    house.py headers               the installed headers
+    house.py layers                the rooms from the lowest to the highest, and includes that go up
+    house.py walk                  the files that a waypoint goes through, as CONTRIBUTING.md lists them
+    house.py symbols LIBRARY       what the shared library exports, against exports.txt of this folder
+                [--write]          writes that list instead
+    house.py page [--check]        writes docs/house.md of all but the symbols; --check: exits 1 if it differs
+
+Each exits with 1 if a limit is passed. The limits: 20 files in a room, 30 in a folder of tests or docs; 400
+lines in a file, half of the files at most 150; 40 lines in a function; 22 installed headers.
+"""
+
+import argparse
+import os
+import re
+import statistics
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+
+PROJECT = Path(__file__).resolve().parent.parent.parent
+EXPORTS = Path(__file__).resolve().parent / "exports.txt"
+PAGE = PROJECT / "docs" / "house.md"
+MOST_FILES, MOST_FILES_OF_TESTS, MOST_LINES, MEDIAN_LINES, MOST_FUNCTION_LINES, MOST_HEADERS = 20, 30, 400, 150, 40, 22
+
+# From the lowest room to the highest: a file includes its own room and those before it.
+ROOMS = {
+    "core": "simd basics polynomial limits slopes forms solvers batch methods online",
+    "ipc": "memory layout mapping ring board solve options sampling roles sweep verification",
+    "apps": "process files output pages timing tables cli recordings limits streams advise fit check replay trials "
+            "demo machine latency soak",
+}
+LAYERS = [f"{layer}/{room}" for layer, rooms in ROOMS.items() for room in rooms.split()]
+
+
+def files(*patterns):
+    """The tracked files, and new ones that are not ignored, that match any of these patterns."""
+    listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", "--", *patterns],
+                            cwd=PROJECT, check=True, text=True, stdout=subprocess.PIPE).stdout
+    return sorted({name for name in listed.splitlines() if (PROJECT / name).is_file()})
+
+
+def lines_of(name):
+    return (PROJECT / name).read_text(encoding="utf-8").count("\n")
+
+
+def sources():
+    return files("*.cpp", "*.hpp")
+
+
+def rooms():
+    """Files and lines of each folder that has files of its own."""
+    out, broken = [], []
+    counts, lines = Counter(), Counter()
+    for name in files("core", "ipc", "apps", "bench", "tests", "docs", "examples"):
+        folder = os.path.dirname(name)
+        counts[folder] += 1
+        if name.endswith((".cpp", ".hpp")):
+            lines[folder] += lines_of(name)
+    for folder in sorted(counts):
+        most = MOST_FILES_OF_TESTS if folder.startswith(("tests", "docs")) else MOST_FILES
+        out.append(f"{counts[folder]:4} files {lines[folder]:6} lines  {folder}")
+        if counts[folder] > most:
+            broken.append(f"{folder}: {counts[folder]} files, more than {most}")
+    return out, broken
+
+
+def file_lengths():
+    """Lines per C++ file."""
+    lengths = sorted(((lines_of(name), name) for name in sources()), reverse=True)
+    median = statistics.median(length for length, _ in lengths)
+    out = [f"{len(lengths)} C++ files, median {median:g} lines", "the longest:"]
+    out += [f"{length:5}  {name}" for length, name in lengths[:5]]
+    broken = [f"{name}: {length} lines, more than {MOST_LINES}" for length, name in lengths if length > MOST_LINES]
+    if median > MEDIAN_LINES:
+        broken.append(f"the median is {median:g} lines, more than {MEDIAN_LINES}")
+    return out, broken
+
+
+def without_texts(code):
+    """The code with its comments, strings and characters blanked, line for line."""
+    def blank(match):
+        return re.sub(r"[^\n]", " ", match.group(0))
+    code = re.sub(r'R"(\w*)\((.*?)\)\1"', blank, code, flags=re.S)
+    return re.sub(r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\"|(?<![0-9a-fA-F])'(?:\\.|[^'\\\n])+'", blank, code,
+                  flags=re.S)
+
+
+def functions_of(name):
+    """Each function's length from its first line to its closing brace, its first line, and its name."""
+    code = without_texts((PROJECT / name).read_text(encoding="utf-8"))
+    found, stack, start = [], [], 0
+    for i, c in enumerate(code):
+        if c == "{":
+            head = re.sub(r"^\s*(public|private|protected)\s*:", "", code[start:i].strip())
+            first = code.count("\n", 0, start + len(code[start:i]) - len(code[start:i].lstrip())) + 1
+            inside = bool(stack) and stack[-1][0] != "scope"
+            is_type = re.search(r"\b(namespace|class|struct|enum|union)\b", head) and not re.search(
+                r"\)\s*(const|noexcept|override|final|\s|->.*)*$", head)
+            kind = "block" if inside else "scope" if is_type else "function" if "(" in head else "block"
+            stack.append((kind, first, head))
+            start = i + 1
+        elif c == "}" and stack:
+            kind, first, head = stack.pop()
+            if kind == "function":
+                words = head.split("(")[0].split()
+                found.append((code.count("\n", 0, i) + 2 - first, name, first, words[-1] if words else head[:40]))
+            start = i + 1
+        elif c in "};":
+            start = i + 1
+    return found
+
+
+def functions():
+    """The longest functions; tests are functions too."""
+    found = sorted((f for name in sources() for f in functions_of(name)), reverse=True)
+    out = [f"{len(found)} functions, median {statistics.median(f[0] for f in found):g} lines", "the longest:"]
+    out += [f"{length:5}  {file}:{line}: {name}" for length, file, line, name in found[:5]]
+    broken = [f"{file}:{line}: {name} has {length} lines, more than {MOST_FUNCTION_LINES}"
+              for length, file, line, name in found if length > MOST_FUNCTION_LINES]
+    return out, broken
+
+
+def headers():
+    """The installed headers, and what of the project they include that is not installed."""
+    found = files("core/include/*.hpp", "ipc/include/*.hpp")
+    out = [f"{len(found)} installed headers: " + " ".join(Path(name).stem for name in found)]
+    broken = [f"{name} includes {included}, which is not installed"
+              for name in found for included in includes_of(name) if not included.startswith("splinecast/")]
+    if len(found) > MOST_HEADERS:
+        broken.append(f"{len(found)} headers, more than {MOST_HEADERS}")
+    return out, broken
+
+
+def includes_of(name):
+    """The project's files that a file includes."""
+    return re.findall(r'^#include "([^"]+)"', (PROJECT / name).read_text(encoding="utf-8"), re.M)
+
+
+def goes_up(name):
+    """What a file includes of a room above its own, or of a room without a place."""
+    room = os.path.dirname(name)
+    if room not in LAYERS:
+        return [] if "/include/" in name or not name.startswith(("core/", "ipc/", "apps/")) else [f"{name}: no room"]
+    own, up = LAYERS.index(room), []
+    for included in includes_of(name):
+        other = os.path.dirname(included)
+        if other == "splinecast":
+            is_core = (PROJECT / "core" / "include" / included).is_file()
+            if not is_core and room.startswith("core/"):
+                up.append(f"{name} includes {included}")
+        elif other not in LAYERS or LAYERS.index(other) > own:
+            up.append(f"{name} includes {included}")
+    return up
+
+
+def layers():
+    """The rooms from the lowest to the highest, and includes that go up."""
+    out = [f"{layer}: {rooms_of}" for layer, rooms_of in ROOMS.items()]
+    known = {os.path.dirname(name) for name in files("core/*.?pp", "ipc/*.?pp", "apps/*.?pp") if "/include/" not in name}
+    broken = [f"{room} has no place in ROOMS" for room in sorted(known - set(LAYERS))]
+    broken += [f"{room} of ROOMS has no file" for room in LAYERS if room not in known]
+    broken += [up for name in files("core/*.?pp", "ipc/*.?pp", "apps/*.?pp") for up in goes_up(name)]
+    return out, broken
+
+
+def walk():
+    """The files that CONTRIBUTING.md lists as the way of a waypoint."""
+    text = (PROJECT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    part = re.search(r"^## The way of a waypoint\n(.*?)(?=^## |\Z)", text, re.M | re.S)
+    listed = re.findall(r"^\d+\. `([^`]+)`", part.group(1), re.M) if part else []
+    broken = [] if len(listed) >= 8 else ["CONTRIBUTING.md does not list the way of a waypoint"]
+    for name in listed:
+        broken += goes_up(name) if (PROJECT / name).is_file() else [f"{name} does not exist"]
+    return listed, broken
+
+
+def symbols(library, write):
+    """What the shared library exports: functions, variables, and what exceptions are known by."""
+    listed = subprocess.run(["nm", "-D", "--defined-only", "-C", library], check=True, text=True,
+                            stdout=subprocess.PIPE).stdout
+    exported = set()
+    for line in listed.splitlines():
+        kind, name = line.split(maxsplit=2)[1:] if line[0] != " " else line.split(maxsplit=1)
+        if kind != "A":  # the version itself
+            exported.add(re.sub(r"@@?\w[\w.]*$", "", name).replace("[abi:cxx11]", ""))
+    text = "".join(f"{name}\n" for name in sorted(exported))
+    if write:
+        EXPORTS.write_text(text, encoding="utf-8")
+    wanted = set(EXPORTS.read_text(encoding="utf-8").splitlines())
+    broken = [f"not exported: {name}" for name in sorted(wanted - exported)]
+    broken += [f"exported, but not in {EXPORTS.name}: {name}" for name in sorted(exported - wanted)]
+    return [f"{len(exported)} exported symbols"], broken
+
+
+COMMANDS = {"rooms": rooms, "files": file_lengths, "functions": functions, "headers": headers, "layers": layers,
+            "walk": walk}
+
+
+def page():
+    parts = ["# How the code is laid out\n",
+             "`tests/house/house.py page` writes this page. [CONTRIBUTING.md](../CONTRIBUTING.md) says what the rooms are for.\n"]
+    for name, command in COMMANDS.items():
+        out, _ = command()
+        parts.append(f"## {command.__doc__.splitlines()[0].rstrip('.')}\n\n`tests/house/house.py {name}`\n")
+        parts.append("".join(f"    {line}\n" for line in out))
+    return "\n".join(parts)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("command", choices=[*COMMANDS, "symbols", "page"])
+    parser.add_argument("library", nargs="?")
+    parser.add_argument("--write", action="store_true")
+    parser.add_argument("--check", action="store_true")
+    options = parser.parse_args()
+    if options.command == "page":
+        text = page()
+        if not options.check:
+            PAGE.write_text(text, encoding="utf-8")
+            return 0
+        if PAGE.read_text(encoding="utf-8") == text:
+            return 0
+        print(f"{PAGE.relative_to(PROJECT)} is not what the code is: tests/house/house.py page")
+        return 1
+    if options.command == "symbols":
+        if not options.library:
+            parser.error("symbols needs the library")
+        out, broken = symbols(options.library, options.write)
+    else:
+        out, broken = COMMANDS[options.command]()
+    print("\n".join(out))
+    for line in broken:
+        print(f"BROKEN: {line}")
+    return 1 if broken else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+"""Applies the recipes of CONTRIBUTING.md, builds what they make, and runs it.
+
+    run.py [TREE]    TREE is where the copy of the sources and its build go (build/recipes)
+
+A file NAME.patch of this folder follows one recipe. Above its diff are the lines
+
+    Files: how many files it may touch
+    Run:   a command, with PROGRAM and TESTS for the two programs; it must end with 0
+    Shows: what its output has
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+RECIPES = Path(__file__).resolve().parent
+PROJECT = RECIPES.parent.parent
+PROGRAMS = {"PROGRAM": "bin/splinecast", "TESTS": "bin/splinecast_tests"}
+# The suites that the patches' commands run.
+TEST_FILES = "core/methods/|apps/streams/count|apps/tables/semicolons|ipc/layout/page|ipc/board/"
+
+
+def copy_sources(tree):
+    """The tracked files and new ones. A file that has not changed keeps its time, so that a second run builds little."""
+    listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=PROJECT, check=True,
+                            text=True, stdout=subprocess.PIPE).stdout
+    shutil.rmtree(tree / "source", ignore_errors=True)
+    for name in listed.splitlines():
+        if (PROJECT / name).is_file():
+            (tree / "source" / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(PROJECT / name, tree / "source" / name)
+
+
+def read_patch(path):
+    text = path.read_text(encoding="utf-8")
+    above = text.split("\ndiff --git ", 1)[0]
+    fields = {name: re.findall(rf"^{name}:\s*(.*)$", above, re.M) for name in ("Files", "Run", "Shows")}
+    touched = set(re.findall(r"^diff --git a/\S+ b/(\S+)$", text, re.M))
+    return int(fields["Files"][0]), fields["Run"], fields["Shows"], touched
+
+
+def main():
+    tree = Path(sys.argv[1] if len(sys.argv) > 1 else PROJECT / "build" / "recipes").resolve()
+    patches = {path: read_patch(path) for path in sorted(RECIPES.glob("*.patch"))}
+    copy_sources(tree)
+    for path, (most, _, _, touched) in patches.items():
+        if len(touched) > most:
+            sys.exit(f"{path.name} touches {len(touched)} files, more than {most}")
+        subprocess.run(["patch", "-p1", "--force", "--no-backup-if-mismatch", "-i", str(path)], cwd=tree / "source",
+                       check=True, stdout=subprocess.DEVNULL)
+    configured = subprocess.run(["cmake", "-S", str(tree / "source"), "-B", str(tree / "build"), "-G", "Ninja",
+                                 "-DCMAKE_CXX_FLAGS=-O0", "-DSPLINECAST_UNITY=ON", "-DSPLINECAST_BUILD_BENCH=OFF",
+                                 f"-DSPLINECAST_TEST_FILES={TEST_FILES}"], check=False, text=True,
+                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    built = configured.returncode or subprocess.run(
+        ["cmake", "--build", str(tree / "build"), "--target", "splinecast_program", "splinecast_tests"], check=False,
+        text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    if configured.returncode or built.returncode:
+        sys.exit(configured.stdout if configured.returncode else built.stdout[-10000:])
+    failed = 0
+    for path, (_, commands, shows, touched) in patches.items():
+        output = ""
+        for command in commands:
+            for word, program in PROGRAMS.items():
+                command = re.sub(rf"\b{word}\b", str(tree / "build" / program), command)
+            ended = subprocess.run(["bash", "-c", command], cwd=tree / "source", check=False, text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=os.environ, timeout=300)
+            output += ended.stdout
+            failed += ended.returncode != 0
+        missing = [text for text in shows if text not in output]
+        failed += len(missing)
+        print(f"{path.name}: {len(touched)} files: {'failed' if missing else 'built and run'}")
+        if missing:
+            print(f"the output lacks {missing}:\n{output}")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
