@@ -22,7 +22,9 @@ KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout&
           .cell_words = layout.cell / sizeof(Word),
           .states = states_.data(),
           .written = written_.data()} {
-  held_times_.reserve(layout.capacity);
+  // Touched now: a step that is the first to write as many knots must meet no page fault.
+  held_times_.resize(layout.capacity);
+  held_times_.clear();
   retire_uncommitted(head_cells(), revision_);
   for (std::size_t i = 0; i < states_.size(); ++i) retire_uncommitted(cells_at(i), revision_);
   read_state();

@@ -7,7 +7,9 @@
 namespace splinecast::ipc {
 
 ReplacementQueue::ReplacementQueue(const WaypointRingReader& ring) : ring_(&ring) {
-  items_.reserve(2 * ring.capacity());
+  // Touched now, so that no step meets a page fault.
+  items_.resize(2 * ring.capacity());
+  items_.clear();
 }
 
 void ReplacementQueue::note(Word consumed, Word available) noexcept {

@@ -9,7 +9,7 @@
     house.py walk                  the files that a waypoint goes through, as CONTRIBUTING.md lists them
     house.py symbols LIBRARY       what the shared library exports, against exports.txt of this folder
                 [--write]          writes that list instead
-    house.py page [--check]        writes docs/house.md of all but the symbols; --check: exits 1 if it differs
+    house.py page [--check]        writes docs/house.md; --check: exits 1 if it differs
 
 Each exits with 1 if a limit is passed. The limits: 20 files in a room, 30 in a folder of tests or docs; 400
 lines in a file, half of the files at most 150; 40 lines in a function; 22 installed headers.
@@ -210,6 +210,9 @@ def page():
         out, _ = command()
         parts.append(f"## {command.__doc__.splitlines()[0].rstrip('.')}\n\n`tests/house/house.py {name}`\n")
         parts.append("".join(f"    {line}\n" for line in out))
+    count = len(EXPORTS.read_text(encoding="utf-8").splitlines())
+    parts.append("## What the shared library exports\n\n`tests/house/house.py symbols build/release/ipc/libsplinecast.so`\n")
+    parts.append(f"    {count} exported symbols: tests/house/exports.txt\n")
     return "\n".join(parts)
 
 

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <csignal>
 #include <random>
-#include <thread>
 #include <vector>
 
 #include "ipc/roles/internals.hpp"
@@ -170,11 +169,6 @@ TEST_F(RealTime, SolvingMakesNoSystemCallNoAllocationAndNoPageFault) {
             ++process.page().rounds;
           }
         };
-        // Pauses longer than the lead: what a starved stream goes through is warm as well.
-        for (int pause = 0; pause < 3; ++pause) {
-          solve(kWarmUp);
-          std::this_thread::sleep_for(kWarmUpTime);
-        }
         solve(kWarmUp);
         process.page().rounds = process.page().answered = 0;
         process.confine();
