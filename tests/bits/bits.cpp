@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "ipc/roles/internals.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/reader.hpp"
 #include "splinecast/solver.hpp"
@@ -15,8 +14,15 @@
 /// compiled, the hash must be the same.
 namespace {
 
+using splinecast::AppendStatus;
+using splinecast::MonotonicClock;
+using splinecast::Producer;
+using splinecast::Reader;
+using splinecast::remove_stream;
+using splinecast::SampleStatus;
+using splinecast::Solver;
+using splinecast::StreamClock;
 using splinecast::Time;
-namespace ipc = splinecast::ipc;
 
 constexpr std::size_t kDimensions = 5;
 constexpr int kWaypoints = 2000;
