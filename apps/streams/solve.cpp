@@ -19,6 +19,7 @@
 #include "apps/process/signals.hpp"
 #include "apps/streams/report.hpp"
 #include "ipc/layout/limits.hpp"
+#include "ipc/memory/names.hpp"
 #include "ipc/options/stream.hpp"
 #include "ipc/roles/internals.hpp"
 #include "ipc/sweep/many_streams.hpp"
