@@ -191,15 +191,14 @@ class Replay {
     if (moved_by > Time::zero()) late_.shift(moved_by);
   }
 
-  /// Appends a waypoint unless so many items before it are undecided that a refusal could be
-  /// overwritten unseen. (In a ring of more items than the board keeps refusals, there may be
-  /// more.)
+  /// Appends a waypoint, unless kRefusalsKept items before it are undecided: the board could then
+  /// overwrite a refusal before it is read. A ring of more items than that is not held back.
   AppendStatus append(const Waypoint& waypoint) {
     rows_.look();
     const bool is_behind =
         rows_.undecided() >= ipc::kRefusalsKept && options_.capacity <= ipc::kRefusalsKept;
     if (!is_behind) return producer_.append(waypoint);
-    (void)board_->head();  // throws if there is none: then nothing would become known any more
+    (void)board_->head();  // throws if there is no head: no refusal could become known
     return AppendStatus::full;
   }
 

@@ -6,8 +6,7 @@
 
 namespace splinecast::apps {
 
-/// Throws TimeOut; BadRegion instead, if what stands under the board's name is what keeps a solver
-/// from it.
+/// Throws TimeOut, or BadRegion if no solver can use the file under the board's name.
 [[noreturn]] void throw_no_solver(const ReplayOptions& options);
 
 /// A finished stream is made again only once there is a solver for the new one: until then its

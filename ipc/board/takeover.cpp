@@ -22,7 +22,7 @@ KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout&
           .cell_words = layout.cell / sizeof(Word),
           .states = states_.data(),
           .written = written_.data()} {
-  // Touched now: a step that is the first to write as many knots must meet no page fault.
+  // Touches the memory, so that no step meets a page fault, however many knots it writes.
   held_times_.resize(layout.capacity);
   held_times_.clear();
   retire_uncommitted(head_cells(), revision_);

@@ -11,7 +11,7 @@
 
 namespace splinecast::ipc {
 
-/// The word by which a region is said to be of no use, in both control blocks.
+/// The word that says that a region is retired: at the same place in both control blocks.
 inline constexpr std::size_t kRetired = word_of(kBoardControlFields, "retired");
 static_assert(word_of(kRingControlFields, "retired") == kRetired);
 static_assert(kRevision == 0 && kHead == 0);  // what waiting processes watch

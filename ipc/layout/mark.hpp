@@ -2,10 +2,10 @@
 
 #include <cstdint>
 
-/// What tells a stream's region from other files, and one layout from another. Where every word of
-/// the two regions lies say the tables of this folder. layout.md of the folder above is the same in
-/// words, and is made from them. A release that changes a row adds 1 to
-/// kLayoutVersion; in between the layout hash tells layouts apart.
+/// What tells a stream's region from other files, and one layout from another. The tables of this
+/// folder say where every word of the two regions lies; layout.md of the folder above is generated
+/// from them. A release that changes a row adds 1 to kLayoutVersion. Between releases the layout
+/// hash tells layouts apart.
 namespace splinecast::ipc {
 
 inline constexpr std::uint64_t kMagic = 0x54534143'4e4c5053;  // "SPLNCAST" in memory order

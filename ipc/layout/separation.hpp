@@ -12,10 +12,10 @@ inline constexpr std::size_t kSeparation = 128;
 inline constexpr std::size_t kCacheLine = 64;
 inline constexpr std::size_t kPage = 4096;
 
-/// Words that what is polled takes, so that what comes behind it lies apart.
+/// Words from one polled word to the next, so that they do not share lines.
 inline constexpr std::size_t kLineWords = kSeparation / sizeof(Word);
 
-/// The least multiple that is not below a value.
+/// The smallest multiple that is at least `value`.
 [[nodiscard]] constexpr std::size_t round_up(std::size_t value, std::size_t multiple) noexcept {
   return (value + multiple - 1) / multiple * multiple;
 }

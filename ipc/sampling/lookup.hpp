@@ -13,8 +13,8 @@ namespace splinecast::ipc {
 [[nodiscard]] Word number_near(const BoardSegment& copy, Time t) noexcept;
 
 /// The last knot at or before whose time a segment begins, by the packed times; 0 if t is before
-/// all. From a guess by an even pace in steps that double, then by halves: a look or two at an even
-/// pace, and never more than 2 log n.
+/// all. Exponential search from a guess by an even pace, then bisection: one or two loads where the
+/// pace is even, at most 2 log n.
 [[nodiscard]] Word number_by_hint(const KnotBoardReader& board, const Head& head, Time t) noexcept;
 
 /// The same by the knots, under the revision of the head: log n of them. Returns false if one was

@@ -24,14 +24,14 @@ void PublishedCurve::finish_on_line(const Condition& end) noexcept {
   open_ = std::min(open_, knots - std::min<std::size_t>(knots, 2));
 }
 
-/// The curve ends at the newest waypoint, to which no segment of the target leads.
+/// Notes that the curve ends at the newest waypoint without a segment of the target before it.
 void PublishedCurve::end_at_newest() noexcept {
   const std::size_t last = window_.knots() - 1;
   if (course_ == Course::on_target) unmet_ = last;
   met_ = std::max(unmet_, last);
 }
 
-/// Makes the entry that has been found, to rest at the newest waypoint, the end of the curve.
+/// Ends the curve with the entry that the search found, which comes to rest at the newest waypoint.
 void PublishedCurve::enter_end(const Instant& from) noexcept {
   if (uses_cut_) {
     cut_.write();

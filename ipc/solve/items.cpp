@@ -66,7 +66,7 @@ void StreamSolver::take_waypoint(Word number) noexcept {
   head_.newest_knot = waypoint.time;
 }
 
-/// The waypoint's representative nearest to the curve; in memory of this solver until the next one.
+/// The waypoint, moved to its representative nearest to the curve. Valid until the next call.
 Waypoint StreamSolver::unwrapped(const Waypoint& given) noexcept {
   const auto copy = [this](std::span<const double> from, std::size_t part) {
     const auto to = std::span(unwrapped_).subspan(part * ring_->dimensions(), from.size());

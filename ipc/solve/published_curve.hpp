@@ -23,7 +23,7 @@ struct EntryOptions {
   Time notice{};         ///< how long before it settles a live stream's start is decided
 };
 
-/// What a published curve adds to the summary of a revision; see the members of Head.
+/// A published curve's part of a revision's summary; see the members of Head.
 struct CurveSummary {
   Word first = 0;
   Word newest = 0;
@@ -40,7 +40,7 @@ struct CurveSummary {
   Word passed_over = 0;
 };
 
-/// Puts that into a summary; its counters stay.
+/// Copies the curve's part into a summary; the counters stay as they are.
 void put_summary(const CurveSummary& curve, Head& head) noexcept;
 
 /// The curve of one stream: the window that is being solved, which is the *target*, and the board
@@ -169,11 +169,11 @@ class PublishedCurve {
   /// Segments that end after `keep` are not lost by it.
   [[nodiscard]] bool finish(const Condition& end, Time settled, Time keep, int& tries) noexcept;
 
-  /// Writes what has been changed to the board. Returns the earliest time whose curve that changes;
-  /// max() for none.
+  /// Writes the changes to the board. Returns the earliest time at which the curve changes; max()
+  /// if it does not change.
   [[nodiscard]] Time write() noexcept;
 
-  /// What the board's summary is to say of the curve as it has been written.
+  /// The curve's part of the summary, as of the last write.
   [[nodiscard]] CurveSummary summary() const noexcept;
 
   /// After the commit of that head.

@@ -7,7 +7,7 @@
 namespace splinecast::ipc {
 
 ReplacementQueue::ReplacementQueue(const WaypointRingReader& ring) : ring_(&ring) {
-  // Touched now, so that no step meets a page fault.
+  // Touches the memory, so that no step meets a page fault.
   items_.resize(2 * ring.capacity());
   items_.clear();
 }

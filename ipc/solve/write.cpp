@@ -207,7 +207,7 @@ void PublishedCurve::write_on_line() noexcept {
   end_ = window_.time(knots - 1);
 }
 
-/// What the newest knots have taken the place of is no longer on the board.
+/// Forgets the oldest knots, whose slots the newest ones have taken.
 void PublishedCurve::drop_oldest() noexcept {
   // Never back: a replacement drops knots, but the slots that they took are not given back.
   const Word kept = newest_ - std::min<Word>(newest_, board_->capacity()) + 1;

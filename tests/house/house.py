@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures how the code is laid out, and checks it against limits.
 
-    house.py rooms                 files and lines of each folder
+    house.py rooms                 files of each folder
     house.py files                 lines per file, and the longest files
     house.py functions             the longest functions
     house.py headers               the installed headers
@@ -55,17 +55,15 @@ def sources():
 
 
 def rooms():
-    """Files and lines of each folder that has files of its own."""
+    """Files of each folder."""
     out, broken = [], []
-    counts, lines = Counter(), Counter()
+    counts = Counter()
     for name in files("core", "ipc", "apps", "bench", "tests", "docs", "examples"):
         folder = os.path.dirname(name)
         counts[folder] += 1
-        if name.endswith((".cpp", ".hpp")):
-            lines[folder] += lines_of(name)
     for folder in sorted(counts):
         most = MOST_FILES_OF_TESTS if folder.startswith(("tests", "docs")) else MOST_FILES
-        out.append(f"{counts[folder]:4} files {lines[folder]:6} lines  {folder}")
+        out.append(f"{counts[folder]:4} files  {folder}")
         if counts[folder] > most:
             broken.append(f"{folder}: {counts[folder]} files, more than {most}")
     return out, broken
@@ -75,7 +73,7 @@ def file_lengths():
     """Lines per C++ file."""
     lengths = sorted(((lines_of(name), name) for name in sources()), reverse=True)
     median = statistics.median(length for length, _ in lengths)
-    out = [f"{len(lengths)} C++ files, median {median:g} lines", "the longest:"]
+    out = [f"median {median:g} lines", "the longest:"]
     out += [f"{length:5}  {name}" for length, name in lengths[:5]]
     broken = [f"{name}: {length} lines, more than {MOST_LINES}" for length, name in lengths if length > MOST_LINES]
     if median > MEDIAN_LINES:
@@ -120,8 +118,8 @@ def functions_of(name):
 def functions():
     """The longest functions; tests are functions too."""
     found = sorted((f for name in sources() for f in functions_of(name)), reverse=True)
-    out = [f"{len(found)} functions, median {statistics.median(f[0] for f in found):g} lines", "the longest:"]
-    out += [f"{length:5}  {file}:{line}: {name}" for length, file, line, name in found[:5]]
+    out = [f"median {statistics.median(f[0] for f in found):g} lines", "the longest:"]
+    out += [f"{length:5}  {file}: {name}" for length, file, _, name in found[:5]]
     broken = [f"{file}:{line}: {name} has {length} lines, more than {MOST_FUNCTION_LINES}"
               for length, file, line, name in found if length > MOST_FUNCTION_LINES]
     return out, broken

@@ -52,8 +52,9 @@ def main():
             sys.exit(f"{path.name} touches {len(touched)} files, more than {most}")
         subprocess.run(["patch", "-p1", "--force", "--no-backup-if-mismatch", "-i", str(path)], cwd=tree / "source",
                        check=True, stdout=subprocess.DEVNULL)
+    # One object per file: a unity build hides a missing include.
     configured = subprocess.run(["cmake", "-S", str(tree / "source"), "-B", str(tree / "build"), "-G", "Ninja",
-                                 "-DCMAKE_CXX_FLAGS=-O0", "-DSPLINECAST_UNITY=ON", "-DSPLINECAST_BUILD_BENCH=OFF",
+                                 "-DCMAKE_CXX_FLAGS=-O0", "-DSPLINECAST_UNITY=OFF", "-DSPLINECAST_BUILD_BENCH=OFF",
                                  f"-DSPLINECAST_TEST_FILES={TEST_FILES}"], check=False, text=True,
                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     built = configured.returncode or subprocess.run(

@@ -32,4 +32,4 @@ struct BSpline {
 /// with the control points, and if no interval is left. O(n·k²·(k + D)); allocates.
 [[nodiscard]] PiecewisePolynomial from_b_spline(const BSpline& spline);
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

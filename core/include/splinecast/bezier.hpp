@@ -28,4 +28,4 @@ struct BezierSegment {
 [[nodiscard]] PiecewisePolynomial from_bezier(std::size_t dimensions,
                                               std::span<const BezierSegment> segments);
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

@@ -63,4 +63,4 @@ enum class Tail {
 /// per dimension where its kind takes values, and none where it takes none.
 void require_values(const Condition& condition, std::size_t dimensions);
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

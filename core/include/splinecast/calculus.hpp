@@ -72,4 +72,4 @@ struct Extremes {
 /// speed, where |v| may have a kink. Bounded work.
 [[nodiscard]] double arc_length(const PiecewisePolynomial& curve, Time from, Time to);
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

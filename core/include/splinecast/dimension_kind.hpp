@@ -138,4 +138,4 @@ struct AngularMotion {
                                            std::span<const double> velocity,
                                            std::span<const double> acceleration) noexcept;
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

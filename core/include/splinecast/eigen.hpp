@@ -33,4 +33,4 @@ struct EigenState {
   }
 };
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

@@ -34,4 +34,4 @@ struct FitOptions {
 /// leaves: what cross_validated_lambda minimises. At least three waypoints. O(n·D).
 [[nodiscard]] double cross_validation_score(const Waypoints& waypoints, double lambda);
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

@@ -80,4 +80,4 @@ void require_limits(const MotionLimits& limits, std::span<const Dimension> dimen
 /// all dimensions. Throws std::invalid_argument for other sizes. Allocates.
 [[nodiscard]] MotionLimits spread(const MotionLimits& limits, std::size_t dimensions);
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

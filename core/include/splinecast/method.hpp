@@ -15,7 +15,7 @@ struct Interpolant;
 struct Waypoints;
 }  // namespace splinecast
 
-/// How a method is solved: of no use outside of the library.
+/// Internal to the library: how a method is solved.
 namespace splinecast::core {
 class KnotSolver;
 enum class Use : std::uint8_t;
@@ -102,4 +102,4 @@ struct Interpolant {
 /// Throws std::invalid_argument, naming the value, for a parameter out of range.
 void require_parameters(const Interpolant& interpolant);
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

@@ -91,4 +91,4 @@ class PiecewisePolynomial {
   std::vector<double> coefficients_;
 };
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

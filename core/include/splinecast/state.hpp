@@ -77,4 +77,4 @@ enum class Derivatives : std::uint8_t {
   return static_cast<std::size_t>(std::popcount(static_cast<std::uint8_t>(set)));
 }
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

@@ -37,4 +37,4 @@ using Time = std::chrono::nanoseconds;
   return a < Time::zero() ? Time::min() : Time::max();
 }
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

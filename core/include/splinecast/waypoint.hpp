@@ -61,4 +61,4 @@ struct Waypoints {
   }
 };
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

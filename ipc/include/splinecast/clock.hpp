@@ -48,4 +48,4 @@ class MonotonicClock final : public Clock {
   }
 };
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

@@ -43,4 +43,4 @@ class BadRequest : public StreamError {
   using StreamError::StreamError;
 };
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

@@ -56,7 +56,8 @@ struct SolverOptions {
   const Method* method = nullptr;        ///< default c2; one that streams
   std::optional<double> lambda{};        ///< of smoothing, which needs it: λ ≥ 0 in s³
   std::optional<double> time_scale{};    ///< of rounded; default 1 s
-  std::optional<std::size_t> settle{};   ///< settle lag K; default 8 for `c2`
+  std::optional<std::size_t> settle{};   ///< settle lag K; default 8 for `c2`, 64 for
+                                         ///< smoothing, else what the method looks ahead
   std::optional<Tail> tail{};            ///< default bessel
   bool force_lag = false;                ///< take a lag that is too short for λ
   std::optional<Time> stop_time{};       ///< length of the stop tail; default 250 ms. With limits:
@@ -75,4 +76,4 @@ struct SolverOptions {
   Trust trust{};
 };
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

@@ -21,7 +21,7 @@ struct ItemRefusal {
   std::uint64_t item = 0;      ///< number of the item: Producer::appended() before its append
   std::optional<Time> time{};  ///< of the item; unset if the ring has overwritten it
   Refusal reason{};
-  std::optional<LimitExcess> excess{};  ///< of `beyond_limits`, unless the board has it no more
+  std::optional<LimitExcess> excess{};  ///< of `beyond_limits`, unless the board no longer has it
 };
 
 /// `item 17 refused: too late (time 123 ns)`; of one beyond a limit also where.
@@ -176,4 +176,4 @@ class Producer {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

@@ -130,4 +130,4 @@ class Reader {
   std::size_t dimensions_;
 };
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

@@ -64,4 +64,4 @@ class Snapshot {
   std::unique_ptr<ipc::BoardSnapshot> board_;
 };
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

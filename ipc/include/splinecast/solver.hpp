@@ -95,4 +95,4 @@ class Solver {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

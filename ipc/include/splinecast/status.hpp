@@ -95,4 +95,4 @@ struct StepResult {
 [[nodiscard]] std::string_view to_string(Refusal refusal) noexcept;
 [[nodiscard]] std::string_view to_string(SampleStatus status) noexcept;
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

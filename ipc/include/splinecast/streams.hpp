@@ -18,4 +18,4 @@ namespace [[gnu::visibility("default")]] splinecast {
 /// a file under its names is not to be trusted; then nothing has been changed.
 void remove_stream(const std::string& stream, const Trust& trust = {});
 
-}  // namespace gnu::visibility("default")]]splinecast
+}  // namespace splinecast

@@ -141,7 +141,7 @@ TEST(EmbeddedReplay, OntoAStreamThatStillMovesWaitsForItsEnd) {
   const Time patience = clock.now() + testing::kPatience;
   Time now = clock.now();
   while (now < patience && reader.sample(now, state) != SampleStatus::retired) {
-    std::this_thread::sleep_for(milliseconds(1));
+    (void)reader.wait(milliseconds(1));
     now = clock.now();
   }
   ipc::Head old;  // its mapping stays
