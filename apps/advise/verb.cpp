@@ -113,25 +113,24 @@ int run_advise(const AdviseOptions& options) {
   return kOk;
 }
 
-void add_advise(CLI::App& verb, Action& action) {
+void add_advise(Command& verb, Action& action) {
   auto options = std::make_shared<AdviseOptions>();
-  verb.add_option("FILE|STREAM", options->source,
-                  "Waypoint file, CSV or TUM text, - for standard input; or a stream, of which the "
-                  "waypoints in its ring are looked at (write ./NAME for a file of that name)")
-      ->required();
-  add_settle(verb, options->settle);
-  verb.get_option("--settle")
-      ->description(
+  verb.option("FILE|STREAM", options->source,
+              "Waypoint file, CSV or TUM text, - for standard input; or a stream, of which the "
+              "waypoints in its ring are looked at (write ./NAME for a file of that name)")
+      .required();
+  add_settle(verb, options->settle)
+      .help(
           "Settle lag of the solver, 0 to 64 (default the stream's own; of a file 8, or "
           "fewer where 8 would need a lead of more than 1 s)");
-  verb.add_option_function<std::string>(
+  verb.option(
           "--freeze-ahead",
           [options](const std::string& text) {
             options->freeze_ahead = time_within("--freeze-ahead", text, TimeUnit::milliseconds);
           },
           "What lies this long ahead of now is settled (default 5, or the stream's own)")
-      ->type_name("MS");
-  verb.add_flag("--json", options->json, "Report as JSON on standard output");
+      .type("MS");
+  verb.flag("--json", options->json, "Report as JSON on standard output");
   add_table_options(verb, options->table);
   add_trust(verb, options->trust);
   verb.callback([&action, options] { action = [options] { return run_advise(*options); }; });

@@ -159,25 +159,25 @@ int run_check(const CheckOptions& options) {
   return report.check.keeps_limits() ? kOk : kFellShort;
 }
 
-void add_check(CLI::App& verb, Action& action) {
+void add_check(Command& verb, Action& action) {
   auto options = std::make_shared<CheckOptions>();
-  verb.add_option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
-      ->required();
+  verb.option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
+      .required();
   add_limit_options(verb, options->limits);
-  verb.add_option_function<std::string>(
+  verb.option(
           "--method", [options](const std::string& text) { options->method = &method_named(text); },
           fmt::format("Interpolant: {} (default c2)", method_names(false)))
-      ->type_name("METHOD");
+      .type("METHOD");
   add_curve(verb, options->curve);
   add_table_options(verb, options->table);
-  verb.add_flag("--json", options->json, "As JSON");
+  verb.flag("--json", options->json, "As JSON");
   verb.callback([&action, options] {
     if (options->method == nullptr) options->method = &c2();
     require_consistent(options->curve, std::array{options->method});
     if (!options->limits.any()) {
-      throw CLI::ValidationError("check",
-                                 "needs limits: --limits, --max-velocity, --max-acceleration, "
-                                 "--max-jerk or --bounds");
+      throw UsageError("check",
+                       "needs limits: --limits, --max-velocity, --max-acceleration, "
+                       "--max-jerk or --bounds");
     }
     action = [options] { return run_check(*options); };
   });

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <string>
 
+#include "apps/cli/command.hpp"
 #include "apps/cli/guarded.hpp"
 #include "apps/cli/verb.hpp"
 #include "apps/cli/version.hpp"
@@ -18,7 +19,8 @@ int run_program(int argc, char** argv) {
   program.set_version_flag("--version", std::string("splinecast ") + kVersion);
   program.require_subcommand(1);
   Action action;
-  Verb::add_all(program, action);
+  Command command(program);
+  Verb::add_all(command, action);
   try {
     // CLI11 would only say that a subcommand is missing.
     const std::string verb = argc > 1 ? argv[1] : "";
@@ -32,6 +34,9 @@ int run_program(int argc, char** argv) {
     const bool asked_for_help = program.exit(error) == 0;
     if (!asked_for_help) return kBadUsageOrInput;
     return std::cout.flush() ? kOk : kFailed;
+  } catch (const UsageError& error) {
+    program.exit(CLI::ValidationError(error.what()));
+    return kBadUsageOrInput;
   }
   return run_guarded(action);
 }

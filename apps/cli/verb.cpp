@@ -16,12 +16,13 @@ Verb::Verb(const char* name, int place, const char* summary, Add add) noexcept
   first_verb = this;
 }
 
-void Verb::add_all(CLI::App& program, Action& action) {
+void Verb::add_all(Command& program, Action& action) {
   std::vector<const Verb*> verbs;
   for (const Verb* verb = first_verb; verb != nullptr; verb = verb->next_) verbs.push_back(verb);
   std::ranges::sort(verbs, {}, &Verb::place_);
   for (const Verb* const verb : verbs) {
-    verb->add_(*program.add_subcommand(verb->name_, verb->summary_), action);
+    Command command = program.subcommand(verb->name_, verb->summary_);
+    verb->add_(command, action);
   }
 }
 

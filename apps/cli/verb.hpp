@@ -1,7 +1,8 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
+
+#include "apps/cli/command.hpp"
 
 namespace splinecast::apps {
 
@@ -13,13 +14,13 @@ using Action = std::function<int()>;
 class Verb {
  public:
   /// Adds the verb's options to `verb`, and sets `action` when that verb is chosen.
-  using Add = void (*)(CLI::App& verb, Action& action);
+  using Add = void (*)(Command& verb, Action& action);
 
   /// `place` says where the help lists it: each verb has one of its own.
   Verb(const char* name, int place, const char* summary, Add add) noexcept;
 
   /// Adds every verb to the program, in the order of their places.
-  static void add_all(CLI::App& program, Action& action);
+  static void add_all(Command& program, Action& action);
 
  private:
   const char* name_;

@@ -161,25 +161,26 @@ int run_demo(const DemoOptions& options) {
   return sent["exit_code"].get<int>();
 }
 
-void add_demo(CLI::App& verb, Action& action) {
+void add_demo(Command& verb, Action& action) {
   auto options = std::make_shared<DemoOptions>();
-  verb.add_option("--file", options->file,
+  const Argument file =
+      verb.option("--file", options->file,
                   "Waypoint file to play (default: a pick-and-place of seven joints)")
-      ->type_name("FILE");
+          .type("FILE");
   add_seconds(
       verb, "--seconds", options->seconds,
       "How much to play, 0.1 to 86400, without --chaos 3600 (default 10, or the whole file)",
       {kShortest, kLongestChaos});
-  verb.add_flag("--chaos", options->chaos,
-                "Kill, stop and starve everybody meanwhile, and show that no reader notices; exits "
-                "with 3 if one does")
-      ->excludes("--file");
-  verb.add_flag("--json", options->json, "As JSON");
+  verb.flag("--chaos", options->chaos,
+            "Kill, stop and starve everybody meanwhile, and show that no reader notices; exits "
+            "with 3 if one does")
+      .excludes(file);
+  verb.flag("--json", options->json, "As JSON");
   add_table_options(verb, options->table);
   verb.callback([&action, options] {
     if (options->seconds && *options->seconds > kLongest && !options->chaos) {
-      throw CLI::ValidationError(
-          "--seconds", fmt::format("'{}' is no time from 0.1 to 3600 s, the most without --chaos",
+      throw UsageError("--seconds",
+                       fmt::format("'{}' is no time from 0.1 to 3600 s, the most without --chaos",
                                    to_seconds(*options->seconds)));
     }
     action = [options] { return run_demo(*options); };

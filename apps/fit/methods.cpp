@@ -240,17 +240,17 @@ int run_methods(const MethodsOptions& options) {
   return kOk;
 }
 
-void add_methods(CLI::App& verb, Action& action) {
+void add_methods(Command& verb, Action& action) {
   auto options = std::make_shared<MethodsOptions>();
-  verb.add_option("--against", options->files,
-                  "Trajectories as polynomials (CSV: duration,x^0,x^1,...): the largest errors of "
-                  "each method in position, velocity and acceleration, and its largest "
-                  "acceleration step, over all of them, as fractions of the trajectory's largest "
-                  "position, velocity and acceleration")
-      ->type_name("FILE...");
+  verb.option("--against", options->files,
+              "Trajectories as polynomials (CSV: duration,x^0,x^1,...): the largest errors of "
+              "each method in position, velocity and acceleration, and its largest "
+              "acceleration step, over all of them, as fractions of the trajectory's largest "
+              "position, velocity and acceleration")
+      .type("FILE...");
   add_seconds(verb, "--every", options->period, "Time between waypoints (default 0.1)",
               {std::chrono::microseconds(1), kLongestTime});
-  verb.add_flag("--json", options->json, "As JSON");
+  verb.flag("--json", options->json, "As JSON");
   verb.callback([&action, options] { action = [options] { return run_methods(*options); }; });
 }
 

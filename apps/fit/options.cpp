@@ -7,23 +7,21 @@
 
 namespace splinecast::apps {
 
-void add_curve(CLI::App& verb, CurveOptions& options) {
+void add_curve(Command& verb, CurveOptions& options) {
   add_lambda(verb, options.lambda, &options.lambda_is_auto);
   add_time_scale(verb, options.time_scale);
   add_condition(verb, "--start", options.start,
                 "Condition at the first waypoint (default natural for c2, else the method's own)");
   add_condition(verb, "--end", options.end,
                 "Condition at the last waypoint (default likewise; with --online halt for c2)");
-  verb.add_flag("--online", options.online, "As the solver would: through the sliding window");
+  verb.flag("--online", options.online, "As the solver would: through the sliding window");
   add_settle(verb, options.settle);
   add_tail(verb, options.tail);
   add_force_lag(verb, options.force_lag);
 }
 
 void require_consistent(const CurveOptions& curve, std::span<const Method* const> methods) {
-  const auto refuse = [](const char* name, const char* why) {
-    throw CLI::ValidationError(name, why);
-  };
+  const auto refuse = [](const char* name, const char* why) { throw UsageError(name, why); };
   const auto has = [&](std::string_view name) {
     return std::ranges::any_of(methods, [&](const auto* m) { return m->name == name; });
   };

@@ -117,7 +117,7 @@ int run_fit(const FitOptions& options) {
 
 void require_consistent(const FitOptions& options) {
   const auto refuse = [](const std::string& name, const std::string& why) {
-    throw CLI::ValidationError(name, why);
+    throw UsageError(name, why);
   };
   require_consistent(options.curve, options.methods);
   if (options.methods.size() > 1 && !only_reports(options)) {
@@ -133,55 +133,54 @@ void require_consistent(const FitOptions& options) {
   }
 }
 
-void add_interpolants(CLI::App& verb, std::vector<const Method*>& methods) {
-  verb.add_option_function<std::vector<std::string>>(
+void add_interpolants(Command& verb, std::vector<const Method*>& methods) {
+  verb.option(
           "--method",
           [&methods](const std::vector<std::string>& names) {
             for (const std::string& name : names) methods.push_back(&method_named(name));
           },
           fmt::format("Interpolant: {} (default c2); with --report several, separated by commas",
                       method_names(false)))
-      ->delimiter(',')
-      ->type_name("METHOD");
+      .separated_by_commas()
+      .type("METHOD");
 }
 
-void add_emit(CLI::App& verb, Emit& value) {
-  verb.add_option_function<std::string>(
+void add_emit(Command& verb, Emit& value) {
+  verb.option(
           "--emit",
           [&value](const std::string& text) {
             const auto emit = parse_emit(text);
             if (!emit) {
-              throw CLI::ValidationError(
-                  "--emit", fmt::format("'{}' is none of samples, pp, bezier, bspline", text));
+              throw UsageError("--emit",
+                               fmt::format("'{}' is none of samples, pp, bezier, bspline", text));
             }
             value = *emit;
           },
           "What to write: samples (CSV, default); as JSON pp (piecewise polynomial), bezier "
           "(control points), bspline")
-      ->type_name("WHAT");
+      .type("WHAT");
 }
 
-void add_fit(CLI::App& verb, Action& action) {
+void add_fit(Command& verb, Action& action) {
   auto options = std::make_shared<FitOptions>();
-  verb.add_option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
-      ->required();
+  verb.option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
+      .required();
   add_interpolants(verb, options->methods);
   add_curve(verb, options->curve);
-  auto* at = verb.add_option("--at", options->at, "File with a time column: where to sample")
-                 ->type_name("FILE");
+  const Argument at =
+      verb.option("--at", options->at, "File with a time column: where to sample").type("FILE");
   add_seconds(verb, "--dt", options->dt, "Sample this often, from the first waypoint on",
-              kPositiveTime);
-  verb.get_option("--dt")->excludes(at);
+              kPositiveTime)
+      .excludes(at);
   add_emit(verb, options->emit);
-  verb.add_option("-o,--output", options->output, "File to write (default: standard output)")
-      ->type_name("OUT");
-  verb.add_option("--report", options->report, "Page of charts to write, HTML")->type_name("OUT");
-  verb.add_option(
-          "--unit", options->units,
-          "Unit of the positions in the report, or one per column (default: what a column's "
-          "name has in brackets)")
-      ->delimiter(',')
-      ->type_name("UNIT");
+  verb.option("-o,--output", options->output, "File to write (default: standard output)")
+      .type("OUT");
+  verb.option("--report", options->report, "Page of charts to write, HTML").type("OUT");
+  verb.option("--unit", options->units,
+              "Unit of the positions in the report, or one per column (default: what a column's "
+              "name has in brackets)")
+      .separated_by_commas()
+      .type("UNIT");
   add_table_options(verb, options->table);
   verb.callback([&action, options] {
     if (options->methods.empty()) options->methods.push_back(&c2());

@@ -142,18 +142,18 @@ int run_compare(const CompareCommand& command) {
 int parse_cpu(const std::string& name, const std::string& text) {
   const auto cpu = parse_count(text);
   if (cpu && *cpu < kMostCpus) return static_cast<int>(*cpu);
-  throw CLI::ValidationError(name, fmt::format("'{}' is no CPU from 0 to {}", text, kMostCpus - 1));
+  throw UsageError(name, fmt::format("'{}' is no CPU from 0 to {}", text, kMostCpus - 1));
 }
 
-void add_cpu(CLI::App& verb, const std::string& name, std::optional<int>& cpu,
+void add_cpu(Command& verb, const std::string& name, std::optional<int>& cpu,
              const std::string& help) {
-  verb.add_option_function<std::string>(
+  verb.option(
           name, [&cpu, name](const std::string& text) { cpu = parse_cpu(name, text); }, help)
-      ->type_name("CPU");
+      .type("CPU");
 }
 
 /// What is sent, and how.
-void add_work(CLI::App& verb, LatencyOptions& options) {
+void add_work(Command& verb, LatencyOptions& options) {
   add_rate(verb, "--rate", options.rate, "Waypoints a second (default 1000)", {1, kMostRate});
   add_seconds(verb, "--duration", options.duration, "How long to measure (default 10)",
               {Time(1), kLongestRun});
@@ -162,33 +162,28 @@ void add_work(CLI::App& verb, LatencyOptions& options) {
   add_milliseconds(verb, "--lead", options.lead,
                    "How far ahead of now waypoints are sent, at most 60000 (default 200)",
                    {Time::zero(), kLongestLead});
-  verb.add_option_function<std::string>(
+  verb.option(
           "--deadline",
           [&options](const std::string& text) {
             options.deadline = time_within("--deadline", text, TimeUnit::milliseconds);
           },
           "A latency beyond this is a missed deadline (default: a period)")
-      ->type_name("MS");
-  verb.add_option("--dims", options.dimensions, "Dimensions, 1 to 64 (default 7)")
-      ->check(CLI::Range(std::size_t{1}, kMaxDimensions))
-      ->type_name("N");
+      .type("MS");
+  add_count(verb, "--dims", options.dimensions, "Dimensions, 1 to 64 (default 7)",
+            {1, kMaxDimensions});
   add_settle(verb, options.settle);
-  verb.add_option("--readers", options.readers, "Readers, 1 to 64 (default 1)")
-      ->check(CLI::Range(1, 64))
-      ->type_name("N");
-  verb.add_flag("--embedded", options.embedded, "Solve in the producer's process");
+  add_count(verb, "--readers", options.readers, "Readers, 1 to 64 (default 1)", {1, 64});
+  verb.flag("--embedded", options.embedded, "Solve in the producer's process");
 }
 
 /// How the processes run.
-void add_processes(CLI::App& verb, LatencyOptions& options) {
-  verb.add_option_function<std::string>(
-          "--mode", [&options](const std::string& text) { options.spin = text == "spin"; },
-          "wait (default): sleep until there is something to do; spin: poll, a CPU each")
-      ->check(CLI::IsMember({"spin", "wait"}))
-      ->type_name("MODE");
+void add_processes(Command& verb, LatencyOptions& options) {
+  add_choice(
+      verb, "--mode", "spin", "wait", [&options](bool spin) { options.spin = spin; },
+      "wait (default): sleep until there is something to do; spin: poll, a CPU each");
   add_cpu(verb, "--cpu-producer", options.cpu_producer, "CPU to pin the producer to");
   add_cpu(verb, "--cpu-solver", options.cpu_solver, "CPU to pin the solver to");
-  verb.add_option_function<std::vector<std::string>>(
+  verb.option(
           "--cpu-reader",
           [&options](const std::vector<std::string>& texts) {
             for (const std::string& text : texts) {
@@ -196,59 +191,57 @@ void add_processes(CLI::App& verb, LatencyOptions& options) {
             }
           },
           "CPUs to pin the readers to, one after the other")
-      ->delimiter(',')
-      ->type_name("CPU,...");
-  verb.add_option_function<std::string>(
-          "--policy", [&options](const std::string& text) { options.fifo = text == "fifo"; },
-          "Scheduling: other (default) or fifo, SCHED_FIFO")
-      ->check(CLI::IsMember({"fifo", "other"}))
-      ->type_name("POLICY");
-  verb.add_option("--prio", options.priority, "Priority under fifo, 1 to 99 (default 50)")
-      ->check(CLI::Range(1, 99))
-      ->type_name("N");
-  verb.add_flag("--mlock", options.lock_memory, "Lock all memory (mlockall)");
-  verb.add_flag("--iceoryx,!--no-iceoryx", options.iceoryx,
-                "Measure iceoryx too, with its daemon started for it (default: where it is built "
-                "in)");
+      .separated_by_commas()
+      .type("CPU,...");
+  add_choice(
+      verb, "--policy", "fifo", "other", [&options](bool fifo) { options.fifo = fifo; },
+      "Scheduling: other (default) or fifo, SCHED_FIFO");
+  add_count(verb, "--prio", options.priority, "Priority under fifo, 1 to 99 (default 50)", {1, 99});
+  verb.flag("--mlock", options.lock_memory, "Lock all memory (mlockall)");
+  verb.flag("--iceoryx,!--no-iceoryx", options.iceoryx,
+            "Measure iceoryx too, with its daemon started for it (default: where it is built "
+            "in)");
 }
 
-void add_compare(CLI::App& verb, const std::shared_ptr<CompareCommand>& command) {
-  auto* compare = verb.add_subcommand(
+/// Returns what `compare` takes.
+Command add_compare(Command& verb, const std::shared_ptr<CompareCommand>& command) {
+  Command compare = verb.subcommand(
       "compare", "Compare two results of --json; exits with 3 if B is slower than A");
-  compare->add_option("A", command->a, "The result to compare with")->required();
-  compare->add_option("B", command->b, "The result that may be slower")->required();
+  compare.option("A", command->a, "The result to compare with").required();
+  compare.option("B", command->b, "The result that may be slower").required();
   compare
-      ->add_option_function<std::string>(
+      .option(
           "--threshold",
           [command](const std::string& text) {
             command->threshold = number_within("--threshold", text, {0, 1e6});
           },
           "Percent that a percentile may be longer (default 20)")
-      ->type_name("PERCENT");
+      .type("PERCENT");
   compare
-      ->add_option_function<std::string>(
+      .option(
           "--least",
           [command](const std::string& text) {
             command->floor_us = number_within("--least", text, {0, 1e9});
           },
           "Microseconds that it must be longer besides (default 1)")
-      ->type_name("US");
-  compare->add_flag("--json", command->json, "As JSON");
+      .type("US");
+  compare.flag("--json", command->json, "As JSON");
+  return compare;
 }
 
-void add_latency(CLI::App& verb, Action& action) {
+void add_latency(Command& verb, Action& action) {
   auto command = std::make_shared<LatencyCommand>();
   auto compared = std::make_shared<CompareCommand>();
   add_work(verb, command->options);
   add_processes(verb, command->options);
-  verb.add_flag("--json", command->json, "As JSON");
-  verb.add_option("--hgrm", command->hgrm,
-                  "Write HdrHistogram percentile text, PREFIX.STAGE.hgrm for each stage")
-      ->type_name("PREFIX");
-  verb.add_option("--report", command->report, "Write a page with charts")->type_name("OUT.html");
-  add_compare(verb, compared);
-  verb.callback([&action, &verb, command, compared] {
-    if (verb.got_subcommand("compare")) {
+  verb.flag("--json", command->json, "As JSON");
+  verb.option("--hgrm", command->hgrm,
+              "Write HdrHistogram percentile text, PREFIX.STAGE.hgrm for each stage")
+      .type("PREFIX");
+  verb.option("--report", command->report, "Write a page with charts").type("OUT.html");
+  const Command compare = add_compare(verb, compared);
+  verb.callback([&action, compare, command, compared] {
+    if (compare.is_chosen()) {
       action = [compared] { return run_compare(*compared); };
     } else {
       action = [command] { return run_latency_command(*command); };

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "apps/cli/options.hpp"
 #include "apps/files/numbers.hpp"
 
 namespace splinecast::apps {
@@ -30,23 +31,23 @@ std::optional<double> number_or(double none, std::string_view field) {
   return parse_number(field);
 }
 
-void add_list(CLI::App& verb, const std::string& name, const std::string& type,
+void add_list(Command& verb, const std::string& name, const std::string& type,
               std::vector<double>& values, const std::string& help) {
-  verb.add_option_function<std::string>(
+  verb.option(
           name,
           [&values, name](const std::string& text) {
             values.clear();
             for (const std::string_view field : fields_of(text)) {
               const auto value = number_or(0, field);
               if (!value) {
-                throw CLI::ValidationError(
+                throw UsageError(
                     name, fmt::format("'{}' is no list of numbers such as 10 or 10,none,5", text));
               }
               values.push_back(*value);
             }
           },
           help)
-      ->type_name(type);
+      .type(type);
 }
 
 /// `LO:HI`, of which either may be missing, or neither.
@@ -62,21 +63,21 @@ bool parse_bounds(std::string_view field, MotionLimits& limits) {
   return true;
 }
 
-void add_bounds(CLI::App& verb, MotionLimits& limits) {
-  verb.add_option_function<std::string>(
+void add_bounds(Command& verb, MotionLimits& limits) {
+  verb.option(
           "--bounds",
           [&limits](const std::string& text) {
             limits.lower.clear();
             limits.upper.clear();
             for (const std::string_view field : fields_of(text)) {
               if (parse_bounds(field, limits)) continue;
-              throw CLI::ValidationError(
-                  "--bounds", fmt::format("'{}' is no list of bounds such as -1:1,none,0:", text));
+              throw UsageError("--bounds",
+                               fmt::format("'{}' is no list of bounds such as -1:1,none,0:", text));
             }
           },
           "Bounds of the position, lower and upper: one pair, or one per dimension; either may be "
           "left out, or both (none)")
-      ->type_name("LO:HI,...");
+      .type("LO:HI,...");
 }
 
 std::string listed(const std::vector<std::string>& names) {
@@ -90,7 +91,7 @@ std::string listed(const std::vector<std::string>& names) {
 
 }  // namespace
 
-void add_limit_options(CLI::App& verb, LimitOptions& options, const std::string& scope) {
+void add_limit_options(Command& verb, LimitOptions& options, const std::string& scope) {
   const std::string form =
       ": one number, or one per dimension; 0, none or empty for no limit" + scope;
   add_list(verb, "--max-velocity", "V,...", options.given.velocity, "Largest velocity" + form);
@@ -98,26 +99,18 @@ void add_limit_options(CLI::App& verb, LimitOptions& options, const std::string&
            "Largest acceleration" + form);
   add_list(verb, "--max-jerk", "J,...", options.given.jerk, "Largest jerk" + form);
   add_bounds(verb, options.given);
-  verb.add_option("--limits", options.file,
-                  "File of limits by name: joint_limits.yaml of MoveIt, or a URDF; the options "
-                  "before replace what it says of their kind")
-      ->type_name("FILE");
+  verb.option("--limits", options.file,
+              "File of limits by name: joint_limits.yaml of MoveIt, or a URDF; the options "
+              "before replace what it says of their kind")
+      .type("FILE");
 }
 
-void add_beyond(CLI::App& verb, std::optional<Beyond>& beyond) {
-  verb.add_option_function<std::string>(
-          "--beyond",
-          [&beyond](const std::string& text) {
-            if (text != "report" && text != "refuse") {
-              throw CLI::ValidationError("--beyond",
-                                         fmt::format("'{}' is neither report nor refuse", text));
-            }
-            beyond = text == "refuse" ? Beyond::refuse : Beyond::report;
-          },
-          "What to do about a waypoint with which the curve passes a limit: report it (default), "
-          "or "
-          "refuse it")
-      ->type_name("WHAT");
+void add_beyond(Command& verb, std::optional<Beyond>& beyond) {
+  add_choice(
+      verb, "--beyond", "report", "refuse",
+      [&beyond](bool report) { beyond = report ? Beyond::report : Beyond::refuse; },
+      "What to do about a waypoint with which the curve passes a limit: report it (default), or "
+      "refuse it");
 }
 
 LimitGaps limit_gaps(const MotionLimits& limits, std::span<const NamedLimits> joints,

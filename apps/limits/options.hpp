@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "apps/cli/command.hpp"
 #include "core/limits/named.hpp"
 #include "splinecast/limits.hpp"
 
@@ -21,10 +21,10 @@ struct LimitOptions {
 
 /// `--max-velocity`, `--max-acceleration`, `--max-jerk`, `--bounds`, `--limits`. `scope` says in
 /// the help of the first three what keeps them.
-void add_limit_options(CLI::App& verb, LimitOptions& options, const std::string& scope = "");
+void add_limit_options(Command& verb, LimitOptions& options, const std::string& scope = "");
 
 /// `--beyond`.
-void add_beyond(CLI::App& verb, std::optional<Beyond>& beyond);
+void add_beyond(Command& verb, std::optional<Beyond>& beyond);
 
 /// What a person should know of how limits met the dimensions of a curve.
 struct LimitGaps {

@@ -196,11 +196,11 @@ int run_doctor(const DoctorOptions& options) {
   return problems == 0 ? kOk : kFailed;
 }
 
-void add_doctor(CLI::App& verb, Action& action) {
+void add_doctor(Command& verb, Action& action) {
   auto options = std::make_shared<DoctorOptions>();
-  verb.add_option("STREAM", options->stream, "Look at this stream's name only");
-  verb.add_flag("--clean", options->clean, "Remove streams whose writers are proven dead");
-  verb.add_flag("--json", options->json, "As JSON");
+  verb.option("STREAM", options->stream, "Look at this stream's name only");
+  verb.flag("--clean", options->clean, "Remove streams whose writers are proven dead");
+  verb.flag("--json", options->json, "As JSON");
   verb.callback([&action, options] { action = [options] { return run_doctor(*options); }; });
 }
 

@@ -113,8 +113,8 @@ int run_replay(ReplayOptions options) {
   return exit_code(report);
 }
 
-void add_rate(CLI::App& verb, ReplayOptions& options) {
-  verb.add_option_function<std::string>(
+void add_rate(Command& verb, ReplayOptions& options) {
+  verb.option(
           "--rate",
           [&options](const std::string& text) {
             if (text == "max") {
@@ -124,38 +124,33 @@ void add_rate(CLI::App& verb, ReplayOptions& options) {
             }
           },
           "Play R times as fast as recorded (default 1), or as fast as it goes: max")
-      ->type_name("R|max");
+      .type("R|max");
 }
 
-void add_clock(CLI::App& verb, ReplayOptions& options) {
-  verb.add_option_function<std::string>(
-          "--clock",
-          [&options](const std::string& text) {
-            if (text != "live" && text != "recorded") {
-              throw CLI::ValidationError("--clock",
-                                         fmt::format("'{}' is neither live nor recorded", text));
-            }
-            options.clock = text == "live" ? StreamClock::monotonic : StreamClock::recorded;
-          },
-          "live (default): now on this host's clock; recorded: the file's own stamps")
-      ->type_name("CLOCK");
+void add_clock(Command& verb, ReplayOptions& options) {
+  add_choice(
+      verb, "--clock", "live", "recorded",
+      [&options](bool live) {
+        options.clock = live ? StreamClock::monotonic : StreamClock::recorded;
+      },
+      "live (default): now on this host's clock; recorded: the file's own stamps");
 }
 
-void add_playback_options(CLI::App& verb, ReplayOptions& options) {
+void add_playback_options(Command& verb, ReplayOptions& options) {
   add_rate(verb, options);
   add_count(verb, "--loop", options.loops, "Play the recording N times (default 1)",
             {1, 1'000'000'000});
   add_seconds(verb, "--from", options.from, "Begin this long after the first waypoint");
   add_seconds(verb, "--duration", options.duration, "Play only so much of the recording");
   add_clock(verb, options);
-  verb.add_option_function<std::string>(
+  verb.option(
           "--lead",
           [&options](const std::string& text) {
             options.lead = time_within("--lead", text, TimeUnit::milliseconds, kAnyTime);
           },
           "Append each waypoint of a live stream this long before its time (default what 'advise' "
           "says of the recording, at least 200)")
-      ->type_name("MS");
+      .type("MS");
   add_condition(verb, "--start", options.start,
                 "Condition at the first waypoint (default halt; if recorded, the method's own)");
   add_condition(
@@ -164,14 +159,14 @@ void add_playback_options(CLI::App& verb, ReplayOptions& options) {
       "for c2 is halt)");
 }
 
-void add_interval(CLI::App& verb, const std::string& name, Time& value, const std::string& help) {
-  verb.add_option_function<std::string>(
+void add_interval(Command& verb, const std::string& name, Time& value, const std::string& help) {
+  verb.option(
           name,
           [&value, name](const std::string& text) {
             value = time_within(name, text, TimeUnit::seconds);
           },
           help)
-      ->type_name("SECONDS");
+      .type("SECONDS");
 }
 
 /// All loops together may not take longer than times can say.
@@ -215,36 +210,27 @@ int exit_code(const ReplayReport& report) {
 
 namespace {
 
-void add_row_policies(CLI::App& verb, ReplayOptions& options) {
-  verb.add_option_function<std::string>(
-          "--on-error",
-          [&options](const std::string& text) {
-            if (text != "skip" && text != "stop") {
-              throw CLI::ValidationError("--on-error",
-                                         fmt::format("'{}' is neither skip nor stop", text));
-            }
-            options.skip_bad = text == "skip";
-          },
-          "What to do about a row that is refused: stop (default) the replay there, or skip the "
-          "row and go on")
-      ->type_name("skip|stop");
-  verb.add_option_function<std::string>(
+void add_row_policies(Command& verb, ReplayOptions& options) {
+  add_choice(
+      verb, "--on-error", "skip", "stop", [&options](bool skip) { options.skip_bad = skip; },
+      "What to do about a row that is refused: stop (default) the replay there, or skip the "
+      "row and go on");
+  verb.option(
           "--late",
           [&options](const std::string& text) {
             const auto policy = parse_late_policy(text);
             if (!policy) {
-              throw CLI::ValidationError("--late",
-                                         fmt::format("'{}' is none of pass, shift, refuse", text));
+              throw UsageError("--late", fmt::format("'{}' is none of pass, shift, refuse", text));
             }
             options.late = *policy;
           },
           "What to do about a row whose time is not after the row before, or has settled when it "
           "can be sent: refuse (default) it; pass: leave it out, or send it as it is; shift: move "
           "it and all rows behind it")
-      ->type_name("pass|shift|refuse");
+      .type("pass|shift|refuse");
 }
 
-void add_ring_options(CLI::App& verb, ReplayOptions& options) {
+void add_ring_options(Command& verb, ReplayOptions& options) {
   add_count(verb, "--capacity", options.capacity,
             "Waypoints that the ring holds (default 1024; rounded up to a power of two)");
   add_seconds(verb, "--wait", options.wait, "Wait this long for a solver (default 10)");
@@ -260,30 +246,29 @@ void require_agreeing(const ReplayOptions& options) {
   const bool shapes = curve.method != nullptr || curve.lambda || curve.time_scale || curve.settle ||
                       curve.tail || curve.force_lag;
   if (shapes && !options.embedded) {
-    throw CLI::ValidationError("--method, --lambda, --time-scale, --settle, --tail, --force-lag",
-                               "go with --embedded; else tell 'solve'");
+    throw UsageError("--method, --lambda, --time-scale, --settle, --tail, --force-lag",
+                     "go with --embedded; else tell 'solve'");
   }
   const bool is_live = options.clock == StreamClock::monotonic;
   if (is_live && options.end && !is_at_rest(options.end->kind)) {
-    throw CLI::ValidationError("--end", "a live stream ends at rest: rest or halt");
+    throw UsageError("--end", "a live stream ends at rest: rest or halt");
   }
 }
 
-void add_replay(CLI::App& verb, Action& action) {
+void add_replay(Command& verb, Action& action) {
   auto options = std::make_shared<ReplayOptions>();
-  verb.add_option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
-      ->required();
-  verb.add_option("--stream", options->stream, "Stream to produce")->required();
+  verb.option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
+      .required();
+  verb.option("--stream", options->stream, "Stream to produce").required();
   add_playback_options(verb, *options);
   add_row_policies(verb, *options);
   add_ring_options(verb, *options);
-  verb.add_flag("--embedded", options->embedded, "Solve in this process");
-  verb.add_flag(
-      "--verify", options->verify,
-      "Solve what was sent again, with the decisions that the stream records, and compare "
-      "every segment bit by bit: exit code 3 if one differs");
+  verb.flag("--embedded", options->embedded, "Solve in this process");
+  verb.flag("--verify", options->verify,
+            "Solve what was sent again, with the decisions that the stream records, and compare "
+            "every segment bit by bit: exit code 3 if one differs");
   add_solver_curve(verb, options->solver);
-  verb.add_flag("--json", options->json, "Report as JSON on standard output");
+  verb.flag("--json", options->json, "Report as JSON on standard output");
   add_table_options(verb, options->table);
   add_access(verb, options->access);
   add_trust(verb, options->trust);

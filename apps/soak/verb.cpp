@@ -282,7 +282,7 @@ std::string soak_summary(const json& found) {
   const auto& line = summary_line;
   const auto& count = count_of;
   const json& sum = found["counters"];
-  return "\n" +
+  return std::string("\n") +
          line("streams",
               fmt::format("{} for {:.0f} s, {} waypoints a second each; the solver took "
                           "{:.1f} % of a core",
@@ -317,7 +317,7 @@ json run_soak(const SoakOptions& options) {
 
 namespace {
 
-void add_soak(CLI::App& verb, Action& action) {
+void add_soak(Command& verb, Action& action) {
   auto options = std::make_shared<SoakOptions>();
   add_count(verb, "--streams", options->streams, "Streams at once, 1 to 10000 (default 100)",
             {1, kMostStreams});
@@ -327,7 +327,7 @@ void add_soak(CLI::App& verb, Action& action) {
            {1, kMostRate});
   add_count(verb, "--readers", options->readers,
             "Processes that each read all streams, 1 to 64 (default 2)", {1, kMostReaders});
-  verb.add_flag("--json", options->json, "As JSON, and no table");
+  verb.flag("--json", options->json, "As JSON, and no table");
   verb.callback([&action, options] {
     action = [options] {
       catch_stop_signals();

@@ -42,15 +42,15 @@ std::string age_of(const ipc::StreamInfo& info) {
   return fmt::format("{:<26}  {:.3f} s ago\n", "last published", age);
 }
 
-void add_info(CLI::App& verb, Action& action) {
+void add_info(Command& verb, Action& action) {
   struct Options {
     std::string stream;
     bool json = false;
     Trust trust;
   };
   auto options = std::make_shared<Options>();
-  verb.add_option("STREAM", options->stream, "Stream to show")->required();
-  verb.add_flag("--json", options->json, "As JSON");
+  verb.option("STREAM", options->stream, "Stream to show").required();
+  verb.flag("--json", options->json, "As JSON");
   add_trust(verb, options->trust);
   verb.callback([&action, options] {
     action = [options] {

@@ -56,13 +56,13 @@ int list_streams(bool as_json, const Trust& trust) {
   return kOk;
 }
 
-void add_ls(CLI::App& verb, Action& action) {
+void add_ls(Command& verb, Action& action) {
   struct Options {
     bool json = false;
     Trust trust;
   };
   auto options = std::make_shared<Options>();
-  verb.add_flag("--json", options->json, "As JSON");
+  verb.flag("--json", options->json, "As JSON");
   add_trust(verb, options->trust);
   verb.callback([&action, options] {
     action = [options] { return list_streams(options->json, options->trust); };

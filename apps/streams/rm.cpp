@@ -10,13 +10,13 @@
 namespace splinecast::apps {
 namespace {
 
-void add_rm(CLI::App& verb, Action& action) {
+void add_rm(Command& verb, Action& action) {
   struct Options {
     std::vector<std::string> streams;
     Trust trust;
   };
   auto options = std::make_shared<Options>();
-  verb.add_option("STREAM", options->streams, "Streams to remove")->required();
+  verb.option("STREAM", options->streams, "Streams to remove").required();
   add_trust(verb, options->trust);
   verb.callback([&action, options] {
     action = [options] {

@@ -181,9 +181,8 @@ void require_span(const SampleOptions& options) {
   const double seconds = static_cast<double>(options.count - 1) / options.rate;
   const double most = to_seconds(kLongestTime);
   if (seconds <= most) return;
-  throw CLI::ValidationError(
-      "--count", fmt::format("{} samples at {} Hz take {} s; the most is {} s", options.count,
-                             options.rate, seconds, most));
+  throw UsageError("--count", fmt::format("{} samples at {} Hz take {} s; the most is {} s",
+                                          options.count, options.rate, seconds, most));
 }
 
 int run_sample(const SampleOptions& options) {
@@ -194,30 +193,29 @@ int run_sample(const SampleOptions& options) {
   return Sampling(options, std::move(times)).run();
 }
 
-void add_sample(CLI::App& verb, Action& action) {
+void add_sample(Command& verb, Action& action) {
   auto options = std::make_shared<SampleOptions>();
-  verb.add_option("STREAM", options->stream, "Stream to read")->required();
-  auto* at = verb.add_option("--at", options->at, "File with a time column: where to sample")
-                 ->type_name("FILE");
-  auto* rate = verb.add_option_function<std::string>(
+  verb.option("STREAM", options->stream, "Stream to read").required();
+  const Argument at =
+      verb.option("--at", options->at, "File with a time column: where to sample").type("FILE");
+  const Argument rate = verb.option(
       "--rate",
       [options](const std::string& text) { options->rate = number_within("--rate", text); },
       "Samples a second");
-  rate->type_name("HZ");
-  add_count(verb, "--count", options->count, "Number of samples");
-  auto* count = verb.get_option("--count");
-  rate->needs(count)->excludes(at);
-  count->needs(rate);
-  verb.add_option("-o,--output", options->output, "File to write (default: standard output)")
-      ->type_name("OUT");
+  rate.type("HZ");
+  const Argument count = add_count(verb, "--count", options->count, "Number of samples");
+  rate.needs(count).excludes(at);
+  count.needs(rate);
+  verb.option("-o,--output", options->output, "File to write (default: standard output)")
+      .type("OUT");
   add_seconds(verb, "--wait", options->wait,
               "Wait this long for the stream, and for what a recorded one has yet to settle "
               "(default 10)");
   add_time_unit(verb, options->time_unit);
   add_trust(verb, options->trust);
   verb.callback([&action, options, at, rate] {
-    if (at->empty() && rate->empty()) {
-      throw CLI::ValidationError("sample", "needs --at, or --rate with --count");
+    if (!at.is_given() && !rate.is_given()) {
+      throw UsageError("sample", "needs --at, or --rate with --count");
     }
     require_span(*options);
     action = [options] { return run_sample(*options); };

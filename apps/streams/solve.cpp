@@ -175,21 +175,21 @@ int run_solve(const SolveOptions& options) {
 namespace {
 
 /// What concerns live streams.
-void add_live_options(CLI::App& verb, SolverOptions& options) {
-  verb.add_option_function<std::string>(
+void add_live_options(Command& verb, SolverOptions& options) {
+  verb.option(
           "--freeze-ahead",
           [&options](const std::string& text) {
             options.freeze_ahead = time_within("--freeze-ahead", text, TimeUnit::milliseconds);
           },
           "Leave alone what lies this long ahead of now (default 5)")
-      ->type_name("MS");
+      .type("MS");
   add_seconds(verb, "--history", options.history,
               "Keep what ended less than this ago; then consume no more (default 1)");
 }
 
 /// What concerns a process that solves several streams.
-void add_sweep(CLI::App& verb, SolveOptions& options) {
-  verb.add_option_function<std::string>(
+void add_sweep(Command& verb, SolveOptions& options) {
+  verb.option(
           "--sweep",
           [&options](const std::string& text) {
             options.sweep = time_within("--sweep", text, TimeUnit::milliseconds, kSweeps);
@@ -197,7 +197,7 @@ void add_sweep(CLI::App& verb, SolveOptions& options) {
           "Pause between looks at several streams (default 1, at most 1000); 20 if that is longer "
           "for "
           "those on which nothing has happened for a second")
-      ->type_name("MS");
+      .type("MS");
 }
 
 /// Reads the file of limits, and gives the solver all of them.
@@ -209,12 +209,12 @@ void take_limits(SolveOptions& options) {
   options.solver.named_limits = std::move(file.joints);
 }
 
-void add_solve(CLI::App& verb, Action& action) {
+void add_solve(Command& verb, Action& action) {
   auto options = std::make_shared<SolveOptions>();
-  verb.add_option("STREAM", options->wanted,
-                  "Streams to solve, in one process: names, and patterns such as 'arm.*' for all "
-                  "that come and go")
-      ->required();
+  verb.option("STREAM", options->wanted,
+              "Streams to solve, in one process: names, and patterns such as 'arm.*' for all "
+              "that come and go")
+      .required();
   add_solver_curve(verb, options->solver);
   add_seconds(
       verb, "--stop-time", options->solver.stop_time,
@@ -227,16 +227,16 @@ void add_solve(CLI::App& verb, Action& action) {
                     ". Entries and stops keep it; the spline through the waypoints is not changed "
                     "by it: see --beyond");
   add_beyond(verb, options->solver.beyond);
-  verb.add_flag("!--no-wake", options->solver.wake,
-                "Wake no waiting readers: for hosts where every reader polls");
+  verb.flag("!--no-wake", options->solver.wake,
+            "Wake no waiting readers: for hosts where every reader polls");
   add_sweep(verb, *options);
-  verb.add_flag("--quiet", options->quiet, "Say nothing of what becomes of the streams");
+  verb.flag("--quiet", options->quiet, "Say nothing of what becomes of the streams");
   add_access(verb, options->solver.access);
   add_trust(verb, options->solver.trust);
   verb.callback([&action, options] {
     const std::set<std::string> distinct(options->wanted.begin(), options->wanted.end());
     if (distinct.size() != options->wanted.size()) {
-      throw CLI::ValidationError("STREAM", "a stream is named twice");
+      throw UsageError("STREAM", "a stream is named twice");
     }
     action = [options] {
       take_limits(*options);

@@ -3,10 +3,12 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "apps/cli/command.hpp"
 #include "apps/cli/verb.hpp"
 #include "apps/files/numbers.hpp"
 #include "apps/files/polynomial_file.hpp"
@@ -195,13 +197,16 @@ void try_arguments(std::string_view text) {
   CLI::App program("Fuzzed", "splinecast");
   program.require_subcommand(1);
   apps::Action action;
-  apps::Verb::add_all(program, action);
+  apps::Command command(program);
+  apps::Verb::add_all(command, action);
   auto arguments = lines_of(text);
   std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
   try {
     program.parse(arguments);
     require(static_cast<bool>(action), "a command line that is right has an action");
   } catch (const CLI::ParseError&) {
+    return;
+  } catch (const apps::UsageError&) {
     return;
   }
 }
