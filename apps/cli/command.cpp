@@ -7,32 +7,32 @@ namespace splinecast::apps {
 UsageError::UsageError(const std::string& name, const std::string& why)
     : std::runtime_error(name + ": " + why) {}
 
-Argument Argument::type(const std::string& name) const {
+Argument Argument::type(const std::string& name) {
   option_->type_name(name);
   return *this;
 }
 
-Argument Argument::help(const std::string& text) const {
+Argument Argument::help(const std::string& text) {
   option_->description(text);
   return *this;
 }
 
-Argument Argument::required() const {
+Argument Argument::required() {
   option_->required();
   return *this;
 }
 
-Argument Argument::separated_by_commas() const {
+Argument Argument::separated_by_commas() {
   option_->delimiter(',');
   return *this;
 }
 
-Argument Argument::needs(const Argument& other) const {
+Argument Argument::needs(const Argument& other) {
   option_->needs(other.option_);
   return *this;
 }
 
-Argument Argument::excludes(const Argument& other) const {
+Argument Argument::excludes(const Argument& other) {
   option_->excludes(other.option_);
   return *this;
 }

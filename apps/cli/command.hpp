@@ -20,20 +20,20 @@ class UsageError : public std::runtime_error {
   UsageError(const std::string& name, const std::string& why);
 };
 
-/// An option, a flag or a positional argument of a command. A handle that is cheap to copy; as long
-/// as its command.
+/// An option, a flag or a positional argument of a command. A handle that is cheap to copy, valid
+/// as long as its command.
 class Argument {
  public:
   explicit Argument(CLI::Option& option) noexcept : option_(&option) {}
 
   /// What the help shows for the value: SECONDS.
-  Argument type(const std::string& name) const;
-  Argument help(const std::string& text) const;
-  Argument required() const;
+  Argument type(const std::string& name);
+  Argument help(const std::string& text);
+  Argument required();
   /// For a list: one text may hold several values.
-  Argument separated_by_commas() const;
-  Argument needs(const Argument& other) const;
-  Argument excludes(const Argument& other) const;
+  Argument separated_by_commas();
+  Argument needs(const Argument& other);
+  Argument excludes(const Argument& other);
 
   /// Whether the command line has it; known once it is parsed.
   [[nodiscard]] bool is_given() const;

@@ -189,11 +189,11 @@ Argument add_settle(Command& verb, std::optional<std::size_t>& value) {
           [&value](const std::string& text) {
             value = parse_count(text);
             if (value && *value <= core::kMaxSettle) return;
-            throw UsageError("--settle", fmt::format("'{}' is no whole number from 0 to 64", text));
+            throw UsageError("--settle", fmt::format("'{}' is no whole number from 0 to {}", text,
+                                                     core::kMaxSettle));
           },
           "Settle lag: newer waypoints after which a knot is final, 0 to 64 (default 8 for c2, 64 "
-          "for "
-          "smoothing, else what the method looks ahead)")
+          "for smoothing, else what the method looks ahead)")
       .type("K");
 }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "apps/process/child.hpp"
 #include "apps/process/exit_codes.hpp"
@@ -28,12 +29,14 @@ struct Lines {
 /// Spins until the word has moved on to `value`. Returns false after some patience.
 bool await(const std::atomic<std::uint64_t>& word, std::uint64_t value) {
   const MonotonicClock clock;
-  for (Time end{};;) {
+  std::optional<Time> end;
+  for (;;) {
     for (int spin = 0; spin < 100'000; ++spin) {
       if (word.load(std::memory_order_acquire) >= value) return true;
     }
-    if (end == Time{}) end = clock.now() + kPatience;
-    if (stop_requested() || clock.now() > end) return false;
+    const Time now = clock.now();
+    if (!end) end = now + kPatience;
+    if (stop_requested() || now > *end) return false;
   }
 }
 

@@ -160,6 +160,7 @@ std::vector<LatencySeries> series_of(const LatencyResult& result) {
   for (const Latencies& stage : result.stages) stages.push_back(&stage);
   if (result.iceoryx.seen) stages.push_back(&*result.iceoryx.seen);
   std::vector<LatencySeries> all;
+  all.reserve(2 * stages.size());
   for (const Latencies* const stage : stages) {
     all.push_back(
         {.name = stage->stage, .from = "intended", .histogram = &stage->intended, .stage = stage});

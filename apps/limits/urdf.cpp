@@ -9,7 +9,11 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstddef>
 #include <map>
+#include <string_view>
+#include <utility>
 
 namespace splinecast::apps {
 namespace {
@@ -34,21 +38,60 @@ class Messages : public console_bridge::OutputHandler {
   std::string text_;
 };
 
+/// Behind the part of `text` that begins at `at` with `opening` and ends with `closing`; `at` where
+/// there is no such part.
+std::size_t skip(std::string_view text, std::size_t at, std::string_view opening,
+                 std::string_view closing) {
+  if (!text.substr(at).starts_with(opening)) return at;
+  const std::size_t end = text.find(closing, at + opening.size());
+  return end == std::string_view::npos ? text.size() : end + closing.size();
+}
+
+/// Whether an element's tag begins at `at`, by its name.
+bool begins_element(std::string_view text, std::size_t at) {
+  if (at + 1 >= text.size()) return false;
+  const auto next = static_cast<unsigned char>(text[at + 1]);
+  return std::isalpha(next) != 0 || next == '_' || next >= 0x80;
+}
+
+/// Behind the tag that begins at `at`, and whether it closes what it opens.
+std::pair<std::size_t, bool> end_of_tag(std::string_view text, std::size_t at) {
+  char quote = 0;
+  std::size_t i = at + 1;
+  for (; i < text.size() && (quote != 0 || (text[i] != '>' && text[i] != '<')); ++i) {
+    const bool is_quote = text[i] == '"' || text[i] == '\'';
+    if (is_quote && (quote == 0 || quote == text[i])) quote = quote == 0 ? text[i] : 0;
+  }
+  const bool is_closed = i < text.size() && text[i] == '>';
+  return {is_closed ? i + 1 : i, is_closed && text[i - 1] == '/'};
+}
+
 /// Throws InputError for elements so deep in others that parsers, which are recursive, could run
 /// out of stack.
 void require_flat(const std::string& name, const std::string& text) {
   constexpr int kDeepest = 200;
   int depth = 0;
-  int line = 1;
-  for (std::size_t i = 0; i + 1 < text.size(); ++i) {
-    if (text[i] == '\n') ++line;
-    if (text[i] == '/' && text[i + 1] == '>') --depth;
-    if (text[i] != '<') continue;
-    if (text[i + 1] == '/') --depth;
-    if (text[i + 1] != '/' && text[i + 1] != '!' && text[i + 1] != '?') ++depth;
-    if (depth <= kDeepest) continue;
-    throw InputError(
-        fmt::format("{}:{}: more than {} elements inside one another", name, line, kDeepest));
+  for (std::size_t i = text.find('<'); i < text.size(); i = text.find('<', i)) {
+    const std::size_t behind =
+        std::max(skip(text, i, "<!--", "-->"), skip(text, i, "<![CDATA[", "]]>"));
+    if (behind > i) {
+      i = behind;
+      continue;
+    }
+    if (!begins_element(text, i)) {
+      if (text.compare(i, 2, "</") == 0) depth = std::max(depth - 1, 0);
+      ++i;
+      continue;
+    }
+    const auto [end, is_empty] = end_of_tag(text, i);
+    if (!is_empty) ++depth;
+    if (depth > kDeepest) {
+      const auto line =
+          1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
+      throw InputError(
+          fmt::format("{}:{}: more than {} elements inside one another", name, line, kDeepest));
+    }
+    i = end;
   }
 }
 

@@ -23,7 +23,7 @@ constexpr unsigned kGraceSeconds = 5;
 // All that the handlers use. A child's copy is its own.
 std::atomic<bool> stop{false};
 std::atomic<std::int64_t> stopped_at{0};  ///< CLOCK_MONOTONIC, ns
-std::atomic<pid_t> parent{0};             ///< of a child process that its parent waits for; else 0
+std::atomic<pid_t> waiting_parent{0};     ///< of a child process that its parent waits for; else 0
 static_assert(std::atomic<bool>::is_always_lock_free);
 static_assert(std::atomic<std::int64_t>::is_always_lock_free);
 static_assert(std::atomic<pid_t>::is_always_lock_free);
@@ -55,7 +55,7 @@ void request_stop(int /*signal*/) {
   for (const int signal : kStopSignals) {
     if (handler_of(signal) == request_stop) set_handler(signal, SIG_DFL);
   }
-  const pid_t waiting = parent.load(std::memory_order_relaxed);
+  const pid_t waiting = waiting_parent.load(std::memory_order_relaxed);
   if (waiting == 0 || getppid() != waiting) alarm(kGraceSeconds);
   errno = error;
 }
@@ -75,12 +75,12 @@ void catch_signals() {
 }  // namespace
 
 void catch_stop_signals() {
-  parent.store(0, std::memory_order_relaxed);
+  waiting_parent.store(0, std::memory_order_relaxed);
   catch_signals();
 }
 
-void catch_stop_signals_as_child_of(pid_t waiting) {
-  parent.store(waiting, std::memory_order_relaxed);
+void catch_stop_signals_as_child_of(pid_t parent) {
+  waiting_parent.store(parent, std::memory_order_relaxed);
   alarm(0);  // a signal may have come to the parent's handler, which this process inherited
   catch_signals();
 }

@@ -49,7 +49,7 @@ double chord_velocity(const WaypointTable& table, std::size_t i, std::size_t j, 
 }
 
 /// The third divided difference of rows i to i + 3, such that independent errors of the positions
-/// with standard deviation 1 give it the standard deviation 1.
+/// with standard deviation 1 give it the standard deviation 1; its magnitude.
 double third_difference(const WaypointTable& table, std::size_t i, std::size_t d) {
   const double unit = to_seconds(table.times[i + 3] - table.times[i]);
   double sum = 0;
@@ -111,6 +111,7 @@ std::vector<ChordPair> chord_pairs(const WaypointTable& table, const Chords& cho
     const auto k = j ? chords.end(*j) : std::nullopt;
     if (k) pairs.push_back({i, *j, *k, moves(table, i, *j, motion)});
   }
+  // A recording without motion: all that there is are the steps of its noise.
   if (std::ranges::none_of(pairs, &ChordPair::moves)) {
     for (ChordPair& pair : pairs) pair.moves = true;
   }
@@ -144,12 +145,13 @@ Intervals measure_intervals(std::span<const Time> times) {
                   .p5 = core::quantile(std::span(all), 0.05),
                   .p95 = core::quantile(std::span(all), 0.95),
                   .largest = std::ranges::max(all)};
-  for (Time& interval : all) {
+  std::vector<Time> deviations;
+  for (const Time interval : all) {
     if (interval > found.gap_from()) ++found.gaps;
-    interval = std::chrono::abs(interval - found.median);
+    deviations.push_back(std::chrono::abs(interval - found.median));
   }
   if (found.gaps > 0) found.longest_gap = found.largest;
-  found.jitter = core::quantile(std::span(all), 0.95);
+  found.jitter = core::quantile(std::span(deviations), 0.95);
   return found;
 }
 

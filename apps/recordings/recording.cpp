@@ -58,7 +58,7 @@ class RowFilter {
       count_late(i);
       if (policy_ != LatePolicy::refuse) return keeps_late(i);
     }
-    if (!objection) objection = judge_time(i);
+    if (!objection) objection = time_refusal(i);
     if (!objection) return keep(i);
     refuse(i, *objection);
     return false;
@@ -86,7 +86,7 @@ class RowFilter {
     return std::nullopt;
   }
 
-  [[nodiscard]] std::optional<Objection> judge_time(std::size_t i) const {
+  [[nodiscard]] std::optional<Objection> time_refusal(std::size_t i) const {
     if (kept_ == 0) return std::nullopt;
     const Time time = table_->times[i];
     auto status = ipc::judge_interval(time - last_, limits_);

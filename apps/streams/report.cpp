@@ -15,6 +15,7 @@
 #include "splinecast/boundary_condition.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/status.hpp"
+#include "splinecast/waypoint.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -158,8 +159,9 @@ ordered_json solving_json(const ipc::StreamInfo& info) {
 }
 
 ordered_json solver_json(const ipc::StreamInfo& info) {
-  const bool has_low_water = info.head.low_water < Time::max();
   const ipc::Head& head = info.head;
+  const bool has_settled = head.settled_until > -kLatestTime;
+  const bool has_low_water = head.low_water < Time::max();
   ordered_json found = solving_json(info);
   found.update(ordered_json{
       {"revision", head.revision},
@@ -173,7 +175,7 @@ ordered_json solver_json(const ipc::StreamInfo& info) {
       {"excesses", excesses_json(info)},
       {"first_segment", head.first},
       {"newest_segment", head.newest},
-      {"settled_until_ns", head.settled_until.count()},
+      {"settled_until_ns", has_settled ? ordered_json(head.settled_until.count()) : ordered_json()},
       {"newest_knot_ns", head.newest_knot.count()},
       {"committed_ns", head.committed.count()},
       {"withdrawn", head.withdrawn},

@@ -198,12 +198,12 @@ void add_sample(Command& verb, Action& action) {
   verb.option("STREAM", options->stream, "Stream to read").required();
   const Argument at =
       verb.option("--at", options->at, "File with a time column: where to sample").type("FILE");
-  const Argument rate = verb.option(
+  Argument rate = verb.option(
       "--rate",
       [options](const std::string& text) { options->rate = number_within("--rate", text); },
       "Samples a second");
   rate.type("HZ");
-  const Argument count = add_count(verb, "--count", options->count, "Number of samples");
+  Argument count = add_count(verb, "--count", options->count, "Number of samples");
   rate.needs(count).excludes(at);
   count.needs(rate);
   verb.option("-o,--output", options->output, "File to write (default: standard output)")

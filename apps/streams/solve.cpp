@@ -130,11 +130,11 @@ int solve_one(const SolveOptions& options) {
       if (was_attached) tell(ipc::SweepNews::solving);
     }
     const StepResult result = solver.step(clock);
-    solver.first_refusals(refused);
+    solver.take_first_refusals(refused);
     for (const ItemRefusal& refusal : refused) {
       tell(ipc::SweepNews::refused, to_string(refusal));
     }
-    if (const auto excess = solver.first_excess()) {
+    if (const auto excess = solver.take_first_excess()) {
       tell(ipc::SweepNews::beyond_limits, solver.in_words(*excess));
     }
     if (solver.attached() && ipc::Internals::head(solver).finished && !was_finished) {
@@ -195,8 +195,7 @@ void add_sweep(Command& verb, SolveOptions& options) {
             options.sweep = time_within("--sweep", text, TimeUnit::milliseconds, kSweeps);
           },
           "Pause between looks at several streams (default 1, at most 1000); 20 if that is longer "
-          "for "
-          "those on which nothing has happened for a second")
+          "for those on which nothing has happened for a second")
       .type("MS");
 }
 

@@ -31,14 +31,14 @@ InputFormat::InputFormat(int place, Fits fits, Read read) noexcept
   first_format = this;
 }
 
-TableFormat InputFormat::of(const TextFile& file, Lines& lines) {
+TableFormat InputFormat::read_beginning(const TextFile& file, Lines& lines) {
   const TableBeginning beginning = beginning_of(file, lines);
   const InputFormat* found = nullptr;
   for (const InputFormat* format = first_format; format != nullptr; format = format->next_) {
     const bool is_before = found == nullptr || format->place_ < found->place_;
     if (is_before && format->fits_(beginning)) found = format;
   }
-  return found->read_(beginning, lines);
+  return found->read_(beginning, lines);  // CSV takes whatever is left
 }
 
 std::vector<std::string> column_names(std::string_view line, Split split) {

@@ -7,7 +7,7 @@
 #include "apps/files/lines.hpp"
 #include "apps/files/text_file.hpp"
 
-/// The forms that tables of waypoints and times come in.
+/// The formats that tables of waypoints and times come in.
 namespace splinecast::apps {
 
 /// What a file's beginning says about its rows.
@@ -25,23 +25,23 @@ struct TableBeginning {
   Line first;                              ///< that line
 };
 
-/// A form of tables. A constant of this type enters itself into the program's list before `main`
-/// begins, so that a form is one file: nothing else names it. Lives as long as the program.
+/// A format of tables. A constant of this type enters itself into the program's list before `main`
+/// begins, so that a format is one file: nothing else names it. Lives as long as the program.
 class InputFormat {
  public:
-  /// Whether a file that begins so is of this form.
+  /// Whether a file that begins so is of this format.
   using Fits = bool (*)(const TableBeginning& beginning);
   /// Finds out what the rows are. `lines` is behind the first line, and then behind the first row.
   /// Throws InputError naming file and line.
   using Read = TableFormat (*)(const TableBeginning& beginning, Lines& lines);
 
-  /// Forms are asked in the order of their places; each has one of its own, below kLastPlace.
+  /// Formats are asked in the order of their places; each has one of its own, below kLastPlace.
   InputFormat(int place, Fits fits, Read read) noexcept;
-  static constexpr int kLastPlace = 100;  ///< of CSV, which takes whatever no other form takes
+  static constexpr int kLastPlace = 100;  ///< of CSV, which takes whatever no other format takes
 
-  /// Reads a table's beginning, by the first form that fits. Throws InputError naming file and line
-  /// if there are no rows, and as `Read` does.
-  [[nodiscard]] static TableFormat of(const TextFile& file, Lines& lines);
+  /// Reads a table's beginning, by the first format that fits. Throws InputError naming file and
+  /// line if there are no rows, and as `Read` does.
+  [[nodiscard]] static TableFormat read_beginning(const TextFile& file, Lines& lines);
 
  private:
   int place_;

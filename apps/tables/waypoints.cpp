@@ -20,7 +20,7 @@ class TableReader {
   TableReader(const std::string& path, std::optional<TimeUnit> time_unit)
       : file_(path),
         lines_(file_.text()),
-        format_(InputFormat::of(file_, lines_)),
+        format_(InputFormat::read_beginning(file_, lines_)),
         columns_(file_.name(), format_, time_unit) {}
   TableReader(const TableReader&) = delete;
   TableReader& operator=(const TableReader&) = delete;

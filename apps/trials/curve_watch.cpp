@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/polynomial/segment.hpp"
 
 namespace splinecast::apps {
 namespace {
 
-void raise(double& most, double value) { most = std::max(most, std::abs(value)); }
+/// A value that is no number is beyond every bound.
+void raise(double& most, double value) {
+  most =
+      std::isnan(value) ? std::numeric_limits<double>::infinity() : std::max(most, std::abs(value));
+}
 
 /// What rounding may leave of a step, in rad, rad/s and rad/s².
 constexpr double kPositionRounding = 1e-10;
@@ -38,7 +43,7 @@ SampleStatus CurveWatch::tick(Time now) {
   ++report_.samples;
   ++report_.by_status[static_cast<std::size_t>(status)];
   if (!has_values(status)) {
-    kept_ = 0;
+    ticks_ = 0;
     return status;
   }
   // At rest nothing settles any more: there is nothing left that could move.
@@ -46,20 +51,21 @@ SampleStatus CurveWatch::tick(Time now) {
                           now < sampler_->settled_until();
   if (!is_settled) ++report_.unsettled;
   for (const double a : now_.acceleration()) raise(report_.acceleration, a);
-  if (status == SampleStatus::revised) kept_ = 0;
-  if (kept_ > 0) {
-    check_joins(seen_[(kept_ - 1) % kKept].time, now);
+  if (status == SampleStatus::revised) ticks_ = 0;
+  if (ticks_ > 0) {
+    check_joins(seen_[(ticks_ - 1) % kKept].time, now);
     read_again(1);
-    read_again(1 + report_.samples * 37 % std::min(kept_, kKept));
+    // A prime steps through all that are kept, whatever their number.
+    read_again(1 + report_.samples * 37 % std::min(ticks_, kKept));
   }
-  Seen& seen = seen_[kept_++ % kKept];
+  Seen& seen = seen_[ticks_++ % kKept];
   seen.time = now;
   std::ranges::copy(now_.values(), seen.values.begin());
   return status;
 }
 
 void CurveWatch::read_again(std::size_t back) {
-  const Seen& seen = seen_[(kept_ - back) % kKept];
+  const Seen& seen = seen_[(ticks_ - back) % kKept];
   const auto status = sampler_->preview(seen.time, left_.ref());
   if (!has_values(status)) return;
   if (!std::ranges::equal(left_.values(), seen.values)) ++report_.changed;

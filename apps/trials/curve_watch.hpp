@@ -60,7 +60,7 @@ class CurveWatch {
   State right_;
   ipc::BoardSnapshot snapshot_;
   std::vector<Seen> seen_;
-  std::size_t kept_ = 0;  ///< ticks since the curve was last new to this watch
+  std::size_t ticks_ = 0;  ///< ticks since the curve was last new to this watch
   WatchReport report_;
 };
 

@@ -17,7 +17,7 @@
 /// Spans hold one value per dimension. Every function is O(D), allocates nothing, throws nothing.
 namespace splinecast::core {
 
-/// Shortest time in which a stop brings anything to rest.
+/// Shortest stop behind an entry that ends within one.
 inline constexpr Time kLeastStopTime{1'000'000};
 
 /// The acceleration with which a stop of `seconds` > 0 begins.

@@ -33,7 +33,8 @@ EntrySearch::EntrySearch(std::size_t dimensions, DimensionKinds kinds)
       extrapolation_(dimensions) {
   allowed_.velocity.resize(dimensions);
   allowed_.acceleration.resize(dimensions);
-  granted_ = allowed_;
+  granted_.velocity.resize(dimensions);
+  granted_.acceleration.resize(dimensions);
   for (auto* const bounds : {&allowed_.jerk, &allowed_.lower, &allowed_.upper}) {
     bounds->reserve(dimensions);
   }
@@ -176,12 +177,13 @@ EntrySearch::Outcome EntrySearch::search_rest(const Instant& rest, const Instant
   }
   constexpr double kMost = 1e9;
   duration_ = std::max({duration_, to_seconds(own), to_seconds(rules.least)});
-  for (; duration_ < kMost; duration_ *= kGrowth) {
+  while (duration_ < kMost) {
     end_.state.time = from.time + from_seconds(duration_ * kGrowth);
     const Verdict verdict = judge(from, rules, tries);
     if (verdict == Verdict::passes) return Outcome::found;
     if (verdict == Verdict::untried) return Outcome::more;
     if (duration_ > to_seconds(kLongest) && passes_at_last(from, rules)) return Outcome::found;
+    duration_ *= kGrowth;
   }
   build_splice(from, end_.state, entry_);
   return Outcome::found;

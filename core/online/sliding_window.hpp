@@ -86,7 +86,7 @@ class SlidingWindow {
   /// Writes the acceleration that the curve reaches the newest knot with, D values, and returns how
   /// long the stop behind it takes. There must be a knot, and the stream must not be finished.
   /// O(D).
-  Time write_stop(std::span<double> acceleration) const noexcept;
+  [[nodiscard]] Time write_stop(std::span<double> acceleration) const noexcept;
 
   /// Writes the acceleration at knot i, which must still be in the window: with which the segment
   /// that begins there starts, or, at the newest knot, with which the one before it arrives. O(D).

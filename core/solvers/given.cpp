@@ -30,11 +30,11 @@ class GivenSolver final : public KnotSolver {
     }
   }
 
-  void solve(KnotRing& knots, Tail /*tail*/, std::size_t last) const noexcept override {
-    back_substitute_to(knots, last);
+  void solve(KnotRing& knots, Tail /*tail*/, std::size_t first) const noexcept override {
+    back_substitute_to(knots, first);
   }
 
-  void solve(KnotRing& knots, const Condition& end, std::size_t last) const noexcept override {
+  void solve(KnotRing& knots, const Condition& end, std::size_t first) const noexcept override {
     const std::size_t n = knots.newest();
     if (n == 0) return;
     if (has_accelerations_) {
@@ -42,7 +42,7 @@ class GivenSolver final : public KnotSolver {
     } else if (end.kind != ConditionKind::own) {
       close(knots, end);
     }
-    back_substitute_to(knots, last);
+    back_substitute_to(knots, first);
   }
 
  private:

@@ -29,7 +29,7 @@ void back_substitute_to(KnotRing& knots, std::size_t last) noexcept {
   const double* const newest = knots.values(knots.newest(), KnotRing::kVelocity).data();
   const auto body = [&](auto lane, auto groups, std::size_t first) __attribute__((always_inline)) {
     using Lane = typename decltype(lane)::type;
-    std::array<Lane, decltype(groups)::value> v;
+    std::array<Lane, decltype(groups)::value> v;  // NOLINT(*-member-init)
     for (std::size_t k = 0; k < v.size(); ++k) {
       v[k] = load_lane<Lane>(newest + first + k * kWidth<Lane>);
     }

@@ -50,18 +50,18 @@ class KnotSolver {
     start_with(other.start_.kind, other.start_.value);
   }
 
-  /// Solves knots `last` to the newest while the stream goes on: O(D) per knot.
-  virtual void solve(KnotRing& knots, Tail tail, std::size_t last) const noexcept = 0;
+  /// Solves knots `first` to the newest while the stream goes on: O(D) per knot.
+  virtual void solve(KnotRing& knots, Tail tail, std::size_t first) const noexcept = 0;
 
   /// Both: `push`, then `solve` with a tail.
   virtual void append(KnotRing& knots, const Waypoint& waypoint, Tail tail,
-                      std::size_t last) const noexcept {
+                      std::size_t first) const noexcept {
     push(knots, waypoint);
-    solve(knots, tail, last);
+    solve(knots, tail, first);
   }
 
-  /// Solves knots `last` to the newest, with the end condition there.
-  virtual void solve(KnotRing& knots, const Condition& end, std::size_t last) const noexcept = 0;
+  /// Solves knots `first` to the newest, with the end condition there.
+  virtual void solve(KnotRing& knots, const Condition& end, std::size_t first) const noexcept = 0;
 
  protected:
   [[nodiscard]] const Condition& start() const noexcept { return start_; }

@@ -36,13 +36,13 @@ class LocalSolver final : public KnotSolver {
     }
   }
 
-  void solve(KnotRing& knots, Tail tail, std::size_t last) const noexcept override {
+  void solve(KnotRing& knots, Tail tail, std::size_t first) const noexcept override {
     if (knots.newest() == 0) return;
     close(knots, tail);
-    back_substitute_to(knots, last);
+    back_substitute_to(knots, first);
   }
 
-  void solve(KnotRing& knots, const Condition& end, std::size_t last) const noexcept override {
+  void solve(KnotRing& knots, const Condition& end, std::size_t first) const noexcept override {
     const std::size_t n = knots.newest();
     if (n == 0) return;
     if (end.kind == ConditionKind::own && !rule_->natural_end) {
@@ -50,7 +50,7 @@ class LocalSolver final : public KnotSolver {
     } else {
       close(knots, end);
     }
-    back_substitute_to(knots, last);
+    back_substitute_to(knots, first);
   }
 
  private:

@@ -26,11 +26,11 @@ class SmoothingSolver final : public KnotSolver {
     if (n > 1 && use_ == Use::online) eliminate(knots, n - 1);
   }
 
-  void solve(KnotRing& knots, Tail /*tail*/, std::size_t last) const noexcept override {
-    solve(knots, Condition{.kind = ConditionKind::own, .value = {}}, last);
+  void solve(KnotRing& knots, Tail /*tail*/, std::size_t first) const noexcept override {
+    solve(knots, Condition{.kind = ConditionKind::own, .value = {}}, first);
   }
 
-  void solve(KnotRing& knots, const Condition& end, std::size_t last) const noexcept override {
+  void solve(KnotRing& knots, const Condition& end, std::size_t first) const noexcept override {
     if (knots.newest() == 0) {
       std::ranges::fill(knots.values(0, KnotRing::kResidual), 0.0);
       write_positions(knots, 0);
@@ -40,13 +40,13 @@ class SmoothingSolver final : public KnotSolver {
     if (use_ == Use::at_once) {
       solve_at_once(knots);
     } else {
-      write_accelerations(knots, last == 0 ? 0 : last - 1);
-      write_residuals(knots, last);
-      write_chords(knots, last == 0 ? 0 : last - 1);
+      write_accelerations(knots, first == 0 ? 0 : first - 1);
+      write_residuals(knots, first);
+      write_chords(knots, first == 0 ? 0 : first - 1);
     }
-    write_positions(knots, last);
-    write_velocities(knots, last);
-    impose_ends(knots, end, last);
+    write_positions(knots, first);
+    write_velocities(knots, first);
+    impose_ends(knots, end, first);
   }
 
  private:
@@ -66,26 +66,26 @@ class SmoothingSolver final : public KnotSolver {
     }
   }
 
-  /// Accelerations of knots `last` to the newest; they are 0 at both ends.
-  static void write_accelerations(KnotRing& knots, std::size_t last) noexcept {
+  /// Accelerations of knots `first` to the newest; they are 0 at both ends.
+  static void write_accelerations(KnotRing& knots, std::size_t first) noexcept {
     const std::size_t n = knots.newest();
     const auto a = [&](std::size_t i) { return knots.values(i, KnotRing::kAcceleration); };
     const auto row = [&](std::size_t i) { return i < n ? knots.smoothing(i) : SmoothingRow{}; };
     std::ranges::fill(a(n), 0.0);
-    for (std::size_t i = n; i-- > std::max<std::size_t>(last, 1);) {
+    for (std::size_t i = n; i-- > std::max<std::size_t>(first, 1);) {
       const auto z = knots.values(i, KnotRing::kG);
       for (std::size_t d = 0; d < z.size(); ++d) {
         a(i)[d] = back_substitute_smoothing(row(i), row(i + 1), row(i + 2), z[d], a(i + 1)[d],
                                             a(std::min(i + 2, n))[d]);
       }
     }
-    if (last == 0) std::ranges::fill(a(0), 0.0);
+    if (first == 0) std::ranges::fill(a(0), 0.0);
   }
 
-  void write_residuals(KnotRing& knots, std::size_t last) const noexcept {
+  void write_residuals(KnotRing& knots, std::size_t first) const noexcept {
     const std::size_t n = knots.newest();
     const auto a = [&](std::size_t i) { return knots.values(i, KnotRing::kAcceleration); };
-    for (std::size_t i = last; i <= n; ++i) {
+    for (std::size_t i = first; i <= n; ++i) {
       const auto residual = knots.values(i, KnotRing::kResidual);
       for (std::size_t d = 0; d < residual.size(); ++d) {
         residual[d] =
@@ -100,8 +100,8 @@ class SmoothingSolver final : public KnotSolver {
     for (std::size_t i = first; i < knots.newest(); ++i) knots.measure_smoothed(i);
   }
 
-  static void write_positions(KnotRing& knots, std::size_t last) noexcept {
-    for (std::size_t i = last; i <= knots.newest(); ++i) {
+  static void write_positions(KnotRing& knots, std::size_t first) noexcept {
+    for (std::size_t i = first; i <= knots.newest(); ++i) {
       const auto x = knots.values(i, KnotRing::kWaypoint);
       const auto residual = knots.values(i, KnotRing::kResidual);
       const auto position = knots.values(i, KnotRing::kPosition);
@@ -126,10 +126,10 @@ class SmoothingSolver final : public KnotSolver {
     }
   }
 
-  /// Velocities of knots `last` to the newest, from chords and accelerations (doc 003 eq 4-8).
-  static void write_velocities(KnotRing& knots, std::size_t last) noexcept {
+  /// Velocities of knots `first` to the newest, from chords and accelerations (doc 003 eq 4-8).
+  static void write_velocities(KnotRing& knots, std::size_t first) noexcept {
     const std::size_t n = knots.newest();
-    for (std::size_t i = last; i <= n; ++i) {
+    for (std::size_t i = first; i <= n; ++i) {
       const std::size_t interval = std::min(i, n - 1);
       // From the right end of an interval the same formula holds with h < 0.
       const double h = i < n ? knots.row(interval).h : -knots.row(interval).h;
@@ -145,12 +145,12 @@ class SmoothingSolver final : public KnotSolver {
 
   /// Replaces the velocities at the ends that a condition is asked for. Of two knots each end is
   /// the other's neighbour: they are solved together.
-  void impose_ends(KnotRing& knots, const Condition& end, std::size_t last) const noexcept {
+  void impose_ends(KnotRing& knots, const Condition& end, std::size_t first) const noexcept {
     const std::size_t n = knots.newest();
     const auto v = [&](std::size_t i) { return knots.values(i, KnotRing::kVelocity); };
     std::array<double, kMaxDimensions> values{};
     const auto g = std::span(values).first(knots.dimensions());
-    const bool imposes_start = last == 0 && start().kind != ConditionKind::own;
+    const bool imposes_start = first == 0 && start().kind != ConditionKind::own;
     double gamma = 0;
     std::ranges::copy(v(n == 1 ? 0 : n - 1), g.begin());
     if (end.kind == ConditionKind::halt) knots.halt_at_end();

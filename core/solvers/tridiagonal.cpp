@@ -47,7 +47,7 @@ void append_behind(KnotRing& knots, std::span<const double> waypoint, Tail tail,
   double* const v_all = knots.array(KnotRing::kVelocity);
   const auto body = [&](auto lane, auto groups, std::size_t first) __attribute__((always_inline)) {
     using Lane = typename decltype(lane)::type;
-    std::array<Lane, decltype(groups)::value> v;
+    std::array<Lane, decltype(groups)::value> v;  // NOLINT(*-member-init)
     for (std::size_t k = 0; k < v.size(); ++k) {
       const std::size_t d = first + k * kWidth<Lane>;
       const auto x = load_first_of_lane<Lane>(position + d, dimensions - d);
@@ -84,25 +84,25 @@ class TridiagonalSolver final : public KnotSolver {
     if (n > 1) eliminate(knots, n - 1);
   }
 
-  void solve(KnotRing& knots, Tail tail, std::size_t last) const noexcept override {
+  void solve(KnotRing& knots, Tail tail, std::size_t first) const noexcept override {
     if (knots.newest() == 0) return;
     close(knots, tail);
-    back_substitute_to(knots, last);
+    back_substitute_to(knots, first);
   }
 
-  void solve(KnotRing& knots, const Condition& end, std::size_t last) const noexcept override {
+  void solve(KnotRing& knots, const Condition& end, std::size_t first) const noexcept override {
     if (knots.newest() == 0) return;
     close(knots, end);
-    back_substitute_to(knots, last);
+    back_substitute_to(knots, first);
   }
 
   void append(KnotRing& knots, const Waypoint& waypoint, Tail tail,
-              std::size_t last) const noexcept override {
+              std::size_t first) const noexcept override {
     // The first rows also depend on the start condition, and on what lies before knot 0.
-    if (knots.size() < 3) return KnotSolver::append(knots, waypoint, tail, last);
+    if (knots.size() < 3) return KnotSolver::append(knots, waypoint, tail, first);
     knots.push(waypoint.time);
-    append_behind(knots, waypoint.position, tail, last);
-    if (last > 0) return;
+    append_behind(knots, waypoint.position, tail, first);
+    if (first > 0) return;
     back_substitute(knots.gamma(0), knots.values(0, KnotRing::kG),
                     knots.values(1, KnotRing::kVelocity), knots.values(0, KnotRing::kVelocity));
   }

@@ -41,7 +41,7 @@ RefusedItem KnotBoardReader::refusal(Word index) const noexcept {
 std::size_t KnotBoardReader::copy_refusals(const Head& head, Word from,
                                            std::span<RefusedItem> out) const noexcept {
   const Word wanted = head.refused - std::min(from, head.refused);
-  const std::size_t most = std::min<Word>({wanted, kRefusalsKept, out.size()});
+  const auto most = std::min<Word>({wanted, kRefusalsKept, out.size()});
   Word next = head.consumed;  // the item before which this one must come
   std::size_t count = 0;
   for (; count < most; ++count) {

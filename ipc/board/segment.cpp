@@ -31,7 +31,7 @@ BoardSegment::BoardSegment(std::size_t dimensions, bool smooths)
 
 /// A knot that `near` has copied, if that copy still stands, else the board's.
 inline bool BoardSegment::fetch(const KnotBoardReader& board, Word number, Word r,
-                                const BoardSegment* near, KnotCopy& out) const noexcept {
+                                const BoardSegment* near, KnotCopy& out) noexcept {
   if (near != nullptr) {
     // Mostly the left knot is asked for of the segment before, or the right one of the same.
     for (const KnotCopy* const knot : {&near->right_, &near->left_}) {

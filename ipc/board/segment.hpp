@@ -93,8 +93,8 @@ class BoardSegment {
   void copy_to(SegmentCopy& out) const;
 
  private:
-  [[nodiscard]] bool fetch(const KnotBoardReader& board, Word number, Word r,
-                           const BoardSegment* near, KnotCopy& out) const noexcept;
+  [[nodiscard]] static bool fetch(const KnotBoardReader& board, Word number, Word r,
+                                  const BoardSegment* near, KnotCopy& out) noexcept;
   [[nodiscard]] bool build(const Head& head) noexcept;
   [[nodiscard]] bool build_cubic() noexcept;
   [[nodiscard]] bool arrives_alike(const KnotCopy& knot) const noexcept;

@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "ipc/board/reader.hpp"
-#include "ipc/board/writer.hpp"
 #include "splinecast/waypoint.hpp"
 
 namespace splinecast::ipc {
@@ -20,35 +19,6 @@ bool has_sane_bounds(const Head& head, std::size_t capacity) noexcept {
 }
 
 }  // namespace
-
-void KnotBoardWriter::commit(Head& head) noexcept {
-  const Word r = revision_ + 1;
-  head.revision = r;
-  const std::size_t spare = 1 - head_cell_;
-  std::array<Word, kHeadWords>& held = head_[spare];
-  Word* const cell = head_cells().cell(spare);
-  held[0] = r << kTagRevisionShift;
-  store(cell[0], held[0], std::memory_order_release);                      // W1
-  put(control_[kChanges + r % kChangesKept], to_word(head.changed_from));  // C1
-  // What the cell holds already stands: it was stored before this revision's tag was, by this
-  // writer or by one whose lock it has taken over, and whoever acquires that tag sees it.
-  encode_changes(kHeadRows, head, held.data(),
-                 [cell](std::size_t i, Word word) { put(cell[i], word); });
-  store(control_[kRevision], r, std::memory_order_release);  // W3
-  revision_ = r;
-  head_cell_ = spare;
-  for (const WrittenSlot& slot : written()) states_[slot.index] = slot.next;
-  forget_written();
-}
-
-void KnotBoardWriter::store_checked(bool is_late) noexcept {
-  if (is_late) {
-    late_ = revision_;
-    store(control_[kLate], revision_, std::memory_order_relaxed);
-  }
-  checked_ = revision_;
-  store(control_[kChecked], revision_, std::memory_order_release);
-}
 
 /// C2: the earliest of the times that the revisions after `seen` up to r changed the curve from;
 /// min() where not all of these are there any more.

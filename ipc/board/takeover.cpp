@@ -29,6 +29,8 @@ KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout&
   for (std::size_t i = 0; i < states_.size(); ++i) retire_uncommitted(cells_at(i), revision_);
   read_state();
   restore_times();
+  // Of a new board. Times may be negative: 0 would be a promise.
+  if (revision_ == 0 && settled_ == 0) store_settled(-kLatestTime);
 }
 
 /// What lies on the board.

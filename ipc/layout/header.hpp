@@ -20,45 +20,45 @@ inline constexpr std::size_t kUnitBytes = 16;
 
 /// The first words of both regions, as kHeaderRows places them.
 struct RegionHeader {
-  std::uint64_t magic;
+  std::uint64_t magic = 0;
   LayoutMark mark;
-  std::uint64_t layout_hash;
-  std::uint64_t kind;            ///< RegionKind
-  std::uint64_t region_bytes;    ///< size of the whole region
-  std::uint64_t stream_id;       ///< random; the same in both regions of a stream
-  std::uint64_t dimensions;      ///< 1 … 64
-  std::uint64_t capacity;        ///< ring items or knot slots, a power of two
-  std::uint64_t clock;           ///< StreamClock
-  std::uint64_t time_namespace;  ///< inode of the time namespace of a live stream's clock
-  std::uint64_t control;         ///< offset of the control block, in bytes
-  std::uint64_t stride;          ///< bytes from one ring item or knot slot to the next
-  std::int64_t min_interval;     ///< ns between waypoints
-  std::int64_t max_interval;
-  std::uint64_t start_kind;  ///< ConditionKind at the first waypoint
-  std::uint64_t method;      ///< Method::number; 0: c2
-  std::uint64_t settle;      ///< settle lag K
-  std::uint64_t tail;        ///< Tail
-  std::int64_t stop_time;    ///< ns
-  std::uint64_t epoch;       ///< number of the owner's life, from 1
-  std::uint64_t owner_pid;
-  std::int64_t owner_since;   ///< CLOCK_MONOTONIC when the owner took the region
-  double lambda;              ///< of smoothing, s³
-  double time_scale;          ///< of rounded, s
-  std::uint64_t force_lag;    ///< 1: a lag too short for lambda is taken
-  std::int64_t freeze_ahead;  ///< ns that a live stream settles ahead of now
-  std::int64_t history;       ///< ns before now that a live stream keeps
-  std::int64_t min_splice;    ///< ns: length of the shortest splice
-  std::array<double, kMaxDimensions> start_value;
-  std::array<std::uint64_t, kMaxDimensions> dimension_kind;  ///< DimensionKind
-  std::array<double, kMaxDimensions> period;                 ///< of `wrap`; else 0
-  std::array<std::array<char, kNameBytes>, kMaxDimensions> name;
-  std::array<std::array<char, kUnitBytes>, kMaxDimensions> unit;
-  std::array<double, kMaxDimensions> max_velocity;  ///< 0: no limit, as in the next two
-  std::array<double, kMaxDimensions> max_acceleration;
-  std::array<double, kMaxDimensions> max_jerk;
-  std::array<double, kMaxDimensions> lower_bound;  ///< both bounds 0: none
-  std::array<double, kMaxDimensions> upper_bound;
-  std::uint64_t beyond;  ///< Beyond
+  std::uint64_t layout_hash = 0;
+  std::uint64_t kind = 0;            ///< RegionKind
+  std::uint64_t region_bytes = 0;    ///< size of the whole region
+  std::uint64_t stream_id = 0;       ///< random; the same in both regions of a stream
+  std::uint64_t dimensions = 0;      ///< 1 … 64
+  std::uint64_t capacity = 0;        ///< ring items or knot slots, a power of two
+  std::uint64_t clock = 0;           ///< StreamClock
+  std::uint64_t time_namespace = 0;  ///< inode of the time namespace of a live stream's clock
+  std::uint64_t control = 0;         ///< offset of the control block, in bytes
+  std::uint64_t stride = 0;          ///< bytes from one ring item or knot slot to the next
+  std::int64_t min_interval = 0;     ///< ns between waypoints
+  std::int64_t max_interval = 0;
+  std::uint64_t start_kind = 0;  ///< ConditionKind at the first waypoint
+  std::uint64_t method = 0;      ///< Method::number; 0: c2
+  std::uint64_t settle = 0;      ///< settle lag K
+  std::uint64_t tail = 0;        ///< Tail
+  std::int64_t stop_time = 0;    ///< ns
+  std::uint64_t epoch = 0;       ///< number of the owner's life, from 1
+  std::uint64_t owner_pid = 0;
+  std::int64_t owner_since = 0;   ///< CLOCK_MONOTONIC when the owner took the region
+  double lambda = 0;              ///< of smoothing, s³
+  double time_scale = 0;          ///< of rounded, s
+  std::uint64_t force_lag = 0;    ///< 1: a lag too short for lambda is taken
+  std::int64_t freeze_ahead = 0;  ///< ns that a live stream settles ahead of now
+  std::int64_t history = 0;       ///< ns before now that a live stream keeps
+  std::int64_t min_splice = 0;    ///< ns: length of the shortest splice
+  std::array<double, kMaxDimensions> start_value{};
+  std::array<std::uint64_t, kMaxDimensions> dimension_kind{};  ///< DimensionKind
+  std::array<double, kMaxDimensions> period{};                 ///< of `wrap`; else 0
+  std::array<std::array<char, kNameBytes>, kMaxDimensions> name{};
+  std::array<std::array<char, kUnitBytes>, kMaxDimensions> unit{};
+  std::array<double, kMaxDimensions> max_velocity{};  ///< 0: no limit, as in the next two
+  std::array<double, kMaxDimensions> max_acceleration{};
+  std::array<double, kMaxDimensions> max_jerk{};
+  std::array<double, kMaxDimensions> lower_bound{};  ///< both bounds 0: none
+  std::array<double, kMaxDimensions> upper_bound{};
+  std::uint64_t beyond = 0;  ///< Beyond
 };
 
 inline constexpr std::tuple kHeaderRows{

@@ -9,6 +9,7 @@
 #include "ipc/layout/table.hpp"
 #include "ipc/memory/word.hpp"
 #include "splinecast/time.hpp"
+#include "splinecast/waypoint.hpp"
 
 namespace splinecast::ipc {
 
@@ -55,8 +56,9 @@ struct Head {
   Word exceeding = 0;  ///< waypoints that brought the curve, or would have, beyond a limit
   Word refused = 0;    ///< items refused
   std::array<Word, kRefusalReasons> reasons{};  ///< of these, by Refusal
-  Time settled_until{};  ///< no time before it ever changes; not of the revision alone
-  Time changed_from{};   ///< earliest time whose curve this revision changed
+  /// No time before it ever changes; not of the revision alone.
+  Time settled_until = -kLatestTime;
+  Time changed_from{};  ///< earliest time whose curve this revision changed
 
   /// Waypoints that the curve interpolates, replaced ones too.
   [[nodiscard]] Word interpolated() const noexcept { return knots - passed_over; }

@@ -56,7 +56,7 @@ class Fnv {
 
 /// Words as bytes: `16`, `8·D`, `16 + 8·D`.
 std::string bytes_text(const Extent& extent) {
-  const std::string words = std::to_string(extent.words * sizeof(Word));
+  std::string words = std::to_string(extent.words * sizeof(Word));
   if (extent.per_dimension == 0) return words;
   std::string text = extent.words == 0 ? "" : words + " + ";
   return text.append(std::to_string(extent.per_dimension * sizeof(Word))).append("·D");

@@ -44,7 +44,7 @@ struct Field {
   std::string_view name;
   Extent offset;
   Extent size;
-  FieldWriter writer;
+  FieldWriter writer{};
   std::string_view meaning;
 };
 
@@ -52,7 +52,7 @@ struct Field {
 struct FieldRow {
   std::string_view name;
   Extent size;
-  FieldWriter writer;
+  FieldWriter writer{};
   std::string_view meaning;
 };
 
@@ -60,7 +60,7 @@ struct FieldRow {
 template <auto Member>
 struct MemberRow {
   std::string_view name;
-  FieldWriter writer;
+  FieldWriter writer{};
   std::string_view meaning;
 };
 
@@ -79,7 +79,8 @@ struct MemberOf<Member> {
   static_assert(std::is_trivially_copyable_v<Value>);
   static constexpr bool is_flag = std::is_same_v<Value, bool>;
   static_assert(is_flag || sizeof(Value) % sizeof(Word) == 0);
-  static constexpr std::size_t words = is_flag ? 1 : sizeof(Value) / sizeof(Word);
+  static constexpr std::size_t bytes = sizeof(Value);
+  static constexpr std::size_t words = is_flag ? 1 : bytes / sizeof(Word);
 };
 
 constexpr FieldRow as_row(const FieldRow& row) noexcept { return row; }

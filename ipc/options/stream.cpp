@@ -67,6 +67,18 @@ void put_kinds(const ProducerOptions& options, RegionHeader& header) {
 
 }  // namespace
 
+void require_usable(const std::string& which, const Condition& condition, std::size_t dimensions) {
+  try {
+    require_values(condition, dimensions);
+  } catch (const std::invalid_argument& error) {
+    throw BadRequest(error.what());
+  }
+  if (!is_online(condition.kind)) {
+    throw BadRequest(which + " condition '" + to_string(condition) +
+                     "' needs all waypoints at once: a stream cannot meet it");
+  }
+}
+
 RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id) {
   if (options.dimensions < kMinDimensions || options.dimensions > kMaxDimensions) {
     throw BadRequest("a stream has 1 to 64 dimensions, not " + std::to_string(options.dimensions));
@@ -78,11 +90,7 @@ RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id
                      " ns to " + std::to_string(options.limits.max_interval.count()) +
                      " ns are no range of positive times");
   }
-  require_values(options.start, options.dimensions);
-  if (!is_online(options.start.kind)) {
-    throw BadRequest("start condition '" + to_string(options.start) +
-                     "' needs all waypoints at once: a stream cannot meet it");
-  }
+  require_usable("start", options.start, options.dimensions);
   RegionHeader header{};
   header.magic = kMagic;
   header.mark = {};

@@ -16,6 +16,10 @@ namespace splinecast::ipc {
 /// A header for a new region, all but what depends on its kind and capacity.
 [[nodiscard]] RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id);
 
+/// Throws BadRequest, which names the condition as `which`, unless its values fit the dimensions
+/// and a stream can meet it.
+void require_usable(const std::string& which, const Condition& condition, std::size_t dimensions);
+
 /// What a header says of the stream: the options that its producer gave.
 [[nodiscard]] Condition start_condition(const RegionHeader& header);
 

@@ -134,13 +134,13 @@ AppendStatus WaypointRingWriter::replace_from(Time t, std::span<const Waypoint> 
 }
 
 /// A stop is never too late: if t has settled, it takes effect where the settled part ends.
-Time WaypointRingWriter::stop_time(Time t, const Solved& solved) noexcept {
+Time WaypointRingWriter::effect_of_stop(Time t, const Solved& solved) noexcept {
   return std::max({t, solved.settled_until, kEarliestStop});
 }
 
 AppendStatus WaypointRingWriter::check_stop(Time t, const Solved& solved) const noexcept {
   if (finished_) return AppendStatus::finished;
-  const Time from = stop_time(t, solved);
+  const Time from = effect_of_stop(t, solved);
   if (!is_time_in_range(from)) return AppendStatus::too_far_apart;
   if (repeats_stop(from, solved)) return AppendStatus::accepted;
   // Stops ahead leave an item for a stop that takes effect at once; all stops leave one for finish.
@@ -152,7 +152,7 @@ AppendStatus WaypointRingWriter::check_stop(Time t, const Solved& solved) const 
 
 AppendStatus WaypointRingWriter::stop_from(Time t, const Solved& solved) noexcept {
   const AppendStatus status = check_stop(t, solved);
-  const Time from = stop_time(t, solved);
+  const Time from = effect_of_stop(t, solved);
   if (status != AppendStatus::accepted || repeats_stop(from, solved)) return status;
   claim(1);
   put_item(0, static_cast<Word>(ItemKind::replace), {.time = from, .position = {}});

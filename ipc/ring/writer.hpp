@@ -86,9 +86,9 @@ class WaypointRingWriter {
   /// together with the replacement itself fit into the ring besides control_reserve. One store of
   /// `head` makes all of it visible. O(D) per waypoint. The entry onto them takes at least `blend`:
   /// a negative one means 0, one beyond the most interval is `too_far_apart`. Without waypoints it
-  /// is a stop, for which
-  /// there is the reserve. A t that has settled means the earliest time possible; a stop that
-  /// repeats the newest item, a stop that still waits, at the same time or later takes no item.
+  /// is a stop, for which there is the reserve. A t that has settled means the earliest time
+  /// possible; a stop that repeats the newest item, a stop that still waits, at the same time or
+  /// later takes no item.
   [[nodiscard]] AppendStatus replace_from(Time t, std::span<const Waypoint> waypoints,
                                           const Solved& solved, Time blend = {}) noexcept;
 
@@ -125,7 +125,7 @@ class WaypointRingWriter {
   [[nodiscard]] bool repeats_stop(Time from, const Solved& solved) const noexcept;
   [[nodiscard]] bool is_past(Time time, const Solved& solved) const noexcept;
   [[nodiscard]] bool follows_pause(Time time, const Solved& solved) const noexcept;
-  [[nodiscard]] static Time stop_time(Time t, const Solved& solved) noexcept;
+  [[nodiscard]] static Time effect_of_stop(Time t, const Solved& solved) noexcept;
   [[nodiscard]] AppendStatus check_stop(Time t, const Solved& solved) const noexcept;
   [[nodiscard]] AppendStatus stop_from(Time t, const Solved& solved) noexcept;
   void claim(Word items) noexcept;

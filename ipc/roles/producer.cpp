@@ -155,8 +155,8 @@ struct Producer::Impl {
 
   [[nodiscard]] ipc::Word consumed() const noexcept { return solver ? solver->board.tail() : 0; }
 
-  /// What is known of the solver.
-  [[nodiscard]] ipc::WaypointRingWriter::Solved solved() noexcept {
+  /// What is known of the solver, which is looked for until there is one.
+  [[nodiscard]] ipc::WaypointRingWriter::Solved look_at_solver() noexcept {
     if (!solver) look_for_solver();
     ipc::WaypointRingWriter::Solved known{.consumed = consumed()};
     if (ipc::stream_clock(ring.header) == StreamClock::recorded) return known;
@@ -169,7 +169,8 @@ struct Producer::Impl {
     return known;
   }
 
-  AppendStatus appended(AppendStatus status) noexcept {
+  /// Wakes the solver for what has been accepted. Returns the status.
+  AppendStatus wake_solver_for(AppendStatus status) noexcept {
     // Again after the store: a solver that came meanwhile may already sleep.
     if (!solver) look_for_solver();
     if (status == AppendStatus::accepted && solver && solver->board.sleeping()) {
@@ -206,13 +207,13 @@ Producer& Producer::operator=(Producer&&) noexcept = default;
 Producer::~Producer() = default;
 
 AppendStatus Producer::append(const Waypoint& waypoint) noexcept {
-  return impl_->appended(impl_->ring.writer.append(waypoint, impl_->solved()));
+  return impl_->wake_solver_for(impl_->ring.writer.append(waypoint, impl_->look_at_solver()));
 }
 
 AppendStatus Producer::replace_from(Time t, std::span<const Waypoint> waypoints,
                                     const ReplaceOptions& options) noexcept {
-  return impl_->appended(
-      impl_->ring.writer.replace_from(t, waypoints, impl_->solved(), options.blend));
+  return impl_->wake_solver_for(
+      impl_->ring.writer.replace_from(t, waypoints, impl_->look_at_solver(), options.blend));
 }
 
 ReplacePreview Producer::preview_replace(Time t, std::span<const Waypoint> waypoints,
@@ -224,7 +225,7 @@ ReplacePreview Producer::preview_replace(Time t, std::span<const Waypoint> waypo
 
 void Producer::preview_replace(Time t, std::span<const Waypoint> waypoints,
                                const ReplaceOptions& options, ReplacePreview& out) {
-  const auto known = impl_->solved();
+  const auto known = impl_->look_at_solver();
   out.status = impl_->ring.writer.check_replacement(t, waypoints, known, options.blend);
   out.is_known = false;
   if (out.status != AppendStatus::accepted || !impl_->solver) return;
@@ -239,23 +240,23 @@ void Producer::preview_replace(Time t, std::span<const Waypoint> waypoints,
 }
 
 AppendStatus Producer::start_from(const Instant& state) noexcept {
-  return impl_->appended(impl_->ring.writer.start_from(state, impl_->solved()));
+  return impl_->wake_solver_for(impl_->ring.writer.start_from(state, impl_->look_at_solver()));
 }
 
-Time Producer::earliest() noexcept { return impl_->solved().settled_until; }
+Time Producer::earliest() noexcept { return impl_->look_at_solver().settled_until; }
 
 AppendStatus Producer::finish(const Condition& end) {
-  require_values(end, impl_->ring.header.dimensions);
-  ipc::dimension_kinds(impl_->ring.header).require_end(end);
-  if (!is_online(end.kind)) {
-    throw BadRequest("end condition '" + to_string(end) +
-                     "' needs all waypoints at once: a stream cannot meet it");
+  ipc::require_usable("end", end, impl_->ring.header.dimensions);
+  try {
+    ipc::dimension_kinds(impl_->ring.header).require_end(end);
+  } catch (const std::invalid_argument& error) {
+    throw BadRequest(error.what());
   }
   if (ipc::stream_clock(impl_->ring.header) == StreamClock::monotonic && !is_at_rest(end.kind)) {
     throw BadRequest("end condition '" + to_string(end) +
                      "' is not at rest: a live stream ends with rest or halt");
   }
-  return impl_->appended(impl_->ring.writer.finish(end, impl_->solved()));
+  return impl_->wake_solver_for(impl_->ring.writer.finish(end, impl_->look_at_solver()));
 }
 
 Refusals Producer::refusals() {

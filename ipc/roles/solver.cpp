@@ -113,8 +113,6 @@ std::variant<OwnedBoard, Occupied> own_board(const std::string& stream,
   return board;
 }
 
-}  // namespace
-
 /// What a solver has while a stream stands.
 struct Attachment {
   RingView ring;
@@ -139,6 +137,8 @@ struct Attachment {
     refused.items.reserve(ipc::kRefusalsKept);
   }
 };
+
+}  // namespace
 
 struct Solver::Impl {
   std::string stream;
@@ -243,7 +243,7 @@ void Solver::wait(Time timeout) noexcept {
   at.board.writer.store_sleeping(false);
 }
 
-void Solver::first_refusals(std::vector<ItemRefusal>& out) {
+void Solver::take_first_refusals(std::vector<ItemRefusal>& out) {
   out.clear();
   if (!attached()) return;
   Attachment& at = *impl_->attachment;
@@ -257,7 +257,7 @@ void Solver::first_refusals(std::vector<ItemRefusal>& out) {
   }
 }
 
-std::optional<LimitExcess> Solver::first_excess() noexcept {
+std::optional<LimitExcess> Solver::take_first_excess() noexcept {
   if (!attached() || impl_->attachment->is_excess_told) return std::nullopt;
   Attachment& at = *impl_->attachment;
   const ipc::Head& head = at.solver.head();

@@ -2,19 +2,6 @@
 
 namespace splinecast {
 
-Refusal to_refusal(AppendStatus interval) noexcept {
-  switch (interval) {
-    case AppendStatus::duplicate:
-      return Refusal::duplicate;
-    case AppendStatus::out_of_order:
-      return Refusal::out_of_order;
-    case AppendStatus::too_close:
-      return Refusal::too_close;
-    default:
-      return Refusal::too_far_apart;
-  }
-}
-
 std::string_view to_string(AppendStatus status) noexcept {
   switch (status) {
     case AppendStatus::accepted:

@@ -4,6 +4,23 @@
 
 /// How a solver takes or refuses the items of a ring.
 namespace splinecast::ipc {
+namespace {
+
+/// The reason for refusing a waypoint whose interval has this status.
+Refusal to_refusal(AppendStatus interval) noexcept {
+  switch (interval) {
+    case AppendStatus::duplicate:
+      return Refusal::duplicate;
+    case AppendStatus::out_of_order:
+      return Refusal::out_of_order;
+    case AppendStatus::too_close:
+      return Refusal::too_close;
+    default:
+      return Refusal::too_far_apart;
+  }
+}
+
+}  // namespace
 
 void StreamSolver::take(Word number) noexcept {
   if (head_.finished) return refuse(number, Refusal::after_finish);
@@ -25,7 +42,7 @@ void StreamSolver::take(Word number) noexcept {
 }
 
 /// The producer has checked most of this; but what another process wrote is never trusted.
-std::optional<Refusal> StreamSolver::has_right_form(const Waypoint& waypoint) const noexcept {
+std::optional<Refusal> StreamSolver::form_refusal(const Waypoint& waypoint) const noexcept {
   if (!is_finite(waypoint)) return Refusal::not_finite;
   if (!curve_.kinds().takes(waypoint.position)) return Refusal::zero_quaternion;
   if (!curve_.window().takes(waypoint)) return Refusal::lacks_derivatives;
@@ -33,7 +50,7 @@ std::optional<Refusal> StreamSolver::has_right_form(const Waypoint& waypoint) co
   return std::nullopt;
 }
 
-std::optional<Refusal> StreamSolver::judge_time(Time time) const noexcept {
+std::optional<Refusal> StreamSolver::time_refusal(Time time) const noexcept {
   if (!curve_.has_begun()) {
     if (live_ && time < settled_until_) return Refusal::past;
     return std::nullopt;
@@ -53,13 +70,13 @@ std::optional<Refusal> StreamSolver::judge_time(Time time) const noexcept {
 
 void StreamSolver::take_waypoint(Word number) noexcept {
   Waypoint waypoint = item_.waypoint();
-  if (const auto refusal = has_right_form(waypoint)) return refuse(number, *refusal);
-  if (const auto refusal = judge_time(waypoint.time)) return refuse(number, *refusal);
+  if (const auto refusal = form_refusal(waypoint)) return refuse(number, *refusal);
+  if (const auto refusal = time_refusal(waypoint.time)) return refuse(number, *refusal);
   if (!curve_.kinds().all_linear()) {
     waypoint = unwrapped(waypoint);
     if (!is_finite(waypoint)) return refuse(number, Refusal::not_finite);
   }
-  if (!is_within_limits(waypoint, number)) return refuse(number, Refusal::beyond_limits);
+  if (note_excess(waypoint, number)) return refuse(number, Refusal::beyond_limits);
   curve_.append(waypoint, number);
   if (waypoint.time > settled_until_) head_.starved = false;
   ++head_.knots;
@@ -83,21 +100,22 @@ Waypoint StreamSolver::unwrapped(const Waypoint& given) noexcept {
           .acceleration = values.acceleration};
 }
 
-/// Notes where the curve passes a limit with a waypoint. Returns whether to take it all the same.
-bool StreamSolver::is_within_limits(const Waypoint& waypoint, Word number) noexcept {
+/// Notes where the curve passes a limit with a waypoint. Returns whether the waypoint is to be
+/// refused for it.
+bool StreamSolver::note_excess(const Waypoint& waypoint, Word number) noexcept {
   auto excess = curve_.excess_with(waypoint);
-  if (!excess) return true;
+  if (!excess) return false;
   excess->item = number;
   excess->is_refused = beyond_ == Beyond::refuse;
   board_->write_excess(head_.exceeding++, *excess);
-  return !excess->is_refused;
+  return excess->is_refused;
 }
 
 void StreamSolver::take_replacement(Word number) noexcept {
   // A stop is never too late: it takes effect as soon as possible, in a revision of its own, which
   // is committed sooner than a full batch.
   const Time t =
-      is_stop() ? std::max({item_.time, settled_until_, curve_.earliest_cut()}) : item_.time;
+      is_stop(item_) ? std::max({item_.time, settled_until_, curve_.earliest_cut()}) : item_.time;
   const bool has_begun = curve_.has_begun();  // else there is nothing to replace
   if (has_begun && (t < settled_until_ || !is_time_in_range(t) || t < curve_.earliest_cut())) {
     return refuse_replacement(number, Refusal::too_late);
@@ -106,10 +124,10 @@ void StreamSolver::take_replacement(Word number) noexcept {
   // One revision, as far as the board has room.
   const bool may_follow = number >= suspected_;
   const Word followers = may_follow ? std::min<Word>(item_.count, board_->capacity() / 2) : 0;
-  batch_limit_ = is_stop() ? 0 : batch_limit_ + followers;
+  batch_limit_ = is_stop(item_) ? 0 : batch_limit_ + followers;
   if (!has_begun) return;
   // A stop behind another one changes nothing.
-  if (is_stop() && curve_.is_stop() && t >= curve_.newest_time()) return;
+  if (is_stop(item_) && curve_.is_stop() && t >= curve_.newest_time()) return;
   curve_.begin_run(t, std::clamp(item_.blend, Time::zero(), limits_.max_interval));
   head_.starved = false;
   head_.newest_knot = t;

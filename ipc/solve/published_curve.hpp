@@ -195,11 +195,18 @@ class PublishedCurve {
   [[nodiscard]] bool is_on_line() const noexcept {
     return course_ == Course::on_target || course_ == Course::entering;
   }
+
+  // Room, origins and changes: published_curve.cpp.
   [[nodiscard]] bool has_room_behind(Word number, std::size_t knots, Time keep) const noexcept;
   [[nodiscard]] bool has_room_to_enter(Time keep) const noexcept;
   [[nodiscard]] Instant origin_state() const noexcept;
   void set_origin(Word number, const Instant& state) noexcept;
   void wait_for_entry() noexcept;
+  void note_change(Time from) noexcept;
+  void keep_settled() noexcept;
+  [[nodiscard]] std::size_t passed_over() const noexcept;
+
+  // Entries: entries.cpp.
   [[nodiscard]] bool is_start_open() const noexcept;
   void check_start() noexcept;
   void restart_search() noexcept;
@@ -208,14 +215,16 @@ class PublishedCurve {
   [[nodiscard]] bool find_state(Time settled) noexcept;
   [[nodiscard]] bool prepare(Time settled) noexcept;
   [[nodiscard]] core::EntryRules entry_rules() const noexcept;
-  [[nodiscard]] std::size_t first_compared() const noexcept;
-  [[nodiscard]] std::span<const core::Knot> knots_to_go_on() noexcept;
   void look_for_entry(Time settled, Time keep, bool is_last, int& tries) noexcept;
-  [[nodiscard]] std::optional<LimitExcess> find_excess(const Waypoint& waypoint) noexcept;
   void enter() noexcept;
   void enter_before_end() noexcept;
-  void note_change(Time from) noexcept;
-  void keep_settled() noexcept;
+
+  // Limits: excess.cpp.
+  [[nodiscard]] std::size_t first_compared() const noexcept;
+  [[nodiscard]] std::span<const core::Knot> knots_to_go_on() noexcept;
+  [[nodiscard]] std::optional<LimitExcess> find_excess(const Waypoint& waypoint) noexcept;
+
+  // Knots written to the board: write.cpp.
   void write_origin() noexcept;
   void write_beyond() noexcept;
   void write_ending() noexcept;
@@ -228,10 +237,13 @@ class PublishedCurve {
   void write_off_line(bool writes_origin) noexcept;
   void write_on_line() noexcept;
   void drop_oldest() noexcept;
+
+  // The end: finish.cpp.
   void finish_on_line(const Condition& end) noexcept;
   void end_at_newest() noexcept;
   void enter_end(const Instant& from) noexcept;
-  [[nodiscard]] std::size_t passed_over() const noexcept;
+
+  // Taking up what a solver before left: restore.cpp.
   void restore_course() noexcept;
   void restore_run() noexcept;
   void restore_origin() noexcept;
@@ -239,6 +251,7 @@ class PublishedCurve {
   [[nodiscard]] bool read_knot(Word number) noexcept;
   [[nodiscard]] bool find_knot(std::size_t i, Word& line) noexcept;
   [[nodiscard]] core::Knot restore_knot(std::span<double> values) noexcept;
+
   /// The oldest knot that the window still has whole.
   [[nodiscard]] std::size_t passed_first() const noexcept {
     return window_.knots() - std::min(window_.knots(), window_.knots_to_restore());
@@ -290,10 +303,11 @@ class PublishedCurve {
   std::size_t unmet_ = 0;          ///< first knot of the run that the open entry passes over
   std::size_t passed_lowest_ = 0;  ///< first knot in the slots of passed ones: the same, or, where
                                    ///< a stream starts by an entry, the one before
-  std::size_t placed_ =
-      0;  ///< leading knots of the run that the numbered slots hold, if on the line
-  std::size_t passed_written_ = 0;    ///< leading knots of the run that the slots of passed ones
-  std::size_t passed_committed_ = 0;  ///< hold or held, and those committed of them
+  /// Leading knots of the run that the numbered slots hold, if on the line.
+  std::size_t placed_ = 0;
+  /// Leading knots of the run that the slots of passed ones hold or held.
+  std::size_t passed_written_ = 0;
+  std::size_t passed_committed_ = 0;  ///< those of them that have been committed
   Word passed_before_ = 0;            ///< waypoints passed over by entries that are over
   Origin origin_;
   State origin_state_;

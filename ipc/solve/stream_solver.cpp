@@ -194,7 +194,7 @@ Word StreamSolver::consume(Time now) noexcept {
   batch_limit_ = most_items_;
   for (batch_ = 0; head_.consumed < available_ && batch_ < batch_limit_ && !is_damaged();) {
     ring_->copy(head_.consumed, item_);
-    is_blocked = !has_room();
+    is_blocked = !has_room(item_);
     if (is_blocked) break;
     take(head_.consumed++);
     if (is_finish_postponed_) {
@@ -215,14 +215,14 @@ Word StreamSolver::consume(Time now) noexcept {
   return head_.consumed - before;
 }
 
-/// Whether the item at hand can be taken now: without losing what must be kept, and, as a
+/// Whether an item can be taken now: without losing what must be kept, and, as a
 /// replacement cuts what has been committed and nothing else, in this revision.
-bool StreamSolver::has_room() const noexcept {
-  if (item_.kind != ItemKind::replace) return curve_.has_room(kAddedByItem, keep_);
+bool StreamSolver::has_room(const RingItem& item) const noexcept {
+  if (item.kind != ItemKind::replace) return curve_.has_room(kAddedByItem, keep_);
   if (curve_.has_changes()) return false;
   // A stop costs one segment of the history at most: it does not wait for room.
-  return is_stop() || !curve_.has_begun() ||
-         curve_.has_room_to_cut(item_.time, kAddedByItem, keep_);
+  return is_stop(item) || !curve_.has_begun() ||
+         curve_.has_room_to_cut(item.time, kAddedByItem, keep_);
 }
 
 /// Looks ahead for a replacement that is due and withdraws all that is queued before it: other
@@ -236,7 +236,7 @@ void StreamSolver::withdraw() noexcept {
   const auto replacement = replacements_.due(earliest, curve_.newest_time());
   if (!replacement) return;
   ring_->copy(*replacement, item_);
-  if (!has_room()) return;
+  if (!has_room(item_)) return;
   head_.withdrawn += *replacement - head_.consumed;
   head_.consumed = *replacement;
 }

@@ -96,23 +96,23 @@ class StreamSolver {
   [[nodiscard]] Word consume(Time now) noexcept;
   [[nodiscard]] bool is_damaged() const noexcept { return lacks_head_ || curve_.is_damaged(); }
   [[nodiscard]] Word reachable(Word head) const noexcept;
-  [[nodiscard]] bool has_room() const noexcept;
+  [[nodiscard]] bool has_room(const RingItem& item) const noexcept;
   void withdraw() noexcept;
-  /// Whether the current item is a stop: a replacement without waypoints.
-  [[nodiscard]] bool is_stop() const noexcept {
-    return item_.kind == ItemKind::replace && item_.count == 0;
+  /// Whether an item is a stop: a replacement without waypoints.
+  [[nodiscard]] static bool is_stop(const RingItem& item) noexcept {
+    return item.kind == ItemKind::replace && item.count == 0;
   }
   void take(Word number) noexcept;
   void take_waypoint(Word number) noexcept;
   [[nodiscard]] Waypoint unwrapped(const Waypoint& given) noexcept;
-  [[nodiscard]] bool is_within_limits(const Waypoint& waypoint, Word number) noexcept;
+  [[nodiscard]] bool note_excess(const Waypoint& waypoint, Word number) noexcept;
   void take_replacement(Word number) noexcept;
   void refuse_replacement(Word number, Refusal reason) noexcept;
   void take_start_state(Word number) noexcept;
   void take_finish(Word number) noexcept;
   [[nodiscard]] bool is_starved() const noexcept;
-  [[nodiscard]] std::optional<Refusal> has_right_form(const Waypoint& waypoint) const noexcept;
-  [[nodiscard]] std::optional<Refusal> judge_time(Time time) const noexcept;
+  [[nodiscard]] std::optional<Refusal> form_refusal(const Waypoint& waypoint) const noexcept;
+  [[nodiscard]] std::optional<Refusal> time_refusal(Time time) const noexcept;
   void refuse(Word number, Refusal reason) noexcept;
   void check_commit(Time now) noexcept;
   void store_settled(Time t) noexcept;

@@ -45,7 +45,12 @@ void StreamSweep::look_for_names() {
   });
   for (auto& [stream, member] : members_) {
     const bool stands = std::ranges::binary_search(standing, stream);
-    if (may_be_taken(stream, member, stands)) to_take_.push_back(stream);
+    if (!stands && !member.is_named) continue;
+    // There are other files under its names: it is another stream, and will be reported as one.
+    if (member.state == State::given_up && files_of(stream) != member.files) {
+      member.state = State::unowned;
+    }
+    if (is_to_be_tried(member)) to_take_.push_back(stream);
   }
   std::ranges::reverse(to_take_);
 }
@@ -55,13 +60,7 @@ bool StreamSweep::is_wanted(const std::string& stream) const {
                              [&](const std::string& pattern) { return matches(pattern, stream); });
 }
 
-/// Whether a stream is to be tried now. One that was given up is tried once other files exist under
-/// its names: then it is reported as another stream.
-bool StreamSweep::may_be_taken(const std::string& stream, Member& member, bool stands) {
-  if (!stands && !member.is_named) return false;
-  if (member.state == State::given_up && files_of(stream) != member.files) {
-    member.state = State::unowned;
-  }
+bool StreamSweep::is_to_be_tried(const Member& member) noexcept {
   return member.state == State::unowned || member.state == State::waiting ||
          member.state == State::no_descriptors;
 }

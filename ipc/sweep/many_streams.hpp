@@ -119,7 +119,7 @@ class StreamSweep {
   void look_around();
   void look_for_names();
   [[nodiscard]] bool is_wanted(const std::string& stream) const;
-  [[nodiscard]] static bool may_be_taken(const std::string& stream, Member& member, bool stands);
+  [[nodiscard]] static bool is_to_be_tried(const Member& member) noexcept;
   [[nodiscard]] static Files files_of(const std::string& stream);
   void note_ends_of_motion();
   void look_elsewhere();

@@ -97,11 +97,11 @@ bool StreamSweep::serve(std::size_t index, const Clock& clock) {
 
 void StreamSweep::tell_first_refusals(Solver& solver) noexcept {
   try {
-    solver.first_refusals(refused_);
+    solver.take_first_refusals(refused_);
     for (const ItemRefusal& refusal : refused_) {
       tell_(SweepNews::refused, solver.stream(), &solver, to_string(refusal));
     }
-    if (const auto excess = solver.first_excess()) {
+    if (const auto excess = solver.take_first_excess()) {
       tell_(SweepNews::beyond_limits, solver.stream(), &solver, solver.in_words(*excess));
     }
   } catch (...) {

@@ -126,7 +126,7 @@ def functions():
 
 
 def headers():
-    """The installed headers, and what of the project they include that is not installed."""
+    """The installed headers, which include nothing else of the project."""
     found = files("core/include/*.hpp", "ipc/include/*.hpp")
     out = [f"{len(found)} installed headers: " + " ".join(Path(name).stem for name in found)]
     broken = [f"{name} includes {included}, which is not installed"

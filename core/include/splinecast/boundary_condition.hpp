@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -7,7 +8,10 @@
 
 namespace [[gnu::visibility("default")]] splinecast {
 
-/// What holds at the first or the last waypoint of a spline.
+/// What holds at the first or the last waypoint of a spline. `own`, what the method does when
+/// nothing is asked for, is natural for `c2`, `smoothing`, `normalized` and `rounded`, but a halt
+/// where a stream of `c2` ends; what the waypoints give for `hermite` and `quintic`; a slope by the
+/// method's rule for the other local methods.
 enum class ConditionKind {
   natural,       ///< acceleration 0
   rest,          ///< velocity 0
@@ -15,8 +19,8 @@ enum class ConditionKind {
   velocity,      ///< given velocity ("clamped")
   acceleration,  ///< given acceleration
   not_a_knot,    ///< third derivative continuous at the next knot; `c2` at once only
-  periodic,      ///< both ends joined; `c2` at once only
-  own,           ///< what the method does when nothing is asked for
+  periodic,      ///< both ends joined: start and end must both be it; `c2` at once only
+  own,           ///< what the method itself does
 };
 
 /// Whether a condition can be met while waypoints come.

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <span>
 
 #include "splinecast/state.hpp"
 
-/// Inline views for programs that use Eigen. No Eigen type crosses a compiled interface, because
-/// its alignment depends on compiler flags.
+/// Inline views for programs that use Eigen. Needs Eigen 3, which the package does not require. No
+/// Eigen type crosses a compiled interface, because its alignment depends on compiler flags.
 namespace [[gnu::visibility("default")]] splinecast {
 
 /// Views the values of one derivative as a column vector of `Dimensions` rows; no copy. The span

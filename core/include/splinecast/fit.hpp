@@ -10,17 +10,24 @@ namespace [[gnu::visibility("default")]] splinecast {
 /// What shapes a curve that is solved at once.
 struct FitOptions {
   Interpolant interpolant{};
-  Condition start{.kind = ConditionKind::own, .value = {}};  ///< `own` is natural for `c2`
+  Condition start{.kind = ConditionKind::own, .value = {}};  ///< `own`: see ConditionKind
   Condition end{.kind = ConditionKind::own, .value = {}};
 };
 
 /// The curve of a method through all waypoints at once (`smoothing`: near them).
 ///
-/// There must be at least one waypoint; times must increase strictly and all values be finite.
-/// One waypoint gives a hold. `hermite` and `quintic` need velocities, `quintic` accelerations too;
-/// the others do not look at them. `not-a-knot` and `periodic` are for `c2`, and `normalized` ends
-/// naturally. Throws std::invalid_argument, with the reason, index and value, for anything else.
-/// O(n·D).
+/// There must be 1 to 64 dimensions and at least one waypoint; times must increase strictly and all
+/// values be usable (is_usable). One waypoint gives a hold. `hermite` and `quintic` need
+/// velocities, `quintic` accelerations too; the others do not look at them. Throws
+/// std::invalid_argument, with the reason, index and value, for anything else. O(n·D).
+///
+/// Conditions that a method takes at its ends:
+///
+/// - `c2`: all. `not_a_knot` needs three waypoints, at both ends four; `periodic` needs three, of
+///   which the last has the position of the first, to within rounding.
+/// - `normalized`: `natural` and `own`.
+/// - the others: those for which is_online() holds. For `hermite` and `quintic` the condition
+///   replaces what the waypoint gives there; for `smoothing` it moves no knot.
 [[nodiscard]] PiecewisePolynomial fit(const Waypoints& waypoints, const FitOptions& options);
 
 /// The λ that generalised cross-validation chooses for `smoothing`, one for all dimensions: the

@@ -11,8 +11,7 @@
 #include "splinecast/dimension_kind.hpp"
 #include "splinecast/time.hpp"
 
-/// Limits of motion, in the units of the dimensions. 0 means no limit; a span holds one value per
-/// dimension, and an empty one means no limits. Unless a function says otherwise, it is O(D),
+/// Limits of motion, in the units of the dimensions. Unless a function says otherwise, it is O(D),
 /// allocates nothing and throws nothing.
 namespace [[gnu::visibility("default")]] splinecast {
 
@@ -36,7 +35,7 @@ enum class LimitKind : std::uint8_t { velocity = 0, acceleration = 1, jerk = 2, 
 inline constexpr std::size_t kLimitKinds = 4;
 [[nodiscard]] std::string_view to_string(LimitKind kind) noexcept;
 
-/// Where a segment comes nearest to a limit, or is farthest beyond it.
+/// Where a segment, or a state, comes nearest to a limit, or is farthest beyond it.
 struct Excess {
   /// Value over limit. Of a position: its distance from the middle of its bounds over half their
   /// distance; where one bound only is finite, 1 plus what is beyond it over its size, or over 1 if
@@ -46,7 +45,7 @@ struct Excess {
   std::size_t dimension = 0;  ///< of a quaternion its first
   double value = 0;           ///< with its sign; of a quaternion the bound of its magnitude
   double limit = 0;           ///< the limit, what is allowed instead, or the bound of a position
-  double u = 0;               ///< seconds after the left knot
+  double u = 0;               ///< seconds after the left end of the segment; 0 of a state
 };
 
 /// The limits of one joint, as in MotionLimits.

@@ -10,25 +10,27 @@
 
 namespace [[gnu::visibility("default")]] splinecast {
 
-/// Coefficients per dimension: 4 for a cubic; 6 at splices, halts and stop tails.
+/// Coefficients per dimension of what is fitted or published: 4 for a cubic, 6 for `quintic`,
+/// entries, halts and stops.
 inline constexpr int kCubicOrder = 4;
 inline constexpr int kMaxOrder = 6;
 
-/// Highest order of a polynomial that is evaluated: a quintic integrated or raised leaves room.
+/// Highest order of a segment of a PiecewisePolynomial. It is above kMaxOrder, so that a curve can
+/// be integrated and raised, or made of a B-spline or Bézier segments of a higher degree.
 inline constexpr int kMaxPolynomialOrder = 16;
 
 /// What a segment is for; readers derive a sample's status from it.
 enum class SegmentKind : std::uint8_t {
   spline = 0,     ///< between two waypoints
-  splice = 1,     ///< order-6 entry from a given state
+  splice = 1,     ///< entry: of order 6, from a given state
   stop_tail = 2,  ///< stop segment: behind the newest knot, ends at rest
-  hold = 3,       ///< at rest: between a stop tail and a splice, or, of no length, the one waypoint
-                  ///< of a finished stream
+  hold = 3,       ///< at rest: between a stop segment and an entry, or, of no length, the one
+                  ///< waypoint of a finished stream
 };
 
 /// A curve of consecutive segments with D dimensions: n breaks, n − 1 polynomials of any order k
-/// from 1 to kMaxPolynomialOrder, each local to its left break (doc 003 §4.4, there MGPPRep). One
-/// segment of no length may stand alone: the hold of a single waypoint.
+/// from 1 to kMaxPolynomialOrder, each local to its left break. One segment of no length may stand
+/// alone: the hold of a single waypoint.
 ///
 /// Not thread-safe while it is appended to. A function that is given a segment's number needs
 /// segment < segments(), one that is given a time a curve that is not empty.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <ctime>
 
 #include "splinecast/time.hpp"
@@ -22,6 +23,8 @@ class Clock {
   Clock& operator=(const Clock&) = delete;
   virtual ~Clock() = default;
 
+  /// The time now, in nanoseconds from the clock's origin; must never go back. Every step of a live
+  /// stream reads it a few times: it should be cheap, and must not block.
   [[nodiscard]] virtual Time now() const noexcept = 0;
 
   /// The same to within some milliseconds, never later: cheaper where that is enough.
@@ -34,7 +37,8 @@ class Clock {
   return now + std::min(timeout, Time::max() - now);
 }
 
-/// CLOCK_MONOTONIC.
+/// CLOCK_MONOTONIC. now() takes tens of nanoseconds, and no system call where the kernel's clock
+/// source allows that (tsc, arch_sys_counter).
 class MonotonicClock final : public Clock {
  public:
   [[nodiscard]] Time now() const noexcept override { return read(CLOCK_MONOTONIC); }

@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
-/// What opening, attaching and removing may throw. Appending, solving and sampling never throw:
-/// they return statuses.
+/// What opening, attaching, stepping, finishing and removing may throw. `append`, `replace_from`,
+/// `start_from`, `sample`, `preview` and `sample_many` never throw: they return statuses.
 namespace [[gnu::visibility("default")]] splinecast {
 
 /// Base of the errors below. The message names the stream and the offending values.

@@ -15,7 +15,7 @@
 #include "splinecast/time.hpp"
 
 /// What the roles of a stream are told: structs of values with their defaults. The role that takes
-/// them checks them.
+/// them checks them, and throws BadRequest for a value out of its range.
 namespace [[gnu::visibility("default")]] splinecast {
 
 /// Whose regions this process uses: its own user's and root's, and those of `owner` if set. A
@@ -32,20 +32,21 @@ struct RegionAccess {
 
 /// The checks that a waypoint must pass, wherever it comes from.
 struct IngestLimits {
-  Time min_interval{1'000};              ///< 1 µs
-  Time max_interval{3'600'000'000'000};  ///< 1 h
+  Time min_interval{1'000};              ///< at least 1 ns; default 1 µs
+  Time max_interval{3'600'000'000'000};  ///< min_interval or more, below 2⁶¹ ns; default 1 h
 };
 
 /// What a producer fixes about its stream.
 struct ProducerOptions {
   std::size_t dimensions = 1;        ///< 1 to 64
-  std::vector<std::string> names{};  ///< one per dimension, or none: up to 31 bytes each
-  std::vector<std::string> units{};  ///< likewise, up to 15 bytes each
+  std::vector<std::string> names{};  ///< one per dimension, or none; each is cut to at most 31
+                                     ///< bytes, between characters of UTF-8
+  std::vector<std::string> units{};  ///< likewise, to 15 bytes
   std::vector<Dimension> kinds{};    ///< one per dimension, or none: all linear
   StreamClock clock = StreamClock::monotonic;
-  Condition start{.kind = ConditionKind::halt, .value = {}};
+  Condition start{.kind = ConditionKind::halt, .value = {}};  ///< one for which is_online() holds
   IngestLimits limits{};
-  std::size_t capacity = 1024;  ///< ring items; rounded up to a power of two, at most 2²⁴
+  std::size_t capacity = 1024;  ///< ring items, 2 to 2²⁴; rounded up to a power of two
   RegionAccess access{};
   Trust trust{};
 };
@@ -54,22 +55,29 @@ struct ProducerOptions {
 /// that takes a board over takes its options too, and may not contradict them.
 struct SolverOptions {
   const Method* method = nullptr;        ///< default c2; one that streams
-  std::optional<double> lambda{};        ///< of smoothing, which needs it: λ ≥ 0 in s³
-  std::optional<double> time_scale{};    ///< of rounded; default 1 s
-  std::optional<std::size_t> settle{};   ///< settle lag K; default 8 for `c2`, 64 for
-                                         ///< smoothing, else what the method looks ahead
-  std::optional<Tail> tail{};            ///< default bessel
-  bool force_lag = false;                ///< take a lag that is too short for λ
-  std::optional<Time> stop_time{};       ///< length of the stop tail; default 250 ms. With limits:
-                                         ///< its least length, default 1 ms
+  std::optional<double> lambda{};        ///< of smoothing, which needs it: λ, 0 to 1e100, in s³
+  std::optional<double> time_scale{};    ///< of rounded: above 0, at most 1e100 s; default 1 s
+  std::optional<std::size_t> settle{};   ///< settle lag K, at most 64: from 0 for `c2`, default
+                                         ///< 8; from 13 for smoothing, unless force_lag,
+                                         ///< default 64; else from what the method looks ahead,
+                                         ///< which is the default
+  std::optional<Tail> tail{};            ///< default bessel; not for a method with one of its own
+  bool force_lag = false;                ///< of smoothing: take a lag that is too short for λ
+  std::optional<Time> stop_time{};       ///< length of the stop segment; with a limit of
+                                         ///< acceleration or jerk its least length. Above 0, at
+                                         ///< most 2⁶⁰ ns; default 250 ms
   std::optional<MotionLimits> limits{};  ///< lists of one value per dimension or one for all
   std::vector<NamedLimits> named_limits{};  ///< of dimensions by name, where `limits` has none
                                             ///< of the kind; other names are of no effect
   std::optional<Beyond> beyond{};           ///< default report
-  std::optional<Time> freeze_ahead{};       ///< live: what lies this long ahead settles; 5 ms
-  std::optional<Time> history{};            ///< live: what ended less than this ago is kept; 1 s
-  std::optional<Time> min_splice{};         ///< live: shortest splice; default as freeze_ahead
-  std::optional<std::size_t> capacity{};    ///< segments of history; default 4,096
+  std::optional<Time> freeze_ahead{};       ///< live: what lies this long ahead settles; 1 ns to
+                                            ///< 1 min, default 5 ms
+  std::optional<Time> history{};            ///< live: what ended less than this ago is kept; 0 to
+                                            ///< 24 h, default 1 s
+  std::optional<Time> min_splice{};         ///< live: least length of an entry; 1 ns to 1 min,
+                                            ///< default as freeze_ahead
+  std::optional<std::size_t> capacity{};    ///< segments of history, 2(K + 6) + 2 to 2²²; rounded
+                                            ///< up to a power of two, default 4,096
   bool wake = true;  ///< wake waiting readers: one system call a revision, which wakes
                      ///< at most eight threads
   RegionAccess access{};

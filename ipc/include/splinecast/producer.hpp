@@ -18,7 +18,8 @@ namespace [[gnu::visibility("default")]] splinecast {
 
 /// An item that the ring had accepted and the solver refused.
 struct ItemRefusal {
-  std::uint64_t item = 0;      ///< number of the item: Producer::appended() before its append
+  std::uint64_t item = 0;      ///< number of the item: Producer::appended() before its append; of
+                               ///< waypoint i of a replacement: appended() before that, + 1 + i
   std::optional<Time> time{};  ///< of the item; unset if the ring has overwritten it
   Refusal reason{};
   std::optional<LimitExcess> excess{};  ///< of `beyond_limits`, unless the board no longer has it
@@ -43,9 +44,9 @@ struct Refusals {
 /// Largest magnitudes along a motion, one value per dimension; of a quaternion those of its
 /// components' derivatives.
 struct MotionPeaks {
-  std::vector<double> velocity;
-  std::vector<double> acceleration;
-  std::vector<double> jerk;
+  std::vector<double> velocity;      ///< [unit/s]
+  std::vector<double> acceleration;  ///< [unit/s²]
+  std::vector<double> jerk;          ///< [unit/s³]
 };
 
 /// What a replacement would do to the curve.
@@ -59,8 +60,9 @@ struct ReplacePreview {
   std::size_t passed_over = 0;            ///< waypoints that lie before its end
   MotionPeaks entry;                      ///< of the entry, or of the stop instead
   MotionPeaks motion;                     ///< of all from t until the curve rests
-  Excess worst{};  ///< where that is nearest to a limit or farthest beyond; `u` counts from
-                   ///< the segment's beginning. A ratio below 0: there are no limits
+  Excess worst{};  ///< where that is nearest to a limit or farthest beyond; `u` is of no use here:
+                   ///< it counts from the left end of a segment that is not named. A ratio below 0:
+                   ///< there are no limits
 };
 
 /// How a replacement goes over from the old motion to the new one.
@@ -74,14 +76,33 @@ struct ReplaceOptions {
 /// The role that appends waypoints: the one writer of a stream's waypoint ring.
 ///
 /// One thread uses it. Other processes read what it writes; while it lives, no other process can
-/// become the producer of the same stream.
+/// become the producer of the same stream. On a live stream:
+///
+///     Producer producer("arm", {.dimensions = 7});
+///     if (!producer.wait_for_solver(10s)) return 1;
+///     // The lead is at least freeze_ahead and (settle + 1) intervals together.
+///     const Time begin = MonotonicClock().now() + lead;
+///     for (const Row& row : path) {  // their times count from 0
+///       const Waypoint waypoint{.time = begin + row.time, .position = row.position};
+///       AppendStatus status = producer.append(waypoint);
+///       while (status == AppendStatus::full && producer.wait_for_room(10s)) {
+///         status = producer.append(waypoint);
+///       }
+///       if (status != AppendStatus::accepted) return 1;
+///     }
+///     if (producer.finish({.kind = ConditionKind::halt}) != AppendStatus::accepted) return 1;
+///     while (!producer.wait_until_consumed(10s) && producer.solver_alive()) {}
+///
+/// `accepted` says only that the ring has the item: see refusals().
 class Producer {
  public:
   /// Makes the stream, or makes it again if it is finished, or continues it if its producer died
   /// before finishing. A solver takes up a stream that was made again once the old curve has come
   /// to rest: on a live one, call wait_for_solver() before choosing times for waypoints. Throws
-  /// StreamBusy if it has a living producer, BadRequest if the options contradict a stream that is
-  /// continued, BadRegion if shared memory is full or the files of that name cannot be used.
+  /// StreamBusy if it has a living producer; BadRequest for a name or options that can be no
+  /// stream's, a start condition whose values do not fit the dimensions among them, and if the
+  /// options contradict a stream that is continued; BadRegion if shared memory is full or the files
+  /// of that name cannot be used.
   Producer(std::string stream, ProducerOptions options);
   Producer(Producer&&) noexcept;
   Producer& operator=(Producer&&) noexcept;
@@ -94,10 +115,10 @@ class Producer {
 
   /// Replaces all that lies behind time t by these waypoints, from none upwards, as one revision:
   /// the curve goes on from its state at t by an entry, as ReplaceOptions has it, or, without a
-  /// waypoint, comes to rest. With waypoints, `t` must not lie before earliest(), else `too_late`;
-  /// the waypoints must be later than it, and fit into the ring besides what it keeps free for
-  /// stops. On a stream that has no waypoint yet they start it, as appended ones do. O(D) per
-  /// waypoint; otherwise as append.
+  /// waypoint, comes to rest. With waypoints, `t` must not lie before earliest() nor, on a live
+  /// stream, before now, else `too_late`; the waypoints must be later than it, and fit into the
+  /// ring besides what it keeps free for stops. On a stream that has no waypoint yet they start it,
+  /// as appended ones do. O(D) per waypoint; otherwise as append.
   ///
   /// Without waypoints it is a stop, which is never too late: a t that has settled means as soon as
   /// possible. The solver's next step carries it out at its settled_until, or at t if that is
@@ -123,15 +144,16 @@ class Producer {
   /// velocity and acceleration have one value per dimension. Otherwise as append.
   [[nodiscard]] AppendStatus start_from(const Instant& state) noexcept;
 
-  /// The earliest time that may still be changed: of a live stream what its solver has settled;
-  /// min() of a recorded one, or while there is no solver.
+  /// The earliest time that may still be changed: of a live stream what its solver has settled, as
+  /// last published; min() of a recorded one, and while no solver has published. O(1); until a
+  /// solver has come it looks for one, as append does.
   [[nodiscard]] Time earliest() noexcept;
 
   /// Ends the stream at its last waypoint; a live one at rest there. The last waypoint is the last
-  /// one that the solver does not refuse: see refusals(). If that knot is frozen
-  /// already, the stop tail runs and a splice goes back to it. Throws std::invalid_argument if the
-  /// condition's values do not fit the dimensions or ask for motion in a quaternion's, BadRequest
-  /// if a stream cannot meet it; otherwise as append.
+  /// one that the solver does not refuse: see refusals(). If that knot is frozen already, the stop
+  /// runs and an entry leads back to it. Throws BadRequest if the condition's values do not fit the
+  /// dimensions or ask for motion in a quaternion's, or if a stream cannot meet it: is_online()
+  /// must hold, and on a live stream is_at_rest(); otherwise as append.
   [[nodiscard]] AppendStatus finish(const Condition& end);
 
   /// What the solver has refused since the last call, of the items that this producer appended:
@@ -162,13 +184,18 @@ class Producer {
   /// The stream's random number, the same in both of its regions.
   [[nodiscard]] std::uint64_t stream_id() const noexcept;
 
-  /// Whether waypoints of a producer that died stand in the ring, and the last one's time.
+  /// Whether the ring held items already when this producer was made: of one that died, or was
+  /// destroyed, before finishing.
   [[nodiscard]] bool continues() const noexcept;
+  /// The time that the next waypoint must be later than: that of the newest item, whichever
+  /// producer appended it; 0 while there is none.
   [[nodiscard]] Time last_time() const noexcept;
 
+  /// Whether the region's pages are locked into memory: best effort, see RLIMIT_MEMLOCK.
   [[nodiscard]] bool is_memory_locked() const noexcept;
 
-  /// Removes the stream's waypoint region: for a stream that no solver ever took up.
+  /// Removes the stream's waypoint region: for a stream that no solver ever took up. The producer
+  /// is of no more use; destroy it. System calls.
   void withdraw() noexcept;
 
  private:

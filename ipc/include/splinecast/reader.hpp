@@ -28,7 +28,7 @@ namespace [[gnu::visibility("default")]] splinecast {
 enum class WaitStatus : std::uint8_t {
   advanced,  ///< there is a revision that this reader had not seen
   timed_out,
-  retired,  ///< attach again
+  retired,  ///< make a new Reader
 };
 
 /// Which of a stream's writers live.
@@ -40,7 +40,8 @@ struct Alive {
 /// How far a stream's curve has come, as of one revision.
 struct CurveProgress {
   std::uint64_t revision = 0;
-  Time newest{};                ///< time of the newest waypoint
+  Time newest{};                ///< time of the newest waypoint, or, while none has followed, of
+                                ///< the start state or the replacement
   Time settled_until{};         ///< before it no later revision changes the curve
   bool is_finished = false;     ///< the stream has been finished: no waypoint follows
   std::uint64_t waypoints = 0;  ///< taken by the solver, over the stream's life
@@ -51,8 +52,9 @@ struct CurveProgress {
 /// in each, one thread uses a reader, and every thread may have its own.
 class Reader {
  public:
-  /// Maps the stream's knot board, waiting for it up to `wait`. Throws NoSuchStream if none has
-  /// come by then, BadRegion if it cannot be used.
+  /// Maps the stream's knot board, waiting for it up to `wait`: looks every 2 ms. Throws BadRequest
+  /// for what is no stream's name (1 to 128 of A-Z a-z 0-9 . _ -, no leading dot), NoSuchStream if
+  /// no board has come by then, BadRegion if it cannot be used.
   explicit Reader(const std::string& stream, Time wait = Time::zero(), const Trust& trust = {});
   Reader(Reader&&) noexcept;
   Reader& operator=(Reader&&) noexcept;
@@ -60,12 +62,16 @@ class Reader {
 
   [[nodiscard]] std::size_t dimensions() const noexcept { return dimensions_; }
 
-  /// Evaluates position, velocity, acceleration and jerk at time `t` of the stream's clock into
-  /// `out`, one value per dimension in each span; a wrapping position within half a period of 0, a
-  /// quaternion at unit length (angular_motion gives its ω and α). Wait-free: no system call,
-  /// no allocation, no store to shared memory, whatever the writers do. O(D) where time advances,
-  /// O(log n + D) at a jump. Where the status has no values, `out` is left as it was; where a span
-  /// has another size, as after attaching to a stream of other dimensions, it is `wrong_dimension`.
+  /// Evaluates position, velocity, acceleration and jerk at time `t` into `out`, one value per
+  /// dimension in each span; a wrapping position within half a period of 0, a quaternion at unit
+  /// length (angular_motion gives its ω and α). Wait-free: no system call, no allocation, no store
+  /// to shared memory, whatever the writers do. O(D) where time advances, O(log n + D) at a jump.
+  /// Where the status has no values, `out` is left as it was; where a span has another size, as
+  /// after attaching to a stream of other dimensions, it is `wrong_dimension`.
+  ///
+  /// `t` is on clock(): CLOCK_MONOTONIC of a live stream. There a sample counts as executed: if a
+  /// later revision changes the curve at or before the latest time sampled, the next sample is
+  /// `revised`, once. To look ahead of settled_until() use `preview` or `sample_many`.
   [[nodiscard]] SampleStatus sample(Time t, const StateRef& out) noexcept;
   [[nodiscard]] SampleStatus sample(Time t, State& out) noexcept { return sample(t, out.ref()); }
 
@@ -82,22 +88,26 @@ class Reader {
   /// times and of the curve it is `wrong_dimension`.
   std::uint64_t sample_many(std::span<const Time> times, const SampleBlock& out) noexcept;
 
-  /// The time before which what the last sample saw never changes.
+  /// The time before which what the last sample, or look ahead, saw never changes; the least time
+  /// that a curve can have before the first one.
   [[nodiscard]] Time settled_until() const noexcept;
 
   /// Copies every segment that has a part between `from` and `to` (inclusive), all under one
   /// revision. Returns `settled` or `provisional` for the whole; `before_history`, `no_data`,
-  /// `busy`, `retired` or `wrong_dimension` leave `out` without segments. The segments are the
-  /// curve as it was solved, before DimensionKinds::normalise; their acceleration steps are
-  /// those of what readers see. The step at the left end of the oldest segment on the board is not
-  /// known (empty): begin one segment earlier. Allocates if `out` must grow.
+  /// `busy`, `retired` or `wrong_dimension` leave `out` without segments. It is `before_history`
+  /// also where `from` lies before a live stream's first waypoint, where `sample` says `holding`.
+  /// With `from` > `to` it is `settled` or `provisional` without segments, or with the one that
+  /// contains both. The segments are the curve as it was solved, before DimensionKinds::normalise;
+  /// their acceleration steps are those of what readers see. The step at the left end of the oldest
+  /// segment on the board is not known (empty): begin one segment earlier. Allocates if `out` must
+  /// grow.
   [[nodiscard]] SampleStatus snapshot(Time from, Time to, Snapshot& out);
 
   /// The stream's limits; empty if it has none. They never change.
   [[nodiscard]] const MotionLimits& limits() const noexcept;
 
   /// Marks a sample: where it is nearest to a limit of the stream, or farthest beyond it; a ratio
-  /// above 1 is beyond. O(D), allocates nothing.
+  /// above 1 is beyond, `u` is 0. O(D), allocates nothing.
   [[nodiscard]] Excess excess(const State& sampled) const noexcept;
 
   /// How far the curve has come; nothing if there is no revision yet, or if the writer overtook
@@ -120,6 +130,8 @@ class Reader {
   [[nodiscard]] std::vector<std::string> names() const;
   [[nodiscard]] std::vector<std::string> units() const;
   [[nodiscard]] DimensionKinds kinds() const;
+
+  /// Whether the region's pages are locked into memory: best effort, see RLIMIT_MEMLOCK.
   [[nodiscard]] bool is_memory_locked() const noexcept;
 
  private:

@@ -13,15 +13,20 @@ namespace [[gnu::visibility("default")]] splinecast {
 enum class AppendStatus : std::uint8_t {
   accepted,
   full,             ///< the ring has no room until the solver consumes; try again
-  past,             ///< the time lies before what has settled; live streams only
+  past,             ///< the time has settled and lies more than 250 ms before what has settled,
+                    ///< or before now if that is later; of a first waypoint or a start state:
+                    ///< the time has settled. Live streams only
   duplicate,        ///< the time is that of the waypoint before
   out_of_order,     ///< the time is earlier than that of the waypoint before
   not_finite,       ///< a value is infinite, not a number, or beyond ±kLargestValue
   too_close,        ///< less than the least interval after the waypoint before
   too_far_apart,    ///< more than the most interval after the waypoint before (on a live stream:
-                    ///< after it, after what has settled and after now), or not within ±2⁶² ns
+                    ///< after it, after what has settled and after now); a time, that of a
+                    ///< replacement too, not within ±2⁶² ns; or ReplaceOptions::blend longer
+                    ///< than the most interval
   wrong_dimension,  ///< a span does not have one value per dimension
-  too_late,         ///< a replacement from a time that has settled: see Producer::earliest()
+  too_late,         ///< a replacement with waypoints from before Producer::earliest() or, on a
+                    ///< live stream, from before now
   too_many,         ///< a replacement that no ring of this size has room for
   already_started,  ///< a start state behind the first waypoint
   finished,         ///< the stream has been finished
@@ -30,7 +35,8 @@ inline constexpr std::uint8_t kAppendStatuses = 13;
 
 /// Why the solver refused an item that the ring had accepted. Counted one by one.
 enum class Refusal : std::uint8_t {
-  past = 1,  ///< more than 250 ms before what has settled; live streams only
+  past = 1,  ///< more than 250 ms before what has settled, or the first waypoint or a start state
+             ///< before it; live streams only
   duplicate = 2,
   out_of_order = 3,
   not_finite = 4,  ///< a value is not usable, or the curve would have one that is not finite
@@ -50,14 +56,17 @@ inline constexpr std::uint8_t kRefusals = 15;
 /// What a sample is worth.
 enum class SampleStatus : std::uint8_t {
   settled,          ///< final: every reader, now or later, gets these bits
-  provisional,      ///< a newer waypoint may still change it
-  stopping,         ///< in the stop tail behind the newest waypoint
+  provisional,      ///< not settled yet: a newer waypoint or a replacement may still change it
+  stopping,         ///< in the stop segment behind the newest waypoint
   holding,          ///< at rest: past the end, or before the first waypoint of a live stream
-  revised,          ///< the curve has been changed before a time that this reader had sampled
+  revised,          ///< good as it is, but the curve has been changed before a time that this
+                    ///< reader had sampled; said once; live streams only
   before_history,   ///< older than what the board keeps, or before a recorded stream; no values
-  no_data,          ///< no waypoint has been solved yet; no values
-  busy,             ///< the writer overtook every try; no values, try again
-  retired,          ///< the stream was removed or made again: attach again; no values
+  no_data,          ///< no waypoint has been solved yet, or before a live stream that starts in
+                    ///< motion; no values
+  busy,             ///< the writer overtook every try: try again; or what lies there is no
+                    ///< segment; no values
+  retired,          ///< the stream was removed or made again: make a new Reader; no values
   wrong_dimension,  ///< a span, or the snapshot, does not have one value per dimension; no values
 };
 
@@ -86,9 +95,6 @@ struct StepResult {
 [[nodiscard]] constexpr bool has_values(SampleStatus status) noexcept {
   return status <= SampleStatus::revised;
 }
-
-/// The solver's reason for refusing a waypoint whose interval has this status.
-[[nodiscard]] Refusal to_refusal(AppendStatus interval) noexcept;
 
 /// In words, as files and messages have them: `before history`, `out of order`, …
 [[nodiscard]] std::string_view to_string(AppendStatus status) noexcept;

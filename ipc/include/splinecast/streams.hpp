@@ -5,7 +5,8 @@
 
 #include "splinecast/options.hpp"
 
-/// The streams of this host. Any thread may call these functions; they make system calls.
+/// The streams of this host. A stream's name has 1 to 128 of A-Z a-z 0-9 . _ - and no leading dot.
+/// Any thread may call these functions; they make system calls.
 namespace [[gnu::visibility("default")]] splinecast {
 
 /// Names of all streams of which any region or lock exists on this host, sorted. Ignores files
@@ -14,8 +15,9 @@ namespace [[gnu::visibility("default")]] splinecast {
 [[nodiscard]] std::vector<std::string> stream_names();
 
 /// Removes a stream: takes both locks, says `retired` to its readers and wakes them, unlinks
-/// regions and lock files. Throws NoSuchStream, StreamBusy if a writer of it lives, or BadRegion if
-/// a file under its names is not to be trusted; then nothing has been changed.
+/// regions and lock files. Throws BadRequest for what is no stream's name, NoSuchStream, StreamBusy
+/// if a writer of it lives, or BadRegion if a file under its names is not to be trusted; then
+/// nothing has been changed.
 void remove_stream(const std::string& stream, const Trust& trust = {});
 
 }  // namespace splinecast

@@ -154,7 +154,11 @@ TEST_F(LimitFiles, ARobotGivesVelocitiesOfItsMovingJointsAndBoundsOfThoseThatHav
 TEST_F(LimitFiles, BadRobotsAreRefusedWithLineAndValue) {
   if (!can_read("arm.urdf", kRobot)) GTEST_SKIP() << "made without urdfdom";
   std::string deep = "<robot name=\"r\">";
+  std::string disguised = deep;
   for (int i = 0; i < 100'000; ++i) deep += "<a>";
+  for (int i = 0; i < 100'000; ++i) disguised += "<a b='/>' >/><!-- /> --><!x '><?y '>";
+  std::string flat = deep.substr(0, 16);
+  for (int i = 0; i < 1'000; ++i) flat += "<!-- <a> --><a b='>'/><a></a>";
   const std::vector<std::pair<std::string, std::string>> cases{
       {with(kRobot, "velocity=\"3\"", "velocity=\"3x\""), "arm.urdf:4: velocity value (3x)"},
       {with(kRobot, "velocity=\"3\"", "velocity=\"-3\""), "arm.urdf:4: velocity -3"},
@@ -163,6 +167,8 @@ TEST_F(LimitFiles, BadRobotsAreRefusedWithLineAndValue) {
       {"<sdf/>", "no element 'robot'"},
       {"<", "arm.urdf:"},
       {deep, "arm.urdf:1: more than 200 elements"},
+      {disguised, "arm.urdf:1: more than 200 elements"},
+      {flat, "arm.urdf:1: Error"},
   };
   for (const auto& [text, message] : cases) {
     const std::string why = refusal("arm.urdf", text);

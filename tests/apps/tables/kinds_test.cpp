@@ -208,7 +208,7 @@ void expect_motion_of_coning(const std::string& header, bool w_first, const std:
   std::string kinds_seen;
   const auto samples = columns_of(through_a_stream(file, at, {}, kinds_seen));
   EXPECT_EQ(kinds_seen, kinds);
-  // The bounds of tests/ipc/dimension_kinds_test.cpp.
+  // The bounds of tests/ipc/solve/dimension_kinds_test.cpp.
   const double m = testing::Coning().derivative_bound(4);
   const std::array<double, 2> bounds{1.1 * 2 * kH * kH * kH * m / 24, 1.1 * 6 * kH * kH * m / 8};
   const auto errors = motion_errors(samples);

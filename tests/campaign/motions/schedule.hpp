@@ -43,10 +43,10 @@ struct Mishap {
   std::string_view name;
   std::string_view file;  ///< names its plot; empty: nothing happens that a plot could show
   Schedule (*make)(const Sines& motion, std::uint64_t seed);
-  double quantum =
-      0;  ///< rad: waypoints are multiples of it, as encoders give them; 0: they are not
+  /// In rad: waypoints are multiples of it, as encoders give them; 0: they are not.
+  double quantum = 0;
   bool is_covered = false;  ///< the lead covers it: nothing may be passed over behind the start
-  /// Path errors of the simulation in live_motion.md, in rad: p99 and largest, with limits of 5, 10
+  /// Path errors that a simulation apart from this code has found, in rad: p99 and largest, with limits of 5, 10
   /// and 20 rad/s²; 0: none given.
   std::array<std::pair<double, double>, 3> simulated{};
 };

@@ -124,13 +124,13 @@ TEST_F(ProducerRefusals, FirstOfEachReasonIsWhatTheSolverTells) {
   std::vector<ItemRefusal> told;
   append(producer, 5);
   solve();
-  solver_.first_refusals(told);
+  solver_.take_first_refusals(told);
   ASSERT_EQ(told.size(), 1U);
   EXPECT_EQ(told[0].item, 0U);
   append(producer, 5);
   ASSERT_EQ(producer.finish({}), AppendStatus::accepted);
   solve();
-  solver_.first_refusals(told);
+  solver_.take_first_refusals(told);
   EXPECT_TRUE(told.empty());
 }
 

@@ -115,6 +115,26 @@ TEST(StreamSolver, TellsTheProducerWhatItConsumedAndReadersWhatChanged) {
   EXPECT_FALSE(stream.solver.step(stream.clock).published);
 }
 
+TEST(StreamSolver, PromisesNothingOfNegativeTimesBeforeTheyHaveSettled) {
+  MemoryStream stream(1, {.settle = 4});
+  Sampler sampler(stream.board.reader, StreamClock::recorded);
+  State state(1);
+  EXPECT_EQ(sampler.settled_until(), -kLatestTime);
+  const auto put = [&](std::int64_t i) {
+    const double x = i % 2 == 0 ? 0 : 1;
+    ASSERT_EQ(stream.append(Time((i - 100) * 1'000'000), {&x, 1}), AppendStatus::accepted);
+    stream.drain();
+  };
+  for (std::int64_t i = 0; i < 3; ++i) put(i);
+  stream.replace_solver();  // which must not promise more than the one before
+  for (std::int64_t i = 3; i < 10; ++i) put(i);
+  EXPECT_EQ(sampler.sample(Time(-95'500'000), state.ref()), SampleStatus::settled);
+  EXPECT_EQ(sampler.sample(Time(-91'500'000), state.ref()), SampleStatus::provisional);
+  EXPECT_EQ(sampler.settled_until(), Time(-95'000'000));
+  stream.finish();
+  EXPECT_EQ(sampler.sample(Time(-91'500'000), state.ref()), SampleStatus::settled);
+}
+
 TEST(StreamSolver, KeepsAsMuchHistoryAsTheBoardHolds) {
   const Mesh mesh = random_mesh(5, 500, 1, 2);
   MemoryStream stream(1, {}, 64, 64);
