@@ -59,8 +59,11 @@ std::pair<std::size_t, bool> end_of_tag(std::string_view text, std::size_t at) {
   char quote = 0;
   std::size_t i = at + 1;
   for (; i < text.size() && (quote != 0 || (text[i] != '>' && text[i] != '<')); ++i) {
-    const bool is_quote = text[i] == '"' || text[i] == '\'';
-    if (is_quote && (quote == 0 || quote == text[i])) quote = quote == 0 ? text[i] : 0;
+    if (quote == text[i]) {
+      quote = 0;
+    } else if (quote == 0 && (text[i] == '"' || text[i] == '\'')) {
+      quote = text[i];
+    }
   }
   const bool is_closed = i < text.size() && text[i] == '>';
   return {is_closed ? i + 1 : i, is_closed && text[i - 1] == '/'};
