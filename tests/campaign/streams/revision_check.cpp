@@ -43,7 +43,7 @@ void RevisionCheck::look(Time now, bool is_complete) {
                              fmt::format("no head of revision {}", look.revision));
   }
   // A solver that dies behind its commit has not said how far that settles the curve.
-  check_settled_until(before, is_complete ? now : Time::min() / 2);
+  check_settled_until(before, is_complete ? now : Time::min());
   if (look.revision == before.revision) {
     settled_.look();
     return check_settled_segments();
