@@ -10,7 +10,7 @@
 #include "apps/output/stream.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "apps/recordings/advice.hpp"
-#include "apps/recordings/recording.hpp"
+#include "apps/recordings/selection.hpp"
 #include "apps/streams/report.hpp"
 #include "apps/streams/rows.hpp"
 #include "apps/tables/kinds.hpp"

@@ -8,7 +8,7 @@
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
-#include "apps/recordings/recording.hpp"
+#include "apps/recordings/selection.hpp"
 #include "apps/replay/embedded_solver.hpp"
 #include "apps/replay/lead.hpp"
 #include "apps/replay/sent_rows.hpp"

@@ -12,7 +12,7 @@
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
-#include "apps/recordings/recording.hpp"
+#include "apps/recordings/selection.hpp"
 #include "apps/streams/log.hpp"
 #include "apps/streams/report.hpp"
 

@@ -15,7 +15,7 @@
 #include "apps/limits/file.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "apps/recordings/advice.hpp"
-#include "apps/recordings/recording.hpp"
+#include "apps/recordings/selection.hpp"
 #include "apps/tables/format.hpp"
 #include "apps/tables/kinds.hpp"
 #include "apps/tables/time_column.hpp"

@@ -14,8 +14,8 @@
 #include "ipc/sampling/sampler.hpp"
 #include "tests/campaign/campaigns.hpp"
 #include "tests/campaign/motions/sines.hpp"
+#include "tests/campaign/streams/plan.hpp"
 #include "tests/campaign/streams/random.hpp"
-#include "tests/campaign/streams/stream_plan.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
 namespace splinecast::campaign {

@@ -6,7 +6,7 @@
 
 #include "ipc/verification/settled_segments.hpp"
 #include "tests/campaign/streams/curve_rules.hpp"
-#include "tests/campaign/streams/stream_findings.hpp"
+#include "tests/campaign/streams/findings.hpp"
 #include "tests/fixtures/streams/item_record.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "ipc/sampling/sampler.hpp"
+#include "tests/campaign/streams/findings.hpp"
 #include "tests/campaign/streams/revision_log.hpp"
-#include "tests/campaign/streams/stream_findings.hpp"
 
 namespace splinecast::campaign {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "splinecast/waypoint.hpp"
-#include "tests/campaign/streams/stream_plan.hpp"
+#include "tests/campaign/streams/plan.hpp"
 
 namespace splinecast::campaign {
 

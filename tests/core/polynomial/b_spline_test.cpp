@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/fixtures/curves/curves.hpp"
+#include "tests/fixtures/curves/generators.hpp"
 
 namespace splinecast::core {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/polynomial/segment.hpp"
-#include "tests/fixtures/curves/curves.hpp"
+#include "tests/fixtures/curves/generators.hpp"
 
 namespace splinecast::core {
 namespace {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "tests/fixtures/curves/curves.hpp"
+#include "tests/fixtures/curves/generators.hpp"
 
 namespace splinecast::core {
 namespace {

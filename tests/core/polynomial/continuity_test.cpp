@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "splinecast/calculus.hpp"
-#include "tests/fixtures/curves/curves.hpp"
+#include "tests/fixtures/curves/generators.hpp"
 
 namespace splinecast::core {
 namespace {

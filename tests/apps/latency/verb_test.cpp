@@ -272,7 +272,7 @@ TEST(Latency, ItsPageShowsTheTableThePercentilesAndTheHistogramsOverTime) {
   EXPECT_EQ(cells, 200);
   EXPECT_GT(seen->at("curve").size(), 10U);
   REQUIRE_BROWSER();
-  const json facts = testing::facts_of(folder, page, "latency/latency_facts.js", "");
+  const json facts = testing::facts_of(folder, page, "latency/page_facts.js", "");
   ASSERT_TRUE(facts.is_object());
   ASSERT_EQ(facts.at("warnings").size(), 1U);
   EXPECT_NE(facts["warnings"][0].get<std::string>().find("CPU 999"), std::string::npos);

@@ -1,4 +1,4 @@
-#include "apps/recordings/recording.hpp"
+#include "apps/recordings/selection.hpp"
 
 #include <fmt/format.h>
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "splinecast/status.hpp"
-#include "tests/campaign/streams/stream_plan.hpp"
+#include "tests/campaign/streams/plan.hpp"
 
 namespace splinecast::campaign {
 

@@ -1,4 +1,4 @@
-#include "tests/campaign/streams/stream_plan.hpp"
+#include "tests/campaign/streams/plan.hpp"
 
 #include <algorithm>
 #include <array>

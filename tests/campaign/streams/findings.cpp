@@ -1,4 +1,4 @@
-#include "tests/campaign/streams/stream_findings.hpp"
+#include "tests/campaign/streams/findings.hpp"
 
 #include <fmt/format.h>
 
