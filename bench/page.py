@@ -16,10 +16,10 @@ DIMENSIONS = (1, 3, 6, 7, 16, 32)
 
 
 class Target:
-    """What a subject is compared with, and the ratio that it must reach.
+    """The comparison of a subject with a peer, and the ratio to reach.
 
     `faster`: peer's time / subject's must be at least `bound`; else subject's / peer's at most.
-    `key` and `peer_key` are the times that count; `what` says which one of the subject's that is.
+    `key` and `peer_key` name the compared times; `what` describes the subject's.
     """
 
     def __init__(self, subject, peer, bound, faster=False, key="ns", peer_key="ns", what=""):
@@ -36,17 +36,17 @@ class Target:
         return ratio >= self.bound if self.faster else ratio <= self.bound
 
     def ratios(self, runs):
-        """One for each block of each group in which both ran."""
+        """One ratio for each block of each group in which both ran."""
         subjects, peers = runs.get(self.subject, {}), runs.get(self.peer, {})
         return [self.ratio(subjects[at][self.key], peers[at][self.peer_key])
                 for at in sorted(subjects.keys() & peers.keys())]
 
 
 class Bound:
-    """A bound on a value of a run, which is compared with no other run.
+    """A bound on a value of a run, without a peer.
 
-    `key` names the value, of which `size` make one `unit`. `needs` is another value, without which the first one
-    means nothing, and its least size.
+    `key` names the value, of which `size` make one `unit`. `needs` is another value and its minimum, below which the
+    first one has no meaning.
     """
 
     def __init__(self, subject, key, unit, size=1, least=None, most=None, what="", needs=None):
@@ -90,7 +90,7 @@ BOUNDS = [
     Bound("board/dims:7/knots:4096", "region_bytes", "MB", size=1e6, most=2.2, what="size of the region"),
     *(Bound(f"plan/dims:7/limits:{limits}", key, "µs", size=1e3, most=most, what=what)
       for limits in (0, 1)
-      for key, most, what in (("p50_ns", 20, "a step on the way back, p50"), ("worst_ns", 1000, "the same, worst"))),
+      for key, most, what in (("p50_ns", 20, "a step of the return, p50"), ("worst_ns", 1000, "the same, worst"))),
     Bound("replay/dims:7", "items_per_second", "waypoints/s", least=1_000_000),
     Bound("parse/dims:7", "bytes_per_second", "MB/s", size=1e6, least=150),
     Bound("streams:1000/idle", "core_percent", "% of a core", most=1),
@@ -98,17 +98,17 @@ BOUNDS = [
 ]
 
 
-# Google Benchmark ends a run early that other programs keep from the processor; one with less CPU
-# time than this measured cold caches and nothing else.
+# Google Benchmark ends a run early if other programs use the processor; a run with less CPU time than this measured
+# only cold caches.
 LEAST_MEASURED_NS = 1e6
 
-# Values by which a run shows that it measured something else than its own CPU time.
+# Keys of the runs that measured something else than their own CPU time.
 OTHER_MEASURES = {"p50_ns", "core_percent", "region_bytes"}
 
 
 def read_runs(document):
-    """name → the runs by group and block, with `ns`: CPU time (of many times sampled at once per time), or p50
-    where trips were measured; and how many runs were cut short, which are left out."""
+    """Returns name → runs by group and block, and the number of runs that were cut short, which are left out. `ns`
+    of a run is its CPU time (per time if it samples many at once), or p50 if it measured trips."""
     runs = defaultdict(dict)
     cut_short = 0
     for run in document["runs"]:
@@ -175,8 +175,8 @@ def print_targets(runs):
     table(["subject", "against", "target", "median", "range", "blocks", ""], rows)
     few = column(runs, "streams:10/idle", "core_percent")
     if few:
-        print(f"Ten idle streams take {number(statistics.median(few))} % of a core: a wake-up every 20 ms, with ten "
-              "looks each.\n")
+        print(f"Ten idle streams take {number(statistics.median(few))} % of a core: a wake-up every 20 ms, each "
+              "of which polls all ten.\n")
     return missed
 
 
@@ -192,7 +192,7 @@ def print_times(runs):
            for kind in kinds])
 
 
-# Trips that take milliseconds, and are told so.
+# Trips that are reported in milliseconds.
 LONG_TRIPS = ("attach/", "idle_append/")
 
 
@@ -215,8 +215,8 @@ def print_trips(runs):
     table(["single trips, ms", "p50", "range", "p99", "range"], long_rows)
     pause = column(runs, "idle_append/streams:1000", "quiet_sweep_ns")
     if pause:
-        print(f"The solver of a thousand streams looks at each idle one every {pause[0] / 1e6:g} ms; an append waits for "
-              "that look, so half of it is the p50 to expect of `idle_append`.\n")
+        print(f"The solver of a thousand streams polls each idle one every {pause[0] / 1e6:g} ms; an append waits for "
+              "that poll, so the expected p50 of `idle_append` is half of that.\n")
 
 
 OVERTAKEN = ("sample/dims:7/beside:replay", "sample/dims:7/beside:publish")
@@ -260,40 +260,40 @@ Written by `./run bench`; do not edit. All figures are from the run that wrote t
 
 One program, `splinecast_bench`, contains subjects, peers and floors. It runs them in groups and blocks: in a block each
 benchmark of the group runs once, then the next block begins. A ratio is taken between two runs of the same block, and
-the tables give the median and the range over the blocks: {blocks}, or fewer for rows that take seconds a run.
+the tables give the median and the range over the blocks: {blocks}, or fewer for rows that take seconds per run.
 
-Times are CPU time per operation, the mean of a run: it excludes what other programs take from the machine. Single trips
+Times are CPU time per operation, the mean of a run: it excludes the time of other programs. Single trips
 are wall time, measured one by one: p50 and p99 of 20,000 round trips, 2,000,000 samples, 1,000,000 samples (`beside`),
 500 attachments or 200 appends to idle streams. `publish` against `floor/ping` compares the mean CPU time of one with
 the p50 of the other.
 
 Peers: *gsl* is the GNU Scientific Library, a cubic spline and an accelerator per dimension in this process (position,
 velocity, acceleration; `append` solves 1,024 knots again). *makima* is boost::math::interpolators::makima's
-`push_back`. *iceoryx* 2.0.3 sends the same payload there and back, polled, with an iox-roudi of its own. Floors:
-*floor/eval* is the polynomial alone, from this process's own memory; *floor/ping* is a word there and a word back over
+`push_back`. *iceoryx* 2.0.3 sends the same payload there and back, polled, with its own iox-roudi. Floors:
+*floor/eval* is the polynomial alone, from this process's own memory; *floor/ping* is one word each way over
 two cache lines between the two cores.
 """
 
 ROWS = """| row | what it measures |
 |---|---|
 | `sample` | position, velocity, acceleration and jerk through the public `Reader`, in steps of 1 ms through knots at 100 Hz |
-| `sample/…/writer:…` | the same, while another process publishes at this rate: the mean CPU time, which the targets compare; then every sample timed alone, and apart those that find a new revision |
-| `sample/…/beside:replay` | samples in the segments that revisions change, each time in another one, while `replay --embedded --rate max` writes the board on the other core, a revision for up to 256 waypoints |
-| `sample/…/beside:publish` | the same beside a writer that commits a revision for each waypoint, as fast as it can |
+| `sample/…/writer:…` | the same, while another process publishes at this rate: the mean CPU time, which the targets compare; then every sample timed alone, and separately those that find a new revision |
+| `sample/…/beside:replay` | samples in the segments that revisions change, one after the other, while `replay --embedded --rate max` writes the board on the other core, with one revision for up to 256 waypoints |
+| `sample/…/beside:publish` | the same beside a writer that commits a revision for each waypoint, as fast as possible |
 | `sample_random` | samples at random times in 65,536 segments |
 | `sample_many` | 50 times, 2 ms apart, from one revision by one call, per time; the first time is 1 ms later from call to call, as for a predictive controller at 1 kHz; knots at 100 Hz |
 | `append` | one waypoint through the window, and out as a settled segment |
-| `plan` | each step of a solver on the way back from 300 ms of silence, with limits and without: it takes up the waypoints that come at once, looks for an entry and publishes it |
+| `plan` | each step of a solver that returns to the waypoints after 300 ms of silence, with limits and without: it consumes the waypoints that arrive at once, searches for an entry and publishes it |
 | `publish` | one waypoint appended to the ring, solved and published, beside readers that poll at 1 kHz on the other core |
 | `roundtrip/embedded` | one core appends and publishes; the other samples, and acknowledges on a cache line |
 | `roundtrip/solver` | one core appends; the other solves and publishes; the first samples |
 | `…/settle:0` | with settle lag 0, where a waypoint changes the fewest knots |
-| `attach` | from the constructor of `Reader` to the first sample, of another process's stream whose board holds 4,096 knots; the same process attaches again and again |
+| `attach` | from the constructor of `Reader` to the first sample, of another process's stream whose board holds 4,096 knots; the same process attaches repeatedly |
 | `board` | bytes of the region that the solver writes |
 | `replay` | CSV text to settled segments in shared memory, one thread |
 | `parse` | CSV text to a table |
-| `streams:1000/busy:100Hz` | share of a core that one process takes for solving a thousand streams of seven dimensions, with producers in another process; it looks at them every millisecond |
-| `streams:1000/idle` | the same while nothing has happened on the streams for a second: it looks at each every 20 ms |
+| `streams:1000/busy:100Hz` | share of a core that one process uses to solve a thousand streams of seven dimensions, with producers in another process; it polls them every millisecond |
+| `streams:1000/idle` | the same while the streams have been idle for a second: it polls each every 20 ms |
 | `idle_append` | from an append to one of a thousand idle streams, at a random instant, until a reader gets the curve through the new knot |
 """
 
@@ -305,8 +305,8 @@ def main():
     print(INTRODUCTION.format(blocks=document["blocks"]))
     print(ROWS)
     print_machine(document)
-    print(f"Of {len(document['runs'])} runs {cut_short} measured less than 1 ms of CPU time, because other programs "
-          "kept them from the processor, and are left out.\n")
+    print(f"{cut_short} of {len(document['runs'])} runs are left out: they measured less than 1 ms of CPU time, "
+          "because other programs used the processor.\n")
     print("## Targets\n")
     missed = print_targets(runs)
     print("## Times\n")

@@ -1,9 +1,9 @@
-"""The profile of the hot paths: instructions as callgrind counts them, and cache lines.
+"""The profile of the hot paths: instructions, counted by callgrind, and cache lines.
 
     profile_paths.py SPLINECAST_BENCH    lists the functions of each path: instructions per call, purpose, name;
                                          "(no pattern)" marks those that count as the rest
 
-Instructions are repeatable for one binary, whatever else the machine does.
+Instruction counts are repeatable for one binary, regardless of other load on the machine.
 """
 
 import re
@@ -12,18 +12,18 @@ import sys
 import tempfile
 from collections import defaultdict
 
-# Of the benchmarks `counted/…`, which run so often.
+# Iterations of the benchmarks `counted/…`.
 CALLS = 10_000
 
-# What no pattern names.
+# The purpose of functions that no pattern matches.
 REST = "copies and fills of the C library, and the rest"
 
 
 class Path:
-    """A path that is counted: `benchmark` runs it, `entries` are the functions in which it is counted.
+    """A counted path: `benchmark` runs it, `entries` are the functions in which instructions are counted.
 
-    `purposes` says what a function is for: (expression, purpose), the first expression found in its name counts.
-    `lines` is a text on the cache lines that the path touches.
+    `purposes` is a list of (regular expression, purpose); a function has the purpose of the first expression found in
+    its name. `lines` is a text on the cache lines that the path touches.
     """
 
     def __init__(self, title, benchmark, entries, purposes, lines):
@@ -31,11 +31,11 @@ class Path:
         self.purposes, self.lines = purposes, lines
 
     def purpose(self, function):
-        """What a function is for; nothing if no pattern names it."""
+        """The purpose of a function; None if no pattern matches it."""
         return next((purpose for pattern, purpose in self.purposes if re.search(pattern, function)), None)
 
     def count(self, binary):
-        """Instructions a call, by function, most first."""
+        """Instructions per call, by function, in descending order."""
         with tempfile.TemporaryDirectory() as folder:
             out = f"{folder}/callgrind.out"
             subprocess.run(
@@ -59,18 +59,19 @@ PATHS = [
         benchmark="counted/sample",
         entries=["splinecast::Reader::sample*"],
         purposes=[
-            (r"KeptSegments::|ipc::number_(near|by)", "looks whether there is a new revision, finds the segment, time within it, status"),
+            (r"KeptSegments::|ipc::number_(near|by)", "checks for a new revision, finds the segment, time within it, status"),
             (r"core::evaluate", "the polynomial and three derivatives, 7 dimensions"),
             (r"KnotBoardReader|KnotCopy|fetch|load_values", "copies the next knot out of shared memory, once every 10 samples"),
-            (r"BoardSegment|build_segment|build_cubic|magnitude", "makes the segment of its knots, once every 10 samples"),
-            (r"copy_bounds|see\(", "takes over the bounds of a revision"),
-            (r"Sampler::", "looks whether there is a new revision, finds the segment, time within it, status"),
+            (r"BoardSegment|build_segment|build_cubic|magnitude", "builds the segment from its knots, once every 10 samples"),
+            (r"copy_bounds|see\(", "copies the bounds of a revision"),
+            (r"Sampler::", "checks for a new revision, finds the segment, time within it, status"),
         ],
-        lines="""Cache lines of shared memory that it loads (64 bytes, 7 dimensions): one, with `revision`, `retired` and
-`settled until`, while the revision stands and the time lies in the segment used last. The next segment adds 3: the two
-cells of its right knot, whose tags are in the same lines as the velocities, and a node. A new revision adds 7: the tags of
-the head's two cells with the bounds beside them, the `changed from` of the revisions missed, and the cells of the segment's
-two knots, and where these were written again their nodes; all of it is asked for at once before the first is waited for. It stores nothing.
+        lines="""It loads these cache lines of shared memory (64 bytes, 7 dimensions): one, with `revision`, `retired` and
+`settled until`, while the revision is unchanged and the time is in the segment used last. The next segment adds 3: the
+two cells of its right knot, whose tags are in the same lines as the velocities, and a node. A new revision adds 7: the
+tags of the summary's two cells with the bounds beside them, the `changed from` of the revisions missed, the cells of the
+segment's two knots, and, if these were republished, their nodes; all of them are prefetched before the first load. It
+stores nothing.
 """,
     ),
     Path(
@@ -78,49 +79,49 @@ two knots, and where these were written again their nodes; all of it is asked fo
         benchmark="counted/publish",
         entries=["splinecast::Producer::append*", "splinecast::Solver::step*"],
         purposes=[
-            (r"KnotBoardWriter::commit", "the head, and the commit"),
+            (r"KnotBoardWriter::commit", "the summary, and the commit"),
             (r"KnotBoardWriter|magnitude", "writes the knots that the waypoint changes into spare cells"),
-            (r"acceleration", "the acceleration that the stop begins with"),
-            (r"PublishedCurve|KnotRing::knot|SlidingWindow::(segment|newer|left)", "which knots changed, and what goes with each"),
+            (r"acceleration", "the initial acceleration of the stop"),
+            (r"PublishedCurve|KnotRing::knot|SlidingWindow::(segment|newer|left)", "which knots changed, and their values"),
             (r"append_behind|back_substitute|solve|eliminate|close|TridiagonalSolver|SlidingWindow|KnotRing|write_chord|end_intervals",
              "the window: forward row, tail, K backward rows"),
-            (r"stop_tail|stop_time", "the stop tail"),
+            (r"stop_time", "the stop segment"),
             (r"Waypoint|Producer|is_finite|judge_interval", "the ring: checks, one item in, one item out"),
-            (r"StreamSolver|Solver::step|Quaternion|DimensionKinds", "the step: what to take, whether to"),
+            (r"StreamSolver|Solver::step|Quaternion|DimensionKinds", "the step: whether to consume items, and how many"),
         ],
         lines="""Cache lines, K = 8, 7 dimensions: the producer stores 2 of the ring's item and 1 with `head`, and loads the 2 with
 `tail` and `sleeping`; the solver loads 3 of the ring and stores one cell for each of the K + 1 knots that a waypoint
-solves, a node, a row, the acceleration of the stop, 1 in eight of the packed times, 2 of the head, `changed from`,
-`revision` with `settled until`, and `tail`: about 17 lines and 110 words.
+solves, a node, a row, the acceleration of the stop, 1 of the packed times per eight knots, 2 of the summary,
+`changed from`, `revision` with `settled until`, and `tail`: about 17 lines and 110 words.
 """,
     ),
 ]
 
 
-# What stands in the way of a target, by the beginning of its subject's name; told where it is missed.
+# What limits a subject, by the beginning of its name; printed if its target is missed.
 LIMITS = {
-    "roundtrip/": """- `roundtrip/…`: a ping moves two lines. A round trip moves at least four, one after the other: the commit word (for
-  `solver` the ring's `head` before it), the bounds with the tags of the knots near by, and the acknowledgement; and before
-  the commit, `publish` takes what the table of times says. iceoryx moves the waypoint alone and solves nothing.
+    "roundtrip/": """- `roundtrip/…`: a ping moves two lines. A round trip moves at least four, in sequence: the commit word (for
+  `solver` the ring's `head` before it), the bounds with the tags of the knots near by, and the acknowledgement. Before the
+  commit, it takes the time of `publish` in the table of times. iceoryx only moves the waypoint and solves nothing.
 """,
     "publish": """- `publish`: the instructions above. The window, the cells, node and row that a waypoint changes, the item in the ring and
-  the commit take about 2,200 of them, more than four times the window alone, before anything is asked or counted: each
-  word of shared memory is stored by an instruction of its own, 63 of velocities alone, each behind a load.
+  the commit take about 2,200 of them, more than four times the window alone, without checks and counters: each
+  word of shared memory is stored by one instruction after one load, 63 words for the velocities alone.
 """,
-    "streams:1000/busy": """- `streams:1000/busy`: 100,000 waypoints a second in a tenth of a core leave 1 µs for each. A step asks for about 120
-  cache lines: 65 of the solver's own state, 30 of the window, 25 shared ones. Of a thousand streams that is 8 MB, more
-  than the second-level cache holds; they are asked for while the step before is made.
+    "streams:1000/busy": """- `streams:1000/busy`: 100,000 waypoints a second in a tenth of a core leave 1 µs for each. A step touches about 120
+  cache lines: 65 of the solver's own state, 30 of the window, 25 shared ones. For a thousand streams that is 8 MB, more
+  than the second-level cache holds; they are prefetched during the step before.
 """,
-    "sample_random": """- `sample_random`: 65,536 slots take 33 MB, on 8,192 pages; a sample loads two of them, up to eight lines, after a line of
+    "sample_random": """- `sample_random`: 65,536 slots take 33 MB, on 8,192 pages; a sample loads two slots, up to eight lines, after a line of
   the packed times.
 """,
-    "sample_many": """- `sample_many`: the copies of a horizon are kept from call to call. Of some 130 instructions per time 67 evaluate; the rest
-  find the segment, five times to each, and tell the time within it and the status.
+    "sample_many": """- `sample_many`: the copies of a horizon's segments are kept from call to call. Each time takes about 130 instructions: 67
+  evaluate; the rest find the segment (five times fall into each) and compute the time within it and the status.
 """,
-    "sample": """- `sample`: the time that the target leaves beside the bare polynomial (`floor/eval`) is what status, lookup and copy
-  of the table above may take together.
+    "sample": """- `sample`: status, lookup and copy of the table above together may take the time that the target leaves in addition to
+  the polynomial alone (`floor/eval`).
 """,
-    "append": """- `append`: K rows follow one another, each a multiplication and a subtraction behind the one before, and the first waits
+    "append": """- `append`: K rows form a dependency chain, each a multiplication and a subtraction after the one before, and the first waits
   for three divisions: chord slope, pivot, tail.
 """,
     "parse": """- `parse`: half of it is the conversion of digits to doubles (fast_float), the rest finding lines and fields.
@@ -134,7 +135,7 @@ LIMITS = {
 def write_limits(missed):
     told = [text for name, text in LIMITS.items() if any(subject.startswith(name) for subject in missed)]
     if told:
-        print("### What stands in the way of a target that is not reached\n")
+        print("### What limits the subjects that miss their target\n")
         print("".join(told))
 
 
@@ -143,15 +144,15 @@ def write_table(path, functions):
     for function, instructions in functions.items():
         groups[path.purpose(function) or REST] += instructions
     total = sum(groups.values())
-    print("| instructions | share | what for |\n|---|---|---|")
+    print("| instructions | share | purpose |\n|---|---|---|")
     for purpose, instructions in sorted(groups.items(), key=lambda group: -group[1]):
         print(f"| {instructions:,.0f} | {instructions / total:.0%} | {purpose} |")
-    print(f"| **{total:,.0f}** | | in all |\n")
+    print(f"| **{total:,.0f}** | | total |\n")
 
 
 def write(binary, missed):
     print("## Where the time goes\n")
-    print("Instructions as valgrind's callgrind counts them, per call.\n")
+    print("Instructions per call, counted by valgrind's callgrind.\n")
     for path in PATHS:
         print(f"### {path.title}\n")
         write_table(path, path.count(binary))

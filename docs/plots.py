@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Draws what readers see around each mishap, and writes the measured numbers into the page.
+"""Plots what readers see around each fault, and writes the measured numbers into the pages.
 
-    plots.py FOLDER           draws docs/plots/*.svg from what `splinecast_campaign motions --trace FOLDER`
-                              has written, and updates the tables of docs/what-happens-when.md; also those
-                              of docs/tails.md, from tests/campaign/results/stops.json
-    plots.py --check PROGRAM  exits 1 unless the page shows every plot and describes every mishap that
-                              `PROGRAM motions --list` names, and every plot is there
+    plots.py FOLDER           draws docs/plots/*.svg from the files of `splinecast_campaign motions --trace FOLDER`
+                              and updates the tables of docs/what-happens-when.md; also updates the tables of
+                              docs/tails.md from tests/campaign/results/stops.json
+    plots.py --check PROGRAM  exits with 1 unless every plot exists, and the page shows every plot and describes
+                              every fault of `PROGRAM motions --list`
 
-`./run plots` runs the campaign and this.
+`./run plots` runs the campaign and this program.
 """
 
 import csv
@@ -34,7 +34,7 @@ SHADE_NAMES = {"stopping": "stop", "holding": "hold", "entry": "entry"}
 
 
 def read_trace(path):
-    """Columns of numbers by their names, None where there is none; and the statuses."""
+    """Columns of numbers by name, with None for empty fields; and the statuses."""
     with open(path, encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     numbers = {name: [float(row[name]) if row[name] else None for row in rows]
@@ -43,7 +43,7 @@ def read_trace(path):
 
 
 def spans_of(times, statuses):
-    """(status, from, until) of consecutive samples of one status that is shaded."""
+    """(status, from, until) of consecutive samples with the same shaded status."""
     spans = []
     for t, status in zip(times, statuses):
         if spans and spans[-1][0] == status:
@@ -56,7 +56,7 @@ def spans_of(times, statuses):
 
 
 def simplified(points, tolerance=0.25):
-    """Ramer–Douglas–Peucker: the points that matter at this tolerance, in pixels."""
+    """Ramer–Douglas–Peucker: the points that remain at this tolerance, in pixels."""
     keep = {0, len(points) - 1}
     stack = [(0, len(points) - 1)]
     while stack:
@@ -76,7 +76,7 @@ def simplified(points, tolerance=0.25):
 
 
 def round_step(span, count):
-    """A step of 1, 2 or 5 times a power of ten, for at most so many ticks."""
+    """A step of 1, 2 or 5 times a power of ten, for at most `count` ticks."""
     step = 10.0 ** -6
     while True:
         for factor in (1, 2, 5):
@@ -143,7 +143,7 @@ class Panel:
 
 
 def legend(row, statuses):
-    """Keys in the line above the panels."""
+    """The legend, above the panels."""
     parts, x = [], LEFT
     entries = [("line", CURVE, f"joint {row['joint']}"), ("line", TARGET, "target")]
     if row["limit [rad/s2]"]:
@@ -171,7 +171,7 @@ def legend(row, statuses):
 
 
 def events(panel, row):
-    """What happens, in the strip between the legend and the panels."""
+    """The events, in the strip between the legend and the panels."""
     parts = []
 
     def bar(intervals, color, y):
@@ -187,7 +187,7 @@ def events(panel, row):
 
 
 def acceleration_range(values, statuses, limit):
-    """What the panel shows: all, or, where noise would hide the rest, what stops and entries take."""
+    """Largest acceleration of the panel: the peak, or that of stops and entries if noise would hide them."""
     most = max(abs(v) for v in values)
     shaded = [abs(v) for v, s in zip(values, statuses) if s in SHADES]
     calm = max(shaded + [limit * 1.15, 1])
@@ -226,7 +226,7 @@ def draw(row, numbers, statuses):
     parts += panels[2].line(times, a, CURVE, 1.5)
     if max(abs(v) for v in a) > panels[2].high:
         parts.append(f'<text x="{WIDTH - RIGHT - 6}" y="{panels[2].top + 14}" text-anchor="end">'
-                     f"the noise beyond the panel reaches {max(abs(v) for v in a):.0f} rad/s²</text>")
+                     f"the noise outside the panel reaches {max(abs(v) for v in a):.0f} rad/s²</text>")
     step = round_step(times[-1] - times[0], 9)
     tick = -int(-times[0] // step) * step
     bottom = panels[2].top + PANEL
@@ -250,7 +250,7 @@ def mrad(radians):
 
 
 def table_of(rows):
-    """The measured numbers of a section, a column per row of the campaign."""
+    """The measured numbers of a section, with a column for each row of the campaign."""
     heads = [f"limit {row['limit [rad/s2]']:g} rad/s²" if row["limit [rad/s2]"] else "no limit"
              for row in rows]
 
@@ -279,19 +279,19 @@ def table_of(rows):
                       lambda r: f"{r['waypoints']:,}; {percent(r['passed over'], r['waypoints'])}"))
     lines.append(line("20 s: refused as `past`; for other reasons",
                       lambda r: f"{r['refused as past']}; {r['refused otherwise']}"))
-    lines.append(line("20 s: ran dry (`underruns`)", lambda r: f"{r['ran dry']}"))
-    lines.append(line("20 s: holding besides the silences",
+    lines.append(line("20 s: starved (`underruns`)", lambda r: f"{r['ran dry']}"))
+    lines.append(line("20 s: holding outside the silences",
                       lambda r: f"{r['holding besides the pauses [%]']:.2f} %"))
     return "\n".join(lines)
 
 
 def put_tables(path, tables):
-    """Puts each table between the marks of its name."""
+    """Writes each table between the marks with its name."""
     text = path.read_text(encoding="utf-8")
     for name, table in tables.items():
         begin, end = f"<!-- measured: {name} -->\n", "\n<!-- end -->"
         if begin not in text:
-            sys.exit(f"{path}: there is no place for what was measured of {name}")
+            sys.exit(f"{path}: missing mark for the table of {name}")
         head, rest = text.split(begin, 1)
         text = head + begin + "\n" + table + "\n" + end + rest.split(end, 1)[1]
     path.write_text(text, encoding="utf-8")
@@ -304,14 +304,14 @@ def update_page(rows):
 
 
 def update_tails():
-    """A table for each source: a row for each quantity, a column for each curve."""
+    """Writes a table for each source, with a row for each quantity and a column for each curve."""
     measured = json.loads(STOPS.read_text(encoding="utf-8"))["measured"]
     sources = {}
     for name, text in measured.items():
         source, curve = name.split("; ")
         quantities = dict(part.split(": ") for part in text.split("; "))
         sources.setdefault(source, {})[curve.removeprefix("c2, ")] = quantities
-    order = ["bessel", "parabolic", "natural", "rest", "smoothing, lambda 5e-7 s3"]
+    order = ["bessel", "parabolic", "natural", "clamped", "smoothing, lambda 5e-7 s3"]
     tables = {}
     for source, curves in sources.items():
         lines = ["| | " + " | ".join(f"`{curve.split(',')[0]}`" for curve in order) + " |",
@@ -339,8 +339,8 @@ def check(program):
     page = PAGE.read_text(encoding="utf-8")
     shown = set(re.findall(r"\(plots/([^)]+\.svg)\)", page))
     there = {path.name for path in PLOTS.glob("*.svg")}
-    faults = [f"{name} is not there" for name in sorted(shown - there)]
-    faults += [f"{name} is not in the page" for name in sorted(there - shown)]
+    faults = [f"missing plot {name}" for name in sorted(shown - there)]
+    faults += [f"the page does not show {name}" for name in sorted(there - shown)]
     listed = subprocess.run([program, "motions", "--list"], check=True, capture_output=True,
                             text=True).stdout
     for line in listed.splitlines():

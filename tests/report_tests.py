@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Ends a run of ctest: lists the skipped tests with their reasons and counts all.
+"""Reports a run of ctest: lists failed and skipped tests and counts all.
 
     report_tests.py JUNIT.xml LIST
 
-LIST has a line `PATTERN | MESSAGE | REASON` for each reason to skip: tests whose name matches the
-pattern may be skipped if they say MESSAGE. Exits with 1 if a test failed, if a skipped one is not
-on the list, or if none ran. The last line is `N passed, N failed, N skipped`.
+LIST has a line `PATTERN | MESSAGE | REASON` for each reason to skip: a test whose name matches PATTERN
+may be skipped if its message contains MESSAGE. Exits with 1 if a test failed, if a skipped test is not
+on the list, or if no test ran. The last line is `N passed, N failed, N skipped`.
 """
 
 import fnmatch
@@ -30,7 +30,7 @@ def read_list(path):
 
 
 def message_of(case):
-    """What a skipped test said: GoogleTest's text, or the last line of another program."""
+    """Message of a skipped test: GoogleTest's text, or the last line of another program."""
     output = case.findtext("system-out") or ""
     said = re.search(r": Skipped\n(.*?)(?:\n\n|\n\[|\Z)", output, re.DOTALL)
     if said:
@@ -40,7 +40,7 @@ def message_of(case):
 
 
 def judge(case):
-    """`passed`, `failed` or `skipped`. ctest also says `skipped` of what it could not start."""
+    """`passed`, `failed` or `skipped`. A test that ctest could not start and calls skipped is `failed`."""
     skipped = case.find("skipped")
     if skipped is not None or case.get("status") == "disabled":
         was_told = skipped is not None and skipped.get("message", "").startswith("SKIP_")
@@ -49,7 +49,7 @@ def judge(case):
 
 
 def main():
-    """Reports."""
+    """Prints the report."""
     junit, path = sys.argv[1:]
     allowed = read_list(path)
     counts = {"passed": 0, "failed": 0, "skipped": 0}

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of what `./run test` ends with: report_tests.py and shared_memory_left.py."""
+"""Tests of the last steps of `./run test`: report_tests.py and shared_memory_left.py."""
 
 import fcntl
 import os
@@ -24,10 +24,10 @@ MISSING = ('<testcase name="A.Missing" status="notrun">'
 
 
 class Report(unittest.TestCase):
-    """report_tests.py."""
+    """Tests of report_tests.py."""
 
     def report(self, cases, allowed):
-        """Its exit code and output for test cases and a list."""
+        """Exit code and output of report_tests.py for test cases and a list."""
         with tempfile.TemporaryDirectory() as folder:
             for name, text in (("a.xml", f"<testsuite>{''.join(cases)}</testsuite>"),
                                ("list", allowed)):
@@ -38,8 +38,8 @@ class Report(unittest.TestCase):
                 cwd=folder, check=False, capture_output=True, text=True)
             return ended.returncode, ended.stdout.splitlines()
 
-    def test_counts_skipped_tests_apart(self):
-        """A skipped test has not passed."""
+    def test_counts_skipped_tests_separately(self):
+        """A skipped test does not count as passed."""
         code, said = self.report([PASSED, SKIPPED, PROGRAM],
                                  "A.* | needs root | only root\nModel.* | not on | no spin\n")
         self.assertEqual(code, 0)
@@ -48,7 +48,7 @@ class Report(unittest.TestCase):
         self.assertIn("skipped: Model.Holds: spin is not on this machine (no spin)", said)
 
     def test_fails_for_a_skipped_test_that_is_not_on_the_list(self):
-        """Neither another name nor another message will do."""
+        """Both the name and the message of a skipped test must be on the list."""
         for allowed in ("", "B.* | needs root | r\n", "A.* | needs a kernel | r\n"):
             code, said = self.report([PASSED, SKIPPED], "# none\n" + allowed)
             self.assertEqual(code, 1, said)
@@ -56,22 +56,22 @@ class Report(unittest.TestCase):
             self.assertEqual(said[-1], "1 passed, 0 failed, 1 skipped")
 
     def test_fails_for_failed_tests_and_those_that_cannot_be_started(self):
-        """What ctest calls skipped need not be."""
+        """ctest also reports tests as skipped that it could not start."""
         for case in (FAILED, MISSING):
             code, said = self.report([PASSED, case], "* |  | anything\n".replace("|  |", "| x |"))
             self.assertEqual(code, 1)
             self.assertEqual(said[-1], "1 passed, 1 failed, 0 skipped")
 
     def test_fails_if_no_test_ran(self):
-        """A name that selects nothing is a mistake."""
+        """A filter that selects no test is an error."""
         self.assertEqual(self.report([], "")[0], 1)
 
 
 class Left(unittest.TestCase):
-    """shared_memory_left.py."""
+    """Tests of shared_memory_left.py."""
 
     def test_finds_new_names_without_a_living_owner(self):
-        """Names that were there, of others and of living owners do not count."""
+        """Old names, names of other programs and names of living owners do not count."""
         with tempfile.TemporaryDirectory() as folder:
             def touch(name):
                 path = os.path.join(folder, name)

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Finds names of splinecast in /dev/shm that a run left behind.
+"""Finds files of splinecast in /dev/shm that a run has not removed.
 
-    shared_memory_left.py list [FOLDER]          prints the names there are now
-    shared_memory_left.py check [FOLDER] < LIST  exits with 1 if there are others, without a living
-                                                 owner
+    shared_memory_left.py list [FOLDER]          prints their names
+    shared_memory_left.py check [FOLDER] < LIST  exits with 1 if a name is not on LIST and has no
+                                                 living owner
 
-An owner that lives holds the lock of its lock file; names of processes that still run, or are about
-to remove them, are given $PATIENCE (5) seconds.
+A living owner holds the lock of its lock file. Processes have $PATIENCE (5) seconds to end and to
+remove their files.
 """
 
 import fcntl
@@ -42,7 +42,7 @@ def is_locked(path):
 
 
 def left(before):
-    """New names of streams of which no lock is held."""
+    """New names of streams without a held lock."""
     new = [name for name in names() if name not in before]
     living = {name.rsplit(".", 2)[0] for name in names()
               if name.endswith(".lock") and is_locked(os.path.join(FOLDER, name))}
@@ -51,7 +51,7 @@ def left(before):
 
 
 def main():
-    """Lists, or checks."""
+    """Runs the command."""
     if sys.argv[1] == "list":
         print("\n".join(names()))
         return 0
@@ -60,7 +60,7 @@ def main():
     while (found := left(before)) and time.monotonic() < end:
         time.sleep(0.1)
     for name in found:
-        print(f"left behind: {FOLDER}/{name}")
+        print(f"not removed: {FOLDER}/{name}")
     return 1 if found else 0
 
 

@@ -20,7 +20,7 @@ struct Item {
   std::string why;
 };
 
-/// Values of all dimensions as options take them, and their unit where they have the same one.
+/// Values of all dimensions, separated by commas as in options, with their unit if all share one.
 std::string list_of(const std::vector<double>& values, const AdviceSource& source,
                     const char* per) {
   std::string text;
@@ -34,15 +34,15 @@ std::string list_of(const std::vector<double>& values, const AdviceSource& sourc
 }
 
 std::string why_settle(const Advice& advice) {
-  constexpr double kFading = 0.27;  // of a waypoint's effect, per knot
-  return fmt::format("of a change {:.1g} is left after {} knots",
+  constexpr double kFading = 0.27;  // decay of a waypoint's effect per knot
+  return fmt::format("{:.1g} of a change remains after {} knots",
                      std::pow(kFading, static_cast<double>(advice.how.settle)), advice.how.settle);
 }
 
 std::string why_freeze_ahead(const AdviceSource& source) {
   if (!source.solved) return "the default";
-  if (source.solved->misses == 0) return "no revision came too late";
-  return fmt::format("twice as long: {} revisions came too late with {}", source.solved->misses,
+  if (source.solved->misses == 0) return "no revision was late";
+  return fmt::format("doubled: {} revisions were late with {}", source.solved->misses,
                      in_milliseconds(source.solved->how.freeze_ahead));
 }
 
@@ -54,28 +54,28 @@ std::vector<Item> items_of(const Advice& advice, const AdviceSource& source) {
       {"freeze_ahead", "freeze-ahead", in_milliseconds(advice.how.freeze_ahead),
        why_freeze_ahead(source)},
       {"stop_time", "stop time", in_milliseconds(advice.limits.stop_time),
-       "1.5 v/T of the peak velocities keeps the acceleration limits"},
+       "a stop from peak velocity v takes 1.5 v/T, within the acceleration limits"},
       {"max_velocity", "velocity limits", list_of(advice.limits.velocity, source, "/s"),
        "3 times the 95 % values"},
       {"max_acceleration", "acceleration limits",
        list_of(advice.limits.acceleration, source, "/s^2"),
-       "3 times the 95 % values; at least what stops within 1 s"},
+       "3 times the 95 % values; at least enough to stop within 1 s"},
   };
 }
 
-/// What else is to be known about a recording.
+/// Warnings: gaps longer than the lead, and peaks that exceed the recommended limits.
 std::vector<std::string> notes_of(const Advice& advice, const AdviceSource& source) {
   std::vector<std::string> notes;
   if (advice.intervals.longest_gap > advice.lead) {
-    notes.push_back(fmt::format("the longest gap, {}, is longer than the lead: there it runs dry",
+    notes.push_back(fmt::format("the longest gap, {}, exceeds the lead: the stream starves there",
                                 in_milliseconds(advice.intervals.longest_gap)));
   }
   for (std::size_t d = 0; d < advice.motion.size(); ++d) {
     const bool is_beyond = advice.motion[d].peak_velocity > advice.limits.velocity[d] ||
                            advice.motion[d].peak_acceleration > advice.limits.acceleration[d];
     if (!is_beyond) continue;
-    notes.push_back(fmt::format("the peaks of {} are beyond its limits",
-                                name_and_unit(source.columns[d]).first));
+    notes.push_back(
+        fmt::format("the peaks of {} exceed its limits", name_and_unit(source.columns[d]).first));
   }
   return notes;
 }
@@ -182,9 +182,9 @@ std::string way_back_in_words(const Hiccup& hiccup, const AdviceSource& source) 
   std::string text;
   for (std::size_t d = 0; d < hiccup.way_back.size(); ++d) {
     const auto& seconds = hiccup.way_back[d];
-    text += fmt::format("{}{} {}", text.empty() ? "; way back " : ", ",
+    text += fmt::format("{}{} {}", text.empty() ? "; time to return: " : ", ",
                         name_and_unit(ipc::printable(source.columns[d])).first,
-                        seconds ? fmt::format("{:.2g} s", *seconds) : "none at its peak velocity");
+                        seconds ? fmt::format("{:.2g} s", *seconds) : "never at its peak velocity");
   }
   return text;
 }
@@ -200,15 +200,15 @@ std::string lead_in_words(const Intervals& intervals, const SolvedHow& how, Time
                                 in_milliseconds(intervals.median), in_milliseconds(depth),
                                 in_milliseconds(intervals.jitter));
   if (lead == kLeastLead) why += "; at least " + in_milliseconds(kLeastLead);
-  if (lead < depth) why += "; no more than the whole recording";
+  if (lead < depth) why += "; at most the whole recording";
   return why;
 }
 
 std::string in_words(const Hiccup& hiccup) {
   if (hiccup.dry == Time::zero()) {
-    return fmt::format("nothing: {} of depth are left", in_milliseconds(hiccup.depth_left));
+    return fmt::format("no effect: {} of depth remains", in_milliseconds(hiccup.depth_left));
   }
-  return fmt::format("runs dry for {} and {}", in_milliseconds(hiccup.dry),
+  return fmt::format("starves for {} and {}", in_milliseconds(hiccup.dry),
                      hiccup.comes_to_rest ? "comes to rest" : "does not come to rest");
 }
 

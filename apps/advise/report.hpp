@@ -10,7 +10,7 @@
 
 namespace splinecast::apps {
 
-/// Where advice comes from: a file, or a stream with its own options and its solver's counters.
+/// The source of advice: a file, or a stream with its options and its solver's counters.
 struct AdviceSource {
   std::string name;
   std::vector<std::string> columns;  ///< names, with units in brackets
@@ -19,7 +19,7 @@ struct AdviceSource {
   std::size_t duplicates = 0;
   std::size_t out_of_order = 0;
 
-  /// Of a stream that a solver has taken up.
+  /// Options and counters of a stream that a solver has attached to.
   struct Solved {
     SolvedHow how{};
     Time stop_time{};
@@ -33,11 +33,11 @@ struct AdviceSource {
 [[nodiscard]] nlohmann::ordered_json to_json(const Advice& advice, const AdviceSource& source);
 [[nodiscard]] std::string in_words(const Advice& advice, const AdviceSource& source);
 
-/// Why the lead is as long as advised_lead says.
+/// The reason for the lead of advised_lead.
 [[nodiscard]] std::string lead_in_words(const Intervals& intervals, const SolvedHow& how,
                                         Time lead);
 
-/// What a silence of the producer does, in words.
+/// The effect of a silence of the producer, as text.
 [[nodiscard]] std::string in_words(const Hiccup& hiccup);
 
 /// A time in milliseconds, with its unit.

@@ -33,7 +33,7 @@ struct AdviseOptions {
   Trust trust;
 };
 
-/// The rows to look at, and where they come from.
+/// The rows to analyze, and their source.
 struct Rows {
   WaypointTable table;
   AdviceSource source;
@@ -49,7 +49,7 @@ Rows rows_of_file(const AdviseOptions& options) {
   return rows;
 }
 
-/// What the board of a stream says; nothing if no solver has taken the stream up.
+/// Options and counters on the board of a stream; nullopt if no solver has attached to it.
 std::optional<AdviceSource::Solved> solved_of(const ipc::StreamInfo& info) {
   if (!info.spline || info.spline->stream_id != info.waypoints->stream_id) return std::nullopt;
   const ipc::LiveOptions live = ipc::live_options(*info.spline).value_or(ipc::LiveOptions{});
@@ -90,7 +90,7 @@ Rows rows_of(const AdviseOptions& options) {
   return rows_of_file(options);
 }
 
-/// A freeze-ahead with which revisions came too late is doubled.
+/// The freeze-ahead to recommend; doubles the stream's own if revisions were late.
 Time freeze_ahead_of(const AdviseOptions& options, const AdviceSource& source) {
   if (options.freeze_ahead) return *options.freeze_ahead;
   if (!source.solved) return SolvedHow{}.freeze_ahead;
@@ -116,28 +116,29 @@ int run_advise(const AdviseOptions& options) {
 void add_advise(Command& verb, Action& action) {
   auto options = std::make_shared<AdviseOptions>();
   verb.option("FILE|STREAM", options->source,
-              "Waypoint file, CSV or TUM text, - for standard input; or a stream, of which the "
-              "waypoints in its ring are looked at (write ./NAME for a file of that name)")
+              "Waypoint file, CSV or TUM text, - for standard input; or a stream, to analyze the "
+              "waypoints in its ring (write ./NAME for a file of that name)")
       .required();
   add_settle(verb, options->settle)
       .help(
-          "Settle lag of the solver, 0 to 64 (default the stream's own; of a file 8, or "
-          "fewer where 8 would need a lead of more than 1 s)");
+          "Settle lag of the solver in knots, 0 to 64 (default: the stream's own; for a file 8, or "
+          "less if 8 needs a lead of more than 1 s)");
   verb.option(
           "--freeze-ahead",
           [options](const std::string& text) {
             options->freeze_ahead = time_within("--freeze-ahead", text, TimeUnit::milliseconds);
           },
-          "What lies this long ahead of now is settled (default 5, or the stream's own)")
+          "Time ahead of now, in ms, up to which the curve is settled: above 0 (default: 5, or the "
+          "stream's own)")
       .type("MS");
-  verb.flag("--json", options->json, "Report as JSON on standard output");
+  verb.flag("--json", options->json, "Print JSON");
   add_table_options(verb, options->table);
   add_trust(verb, options->trust);
   verb.callback([&action, options] { action = [options] { return run_advise(*options); }; });
 }
 
 const Verb advise_verb(
-    "advise", 80, "Recommend lead, settle lag, freeze-ahead, stop time and limits, and say why",
+    "advise", 80, "Recommend lead, settle lag, freeze-ahead, stop time and limits, with reasons",
     add_advise);
 
 }  // namespace

@@ -10,7 +10,7 @@ TimedExcess timed(const Excess& excess, Time left) {
   return {excess, left + Time(std::llround(excess.u * 1e9))};
 }
 
-/// The factor of the speed that brings a ratio of this kind down to 1.
+/// The speed factor that reduces a ratio of this kind to 1.
 double slowing_for(const Excess& excess) {
   constexpr double kRounding = 1 - 1e-12;
   const double share = kRounding / excess.ratio;

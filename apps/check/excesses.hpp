@@ -15,22 +15,22 @@ struct TimedExcess {
   Time time{};
 };
 
-/// How a whole curve compares with limits.
+/// The comparison of a whole curve with limits.
 struct CurveCheck {
   std::size_t segments = 0;
   std::size_t segments_beyond = 0;
   std::optional<TimedExcess> first_violation{};
   std::array<std::optional<TimedExcess>, kLimitKinds> worst{};  ///< by LimitKind
-  /// The largest factor r ≤ 1 of the speed for which velocities r·v, accelerations r²·a and jerks
-  /// r³·j keep their limits; 0: none does.
+  /// The largest speed factor r ≤ 1 for which velocities r·v, accelerations r²·a and jerks r³·j
+  /// keep their limits; 0: there is none.
   double slowing = 1;
-  bool keeps_bounds = true;  ///< which slowing does not change
+  bool keeps_bounds = true;  ///< of the position; slowing does not change it
 
   [[nodiscard]] bool keeps_limits() const noexcept { return segments_beyond == 0; }
 };
 
-/// Compares every segment of a curve. Steps of the acceleration where segments meet count as no
-/// jerk. The limits have passed require_limits.
+/// Compares every segment of a curve with limits that have passed require_limits. Acceleration
+/// steps between segments do not count as jerk.
 [[nodiscard]] CurveCheck check_curve(const PiecewisePolynomial& curve, const MotionLimits& limits,
                                      const DimensionKinds& kinds);
 

@@ -33,7 +33,7 @@ struct CheckOptions {
   bool json = false;
 };
 
-/// What a check found, and the words for it.
+/// The result of a check.
 struct CheckReport {
   std::string file;
   std::vector<std::string> names;
@@ -45,7 +45,7 @@ struct CheckReport {
   std::vector<std::string> notes;
 };
 
-/// The limits that are asked for, for the dimensions of a table.
+/// The given limits for the dimensions of a table.
 MotionLimits limits_of(const LimitOptions& options, const LimitFile& file,
                        const WaypointTable& table, const std::vector<Dimension>& kinds) {
   MotionLimits limits = core::overridden(core::matched(file.joints, table.names),
@@ -122,11 +122,12 @@ std::string text_of(const TimedExcess& found, const CheckReport& report) {
 
 std::string advice_of(const CurveCheck& check) {
   std::string text;
-  if (check.slowing == 0) text += "no slowing is enough\n";
+  if (check.slowing == 0) text += "no lower speed keeps the limits\n";
   if (check.slowing > 0 && check.slowing < 1) {
     // Rounded down, so that the printed factor is slow enough.
-    text += fmt::format("{:.4f} of the speed would keep velocity, acceleration and jerk\n",
-                        std::floor(check.slowing * 1e4) / 1e4);
+    text +=
+        fmt::format("{:.4f} times the speed keeps the limits of velocity, acceleration and jerk\n",
+                    std::floor(check.slowing * 1e4) / 1e4);
   }
   if (!check.keeps_bounds) text += "slowing cannot keep the bounds of the position\n";
   return text;
@@ -146,8 +147,8 @@ std::string to_text(const CheckReport& report) {
   const TimedExcess& first = *check.first_violation;
   text += fmt::format("first violation   {} {}\n", to_string(first.excess.kind),
                       text_of(first, report));
-  text += fmt::format("{} of {} segments are beyond their limits\n", check.segments_beyond,
-                      check.segments);
+  text +=
+      fmt::format("{} of {} segments exceed their limits\n", check.segments_beyond, check.segments);
   return text + advice_of(check);
 }
 
@@ -170,7 +171,7 @@ void add_check(Command& verb, Action& action) {
       .type("METHOD");
   add_curve(verb, options->curve);
   add_table_options(verb, options->table);
-  verb.flag("--json", options->json, "As JSON");
+  verb.flag("--json", options->json, "Print JSON");
   verb.callback([&action, options] {
     if (options->method == nullptr) options->method = &c2();
     require_consistent(options->curve, std::array{options->method});
@@ -184,7 +185,7 @@ void add_check(Command& verb, Action& action) {
 }
 
 const Verb check_verb(
-    "check", 60, "Compare the spline through a file with limits; exit code 3 if it is beyond them",
+    "check", 60, "Compare the spline through a file with limits; exit code 3 if it exceeds one",
     add_check);
 
 }  // namespace

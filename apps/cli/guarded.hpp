@@ -4,8 +4,8 @@
 
 namespace splinecast::apps {
 
-/// Runs what a verb does and turns what it throws into a message and an exit code. Returns the code
-/// it returned, or that of the error.
+/// Runs the action of a verb and returns its exit code. Catches an exception, prints its message
+/// and returns the exit code of this error.
 int run_guarded(const std::function<int()>& action);
 
 }  // namespace splinecast::apps

@@ -22,7 +22,7 @@ int run_program(int argc, char** argv) {
   Command command(program);
   Verb::add_all(command, action);
   try {
-    // CLI11 would only say that a subcommand is missing.
+    // CLI11 would only report a missing subcommand.
     const std::string verb = argc > 1 ? argv[1] : "";
     const auto verbs =
         program.get_subcommands([&](const CLI::App* known) { return known->get_name() == verb; });
@@ -45,7 +45,7 @@ int run_program(int argc, char** argv) {
 }  // namespace splinecast::apps
 
 int main(int argc, char** argv) {
-  // A closed pipe, and a file beyond RLIMIT_FSIZE, are write errors like any other.
+  // Turn a closed pipe, and a file larger than RLIMIT_FSIZE, into ordinary write errors.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   try {

@@ -10,12 +10,13 @@
 
 #include "apps/files/numbers.hpp"
 #include "apps/process/exit_codes.hpp"
+#include "apps/process/messages.hpp"
 #include "apps/tables/kinds.hpp"
 
 namespace splinecast::apps {
 namespace {
 
-/// An option that takes a time; `Target` is a time, or an optional one.
+/// Adds an option for a time. `Target` is Time, or an optional of it.
 template <typename Target>
 Argument add_time(Command& verb, const std::string& name, Target& value, TimeUnit unit,
                   const std::string& help, const TimeRange& range) {
@@ -29,7 +30,7 @@ Argument add_time(Command& verb, const std::string& name, Target& value, TimeUni
       .type(unit == TimeUnit::seconds ? "SECONDS" : "MS");
 }
 
-/// An option that takes a count; `Target` is an integer, or an optional one.
+/// Adds an option for an integer. `Target` is an integer type, or an optional of it.
 template <typename Target>
 Argument add_number(Command& verb, const std::string& name, Target& value, const std::string& help,
                     const CountRange& range) {
@@ -39,13 +40,32 @@ Argument add_number(Command& verb, const std::string& name, Target& value, const
           [&value, name, range](const std::string& text) {
             const auto count = parse_count(text);
             if (!count || *count < range.least || *count > range.most) {
-              throw UsageError(name, fmt::format("'{}' is no whole number from {} to {}", text,
+              throw UsageError(name, fmt::format("'{}' is not an integer from {} to {}", text,
                                                  range.least, range.most));
             }
             value = static_cast<Target>(*count);
           },
           help)
       .type("N");
+}
+
+/// The present word for a value, which may be the one of earlier versions: says so on stderr.
+std::string present_word(const std::string& option, const std::string& text) {
+  if (text != "rest") return text;
+  say(fmt::format("{}: 'rest' is now 'clamped'", option));
+  return "clamped";
+}
+
+/// As parse_kind_option, and takes I:wrap:PERIOD, the form of earlier versions: says so on stderr.
+std::optional<KindOption> parse_kind(const std::string& text) {
+  const auto kind = parse_kind_option(text);
+  constexpr std::string_view kOld = ":wrap:";
+  const std::size_t at = text.rfind(kOld);
+  if (kind || at == std::string::npos) return kind;
+  const std::string present = text.substr(0, at) + ":periodic:" + text.substr(at + kOld.size());
+  const auto found = parse_kind_option(present);
+  if (found) say(fmt::format("--kind: '{}' is now '{}'", text, present));
+  return found;
 }
 
 std::optional<unsigned> parse_unsigned(const std::string& text, int base) {
@@ -58,26 +78,28 @@ std::optional<unsigned> parse_unsigned(const std::string& text, int base) {
 }  // namespace
 
 void add_table_options(Command& verb, TableOptions& options) {
-  verb.option("--columns", options.columns, "Position columns to use, by name")
+  verb.option("--columns", options.columns,
+              "Position columns, by name, in this order (default: all numeric columns)")
       .separated_by_commas()
       .type("NAME,...");
   verb.option(
           "--kind",
           [&options](const std::vector<std::string>& texts) {
             for (const std::string& text : texts) {
-              const auto kind = parse_kind_option(text);
+              const auto kind = parse_kind(text);
               if (!kind) {
                 throw UsageError(
-                    "--kind", fmt::format("'{}' is no I:linear, I:wrap:PERIOD (1e-100 to 1e100), "
-                                          "I:quaternion or I:quaternion-wxyz",
+                    "--kind", fmt::format("'{}' is not one of I:linear, I:periodic:PERIOD (1e-100 "
+                                          "to 1e100), I:quaternion, I:quaternion-wxyz",
                                           text));
               }
               options.kinds.push_back(*kind);
             }
           },
-          "Kinds of position columns, by name or index from 0: I:linear, I:wrap:PERIOD, or "
-          "I:quaternion, of which I is the first of four (default: quaternion for columns named "
-          "qx qy qz qw or q_..._w to q_..._z, else linear)")
+          "Kinds of position columns, by name or index from 0: I:linear, I:periodic:PERIOD (1e-100 "
+          "to "
+          "1e100), or I:quaternion or I:quaternion-wxyz, where I is the first of four columns "
+          "(default: quaternion for columns named qx qy qz qw or q_..._w to q_..._z, else linear)")
       .separated_by_commas()
       .type("I:K,...");
   add_time_unit(verb, options.time_unit);
@@ -89,17 +111,18 @@ void add_time_unit(Command& verb, std::optional<TimeUnit>& unit) {
           [&unit](const std::string& text) {
             unit = parse_time_unit(text);
             if (!unit) {
-              throw UsageError("--time-unit", fmt::format("'{}' is none of ns, us, ms, s", text));
+              throw UsageError("--time-unit",
+                               fmt::format("'{}' is not one of ns, us, ms, s", text));
             }
           },
-          "Unit of the time column, whatever its name says: ns, us, ms or s")
+          "Unit of the time column: ns, us, ms or s (default: from its name, else s)")
       .type("UNIT");
 }
 
 const Method& method_named(const std::string& text) {
   const Method* const method = find_method(text);
   if (method != nullptr) return *method;
-  throw UsageError("--method", fmt::format("'{}' is none of {}", text, method_names(false)));
+  throw UsageError("--method", fmt::format("'{}' is not one of {}", text, method_names(false)));
 }
 
 void add_lambda(Command& verb, std::optional<double>& lambda, bool* automatic) {
@@ -112,11 +135,12 @@ void add_lambda(Command& verb, std::optional<double>& lambda, bool* automatic) {
             }
             lambda = parse_number(text);
             if (lambda && *lambda >= 0 && is_usable(*lambda)) return;
-            throw UsageError("--lambda", fmt::format("'{}' is no number from 0 to 1e100", text));
+            throw UsageError("--lambda", fmt::format("'{}' is not a number from 0 to 1e100", text));
           },
           automatic == nullptr
-              ? "How much smoothing smooths, in s^3"
-              : "How much smoothing smooths, in s^3, or auto (default): by cross-validation")
+              ? "Smoothing parameter in s^3, 0 to 1e100; required by the method smoothing"
+              : "Smoothing parameter in s^3, 0 to 1e100, or auto: by generalised "
+                "cross-validation (default auto)")
       .type(automatic == nullptr ? "L" : "L|auto");
 }
 
@@ -126,7 +150,7 @@ void add_time_scale(Command& verb, std::optional<double>& time_scale) {
           [&time_scale](const std::string& text) {
             time_scale = number_within("--time-scale", text);
           },
-          "For rounded: seconds that count as one unit of position (default 1)")
+          "For the method rounded: seconds equal to one unit of position, 1e-6 to 1e9 (default 1)")
       .type("SECONDS");
 }
 
@@ -137,7 +161,8 @@ void add_solver_curve(Command& verb, SolverOptions& options) {
             options.method = &method_named(text);
             if (options.method->streams()) return;
             throw UsageError(
-                "--method", fmt::format("{} needs all waypoints at once: only 'fit' has it", text));
+                "--method",
+                fmt::format("{} needs all waypoints at once: only 'fit' supports it", text));
           },
           fmt::format("Interpolant: {} (default c2)", method_names(true)))
       .type("METHOD");
@@ -149,7 +174,7 @@ void add_solver_curve(Command& verb, SolverOptions& options) {
 }
 
 void add_force_lag(Command& verb, bool& force_lag) {
-  verb.flag("--force-lag", force_lag, "Smooth also with a settle lag too short for lambda");
+  verb.flag("--force-lag", force_lag, "Accept a settle lag that is too short for lambda");
 }
 
 void add_condition(Command& verb, const std::string& name, std::optional<Condition>& value,
@@ -157,12 +182,12 @@ void add_condition(Command& verb, const std::string& name, std::optional<Conditi
   verb.option(
           name,
           [&value, name](const std::string& text) {
-            value = parse_condition(text);
+            value = parse_condition(present_word(name, text));
             if (value) return;
-            throw UsageError(name,
-                             fmt::format("'{}' is none of natural, rest, halt, velocity=N,..., "
-                                         "acceleration=N,..., not-a-knot, periodic",
-                                         text));
+            throw UsageError(
+                name, fmt::format("'{}' is not one of natural, clamped, halt, velocity=N,..., "
+                                  "acceleration=N,..., not-a-knot, periodic",
+                                  text));
           },
           help)
       .type("CONDITION");
@@ -172,13 +197,14 @@ void add_tail(Command& verb, std::optional<Tail>& value) {
   verb.option(
           "--tail",
           [&value](const std::string& text) {
-            value = parse_tail(text);
+            value = parse_tail(present_word("--tail", text));
             if (value) return;
-            throw UsageError("--tail",
-                             fmt::format("'{}' is none of bessel, parabolic, natural, rest", text));
+            throw UsageError(
+                "--tail",
+                fmt::format("'{}' is not one of bessel, parabolic, natural, clamped", text));
           },
-          "Condition at the newest waypoint while the stream goes on: bessel (default), "
-          "parabolic, natural, rest")
+          "Boundary condition at the newest waypoint of a stream that continues: bessel, "
+          "parabolic, natural or clamped (default bessel)")
       .type("TAIL");
 }
 
@@ -189,11 +215,11 @@ Argument add_settle(Command& verb, std::optional<std::size_t>& value) {
           [&value](const std::string& text) {
             value = parse_count(text);
             if (value && *value <= core::kMaxSettle) return;
-            throw UsageError("--settle", fmt::format("'{}' is no whole number from 0 to {}", text,
+            throw UsageError("--settle", fmt::format("'{}' is not an integer from 0 to {}", text,
                                                      core::kMaxSettle));
           },
-          "Settle lag: newer waypoints after which a knot is final, 0 to 64 (default 8 for c2, 64 "
-          "for smoothing, else what the method looks ahead)")
+          "Settle lag: number of newer knots after which a knot no longer changes, 0 to 64 "
+          "(default 8 for c2, 64 for smoothing, else the look-ahead of the method)")
       .type("K");
 }
 
@@ -256,7 +282,7 @@ Time time_within(const std::string& name, const std::string& text, TimeUnit unit
   if (time && *time >= range.least && *time <= range.most) return *time;
   const bool is_seconds = unit == TimeUnit::seconds;
   const double scale = is_seconds ? 1 : 1e3;
-  throw UsageError(name, fmt::format("'{}' is no time from {:.15g} to {:.15g} {}", text,
+  throw UsageError(name, fmt::format("'{}' is not a time from {:.15g} to {:.15g} {}", text,
                                      to_seconds(range.least) * scale,
                                      to_seconds(range.most) * scale, is_seconds ? "s" : "ms"));
 }
@@ -264,8 +290,8 @@ Time time_within(const std::string& name, const std::string& text, TimeUnit unit
 double number_within(const std::string& name, const std::string& text, const NumberRange& range) {
   const auto number = parse_number(text);
   if (number && *number >= range.least && *number <= range.most) return *number;
-  throw UsageError(name,
-                   fmt::format("'{}' is no number from {} to {}", text, range.least, range.most));
+  throw UsageError(
+      name, fmt::format("'{}' is not a number from {} to {}", text, range.least, range.most));
 }
 
 void add_access(Command& verb, RegionAccess& access) {
@@ -275,14 +301,14 @@ void add_access(Command& verb, RegionAccess& access) {
             const auto mode = parse_unsigned(text, 8);
             constexpr unsigned kAllowed = 0644;
             if (!mode || (*mode & ~kAllowed) != 0 || (*mode & 0600U) != 0600U) {
-              throw UsageError("--mode",
-                               fmt::format("'{}' is none of 0600, 0640, 0604, 0644: only the owner "
-                                           "may write",
-                                           text));
+              throw UsageError(
+                  "--mode", fmt::format("'{}' is not one of 0600, 0640, 0604, 0644: only the owner "
+                                        "may write",
+                                        text));
             }
             access.mode = static_cast<mode_t>(*mode);
           },
-          "Permissions of the region to be made, in octal (default 0600)")
+          "Permissions of a new region, octal: 0600, 0640, 0604 or 0644 (default 0600)")
       .type("MODE");
   verb.option(
           "--group",
@@ -294,7 +320,7 @@ void add_access(Command& verb, RegionAccess& access) {
             }
             access.group = entry != nullptr ? entry->gr_gid : static_cast<gid_t>(*number);
           },
-          "Group of the region to be made")
+          "Group of a new region, by name or number (default: the group of this process)")
       .type("GROUP");
 }
 
@@ -309,7 +335,7 @@ void add_trust(Command& verb, Trust& trust) {
             }
             trust.owner = entry != nullptr ? entry->pw_uid : static_cast<uid_t>(*number);
           },
-          "Trust regions of this user too, besides one's own and root's")
+          "Also trust regions of this user, by name or number (default: only one's own and root's)")
       .type("USER");
 }
 

@@ -15,23 +15,23 @@
 
 namespace splinecast::apps {
 
-/// `--columns`, `--kind` and `--time-unit`.
+/// Adds `--columns`, `--kind` and `--time-unit`.
 void add_table_options(Command& verb, TableOptions& options);
 void add_time_unit(Command& verb, std::optional<TimeUnit>& unit);
 
-/// The method of that name; else UsageError.
+/// The method of this name. Throws UsageError if there is none.
 [[nodiscard]] const Method& method_named(const std::string& text);
 
-/// What shapes a curve that is solved online: `--method`, `--lambda`, `--time-scale`, `--settle`,
-/// `--tail`, `--force-lag`.
+/// Adds the options of a curve that is solved online: `--method`, `--lambda`, `--time-scale`,
+/// `--settle`, `--tail`, `--force-lag`.
 void add_solver_curve(Command& verb, SolverOptions& options);
 void add_force_lag(Command& verb, bool& force_lag);
 
-/// `--lambda`; `automatic`, if not null, is set by `auto`.
+/// Adds `--lambda`. If `automatic` is not null, `auto` is a valid value and sets it.
 void add_lambda(Command& verb, std::optional<double>& lambda, bool* automatic);
 void add_time_scale(Command& verb, std::optional<double>& time_scale);
 
-/// The longest time that an option takes: two of them can still be added to a time of a stream.
+/// The longest time of an option: a time of a stream plus twice this does not overflow.
 inline constexpr Time kLongestTime = std::chrono::hours(24 * 366 * 100);
 
 /// The least and the largest value of an option.
@@ -46,11 +46,12 @@ using CountRange = OptionRange<std::size_t>;
 
 inline constexpr TimeRange kAnyTime{Time::zero(), kLongestTime};
 inline constexpr TimeRange kPositiveTime{Time(1), kLongestTime};
-/// Factors and rates of which times can still be made.
+/// Factors and rates that still give valid times.
 inline constexpr NumberRange kPositiveNumber{1e-6, 1e9};
 inline constexpr CountRange kAnyCount{1, std::size_t{1} << 53U};
 
-/// An option that takes a condition, a tail, a settle lag, or a time in seconds or milliseconds.
+/// Add an option for a boundary condition, a tail, a settle lag, or a time in seconds or
+/// milliseconds.
 void add_condition(Command& verb, const std::string& name, std::optional<Condition>& value,
                    const std::string& help);
 void add_tail(Command& verb, std::optional<Tail>& value);
@@ -62,7 +63,7 @@ Argument add_seconds(Command& verb, const std::string& name, Time& value, const 
 Argument add_milliseconds(Command& verb, const std::string& name, Time& value,
                           const std::string& help, const TimeRange& range = kAnyTime);
 
-/// An option that takes a whole number. Into an int, the range must be one of ints.
+/// Adds an option for an integer. For an int, the range must fit into int.
 Argument add_count(Command& verb, const std::string& name, std::size_t& value,
                    const std::string& help, const CountRange& range = kAnyCount);
 Argument add_count(Command& verb, const std::string& name, int& value, const std::string& help,
@@ -70,26 +71,26 @@ Argument add_count(Command& verb, const std::string& name, int& value, const std
 Argument add_count(Command& verb, const std::string& name, std::optional<std::size_t>& value,
                    const std::string& help, const CountRange& range = kAnyCount);
 
-/// An option that takes one of two words; `take` is told whether it is the first.
+/// Adds an option with two words to choose from. `is_first`: the first one is chosen.
 void add_choice(Command& verb, const std::string& name, const std::string& first,
                 const std::string& second, const std::function<void(bool is_first)>& take,
                 const std::string& help);
 
-/// An option that takes a number a second.
+/// Adds an option for a rate in Hz.
 void add_rate(Command& verb, const std::string& name, double& value, const std::string& help,
               const NumberRange& range);
 
-/// The number, or the time, that a text says; UsageError, which names the value and the
-/// range, for any other text.
+/// Parse a number or a time. Throw UsageError, with the text and the range, if it is invalid or out
+/// of range.
 [[nodiscard]] double number_within(const std::string& name, const std::string& text,
                                    const NumberRange& range = kPositiveNumber);
 [[nodiscard]] Time time_within(const std::string& name, const std::string& text, TimeUnit unit,
                                const TimeRange& range = kPositiveTime);
 
-/// `--mode` and `--group` of the regions to be made.
+/// Adds `--mode` and `--group`, for new regions.
 void add_access(Command& verb, RegionAccess& access);
 
-/// `--owner`: a user whose regions are trusted besides the own ones and root's.
+/// Adds `--owner`: a user whose regions are trusted, in addition to one's own and root's.
 void add_trust(Command& verb, Trust& trust);
 
 }  // namespace splinecast::apps

@@ -6,7 +6,7 @@
 namespace splinecast::apps {
 namespace {
 
-/// The list's first verb. A constant-initialised pointer is there before any verb is made.
+/// The first verb of the list. Constant-initialised: valid before any verb is constructed.
 constinit const Verb* first_verb = nullptr;
 
 }  // namespace

@@ -6,17 +6,18 @@
 
 namespace splinecast::apps {
 
-/// What a verb runs once its arguments are parsed. Returns the exit code.
+/// The function of a verb, run after its arguments are parsed. Returns the exit code.
 using Action = std::function<int()>;
 
-/// A verb of the program. A constant of this type enters itself into the program's list before
-/// `main` begins, so that a verb is one file: nothing else names it. Lives as long as the program.
+/// A verb of the program. A constant of this type registers itself in the program's list before
+/// `main` starts, so that a verb is one source file, which no other file mentions. It must exist as
+/// long as the program runs.
 class Verb {
  public:
   /// Adds the verb's options to `verb`, and sets `action` when that verb is chosen.
   using Add = void (*)(Command& verb, Action& action);
 
-  /// `place` says where the help lists it: each verb has one of its own.
+  /// `place` orders the verbs in the help. Each verb has a unique place.
   Verb(const char* name, int place, const char* summary, Add add) noexcept;
 
   /// Adds every verb to the program, in the order of their places.

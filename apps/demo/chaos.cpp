@@ -33,7 +33,7 @@ using std::chrono::milliseconds;
 
 constexpr Time kTick = milliseconds(1);
 constexpr Time kPatience = std::chrono::seconds(10);
-/// Times a second.
+/// Mean number per second.
 constexpr double kSolverKills = 0.7;
 constexpr double kProducerKills = 0.7;
 constexpr double kPauses = 0.7;
@@ -55,7 +55,7 @@ json to_json(const WatchReport& report) {
           {"sound", is_sound(report)}};
 }
 
-/// Samples as a controller until the stream has ended.
+/// Samples as a controller does until the stream has ended.
 json run_chaos_reader(const std::string& stream) {
   Reader reader = attach_reader(stream, kPatience);
   CurveWatch watch(ipc::Internals::sampler(reader), reader.dimensions());
@@ -150,8 +150,8 @@ class Chaos {
     const WatchReport& report = watch_->report();
     if (lines_++ % 20 == 0) {
       print_report(fmt::format("{:>5} {:>8} {:>7} {:>7} {:>7} {:>8} {:>8} {:>7} {:>9} {:>9}\n", "s",
-                               "samples", "kills", "pauses", "dry", "knots", "refused", "changed",
-                               "pos step", "vel step"));
+                               "samples", "kills", "pauses", "starved", "knots", "refused",
+                               "changed", "pos step", "vel step"));
     }
     print_report(fmt::format(
         "{:>5.0f} {:>8} {:>7} {:>7} {:>7} {:>8} {:>8} {:>7} {:>9.1e} {:>9.1e}\n", to_seconds(since),
@@ -164,7 +164,7 @@ class Chaos {
            producer_down_.result()["kills"].get<std::size_t>();
   }
 
-  /// Reads the curve until the stream has ended and rests, for as long as it may take.
+  /// Reads the curve until the stream has ended and is at rest, for at most kPatience.
   void watch_until_rest() {
     const Time end = deadline(clock_, kPatience);
     for (Time due = clock_.now(); clock_.now() < end && sleep_until(due);
@@ -175,7 +175,8 @@ class Chaos {
     }
   }
 
-  /// Lets the producer end the stream; everybody must see it come to rest, unless interrupted.
+  /// Stops the producer, which ends the stream; unless interrupted, all readers must see it come to
+  /// rest.
   json finish() {
     if (resumes_) solver_->signal(SIGCONT);
     producer_->stop();
@@ -244,7 +245,7 @@ std::string chaos_summary(const json& found) {
   };
   const auto recovery = [&](const char* role) {
     const json& of = found[role];
-    return fmt::format("  {:<34} {} kills; back after {:.1f} ms in the median, {:.1f} ms at most\n",
+    return fmt::format("  {:<34} {} kills; recovery {:.1f} ms in the median, {:.1f} ms at most\n",
                        role, of["kills"].get<int>(), of["p50_ms"].get<double>(),
                        of["max_ms"].get<double>());
   };
@@ -255,8 +256,8 @@ std::string chaos_summary(const json& found) {
   std::string text(1, '\n');
   text += recovery("solver") + recovery("producer");
   text +=
-      line("pauses of the solver, to 200 ms", fmt::format("{}", count("pauses"))) +
-      line("ran dry, and recovered", fmt::format("{}", count("underruns"))) +
+      line("pauses of the solver, up to 200 ms", fmt::format("{}", count("pauses"))) +
+      line("starved, and recovered", fmt::format("{}", count("underruns"))) +
       line("futures replaced", fmt::format("{}", count("replacements"))) +
       line("waypoints",
            fmt::format("{} interpolated, {} passed over, {} refused with a reason, {} withdrawn, "
@@ -264,15 +265,15 @@ std::string chaos_summary(const json& found) {
                        count("interpolated"), count("passed_over"), count("refused"),
                        count("withdrawn"), count("lost"),
                        found["judged"].get<bool>() ? "lost" : "not consumed")) +
-      line("samples that read otherwise later",
+      line("samples that changed later",
            fmt::format("{:.0f} of {:.0f}", most("changed"), most("samples"))) +
       line("largest step at a join", fmt::format("position {:.1e}, velocity {:.1e}",
                                                  most("position_step"), most("velocity_step"))) +
       line("acceleration",
            fmt::format("{:.1f} at most; the motion's own is {:.1f}", most("acceleration"),
                        found["peak_acceleration_of_the_motion"].get<double>())) +
-      line("deadlines missed", fmt::format("{}; committed too late: {}", count("deadline_misses"),
-                                           count("late_commits"))) +
+      line("deadline_misses",
+           fmt::format("{}; late_commits: {}", count("deadline_misses"), count("late_commits"))) +
       line("sound", judgement(found));
   return text;
 }

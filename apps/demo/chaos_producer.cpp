@@ -22,11 +22,12 @@ using std::chrono::milliseconds;
 
 constexpr Time kTick = milliseconds(1);
 constexpr Time kInterval = milliseconds(10);
-/// How far ahead waypoints are sent, and after a stop: the machine must catch up with the motion.
+/// The lead of waypoints in motion, the lead after a stop, when the machine must catch up with the
+/// motion, and the duration of the last stop.
 constexpr Time kLead = milliseconds(150);
 constexpr Time kCatchUp = milliseconds(800);
 constexpr Time kStop = milliseconds(800);
-/// Times a second.
+/// Mean number per second.
 constexpr double kStarvations = 0.7;
 constexpr double kReplacements = 1.7;
 
@@ -38,7 +39,7 @@ class ChaosProducer {
                            .limits = {.min_interval = milliseconds(5)}}),
         random_(static_cast<std::uint64_t>(getpid())),
         next_(start) {
-    // What comes after another's end has to catch up as well.
+    // A producer that takes over has to catch up as well.
     if (producer_.continues()) lead_ = kCatchUp;
   }
 
@@ -88,7 +89,8 @@ class ChaosProducer {
     if (producer_.append({.time = t, .position = x}) == AppendStatus::accepted) ++sent_;
   }
 
-  /// Other waypoints of the same motion from soon on, or none: a halt.
+  /// Replaces the future, from 5 to 100 ms from now on, with waypoints of the same motion or with
+  /// none: a halt.
   void replace(Time now) {
     const Time t = std::max(now, producer_.earliest()) + between(5, 100);
     const auto count = std::uniform_int_distribution<std::size_t>(0, 20)(random_);
@@ -123,7 +125,7 @@ class ChaosProducer {
     while (producer_.finish(halt) == AppendStatus::full) {
       if (!producer_.wait_for_room(kPatience)) return;
     }
-    (void)producer_.wait_until_consumed(kPatience);  // the summary tells what was not
+    (void)producer_.wait_until_consumed(kPatience);  // the summary counts what was not
   }
 
   JointMotion motion_;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr Time kPeriod = std::chrono::milliseconds(1);
 constexpr Time kWait = std::chrono::seconds(15);
-/// How long after the last waypoint a reader goes on: long enough to see it hold.
+/// How long a reader continues after the last waypoint: long enough to see the curve hold.
 constexpr Time kAfterEnd = std::chrono::milliseconds(100);
 
 /// Largest differences in position, velocity and acceleration.
@@ -78,7 +78,7 @@ class DemoReader {
     if (has_values(status)) check(t);
   }
 
-  /// The knots passed since the tick before, and the curve now at that tick against what was read
+  /// Checks the knots passed since the last tick, and that the curve at that tick is as it was read
   /// then.
   void check(Time t) {
     if (has_before_) {
@@ -102,7 +102,7 @@ class DemoReader {
     }
   }
 
-  /// A wrapping position is left as it is: read, it steps by a period where it goes round.
+  /// Does not wrap periodic dimensions, which would step by a period.
   void evaluate(const ipc::SegmentCopy& segment, double u, State& out) const {
     const StateRef ref = out.ref();
     core::evaluate(segment.order, segment.coefficients, u, ref);

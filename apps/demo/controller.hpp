@@ -8,9 +8,9 @@
 
 namespace splinecast::apps {
 
-/// Plays a controller: samples a live stream at 1 kHz until it has ended or a stop is requested,
-/// and checks what it reads as no controller has the time to. Returns what it saw: counts by
-/// status, largest steps, ages and times.
+/// Runs a controller: samples a live stream at 1 kHz until it has ended or a stop is requested, and
+/// checks what it reads. Returns counts by status, largest steps, ages of the data and times per
+/// sample.
 nlohmann::json run_demo_reader(const std::string& stream);
 
 }  // namespace splinecast::apps

@@ -27,7 +27,7 @@ constexpr Time kMove = std::chrono::milliseconds(900);
 constexpr Time kDwell = std::chrono::milliseconds(150);
 constexpr std::int64_t kJitter = 2'000'000;  // ns
 
-/// How far a minimum-jerk move has come after the fraction s of its time.
+/// The position of a minimum-jerk move from 0 to 1 after the fraction s of its time.
 double minimum_jerk(double s) { return s * s * s * (10 + s * (6 * s - 15)); }
 
 /// Numbers that are the same on every machine, which the standard's distributions are not.

@@ -5,9 +5,9 @@
 
 namespace splinecast::apps {
 
-/// A recorded stream of the project's own: seven joint angles in rad of an arm that picks and
-/// places, at 100 Hz with ±2 ms of jitter. Between poses every joint moves by minimum jerk, with a
-/// short dwell at each. The same duration always gives the same waypoints.
+/// A synthetic recording: seven joint angles in rad of an arm that picks and places, at 100 Hz with
+/// ±2 ms of jitter. Every joint moves between poses with minimum jerk, with a short dwell at each
+/// pose. The same duration always gives the same waypoints.
 [[nodiscard]] WaypointTable pick_and_place(Time duration);
 
 }  // namespace splinecast::apps

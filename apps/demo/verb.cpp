@@ -29,7 +29,7 @@ using nlohmann::json;
 
 constexpr std::size_t kReaders = 2;
 constexpr Time kDefaultLength = std::chrono::seconds(10);
-// Its waypoints, and what readers note, are kept in memory.
+// The waypoints and the readers' records are kept in memory.
 constexpr Time kShortest = std::chrono::milliseconds(100);
 constexpr Time kLongest = std::chrono::hours(1);
 constexpr Time kLongestChaos = std::chrono::hours(24);
@@ -92,7 +92,7 @@ std::string counts_by_status(const json& by_status) {
 
 std::string summary(const WaypointTable& table, const json& sent, const json& read) {
   return fmt::format(
-             "\nOne producer, one solver and {} readers, each a process of its own; {} dimensions "
+             "\nOne producer, one solver and {} readers, each in its own process; {} dimensions "
              "from {}, played live.\n\n",
              kReaders, table.dimensions(), table.file) +
          line("waypoints",
@@ -103,7 +103,7 @@ std::string summary(const WaypointTable& table, const json& sent, const json& re
          line("samples at 1 kHz", fmt::format("{} in all: {}", read["samples"].get<std::size_t>(),
                                               counts_by_status(read["by_status"]))) +
          steps_line("largest step at a knot", read["step_at_knots"]) +
-         steps_line("largest change of what was read", read["change_of_the_past"]) +
+         steps_line("largest change of past samples", read["change_of_the_past"]) +
          line("age of the data",
               fmt::format("{:.1f} ms in the median, {:.1f} ms at most",
                           read["age_ms"][0].get<double>(), read["age_ms"][1].get<double>())) +
@@ -165,30 +165,32 @@ void add_demo(Command& verb, Action& action) {
   auto options = std::make_shared<DemoOptions>();
   const Argument file =
       verb.option("--file", options->file,
-                  "Waypoint file to play (default: a pick-and-place of seven joints)")
+                  "Waypoint file to play (default: a pick-and-place motion of seven joints)")
           .type("FILE");
   add_seconds(
       verb, "--seconds", options->seconds,
-      "How much to play, 0.1 to 86400, without --chaos 3600 (default 10, or the whole file)",
+      "Length to play in s, 0.1 to 3600, with --chaos up to 86400 (default 10, or the whole file)",
       {kShortest, kLongestChaos});
   verb.flag("--chaos", options->chaos,
-            "Kill, stop and starve everybody meanwhile, and show that no reader notices; exits "
-            "with 3 if one does")
+            "Kill, pause and starve the processes while the readers check every sample; exit code "
+            "3 if a check fails")
       .excludes(file);
-  verb.flag("--json", options->json, "As JSON");
+  verb.flag("--json", options->json, "Print JSON");
   add_table_options(verb, options->table);
   verb.callback([&action, options] {
     if (options->seconds && *options->seconds > kLongest && !options->chaos) {
-      throw UsageError("--seconds",
-                       fmt::format("'{}' is no time from 0.1 to 3600 s, the most without --chaos",
-                                   to_seconds(*options->seconds)));
+      throw UsageError(
+          "--seconds",
+          fmt::format("'{}' is not a time from 0.1 to 3600 s, the range without --chaos",
+                      to_seconds(*options->seconds)));
     }
     action = [options] { return run_demo(*options); };
   });
 }
 
 const Verb demo_verb(
-    "demo", 10, "Show it: a producer, a solver and two readers as processes, and what they saw",
+    "demo", 10,
+    "Run a producer, a solver and two readers as processes, and report what the readers saw",
     add_demo);
 
 }  // namespace

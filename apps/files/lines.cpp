@@ -5,7 +5,7 @@
 namespace splinecast::apps {
 namespace {
 
-/// Where the first field of a CSV line ends: at a comma that is not within double quotes.
+/// The end of the first field of a CSV line: a comma that is not within double quotes.
 std::size_t end_of_field(std::string_view line) noexcept {
   const std::size_t first = line.find_first_not_of(" \t\r");
   if (first == std::string_view::npos || line[first] != '"') return line.find(',');

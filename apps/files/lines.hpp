@@ -8,11 +8,12 @@ namespace splinecast::apps {
 
 /// One line of a file.
 struct Line {
-  std::size_t number = 0;  ///< from 1; 0: there is none
+  std::size_t number = 0;  ///< from 1; 0: there is no line
   std::string_view text;
 };
 
-/// Walks over the lines of a text; takes `\n` and `\r\n`, and a last line without either.
+/// Iterates over the lines of a text. Accepts `\n` and `\r\n`, and a last line without either.
+/// Skips a byte order mark.
 class Lines {
  public:
   explicit Lines(std::string_view text);
@@ -28,7 +29,7 @@ class Lines {
 /// Splits a line into its fields, which are views into the line.
 using Split = void (*)(std::string_view line, std::vector<std::string_view>& fields);
 
-/// At runs of blanks; and at commas that are not within double quotes.
+/// Split at runs of blanks, and at commas that are not within double quotes.
 void split_at_blanks(std::string_view line, std::vector<std::string_view>& fields);
 void split_at_commas(std::string_view line, std::vector<std::string_view>& fields);
 

@@ -10,7 +10,7 @@ namespace {
 
 bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
-/// A decimal number taken apart: digits before and after the point, and a power of ten.
+/// The parts of a decimal number: digits before and after the point, and a power of ten.
 struct Decimal {
   bool negative = false;
   std::string_view whole;
@@ -18,17 +18,17 @@ struct Decimal {
   int exponent = 0;
 };
 
-/// value · 10 + digit; false if that is too large.
+/// Sets value to 10 · value + digit. Returns false on overflow.
 bool push_digit(std::int64_t& value, int digit) noexcept {
   return !__builtin_mul_overflow(value, 10, &value) &&
          !__builtin_add_overflow(value, digit, &value);
 }
 
-/// The nearest integer to a decimal number, halves away from zero, without its sign; nothing if it
-/// is too large.
+/// The magnitude of a decimal number, rounded to the nearest integer, halves away from zero.
+/// Nothing on overflow.
 std::optional<std::int64_t> rounded(const Decimal& decimal) noexcept {
   std::int64_t value = 0;
-  // The power of ten that the next digit stands for.
+  // The power of ten of the next digit.
   int power = static_cast<int>(decimal.whole.size()) + decimal.exponent - 1;
   for (const std::string_view digits : {decimal.whole, decimal.fraction}) {
     for (const char c : digits) {
@@ -48,7 +48,8 @@ std::optional<std::int64_t> rounded(const Decimal& decimal) noexcept {
   return value;
 }
 
-/// The usual text of a time, digits only, in one pass. Nothing for any other: it may still be one.
+/// Fast path for the usual time, digits only: one pass. Nothing for any other text, which may still
+/// be a time.
 std::optional<Time> parse_whole_time(std::string_view text, TimeUnit unit) noexcept {
   constexpr std::size_t kSafeDigits = 18;
   if (text.empty() || text.size() > kSafeDigits) return std::nullopt;
@@ -71,7 +72,7 @@ std::string_view take_digits(std::string_view& text) noexcept {
   return digits;
 }
 
-/// Takes a plus that std::from_chars and its like do not know; another sign must not follow it.
+/// Skips a leading plus, which std::from_chars does not accept. Returns false if a minus follows.
 bool take_plus(std::string_view& text) noexcept {
   if (!text.starts_with('+')) return true;
   text.remove_prefix(1);
@@ -130,7 +131,7 @@ std::optional<double> parse_number(std::string_view text) noexcept {
   text = trimmed(text);
   if (!take_plus(text)) return std::nullopt;
   double value = 0;
-  // gcc 12's std::from_chars takes a few times as long for the same, correctly rounded, result.
+  // std::from_chars of gcc 12 is several times slower for the same, correctly rounded, result.
   const auto [end, error] = fast_float::from_chars(text.data(), text.data() + text.size(), value);
   if (end != text.data() + text.size()) return std::nullopt;
   if (error != std::errc{} && error != std::errc::result_out_of_range) return std::nullopt;

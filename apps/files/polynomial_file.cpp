@@ -23,7 +23,7 @@ struct Column {
   friend bool operator==(const Column&, const Column&) = default;
 };
 
-/// What the header says.
+/// The header of a file.
 struct Format {
   std::vector<std::string> names;
   std::vector<Column> columns;  ///< of fields 1, 2, …
@@ -34,7 +34,7 @@ struct Format {
   throw InputError(fmt::format("{}:{}: {}", file.name(), line.number, what));
 }
 
-/// The fields of a line, without one that a comma at the end of the line would begin.
+/// The fields of a line. A comma at the end of the line starts no further field.
 std::vector<std::string_view> fields_of(const Line& line) {
   std::vector<std::string_view> fields;
   split_at_commas(line.text, fields);
@@ -59,33 +59,34 @@ Format read_header(const TextFile& file, const Line& line) {
     const auto power =
         caret == std::string_view::npos ? std::nullopt : parse_count(field.substr(caret + 1));
     if (!power || *power >= static_cast<std::size_t>(kMaxPolynomialOrder)) {
-      fail(file, line, fmt::format("column '{}' names no power, as x^0 does", field));
+      fail(file, line, fmt::format("column '{}' has no valid power, such as x^0", field));
     }
     const std::string name(field.substr(0, caret));
-    if (name.empty()) fail(file, line, fmt::format("column '{}' names no dimension", field));
+    if (name.empty()) fail(file, line, fmt::format("column '{}' has no dimension name", field));
     const auto found = std::ranges::find(format.names, name);
     const auto dimension = static_cast<std::size_t>(found - format.names.begin());
     if (found == format.names.end()) format.names.push_back(name);
     const Column column{dimension, *power};
     if (std::ranges::find(format.columns, column) != format.columns.end()) {
-      fail(file, line, fmt::format("column '{}' is there twice", field));
+      fail(file, line, fmt::format("column '{}' occurs twice", field));
     }
     format.columns.push_back(column);
     format.order = std::max<std::size_t>(format.order, *power + 1);
   }
   if (format.names.empty() || format.names.size() > kMaxDimensions) {
-    fail(file, line, fmt::format("{} dimensions; 1 to 64 can be read", format.names.size()));
+    fail(file, line, fmt::format("{} dimensions, not 1 to 64", format.names.size()));
   }
   return format;
 }
 
-/// Of a piece, and of all together.
+/// Limit for each piece, and for the whole trajectory.
 constexpr Time kLongestPiece = std::chrono::hours(24 * 366);
 
 Time duration_of(const TextFile& file, const Line& line, std::string_view field) {
   const auto duration = parse_time(without_blanks(field), TimeUnit::seconds);
   if (!duration || *duration <= Time::zero() || *duration > kLongestPiece) {
-    fail(file, line, fmt::format("'{}' is no duration of up to a year", without_blanks(field)));
+    fail(file, line,
+         fmt::format("'{}' is not a duration above 0 and up to 366 days", without_blanks(field)));
   }
   return *duration;
 }
@@ -104,14 +105,14 @@ void append_piece(const TextFile& file, const Line& line, const Format& format,
     if (!value || !is_usable(*value)) {
       fail(
           file, line,
-          fmt::format("column '{}^{}': '{}' is no number within 1e100",
+          fmt::format("column '{}^{}': '{}' is not a number from -1e100 to 1e100",
                       format.names[column.dimension], column.power, without_blanks(fields[i + 1])));
     }
     coefficients[column.power * format.names.size() + column.dimension] = *value;
   }
   const Time left = curve.segments() == 0 ? Time::zero() : curve.breaks().back();
   const Time right = left + duration_of(file, line, fields[0]);
-  if (right > kLongestPiece) fail(file, line, "the trajectory lasts longer than a year");
+  if (right > kLongestPiece) fail(file, line, "the trajectory is longer than 366 days");
   curve.append(left, right, static_cast<int>(format.order), coefficients);
 }
 

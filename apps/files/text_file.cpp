@@ -22,7 +22,7 @@ namespace bip = boost::interprocess;
 
 namespace {
 
-/// Lends a descriptor to boost::interprocess::mapped_region.
+/// Passes a descriptor to boost::interprocess::mapped_region.
 struct DescriptorMapping {
   int descriptor;
   [[nodiscard]] bip::mapping_handle_t get_mapping_handle() const {
@@ -44,17 +44,17 @@ TextFile::TextFile(const std::string& path)
     text_ = storage_->read;
     return;
   }
-  // Opened before it is judged, so that what is judged is what is read.
+  // Check the open descriptor, so that the file that is checked is the file that is read.
   const auto file = ipc::OwnedDescriptor::open(path, O_RDONLY);
   struct stat status {};
   if (file.get() < 0 || fstat(file.get(), &status) != 0) refuse(errno);
-  if (S_ISDIR(status.st_mode)) throw InputError(fmt::format("{}: is a folder", name_));
+  if (S_ISDIR(status.st_mode)) throw InputError(fmt::format("{}: is a directory", name_));
   if (!S_ISREG(status.st_mode)) {  // a pipe: read to its end
     storage_->read = read_to_end(file.get());
     text_ = storage_->read;
     return;
   }
-  if (status.st_size == 0) return;  // nothing can be mapped
+  if (status.st_size == 0) return;  // an empty file cannot be mapped
   try {
     storage_->mapped = bip::mapped_region(DescriptorMapping{file.get()}, bip::read_only);
   } catch (const bip::interprocess_exception& refused) {

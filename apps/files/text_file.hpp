@@ -6,8 +6,8 @@
 
 namespace splinecast::apps {
 
-/// A text file as one view, mapped; `-` is standard input, read to its end. Throws InputError if
-/// it cannot be read.
+/// A text file as one view. Maps a regular file; reads a pipe, or standard input (`-`), to its end.
+/// Throws InputError if the file cannot be read.
 class TextFile {
  public:
   explicit TextFile(const std::string& path);

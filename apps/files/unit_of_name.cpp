@@ -9,7 +9,7 @@ std::pair<std::string, std::string> name_and_unit(const std::string& column) {
     const std::size_t open = column.rfind(brackets[0]);
     if (open == std::string::npos || open == 0 || column.back() != brackets[1]) continue;
     const std::string unit(without_blanks(column.substr(open + 1, column.size() - open - 2)));
-    // p[0], v[1], … count dimensions.
+    // In p[0], v[1], … the brackets hold an index.
     if (unit.empty() || parse_count(unit)) continue;
     return {std::string(without_blanks(column.substr(0, open))), unit};
   }

@@ -5,7 +5,8 @@
 
 namespace splinecast::apps {
 
-/// A column's name as `name [unit]` or `name (unit)`; without a unit the whole is the name.
+/// Splits a column's title, `name [unit]` or `name (unit)`, into name and unit. Without a unit the
+/// whole title is the name.
 [[nodiscard]] std::pair<std::string, std::string> name_and_unit(const std::string& column);
 
 }  // namespace splinecast::apps

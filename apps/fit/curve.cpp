@@ -20,7 +20,8 @@ Condition or_own(const std::optional<Condition>& condition) {
   return condition.value_or(Condition{.kind = kOwn, .value = {}});
 }
 
-/// Throws InputError where a derivative is needed that the file does not give, or not as a number.
+/// Throws InputError if the method needs a derivative that the file lacks or that is not a usable
+/// number.
 void require_derivatives(const WaypointTable& table, const Method& method) {
   const auto require = [&](bool needed, const std::vector<double>& values, char letter) {
     if (!needed) return;
@@ -42,7 +43,8 @@ void require_derivatives(const WaypointTable& table, const Method& method) {
 double chosen_lambda(const Waypoints& waypoints, const CurveOptions& options) {
   if (options.lambda) return *options.lambda;
   if (options.online) {
-    throw std::invalid_argument("method smoothing needs a --lambda: online it cannot be chosen");
+    throw std::invalid_argument(
+        "method smoothing needs --lambda with --online: cross-validation needs all waypoints");
   }
   const double lambda = cross_validated_lambda(waypoints);
   say(fmt::format("lambda {} chosen by cross-validation", lambda));
@@ -54,8 +56,8 @@ double chosen_lambda(const Waypoints& waypoints, const CurveOptions& options) {
   const double ahead = to_seconds(table.times[i] - table.times[i - how.settle]);
   const double mean = ahead / static_cast<double>(how.settle);
   throw InputError(fmt::format(
-      "{}: settle lag {} is too short for lambda {} with waypoints {:.3g} s apart: {} or more are "
-      "needed (at most {} can be had); --force-lag takes it",
+      "{}: settle lag {} is too short for lambda {} with waypoints {:.3g} s apart: at least {} is "
+      "needed (the most is {}); --force-lag accepts it",
       table.where(i), how.settle, how.interpolant.lambda, mean,
       static_cast<std::size_t>(std::ceil(core::smoothing_lag(how.interpolant.lambda, mean))),
       core::kMaxSettle));

@@ -10,10 +10,10 @@
 
 namespace splinecast::apps {
 
-/// What shapes a curve beside its method.
+/// Options of a curve, apart from its method.
 struct CurveOptions {
   std::optional<double> lambda{};  ///< of smoothing; unset: by cross-validation
-  bool lambda_is_auto = false;     ///< asked for by name
+  bool lambda_is_auto = false;     ///< `--lambda auto` was given
   std::optional<double> time_scale{};
   std::optional<Condition> start{};
   std::optional<Condition> end{};
@@ -23,9 +23,9 @@ struct CurveOptions {
   bool force_lag = false;
 };
 
-/// Fits one method to a table, at once or as the solver would; a λ chosen by cross-validation is
-/// said on stderr. Throws InputError naming the line of a waypoint that the method cannot take, and
-/// std::invalid_argument for options that do not go with it.
+/// Fits one method to a table, in batch or online as the solver does. Prints a λ chosen by
+/// cross-validation on standard error. Throws InputError with the line of a waypoint that the
+/// method does not accept, and std::invalid_argument for options that it does not support.
 [[nodiscard]] PiecewisePolynomial fit_table(const WaypointTable& table, const Method& method,
                                             const CurveOptions& options);
 

@@ -23,7 +23,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Instants between waypoints at which a curve is compared.
+/// Comparisons of a curve with the truth per interval between waypoints.
 constexpr int kComparisons = 100;
 constexpr std::int64_t kMostWaypoints = 100'000;
 constexpr double kUnmeasured = std::numeric_limits<double>::quiet_NaN();
@@ -34,16 +34,15 @@ struct MethodsOptions {
   bool json = false;
 };
 
-/// A method with a settle lag; none: at once.
+/// A method with a settle lag; nullopt: batch.
 struct Choice {
   const Method* method;
   std::optional<std::size_t> settle;
   double lambda_per_h3 = 0;
 };
 
-/// How far a curve is from the truth: largest errors in p, v and a and largest acceleration step,
-/// each as a fraction of the truth's own largest p, v, a and a; NaN where the truth has none but
-/// rounding.
+/// Errors of a curve: largest errors in p, v and a and largest acceleration step, each relative to
+/// the truth's largest p, v, a and a; NaN if the truth's value is only rounding.
 using Errors = std::array<double, 4>;
 
 double largest(std::span<const double> values) {
@@ -69,8 +68,9 @@ std::vector<Choice> choices() {
   return all;
 }
 
-/// The continuous stretches of a trajectory. Where its position jumps, by a thousandth of its unit
-/// or more, no curve through waypoints could follow it; below that the digits of such files end.
+/// The continuous stretches of a trajectory: splits it where its position jumps by 0.001 of its
+/// unit or more, which no curve through waypoints can follow. Smaller jumps are rounding in the
+/// file.
 std::vector<PiecewisePolynomial> stretches(const PolynomialFile& file, const std::string& name,
                                            Time period) {
   constexpr double kRounding = 1e-3;
@@ -82,7 +82,7 @@ std::vector<PiecewisePolynomial> stretches(const PolynomialFile& file, const std
     curve.jump(i, 0, jump);
     if (largest(jump) < kRounding) continue;
     const Time at = curve.left_of(i);
-    say(fmt::format("{}: its position jumps by {:.3g} at {} s: measured before and behind", name,
+    say(fmt::format("{}: the position jumps by {:.3g} at {} s: measured before and after it", name,
                     largest(jump), to_seconds(at)));
     all.push_back(restricted(curve, from, at));
     from = at;
@@ -96,7 +96,7 @@ std::vector<PiecewisePolynomial> stretches(const PolynomialFile& file, const std
     return stretch.breaks().back() - stretch.breaks().front() < period;
   };
   if (std::erase_if(all, is_too_short) > 0) {
-    say(fmt::format("{}: what is shorter than --every is left out", name));
+    say(fmt::format("{}: stretches shorter than --every are left out", name));
   }
   return all;
 }
@@ -126,7 +126,7 @@ PiecewisePolynomial curve_of(const Choice& choice, const WaypointTable& table, T
   options.settle = choice.settle;
   const double h = to_seconds(period);
   if (choice.lambda_per_h3 > 0) options.lambda = choice.lambda_per_h3 * h * h * h;
-  // What a method makes of its ends is not what is measured: it is told their velocities.
+  // Gives the velocities at both ends, because boundary effects are not measured here.
   const Method& method = *choice.method;
   if (method.streams() && !method.needs_velocity() && !method.smooths()) {
     const auto velocity = [&table](std::size_t i) {
@@ -243,14 +243,15 @@ int run_methods(const MethodsOptions& options) {
 void add_methods(Command& verb, Action& action) {
   auto options = std::make_shared<MethodsOptions>();
   verb.option("--against", options->files,
-              "Trajectories as polynomials (CSV: duration,x^0,x^1,...): the largest errors of "
-              "each method in position, velocity and acceleration, and its largest "
-              "acceleration step, over all of them, as fractions of the trajectory's largest "
-              "position, velocity and acceleration")
+              "Trajectories as polynomials (CSV: duration,x^0,x^1,...) to measure the methods "
+              "against: largest errors in position, velocity and acceleration and largest "
+              "acceleration step over all files, relative to the trajectory's largest position, "
+              "velocity and acceleration")
       .type("FILE...");
-  add_seconds(verb, "--every", options->period, "Time between waypoints (default 0.1)",
+  add_seconds(verb, "--every", options->period,
+              "Time between waypoints in s, from 1e-6 (default 0.1)",
               {std::chrono::microseconds(1), kLongestTime});
-  verb.flag("--json", options->json, "As JSON");
+  verb.flag("--json", options->json, "Print JSON");
   verb.callback([&action, options] { action = [options] { return run_methods(*options); }; });
 }
 

@@ -10,11 +10,14 @@ namespace splinecast::apps {
 void add_curve(Command& verb, CurveOptions& options) {
   add_lambda(verb, options.lambda, &options.lambda_is_auto);
   add_time_scale(verb, options.time_scale);
-  add_condition(verb, "--start", options.start,
-                "Condition at the first waypoint (default natural for c2, else the method's own)");
+  add_condition(
+      verb, "--start", options.start,
+      "Boundary condition at the first waypoint (default: natural for c2, else the method's own)");
   add_condition(verb, "--end", options.end,
-                "Condition at the last waypoint (default likewise; with --online halt for c2)");
-  verb.flag("--online", options.online, "As the solver would: through the sliding window");
+                "Boundary condition at the last waypoint (default: natural for c2, with --online "
+                "halt; else the method's own)");
+  verb.flag("--online", options.online,
+            "Fit online through the sliding window, as the solver does");
   add_settle(verb, options.settle);
   add_tail(verb, options.tail);
   add_force_lag(verb, options.force_lag);

@@ -7,11 +7,11 @@
 
 namespace splinecast::apps {
 
-/// What shapes a curve that is fitted to a file: `--lambda`, `--time-scale`, `--start`, `--end`,
-/// `--online`, `--settle`, `--tail`, `--force-lag`.
+/// Adds the options of a curve that is fitted to a file: `--lambda`, `--time-scale`, `--start`,
+/// `--end`, `--online`, `--settle`, `--tail`, `--force-lag`.
 void add_curve(Command& verb, CurveOptions& options);
 
-/// Throws UsageError for options that do not go with one another or with the methods.
+/// Throws UsageError for options that exclude one another or that the methods do not support.
 void require_consistent(const CurveOptions& curve, std::span<const Method* const> methods);
 
 }  // namespace splinecast::apps

@@ -19,7 +19,7 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kMostMarks = 4000;  // of waypoints and of knots
 
-/// Everything that the JSON is made of.
+/// The contents of the JSON.
 struct Measured {
   const Report* report = nullptr;
   Time origin{};
@@ -30,7 +30,7 @@ struct Measured {
 
 double seconds_from(Time origin, Time t) { return to_seconds(t - origin); }
 
-/// Nothing for a lone waypoint.
+/// nullopt for a single waypoint.
 std::optional<std::array<double, 3>> intervals_of(std::span<const Time> times) {
   if (times.size() < 2) return std::nullopt;
   std::vector<Time> h;
@@ -51,7 +51,7 @@ Measured measure(const Report& report) {
   return all;
 }
 
-/// Differences of a derivative of a dimension that are nothing but rounding.
+/// Largest difference of a derivative of a dimension that is only rounding.
 double resolution(const Measured& all, std::size_t d, std::size_t derivative) {
   double size = 0;
   for (const ReportTable& table : all.tables) {
@@ -63,8 +63,8 @@ double resolution(const Measured& all, std::size_t d, std::size_t derivative) {
          std::pow(h, static_cast<double>(derivative));
 }
 
-/// Values without the digits that no screen shows: those below a millionth of their range, or of
-/// `resolution` if that is wider.
+/// Rounds values to a millionth of their range, or of `resolution` if that is larger: a screen
+/// shows no more digits.
 ordered_json drawn(std::span<const double> values, double resolution) {
   double least = std::numeric_limits<double>::infinity();
   double greatest = -least;
@@ -87,7 +87,7 @@ ordered_json extremum_json(const Measured& all, const Extremum& extremum) {
   return {extremum.value, seconds_from(all.origin, extremum.time)};
 }
 
-/// One row of a table; texts are the page's.
+/// One row of a table; the page adds the texts.
 ordered_json row_json(const Measured& all, const ReportRow& row) {
   return {{"least", extremum_json(all, row.extremes.least)},
           {"greatest", extremum_json(all, row.extremes.greatest)},
@@ -107,7 +107,7 @@ ordered_json curve_json(const Measured& all, std::size_t c, std::size_t d) {
           {"distance", extremum_json(all, all.tables[c].distance[d])}};
 }
 
-/// Every how many-th of `count` is marked.
+/// One in this many of `count` items is marked.
 std::size_t stride(std::size_t count) { return (count + kMostMarks - 1) / kMostMarks; }
 
 ordered_json times_json(std::span<const Time> times, Time origin) {
@@ -144,18 +144,19 @@ ordered_json report_json(const Measured& all) {
   for (std::size_t d = 0; d < report.names.size(); ++d) {
     dimensions.push_back(dimension_json(all, d));
   }
-  return {{"title", report.title},
-          {"origin_ns", std::to_string(all.origin.count())},  // more digits than a script's numbers
-          {"duration", seconds_from(all.origin, breaks.back())},
-          {"count", report.waypoints.size()},
-          {"stride", std::max(stride(report.waypoints.size()), stride(breaks.size()))},
-          {"intervals", all.intervals ? ordered_json(*all.intervals) : ordered_json()},
-          {"bucket", all.rows.bucket},
-          {"curves", std::move(names)},
-          {"seconds", all.rows.seconds},
-          {"waypoint_seconds", times_json(report.waypoints.times, all.origin)},
-          {"knot_seconds", times_json(breaks, all.origin)},
-          {"dimensions", std::move(dimensions)}};
+  return {
+      {"title", report.title},
+      {"origin_ns", std::to_string(all.origin.count())},  // more digits than a JavaScript number
+      {"duration", seconds_from(all.origin, breaks.back())},
+      {"count", report.waypoints.size()},
+      {"stride", std::max(stride(report.waypoints.size()), stride(breaks.size()))},
+      {"intervals", all.intervals ? ordered_json(*all.intervals) : ordered_json()},
+      {"bucket", all.rows.bucket},
+      {"curves", std::move(names)},
+      {"seconds", all.rows.seconds},
+      {"waypoint_seconds", times_json(report.waypoints.times, all.origin)},
+      {"knot_seconds", times_json(breaks, all.origin)},
+      {"dimensions", std::move(dimensions)}};
 }
 
 }  // namespace

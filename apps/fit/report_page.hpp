@@ -22,14 +22,14 @@ struct Report {
   std::vector<std::string> names;   ///< of the dimensions
   std::vector<std::string> units;   ///< of the positions, one per dimension; "" for an unknown one
   Waypoints waypoints;              ///< at least one
-  std::vector<Dimension> kinds{};   ///< of the dimensions; none: all linear
+  std::vector<Dimension> kinds{};   ///< of the dimensions; empty: all linear
   std::vector<ReportCurve> curves;  ///< at least one, of as many dimensions; none empty
 };
 
-/// Writes a report as one HTML file that needs nothing else, no network either: for each dimension
+/// Writes a report as one self-contained HTML file, which needs no network: for each dimension
 /// position, velocity, acceleration and jerk over time, all curves in each chart, and a table of
-/// extremes, largest steps at knots and distances from the waypoints. Texts may hold anything.
-/// Long recordings are drawn as the least and greatest values of short intervals.
+/// extremes, largest steps at knots and distances from the waypoints. Texts may contain any
+/// characters. Long recordings are drawn as the least and greatest values of short intervals.
 void write_report(const Report& report, Output& output);
 
 }  // namespace splinecast::apps

@@ -12,8 +12,8 @@
 namespace splinecast::apps {
 namespace {
 
-constexpr std::int64_t kRowsAcross = 1600;     // of the whole time, at least
-constexpr std::int64_t kMostValues = 400'000;  // of each derivative: some MB of a file
+constexpr std::int64_t kRowsAcross = 1600;     // least number of rows over the whole time
+constexpr std::int64_t kMostValues = 400'000;  // per derivative: a few MB of the file
 constexpr std::size_t kBuckets = 2000;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -76,7 +76,7 @@ ReportRows sampled(std::span<const ReportCurve> curves, const std::vector<Instan
   return rows;
 }
 
-/// Length of the intervals that two rows stand for.
+/// Length of the interval that a pair of rows represents.
 Time bucket_of(const std::vector<Instant>& instants) {
   return (instants.back().time - instants.front().time) / kBuckets + Time(1);
 }
@@ -109,8 +109,8 @@ class Envelope {
                                                      .greatest = {.time = {}, .value = kNone}}};
 };
 
-/// The columns of one curve. Its greatest and least values are among them; others may be missed
-/// between samples.
+/// Writes the columns of one curve. They contain its greatest and least values exactly; values
+/// between samples may be missed.
 void write_envelopes(const PiecewisePolynomial& curve, const ReportTable& table,
                      const std::vector<Instant>& instants, std::span<double> out) {
   const std::size_t dimensions = curve.dimensions();

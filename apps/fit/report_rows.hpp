@@ -13,11 +13,11 @@ namespace splinecast::apps {
 /// The breaks of all curves, ascending, each once.
 [[nodiscard]] std::vector<Time> breaks_of(std::span<const ReportCurve> curves);
 
-/// What the charts draw: values of all curves at the same times.
+/// The rows of the charts: values of all curves at the same times.
 struct ReportRows {
-  std::vector<double> seconds;  ///< from the first break; twice the same where values may jump
-  double bucket = 0;            ///< seconds; if not 0, a pair of rows is the least and the greatest
-                                ///< value of such an interval, in their order
+  std::vector<double> seconds;  ///< from the first break; repeated where values may jump
+  double bucket = 0;            ///< seconds; if not 0, each pair of rows is the least and greatest
+                                ///< value of an interval of this length, in time order
   std::vector<double> values;   ///< [curve][dimension][derivative][row], NaN outside a curve
 
   /// The values of curve c of D dimensions.
@@ -28,10 +28,10 @@ struct ReportRows {
   }
 };
 
-/// Samples curves of equal dimensions, of which `tables` says the extremes, densely enough that
-/// they look smooth: each break from both sides and between breaks, or, where that makes more than
-/// 40000 rows, fewer the more curves and dimensions there are, but no fewer than 4000, the least
-/// and greatest values of 2000 equal intervals.
+/// Samples curves of equal dimensions, whose extremes are in `tables`, densely enough to look
+/// smooth: each break from both sides, and between breaks. If that makes more rows than a limit,
+/// 40000 or less for many curves and dimensions but at least 4000, returns the least and greatest
+/// values of 2000 equal intervals instead.
 [[nodiscard]] ReportRows rows_of(std::span<const ReportCurve> curves,
                                  std::span<const ReportTable> tables);
 

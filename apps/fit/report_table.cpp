@@ -7,16 +7,16 @@
 namespace splinecast::apps {
 namespace {
 
-/// Keeps the larger one by size; on a tie the one that is there.
+/// Keeps the value of larger magnitude; on a tie the present one.
 void consider(Extremum& largest, Time time, double value) {
   if (std::abs(value) > std::abs(largest.value)) largest = {.time = time, .value = value};
 }
 
-/// The kinds, but that nothing wraps: read, a wrapping position steps by a period.
+/// The kinds with periodic dimensions made linear: a wrapped position steps by a period.
 DimensionKinds only_quaternions(std::span<const Dimension> kinds) {
   std::vector<Dimension> all(kinds.begin(), kinds.end());
   for (Dimension& dimension : all) {
-    if (dimension.kind == DimensionKind::wrap) dimension = {};
+    if (dimension.kind == DimensionKind::periodic) dimension = {};
   }
   return DimensionKinds(all);
 }

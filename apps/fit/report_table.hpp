@@ -13,20 +13,20 @@ namespace splinecast::apps {
 /// Derivatives that a report shows: position, velocity, acceleration, jerk.
 inline constexpr std::size_t kDerivatives = 4;
 
-/// What the tables of a report say of one dimension of a derivative of a curve.
+/// One row of a report's tables: one derivative of one dimension of a curve.
 struct ReportRow {
   Extremes extremes;
-  Extremum step;  ///< the jump at a knot that is largest by size; 0 at the first without one
+  Extremum step;  ///< largest jump at a knot, by magnitude; 0 at the first break if there is none
 };
 
-/// What they say of a curve.
+/// The table of one curve.
 struct ReportTable {
   std::vector<ReportRow> rows;     ///< [dimension][derivative]
-  std::vector<Extremum> distance;  ///< per dimension, largest from a waypoint
+  std::vector<Extremum> distance;  ///< per dimension, largest distance from a waypoint
 };
 
-/// Measures a curve. Waypoints outside its time are not looked at. The steps of a quaternion are
-/// those of what readers see, at unit length.
+/// Measures a curve. Ignores waypoints outside its time range. Steps of a quaternion are measured
+/// at unit length, as readers see it.
 [[nodiscard]] ReportTable table_of(const PiecewisePolynomial& curve, const Waypoints& waypoints,
                                    std::span<const Dimension> kinds);
 

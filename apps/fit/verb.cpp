@@ -31,7 +31,7 @@ struct FitOptions {
   Emit emit = Emit::samples;
   std::string output;
   std::string report;
-  std::vector<std::string> units;  ///< of positions in the report; the last one for all that follow
+  std::vector<std::string> units;  ///< of positions in the report; the last one repeats
 };
 
 void require_inside(const std::vector<Time>& times, const PiecewisePolynomial& curve,
@@ -40,9 +40,8 @@ void require_inside(const std::vector<Time>& times, const PiecewisePolynomial& c
   const Time last = curve.breaks().back();
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (times[i] >= first && times[i] <= last) continue;
-    throw InputError(
-        fmt::format("{}: row {}: time {} ns lies outside the data, which go from {} ns to {} ns",
-                    file, i + 1, times[i].count(), first.count(), last.count()));
+    throw InputError(fmt::format("{}: row {}: time {} ns is outside the data, {} ns to {} ns", file,
+                                 i + 1, times[i].count(), first.count(), last.count()));
   }
 }
 
@@ -65,7 +64,7 @@ void write_report_of(const WaypointTable& table, std::vector<ReportCurve> curves
   output.close();
 }
 
-/// The samples that --dt asks for can be written in a lifetime.
+/// Throws InputError if --dt makes more than 1e9 samples.
 void require_samples(const PiecewisePolynomial& curve, Time dt) {
   constexpr std::int64_t kMost = 1'000'000'000;
   const std::int64_t samples = (curve.breaks().back() - curve.breaks().front()) / dt;
@@ -74,13 +73,13 @@ void require_samples(const PiecewisePolynomial& curve, Time dt) {
       fmt::format("--dt {} makes {} samples; the most is {}", to_seconds(dt), samples, kMost));
 }
 
-/// Whether all that is asked for is a report.
+/// Whether a report is the only output.
 bool only_reports(const FitOptions& options) {
   return !options.report.empty() && options.emit == Emit::samples && options.at.empty() &&
          !options.dt;
 }
 
-/// The files that are written; an empty one is standard output.
+/// The output files; an empty name is standard output.
 std::vector<std::string> outputs_of(const FitOptions& options) {
   std::vector<std::string> outputs;
   if (!options.report.empty()) outputs.push_back(options.report);
@@ -121,7 +120,7 @@ void require_consistent(const FitOptions& options) {
   };
   require_consistent(options.curve, options.methods);
   if (options.methods.size() > 1 && !only_reports(options)) {
-    refuse("--method", "is given more than once, which goes with --report alone");
+    refuse("--method", "several methods need --report as the only output");
   }
   if (!options.units.empty() && options.report.empty()) refuse("--unit", "goes with --report only");
   if (options.emit == Emit::samples) {
@@ -139,7 +138,7 @@ void add_interpolants(Command& verb, std::vector<const Method*>& methods) {
           [&methods](const std::vector<std::string>& names) {
             for (const std::string& name : names) methods.push_back(&method_named(name));
           },
-          fmt::format("Interpolant: {} (default c2); with --report several, separated by commas",
+          fmt::format("Interpolant: {} (default c2); with --report, a list separated by commas",
                       method_names(false)))
       .separated_by_commas()
       .type("METHOD");
@@ -151,13 +150,13 @@ void add_emit(Command& verb, Emit& value) {
           [&value](const std::string& text) {
             const auto emit = parse_emit(text);
             if (!emit) {
-              throw UsageError("--emit",
-                               fmt::format("'{}' is none of samples, pp, bezier, bspline", text));
+              throw UsageError(
+                  "--emit", fmt::format("'{}' is not one of samples, pp, bezier, bspline", text));
             }
             value = *emit;
           },
-          "What to write: samples (CSV, default); as JSON pp (piecewise polynomial), bezier "
-          "(control points), bspline")
+          "Output: samples (CSV, default), or as JSON: pp (piecewise polynomial), bezier (control "
+          "points), bspline")
       .type("WHAT");
 }
 
@@ -168,17 +167,17 @@ void add_fit(Command& verb, Action& action) {
   add_interpolants(verb, options->methods);
   add_curve(verb, options->curve);
   const Argument at =
-      verb.option("--at", options->at, "File with a time column: where to sample").type("FILE");
-  add_seconds(verb, "--dt", options->dt, "Sample this often, from the first waypoint on",
-              kPositiveTime)
+      verb.option("--at", options->at, "File with a time column: the times to sample").type("FILE");
+  add_seconds(verb, "--dt", options->dt,
+              "Interval between samples in s, above 0; starts at the first waypoint", kPositiveTime)
       .excludes(at);
   add_emit(verb, options->emit);
   verb.option("-o,--output", options->output, "File to write (default: standard output)")
       .type("OUT");
-  verb.option("--report", options->report, "Page of charts to write, HTML").type("OUT");
+  verb.option("--report", options->report, "HTML page of charts to write").type("OUT");
   verb.option("--unit", options->units,
-              "Unit of the positions in the report, or one per column (default: what a column's "
-              "name has in brackets)")
+              "Unit of the positions in the report, or one per column (default: the text in "
+              "brackets in the column's name)")
       .separated_by_commas()
       .type("UNIT");
   add_table_options(verb, options->table);

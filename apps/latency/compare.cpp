@@ -21,7 +21,8 @@ void require_form(const ordered_json& result) {
       result["splinecast_latency"] == kLatencyForm) {
     return;
   }
-  throw InputError(fmt::format("no result of 'latency --json' in form {}", kLatencyForm));
+  throw InputError(
+      fmt::format("not a result of 'latency --json' in format version {}", kLatencyForm));
 }
 
 const ordered_json* find_series(const ordered_json& result, const ordered_json& name,
@@ -32,7 +33,7 @@ const ordered_json* find_series(const ordered_json& result, const ordered_json& 
   return nullptr;
 }
 
-/// The percentiles that have enough samples in both, as they stand in both.
+/// Visits each percentile that has enough samples in both results, with its two values.
 template <typename Visit>
 void for_each_common(const ordered_json& a, const ordered_json& b, const Visit& visit) {
   if (!a.contains("percentiles") || !b.contains("percentiles")) return;

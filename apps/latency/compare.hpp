@@ -7,7 +7,7 @@
 
 namespace splinecast::apps {
 
-/// A percentile that both of two results have with enough samples above it.
+/// A percentile that has enough samples above it in both results.
 struct ComparedPercentile {
   std::string name;  ///< of the series
   std::string from;
@@ -26,17 +26,17 @@ struct LatencyComparison {
 };
 
 /// Compares result B with A: B regressed at a percentile that is more than `threshold` percent and
-/// more than `floor_ns` longer than A's. The floor and iceoryx are the machine's, not the
-/// pipeline's: they are not compared, but a floor that differs by more than the threshold is told
-/// as a difference. Throws InputError if either is no result of `latency --json` in this version's
-/// form, or if no percentile has enough samples in both.
+/// more than `floor_ns` longer than A's. The floor and iceoryx belong to the machine, not to the
+/// pipeline: they are not compared, but a floor that differs by more than the threshold is reported
+/// as a difference. Throws InputError if either is not a result of `latency --json` in this format
+/// version, or if no percentile has enough samples in both.
 [[nodiscard]] LatencyComparison compare_latencies(const nlohmann::ordered_json& a,
                                                   const nlohmann::ordered_json& b, double threshold,
                                                   double floor_ns);
 
 [[nodiscard]] nlohmann::ordered_json to_json(const LatencyComparison& comparison);
 
-/// As a table for people.
+/// The comparison as a text table.
 [[nodiscard]] std::string comparison_text(const LatencyComparison& comparison);
 
 }  // namespace splinecast::apps

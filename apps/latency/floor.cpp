@@ -20,13 +20,14 @@ constexpr std::uint64_t kEnd = kTrips + 1;
 constexpr Time kLongest = std::chrono::milliseconds(500);
 constexpr Time kPatience = std::chrono::seconds(10);
 
-/// A cache line each way, and the lines that are fetched along with them.
+/// One cache line per direction, each with the neighbour that is prefetched with it.
 struct Lines {
   alignas(128) std::atomic<std::uint64_t> there{0};
   alignas(128) std::atomic<std::uint64_t> back{0};
 };
 
-/// Spins until the word has moved on to `value`. Returns false after some patience.
+/// Spins until the word is at least `value`. Returns false after kPatience, or if a stop is
+/// requested.
 bool await(const std::atomic<std::uint64_t>& word, std::uint64_t value) {
   const MonotonicClock clock;
   std::optional<Time> end;
@@ -43,12 +44,12 @@ bool await(const std::atomic<std::uint64_t>& word, std::uint64_t value) {
 void ping(Lines& lines, SharedLog<Time>& trips) {
   const MonotonicClock clock;
   trips.touch();
-  if (!await(lines.back, 1)) throw TimeOut("the floor's other process did not come");
+  if (!await(lines.back, 1)) throw TimeOut("the floor's peer process did not start");
   const Time end = clock.now() + kLongest;
   Time before = clock.now();
   for (std::uint64_t trip = 2; trip < kEnd && before < end; ++trip) {
     lines.there.store(trip, std::memory_order_release);
-    if (!await(lines.back, trip)) throw TimeOut("the floor's other process does not answer");
+    if (!await(lines.back, trip)) throw TimeOut("the floor's peer process does not answer");
     const Time after = clock.now();
     if (!trips.push((after - before) / 2)) break;
     before = after;
@@ -60,7 +61,7 @@ void pong(Lines& lines) {
   std::uint64_t trip = 1;
   while (trip != kEnd) {
     lines.back.store(trip, std::memory_order_release);
-    if (!await(lines.there, trip + 1)) throw TimeOut("the floor's other process does not ask");
+    if (!await(lines.there, trip + 1)) throw TimeOut("the floor's peer process does not send");
     trip = lines.there.load(std::memory_order_relaxed);
   }
 }
@@ -71,11 +72,11 @@ LatencyFloor measure_floor(const LatencyOptions& options) {
   const auto first = options.cpu_producer;
   const auto second = options.cpu_reader(0);
   if (usable_cpus() < 2 || (first && first == second)) {
-    return {.one_way = {}, .reason = "needs a CPU each for the producer and the reader"};
+    return {.one_way = {}, .reason = "needs separate CPUs for the producer and the reader"};
   }
   const Shared<Lines> lines;
   SharedLog<Time> trips(kTrips);
-  // What does not take effect is told where the pipeline's own processes are set up so.
+  // The pipeline's processes report settings that do not take effect.
   Child other([&] {
     (void)adopt(options.settings(second), {});
     pong(*lines);

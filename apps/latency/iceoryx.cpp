@@ -5,7 +5,7 @@
 namespace splinecast::apps {
 
 LatencyPeer measure_iceoryx(const LatencyOptions& /*options*/) {
-  return {.seen = std::nullopt, .reason = "built without it (Debian: libiceoryx-posh-dev)"};
+  return {.seen = std::nullopt, .reason = "built without iceoryx (Debian: libiceoryx-posh-dev)"};
 }
 
 }  // namespace splinecast::apps
@@ -42,14 +42,14 @@ using ipc::Word;
 /// iceoryx's daemon, as a child that ends with this object.
 class Roudi {
  public:
-  /// Throws Failure if there is no such program.
+  /// Throws Failure if it cannot be started.
   Roudi() {
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) throw Failure("no pipe for a child process");
     pid_ = fork();
     if (pid_ == 0) {
       prctl(PR_SET_PDEATHSIG, SIGTERM);
-      setpgid(0, 0);  // the terminal's Ctrl-C is not for it: it must outlive those it serves
+      setpgid(0, 0);  // not for the terminal's Ctrl-C: the daemon must outlive its clients
       silence();
       execlp("iox-roudi", "iox-roudi", "-m", "off", "-l", "off", nullptr);
       const char failed = 1;
@@ -58,7 +58,7 @@ class Roudi {
     }
     close(ends[1]);
     char failed = 0;
-    const bool has_failed = pid_ < 0 || read(ends[0], &failed, 1) == 1;  // nothing if exec did it
+    const bool has_failed = pid_ < 0 || read(ends[0], &failed, 1) == 1;  // EOF if exec succeeded
     close(ends[0]);
     if (!has_failed) return;
     if (pid_ > 0) waitpid(pid_, nullptr, 0);
@@ -67,11 +67,11 @@ class Roudi {
   Roudi(const Roudi&) = delete;
   Roudi& operator=(const Roudi&) = delete;
   ~Roudi() {
-    kill(pid_, SIGTERM);  // so that it takes its shared memory along
+    kill(pid_, SIGTERM);  // so that it removes its shared memory
     waitpid(pid_, nullptr, 0);
   }
 
-  /// iceoryx writes to standard output what is no data of this program.
+  /// Discards standard output and error, on which iceoryx logs.
   static void silence() {
     const int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
     dup2(nowhere, STDOUT_FILENO);
@@ -82,7 +82,7 @@ class Roudi {
   pid_t pid_ = -1;
 };
 
-/// What goes through iceoryx: its number, then as many bytes as a waypoint's ring item has.
+/// The payload: the item's number, then as many bytes as a waypoint's ring item has.
 std::uint32_t payload_bytes(const LatencyOptions& options) {
   return static_cast<std::uint32_t>(sizeof(Word) * (2 + 3 * options.dimensions));
 }
@@ -93,9 +93,9 @@ iox::capro::ServiceDescription service_of(pid_t parent) {
   return {"splinecast", instance, "latency"};
 }
 
-/// This process's place with the daemon, and the way out: a daemon that ends aborts, and leaves its
-/// shared memory behind, if one of those it served has gone without a word, as a child that ends by
-/// _exit would, which runs no destructors of static objects.
+/// Registers this process with the daemon and unregisters it. A child ends by _exit, which runs no
+/// destructors of static objects; a daemon with a client that did not unregister aborts at its end
+/// and does not remove its shared memory.
 class Registration {
  public:
   Registration(const char* role, pid_t parent) {
@@ -117,7 +117,7 @@ struct IceoryxShared {
 };
 
 void run_publisher(const LatencyOptions& options, pid_t parent, IceoryxShared& shared) {
-  (void)adopt(options.settings(options.cpu_producer), {});  // told of the pipeline's processes
+  (void)adopt(options.settings(options.cpu_producer), {});  // the pipeline's processes warn
   shared.appends.touch();
   Roudi::silence();
   const Registration registration("producer", parent);
@@ -143,7 +143,7 @@ void run_publisher(const LatencyOptions& options, pid_t parent, IceoryxShared& s
   shared.meeting->last_revision.store(schedule.count, std::memory_order_release);
 }
 
-/// Takes what has come; a sample k counts as revision k + 1. Returns the last one.
+/// Takes all samples that have arrived; sample k counts as revision k + 1. Returns the last one.
 Word take_all(iox::popo::UntypedSubscriber& subscriber, IceoryxShared& shared) {
   const MonotonicClock clock;
   Word last = 0;
@@ -167,7 +167,7 @@ void run_subscriber(const LatencyOptions& options, pid_t parent, IceoryxShared& 
   Roudi::silence();
   const Registration registration("reader", parent);
   iox::popo::SubscriberOptions how;
-  how.queueCapacity = 256;  // its most
+  how.queueCapacity = 256;  // its maximum
   iox::popo::UntypedSubscriber subscriber(service_of(parent), how);
   iox::popo::WaitSet<> set;
   if (!options.spin) {
@@ -178,7 +178,7 @@ void run_subscriber(const LatencyOptions& options, pid_t parent, IceoryxShared& 
   if (!shared.meeting->await_start()) throw TimeOut("the publisher did not start");
   const MonotonicClock clock;
   constexpr Time kLongestWait = std::chrono::milliseconds(50);
-  constexpr Time kGrace = std::chrono::seconds(1);  // for what was published last
+  constexpr Time kGrace = std::chrono::seconds(1);  // for the last samples
   Word seen = 0;
   for (Time end = Time::max(); !stop_requested() && clock.now() < end;) {
     if (!options.spin) {
@@ -215,7 +215,7 @@ LatencyPeer measure_iceoryx(const LatencyOptions& options) {
   if (shared.seen.entries().empty()) return {.seen = std::nullopt, .reason = "nothing arrived"};
   const Time start(shared.meeting->start_ns.load(std::memory_order_relaxed));
   const Measured measured = options.measured(start);
-  // Every sample is there at once: its number stands for the revision that holds it.
+  // A sample is complete when it is sent: its number + 1 serves as its revision.
   std::vector<RevisionStamp> revisions;
   for (const AppendStamp& append : shared.appends.entries()) {
     if (append.item == kRefusedItem) continue;

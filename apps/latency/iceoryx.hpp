@@ -8,16 +8,17 @@
 
 namespace splinecast::apps {
 
-/// What a general zero-copy transport does with the same work, or why that was not measured.
+/// The latencies of a general zero-copy transport with the same work, or why they were not
+/// measured.
 struct LatencyPeer {
   std::optional<Latencies> seen;
   std::string reason;
 };
 
-/// Sends the schedule's waypoints, as many bytes each, through iceoryx from a process set up as the
-/// producer to one set up as the first reader, polling or waiting as the mode says. Starts
-/// iceoryx's daemon, iox-roudi, for as long as that takes; one that runs already is used. Never
-/// throws for want of iceoryx.
+/// Sends the schedule's waypoints, as many bytes each, through iceoryx from a process with the
+/// producer's settings to one with the first reader's, polling or waiting as the mode says. Starts
+/// iceoryx's daemon, iox-roudi, for that time; uses a daemon that already runs. Does not throw if
+/// iceoryx is missing.
 [[nodiscard]] LatencyPeer measure_iceoryx(const LatencyOptions& options);
 
 }  // namespace splinecast::apps

@@ -12,21 +12,21 @@
 
 namespace splinecast::apps {
 
-/// What `latency` measures, and how.
+/// Options of `latency`.
 struct LatencyOptions {
-  double rate = 1000;  ///< waypoints a second
+  double rate = 1000;  ///< waypoints per second
   Time duration = std::chrono::seconds(10);
   Time warmup = std::chrono::seconds(1);
-  Time lead = std::chrono::milliseconds(200);  ///< of a waypoint's time before it is due
-  std::optional<Time> deadline{};              ///< default: a period
+  Time lead = std::chrono::milliseconds(200);  ///< a waypoint's time minus the instant it is due
+  std::optional<Time> deadline{};              ///< default: one period
   std::size_t dimensions = 7;
   std::optional<std::size_t> settle{};
   std::size_t readers = 1;
   bool embedded = false;  ///< the solver runs in the producer's process
-  bool spin = false;      ///< poll instead of sleeping until there is something to do
+  bool spin = false;      ///< poll instead of sleeping until there is work to do
   std::optional<int> cpu_producer{};
   std::optional<int> cpu_solver{};
-  std::vector<int> cpu_readers{};  ///< of reader r: the one at r modulo their number
+  std::vector<int> cpu_readers{};  ///< reader r uses the one at r modulo their number
   bool fifo = false;
   int priority = 50;
   bool lock_memory = false;

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// A curve: [1/(1 − share), ns] of each step but the last, which lies at infinity.
+/// A curve: [1/(1 − share), ns] of each step but the last, which is at infinity.
 ordered_json curve_json(const Histogram& histogram) {
   ordered_json curve = ordered_json::array();
   for_each_percentile(histogram, [&](const PercentileStep& step) {

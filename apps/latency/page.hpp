@@ -5,8 +5,8 @@
 
 namespace splinecast::apps {
 
-/// Writes the result as one HTML file that needs nothing else: the table, the percentile curves of
-/// all series, and of each stage the histogram over time. Throws as Output does.
+/// Writes the result as one self-contained HTML file: the table, the percentile curves of all
+/// series, and the histogram over time of each stage. Throws as Output does.
 void write_latency_page(const LatencyResult& result, Output& output);
 
 }  // namespace splinecast::apps

@@ -140,7 +140,7 @@ std::string machine_text(const ordered_json& result) {
   const auto& solver = result["solver"];
   std::string text = fmt::format(
       "\nsolver: {} revisions, {} discarded as too late, {} committed late\n"
-      "clock: {:.1f} ns a reading, steps of {} ns\n",
+      "clock: {:.1f} ns per reading, steps of {} ns\n",
       solver["revisions"].get<std::uint64_t>(), solver["discarded"].get<std::uint64_t>(),
       solver["committed_late"].get<std::uint64_t>(), clock["cost_ns"].get<double>(),
       clock["resolution_ns"].get<double>());
@@ -197,8 +197,8 @@ ordered_json to_json(const LatencyResult& result) {
 std::string latency_text(const ordered_json& result, bool dim) {
   std::string text = title_of(result["options"]) + warnings_text(result["warnings"]);
   text += table(result, "intended", "latency from the intended instant on, µs", dim);
-  text += table(result, "raw", "raw, from the begin of the append on, µs", dim);
-  text += "  (In brackets: fewer than ten samples lie above; another run would differ.)\n";
+  text += table(result, "raw", "raw, from the start of the append on, µs", dim);
+  text += "  (In brackets: fewer than ten samples are above; another run would differ.)\n";
   for (const auto& [name, reason] : result["not_measured"].items()) {
     text += fmt::format("  {} not measured: {}\n", name, reason.get<std::string>());
   }

@@ -24,13 +24,14 @@ using ipc::Word;
 using nlohmann::json;
 using std::chrono::milliseconds;
 
-/// Longest sleep of a process that waits for another one: so late it sees that all is over.
+/// Longest sleep of a process that waits for another one, hence its longest delay in seeing the
+/// end.
 constexpr Time kLongestWait = milliseconds(50);
-/// What the solver keeps of the past: as little as leaves a reader's late sample its segment.
+/// History that the solver keeps: just enough for a reader's late sample.
 constexpr Time kHistory = milliseconds(100);
 constexpr Time kTick = milliseconds(1);
 
-/// Room for so many waypoints as come in a time.
+/// The number of waypoints that are due in a time span, plus one.
 std::size_t waypoints_in(const LatencyOptions& options, Time time) {
   return static_cast<std::size_t>(time / options.period()) + 1;
 }
@@ -48,7 +49,8 @@ SolverOptions solver_options(const LatencyOptions& options) {
           .wake = !options.spin};
 }
 
-/// At most one revision per item, and those that only settle: one each half freeze-ahead.
+/// An upper bound: one revision per item, plus twice the number of those that only settle, one per
+/// half freeze-ahead.
 std::size_t most_revisions(const LatencyOptions& options) {
   const Time all = options.warmup + options.duration + options.lead + kLatencyPatience;
   const Time settles = ipc::LiveOptions().freeze_ahead / 4;
@@ -57,7 +59,7 @@ std::size_t most_revisions(const LatencyOptions& options) {
 
 template <typename T>
 void push(SharedLog<T>& log, const T& entry) {
-  if (!log.push(entry)) throw Failure("a process of the measurement noted more than can be");
+  if (!log.push(entry)) throw Failure("a log of the measurement is full");
 }
 
 json report(const char* role, const std::vector<std::string>& warnings,
@@ -71,7 +73,7 @@ class LatencySolver {
   LatencySolver(const LatencyOptions& options, const std::string& stream, LatencyShared& shared)
       : solver_(stream, solver_options(options)), shared_(&shared) {}
 
-  /// Returns false if no producer comes.
+  /// Returns false if there is no producer within kLatencyPatience.
   bool attach() {
     const Time end = clock_.now() + kLatencyPatience;
     while (!solver_.attach()) {
@@ -81,7 +83,7 @@ class LatencySolver {
     return true;
   }
 
-  /// Returns whether there was anything to do.
+  /// Returns whether there was work to do.
   bool step() {
     const StepResult result = solver_.step(clock_);
     if (result.published) {
@@ -125,7 +127,7 @@ class LatencyProducer {
       solver_->attach();
     }
     shared.appends.touch();
-    if (!producer_.wait_for_solver(kLatencyPatience)) throw TimeOut("the solver did not come");
+    if (!producer_.wait_for_solver(kLatencyPatience)) throw TimeOut("the solver did not attach");
   }
 
   json run(const std::vector<std::string>& warnings) {
@@ -161,7 +163,7 @@ class LatencyProducer {
     return !stop_requested();
   }
 
-  /// Sines of 2 s, each dimension in a phase of its own.
+  /// Sines with a period of 2 s, each dimension with its own phase.
   void move_to(Time t) {
     time_ = t + options_.lead;
     const double turns = std::fmod(to_seconds(t), 2.0) / 2;
@@ -196,7 +198,7 @@ class LatencyProducer {
   }
 
   void pass_time(Time end) {
-    if (clock_.now() > end) throw TimeOut("the solver does not go on");
+    if (clock_.now() > end) throw TimeOut("the solver makes no progress");
     if (solver_) {
       solver_->step();
     } else {
@@ -231,7 +233,7 @@ Time Meeting::begin(std::size_t count) {
   const MonotonicClock clock;
   const Time end = clock.now() + kLatencyPatience;
   while (ready.load(std::memory_order_relaxed) < count) {
-    if (clock.now() > end) throw TimeOut("a process of the measurement did not come");
+    if (clock.now() > end) throw TimeOut("a process of the measurement did not start");
     if (!sleep_until(clock.now() + kTick)) throw Interrupted("interrupted before it began");
   }
   constexpr Time kRunUp = milliseconds(20);
@@ -274,7 +276,7 @@ json run_latency_solver(const LatencyOptions& options, const std::string& stream
   const auto warnings = adopt(options.settings(options.cpu_solver), "the solver");
   MeasuredUsage usage(*shared.meeting, options.warmup);
   LatencySolver solver(options, stream, shared);
-  if (!solver.attach()) throw TimeOut("the producer did not come");
+  if (!solver.attach()) throw TimeOut("there is no producer");
   if (!shared.meeting->await_start()) throw TimeOut("the producer did not start");
   const MonotonicClock clock;
   while (!stop_requested() && !solver.has_finished()) {

@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What the pipeline's processes returned, the producer's first.
+/// Runs the pipeline's processes. Returns their results, the producer's first.
 std::vector<json> run_pipeline(const LatencyOptions& options, LatencyShared& shared) {
   const std::string stream = fmt::format("latency.{}", getpid());
   const StreamRemover remover({stream});
@@ -52,9 +52,9 @@ void warn_of_sharing(LatencyResult& result) {
   const LatencyOptions& options = result.options;
   const std::size_t cpus = usable_cpus();
   if (!options.spin || options.processes() <= cpus) return;
-  result.warnings.push_back(
-      fmt::format("{} processes spin on {} CPUs: what is measured is how the scheduler shares them",
-                  options.processes(), cpus));
+  result.warnings.push_back(fmt::format(
+      "{} processes spin on {} CPUs: the figures measure how the scheduler shares the CPUs",
+      options.processes(), cpus));
 }
 
 void warn_of_losses(const json& producer, LatencyResult& result) {
@@ -63,11 +63,11 @@ void warn_of_losses(const json& producer, LatencyResult& result) {
   };
   const auto by_missing = [](const Latencies& stage) { return stage.missing; };
   warn(std::ranges::max(result.stages, {}, by_missing).missing,
-       "waypoints never arrived: they count as missed deadlines, and in no percentile");
+       "waypoints never arrived: they count as missed deadlines, but in no percentile");
   warn(producer["full"], "waypoints found the ring full: their append waited for the solver");
   warn(producer["unnamed_refusals"],
        "refusals came too fast to be named: these waypoints count as if they had arrived");
-  if (result.interrupted) result.warnings.emplace_back("interrupted: fewer waypoints than asked");
+  if (result.interrupted) result.warnings.emplace_back("interrupted: fewer waypoints measured");
 }
 
 void measure_pipeline(LatencyResult& result) {
@@ -97,13 +97,13 @@ std::string throttling_warning(const LatencyOptions& options, const Environment&
   if (!options.fifo || !options.spin) return {};
   const auto stopped = throttled_time(environment);
   if (!stopped) {
-    return "whether the kernel throttles SCHED_FIFO processes that spin is unknown "
+    return "unknown whether the kernel throttles SCHED_FIFO processes that spin "
            "(/proc/sys/kernel/sched_rt_runtime_us)";
   }
   if (*stopped == Time::zero()) return {};
   return fmt::format(
       "the kernel stops SCHED_FIFO processes that spin for {:g} ms of each {} us "
-      "(sched_rt_runtime_us is {}), which is in the figures; see 'splinecast doctor'",
+      "(sched_rt_runtime_us is {}), which the figures include; see 'splinecast doctor'",
       to_seconds(*stopped) * 1e3, environment.rt_period, environment.rt_runtime);
 }
 
@@ -124,7 +124,7 @@ LatencyResult run_latency(const LatencyOptions& options) {
   }
   measure_pipeline(result);
   if (!options.iceoryx) {
-    result.iceoryx.reason = "told off";
+    result.iceoryx.reason = "disabled by --no-iceoryx";
   } else if (stop_requested()) {
     result.iceoryx.reason = "interrupted";
   } else {

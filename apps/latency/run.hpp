@@ -13,28 +13,28 @@
 
 namespace splinecast::apps {
 
-/// What `latency` found.
+/// The result of `latency`.
 struct LatencyResult {
   LatencyOptions options;
   Environment environment;
   ClockMeasure clock;
-  std::vector<std::string> warnings;  ///< what was not as asked for, or spoils the figures
+  std::vector<std::string> warnings;  ///< settings without effect, and what spoils the figures
   bool interrupted = false;
   std::vector<Latencies> stages;  ///< of the pipeline, in its order
   LatencyFloor floor;
   LatencyPeer iceoryx;
-  nlohmann::ordered_json processes;  ///< a list of `role` and what the kernel counted
+  nlohmann::ordered_json processes;  ///< a list of `role` and the kernel's counts
   nlohmann::ordered_json solver;     ///< its counters
 };
 
 /// A warning that the kernel stops spinning SCHED_FIFO processes, or may do so, which the figures
-/// then include; empty if it does not, or if none spin.
+/// then include; empty if it does not, or if no process spins.
 [[nodiscard]] std::string throttling_warning(const LatencyOptions& options,
                                              const Environment& environment);
 
-/// Measures the floor, the pipeline and, unless told off, iceoryx, one after the other, in
-/// processes of their own on a stream of their own. Takes twice the warm-up and the duration.
-/// Throws Failure or TimeOut if the pipeline cannot be measured.
+/// Measures the floor, the pipeline and, unless disabled, iceoryx, one after the other, in new
+/// processes and on a new stream. Takes twice the warm-up and the duration. Throws Failure or
+/// TimeOut if the pipeline cannot be measured.
 [[nodiscard]] LatencyResult run_latency(const LatencyOptions& options);
 
 }  // namespace splinecast::apps

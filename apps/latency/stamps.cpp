@@ -8,8 +8,8 @@
 namespace splinecast::apps {
 namespace {
 
-/// The first entry from `at` on for which `reached` holds, and moves `at` there; nullptr if there
-/// is none. What is looked for ascends, so that a walk over all costs as much as the entries.
+/// Returns the first entry from `at` on for which `reached` holds, and moves `at` to it; nullptr if
+/// there is none. Targets ascend, so that all calls together cost one pass over the entries.
 template <typename T, typename Reached>
 const T* first_from(std::span<const T> entries, std::size_t& at, const Reached& reached) {
   while (at < entries.size() && !reached(entries[at])) ++at;

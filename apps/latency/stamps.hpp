@@ -11,11 +11,11 @@
 #include "ipc/memory/word.hpp"
 #include "splinecast/time.hpp"
 
-/// What the processes of `latency` note, and the latencies that follow from it. All times are
-/// CLOCK_MONOTONIC.
+/// The time stamps of the processes of `latency`, and the latencies computed from them. All times
+/// are CLOCK_MONOTONIC.
 namespace splinecast::apps {
 
-/// In place of the number of an item: of a waypoint that the producer's append refused.
+/// In place of an item's number, for a waypoint that the producer's append refused.
 inline constexpr ipc::Word kRefusedItem = std::numeric_limits<ipc::Word>::max();
 
 /// A waypoint that the producer appended, or tried to.
@@ -29,38 +29,38 @@ struct AppendStamp {
 /// A revision that the solver committed.
 struct RevisionStamp {
   ipc::Word revision = 0;
-  ipc::Word consumed = 0;  ///< items that it and those before it contain
+  ipc::Word consumed = 0;  ///< items that it and earlier revisions contain
   Time solved{};           ///< directly before it was written to the board
-  Time published{};        ///< after the commit, and after waking who waits
+  Time published{};        ///< after the commit and the wake-up of waiting readers
 };
 
-/// A revision that a reader got a sample of, for the first time.
+/// The first sample that a reader got of a revision.
 struct SeenStamp {
   ipc::Word revision = 0;
   Time seen{};  ///< after the sample
 };
 
-/// The latencies of one stage of the way from the producer's append to a reader's sample.
+/// The latencies of one stage between the producer's append and a reader's sample.
 struct Latencies {
   std::string stage;
-  Histogram intended;  ///< from the intended instant on: what users of the waypoint wait
-  Histogram raw;       ///< from the begin of the append on: what the pipeline takes, which leaves
-                       ///< out what held the producer up
-  TimeGrid over_time;  ///< `intended`, over the measured time
-  std::uint64_t missed = 0;   ///< of `intended`, beyond the deadline; what never came included
-  std::uint64_t missing = 0;  ///< waypoints that never got to this stage
+  Histogram intended;        ///< from the intended instant on: the wait of a waypoint's user
+  Histogram raw;             ///< from the start of the append on: the time in the pipeline, without
+                             ///< delays of the producer
+  TimeGrid over_time;        ///< `intended`, over the measured time
+  std::uint64_t missed = 0;  ///< of `intended`, above the deadline; with those that never arrived
+  std::uint64_t missing = 0;  ///< waypoints that never reached this stage
 };
 
-/// What is measured: waypoints due from `from` to before `until`.
+/// The measured waypoints: those due from `from` to before `until`.
 struct Measured {
   Time from{};
   Time until{};
   Time deadline{};
 };
 
-/// Sorts out stamps: the latencies at the stages `append`, `solved` and `published`, and of each
-/// reader `seen`. Items in `refused` (ascending), which the solver took but did not interpolate,
-/// count as missing from `solved` on. Each of the spans is in the order of its numbers.
+/// Computes latencies from stamps: at the stages `append`, `solved` and `published`, and `seen` for
+/// each reader. Items in `refused` (ascending), which the solver consumed but did not interpolate,
+/// count as missing from `solved` on. Each span is in the order of its numbers.
 [[nodiscard]] std::vector<Latencies> latencies_of(
     std::span<const AppendStamp> appends, std::span<const RevisionStamp> revisions,
     const std::vector<std::span<const SeenStamp>>& readers, std::span<const ipc::Word> refused,
@@ -72,7 +72,7 @@ struct Measured {
 /// Adds one waypoint's latency at a stage.
 void add(Latencies& stage, const AppendStamp& append, Time reached, const Measured& measured);
 
-/// Adds one that never got there.
+/// Adds one waypoint that never reached the stage.
 void add_missing(Latencies& stage);
 
 }  // namespace splinecast::apps

@@ -27,12 +27,12 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double kMostRate = 100'000;
-/// Waypoints of one measurement: their stamps are kept in memory, some 100 bytes each.
+/// Waypoints of one measurement: their stamps are kept in memory, about 100 bytes each.
 constexpr double kMostWaypoints = 1e7;
-/// Revisions that only settle are noted too, 400 a second and more.
+/// Bytes of all stamps. Revisions that only settle count too, 400 per second and more.
 constexpr double kMostNoted = 2e9;
 constexpr Time kLongestRun = std::chrono::hours(4);
-constexpr Time kLongestLead = std::chrono::minutes(1);  ///< the board holds it
+constexpr Time kLongestLead = std::chrono::minutes(1);  ///< the board holds as much
 constexpr int kMostCpus = 1024;
 constexpr double kDefaultThreshold = 20;  // percent
 constexpr double kDefaultFloor = 1;       // µs
@@ -52,8 +52,8 @@ struct CompareCommand {
   bool json = false;
 };
 
-/// Under SCHED_FIFO a process that spins leaves its CPU to nobody of the same priority: two on one
-/// CPU would wait for each other for ever.
+/// Throws InputError if SCHED_FIFO processes that spin have to share a CPU: a process does not
+/// yield to one of the same priority, so two on one CPU would wait for each other forever.
 void require_cpu_each(const LatencyOptions& options) {
   if (!options.fifo || !options.spin) return;
   std::set<int> distinct;
@@ -68,21 +68,22 @@ void require_cpu_each(const LatencyOptions& options) {
   for (std::size_t r = 0; r < options.readers; ++r) note(options.cpu_reader(r));
   if (distinct.size() == pinned && options.processes() <= usable_cpus()) return;
   throw InputError(fmt::format(
-      "--mode spin under --policy fifo needs a CPU of its own for each process: {} for {}",
+      "--mode spin under --policy fifo needs one CPU per process: {} CPUs for {} processes",
       std::min(usable_cpus(), usable_cpus() - (pinned - distinct.size())), options.processes()));
 }
 
 void require_measurable(const LatencyOptions& options) {
   const double waypoints = options.rate * to_seconds(options.warmup + options.duration);
   if (waypoints > kMostWaypoints) {
-    throw InputError(fmt::format("{:.0f} waypoints are more than {:.0f}, the most of a measurement",
-                                 waypoints, kMostWaypoints));
+    throw InputError(
+        fmt::format("{:.0f} waypoints are more than {:.0f}, the maximum of a measurement",
+                    waypoints, kMostWaypoints));
   }
   const double bytes = bytes_noted(options);
   if (bytes > kMostNoted) {
     throw InputError(fmt::format(
-        "{} s with {} readers would note {:.0f} bytes; the most is {:.0f}: choose a "
-        "shorter --duration",
+        "{} s with {} readers would record {:.0f} bytes; the most is {:.0f}: choose a shorter "
+        "--duration",
         to_seconds(options.warmup + options.duration), options.readers, bytes, kMostNoted));
   }
   require_cpu_each(options);
@@ -142,7 +143,7 @@ int run_compare(const CompareCommand& command) {
 int parse_cpu(const std::string& name, const std::string& text) {
   const auto cpu = parse_count(text);
   if (cpu && *cpu < kMostCpus) return static_cast<int>(*cpu);
-  throw UsageError(name, fmt::format("'{}' is no CPU from 0 to {}", text, kMostCpus - 1));
+  throw UsageError(name, fmt::format("'{}' is not a CPU number from 0 to {}", text, kMostCpus - 1));
 }
 
 void add_cpu(Command& verb, const std::string& name, std::optional<int>& cpu,
@@ -152,37 +153,40 @@ void add_cpu(Command& verb, const std::string& name, std::optional<int>& cpu,
       .type("CPU");
 }
 
-/// What is sent, and how.
+/// Adds the options of what is sent.
 void add_work(Command& verb, LatencyOptions& options) {
-  add_rate(verb, "--rate", options.rate, "Waypoints a second (default 1000)", {1, kMostRate});
-  add_seconds(verb, "--duration", options.duration, "How long to measure (default 10)",
+  add_rate(verb, "--rate", options.rate, "Waypoints per second, 1 to 100000 (default 1000)",
+           {1, kMostRate});
+  add_seconds(verb, "--duration", options.duration,
+              "Duration of the measurement in s, above 0, at most 14400 (default 10)",
               {Time(1), kLongestRun});
-  add_seconds(verb, "--warmup", options.warmup, "How long to run before that (default 1)",
-              {Time::zero(), kLongestRun});
+  add_seconds(verb, "--warmup", options.warmup,
+              "Duration of the warm-up in s, 0 to 14400 (default 1)", {Time::zero(), kLongestRun});
   add_milliseconds(verb, "--lead", options.lead,
-                   "How far ahead of now waypoints are sent, at most 60000 (default 200)",
+                   "Time in ms from the append of a waypoint to its time, 0 to 60000 (default 200)",
                    {Time::zero(), kLongestLead});
   verb.option(
           "--deadline",
           [&options](const std::string& text) {
             options.deadline = time_within("--deadline", text, TimeUnit::milliseconds);
           },
-          "A latency beyond this is a missed deadline (default: a period)")
+          "Deadline in ms, above 0; a longer latency is a missed deadline (default: one period)")
       .type("MS");
-  add_count(verb, "--dims", options.dimensions, "Dimensions, 1 to 64 (default 7)",
+  add_count(verb, "--dims", options.dimensions, "Number of dimensions, 1 to 64 (default 7)",
             {1, kMaxDimensions});
   add_settle(verb, options.settle);
-  add_count(verb, "--readers", options.readers, "Readers, 1 to 64 (default 1)", {1, 64});
+  add_count(verb, "--readers", options.readers, "Number of reader processes, 1 to 64 (default 1)",
+            {1, 64});
   verb.flag("--embedded", options.embedded, "Solve in the producer's process");
 }
 
-/// How the processes run.
+/// Adds the options of the processes.
 void add_processes(Command& verb, LatencyOptions& options) {
   add_choice(
       verb, "--mode", "spin", "wait", [&options](bool spin) { options.spin = spin; },
-      "wait (default): sleep until there is something to do; spin: poll, a CPU each");
-  add_cpu(verb, "--cpu-producer", options.cpu_producer, "CPU to pin the producer to");
-  add_cpu(verb, "--cpu-solver", options.cpu_solver, "CPU to pin the solver to");
+      "wait (default): sleep until there is work to do; spin: poll, with one CPU per process");
+  add_cpu(verb, "--cpu-producer", options.cpu_producer, "CPU to pin the producer to, 0 to 1023");
+  add_cpu(verb, "--cpu-solver", options.cpu_solver, "CPU to pin the solver to, 0 to 1023");
   verb.option(
           "--cpu-reader",
           [&options](const std::vector<std::string>& texts) {
@@ -190,32 +194,32 @@ void add_processes(Command& verb, LatencyOptions& options) {
               options.cpu_readers.push_back(parse_cpu("--cpu-reader", text));
             }
           },
-          "CPUs to pin the readers to, one after the other")
+          "CPUs to pin the readers to, 0 to 1023 each, assigned in turn")
       .separated_by_commas()
       .type("CPU,...");
   add_choice(
       verb, "--policy", "fifo", "other", [&options](bool fifo) { options.fifo = fifo; },
-      "Scheduling: other (default) or fifo, SCHED_FIFO");
-  add_count(verb, "--prio", options.priority, "Priority under fifo, 1 to 99 (default 50)", {1, 99});
+      "Scheduling policy: other (default), or fifo (SCHED_FIFO)");
+  add_count(verb, "--prio", options.priority, "Priority with --policy fifo, 1 to 99 (default 50)",
+            {1, 99});
   verb.flag("--mlock", options.lock_memory, "Lock all memory (mlockall)");
   verb.flag("--iceoryx,!--no-iceoryx", options.iceoryx,
-            "Measure iceoryx too, with its daemon started for it (default: where it is built "
-            "in)");
+            "Measure iceoryx too, and start its daemon for that (default: if it is built in)");
 }
 
-/// Returns what `compare` takes.
+/// Adds the subcommand `compare`, and returns it.
 Command add_compare(Command& verb, const std::shared_ptr<CompareCommand>& command) {
   Command compare = verb.subcommand(
-      "compare", "Compare two results of --json; exits with 3 if B is slower than A");
-  compare.option("A", command->a, "The result to compare with").required();
-  compare.option("B", command->b, "The result that may be slower").required();
+      "compare", "Compare two results of --json; exit code 3 if B is slower than A");
+  compare.option("A", command->a, "Reference result of --json").required();
+  compare.option("B", command->b, "Result of --json to compare with A").required();
   compare
       .option(
           "--threshold",
           [command](const std::string& text) {
             command->threshold = number_within("--threshold", text, {0, 1e6});
           },
-          "Percent that a percentile may be longer (default 20)")
+          "Percent by which a percentile may be longer, 0 to 1e6 (default 20)")
       .type("PERCENT");
   compare
       .option(
@@ -223,9 +227,9 @@ Command add_compare(Command& verb, const std::shared_ptr<CompareCommand>& comman
           [command](const std::string& text) {
             command->floor_us = number_within("--least", text, {0, 1e9});
           },
-          "Microseconds that it must be longer besides (default 1)")
+          "Microseconds by which a slower percentile must be longer, 0 to 1e9 (default 1)")
       .type("US");
-  compare.flag("--json", command->json, "As JSON");
+  compare.flag("--json", command->json, "Print JSON");
   return compare;
 }
 
@@ -234,11 +238,11 @@ void add_latency(Command& verb, Action& action) {
   auto compared = std::make_shared<CompareCommand>();
   add_work(verb, command->options);
   add_processes(verb, command->options);
-  verb.flag("--json", command->json, "As JSON");
+  verb.flag("--json", command->json, "Print JSON");
   verb.option("--hgrm", command->hgrm,
               "Write HdrHistogram percentile text, PREFIX.STAGE.hgrm for each stage")
       .type("PREFIX");
-  verb.option("--report", command->report, "Write a page with charts").type("OUT.html");
+  verb.option("--report", command->report, "Write an HTML page with charts").type("OUT.html");
   const Command compare = add_compare(verb, compared);
   verb.callback([&action, compare, command, compared] {
     if (compare.is_chosen()) {
@@ -250,7 +254,8 @@ void add_latency(Command& verb, Action& action) {
 }
 
 const Verb latency_verb(
-    "latency", 90, "Measure the way from a producer's append to a reader's sample, in processes",
+    "latency", 90,
+    "Measure the latency from a producer's append to a reader's sample, between processes",
     add_latency);
 
 }  // namespace

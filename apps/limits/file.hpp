@@ -8,18 +8,18 @@
 
 namespace splinecast::apps {
 
-/// What a file says of the limits of joints.
+/// The limits of joints in a file.
 struct LimitFile {
   std::vector<NamedLimits> joints;
-  std::vector<std::string> notes;  ///< parts that are not used, with file and line
+  std::vector<std::string> notes;  ///< messages about unused parts, with file and line
 };
 
-/// Reads MoveIt's joint_limits.yaml or a URDF (a file that begins with `<`). Throws InputError,
-/// naming file, line and value, for a file that cannot be read, and where this build cannot read
-/// files of its kind.
+/// Reads MoveIt's joint_limits.yaml or a URDF (a file that begins with `<`). Throws InputError
+/// with file, line and value if the file cannot be read, or if this build cannot read its format.
 [[nodiscard]] LimitFile read_limit_file(const std::string& path);
 
-/// The two kinds, of a text; `name` is the file's, for messages. Internal to `read_limit_file`.
+/// Read a text in one of the two formats; `name` is the file's, for messages. Internal to
+/// read_limit_file().
 [[nodiscard]] LimitFile read_joint_limits_yaml(const std::string& name, const std::string& text);
 [[nodiscard]] LimitFile read_urdf(const std::string& name, const std::string& text);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The fields of a list with commas.
+/// The fields of a list that is separated by commas.
 std::vector<std::string_view> fields_of(std::string_view text) {
   std::vector<std::string_view> fields;
   for (;;) {
@@ -25,7 +25,7 @@ std::vector<std::string_view> fields_of(std::string_view text) {
   }
 }
 
-/// A number; `none` for an empty field and the word. Nothing for any other text.
+/// A number; the value `none` for an empty field and for the word none. Nothing for any other text.
 std::optional<double> number_or(double none, std::string_view field) {
   if (field.empty() || field == "none") return none;
   return parse_number(field);
@@ -41,7 +41,8 @@ void add_list(Command& verb, const std::string& name, const std::string& type,
               const auto value = number_or(0, field);
               if (!value) {
                 throw UsageError(
-                    name, fmt::format("'{}' is no list of numbers such as 10 or 10,none,5", text));
+                    name,
+                    fmt::format("'{}' is not a list of numbers such as 10 or 10,none,5", text));
               }
               values.push_back(*value);
             }
@@ -50,7 +51,7 @@ void add_list(Command& verb, const std::string& name, const std::string& type,
       .type(type);
 }
 
-/// `LO:HI`, of which either may be missing, or neither.
+/// Reads `LO:HI`; either or both may be missing. Returns false for any other text.
 bool parse_bounds(std::string_view field, MotionLimits& limits) {
   const std::size_t colon = field.find(':');
   const bool is_none = field.empty() || field == "none";
@@ -71,12 +72,13 @@ void add_bounds(Command& verb, MotionLimits& limits) {
             limits.upper.clear();
             for (const std::string_view field : fields_of(text)) {
               if (parse_bounds(field, limits)) continue;
-              throw UsageError("--bounds",
-                               fmt::format("'{}' is no list of bounds such as -1:1,none,0:", text));
+              throw UsageError(
+                  "--bounds",
+                  fmt::format("'{}' is not a list of bounds such as -1:1,none,0:", text));
             }
           },
-          "Bounds of the position, lower and upper: one pair, or one per dimension; either may be "
-          "left out, or both (none)")
+          "Lower and upper bound of the position: one pair, or one per dimension; LO, HI or both "
+          "(none) may be left out (default none)")
       .type("LO:HI,...");
 }
 
@@ -93,15 +95,17 @@ std::string listed(const std::vector<std::string>& names) {
 
 void add_limit_options(Command& verb, LimitOptions& options, const std::string& scope) {
   const std::string form =
-      ": one number, or one per dimension; 0, none or empty for no limit" + scope;
-  add_list(verb, "--max-velocity", "V,...", options.given.velocity, "Largest velocity" + form);
+      ": one number, or one per dimension; 0, none or empty for no limit (default none)" + scope;
+  add_list(verb, "--max-velocity", "V,...", options.given.velocity,
+           "Largest velocity, in units/s" + form);
   add_list(verb, "--max-acceleration", "A,...", options.given.acceleration,
-           "Largest acceleration" + form);
-  add_list(verb, "--max-jerk", "J,...", options.given.jerk, "Largest jerk" + form);
+           "Largest acceleration, in units/s^2" + form);
+  add_list(verb, "--max-jerk", "J,...", options.given.jerk, "Largest jerk, in units/s^3" + form);
   add_bounds(verb, options.given);
-  verb.option("--limits", options.file,
-              "File of limits by name: joint_limits.yaml of MoveIt, or a URDF; the options "
-              "before replace what it says of their kind")
+  verb.option(
+          "--limits", options.file,
+          "File of limits by dimension name: joint_limits.yaml of MoveIt, or a URDF; --max-* and "
+          "--bounds replace its limits of the same kind")
       .type("FILE");
 }
 
@@ -109,8 +113,8 @@ void add_beyond(Command& verb, std::optional<Beyond>& beyond) {
   add_choice(
       verb, "--beyond", "report", "refuse",
       [&beyond](bool report) { beyond = report ? Beyond::report : Beyond::refuse; },
-      "What to do about a waypoint with which the curve passes a limit: report it (default), or "
-      "refuse it");
+      "Action for a waypoint with which the curve exceeds a limit: report or refuse (default "
+      "report)");
 }
 
 LimitGaps limit_gaps(const MotionLimits& limits, std::span<const NamedLimits> joints,
@@ -126,7 +130,7 @@ LimitGaps limit_gaps(const MotionLimits& limits, std::span<const NamedLimits> jo
 std::vector<std::string> to_lines(const LimitGaps& gaps) {
   std::vector<std::string> lines;
   if (!gaps.unmatched.empty()) {
-    lines.push_back("no dimension has the name of these limits: " + listed(gaps.unmatched));
+    lines.push_back("these limits match no dimension: " + listed(gaps.unmatched));
   }
   if (!gaps.without.empty()) {
     lines.push_back("these dimensions have no limit: " + listed(gaps.without));

@@ -11,31 +11,31 @@
 
 namespace splinecast::apps {
 
-/// Limits as they are asked for: by options, and by a file.
+/// The requested limits: from options, and from a file.
 struct LimitOptions {
   MotionLimits given{};  ///< lists of one value per dimension or one for all
-  std::string file;      ///< of named limits; none if empty
+  std::string file;      ///< of named limits; empty: no file
 
   [[nodiscard]] bool any() const noexcept { return given != MotionLimits{} || !file.empty(); }
 };
 
-/// `--max-velocity`, `--max-acceleration`, `--max-jerk`, `--bounds`, `--limits`. `scope` says in
-/// the help of the first three what keeps them.
+/// Adds `--max-velocity`, `--max-acceleration`, `--max-jerk`, `--bounds` and `--limits`. `scope`
+/// ends the help of the first three: to which parts of the curve they apply.
 void add_limit_options(Command& verb, LimitOptions& options, const std::string& scope = "");
 
-/// `--beyond`.
+/// Adds `--beyond`.
 void add_beyond(Command& verb, std::optional<Beyond>& beyond);
 
-/// What a person should know of how limits met the dimensions of a curve.
+/// Limits without a dimension, and dimensions of a curve without a limit.
 struct LimitGaps {
-  std::vector<std::string> unmatched;  ///< joints of the file that are the name of no dimension
+  std::vector<std::string> unmatched;  ///< joints of the file that match no dimension
   std::vector<std::string> without;    ///< dimensions that have no limit
 };
 [[nodiscard]] LimitGaps limit_gaps(const MotionLimits& limits, std::span<const NamedLimits> joints,
                                    std::span<const std::string> names,
                                    std::span<const Dimension> kinds);
 
-/// The same in words, a line each; none if there is nothing to say.
+/// The gaps as messages, at most one line of each kind.
 [[nodiscard]] std::vector<std::string> to_lines(const LimitGaps& gaps);
 
 }  // namespace splinecast::apps

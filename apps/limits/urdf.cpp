@@ -18,7 +18,7 @@
 namespace splinecast::apps {
 namespace {
 
-/// Keeps what urdfdom says instead of printing it, as long as it lives.
+/// Collects the errors of urdfdom during its lifetime, instead of printing them.
 class Messages : public console_bridge::OutputHandler {
  public:
   Messages() { console_bridge::useOutputHandler(this); }
@@ -38,8 +38,8 @@ class Messages : public console_bridge::OutputHandler {
   std::string text_;
 };
 
-/// Behind the part of `text` that begins at `at` with `opening` and ends with `closing`; `at` where
-/// there is no such part.
+/// The end of the part of `text` that begins at `at` with `opening` and ends with `closing`; `at`
+/// if there is no such part.
 std::size_t skip(std::string_view text, std::size_t at, std::string_view opening,
                  std::string_view closing) {
   if (!text.substr(at).starts_with(opening)) return at;
@@ -47,14 +47,14 @@ std::size_t skip(std::string_view text, std::size_t at, std::string_view opening
   return end == std::string_view::npos ? text.size() : end + closing.size();
 }
 
-/// Whether an element's tag begins at `at`, by its name.
+/// Whether the start tag of an element begins at `at`.
 bool begins_element(std::string_view text, std::size_t at) {
   if (at + 1 >= text.size()) return false;
   const auto next = static_cast<unsigned char>(text[at + 1]);
   return std::isalpha(next) != 0 || next == '_' || next >= 0x80;
 }
 
-/// Behind the tag that begins at `at`, and whether it closes what it opens.
+/// The end of the tag that begins at `at`, and whether the element is empty (`<a/>`).
 std::pair<std::size_t, bool> end_of_tag(std::string_view text, std::size_t at) {
   char quote = 0;
   std::size_t i = at + 1;
@@ -69,8 +69,8 @@ std::pair<std::size_t, bool> end_of_tag(std::string_view text, std::size_t at) {
   return {is_closed ? i + 1 : i, is_closed && text[i - 1] == '/'};
 }
 
-/// Throws InputError for elements so deep in others that parsers, which are recursive, could run
-/// out of stack.
+/// Throws InputError if elements are nested so deeply that the recursive parsers may overflow the
+/// stack.
 void require_flat(const std::string& name, const std::string& text) {
   constexpr int kDeepest = 200;
   int depth = 0;
@@ -92,7 +92,7 @@ void require_flat(const std::string& name, const std::string& text) {
       const auto line =
           1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
       throw InputError(
-          fmt::format("{}:{}: more than {} elements inside one another", name, line, kDeepest));
+          fmt::format("{}:{}: elements are nested more than {} deep", name, line, kDeepest));
     }
     i = end;
   }
@@ -117,7 +117,7 @@ std::map<std::string, int> joint_lines(const std::string& name, const std::strin
   return lines;
 }
 
-/// `file:line`, the line being that of the joint that a message is about.
+/// `file:line` of the joint that a message mentions; `file` if it mentions none.
 std::string where(const std::string& name, const std::map<std::string, int>& lines,
                   const std::string& message) {
   for (const auto& [joint, line] : lines) {
@@ -145,7 +145,8 @@ LimitFile read_urdf(const std::string& name, const std::string& text) {
   Messages messages;
   const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
   if (!model) {
-    const std::string why = messages.text().empty() ? "is no robot description" : messages.text();
+    const std::string why =
+        messages.text().empty() ? "is not a robot description" : messages.text();
     throw InputError(where(name, lines, why) + ": " + why);
   }
   LimitFile file;
@@ -157,7 +158,7 @@ LimitFile read_urdf(const std::string& name, const std::string& text) {
       limits.velocity = limit_value(at, "velocity", joint->limits->velocity);
       if (limits.velocity == 0) {
         file.notes.push_back(
-            fmt::format("{}: velocity 0 of joint '{}' is taken for no limit", at, joint_name));
+            fmt::format("{}: velocity 0 of joint '{}' means no limit", at, joint_name));
       }
       if (is_bounded(*joint)) {
         limits.lower = joint->limits->lower;
@@ -181,7 +182,7 @@ LimitFile read_urdf(const std::string& name, const std::string& text) {
 namespace splinecast::apps {
 
 LimitFile read_urdf(const std::string& name, const std::string& /*text*/) {
-  throw InputError(name + ": this build cannot read URDF (it was made without urdfdom)");
+  throw InputError(name + ": this build cannot read URDF (built without urdfdom)");
 }
 
 }  // namespace splinecast::apps

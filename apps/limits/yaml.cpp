@@ -16,7 +16,7 @@
 namespace splinecast::apps {
 namespace {
 
-/// Keys of a joint that say nothing about its motion.
+/// Keys of a joint that do not concern its motion.
 const std::set<std::string, std::less<>> kOtherKeys{
     "has_effort_limits", "max_effort", "angle_wraparound", "has_soft_limits",
     "k_position",        "k_velocity", "soft_lower_limit", "soft_upper_limit"};
@@ -43,18 +43,18 @@ class Reader {
           key == "default_acceleration_scaling_factor") {
         continue;
       }
-      note(entry.first, fmt::format("'{}' is not known", key));
+      note(entry.first, fmt::format("unknown key '{}'", key));
     }
     const YAML::Node joints = root["joint_limits"];
-    if (!joints.IsMap()) refuse(joints, "'joint_limits' is no map of joints");
+    if (!joints.IsMap()) refuse(joints, "'joint_limits' is not a map of joints");
     for (const auto& entry : joints) {
       const auto joint = entry.first.Scalar();
       if (!entry.second.IsMap()) {
-        note(entry.first, fmt::format("'{}' is no joint with limits", joint));
+        note(entry.first, fmt::format("'{}' is not a joint with limits", joint));
         continue;
       }
       if (!seen_.insert(joint).second) {
-        refuse(entry.first, fmt::format("joint '{}' comes twice", joint));
+        refuse(entry.first, fmt::format("joint '{}' occurs twice", joint));
       }
       NamedLimits limits = joint_limits(joint, entry.second);
       limits.velocity *= velocity_share;
@@ -81,7 +81,7 @@ class Reader {
     const std::string text = node.IsScalar() ? node.Scalar() : "a list or map";
     const auto value = parse_number(text);
     if (!value || !is_usable(*value)) {
-      refuse(node, fmt::format("{}: '{}' is no number up to 1e100", key, text));
+      refuse(node, fmt::format("{}: '{}' is not a number from -1e100 to 1e100", key, text));
     }
     return *value;
   }
@@ -90,11 +90,10 @@ class Reader {
     if (!root[key]) return 1;
     const double value = number(root[key], key);
     if (value > 0 && value <= 1) return value;
-    refuse(root[key], fmt::format("{}: {} is not above 0 and at most 1", key, value));
+    refuse(root[key], fmt::format("{}: {} must be above 0 and at most 1", key, value));
   }
 
-  /// The value under a key; nothing if the key is missing, or if the key `has` is false. If `has`
-  /// is true, the value must be there.
+  /// The value of a key; nothing if the key is missing, or if the key `has` is false.
   [[nodiscard]] std::optional<double> value(const YAML::Node& joint, const std::string& has,
                                             const std::string& key) const {
     if (joint[has]) {
@@ -122,7 +121,7 @@ class Reader {
     for (const auto& entry : joint) {
       const auto key = entry.first.Scalar();
       if (kJointKeys.contains(key) || kOtherKeys.contains(key)) continue;
-      note(entry.first, fmt::format("'{}' of joint '{}' is not known", key, name));
+      note(entry.first, fmt::format("unknown key '{}' of joint '{}'", key, name));
     }
     NamedLimits limits{.name = name,
                        .velocity = magnitude(joint, "velocity"),
@@ -160,7 +159,7 @@ LimitFile read_joint_limits_yaml(const std::string& name, const std::string& tex
 namespace splinecast::apps {
 
 LimitFile read_joint_limits_yaml(const std::string& name, const std::string& /*text*/) {
-  throw InputError(name + ": this build cannot read YAML (it was made without yaml-cpp)");
+  throw InputError(name + ": this build cannot read YAML (built without yaml-cpp)");
 }
 
 }  // namespace splinecast::apps

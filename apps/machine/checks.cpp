@@ -20,9 +20,9 @@ constexpr unsigned kCapabilitySysNice = 23;
 /// Inodes of the namespaces that the kernel boots with (linux/proc_ns.h).
 constexpr std::uint64_t kFirstPidNamespace = 0xEFFFFFFC;
 constexpr std::uint64_t kFirstTimeNamespace = 0xEFFFFFFA;
-/// Users below are of the system: logind leaves their shared memory alone.
+/// Users below this are system users: logind does not remove their shared memory.
 constexpr uid_t kFirstOrdinaryUser = 1000;
-/// What a container runtime gives /dev/shm unless it is asked for more.
+/// The default size of /dev/shm in a container.
 constexpr std::uint64_t kContainersRoom = std::uint64_t{64} << 20U;
 
 std::string mebibytes(double bytes) { return fmt::format("{:.1f} MiB", bytes / (1 << 20)); }
@@ -39,7 +39,7 @@ bool has_capability(const MachineFacts& facts, unsigned number) {
   return false;
 }
 
-/// Type and options of what is mounted on /dev/shm: the last mount hides those before it.
+/// Type and options of the mount on /dev/shm: the last mount hides those before it.
 struct Mount {
   std::string type;
   std::string options;
@@ -59,7 +59,7 @@ Mount shared_memory_mount(const std::string& mounts) {
   return found;
 }
 
-/// The value that counts for a key of an INI file: the last one.
+/// The effective value of a key in an INI file: the last one.
 std::string setting(const std::string& text, std::string_view key) {
   std::string value;
   std::istringstream lines(text);
@@ -99,24 +99,24 @@ Finding check_shared_memory(const MachineFacts& facts) {
   if (fmt::format(",{},", mount.options).find(",ro,") != std::string::npos) {
     return {.check = check,
             .verdict = Verdict::problem,
-            .means = "is mounted read-only: no stream can be made",
+            .means = "is mounted read-only: no stream can be created",
             .mend = "mount -o remount,rw /dev/shm"};
   }
   if (!facts.may_write_shared) {
     return {.check = check,
             .verdict = Verdict::problem,
-            .means = "this user may not make files there: no stream can be made",
+            .means = "this user may not create files there: no stream can be created",
             .mend = "chmod 1777 /dev/shm"};
   }
-  return {.check = check, .means = "is memory (tmpfs), and this user may make streams there"};
+  return {.check = check, .means = "is memory (tmpfs), and this user may create streams there"};
 }
 
 Finding check_room(const MachineFacts& facts, std::size_t needed) {
   const std::string check = "room in /dev/shm";
-  if (!facts.room) return unknown(check, "the kernel does not say (statvfs)");
+  if (!facts.room) return unknown(check, "the kernel does not report it (statvfs)");
   const Room room = *facts.room;
   const std::string means =
-      fmt::format("{} in all, {} free", mebibytes(static_cast<double>(room.total)),
+      fmt::format("{} in total, {} free", mebibytes(static_cast<double>(room.total)),
                   mebibytes(static_cast<double>(room.free)));
   if (room.free < needed) {
     return {.check = check,
@@ -124,14 +124,14 @@ Finding check_room(const MachineFacts& facts, std::size_t needed) {
             .means = means + fmt::format("; another stream needs about {}",
                                          mebibytes(static_cast<double>(needed))),
             .mend =
-                "remove streams (splinecast rm), or mount -o remount,size=1g /dev/shm; of a "
+                "remove streams (splinecast rm), or mount -o remount,size=1g /dev/shm; in a "
                 "container: --shm-size=1g"};
   }
   if (room.total <= kContainersRoom) {
     return {.check = check,
             .verdict = Verdict::note,
-            .means = means + ", which is soon used up",
-            .mend = "mount -o remount,size=1g /dev/shm; of a container: --shm-size=1g"};
+            .means = means + "; a few streams use it up",
+            .mend = "mount -o remount,size=1g /dev/shm; in a container: --shm-size=1g"};
   }
   return {.check = check, .means = means};
 }
@@ -139,21 +139,21 @@ Finding check_room(const MachineFacts& facts, std::size_t needed) {
 Finding check_locked_memory(const MachineFacts& facts, std::size_t needed) {
   const std::string check = "locked memory";
   if (facts.lockable == RLIM_INFINITY || has_capability(facts, kCapabilityIpcLock)) {
-    return {.check = check, .means = "without a limit: no page of a stream is swapped out"};
+    return {.check = check, .means = "no limit: no page of a stream is swapped out"};
   }
-  const std::string means = fmt::format("RLIMIT_MEMLOCK is {}, the streams have {}",
+  const std::string means = fmt::format("RLIMIT_MEMLOCK is {}, the streams need {}",
                                         mebibytes(static_cast<double>(facts.lockable)),
                                         mebibytes(static_cast<double>(needed)));
   if (facts.lockable >= needed) return {.check = check, .means = means};
-  // CAP_IPC_LOCK would do.
+  // CAP_IPC_LOCK would suffice.
   if (const auto why = unread(facts, {kStatus}); !why.empty()) {
     return unknown(check, means + "; " + why);
   }
   return {.check = check,
           .verdict = Verdict::note,
           .means = means + ": everything works, but their pages may be swapped out",
-          .mend = fmt::format("`USER - memlock {}` in /etc/security/limits.d/splinecast.conf; of a "
-                              "service: LimitMEMLOCK=infinity",
+          .mend = fmt::format("`USER - memlock {}` in /etc/security/limits.d/splinecast.conf; for "
+                              "a service: LimitMEMLOCK=infinity",
                               (needed >> 10U) + 1024)};
 }
 
@@ -167,28 +167,28 @@ Finding check_priority(const MachineFacts& facts) {
             .means = fmt::format("this user may use SCHED_FIFO up to {} (RLIMIT_RTPRIO)",
                                  facts.priority)};
   }
-  // CAP_SYS_NICE would do.
+  // CAP_SYS_NICE would suffice.
   if (const auto why = unread(facts, {kStatus}); !why.empty()) {
     return unknown(check, "RLIMIT_RTPRIO is 0; " + why);
   }
   return {.check = check,
           .verdict = Verdict::note,
-          .means = "RLIMIT_RTPRIO is 0: solver and readers share the CPUs with everything else",
+          .means = "RLIMIT_RTPRIO is 0: solver and readers share the CPUs with all other processes",
           .mend =
-              "`USER - rtprio 80` in /etc/security/limits.d/splinecast.conf; of a service: "
+              "`USER - rtprio 80` in /etc/security/limits.d/splinecast.conf; for a service: "
               "LimitRTPRIO=80"};
 }
 
 Finding check_remove_ipc(const MachineFacts& facts) {
   const std::string check = "RemoveIPC";
   if (!facts.runs_systemd && is_contained(facts)) {
-    return unknown(check, "in a container it is the host that may run systemd");
+    return unknown(check, "the host of this container may run systemd");
   }
   if (!facts.runs_systemd) {
-    return {.check = check, .means = "no systemd: nobody removes a user's shared memory"};
+    return {.check = check, .means = "no systemd: a user's shared memory is not removed"};
   }
   if (facts.user < kFirstOrdinaryUser) {
-    return {.check = check, .means = "does not concern a user of the system"};
+    return {.check = check, .means = "does not apply to a system user"};
   }
   if (const auto why = unread(facts, {kLogind}); !why.empty()) return unknown(check, why);
   const std::string value = setting(facts.logind, "RemoveIPC");
@@ -212,13 +212,14 @@ Finding check_container(const MachineFacts& facts) {
   if (!facts.in_container && facts.pid_namespace == kFirstPidNamespace) {
     return {.check = check, .means = "none: all processes of this host see the same streams"};
   }
-  return {.check = check,
-          .verdict = Verdict::note,
-          .means = facts.in_container
-                       ? "this is one: only processes that share its /dev/shm see its streams"
-                       : "this is a process namespace of its own: the process numbers that streams "
-                         "name may mean nothing here",
-          .mend = "start all with --ipc=host, or with --ipc=shareable and --ipc=container:NAME"};
+  return {
+      .check = check,
+      .verdict = Verdict::note,
+      .means = facts.in_container ? "yes: only processes that share its /dev/shm see its streams"
+                                  : "this is a separate PID namespace: the process ids in streams "
+                                    "may have no meaning here",
+      .mend =
+          "start all containers with --ipc=host, or with --ipc=shareable and --ipc=container:NAME"};
 }
 
 Finding check_time_namespace(const MachineFacts& facts) {
@@ -227,7 +228,7 @@ Finding check_time_namespace(const MachineFacts& facts) {
     return unknown(check, "/proc/self/ns/time cannot be read");
   }
   if (facts.time_namespace == 0 || facts.time_namespace == kFirstTimeNamespace) {
-    return {.check = check, .means = "that of the host: its clock is everybody's"};
+    return {.check = check, .means = "that of the host: all processes share its clock"};
   }
   std::istringstream offsets(facts.clock_offsets);
   std::string clock;
@@ -236,7 +237,7 @@ Finding check_time_namespace(const MachineFacts& facts) {
   offsets >> clock >> seconds >> nanoseconds;
   return {.check = check,
           .verdict = Verdict::note,
-          .means = fmt::format("one of its own, its clock {}.{:09} s ahead of the host's: live "
+          .means = fmt::format("a separate one, its clock {}.{:09} s ahead of the host's: live "
                                "streams from outside are refused",
                                seconds, nanoseconds),
           .mend = "run producer, solver and readers in one time namespace"};

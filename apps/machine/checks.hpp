@@ -9,7 +9,7 @@
 /// Each documented limit of a machine, judged from its facts alone.
 namespace splinecast::apps {
 
-/// `needed`: bytes that a process must lock which maps all of the streams in question.
+/// `needed`: bytes that a process must lock to map all streams in question.
 [[nodiscard]] Finding check_shared_memory(const MachineFacts& facts);
 [[nodiscard]] Finding check_room(const MachineFacts& facts, std::size_t needed);
 [[nodiscard]] Finding check_locked_memory(const MachineFacts& facts, std::size_t needed);

@@ -50,7 +50,7 @@ std::string_view to_string(Verdict verdict) noexcept {
   return "problem";
 }
 
-/// What one more stream of this many dimensions needs, as it is made by default.
+/// Bytes of one more stream of seven dimensions with default options.
 std::size_t bytes_of_default_stream() {
   constexpr std::size_t kDimensions = 7;
   constexpr std::size_t kRing = 1024;
@@ -67,28 +67,28 @@ Finding finding_of(const LeftName& name) {
     case NameState::dead:
       return {.check = check,
               .verdict = Verdict::note,
-              .means = fmt::format("its writers have ended; {} bytes stand", name.bytes),
+              .means = fmt::format("its writers have ended; {} bytes remain", name.bytes),
               .mend = fmt::format("splinecast doctor {} --clean", name.stream)};
     case NameState::foreign:
       return {.check = check,
               .verdict = Verdict::note,
               .means = name.why + ": left alone",
-              .mend = "that user's to remove; readers name the user with --owner"};
+              .mend = "that user can remove it; readers give the user's name with --owner"};
     case NameState::unknown:
       return {.check = check,
               .verdict = Verdict::note,
               .means = name.why + ": left alone",
-              .mend = "splinecast doctor, once that is no longer so"};
+              .mend = "correct this, then run splinecast doctor again"};
     case NameState::hostile:
       break;
   }
   return {.check = check,
           .verdict = Verdict::problem,
-          .means = name.why + ": it is neither used nor removed, and keeps the name from use",
+          .means = name.why + ": it is neither used nor removed, and blocks the name",
           .mend = "find out who put it there, then remove it by hand"};
 }
 
-/// Removes a stream whose owners are proven dead; what hinders that is the finding.
+/// Removes a stream whose owners are proven dead; an error becomes the finding.
 Finding clean(const LeftName& name) {
   const std::string check = fmt::format("stream {}", name.stream);
   try {
@@ -96,7 +96,7 @@ Finding clean(const LeftName& name) {
     return {.check = check,
             .means = fmt::format("its writers had ended: removed ({} bytes)", name.bytes)};
   } catch (const NoSuchStream&) {
-    return {.check = check, .means = "somebody else removed it"};
+    return {.check = check, .means = "another process removed it"};
   } catch (const StreamBusy& error) {
     return {.check = check, .means = error.what()};
   } catch (const StreamError& error) {
@@ -107,7 +107,7 @@ Finding clean(const LeftName& name) {
   }
 }
 
-/// What is found under a name; nothing if it has gone meanwhile.
+/// The state of a name; nullopt if its stream was removed meanwhile.
 std::optional<LeftName> look(const std::string& stream) {
   try {
     return look_at_name(stream);
@@ -127,7 +127,8 @@ std::vector<LeftName> names_to_look_at(const DoctorOptions& options) {
   return names;
 }
 
-/// The header of a stream's ring; nothing if it cannot be read, as its name leads elsewhere by now.
+/// The header of a stream's ring; nullopt if it cannot be read, because the name has changed
+/// meanwhile.
 std::optional<ipc::RegionHeader> peek(const std::string& stream) {
   try {
     return ipc::peek_header(stream, ipc::RegionKind::waypoints, {});
@@ -136,7 +137,7 @@ std::optional<ipc::RegionHeader> peek(const std::string& stream) {
   }
 }
 
-/// What the clock of a live stream means here; nothing if there is nothing to say.
+/// A finding if a live stream uses another clock than this process; else nullopt.
 std::optional<Finding> clock_finding(const std::string& stream) {
   const auto header = peek(stream);
   if (!header || header->magic != ipc::kMagic) return std::nullopt;
@@ -198,15 +199,15 @@ int run_doctor(const DoctorOptions& options) {
 
 void add_doctor(Command& verb, Action& action) {
   auto options = std::make_shared<DoctorOptions>();
-  verb.option("STREAM", options->stream, "Look at this stream's name only");
+  verb.option("STREAM", options->stream, "Examine this stream only (default: all)");
   verb.flag("--clean", options->clean, "Remove streams whose writers are proven dead");
-  verb.flag("--json", options->json, "As JSON");
+  verb.flag("--json", options->json, "Print JSON");
   verb.callback([&action, options] { action = [options] { return run_doctor(*options); }; });
 }
 
-const Verb doctor_verb("doctor", 130,
-                       "Check this machine's limits, say how to mend them, find names left behind",
-                       add_doctor);
+const Verb doctor_verb(
+    "doctor", 130, "Check this machine's limits, report fixes, and find streams of dead writers",
+    add_doctor);
 
 }  // namespace
 

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The first line of a file; nothing of one that cannot be read.
+/// The first line of a file; empty if it cannot be read.
 std::string first_line(const fs::path& file) {
   std::ifstream in(file);
   std::string line;
@@ -24,7 +24,7 @@ std::string first_line(const fs::path& file) {
   return std::string(without_blanks(line));
 }
 
-/// What /proc/cpuinfo says under one of these names, of the first CPU.
+/// The value of the first line of /proc/cpuinfo that has one of these names.
 std::string cpu_fact(const fs::path& root, std::initializer_list<std::string_view> names) {
   std::ifstream in(root / "proc/cpuinfo");
   for (std::string line; std::getline(in, line);) {
@@ -47,7 +47,7 @@ std::string governors(const fs::path& root) {
   return fmt::format("{}", fmt::join(distinct, ","));
 }
 
-/// Whether a text has a word among its blanks.
+/// Whether a text contains a word between blanks.
 bool has_word(const std::string& text, std::string_view word) {
   return fmt::format(" {} ", text).find(fmt::format(" {} ", word)) != std::string::npos;
 }

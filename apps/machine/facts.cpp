@@ -35,8 +35,8 @@ int error_of_reading(const fs::path& file) {
   return is_read ? 0 : error;
 }
 
-/// The files to be judged that cannot be read, also those of the environment. A file that a kernel
-/// may lack counts only where its folder cannot be seen either.
+/// The files needed by checks that cannot be read, with those of the environment. A missing file
+/// that a kernel may lack counts only if its folder is missing too.
 std::map<std::string, std::string> unread_files(const fs::path& root) {
   std::map<std::string, std::string> unread;
   const auto look = [&](const char* file, bool may_lack) {
@@ -58,7 +58,8 @@ std::map<std::string, std::string> unread_files(const fs::path& root) {
   return unread;
 }
 
-/// logind.conf, then its drop-ins by name; a drop-in in /etc hides those of its name elsewhere.
+/// logind.conf, then its drop-ins by name; a drop-in in /etc hides those of the same name
+/// elsewhere.
 std::string logind_settings(const fs::path& root) {
   std::map<std::string, fs::path> drop_ins;
   for (const char* const folder : {"usr/lib/systemd", "run/systemd", "etc/systemd"}) {

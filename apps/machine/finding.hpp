@@ -4,20 +4,20 @@
 
 namespace splinecast::apps {
 
-/// How a check came out.
+/// The result of a check.
 enum class Verdict {
   ok,
   note,     ///< everything works, but something could be better, or should be known
   problem,  ///< something does not work
-  unknown,  ///< it cannot be known, for the reason given
+  unknown,  ///< it is unknown, for the reason given
 };
 
-/// What a check found.
+/// A finding of a check, with the fix if there is a problem.
 struct Finding {
-  std::string check;  ///< what was looked at
+  std::string check;  ///< what was checked
   Verdict verdict = Verdict::ok;
   std::string means;   ///< what was found, and what it means: one line
-  std::string mend{};  ///< how to mend it, one line; empty where there is nothing to mend
+  std::string mend{};  ///< how to fix it, one line; empty if there is nothing to fix
 };
 
 }  // namespace splinecast::apps

@@ -9,11 +9,11 @@
 #include "apps/machine/checks.hpp"
 #include "apps/machine/unread.hpp"
 
-/// What bears on latencies: the kernel, the CPUs and the hypervisor.
+/// Checks of what affects latencies: the kernel, the CPUs and the hypervisor.
 namespace splinecast::apps {
 namespace {
 
-/// A share of the CPUs' time below which steal is noise.
+/// Steal below this share of the CPUs' time is noise.
 constexpr double kLeastSteal = 0.01;
 
 constexpr const char* kStat = "/proc/stat";
@@ -40,9 +40,9 @@ Finding check_clock(const MachineFacts& facts) {
   const std::string check = "clock";
   const std::string& source = facts.environment.clock;
   const std::string means =
-      fmt::format("{}, {} ns a reading", source.empty() ? std::string("unknown source") : source,
+      fmt::format("{}, {} ns per reading", source.empty() ? std::string("unknown source") : source,
                   facts.clock_cost.count());
-  // Those that are read without a system call.
+  // Clock sources that are read without a system call.
   constexpr std::array<std::string_view, 4> kFast{"tsc", "kvm-clock", "arch_sys_counter",
                                                   "hyperv_clocksource_tsc_page"};
   if (const auto why = unread(facts, {kClockSource}); !why.empty() || source.empty()) {
@@ -55,18 +55,19 @@ Finding check_clock(const MachineFacts& facts) {
           .verdict = Verdict::note,
           .means = means + ": each reading of it is a system call",
           .mend =
-              "find out why the kernel gave tsc up (dmesg | grep -i tsc); tsc=reliable on its "
-              "command line, if the machine's is"};
+              "find out why the kernel rejected tsc (dmesg | grep -i tsc); tsc=reliable on its "
+              "command line, if the machine's tsc is reliable"};
 }
 
 Finding check_governor(const MachineFacts& facts) {
   const std::string& governor = facts.environment.governor;
   if (governor.empty()) {
     if (const auto why = unread(facts, {kIsolated}); !why.empty()) {
-      return unknown("cpu governor", why);  // nothing of /sys/devices/system/cpu
+      return unknown("cpu governor", why);  // /sys/devices/system/cpu cannot be read
     }
     if (!facts.environment.hypervisor.empty()) {
-      return unknown("cpu governor", "that of the machine under the hypervisor is not seen here");
+      return unknown("cpu governor",
+                     "the governor of the host is not visible in a virtual machine");
     }
   }
   if (governor.empty() || governor == "performance") {
@@ -75,7 +76,7 @@ Finding check_governor(const MachineFacts& facts) {
   }
   return {.check = "cpu governor",
           .verdict = Verdict::note,
-          .means = governor + ": a CPU that has slept begins slowly",
+          .means = governor + ": a CPU that has slept starts at a low frequency",
           .mend = "cpupower frequency-set -g performance"};
 }
 
@@ -88,18 +89,20 @@ Finding check_isolated_cpus(const MachineFacts& facts) {
   return {.check = "isolated cpus",
           .verdict = Verdict::note,
           .means = "none: any process may delay a controller",
-          .mend = "isolcpus=LIST on the kernel's command line, and pin to these (taskset -c LIST)"};
+          .mend =
+              "isolcpus=LIST on the kernel's command line, and pin processes to these CPUs "
+              "(taskset -c LIST)"};
 }
 
 Finding check_preemption(const MachineFacts& facts) {
   const std::string& preemption = facts.environment.preemption;
   if (preemption == "PREEMPT_RT") return {.check = "kernel preemption", .means = preemption};
   if (const auto why = unread(facts, {kVersion}); !why.empty() || preemption.empty()) {
-    return unknown("kernel preemption", why.empty() ? "the kernel does not say" : why);
+    return unknown("kernel preemption", why.empty() ? "the kernel does not report it" : why);
   }
   return {.check = "kernel preemption",
           .verdict = Verdict::note,
-          .means = preemption + ": the kernel may hold a real-time process up for milliseconds",
+          .means = preemption + ": the kernel may delay a real-time process for milliseconds",
           .mend = "apt-get install linux-image-rt-amd64"};
 }
 
@@ -108,7 +111,7 @@ Finding check_throttling(const MachineFacts& facts) {
   const auto stopped = throttled_time(facts.environment);
   if (!stopped) {
     const auto why = unread(facts, {kRuntime, kPeriod});
-    return unknown(check, why.empty() ? "the kernel does not say" : why);
+    return unknown(check, why.empty() ? "the kernel does not report it" : why);
   }
   if (*stopped == Time::zero()) {
     return {.check = check, .means = "is off: a SCHED_FIFO process may take a whole CPU"};
@@ -120,8 +123,8 @@ Finding check_throttling(const MachineFacts& facts) {
                                to_seconds(*stopped) * 1e3, facts.environment.rt_period,
                                facts.environment.rt_runtime),
           .mend =
-              "let it sleep; or sysctl -w kernel.sched_rt_runtime_us=-1, where none can run away "
-              "with a CPU"};
+              "let it sleep; or sysctl -w kernel.sched_rt_runtime_us=-1, if no process can block a "
+              "CPU"};
 }
 
 Finding check_huge_pages(const MachineFacts& facts) {
@@ -135,7 +138,7 @@ Finding check_huge_pages(const MachineFacts& facts) {
   }
   return {.check = "huge pages",
           .verdict = Verdict::note,
-          .means = choice + " for shared memory: the kernel may stop a process to gather them",
+          .means = choice + " for shared memory: the kernel may stop a process to assemble them",
           .mend = "echo never > /sys/kernel/mm/transparent_hugepage/shmem_enabled"};
 }
 
@@ -164,8 +167,8 @@ Finding check_steal(const MachineFacts& facts) {
   if (share < kLeastSteal) return {.check = "hypervisor", .means = means};
   return {.check = "hypervisor",
           .verdict = Verdict::note,
-          .means = means + ": others use the CPUs while a deadline passes",
-          .mend = "give the machine CPUs of its own"};
+          .means = means + ": other machines use the CPUs, and deadlines are missed",
+          .mend = "give the virtual machine dedicated CPUs"};
 }
 
 }  // namespace splinecast::apps

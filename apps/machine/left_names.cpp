@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::array kKinds{ipc::RegionKind::waypoints, ipc::RegionKind::spline};
 
-/// What is wrong with a file; the worst that was found stays.
+/// Records what is wrong with a file; keeps the worst finding.
 void judge_file(const std::string& path, const struct stat& status, LeftName& name) {
   const auto say = [&](NameState state, std::string why) {
     if (name.state == NameState::hostile) return;
@@ -25,7 +25,7 @@ void judge_file(const std::string& path, const struct stat& status, LeftName& na
     name.why = std::move(why);
   };
   if (!S_ISREG(status.st_mode)) {
-    say(NameState::hostile, path + " is no regular file");
+    say(NameState::hostile, path + " is not a regular file");
     return;
   }
   name.bytes += static_cast<std::size_t>(status.st_size);

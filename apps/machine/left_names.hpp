@@ -5,16 +5,16 @@
 
 namespace splinecast::apps {
 
-/// What a stream's name stands for on this host.
+/// The state of a stream's name on this host.
 enum class NameState {
-  living,  ///< a writer lives, or one waits for the other
-  dead,    ///< its files are this user's and their owners are proven dead: nobody holds their locks
-  foreign,  ///< a file under it is another user's: whether its owner lives is that user's to say
-  hostile,  ///< a file under it is no file of a stream: neither used nor removed
-  unknown,  ///< it could not be looked at
+  living,  ///< a writer is alive, or waits for the other one
+  dead,  ///< its files are this user's and their owners are proven dead: no process holds the locks
+  foreign,  ///< a file under it is another user's: whether its owner is alive is unknown
+  hostile,  ///< a file under it is not a stream's file: neither used nor removed
+  unknown,  ///< it could not be examined
 };
 
-/// A name and what was found under it.
+/// A name and the files found under it.
 struct LeftName {
   std::string stream;
   NameState state = NameState::dead;
@@ -22,9 +22,9 @@ struct LeftName {
   std::size_t bytes = 0;  ///< size of its regular files
 };
 
-/// Looks at the files under a stream's names, without opening any that is not this user's. System
-/// calls. Throws BadRequest for an invalid name, NoSuchStream if there is nothing, OutOfResources
-/// where no descriptor is left to look with.
+/// Examines the files under a stream's name, without opening those of other users. Makes system
+/// calls. Throws BadRequest for an invalid name, NoSuchStream if there is no file, OutOfResources
+/// if there is no free descriptor.
 [[nodiscard]] LeftName look_at_name(const std::string& stream);
 
 }  // namespace splinecast::apps

@@ -8,11 +8,11 @@
 
 namespace splinecast::apps {
 
-/// The paths of those of these files that cannot be read, and why; empty if all can.
+/// Those of these files that cannot be read, with reasons; empty if all can.
 [[nodiscard]] std::string unread(const MachineFacts& facts,
                                  std::initializer_list<const char*> files);
 
-/// What a check finds where nothing can be known.
+/// The finding of a check whose facts are unknown.
 [[nodiscard]] Finding unknown(const std::string& check, const std::string& why);
 
 }  // namespace splinecast::apps

@@ -11,7 +11,7 @@
 
 namespace splinecast::apps {
 
-/// What `fit` writes of a curve.
+/// Output formats of `fit`.
 enum class Emit {
   samples,  ///< CSV
   pp,       ///< piecewise polynomial, JSON
@@ -22,14 +22,13 @@ enum class Emit {
 /// Reads `samples`, `pp`, `bezier` or `bspline`. Returns nothing for any other text.
 [[nodiscard]] std::optional<Emit> parse_emit(std::string_view text) noexcept;
 
-/// Writes samples at the given times, then, given `dt`, every dt from the first to the last break,
-/// in the form in which dimensions of these kinds are read.
+/// Writes samples at the times `at`, then, if `dt` is set, every `dt` from the first to the last
+/// break. Normalises them for these kinds, as a reader does.
 void emit_samples(const PiecewisePolynomial& curve, const DimensionKinds& kinds,
                   const std::vector<Time>& at, std::optional<Time> dt, Output& output);
 
-/// Writes a line of JSON, all segments raised to the highest order. A single waypoint has no
-/// segment that a polynomial or a knot vector could span: then there are the waypoint's time and
-/// empty lists.
+/// Writes a line of JSON, with all segments raised to the highest order. The curve of a single
+/// waypoint has no segment: the output has the waypoint's time and empty lists.
 ///
 /// - `pp`: `breaks_ns`, `coefficients[segment][dimension][power, highest first]` in seconds.
 /// - `bezier`: `breaks_ns`, `segments[segment][0…order−1][dimension]`.

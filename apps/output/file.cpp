@@ -19,14 +19,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr mode_t kPermissions = 07777;
-constexpr mode_t kNewFile = 0666;  // less the umask
+constexpr mode_t kNewFile = 0666;  // minus the umask
 
 [[noreturn]] void fail(const std::string& path) {
   throw Failure(
       fmt::format("{}: cannot be written: {}", path, std::generic_category().message(errno)));
 }
 
-/// The regular file that a path leads to, or a standard stream.
+/// The status of the regular file at a path, or of a standard stream that is one; else nothing.
 std::optional<struct stat> regular_file(const std::string& path, bool is_standard, int standard) {
   struct stat status {};
   const int found = is_standard ? fstat(standard, &status) : stat(path.c_str(), &status);
@@ -38,14 +38,14 @@ bool is_same(const std::optional<struct stat>& a, const std::optional<struct sta
   return a && b && a->st_dev == b->st_dev && a->st_ino == b->st_ino;
 }
 
-/// The folders of devices and of links to open files: nothing there is replaced.
+/// Whether a file is in a directory of devices or of open files: such a file is never replaced.
 bool is_special(const std::string& file) {
   return file.starts_with("/dev/") || file.starts_with("/proc/");
 }
 
-/// Where a chain of links ends, whether or not there is a file.
+/// The end of a chain of symbolic links; no file needs to exist there.
 std::string behind_links(const std::string& path) {
-  constexpr int kMostLinks = 40;  // as the kernel's
+  constexpr int kMostLinks = 40;  // as in the kernel
   fs::path at(path);
   for (int links = 0; links < kMostLinks; ++links) {
     std::error_code error;
@@ -58,7 +58,7 @@ std::string behind_links(const std::string& path) {
   fail(path);
 }
 
-/// Also for files that do not exist yet.
+/// Whether two paths are the same. Works for files that do not exist yet.
 bool is_same_path(const std::string& a, const std::string& b) {
   std::error_code error;
   if (a.empty() || b.empty() || is_special(a)) return false;
@@ -110,12 +110,13 @@ OutputFile::OutputFile(const std::string& path, Writing writing) : target_(behin
   fail(path);
 }
 
-/// Opens what will replace the file. Returns a negative number with `temporary_` empty if the file
-/// is to be written directly, because its folder takes no other one.
+/// Opens the file that will replace the target. Returns a negative number with `temporary_` empty
+/// if the target must be written directly, because no file can be created in its directory or given
+/// its owner; other negative numbers are errors.
 int OutputFile::open_replacement() {
   struct stat old {};
   const bool exists = stat(target_.c_str(), &old) == 0;
-  // Replacing needs no right to write to the file itself: one that is protected is not replaced.
+  // rename() does not need write permission for the target. Do not replace a protected file.
   if (exists && access(target_.c_str(), W_OK) != 0) {
     temporary_ = target_;
     return -1;
@@ -127,7 +128,7 @@ int OutputFile::open_replacement() {
       fchmod(descriptor, old.st_mode & kPermissions) == 0) {
     return descriptor;
   }
-  // A new file would have another owner: the bytes of the old one are replaced instead.
+  // A new file would have another owner: overwrite the old file instead.
   if (is_named_) unlink(temporary_.c_str());
   is_named_ = false;
   temporary_.clear();
@@ -135,7 +136,7 @@ int OutputFile::open_replacement() {
   return -1;
 }
 
-/// Opens a file in the target's folder, without a name if that is possible.
+/// Opens a file in the target's directory, without a name if possible (O_TMPFILE).
 int OutputFile::open_temporary() {
   const std::string folder = folder_of(target_);
   static int count = 0;

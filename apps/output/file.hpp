@@ -7,33 +7,33 @@
 
 namespace splinecast::apps {
 
-/// When a file gets its name.
+/// When the output appears under its name.
 enum class Writing : std::uint8_t {
-  whole,    ///< at once when it is complete: until then, and upon failure, the old file stays
-  growing,  ///< as it is written, to be followed meanwhile
+  whole,    ///< when it is complete: until then, and on failure, the old file remains
+  growing,  ///< from the start, so that others can follow it while it grows
 };
 
-/// Throws InputError if an output is also an input, or two outputs are the same file: by device and
-/// inode, through links. An empty output is standard output, `-` as input is standard input. What
-/// is no regular file, such as a terminal, may be both.
+/// Throws InputError if an output is also an input, or if two outputs are the same file, compared
+/// by device and inode, through links. An empty output is standard output; the input `-` is
+/// standard input. A file that is not regular, such as a terminal, may be both.
 void require_separate(std::span<const std::string> outputs, std::span<const std::string> inputs);
 
-/// A file that is written. Links are followed to their end. Regular files that are written whole
-/// get their bytes in a file without a name, or, where the file system has none such, with a name
-/// `.splinecast.*` beside them; permissions of the file that it replaces are kept. Devices, pipes
-/// and what lies under /dev and /proc are written directly.
+/// An output file. Follows links. With Writing::whole, writes a regular file to a file without a
+/// name (O_TMPFILE), or, if the file system does not support this, to a file `.splinecast.*` in the
+/// same directory; commit() replaces the target by it and keeps the target's permissions. Writes
+/// devices, pipes and files under /dev and /proc directly.
 class OutputFile {
  public:
-  /// Throws Failure, with the system's reason, if it cannot be written.
+  /// Throws Failure, with the system's reason, if the file cannot be written.
   OutputFile(const std::string& path, Writing writing);
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
-  /// Drops what was not committed.
+  /// Discards what was not committed.
   ~OutputFile();
 
   [[nodiscard]] std::FILE* file() const noexcept { return file_; }
 
-  /// Gives the file its name and closes it. Returns false and sets errno upon failure.
+  /// Gives the file its name and closes it. Returns false and sets errno on failure.
   [[nodiscard]] bool commit();
 
  private:
@@ -41,9 +41,9 @@ class OutputFile {
   [[nodiscard]] int open_temporary();
   [[nodiscard]] bool give_name();
 
-  std::string target_;     ///< behind all links
-  std::string temporary_;  ///< name of what will replace it; empty: written directly
-  bool is_named_ = false;  ///< whether there is a file under that name
+  std::string target_;     ///< after all links
+  std::string temporary_;  ///< name of the file that replaces it; empty: written directly
+  bool is_named_ = false;  ///< whether a file with this name exists
   std::FILE* file_ = nullptr;
 };
 

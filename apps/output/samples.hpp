@@ -13,14 +13,14 @@
 
 namespace splinecast::apps {
 
-/// Writes samples as CSV: `t_ns,p[0],…,v[0],…,a[0],…,j[0],…`, where there are quaternions also
-/// `omega[0],…,alpha[0],…`, three for each; numbers in the shortest form that reads back exactly.
+/// Writes samples as CSV: `t_ns,p[0],…,v[0],…,a[0],…,j[0],…`, then `omega[0],…,alpha[0],…`, three
+/// of each per quaternion. Numbers have the shortest form that reads back exactly.
 class SampleWriter {
  public:
-  /// Writes the header, with a last column `status` if asked for.
+  /// Writes the header. `with_status` adds a last column `status`.
   SampleWriter(Output& output, std::size_t dimensions, DimensionKinds kinds, bool with_status);
 
-  /// Writes a row, of a state as it is read. An empty `status` writes none.
+  /// Writes a row. `state` is normalised, as from a reader. An empty `status` writes no status.
   void write(Time time, const State& state, std::string_view status = {});
 
  private:

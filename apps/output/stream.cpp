@@ -35,7 +35,7 @@ void Output::fail() const {
   if (errno == EPIPE) throw ClosedPipe("standard output was closed");
   if (errno == EINTR && stop_requested()) {
     if (file_ != nullptr)
-      __fpurge(file_);  // else output that nobody reads would block the process at exit
+      __fpurge(file_);  // flushing at exit would block if no process reads the output
     throw Interrupted(fmt::format("{}: interrupted", name_));
   }
   throw Failure(

@@ -9,8 +9,9 @@
 
 namespace splinecast::apps {
 
-/// Where a verb's data goes: a file, see OutputFile, or standard output for an empty path. Throws
-/// Failure if it cannot be written; without `close`, what was to be written whole is dropped.
+/// The output of a verb: a file (see OutputFile), or standard output for an empty path. Throws
+/// Failure if it cannot be written, ClosedPipe if the reader closed the pipe, Interrupted if a stop
+/// interrupts a write. With Writing::whole, discards the output unless close() is called.
 class Output {
  public:
   explicit Output(const std::string& path, Writing writing = Writing::whole);

@@ -1,8 +1,8 @@
-// What every page is made with.
+// Constants and functions of all pages.
 
-// Okabe and Ito's colours without yellow, which white swallows; black is for waypoints.
+// Colours of Okabe and Ito without yellow, which is hard to see on white. Black is for waypoints.
 const kColors = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#666666"];
-// The first is drawn through, so that it shows in the gaps of a curve that lies on it.
+// The first curve is solid, so that it shows in the gaps of a dashed curve on top of it.
 const kDashes = [[], [8, 4], [3, 3], [10, 3, 3, 3], [14, 5]];
 
 function element(parent, tag, text, className) {
@@ -20,7 +20,7 @@ function short(value) {
 const color_of = (c) => kColors[c % kColors.length];
 const dash_of = (c) => kDashes[c % kDashes.length];
 
-// Ticks at multiples of 1, 2 or 5 powers of ten, with the digits that tell them apart.
+// Ticks at multiples of 1, 2 or 5 times a power of ten, with enough digits to distinguish them.
 function ticks(low, high, most) {
   const rough = (high - low) / Math.max(most, 1);
   const power = 10 ** Math.floor(Math.log10(rough));

@@ -22,7 +22,7 @@ function select(section, row) {
   show_values(section, row);
 }
 
-// Shows the same time in all charts of a section, each with the values it has there.
+// Shows the same time range in all charts of a section, each with its own range of values.
 function zoom(section, times) {
   if (section.zooming) return;
   section.zooming = true;
@@ -36,7 +36,7 @@ function zoom(section, times) {
   section.zooming = false;
 }
 
-// Tells what is seen, and takes over a time that this chart was zoomed to.
+// Records the visible ranges. If the user zoomed this chart, shows its time range in the others.
 function drawn(section, chart, g) {
   const times = g.xAxisRange();
   chart.plot.dataset.times = times.join(" ");
@@ -49,7 +49,7 @@ function drawn(section, chart, g) {
 
 function options(section, chart) {
   const {dimension, r} = chart;
-  // Without the label that would lie in the corner.
+  // Omits the label in the corner.
   const y_ticks = (low, high, pixels) =>
       ticks(low, high, pixels / 28).filter(({v}) => v - low > 0.04 * (high - low));
   return {

@@ -1,11 +1,12 @@
-# Makes one page of its parts, which it names as @part@, and a C++ file with a function that has it.
+# Replaces each @part@ in a page by the file with this name, and writes a C++ file with a function that returns the
+# page.
 #   cmake -D PAGE=….html -D "PARTS=…,…" -D FUNCTION=… -D OUT=….cpp -P embed.cmake
 file(READ ${PAGE} page)
 string(REPLACE "," ";" parts "${PARTS}")
 foreach(path ${parts})
   cmake_path(GET path FILENAME part)
   file(READ ${path} text)
-  string(REGEX REPLACE "(//|/\\*)# sourceMappingURL=[^\n]*" "" text "${text}")  # a file not there
+  string(REGEX REPLACE "(//|/\\*)# sourceMappingURL=[^\n]*" "" text "${text}")  # the map file is not installed
   string(REPLACE "@${part}@" "${text}" page "${page}")
 endforeach()
 

@@ -5,7 +5,7 @@
 namespace splinecast::apps {
 namespace {
 
-/// JSON as the content of a script element: nothing in it can end the element.
+/// JSON as the content of a script element, without `<`, so that it cannot end the element.
 std::string embeddable(const nlohmann::ordered_json& json) {
   using nlohmann::ordered_json;
   const std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);

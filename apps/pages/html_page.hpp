@@ -7,9 +7,8 @@
 
 namespace splinecast::apps {
 
-/// Writes a page as one HTML file that needs nothing else: a template of apps/page/ with its data
-/// where it says `@data@`, as JSON in which nothing can end the script element it stands in.
-/// Throws as Output does.
+/// Writes a page as one self-contained HTML file: a template of apps/pages/ in which the data
+/// replaces `@data@`, as JSON that cannot end its script element. Throws as Output does.
 void write_page(std::string_view page, const nlohmann::ordered_json& data, Output& output);
 
 }  // namespace splinecast::apps

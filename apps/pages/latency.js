@@ -1,4 +1,4 @@
-// The page of a latency report: what is around the charts.
+// The page of a latency report, except the charts.
 
 const result = JSON.parse(document.getElementById("data").textContent);
 const content = document.getElementById("content");
@@ -20,7 +20,7 @@ function make_summary() {
   }
 }
 
-// The percentiles of a series; grey where fewer than ten samples lie above.
+// The percentiles of a series, grey if fewer than ten samples are above.
 function make_row(body, series) {
   const row = element(body, "tr");
   element(row, "th", series.name);
@@ -35,8 +35,8 @@ function make_row(body, series) {
 
 function make_table(all) {
   const table = element(element(content, "div", undefined, "scroll"), "table");
-  element(table, "caption", "Latencies in µs: from the intended instant on, and raw, from the begin " +
-      "of the append on. Grey: fewer than ten samples lie above.");
+  element(table, "caption", "Latencies in µs, from the intended instant; raw: from the start of " +
+      "the append. Grey: fewer than ten samples are above.");
   const head = element(element(table, "thead"), "tr");
   const percents = all[0].percentiles.map(({percent}) => `${percent} %`);
   for (const title of ["stage", "from", "count", ...percents, "max", "missed"]) {

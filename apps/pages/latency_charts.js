@@ -22,7 +22,7 @@ function us_ticks(low, high) {
   return made;
 }
 
-// "99.9 %" of 1000, and so on.
+// Labels of ratios: "99.9 %" for 1000.
 function share_ticks(low, high) {
   return kRatioTicks.map((ratio) => ({v: Math.log10(ratio), label: `${short(100 - 100 / ratio)} %`}))
       .filter(({v}) => v >= low - 1e-9 && v <= high + 1e-9);
@@ -96,7 +96,7 @@ function draw_percentiles(parent, all) {
   });
 }
 
-// The cells of a histogram over time, darker the more latencies they hold.
+// The cells of a histogram over time. More latencies make a cell darker.
 function draw_cells({window_s, bins_per_octave, cells}, ctx, area, g) {
   const most = Math.log(1 + Math.max(...cells.map(([, , count]) => count)));
   const edge = (bin) => g.toDomYCoord(log_us(2 ** (bin / bins_per_octave)));

@@ -1,13 +1,13 @@
-// What is drawn besides the curves.
+// Marks on the charts: knots, waypoints and the crosshair.
 
-// Marks of `times` that are seen, as [time, index], and whether there is room to draw them large.
+// The visible ones of `times`, as [time, index], and whether there is room for large marks.
 function seen(times, area, g) {
   const [from, to] = g.xAxisRange();
   const marks = times.map((t, i) => [t, i]).filter(([t]) => t >= from && t <= to);
   return {marks, large: marks.length * kMarkSpacing <= area.w};
 }
 
-// Lines at the knots, behind the curves; where they crowd, ticks at the bottom of every 2nd, 4th…
+// Lines at the knots, under the curves; without room, ticks at the bottom for every 2nd, 4th, … knot.
 function draw_knots(chart, ctx, area, g) {
   const {marks, large} = seen(report.knot_seconds, area, g);
   let every = 1;
@@ -34,7 +34,7 @@ function draw_circles(chart, marks, ctx, g, radius) {
   }
 }
 
-// Rings at the waypoints, over the curves; where they crowd, dots behind the curves.
+// Rings at the waypoints, over the curves; without room, dots under the curves.
 function draw_waypoints(chart, ctx, area, g, in_front) {
   const {marks, large} = seen(report.waypoint_seconds, area, g);
   chart.plot.dataset.waypoints = marks.length;
@@ -63,7 +63,7 @@ function draw_crosshair(g, x) {
   ctx.restore();
 }
 
-// What draws besides dygraphs itself.
+// The plugin of dygraphs that draws the marks of a chart.
 function marks(chart) {
   return {
     activate: () => ({

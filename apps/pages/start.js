@@ -1,12 +1,12 @@
-// The page: what is around the charts, when they are drawn, and printing.
+// The page, except the charts: summary, notes, drawing on demand, printing.
 
 function make_section(dimension, index) {
   const node = element(document.getElementById("dimensions"), "section");
   node.id = `dimension-${index}`;
   element(node, "h2", dimension.name + (dimension.unit ? ` [${dimension.unit}]` : ""));
   const section = {node, dimension, times: first_times(), drawn: false, zooming: false};
-  section.coarse = element(node, "p", `Closer than the charts can show: each of their intervals of ` +
-      `${short(report.bucket)} s is drawn as its least and greatest value only.`, "coarse");
+  section.coarse = element(node, "p", `This zoom exceeds the resolution of the charts: for each interval ` +
+      `of ${short(report.bucket)} s they show only the least and greatest value.`, "coarse");
   section.coarse.hidden = true;
   section.charts = kDerivatives.map((_, r) => make_chart(dimension, r, node));
   make_table(dimension, node);
@@ -30,7 +30,7 @@ function make_summary() {
   item("Waypoints", String(report.count));
   item("Duration", `${short(report.duration)} s`);
   if (report.intervals) {
-    item("Intervals: least, median, most", report.intervals.map(short).join(", ") + " s");
+    item("Intervals: least, median, greatest", report.intervals.map(short).join(", ") + " s");
   }
   item("Time 0", `${report.origin_ns} ns`);
   item("Curves", report.curves.join(", "));
@@ -47,19 +47,19 @@ function make_contents() {
 function make_notes() {
   const notes = document.getElementById("notes");
   if (report.duration === 0) {
-    element(notes, "p", "A lone waypoint: the curve holds its position.");
+    element(notes, "p", "A single waypoint: the curve holds its position.");
   }
   if (report.bucket > 0) {
-    element(notes, "p", `This recording is long: each ${short(report.bucket)} s are drawn as their ` +
-        "least and greatest value. The tables are exact.");
+    element(notes, "p", `This recording is long: for each interval of ${short(report.bucket)} s the ` +
+        "charts show the least and greatest value. The tables are exact.");
   }
   if (report.stride > 1) {
-    element(notes, "p", "Not all waypoints and knots are marked: 4000 at the most.");
+    element(notes, "p", "Only some waypoints and knots are marked, at most 4000.");
   }
   element(notes, "p", "Charts drawn with dygraphs (MIT licence).");
 }
 
-// Draws sections when they come near the window and frees them when they are far from it.
+// Draws the sections near the window and frees the others.
 function watch(sections) {
   const watcher = new IntersectionObserver((entries) => {
     for (const {target, isIntersecting} of entries) {
@@ -71,7 +71,7 @@ function watch(sections) {
   for (const {node} of sections) watcher.observe(node);
 }
 
-// Fits the charts to the page, with `scale` dots per CSS pixel; null: as many as the screen has.
+// Fits the charts to the page, with `scale` dots per CSS pixel; null: as on the screen.
 function resize(sections, scale) {
   for (const {charts} of sections) {
     for (const {graph} of charts) {

@@ -1,6 +1,6 @@
 // The table of a dimension.
 
-// The cells of a value and its time; `rounding` is what cannot be told from 0.
+// The cells of a value and its time. Shows a magnitude of at most `rounding` as ≈ 0.
 function value_cells(row, [value, time], rounding = -1) {
   const none = Math.abs(value) <= rounding;
   element(row, "td", none ? "≈ 0" : short(value)).dataset.value = value;
@@ -27,8 +27,8 @@ function make_table(dimension, parent) {
       dimension.curves.some(({distance}) => distance[0] > dimension.resolution[0]);
   const table = element(element(parent, "div", undefined, "scroll"), "table");
   element(table, "caption", "Extremes over the whole curve and the largest step at a knot" +
-      (with_distance ? "; distance is the largest from a waypoint" : "") +
-      ". What is ≈ 0 is no more than rounding.");
+      (with_distance ? "; distance: the largest distance from a waypoint" : "") +
+      ". ≈ 0: within rounding errors.");
   const head = element(element(table, "thead"), "tr");
   const titles = ["curve", "quantity", "least", "at [s]", "greatest", "at [s]", "step", "at [s]"];
   if (with_distance) titles.push("distance", "at [s]");

@@ -4,8 +4,8 @@
 
 namespace splinecast::apps {
 
-/// The pages of apps/page/ with the scripts and styles they use: of `fit --report` and of `latency
-/// --report`. The JSON goes where they say `@data@`.
+/// The pages of `fit --report` and of `latency --report`, from apps/pages/, with their scripts and
+/// styles. `@data@` marks the place of the JSON data.
 [[nodiscard]] std::string_view report_template() noexcept;
 [[nodiscard]] std::string_view latency_template() noexcept;
 

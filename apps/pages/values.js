@@ -1,4 +1,4 @@
-// What the page is given, and how it says values.
+// The data of the page, and the format of its values.
 
 const report = JSON.parse(document.getElementById("data").textContent);
 
@@ -10,11 +10,11 @@ const kDerivatives = [
 ];
 const kLabelWidth = 70;     // px of an axis label
 const kMarkSpacing = 7;     // px between marks that are drawn large
-const kTickSpacing = 3;     // px between those that are drawn small
+const kTickSpacing = 3;     // px between marks that are drawn small
 const kPadding = 0.06;      // of the values' range, above and below
 const kTimePadding = 0.01;  // of the duration, before and after
-const kCoarse = 4;          // px of an interval that is drawn as two values, to say so
-const kSharpSections = 16;  // that are printed sharply; more would take too much memory
+const kCoarse = 4;          // px per interval from which the page reports its coarse resolution
+const kSharpSections = 16;  // most sections printed at double resolution; more need too much memory
 
 // `#draw=all` draws every chart at once; `&time=FROM,TO` zooms them, in seconds.
 const address = new URLSearchParams(location.hash.slice(1));
@@ -43,7 +43,7 @@ function row_at(seconds) {
   return low;
 }
 
-// Least and greatest of what a chart shows between two times, waypoints included.
+// The least and greatest value that a chart shows between two times, waypoints included.
 function extent(dimension, r, [from, to]) {
   let [low, high] = [Infinity, -Infinity];
   const consider = (value) => {
@@ -66,7 +66,7 @@ function extent(dimension, r, [from, to]) {
   return [low, high];
 }
 
-// The values a chart spans. Those that differ by rounding only make a flat line, not a noise.
+// The range of values of a chart. Values that differ only by rounding give a flat line, not noise.
 function value_range(dimension, r, times) {
   const [low, high] = extent(dimension, r, times);
   if (!(high >= low)) return [-1.05, 1.05];

@@ -7,12 +7,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <exception>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "apps/process/exit_codes.hpp"
@@ -22,34 +24,46 @@
 namespace splinecast::apps {
 namespace {
 
-/// How long after a signal to the parent its children may take to end in order. Less than the
-/// parent's own time, so that it can still clean up.
+/// Time from a stop signal to the parent until it kills its children. Shorter than the parent's own
+/// limit of 5 s, so that the parent can still clean up.
 constexpr Time kGrace = std::chrono::seconds(3);
+
+/// Returns false if the other end is closed.
+bool write_all(int pipe, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = write(pipe, text.data(), text.size());
+    if (written < 0 && errno != EINTR) return false;
+    text.remove_prefix(static_cast<std::size_t>(std::max<ssize_t>(written, 0)));
+  }
+  return true;
+}
 
 [[noreturn]] void run_child(const std::function<nlohmann::json()>& run, int pipe, pid_t parent) {
   int code = kOk;
   try {
     catch_stop_signals_as_child_of(parent);
-    const std::string text = run().dump();
-    if (write(pipe, text.data(), text.size()) != static_cast<ssize_t>(text.size())) code = kFailed;
+    if (!write_all(pipe, run().dump())) code = kFailed;
   } catch (const Interrupted&) {
-    code = kInterrupted;  // the parent says so
+    code = kInterrupted;  // the parent prints the message
   } catch (const std::exception& error) {
     say(error.what());
     code = kFailed;
   }
-  _exit(code);  // the parent's buffers and objects are not this process's to close
+  _exit(code);  // must not flush the parent's buffers or destroy its objects
 }
 
 }  // namespace
 
 Child::Child(const std::function<nlohmann::json()>& run) {
   std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw Failure("no pipe for a child process");
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw Failure("cannot create a pipe for a child process");
   std::fflush(nullptr);
   const pid_t parent = getpid();
   pid_ = fork();
-  if (pid_ < 0) throw Failure("no process for a child");
+  if (pid_ < 0) {
+    for (const int end : ends) close(end);
+    throw Failure("cannot fork a child process");
+  }
   if (pid_ == 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != parent) _exit(kFailed);
@@ -81,7 +95,9 @@ nlohmann::json Child::result() {
     if (time_since_stop() > kGrace) signal(SIGKILL);
     constexpr int kSliceMilliseconds = 100;
     pollfd ready{.fd = pipe_, .events = POLLIN, .revents = 0};
-    if (poll(&ready, 1, kSliceMilliseconds) <= 0) continue;
+    const int found = poll(&ready, 1, kSliceMilliseconds);
+    if (found < 0 && errno != EINTR) throw Failure("cannot wait for a child process");
+    if (found <= 0) continue;
     const ssize_t got = read(pipe_, buffer.data(), buffer.size());
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) break;
@@ -112,7 +128,7 @@ void Child::signal(int number) const noexcept {
 }
 
 void Child::stop() noexcept {
-  if (!std::exchange(told_to_end_, true)) signal(SIGTERM);  // a second one would kill it
+  if (!std::exchange(told_to_end_, true)) signal(SIGTERM);  // a second SIGTERM would kill the child
 }
 
 }  // namespace splinecast::apps

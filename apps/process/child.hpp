@@ -8,34 +8,35 @@
 
 namespace splinecast::apps {
 
-/// A child process that runs a function and hands its result back as JSON through a pipe. It dies
-/// with its parent.
+/// A child process that runs a function and returns its result as JSON through a pipe. It gets
+/// SIGTERM when its parent dies.
 class Child {
  public:
-  /// Forks at once. The child does not get the terminal's Ctrl-C: its parent passes a stop on.
+  /// Forks at once. The child has its own process group, so that Ctrl-C does not reach it: the
+  /// parent forwards a stop. Throws Failure.
   explicit Child(const std::function<nlohmann::json()>& run);
   Child(Child&& other) noexcept;
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
   Child& operator=(Child&&) = delete;
-  /// Kills it if it has not been waited for.
+  /// Kills the child and waits for it, unless it has been waited for.
   ~Child();
 
-  /// Waits for the child's end and returns its result. A stop that is requested meanwhile is passed
-  /// on to it, and kills it 3 s later if it still runs. Throws Failure if it failed or was killed,
+  /// Waits for the child to end and returns its result. Forwards a stop request to the child, and
+  /// kills the child 3 s later if it still runs. Throws Failure if the child failed or was killed,
   /// Interrupted if a stop was requested.
   nlohmann::json result();
 
-  /// Whether it has ended, and then how: its exit code, or minus the number of the signal that
-  /// killed it. Once it has, there is nothing more to be asked of it.
+  /// The exit code of the child, or minus the number of the signal that killed it; nothing while it
+  /// runs. Returns the code once: then the child has been waited for.
   [[nodiscard]] std::optional<int> ended() noexcept;
-  /// Its process id; -1 once it has been waited for.
+  /// The process id; -1 after the child has been waited for.
   [[nodiscard]] pid_t pid() const noexcept { return pid_; }
 
-  /// Sends it a signal; to kill it, destroy this object.
+  /// Sends the child a signal. To kill the child, destroy this object.
   void signal(int number) const noexcept;
 
-  /// Asks the child to end (SIGTERM); only the first call does anything.
+  /// Requests the child to end (SIGTERM). Only the first call has an effect.
   void stop() noexcept;
 
  private:

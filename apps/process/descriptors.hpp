@@ -4,11 +4,10 @@
 
 namespace splinecast::apps {
 
-/// File descriptors that this process may have open: RLIMIT_NOFILE.
+/// Number of file descriptors that this process may have open: the soft limit of RLIMIT_NOFILE.
 [[nodiscard]] std::size_t descriptor_limit() noexcept;
 
-/// Raises that to what an unprivileged process may raise it to. A program that holds many streams
-/// does so before it opens the first one.
+/// Raises this soft limit to the hard limit. Call it before the first of many streams is opened.
 void raise_descriptor_limit() noexcept;
 
 }  // namespace splinecast::apps

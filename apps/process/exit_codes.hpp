@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-/// How the program ends, and the errors that lead there. `main` catches them.
+/// Exit codes of the program, and the exceptions that cause them. run_guarded() catches them.
 namespace splinecast::apps {
 
 inline constexpr int kOk = 0;
@@ -18,25 +18,25 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Something that should have worked did not: exit code 1.
+/// An operation failed: exit code 1.
 class Failure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Whoever read the output has had enough of it (`| head`): exit code 1, without a message.
+/// The reader of the output closed the pipe (`| head`): exit code 1, without a message.
 class ClosedPipe : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A signal came before the work was done: exit code 130.
+/// A signal arrived before the work was done: exit code 130.
 class Interrupted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What was waited for did not come: exit code 4.
+/// A wait timed out: exit code 4.
 class TimeOut : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -36,7 +36,7 @@ void say(std::string_view text) {
     text.remove_prefix(end + 1);
   }
   lines += ipc::printable(text) + '\n';
-  std::fputs(lines.c_str(), stderr);  // a message that cannot be written is no reason to end
+  std::fputs(lines.c_str(), stderr);  // write errors are ignored
 }
 
 }  // namespace splinecast::apps

@@ -6,7 +6,7 @@
 
 namespace splinecast::apps {
 
-/// A line on stderr that overwrites itself, where stderr is a terminal; else nothing.
+/// A progress line on stderr that overwrites itself. Prints nothing if stderr is not a terminal.
 class Progress {
  public:
   Progress();
@@ -23,8 +23,8 @@ class Progress {
   Time next_{};
 };
 
-/// A message on stderr: `splinecast: …`. What its lines hold of other people's names and texts is
-/// printed as ipc::printable() has it.
+/// Prints a message on stderr: `splinecast: …`. Passes each line through ipc::printable(), because
+/// it may contain names and texts of other users.
 void say(std::string_view text);
 
 }  // namespace splinecast::apps

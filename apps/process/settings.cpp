@@ -20,13 +20,13 @@ bool is_pinned_to(std::size_t cpu) {
          CPU_ISSET(cpu, &set);
 }
 
-/// Empty if it took effect, else why not.
+/// Pins this process. Returns the reason for a failure; empty on success.
 std::string pin(std::size_t cpu) {
   cpu_set_t set;
   CPU_ZERO(&set);
   CPU_SET(cpu, &set);
   if (sched_setaffinity(0, sizeof set, &set) != 0) return reason();
-  return is_pinned_to(cpu) ? "" : "the kernel took other CPUs";
+  return is_pinned_to(cpu) ? "" : "the kernel set other CPUs";
 }
 
 std::string run_fifo(int priority) {
@@ -36,7 +36,7 @@ std::string run_fifo(int priority) {
   sched_param found{};
   const bool took = sched_getscheduler(0) == SCHED_FIFO && sched_getparam(0, &found) == 0 &&
                     found.sched_priority == priority;
-  return took ? "" : "the kernel took another policy";
+  return took ? "" : "the kernel set another policy";
 }
 
 std::string lock_memory() {
@@ -71,7 +71,7 @@ std::size_t usable_cpus() {
 Usage usage_now() noexcept {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  // In the C library these are members of unions.  NOLINTBEGIN(*-union-access)
+  // The C library declares these as members of unions.  NOLINTBEGIN(*-union-access)
   return {.minor_faults = usage.ru_minflt,
           .major_faults = usage.ru_majflt,
           .voluntary_switches = usage.ru_nvcsw,

@@ -8,24 +8,24 @@
 
 namespace splinecast::apps {
 
-/// How a process is to run where latencies matter.
+/// Scheduling and memory settings of a process with low latency.
 struct ProcessSettings {
-  std::optional<int> cpu{};  ///< the only one to run on
-  bool fifo = false;         ///< SCHED_FIFO with this priority, 1 to 99
-  int priority = 50;
-  bool lock_memory = false;  ///< mlockall, also for what comes
+  std::optional<int> cpu{};  ///< the CPU to pin the process to
+  bool fifo = false;         ///< run under SCHED_FIFO
+  int priority = 50;         ///< of SCHED_FIFO, 1 to 99
+  bool lock_memory = false;  ///< mlockall, current and future pages
 };
 
-/// Makes them those of this process, and looks whether they took effect. Returns what did not, and
-/// why, as messages that begin with `role`. Sleeps of this process become exact to the nanosecond
-/// as far as the kernel's timers go (the slack of 50 µs is taken off).
+/// Applies the settings to this process and verifies them. Returns a message for each one that
+/// failed, with the reason; messages begin with `role`. Also sets the timer slack of this process
+/// to 1 ns (default 50 µs).
 [[nodiscard]] std::vector<std::string> adopt(const ProcessSettings& settings,
                                              const std::string& role);
 
-/// How many CPUs this process may run on.
+/// Number of CPUs that this process may run on.
 [[nodiscard]] std::size_t usable_cpus();
 
-/// What the kernel counts of a process, since it began.
+/// Counters that the kernel keeps for a process since its start.
 struct Usage {
   std::int64_t minor_faults = 0;
   std::int64_t major_faults = 0;
@@ -33,10 +33,10 @@ struct Usage {
   std::int64_t involuntary_switches = 0;
 };
 
-/// Of this process until now. One system call.
+/// The counters of this process. One system call.
 [[nodiscard]] Usage usage_now() noexcept;
 
-/// What came between two looks.
+/// The differences between two readings.
 [[nodiscard]] nlohmann::ordered_json to_json(const Usage& before, const Usage& after);
 
 }  // namespace splinecast::apps

@@ -11,7 +11,7 @@
 
 namespace splinecast::apps {
 
-/// Memory that a process shares with the children it forks afterwards: one object.
+/// One object in memory that a process shares with the children it forks afterwards.
 template <typename T>
 class Shared {
  public:
@@ -28,8 +28,8 @@ class Shared {
   T* object_;
 };
 
-/// What a child process notes for its parent: as many entries as it was made for. The child pushes;
-/// the parent looks once the child has ended.
+/// A log of fixed capacity from a child process to its parent. The child pushes entries; the parent
+/// reads them after the child has ended.
 template <typename T>
 class SharedLog {
  public:
@@ -37,7 +37,8 @@ class SharedLog {
       : capacity_(capacity),
         region_(boost::interprocess::anonymous_shared_memory(kHeader + capacity * sizeof(T))) {}
 
-  /// Maps every page into this process, so that a push never faults. Before the first push.
+  /// Maps every page into this process, so that push() causes no page fault. Clears the log: call
+  /// it before the first push.
   void touch() const noexcept { std::memset(region_.get_address(), 0, region_.get_size()); }
 
   /// Returns false if the log is full.
@@ -54,7 +55,7 @@ class SharedLog {
   static_assert(std::is_trivially_copyable_v<T>);
   static constexpr std::size_t kHeader = 64;
 
-  // The pages begin as zeros, which is an empty log.
+  // The pages start as zeros: an empty log.
   [[nodiscard]] std::size_t& size() const noexcept {
     return *static_cast<std::size_t*>(region_.get_address());
   }

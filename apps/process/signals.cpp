@@ -20,17 +20,17 @@ namespace {
 constexpr std::array kStopSignals{SIGINT, SIGTERM, SIGHUP};
 constexpr unsigned kGraceSeconds = 5;
 
-// All that the handlers use. A child's copy is its own.
+// The state of the signal handlers. A forked child has its own copy.
 std::atomic<bool> stop{false};
 std::atomic<std::int64_t> stopped_at{0};  ///< CLOCK_MONOTONIC, ns
-std::atomic<pid_t> waiting_parent{0};     ///< of a child process that its parent waits for; else 0
+std::atomic<pid_t> waiting_parent{0};     ///< parent that waits for this child; else 0
 static_assert(std::atomic<bool>::is_always_lock_free);
 static_assert(std::atomic<std::int64_t>::is_always_lock_free);
 static_assert(std::atomic<pid_t>::is_always_lock_free);
 
 void set_handler(int signal, void (*handler)(int)) {
   struct sigaction action {};
-  action.sa_handler = handler;  // without SA_RESTART: sleeps and writes end early
+  action.sa_handler = handler;  // no SA_RESTART: a signal interrupts sleeps and writes
   sigaction(signal, &action, nullptr);
 }
 
@@ -40,14 +40,14 @@ void (*handler_of(int signal))(int) {
   return action.sa_handler;
 }
 
-/// SIGALRM, while a stop is overdue.
+/// Handler of SIGALRM: the process did not end in time. Calls only async-signal-safe functions.
 void end_at_once(int /*signal*/) {
   constexpr std::string_view kMessage = "splinecast: did not end within 5 s of a signal: aborted\n";
   [[maybe_unused]] const ssize_t told = write(STDERR_FILENO, kMessage.data(), kMessage.size());
   _exit(kInterrupted);
 }
 
-// Only async-signal-safe functions from here on.
+/// Handler of the stop signals. Calls only async-signal-safe functions.
 void request_stop(int /*signal*/) {
   const int error = errno;
   stopped_at.store(MonotonicClock().now().count(), std::memory_order_relaxed);
@@ -65,9 +65,9 @@ void catch_signals() {
   sigset_t alarm_signal;
   sigemptyset(&alarm_signal);
   sigaddset(&alarm_signal, SIGALRM);
-  sigprocmask(SIG_UNBLOCK, &alarm_signal, nullptr);  // blocked signals are inherited
+  sigprocmask(SIG_UNBLOCK, &alarm_signal, nullptr);  // the signal mask is inherited
   for (const int signal : kStopSignals) {
-    if (signal == SIGHUP && handler_of(signal) == SIG_IGN) continue;  // nohup stays nohup
+    if (signal == SIGHUP && handler_of(signal) == SIG_IGN) continue;  // keep the setting of nohup
     set_handler(signal, request_stop);
   }
 }
@@ -81,7 +81,7 @@ void catch_stop_signals() {
 
 void catch_stop_signals_as_child_of(pid_t parent) {
   waiting_parent.store(parent, std::memory_order_relaxed);
-  alarm(0);  // a signal may have come to the parent's handler, which this process inherited
+  alarm(0);  // the handler inherited from the parent may have set it
   catch_signals();
 }
 
@@ -93,7 +93,7 @@ Time time_since_stop() noexcept {
 }
 
 bool sleep_until(Time instant) noexcept {
-  // In slices: a signal that comes just before a sleep does not end it.
+  // Sleep in slices: a signal that arrives just before a sleep does not interrupt it.
   constexpr Time kSlice = std::chrono::milliseconds(50);
   constexpr std::int64_t kSecond = 1'000'000'000;
   const MonotonicClock clock;

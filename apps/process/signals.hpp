@@ -6,22 +6,22 @@
 
 namespace splinecast::apps {
 
-/// Makes the first SIGINT, SIGTERM or SIGHUP ask the running verb to end in order. A second one
-/// ends the process at once (default action). A process that is still running 5 s after the first
-/// one exits with kInterrupted, whatever it is doing.
+/// Installs handlers: the first SIGINT, SIGTERM or SIGHUP requests a stop of the running verb. A
+/// second one ends the process at once (default action). A process that still runs 5 s after the
+/// first one exits with kInterrupted.
 void catch_stop_signals();
 
-/// The same in a child process, whose parent decides how long to wait for it: the 5 s only count
-/// once the parent has died.
+/// The same for a child process. Its parent decides how long to wait for it: the limit of 5 s
+/// applies only if the parent has died.
 void catch_stop_signals_as_child_of(pid_t parent);
 
-/// Whether one of them has come.
+/// Whether one of these signals has arrived.
 [[nodiscard]] bool stop_requested() noexcept;
 
-/// How long ago the first one came; zero if none has.
+/// Time since the first of these signals; zero if there was none.
 [[nodiscard]] Time time_since_stop() noexcept;
 
-/// Sleeps until an instant of CLOCK_MONOTONIC. Returns false at once when a stop is requested.
+/// Sleeps until an instant of CLOCK_MONOTONIC. Returns false at most 50 ms after a stop request.
 bool sleep_until(Time instant) noexcept;
 
 }  // namespace splinecast::apps

@@ -9,28 +9,29 @@
 
 namespace splinecast::apps {
 
-/// What a process has of the machine.
+/// Memory and open files of a process.
 struct ProcessUse {
   std::size_t mapped_bytes = 0;    ///< address space
-  std::size_t resident_bytes = 0;  ///< of that in memory, with what it shares with others
-  std::size_t private_bytes = 0;   ///< of that its own
+  std::size_t resident_bytes = 0;  ///< of it in memory, shared pages included
+  std::size_t private_bytes = 0;   ///< of this, pages that are not shared
   std::size_t descriptors = 0;     ///< open files
 };
 
-/// Asks the kernel about a living process of this user; nothing if it has ended. System calls.
+/// Reads the use of a living process of this user from /proc; nothing if it has ended. Makes system
+/// calls and allocates.
 [[nodiscard]] std::optional<ProcessUse> process_use(pid_t pid);
 
-/// CPU time that a process has taken so far, all of its threads together; 0 if there is none.
+/// CPU time that all threads of a process have used so far; 0 if there is no such process.
 [[nodiscard]] Time cpu_time(pid_t pid) noexcept;
 
-/// Whether something stays flat over a run: the largest value of its second half, after a quarter
-/// for warming up, against the largest of the first half.
+/// Detects growth of a value over a run: skips the first quarter as warm-up, then compares the
+/// largest value in the second half of the rest with the largest in its first half.
 class Flatness {
  public:
-  /// A value counts as grown if it exceeds the first half's largest by more than `tolerance`.
+  /// An increase of the largest value by more than `tolerance` is growth.
   explicit Flatness(std::size_t tolerance) : tolerance_(tolerance) {}
 
-  /// Takes a value at a share of the run, 0 to 1.
+  /// Adds a value at `share` of the run, 0 to 1.
   void add(double share, std::size_t value) noexcept;
 
   [[nodiscard]] std::size_t first() const noexcept { return first_; }

@@ -18,8 +18,9 @@ Time rounded_up_to_ms(Time t) noexcept {
   return std::chrono::ceil<std::chrono::milliseconds>(t);
 }
 
-/// Seconds of the minimum-time motion onto a path that moves on at constant velocity: it begins a
-/// distance behind and slower by `deficit`, and is never faster than the path by more than `most`.
+/// Duration in s of the minimum-time motion onto a path that moves at constant velocity. The motion
+/// starts with a lag of `distance`, slower than the path by `deficit`, and is faster than the path
+/// by at most `most`.
 double catch_up_time(double distance, double deficit, double acceleration, double most) {
   const double peak = std::sqrt(acceleration * distance + deficit * deficit / 2);
   if (peak <= most) return (2 * peak + deficit) / acceleration;
@@ -27,7 +28,8 @@ double catch_up_time(double distance, double deficit, double acceleration, doubl
   return (2 * most + deficit) / acceleration + (distance - covered) / most;
 }
 
-/// Seconds back onto the path after `dry` seconds of a stop of `stop` seconds from velocity v.
+/// Time in s to return onto the path after `dry` s of a stop of `stop` s from velocity v. Nothing
+/// if the velocity limit is not above v.
 std::optional<double> way_back(double v, double dry, double stop, double max_velocity,
                                double max_acceleration) {
   if (v == 0 || dry <= 0) return 0.0;
@@ -69,7 +71,7 @@ std::size_t advised_settle(const Intervals& intervals, Time freeze_ahead) noexce
 AdvisedLimits advised_limits(std::span<const DimensionMotion> motion) {
   constexpr double kLongestStop = 1;     // s
   constexpr double kStopPeak = 1.5;      // largest deceleration of a stop, in v/T
-  constexpr Time kUnmoved{250'000'000};  // what `solve` takes by default
+  constexpr Time kUnmoved{250'000'000};  // default of `solve`
   AdvisedLimits limits;
   double stop = 0;
   for (const DimensionMotion& d : motion) {
@@ -79,7 +81,7 @@ AdvisedLimits advised_limits(std::span<const DimensionMotion> motion) {
     if (d.peak_velocity == 0) continue;
     stop = std::max(stop, kStopPeak * d.peak_velocity / limits.acceleration.back());
   }
-  constexpr double kRounding = 1e-6;  // ms, of the quotients
+  constexpr double kRounding = 1e-6;  // ms, rounding error of the quotients
   const auto milliseconds =
       std::chrono::milliseconds(std::llround(std::ceil(stop * 1e3 - kRounding)));
   limits.stop_time = stop == 0 ? kUnmoved : std::max(milliseconds, std::chrono::milliseconds(1));
@@ -108,7 +110,7 @@ Advice advise(const WaypointTable& table, Time freeze_ahead, std::optional<std::
                                           std::chrono::milliseconds(300)};
   if (table.size() < 3) {
     throw InputError(
-        fmt::format("{}: {} rows in order: advice takes at least 3", table.file, table.size()));
+        fmt::format("{}: {} rows in order: advice needs at least 3", table.file, table.size()));
   }
   const Intervals intervals = measure_intervals(table.times);
   const SolvedHow how{.settle = settle.value_or(advised_settle(intervals, freeze_ahead)),

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array kPolicies{LatePolicy::refuse, LatePolicy::pass, LatePolicy::shift};
 
-/// The kinds of late rows, as they are named for people.
+/// The kinds of late rows, with their names in reports.
 constexpr std::array<std::pair<const char*, ipc::Word LateRows::*>, 3> kLateKinds{
     {{"duplicate", &LateRows::duplicate},
      {"out of order", &LateRows::out_of_order},
@@ -79,7 +79,7 @@ std::string in_words(const LateRows& late) {
   if (late.left_out > 0) text += fmt::format("; {} left out", late.left_out);
   if (late.shifts > 0) {
     text +=
-        fmt::format("; shifted {} times, {:.6g} s in all", late.shifts, to_seconds(late.shifted));
+        fmt::format("; shifted {} times, {:.6g} s in total", late.shifts, to_seconds(late.shifted));
   }
   return text;
 }

@@ -14,8 +14,7 @@
 namespace splinecast::apps {
 namespace {
 
-/// Rows i, i + 1, … of a table such that chords of at least kChord go from one to the next; no gap
-/// lies between them.
+/// Finds chords between rows of a table: at least kChord long, without a gap.
 class Chords {
  public:
   Chords(const WaypointTable& table, Time gap_from) : table_(&table), run_(table.size(), 0) {
@@ -24,7 +23,7 @@ class Chords {
     }
   }
 
-  /// The end of the shortest chord from row i, if one begins there.
+  /// The last row of the shortest chord from row i; nothing if there is no chord.
   [[nodiscard]] std::optional<std::size_t> end(std::size_t i) const {
     const auto first = table_->times.begin() + static_cast<std::ptrdiff_t>(i);
     const auto at = std::lower_bound(first, table_->times.end(), saturated_sum(*first, kChord));
@@ -36,7 +35,7 @@ class Chords {
 
  private:
   const WaypointTable* table_;
-  std::vector<std::size_t> run_;  ///< of rows without a gap between them
+  std::vector<std::size_t> run_;  ///< for each row, the number of gaps before it
 };
 
 double position(const WaypointTable& table, std::size_t i, std::size_t d) {
@@ -48,8 +47,8 @@ double chord_velocity(const WaypointTable& table, std::size_t i, std::size_t j, 
          to_seconds(table.times[j] - table.times[i]);
 }
 
-/// The third divided difference of rows i to i + 3, such that independent errors of the positions
-/// with standard deviation 1 give it the standard deviation 1; its magnitude.
+/// The magnitude of the third divided difference of rows i to i + 3, scaled so that independent
+/// errors of the positions with standard deviation 1 give it the standard deviation 1.
 double third_difference(const WaypointTable& table, std::size_t i, std::size_t d) {
   const double unit = to_seconds(table.times[i + 3] - table.times[i]);
   double sum = 0;
@@ -66,7 +65,7 @@ double third_difference(const WaypointTable& table, std::size_t i, std::size_t d
   return std::abs(sum) / std::sqrt(squares);
 }
 
-/// The rounding error of positions that mostly stay the same: their least step over √12.
+/// The rounding error of positions that mostly stay the same: their least step divided by √12.
 double rounding_noise(const WaypointTable& table, std::size_t d) {
   double least = 0;
   for (std::size_t i = 1; i < table.size(); ++i) {
@@ -86,13 +85,13 @@ double measure_noise(const WaypointTable& table, const Chords& chords, std::size
   return median > 0 ? kSigmaPerMedian * median : rounding_noise(table, d);
 }
 
-/// Rows from i on whose chords give a velocity and an acceleration.
+/// The rows of two consecutive chords, which give a velocity and an acceleration.
 struct ChordPair {
   std::size_t i, j, k;
-  bool moves;  ///< some dimension, along the first chord
+  bool moves;  ///< whether a dimension moves along the first chord
 };
 
-/// Whether some dimension moves along a chord by more than noise explains.
+/// Whether a dimension moves along a chord by more than the noise.
 bool moves(const WaypointTable& table, std::size_t i, std::size_t j,
            std::span<const DimensionMotion> motion) {
   constexpr double kBeyondNoise = 6;
@@ -111,7 +110,7 @@ std::vector<ChordPair> chord_pairs(const WaypointTable& table, const Chords& cho
     const auto k = j ? chords.end(*j) : std::nullopt;
     if (k) pairs.push_back({i, *j, *k, moves(table, i, *j, motion)});
   }
-  // A recording without motion: all that there is are the steps of its noise.
+  // A recording without motion: measure its noise.
   if (std::ranges::none_of(pairs, &ChordPair::moves)) {
     for (ChordPair& pair : pairs) pair.moves = true;
   }
@@ -165,7 +164,7 @@ std::vector<DimensionMotion> measure_motion(const WaypointTable& table,
   const std::vector<ChordPair> pairs = chord_pairs(table, chords, motion);
   if (pairs.empty()) {
     throw InputError(fmt::format(
-        "{}: {} rows are too few to tell an acceleration: that takes three rows, {} s apart from "
+        "{}: {} rows are too few to measure an acceleration: it needs three rows, {} s apart from "
         "each other, without a gap of more than {} s",
         table.file, table.size(), to_seconds(kChord), to_seconds(intervals.gap_from())));
   }

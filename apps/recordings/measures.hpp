@@ -8,10 +8,10 @@
 #include "apps/tables/waypoints.hpp"
 #include "splinecast/time.hpp"
 
-/// What a recording shows of its producer and of its motion. Everything allocates.
+/// Measures the intervals and the motion of a recording. All functions allocate.
 namespace splinecast::apps {
 
-/// Velocities are those of chords at least this long.
+/// Velocities are measured along chords of at least this duration.
 inline constexpr Time kChord{50'000'000};
 
 /// A gap is an interval of more than this many medians.
@@ -25,25 +25,25 @@ struct Intervals {
   Time largest{};
   Time jitter{};  ///< 95 % quantile of |interval − median|
   std::size_t gaps = 0;
-  Time longest_gap{};  ///< 0 if there are none
+  Time longest_gap{};  ///< 0 without gaps
 
   [[nodiscard]] Time gap_from() const noexcept { return saturated_product(median, kGapFactor); }
 };
 
-/// Measures at least one interval; times increase.
+/// Measures the intervals between at least two increasing times.
 [[nodiscard]] Intervals measure_intervals(std::span<const Time> times);
 
-/// What one dimension does, in its unit and seconds.
+/// The motion of one dimension, in its unit and seconds.
 struct DimensionMotion {
   double noise = 0;          ///< standard deviation of noise and rounding of the positions
   double velocity = 0;       ///< 95 % quantile of the magnitudes, while the machine moves
   double peak_velocity = 0;  ///< largest magnitude
-  double acceleration = 0;   ///< likewise, of second differences over two chords
+  double acceleration = 0;   ///< 95 % quantile, from second differences over two chords
   double peak_acceleration = 0;
 };
 
 /// Measures each dimension of a table whose times increase and whose angles and quaternions are
-/// continuous. Noise is taken from third divided differences by their median; on coarse recordings
+/// continuous. The noise follows from the median of third divided differences; on coarse recordings
 /// the motion itself adds to it. No chord crosses a gap. Throws InputError if the rows between gaps
 /// are too short for an acceleration.
 [[nodiscard]] std::vector<DimensionMotion> measure_motion(const WaypointTable& table,

@@ -27,34 +27,34 @@ inline constexpr std::size_t kRefusedBy = 3;
 /// A row of a recording that is not interpolated.
 struct RefusedRow {
   RefusedBy by{};
-  std::string_view reason;              ///< `unreadable`, or as to_string has it
-  std::optional<std::size_t> line{};    ///< in the file, from 1; unset: the item is no row of ours
-  std::optional<ipc::Word> item{};      ///< number in the ring; of the solver's only
-  std::optional<std::size_t> loop{};    ///< from 1; of what was played only
-  std::optional<LimitExcess> excess{};  ///< of one beyond limits
+  std::string_view reason;              ///< `unreadable`, or from to_string()
+  std::optional<std::size_t> line{};    ///< in the file, from 1; unset: not a row of the file
+  std::optional<ipc::Word> item{};      ///< number in the ring; if the solver refused it
+  std::optional<std::size_t> loop{};    ///< from 1; if the row was played
+  std::optional<LimitExcess> excess{};  ///< if the row exceeds limits
 };
 
-/// The rows of a recording that are not interpolated. Each is named on standard error as soon as it
-/// is known and counted; the first kListed are kept for the report. Allocates.
+/// The rows of a recording that are not interpolated. Reports each on standard error at once and
+/// counts it; keeps the first kListed for the report. Allocates.
 class RefusedRows {
  public:
   static constexpr std::size_t kListed = 65'536;
 
-  /// Takes a row over and says the message. `row.reason` must be a literal.
+  /// Adds a row and prints the message. `row.reason` must be a string literal.
   void add(const RefusedRow& row, std::string_view message);
 
-  /// Counts refusals of the solver of which nothing but their number is known any more.
+  /// Counts refusals by the solver whose details are lost: the board keeps only the last ones.
   void add_unnamed(ipc::Word count) noexcept { unlisted_ += count; }
 
-  /// How many were refused, by whom and for what.
+  /// The number of refused rows, by who refused them and by reason.
   [[nodiscard]] ipc::Word count(RefusedBy by) const noexcept;
   [[nodiscard]] ipc::Word count(RefusedBy by, std::string_view reason) const noexcept;
 
   /// Refusals that are counted but not listed.
   [[nodiscard]] ipc::Word unlisted() const noexcept { return unlisted_; }
 
-  /// The listed ones in the order in which they became known: `by`, `reason`, `line` (null: none),
-  /// and, where there is one, `item` and `loop`.
+  /// The listed rows in the order of add(): `line` (may be null), `by`, `reason`, and, if set,
+  /// `item`, `loop` and `beyond`.
   [[nodiscard]] nlohmann::ordered_json to_json() const;
 
  private:

@@ -38,7 +38,7 @@ bool are_same(std::span<const double> a, std::span<const double> b) {
   return std::ranges::equal(a, b);
 }
 
-/// Goes through the rows of a table in order and decides about each, before anything is sent.
+/// Decides about each row of a table, in order, before anything is sent.
 class RowFilter {
  public:
   RowFilter(WaypointTable& table, const IngestLimits& limits, LatePolicy policy,
@@ -51,7 +51,7 @@ class RowFilter {
         step_(
             std::max(limits.min_interval, std::min(limits.max_interval, median_interval(table)))) {}
 
-  /// Whether row i is kept, behind the last row that was; it may be moved.
+  /// Whether row i is kept after the last kept row. May change its time.
   bool keeps(std::size_t i) {
     auto objection = judge_values(i);
     if (!objection && is_late(i)) {
@@ -67,7 +67,7 @@ class RowFilter {
   [[nodiscard]] const LateRows& late() const { return late_; }
 
  private:
-  /// What the ring or the solver would refuse a row for.
+  /// The reason for which the ring or the solver would refuse a row.
   struct Objection {
     std::string_view reason;
     std::string message;  ///< with the row's line and the offending value
@@ -93,7 +93,7 @@ class RowFilter {
     if (!is_time_in_range(moved(time))) status = AppendStatus::too_far_apart;
     if (status == AppendStatus::accepted) return std::nullopt;
     return objection(i, status,
-                     fmt::format("time {} ns, {} ns after the waypoint before", time.count(),
+                     fmt::format("time {} ns, {} ns after the previous waypoint", time.count(),
                                  (time - last_).count()));
   }
 
@@ -154,10 +154,10 @@ class RowFilter {
   IngestLimits limits_;
   LatePolicy policy_;
   RefusedRows* skipped_;
-  Time step_;  ///< from the row before to a row that is moved behind it
+  Time step_;  ///< from the previous row to a row that is shifted
   LateRows late_;
   std::size_t kept_ = 0;
-  Time last_{};  ///< of the last row that was kept, as recorded
+  Time last_{};  ///< recorded time of the last kept row
 };
 
 }  // namespace
@@ -169,7 +169,7 @@ void select_rows(WaypointTable& table, std::optional<Time> from, std::optional<T
   };
   table.keep_rows([&](std::size_t i) { return is_in(table.times[i]); });
   if (table.size() == 0) {
-    throw InputError(fmt::format("{}: no waypoint lies within --from and --duration", table.file));
+    throw InputError(fmt::format("{}: no waypoint is within --from and --duration", table.file));
   }
 }
 
@@ -178,11 +178,11 @@ void change_rate(WaypointTable& table, double rate) {
   const Time first = table.times.front();
   const double seconds = to_seconds(table.times.back() - first) / rate;
   if (seconds > to_seconds(kLongestTime)) {
-    throw InputError(fmt::format("{}: at --rate {} it takes {} s; the most is {} s", table.file,
+    throw InputError(fmt::format("{}: at --rate {} it takes {} s; the maximum is {} s", table.file,
                                  rate, seconds, to_seconds(kLongestTime)));
   }
   for (Time& t : table.times) {
-    constexpr double kMost = 9.2e18;  // what llround can return; no stream takes so late a time
+    constexpr double kMost = 9.2e18;  // range of llround; later than any valid time
     const double since = std::min(static_cast<double>((t - first).count()) / rate, kMost);
     t = saturated_sum(first, Time(std::llround(since)));
   }

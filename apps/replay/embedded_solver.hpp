@@ -9,17 +9,17 @@
 
 namespace splinecast::apps {
 
-/// The solver within a replay's own process, if one is asked for: it is stepped whenever it is due,
-/// also while the replay waits.
+/// The optional solver in a replay's own process. It is stepped whenever it is due, also while the
+/// replay waits.
 class EmbeddedSolver {
  public:
-  /// Throws if there is another solver. `after_step` is called after each step that took something.
+  /// Throws if there is another solver. Calls `after_step` after each step that consumed an item.
   EmbeddedSolver(const ReplayOptions& options, std::function<void()> after_step);
 
-  /// Works off what the ring holds.
+  /// Solves all items in the ring.
   void solve();
 
-  /// Sleeps until an instant, but steps the solver each time it is due. Returns false if a stop is
+  /// Sleeps until an instant, and steps the solver each time it is due. Returns false if a stop is
   /// requested.
   [[nodiscard]] bool wait_until(Time instant);
 

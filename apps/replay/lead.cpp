@@ -12,7 +12,7 @@
 namespace splinecast::apps {
 namespace {
 
-/// Warns if a lead is less than what K needs, and says what a silence of 100 ms does with it.
+/// Warns if a lead is less than K needs, and reports the effect of a silence of 100 ms.
 void judge_lead(Time lead, Time needed, Time interval, const SolvedHow& how,
                 const ReplayOptions& options, Time stop_time) {
   if (lead >= needed) return;

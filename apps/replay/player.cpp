@@ -22,7 +22,7 @@
 namespace splinecast::apps {
 namespace {
 
-/// A replay on its way: the producer, and the embedded solver if there is one.
+/// A running replay: the producer, and the embedded solver if there is one.
 class Replay {
  public:
   Replay(const WaypointTable& table, const ReplayOptions& options, RefusedRows& refused)
@@ -36,7 +36,7 @@ class Replay {
     try {
       if (!prepare()) return {.unsent = planned(), .interrupted = true};
     } catch (...) {
-      withdraw_if_new();  // nothing has been sent: nothing is left behind
+      withdraw_if_new();  // nothing has been sent: leaves no stream
       throw;
     }
     if (!producer_.is_memory_locked() && !options_.quiet) {
@@ -50,8 +50,8 @@ class Replay {
   }
 
  private:
-  /// Waits until there is a solver that has worked off what a producer before this one left, which
-  /// is counted as none of ours. Returns false if a stop is requested meanwhile.
+  /// Waits until a solver has consumed the items of an earlier producer, which the report does not
+  /// count. Returns false if a stop is requested.
   bool prepare() {
     if (!await_solver()) {
       withdraw_if_new();
@@ -98,13 +98,13 @@ class Replay {
 
   [[nodiscard]] Condition end() const { return options_.end.value_or(unasked()); }
 
-  /// The condition at an end that none was asked for.
+  /// The boundary condition at an end for which none was given.
   [[nodiscard]] Condition unasked() const {
     const bool live = options_.clock == StreamClock::monotonic;
     return {.kind = live ? ConditionKind::halt : ConditionKind::own, .value = {}};
   }
 
-  /// Waits for a solver; false if a stop is requested meanwhile.
+  /// Waits for a solver; false if a stop is requested.
   bool await_solver() {
     const Time old = rest_of_old_motion(options_, producer_.stream_id());
     const Time end = deadline(clock_, old + std::min(options_.wait, Time::max() - old));
@@ -156,7 +156,7 @@ class Replay {
     return !rows_.stopped();
   }
 
-  /// Appends a waypoint, moved if it is late and to be shifted. Returns `full` if a stop is
+  /// Appends a waypoint, with `--late shift` moved if it is late. Returns `full` if a stop is
   /// requested while it waits for room.
   AppendStatus append_when_there_is_room(Waypoint& waypoint) {
     const Time intended = waypoint.time;
@@ -171,8 +171,8 @@ class Replay {
     return status;
   }
 
-  /// How much a waypoint is late that can be sent now: how long before the end of what settles now
-  /// it lies; 0 if it does not. With `--late shift` it is given the lead again.
+  /// The lateness of a waypoint that is sent now: how long before the end of what settles now its
+  /// time is; 0 if it is after it. With `--late shift`, moves a late waypoint to `lead` after now.
   Time shift_if_late(Waypoint& waypoint) {
     if (options_.clock != StreamClock::monotonic) return {};
     const Time now = clock_.now();
@@ -184,7 +184,7 @@ class Replay {
     return lateness;
   }
 
-  /// Counts a waypoint that was late and moves those behind it as it was moved.
+  /// Counts a late waypoint, and moves all later ones by the same time.
   void note_lateness(Time lateness, Time moved_by) {
     if (lateness == Time::zero()) return;
     late_.count(&LateRows::past, lateness);
@@ -192,18 +192,18 @@ class Replay {
   }
 
   /// Appends a waypoint, unless kRefusalsKept items before it are undecided: the board could then
-  /// overwrite a refusal before it is read. A ring of more items than that is not held back.
+  /// overwrite a refusal before it is read. A ring of more items than that is not throttled.
   AppendStatus append(const Waypoint& waypoint) {
     rows_.look();
     const bool is_behind =
         rows_.undecided() >= ipc::kRefusalsKept && options_.capacity <= ipc::kRefusalsKept;
     if (!is_behind) return producer_.append(waypoint);
-    (void)board_->head();  // throws if there is no head: no refusal could become known
+    (void)board_->head();  // throws if there is no summary: no refusal can be read
     return AppendStatus::full;
   }
 
-  /// Waits until it is time to send: `lead` before a live waypoint's time, or, for a recorded
-  /// stream, as long after the first one as it was recorded.
+  /// Waits until it is time to send: on a live stream `lead` before the waypoint's time, on a
+  /// recorded stream at the recorded time after the first waypoint.
   bool pace(Time waypoint_time) {
     if (options_.clock == StreamClock::monotonic) {
       return solver_.wait_until(waypoint_time - lead_);
@@ -212,8 +212,8 @@ class Replay {
     return solver_.wait_until(recorded_start_ + waypoint_time);
   }
 
-  /// Waits while the solver has something to do; false if a stop is requested. A solver that lives
-  /// may take its time; without one, only --wait.
+  /// Waits while the solver has work to do; false if a stop is requested. Waits for a live solver
+  /// without limit, for a new one at most --wait.
   template <typename Wait>
   bool await(const Wait& wait) {
     Time end = deadline(clock_, options_.wait);
@@ -225,8 +225,9 @@ class Replay {
       if (producer_.solver_alive()) {
         end = deadline(clock_, options_.wait);
       } else if (clock_.now() >= end) {
-        throw TimeOut(fmt::format("the solver of stream '{}' has gone and none came within {} s",
-                                  options_.stream, to_seconds(options_.wait)));
+        throw TimeOut(
+            fmt::format("the solver of stream '{}' has ended and no other attached within {} s",
+                        options_.stream, to_seconds(options_.wait)));
       }
     }
   }
@@ -244,7 +245,7 @@ class Replay {
     solver_.solve();
   }
 
-  /// Before there is a board nothing of ours can have been refused.
+  /// Reads new refusals. Before there is a board, there are none.
   void look_for_refusals() {
     if (board_) rows_.look();
   }
@@ -252,12 +253,13 @@ class Replay {
   [[nodiscard]] ReplayReport report(bool complete) {
     rows_.finish();
     const ipc::Head now = board_->head();
-    // Also if none of them could be named.
+    // Also if none of the refused rows could be named.
     std::optional<RefusedBy> stopped = rows_.stopped();
     if (now.refused > before_.refused && !options_.skip_bad && !stopped) {
       stopped = RefusedBy::solver;
     }
-    // An entry that was open before may have met waypoints since that were counted as passed over.
+    // An entry that was open before may since have reached waypoints that were counted as passed
+    // over.
     const ipc::Word taken = now.knots - before_.knots;
     const ipc::Word passed_over =
         std::min(taken, now.passed_over - std::min(now.passed_over, before_.passed_over));
@@ -279,15 +281,15 @@ class Replay {
   const WaypointTable& table_;
   const ReplayOptions& options_;
   MonotonicClock clock_;
-  EmbeddedSolver solver_;  ///< first: if there is another one, nothing has been made
+  EmbeddedSolver solver_;  ///< first: throws if there is another one, before a ring is created
   Producer producer_;
   SentRows rows_;
   Time recorded_start_{};
   Time lead_{};
   Time freeze_ahead_{};
   LateRows late_;
-  std::optional<OwnBoard> board_;  ///< once there is one
-  ipc::Head before_;               ///< what a producer left whose stream is continued
+  std::optional<OwnBoard> board_;  ///< set once there is a board
+  ipc::Head before_;               ///< the summary when this replay began
 };
 
 }  // namespace

@@ -11,12 +11,12 @@ void SentRows::begin() {
   if (options_.verify) begin_log();
 }
 
-/// What a producer before this one sent is not known, so that nothing behind it can be solved.
+/// The waypoints of an earlier producer are unknown, so the later ones cannot be solved again.
 void SentRows::begin_log() {
   if (producer_.appended() > 0) {
     throw InputError(fmt::format(
-        "stream '{}' was left unfinished by its producer, so that --verify lacks what it was "
-        "sent; 'splinecast rm {}' removes it, once its solver has been stopped",
+        "stream '{}' was left unfinished by its producer: --verify does not have its earlier "
+        "waypoints; 'splinecast rm {}' removes it, once its solver has been stopped",
         options_.stream, options_.stream));
   }
   log_.emplace(options_.stream, producer_.stream_id(), options_.trust);

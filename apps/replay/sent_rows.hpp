@@ -13,22 +13,22 @@
 
 namespace splinecast::apps {
 
-/// A row of a recording in one of the loops in which it is played, both from 0.
+/// A row of a recording, and the loop in which it is played, both from 0.
 struct PlayedRow {
   std::size_t row;
   std::size_t loop;
 };
 
-/// Which rows a replay has sent, and who refused which of them: what the solver refuses by its
-/// number in the ring is named by its line.
+/// The rows that a replay has sent, and who refused which. Maps an item that the solver refused to
+/// its line in the file.
 class SentRows {
  public:
   SentRows(const WaypointTable& table, const ReplayOptions& options, Producer& producer,
            RefusedRows& refused)
       : table_(table), options_(options), producer_(producer), refused_(refused) {}
 
-  /// Leaves out what was refused of a producer before this one. If it is to be verified, keeps all
-  /// that is sent from now on; throws InputError if that would not be all of the stream.
+  /// Ignores earlier refusals, of another producer. With `verify`, keeps all rows sent from now on;
+  /// throws InputError if the stream already has waypoints.
   void begin();
 
   /// The next row is the ring's next item.
@@ -40,22 +40,21 @@ class SentRows {
   /// Notes a row that the append refused: it is not in the ring.
   void note_refusal(const PlayedRow& row, Time time, AppendStatus status);
 
-  /// Notes what the solver has refused since the last look. The board keeps the last refusals only:
-  /// so this is called with every waypoint, and costs next to nothing where nothing was published
-  /// since.
+  /// Notes the solver's refusals since the last call. Call it with every waypoint, because the
+  /// board keeps the last refusals only. Cheap if nothing was published since.
   void look();
 
-  /// Looks for the last time, and counts the refusals that could not be named.
+  /// Notes the last refusals, and counts those whose rows could not be named.
   void finish();
 
-  /// Solves what was sent again; nothing if that is not asked for.
+  /// Solves the sent waypoints again and compares; nullopt without `verify`.
   [[nodiscard]] std::optional<ipc::Verification> verify(const Condition& end);
 
   /// Rows that the ring has accepted, and that the append refused.
   [[nodiscard]] ipc::Word sent() const noexcept { return sent_; }
   [[nodiscard]] ipc::Word refused_by_producer() const noexcept { return refused_by_producer_; }
 
-  /// Items of the ring that were not decided when it looked last.
+  /// Items of the ring that were undecided at the last look().
   [[nodiscard]] ipc::Word undecided() const { return producer_.appended() - found_.consumed; }
 
   /// Who refused the row that stops the replay.
@@ -70,8 +69,8 @@ class SentRows {
   const ReplayOptions& options_;
   Producer& producer_;
   RefusedRows& refused_;
-  std::optional<StreamLog> log_;  ///< if it is to be verified
-  Refusals found_;                ///< by the last look
+  std::optional<StreamLog> log_;  ///< with `verify`
+  Refusals found_;                ///< of the last look()
   ipc::Word missed_ = 0;
   std::deque<PlayedRow> in_ring_;  ///< from item next_item_ on: not known to be consumed
   ipc::Word next_item_ = 0;

@@ -23,7 +23,7 @@ using nlohmann::ordered_json;
 
 constexpr std::string_view kUnreadable = "unreadable";
 
-/// Why rows were not sent, and how many each.
+/// The number of rows that were not sent, by reason.
 ordered_json skipped_by_reason(const RefusedRows& refused) {
   const auto count = [&](std::string_view reason) {
     return refused.count(RefusedBy::file, reason) + refused.count(RefusedBy::producer, reason);
@@ -31,13 +31,13 @@ ordered_json skipped_by_reason(const RefusedRows& refused) {
   ordered_json json{{kUnreadable, count(kUnreadable)}};
   for (std::uint8_t i = 1; i < kAppendStatuses; ++i) {
     const auto status = static_cast<AppendStatus>(i);
-    if (status == AppendStatus::full) continue;  // sent again until there is room
+    if (status == AppendStatus::full) continue;  // retried until there is room
     json[std::string(to_string(status))] = count(to_string(status));
   }
   return json;
 }
 
-/// Why waypoints that were sent were refused, and how many each.
+/// The number of sent waypoints that were refused, by reason.
 ordered_json refused_by_reason(const ReplayReport& report) {
   ordered_json json = ordered_json::object();
   for (std::size_t i = 1; i < report.refused_by_reason.size(); ++i) {
@@ -47,7 +47,7 @@ ordered_json refused_by_reason(const ReplayReport& report) {
   return json;
 }
 
-/// ` (3 duplicate, 1 not finite)`; nothing for none.
+/// ` (3 duplicate, 1 not finite)`; empty if there is none.
 std::string in_words(const ordered_json& by_reason) {
   std::string text;
   for (const auto& [reason, count] : by_reason.items()) {
@@ -57,7 +57,7 @@ std::string in_words(const ordered_json& by_reason) {
   return text.empty() ? text : text + ")";
 }
 
-/// What else is to be said about a replay that did not go as planned.
+/// Differences of a replay from its plan, as text.
 std::string in_words(const ReplayReport& report, const ReplayOptions& options,
                      const RefusedRows& refused) {
   std::string text;
@@ -83,7 +83,7 @@ int run_replay(ReplayOptions options) {
   }
   WaypointTable table = read_waypoints(options.file, options.table);
   const LateRows late_in_file = prepare_replay(table, options, refused);
-  catch_stop_signals();  // until here nothing was made that would have to be ended
+  catch_stop_signals();  // before this there is no stream to end
   ReplayReport report = replay_table(table, options, refused);
   report.late += late_in_file;
   const ipc::Word skipped = refused.count(RefusedBy::file) + refused.count(RefusedBy::producer);
@@ -123,7 +123,8 @@ void add_rate(Command& verb, ReplayOptions& options) {
               options.rate = number_within("--rate", text);
             }
           },
-          "Play R times as fast as recorded (default 1), or as fast as it goes: max")
+          "Playback rate relative to the recording, 1e-6 to 1e9, or max: as fast as possible "
+          "(default 1)")
       .type("R|max");
 }
 
@@ -133,30 +134,33 @@ void add_clock(Command& verb, ReplayOptions& options) {
       [&options](bool live) {
         options.clock = live ? StreamClock::monotonic : StreamClock::recorded;
       },
-      "live (default): now on this host's clock; recorded: the file's own stamps");
+      "Clock of the stream: live (default), this host's clock, from now on; recorded, the file's "
+      "time stamps");
 }
 
 void add_playback_options(Command& verb, ReplayOptions& options) {
   add_rate(verb, options);
-  add_count(verb, "--loop", options.loops, "Play the recording N times (default 1)",
-            {1, 1'000'000'000});
-  add_seconds(verb, "--from", options.from, "Begin this long after the first waypoint");
-  add_seconds(verb, "--duration", options.duration, "Play only so much of the recording");
+  add_count(verb, "--loop", options.loops,
+            "Number of times to play the recording, 1 to 1e9 (default 1)", {1, 1'000'000'000});
+  add_seconds(verb, "--from", options.from,
+              "Time in s after the first waypoint at which to begin, from 0 (default 0)");
+  add_seconds(verb, "--duration", options.duration,
+              "Length in s of the part of the recording to play, from 0 (default: to the end)");
   add_clock(verb, options);
   verb.option(
           "--lead",
           [&options](const std::string& text) {
             options.lead = time_within("--lead", text, TimeUnit::milliseconds, kAnyTime);
           },
-          "Append each waypoint of a live stream this long before its time (default what 'advise' "
-          "says of the recording, at least 200)")
+          "Time in ms from the append of a waypoint of a live stream to its time, from 0 (default: "
+          "as 'advise' recommends, at least 200)")
       .type("MS");
   add_condition(verb, "--start", options.start,
-                "Condition at the first waypoint (default halt; if recorded, the method's own)");
-  add_condition(
-      verb, "--end", options.end,
-      "Condition at the last waypoint (default halt; if recorded, the method's own, which "
-      "for c2 is halt)");
+                "Boundary condition at the first waypoint (default: halt; with --clock recorded "
+                "the method's own)");
+  add_condition(verb, "--end", options.end,
+                "Boundary condition at the last waypoint (default: halt; with --clock recorded the "
+                "method's own, which for c2 is halt)");
 }
 
 void add_interval(Command& verb, const std::string& name, Time& value, const std::string& help) {
@@ -169,7 +173,7 @@ void add_interval(Command& verb, const std::string& name, Time& value, const std
       .type("SECONDS");
 }
 
-/// All loops together may not take longer than times can say.
+/// Throws InputError if all loops together take longer than a time can represent.
 void require_loops(const WaypointTable& table, std::size_t loops) {
   if (loops == 1) return;
   const Time once = table.times.back() - table.times.front() + median_interval(table);
@@ -213,41 +217,42 @@ namespace {
 void add_row_policies(Command& verb, ReplayOptions& options) {
   add_choice(
       verb, "--on-error", "skip", "stop", [&options](bool skip) { options.skip_bad = skip; },
-      "What to do about a row that is refused: stop (default) the replay there, or skip the "
-      "row and go on");
+      "On a refused row: stop the replay (default), or skip the row");
   verb.option(
           "--late",
           [&options](const std::string& text) {
             const auto policy = parse_late_policy(text);
             if (!policy) {
-              throw UsageError("--late", fmt::format("'{}' is none of pass, shift, refuse", text));
+              throw UsageError("--late",
+                               fmt::format("'{}' is not one of pass, shift, refuse", text));
             }
             options.late = *policy;
           },
-          "What to do about a row whose time is not after the row before, or has settled when it "
+          "On a late row, whose time is not after that of the row before or has settled when it "
           "can be sent: refuse (default) it; pass: leave it out, or send it as it is; shift: move "
-          "it and all rows behind it")
+          "it and all later rows")
       .type("pass|shift|refuse");
 }
 
 void add_ring_options(Command& verb, ReplayOptions& options) {
   add_count(verb, "--capacity", options.capacity,
-            "Waypoints that the ring holds (default 1024; rounded up to a power of two)");
-  add_seconds(verb, "--wait", options.wait, "Wait this long for a solver (default 10)");
+            "Capacity of the ring in waypoints, 2 to 16777216, rounded up to a power of two "
+            "(default 1024)");
+  add_seconds(verb, "--wait", options.wait, "Time in s to wait for a solver, from 0 (default 10)");
   add_interval(verb, "--min-interval", options.limits.min_interval,
-               "Least time between waypoints (default 1e-6)");
+               "Minimum time between waypoints in s, above 0 (default 1e-6)");
   add_interval(verb, "--max-interval", options.limits.max_interval,
-               "Most time between waypoints (default 3600)");
+               "Maximum time between waypoints in s, above 0 (default 3600)");
 }
 
-/// Throws for options that do not go together.
+/// Throws UsageError for options that exclude one another.
 void require_agreeing(const ReplayOptions& options) {
   const SolverOptions& curve = options.solver;
   const bool shapes = curve.method != nullptr || curve.lambda || curve.time_scale || curve.settle ||
                       curve.tail || curve.force_lag;
   if (shapes && !options.embedded) {
     throw UsageError("--method, --lambda, --time-scale, --settle, --tail, --force-lag",
-                     "go with --embedded; else tell 'solve'");
+                     "go with --embedded only; without it they are options of 'solve'");
   }
   const bool is_live = options.clock == StreamClock::monotonic;
   if (is_live && options.end && !is_at_rest(options.end->kind)) {
@@ -265,10 +270,10 @@ void add_replay(Command& verb, Action& action) {
   add_ring_options(verb, *options);
   verb.flag("--embedded", options->embedded, "Solve in this process");
   verb.flag("--verify", options->verify,
-            "Solve what was sent again, with the decisions that the stream records, and compare "
-            "every segment bit by bit: exit code 3 if one differs");
+            "Solve the sent waypoints again, with the decisions that the stream records, and "
+            "compare every segment bit by bit; exit code 3 if one differs");
   add_solver_curve(verb, options->solver);
-  verb.flag("--json", options->json, "Report as JSON on standard output");
+  verb.flag("--json", options->json, "Print JSON");
   add_table_options(verb, options->table);
   add_access(verb, options->access);
   add_trust(verb, options->trust);

@@ -20,7 +20,7 @@ using std::chrono::milliseconds;
 
 constexpr Time kProducerTick = milliseconds(2);
 constexpr Time kReaderTick = milliseconds(20);
-/// How far ahead waypoints are sent, and where the curve may have come to rest meanwhile.
+/// The lead of waypoints in motion, and the lead when the curve may have come to rest.
 constexpr Time kLead = milliseconds(200);
 constexpr Time kCatchUp = milliseconds(300);
 constexpr Time kPatience = std::chrono::seconds(30);
@@ -44,7 +44,7 @@ class SoakProducer {
     }
   }
 
-  /// Ends the stream. Returns false if the ring has had no room for it until `end`.
+  /// Ends the stream. Returns false if the ring has no room for that until `end`.
   bool finish(const Clock& clock, Time end) {
     while (producer_.finish({.kind = ConditionKind::halt, .value = {}}) == AppendStatus::full) {
       if (!producer_.wait_for_room(end - clock.now())) return false;
@@ -59,9 +59,9 @@ class SoakProducer {
  private:
   static constexpr std::size_t kRing = 256;
 
-  /// To the first waypoint that may follow what stands.
+  /// Advances to the first waypoint that may follow the appended ones.
   void skip_past(Time now) {
-    // What was put off till later, and is due now, is sent now.
+    // A waypoint that was postponed before and is due now is sent now.
     const bool is_late = producer_.earliest() > producer_.last_time() && next_ < now + kLead / 2;
     const Time earliest =
         producer_.continues() || sent_ > 0
@@ -107,7 +107,7 @@ nlohmann::json run_soak_producers(const std::vector<std::string>& streams, doubl
   }
   std::size_t sent = 0;
   std::size_t refused = 0;
-  // The summary tells what was not solved by then.
+  // The summary counts the items that were not solved by then.
   const Time end = clock.now() + kPatience;
   for (SoakProducer& producer : producers) (void)producer.finish(clock, end);
   for (SoakProducer& producer : producers) {

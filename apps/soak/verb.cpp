@@ -34,27 +34,27 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr std::size_t kMostProducers = 4;  ///< processes
-/// About what a process can open (RLIMIT_NOFILE, two descriptors a stream).
+/// About as many as a process can open (RLIMIT_NOFILE, two descriptors per stream).
 constexpr std::size_t kMostStreams = 10'000;
 constexpr std::size_t kMostReaders = 64;  ///< processes
 constexpr double kMostRate = 1000;
 constexpr Time kBetweenKills = seconds(2);
 constexpr Time kPatience = seconds(60);
 constexpr double kMegabyte = 1e6;
-/// What an allocator may still take after the warm-up, and files that are open for an instant.
+/// Memory that an allocator may still request after the warm-up, and files that are open briefly.
 constexpr std::size_t kMemoryTolerance = 512UL * 1024;
 constexpr std::size_t kDescriptorTolerance = 4;
 
-/// The processes of one role: what the largest of them takes.
+/// The processes of one role, and the largest use of resources among them.
 struct Role {
   const char* name;
   std::deque<std::optional<Child>> processes{};
-  Flatness memory{kMemoryTolerance};    ///< its own; shared pages come as a board fills
-  Flatness mappings{kMemoryTolerance};  ///< those too
+  Flatness memory{kMemoryTolerance};    ///< private; shared pages grow as a board fills
+  Flatness mappings{kMemoryTolerance};  ///< with shared pages
   Flatness descriptors{kDescriptorTolerance};
   ProcessUse now{};
 
-  /// Looks at all of them, at a share of the run.
+  /// Measures all of them at this share of the run.
   void look(double share) {
     now = {};
     for (const auto& child : processes) {
@@ -101,7 +101,7 @@ class Soak {
   }
 
   json run() {
-    sleep_until(start_);  // what comes before is starting up
+    sleep_until(start_);  // before this, the processes start up
     const Time begin = clock_.now();
     const Time end = begin + options_.seconds;
     const Time look = std::clamp<Time>(options_.seconds / 240, milliseconds(50), seconds(10));
@@ -128,7 +128,7 @@ class Soak {
   [[nodiscard]] std::array<Role*, 3> roles() { return {&solver_, &producers_, &readers_}; }
 
   [[nodiscard]] json solve() const {
-    const double kept = 1 + 1.2 * options_.rate;  // the history, the lead and some more
+    const double kept = 1 + 1.2 * options_.rate;  // the history, the lead and a margin
     const auto capacity = std::bit_ceil(static_cast<std::size_t>(2 * kept) + 64);
     return run_solve({.wanted = {streams_.front().substr(0, streams_.front().rfind('.')) + ".*"},
                       .solver = {.capacity = capacity},
@@ -138,7 +138,7 @@ class Soak {
     return run_soak_producers(groups_[group], options_.rate, start_);
   }
 
-  /// One after the other, by SIGKILL; a new one goes on with its streams.
+  /// Kills one producer at a time, in turn, by SIGKILL; a new one resumes its streams.
   void kill_a_producer() {
     const std::size_t group = kills_++ % groups_.size();
     std::optional<Child>& producer = producers_.processes[group];
@@ -146,7 +146,7 @@ class Soak {
     producer.emplace([this, group] { return produce(group); });
   }
 
-  /// What all streams' heads count.
+  /// The sums of the counters in all streams' summaries.
   [[nodiscard]] json counted() const {
     ipc::Head sum;
     ipc::Head head;
@@ -171,8 +171,8 @@ class Soak {
 
   void print_line(Time since) {
     if (lines_++ % 20 == 0) {
-      print_report(fmt::format("{:>7} {:>6} {:>10} {:>8} {:>6} {:>18} {:>18} {:>18}\n", "s",
-                               "kills", "consumed", "refused", "dry", "solver MB, files",
+      print_report(fmt::format("{:>7} {:>6} {:>10} {:>8} {:>7} {:>18} {:>18} {:>18}\n", "s",
+                               "kills", "consumed", "refused", "starved", "solver MB, files",
                                "producer MB, files", "reader MB, files"));
     }
     const auto use = [](const Role& role) {
@@ -181,12 +181,12 @@ class Soak {
     };
     const json sum = counted();
     const auto count = [&](const char* key) { return sum[key].get<ipc::Word>(); };
-    print_report(fmt::format("{:>7.0f} {:>6} {:>10} {:>8} {:>6} {:>18} {:>18} {:>18}\n",
+    print_report(fmt::format("{:>7.0f} {:>6} {:>10} {:>8} {:>7} {:>18} {:>18} {:>18}\n",
                              to_seconds(since), kills_, count("consumed"), count("refused"),
                              count("underruns"), use(solver_), use(producers_), use(readers_)));
   }
 
-  /// Lets everybody end. Returns whether the solver has ended well; adds what the readers say.
+  /// Ends all processes. Returns whether the solver has ended with kOk; adds the readers' results.
   bool end_all(json& seen) {
     for (auto& producer : producers_.processes) producer->stop();
     for (auto& producer : producers_.processes) (void)producer->result();
@@ -198,7 +198,7 @@ class Soak {
     return solver_.processes.front()->result() == kOk;
   }
 
-  /// Lets everybody end and adds up.
+  /// Ends all processes and adds up the counters.
   json finish(double took, double solver_share) {
     json found = {{"streams", streams_.size()},
                   {"seconds", took},
@@ -253,7 +253,7 @@ std::string summary_line(const char* what, const std::string& text) {
   return fmt::format("  {:<26} {}\n", what, text);
 }
 
-/// The processes of a role, and what they use of memory and files.
+/// The processes of a role, and their use of memory and files.
 std::string role_summary(const json& found, const char* name) {
   const json& of = found[name];
   return summary_line(
@@ -264,7 +264,7 @@ std::string role_summary(const json& found, const char* name) {
                   of["descriptors"][1].get<int>(), of["grown"].get<bool>() ? ": GROWN" : ""));
 }
 
-/// What all readers have sampled.
+/// The samples of all readers.
 std::string samples_summary(const json& found) {
   std::uint64_t samples = 0;
   std::uint64_t changed = 0;
@@ -274,7 +274,7 @@ std::string samples_summary(const json& found) {
     changed += count_of(reader, "changed");
     unsound += count_of(reader, "unsound_streams");
   }
-  return summary_line("samples", fmt::format("{}; {} read otherwise later; streams with a step: {}",
+  return summary_line("samples", fmt::format("{}; {} changed later; streams with a step: {}",
                                              samples, changed, unsound));
 }
 
@@ -284,21 +284,21 @@ std::string soak_summary(const json& found) {
   const json& sum = found["counters"];
   return std::string("\n") +
          line("streams",
-              fmt::format("{} for {:.0f} s, {} waypoints a second each; the solver took "
-                          "{:.1f} % of a core",
+              fmt::format("{} for {:.0f} s, {} waypoints per second each; the solver used {:.1f} % "
+                          "of a core",
                           count(found, "streams"), found["seconds"].get<double>(),
                           found["rate"].get<double>(), 100 * found["solver_share"].get<double>())) +
          line("producers killed",
-              fmt::format("{}, and come back", count(found, "producer_kills"))) +
+              fmt::format("{}, each restarted", count(found, "producer_kills"))) +
          line("items",
               fmt::format("{} appended: {} interpolated, {} passed over, {} refused with "
                           "a reason, {} withdrawn, {} controls; streams that lost one: {}",
                           count(found, "appended"), count(sum, "interpolated"),
                           count(sum, "passed_over"), count(sum, "refused"), count(sum, "withdrawn"),
                           count(sum, "controls"), count(found, "lossy_streams"))) +
-         line("ran dry", fmt::format("{} times; deadlines missed {}, committed too late {}",
-                                     count(sum, "underruns"), count(sum, "deadline_misses"),
-                                     count(sum, "late_commits"))) +
+         line("starved",
+              fmt::format("{} times; deadline_misses {}, late_commits {}", count(sum, "underruns"),
+                          count(sum, "deadline_misses"), count(sum, "late_commits"))) +
          samples_summary(found) + role_summary(found, "solver") + role_summary(found, "producers") +
          role_summary(found, "readers") + line("sound", judgement(found));
 }
@@ -319,15 +319,16 @@ namespace {
 
 void add_soak(Command& verb, Action& action) {
   auto options = std::make_shared<SoakOptions>();
-  add_count(verb, "--streams", options->streams, "Streams at once, 1 to 10000 (default 100)",
+  add_count(verb, "--streams", options->streams, "Number of streams, 1 to 10000 (default 100)",
             {1, kMostStreams});
-  add_seconds(verb, "--seconds", options->seconds, "How long, from 1 on (default 60)",
+  add_seconds(verb, "--seconds", options->seconds, "Duration in s, from 1 (default 60)",
               {seconds(1), kLongestTime});
-  add_rate(verb, "--rate", options->rate, "Waypoints a second and stream (default 100)",
-           {1, kMostRate});
+  add_rate(verb, "--rate", options->rate,
+           "Waypoints per second and stream, 1 to 1000 (default 100)", {1, kMostRate});
   add_count(verb, "--readers", options->readers,
-            "Processes that each read all streams, 1 to 64 (default 2)", {1, kMostReaders});
-  verb.flag("--json", options->json, "As JSON, and no table");
+            "Reader processes, each of which reads all streams, 1 to 64 (default 2)",
+            {1, kMostReaders});
+  verb.flag("--json", options->json, "Print JSON, without the table");
   verb.callback([&action, options] {
     action = [options] {
       catch_stop_signals();
@@ -338,8 +339,8 @@ void add_soak(Command& verb, Action& action) {
 }
 
 const Verb soak_verb("soak", 140,
-                     "Run many streams at once for long, kill producers meanwhile, and see that "
-                     "nothing grows and nothing is lost; exits with 1 if something does",
+                     "Run many streams for a long time, kill producers meanwhile, and check that "
+                     "no process grows and no item is lost; exit code 1 if a check fails",
                      add_soak);
 
 }  // namespace

@@ -22,7 +22,7 @@ Reader attach_reader(const std::string& stream, Time wait, const Trust& trust) {
       return Reader(stream, std::min(kSlice, left), trust);
     } catch (const NoSuchStream&) {
       if (stop_requested()) {
-        throw Interrupted(fmt::format("interrupted before stream '{}' was there", stream));
+        throw Interrupted(fmt::format("interrupted before stream '{}' existed", stream));
       }
       if (clock.now() >= end) throw;
     }

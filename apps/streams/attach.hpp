@@ -7,8 +7,8 @@
 
 namespace splinecast::apps {
 
-/// A reader of a stream, which is waited for as long as `wait`. Throws what Reader throws, and
-/// Interrupted when a stop is requested before the stream exists.
+/// Attaches a reader to a stream; waits up to `wait` until the stream exists. Throws what Reader
+/// throws, and Interrupted if a stop is requested first.
 [[nodiscard]] Reader attach_reader(const std::string& stream, Time wait, const Trust& trust = {});
 
 }  // namespace splinecast::apps

@@ -35,7 +35,7 @@ std::string table_of(const ordered_json& json, int indent) {
   return table;
 }
 
-/// What a person asks first, in words.
+/// The time since the last publication, as text.
 std::string age_of(const ipc::StreamInfo& info) {
   if (info.head.revision == 0) return {};
   const double age = to_seconds(MonotonicClock().now() - info.head.committed);
@@ -49,8 +49,8 @@ void add_info(Command& verb, Action& action) {
     Trust trust;
   };
   auto options = std::make_shared<Options>();
-  verb.option("STREAM", options->stream, "Stream to show").required();
-  verb.flag("--json", options->json, "As JSON");
+  verb.option("STREAM", options->stream, "Name of the stream to show").required();
+  verb.flag("--json", options->json, "Print JSON");
   add_trust(verb, options->trust);
   verb.callback([&action, options] {
     action = [options] {
@@ -68,7 +68,7 @@ void add_info(Command& verb, Action& action) {
   });
 }
 
-const Verb info_verb("info", 110, "Show all that is known about one stream", add_info);
+const Verb info_verb("info", 110, "Show the state and the options of one stream", add_info);
 
 }  // namespace
 

@@ -14,25 +14,25 @@
 
 namespace splinecast::apps {
 
-/// Keeps what a process sends to a stream and the segments that come of it, in order to solve them
-/// again at the end. Holds all of both in memory.
+/// Keeps the items that a process sends to a stream and the resulting segments, to solve the items
+/// again at the end and compare. Keeps all of them in memory.
 class StreamLog {
  public:
-  /// Opens the board of the stream with this id, which has been sent nothing yet. Throws as
-  /// OwnBoard does.
+  /// Opens the board of the stream with this id, before anything is sent. Throws as OwnBoard does.
   StreamLog(const std::string& stream, std::uint64_t stream_id, const Trust& trust);
 
-  /// Notes a waypoint that the ring has accepted.
+  /// Records a waypoint that the ring has accepted.
   void sent(const Waypoint& waypoint) { items_.add(ipc::ItemKind::waypoint, waypoint); }
 
-  /// Notes an item that the solver has refused.
+  /// Records an item that the solver has refused.
   void refused(ipc::Word item) noexcept { items_.refuse(item); }
 
-  /// Takes what has settled: to be called before the board loses it. See ipc::SettledSegments.
+  /// Copies the segments that have settled. Call it before the board overwrites them. See
+  /// ipc::SettledSegments.
   void look() { settled_.look(); }
 
-  /// Solves all that was collected again, of a stream that was finished with `end`. See
-  /// ipc::verify.
+  /// Solves the recorded items again and compares the segments. `end` is the condition with which
+  /// the stream was finished. See ipc::verify.
   [[nodiscard]] ipc::Verification verify(const Condition& end);
 
  private:
@@ -41,7 +41,7 @@ class StreamLog {
   ipc::SentItems items_;
 };
 
-/// What a verification found, in words and as JSON.
+/// The result of a verification, as text and as JSON.
 [[nodiscard]] std::string in_words(const ipc::Verification& found);
 [[nodiscard]] nlohmann::ordered_json to_json(const ipc::Verification& found);
 

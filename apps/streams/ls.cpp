@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// A stream for the list; one that cannot be read is listed with the reason.
+/// The entry of a stream in the list; with the reason if the stream cannot be read.
 ordered_json list_entry(const std::string& stream, const Trust& trust) {
   try {
     return to_json(ipc::inspect(stream, trust));
@@ -62,7 +62,7 @@ void add_ls(Command& verb, Action& action) {
     Trust trust;
   };
   auto options = std::make_shared<Options>();
-  verb.flag("--json", options->json, "As JSON");
+  verb.flag("--json", options->json, "Print JSON");
   add_trust(verb, options->trust);
   verb.callback([&action, options] {
     action = [options] { return list_streams(options->json, options->trust); };

@@ -13,7 +13,7 @@ ipc::CheckedRegion<ipc::BoardLayout> open_own_board(const std::string& stream,
                                                     std::uint64_t stream_id, const Trust& trust) {
   auto board = ipc::open_board(stream, false, trust);
   if (board.header.stream_id != stream_id) {
-    throw Failure(fmt::format("stream '{}' has been made anew by another producer", stream));
+    throw Failure(fmt::format("stream '{}' was recreated by another producer", stream));
   }
   return board;
 }
@@ -29,7 +29,7 @@ void remove_board_without_ring(const std::string& stream, const Trust& trust) {
   try {
     remove_stream(stream, trust);
   } catch (const StreamError&) {
-    return;  // what failed before is what is told
+    return;  // only the earlier error is reported
   }
 }
 
@@ -39,7 +39,7 @@ ipc::Head OwnBoard::head() const {
   for (int attempt = 0; attempt < kTries; ++attempt) {
     if (reader_.copy_newest_head(head) || reader_.look().revision == 0) return head;
   }
-  throw Failure("the board has no head of its newest revision");
+  throw Failure("the summary of the newest revision cannot be read from the board");
 }
 
 }  // namespace splinecast::apps

@@ -11,15 +11,16 @@
 
 namespace splinecast::apps {
 
-/// The board of the stream that this process produces, read as any passive reader does.
+/// The board of the stream that this process produces, read as by any passive reader.
 class OwnBoard {
  public:
   /// Opens the board of the stream with this id. Throws NoSuchStream, BadRegion, or Failure if
-  /// another stream stands under the name.
+  /// another stream has this name.
   OwnBoard(const std::string& stream, std::uint64_t stream_id, const Trust& trust);
 
   [[nodiscard]] const ipc::RegionHeader& header() const noexcept { return board_.header; }
-  /// The newest head; that of revision 0 if there is none yet.
+  /// The newest summary; that of revision 0 if nothing is published yet. Throws Failure if it
+  /// cannot be read.
   [[nodiscard]] ipc::Head head() const;
   [[nodiscard]] const ipc::KnotBoardReader& reader() const noexcept { return reader_; }
 
@@ -28,8 +29,8 @@ class OwnBoard {
   ipc::KnotBoardReader reader_;
 };
 
-/// Removes the board that an embedded solver of this process made for a ring that has been
-/// withdrawn. Does nothing where there is a ring, or where the board is somebody else's by now.
+/// Removes the board that an embedded solver of this process made for a ring that has been removed.
+/// Does nothing if there is a ring, or if the board now belongs to another process.
 void remove_board_without_ring(const std::string& stream, const Trust& trust);
 
 }  // namespace splinecast::apps

@@ -5,7 +5,7 @@
 
 namespace splinecast::apps {
 
-/// Removes what a verb leaves of its streams in shared memory, however it ends.
+/// Removes the streams of a verb from shared memory at the end of the verb, also after an error.
 class StreamRemover {
  public:
   explicit StreamRemover(std::vector<std::string> streams);

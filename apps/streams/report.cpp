@@ -34,10 +34,10 @@ ordered_json kinds_json(const ipc::RegionHeader& header) {
   return kinds;
 }
 
-/// What both headers say; the producer's if it stands.
+/// The fields that both headers have; from the producer's header if it exists.
 ordered_json stream_json(const ipc::RegionHeader& header) {
   return {
-      {"stream_id", std::to_string(header.stream_id)},  // 64 bits: more than a number of JSON has
+      {"stream_id", std::to_string(header.stream_id)},  // 64 bits do not fit into a JSON number
       {"dimensions", header.dimensions},
       {"names", ipc::dimension_names(header)},
       {"kinds", kinds_json(header)},
@@ -96,27 +96,27 @@ ordered_json limits_json(const ipc::RegionHeader& header) {
       {"velocity", list(limits.velocity)},
       {"acceleration", list(limits.acceleration)},
       {"jerk", list(limits.jerk)},
-      {"lower", limits.lower},  // what is infinite becomes null
+      {"lower", limits.lower},  // infinite values become null
       {"upper", limits.upper},
       {"beyond", ipc::beyond(header) == Beyond::refuse ? "refuse" : "report"},
   };
 }
 
-/// What entries keep on a live stream where no limit is given.
+/// The limits that entries on a live stream keep if none are given.
 ordered_json shown_json(const ipc::StreamInfo& info) {
   if (!info.shown) return nullptr;
   return {{"velocity", info.shown->velocity}, {"acceleration", info.shown->acceleration}};
 }
 
-/// Time from now to the newest knot; null where that means nothing.
+/// Time from now to the newest knot; null for a recorded stream, and without a knot.
 ordered_json depth(const ipc::StreamInfo& info) {
   if (clock_name(*info.spline) == "recorded" || info.head.newest == 0) return nullptr;
   const Time left = info.head.newest_knot - MonotonicClock().now();
   return std::max(left, Time::zero()).count();
 }
 
-/// How long the solver's steps took, from reading the clock to the commit: pairs of the least time
-/// in ns and how many took so long, up to twice that; those that none took are left out.
+/// Durations of the solver's steps, from reading the clock to the commit: pairs of a time t in ns
+/// and the number of steps that took t to 2t, without pairs whose number is 0.
 ordered_json step_times_json(const ipc::StreamInfo& info) {
   ordered_json list = ordered_json::array();
   for (std::size_t i = 0; i < info.step_times.size(); ++i) {
@@ -125,7 +125,7 @@ ordered_json step_times_json(const ipc::StreamInfo& info) {
   return list;
 }
 
-/// How many waypoints the solver has refused for each reason.
+/// The number of items that the solver has refused, by reason.
 ordered_json refused_json(const ipc::Head& head) {
   ordered_json refused = ordered_json::object();
   for (std::size_t i = 1; i < kRefusals; ++i) {
@@ -134,7 +134,7 @@ ordered_json refused_json(const ipc::Head& head) {
   return refused;
 }
 
-/// Who solves the stream, and how.
+/// The solver of the stream, and its options.
 ordered_json solving_json(const ipc::StreamInfo& info) {
   const ipc::RegionHeader& header = *info.spline;
   return {
@@ -154,7 +154,7 @@ ordered_json solving_json(const ipc::StreamInfo& info) {
       {"shown", shown_json(info)},
       {"freeze_ahead_ns", header.freeze_ahead},
       {"history_ns", header.history},
-      {"min_splice_ns", header.min_splice},
+      {"min_entry_ns", header.min_entry},
   };
 }
 

@@ -7,17 +7,16 @@
 
 namespace splinecast::apps {
 
-/// A stream as `info --json` and `ls --json` give it; keys in the order they are written.
+/// A stream as in `info --json` and `ls --json`; keys in their order of output.
 [[nodiscard]] nlohmann::ordered_json to_json(const ipc::StreamInfo& info);
 
 /// JSON as text; bytes of a header that are not UTF-8 are replaced.
 [[nodiscard]] std::string pretty(const nlohmann::ordered_json& json);
 
-/// One word for where a stream is in its life: `waiting`, `running`, `finished`, `retired` …
+/// The state of a stream as text: `waiting for a producer`, `running`, `finished` …
 [[nodiscard]] std::string state_of(const ipc::StreamInfo& info);
 
-/// What a summary says behind the number of waypoints that are interpolated: `, 12 passed over`, or
-/// nothing for 0.
+/// The text after the number of interpolated waypoints: `, 12 passed over`; empty for 0.
 [[nodiscard]] std::string passed_over_in_words(ipc::Word count);
 
 }  // namespace splinecast::apps

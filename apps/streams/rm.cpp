@@ -16,13 +16,13 @@ void add_rm(Command& verb, Action& action) {
     Trust trust;
   };
   auto options = std::make_shared<Options>();
-  verb.option("STREAM", options->streams, "Streams to remove").required();
+  verb.option("STREAM", options->streams, "Names of the streams to remove").required();
   add_trust(verb, options->trust);
   verb.callback([&action, options] {
     action = [options] {
       int code = kOk;
       for (const std::string& stream : options->streams) {
-        // What hinders one does not keep the others.
+        // Continues after a failure.
         code = std::max(code, run_guarded([&] {
                           remove_stream(stream, options->trust);
                           return kOk;

@@ -27,7 +27,7 @@ std::vector<std::string> names_with_units(const ipc::RegionHeader& header) {
   return names;
 }
 
-/// Takes back the rows that a replacement from time t withdraws.
+/// Removes the rows that a replacement from time t withdraws.
 void withdraw_from(WaypointTable& table, Time t) {
   while (!table.times.empty() && table.times.back() > t) {
     table.times.pop_back();
@@ -40,7 +40,7 @@ void take_item(const ipc::RingItem& item, ipc::Word number, WaypointTable& table
   if (item.kind == ipc::ItemKind::replace) withdraw_from(table, item.time);
   if (item.kind != ipc::ItemKind::waypoint) return;
   const Waypoint waypoint = item.waypoint();
-  // A producer writes no others, but the bytes of a region can be anything.
+  // Producers write only valid items, but a region can hold any bytes.
   const bool follows = table.times.empty() || waypoint.time > table.times.back();
   if (!follows || !is_time_in_range(waypoint.time) || !ipc::is_finite(waypoint)) return;
   table.times.push_back(waypoint.time);
@@ -73,18 +73,19 @@ std::string depth_warning(const ipc::StreamInfo& info, const Trust& trust) {
   try {
     table = read_stream_rows(info.stream, trust);
   } catch (const StreamError&) {
-    return {};  // it has ended meanwhile
+    return {};  // the stream has been removed meanwhile
   }
   if (table.size() < 2) return {};
   const Time interval = measure_intervals(table.times).median;
   const Time needed =
       depth_needed(interval, {.settle = info.spline->settle, .freeze_ahead = live->freeze_ahead});
-  // Before a waypoint is taken the depth is an interval less; half of one is left for jitter.
+  // Just before a waypoint is consumed, the depth is one interval less. Half an interval is left
+  // for jitter.
   const Time usual = needed - interval;
   if (info.head.low_water >= usual - interval / 2) return {};
   return fmt::format(
-      "least depth {:.6g} ms: K = {} needs {:.6g} ms with a waypoint each {:.6g} ms; give more "
-      "lead",
+      "least depth {:.6g} ms: settle lag K = {} needs {:.6g} ms with one waypoint every {:.6g} ms; "
+      "increase the lead",
       to_seconds(info.head.low_water) * 1e3, info.spline->settle, to_seconds(usual) * 1e3,
       to_seconds(interval) * 1e3);
 }

@@ -33,14 +33,14 @@ struct SampleOptions {
   Trust trust;
 };
 
-/// Samples one stream to a file, attaching again when it is made anew.
+/// Samples one stream to a file. Attaches again if the stream is recreated.
 class Sampling {
  public:
   Sampling(const SampleOptions& options, std::vector<Time> times)
       : options_(options),
         times_(std::move(times)),
         reader_(attach_reader(options.stream, options.wait, options.trust)),
-        // Samples at a rate can be followed in the file; those of --at are written as a whole.
+        // With --rate others can follow the file while it grows.
         output_(options.output, options.at.empty() ? Writing::growing : Writing::whole),
         state_(reader_.dimensions()),
         none_(reader_.dimensions()),
@@ -56,7 +56,7 @@ class Sampling {
   }
 
  private:
-  /// Returns false if a stop is requested before that, as those it calls do.
+  /// Returns false if a stop is requested meanwhile, as the functions that it calls do.
   bool write_all() {
     if (!options_.at.empty()) {
       return std::ranges::all_of(times_, [this](Time t) { return write(t); });
@@ -79,7 +79,7 @@ class Sampling {
     const Time start = clock_.now();
     for (std::size_t k = 0; k < options_.count; ++k) {
       const Time t = start + period_times(k);
-      if (clock_.now() < t) output_.flush();  // whoever reads it has each line before the next
+      if (clock_.now() < t) output_.flush();  // others can read each line before the next one
       if (!sleep_until(t) || !write(t)) return false;
     }
     return true;
@@ -114,9 +114,8 @@ class Sampling {
     return true;
   }
 
-  /// A recorded stream is sampled where it is final, as long as it goes on: what is not settled yet
-  /// is waited for, until nothing new has come for --wait. Nothing if a stop is requested
-  /// meanwhile.
+  /// Samples at t. On a recorded stream, waits until the sample is final, or until nothing new has
+  /// come for --wait. Returns nothing if a stop is requested meanwhile.
   std::optional<SampleStatus> sample(Time t) {
     Time end = deadline(clock_, options_.wait);
     for (;;) {
@@ -137,7 +136,7 @@ class Sampling {
         end = deadline(clock_, options_.wait);
       } else if (clock_.now() >= end) {
         patient_ = false;
-        say(fmt::format("stream '{}': nothing new for {} s; from {} ns on samples are not settled",
+        say(fmt::format("stream '{}': nothing new for {} s; samples from {} ns on are not settled",
                         options_.stream, to_seconds(options_.wait), t.count()));
       }
     }
@@ -156,12 +155,12 @@ class Sampling {
     const auto dimensions = ipc::dimensions_of(ipc::Internals::header(reader_));
     reader_ = attach_reader(options_.stream, options_.wait, options_.trust);
     if (reader_.dimensions() != dimensions.size()) {
-      throw Failure(fmt::format("stream '{}' was made anew with {} dimensions, not {}",
+      throw Failure(fmt::format("stream '{}' was recreated with {} dimensions, not {}",
                                 options_.stream, reader_.dimensions(), dimensions.size()));
     }
     if (ipc::dimensions_of(ipc::Internals::header(reader_)) == dimensions) return;
     throw Failure(
-        fmt::format("stream '{}' was made anew with other dimension kinds", options_.stream));
+        fmt::format("stream '{}' was recreated with other dimension kinds", options_.stream));
   }
 
   const SampleOptions& options_;
@@ -172,7 +171,7 @@ class Sampling {
   State state_;
   State none_;
   SampleWriter writer_;
-  bool patient_ = true;  ///< whether what is not settled is still waited for
+  bool patient_ = true;  ///< whether to wait for samples that are not settled
 };
 
 /// The last sample's time must be in range.
@@ -181,13 +180,13 @@ void require_span(const SampleOptions& options) {
   const double seconds = static_cast<double>(options.count - 1) / options.rate;
   const double most = to_seconds(kLongestTime);
   if (seconds <= most) return;
-  throw UsageError("--count", fmt::format("{} samples at {} Hz take {} s; the most is {} s",
+  throw UsageError("--count", fmt::format("{} samples at {} Hz take {} s; the maximum is {} s",
                                           options.count, options.rate, seconds, most));
 }
 
 int run_sample(const SampleOptions& options) {
   require_separate(std::array{options.output}, std::array{options.at});
-  // Before the output is opened; a signal may end the process meanwhile, wherever it waits.
+  // Read the times before the output is opened: here a signal still ends the process at once.
   auto times = options.at.empty() ? std::vector<Time>{} : read_times(options.at, options.time_unit);
   catch_stop_signals();
   return Sampling(options, std::move(times)).run();
@@ -195,22 +194,24 @@ int run_sample(const SampleOptions& options) {
 
 void add_sample(Command& verb, Action& action) {
   auto options = std::make_shared<SampleOptions>();
-  verb.option("STREAM", options->stream, "Stream to read").required();
+  verb.option("STREAM", options->stream, "Name of the stream to read").required();
   const Argument at =
-      verb.option("--at", options->at, "File with a time column: where to sample").type("FILE");
+      verb.option("--at", options->at, "File with a time column: times at which to sample")
+          .type("FILE");
   Argument rate = verb.option(
       "--rate",
       [options](const std::string& text) { options->rate = number_within("--rate", text); },
-      "Samples a second");
+      "Sampling rate in Hz, 1e-6 to 1e9; needs --count");
   rate.type("HZ");
-  Argument count = add_count(verb, "--count", options->count, "Number of samples");
+  Argument count =
+      add_count(verb, "--count", options->count, "Number of samples, from 1; needs --rate");
   rate.needs(count).excludes(at);
   count.needs(rate);
-  verb.option("-o,--output", options->output, "File to write (default: standard output)")
-      .type("OUT");
-  add_seconds(verb, "--wait", options->wait,
-              "Wait this long for the stream, and for what a recorded one has yet to settle "
-              "(default 10)");
+  verb.option("-o,--output", options->output, "Output file (default: standard output)").type("OUT");
+  add_seconds(
+      verb, "--wait", options->wait,
+      "Time in s to wait for the stream and, on a recorded stream, for new settled samples, "
+      "from 0 (default 10)");
   add_time_unit(verb, options->time_unit);
   add_trust(verb, options->trust);
   verb.callback([&action, options, at, rate] {
@@ -222,7 +223,7 @@ void add_sample(Command& verb, Action& action) {
   });
 }
 
-const Verb sample_verb("sample", 40, "Read a stream's curve and write it as CSV", add_sample);
+const Verb sample_verb("sample", 40, "Sample the curve of a stream and write CSV", add_sample);
 
 }  // namespace
 

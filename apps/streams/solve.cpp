@@ -27,12 +27,12 @@
 namespace splinecast::apps {
 namespace {
 
-/// Longest sleep on one stream; a signal that comes just before a sleep waits this long.
+/// Longest sleep on one stream: the delay of a signal that arrives just before a sleep.
 constexpr Time kLongestWait = std::chrono::milliseconds(50);
 
 constexpr TimeRange kSweeps{Time(1), std::chrono::seconds(1)};
 
-/// Tells what becomes of each stream.
+/// Prints messages about the state of each stream.
 class Announcer {
  public:
   Announcer(const SolveOptions& options, bool is_one_of_many)
@@ -57,7 +57,7 @@ class Announcer {
     }
   }
 
-  /// Whether a stream that should be solved is not.
+  /// Whether a requested stream is not solved.
   [[nodiscard]] bool has_lost() const { return !lost_.empty(); }
 
  private:
@@ -74,18 +74,18 @@ class Announcer {
                            passed_over_in_words(ipc::Internals::head(*solver).passed_over),
                            ipc::Internals::head(*solver).refused);
       case ipc::SweepNews::elsewhere:
-        return "left to the process that solves it";
+        return "solved by another process";
       case ipc::SweepNews::no_descriptors:
         return fmt::format(
-            "left out: RLIMIT_NOFILE allows {} file descriptors, a stream takes {} "
+            "left out: RLIMIT_NOFILE allows {} file descriptors, a stream needs {} "
             "(ulimit -Hn)",
             descriptor_limit(), ipc::StreamSweep::kDescriptorsPerStream);
       case ipc::SweepNews::refused:
-        return fmt::format("{}; more for this reason are counted only", why);
+        return fmt::format("{}; further ones for this reason are only counted", why);
       case ipc::SweepNews::beyond_limits:
-        return fmt::format("beyond a limit, {}; more are counted only", why);
+        return fmt::format("limit exceeded, {}; further ones are only counted", why);
       case ipc::SweepNews::postponed:
-        return fmt::format("put off, and tried again from time to time: {}", why);
+        return fmt::format("postponed, will be retried: {}", why);
       case ipc::SweepNews::given_up:
         return fmt::format("given up: {}", why);
       case ipc::SweepNews::gone:
@@ -94,7 +94,7 @@ class Announcer {
     return {};
   }
 
-  /// Names that matched nothing, and dimensions without a limit.
+  /// Reports limits that match no dimension, and dimensions without a limit.
   void tell_limits(const std::string& stream, const Solver& solver) const {
     const ipc::RegionHeader& header = ipc::Internals::board(solver);
     const std::vector<std::string> names = ipc::dimension_names(header);
@@ -110,7 +110,7 @@ class Announcer {
   std::set<std::string> lost_;
 };
 
-/// Solves one stream; sleeps on its ring while there is nothing to do.
+/// Solves one stream. Sleeps on its ring while it has no work to do.
 int solve_one(const SolveOptions& options) {
   const MonotonicClock clock;
   Announcer announcer(options, false);
@@ -146,7 +146,7 @@ int solve_one(const SolveOptions& options) {
   return kOk;
 }
 
-/// Solves many streams; looks at them from time to time.
+/// Solves many streams. Polls them in sweeps.
 int solve_many(const SolveOptions& options) {
   const MonotonicClock clock;
   raise_descriptor_limit();
@@ -174,32 +174,35 @@ int run_solve(const SolveOptions& options) {
 
 namespace {
 
-/// What concerns live streams.
+/// Adds the options of live streams.
 void add_live_options(Command& verb, SolverOptions& options) {
   verb.option(
           "--freeze-ahead",
           [&options](const std::string& text) {
             options.freeze_ahead = time_within("--freeze-ahead", text, TimeUnit::milliseconds);
           },
-          "Leave alone what lies this long ahead of now (default 5)")
+          "Time ahead of now, in ms, up to which the curve is settled: above 0, at most 60000 "
+          "(default 5)")
       .type("MS");
   add_seconds(verb, "--history", options.history,
-              "Keep what ended less than this ago; then consume no more (default 1)");
+              "Length of the past curve that is kept, in s, 0 to 86400 (default 1); no waypoint is "
+              "consumed that would overwrite it");
 }
 
-/// What concerns a process that solves several streams.
+/// Adds the option of a process that solves several streams.
 void add_sweep(Command& verb, SolveOptions& options) {
   verb.option(
           "--sweep",
           [&options](const std::string& text) {
             options.sweep = time_within("--sweep", text, TimeUnit::milliseconds, kSweeps);
           },
-          "Pause between looks at several streams (default 1, at most 1000); 20 if that is longer "
-          "for those on which nothing has happened for a second")
+          "Pause between sweeps over several streams, in ms, 1e-6 to 1000 (default 1); idle "
+          "streams, with no activity for 1 s, are polled every 20 ms, or every pause if that is "
+          "longer")
       .type("MS");
 }
 
-/// Reads the file of limits, and gives the solver all of them.
+/// Reads the file of limits and passes all limits to the solver.
 void take_limits(SolveOptions& options) {
   if (options.limits.given != MotionLimits{}) options.solver.limits = options.limits.given;
   if (options.limits.file.empty()) return;
@@ -210,26 +213,29 @@ void take_limits(SolveOptions& options) {
 
 void add_solve(Command& verb, Action& action) {
   auto options = std::make_shared<SolveOptions>();
-  verb.option("STREAM", options->wanted,
-              "Streams to solve, in one process: names, and patterns such as 'arm.*' for all "
-              "that come and go")
+  verb.option(
+          "STREAM", options->wanted,
+          "Streams to solve in one process: names, and patterns such as 'arm.*', which also match "
+          "streams that appear later")
       .required();
   add_solver_curve(verb, options->solver);
-  add_seconds(
-      verb, "--stop-time", options->solver.stop_time,
-      "Time in which a stream that dries up comes to rest (default 0.25); longer where a limit "
-      "of acceleration or jerk asks for it");
+  add_seconds(verb, "--stop-time", options->solver.stop_time,
+              "Duration in s of the stop segment, in which a starved stream comes to rest, above 0 "
+              "(default 0.25); longer if a limit of acceleration or jerk requires it");
   add_count(verb, "--capacity", options->solver.capacity,
-            "Segments that the board holds (default 4096; rounded up to a power of two)");
+            "Number of segments on the board, 2 (K + 6) + 2 to 4194304, K being the settle lag; "
+            "rounded up to a power of two (default 4096)");
   add_live_options(verb, options->solver);
-  add_limit_options(verb, options->limits,
-                    ". Entries and stops keep it; the spline through the waypoints is not changed "
-                    "by it: see --beyond");
+  add_limit_options(
+      verb, options->limits,
+      ". Applies to entries and stop segments, not to the spline through the waypoints: "
+      "see --beyond");
   add_beyond(verb, options->solver.beyond);
   verb.flag("!--no-wake", options->solver.wake,
-            "Wake no waiting readers: for hosts where every reader polls");
+            "Do not wake waiting readers: for hosts where every reader polls");
   add_sweep(verb, *options);
-  verb.flag("--quiet", options->quiet, "Say nothing of what becomes of the streams");
+  verb.flag("--quiet", options->quiet,
+            "Print no messages about streams, except those that cannot be solved");
   add_access(verb, options->solver.access);
   add_trust(verb, options->solver.trust);
   verb.callback([&action, options] {
@@ -245,7 +251,7 @@ void add_solve(Command& verb, Action& action) {
   });
 }
 
-const Verb solve_verb("solve", 20, "Turn the waypoints of streams into splines", add_solve);
+const Verb solve_verb("solve", 20, "Compute splines from the waypoints of streams", add_solve);
 
 }  // namespace
 

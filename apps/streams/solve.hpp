@@ -8,12 +8,12 @@
 
 namespace splinecast::apps {
 
-/// What `solve` is told.
+/// Options of `solve`.
 struct SolveOptions {
-  std::vector<std::string> wanted{};  ///< streams, and patterns of their names
+  std::vector<std::string> wanted{};  ///< streams, and patterns of stream names
   SolverOptions solver{};
-  LimitOptions limits{};  ///< the given ones are told of; `solver` has them too
-  Time sweep{1'000'000};  ///< pause between looks at several streams
+  LimitOptions limits{};  ///< the requested ones, for messages; `solver` has them too
+  Time sweep{1'000'000};  ///< pause between sweeps over several streams
   bool quiet = false;
 };
 

@@ -15,7 +15,7 @@
 namespace splinecast::apps {
 namespace {
 
-/// What is in the brackets of a column named `<word>[…]`.
+/// The text in the brackets of a column named `<word>[…]`.
 std::optional<std::string_view> in_brackets(std::string_view name, std::string_view word) {
   if (!name.starts_with(word) || !name.ends_with(']')) return std::nullopt;
   name.remove_prefix(word.size());
@@ -23,7 +23,7 @@ std::optional<std::string_view> in_brackets(std::string_view name, std::string_v
   return name.substr(1, name.size() - 2);
 }
 
-/// i of a column named `<word>[i]`.
+/// The index i of a column named `<word>[i]`.
 std::optional<std::size_t> index_of(std::string_view name, std::string_view word) {
   const auto text = in_brackets(name, word);
   const bool has_digits =
@@ -31,7 +31,7 @@ std::optional<std::size_t> index_of(std::string_view name, std::string_view word
   return has_digits ? parse_count(*text) : std::nullopt;
 }
 
-/// Whether a column named `<word>[…]` is meant to have an index there, but has none: `v[-1]`.
+/// Whether a column named `<word>[…]` has an invalid index, such as `v[-1]`.
 bool has_bad_index(std::string_view name, std::string_view word) {
   const auto text = in_brackets(name, word);
   if (!text || index_of(name, word)) return false;
@@ -46,7 +46,7 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-/// Whether a name could also be that of a time or of a derivative: `vx`, `acc_y`, `time_sync`.
+/// Whether a name may also mean a time or a derivative: `vx`, `acc_y`, `time_sync`.
 bool is_ambiguous(std::string_view name) {
   constexpr std::array<std::string_view, 12> kWords{"vel",   "speed", "acc",   "jerk",
                                                     "omega", "alpha", "gyro",  "dot",
@@ -93,8 +93,7 @@ void ColumnRoles::find_values(const std::vector<std::string>& selected, Lines re
     for (const std::size_t c : all) add_position(c);
   }
   if (roles_.positions.empty()) {
-    throw InputError(
-        fmt::format("{}: there is no position column besides the time ({})", file_, all_names()));
+    throw InputError(fmt::format("{}: there is no position column among {}", file_, all_names()));
   }
   roles_.velocities = derivative_columns("v", all);
   roles_.accelerations = derivative_columns("a", all);
@@ -106,8 +105,8 @@ void ColumnRoles::find_values(const std::vector<std::string>& selected, Lines re
 void ColumnRoles::add_position(std::size_t c) {
   if (roles_.positions.size() == kMaxDimensions) {
     throw InputError(fmt::format(
-        "{}: column {}, '{}', would be the position of dimension {}; at most {} dimensions are "
-        "possible: select some with --columns",
+        "{}: column {}, '{}', would be the position of dimension {}; the maximum is {}: select "
+        "positions with --columns",
         file_, c + 1, format_.names[c], kMaxDimensions + 1, kMaxDimensions));
   }
   roles_.positions.push_back(c);
@@ -118,7 +117,7 @@ std::optional<std::size_t> ColumnRoles::find(const std::string& name) const {
   return found == index_.end() ? std::nullopt : std::optional(found->second);
 }
 
-/// A column by name, or by the name that a comment gives it.
+/// A column by name, or by its alias from a comment.
 std::size_t ColumnRoles::selected_column(const std::string& wanted) const {
   auto c = find(wanted);
   if (const auto alias = aliases_.find(wanted); !c && alias != aliases_.end()) c = alias->second;
@@ -134,8 +133,8 @@ std::size_t ColumnRoles::selected_column(const std::string& wanted) const {
   return *c;
 }
 
-/// Columns that hold positions if none are selected: numeric ones that are nothing else. A few too
-/// many are enough to tell that there are too many.
+/// The columns that hold positions if none are selected: numeric ones without another role. Stops
+/// after the first one too many.
 ColumnRoles::Columns ColumnRoles::position_columns(bool is_selected, const Lines& rest) const {
   const std::vector<bool> is_numeric = numeric_columns(rest);
   Columns columns;
@@ -156,8 +155,8 @@ ColumnRoles::Columns ColumnRoles::position_columns(bool is_selected, const Lines
   return columns;
 }
 
-/// Whether each column holds numbers: its first cell does, or, if that is bad, any other. (A bad
-/// cell must not make a dimension vanish.)
+/// Whether each column holds numbers: one of its cells does. (A bad first cell must not remove a
+/// dimension.)
 std::vector<bool> ColumnRoles::numeric_columns(Lines rest) const {
   std::vector<bool> is_numeric(format_.names.size(), format_.first_row.number == 0);
   Columns open;
@@ -175,25 +174,25 @@ std::vector<bool> ColumnRoles::numeric_columns(Lines rest) const {
   return is_numeric;
 }
 
-/// Throws for a column that would be a position by default, though its name says something else.
+/// Throws if the name of a default position column is that of a time or a derivative.
 void ColumnRoles::require_usable(std::size_t c) const {
   const std::string& name = format_.names[c];
   if (unit_of_time_column(name)) {
     throw InputError(fmt::format(
-        "{}: column {}, '{}', is a second time column besides '{}': select the positions with "
+        "{}: column {}, '{}', is a second time column after '{}': select the positions with "
         "--columns",
         file_, c + 1, name, format_.names[roles_.time]));
   }
   for (const std::string_view letter : {"v", "a"}) {
     if (!has_bad_index(name, letter)) continue;
-    throw InputError(fmt::format("{}: column {}, '{}', is no {}: {}[i] has an index i of 0 to {}",
-                                 file_, c + 1, name, letter == "v" ? "velocity" : "acceleration",
-                                 letter, kMaxDimensions - 1));
+    throw InputError(fmt::format(
+        "{}: column {}, '{}', is not a valid {}: {}[i] has an index i from 0 to {}", file_, c + 1,
+        name, letter == "v" ? "velocity" : "acceleration", letter, kMaxDimensions - 1));
   }
 }
 
-/// j[i] beside p[i], v[i] and a[i], omega[i] and alpha[i] behind j[0]: samples that this program
-/// wrote, whose jerk and angular motion are no positions.
+/// Whether a column is the jerk or the angular motion of samples that this program wrote, and thus
+/// not a position: j[i] if p[i], v[i] and a[i] exist, omega[i] and alpha[i] if p[0] to j[0] exist.
 bool ColumnRoles::is_sampled(const std::string& name) const {
   const bool is_angular = index_of(name, "omega") || index_of(name, "alpha");
   const auto i = is_angular ? 0 : index_of(name, "j");
@@ -203,8 +202,8 @@ bool ColumnRoles::is_sampled(const std::string& name) const {
   });
 }
 
-/// Columns of a given derivative, one per selected position, or none at all. `<letter>[i]` goes
-/// with the column p[i] if there is one, else with the file's i-th position column.
+/// The columns of a derivative, one per selected position, or none. `<letter>[i]` belongs to the
+/// column p[i] if it exists, else to the i-th position column of the file.
 ColumnRoles::Columns ColumnRoles::derivative_columns(std::string_view letter,
                                                      const Columns& all) const {
   Columns columns;
@@ -217,13 +216,13 @@ ColumnRoles::Columns ColumnRoles::derivative_columns(std::string_view letter,
     }
   }
   if (!columns.empty() && columns.size() != roles_.positions.size()) {
-    throw InputError(fmt::format("{}: {} columns {}[i] for {} positions; one each, or none", file_,
-                                 columns.size(), letter, roles_.positions.size()));
+    throw InputError(fmt::format("{}: {} columns {}[i] for {} positions; give one each, or none",
+                                 file_, columns.size(), letter, roles_.positions.size()));
   }
   return columns;
 }
 
-/// Throws for a velocity or an acceleration that goes with none of the positions.
+/// Throws for a velocity or an acceleration that belongs to none of the positions.
 void ColumnRoles::require_no_unused_derivative() const {
   for (std::size_t c = 0; c < format_.names.size(); ++c) {
     const std::string& name = format_.names[c];
@@ -231,7 +230,7 @@ void ColumnRoles::require_no_unused_derivative() const {
          {std::pair("v", &roles_.velocities), std::pair("a", &roles_.accelerations)}) {
       if (c == roles_.time || !index_of(name, letter)) continue;
       if (std::ranges::find(*used, c) != used->end()) continue;
-      throw InputError(fmt::format("{}: column {}, '{}', goes with none of the {} positions ({})",
+      throw InputError(fmt::format("{}: column {}, '{}', belongs to none of the {} positions ({})",
                                    file_, c + 1, name, roles_.positions.size(),
                                    names_of(roles_.positions)));
     }
@@ -257,7 +256,7 @@ std::string ColumnRoles::names_of(const Columns& columns) const {
   return text.empty() ? "none" : text;
 }
 
-/// All columns' names, or the first of very many.
+/// The names of all columns; of more than 100 columns, the first ones.
 std::string ColumnRoles::all_names() const {
   constexpr std::size_t kMost = 100;
   Columns columns;

@@ -12,28 +12,28 @@
 
 namespace splinecast::apps {
 
-/// Which field of a row is what.
+/// The roles of the fields of a row.
 struct Roles {
   std::size_t time = 0;
   TimeUnit unit = TimeUnit::seconds;
   std::vector<std::size_t> positions{};
   std::vector<std::size_t> velocities{};     ///< one per position, or none
-  std::vector<std::size_t> accelerations{};  ///< likewise
+  std::vector<std::size_t> accelerations{};  ///< one per position, or none
 };
 
-/// Finds out by their names what the columns of a table are. O(n log n) for n columns, besides one
-/// look at each field up to the first row in which all columns have numbers.
+/// Determines the roles of a table's columns from their names. O(n log n) for n columns, plus one
+/// read of each field until every column has had a number.
 class ColumnRoles {
  public:
   /// Finds the time column. `file` is for messages. Throws InputError if there is none, or if two
-  /// columns have one name.
+  /// columns have the same name.
   ColumnRoles(std::string file, const TableFormat& format, std::optional<TimeUnit> unit);
 
-  /// Finds the columns of positions and given derivatives. `selected` names the positions in their
-  /// order; if it is empty, they are all numeric columns that are nothing else, and a message says
-  /// which columns became what if a name leaves that open. `rest` is behind the first row. Throws
-  /// InputError, naming the column, for one that looks like a time or a derivative but cannot be
-  /// used, and for more than 64 positions.
+  /// Finds the columns of positions and given derivatives. `selected` names the positions in order.
+  /// If it is empty, all numeric columns without another role are positions, and a message lists
+  /// the roles if a name is ambiguous. `rest` begins after the first row. Throws InputError with
+  /// the column for one that looks like a time or a derivative but cannot be used, and for more
+  /// than 64 positions.
   void find_values(const std::vector<std::string>& selected, Lines rest);
 
   [[nodiscard]] const Roles& roles() const { return roles_; }
@@ -57,7 +57,7 @@ class ColumnRoles {
   std::string file_;
   const TableFormat& format_;
   std::map<std::string, std::size_t> index_;    ///< by name
-  std::map<std::string, std::size_t> aliases_;  ///< by the name that a comment gives
+  std::map<std::string, std::size_t> aliases_;  ///< by the name in a comment
   Roles roles_;
 };
 

@@ -7,8 +7,8 @@
 #include "apps/tables/format.hpp"
 #include "apps/tables/time_column.hpp"
 
-/// CSV with a header: the first line, or the last comment before the first row that names a time
-/// column.
+/// CSV with a header: the first line, or else the last comment before the first row that contains
+/// the name of a time column.
 namespace splinecast::apps {
 namespace {
 

@@ -10,7 +10,7 @@
 namespace splinecast::apps {
 namespace {
 
-/// The list's first form. A constant-initialised pointer is there before any form is made.
+/// The first format of the list. Constant-initialised: valid before any format is constructed.
 constinit const InputFormat* first_format = nullptr;
 
 TableBeginning beginning_of(const TextFile& file, Lines& lines) {
@@ -38,7 +38,7 @@ TableFormat InputFormat::read_beginning(const TextFile& file, Lines& lines) {
     const bool is_before = found == nullptr || format->place_ < found->place_;
     if (is_before && format->fits_(beginning)) found = format;
   }
-  return found->read_(beginning, lines);  // CSV takes whatever is left
+  return found->read_(beginning, lines);  // never null: CSV accepts every file
 }
 
 std::vector<std::string> column_names(std::string_view line, Split split) {

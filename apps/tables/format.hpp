@@ -7,10 +7,10 @@
 #include "apps/files/lines.hpp"
 #include "apps/files/text_file.hpp"
 
-/// The formats that tables of waypoints and times come in.
+/// The file formats of tables of waypoints and times.
 namespace splinecast::apps {
 
-/// What a file's beginning says about its rows.
+/// The format of the rows, from the beginning of a file.
 struct TableFormat {
   Split split = split_at_commas;     ///< how a row is split into fields
   std::vector<std::string> names;    ///< of the columns
@@ -21,26 +21,27 @@ struct TableFormat {
 /// A file up to its first line that is neither blank nor a comment.
 struct TableBeginning {
   const TextFile& file;
-  std::vector<std::string_view> comments;  ///< without `#`, in their order
+  std::vector<std::string_view> comments;  ///< without `#`, in order
   Line first;                              ///< that line
 };
 
-/// A format of tables. A constant of this type enters itself into the program's list before `main`
-/// begins, so that a format is one file: nothing else names it. Lives as long as the program.
+/// A table format. A constant of this type registers itself in the program's list before `main`
+/// starts, so that a format is one source file, which no other file mentions. It must exist as long
+/// as the program runs.
 class InputFormat {
  public:
-  /// Whether a file that begins so is of this format.
+  /// Whether a file with this beginning has this format.
   using Fits = bool (*)(const TableBeginning& beginning);
-  /// Finds out what the rows are. `lines` is behind the first line, and then behind the first row.
-  /// Throws InputError naming file and line.
+  /// Determines the format of the rows. `lines` is after the first line, and on return after the
+  /// first row. Throws InputError with file and line.
   using Read = TableFormat (*)(const TableBeginning& beginning, Lines& lines);
 
-  /// Formats are asked in the order of their places; each has one of its own, below kLastPlace.
+  /// Formats are tried in the order of their places. Each has a unique place below kLastPlace.
   InputFormat(int place, Fits fits, Read read) noexcept;
-  static constexpr int kLastPlace = 100;  ///< of CSV, which takes whatever no other format takes
+  static constexpr int kLastPlace = 100;  ///< of CSV, which accepts every file
 
-  /// Reads a table's beginning, by the first format that fits. Throws InputError naming file and
-  /// line if there are no rows, and as `Read` does.
+  /// Reads the beginning of a table in the first format that fits. Throws InputError if there are
+  /// no rows, and as `Read` does.
   [[nodiscard]] static TableFormat read_beginning(const TextFile& file, Lines& lines);
 
  private:
@@ -50,7 +51,7 @@ class InputFormat {
   const InputFormat* next_;  ///< in the list
 };
 
-/// The names in a line, without the blanks around them.
+/// The names in a line, without surrounding blanks and quotes.
 [[nodiscard]] std::vector<std::string> column_names(std::string_view line, Split split);
 
 }  // namespace splinecast::apps

@@ -28,7 +28,7 @@ std::string_view without_unit(std::string_view name) {
   return name;
 }
 
-/// What four columns' names end in, as `xyzw`; empty unless all is the same before it.
+/// The last letters of four columns' names, such as `xyzw`; empty if the names differ before them.
 std::string endings(std::span<const std::string> names, std::string_view& prefix) {
   std::string letters;
   for (std::size_t k = 0; k < kQuaternionSize; ++k) {
@@ -46,7 +46,7 @@ DimensionKind quaternion_kind(std::string_view letters) {
   return letters == kWFirst ? DimensionKind::quaternion_wxyz : DimensionKind::quaternion;
 }
 
-/// The quaternion that four columns' names speak of, if they do.
+/// The kind of quaternion that four columns' names indicate; nothing for other names.
 std::optional<DimensionKind> named_quaternion(std::span<const std::string> names) {
   std::string_view prefix;
   const std::string letters = endings(names, prefix);
@@ -60,7 +60,7 @@ bool is_quaternion(DimensionKind kind) {
   return kind == DimensionKind::quaternion || kind == DimensionKind::quaternion_wxyz;
 }
 
-/// Kinds as they are asked for one after the other, each dimension once.
+/// Collects the requested kinds, one per dimension.
 class KindList {
  public:
   KindList(const std::string& file, const ColumnNames& columns)
@@ -84,7 +84,7 @@ class KindList {
     for (std::size_t k = 0; k < kQuaternionSize; ++k) put(first + k, option, kind);
   }
 
-  /// Everything that was asked for; the rest by the columns' names.
+  /// The requested kinds; of the other dimensions, the kinds by the columns' names.
   [[nodiscard]] std::vector<Dimension> filled() {
     for (std::size_t d = 0; d + kQuaternionSize <= kinds_.size(); ++d) {
       const auto four = std::span(kinds_).subspan(d, kQuaternionSize);
@@ -131,7 +131,7 @@ class KindList {
 }  // namespace
 
 std::optional<KindOption> parse_kind_option(const std::string& text) {
-  // A name may have colons of its own, and so has the kind `wrap:PERIOD`.
+  // A name may contain colons, and the kind `periodic:PERIOD` does.
   for (std::size_t colon = text.find(':'); colon != std::string::npos;
        colon = text.find(':', colon + 1)) {
     const auto kind = parse_dimension(std::string_view(text).substr(colon + 1));

@@ -18,24 +18,24 @@ struct ColumnNames {
   const std::vector<std::string>& aliases;
 };
 
-/// The kind of each column: what is asked for, else `quaternion` for four columns in a row that are
-/// named so (`qx qy qz qw`, `q_RS_w … q_RS_z`), else `linear`. Where a quaternion has w follows
-/// from the last letters of its columns' names; if they say nothing, last. Throws InputError,
-/// naming the file and the option, for a dimension that there is not, two kinds for one, or too few
-/// dimensions.
+/// The kind of each column: the requested one, else `quaternion` for four consecutive columns with
+/// such names (`qx qy qz qw`, `q_RS_w … q_RS_z`), else `linear`. The position of w in a quaternion
+/// follows from the last letters of its columns' names; with other names w is last. Throws
+/// InputError with the file and the option for an unknown dimension, two kinds for one dimension,
+/// or a quaternion of fewer than four dimensions.
 [[nodiscard]] std::vector<Dimension> resolve_kinds(const std::string& file,
                                                    const ColumnNames& columns,
                                                    const std::vector<KindOption>& asked);
 
-/// What is wrong with the quaternions of row i, naming its columns; nothing if a rotation can be
-/// made of each.
+/// The first quaternion of row i that is not a rotation, with its columns, for a message; nothing
+/// if all are rotations.
 [[nodiscard]] std::optional<std::string> zero_quaternion(const WaypointTable& table,
                                                          const DimensionKinds& kinds,
                                                          std::size_t i);
 
-/// Moves each waypoint to the representative nearest to the one before, as a solver does with what
-/// it is sent: see DimensionKinds::continue_from. Values must be usable. Throws InputError
-/// naming the line of a quaternion of length 0.
+/// Changes each waypoint to the representative nearest to the previous one, as a solver does: see
+/// DimensionKinds::continue_from. Values must be usable. Throws InputError with the line of a
+/// quaternion of length 0.
 void continue_waypoints(WaypointTable& table);
 
 }  // namespace splinecast::apps

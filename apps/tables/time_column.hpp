@@ -7,7 +7,7 @@
 
 namespace splinecast::apps {
 
-/// The unit of a time column by its name, or nothing if the name is not one of a time column.
+/// The unit of a time column from its name; nothing for the name of another column.
 [[nodiscard]] std::optional<TimeUnit> unit_of_time_column(std::string_view name);
 
 }  // namespace splinecast::apps

@@ -6,14 +6,14 @@
 #include "apps/process/exit_codes.hpp"
 #include "apps/tables/format.hpp"
 
-/// TUM text: `t x y z qx qy qz qw` in each row. A comment with as many words gives the columns
-/// other names.
+/// TUM text: `t x y z qx qy qz qw` in each row. If the last comment before the first row has eight
+/// words, they are aliases of the columns.
 namespace splinecast::apps {
 namespace {
 
 constexpr std::array<std::string_view, 8> kColumns{"t", "x", "y", "z", "qx", "qy", "qz", "qw"};
 
-/// Fields with blanks between them, of which the first is a number, and no comma.
+/// Whether the first line has fields separated by blanks, a number in the first one, and no comma.
 bool is_tum(const TableBeginning& beginning) {
   const std::string_view text = without_blanks(beginning.first.text);
   return text.find(',') == std::string_view::npos &&

@@ -14,7 +14,7 @@
 namespace splinecast::apps {
 namespace {
 
-/// A waypoint file with its format known, ready to give its rows.
+/// Reads the rows of a waypoint file.
 class TableReader {
  public:
   TableReader(const std::string& path, std::optional<TimeUnit> time_unit)
@@ -43,12 +43,12 @@ class TableReader {
     return resolve_kinds(name(), {.names = position_names(), .aliases = aliases}, asked);
   }
 
-  /// Finds out which columns hold positions and given derivatives.
+  /// Finds the columns of positions and given derivatives.
   void find_values(const std::vector<std::string>& selected) {
     columns_.find_values(selected, lines_);
   }
 
-  /// The fields of the next row, or false at the end. Throws for a row of another width.
+  /// Reads the fields of the next row. Returns false at the end.
   bool next(std::vector<std::string_view>& fields) {
     if (!started_) {
       started_ = true;
@@ -68,7 +68,7 @@ class TableReader {
 
   [[nodiscard]] std::size_t line() const { return line_.number; }
 
-  /// How many rows there are if all are as long as the first one, and a few more.
+  /// Estimated number of rows, if all are as long as the first one, plus a sixteenth.
   [[nodiscard]] std::size_t rows_expected() const {
     if (format_.first_row.number == 0) return 0;
     const std::size_t length = std::max(format_.first_row.text.size(), 2 * format_.names.size());
@@ -79,7 +79,7 @@ class TableReader {
     const auto time = parse_time(fields[roles().time], roles().unit);
     if (!time) fail(fields[roles().time], roles().time, "is not a time");
     if (!is_time_in_range(*time)) {
-      fail(fields[roles().time], roles().time, "lies beyond ±(2^62 − 1) ns, about 146 years");
+      fail(fields[roles().time], roles().time, "is not within ±(2^62 − 1) ns, about 146 years");
     }
     return *time;
   }
@@ -105,7 +105,7 @@ class TableReader {
   bool started_ = false;
 };
 
-/// Appends a row's numbers in some columns.
+/// Appends the numbers of a row in the given columns.
 void append_numbers(const TableReader& reader, const std::vector<std::string_view>& fields,
                     const std::vector<std::size_t>& columns, std::vector<double>& values) {
   for (const std::size_t column : columns) values.push_back(reader.number(fields, column));
@@ -123,15 +123,15 @@ void append_row(const TableReader& reader, const std::vector<std::string_view>& 
   table.lines.push_back(reader.line());
 }
 
-/// Drops what stands of a row that was not read to its end.
+/// Removes the values of an incomplete row.
 void drop_unfinished_row(const Roles& roles, WaypointTable& table) {
   table.positions.resize(table.size() * roles.positions.size());
   table.velocities.resize(table.size() * roles.velocities.size());
   table.accelerations.resize(table.size() * roles.accelerations.size());
 }
 
-/// Room for as many rows as there will be if they are about as long as the first one, up to a
-/// size from which growing costs little beside them.
+/// Reserves memory for the expected number of rows, up to a size from which reallocation is cheap
+/// in comparison with reading.
 void reserve(const TableReader& reader, WaypointTable& table) {
   constexpr std::size_t kMostRows = std::size_t{1} << 18U;
   const std::size_t rows = std::min(reader.rows_expected(), kMostRows);

@@ -4,14 +4,14 @@
 
 namespace splinecast::apps {
 
-/// What reading CLOCK_MONOTONIC costs on this machine, and how fine it is.
+/// Cost and resolution of reading CLOCK_MONOTONIC on this machine.
 struct ClockMeasure {
   double cost_ns = 0;        ///< of one reading: the median over batches
-  double resolution_ns = 0;  ///< the least step between two readings that differ
-  double claimed_ns = 0;     ///< what clock_getres says
+  double resolution_ns = 0;  ///< least difference of two different readings
+  double claimed_ns = 0;     ///< from clock_getres
 };
 
-/// Measures for some milliseconds.
+/// Takes some milliseconds.
 [[nodiscard]] ClockMeasure measure_clock();
 
 [[nodiscard]] nlohmann::ordered_json to_json(const ClockMeasure& measure);

@@ -16,7 +16,7 @@ double next_level(double level) {
   return level + 100 / (kStepsPerHalf * std::exp2(halves));
 }
 
-/// Twelve digits behind the point; halves round up, as Java does it.
+/// A number with twelve decimals; halves round up, as in Java.
 std::string twelve_digits(double share) {
   constexpr std::int64_t kOne = 1'000'000'000'000;
   const auto digits = static_cast<std::int64_t>(std::floor(share * kOne + 0.5));
@@ -38,7 +38,7 @@ void for_each_percentile(const Histogram& histogram,
     up_to += counts[cell];
     const Time value(Histogram::last_of(cell));
     const double reached = 100 * static_cast<double>(up_to) / all;
-    // The last cell takes one step, however many levels it reaches, and then the one to 100 %.
+    // The last cell takes one step, for any number of levels, and then the step to 100 %.
     while (reached >= level) {
       visit({.value = value, .level = level, .up_to = up_to});
       level = next_level(level);

@@ -7,13 +7,13 @@
 namespace splinecast::apps {
 namespace {
 
-/// log₂ of the width of the cells that hold a time.
+/// log₂ of the width of the cell that holds a time.
 int width_bits(std::int64_t ns) noexcept {
   return std::max(
       0, static_cast<int>(std::bit_width(static_cast<std::uint64_t>(ns))) - Histogram::kCellBits);
 }
 
-/// Each width has kCells/2 cells behind those of the widths before it, which begin at cell 0.
+/// The cells are in order of width: kCells of the first width, then kCells/2 of each next one.
 std::size_t cell_of(std::int64_t ns) noexcept {
   const int bits = width_bits(ns);
   return static_cast<std::size_t>((bits * Histogram::kCells / 2) + (ns >> bits));

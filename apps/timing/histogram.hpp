@@ -8,17 +8,18 @@
 
 namespace splinecast::apps {
 
-/// Counts of times to three significant digits, in the cells of an HdrHistogram of that precision
-/// (Tene, hdrhistogram.org): from 2048 ns on a cell is at most a 1024th of its value wide, below it
-/// is 1 ns. Debian has no C or C++ library of it. Grows as larger times come; 400 KiB at most.
+/// A histogram of times to three significant digits, with the cells of an HdrHistogram of this
+/// precision (Tene, hdrhistogram.org): the width of a cell is 1 ns below 2048 ns, and at most
+/// 1/1024 of its value above. Debian has no C or C++ library for it. Grows with the largest time,
+/// to at most 400 KiB.
 class Histogram {
  public:
-  /// Cells of one width but for the first 2048; each next half is twice as wide.
+  /// The first 2048 cells have one width; then every 1024 cells are twice as wide as those before.
   static constexpr int kCellBits = 11;
   static constexpr std::int64_t kCells = std::int64_t{1} << kCellBits;
-  /// What can be told apart: longer times count as this one, negative ones as 0.
+  /// The longest time: longer ones count as this one, negative ones as 0.
   static constexpr std::int64_t kLongest = (std::int64_t{1} << 62) - 1;
-  /// Halves that it takes to get there, as HdrHistogram counts its buckets.
+  /// Number of cell widths up to the longest time: the buckets of HdrHistogram.
   static constexpr int kBuckets = 62 - kCellBits + 1;
 
   void record(Time time);
@@ -29,18 +30,18 @@ class Histogram {
   [[nodiscard]] Time least() const noexcept { return least_; }
   [[nodiscard]] Time greatest() const noexcept { return greatest_; }
 
-  /// Mean and standard deviation in ns, of the cells' middles; 0 if there is no time.
+  /// Mean and standard deviation in ns, from the midpoints of the cells; 0 if there is no time.
   [[nodiscard]] double mean() const noexcept;
   [[nodiscard]] double deviation() const noexcept;
 
-  /// The time that `rank` of the times do not exceed, 1 ≤ rank ≤ count(): the end of its cell, or
-  /// greatest() if that is less. O(cells).
+  /// The time of this rank, 1 (least) to count() (greatest): the end of its cell, or greatest() if
+  /// that is less. O(cells).
   [[nodiscard]] Time at_rank(std::uint64_t rank) const noexcept;
 
   /// The counts by cell, up to the last one that is not 0.
   [[nodiscard]] const std::vector<std::uint64_t>& counts() const noexcept { return counts_; }
 
-  /// First and last time, in ns, of a cell.
+  /// First and last time of a cell, in ns.
   [[nodiscard]] static std::int64_t first_of(std::size_t cell) noexcept;
   [[nodiscard]] static std::int64_t last_of(std::size_t cell) noexcept;
 

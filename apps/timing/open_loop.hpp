@@ -6,7 +6,7 @@
 
 namespace splinecast::apps {
 
-/// When waypoints are due: an open-loop schedule, fixed before anything runs.
+/// The times at which waypoints are due: an open-loop schedule, fixed before the run.
 struct Schedule {
   Time start{};
   Time period{};
@@ -17,11 +17,11 @@ struct Schedule {
   }
 };
 
-/// Carries a schedule out: for each k in turn waits until its instant and sends. However long a
-/// send takes, and whatever holds the process up, no instant is moved or left out: those that have
-/// passed meanwhile are served at once, and what is measured from them has the delay in it, of each
-/// one. (A loop that waits a period after each send measures one late send, where its users had
-/// many: coordinated omission.) `wait_until(instant)` returns false to end early.
+/// Runs a schedule: for each k in order, waits until the intended instant and sends. A delay, of a
+/// send or of the process, neither moves nor skips an instant: overdue ones are sent at once, and a
+/// latency measured from the intended instant contains the delay. (A loop that waits one period
+/// after each send measures one late send where its users saw many: coordinated omission.)
+/// `wait_until(instant)` returns false to end early.
 template <typename WaitUntil, typename Send>
 void run(const Schedule& schedule, WaitUntil&& wait_until, Send&& send) {
   for (std::size_t k = 0; k < schedule.count; ++k) {

@@ -9,14 +9,14 @@
 
 namespace splinecast::apps {
 
-/// Counts of latencies over time: how the histogram changes while it is measured. Windows of equal
-/// length, and in each bins of equal ratio, kBinsPerOctave to a factor of two.
+/// A histogram of latencies over time: windows of equal length, each with logarithmic bins,
+/// kBinsPerOctave per factor of two.
 class TimeGrid {
  public:
   static constexpr std::size_t kWindows = 200;
   static constexpr int kBinsPerOctave = 4;
 
-  /// Covers [from, until); what lies outside counts in the first or last window.
+  /// Covers [from, until); times outside count in the first or last window.
   TimeGrid(Time from, Time until);
 
   void record(Time at, Time latency);

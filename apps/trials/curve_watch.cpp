@@ -9,13 +9,13 @@
 namespace splinecast::apps {
 namespace {
 
-/// A value that is no number is beyond every bound.
+/// Raises a maximum to |value|; NaN raises it to infinity.
 void raise(double& most, double value) {
   most =
       std::isnan(value) ? std::numeric_limits<double>::infinity() : std::max(most, std::abs(value));
 }
 
-/// What rounding may leave of a step, in rad, rad/s and rad/s².
+/// Steps below these are rounding, in rad, rad/s and rad/s².
 constexpr double kPositionRounding = 1e-10;
 constexpr double kVelocityRounding = 1e-8;
 constexpr double kAccelerationRounding = 1e-4;
@@ -46,7 +46,7 @@ SampleStatus CurveWatch::tick(Time now) {
     ticks_ = 0;
     return status;
   }
-  // At rest nothing settles any more: there is nothing left that could move.
+  // A curve at rest counts as settled: no part of it can change.
   const bool is_settled = status == SampleStatus::settled || status == SampleStatus::holding ||
                           now < sampler_->settled_until();
   if (!is_settled) ++report_.unsettled;
@@ -55,7 +55,7 @@ SampleStatus CurveWatch::tick(Time now) {
   if (ticks_ > 0) {
     check_joins(seen_[(ticks_ - 1) % kKept].time, now);
     read_again(1);
-    // A prime steps through all that are kept, whatever their number.
+    // Steps of a prime visit all kept samples, regardless of their number.
     read_again(1 + report_.samples * 37 % std::min(ticks_, kKept));
   }
   Seen& seen = seen_[ticks_++ % kKept];
@@ -77,7 +77,7 @@ void CurveWatch::check_joins(Time from, Time to) {
   for (std::size_t i = 1; i < segments.size(); ++i) check_join(segments[i - 1], segments[i]);
 }
 
-/// As readers see it, but that a wrapping position is left as it is: read, it steps by a period.
+/// As readers see it, but without wrapping periodic dimensions, which would step by a period.
 void CurveWatch::evaluate(const ipc::SegmentCopy& segment, double u, State& out) const {
   const StateRef ref = out.ref();
   core::evaluate(segment.order, segment.coefficients, u, ref);

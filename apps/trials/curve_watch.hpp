@@ -9,11 +9,11 @@
 
 namespace splinecast::apps {
 
-/// What a watch has found. Steps are absolute, in the stream's units.
+/// The findings of a watch. Steps are absolute, in the stream's units.
 struct WatchReport {
   std::uint64_t samples = 0;
   std::array<std::uint64_t, kSampleStatuses> by_status{};
-  std::uint64_t changed = 0;     ///< earlier samples that read otherwise later, without `revised`
+  std::uint64_t changed = 0;     ///< samples that read differently later, without `revised`
   std::uint64_t unsettled = 0;   ///< samples in motion that had not settled at their instant
   std::uint64_t knots = 0;       ///< joins between segments that were compared
   double position_step = 0;      ///< largest at a join
@@ -23,12 +23,12 @@ struct WatchReport {
   double acceleration = 0;       ///< largest sampled
 };
 
-/// Whether nothing stepped or changed that must not, of a motion of joint angles in rad.
+/// Whether a motion of joint angles in rad had no forbidden step and no forbidden change.
 [[nodiscard]] bool is_sound(const WatchReport& report) noexcept;
 
-/// Samples a live curve as a controller does and checks what no controller has the time to: that
-/// what was read once reads the same ever after, that position and velocity never step, and that
-/// every acceleration step is the one published. One thread uses a watch.
+/// Samples a live curve as a controller does, and checks that every sample reads the same later,
+/// that position and velocity never step, and that every acceleration step is the published one.
+/// One thread uses a watch.
 class CurveWatch {
  public:
   /// `sampler` outlives the watch, which is its only user.
@@ -37,7 +37,7 @@ class CurveWatch {
   /// Samples at `now` and checks everything since the tick before. Returns the sample's status.
   SampleStatus tick(Time now);
 
-  /// The last sample; of use if its status had values.
+  /// The last sample; valid if its status has values.
   [[nodiscard]] const State& state() const noexcept { return now_; }
   [[nodiscard]] const WatchReport& report() const noexcept { return report_; }
 
@@ -60,7 +60,7 @@ class CurveWatch {
   State right_;
   ipc::BoardSnapshot snapshot_;
   std::vector<Seen> seen_;
-  std::size_t ticks_ = 0;  ///< ticks since the curve was last new to this watch
+  std::size_t ticks_ = 0;  ///< ticks since the last status without values or `revised`
   WatchReport report_;
 };
 

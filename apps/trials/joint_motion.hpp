@@ -7,8 +7,8 @@
 
 namespace splinecast::apps {
 
-/// A motion without end: seven joint angles in rad, each a cosine of its own frequency and hence at
-/// rest when it starts.
+/// An endless motion of seven joint angles in rad, each a cosine with its own frequency, which
+/// starts at rest.
 class JointMotion {
  public:
   static constexpr std::size_t kJoints = 7;

@@ -24,7 +24,7 @@ int print_judgement(const std::function<json()>& run, bool as_json,
   json found;
   try {
     found = run();
-  } catch (const Interrupted&) {  // before there was anything to find
+  } catch (const Interrupted&) {  // before there was a result
     found = {{"judged", false}, {"sound", nullptr}};
     print_report(as_json ? found.dump(2) + "\n" : judgement(found) + "\n");
     return kInterrupted;

@@ -8,28 +8,27 @@
 
 namespace splinecast::apps {
 
-/// How long something takes to come back after a kill, and how often it did. One thread uses it.
+/// Recovery times of a process after kills. One thread uses it.
 class Recovery {
  public:
-  /// It was killed at this instant. What was awaited before is not awaited any more.
+  /// The process was killed at this instant. Replaces an earlier kill that is still awaited.
   void begin(Time now) { since_ = now; }
 
-  /// It is back, at this instant; it must have been awaited.
+  /// The process has recovered at this instant. Requires is_awaited().
   void end(Time now);
 
-  /// It does not matter any more.
+  /// Ignores the last kill.
   void forget() { since_.reset(); }
 
   [[nodiscard]] bool is_awaited() const { return since_.has_value(); }
 
-  /// Since when it has been away, if it is.
+  /// The time of the awaited kill, if there is one.
   [[nodiscard]] std::optional<Time> since() const { return since_; }
 
-  /// Counts what another one has measured as its own.
+  /// Adds the measurements of another one.
   void add(const Recovery& other);
 
-  /// `kills`, those after which it came back, and how long that took: `p50_ms`, `p99_ms`,
-  /// `max_ms`.
+  /// `kills`, those with a recovery, and the recovery times: `p50_ms`, `p99_ms`, `max_ms`.
   [[nodiscard]] nlohmann::json result() const;
 
  private:

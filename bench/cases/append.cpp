@@ -6,7 +6,7 @@
 namespace splinecast::bench {
 namespace {
 
-/// A window that is fed for ever.
+/// A window with an endless feed of waypoints.
 class FedWindow {
  public:
   FedWindow(std::size_t dimensions, std::size_t settle, std::int64_t fed)
@@ -14,7 +14,7 @@ class FedWindow {
     for (std::int64_t i = 0; i < fed; ++i) window_.append(feed_.next());
   }
 
-  /// One waypoint through the window, all dimensions, and the segment that settles by it.
+  /// Appends one waypoint in all dimensions, and gets the segment that it settles.
   void append() {
     window_.append(feed_.next());
     window_.segment(window_.oldest_segment(), segment_);
@@ -34,7 +34,7 @@ void append(benchmark::State& bench) {
   for (auto _ : bench) window.append();
 }
 
-/// The same in the ten millions: the window is kept from block to block.
+/// The same after ten million waypoints: the window is kept from block to block.
 void append_late(benchmark::State& bench) {
   static FedWindow window(7, 8, 10'000'000);
   for (auto _ : bench) window.append();

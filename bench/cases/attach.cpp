@@ -23,7 +23,7 @@ Time settled_until(const std::string& stream) {
   return reader.settled_until();
 }
 
-/// From attaching to another process's stream to the first sample.
+/// The time from attaching to another process's stream to the first sample.
 void attach(benchmark::State& bench) {
   const Pinned pin(kNear);
   const StreamName stream;
@@ -48,7 +48,7 @@ void attach(benchmark::State& bench) {
   }
 }
 
-/// How large the region is that the solver writes.
+/// The size of the region that the solver writes.
 void board_bytes(benchmark::State& bench) {
   const Waypoints waypoints(kWrittenKnots, kWrittenDimensions);
   const BenchStream stream(waypoints);

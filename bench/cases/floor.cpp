@@ -9,7 +9,7 @@
 namespace splinecast::bench {
 namespace {
 
-/// The least a sample can cost: the same polynomial from this process's own memory, without a
+/// The lower bound of a sample: the same polynomial from this process's own memory, without a
 /// lookup.
 void floor_eval(benchmark::State& bench) {
   const auto dimensions = static_cast<std::size_t>(bench.range(0));

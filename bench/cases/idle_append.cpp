@@ -20,7 +20,7 @@ constexpr std::size_t kStreams = 1'000;
 constexpr std::size_t kAppends = 200;
 constexpr std::size_t kDimensions = 7;
 constexpr Time kPatience = std::chrono::seconds(60);
-/// How far ahead of now a waypoint lies.
+/// How far ahead of now the time of a waypoint is.
 constexpr Time kLead = milliseconds(200);
 
 void append(Producer& producer, Time t, double x) {
@@ -41,8 +41,8 @@ void await_motion(Reader& reader, Time t, State& state) {
   throw std::runtime_error("the waypoint of an idle stream was not solved");
 }
 
-/// From an append to a stream of many, idle for a second and more, to its knot in a reader. The
-/// appends come at random instants, so that they meet the solver's looks at any phase.
+/// The time from an append to one of many streams, idle for a second or more, until a reader sees
+/// its knot. The appends are at random phases of the solver's poll period.
 nlohmann::json append_to_idle(std::vector<Producer>& producers, std::vector<Reader>& readers) {
   const MonotonicClock clock;
   std::mt19937_64 random(1);

@@ -21,14 +21,14 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// A clock that stands where it is set.
+/// A clock that shows the time that is set.
 class SetClock final : public Clock {
  public:
   [[nodiscard]] Time now() const noexcept override { return time; }
   Time time{};
 };
 
-/// A live stream whose solver and producer are this thread, at times that it chooses.
+/// A live stream whose solver and producer run in this thread, at simulated times.
 class PlannedStream {
  public:
   PlannedStream(std::size_t dimensions, double limit)
@@ -46,20 +46,20 @@ class PlannedStream {
     clock_.time = std::chrono::seconds(1000);
   }
 
-  /// Sends waypoints 200 ms ahead for so long, and solves them.
+  /// Sends waypoints 200 ms ahead for `length`, and solves them.
   void play(Time length) {
     for (const Time end = clock_.time + length; clock_.time < end; clock_.time += kStep) {
       send_until(clock_.time + kLead);
       solver_.step(clock_);
     }
   }
-  /// Sends nothing for so long, until the curve has run dry.
+  /// Sends nothing for `length`, so that the stream starves.
   void fall_silent(Time length) {
     for (const Time end = clock_.time + length; clock_.time < end; clock_.time += kStep) {
       solver_.step(clock_);
     }
   }
-  /// Sends what has been held back, and times each step until an entry has been found.
+  /// Sends the waypoints that were held back, and times each step until an entry has been found.
   void return_to_path(Trips& trips, Time cost) {
     constexpr int kMostSteps = 200;
     const MonotonicClock real;
@@ -117,13 +117,13 @@ class PlannedStream {
   std::optional<Time> begin_;
 };
 
-/// Steps of a solver that plan the way back after 300 ms of silence, one by one: what they take up
-/// of the waypoints that come at once, the search for the entry, and its publication.
+/// The steps of a solver that returns to the waypoints after 300 ms of silence, one by one: it
+/// consumes the waypoints that arrive at once, searches for the entry and publishes it.
 void plan(benchmark::State& bench) {
   constexpr std::size_t kSilences = 400;
   constexpr std::size_t kMostSteps = 64;
   const auto dimensions = static_cast<std::size_t>(bench.range(0));
-  // The motion's own peak is some 40 /s².
+  // The motion's own peak is about 40 /s².
   constexpr double kLimit = 60;
   const Pinned pin(kNear);
   const Time cost = clock_cost();

@@ -28,7 +28,7 @@ void poll_at_1_khz(const std::string& stream, std::atomic<std::uint64_t>& ready)
   }
 }
 
-/// A process on the far core with so many readers, a thread each.
+/// A process on the far core with this many readers, one thread each.
 nlohmann::json poll_with(std::size_t readers, const std::string& stream, const SharedLines& ready) {
   const Pinned pin(kFar);
   std::vector<std::thread> threads;

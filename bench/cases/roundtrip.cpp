@@ -33,8 +33,7 @@ namespace {
 
 constexpr Time kPatience{10'000'000'000};
 
-/// A time that only waypoint i gives a curve to: before it, the stop tail of the one before stands
-/// there.
+/// A time before waypoint i at which the curve is the stop segment until waypoint i is appended.
 Time asked_for(std::uint64_t i) { return time_of(i) - kTripInterval / 2; }
 
 /// Appends the waypoints of the round trips to a stream of this process.
@@ -56,7 +55,7 @@ class Appender {
   std::array<double, kTripDimensions> position_{};
 };
 
-/// Samples until the curve reaches to waypoint i; false if a stop is requested.
+/// Samples until the curve reaches waypoint i; false if a stop is requested.
 bool await_waypoint(Reader& reader, State& state, std::uint64_t i) {
   for (;;) {
     const SampleStatus status = reader.sample(asked_for(i), state);
@@ -68,7 +67,7 @@ bool await_waypoint(Reader& reader, State& state, std::uint64_t i) {
   }
 }
 
-/// The least that any round trip costs: a word there and a word back, on a cache line each.
+/// The lower bound of a round trip: one word each way, each on its own cache line.
 void floor_ping(benchmark::State& bench) {
   const SharedLines lines;
   for (auto _ : bench) {
@@ -141,7 +140,7 @@ void roundtrip_solver(benchmark::State& bench) {
       Reader reader(stream, kPatience);
       State state(kTripDimensions);
       if (!appender.producer().wait_until_consumed(kPatience)) {
-        throw std::runtime_error("the solver of the round trips did not come");
+        throw std::runtime_error("the solver of the round trips did not attach");
       }
       return measure([&](std::uint64_t i) {
         appender.append(i);
@@ -167,7 +166,7 @@ BENCHMARK_CAPTURE(roundtrip_embedded, , std::nullopt)
     ->Name("roundtrip/embedded")
     ->Iterations(1)
     ->UseManualTime();
-/// With the fewest segments changed by a waypoint: what is left is the way itself.
+/// A waypoint changes the fewest segments: the rest is the transport itself.
 BENCHMARK_CAPTURE(roundtrip_embedded, , 0)
     ->Name("roundtrip/embedded/settle:0")
     ->Iterations(1)

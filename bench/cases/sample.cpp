@@ -19,7 +19,7 @@ struct Recorded {
       : waypoints(count, dimensions), stream(waypoints) {}
 };
 
-/// The streams are made once and stand until the end.
+/// The streams are created once and exist until the end.
 const Recorded& recorded(std::size_t count, std::size_t dimensions) {
   static std::map<std::pair<std::size_t, std::size_t>, Recorded> streams;
   return streams.try_emplace({count, dimensions}, count, dimensions).first->second;
@@ -56,8 +56,8 @@ void sample_random(benchmark::State& bench) {
   }
 }
 
-/// Times 2 ms apart, the first one 1 ms later from call to call, as a predictive controller at 1
-/// kHz asks for; by parity of the call, so that each call takes a part of one of them.
+/// Times 2 ms apart for even and for odd calls, the latter 1 ms later, as a predictive controller
+/// at 1 kHz requests them; each call uses a part of one of them.
 std::array<std::vector<Time>, 2> horizons_until(Time end) {
   constexpr Time kApart{2'000'000};
   std::array<std::vector<Time>, 2> times;
@@ -69,7 +69,7 @@ std::array<std::vector<Time>, 2> horizons_until(Time end) {
 }
 
 /// Many times from one revision: the horizon of a predictive controller over a curve that is
-/// published whole. The counter `times` says how many a call samples.
+/// published whole. The counter `times` is the number of times per call.
 void sample_many(benchmark::State& bench) {
   const auto dimensions = static_cast<std::size_t>(bench.range(0));
   const auto count = static_cast<std::size_t>(bench.range(1));

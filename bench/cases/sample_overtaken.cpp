@@ -13,7 +13,7 @@
 #include "ipc/roles/internals.hpp"
 #include "splinecast/reader.hpp"
 
-/// Samples where the board is written as fast as this machine can.
+/// Samples while the board is written as fast as possible.
 namespace splinecast::bench {
 namespace {
 
@@ -37,7 +37,7 @@ nlohmann::json replay_for_ever(const std::string& stream) {
   return nullptr;
 }
 
-/// Samples in the segments that a revision changes, each time in another one; every sample is timed
+/// Samples in the segments that a revision changes, one after the other; every sample is timed
 /// alone.
 nlohmann::json sample_open_segments(const std::string& stream) {
   constexpr std::size_t kSegments = 8;
@@ -74,7 +74,7 @@ nlohmann::json sample_open_segments(const std::string& stream) {
 void sample_overtaken(benchmark::State& bench,
                       const std::function<nlohmann::json(
                           const std::string& stream, std::atomic<std::uint64_t>& ready)>& write) {
-  (void)csv_recording();  // made by this process, which removes it
+  (void)csv_recording();  // created by this process, which removes it
   const Pinned pin(kNear);
   const StreamName stream;
   const SharedLines lines;
@@ -93,7 +93,7 @@ BENCHMARK_CAPTURE(sample_overtaken, replay,
     ->Name("sample/dims:7/beside:replay")
     ->Iterations(1)
     ->UseManualTime();
-/// The same with a revision for each waypoint: what overtakes readers most often.
+/// The same with a revision for each waypoint, which overtakes readers most often.
 BENCHMARK_CAPTURE(sample_overtaken, publish,
                   [](const std::string& stream, std::atomic<std::uint64_t>& ready) {
                     return write_stream(stream, kWrittenKnots, Time::zero(), ready);

@@ -16,19 +16,18 @@ namespace splinecast::bench {
 namespace {
 
 constexpr std::size_t kSamples = 2'000'000;
-/// First samples of a new revision that a run needs at least.
+/// The minimum number of first samples of a new revision in a run.
 constexpr std::size_t kFirstSamples = 100;
 constexpr Time kPatience{10'000'000'000};
 
-/// Samples at 1 kHz steps, again and again, from 20 s before what is settled to behind the newest
-/// knot.
+/// Samples in steps of 1 ms, repeatedly from 20 s before settled_until() to after the newest knot.
 class Walk {
  public:
   explicit Walk(const std::string& stream) : reader_(stream, kPatience) {
-    (void)reader_.sample(Time{}, state_);  // what is settled is known by now
+    (void)reader_.sample(Time{}, state_);  // so that settled_until() is known
   }
 
-  /// Goes on to the time of the next sample.
+  /// Advances to the time of the next sample.
   void step() {
     t_ += Time(1'000'000);
     if (t_ < end_) return;
@@ -68,8 +67,8 @@ double mean_time(Walk& walk) {
   return static_cast<double>((cpu_now() - start).count()) / kSamples;
 }
 
-/// Times every sample alone. Of a stream `is_written` meanwhile those are reported as well that
-/// found a new revision.
+/// Times every sample alone. If the stream `is_written` meanwhile, also reports those that found a
+/// new revision.
 nlohmann::json time_alone(Walk& walk, bool is_written) {
   const MonotonicClock clock;
   const Time cost = clock_cost();

@@ -12,8 +12,8 @@
 #include "ipc/roles/internals.hpp"
 #include "ipc/sweep/many_streams.hpp"
 
-/// What many streams of seven dimensions cost the one process that solves them. The time of these
-/// rows is the CPU time that this process takes for a second: 10 ms are 1 % of a core.
+/// The cost of many streams of seven dimensions for the one process that solves them. The time of
+/// these rows is the CPU time of this process per second: 10 ms are 1 % of a core.
 namespace splinecast::bench {
 namespace {
 
@@ -34,7 +34,7 @@ class ManyStreams {
           return apps::run_soak_producers(solved_.streams(), kRate, begin);
         }) {
     readers_ = solved_.attach_readers(kPatience);
-    const Time end = clock_.now() + kPatience;  // the rows tell how many waypoints there are
+    const Time end = clock_.now() + kPatience;  // the rows report the number of waypoints
     while (!are_idle && !all_move() && clock_.now() < end) {
       apps::sleep_until(clock_.now() + milliseconds(10));
     }
@@ -49,7 +49,7 @@ class ManyStreams {
   [[nodiscard]] pid_t solver() const { return solved_.solver(); }
   [[nodiscard]] std::vector<Reader>& readers() { return readers_; }
 
-  /// Waypoints that the solver has taken so far, and deadlines that it has missed.
+  /// Waypoints that the solver has consumed so far, and its deadline_misses and late_commits.
   struct Solved {
     double waypoints = 0;
     double missed = 0;
@@ -66,7 +66,7 @@ class ManyStreams {
   }
 
  private:
-  /// Whether every stream has what it needs to move.
+  /// Whether every stream has two knots, so that it can move.
   [[nodiscard]] bool all_move() const {
     ipc::Head head;
     for (const Reader& reader : readers_) {
@@ -81,11 +81,11 @@ class ManyStreams {
   std::vector<Reader> readers_;
 };
 
-/// How the streams of a row are.
+/// The streams of a row.
 struct Row {
   std::size_t streams;
   bool is_idle;
-  bool wakes = false;  ///< readers, by a system call a revision
+  bool wakes = false;  ///< readers, by one system call per revision
   Time freeze_ahead = milliseconds(5);
 };
 
@@ -93,8 +93,8 @@ SolverOptions options_of(const Row& row) {
   return {.freeze_ahead = row.freeze_ahead, .capacity = kBusyCapacity, .wake = row.wakes};
 }
 
-/// The solver's own CPU clock, over a second each; of idle streams once they have been quiet for so
-/// long that the solver takes them for idle.
+/// Measures the solver's CPU time over 1 s per iteration; with idle streams, only after the solver
+/// treats them as idle.
 void solve(benchmark::State& bench, Row row) {
   ManyStreams world(row.streams, row.is_idle, options_of(row));
   const MonotonicClock clock;
@@ -124,7 +124,7 @@ void solve(benchmark::State& bench, Row row) {
   }
 }
 
-/// A reader of all streams: one sample, each time of another stream.
+/// A reader of all streams: one sample per iteration, of each stream in turn.
 void sample(benchmark::State& bench, Row row) {
   ManyStreams world(row.streams, row.is_idle, options_of(row));
   const MonotonicClock clock;

@@ -49,7 +49,8 @@ StreamName::~StreamName() {
   try {
     remove_stream(name_);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "splinecast_bench: stream %s stays: %s\n", name_.c_str(), error.what());
+    std::fprintf(stderr, "splinecast_bench: stream %s was not removed: %s\n", name_.c_str(),
+                 error.what());
   }
 }
 

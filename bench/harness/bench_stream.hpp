@@ -10,10 +10,10 @@
 
 namespace splinecast::bench {
 
-/// The dimensions that have a row each.
+/// Adds one row for each number of dimensions.
 void all_dimensions(benchmark::internal::Benchmark* bench);
 
-/// Waypoints of a smooth motion at 100 Hz with jitter: what every benchmark is fed.
+/// Waypoints of a smooth motion at 100 Hz with jitter: the input of every benchmark.
 struct Waypoints {
   std::size_t dimensions;
   std::vector<Time> times;
@@ -25,7 +25,7 @@ struct Waypoints {
   }
 };
 
-/// Endless waypoints: the same ones again and again, with times that go on.
+/// Endless waypoints: repeats the same ones, with times that continue.
 class Feed {
  public:
   explicit Feed(std::size_t dimensions);
@@ -37,8 +37,7 @@ class Feed {
   Time offset_{};
 };
 
-/// A name for a stream of this process, never given twice; whatever stands under it is removed at
-/// the end.
+/// A unique stream name of this process. The destructor removes the stream of that name.
 class StreamName {
  public:
   StreamName();

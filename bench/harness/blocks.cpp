@@ -12,13 +12,15 @@
 namespace splinecast::bench {
 namespace {
 
-/// What is run in alternation, as a regular expression over names, and in how many blocks at most.
+/// Benchmarks that run in alternation, as a regular expression over names, and their maximum number
+/// of blocks.
 struct Group {
   const char* names;
   int most_blocks = std::numeric_limits<int>::max();
 };
 
-/// A ratio is taken within a group: a benchmark that is compared with several others is in several.
+/// A ratio is taken within a group: a benchmark that is compared with several others is in several
+/// groups.
 constexpr std::array kGroups = {
     Group{"^(floor/eval|sample|gsl/sample)/dims:1$"},
     Group{"^(floor/eval|sample|gsl/sample)/dims:3$"},
@@ -46,19 +48,19 @@ constexpr std::array kGroups = {
     Group{"^plan/", 3},
     Group{"^sample/dims:7/beside:"},
     Group{"^board/", 1},
-    // These take seconds a run.
+    // These take seconds per run.
     Group{"^streams:1000/busy:100Hz/iterations", 9},
     Group{"^streams:(10|1000)/idle/iterations", 3},
     Group{"^idle_append/", 3},
 };
 
-/// Shows each run, and keeps it.
+/// Prints each run, and keeps it.
 class Keeper final : public benchmark::ConsoleReporter {
  public:
   explicit Keeper(nlohmann::json& runs) : ConsoleReporter(OO_Tabular), runs_(runs) {}
 
   bool ReportContext(const Context& context) override {
-    // Once, not with every block.
+    // Printed once, not for every block.
     return has_context_ || (has_context_ = ConsoleReporter::ReportContext(context));
   }
 
@@ -109,7 +111,7 @@ void run_blocks(int blocks, const std::string& out) {
     const int times = std::min(blocks, group.most_blocks);
     for (keeper.block = 0; keeper.block < times; ++keeper.block) {
       if (benchmark::RunSpecifiedBenchmarks(&keeper, group.names) == 0) {
-        throw std::logic_error(std::string("no benchmark has a name like ") + group.names);
+        throw std::logic_error(std::string("no benchmark matches ") + group.names);
       }
     }
   }

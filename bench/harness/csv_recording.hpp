@@ -6,8 +6,8 @@
 
 namespace splinecast::bench {
 
-/// A file with a recording as text: nanoseconds, and values with the digits of a float, as
-/// recorders write them. Removes the file at the end.
+/// A CSV file of a recording: times in ns, and values with the digits of a float, as recorders
+/// write them. The destructor removes the file.
 class CsvRecording {
  public:
   static constexpr std::size_t kRows = 200'000;
@@ -24,7 +24,7 @@ class CsvRecording {
   std::filesystem::path path_;
 };
 
-/// The recording of seven dimensions that all share.
+/// The recording of seven dimensions that all benchmarks share.
 [[nodiscard]] const CsvRecording& csv_recording();
 
 }  // namespace splinecast::bench

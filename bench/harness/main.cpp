@@ -12,13 +12,13 @@
 
 namespace {
 
-/// What this program understands besides Google Benchmark's options.
+/// The options of this program in addition to Google Benchmark's.
 struct Arguments {
   int blocks = 0;  ///< 0: an ordinary run
   std::string_view out{};
 };
 
-/// Nothing, and a message on standard error, if they are not understood.
+/// The parsed options; nullopt, and a message on standard error, if one is invalid.
 std::optional<Arguments> parse(std::span<char* const> given) {
   Arguments arguments;
   for (const std::string_view argument : given) {
@@ -33,7 +33,7 @@ std::optional<Arguments> parse(std::span<char* const> given) {
     }
   }
   if ((arguments.blocks > 0) == arguments.out.empty()) {
-    std::fprintf(stderr, "splinecast_bench: --blocks=N and --out=FILE belong together\n");
+    std::fprintf(stderr, "splinecast_bench: --blocks=N and --out=FILE must be given together\n");
     return std::nullopt;
   }
   return arguments;
@@ -41,7 +41,7 @@ std::optional<Arguments> parse(std::span<char* const> given) {
 
 }  // namespace
 
-/// Without `--blocks` this is an ordinary program of Google Benchmark's, with its options.
+/// Without `--blocks` this is an ordinary Google Benchmark program, with its options.
 ///   splinecast_bench --blocks=N --out=FILE [--benchmark_min_time=S]
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);

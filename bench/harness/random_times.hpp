@@ -10,7 +10,7 @@ namespace splinecast::bench {
 
 inline constexpr std::size_t kRandomSegments = 65'536;
 
-/// As many times, the same ones for everybody, from 0 to before `end`.
+/// kRandomSegments random times from 0 to before `end`, the same ones for every caller.
 [[nodiscard]] inline std::vector<Time> random_times(Time end) {
   std::mt19937_64 random(1);
   std::vector<Time> times(kRandomSegments);

@@ -9,13 +9,13 @@
 #include "bench/harness/trips.hpp"
 #include "splinecast/time.hpp"
 
-/// What all round trips share: payload, count, and who sits on which core.
+/// Shared by all round trips: payload, count and assignment of cores.
 namespace splinecast::bench {
 
 inline constexpr std::size_t kTripDimensions = 7;
 inline constexpr Time kTripInterval{10'000'000};
 
-/// Lines of SharedLines: one each way, and one that says that the far side is there.
+/// Lines of SharedLines: one per direction, and one that signals that the far side is ready.
 enum Line : std::size_t { kThere, kBack, kFarIsReady };
 
 /// Time of the i-th waypoint, i ≥ 1.
@@ -23,8 +23,8 @@ enum Line : std::size_t { kThere, kBack, kFarIsReady };
   return kTripInterval * static_cast<std::int64_t>(i);
 }
 
-/// Measures trips 2, 3, …, the first thousand aside, and returns what `report` takes. `trip(i)`
-/// goes there and back; it returns false to give up, and then this throws.
+/// Measures trips 2, 3, …, without the first thousand, and returns a summary for `report`.
+/// `trip(i)` makes one round trip; if it returns false, throws std::runtime_error.
 [[nodiscard]] nlohmann::json measure(const std::function<bool(std::uint64_t)>& trip);
 
 }  // namespace splinecast::bench

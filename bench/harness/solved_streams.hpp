@@ -13,15 +13,15 @@
 
 namespace splinecast::bench {
 
-/// Knots of a board that holds a second of history at 100 Hz and the producers' lead.
+/// Knots of a board that holds 1 s of history at 100 Hz and the producers' lead.
 inline constexpr std::size_t kBusyCapacity = 256;
 
-/// Pause between two looks of the solver process at the streams on which something happens.
+/// Pause between two polls of the busy streams by the solver process.
 inline constexpr Time kSweep{1'000'000};
 
 /// Names for many streams, and one process that solves them as `solve` does once they have
-/// producers. Raises this process's limit of open files. Removes the streams at the end, when
-/// their producers must have ended.
+/// producers. Raises this process's limit of open files. The destructor removes the streams; their
+/// producers must have ended.
 class SolvedStreams {
  public:
   SolvedStreams(std::size_t count, const SolverOptions& options);

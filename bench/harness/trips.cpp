@@ -19,7 +19,7 @@ Pinned::Pinned(int core) {
   CPU_SET(static_cast<unsigned>(core), &one);
   if (sched_getaffinity(0, sizeof before_, &before_) != 0 ||
       sched_setaffinity(0, sizeof one, &one) != 0) {
-    throw std::runtime_error("core " + std::to_string(core) + " is not to be had");
+    throw std::runtime_error("core " + std::to_string(core) + " is not available");
   }
 }
 

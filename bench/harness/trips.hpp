@@ -16,7 +16,8 @@ namespace splinecast::bench {
 inline constexpr int kNear = 0;
 inline constexpr int kFar = 1;
 
-/// Binds this thread to a core while it lives; throws std::runtime_error where that is refused.
+/// Pins this thread to a core for the lifetime of the object; throws std::runtime_error if that
+/// fails.
 class Pinned {
  public:
   explicit Pinned(int core);
@@ -34,7 +35,7 @@ class Trips {
   explicit Trips(std::size_t count) { ns_.reserve(count); }
   void add(Time trip) { ns_.push_back(trip.count()); }
   [[nodiscard]] std::size_t size() const { return ns_.size(); }
-  /// The value that a share q of the trips does not exceed; there must be some.
+  /// The q-quantile of the trips. Requires at least one trip.
   [[nodiscard]] double quantile(double q);
   /// p50 and p99, for `report`.
   [[nodiscard]] nlohmann::json summary();
@@ -43,14 +44,14 @@ class Trips {
   std::vector<std::int64_t> ns_;
 };
 
-/// What reading the clock twice costs: to be taken off what is timed alone.
+/// The median cost of reading the clock twice, to subtract from single timings.
 [[nodiscard]] Time clock_cost();
 
-/// Makes p50 the benchmark's time and p99 a counter. The benchmark has one iteration, which has
-/// run.
+/// Sets p50 as the benchmark's time and all values of the summary as counters. Requires a benchmark
+/// with one iteration, which has run.
 void report(benchmark::State& bench, const nlohmann::json& summary);
 
-/// Words that processes forked later share, a cache line and its neighbour each.
+/// Words that processes forked later share, each with its own pair of cache lines.
 class SharedLines {
  public:
   static constexpr std::size_t kLines = 4;

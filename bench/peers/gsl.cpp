@@ -32,7 +32,7 @@ class Splines {
     }
   }
 
-  /// Position, velocity and acceleration of each dimension: there is no jerk.
+  /// Position, velocity and acceleration of each dimension; GSL has no jerk.
   void sample(double t, double* out) const {
     for (std::size_t d = 0; d < splines_.size(); ++d) {
       gsl_spline* const spline = splines_[d].get();
@@ -51,7 +51,7 @@ class Splines {
   std::vector<std::unique_ptr<gsl_interp_accel, void (*)(gsl_interp_accel*)>> accelerators_;
 };
 
-/// What `sample` does, through the same waypoints.
+/// The same as `sample`, through the same waypoints.
 void sample(benchmark::State& bench) {
   const Waypoints waypoints(4096, static_cast<std::size_t>(bench.range(0)));
   const Splines splines(waypoints);
@@ -65,7 +65,7 @@ void sample(benchmark::State& bench) {
   }
 }
 
-/// What `sample_random` does, at the same times.
+/// The same as `sample_random`, at the same times.
 void sample_random(benchmark::State& bench) {
   static const Waypoints waypoints(kRandomSegments, 7);
   static const Splines splines(waypoints);
@@ -78,7 +78,7 @@ void sample_random(benchmark::State& bench) {
   }
 }
 
-/// What a user of GSL does for each new waypoint: solves again, here over the last 1,024 knots.
+/// A new waypoint with GSL: solves all knots again, here the last 1,024.
 void append(benchmark::State& bench) {
   const Waypoints waypoints(1024, static_cast<std::size_t>(bench.range(0)));
   Splines splines(waypoints);

@@ -13,18 +13,18 @@
 
 #include "bench/harness/roundtrip.hpp"
 
-/// Eclipse iceoryx, with a daemon of its own: the same payload there and back, polled.
+/// Eclipse iceoryx, with its own daemon: round trips of the same payload, polled.
 namespace splinecast::bench {
 namespace {
 
-/// What a waypoint of a round trip holds.
+/// The contents of a waypoint of a round trip.
 struct Payload {
   std::uint64_t number;
   std::int64_t time_ns;
   std::array<double, kTripDimensions> position;
 };
 
-/// One side of the conversation: publishes under one name and takes what comes under another.
+/// One side of a round trip: publishes under one name and subscribes to another.
 class Side {
  public:
   Side(const char* process, const char* sends, const char* takes)
@@ -34,7 +34,7 @@ class Side {
         subscriber_({"splinecast_bench", "roundtrip", {iox::cxx::TruncateToCapacity, takes}},
                     {.queueCapacity = 2, .historyRequest = 0}) {}
 
-  /// Whether either side hears the other.
+  /// Whether both directions are connected.
   [[nodiscard]] bool is_connected() {
     return publisher_.hasSubscribers() &&
            subscriber_.getSubscriptionState() == iox::SubscribeState::SUBSCRIBED;
@@ -48,10 +48,10 @@ class Side {
           sample->position.fill(static_cast<double>(i % 16));
           sample.publish();
         })
-        .or_else([](auto&) { throw std::runtime_error("iceoryx lends no more"); });
+        .or_else([](auto&) { throw std::runtime_error("iceoryx has no free sample to loan"); });
   }
 
-  /// Polls until payload i has come; false if a stop is requested.
+  /// Polls until payload i has arrived; false if a stop is requested.
   bool await(std::uint64_t i) {
     for (;;) {
       std::uint64_t number = 0;

@@ -5,8 +5,8 @@
 
 #include "bench/harness/bench_stream.hpp"
 
-/// Boost.Math's modified Akima: the library interpolator that takes one more point at a time. It is
-/// C¹ only, and changes nothing but the last two slopes.
+/// Boost.Math's modified Akima: the library interpolator to which single points can be appended. It
+/// is C¹ only; an append changes only the last two slopes.
 namespace splinecast::bench {
 namespace {
 
@@ -15,8 +15,8 @@ using Makima = boost::math::interpolators::makima<std::vector<double>>;
 constexpr std::size_t kFirst = 1'000;
 constexpr std::size_t kMost = 65'536;
 
-/// One interpolator per dimension over the first waypoints, with room for more: growing is not
-/// what is measured.
+/// One interpolator per dimension over the first waypoints, with reserved capacity: reallocation is
+/// not measured.
 std::vector<Makima> make(Feed& feed, std::size_t dimensions) {
   std::vector<double> x;
   std::vector<std::vector<double>> y(dimensions);
@@ -37,7 +37,7 @@ std::vector<Makima> make(Feed& feed, std::size_t dimensions) {
   return all;
 }
 
-/// One waypoint to all dimensions.
+/// Appends one waypoint to all dimensions.
 void append(benchmark::State& bench) {
   const auto dimensions = static_cast<std::size_t>(bench.range(0));
   Feed feed(dimensions);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array<std::pair<ConditionKind, std::string_view>, 8> kConditionNames{{
     {ConditionKind::natural, "natural"},
-    {ConditionKind::rest, "rest"},
+    {ConditionKind::clamped, "clamped"},
     {ConditionKind::halt, "halt"},
     {ConditionKind::velocity, "velocity"},
     {ConditionKind::acceleration, "acceleration"},
@@ -27,7 +27,7 @@ constexpr std::array<std::pair<Tail, std::string_view>, 4> kTailNames{{
     {Tail::bessel, "bessel"},
     {Tail::parabolic, "parabolic"},
     {Tail::natural, "natural"},
-    {Tail::rest, "rest"},
+    {Tail::clamped, "clamped"},
 }};
 
 bool takes_values(ConditionKind kind) noexcept {
@@ -76,7 +76,7 @@ std::optional<Condition> parse_condition(std::string_view text) {
   const std::size_t equals = text.find('=');
   const std::string_view wanted = text.substr(0, equals);
   for (const auto& [kind, name] : kConditionNames) {
-    if (name != wanted || kind == ConditionKind::own) continue;  // that is said by saying nothing
+    if (name != wanted || kind == ConditionKind::own) continue;  // the default when none is given
     if (takes_values(kind) != (equals != std::string_view::npos)) return std::nullopt;
     if (!takes_values(kind)) return Condition{.kind = kind};
     auto values = parse_values(text.substr(equals + 1));

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/basics/number_text.hpp"
 #include "splinecast/waypoint.hpp"
 
 namespace splinecast {
@@ -14,7 +15,7 @@ namespace {
 
 using Quaternion = std::array<double, kQuaternionSize>;
 
-constexpr std::string_view kWrap = "wrap:";
+constexpr std::string_view kPeriodic = "periodic:";
 constexpr std::array<std::pair<DimensionKind, std::string_view>, 3> kKindNames{{
     {DimensionKind::linear, "linear"},
     {DimensionKind::quaternion, "quaternion"},
@@ -25,19 +26,15 @@ bool is_quaternion(DimensionKind kind) noexcept {
   return kind == DimensionKind::quaternion || kind == DimensionKind::quaternion_wxyz;
 }
 
-std::string text_of(double value) {
-  std::array<char, 32> buffer{};
-  return {buffer.begin(), std::to_chars(buffer.begin(), buffer.end(), value).ptr};
-}
-
 bool is_period(double period) noexcept {
-  return period >= kLeastPeriod && period <= kLargestValue;  // no NaN is
+  return period >= kLeastPeriod && period <= kLargestValue;  // false for NaN
 }
 
 double require_period(const Dimension& dimension, std::size_t d) {
   if (is_period(dimension.period)) return dimension.period;
-  throw std::invalid_argument("dimension " + std::to_string(d) + " wraps with period " +
-                              text_of(dimension.period) + ", which is none from 1e-100 to 1e100");
+  throw std::invalid_argument("dimension " + std::to_string(d) + " has period " +
+                              core::number_text(dimension.period) +
+                              ", which is not from 1e-100 to 1e100");
 }
 
 Quaternion load(std::span<const double> values, std::size_t first) noexcept {
@@ -62,7 +59,7 @@ void subtract(Quaternion& q, double times, const Quaternion& other) noexcept {
   for (std::size_t k = 0; k < q.size(); ++k) q[k] -= times * other[k];
 }
 
-/// Length; by the largest component where squares would overflow or vanish.
+/// Length. Scales by the largest component if squares would overflow or underflow.
 double length(const Quaternion& q) noexcept {
   constexpr double kSmall = 1e-200;
   const double square = dot(q, q);
@@ -75,16 +72,16 @@ double length(const Quaternion& q) noexcept {
   return largest * std::sqrt(dot(unit, unit));
 }
 
-/// Whether a quaternion of this length gives a rotation. Lengths that no curve between rotations
-/// reaches do not: 0, next to 0, or too large.
+/// Whether a quaternion of this length represents a rotation. A length that is 0, close to 0 or too
+/// large does not; no curve between rotations reaches one.
 bool is_length(double n) noexcept { return n > 1 / kLargestValue && n < kLargestValue; }
 
-/// Divides a quaternion and its derivatives by its length. Returns whether that could be done.
+/// Divides a quaternion and its derivatives by its length. Returns whether the length is valid.
 template <typename... Derivatives>
 bool to_unit_length(Quaternion& q, Derivatives&... derivatives) noexcept {
   const double n = length(q);
   if (!is_length(n)) return false;
-  const double inverse = 1 / n;  // one division: this is in the way of every sample
+  const double inverse = 1 / n;  // one division only: every sample needs it
   const auto shorten = [inverse](Quaternion& values) {
     for (double& value : values) value *= inverse;
   };
@@ -99,7 +96,8 @@ struct LengthDerivatives {
   double second;
 };
 
-/// With r = m·q: r' = q' + m'q and r'' = q'' + 2m'q' + m''q where m = 1. Takes r, leaves q.
+/// With r = m·q: r' = q' + m'q and r'' = q'' + 2m'q' + m''q where m = 1. Converts derivatives of r
+/// to those of q.
 LengthDerivatives keep_unit_length(const Quaternion& q, Quaternion& v, Quaternion& a) noexcept {
   const double m1 = dot(q, v);
   const double m2 = dot(v, v) + dot(q, a) - m1 * m1;
@@ -121,7 +119,7 @@ void normalise_quaternion(const StateRef& state, std::size_t first) noexcept {
   subtract(j, 3 * m1, a);
   subtract(j, 3 * m2, v);
   subtract(j, m3, q);
-  // A derivative out of all proportion to the length: no curve between rotations has one.
+  // A derivative far too large for the length: no curve between rotations has one.
   if (!are_finite(v) || !are_finite(a) || !are_finite(j)) return;
   store(q, state.position, first);
   store(v, state.velocity, first);
@@ -129,7 +127,7 @@ void normalise_quaternion(const StateRef& state, std::size_t first) noexcept {
   store(j, state.jerk, first);
 }
 
-/// 2·vec(q*⊗p), the quaternions as they lie in memory.
+/// 2·vec(q*⊗p), with both quaternions in memory order.
 Vector3 body_rate(const Quaternion& q, const Quaternion& p, bool w_first) noexcept {
   const std::size_t v = w_first ? 1 : 0;  // where the vector part begins
   const std::size_t w = w_first ? 0 : 3;
@@ -145,8 +143,8 @@ Vector3 body_rate(const Quaternion& q, const Quaternion& p, bool w_first) noexce
 }  // namespace
 
 std::string to_string(const Dimension& dimension) {
-  if (dimension.kind == DimensionKind::wrap) {
-    return std::string(kWrap) + text_of(dimension.period);
+  if (dimension.kind == DimensionKind::periodic) {
+    return std::string(kPeriodic) + core::number_text(dimension.period);
   }
   for (const auto& [kind, name] : kKindNames) {
     if (kind == dimension.kind) return std::string(name);
@@ -158,26 +156,26 @@ std::optional<Dimension> parse_dimension(std::string_view text) {
   for (const auto& [kind, name] : kKindNames) {
     if (name == text) return Dimension{.kind = kind};
   }
-  if (!text.starts_with(kWrap)) return std::nullopt;
-  text.remove_prefix(kWrap.size());
+  if (!text.starts_with(kPeriodic)) return std::nullopt;
+  text.remove_prefix(kPeriodic.size());
   double period = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), period);
   if (error != std::errc{} || end != text.data() + text.size() || !is_period(period)) {
     return std::nullopt;
   }
-  return Dimension{.kind = DimensionKind::wrap, .period = period};
+  return Dimension{.kind = DimensionKind::periodic, .period = period};
 }
 
 DimensionKinds::DimensionKinds(std::span<const Dimension> dimensions) {
   for (std::size_t d = 0; d < dimensions.size(); ++d) {
     const Dimension& dimension = dimensions[d];
-    if (dimension.kind == DimensionKind::wrap) {
-      wraps_.push_back({.dimension = d, .period = require_period(dimension, d)});
+    if (dimension.kind == DimensionKind::periodic) {
+      periodic_.push_back({.dimension = d, .period = require_period(dimension, d)});
       continue;
     }
     if (dimension.period != 0) {
       throw std::invalid_argument("dimension " + std::to_string(d) + " has period " +
-                                  text_of(dimension.period) + " and does not wrap");
+                                  core::number_text(dimension.period) + " but is not periodic");
     }
     if (!is_quaternion(dimension.kind)) continue;
     const auto rest = dimensions.subspan(d);
@@ -208,7 +206,7 @@ bool DimensionKinds::takes(std::span<const double> position,
 
 void DimensionKinds::continue_from(std::span<const double> previous,
                                    const WaypointValues& waypoint) const noexcept {
-  for (const auto& [d, period] : wraps_) {
+  for (const auto& [d, period] : periodic_) {
     if (previous.empty()) break;
     const double way = waypoint.position[d] - previous[d];
     // A value that is already near keeps its bits.
@@ -229,7 +227,7 @@ void DimensionKinds::continue_from(std::span<const double> previous,
 }
 
 void DimensionKinds::normalise(const StateRef& state) const noexcept {
-  for (const auto& [d, period] : wraps_) {
+  for (const auto& [d, period] : periodic_) {
     const double least = std::remainder(state.position[d], period);  // exact; in [−P/2, P/2]
     state.position[d] = least >= period / 2 ? -period / 2 : least;
   }
@@ -259,7 +257,8 @@ void DimensionKinds::normalise_step(std::span<const double> position,
     Quaternion q = load(position, first);
     Quaternion s = load(step, first);
     if (!to_unit_length(q, s)) continue;
-    // Of r = q/|q| only r'' = (q'' − (r·q'') r)/|q| + … has q'' in it.
+    // The second derivative of r = q/|q| is r'' = (q'' − (r·q'') r)/|q| + …, without q'' in the
+    // rest.
     subtract(s, dot(q, s), q);
     store(s, step, first);
   }
@@ -271,8 +270,8 @@ void DimensionKinds::require_end(const Condition& end) const {
     for (std::size_t d = quaternion.first; d < quaternion.first + kQuaternionSize; ++d) {
       if (d >= end.value.size() || end.value[d] == 0) continue;
       throw std::invalid_argument("end condition '" + to_string(end) + "' has " +
-                                  text_of(end.value[d]) + " in dimension " + std::to_string(d) +
-                                  ", of a quaternion, where only 0 can be asked for");
+                                  core::number_text(end.value[d]) + " in dimension " +
+                                  std::to_string(d) + ", of a quaternion, where only 0 is allowed");
     }
   }
 }

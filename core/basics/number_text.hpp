@@ -6,8 +6,8 @@
 
 namespace splinecast::core {
 
-/// A number in the shortest form that reads back exactly: std::to_string would lose small ones and
-/// write a hundred digits of large ones.
+/// A number in the shortest form that reads back exactly. std::to_string loses small numbers and
+/// writes a hundred digits for large ones.
 inline std::string number_text(double value) {
   std::array<char, 32> buffer{};
   return {buffer.begin(), std::to_chars(buffer.begin(), buffer.end(), value).ptr};

@@ -7,8 +7,8 @@
 
 namespace splinecast::core {
 
-/// The value of rank ⌈fraction · count⌉, fraction from 0 to 1; T{} without values. Reorders the
-/// values. O(count), allocates nothing.
+/// The value of rank ⌈fraction · count⌉, fraction from 0 to 1; T{} if there are no values. Reorders
+/// the values. O(count), allocates nothing.
 template <typename T>
 [[nodiscard]] T quantile(std::span<T> values, double fraction) noexcept {
   if (values.empty()) return T{};

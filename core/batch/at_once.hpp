@@ -4,16 +4,15 @@
 #include "splinecast/piecewise_polynomial.hpp"
 #include "splinecast/waypoint.hpp"
 
-/// Methods that make their curve of all waypoints at once in a way of their own. Each throws
-/// std::invalid_argument as `fit` does. O(n·D).
+/// Methods with their own batch fit. Each throws std::invalid_argument as `fit` does. O(n·D).
 namespace splinecast::core {
 
-/// The C² cubic spline, which meets every condition.
+/// The C² cubic spline, with any boundary condition.
 [[nodiscard]] PiecewisePolynomial fit_c2(const Waypoints& waypoints, const Condition& start,
                                          const Condition& end);
 
-/// The C² cubic spline in a parameter that grows by 1 from waypoint to waypoint (doc 002), each
-/// segment then stretched over its real interval. Ends naturally.
+/// The C² cubic spline in a parameter that increases by 1 from waypoint to waypoint (math 14); each
+/// segment is then stretched to its real interval. The ends are natural.
 [[nodiscard]] PiecewisePolynomial fit_normalized(const Waypoints& waypoints, const Condition& start,
                                                  const Condition& end);
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/basics/number_text.hpp"
 #include "core/batch/at_once.hpp"
 #include "core/batch/knots.hpp"
 
@@ -20,12 +21,12 @@ void require_closed(const Waypoints& waypoints) {
   const auto first = waypoints[0].position;
   const auto last = waypoints[waypoints.size() - 1].position;
   for (std::size_t d = 0; d < waypoints.dimensions; ++d) {
-    // Equal but for the rounding of whatever made the file.
+    // Equal except for the rounding of the input.
     const double rounding = 1e-12 * std::max(std::abs(first[d]), std::abs(last[d]));
     if (std::abs(last[d] - first[d]) <= rounding) continue;
     refuse("periodic", "needs a last position equal to the first one; dimension " +
-                           std::to_string(d) + " goes from " + std::to_string(first[d]) + " to " +
-                           std::to_string(last[d]));
+                           std::to_string(d) + " goes from " + number_text(first[d]) + " to " +
+                           number_text(last[d]));
   }
 }
 
@@ -55,11 +56,11 @@ Condition velocity(std::vector<double> value) {
   return {.kind = ConditionKind::velocity, .value = std::move(value)};
 }
 
-/// The periodic spline: all velocities are linear in the one at the join, v = y + z·v_join, where
-/// y has 0 and z has 1 at both ends; the row of the join then gives v_join.
+/// The periodic spline: all velocities are linear in the velocity at the join, v = y + z·v_join,
+/// where y is 0 and z is 1 at both ends; the row of the join then gives v_join.
 KnotRing solve_periodic(const Waypoints& waypoints) {
   const std::size_t n = waypoints.size() - 1;
-  const Condition rest{.kind = ConditionKind::rest, .value = {}};
+  const Condition rest{.kind = ConditionKind::clamped, .value = {}};
   const KnotRing y = solve_knots(waypoints, {}, rest, rest);
   const std::vector<double> zeros(waypoints.size());
   const KnotRing z = solve_knots({.dimensions = 1, .times = waypoints.times, .positions = zeros},

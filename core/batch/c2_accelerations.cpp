@@ -16,10 +16,10 @@ struct Row {
   double upper = 0;
 };
 
-/// The system of the acceleration form (doc 003 eq 4-10, 4-15), in full second derivatives.
+/// The system of the acceleration form (math 5, 7), in full second derivatives.
 class AccelerationSystem {
  public:
-  /// `knots` holds the waypoints and measures their intervals.
+  /// `knots` holds the waypoints and their measured intervals.
   explicit AccelerationSystem(const KnotRing& knots)
       : knots_(knots), rows_(knots.size()), values_(knots.size() * knots.dimensions()) {
     for (std::size_t i = 1; i < knots_.newest(); ++i) {
@@ -30,7 +30,7 @@ class AccelerationSystem {
     }
   }
 
-  /// Writes the row of an end. Not-a-knot leaves the end out of the system: see `pass_ends`.
+  /// Writes the row of an end. Not-a-knot removes the end from the system: see `pass`.
   void impose(const Condition& condition, bool is_start) {
     const std::size_t i = is_start ? 0 : knots_.newest();
     const std::size_t interval = is_start ? 0 : i - 1;
@@ -41,7 +41,7 @@ class AccelerationSystem {
     const auto right_side = at(i);
     switch (condition.kind) {
       case ConditionKind::velocity:
-      case ConditionKind::rest:
+      case ConditionKind::clamped:
       case ConditionKind::halt:
         rows_[i] = {.lower = is_start ? 0.0 : 1.0, .pivot = 2, .upper = is_start ? 1.0 : 0.0};
         for (std::size_t d = 0; d < right_side.size(); ++d) {
@@ -56,13 +56,14 @@ class AccelerationSystem {
     }
   }
 
-  /// Sets the value of an end to `value` in all dimensions and every other right side to 0.
+  /// Sets the right sides of both ends to `value` in all dimensions and every other right side to
+  /// 0.
   void make_homogeneous(double value) {
     std::ranges::fill(values_, 0.0);
     for (const std::size_t i : {std::size_t{0}, knots_.newest()}) std::ranges::fill(at(i), value);
   }
 
-  /// Solves in place, from the left and back.
+  /// Solves in place: elimination from the left, then back-substitution.
   void solve() {
     for (std::size_t i = 1; i < rows_.size(); ++i) {
       const double factor = rows_[i].lower / rows_[i - 1].pivot;
@@ -77,7 +78,7 @@ class AccelerationSystem {
     }
   }
 
-  /// The acceleration at an end with not-a-knot: on the line through the next two.
+  /// Writes the acceleration at an end with not-a-knot: on the line through the next two.
   void extrapolate(bool is_start) {
     const std::size_t n = knots_.newest();
     const auto end = at(is_start ? 0 : n);
@@ -93,7 +94,7 @@ class AccelerationSystem {
   [[nodiscard]] double h(std::size_t i) const { return knots_.row(i).h; }
 
  private:
-  /// Puts the line of `extrapolate` into the row next to the end, which the end then leaves.
+  /// Inserts the line of `extrapolate` into the row next to the end, which removes the end from it.
   void pass(bool is_start) {
     const std::size_t n = knots_.newest();
     Row& row = rows_[is_start ? 1 : n - 1];
@@ -142,7 +143,7 @@ AccelerationSystem solved(const KnotRing& knots, const Condition& start, const C
   return system;
 }
 
-/// Knot velocities from accelerations (doc 003 eq 4-8, and its mirror at the last knot).
+/// Knot velocities from accelerations (math 3, and its mirror at the last knot).
 void write_velocities(AccelerationSystem& system, KnotRing& knots) {
   const std::size_t n = knots.newest();
   for (std::size_t i = 0; i <= n; ++i) {
@@ -157,7 +158,7 @@ void write_velocities(AccelerationSystem& system, KnotRing& knots) {
   }
 }
 
-/// Powers 2 and 3 of a cubic from its accelerations (doc 003 eq 4-8).
+/// Powers 2 and 3 of a cubic from its accelerations (math 3).
 void write_cubic_part(std::span<const double> a0, std::span<const double> a1, double h,
                       Segment& out) {
   const std::size_t dimensions = a0.size();

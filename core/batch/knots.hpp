@@ -5,19 +5,18 @@
 #include "splinecast/piecewise_polynomial.hpp"
 #include "splinecast/waypoint.hpp"
 
-/// What the solvers that see all waypoints at once share.
+/// Functions that the batch solvers share.
 namespace splinecast::core {
 
-/// Throws std::invalid_argument, with index and value, unless a spline can be laid through the
-/// waypoints' times and positions.
+/// Throws std::invalid_argument, with index and value, unless the times and positions of the
+/// waypoints are valid for a spline.
 void require_waypoints(const Waypoints& waypoints);
 
-/// Throws likewise, unless `values` has one finite value per waypoint and dimension.
+/// Throws in the same way unless `values` has one finite value per waypoint and dimension.
 void require_values_of(const Waypoints& waypoints, std::span<const double> values,
                        const char* what);
 
-/// All waypoints as knots with their intervals measured, not solved; for a method that asks for
-/// nothing else.
+/// All waypoints as knots with measured intervals, not solved; with the values that `c2` needs.
 [[nodiscard]] KnotRing measure_knots(const Waypoints& waypoints, bool halts_at_start);
 
 /// All waypoints as knots, solved by a method that streams.
@@ -30,7 +29,7 @@ void require_values_of(const Waypoints& waypoints, std::span<const double> value
 /// A hold at the first waypoint.
 [[nodiscard]] PiecewisePolynomial hold_at(const Waypoints& waypoints);
 
-/// The C² cubic spline by its acceleration form. The conditions' pairing must have been checked.
+/// The C² cubic spline by its acceleration form. The pair of conditions must have been checked.
 [[nodiscard]] PiecewisePolynomial c2_by_accelerations(const Waypoints& waypoints,
                                                       const Condition& start, const Condition& end);
 

@@ -26,7 +26,7 @@ void require_natural(const Condition& condition, std::size_t dimensions) {
   }
 }
 
-/// By the 1-4-1 system in accelerations.
+/// Solves the 1-4-1 system in accelerations.
 PiecewisePolynomial stretched(const Waypoints& waypoints) {
   std::vector<Time> unit_times;
   for (std::size_t i = 0; i < waypoints.size(); ++i) {

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/forms/chord.hpp"
-#include "core/forms/splice.hpp"
+#include "core/forms/entry.hpp"
 #include "core/forms/stop.hpp"
 #include "core/polynomial/cubic.hpp"
 #include "core/simd/clones.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::array<double, kMaxDimensions> kZeros{};
 
-/// The interval between two knots, with what its views need.
+/// The interval between two knots, with the memory that its views refer to.
 struct Between {
   std::array<double, kMaxDimensions> chord;
   std::array<double, kMaxDimensions> position;
@@ -103,7 +103,7 @@ void build_segment(SegmentForm form, const SegmentEnd& left, const SegmentEnd& r
     return;
   }
   const bool is_between_knots =
-      form != SegmentForm::splice && form != SegmentForm::stop && form != SegmentForm::hold;
+      form != SegmentForm::entry && form != SegmentForm::stop && form != SegmentForm::hold;
   if (is_between_knots) return build_segment(Between(form, left, right).interval, out);
   std::array<double, kMaxDimensions> from_values;  // NOLINT(*-member-init)
   const auto from = std::span(from_values).first(left.waypoint.size());
@@ -116,8 +116,8 @@ void build_segment(SegmentForm form, const SegmentEnd& left, const SegmentEnd& r
   std::array<double, kMaxDimensions> to_values;  // NOLINT(*-member-init)
   const auto to = std::span(to_values).first(left.waypoint.size());
   write_position(right, to);
-  build_splice({left.time, from, left.velocity, left.acceleration},
-               {right.time, to, right.velocity, right.acceleration}, out);
+  build_entry({left.time, from, left.velocity, left.acceleration},
+              {right.time, to, right.velocity, right.acceleration}, out);
 }
 
 void write_end_accelerations(SegmentForm form, const SegmentEnd& left, const SegmentEnd& right,

@@ -9,7 +9,7 @@
 namespace splinecast::core {
 namespace {
 
-/// Longest stop that limits can ask for, s: with it they are out of all proportion.
+/// Longest stop, s: limits that need a longer one are unreasonable.
 constexpr double kLongest = 1e6;
 
 /// The acceleration clamped between 0 and the steepest deceleration without reversal.
@@ -23,9 +23,9 @@ template <typename Lane>
   return raised > high ? high : raised;
 }
 
-/// Least time in which a stop keeps an acceleration limit A. With β = |a₀|/A, a deceleration of
-/// A·β at the start and q = √(1 − β), the largest deceleration of a stop over T lies at
-/// s = q/(1 + q) of it and equals A for T = 3/((1 + q)(2 − q))·|v|/A.
+/// Shortest time in which a stop respects an acceleration limit A. With β = |a₀|/A, a deceleration
+/// of A·β at the start and q = √(1 − β), the largest deceleration of a stop of length T is at
+/// T·q/(1+q) and equals A for T = 3/((1 + q)(2 − q))·|v|/A.
 double seconds_within(double v, double a, double limit) noexcept {
   const double beta = v * a < 0 ? std::abs(a) / limit : 0;
   if (beta > 1) return 3 * std::abs(v) / limit;
@@ -33,8 +33,8 @@ double seconds_within(double v, double a, double limit) noexcept {
   return 3 / ((1 + q) * (2 - q)) * std::abs(v) / limit;
 }
 
-/// Least time in which a stop keeps a jerk limit: its jerk is largest at an end, and at most
-/// 6|v|/T² whatever acceleration it begins with.
+/// Shortest time in which a stop respects a jerk limit: its jerk is largest at an end, and at most
+/// 6|v|/T² for any initial acceleration.
 double seconds_within_jerk(double v, double limit) noexcept {
   return std::sqrt(6 * std::abs(v) / limit);
 }
@@ -58,7 +58,7 @@ void build_stop(Time from, Time stop_time, std::span<const double> position,
   out.left = from;
   out.right = from + stop_time;
   out.order = kMaxOrder;
-  out.kind = SegmentKind::stop_tail;
+  out.kind = SegmentKind::stop;
   for_overlapping_lanes(dimensions, [&](auto lane, std::size_t first) {
     using Lane = typename decltype(lane)::type;
     const auto v = load_lane<Lane>(velocity.data() + first);

@@ -10,12 +10,12 @@ namespace splinecast::core {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// A violation is found to this part of the range: 2⁻³⁰ < 10⁻⁹.
+/// Number of bisections that locate a violation: to 2⁻³⁰ < 10⁻⁹ of the range.
 constexpr int kHalvings = 30;
 
 constexpr std::array kMagnitudes{LimitKind::velocity, LimitKind::acceleration, LimitKind::jerk};
 
-/// The derivative that a limit is of: 0 is the position.
+/// The derivative to which a limit applies: 0 is the position.
 constexpr int derivative_of(LimitKind kind) noexcept {
   return (static_cast<int>(kind) + 1) % static_cast<int>(kLimitKinds);
 }
@@ -24,13 +24,13 @@ double value_or(std::span<const double> values, std::size_t d, double none) noex
   return d < values.size() ? values[d] : none;
 }
 
-/// What is compared: limits, and the part of a curve.
+/// The limits and the part of a curve to compare.
 struct Comparison {
   const MotionLimits& limits;
   const SegmentPart& part;
   const Allowance& allowance;
 
-  /// The limit of a dimension, or what is allowed instead; 0: none.
+  /// The limit of a dimension, or its allowance if that is larger; 0: none.
   [[nodiscard]] double limit(LimitKind kind, std::size_t d) const noexcept {
     const bool is_velocity = kind == LimitKind::velocity;
     if (kind == LimitKind::jerk) return value_or(limits.jerk, d, 0);
@@ -45,7 +45,7 @@ struct Comparison {
   }
 };
 
-/// What `worst_excesses` needs to know about one limit, and whether it is kept.
+/// The excess of one limit, and whether the limit is respected.
 struct Finding {
   Excess excess;
   bool is_kept = false;
@@ -60,7 +60,7 @@ Finding magnitude_finding(const Comparison& comparison, LimitKind kind, std::siz
   return {{ratio, kind, d, largest.value, limit, largest.u}, is_kept};
 }
 
-/// The ratio of a value to bounds of which one at least is finite.
+/// The ratio of a value to its bounds, at least one of which is finite.
 double ratio_to_bounds(double value, double lower, double upper) noexcept {
   if (std::isnan(value)) return kInfinity;
   if (lower > -kInfinity && upper < kInfinity) {
@@ -88,7 +88,8 @@ Finding position_finding(const Comparison& comparison, std::size_t d, double low
   return {is_low ? low : high, is_kept};
 }
 
-/// Calls take(finding) for each limit of a dimension until it answers false; false then.
+/// Calls take(finding) for each limit of a dimension. Stops and returns false if a call returns
+/// false.
 bool take_dimension(const Comparison& comparison, std::size_t d, auto& take) noexcept {
   constexpr std::array kSets{Derivatives::velocity, Derivatives::acceleration, Derivatives::jerk};
   std::array<double, kMagnitudes.size()> limits{};
@@ -117,8 +118,8 @@ std::span<const QuaternionDimensions> quaternions_of(const DimensionKinds* kinds
   return kinds == nullptr ? std::span<const QuaternionDimensions>() : kinds->quaternions();
 }
 
-/// Calls take_one(dimension) for each dimension of its own and take_rotation(quaternion) for each
-/// quaternion, until one answers false; false then.
+/// Calls take_one(dimension) for each dimension outside quaternions and take_rotation(quaternion)
+/// for each quaternion. Stops and returns false if a call returns false.
 bool for_all(const DimensionKinds* kinds, std::size_t dimensions, const auto& take_one,
              const auto& take_rotation) noexcept {
   auto quaternions = quaternions_of(kinds);
@@ -228,7 +229,7 @@ std::optional<Excess> first_violation(const MotionLimits& limits, const Dimensio
   if (!keeps_within(limits, kinds, start, allowance)) {
     return worst_excess(limits, kinds, start, allowance);
   }
-  // No limit is passed until `kept`; one is until `start.to`.
+  // No limit is exceeded up to `kept`; one is exceeded up to `start.to`.
   double kept = part.from;
   start.to = part.to;
   for (int i = 0; i < kHalvings; ++i) {

@@ -6,7 +6,7 @@
 namespace splinecast::core {
 namespace {
 
-/// Of the value at an extreme, relative to its terms: what a better zero would still change.
+/// Accepted error of an extreme from an inexact zero, relative to its terms.
 constexpr double kNegligible = 0x1p-55;
 
 struct Ends {
@@ -29,7 +29,7 @@ template <int N>
 struct Polynomial {
   std::array<double, static_cast<std::size_t>(N)> c;
 
-  /// In the operations of `evaluate`.
+  /// Evaluates with the operations of `evaluate`.
   [[nodiscard]] double operator()(double u) const noexcept {
     double value = c[N - 1];
     for (std::size_t k = N - 1; k-- > 0;) value = value * u + c[k];
@@ -60,8 +60,8 @@ Polynomial<N> derivative_of(const double* coefficients, std::size_t dimensions) 
   return p;
 }
 
-/// The stable form: of both zeros the first comes from the sum that cannot cancel, the other from
-/// their product. A vanishing leading coefficient makes the first infinite or no number.
+/// Adds the zeros of a quadratic, by the stable form: one zero from the sum without cancellation,
+/// the other from the product of both. A leading coefficient of 0 makes the first infinite or NaN.
 void add_quadratic_zeros(const Polynomial<3>& p, const Ends& ends, Zeros& zeros) noexcept {
   const auto [c, b, a] = p.c;
   const double discriminant = b * b - 4 * a * c;
@@ -80,9 +80,9 @@ struct Place {
   double value;
 };
 
-/// The zero between two places with different signs between which a polynomial is monotone. Ends
-/// where residual times distance, which bounds the change of the integral, is negligible; a
-/// bracket that Halley's steps do not halve is halved.
+/// The zero between two places with different signs, between which a polynomial is monotone. Ends
+/// when residual times distance, which bounds the change of the integral, is negligible. Bisects a
+/// bracket that Halley's steps do not halve.
 template <int N>
 double bracketed_zero(const Polynomial<N>& p, Place low, Place high, double negligible) noexcept {
   constexpr int kTries = 100;
@@ -113,8 +113,8 @@ double bracketed_zero(const Polynomial<N>& p, Place low, Place high, double negl
   return u;
 }
 
-/// Zeros inside a range of the m-th derivative of a polynomial of that order. `turns` are those of
-/// the derivative after it, which are looked at where there is no closed form.
+/// Zeros inside a range of the M-th derivative of a polynomial of order `Order`. `turns` are the
+/// zeros of the next derivative, used if there is no closed form.
 template <int Order, int M>
 Zeros zeros_of(const double* coefficients, std::size_t dimensions, const Ends& ends,
                const Zeros& turns) noexcept {
@@ -129,7 +129,7 @@ Zeros zeros_of(const double* coefficients, std::size_t dimensions, const Ends& e
   } else if constexpr (n > 3) {
     const auto p = derivative_of<n, M>(coefficients, dimensions);
     const double most = std::max(std::abs(ends.from), std::abs(ends.to));
-    // The largest term of the derivative before this one is no smaller.
+    // `largest_term(most) * most / n` is at most the largest term of the previous derivative.
     const double negligible = kNegligible * p.largest_term(most) * most / n;
     Place low{ends.from, p(ends.from)};
     const auto look_until = [&](double u) {
@@ -166,7 +166,7 @@ SegmentRange range_with(const double* coefficients, std::size_t dimensions, cons
   }
 }
 
-/// From the highest derivative down: the zeros of each are the turns of the one before it.
+/// From the highest derivative down: the zeros of each are the turning points of the previous one.
 template <int Order>
 void write_ranges_of(const double* coefficients, std::size_t dimensions, const Ends& ends,
                      Derivatives which, std::array<SegmentRange, 4>& out) noexcept {

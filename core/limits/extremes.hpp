@@ -7,17 +7,17 @@
 #include "core/polynomial/segment.hpp"
 #include "splinecast/state.hpp"
 
-/// Least and greatest values of a segment and its derivatives.
+/// Minimum and maximum of a segment and of its derivatives.
 ///
-/// They lie at the ends of the range or at a zero of the next derivative: in closed form for a
-/// linear and a quadratic derivative; for higher ones the zeros of the derivative after it cut the
-/// range into monotone pieces, each with one zero at most, which Halley's steps find inside a
-/// bracket. Every value is that of `evaluate` at its u, to the bit, and exact to kExtremeRounding
-/// times `size_of_terms`. Bounded work, no allocation, no exception; safe from any thread. A value
-/// that is no number makes both extremes none.
+/// An extreme is at an end of the range or at a zero of the next derivative. Zeros of a linear or
+/// quadratic derivative have a closed form. For a higher degree, the zeros of the derivative after
+/// it divide the range into monotone pieces with at most one zero each, found by Halley's steps
+/// inside a bracket. Every value has the bits of `evaluate` at its u, and is exact to
+/// kExtremeRounding times `size_of_terms`. Bounded work, no allocation, no exception; safe from any
+/// thread. If a value is NaN, both extremes are NaN.
 namespace splinecast::core {
 
-/// A value, and where it is: u seconds after the left knot.
+/// A value and its place: u seconds after the left knot.
 struct Extreme {
   double value = 0;
   double u = 0;
@@ -27,7 +27,7 @@ struct SegmentRange {
   Extreme least{};
   Extreme greatest{};
 
-  /// The one with the larger absolute value; NaN if either is.
+  /// The extreme with the larger absolute value; NaN if either is NaN.
   [[nodiscard]] Extreme largest() const noexcept {
     return -least.value > greatest.value ? least : greatest;
   }
@@ -54,13 +54,13 @@ struct SegmentPart {
                                     std::size_t dimensions, std::size_t d, int derivative,
                                     double from, double to) noexcept;
 
-/// The ranges of the derivatives asked for, in the places of their numbers; the others are left
-/// alone. Takes less time than `range_of` for each of them.
+/// Writes the ranges of the derivatives in `which`, indexed by derivative, and leaves the others
+/// unchanged. Faster than one `range_of` for each.
 void write_ranges(const SegmentPart& part, std::size_t d, Derivatives which,
                   std::array<SegmentRange, 4>& out) noexcept;
 
-/// Σ |c_k k!/(k−m)! u^(k−m)| for the m-th derivative of dimension d, at the end of the part that
-/// is farther from the left knot: what rounding is relative to.
+/// Σ |c_k k!/(k−m)! u^(k−m)| for the m-th derivative of dimension d, at the end of the part that is
+/// farther from the left knot: the scale of rounding errors.
 [[nodiscard]] double size_of_terms(const SegmentPart& part, std::size_t d, int derivative) noexcept;
 
 }  // namespace splinecast::core

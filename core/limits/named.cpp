@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A name without the unit in brackets behind it.
+/// A name without the unit in brackets after it.
 std::string_view without_unit(std::string_view name) {
   if (name.empty() || (name.back() != ']' && name.back() != ')')) return name;
   const std::size_t open = name.rfind(name.back() == ']' ? '[' : '(');
@@ -28,7 +28,7 @@ const NamedLimits* joint_of(std::span<const NamedLimits> joints, const std::stri
   return &*found;
 }
 
-/// Nothing if all values say "none".
+/// Clears a list if all its values mean "none".
 void drop_if_none(std::vector<double>& values, double none) {
   if (std::ranges::all_of(values, [none](double value) { return value == none; })) values.clear();
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/basics/number_text.hpp"
 #include "splinecast/limits.hpp"
 #include "splinecast/waypoint.hpp"
 
@@ -42,8 +43,8 @@ bool all_are(const std::vector<double>& values, double none) noexcept {
 }
 
 [[noreturn]] void refuse_bounds(double lower, double upper) {
-  throw std::invalid_argument("bounds must be a lower one below an upper one, not " +
-                              std::to_string(lower) + " and " + std::to_string(upper));
+  throw std::invalid_argument("the lower bound must be below the upper bound, not " +
+                              core::number_text(lower) + " and " + core::number_text(upper));
 }
 
 void require_size(const NamedList& list, std::size_t dimensions) {
@@ -52,16 +53,17 @@ void require_size(const NamedList& list, std::size_t dimensions) {
                               "s for " + std::to_string(dimensions) + " dimensions");
 }
 
-/// A quaternion is limited as a whole, in its first dimension.
+/// A quaternion has one limit of each kind, that of its first dimension.
 void require_first_alone(const MotionLimits& limits, std::size_t first) {
   for (const auto& [name, values] : magnitudes(limits)) {
     if (values->empty()) continue;
     for (std::size_t d = first + 1; d < first + kQuaternionSize; ++d) {
       const double value = (*values)[d];
       if (value == 0 || value == (*values)[first]) continue;
-      throw std::invalid_argument(
-          std::string(name) + ' ' + std::to_string(value) + " of dimension " + std::to_string(d) +
-          ": a quaternion has the limit of its first dimension, " + std::to_string(first));
+      throw std::invalid_argument(std::string(name) + ' ' + core::number_text(value) +
+                                  " of dimension " + std::to_string(d) +
+                                  ": a quaternion has the limit of its first dimension, " +
+                                  std::to_string(first));
     }
   }
 }
@@ -78,7 +80,7 @@ void require_limits(const MotionLimits& limits) {
     for (const double value : *values) {
       if (is_usable(value) && value >= 0) continue;
       throw std::invalid_argument(std::string(name) + " must be positive, or 0 for none, not " +
-                                  std::to_string(value));
+                                  core::number_text(value));
     }
   }
   const bool has_pairs = limits.lower.size() == limits.upper.size();

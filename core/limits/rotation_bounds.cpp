@@ -10,7 +10,7 @@ namespace splinecast::core {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// How much a bound may be above what is reached.
+/// Accepted ratio of a bound to the largest value found.
 constexpr double kSlack = 1 + 1e-6;
 constexpr std::size_t kMaxPieces = 64;
 constexpr int kMaxSplits = 300;
@@ -57,8 +57,8 @@ void add_product(std::span<double> to, double factor, std::span<const double> a,
   }
 }
 
-/// The largest value of a quotient on [0, width], bounded from above. Values up to `accepted` need
-/// not be told apart, nor need those beyond `rejected`.
+/// Bounds the largest value of a quotient on [0, width] from above. Bounds up to `accepted` and
+/// values above `rejected` are not refined.
 class PeakSearch {
  public:
   PeakSearch(const RotationQuotient& rotation, double accepted, double rejected) noexcept
@@ -97,7 +97,7 @@ class PeakSearch {
     pieces_[count_++] = {from, width, bound_in(from, width)};
   }
 
-  /// Leaves out the pieces that need not be split.
+  /// Removes the pieces that need not be split.
   void settle() noexcept {
     std::size_t left = 0;
     for (const Piece& piece : std::span(pieces_).first(count_)) {
@@ -122,7 +122,7 @@ class PeakSearch {
     for (std::size_t k = 0; k < points.terms; ++k) {
       const double size = std::sqrt(x[k] * x[k] + y[k] * y[k] + z[k] * z[k]);
       const double ratio = size / points.denominator[k];
-      // Written so that what is no number is beyond everything.
+      // Written so that NaN counts as infinite.
       const bool is_bounded = points.denominator[k] > 0 && ratio < kInfinity;
       most = std::max(most, is_bounded ? ratio : kInfinity);
     }
@@ -146,7 +146,7 @@ class PeakSearch {
   std::size_t count_ = 0;
   double reached_ = 0;
   double at_ = 0;
-  double settled_ = 0;  ///< the largest bound of pieces left out
+  double settled_ = 0;  ///< the largest bound of removed pieces
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/basics/number_text.hpp"
 #include "core/batch/at_once.hpp"
 #include "core/slopes/rule.hpp"
 #include "core/solvers/families.hpp"
@@ -33,7 +34,7 @@ constexpr std::array kSolved{
            .order = kMaxOrder,
            .look_ahead = 1,
            .laws = {.continuity = 2, .degree = 5, .order_of_convergence = 6}},
-    // Reproduces lines on regular meshes only: time is no linear function of its parameter.
+    // Reproduces lines on regular meshes only: time is not a linear function of its parameter.
     Method{.name = "normalized",
            .number = 3,
            .fit_at_once = core::fit_normalized,
@@ -94,11 +95,11 @@ std::string method_names(bool only_streaming) {
 void require_parameters(const Interpolant& interpolant) {
   if (!(interpolant.lambda >= 0 && is_usable(interpolant.lambda))) {
     throw std::invalid_argument("lambda must be 0 to 1e100, not " +
-                                std::to_string(interpolant.lambda));
+                                core::number_text(interpolant.lambda));
   }
   if (!(interpolant.time_scale > 0 && is_usable(interpolant.time_scale))) {
     throw std::invalid_argument("time scale must be above 0 and at most 1e100, not " +
-                                std::to_string(interpolant.time_scale));
+                                core::number_text(interpolant.time_scale));
   }
 }
 

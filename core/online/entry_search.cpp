@@ -10,14 +10,14 @@
 namespace splinecast::core {
 namespace {
 
-/// Of soft limits: below it nothing is told from rounding.
+/// Least soft limit: smaller values cannot be distinguished from rounding.
 constexpr double kLeastAllowed = 1e-9;
 
 double limit_of(const std::vector<double>& limits, std::size_t d) noexcept {
   return limits.empty() ? 0 : limits[d];
 }
 
-/// Whether the velocity at the newest knot is a guess until the next one is known.
+/// Whether the velocity at the newest knot is an estimate until the next knot is known.
 bool is_guess(const SlidingWindow& target) noexcept {
   return !target.options().interpolant.method->needs_velocity();
 }
@@ -53,7 +53,7 @@ void EntrySearch::restart(std::size_t first) noexcept {
 void EntrySearch::restart(std::size_t first, const Instant& from, const Instant& end) noexcept {
   restart(first);
   former_end_ = end.time;
-  build_splice(from, end, behind_);
+  build_entry(from, end, behind_);
   constexpr double kSlack = 1 + 1e-9;
   const auto peak = [&](std::size_t d, int derivative) {
     const SegmentPart part = part_of(behind_);
@@ -69,8 +69,8 @@ void EntrySearch::restart(std::size_t first, const Instant& from, const Instant&
                       });
 }
 
-/// Gives each dimension its velocity and acceleration. Of quaternions |ω| ≤ 2|q̇| and
-/// |α| ≤ 2|q̈| + 4|q̇|², of all four components together.
+/// Calls `write` with the velocity and the acceleration of each dimension; for a quaternion once,
+/// with the bounds |ω| ≤ 2|q̇| and |α| ≤ 2|q̈| + 4|q̇|² over all four components.
 void EntrySearch::write_of_dimensions(const auto& velocity_of, const auto& acceleration_of,
                                       const auto& write) const noexcept {
   std::size_t d = 0;
@@ -137,9 +137,9 @@ EntrySearch::Outcome EntrySearch::search_beyond(const SlidingWindow& target, con
   return Outcome::none;
 }
 
-/// The next duration: first that to the newest knot, if it has not been tried as one, then longer
-/// ones; none behind the longest one.
-/// An entry that is made again may end when it did before, or it would recede with every waypoint.
+/// The next duration: first that to the newest knot, if it was not tried as a knot, then longer
+/// ones; nothing after the longest one. A recomputed entry may end when it did before; otherwise
+/// its end would move later with every waypoint.
 std::optional<Time> EntrySearch::next_duration(Time from, Time to_newest, bool tries_newest,
                                                Time shortest) noexcept {
   if (is_longest_) return std::nullopt;
@@ -155,7 +155,7 @@ std::optional<Time> EntrySearch::next_duration(Time from, Time to_newest, bool t
   return comes_first ? *former_end_ - from : next;
 }
 
-/// The first knot at which the entry itself keeps the limits, if it still does.
+/// Uses the first knot at which the entry itself respects the limits, if it still does.
 EntrySearch::Outcome EntrySearch::fall_back(const SlidingWindow& target, const Instant& from,
                                             const EntryRules& rules) noexcept {
   if (!fallback_knot_ || *fallback_knot_ < target.oldest_segment()) return Outcome::none;
@@ -185,11 +185,11 @@ EntrySearch::Outcome EntrySearch::search_rest(const Instant& rest, const Instant
     if (duration_ > to_seconds(kLongest) && passes_at_last(from, rules)) return Outcome::found;
     duration_ *= kGrowth;
   }
-  build_splice(from, end_.state, entry_);
+  build_entry(from, end_.state, entry_);
   return Outcome::found;
 }
 
-/// Tries the present end. Does not build what cannot pass.
+/// Tries the current end. Does not build an entry that cannot pass.
 EntrySearch::Verdict EntrySearch::judge(const Instant& from, const EntryRules& rules,
                                         int& tries) noexcept {
   allow(from, rules);
@@ -221,8 +221,8 @@ void EntrySearch::end_beyond(const SlidingWindow& target, Time t) noexcept {
           .rest = extrapolation_.rest()};
 }
 
-/// Whether all segments behind the knot at which the entry ends keep the limits. The newest one
-/// that does not is looked for once in a search.
+/// Whether all segments after the knot at which the entry ends respect the limits. Finds the newest
+/// segment that does not once per search.
 bool EntrySearch::keeps_behind(const SlidingWindow& target, const MotionLimits& limits) noexcept {
   if (!knows_behind_) {
     knows_behind_ = true;
@@ -235,10 +235,11 @@ bool EntrySearch::keeps_behind(const SlidingWindow& target, const MotionLimits& 
   return !last_beyond_ || *last_beyond_ < *end_.knot;
 }
 
-/// Whether the rest of the line and the stop keep the position bounds; they keep all other limits.
+/// Whether the rest of the line and the stop segment respect the position bounds; they respect all
+/// other limits.
 bool EntrySearch::keeps_beyond(const MotionLimits& limits) noexcept {
   if (limits.lower.empty() && limits.upper.empty()) return true;
-  // Each dimension moves one way only.
+  // Each dimension moves in one direction only.
   extrapolation_.state_at(extrapolation_.rest(), rest_.ref());
   const auto position = rest_.position();
   for (std::size_t d = 0; d < position.size(); ++d) {
@@ -248,8 +249,8 @@ bool EntrySearch::keeps_beyond(const MotionLimits& limits) noexcept {
   return true;
 }
 
-/// What velocities and accelerations the entry may have: a limit, or what it begins with where that
-/// is beyond the limit.
+/// Sets the allowed velocities and accelerations of the entry: the limit, or the value at the start
+/// of the entry if that exceeds the limit.
 void EntrySearch::allow(const Instant& from, const EntryRules& rules) noexcept {
   allowed_.jerk = rules.limits->jerk;
   allowed_.lower = rules.limits->lower;
@@ -272,7 +273,7 @@ void EntrySearch::allow_shown(const Instant& from, const EntryRules& rules) noex
     }
     allowed_.acceleration[d] = std::max({acceleration, granted_.acceleration[d], kLeastAllowed});
   };
-  // Rest to rest over a way x in a second peaks at 1.875 x and 5.77 x.
+  // A motion from rest to rest over a distance x in 1 s peaks at 1.875 x and 5.77 x.
   const auto velocity_of = [&](std::size_t d) {
     const double way = std::abs(to.position[d] - from.position[d]);
     return std::max(
@@ -286,9 +287,9 @@ void EntrySearch::allow_shown(const Instant& from, const EntryRules& rules) noex
   write_of_dimensions(velocity_of, acceleration_of, allow_dimension);
 }
 
-/// Whether no motion over the time that the entry takes leads from one state to the other as
-/// allowed: its mean acceleration is Δv/T, its mean velocity Δx/T, and with |a| ≤ A its way differs
-/// by at most A·T²/4 from that at the mean of both velocities.
+/// Whether no motion of the entry's duration T from one state to the other is within the allowed
+/// values: its mean acceleration is Δv/T, its mean velocity Δx/T, and with |a| ≤ A its distance
+/// differs by at most A·T²/4 from that at the mean of both velocities.
 bool EntrySearch::is_out_of_reach(const Instant& from) const noexcept {
   constexpr double kSlack = 1 + 1e-9;
   const double duration = to_seconds(end_.state.time - from.time) * kSlack;
@@ -308,18 +309,18 @@ bool EntrySearch::is_out_of_reach(const Instant& from) const noexcept {
 }
 
 bool EntrySearch::passes(const Instant& from) noexcept {
-  build_splice(from, end_.state, entry_);
+  build_entry(from, end_.state, entry_);
   return keeps_within(allowed_, &kinds_, entry_) && keeps_length();
 }
 
-/// The same for the longest entry, which need not keep what the motion has shown.
+/// The same for the longest entry, which may exceed what the motion has shown.
 bool EntrySearch::passes_at_last(const Instant& from, const EntryRules& rules) noexcept {
   if (rules.shown == nullptr) return false;
   allow(from, {.limits = rules.limits});
   return passes(from);
 }
 
-/// Whether quaternions stay so long along the entry that their direction is well defined.
+/// Whether quaternions are long enough along the entry that their direction is well defined.
 bool EntrySearch::keeps_length() const noexcept {
   constexpr int kLooks = 16;
   constexpr double kLeast = 0.7;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/forms/splice.hpp"
+#include "core/forms/entry.hpp"
 #include "core/limits/check.hpp"
 #include "core/online/extrapolation.hpp"
 #include "core/online/sliding_window.hpp"
@@ -15,84 +15,84 @@
 
 namespace splinecast::core {
 
-/// What an entry must keep.
+/// What an entry must respect.
 struct EntryRules {
-  const MotionLimits* limits = nullptr;  ///< given ones
-  const MotionLimits* shown = nullptr;   ///< velocities and accelerations that stand for those of a
-                                         ///< dimension without an acceleration limit: see
-                                         ///< EntrySearch; null: any
-  Time least{};                          ///< shortest entry
-  std::size_t newer = 0;     ///< newer knots that must be known of one at which an entry ends
-  bool goes_beyond = false;  ///< what lies beyond the newest knot counts too
+  const MotionLimits* limits = nullptr;  ///< given limits
+  const MotionLimits* shown = nullptr;  ///< limits shown by the motion: see EntrySearch; null: none
+  Time least{};                         ///< shortest duration of an entry
+  std::size_t newer = 0;  ///< number of newer knots that must be known if an entry ends at a knot
+  bool goes_beyond = false;  ///< the entry may also end after the newest knot
 };
 
-/// The end of an entry. Spans are the search's own, until it is used again.
+/// The end of an entry. Spans refer to memory of the search and are valid until its next call.
 struct EntryEnd {
-  std::optional<std::size_t> knot{};  ///< of the target; none: beyond the newest one
-  std::size_t known = 0;              ///< knots that the target had
+  std::optional<std::size_t> knot{};  ///< knot of the target; none: after the newest one
+  std::size_t known = 0;              ///< number of knots that the target had
   Instant state{};
-  Time line_end{};  ///< beyond the newest: when the straight line ends; not later than the state if
-                    ///< that lies in the stop, or at rest
-  Time rest{};      ///< beyond the newest: when the stop has come to rest
+  Time line_end{};  ///< after the newest knot: end of the straight line; at or before the state if
+                    ///< that is in the stop segment, or at rest
+  Time rest{};      ///< after the newest knot: end of the stop segment
 };
 
-/// Segments of a target that starts at rest in which that start has faded to less than a fiftieth.
+/// Number of segments after which the effect of a start at rest on the target has faded to less
+/// than a fiftieth.
 inline constexpr std::size_t kStartFades = 3;
 
-/// Looks for the entry by which a curve goes on from a state onto the *target*: the spline through
-/// the knots of a run, and behind the newest one its Extrapolation.
+/// Searches for the entry from a state onto the *target*: the spline through the knots of a run
+/// and, after the newest one, its Extrapolation.
 ///
 /// An entry is the quintic from the state to the target's state at its end. Candidates for the end
-/// are, in this order, the target's knots that are still in the window, then times beyond the
-/// newest one, each duration kGrowth times the one before, up to kLongest. Taken is the first one
-/// for which the quintic and everything behind it keep the limits; if there is none, the first one
-/// for which the quintic itself does.
+/// are, in this order, the target's knots that are still in the window, then times after the newest
+/// one, each duration kGrowth times the previous one, up to kLongest. The search takes the first
+/// candidate for which the quintic and everything after it respect the limits; if there is none,
+/// the first for which the quintic itself does.
 ///
-/// The velocity of the newest knot, unless it is given, is a guess until the next one is known. An
-/// entry to it is one of those beyond the newest knot, the shortest, onto the beginning of the
-/// straight line.
+/// The velocity of the newest knot, unless given, is an estimate until the next knot is known. An
+/// entry to that knot therefore counts as one that ends after it: the shortest one, onto the
+/// beginning of the straight line.
 ///
-/// What a motion has *shown* is an estimate. What a dimension has at either end of an entry is
-/// never beyond it, nor a motion over the way in a second, nor what the entry that is made again
-/// has; what lies behind the entry is not compared with it; and an entry of kLongest need not keep
-/// it.
+/// The velocities and accelerations that a motion has *shown* are estimates; they limit a dimension
+/// without an acceleration limit. An entry may always have the values at its two ends, those of a
+/// motion over its distance in 1 s, and those of the entry that it replaces. Segments after the
+/// entry are not compared with them, and an entry of kLongest may exceed them.
 ///
-/// The search can be interrupted after any candidate: what it has refused it does not try again
-/// until `restart`. A candidate that cannot pass, because the mean acceleration or velocity that it
-/// needs is beyond its limit, costs O(D) and does not count as one that was tried; there are at
-/// most K + 2 knots and 170 durations. Allocates when made only; one thread uses it.
+/// The search can be interrupted after any candidate; it does not try a rejected one again until
+/// `restart`. A candidate that cannot pass, because the mean acceleration or velocity that it needs
+/// exceeds its limit, costs O(D) and does not count as tried; there are at most K + 2 knots and 170
+/// durations. Only the constructor allocates. Not thread-safe: one thread uses it.
 class EntrySearch {
  public:
   static constexpr Time kLongest{3'000'000'000};
   static constexpr double kGrowth = 1.05;
 
   enum class Outcome {
-    more,   ///< candidates that are known are left
-    found,  ///< `end` is the entry's
-    none,   ///< no candidate that is known passes
+    more,   ///< some known candidates have not been tried
+    found,  ///< `end` is the end of the entry
+    none,   ///< no known candidate passes
   };
 
   EntrySearch(std::size_t dimensions, DimensionKinds kinds);
 
-  /// Begins with the target's knot `first` again.
+  /// Restarts at knot `first` of the target.
   void restart(std::size_t first) noexcept;
 
-  /// The same in place of an entry from one state to another, beyond the newest knot. O(D).
+  /// The same, to recompute the entry from `from` to `end`, which was after the newest knot. O(D).
   void restart(std::size_t first, const Instant& from, const Instant& end) noexcept;
 
   /// Tries candidates until one passes, none is left, or `tries` of them have been tried; counts
-  /// `tries` down. `from` is the state now, which may have moved on since the last call.
+  /// `tries` down. `from` is the current state, which may be later than in the last call.
   Outcome search(const SlidingWindow& target, const Instant& from, const EntryRules& rules,
                  int& tries) noexcept;
 
-  /// The same for a state at which the curve is to end: at its own time, else later, as much later
-  /// as it takes. `restart` comes first.
+  /// The same for a state at which the curve ends: tries its own time, then later times until one
+  /// passes. Call `restart` first.
   Outcome search_rest(const Instant& rest, const Instant& from, const EntryRules& rules,
                       int& tries) noexcept;
 
-  /// Whether a target that starts at rest with its knot 0, which is in the window, keeps the limits
-  /// as far as it is known; and, where none is given, whether its first segment stays below three
-  /// times what the segments behind show, or, of fewer than four, the first three waypoints.
+  /// Whether a target that starts at rest at its knot 0, which must be in the window, respects the
+  /// limits as far as it is known. In a dimension without an acceleration limit, the peak
+  /// acceleration of the first segment may be three times that of the segments from kStartFades on,
+  /// or, with fewer segments, of the first three waypoints; or the shown one if that is larger.
   [[nodiscard]] bool keeps_start(const SlidingWindow& target, const EntryRules& rules) noexcept;
 
   /// The end found by the last search.
@@ -128,17 +128,17 @@ class EntrySearch {
 
   DimensionKinds kinds_;
   std::size_t next_knot_ = 0;
-  std::optional<Time> former_end_;  ///< of the entry that is made again, if it ended beyond
-  double duration_ = 0;             ///< s, of the last one beyond that was tried; 0: none yet
+  std::optional<Time> former_end_;  ///< end of the recomputed entry, if after the newest knot
+  double duration_ = 0;             ///< s, of the last candidate after the newest knot; 0: none yet
   bool is_longest_ = false;
   std::optional<std::size_t> fallback_knot_;
-  std::optional<std::size_t> last_beyond_;  ///< last segment of the target beyond the limits
+  std::optional<std::size_t> last_beyond_;  ///< last segment of the target that exceeds a limit
   bool knows_behind_ = false;
   EntryEnd end_;
   State end_state_;
   State rest_;            ///< scratch
-  MotionLimits allowed_;  ///< of the present entry
-  MotionLimits granted_;  ///< what the entry that is made again has, where none are given
+  MotionLimits allowed_;  ///< of the current entry
+  MotionLimits granted_;  ///< peaks of the recomputed entry, for dimensions without limits
   Segment entry_;
   Segment behind_;  ///< scratch
   Extrapolation extrapolation_;

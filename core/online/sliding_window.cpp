@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "core/forms/splice.hpp"
+#include "core/forms/entry.hpp"
 #include "core/forms/stop.hpp"
 #include "core/solvers/run_start.hpp"
 
@@ -24,8 +24,8 @@ void require_lag(const WindowOptions& options) {
   const double shortest = smoothing_lag(0, 1);
   if (method.smooths() && !options.force_lag && static_cast<double>(options.settle) < shortest) {
     throw std::invalid_argument("settle lag " + std::to_string(options.settle) +
-                                " is too short to smooth with: " +
-                                std::to_string(static_cast<int>(shortest)) + " or more are needed");
+                                " is too short for smoothing: at least " +
+                                std::to_string(static_cast<int>(shortest)) + " is needed");
   }
 }
 
@@ -116,13 +116,14 @@ bool SlidingWindow::lag_suffices(Time time) const noexcept {
 }
 
 void SlidingWindow::solve(const auto& closing, std::size_t last) noexcept {
-  // A finish changes the newest knot even where it has been frozen as a knot to pass through.
+  // `finish` changes the newest knot even if it is frozen.
   const std::size_t first = std::min(std::max(last, frozen_), knots_.newest());
   solver_->solve(knots_, closing, first);
   knots_.mark_solved(first);
 }
 
-/// Makes the velocity that the waypoints give knot 0 its own, unless its waypoint carries one.
+/// Sets the velocity of knot 0 from the positions of the waypoints, unless the waypoints carry
+/// velocities.
 void SlidingWindow::start_with_waypoints() noexcept {
   if (options_.interpolant.method->needs_velocity()) return;
   write_run_start(knots_, run_start_);
@@ -133,8 +134,8 @@ void SlidingWindow::start_with_waypoints() noexcept {
   }
 }
 
-/// The same whatever has been frozen, as frozen velocities are no boundary condition: rows depend
-/// on the waypoints alone.
+/// Appends one of the knots that shape the start. Solves the same rows whether or not knots are
+/// frozen: frozen velocities are not a boundary condition, and rows depend on the waypoints only.
 void SlidingWindow::append_to_start(const Waypoint& waypoint) noexcept {
   solver_->push(knots_, waypoint);
   start_with_waypoints();
@@ -159,9 +160,9 @@ void SlidingWindow::begin_run() noexcept {
 }
 
 void SlidingWindow::freeze(Time t) noexcept {
-  // What has left the window needs no freezing.
+  // Knots that have left the window count as frozen.
   freeze_knots(oldest_knot());
-  // Frozen is the right knot of the segment that contains t: the first one that is later.
+  // Freezes up to the right knot of the segment that contains t: the first knot after t.
   while (frozen_ < knots() &&
          (frozen_ == 0 ? t >= knots_.row(0).time : t >= knots_.row(frozen_ - 1).time)) {
     ++frozen_;
@@ -177,15 +178,15 @@ void SlidingWindow::finish(const Condition& end) noexcept {
   if (knots() == 0) return;
   const std::size_t newest = knots_.newest();
   if (newest == 0 && is_later_run_) return rest_at_only_knot();
-  // Until K knots have followed it, knot 0 too is still open.
+  // Knot 0 may still change until K knots follow it.
   const bool from_start = newest < options_.settle || is_start_open(newest);
   const ConditionKind own_end = options_.interpolant.method->traits.own_end;
   solve(end.kind == ConditionKind::own ? Condition{.kind = own_end, .value = {}} : end,
         from_start ? 0 : newest - (reach() - 1));
 }
 
-/// A later run of one knot ends at rest there, whatever the condition: nothing else gives it a
-/// slope.
+/// A later run of one knot ends at rest there, under any boundary condition: nothing else gives it
+/// a slope.
 void SlidingWindow::rest_at_only_knot() noexcept {
   std::ranges::fill(knots_.values(0, KnotRing::kVelocity), 0.0);
 }
@@ -236,7 +237,7 @@ void SlidingWindow::restore_run(std::size_t first, std::span<const Knot> knots) 
   first_ = first;
   knots_.restore(first, knots);
   if (first > 0 || knots.empty()) return;
-  // Rows stand as they were eliminated; only the condition behind them is taken up again.
+  // The rows are already eliminated: restores only the start condition.
   if (!options_.interpolant.method->needs_velocity()) {
     write_run_start(knots_, run_start_);
     solver_->start_with(run_start_);

@@ -23,39 +23,39 @@ namespace splinecast::core {
 /// worst mesh, so that a longer lag would change no bit.
 inline constexpr std::size_t kMaxSettle = 64;
 
-/// The settle lag that a method has when none is asked for: 8 for `c2`, the look-ahead of a local
-/// method, which is then exact, and kMaxSettle for `smoothing`.
+/// The default settle lag of a method: 8 for `c2`; the look-ahead for a local method, which is then
+/// exact; kMaxSettle for `smoothing`.
 [[nodiscard]] std::size_t default_settle(const Method& method) noexcept;
 
-/// What shapes a curve that is solved online.
+/// Options of a curve that is solved online.
 struct WindowOptions {
   Interpolant interpolant{};
   std::size_t settle = 8;    ///< settle lag K: the method's look-ahead … kMaxSettle newer knots
-  Tail tail = Tail::bessel;  ///< condition at the newest knot while the stream goes on; `hermite`,
-                             ///< `quintic` and `smoothing` have one of their own
+  Tail tail = Tail::bessel;  ///< condition at the newest knot while the stream continues; fixed for
+                             ///< `hermite`, `quintic` and `smoothing`
   Condition start{.kind = ConditionKind::own, .value = {}};  ///< condition at knot 0
-  Time stop_time{250'000'000};     ///< length of the stop, > 0; with limits the least length
-  MotionLimits limits{};           ///< that stops and entries keep to
-  bool held_before_start = false;  ///< a hold stands before knot 0, as on a live stream
-  bool force_lag = false;          ///< take a lag that is too short for λ
+  Time stop_time{250'000'000};  ///< length of the stop segment, > 0; with limits the least length
+  MotionLimits limits{};        ///< of stop segments and entries
+  bool held_before_start = false;  ///< a hold precedes knot 0, as on a live stream
+  bool force_lag = false;          ///< accept a lag that is too short for λ
 };
 
-/// The online spline: the knots that an append still changes, and the segments at them.
+/// The online spline: the knots that an append still changes, and their segments.
 ///
 /// Invariants, for newest knot n and settle lag K:
-/// - knot i is *converged* once i + K ≤ n; no append touches it again. Its velocity (and its
-///   position, if the method smooths) is that of a full solve over waypoints 0 … i+K with the
-///   tail at the last; of a local method it is exact;
-/// - a converged velocity is no boundary condition: the elimination prefix goes on unchanged, so
-///   that truncations never accumulate;
-/// - segment i lies between knots i and i+1; segment n is the stop tail, until `finish`.
+/// - knot i is *converged* once i + K ≤ n; no append changes it again. Its velocity (and its
+///   position, if the method smooths) is that of a full solve over waypoints 0 … i+K with the tail
+///   condition at the last; for a local method it is exact;
+/// - a converged velocity is not a boundary condition: the elimination prefix continues unchanged,
+///   so that truncation errors never accumulate;
+/// - segment i is between knots i and i+1; segment n is the stop segment, until `finish`.
 ///
-/// A *run* is a sequence of knots that one elimination goes through. The first run begins with the
-/// start condition; `begin_run` begins another one, whose first velocity comes from its waypoints,
-/// and knots are counted from there. A live stream also *freezes*: what readers may have
-/// executed stays, converged or not.
+/// A *run* is a sequence of knots with one elimination. The first run begins with the start
+/// condition; `begin_run` begins another one, whose first velocity comes from its waypoints and
+/// whose knots are numbered from 0. A live stream also *freezes* knots: segments that readers may
+/// have executed do not change, converged or not.
 ///
-/// Allocates when made only. Not thread-safe: one thread uses it.
+/// Only the constructor allocates. Not thread-safe: one thread uses it.
 class SlidingWindow {
  public:
   /// Throws std::invalid_argument for dimensions, a method, a parameter, a lag, a stop time or
@@ -71,28 +71,28 @@ class SlidingWindow {
   /// Whether this is a run that `begin_run` has begun.
   [[nodiscard]] bool is_later_run() const noexcept { return is_later_run_; }
 
-  /// Number of segments of this run so far, the stop included; segment i begins at knot i.
+  /// Number of segments of this run so far, including the stop segment; segment i begins at knot i.
   [[nodiscard]] std::size_t segments() const noexcept;
 
-  /// Number of leading segments that nothing changes any more.
+  /// Number of leading segments that no longer change.
   [[nodiscard]] std::size_t settled_segments() const noexcept;
 
-  /// Number of leading knots of this run at which nothing changes any more.
+  /// Number of leading knots of this run that no longer change.
   [[nodiscard]] std::size_t settled_knots() const noexcept;
 
   /// The form of the segment that begins at knot i, which must still be in the window.
   [[nodiscard]] SegmentForm form(std::size_t i) const noexcept;
 
-  /// Writes the acceleration that the curve reaches the newest knot with, D values, and returns how
-  /// long the stop behind it takes. There must be a knot, and the stream must not be finished.
-  /// O(D).
+  /// Writes the acceleration with which the curve reaches the newest knot, D values, and returns
+  /// the length of the stop segment after it. There must be a knot, and the stream must not be
+  /// finished. O(D).
   [[nodiscard]] Time write_stop(std::span<double> acceleration) const noexcept;
 
-  /// Writes the acceleration at knot i, which must still be in the window: with which the segment
-  /// that begins there starts, or, at the newest knot, with which the one before it arrives. O(D).
+  /// Writes the acceleration at knot i, which must still be in the window: that at the start of the
+  /// segment after it or, for the newest knot, that at the end of the segment before it. O(D).
   void write_acceleration(std::size_t i, std::span<double> acceleration) const noexcept;
 
-  /// The oldest segment that can still be asked for.
+  /// The oldest segment that is still available.
   [[nodiscard]] std::size_t oldest_segment() const noexcept;
 
   [[nodiscard]] bool finished() const noexcept { return finished_; }
@@ -100,71 +100,72 @@ class SlidingWindow {
   /// Whether a waypoint carries the velocity and acceleration that the method needs.
   [[nodiscard]] bool takes(const Waypoint& waypoint) const noexcept;
 
-  /// Whether the knots that a waypoint at `time` would settle have had enough of the curve ahead of
-  /// them for λ: see smoothing_lag, with the mean of those intervals. Always so but for
-  /// `smoothing`, and with `force_lag`. O(1).
+  /// Whether the settle lag is long enough for λ at the knots that a waypoint at `time` would
+  /// settle: see smoothing_lag, with the mean of the intervals in the lag. Always true for methods
+  /// other than `smoothing`, and with `force_lag`. O(1).
   [[nodiscard]] bool lag_suffices(Time time) const noexcept;
 
-  /// Appends a waypoint: its forward rows and K backward rows for all dimensions at once,
-  /// O(K·D) whatever the length of the stream. It must be later than the newest knot, finite, and
-  /// one that the method takes: the caller has checked. Changes the segments from
-  /// `settled_segments()` as it was before the call (with K = 0: from the one it adds).
+  /// Appends a waypoint: its forward rows and K backward rows for all dimensions at once, O(K·D)
+  /// for any length of the stream. The waypoint must be later than the newest knot, finite and
+  /// accepted by `takes`; the caller checks this. Changes the segments from the previous value of
+  /// `settled_segments()` on (with K = 0: only from the new segment on).
   void append(const Waypoint& waypoint) noexcept;
 
-  /// Begins a run. O(1). The velocity of its first knot follows its first three waypoints.
+  /// Begins a run. O(1). The velocity of its first knot follows from its first three waypoints.
   void begin_run() noexcept;
 
-  /// Keeps every knot of this run up to the right end of the segment that contains t as it is: no
-  /// append changes the segments between them. O(1) amortised.
+  /// Freezes every knot of this run up to the right end of the segment that contains t: no append
+  /// changes the segments between them. O(1) amortised.
   void freeze(Time t) noexcept;
 
-  /// Keeps so many leading knots of this run as they are, or all if there are fewer; what is frozen
-  /// stays so until `thaw_knots`.
+  /// Freezes the leading `count` knots of this run, or all if there are fewer, until `thaw_knots`.
   void freeze_knots(std::size_t count) noexcept;
 
-  /// Lets appends change all knots behind the leading `count` again that have not converged.
+  /// Unfreezes the knots after the leading `count`: appends may change those that have not
+  /// converged.
   void thaw_knots(std::size_t count) noexcept { frozen_ = std::min(frozen_, count); }
 
   /// Number of leading knots that are frozen.
   [[nodiscard]] std::size_t frozen_knots() const noexcept { return frozen_; }
 
-  /// Ends the stream at its newest knot, with a condition there that may change what has not
-  /// converged; `own` is a halt for `c2`. No append may follow. The condition must be one for
-  /// streams and its values must have been checked.
+  /// Ends the stream at its newest knot, with a boundary condition there, which may change knots
+  /// that have not converged; `own` is a full stop for `c2`. No append may follow. The condition
+  /// must be one that is_online() accepts, with values that have been checked.
   void finish(const Condition& end) noexcept;
 
   /// Writes segment i, oldest_segment() ≤ i < segments(), with its acceleration step: O(D).
   /// `out` must have this window's dimensions.
   void segment(std::size_t i, Segment& out) const noexcept;
 
-  /// Asks for the memory that an append goes through. Loads nothing.
+  /// Prefetches the memory that `append` will touch; does not wait for it.
   void prefetch() const noexcept {
     __builtin_prefetch(solver_.get());
     knots_.prefetch(knots() - std::min(knots(), options_.settle), knots() + 1);
   }
 
-  /// What is kept of knot i, which must still be in the window: what `restore` needs.
+  /// The stored data of knot i, which must still be in the window, as `restore` needs it.
   [[nodiscard]] Knot knot(std::size_t i) const noexcept { return knots_.knot(i); }
 
   /// Time of knot i, as above.
   [[nodiscard]] Time time(std::size_t i) const noexcept { return knots_.row(i).time; }
 
-  /// Velocities of up to `count` knots from i on, as above: at least that of the first.
+  /// Velocities of up to `count` knots from i on, at least that of knot i, which must still be in
+  /// the window.
   [[nodiscard]] KnotVelocities velocities(std::size_t i, std::size_t count) const noexcept {
     return knots_.velocities(i, count);
   }
 
-  /// How many newer knots knot i had seen when its velocity was last solved.
+  /// Number of newer knots that were known when the velocity of knot i was last solved.
   [[nodiscard]] std::uint32_t newer_knots_seen(std::size_t i) const noexcept {
     return knots_.newer_knots(i);
   }
 
-  /// How many of its newest knots a window needs in order to go on where another one stood.
+  /// Number of the newest knots that another window needs to continue from this one.
   [[nodiscard]] std::size_t knots_to_restore() const noexcept { return reach() + kMaxReach + 3; }
 
-  /// Goes on where the first run of a window with the same options stood: `first` is the number of
-  /// the oldest knot given; `knots` are its consecutive knots up to the newest, at least
-  /// min(first + knots.size(), knots_to_restore()) of them. The stream must not be finished.
+  /// Continues the first run of a window with the same options. `first` is the number of the oldest
+  /// knot given; `knots` are its consecutive knots up to the newest: n of them, at least min(first
+  /// + n, knots_to_restore()). The stream must not be finished.
   void restore(std::size_t first, std::span<const Knot> knots) noexcept;
 
   /// The same for a later run.
@@ -173,17 +174,18 @@ class SlidingWindow {
  private:
   static constexpr std::size_t kKnotsThatShapeTheStart = 3;
 
-  /// How many knots before the newest one an append or the finish may change. With K = 0 an append
-  /// leaves the newest knot's velocity alone, but `finish` may change it.
+  /// Number of knots before the newest one that `append` or `finish` may change. With K = 0,
+  /// `append` does not change the velocity of an existing knot, but `finish` changes that of the
+  /// newest.
   [[nodiscard]] std::size_t reach() const noexcept {
     return options_.settle > 0 ? options_.settle : 1;
   }
-  /// An exact method's slope at the start may look one knot further than the slopes within: knot 0
-  /// stays open as long as its segment does.
+  /// With an exact method, the slope at the start may depend on one knot more than the slopes after
+  /// it: knot 0 may change as long as its segment may.
   [[nodiscard]] bool is_start_open(std::size_t newest) const noexcept {
     return newest <= reach() + 1 && !options_.interpolant.method->converges();
   }
-  /// The first knot that an append solves whose own knot is `newest`.
+  /// The first knot that the append of knot `newest` solves.
   [[nodiscard]] std::size_t first_to_solve(std::size_t newest) const noexcept {
     const std::size_t last = is_start_open(newest) ? 0 : newest - std::min(newest, options_.settle);
     return std::min(std::max(last, frozen_), newest);

@@ -17,12 +17,13 @@ constexpr std::array<double, 5> kNodes{0.14887433898163122, 0.4333953941292472, 
 constexpr std::array<double, 5> kWeights{0.2955242247147529, 0.2692667193099964, 0.219086362515982,
                                          0.14945134915058059, 0.06667134430868814};
 
-/// How often a piece may be halved. Each halving gains a factor on the distance of the nearest
-/// complex zero of |v|², of which there are at most 2k, so that the work grows with this depth, not
-/// with its power.
+/// Largest number of halvings of a piece. Each halving increases the relative distance of the
+/// nearest complex zero of |v|², of which there are at most 2k, so that the work is linear in this
+/// depth, not exponential.
 constexpr int kMostHalvings = 24;
 
-/// How far an integral and the sum of its halves may differ, of the length of the whole segment.
+/// Largest difference between an integral and the sum of its halves, relative to the length of the
+/// whole segment.
 constexpr double kAgreement = 1e-13;
 
 /// The path of one segment in s = u/h, 0 ≤ s ≤ 1.
@@ -40,7 +41,7 @@ class UnitPath {
     }
   }
 
-  /// The length, between the minima and maxima of the speed.
+  /// The length, as a sum over the pieces between the minima and maxima of the speed.
   double length() {
     core::Roots ends = core::unit_roots(slope_of_squared_speed(), 0);
     if (ends.count == 0 || ends.values[ends.count - 1] < 1) ends.values[ends.count++] = 1;

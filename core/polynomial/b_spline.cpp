@@ -35,7 +35,7 @@ KnotVector knots_of(const PiecewisePolynomial& curve, int degree) {
   return result;
 }
 
-/// The longest interval among knots first … last; their first knot. `last` if all are equal.
+/// The first knot of the longest interval among knots first … last; `last` if all are equal.
 std::size_t longest_interval(const std::vector<Time>& knots, std::size_t first, std::size_t last) {
   std::size_t longest = last;
   Time length(0);
@@ -47,11 +47,12 @@ std::size_t longest_interval(const std::vector<Time>& knots, std::size_t first, 
   return longest;
 }
 
-/// The interval whose polynomial gives control point i: the blossom at knots i + 1 … i + degree is
-/// the same for all of them, but a short one's polynomial would be extrapolated over its longer
-/// neighbours, where its rounding grows with the degree-th power of the ratio of the lengths. The
-/// longest takes the others' knots from near by. Where the knots coincide, any interval that meets
-/// them does, and at a jump of the position the only one within the support.
+/// The interval whose polynomial gives control point i. The blossom at knots i + 1 … i + degree is
+/// the same for all intervals between them, but the polynomial of a short interval would be
+/// extrapolated over longer neighbours, and its rounding grows with the degree-th power of the
+/// ratio of the lengths. The longest interval has the smallest extrapolation. If these knots
+/// coincide, any interval next to them gives the same point; at a jump of the position, it must be
+/// within the support.
 std::size_t interval_for(const std::vector<Time>& knots, std::size_t i, std::size_t degree) {
   const std::size_t inner = longest_interval(knots, i + 1, i + degree);
   return inner < i + degree ? inner : longest_interval(knots, i, i + degree + 1);

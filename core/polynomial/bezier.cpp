@@ -5,8 +5,8 @@
 namespace splinecast {
 namespace {
 
-/// With b_j the control points, n the degree and h the length, Δ^k b_0 = c_k h^k / C(n, k). Between
-/// both, b_j = Σ C(j, k) Δ^k b_0: repeated sums one way, repeated differences the other.
+/// With the control points b_j, the degree n and the length h, Δ^k b_0 = c_k h^k / C(n, k) and b_j
+/// = Σ C(j, k) Δ^k b_0: repeated sums in one direction, repeated differences in the other.
 void scale_to_differences(std::span<double> c, std::size_t dimensions, double h) noexcept {
   const std::size_t degree = c.size() / dimensions - 1;
   double power_of_h = 1;
@@ -62,7 +62,7 @@ PiecewisePolynomial from_bezier(std::size_t dimensions, std::span<const BezierSe
   PiecewisePolynomial curve(dimensions);
   for (const BezierSegment& segment : segments) {
     std::vector<double> c = segment.control_points;
-    if (dimensions > 0 && c.size() >= dimensions) {  // else refused by append
+    if (dimensions > 0 && c.size() >= dimensions) {  // else append throws
       points_to_differences(c, dimensions);
       scale_to_coefficients(c, dimensions, to_seconds(segment.right - segment.left));
     }

@@ -93,14 +93,15 @@ PiecewisePolynomial restricted(const PiecewisePolynomial& curve, Time from, Time
 PiecewisePolynomial concatenated(const PiecewisePolynomial& a, const PiecewisePolynomial& b) {
   if (a.dimensions() != b.dimensions()) {
     throw std::invalid_argument("a curve of " + std::to_string(a.dimensions()) +
-                                " dimensions cannot go on as one of " +
+                                " dimensions cannot be followed by one of " +
                                 std::to_string(b.dimensions()));
   }
   if (a.segments() == 0) return b;
   if (b.segments() == 0) return a;
   if (a.breaks().back() != b.breaks().front()) {
     throw std::invalid_argument("a curve that ends at " + in_ns(a.breaks().back()) +
-                                " cannot go on as one that begins at " + in_ns(b.breaks().front()));
+                                " cannot be followed by one that begins at " +
+                                in_ns(b.breaks().front()));
   }
   if (a.is_hold()) return b;
   if (b.is_hold()) return a;

@@ -7,13 +7,13 @@
 namespace splinecast::core {
 namespace {
 
-/// Rounding of a solve and of the coefficients made from it, of the largest terms: some ten
-/// operations with factors up to 20. Random meshes of any ratio of intervals stay below 20.
+/// Rounding of a solve and of its coefficients, relative to the largest terms: about ten operations
+/// with factors up to 20. On random meshes with any ratio of intervals it stays below 20 ε.
 constexpr double kRounding = 128 * std::numeric_limits<double>::epsilon();
 
 constexpr int kSmoothest = 2;
 
-/// Size of the terms that the r-th derivative of a segment is computed from.
+/// Size of the terms from which the r-th derivative of a segment is computed.
 double size_of_terms(const PiecewisePolynomial& curve, std::size_t segment, std::size_t dimension,
                      int r) noexcept {
   const auto c = curve.coefficients(segment);

@@ -4,7 +4,7 @@
 
 #include "core/simd/lanes.hpp"
 
-/// The formulas of a cubic between two knots, for one dimension or several side by side.
+/// The formulas of a cubic between two knots, for one dimension or several at once.
 namespace splinecast::core {
 
 /// Slope of the chord from one position to another that is h seconds later.
@@ -13,16 +13,16 @@ template <typename Lane>
   return (to - from) / h;
 }
 
-/// Writes cubics of one length.
+/// Writes cubics of the same length.
 class CubicWriter {
  public:
   [[gnu::always_inline]] CubicWriter(double h, std::size_t dimensions,
                                      double* coefficients) noexcept
       : per_h_(1 / h), per_h2_(per_h_ * per_h_), dimensions_(dimensions), c_(coefficients) {}
 
-  /// Writes [power][dimension] of the dimensions from `first` on: from position x and velocity v0
-  /// at the left end, v1 at the right one, and the slope m of the chord. Returns the sums of their
-  /// magnitudes.
+  /// Writes the coefficients, [power][dimension], of the dimensions from `first` on, from position
+  /// x and velocity v0 at the left end, velocity v1 at the right end and chord slope m. Returns the
+  /// sums of their magnitudes.
   template <typename Lane>
   [[nodiscard, gnu::always_inline]] Lane write(std::size_t first, Lane x, Lane m, Lane v0,
                                                Lane v1) const noexcept {

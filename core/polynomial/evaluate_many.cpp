@@ -17,7 +17,7 @@ constexpr double falling_factorial(std::size_t power, std::size_t derivative) no
   return static_cast<double>(product);
 }
 
-/// What a polynomial is evaluated at, and where it is written.
+/// The times at which a polynomial is evaluated, and the output.
 struct Times {
   const double* u;
   std::size_t size;
@@ -25,7 +25,7 @@ struct Times {
   std::size_t stride;
 };
 
-/// What Horner's rule takes of one derivative, for some dimensions.
+/// The terms of Horner's rule for one derivative and some dimensions.
 template <typename Lane, int kOrder, int kDerivative>
 class Terms {
  public:
@@ -40,7 +40,7 @@ class Terms {
   static constexpr std::size_t kTerms = kOrder - kDerivative;
   using Powers = std::make_index_sequence<kTerms>;
 
-  // Not in loops: those are unrolled after the arrays are.
+  // Not in loops: compilers unroll loops too late to keep the arrays in registers.
   template <std::size_t... kTerm>
   [[gnu::always_inline]] Terms(const double* coefficients, std::size_t dimensions,
                                std::index_sequence<kTerm...> /*terms*/) noexcept
@@ -57,7 +57,8 @@ class Terms {
   std::array<Lane, kTerms> values_;
 };
 
-/// As for_overlapping_lanes, but with one body for each kind of lane, which here is long.
+/// As for_overlapping_lanes, but with one copy of the body, which is long here, for each kind of
+/// lane.
 template <typename Body>
 [[gnu::always_inline]] inline void for_most_lanes(std::size_t dimensions,
                                                   const Body& body) noexcept {
@@ -129,7 +130,7 @@ template <int kOrder>
   for_most_lanes(dimensions, body);
 }
 
-/// Likewise for orders that are rarely evaluated.
+/// The same for orders that are rarely evaluated.
 void evaluate_any_order(int order, std::span<const double> coefficients, std::size_t dimensions,
                         Derivatives which, const Times& times) noexcept {
   for (std::size_t i = 0; i < times.size; ++i) {
@@ -148,7 +149,8 @@ SPLINECAST_VECTOR_CLONES
 void evaluate_many(int order, std::span<const double> coefficients, std::size_t dimensions,
                    std::span<const double> u, Derivatives which, std::span<double> out,
                    std::size_t stride) noexcept {
-  // What is written lane by lane stays in the caches meanwhile. Not so few that compilers unroll.
+  // Few enough that the output stays in the cache while it is written lane by lane, and enough that
+  // compilers do not unroll the loop.
   constexpr std::size_t kTimesAtOnce = 24;
   const double* const c = coefficients.data();
   for (std::size_t i = 0; i < u.size(); i += kTimesAtOnce) {

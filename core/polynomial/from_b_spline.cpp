@@ -28,10 +28,11 @@ void require_knots(const BSpline& spline) {
                               std::to_string(falls->count()) + " ns");
 }
 
-/// The polynomial on the interval behind knot j, by its derivatives at that knot. De Boor's
-/// algorithm, the r-th on r-fold differences of the control points divided by spans of knots, which
-/// are as long as the intervals that a control point belongs to. (Bezier points on the interval
-/// would be exact too, but differences of those are divided by a short interval's own length.)
+/// The polynomial on the interval after knot j, from its derivatives at that knot. Uses De Boor's
+/// algorithm, for the r-th derivative on r-fold differences of the control points, divided by knot
+/// spans, which cover the intervals that a control point belongs to. (Bézier points on the interval
+/// would be exact too, but their differences are divided by the length of a possibly short
+/// interval.)
 class LocalPolynomial {
  public:
   LocalPolynomial(const BSpline& spline, std::size_t j)
@@ -41,7 +42,7 @@ class LocalPolynomial {
     points_.assign(first, first + static_cast<std::ptrdiff_t>((degree() + 1) * dimensions_));
   }
 
-  /// Coefficients [power][dimension] in seconds from knot j. Uses the points up.
+  /// Coefficients [power][dimension] in seconds from knot j. Overwrites the control points.
   std::vector<double> coefficients() {
     std::vector<double> result;
     double factorial = 1;
@@ -58,12 +59,13 @@ class LocalPolynomial {
  private:
   [[nodiscard]] std::size_t degree() const { return static_cast<std::size_t>(spline_.degree); }
 
-  /// Between the knots that point i shares with the one before after so many steps.
+  /// Seconds between the first and the last knot of the span that points i − 1 and i share after
+  /// `steps` steps.
   [[nodiscard]] double span(std::size_t i, std::size_t steps) const {
     return to_seconds(spline_.knots[j_ + 1 + i - steps] - spline_.knots[j_ - degree() + i]);
   }
 
-  /// Makes points r … degree of the (r − 1)-th derivative those of the r-th.
+  /// Replaces points r … degree of the (r − 1)-th derivative by those of the r-th.
   void difference(std::size_t r) {
     for (std::size_t i = degree(); i >= r; --i) {
       const double factor = static_cast<double>(degree() - r + 1) / span(i, r);

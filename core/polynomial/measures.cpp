@@ -13,10 +13,10 @@
 namespace splinecast {
 namespace {
 
-/// What counts as equal, of the largest terms.
+/// Tolerance of equality, relative to the largest terms.
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
 
-/// A polynomial in s = u/h, 0 ≤ s ≤ 1, whose coefficients are sizes of its terms.
+/// A polynomial in s = u/h, 0 ≤ s ≤ 1. The magnitudes of its coefficients are those of its terms.
 struct UnitPolynomial {
   std::array<double, kMaxPolynomialOrder> values{};
   std::size_t count = 0;

@@ -29,11 +29,11 @@ void PiecewisePolynomial::append(Time left, Time right, int order,
                                 std::to_string(dimensions_) + " dimensions");
   }
   if (!breaks_.empty() && (is_hold() || left != breaks_.back())) {
-    throw std::invalid_argument(name + " begins at " + in_ns(left) + " behind a curve that " +
+    throw std::invalid_argument(name + " begins at " + in_ns(left) + ", but the curve " +
                                 (is_hold() ? "is a hold at " : "ends at ") + in_ns(breaks_.back()));
   }
   if (right < left || (right == left && !breaks_.empty())) {
-    throw std::invalid_argument(name + " ends at " + in_ns(right) + ", not after its begin");
+    throw std::invalid_argument(name + " ends at " + in_ns(right) + ", not after its start");
   }
   if (breaks_.empty()) breaks_.push_back(left);
   if (right > left) breaks_.push_back(right);

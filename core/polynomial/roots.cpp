@@ -6,7 +6,7 @@
 namespace splinecast::core {
 namespace {
 
-/// Distance of neighbouring doubles below 1: no root is known better.
+/// Distance of neighbouring doubles below 1: the resolution of a root.
 constexpr double kResolution = 0x1p-53;
 
 /// An end of a bracket.
@@ -19,8 +19,8 @@ void add(Roots& roots, double s) noexcept {
   if (roots.count == 0 || s > roots.values[roots.count - 1]) roots.values[roots.count++] = s;
 }
 
-/// The root of a quadratic between two ends of different sign. Of both roots the first comes from
-/// the sum that cannot cancel, the other from their product.
+/// The root of a quadratic between two ends of different sign. The first of both roots comes from
+/// the sum without cancellation, the second from their product.
 double quadratic_root(std::span<const double> c, const End& low, const End& high) noexcept {
   const double discriminant = std::max(c[1] * c[1] - 4 * c[0] * c[2], 0.0);
   const double q = -(c[1] + std::copysign(std::sqrt(discriminant), c[1])) / 2;
@@ -35,14 +35,14 @@ double slope_at(std::span<const double> c, double s) noexcept {
   return slope;
 }
 
-/// Moves the end of the bracket whose value has the sign of the value at s to s.
+/// Moves one end of the bracket to s: the end whose value has the sign of the value at s.
 void narrow(std::span<const double> c, double s, End& low, End& high) noexcept {
   const double value = value_at(c, s);
   (std::signbit(value) == std::signbit(low.value) ? low : high) = {s, value};
 }
 
-/// The root between two ends of different sign: Newton's steps from the better end as long as they
-/// stay inside. Each round also halves the bracket, so that 64 rounds end it whatever the steps do.
+/// The root between two ends of different sign. Takes Newton's steps from the better end if they
+/// stay inside. Each round also halves the bracket, so that 64 rounds are always enough.
 double bracketed_root(std::span<const double> c, End low, End high) noexcept {
   for (int round = 0; round < 64 && high.s - low.s > kResolution; ++round) {
     const End better = std::abs(low.value) < std::abs(high.value) ? low : high;
@@ -61,7 +61,7 @@ double root_between(std::span<const double> c, const End& low, const End& high) 
   return bracketed_root(c, low, high);
 }
 
-/// Where the monotone pieces of a polynomial end: the roots of its derivative, and 1.
+/// The ends of the monotone pieces of a polynomial: the roots of its derivative, and 1.
 Roots piece_ends(std::span<const double> c) noexcept {
   std::array<double, kMaxRootCoefficients> slopes{};
   for (std::size_t k = 1; k < c.size(); ++k) slopes[k - 1] = static_cast<double>(k) * c[k];

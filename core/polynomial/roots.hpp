@@ -7,8 +7,8 @@
 /// Real roots of polynomials on the unit interval. Internal.
 namespace splinecast::core {
 
-/// Most coefficients of a polynomial whose roots are asked for: those of the derivative of |v|² for
-/// a curve of order kMaxPolynomialOrder.
+/// Largest number of coefficients: that of the derivative of |v|² for a curve of order
+/// kMaxPolynomialOrder.
 inline constexpr std::size_t kMaxRootCoefficients = 28;
 
 /// Roots in ascending order: at most as many as the degree, and the two ends.
@@ -24,14 +24,14 @@ struct Roots {
 [[nodiscard]] double value_at(std::span<const double> c, double s) noexcept;
 
 /// The roots of Σ c_k s^k, lowest power first, in 0 ≤ s ≤ 1; none if it is constant. At the ends of
-/// the interval, and where the polynomial turns, |value| ≤ tolerance counts as zero. At most
-/// kMaxRootCoefficients coefficients. Does not allocate; bounded work, O(degree³).
+/// the interval and at the turning points of the polynomial, |value| ≤ tolerance counts as zero. At
+/// most kMaxRootCoefficients coefficients. Does not allocate; bounded work, O(degree³).
 ///
-/// The roots of the derivative cut the interval into pieces on which the polynomial is monotone, so
-/// that each holds at most one root, between ends of different sign: in closed form up to degree 2,
-/// above by Newton's steps inside the bracket. The closed forms of Cardano and Ferrari would lose
-/// their digits to cancellation where the leading coefficient is small, as on every nearly straight
-/// segment, or where roots lie close together; and there is none for the quintics at a halt.
+/// The roots of the derivative divide the interval into pieces on which the polynomial is monotone,
+/// with at most one root each, between ends of different sign. Up to degree 2 the root has a closed
+/// form; above, Newton's steps inside the bracket find it. The closed forms of Cardano and Ferrari
+/// would lose digits to cancellation if the leading coefficient is small, as on every nearly
+/// straight segment, or if roots are close together; and the quintics of a full stop have none.
 [[nodiscard]] Roots unit_roots(std::span<const double> c, double tolerance) noexcept;
 
 }  // namespace splinecast::core

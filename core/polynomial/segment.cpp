@@ -61,7 +61,8 @@ std::span<double> power_of(Segment& segment, std::size_t power, std::size_t dime
   });
 }
 
-/// The quintic with position, velocity and acceleration given at both ends; c0 and c1 stand.
+/// The quintic with position, velocity and acceleration given at both ends; does not write c0 and
+/// c1.
 void write_quintic(const Interval& i, Segment& out) noexcept {
   const std::size_t dimensions = i.x0.size();
   const double h = i.h;

@@ -12,7 +12,7 @@
 /// Segments: polynomials local to their left knot, u = t − left in seconds.
 ///
 /// Coefficients are laid out [power][dimension], lowest power first, so that loops run over
-/// contiguous dimensions. Source: doc 003 eq 4-3, 4-4 (with the exponent it omits).
+/// contiguous dimensions. Source: math 1.
 namespace splinecast::core {
 
 /// One polynomial piece of a curve with D dimensions.
@@ -26,38 +26,38 @@ struct Segment {
   Time right{};
   int order = kCubicOrder;
   SegmentKind kind = SegmentKind::spline;
-  std::vector<double> coefficients;       ///< [power][dimension]; powers ≥ order are of no use
+  std::vector<double> coefficients;       ///< [power][dimension]; powers ≥ order are unused
   std::vector<double> acceleration_step;  ///< a⁺ − a⁻ at the left knot, per dimension
 };
 
 /// Evaluates position, velocity, acceleration and jerk at u seconds after the left knot.
 ///
 /// `coefficients` holds order·D values, 1 ≤ order ≤ kMaxPolynomialOrder; D is the size of each span
-/// of `out`. By Horner's rule, in the same operations everywhere: the bits depend on nothing but
-/// the arguments. O(order·D). Never throws or allocates; safe from any thread.
+/// of `out`. Uses Horner's rule, with the same operations everywhere: the bits depend on the
+/// arguments only. O(order·D). Never throws or allocates; safe from any thread.
 void evaluate(int order, std::span<const double> coefficients, double u,
               const StateRef& out) noexcept;
 
 /// Evaluates the derivative-th derivative (≥ 0; 0 is the position) at u seconds after the left
-/// knot, in the operations, and hence to the bits, of `evaluate`. `out` takes D values. O(order·D).
+/// knot, with the operations, and so the bits, of `evaluate`. `out` takes D values. O(order·D).
 /// Never throws or allocates; safe from any thread.
 void evaluate_derivative(int order, std::span<const double> coefficients, double u, int derivative,
                          std::span<double> out) noexcept;
 
-/// Evaluates the derivatives asked for at many times, in the operations, and hence to the bits, of
+/// Evaluates the derivatives in `which` at many times, with the operations, and so the bits, of
 /// `evaluate`.
 ///
-/// `coefficients` holds order·dimensions values, 1 ≤ order ≤ kMaxPolynomialOrder; `u` seconds after
-/// the left knot. Writes [time][derivative asked for][dimension], `stride` doubles from one time to
-/// the next: at least count(which)·dimensions, which `out` must have behind the last one. What lies
-/// between is left alone. O(order·dimensions) each. Never throws or allocates; safe from any
-/// thread.
+/// `coefficients` holds order·dimensions values, 1 ≤ order ≤ kMaxPolynomialOrder; `u` holds seconds
+/// after the left knot. Writes [time][derivative in `which`][dimension], with `stride` doubles from
+/// one time to the next: at least count(which)·dimensions. `out` must have room for that many after
+/// the start of the last time. Does not change the values in between. O(order·dimensions) per time.
+/// Never throws or allocates; safe from any thread.
 void evaluate_many(int order, std::span<const double> coefficients, std::size_t dimensions,
                    std::span<const double> u, Derivatives which, std::span<double> out,
                    std::size_t stride) noexcept;
 
-/// An interval between two knots together with what the solve found at them. Spans hold one value
-/// per dimension. A view: it owns nothing.
+/// An interval between two knots, with the solution at them. Spans hold one value per dimension. A
+/// view: it owns nothing.
 struct Interval {
   Time left{};
   Time right{};
@@ -65,12 +65,13 @@ struct Interval {
   std::span<const double> x0;      ///< position at the left knot
   std::span<const double> chord;   ///< chord slope m = (x1 − x0)/h
   std::span<const double> v0, v1;  ///< knot velocities
-  std::span<const double> a0, a1;  ///< knot accelerations; empty: the cubic's
+  std::span<const double> a0, a1;  ///< knot accelerations; empty: those of the cubic
 };
 
-/// Writes the segment of an interval: the cubic of its knot velocities (doc 003 eq 4-7; doc 000
-/// eq 5.27, 5.28), or, where a knot acceleration is given, the quintic with that acceleration and,
-/// at an end without one, that of the cubic it replaces. Sets everything but `acceleration_step`.
+/// Writes the segment of an interval. Without knot accelerations, it is the cubic of the knot
+/// velocities (math 2). With a knot acceleration at either end, it
+/// is the quintic with that acceleration; at an end without one, it has the acceleration of the
+/// cubic. Sets everything except `acceleration_step`.
 void build_segment(const Interval& interval, Segment& out) noexcept;
 
 /// Writes the one-sided accelerations of an interval's segment at its knots: D values, which must
@@ -78,8 +79,8 @@ void build_segment(const Interval& interval, Segment& out) noexcept;
 void write_left_acceleration(const Interval& interval, std::span<double> out) noexcept;
 void write_right_acceleration(const Interval& interval, std::span<double> out) noexcept;
 
-/// Writes by how much the acceleration jumps at the knot between two intervals: that at the left
-/// end of the one after it less that at the right end of the one before. D values, as above.
+/// Writes the jump of the acceleration at the knot between two intervals: the acceleration at the
+/// left end of `after` minus that at the right end of `before`. D values, as above.
 void write_acceleration_jump(const Interval& before, const Interval& after,
                              std::span<double> out) noexcept;
 

@@ -1,9 +1,9 @@
 #pragma once
 
-/// Marks a function that is compiled twice, for any x86-64 and for processors with AVX2; the loader
-/// takes the one that fits. Without fused multiply-add both give the same bits. Not where a
-/// sanitizer instruments the choice, which is made before it has started, nor where a test wants
-/// the one for any x86-64.
+/// Compiles a function twice, for any x86-64 and for processors with AVX2; the loader selects one.
+/// Without fused multiply-add both give the same bits. Disabled under sanitizers, which instrument
+/// the selection although it runs before they have started, and by SPLINECAST_NO_VECTOR_CLONES,
+/// with which tests select the version for any x86-64.
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(SPLINECAST_NO_VECTOR_CLONES) && !defined(__SANITIZE_THREAD__) &&                    \
     !defined(__SANITIZE_ADDRESS__)

@@ -8,7 +8,7 @@
 
 namespace splinecast::core {
 
-/// Values of some dimensions side by side, for a vector register or two.
+/// Values of consecutive dimensions, for one or two vector registers.
 using FourLanes [[gnu::vector_size(4 * sizeof(double))]] = double;
 using TwoLanes [[gnu::vector_size(2 * sizeof(double))]] = double;
 
@@ -16,10 +16,10 @@ template <typename Lane>
 inline constexpr std::size_t kWidth = sizeof(Lane) / sizeof(double);
 
 /// Calls `body(lane, first)` so that each dimension is covered once, four at a time, then two, then
-/// one: `decltype(lane)::type` is FourLanes, TwoLanes or double, and the body works on the
-/// dimensions from `first` on that it holds. There is no loop over a handful of values to set up,
-/// and each dimension goes through the same operations either way. What one body stores, the next
-/// one loads in the same pieces, so that a processor need not wait for the stores.
+/// one: `decltype(lane)::type` is FourLanes, TwoLanes or double, and the body handles as many
+/// dimensions as it holds, from `first` on. This avoids the setup of a loop over few values, and
+/// each dimension goes through the same operations in all cases. One body loads the same pieces
+/// that another one stored, so that a processor need not wait for the stores.
 template <typename Body>
 [[gnu::always_inline]] inline void for_lanes(std::size_t dimensions, const Body& body) noexcept {
   std::size_t first = 0;
@@ -31,8 +31,8 @@ template <typename Body>
   if ((dimensions & 1) != 0) body(std::type_identity<double>{}, first);
 }
 
-/// Likewise, but four at a time wherever there are so many: the last four overlap those before. For
-/// bodies that write nothing that they, or another body, read.
+/// The same, but always four at a time if there are four or more: the last four overlap those
+/// before. For bodies that write nothing that any body reads.
 template <typename Body>
 [[gnu::always_inline]] inline void for_overlapping_lanes(std::size_t dimensions,
                                                          const Body& body) noexcept {
@@ -42,10 +42,10 @@ template <typename Body>
   if (first < dimensions) body(std::type_identity<FourLanes>{}, dimensions - 4);
 }
 
-/// Calls `body(lane, groups, first)` so that arrays whose length has been padded to 2 or to a
-/// multiple of 4 are covered once, without a remainder: `decltype(groups)::value` lanes of the type
-/// `decltype(lane)::type` begin at `first`, one behind the other. Two at once where there are so
-/// many: what all dimensions share is then loaded half as often.
+/// Calls `body(lane, groups, first)` so that arrays whose length is padded to 2 or to a multiple of
+/// 4 are covered once, without a remainder: `decltype(groups)::value` contiguous lanes of the type
+/// `decltype(lane)::type` begin at `first`. Uses two lanes at once if there are enough values, so
+/// that values shared by all dimensions are loaded half as often.
 template <typename Body>
 [[gnu::always_inline]] inline void for_padded_lanes(std::size_t padded, const Body& body) noexcept {
   using One = std::integral_constant<std::size_t, 1>;
@@ -56,7 +56,7 @@ template <typename Body>
   if (first < padded) body(std::type_identity<FourLanes>{}, One{}, first);
 }
 
-/// What a body reads of an array, and writes to one.
+/// Loads a lane from an array, and stores one to an array.
 template <typename Lane>
 [[gnu::always_inline]] inline Lane load_lane(const double* from) noexcept {
   Lane value;
@@ -68,7 +68,7 @@ template <typename Lane>
   std::memcpy(to, &value, sizeof(Lane));
 }
 
-/// Magnitudes, and the sum of what a lane holds.
+/// The magnitudes of the values of a lane, and their sum.
 template <typename Lane>
 [[gnu::always_inline]] inline Lane without_sign(Lane values) noexcept {
   if constexpr (std::is_same_v<Lane, double>) {
@@ -87,8 +87,8 @@ template <typename Lane>
   if constexpr (kWidth<Lane> == 1) return values;
 }
 
-/// A lane of an array that ends after `count` (≥ 1) values, which may be fewer than the lane's:
-/// zeros stand for the others.
+/// Loads a lane from an array that ends after `count` (≥ 1) values, which may be fewer than those
+/// of the lane: the others are 0.
 template <typename Lane>
 [[gnu::always_inline]] inline Lane load_first_of_lane(const double* from,
                                                       std::size_t count) noexcept {

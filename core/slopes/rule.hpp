@@ -11,7 +11,7 @@
 /// Slope rules: the local methods. Each finds a knot's velocity from a few intervals around it.
 namespace splinecast::core {
 
-/// Most intervals that a rule may look at on either side of a knot.
+/// Largest number of intervals that a rule may use on either side of a knot.
 inline constexpr int kMaxReach = 4;
 
 /// The intervals around a knot in one dimension. Interval 0 follows the knot, interval −1 precedes
@@ -23,8 +23,8 @@ class Stencil {
   /// Length in seconds and chord slope of interval k, −behind ≤ k < ahead of the rule.
   [[nodiscard]] double h(int k) const noexcept { return h_[index(k)]; }
   [[nodiscard]] double m(int k) const noexcept { return m_[index(k)]; }
-  /// By how much rounding may have changed the chord slope of interval k, to a factor of about 3:
-  /// ε·|x|/h, with the greater of the positions at its ends.
+  /// Rounding error of the chord slope of interval k, to a factor of about 3: ε·|x|/h, with the
+  /// larger of the positions at its ends.
   [[nodiscard]] double rounding(int k) const noexcept { return rounding_[index(k)]; }
   void set(int k, double h, double m, double rounding) noexcept {
     h_[index(k)] = h;
@@ -47,14 +47,14 @@ class Stencil {
   std::array<double, kIntervals> rounding_{};
 };
 
-/// The two intervals at an end in one dimension, looking inwards: the end interval, then the next.
+/// The two intervals at an end in one dimension, inwards: the end interval, then the next.
 struct EndStencil {
   double h0, m0;
   double h1, m1;
 };
 
-/// How much the slope at the end of the parabola through the three end knots differs from the chord
-/// slope there, as a share of the change of the chord slope.
+/// The difference between the slope at the end of the parabola through the three end knots and the
+/// chord slope there, relative to the change of the chord slope.
 [[nodiscard]] constexpr double parabola_weight(double h0, double h1) noexcept {
   return h0 / (h1 + h0);
 }
@@ -67,13 +67,13 @@ struct EndStencil {
 /// A local method. A rule is odd and time-symmetric, so that one end formula serves both ends.
 struct SlopeRule {
   std::string_view name;
-  std::uint64_t number;  ///< names the rule in shared memory: never given to another
-  int behind;            ///< knots it looks back, 1 … kMaxReach
-  int ahead;             ///< knots it looks ahead, 1 … kMaxReach: its settle lag
+  std::uint64_t number;  ///< identifies the rule in shared memory; never reused
+  int behind;            ///< knots it uses before the knot, 1 … kMaxReach
+  int ahead;             ///< knots it uses after the knot, 1 … kMaxReach: its settle lag
   double (*slope)(const Stencil&) noexcept;
 
-  /// The slope at an end knot. Without: zero acceleration there, if `natural_end`; else `slope`,
-  /// with the chord slopes extended linearly beyond the end.
+  /// The slope at an end knot. If null: zero acceleration there if `natural_end`, else `slope` with
+  /// the chord slopes extrapolated linearly beyond the end.
   double (*end_slope)(const EndStencil&) noexcept;
   bool natural_end;
   Laws laws;

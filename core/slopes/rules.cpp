@@ -8,7 +8,7 @@
 namespace splinecast::core {
 namespace {
 
-/// doc 003 eq 4-11, with its denominator corrected: the slope of the parabola through the knot and
+/// math 8: the slope of the parabola through the knot and
 /// its neighbours.
 double bessel(const Stencil& s) noexcept {
   return (s.h(0) * s.m(-1) + s.h(-1) * s.m(0)) / (s.h(-1) + s.h(0));
@@ -16,9 +16,9 @@ double bessel(const Stencil& s) noexcept {
 
 double bessel_end(const EndStencil& s) noexcept { return parabola_end_slope(s); }
 
-/// The share of weights that sum up to `sum`, where rounding may have changed them by `rounding`: 0
-/// where they are nothing else, 1 to the last bit where they are 3,000 times as much. Smooth
-/// between, because any threshold is crossed by rounding somewhere.
+/// The share of weights with this sum in the result, if rounding may have changed them by
+/// `rounding`: 0 if they are nothing but rounding, 1 to the last bit if they are 3,000 times as
+/// large. Smooth in between, because rounding would cross any threshold somewhere.
 double share_of_weights(double sum, double rounding) noexcept {
   constexpr double kLarge = 32;
   const double z = sum / (kLarge * rounding);
@@ -28,8 +28,8 @@ double share_of_weights(double sum, double rounding) noexcept {
   return z8 / (1 + z8);
 }
 
-/// The mean of the neighbouring chord slopes, each weighted by the other side's unsteadiness; with
-/// no weights but what rounding leaves of chord slopes, `without_weights`.
+/// The mean of the neighbouring chord slopes, each weighted by the variation of the slopes on the
+/// other side; `without_weights` if the weights are only rounding errors of the chord slopes.
 double weighted(const Stencil& s, double before, double after, double without_weights) noexcept {
   const double sum = after + before;
   double rounding = 0;
@@ -40,14 +40,14 @@ double weighted(const Stencil& s, double before, double after, double without_we
   return share * mean + (1 - share) * without_weights;
 }
 
-/// doc 003 eq 4-12.
+/// math 9.
 double akima(const Stencil& s) noexcept {
   const double before = std::abs(s.m(-1) - s.m(-2));
   const double after = std::abs(s.m(1) - s.m(0));
   return weighted(s, before, after, (s.m(-1) + s.m(0)) / 2);
 }
 
-/// Akima's rule with weights that do not vanish where the chords are steady, and the slope 0 on a
+/// Akima's rule with weights that do not vanish if the chord slopes are constant, and slope 0 on a
 /// plateau.
 double makima(const Stencil& s) noexcept {
   const auto weight = [&s](int k) {
@@ -58,8 +58,8 @@ double makima(const Stencil& s) noexcept {
 
 int sign(double x) noexcept { return static_cast<int>(x > 0) - static_cast<int>(x < 0); }
 
-/// Fritsch and Carlson: a weighted harmonic mean, so that the curve is monotone where its
-/// waypoints are.
+/// Fritsch and Carlson: a weighted harmonic mean, so that the curve is monotone where its waypoints
+/// are.
 double pchip(const Stencil& s) noexcept {
   if (sign(s.m(-1)) * sign(s.m(0)) <= 0) return 0;
   const double w1 = 2 * s.h(0) + s.h(-1);
@@ -67,7 +67,7 @@ double pchip(const Stencil& s) noexcept {
   return (w1 + w2) / (w1 / s.m(-1) + w2 / s.m(0));
 }
 
-/// The parabola's slope, cut back to what keeps the end interval monotone.
+/// The slope of the parabola, limited so that the end interval is monotone.
 double pchip_end(const EndStencil& s) noexcept {
   const double slope = ((2 * s.h0 + s.h1) * s.m0 - s.h0 * s.m1) / (s.h0 + s.h1);
   if (sign(slope) != sign(s.m0)) return 0;
@@ -75,7 +75,7 @@ double pchip_end(const EndStencil& s) noexcept {
   return slope;
 }
 
-/// doc 004 with the unprimed lengths in the denominators: normal to the bisector of the angle
+/// math 12: normal to the bisector of the angle
 /// between the two chords in the plane of time and position.
 double rounded(const Stencil& s) noexcept {
   const auto length_per_h = [&s](int k) {

@@ -9,14 +9,15 @@
 
 namespace splinecast::core {
 
-/// What `back_substitute` does to one dimension or several: g − γ v_after.
+/// The formula of `back_substitute` for one dimension or several: g − γ v_after.
 template <typename Lane>
 [[nodiscard, gnu::always_inline]] inline Lane back_substituted(double gamma, Lane g,
                                                                Lane v_after) noexcept {
-  return gamma == 0 ? g : g - gamma * v_after;  // −0 would else depend on the sign of v_after
+  return gamma == 0 ? g : g - gamma * v_after;  // else the sign of a zero would depend on v_after
 }
 
-/// The rows of a ring from the newest but one down to a last one: at most two runs of memory.
+/// The rows of a ring from the one before the newest down to a last one: at most two contiguous
+/// blocks of memory.
 class RowsBehind {
  public:
   RowsBehind(KnotRing& knots, std::size_t last) noexcept
@@ -32,8 +33,8 @@ class RowsBehind {
   }
 
   /// Back-substitutes the velocities of some padded dimensions, from `first` on, into these rows;
-  /// `v` are those of the newest knot. All rows at once, so that the velocity of the row before
-  /// stays in a register. With `kRegular` no γ is 0.
+  /// `v` are those of the newest knot. Passes through all rows at once, so that the velocity of the
+  /// next knot stays in a register. With `kRegular`, no γ may be 0.
   template <bool kRegular, typename Lane, std::size_t kGroups>
   [[gnu::always_inline]] void solve(std::size_t first, std::array<Lane, kGroups> v) const noexcept {
     for (const Run& run : runs_) {
@@ -52,7 +53,7 @@ class RowsBehind {
 
  private:
   struct Run {
-    std::size_t end = 0;  ///< the place in the ring behind its newest row
+    std::size_t end = 0;  ///< slot of the ring after its newest row
     std::size_t rows = 0;
   };
 

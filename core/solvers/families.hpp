@@ -2,7 +2,7 @@
 
 #include "core/solvers/knot_solver.hpp"
 
-/// The solvers of methods, each in a file of its own; make_knot_solver says what they are given.
+/// The solvers of methods, each in its own file; make_knot_solver documents the arguments.
 namespace splinecast::core {
 
 std::unique_ptr<KnotSolver> make_tridiagonal_solver(const Interpolant& how, const Condition& start,

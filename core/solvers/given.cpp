@@ -6,8 +6,8 @@
 namespace splinecast::core {
 namespace {
 
-/// `hermite` and `quintic`: what the waypoints give is the solution; a condition asked for at an
-/// end overrides it there.
+/// `hermite` and `quintic`: the values given with the waypoints are the solution; a boundary
+/// condition overrides them at its end.
 class GivenSolver final : public KnotSolver {
  public:
   GivenSolver(const Interpolant& how, const Condition& start, std::size_t dimensions)
@@ -46,10 +46,10 @@ class GivenSolver final : public KnotSolver {
   }
 
  private:
-  /// Replaces what was given at knot i by what the condition says of it.
+  /// Replaces the given values at knot i by those of the condition.
   void impose(KnotRing& knots, const Condition& condition, std::size_t i) const noexcept {
     const auto kind = condition.kind;
-    const bool stands = kind == ConditionKind::rest || kind == ConditionKind::halt;
+    const bool stands = kind == ConditionKind::clamped || kind == ConditionKind::halt;
     const auto v = knots.values(i, KnotRing::kVelocity);
     if (stands) std::ranges::fill(v, 0.0);
     if (kind == ConditionKind::velocity) std::ranges::copy(condition.value, v.begin());

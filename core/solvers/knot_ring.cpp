@@ -20,7 +20,7 @@ std::size_t values_kept(const Method& method) noexcept {
   return method.needs_acceleration() ? KnotRing::kAcceleration + 1 : KnotRing::kVelocity + 1;
 }
 
-/// Up to whole vector registers: see for_padded_lanes.
+/// Rounds up to whole vector registers: see for_padded_lanes.
 std::size_t padded(std::size_t dimensions) noexcept {
   return dimensions <= 2 ? 2 : (dimensions + 3) / 4 * 4;
 }
@@ -111,7 +111,7 @@ void KnotRing::restore(std::size_t first, std::span<const Knot> knots) noexcept 
   first_solved_ = size_;
 }
 
-/// At rest at both ends of a curve that halts there, whatever the knot velocities say.
+/// Sets the acceleration at a full stop to 0, at either end, regardless of the knot velocities.
 void KnotRing::halt(std::size_t i, Interval& interval) const noexcept {
   const auto zeros = std::span(kZeros).first(dimensions_);
   if (halts_at_start_ && i == 0) interval.a0 = zeros;

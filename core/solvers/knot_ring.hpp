@@ -17,7 +17,7 @@
 
 namespace splinecast::core {
 
-/// An interval between waypoints: length in seconds and chord slopes; length 0 where there is none.
+/// An interval between waypoints: length in seconds and chord slopes; length 0 if there is none.
 struct ChordInterval {
   double h = 0;
   std::span<const double> chord{};
@@ -29,16 +29,17 @@ struct Prefix {
   SmoothingRow smoothing{};
 };
 
-/// What is kept of one knot: enough to go on solving from it. Spans hold one value per dimension.
+/// The stored data of one knot, sufficient to continue the solve from it. Spans hold one value per
+/// dimension.
 struct Knot {
   Time time{};
   Prefix prefix{};
-  std::uint32_t newer_knots = 0;         ///< that it had seen when its velocity was last solved
-  std::span<const double> waypoint;      ///< position of its waypoint
-  std::span<const double> g;             ///< right side of its eliminated row
-  std::span<const double> position;      ///< where the curve passes: the waypoint, or smoothed
-  std::span<const double> velocity;      ///< as solved so far
-  std::span<const double> acceleration;  ///< given with the waypoint; empty unless the method asks
+  std::uint32_t newer_knots = 0;     ///< number that were known when its velocity was last solved
+  std::span<const double> waypoint;  ///< position of its waypoint
+  std::span<const double> g;         ///< right side of its eliminated row
+  std::span<const double> position;  ///< of the curve: the waypoint, or smoothed
+  std::span<const double> velocity;  ///< as solved so far
+  std::span<const double> acceleration;  ///< given with the waypoint; empty if not needed
   std::span<const double> residual;      ///< waypoint − position; empty unless the method smooths
 };
 
@@ -66,16 +67,16 @@ struct LineAllocator {
   friend bool operator==(LineAllocator /*a*/, LineAllocator /*b*/) noexcept { return true; }
 };
 
-/// The last knots of a curve and their elimination prefix, in a ring of fixed capacity; what fills
-/// it is a KnotSolver. Knots are numbered from 0 in the order they were pushed. Allocates when made
-/// only. Not thread-safe: one thread uses it.
+/// The last knots of a curve and their elimination prefix, in a ring of fixed capacity that a
+/// KnotSolver fills. Knots are numbered from 0 in the order in which they are pushed. Only the
+/// constructor allocates. Not thread-safe: one thread uses it.
 ///
-/// There is one array for each kind of value, so that an append, which looks at many knots but at
-/// few kinds of values, goes through few cache lines. Values are padded up to whole vector
-/// registers with zeros, or with what the same formulas make of zeros.
+/// Each kind of value has its own array, so that an append, which uses many knots but few kinds of
+/// values, touches few cache lines. Values are padded to whole vector registers, with zeros or with
+/// the results of the same formulas for zeros.
 class KnotRing {
  public:
-  /// What is kept of a knot besides its row: D values each.
+  /// Values stored for a knot in addition to its row: D of each kind.
   enum Value : std::size_t {
     kWaypoint,
     kChord,  ///< slope from this waypoint to the next
@@ -91,8 +92,8 @@ class KnotRing {
     double h = 0;  ///< seconds from this knot to the next, once there is one
   };
 
-  /// Keeps at least the last `capacity` knots (≥ 3) of `dimensions` values each, with what the
-  /// method needs of them. With `halts_at_start` the acceleration at knot 0 is 0.
+  /// Keeps at least the last `capacity` knots (≥ 3) of `dimensions` values each, with the kinds of
+  /// values that the method needs. With `halts_at_start` the acceleration at knot 0 is 0.
   KnotRing(std::size_t dimensions, std::size_t capacity, const Method& method, bool halts_at_start);
 
   [[nodiscard]] std::size_t dimensions() const noexcept { return dimensions_; }
@@ -104,15 +105,15 @@ class KnotRing {
   /// Appends a knot and measures the interval before it: O(D). It must be later than the newest.
   void push(Time time, std::span<const double> waypoint) noexcept;
 
-  /// Appends a knot and measures the length of the interval before it; waypoint and chord slope are
-  /// left to the caller.
+  /// Appends a knot and measures the length of the interval before it. The caller writes the
+  /// waypoint and the chord slope.
   void push(Time time) noexcept {
     const std::size_t i = size_++;
     place(i, time);
     if (i > 0) row(i - 1).h = to_seconds(time - row(i - 1).time);
   }
 
-  /// Tells that knots `first` to the newest have been solved.
+  /// Records that knots `first` to the newest have been solved.
   void mark_solved(std::size_t first) noexcept {
     for (; first_solved_ < first; ++first_solved_) {
       newer_knots_[first_solved_ & mask_] = newer_knots(first_solved_);
@@ -121,17 +122,17 @@ class KnotRing {
     newest_solved_ = newest();
   }
 
-  /// How many newer knots knot i had seen when its velocity was last solved.
+  /// Number of newer knots that were known when the velocity of knot i was last solved.
   [[nodiscard]] std::uint32_t newer_knots(std::size_t i) const noexcept {
     return i < first_solved_ ? newer_knots_[i & mask_]
                              : static_cast<std::uint32_t>(newest_solved_ - i);
   }
 
-  /// Forgets all knots and takes up again where another ring stood: `first` is the number of the
-  /// oldest knot given, and `knots` are consecutive up to the newest one.
+  /// Replaces all knots by those of another ring: `first` is the number of the oldest knot given,
+  /// and `knots` are consecutive up to the newest one.
   void restore(std::size_t first, std::span<const Knot> knots) noexcept;
 
-  /// Forgets all knots, for a run that begins with or without a halt.
+  /// Removes all knots, for a run that begins with or without a full stop.
   void clear(bool halts_at_start) noexcept {
     size_ = 0;
     first_solved_ = 0;
@@ -139,10 +140,11 @@ class KnotRing {
     halts_at_end_ = false;
   }
 
-  /// Makes the acceleration at the newest knot 0, whatever the knot velocities say.
+  /// Sets the acceleration at the newest knot to 0, regardless of the knot velocities.
   void halt_at_end() noexcept { halts_at_end_ = true; }
 
-  /// Asks for the rows and velocities of knots `first` to the one before `end`. Loads nothing.
+  /// Prefetches the rows and velocities of knots `first` to the one before `end`; does not wait for
+  /// them.
   void prefetch(std::size_t first, std::size_t end) const noexcept {
     for (std::size_t i = first; i < end; ++i) {
       __builtin_prefetch(&values_[offset(i, kG)], 1);
@@ -163,7 +165,7 @@ class KnotRing {
   [[nodiscard]] const Row& row(std::size_t i) const noexcept { return rows_[i & mask_]; }
   [[nodiscard]] double& gamma(std::size_t i) noexcept { return gammas_[i & mask_]; }
   [[nodiscard]] double gamma(std::size_t i) const noexcept { return gammas_[i & mask_]; }
-  /// Of a method that smooths.
+  /// Only for a method that smooths.
   [[nodiscard]] SmoothingRow& smoothing(std::size_t i) noexcept { return smoothing_[i & mask_]; }
   [[nodiscard]] const SmoothingRow& smoothing(std::size_t i) const noexcept {
     return smoothing_[i & mask_];
@@ -175,9 +177,8 @@ class KnotRing {
     return {values_.data() + offset(i, which), dimensions_};
   }
 
-  /// The arrays themselves, `slots()` knots long: the values of knot i begin at place_of(i), its γ
-  /// is the one of its slot. A knot's `stride()` values are D, and padding up to a multiple of 4,
-  /// of 2 where D ≤ 2.
+  /// The arrays, `slots()` knots long. The values of knot i begin at place_of(i); its γ is at its
+  /// slot. A knot has `stride()` values: D, padded to 2 if D ≤ 2, else to a multiple of 4.
   [[nodiscard]] double* array(Value which) noexcept {
     return values_.data() + which * slots() * stride_;
   }
@@ -185,17 +186,17 @@ class KnotRing {
   [[nodiscard]] std::size_t slots() const noexcept { return mask_ + 1; }
   [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
   [[nodiscard]] std::size_t place_of(std::size_t i) const noexcept { return (i & mask_) * stride_; }
-  /// How many knots up to i, itself included, lie one behind the other in the arrays.
+  /// Number of knots up to i, including i, that are contiguous in the arrays.
   [[nodiscard]] std::size_t contiguous(std::size_t i) const noexcept { return (i & mask_) + 1; }
 
-  /// The velocities of up to `count` knots from i on that lie one behind the other.
+  /// The velocities of up to `count` knots from i on, as many as are contiguous.
   [[nodiscard]] KnotVelocities velocities(std::size_t i, std::size_t count) const noexcept {
     return {.values = values_.data() + offset(i, kVelocity),
             .stride = stride_,
             .count = std::min(count, slots() - (i & mask_))};
   }
 
-  /// Where the curve passes knot i, and its chord slope from there to knot i+1.
+  /// The position of the curve at knot i, and its chord slope from there to knot i+1.
   [[nodiscard]] std::span<const double> position(std::size_t i) const noexcept {
     return values(i, smooths_ ? kPosition : kWaypoint);
   }
@@ -203,8 +204,8 @@ class KnotRing {
     return values(i, smooths_ ? kPositionChord : kChord);
   }
 
-  /// The intervals around knot i, and those at the ends, by the curve's own chords. An end needs
-  /// two knots.
+  /// The intervals around knot i, and those at the ends, with the chords of the curve. The ends
+  /// need two knots.
   [[nodiscard]] Neighbours neighbours(std::size_t i) const noexcept;
   [[nodiscard]] EndIntervals start_intervals() const noexcept;
   [[nodiscard]] EndIntervals end_intervals() const noexcept;
@@ -236,7 +237,7 @@ class KnotRing {
     return interval;
   }
 
-  /// The form of that interval's segment.
+  /// The form of the segment of that interval.
   [[nodiscard]] SegmentForm form(std::size_t i) const noexcept {
     if (has_accelerations_) return SegmentForm::quintic;
     const bool halts_left = halts_at_start_ && i == 0;
@@ -248,7 +249,7 @@ class KnotRing {
   /// Writes the smoothed chord slope of interval i from the residuals at both its ends.
   void measure_smoothed(std::size_t i) noexcept;
 
-  /// Writes the acceleration that the curve reaches the newest knot with.
+  /// Writes the acceleration with which the curve reaches the newest knot.
   void write_final_acceleration(std::span<double> acceleration) const noexcept;
 
  private:
@@ -269,15 +270,15 @@ class KnotRing {
 
   std::size_t dimensions_;
   bool smooths_;
-  bool has_accelerations_;  ///< given ones
+  bool has_accelerations_;  ///< given with the waypoints
   bool halts_at_start_;
   bool halts_at_end_ = false;
   std::size_t mask_;
   std::size_t stride_;
-  std::size_t kinds_;  ///< of values that are kept
+  std::size_t kinds_;  ///< number of kinds of values stored
   std::size_t size_ = 0;
   std::size_t first_solved_ = 0;   ///< the knots from here on were last solved together
-  std::size_t newest_solved_ = 0;  ///< the newest one then
+  std::size_t newest_solved_ = 0;  ///< the newest knot of that solve
   LineVector<Row> rows_;           ///< [knot & mask], as all arrays
   LineVector<double> gammas_;
   LineVector<double> values_;              ///< [which][knot & mask][dimension, then padding]
@@ -285,9 +286,9 @@ class KnotRing {
   LineVector<SmoothingRow> smoothing_;     ///< empty unless the method smooths
 };
 
-/// Writes the acceleration step at the left knot of interval i, which is `interval`: a⁺ − a⁻. At
-/// knot 0 it is a⁺ if a hold stands before it (`held_before`), else 0, because nothing stands
-/// before.
+/// Writes the acceleration step a⁺ − a⁻ at the left knot of interval i, which is `interval`. At
+/// knot 0 it is a⁺ if a hold precedes the knot (`held_before`), else 0, because nothing precedes
+/// it.
 void write_acceleration_step(const KnotRing& knots, std::size_t i, const Interval& interval,
                              bool held_before, std::span<double> step) noexcept;
 

@@ -11,11 +11,11 @@
 
 namespace splinecast::core {
 
-/// Finds the knot velocities of one method, in the rows of a KnotRing: the batch solver over all
-/// knots at once, the sliding window over those that an append still changes.
+/// Computes the knot velocities of one method in the rows of a KnotRing: for the batch solver over
+/// all knots at once, for the sliding window over those that an append still changes.
 ///
-/// Holds parameters only: the ring carries the state. No function throws, and none that is for
-/// online use allocates.
+/// Holds parameters only: the ring holds the state. No function throws; the functions for online
+/// use do not allocate.
 class KnotSolver {
  public:
   /// `start` is the condition at knot 0 of the first run.
@@ -27,30 +27,30 @@ class KnotSolver {
   virtual ~KnotSolver() = default;
 
   /// Appends a knot to the ring and eliminates the rows that it completes: O(D). The waypoint must
-  /// be later than the newest knot and carry what the method needs.
+  /// be later than the newest knot and have the values that the method needs.
   virtual void push(KnotRing& knots, const Waypoint& waypoint) const noexcept = 0;
 
-  /// Eliminates again all rows that stand: knot 0 has got another start condition. For the few
-  /// knots that a run begins with.
+  /// Eliminates all rows again, after a change of the start condition. For the first few knots of a
+  /// run.
   virtual void eliminate_again(KnotRing& knots) const noexcept = 0;
 
-  /// Takes the start condition again that it was made with.
+  /// Restores the start condition of the constructor.
   void start_as_first() noexcept { start_with(first_start_.kind, first_start_.value); }
 
-  /// Makes what the method itself does the start condition.
+  /// Sets the start condition to the default of the method.
   void start_as_given() noexcept { start_with(ConditionKind::own, {}); }
 
-  /// Makes a velocity the start condition of the run that stands, or begins.
+  /// Sets the start condition of the current run, or of the one that begins, to a velocity.
   void start_with(std::span<const double> velocity) noexcept {
     start_with(ConditionKind::velocity, velocity);
   }
 
-  /// Takes the start condition of another solver.
+  /// Copies the start condition of another solver.
   void start_as(const KnotSolver& other) noexcept {
     start_with(other.start_.kind, other.start_.value);
   }
 
-  /// Solves knots `first` to the newest while the stream goes on: O(D) per knot.
+  /// Solves knots `first` to the newest while the stream continues: O(D) per knot.
   virtual void solve(KnotRing& knots, Tail tail, std::size_t first) const noexcept = 0;
 
   /// Both: `push`, then `solve` with a tail.
@@ -76,9 +76,9 @@ class KnotSolver {
   Condition start_;
 };
 
-/// What a solver is for.
+/// The use of a solver.
 enum class Use : std::uint8_t {
-  online,   ///< knots come and go, and are solved again and again
+  online,   ///< knots are added and dropped, and are solved repeatedly
   at_once,  ///< all knots are pushed, then solved once, with an end condition; may allocate
 };
 
@@ -88,13 +88,14 @@ enum class Use : std::uint8_t {
                                                            const Condition& start,
                                                            std::size_t dimensions, Use use);
 
-/// Writes what the velocity of a lone knot is: the start condition's, else 0.
+/// Writes the velocity of a single knot: that of the start condition, else 0.
 void solve_lone_knot(KnotRing& knots, const Condition& start) noexcept;
 
 /// Back-substitutes velocities from the newest knot down to `last` inclusive.
 void back_substitute_to(KnotRing& knots, std::size_t last) noexcept;
 
-/// Solves the newest knot's velocity with a condition or a tail; the row before it is eliminated.
+/// Solves the velocity of the newest knot with a boundary condition; the row before it must be
+/// eliminated.
 void close(KnotRing& knots, const Condition& end) noexcept;
 void close(KnotRing& knots, Tail tail) noexcept;
 

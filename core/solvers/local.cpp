@@ -8,7 +8,7 @@
 namespace splinecast::core {
 namespace {
 
-/// Rows of a slope rule: eliminated from the start, with γ = 0.
+/// Rows of a slope rule: with γ = 0 they need no elimination.
 class LocalSolver final : public KnotSolver {
  public:
   LocalSolver(const Interpolant& how, const Condition& start, std::size_t dimensions)
@@ -85,8 +85,8 @@ class LocalSolver final : public KnotSolver {
     }
   }
 
-  /// The intervals around knot i; beyond an end the chord slopes go on linearly from the last two
-  /// (doc 003, Akima), or from the only one as they are.
+  /// Fills the intervals around knot i. Beyond an end, extrapolates the chord slopes linearly from
+  /// the last two (math 13), or repeats the only one.
   void fill(const KnotRing& knots, std::size_t i, std::size_t d, Stencil& out) const noexcept {
     const int before = static_cast<int>(std::min<std::size_t>(i, kMaxReach));
     const int after = static_cast<int>(std::min<std::size_t>(knots.newest() - i, kMaxReach));

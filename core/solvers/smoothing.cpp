@@ -10,8 +10,9 @@
 namespace splinecast::core {
 namespace {
 
-/// `smoothing`. Its tail is its natural end. A condition asked for at an end does not change the
-/// knots: it replaces the end's velocity by what the condition makes of its neighbour's.
+/// `smoothing`. Its condition at the newest knot is natural. A boundary condition does not move the
+/// knots: it replaces the velocity at its end by the one that it gives for the neighbour's
+/// velocity.
 class SmoothingSolver final : public KnotSolver {
  public:
   SmoothingSolver(const Interpolant& how, const Condition& start, std::size_t dimensions, Use use)
@@ -51,7 +52,7 @@ class SmoothingSolver final : public KnotSolver {
 
  private:
   void eliminate(KnotRing& knots, std::size_t i) const noexcept {
-    const std::size_t before2 = i > 1 ? i - 2 : 0;  // row 1 has none: row 0 stands in, as none too
+    const std::size_t before2 = i > 1 ? i - 2 : 0;  // row 1 has none: uses the empty row 0
     const SmoothingIntervals at = smoothing_intervals(knots, i);
     const SmoothingRow row = factor_smoothing(lambda_, at, roughness_row<double>(at),
                                               knots.smoothing(before2), knots.smoothing(i - 1));
@@ -126,7 +127,7 @@ class SmoothingSolver final : public KnotSolver {
     }
   }
 
-  /// Velocities of knots `first` to the newest, from chords and accelerations (doc 003 eq 4-8).
+  /// Velocities of knots `first` to the newest, from chords and accelerations (math 3).
   static void write_velocities(KnotRing& knots, std::size_t first) noexcept {
     const std::size_t n = knots.newest();
     for (std::size_t i = first; i <= n; ++i) {
@@ -143,8 +144,8 @@ class SmoothingSolver final : public KnotSolver {
     }
   }
 
-  /// Replaces the velocities at the ends that a condition is asked for. Of two knots each end is
-  /// the other's neighbour: they are solved together.
+  /// Replaces the velocities at the ends that have a boundary condition. With two knots, each end
+  /// is the neighbour of the other: they are solved together.
   void impose_ends(KnotRing& knots, const Condition& end, std::size_t first) const noexcept {
     const std::size_t n = knots.newest();
     const auto v = [&](std::size_t i) { return knots.values(i, KnotRing::kVelocity); };

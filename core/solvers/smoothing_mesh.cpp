@@ -46,7 +46,7 @@ BatchSmoothing::Solution BatchSmoothing::solve(std::size_t dimension) const {
   return solution;
 }
 
-/// λ tr(A⁻¹QᵀQ) with A = R + λQᵀQ: only the band of A⁻¹ counts, and that follows from LDLᵀ by a
+/// λ tr(A⁻¹QᵀQ) with A = R + λQᵀQ. Only the band of A⁻¹ is needed; it follows from LDLᵀ by a
 /// recursion from the right (Hutchinson and de Hoog 1985).
 double BatchSmoothing::residual_trace() const {
   struct Band {

@@ -8,11 +8,11 @@
 
 namespace splinecast::core {
 
-/// The intervals around knot j ≥ 1. Row 1 has none before: that of row 0 stands in.
+/// The intervals around knot j ≥ 1. Row 1 has no second interval before it: uses that of row 0.
 [[nodiscard]] SmoothingIntervals smoothing_intervals(const KnotRing& knots, std::size_t j) noexcept;
 
-/// What the smoothing spline's system has of its mesh alone, for any λ. The ring must have measured
-/// its intervals and live on. O(n).
+/// The part of the smoothing spline's system that depends on its mesh only, for any λ. The ring
+/// must have measured its intervals and must outlive this object. O(n).
 class SmoothingMesh {
  public:
   explicit SmoothingMesh(const KnotRing& knots);
@@ -24,11 +24,11 @@ class SmoothingMesh {
 
  private:
   const KnotRing& knots_;
-  std::vector<RoughnessRow<DoubleDouble>> roughness_;  ///< of knots 0 … n−1; row 0 is none
+  std::vector<RoughnessRow<DoubleDouble>> roughness_;  ///< of knots 0 … n−1; row 0 is unused
 };
 
-/// The smoothing spline of all knots at once, in twice a double's precision. The mesh must live on.
-/// O(n) to make, O(n) a dimension.
+/// The smoothing spline of all knots at once, in twice the precision of a double. The mesh must
+/// outlive this object. O(n) to construct, O(n) per dimension.
 class BatchSmoothing {
  public:
   BatchSmoothing(const SmoothingMesh& mesh, double lambda);
@@ -40,7 +40,7 @@ class BatchSmoothing {
   };
   [[nodiscard]] Solution solve(std::size_t dimension) const;
 
-  /// tr(I − H), H being the matrix that takes waypoints to positions.
+  /// tr(I − H), with the matrix H that maps waypoints to positions.
   [[nodiscard]] double residual_trace() const;
 
  private:
@@ -50,7 +50,7 @@ class BatchSmoothing {
 
   const SmoothingMesh& mesh_;
   double lambda_;
-  std::vector<SmoothingFactors<DoubleDouble>> rows_;  ///< of knots 0 … n−1; row 0 is none
+  std::vector<SmoothingFactors<DoubleDouble>> rows_;  ///< of knots 0 … n−1; row 0 is unused
 };
 
 }  // namespace splinecast::core

@@ -11,9 +11,9 @@ struct SmoothingFactors {
 };
 using SmoothingRow = SmoothingFactors<double>;
 
-/// The settle lag that leaves an acceleration step of about 1e-3 of the peak acceleration (up to
-/// 1e-2 where the waypoints are mostly noise), for knots `mean_interval` seconds apart:
-/// 13·max(1, (λ/h³)^¼). May be more than any window offers.
+/// The settle lag 13·max(1, (λ/h³)^¼) for knots h = `mean_interval` seconds apart. It leaves an
+/// acceleration step of about 1e-3 of the peak acceleration (up to 1e-2 if the waypoints are mostly
+/// noise). May exceed the largest lag of a window.
 [[nodiscard]] double smoothing_lag(double lambda, double mean_interval) noexcept;
 
 }  // namespace splinecast::core

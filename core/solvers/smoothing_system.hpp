@@ -7,26 +7,27 @@
 
 /// The rows of the smoothing spline (Reinsch): f minimises Σ(x_i − f(t_i))² + λ∫f″².
 ///
-/// With a_j = f″(t_j) at the interior knots, (R + λQᵀQ) a = Qᵀx and f = x − λQa, where
-/// (Qᵀx)_j = m_j − m_{j−1}. The matrix is pentadiagonal, symmetric and positive definite: LDLᵀ from
-/// the left. Row j needs the knots up to j+1 only, so it is final as soon as waypoint j+1 has come.
-/// Its scalars are shared by all dimensions; z = L⁻¹Qᵀx has one value per dimension. Outside rows
-/// 1 … n−1 there are default factors, and a is 0: the natural ends. Nothing allocates or throws.
+/// With a_j = f″(t_j) at the interior knots, (R + λQᵀQ) a = Qᵀx and f = x − λQa, where (Qᵀx)_j =
+/// m_j − m_{j−1}. The matrix is pentadiagonal, symmetric and positive definite: LDLᵀ from the left.
+/// Row j needs the knots up to j+1 only, so it is final as soon as waypoint j+1 arrives. Its
+/// scalars are shared by all dimensions; z = L⁻¹Qᵀx has one value per dimension. Outside rows 1 …
+/// n−1 the factors have their default values and a is 0: the natural ends. Nothing allocates or
+/// throws.
 ///
-/// The window calculates in doubles. Its condition number grows like min(λ/h³, n⁴), which a window
-/// keeps small; all knots at once do not, and so the batch calculates in DoubleDouble.
+/// The condition number grows like min(λ/h³, n⁴). A window keeps it small and computes in doubles;
+/// the batch solver has all knots at once and computes in DoubleDouble.
 namespace splinecast::core {
 
 /// Lengths, in seconds, of the intervals before and after the knot of row j, and of the one before
-/// those (any value where there is none).
+/// those (any value if there is none).
 struct SmoothingIntervals {
   double h_before2;
   double h_before;
   double h_after;
 };
 
-/// Row j of QᵀQ up to its diagonal: (j,j), (j−1,j) and (j−2,j). The last two count only where there
-/// are such rows.
+/// Row j of QᵀQ up to its diagonal: (j,j), (j−1,j) and (j−2,j). The last two are used only if those
+/// rows exist.
 template <typename Real>
 struct RoughnessRow {
   Real diagonal = 0;
@@ -72,7 +73,7 @@ Real eliminate_smoothing(const SmoothingFactors<Real>& row, double chord_before,
   return Real(chord_after) - chord_before - row.lower1 * z_before - row.lower2 * z_before2;
 }
 
-/// a_j from z_j and the two accelerations behind it; `after` and `after2` are their rows.
+/// a_j from z_j and the next two accelerations; `after` and `after2` are their rows.
 template <typename Real>
 Real back_substitute_smoothing(const SmoothingFactors<Real>& row,
                                const SmoothingFactors<Real>& after,
@@ -81,8 +82,8 @@ Real back_substitute_smoothing(const SmoothingFactors<Real>& row,
   return z / row.pivot - after.lower1 * a_after - after2.lower2 * a_after2;
 }
 
-/// λ(Qa)_i = x_i − f(t_i), by which the curve passes beside its waypoint; an interval that is not
-/// there has length 0.
+/// λ(Qa)_i = x_i − f(t_i), the offset of a waypoint from the curve. A missing interval has length
+/// 0.
 template <typename Real>
 Real smoothing_residual(double lambda, double h_before, double h_after, Real a_before, Real a,
                         Real a_after) noexcept {

@@ -21,10 +21,10 @@ void eliminate(KnotRing& knots, std::size_t i) noexcept {
                          knots.values(i, KnotRing::kG));
 }
 
-/// Gives the newest knot, which has been pushed without, its waypoint, eliminates the row before it
-/// and solves the knots from `last` on: what `push` and `solve` do, where there are three knots or
-/// more. Each dimension stays in its register on the way. Row 0 is left out: its γ, which the start
-/// condition makes, may be 0.
+/// Does `push` and `solve` in one pass, for the fourth knot or a later one: writes the waypoint of
+/// the newest knot, which was pushed without it, eliminates the row before it and solves the knots
+/// from `last` on. Each dimension stays in its register. Row 0 is left out: its γ depends on the
+/// start condition and may be 0.
 SPLINECAST_VECTOR_CLONES
 void append_behind(KnotRing& knots, std::span<const double> waypoint, Tail tail,
                    std::size_t last) noexcept {
@@ -78,7 +78,7 @@ class TridiagonalSolver final : public KnotSolver {
       solve_lone_knot(knots, start());
       return;
     }
-    // Not-a-knot looks at two intervals, so that row 0 must wait for the second one.
+    // Not-a-knot needs two intervals, so that row 0 must wait for the second one.
     const std::size_t start_known_at = start().kind == ConditionKind::not_a_knot ? 2 : 1;
     if (n == start_known_at) eliminate_start(knots, start());
     if (n > 1) eliminate(knots, n - 1);
@@ -98,7 +98,7 @@ class TridiagonalSolver final : public KnotSolver {
 
   void append(KnotRing& knots, const Waypoint& waypoint, Tail tail,
               std::size_t first) const noexcept override {
-    // The first rows also depend on the start condition, and on what lies before knot 0.
+    // The first rows depend on the start condition and have fewer rows before them.
     if (knots.size() < 3) return KnotSolver::append(knots, waypoint, tail, first);
     knots.push(waypoint.time);
     append_behind(knots, waypoint.position, tail, first);

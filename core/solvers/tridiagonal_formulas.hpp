@@ -6,8 +6,8 @@
 /// The rows of tridiagonal_system.hpp in one dimension or several at once.
 namespace splinecast::core {
 
-/// What the dimensions share of an interior row: lengths of the intervals around its knot, and its
-/// pivot after elimination.
+/// The part of an interior row that all dimensions share: lengths of the intervals around its knot,
+/// and its pivot after elimination.
 struct InteriorRow {
   double before;
   double after;
@@ -27,9 +27,9 @@ struct InteriorRow {
   }
 };
 
-/// What the dimensions share of the newest row while a stream goes on: lengths of the last interval
-/// and of the one before it (any value where there is none, which Tail::bessel does not take), and
-/// γ of the row before.
+/// The part of the newest row that all dimensions share while a stream continues: lengths of the
+/// last interval and of the one before it (any value if there is none, but Tail::bessel needs one),
+/// and γ of the row before.
 class TailRow {
  public:
   TailRow(Tail tail, double h, double h_next, double gamma_before) noexcept
@@ -42,7 +42,7 @@ class TailRow {
   [[nodiscard, gnu::always_inline]] Lane velocity(Lane m, Lane m_next,
                                                   Lane g_before) const noexcept {
     if (tail_ == Tail::bessel) return m + scale_ * (m - m_next);
-    if (tail_ == Tail::rest) return Lane{};
+    if (tail_ == Tail::clamped) return Lane{};
     return (slope_ * m - g_before) / scale_;
   }
 

@@ -11,7 +11,7 @@
 namespace splinecast::core {
 namespace {
 
-/// Which way an end row looks at its interval: the acceleration changes sign in the mirror.
+/// The end that a row belongs to: the acceleration has the opposite sign at the other end.
 enum class Side { start, end };
 
 /// An end row before elimination: inner · v_neighbour + outer · v_end = slope · m + value[d] ·
@@ -28,7 +28,7 @@ struct EndRow {
   }
 };
 
-/// Continuity of the third derivative at the next knot, that knot's own row subtracted so that two
+/// Continuity of the third derivative at the next knot, minus that knot's own row, so that two
 /// unknowns remain.
 EndRow not_a_knot_row(const EndIntervals& at) noexcept {
   const double both = at.h + at.h_next;
@@ -40,7 +40,7 @@ EndRow not_a_knot_row(const EndIntervals& at) noexcept {
 }
 
 /// Natural is the acceleration row with a = 0, rest and halt the velocity row with v = 0
-/// (doc 003 eq 4-13, 4-19; doc 000 eq 4.14, 4.15).
+/// (math 6a, 6b).
 EndRow end_row(const Condition& condition, const EndIntervals& at, Side side) noexcept {
   const double half_h = side == Side::start ? -at.h / 2 : at.h / 2;
   switch (condition.kind) {
@@ -51,9 +51,9 @@ EndRow end_row(const Condition& condition, const EndIntervals& at, Side side) no
     case ConditionKind::not_a_knot:
       return not_a_knot_row(at);
     case ConditionKind::velocity:
-    case ConditionKind::rest:
+    case ConditionKind::clamped:
     case ConditionKind::halt:
-    case ConditionKind::periodic:  // closed by its caller, with these values
+    case ConditionKind::periodic:  // the caller passes velocities instead
       break;
   }
   return {.inner = 0, .outer = 1, .slope = 0, .scale = 1, .value = condition.value};

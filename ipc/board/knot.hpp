@@ -13,37 +13,37 @@
 
 namespace splinecast::ipc {
 
-/// What goes with a knot besides its values.
+/// The properties of a knot other than its values.
 struct KnotNote {
   core::SegmentForm form{};     ///< of the segment that begins here
-  bool is_waypoint = false;     ///< whether a waypoint stands here
-  bool arrives = false;         ///< the acceleration is that of the segment that ends here,
-  bool starts = false;          ///< of the one that begins here, or of both
-  std::uint32_t newer_knots{};  ///< that it had seen when it was solved: 0 … 127
+  bool is_waypoint = false;     ///< whether the knot is a waypoint's
+  bool arrives = false;         ///< has the acceleration of the segment that ends here
+  bool starts = false;          ///< has the acceleration of the segment that begins here
+  std::uint32_t newer_knots{};  ///< number of newer knots when it was solved: 0 … 127
 };
 
 /// A knot as a revision writes it. Spans hold one value per dimension.
 struct KnotRecord {
-  bool is_new = false;  ///< the knot comes to stand in its slot; else only its cell is written
+  bool is_new = false;  ///< the knot is new in its slot; else only its cell is written
   KnotNote note;
-  Time time{};                             ///< of a new knot
-  Time begins{};                           ///< when the next segment begins, if none begins here
-  std::span<const double> position;        ///< of a new knot: its waypoint, else of the curve
-  std::span<const double> velocity;        ///<
+  Time time{};                       ///< of a new knot
+  Time begins{};                     ///< when the next segment begins, if none begins here
+  std::span<const double> position;  ///< of a new knot: its waypoint's, else the curve's
+  std::span<const double> velocity;
   std::span<const double> acceleration{};  ///< iff the note says that there is one
   std::span<const double> residual{};      ///< iff the board smooths
   Word item = 0;                           ///< as the layout has it beside the acceleration
-  const core::Prefix* prefix = nullptr;    ///< with `g`: the knot's row, where it has changed
+  const core::Prefix* prefix = nullptr;    ///< with `g`: the knot's row, if it has changed
   std::span<const double> g{};
 };
 
-/// A reader's own copy of a knot. Allocates when made only.
+/// A reader's own copy of a knot. Allocates only in its constructor.
 class KnotCopy {
  public:
   KnotCopy(std::size_t dimensions, bool smooths)
       : dimensions_(dimensions), smooths_(smooths), values_((smooths ? 4 : 3) * dimensions) {}
 
-  /// Takes over another copy of a knot of the same board: O(D).
+  /// Assigns another copy of a knot of the same board: O(D).
   void assign(const KnotCopy& other) noexcept {
     tag = other.tag;
     cell = other.cell;

@@ -7,8 +7,8 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Whether a knot of ours can stand at a time: a waypoint, or, behind the last one, the end of a
-/// stop or of the way back from there.
+/// Whether a solver can write a knot with this time: of a waypoint, or, after the last one, at the
+/// end of a stop or of a return from there.
 bool is_knot_time(Time time) noexcept {
   return time >= -kLatestTime && time <= kLatestTime + 2 * kLongestStop;
 }
@@ -64,7 +64,7 @@ bool KnotBoardReader::copy_passed(Word i, Word r, KnotCopy& out) const noexcept 
   return copy_slot(layout_.capacity + i % kPassedSlots, r, out);
 }
 
-/// The knot in a slot: R2 to R4.
+/// Copies the knot in a slot: R2 to R4.
 inline bool KnotBoardReader::copy_slot(std::size_t index, Word r, KnotCopy& out) const noexcept {
   out.tag = 0;
   const Word* const at = slot_at(index);

@@ -20,17 +20,16 @@
 
 namespace splinecast::ipc {
 
-/// What a reader saw of the commit word and of the settled word, in this order of loads: S2, R1.
+/// Values of the settled word and the commit word, loaded in this order: S2, R1.
 struct Look {
   Time settled_until{};
   Word revision = 0;
 };
 
-/// A reader's side of a knot board, whose orderings writer.hpp argues; no function blocks,
-/// allocates or stores. Every copy is taken under a revision `r` that the caller has loaded, and
-/// fails if the writer has gone on too far meanwhile, or if what lies there is nothing that a
-/// solver writes: whatever the bytes are, each call takes a bounded number of steps within the
-/// region.
+/// A reader's side of a knot board; writer.hpp explains the orderings. No function blocks,
+/// allocates or stores. Every copy is made under a revision `r` that the caller has loaded. It
+/// fails if the writer has advanced too far meanwhile, or if the data is not what a solver writes.
+/// For any bytes, each call takes a bounded number of steps within the region.
 class KnotBoardReader {
  public:
   /// `region` holds a board of this layout and outlives the reader.
@@ -62,46 +61,46 @@ class KnotBoardReader {
     return load(control_[kSleeping], std::memory_order_seq_cst) != 0;
   }
 
-  /// How many of the solver's steps took 2ⁱ to 2ⁱ⁺¹ ns, at i.
+  /// Histogram of the solver's steps: element i counts those of 2ⁱ to 2ⁱ⁺¹ ns.
   [[nodiscard]] std::array<Word, kStepBuckets> step_times() const noexcept;
 
-  /// Asks for the lines that a reader will load to get segment `number` of a revision that it has
-  /// not seen, all at once: each may have to come from the writer's core, and would else be waited
-  /// for one after the other. Loads nothing.
+  /// Prefetches, all at once, the cache lines that a reader will load to get segment `number` of a
+  /// revision that it has not seen: each may have to come from the writer's core, and the loads
+  /// would wait for them one after the other. Loads nothing.
   void prefetch(Word r, Word number) const noexcept;
 
-  /// Likewise for a segment anywhere: its knots' cells and nodes, of both revisions each, because
-  /// the tags, which say which ones count, would else be waited for first.
+  /// The same for a segment anywhere: both cells and both nodes of its knots, because the tags,
+  /// which select the valid ones, would have to arrive first.
   void prefetch_segment(Word number) const noexcept;
 
-  /// Copies what lookups need of the head under a look's revision: revision, first, newest, stop,
-  /// finished, settled_until; and the earliest changed_from of the revisions after `seen` up to
-  /// that one, min() if that many are not kept. The other members stay, and upon failure all of
-  /// them.
+  /// Copies the values of the summary that lookups need, under a look's revision: revision, first,
+  /// newest, stop, finished, settled_until; and the earliest changed_from of the revisions after
+  /// `seen` up to that one, min() if some of these are no longer kept. The other members do not
+  /// change; on failure none does.
   [[nodiscard]] bool copy_bounds(const Look& look, Word seen, Head& out) const noexcept;
 
-  /// Copies the whole head. Upon failure `out` stays as it is.
+  /// Copies the whole summary. On failure `out` does not change.
   [[nodiscard]] bool copy_head(const Look& look, Head& out) const noexcept;
 
-  /// Copies the head of the newest revision, in a bounded number of tries. Returns false, and
-  /// leaves `out` as it is, if there is no revision or if the writer overtook every try.
+  /// Copies the summary of the newest revision, in a bounded number of tries. Returns false,
+  /// without changing `out`, if there is no revision or if the writer overtook every try.
   [[nodiscard]] bool copy_newest_head(Head& out) const noexcept;
 
-  /// Copies knot `number` under r: it must stand on the board then. Upon failure `out.tag` is 0 and
-  /// the rest of no use. O(D).
+  /// Copies knot `number`, which must be on the board under r. On failure `out.tag` is 0 and the
+  /// rest is not valid. O(D).
   [[nodiscard]] bool copy_knot(Word number, Word r, KnotCopy& out) const noexcept;
 
-  /// Whether a copy is what the board holds under r too: no words are copied again. K1 and K2; r is
-  /// no older than the revision that the copy was made under, and the knot stands under r.
+  /// Whether a copy is also what the board holds under r, without copying again: K1 and K2. r must
+  /// be the revision of the copy or a later one, and the knot must be on the board under r.
   [[nodiscard]] bool is_current(const KnotCopy& copy, Word r) const noexcept {
     return copy.tag != 0 && is_newest(cells(copy.number), copy.cell, copy.tag, r);
   }
 
-  /// Copies waypoint `i` of a run from the slots of those that entries pass over: what lies there
-  /// may be another one's, as its item says. For the one writer only, who races with nobody.
+  /// Copies waypoint `i` of a run from the slots of passed-over waypoints. The slot may hold
+  /// another waypoint, as its item says. For the writer only, which has no concurrent writer.
   [[nodiscard]] bool copy_passed(Word i, Word r, KnotCopy& out) const noexcept;
 
-  /// The same where `copy` may be of another knot.
+  /// is_current() for a copy that may be of another knot.
   [[nodiscard]] bool is_current(const KnotCopy& copy, Word number, Word r) const noexcept {
     return copy.number == number && is_current(copy, r);
   }
@@ -110,30 +109,30 @@ class KnotBoardReader {
   [[nodiscard]] bool copy_time(Word number, Word r, Time& time,
                                core::SegmentForm& form) const noexcept;
 
-  /// When the segment of knot `number` begins, from the packed times: a hint, to be confirmed.
+  /// The time at which the segment of knot `number` begins, from the packed times: a hint, which
+  /// must be confirmed.
   [[nodiscard]] Time time_hint(Word number) const noexcept {
     return to_time(load(times_[number & (layout_.capacity - 1)], std::memory_order_relaxed));
   }
 
-  /// The refusal noted at `index`, counted from 0 over the stream's life; only the last
-  /// kRefusalsKept are there.
+  /// Refusal number `index`, counted from 0 over the stream's life. Only the last kRefusalsKept
+  /// exist.
   [[nodiscard]] RefusedItem refusal(Word index) const noexcept;
 
-  /// Copies the refusals that `head` counts from `from` on, oldest first. Returns how many there
-  /// still are, at most out.size(): these are the last ones, and those before them have been
+  /// Copies the refusals that `head` counts, from number `from` on, oldest first. Returns how many
+  /// still exist, at most out.size(): these are the last ones; those before them have been
   /// overwritten.
   [[nodiscard]] std::size_t copy_refusals(const Head& head, Word from,
                                           std::span<RefusedItem> out) const noexcept;
 
-  /// The excess noted at `index` < head.exceeding; nothing if it has been overwritten, or is
-  /// being.
+  /// Excess number `index` < head.exceeding; empty if it has been, or is being, overwritten.
   [[nodiscard]] std::optional<LimitExcess> excess(const Head& head, Word index) const noexcept;
 
-  /// That of an item, if it is one of the last kExcessesKept. O(kExcessesKept).
+  /// The excess of an item, if it is one of the last kExcessesKept. O(kExcessesKept).
   [[nodiscard]] std::optional<LimitExcess> excess_of(const Head& head, Word item) const noexcept;
 
-  /// Copies the row of a knot that has been copied, into `g`, and returns its scalars. For the one
-  /// writer only, who races with nobody.
+  /// Copies the right side of the row of a copied knot into `g`, and returns the row's scalars. For
+  /// the writer only, which has no concurrent writer.
   [[nodiscard]] core::Prefix copy_row(const KnotCopy& knot, std::span<double> g) const noexcept;
 
  private:

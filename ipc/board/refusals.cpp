@@ -15,7 +15,7 @@ constexpr Word kByteMask = 0xff;
 }  // namespace
 
 void KnotBoardWriter::write_refusal(Word index, const RefusedItem& refusal) noexcept {
-  // One word, so that it is never torn; published by the commit of the head that counts it.
+  // One word, so that it is never torn; published by the commit of the summary that counts it.
   put(refusals_[index % kRefusalsKept],
       refusal.item << kRefusalItemShift | static_cast<Word>(refusal.reason));
 }

@@ -9,8 +9,8 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Largest sum of magnitudes of a segment's coefficients: within it no polynomial of ours leaves
-/// the range of a double. What KnotBoardWriter accepts makes none so large.
+/// Largest sum of magnitudes of a segment's coefficients: up to it no polynomial of a solver
+/// exceeds the range of a double. Knots that KnotBoardWriter accepts stay below it.
 constexpr double kLargestSum = 1e200;
 
 /// Whether the note of a knot has the acceleration that a form needs there.
@@ -29,11 +29,12 @@ BoardSegment::BoardSegment(std::size_t dimensions, bool smooths)
       right_(dimensions, smooths),
       after_(dimensions, smooths) {}
 
-/// A knot that `near` has copied, if that copy still stands, else the board's.
+/// Copies a knot from `near`, if its copy is still current, else from the board.
 inline bool BoardSegment::fetch(const KnotBoardReader& board, Word number, Word r,
                                 const BoardSegment* near, KnotCopy& out) noexcept {
   if (near != nullptr) {
-    // Mostly the left knot is asked for of the segment before, or the right one of the same.
+    // Usually the left knot is the right one of the segment before, or the right knot that of the
+    // same segment.
     for (const KnotCopy* const knot : {&near->right_, &near->left_}) {
       if (!board.is_current(*knot, number, r)) continue;
       out.assign(*knot);
@@ -60,13 +61,13 @@ BoardSegment::Taken BoardSegment::take(const KnotBoardReader& board, const Head&
 }
 
 bool BoardSegment::take_last(const KnotBoardReader& board, const Head& head) noexcept {
-  // At the last knot of a finished stream none begins.
+  // No segment begins at the last knot of a finished stream.
   Taken taken = take(board, head, head.newest);
   if (taken == Taken::none && head.newest > head.first) taken = take(board, head, head.newest - 1);
   return taken == Taken::whole;
 }
 
-/// Mostly: a cubic between two waypoints, neither cut nor smoothed.
+/// The usual case: a cubic between two waypoints, neither cut nor smoothed.
 inline bool BoardSegment::build_cubic() noexcept {
   const Word length = to_word(right_.time) - to_word(left_.time);
   if (right_.time <= left_.time || length > to_word(Time::max())) return false;
@@ -97,7 +98,7 @@ bool BoardSegment::build(const Head& head) noexcept {
   }
   const bool may_be_empty = form == SegmentForm::hold;
   if (may_be_empty ? right.time < left_.time : right.time <= left_.time) return false;
-  // Its length must be a time as well.
+  // Its length must fit into a Time.
   if (to_word(right.time) - to_word(left_.time) > to_word(Time::max())) return false;
   right_end_ = right.time;
   if (after_.is_there()) {
@@ -129,7 +130,7 @@ bool BoardSegment::is_last(const Head& head) const noexcept {
   return right_.number == head.newest && right_.note.form == core::SegmentForm::none;
 }
 
-/// Whether it would end in the same way at another copy of its right knot.
+/// Whether it would end in the same way with another copy of its right knot.
 bool BoardSegment::arrives_alike(const KnotCopy& knot) const noexcept {
   const bool arrives = core::arrives_with_acceleration(left_.note.form);
   return knot.is_there() && knot.number == right_.number && knot.time == right_.time &&
@@ -140,7 +141,7 @@ bool BoardSegment::arrives_alike(const KnotCopy& knot) const noexcept {
 }
 
 Word BoardSegment::changed_by(const BoardSegment* known) const noexcept {
-  // A change of its end alone writes the left knot again.
+  // If only the end of a stop or hold changes, the left knot is written again.
   const core::SegmentForm form = left_.note.form;
   const bool has_one = form == core::SegmentForm::stop || form == core::SegmentForm::hold;
   const Word left = revision_of(left_.tag);
@@ -174,7 +175,7 @@ void BoardSegment::copy_to(SegmentCopy& out) const {
     out.origin.right_newer_knots = right_.note.newer_knots;
     out.origin.ends_at_waypoint = right_.note.is_waypoint;
   }
-  if (left_.note.form == core::SegmentForm::splice && left_.item > 0) {
+  if (left_.note.form == core::SegmentForm::entry && left_.item > 0) {
     out.origin.item = left_.item - 1;
     if (!right_.note.is_waypoint) out.origin.known = right_.item;
   }
@@ -188,7 +189,7 @@ void BoardSegment::copy_to(SegmentCopy& out) const {
 
 std::optional<Word> segment_before(const KnotBoardReader& board, const Head& head,
                                    Word number) noexcept {
-  // At most one knot at which none begins lies between two at which one does.
+  // Between two knots at which segments begin there is at most one at which none does.
   constexpr Word kLookBack = 2;
   for (Word back = 1; back <= kLookBack && number >= head.first + back; ++back) {
     Time time{};

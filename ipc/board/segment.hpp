@@ -12,58 +12,58 @@
 
 namespace splinecast::ipc {
 
-/// What else a segment came from, for whoever solves it again.
+/// Further inputs of a segment, to solve it again.
 struct SegmentOrigin {
-  std::uint32_t right_newer_knots = 0;  ///< that its right knot had seen when it was last solved
+  std::uint32_t right_newer_knots = 0;  ///< newer knots when its right knot was last solved
   std::optional<Word> item{};           ///< of an entry: the run's first waypoint
   bool ends_at_waypoint = false;        ///< whether its right knot is a waypoint's
-  Word known = 0;  ///< of an entry beyond the newest waypoint: how many the run had
+  Word known = 0;  ///< of an entry beyond the newest waypoint: waypoints that the run had
 };
 
-/// A segment of a published curve, for whoever keeps it.
+/// A copy of a segment of a published curve.
 struct SegmentCopy {
   Word number = 0;  ///< of the knot that it begins at
-  Word next = 0;    ///< of the segment behind it, if there is one
+  Word next = 0;    ///< of the segment after it, if there is one
   Time left{};
   Time right{};
-  Time natural_right{};  ///< where it would end had it not been cut
+  Time natural_right{};  ///< where it would end if it had not been cut
   int order = kCubicOrder;
   SegmentKind kind{};
-  std::uint32_t newer_knots = 0;  ///< that its left knot had seen when it was last solved
+  std::uint32_t newer_knots = 0;  ///< newer knots when its left knot was last solved
   SegmentOrigin origin{};
   bool has_waypoint = false;                ///< whether its left end is a waypoint
   std::vector<double> coefficients{};       ///< [power][dimension], `order` powers
   std::vector<double> waypoint{};           ///< position of that waypoint; empty if there is none
-  std::vector<double> acceleration_step{};  ///< a⁺ − a⁻ at the left end; empty where the segment
-                                            ///< before it is on the board no more
+  std::vector<double> acceleration_step{};  ///< a⁺ − a⁻ at the left end; empty if the board no
+                                            ///< longer has the segment before it
 };
 
-/// A reader's own copy of one segment: the knots that it is made of, and the polynomial made from
-/// them. Allocates when made only.
+/// A reader's own copy of one segment: its knots and the polynomial made from them. Allocates only
+/// in its constructor.
 ///
-/// A segment is finite wherever the board's bytes come from: what does not evaluate to numbers
-/// anywhere between its ends is not taken.
+/// A segment is finite for any bytes on the board: take() refuses one that does not evaluate to
+/// finite numbers everywhere between its ends.
 class BoardSegment {
  public:
   enum class Taken {
     whole,
-    torn,  ///< the writer has gone on, or what lies there is nothing that a solver writes
+    torn,  ///< the writer has advanced, or the data is not what a solver writes
     none,  ///< no segment begins at this knot
   };
 
   BoardSegment(std::size_t dimensions, bool smooths);
 
   /// Makes this the segment that begins at knot `number`, between head.first and head.newest, under
-  /// the head's revision. Knots that `near`, another one, has copied and that still stand are taken
-  /// from there. Unless it returns `whole`, this is no segment afterwards. O(D).
+  /// head.revision. Takes the knots that `near`, another segment, has copied and that are still
+  /// current. Unless it returns `whole`, this holds no segment afterwards. O(D).
   [[nodiscard]] Taken take(const KnotBoardReader& board, const Head& head, Word number,
                            const BoardSegment* near = nullptr) noexcept;
 
-  /// Makes this the last segment under the head's revision: there must be one. Returns whether it
-  /// is whole.
+  /// Makes this the last segment under head.revision, of which there must be one. Returns whether
+  /// it is whole.
   [[nodiscard]] bool take_last(const KnotBoardReader& board, const Head& head) noexcept;
 
-  /// Whether it is what the board holds under the head's revision too, which is no older: K1, K2.
+  /// Whether it is also what the board holds under head.revision, which must not be older: K1, K2.
   [[nodiscard]] bool is_current(const KnotBoardReader& board, const Head& head) const noexcept;
 
   [[nodiscard]] bool is_there() const noexcept { return is_there_; }
@@ -79,17 +79,17 @@ class BoardSegment {
   }
   [[nodiscard]] const KnotCopy& left_knot() const noexcept { return left_; }
 
-  /// Whether no segment follows it under a head of which it is current.
+  /// Whether no segment follows it. It must be current under `head`.
   [[nodiscard]] bool is_last(const Head& head) const noexcept;
 
-  /// The revision that last changed it. `known`, another one or null, is of a revision in between:
-  /// a right knot that it has copied with the same values was written again, but did not change.
+  /// The revision that last changed it. `known`, another copy or null, is of a revision in between:
+  /// if it has a right knot with the same values, the knot was written again without a change.
   [[nodiscard]] Word changed_by(const BoardSegment* known = nullptr) const noexcept;
 
   /// Writes the accelerations with which it starts and ends, D values each.
   void write_accelerations(std::span<double> start, std::span<double> end) const noexcept;
 
-  /// Copies it, all but the acceleration step. Allocates where `out` must grow.
+  /// Copies it, except the acceleration step. Allocates if `out` must grow.
   void copy_to(SegmentCopy& out) const;
 
  private:
@@ -101,15 +101,15 @@ class BoardSegment {
 
   core::Segment segment_;  ///< with its natural right end
   KnotCopy left_;
-  KnotCopy right_;  ///< not copied: none follows
-  KnotCopy after_;  ///< where no segment begins at the right knot
+  KnotCopy right_;  ///< not copied if no knot follows
+  KnotCopy after_;  ///< copied if no segment begins at the right knot
   Time right_end_{};
   Word next_ = 0;
   bool is_there_ = false;
 };
 
-/// Finds the segment before the one that begins at knot `number` > head.first: the nearest knot
-/// before it at which one begins. Returns 0 if there is none on the board, nothing if a knot was
+/// Finds the segment before the one that begins at knot `number` > head.first: the nearest earlier
+/// knot at which one begins. Returns 0 if there is none on the board, std::nullopt if a knot was
 /// written meanwhile.
 [[nodiscard]] std::optional<Word> segment_before(const KnotBoardReader& board, const Head& head,
                                                  Word number) noexcept;

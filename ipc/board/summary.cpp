@@ -8,8 +8,8 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Whether the knots of a head can all lie on a board, and its times are some; no writer of ours
-/// says otherwise.
+/// Whether the knots of a summary can all be on a board and its times are valid. Always true for
+/// what a solver writes.
 bool has_sane_bounds(const Head& head, std::size_t capacity) noexcept {
   if (!is_time_in_range(head.settled_until)) return false;
   if (head.newest == 0) return true;
@@ -20,18 +20,18 @@ bool has_sane_bounds(const Head& head, std::size_t capacity) noexcept {
 
 }  // namespace
 
-/// C2: the earliest of the times that the revisions after `seen` up to r changed the curve from;
-/// min() where not all of these are there any more.
+/// C2: the earliest time from which the revisions after `seen` up to r changed the curve; min() if
+/// some of their words have been overwritten.
 Time KnotBoardReader::earliest_change(Word seen, Word r) const noexcept {
-  const Word missed = r - seen;  // very many if the commit word went back: no writer of ours does
+  const Word missed = r - seen;  // huge if the commit word decreased, which no solver does
   if (missed >= kChangesKept) return Time::min();
   Time earliest = Time::max();
   for (Word back = 0; back < missed; ++back) {
     const Word& word = control_[kChanges + (r - back) % kChangesKept];
     earliest = std::min(earliest, to_time(load(word, std::memory_order_acquire)));
   }
-  // C3. One word fewer than there are counts: a writer that died may have stored the next one. And
-  // where both tags have been retired since, nothing says how far writers have come.
+  // C3. One word fewer than the ring has counts, because a writer that died may have stored the
+  // next one. If both tags have been retired since, it is unknown how far writers have advanced.
   const Tags tags = head_cells().tags(std::memory_order_acquire);
   bool stands = false;
   for (const Word tag : tags.of) {

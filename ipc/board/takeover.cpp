@@ -22,18 +22,18 @@ KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout&
           .cell_words = layout.cell / sizeof(Word),
           .states = states_.data(),
           .written = written_.data()} {
-  // Touches the memory, so that no step meets a page fault, however many knots it writes.
+  // Touches the memory, so that no step causes a page fault, for any number of knots.
   held_times_.resize(layout.capacity);
   held_times_.clear();
   retire_uncommitted(head_cells(), revision_);
   for (std::size_t i = 0; i < states_.size(); ++i) retire_uncommitted(cells_at(i), revision_);
   read_state();
   restore_times();
-  // Of a new board. Times may be negative: 0 would be a promise.
+  // A new board. Times may be negative: 0 would be a promise.
   if (revision_ == 0 && settled_ == 0) store_settled(-kLatestTime);
 }
 
-/// What lies on the board.
+/// Reads the state of the board.
 void KnotBoardWriter::read_state() noexcept {
   for (std::size_t c = 0; c < 2; ++c) {
     for (std::size_t i = 0; i < kHeadWords; ++i) {
@@ -48,8 +48,8 @@ void KnotBoardWriter::read_state() noexcept {
   }
 }
 
-/// Packed times that a writer before this one had stored for a revision that it did not commit
-/// would mislead lookups for as long as those knots stand.
+/// Restores packed times that an earlier writer stored for a revision that it did not commit: they
+/// would mislead lookups as long as those knots are on the board.
 void KnotBoardWriter::restore_times() noexcept {
   Head head;
   decode(kHeadRows, head_[head_cell_].data(), head);
@@ -75,7 +75,7 @@ void KnotBoardWriter::discard() noexcept {
     retire_uncommitted(cells_at(slot.index), revision_);
     states_[slot.index] &= ~kWrittenBit;
   }
-  // The oldest last: a time may have been stored to twice.
+  // The oldest last, because a time may have been stored twice.
   for (std::size_t i = held_times_.size(); i-- > 0;) {
     store(times_[held_times_[i].index], held_times_[i].time, std::memory_order_relaxed);
   }

@@ -11,7 +11,7 @@
 
 namespace splinecast::ipc {
 
-/// The entry of a slot that has been written for the next revision.
+/// The record of a slot that has been written for the next revision.
 KnotBoardWriter::WrittenSlot& KnotBoardWriter::written_slot(const Slots& slots,
                                                             std::size_t index) noexcept {
   std::size_t i = slots.written_count - 1;
@@ -19,9 +19,9 @@ KnotBoardWriter::WrittenSlot& KnotBoardWriter::written_slot(const Slots& slots,
   return slots.written[i];
 }
 
-/// W1: claims the spare cell of a slot. A node or row is never stored to while a cell with a
-/// standing tag names it: the committed cell names the other one, and this is the spare's.
-/// `changed`: whether node and row are other ones than the committed cell's.
+/// W1: claims the spare cell of a slot. A node or row is never stored to while a cell with a valid
+/// tag names it: the committed cell names the other one, and this one is the spare's. `changed`:
+/// whether node and row differ from the committed cell's.
 inline KnotBoardWriter::Claimed KnotBoardWriter::claim(Slots& slots, std::size_t index, Word tag,
                                                        SlotState changed) noexcept {
   const SlotState state = slots.states[index];
@@ -74,7 +74,7 @@ void KnotBoardWriter::write_velocities(Word first, std::uint32_t newer_knots,
   const Word tag = next_tag() | kNote;
   const std::size_t dimensions = layout_.dimensions;
   const double* values = velocities.values;
-  // A copy: else the compiler loads these members again after each store to shared memory.
+  // A copy: otherwise the compiler loads these members again after each store to shared memory.
   Slots slots = at_;
   for (std::size_t i = 0; i < velocities.count; ++i, values += velocities.stride) {
     const Word newer = (newer_knots - i) & kTagNewerMask;
@@ -121,7 +121,8 @@ inline void KnotBoardWriter::write_slot(std::size_t index, const KnotRecord& kno
   }
   written_sum_ += sum;
   if (!has_row) return;
-  // Only writers read it; the lock that one takes over from the other orders their accesses.
+  // Only writers read it; the owner's lock, which one takes over from the other, orders their
+  // accesses.
   Word* const row =
       claimed.slot + (layout_.rows + row_of(claimed.next) * layout_.row) / sizeof(Word);
   put(row[kRowGamma], to_word(knot.prefix->gamma));
@@ -172,8 +173,8 @@ void KnotBoardWriter::commit(Head& head) noexcept {
   held[0] = r << kTagRevisionShift;
   store(cell[0], held[0], std::memory_order_release);                      // W1
   put(control_[kChanges + r % kChangesKept], to_word(head.changed_from));  // C1
-  // What the cell holds already stands: it was stored before this revision's tag was, by this
-  // writer or by one whose lock it has taken over, and whoever acquires that tag sees it.
+  // Words that the cell already holds are not stored: this writer, or one whose lock it has taken
+  // over, stored them before this revision's tag, and a reader that acquires that tag sees them.
   encode_changes(kHeadRows, head, held.data(),
                  [cell](std::size_t i, Word word) { put(cell[i], word); });
   store(control_[kRevision], r, std::memory_order_release);  // W3

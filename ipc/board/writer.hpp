@@ -20,47 +20,46 @@
 #include "ipc/memory/word.hpp"
 #include "splinecast/time.hpp"
 
-/// The knot board: the knots of a stream and the head that goes with each revision, over a span of
-/// bytes. One solver writes it, by publication.hpp; anybody reads. Knots are numbered from 1; knot
-/// n lies in slot n modulo the capacity, and there is no number in the slot: under revision r the
-/// head says which knots stand, and each slot belongs to one of them.
+/// The knot board: the knots of a stream and the summary of each revision, over a span of bytes.
+/// One solver writes it as publication.hpp describes; any process reads it. Knots are numbered from
+/// 1; knot n is in slot n modulo the capacity. A slot does not store the number: under revision r
+/// the summary says which knots are on the board, and each slot belongs to one of them.
 ///
 /// Segment n begins at knot n. It is made from knots n and n + 1 and ends where the next segment
-/// begins: at knot n + 1, or, where that knot is one at which none begins, at the one behind it. So
-/// a segment that was cut keeps both its knots, and its bits.
+/// begins: at knot n + 1 or, if none begins there, at knot n + 2. So a segment that was cut keeps
+/// both its knots, and its bits.
 ///
 /// Orderings of the words outside the slots; those of the slots, of `settled until` and of the ring
 /// of changes are publication.hpp's:
 ///
-/// - `tail` and `sleeping`: S3, P3 and the sleep of ring/writer.hpp. `tail` follows the commit,
-///   so that a solver that dies between the two has its items consumed: the next one stores it
-///   again.
-/// - `late` and `checked`, which are stored after the commit, when it is known whether it came too
-///   late: first `late`, if it did, then `checked`. If a writer dies before `checked`, its
-///   successor decides about that revision. Others load them relaxed: each is a number of its own.
+/// - `tail` and `sleeping`: S3, P3 and the sleep of ring/writer.hpp. `tail` is stored after the
+///   commit: if a solver dies between the two, its items are consumed, and the next solver stores
+///   `tail` again.
+/// - `late` and `checked`: stored after the commit, when it is known whether the commit was too
+///   late: first `late`, if it was, then `checked`. If a writer dies before `checked`, its
+///   successor decides about that revision. Others load them relaxed: each is independent.
 /// - Packed times: relaxed. They are a hint; the knot that they lead to decides.
-/// - Step times: relaxed. Each is a number of its own.
-/// - Refusals: one word each, which is never torn, stored before W3 of the head that counts it and
-///   loaded after R1. A later refusal, committed or not, overwrites the oldest one first; it is of
-///   a later item. So a word is the refusal of its index iff its item comes before that of the next
-///   index; the last one's item must come before the first item not consumed under that head.
-/// - Excesses: four words. W3 of the head that counts it and R1 order a committed one; that of a
-///   later revision may overwrite the oldest. Its first word is stored as 0 before the others, each
-///   of which is a release, and last as what it is, so that who loads with acquire the same first
-///   word before and after the others, and not 0, has copied one whole record: items are never
-///   given twice.
-/// - `retired`: stored with release and loaded with acquire; nothing depends on more than the word.
-/// - What the writer loads of its own board is relaxed: it made these stores itself, or its
-///   predecessor did, whose death the kernel told by giving the owner's lock away.
+/// - Step times: relaxed. Each is independent.
+/// - Refusals: one word each, which is never torn, stored before W3 of the summary that counts it
+///   and loaded after R1. A later refusal, committed or not, overwrites the oldest one first; its
+///   item is later. So a word is the refusal of its index iff its item is before that of the next
+///   index; the last one's item must be before the first item not consumed under that summary.
+/// - Excesses: four words each. W3 of the summary that counts it and R1 order a committed one; that
+///   of a later revision may overwrite the oldest. The writer stores the first word as 0, then the
+///   other words, then the first word's value, each with release. A reader loads the first word,
+///   the others (acquire), and the first word again (relaxed). If it is the same and not 0, the
+///   reader has copied one whole record: no item appears twice.
+/// - `retired`: stored with release and loaded with acquire; nothing but the word depends on it.
+/// - The writer's loads of its own board are relaxed: it made these stores itself, or its
+///   predecessor did, whose lock the kernel released at its death.
 namespace splinecast::ipc {
 
 /// The solver's side. One thread of one process uses it; no function but the constructor allocates,
 /// and none blocks.
 class KnotBoardWriter {
  public:
-  /// `region` holds a board of this layout and outlives the writer. Retires whatever a writer
-  /// before this one had not committed (T1), and makes the packed times those of the committed
-  /// knots again.
+  /// `region` holds a board of this layout and outlives the writer. Retires everything that an
+  /// earlier writer had not committed (T1), and restores the packed times of the committed knots.
   KnotBoardWriter(std::span<std::byte> region, const BoardLayout& layout);
   KnotBoardWriter(const KnotBoardWriter&) = delete;
   KnotBoardWriter& operator=(const KnotBoardWriter&) = delete;
@@ -73,7 +72,8 @@ class KnotBoardWriter {
   /// The last revision that was committed.
   [[nodiscard]] Word revision() const noexcept { return revision_; }
 
-  /// Asks for the lines that a revision of knots `first` to `newest` writes, where `newest` is new.
+  /// Prefetches the cache lines that a revision of knots `first` to `newest` writes, where `newest`
+  /// is new.
   void prefetch(Word first, Word newest) const noexcept;
 
   /// Writes a knot for the next revision: at most once each. O(D).
@@ -83,40 +83,39 @@ class KnotBoardWriter {
   void write_passed(Word i, const KnotRecord& knot) noexcept;
 
   /// Writes consecutive committed knots again, from `first` on, of which only the velocities have
-  /// changed: most of what an append does. At each of them stands a waypoint, and a cubic begins.
-  /// They were solved together: `newer_knots` is how many newer knots the first one had seen. O(D)
+  /// changed: most of the work of an append. Each is a waypoint's knot at which a cubic begins.
+  /// They were solved together: `newer_knots` is the number of knots newer than the first one. O(D)
   /// each.
   void write_velocities(Word first, std::uint32_t newer_knots,
                         const core::KnotVelocities& velocities) noexcept;
 
-  /// Writes a committed knot again with another form, and, where that is `none`, with the time at
-  /// which the next segment begins. Else nothing changes; readers see that its segment has. O(D).
+  /// Writes a committed knot again with another form and, if that is `none`, with the time at which
+  /// the next segment begins. Nothing else changes; readers see that its segment has. O(D).
   void write_form(Word number, core::SegmentForm form, Time begins = {}) noexcept;
 
   /// The form of a knot's segment, as the next revision will have it.
   [[nodiscard]] core::SegmentForm form(Word number) const noexcept;
 
-  /// Whether all that was written for the next revision is what readers, and a solver that takes
-  /// over, accept: finite values within bounds. Else it must be discarded.
+  /// Whether readers, and a solver that takes over, accept everything that was written for the next
+  /// revision: finite values within bounds. Otherwise it must be discarded.
   [[nodiscard]] bool is_sound() const noexcept {
     return written_sum_ <= kLargestSum && std::isfinite(row_sum_);
   }
 
-  /// Takes back what has been written for the next revision, as a takeover does (T1).
+  /// Discards what has been written for the next revision, as a takeover does (T1).
   void discard() noexcept;
 
-  /// Notes a refusal for the next revision: the `index`-th of the stream, counted from 0.
+  /// Writes a refusal for the next revision: the `index`-th of the stream, counted from 0.
   void write_refusal(Word index, const RefusedItem& refusal) noexcept;
 
-  /// Notes where a limit was passed: the `index`-th time in the stream, counted from 0.
+  /// Writes where a limit was exceeded: the `index`-th excess of the stream, counted from 0.
   void write_excess(Word index, const LimitExcess& excess) noexcept;
 
-  /// Makes what has been written visible, as the revision after the last one: W3. Sets
-  /// head.revision.
+  /// Makes everything written visible, as the next revision: W3. Sets head.revision.
   void commit(Head& head) noexcept;
 
-  /// Promises that no later revision changes anything before t: S1. Stores nothing where that has
-  /// been said already.
+  /// Promises that no later revision changes anything before t: S1. Stores nothing if t has already
+  /// been promised.
   void store_settled(Time t) noexcept {
     const Word word = to_word(t);
     if (word == settled_) return;
@@ -133,19 +132,19 @@ class KnotBoardWriter {
     return to_time(settled_);
   }
 
-  /// Items that the producer may overwrite: after the commit that consumed them, S3.
+  /// Releases items to the producer, after the commit that consumed them: S3.
   void store_tail(Word consumed) noexcept {
     store(control_[kTail], consumed, std::memory_order_release);
   }
 
-  /// Counts a step of so many nanoseconds.
+  /// Counts a step of this length in the histogram.
   void count_step(Time length) noexcept;
 
-  /// Notes, behind the commit, that the newest revision was compared with the clock, and whether it
-  /// came too late.
+  /// Records, after the commit, that the newest revision was compared with the clock, and whether
+  /// it was too late.
   void store_checked(bool is_late) noexcept;
 
-  /// Whether the newest revision has been compared so, and whether it was found to be too late.
+  /// Whether the newest revision has been compared with the clock, and whether it was too late.
   [[nodiscard]] bool is_checked() const noexcept { return checked_ == revision_; }
   [[nodiscard]] bool is_late() const noexcept { return revision_ > 0 && late_ == revision_; }
 
@@ -154,21 +153,19 @@ class KnotBoardWriter {
     store(control_[kSleeping], sleeping ? 1 : 0, std::memory_order_seq_cst);
   }
 
-  /// Says that the region is of no more use.
+  /// Marks the region as retired.
   void retire() noexcept { store(control_[kRetired], 1, std::memory_order_release); }
 
-  /// The word that waiting readers watch.
+  /// The word that readers wait on.
   [[nodiscard]] const Word& revision_word() const noexcept { return control_[kRevision]; }
 
  private:
-  /// Largest sum of magnitudes of what one revision writes. Values within ±kLargestValue at
-  /// the shortest intervals make none so large, and within it every segment stays within what
-  /// readers accept, whatever the interval.
+  /// Largest sum of magnitudes of what one revision writes. Values within ±kLargestValue stay below
+  /// it, even at the shortest intervals; below it readers accept every segment, for any interval.
   static constexpr double kLargestSum = 1e150;
 
-  /// What this writer knows of a slot without looking: the node and the row that the newest
-  /// committed cell names, as in its tag; which cell that is; and whether the slot has been written
-  /// for the next revision.
+  /// The writer's own record of a slot: the node and the row that the newest committed cell names,
+  /// as in its tag; which cell that is; whether the slot has been written for the next revision.
   using SlotState = std::uint32_t;
   static constexpr SlotState kCellBit = 1U << 16;
   static constexpr SlotState kWrittenBit = 1U << 17;
@@ -179,7 +176,7 @@ class KnotBoardWriter {
     SlotState next;
   };
 
-  /// Where the slots lie, and what is known of them.
+  /// The slots and what is known of them.
   struct Slots {
     Word* words;
     std::size_t mask;
@@ -200,10 +197,10 @@ class KnotBoardWriter {
     Word* cell;
     SlotState next;
 
-    /// Which one of the two parts of each kind is written.
+    /// Which of the two cells is written: 0 or 1.
     [[nodiscard]] std::size_t which_cell() const noexcept { return (next & kCellBit) != 0 ? 1 : 0; }
   };
-  /// A packed time that has been stored to for the next revision, and what it was before.
+  /// A packed time that has been overwritten for the next revision, and its previous value.
   struct HeldTime {
     std::size_t index;
     Word time;
@@ -247,14 +244,14 @@ class KnotBoardWriter {
   Word settled_;
   Word late_;
   Word checked_;
-  std::size_t head_cell_ = 0;                           ///< the newest committed one
+  std::size_t head_cell_ = 0;                           ///< of the newest committed summary
   std::array<std::array<Word, kHeadWords>, 2> head_{};  ///< what both cells hold
   std::vector<SlotState> states_;
   std::vector<WrittenSlot> written_;
-  Slots at_;  ///< in the region and in these
+  Slots at_;  ///< views of the region and of the two vectors
   std::vector<HeldTime> held_times_;
-  double written_sum_ = 0;  ///< of the magnitudes of what readers see of the next revision
-  double row_sum_ = 0;      ///< of those of its rows
+  double written_sum_ = 0;  ///< of the magnitudes that readers see of the next revision
+  double row_sum_ = 0;      ///< of the magnitudes of its rows
 };
 
 }  // namespace splinecast::ipc

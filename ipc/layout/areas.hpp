@@ -10,7 +10,7 @@
 
 namespace splinecast::ipc {
 
-/// Where the parts of a region lie that all regions have.
+/// The parts that every region has.
 inline constexpr std::tuple kRegionRows{
     FieldRow{"header",
              {.words = 2 * kPage / sizeof(Word)},
@@ -19,7 +19,7 @@ inline constexpr std::tuple kRegionRows{
     FieldRow{"control area",
              {.words = 2 * kPage / sizeof(Word)},
              FieldWriter::owner,
-             "the control block lies in it, at 8192 + 128 · (stream id mod 49), so that those of "
+             "it contains the control block, at 8192 + 128 · (stream id mod 49), so that those of "
              "many streams do not fall into one cache set"},
     FieldRow{"body",
              {},

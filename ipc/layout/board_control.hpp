@@ -20,7 +20,7 @@ inline constexpr std::tuple kBoardControlRows{
     FieldRow{"settled until",
              {.words = 1},
              FieldWriter::owner,
-             "ns: no revision after the one that stood when it was stored changes anything before"},
+             "ns: no revision after the one at which it was stored changes anything before"},
     padding(kLineWords - 3),
     FieldRow{"tail", {.words = 1}, FieldWriter::owner, "items consumed, a copy for the producer"},
     FieldRow{"late",

@@ -20,7 +20,7 @@
 namespace splinecast::ipc {
 namespace {
 
-/// More than any interval needs, and little enough to be added to any time.
+/// Longer than any interval, and short enough to be added to any time.
 constexpr std::uint64_t kLongestNanoseconds = std::uint64_t{1} << 61U;
 
 /// kByteOrder as a machine with the other byte order writes it.
@@ -45,11 +45,11 @@ void require_dimension_kinds(const RegionHeader& header) {
   try {
     (void)DimensionKinds(dimensions_of(header));
   } catch (const std::invalid_argument& error) {
-    throw BadRegion(std::string("region has dimensions that cannot be: ") + error.what());
+    throw BadRegion(std::string("region has invalid dimensions: ") + error.what());
   }
 }
 
-/// Two versions of splinecast that meet at one stream: which they are, and how to go on.
+/// Refuses the region of another splinecast: the message names both layouts and the remedy.
 void require_this_layout(const RegionHeader& header) {
   const std::uint32_t version = header.mark.version;
   if (version != kLayoutVersion) {
@@ -66,7 +66,7 @@ void require_this_layout(const RegionHeader& header) {
                   "and remove its regions with `splinecast rm`");
 }
 
-/// What both kinds of region share.
+/// Checks the values that both kinds of region have.
 void require_common(const RegionHeader& header, RegionKind kind, std::size_t real_bytes,
                     std::size_t max_capacity) {
   const std::uint32_t order = header.mark.byte_order;
@@ -90,7 +90,7 @@ void require_common(const RegionHeader& header, RegionKind kind, std::size_t rea
                 static_cast<std::uint64_t>(ConditionKind::own));
   if (!is_online(static_cast<ConditionKind>(header.start_kind))) {
     throw BadRegion("region has start condition " + std::to_string(header.start_kind) +
-                    ", which is none for streams");
+                    ", which a stream cannot meet");
   }
   for (std::size_t d = 0; d < header.dimensions; ++d) {
     if (is_usable(header.start_value[d])) continue;
@@ -103,12 +103,13 @@ void require_common(const RegionHeader& header, RegionKind kind, std::size_t rea
   require(header.region_bytes == real_bytes, "size", real_bytes, header.region_bytes);
 }
 
-/// What shapes the curve: SlidingWindow refuses all else as well, but not as a bad region.
+/// Checks the values that define the curve. SlidingWindow would refuse invalid ones too, but not as
+/// a bad region.
 void require_curve(const RegionHeader& header) {
   const Method* const method = find_method(header.method);
   if (method == nullptr || !method->streams()) {
     throw BadRegion("region has method " + std::to_string(header.method) +
-                    ", which is none for streams");
+                    ", which is not an online method");
   }
   if (!std::isfinite(header.lambda) || header.lambda < 0) {
     throw BadRegion("region has lambda " + std::to_string(header.lambda));
@@ -143,13 +144,13 @@ BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_by
   require_curve(header);
   const auto layout =
       BoardLayout::of(header.dimensions, header.capacity, header.control, smooths(header));
-  require_range("tail", header.tail, 0, static_cast<std::uint64_t>(Tail::rest));
+  require_range("tail", header.tail, 0, static_cast<std::uint64_t>(Tail::clamped));
   require_range("freeze-ahead", static_cast<std::uint64_t>(header.freeze_ahead), 1,
                 kLongestNanoseconds);
   require_range("history", static_cast<std::uint64_t>(header.history), 0, kLongestNanoseconds);
-  require_range("shortest splice", static_cast<std::uint64_t>(header.min_splice), 1,
+  require_range("shortest entry", static_cast<std::uint64_t>(header.min_entry), 1,
                 kLongestNanoseconds);
-  require_range("word for what is beyond limits", header.beyond, 0,
+  require_range("action beyond the limits", header.beyond, 0,
                 static_cast<std::uint64_t>(Beyond::refuse));
   require_motion_limits(header);
   require_range("stop time", static_cast<std::uint64_t>(header.stop_time), 1,

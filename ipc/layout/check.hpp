@@ -8,8 +8,8 @@
 
 namespace splinecast::ipc {
 
-/// Throws BadRegion, naming the offending value, unless the copied header describes a region of
-/// this kind, layout, byte order and real size. Returns its layout.
+/// Returns the layout that a copied header describes. Throws BadRegion, naming the offending value,
+/// unless the header is of this kind, layout version, byte order and real size.
 RingLayout checked_ring_layout(const RegionHeader& header, std::size_t real_bytes);
 BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_bytes);
 

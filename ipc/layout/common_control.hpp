@@ -11,12 +11,12 @@
 
 namespace splinecast::ipc {
 
-/// The word that says that a region is retired: at the same place in both control blocks.
+/// The word that marks a region as retired: at the same place in both control blocks.
 inline constexpr std::size_t kRetired = word_of(kBoardControlFields, "retired");
 static_assert(word_of(kRingControlFields, "retired") == kRetired);
-static_assert(kRevision == 0 && kHead == 0);  // what waiting processes watch
+static_assert(kRevision == 0 && kHead == 0);  // the words that processes wait on
 
-/// How many positions the control block may have within the control area.
+/// Number of positions that the control block may have in the control area.
 inline constexpr std::size_t kControlPositions =
     (kBodyOffset - kHeaderBytes - kBoardControlWords * sizeof(Word)) / kSeparation + 1;
 static_assert(kRingControlWords <= kBoardControlWords);

@@ -39,18 +39,18 @@ struct RegionHeader {
   std::uint64_t settle = 0;      ///< settle lag K
   std::uint64_t tail = 0;        ///< Tail
   std::int64_t stop_time = 0;    ///< ns
-  std::uint64_t epoch = 0;       ///< number of the owner's life, from 1
+  std::uint64_t epoch = 0;       ///< number of owners so far, from 1
   std::uint64_t owner_pid = 0;
   std::int64_t owner_since = 0;   ///< CLOCK_MONOTONIC when the owner took the region
   double lambda = 0;              ///< of smoothing, s³
   double time_scale = 0;          ///< of rounded, s
-  std::uint64_t force_lag = 0;    ///< 1: a lag too short for lambda is taken
+  std::uint64_t force_lag = 0;    ///< 1: a lag too short for lambda is accepted
   std::int64_t freeze_ahead = 0;  ///< ns that a live stream settles ahead of now
   std::int64_t history = 0;       ///< ns before now that a live stream keeps
-  std::int64_t min_splice = 0;    ///< ns: length of the shortest splice
+  std::int64_t min_entry = 0;     ///< ns: least length of an entry
   std::array<double, kMaxDimensions> start_value{};
   std::array<std::uint64_t, kMaxDimensions> dimension_kind{};  ///< DimensionKind
-  std::array<double, kMaxDimensions> period{};                 ///< of `wrap`; else 0
+  std::array<double, kMaxDimensions> period{};                 ///< of `periodic`; else 0
   std::array<std::array<char, kNameBytes>, kMaxDimensions> name{};
   std::array<std::array<char, kUnitBytes>, kMaxDimensions> unit{};
   std::array<double, kMaxDimensions> max_velocity{};  ///< 0: no limit, as in the next two
@@ -86,14 +86,14 @@ inline constexpr std::tuple kHeaderRows{
     MemberRow<&RegionHeader::max_interval>{"most interval", FieldWriter::maker, "ns"},
     MemberRow<&RegionHeader::start_kind>{
         "start condition", FieldWriter::maker,
-        "0 natural, 1 rest, 2 halt, 3 velocity, 4 acceleration, 7 the method's own"},
+        "0 natural, 1 clamped, 2 halt, 3 velocity, 4 acceleration, 7 the method's own"},
     MemberRow<&RegionHeader::method>{
         "method", FieldWriter::maker,
         "0 c2, 1 hermite, 2 quintic, 4 smoothing, 16 bessel, 17 akima, 18 makima, 19 pchip, 20 "
         "rounded (spline region, as all up to the stop time)"},
     MemberRow<&RegionHeader::settle>{"settle lag", FieldWriter::maker, "K"},
     MemberRow<&RegionHeader::tail>{"tail", FieldWriter::maker,
-                                   "0 bessel, 1 parabolic, 2 natural, 3 rest"},
+                                   "0 bessel, 1 parabolic, 2 natural, 3 clamped"},
     MemberRow<&RegionHeader::stop_time>{"stop time", FieldWriter::maker, "ns"},
     MemberRow<&RegionHeader::epoch>{"epoch", FieldWriter::owner,
                                     "number of the owner's life, from 1"},
@@ -109,18 +109,18 @@ inline constexpr std::tuple kHeaderRows{
     MemberRow<&RegionHeader::freeze_ahead>{"freeze-ahead", FieldWriter::maker,
                                            "ns, of a live stream"},
     MemberRow<&RegionHeader::history>{"history", FieldWriter::maker, "ns, of a live stream"},
-    MemberRow<&RegionHeader::min_splice>{"shortest splice", FieldWriter::maker,
-                                         "ns, of a live stream"},
+    MemberRow<&RegionHeader::min_entry>{"least entry length", FieldWriter::maker,
+                                        "ns, of a live stream"},
     padding(4),
     MemberRow<&RegionHeader::start_value>{"start value", FieldWriter::maker,
                                           "a double per dimension: of the start condition"},
-    MemberRow<&RegionHeader::dimension_kind>{
-        "dimension kind", FieldWriter::maker,
-        "a word per dimension: 0 linear, 1 wrap, 2 quaternion as x y z w, 3 quaternion as w x y z; "
-        "all four dimensions of a quaternion have the same"},
+    MemberRow<&RegionHeader::dimension_kind>{"dimension kind", FieldWriter::maker,
+                                             "a word per dimension: 0 linear, 1 periodic, 2 "
+                                             "quaternion as x y z w, 3 quaternion as w x y z; "
+                                             "all four dimensions of a quaternion have the same"},
     MemberRow<&RegionHeader::period>{
         "period", FieldWriter::maker,
-        "a double per dimension: of one that wraps, in its unit, 1e-100 to 1e100; else 0"},
+        "a double per dimension: of a periodic one, in its unit, 1e-100 to 1e100; else 0"},
     MemberRow<&RegionHeader::name>{"name", FieldWriter::maker,
                                    "32 bytes per dimension, zero-terminated"},
     MemberRow<&RegionHeader::unit>{"unit", FieldWriter::maker,
@@ -147,13 +147,13 @@ inline constexpr std::size_t kHeaderWords = size_of(kHeaderFields).words;
 /// Whether a header's method smooths: then its board's cells and rows have more words.
 [[nodiscard]] bool smooths(const RegionHeader& header) noexcept;
 
-/// Copies a header out of a region, word by word: what a process checks is what it then uses,
-/// whatever happens to the region meanwhile. Its loads are relaxed: the header was written before
-/// the region got its name, and the kernel has put the look-up of that name behind it. Throws
-/// BadRegion if the region is too short to hold one.
+/// Copies a header out of a region, word by word, so that a process uses the values that it has
+/// checked even if the region changes. The loads are relaxed: the header was written before the
+/// region got its name, and the kernel orders the look-up of the name after that. Throws BadRegion
+/// if the region is too short to hold one.
 [[nodiscard]] RegionHeader copy_header(std::span<const std::byte> region);
 
-/// The same from words that have been copied already, at least kHeaderWords of them.
+/// The same, from at least kHeaderWords words that have already been copied.
 [[nodiscard]] RegionHeader decode_header(std::span<const Word> words) noexcept;
 
 /// Writes a header into a region that has no name yet.

@@ -10,7 +10,7 @@ namespace splinecast::ipc {
 
 BoardLayout BoardLayout::of(std::size_t dimensions, std::size_t capacity, std::size_t control,
                             bool smooths) noexcept {
-  // The last field of a cell and of a row is of `smoothing` only.
+  // Only `smoothing` has the last field of a cell and of a row.
   const auto lines = [&](std::span<const Field> fields) {
     const Extent size = smooths ? size_of(fields) : fields.back().offset;
     return round_up(size.of(dimensions) * sizeof(Word), kCacheLine);

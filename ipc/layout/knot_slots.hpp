@@ -9,7 +9,7 @@
 
 namespace splinecast::ipc {
 
-/// The parts of a knot's slot. Each lies there twice, beginning on a cache line.
+/// The parts of a knot's slot. Each exists twice and begins on a cache line.
 inline constexpr std::tuple kCellRows{
     FieldRow{"tag",
              {.words = 1},
@@ -17,7 +17,7 @@ inline constexpr std::tuple kCellRows{
              "0 never written; else revision (bits 16–63; all ones: retired), the node that it "
              "refers to (bit 0), the form of the segment that begins here (bits 1–4: 0 none, 1 "
              "cubic, 2 cubic with acceleration 0 at the left end, 3 at the right end, 4 at both, 5 "
-             "quintic, 6 splice, 7 stop, 8 hold), a waypoint stands here (bit 5), the acceleration "
+             "quintic, 6 entry, 7 stop, 8 hold), the knot is a waypoint (bit 5), the acceleration "
              "beside is that with which the segment that ends here arrives (bit 6), or the one "
              "that begins here starts (bit 7), how many newer knots it had seen when it was solved "
              "(bits 8–14), the row that it refers to (bit 15)"},
@@ -43,7 +43,7 @@ inline constexpr std::tuple kBesideRows{
     FieldRow{"item",
              {.words = 1},
              FieldWriter::owner,
-             "of a splice: number of the item of the run's first waypoint, plus 1; of the end of "
+             "of an entry: number of the item of the run's first waypoint, plus 1; of the end of "
              "one beyond the newest waypoint: number of waypoints of the run; of a waypoint that "
              "is passed over: item of the run · 2²⁴ + its number in the run; else 0"},
     FieldRow{"acceleration",
@@ -91,19 +91,19 @@ inline constexpr std::tuple kBodyRows{
              "begins, the one of the next knot at which one does: a hint"}};
 inline constexpr auto kBodyFields = place(kBodyRows);
 
-/// Slots behind those of the numbered knots: the waypoints that entries pass over, by their number
+/// Slots after those of the numbered knots: the waypoints that entries pass over, by their number
 /// in the run. Only a solver that takes over reads them.
 inline constexpr std::size_t kPassedSlots = 80;
 inline constexpr unsigned kPassedItemShift = 24;
 
-/// Offsets of a knot board, in bytes; those of a slot's parts from its beginning.
+/// Offsets of a knot board, in bytes; those of a slot's parts count from the slot.
 struct BoardLayout {
   std::size_t dimensions;
   std::size_t capacity;
   std::size_t control;
   bool smooths;          ///< cells have residuals, rows have factors
   std::size_t refusals;  ///< kRefusalsKept words
-  std::size_t excesses;  ///< kExcessesKept of kExcessWords each
+  std::size_t excesses;  ///< kExcessesKept records of kExcessWords words
   std::size_t times;     ///< packed times: capacity words
   std::size_t slots;     ///< capacity + kPassedSlots slots
   std::size_t cell;      ///< bytes of a cell; cells begin a slot
@@ -123,7 +123,7 @@ struct BoardLayout {
 /// The largest capacity, so that every size and index computed from a header fits.
 inline constexpr std::size_t kMaxBoardCapacity = std::size_t{1} << 22;
 
-/// Longest stop tail: so short that a stop, and the way back behind it, can be added to any time.
+/// Greatest length of a stop segment: a stop and a return from it can be added to any time.
 inline constexpr Time kLongestStop{std::int64_t{1} << 60};
 
 }  // namespace splinecast::ipc

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The values of a stream's dimensions; none if all of them say "none".
+/// The values of a stream's dimensions; empty if all of them are `none`.
 std::vector<double> values_or_none(const std::array<double, kMaxDimensions>& values,
                                    std::size_t dimensions, double none) {
   const auto of_stream = std::span(values).first(dimensions);

@@ -5,12 +5,12 @@
 
 namespace splinecast::ipc {
 
-/// What a header says of limits of motion, and of what is done about a segment beyond them.
+/// The motion limits in a header, and the action for a segment that exceeds them.
 [[nodiscard]] MotionLimits motion_limits(const RegionHeader& header);
 [[nodiscard]] Beyond beyond(const RegionHeader& header) noexcept;
 
-/// Writes limits into a header whose dimensions and their kinds are known; what is not given says
-/// "none". Throws std::invalid_argument for limits that require_limits does not take.
+/// Writes limits into a header that already has dimensions and kinds; limits that are not given
+/// become "none". Throws std::invalid_argument for limits that require_limits refuses.
 void put_limits(const MotionLimits& limits, RegionHeader& header);
 
 }  // namespace splinecast::ipc

@@ -2,18 +2,18 @@
 
 #include <cstdint>
 
-/// What tells a stream's region from other files, and one layout from another. The tables of this
-/// folder say where every word of the two regions lies; layout.md of the folder above is generated
-/// from them. A release that changes a row adds 1 to kLayoutVersion. Between releases the layout
-/// hash tells layouts apart.
+/// The numbers that identify a stream's region and its layout. The tables of this folder define the
+/// place of every word of the two regions; layout.md of the folder above is generated from them. A
+/// release that changes a row adds 1 to kLayoutVersion. Between releases the layout hash
+/// distinguishes layouts.
 namespace splinecast::ipc {
 
 inline constexpr std::uint64_t kMagic = 0x54534143'4e4c5053;  // "SPLNCAST" in memory order
 inline constexpr std::uint32_t kLayoutVersion = 5;
 inline constexpr std::uint32_t kByteOrder = 0x01020304;
 
-/// The two numbers of the header's second word, which no layout moves: every version finds out by
-/// them that another one has made a region.
+/// The two numbers of the header's second word, which no layout moves: by them every version
+/// recognises a region of another version.
 struct LayoutMark {
   std::uint32_t version = kLayoutVersion;
   std::uint32_t byte_order = kByteOrder;

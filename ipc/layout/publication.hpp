@@ -8,16 +8,16 @@
 #include "ipc/memory/word.hpp"
 
 /// Publication: how one writer makes many words visible at once, and any number of readers copy
-/// them whole, without waiting for anybody.
+/// them consistently, without waiting.
 ///
-/// A *slot* has two *cells* and two *nodes*. A node holds what a knot is given (time, position), a
-/// cell what each solve changes (velocity). Word 0 of a cell is its *tag*: the revision that wrote
-/// it, and the bits that go with the knot, of which one names its node. Comparisons of tags with
+/// A *slot* has two *cells* and two *nodes*. A node holds the inputs of a knot (time, position), a
+/// cell the results of each solve (velocity). Word 0 of a cell is its *tag*: the revision that
+/// wrote it, and bits that describe the knot, one of which names its node. Comparisons of tags with
 /// revisions use the revision only. The *newest* cell under revision r is the one with the greatest
 /// revision ≤ r; the other one is the *spare*. A revision writes the spare cell of each slot that
 /// it changes, and the node that the newest cell does not name if a new knot takes the slot; then
-/// it stores its number to the *commit word*, which makes all of it visible at once. The head is a
-/// slot without nodes.
+/// it stores its number to the *commit word*, which makes all of it visible at once. The summary is
+/// a slot without nodes.
 ///
 /// Each "fails" below is an execution that a model has found: [s] the spin model of tests/model, by
 /// plain interleaving, so that it can happen on x86 too; [m] only a weaker memory model (RC11,
@@ -29,7 +29,7 @@
 ///    whose lock the kernel gave it.
 /// W1 tag[c].store((r+1, node), release), first, before node and cell.
 ///    First, because a reader that copies a new word (R3) must not find the old tag at R4. The same
-///    covers the node: it is overwritten only when no cell with a standing tag names it. The newest
+///    covers the node: it is overwritten only when no cell with a valid tag names it. The newest
 ///    cell names the other one, and the spare's tag, which may name it, has been overwritten by W1.
 ///    Fails: the tag after the cell [s]; the node before the tag [s], where a slot gets a new knot
 ///    twice in a row: revisions 1 and 3 use the same cell and node, and a reader under 1 takes the
@@ -55,15 +55,15 @@
 /// Reader
 ///
 /// R1 commit.load(acquire). Pairs with W3.
-/// R2 Both tags, load(acquire). Pairs with W1 or T1 of a later revision, and keeps R3 behind R2.
+/// R2 Both tags, load(acquire). Pairs with W1 or T1 of a later revision, and keeps R3 after R2.
 /// R3 cell[c] and node[tag's node].load(acquire), each word, in either order. Pairs with W2, and
-///    keeps R4 behind R3.
+///    keeps R4 after R3.
 /// R4 tag[c].load(relaxed), directly after the copies: still the tag of R2, all 64 bits, else the
 ///    copy is rejected. Relaxed is enough: R3 has ordered it, and nothing after it depends on it.
-///    One look covers cell and node.
+///    One check covers cell and node.
 ///
 /// Two knots of one segment are copied one after the other under the same r. Each is exactly what r
-/// holds, so that no second look at the first is needed after the second.
+/// holds, so that the first need not be checked again after the second.
 ///
 /// Kept copies: a copy with tag T may be used under r' ≥ the revision that it was made under, iff
 ///
@@ -82,24 +82,24 @@
 ///
 /// Ring of changes: word r mod N holds the time from which revision r changed the curve.
 ///
-/// C1 Word r is stored (release) after the head's spare tag has been claimed for r (W1) and before
-///    the commit (W3).
+/// C1 Word r is stored (release) after the summary's spare tag has been claimed for r (W1) and
+///    before the commit (W3).
 /// C2 A reader that saw revision `seen` and now reads under r loads words seen+1 … r (acquire),
 ///    after R1. R1 guarantees that each is the word of its revision or of one N, 2N, … later.
-/// C3 Then it loads both tags of the head (relaxed is enough; after C2). Let g be the greatest tag
-///    that is not retired. The words count iff there is such a tag and g ≤ seen + N − 1. Otherwise
-///    everything is taken as changed.
+/// C3 Then it loads both tags of the summary (relaxed is enough; after C2). Let g be the greatest
+///    tag that is not retired. The words are valid iff there is such a tag and g ≤ seen + N − 1.
+///    Otherwise everything counts as changed.
 ///
 /// Why: let a word loaded be of a later revision m ≥ seen + 1 + N. C2 acquires C1, hence the claim
-/// of the head's tag for m, and the claim of m − 1 in the other cell, which was committed. So each
-/// tag that C3 loads is that one, a later one, or retired. If one of the two is not retired,
-/// g ≥ m − 1 ≥ seen + N: the words do not count.
+/// of the summary's tag for m, and the claim of m − 1 in the other cell, which was committed. So
+/// each tag that C3 loads is that one, a later one, or retired. If one of the two is not retired,
+/// g ≥ m − 1 ≥ seen + N: the words are not valid.
 /// - N − 1, not N: the writer may die after storing word m; its successor retires tag m, and g is
 ///   m − 1 [s]. While no tag is ever retired, N holds too.
-/// - Both tags retired must not count [s]: writer 1 dies with m claimed, its tag is retired, the
-///   reader loads that tag; the successor commits m, claims m+1 in the other cell and dies; its
-///   successor retires that; the reader loads that tag. Both are retired although m is committed.
-///   Two discards by a living writer do the same.
+/// - If both tags are retired, the words must not count as valid [s]: writer 1 dies with m claimed,
+///   its tag is retired, the reader loads that tag; the successor commits m, claims m+1 in the
+///   other cell and dies; its successor retires that; the reader loads that tag. Both are retired
+///   although m is committed. Two discards by a living writer do the same.
 /// - Tag before word: if word m is stored first, C2 knows only of the tags up to m − 1. A reader
 ///   then loads the tag m − 2 in the cell that m is about to claim, and, after m and m + 1, finds
 ///   m + 1 retired in the other: g = m − 2 [s].
@@ -108,7 +108,7 @@
 /// - C1 and C2 relaxed fail [m]: C3 then need not see the claim that precedes the word. C3 needs no
 ///   acquire, and the release of W1 and T1 is not needed for the ring: C1 carries the claim.
 ///
-/// Settled word: one word beside the commit word. It promises that no later revision changes
+/// Settled word: one word next to the commit word. It promises that no later revision changes
 /// anything before it.
 ///
 /// S1 settled.store(s, release), after the commit (W3) of the revision to which s belongs. It may
@@ -125,7 +125,7 @@
 ///   revision.
 /// - S1 or S2 relaxed fails [m]: R1 may then load a revision older than the one to which s belongs.
 ///   (W3 and R1 are not needed for this pair alone: S1 carries the commit.)
-/// - A successor goes on from the word that it finds and the committed revision. If it begins
+/// - A successor continues from the word that it finds and the committed revision. If it begins
 ///   lower, it changes what its predecessor promised [s]. If the predecessor died between W3 and
 ///   S1, the word is lower than it could be, which is safe.
 /// - A reader may use an s that it loaded earlier with a newer revision, never a newer s with an
@@ -134,18 +134,19 @@
 /// There are no fences, no read-modify-writes, and readers store nothing.
 namespace splinecast::ipc {
 
-/// A tag's revision stands in its upper 48 bits; what goes with the cell is below.
+/// The upper 48 bits of a tag are its revision; the lower bits describe the cell.
 inline constexpr unsigned kTagRevisionShift = 16;
 
 /// A tag that no revision reaches.
 inline constexpr Word kRetiredTag = std::numeric_limits<Word>::max();
 
-/// The last revision that a tag can hold, less one: at a million a second, after 8.9 years.
+/// One less than the last revision that a tag can hold: reached after 8.9 years at a million
+/// revisions per second.
 inline constexpr Word kLastRevision = (kRetiredTag >> kTagRevisionShift) - 2;
 
 [[nodiscard]] constexpr Word revision_of(Word tag) noexcept { return tag >> kTagRevisionShift; }
 
-/// The two tags of a slot, as seen once.
+/// The two tags of a slot, each loaded once.
 struct Tags {
   std::array<Word, 2> of;
 
@@ -178,9 +179,9 @@ struct SlotView {
 /// W2 for one word.
 inline void put(Word& word, Word value) noexcept { store(word, value, std::memory_order_release); }
 
-/// K1 and K2: whether what was copied from cell `c`, with `tag`, is what the slot holds under
-/// revision `r` too, which is no older than the tag. Two loads. Where words of that cell, or of
-/// its node, were loaded (acquire) before the call, true also says that these are of the tag (R4).
+/// K1 and K2: whether a copy of cell `c`, made with `tag`, is also what the slot holds under
+/// revision `r`, which is that of the tag or later. Two loads. If words of that cell, or of its
+/// node, were loaded (acquire) before the call, true also means that they belong to the tag (R4).
 [[nodiscard]] inline bool is_newest(const SlotView<const Word>& slot, std::size_t c, Word tag,
                                     Word r) noexcept {
   const Word other = revision_of(load(slot.cell(1 - c)[0], std::memory_order_acquire));
@@ -188,7 +189,7 @@ inline void put(Word& word, Word value) noexcept { store(word, value, std::memor
   return load(slot.cell(c)[0], std::memory_order_relaxed) == tag;
 }
 
-/// T1 for one slot: retires what no commit has made visible.
+/// T1 for one slot: retires the tags that no commit has made visible.
 inline void retire_uncommitted(const SlotView<Word>& slot, Word committed) noexcept {
   for (std::size_t c = 0; c < 2; ++c) {
     Word& tag = slot.cell(c)[0];

@@ -6,8 +6,8 @@
 
 namespace splinecast::ipc {
 
-/// What different processes write, or poll, lies this far apart: two cache lines, because adjacent
-/// lines are fetched in pairs.
+/// Distance in bytes between words that different processes write, or poll: two cache lines,
+/// because adjacent lines are fetched in pairs.
 inline constexpr std::size_t kSeparation = 128;
 inline constexpr std::size_t kCacheLine = 64;
 inline constexpr std::size_t kPage = 4096;

@@ -15,21 +15,22 @@ namespace splinecast::ipc {
 
 inline constexpr std::size_t kRefusalReasons = 16;
 
-/// Where the end of the published curve stands to the *target*, the spline through the waypoints of
-/// a run.
+/// The state of the end of the published curve relative to the *target*, the spline through the
+/// waypoints of a run.
 enum class Course : std::uint8_t {
-  on_target = 0,  ///< it is the target
-  waiting = 1,    ///< it ends in a stop beside the target: no entry has been found
+  on_target = 0,  ///< the curve is the target
+  waiting = 1,    ///< it ends in a stop away from the target: no entry has been found
   entering = 2,   ///< an entry ends at a waypoint of the run, and the target follows
   beyond = 3,     ///< an entry ends beyond the newest waypoint, and a stop follows
 };
 inline constexpr int kCourses = 4;
 
-/// What holds for a whole revision.
+/// The summary: the values of a whole revision.
 struct Head {
-  Word revision = 0;  ///< the revision that this head is of; 0: none yet
+  Word revision = 0;  ///< the revision of this summary; 0: none yet
   Word first = 0;     ///< oldest knot on the board; a segment begins there
-  Word newest = 0;    ///< newest knot; 0: none. Of a stream that goes on its stop begins there
+  Word newest = 0;    ///< newest knot; 0: none. Unless the stream is finished, its stop begins
+                      ///< there
   Time stop{};        ///< length of the stop, if that is the newest segment
   bool finished = false;
   Word run = 1;        ///< first knot of the run
@@ -38,33 +39,35 @@ struct Head {
   Word course = 0;     ///< Course
   Word met = 0;    ///< waypoints of the run before the piece of the target that ends at `newest`
   Word unmet = 0;  ///< waypoints of the run before those that the open entry passes over
-  Time blend_until{};         ///< no entry of the run ends before
+  Time blend_until{};         ///< no entry of the run ends before this time
   Word passed_over = 0;       ///< waypoints that entries pass over, of all runs
-  Word consumed = 0;          ///< ring items taken
-  Word knots = 0;             ///< waypoints taken, replaced ones too
+  Word consumed = 0;          ///< ring items consumed
+  Word knots = 0;             ///< waypoints accepted, including replaced ones
   Time newest_knot{};         ///< time of the newest waypoint, or of the state that a run begins in
-  Time committed{};           ///< the solver's clock at the commit; of a recorded stream, roughly
+  Time committed{};           ///< the solver's clock at the commit; of a recorded stream,
+                              ///< approximate
   Word run_frozen = 0;        ///< waypoints of the run that were frozen when this revision was made
   bool is_later_run = false;  ///< the run is not the stream's first, or begins in a given state
   bool starved = false;       ///< a live stream's settled time has passed its newest knot
-  Time low_water = Time::max();  ///< least depth so far; max() before there was any
+  Time low_water = Time::max();  ///< least depth so far; max() if there was none yet
   Word underruns = 0;            ///< times that a live stream has starved
-  Word misses = 0;               ///< revisions discarded because they came too late
-  Word revisions = 0;            ///< revisions committed too late, this one too: readers are told
-  Word withdrawn = 0;            ///< items that a replacement withdrew unread
+  Word misses = 0;               ///< revisions discarded because they were too late
+  Word revisions = 0;            ///< revisions committed too late, including this one: readers may
+                                 ///< get `revised`
+  Word withdrawn = 0;            ///< items that a replacement withdrew before they were read
   Word controls = 0;             ///< replacements, start states and finishes carried out
-  Word exceeding = 0;  ///< waypoints that brought the curve, or would have, beyond a limit
-  Word refused = 0;    ///< items refused
+  Word exceeding = 0;            ///< waypoints with which the curve exceeded a limit, or would have
+  Word refused = 0;              ///< items refused
   std::array<Word, kRefusalReasons> reasons{};  ///< of these, by Refusal
-  /// No time before it ever changes; not of the revision alone.
+  /// The curve before this time never changes. May be raised without a revision.
   Time settled_until = -kLatestTime;
   Time changed_from{};  ///< earliest time whose curve this revision changed
 
-  /// Waypoints that the curve interpolates, replaced ones too.
+  /// Waypoints that the curve interpolates, including replaced ones.
   [[nodiscard]] Word interpolated() const noexcept { return knots - passed_over; }
 };
 
-/// What lookups need of a head, in one cache line: the first rows of its cell.
+/// The values that lookups need, in one cache line: the first rows of the summary's cell.
 inline constexpr std::tuple kBoundsRows{
     FieldRow{"tag", {.words = 1}, FieldWriter::owner, "revision · 65,536"},
     MemberRow<&Head::first>{"first", FieldWriter::owner,
@@ -76,8 +79,8 @@ inline constexpr std::tuple kBoundsRows{
 inline constexpr std::size_t kBoundsWords = size_of(place(kBoundsRows)).words;
 static_assert(kBoundsWords <= kCacheLine / sizeof(Word));
 
-/// What else holds for a revision. What changes rarely comes last: a revision stores what is not in
-/// the cell already.
+/// The other values of a revision. Those that change rarely come last: a revision stores only words
+/// that differ from the cell's.
 inline constexpr std::tuple kFurtherRows{
     MemberRow<&Head::run>{"run", FieldWriter::owner, "first knot of the run"},
     MemberRow<&Head::run_knots>{"knots of the run", FieldWriter::owner, "its waypoints"},
@@ -125,7 +128,7 @@ inline constexpr std::tuple kFurtherRows{
     MemberRow<&Head::reasons>{"reasons", FieldWriter::owner, "items refused, by reason"},
     padding(4)};
 
-/// A cell of the head's slot. All that goes with a field is its member of Head and its row here.
+/// A cell of the summary's slot. Only a field's member of Head and its row here define it.
 inline constexpr auto kHeadRows = std::tuple_cat(kBoundsRows, kFurtherRows);
 inline constexpr auto kHeadFields = place(kHeadRows);
 inline constexpr std::size_t kHeadWords = size_of(kHeadFields).words;

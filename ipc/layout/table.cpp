@@ -33,10 +33,10 @@ constexpr std::array kParts{
                kBodyFields},
     LayoutPart{"Cell of a knot", "a slot, twice; as all parts of a slot rounded up to 64 bytes",
                kCellFields},
-    LayoutPart{"Node of a knot", "behind the cells of a slot, twice", kNodeFields},
-    LayoutPart{"Beside a cell", "behind the nodes of a slot, twice: of cell 0 and of cell 1",
+    LayoutPart{"Node of a knot", "after the cells of a slot, twice", kNodeFields},
+    LayoutPart{"Beside a cell", "after the nodes of a slot, twice: of cell 0 and of cell 1",
                kBesideFields},
-    LayoutPart{"Row of a knot", "behind what is beside the cells, twice", kRowFields}};
+    LayoutPart{"Row of a knot", "after what is beside the cells, twice", kRowFields}};
 
 class Fnv {
  public:

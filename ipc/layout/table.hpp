@@ -12,15 +12,15 @@
 
 #include "ipc/memory/word.hpp"
 
-/// How a part of a region is described: a table of fields, each with its name, place, size, writer
-/// and meaning. From the same rows come the offsets that the code uses, the copies in and out of
+/// The description of a part of a region: a table of fields, each with its name, place, size,
+/// writer and meaning. The same rows define the offsets that the code uses, the copies to and from
 /// the members of a struct, the layout hash, and the page that describes the bytes.
 namespace splinecast::ipc {
 
-/// Who stores a field.
+/// The process that stores a field.
 enum class FieldWriter : std::uint8_t {
-  maker,  ///< whoever makes the region, before it gets its name
-  owner,  ///< the process that takes it: the producer of one region, the solver of the other
+  maker,  ///< the process that creates the region, before it gets its name
+  owner,  ///< the process that owns the region: the producer or the solver
   padding,
 };
 
@@ -48,7 +48,7 @@ struct Field {
   std::string_view meaning;
 };
 
-/// A row before it has been placed.
+/// A row without an offset.
 struct FieldRow {
   std::string_view name;
   Extent size;
@@ -56,7 +56,7 @@ struct FieldRow {
   std::string_view meaning;
 };
 
-/// A row that a member of a struct goes with. Its size is the member's: one word for a bool.
+/// A row for a member of a struct. Its size is the member's: one word for a bool.
 template <auto Member>
 struct MemberRow {
   std::string_view name;
@@ -64,7 +64,7 @@ struct MemberRow {
   std::string_view meaning;
 };
 
-/// Rows that nobody uses.
+/// Unused words.
 [[nodiscard]] constexpr FieldRow padding(std::size_t words) noexcept {
   return {.name = "", .size = {.words = words}, .writer = FieldWriter::padding, .meaning = ""};
 }
@@ -91,7 +91,7 @@ constexpr FieldRow as_row(const MemberRow<Member>& row) noexcept {
 
 }  // namespace detail
 
-/// Places rows one behind the other.
+/// Places rows contiguously.
 template <typename... Rows>
 [[nodiscard]] constexpr std::array<Field, sizeof...(Rows)> place(
     const std::tuple<Rows...>& rows) noexcept {
@@ -110,7 +110,7 @@ template <typename... Rows>
       rows);
 }
 
-/// The field of that name; a name that is not there does not compile.
+/// The field of that name; an unknown name does not compile.
 [[nodiscard]] consteval Field field_of(std::span<const Field> fields, std::string_view name) {
   for (const Field& field : fields) {
     if (field.name == name) return field;
@@ -118,14 +118,14 @@ template <typename... Rows>
   throw "no field has this name";
 }
 
-/// The offset of a field, in words, where it does not depend on D.
+/// The offset of a field, in words; it must not depend on D.
 [[nodiscard]] consteval std::size_t word_of(std::span<const Field> fields, std::string_view name) {
   const Extent offset = field_of(fields, name).offset;
   if (offset.per_dimension != 0) throw "this offset depends on the number of dimensions";
   return offset.words;
 }
 
-/// How many words fields take.
+/// The number of words of all fields.
 [[nodiscard]] constexpr Extent size_of(std::span<const Field> fields) noexcept {
   return fields.empty() ? Extent{} : fields.back().offset + fields.back().size;
 }
@@ -147,7 +147,7 @@ void encode_row(const FieldRow& row, const Struct& /*from*/, Word*& to) noexcept
   to += row.size.words;
 }
 
-/// Calls `changed(index, word)` where a word is not the one held, and holds it.
+/// If a word differs from the one held, replaces it and calls `changed(index, word)`.
 inline void take_word(Word word, std::size_t index, Word* held, const auto& changed) noexcept {
   if (word == held[index]) return;
   held[index] = word;
@@ -192,14 +192,13 @@ void decode_row(const FieldRow& row, const Word*& from, Struct& /*to*/) noexcept
 
 }  // namespace detail
 
-/// Copies members to the words that their rows place them in, or back. Words without a member are
-/// left alone.
+/// Copies members to the words of their rows, or back. Words without a member do not change.
 template <typename Rows, typename Struct>
 void encode(const Rows& rows, const Struct& from, Word* to) noexcept {
   std::apply([&](const auto&... row) { (detail::encode_row(row, from, to), ...); }, rows);
 }
-/// The same, where `held` are the words as they were: only those that differ are written, and
-/// `changed(index, word)` is called for each of them.
+/// The same, but updates only those words of `held` that differ, and calls `changed(index, word)`
+/// for each of them.
 template <typename Rows, typename Struct>
 void encode_changes(const Rows& rows, const Struct& from, Word* held,
                     const auto& changed) noexcept {
@@ -213,18 +212,18 @@ void decode(const Rows& rows, const Word* from, Struct& to) noexcept {
   std::apply([&](const auto&... row) { (detail::decode_row(row, from, to), ...); }, rows);
 }
 
-/// A part of the two regions: what its fields are, and where it is described to begin.
+/// A part of the two regions: its fields, and the description of where it begins.
 struct LayoutPart {
   std::string_view name;
-  std::string_view place;  ///< where it begins, in words for the page
+  std::string_view place;  ///< where it begins: text for the page
   std::span<const Field> fields;
 };
 
 /// Every part, in the order of the page.
 [[nodiscard]] std::span<const LayoutPart> layout_parts() noexcept;
 
-/// Identifies a layout: FNV-1a over every field's name, offset, size and writer. Other fields are
-/// another layout. The default is this build's.
+/// Identifies a layout: FNV-1a over the name of each part and the name, offset, size and writer of
+/// each field. Without an argument: of this build.
 [[nodiscard]] std::uint64_t layout_hash(std::span<const LayoutPart> parts) noexcept;
 [[nodiscard]] std::uint64_t layout_hash() noexcept;
 

@@ -28,7 +28,7 @@ inline constexpr std::size_t kItemKind = word_of(kItemFields, "kind");
 inline constexpr std::size_t kItemTime = word_of(kItemFields, "time");
 inline constexpr std::size_t kItemValues = word_of(kItemFields, "position");
 
-/// Offsets of a waypoint ring, derived from what its header fixes; all in bytes.
+/// Offsets of a waypoint ring in bytes, derived from its header.
 struct RingLayout {
   std::size_t dimensions;
   std::size_t capacity;

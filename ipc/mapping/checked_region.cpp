@@ -21,7 +21,8 @@ CheckedRegion<Layout> open_checked(std::string_view stream, RegionKind kind, boo
                                    const Trust& trust,
                                    Layout (*check)(const RegionHeader&, std::size_t)) {
   Region region = Region::open(stream, kind, writable, trust);
-  // A second name that somebody gave the file has a lock file of its own, which keeps nobody out.
+  // A second name of the file (hard link) has its own lock file, which does not protect this
+  // region.
   if (writable && is_region_locked(region.descriptor())) {
     throw StreamBusy(region_path(stream, kind) + " has a living " + std::string(owner_role(kind)));
   }

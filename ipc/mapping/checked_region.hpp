@@ -11,8 +11,8 @@
 
 namespace splinecast::ipc {
 
-/// A region that stands, mapped, with a copy of its header that has been checked against this
-/// layout and the file's real size. Only the copy is to be used: the region's own may change.
+/// A mapped region, with a copy of its header that has been checked against this layout and the
+/// file's real size. Use only the copy: the header in the region may change.
 template <typename Layout>
 struct CheckedRegion {
   Region region;
@@ -22,14 +22,15 @@ struct CheckedRegion {
 
 /// Maps a stream's waypoint ring or its knot board; `writable` for its owner only. Populates its
 /// pages. Throws NoSuchStream if there is none; BadRegion, naming the file and the offending value,
-/// if it is not to be trusted or not such a region.
+/// if it is not trusted or not such a region.
 [[nodiscard]] CheckedRegion<RingLayout> open_ring(std::string_view stream, bool writable,
                                                   const Trust& trust);
 [[nodiscard]] CheckedRegion<BoardLayout> open_board(std::string_view stream, bool writable,
                                                     const Trust& trust);
 
-/// Enters this process as the region's owner and counts its epoch up. Relaxed, like copy_header:
-/// the three words are for people, and a copy made meanwhile may hold some of the owner before.
+/// Writes this process into the header as the region's owner and increments the epoch. Relaxed,
+/// like copy_header: no other data depends on the three words, and a copy made meanwhile may mix
+/// those of two owners.
 void enter_owner(std::span<std::byte> region, const RegionHeader& before) noexcept;
 
 }  // namespace splinecast::ipc

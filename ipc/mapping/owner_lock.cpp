@@ -19,11 +19,12 @@
 namespace splinecast::ipc {
 namespace {
 
-/// How long a lock is tried for whose holder has no region locked: it may be an `rm` passing by.
+/// Tries for a lock whose holder has not locked a region: the holder may be an `rm`, which soon
+/// releases it.
 constexpr int kLockTries = 10;
 constexpr std::chrono::milliseconds kLockPoll{5};
 
-/// How often opening a lock file is tried while others keep removing it.
+/// Tries to open a lock file that other processes keep removing.
 constexpr int kOpenTries = 100;
 
 struct flock whole_file(short type) noexcept {
@@ -38,8 +39,8 @@ bool try_lock(int descriptor) noexcept {
   return fcntl(descriptor, F_OFD_SETLK, &lock) == 0;
 }
 
-/// Opens the lock file, making it if there is none; says which in `made_file`. Without O_CREAT
-/// first, because kernels refuse that flag on other users' files in sticky folders.
+/// Opens the lock file, or creates it: `made_file` says which. The first try is without O_CREAT,
+/// because kernels refuse that flag for other users' files in sticky folders.
 OwnedDescriptor open_lock_file(const std::string& path, bool& made_file) {
   constexpr int kFlags = O_RDWR | O_NOFOLLOW | O_NONBLOCK;
   for (int tries = 1;; ++tries) {
@@ -53,7 +54,7 @@ OwnedDescriptor open_lock_file(const std::string& path, bool& made_file) {
   }
 }
 
-/// Whether the name still leads to the file that was opened.
+/// Whether the path still names the file that was opened.
 bool is_named(int descriptor, const std::string& path) noexcept {
   struct stat opened {};
   struct stat named {};
@@ -63,30 +64,30 @@ bool is_named(int descriptor, const std::string& path) noexcept {
 
 void require_own_file(int descriptor, const std::string& path) {
   struct stat status {};
-  if (fstat(descriptor, &status) != 0) throw_failure("cannot look at lock " + path, errno);
+  if (fstat(descriptor, &status) != 0) throw_failure("cannot stat lock " + path, errno);
   if (!S_ISREG(status.st_mode) || status.st_uid != geteuid() || (status.st_mode & 077) != 0) {
     throw BadRegion("lock " + path + " is not a private file of this user (owner " +
                     std::to_string(status.st_uid) + ", mode " + mode_text(status.st_mode) + ")");
   }
 }
 
-/// Opens a file to query its locks; nothing if this process may not. Throws OutOfResources where
-/// it cannot be known whether it may.
+/// Opens a file to query its locks; empty if this process may not open it. Throws OutOfResources if
+/// resources are short.
 std::optional<OwnedDescriptor> open_to_query(const std::string& path) {
   OwnedDescriptor opened = OwnedDescriptor::open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK);
   if (opened.get() >= 0) return opened;
-  if (is_shortage(errno)) throw_failure("cannot look whether " + path + " is locked", errno);
+  if (is_shortage(errno)) throw_failure("cannot query the lock of " + path, errno);
   return std::nullopt;
 }
 
-/// Whether a file is one that OwnerLock takes, of this user or, as root sees it, of anybody.
+/// Whether a file is one that OwnerLock accepts: of this user or, for root, of any user.
 bool is_lock_file(int descriptor) noexcept {
   struct stat status {};
   return fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) &&
          (status.st_uid == geteuid() || geteuid() == 0);
 }
 
-/// Whether the owner's lock is held; nothing if this process may not open its file.
+/// Whether the owner's lock is held; empty if this process may not open its file.
 std::optional<bool> is_lock_held(std::string_view stream, RegionKind kind) {
   const auto file = open_to_query(lock_path(stream, kind));
   if (!file || !is_lock_file(file->get())) return std::nullopt;
@@ -127,9 +128,9 @@ OwnerLock::OwnerLock(std::string_view stream, RegionKind kind)
       throw StreamBusy("stream '" + std::string(stream) + "' has a living " +
                        std::string(owner_role(kind)) + owner_process(stream, kind));
     }
-    // A file that was unlinked after it was opened guards nothing any more.
+    // A lock on a file that was unlinked after it was opened protects nothing.
     if (is_named(descriptor_.get(), path_)) return;
-    if (attempt == kOpenTries) throw BadRegion("lock " + path_ + " is removed again and again");
+    if (attempt == kOpenTries) throw BadRegion("lock " + path_ + " is removed repeatedly");
   }
 }
 
@@ -163,7 +164,7 @@ bool is_region_locked(int descriptor) noexcept {
 }
 
 bool region_owner_lives(int descriptor) noexcept {
-  // A write lock would conflict with either kind.
+  // A write lock would conflict with read and write locks.
   struct flock lock = whole_file(F_WRLCK);
   if (fcntl(descriptor, F_OFD_GETLK, &lock) != 0 || lock.l_type == F_UNLCK) return false;
   if (lock.l_type == F_WRLCK) return true;

@@ -47,7 +47,7 @@ std::string free_bytes(int descriptor) {
   return std::to_string(status.f_bavail * status.f_frsize);
 }
 
-/// What `map` returns; boost's errors do not say what could not be mapped.
+/// Calls `map` and names `what` in its errors: Boost's do not say what could not be mapped.
 template <typename Map>
 auto naming_what(const std::string& what, const Map& map) {
   try {
@@ -59,17 +59,18 @@ auto naming_what(const std::string& what, const Map& map) {
   }
 }
 
-/// Beyond this limit the kernel would end the process with SIGXFSZ rather than refuse.
+/// Throws BadRegion if a file of this size is not allowed: the kernel would end the process with
+/// SIGXFSZ instead of an error.
 void require_file_size(std::size_t bytes) {
   struct rlimit limit {};
   if (getrlimit(RLIMIT_FSIZE, &limit) != 0 || bytes <= limit.rlim_cur) return;
   throw BadRegion("cannot reserve " + std::to_string(bytes) +
-                  " bytes of shared memory: this process's files may have " +
+                  " bytes of shared memory: the file size limit of this process is " +
                   std::to_string(limit.rlim_cur) + " (RLIMIT_FSIZE)");
 }
 
-/// Piece by piece, as a signal undoes the piece that it comes into: pieces that signals come into
-/// are halved, so that no rate of them lasts for ever.
+/// Reserves memory piece by piece, because a signal cancels the current piece. An interrupted piece
+/// is halved, so that this ends at any rate of signals.
 void reserve_pages(int descriptor, std::size_t bytes) {
   constexpr int kTriesOfAPage = 1000;
   require_file_size(bytes);
@@ -91,24 +92,24 @@ void reserve_pages(int descriptor, std::size_t bytes) {
   }
 }
 
-/// Faults every page in now, so that no sample, append or solve ever does.
+/// Faults in all pages now, so that no sample, append or solve causes a page fault.
 void populate(std::span<std::byte> bytes, bool writable, int descriptor) {
   const int advice = writable ? MADV_POPULATE_WRITE : MADV_POPULATE_READ;
   if (madvise(bytes.data(), bytes.size(), advice) == 0) return;
   if (errno != EINVAL) {
-    // A file with holes that there is no memory for: to touch them would be a SIGBUS.
+    // The file has holes, and no memory is left for them: touching one would raise SIGBUS.
     throw OutOfResources("cannot populate " + std::to_string(bytes.size()) +
                          " bytes of shared memory, " + free_bytes(descriptor) +
                          " are free: " + error_text(errno));
   }
-  // A kernel before 5.14.
+  // Kernels before 5.14 do not know this advice.
   for (std::size_t at = 0; at < bytes.size(); at += kPage) {
     (void)load(words_at(std::span<const std::byte>(bytes), at, 1)[0], std::memory_order_relaxed);
   }
 }
 
 void require_trusted(const struct stat& status, const std::string& path, const Trust& trust) {
-  if (!S_ISREG(status.st_mode)) throw BadRegion(path + " is no regular file");
+  if (!S_ISREG(status.st_mode)) throw BadRegion(path + " is not a regular file");
   const bool is_ours = status.st_uid == geteuid() || status.st_uid == 0 ||
                        (trust.owner && status.st_uid == *trust.owner);
   if (!is_ours) {
@@ -121,9 +122,9 @@ void require_trusted(const struct stat& status, const std::string& path, const T
   }
 }
 
-/// Opens the file first and then checks the descriptor, because the name may lead to another file
-/// each time. Never waits for a FIFO's other end or for a lease, which any user can put under a
-/// name.
+/// Opens the file first and then checks the descriptor, because the name may refer to another file
+/// each time. Does not wait for the other end of a FIFO or for a lease, which any user can put
+/// under a name.
 OwnedDescriptor open_region_file(std::string_view stream, RegionKind kind, bool writable) {
   const std::string path = region_path(stream, kind);
   const int access = writable ? O_RDWR : O_RDONLY;
@@ -136,13 +137,13 @@ OwnedDescriptor open_region_file(std::string_view stream, RegionKind kind, bool 
     case ELOOP:   // a symbolic link
     case ENXIO:   // a socket
     case EISDIR:  // a folder, to be written
-      throw BadRegion(path + " is no regular file");
+      throw BadRegion(path + " is not a regular file");
     default:
       throw_failure("cannot open " + path, error);
   }
 }
 
-/// The status of an open region's file. Throws BadRegion if the file is not to be trusted.
+/// The status of an open region's file. Throws BadRegion if the file is not trusted.
 struct stat trusted_status(int descriptor, const std::string& path, const Trust& trust) {
   struct stat status {};
   if (fstat(descriptor, &status) != 0) throw BadRegion(path + ": " + error_text(errno));
@@ -152,7 +153,7 @@ struct stat trusted_status(int descriptor, const std::string& path, const Trust&
 
 }  // namespace
 
-/// Both ways to a region end in a descriptor and boost's mapping of it.
+/// What create() and open() make: a descriptor and Boost's mapping of it.
 struct Region::Mapping {
   OwnedDescriptor descriptor;
   bip::mapped_region region;
@@ -163,7 +164,7 @@ struct Region::Mapping {
         region(DescriptorMapping(descriptor.get()), writable ? bip::read_write : bip::read_only) {
     const auto all = bytes();
     populate(all, writable, descriptor.get());
-    // After the mapping stands: MAP_LOCKED would make it fail where the limit is small.
+    // After mapping: MAP_LOCKED would make mmap fail where the limit is small.
     memory_locked = mlock(all.data(), all.size()) == 0;
     // A forked child must not be a second writer.
     if (writable) madvise(all.data(), all.size(), MADV_DONTFORK);
@@ -186,7 +187,7 @@ bool Region::is_memory_locked() const noexcept { return mapping_->memory_locked;
 Region Region::create(std::size_t bytes, const RegionAccess& access) {
   const std::string folder(kSharedMemoryFolder);
   OwnedDescriptor descriptor = OwnedDescriptor::open(folder, O_TMPFILE | O_RDWR, S_IRUSR | S_IWUSR);
-  if (descriptor.get() < 0) throw_failure("cannot make shared memory in " + folder, errno);
+  if (descriptor.get() < 0) throw_failure("cannot create shared memory in " + folder, errno);
   reserve_pages(descriptor.get(), bytes);
   if (access.group && fchown(descriptor.get(), static_cast<uid_t>(-1), *access.group) != 0) {
     throw BadRegion("cannot give the region to group " + std::to_string(*access.group) + ": " +
@@ -219,7 +220,7 @@ bool Region::link(std::string_view stream, RegionKind kind) const {
   const std::string path = region_path(stream, kind);
   if (linkat(AT_FDCWD, self.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0) return true;
   if (errno == EEXIST) return false;
-  throw_failure("cannot name the region " + path, errno);
+  throw_failure("cannot link the region to " + path, errno);
 }
 
 bool Region::is_linked(std::string_view stream, RegionKind kind) const noexcept {
@@ -269,7 +270,7 @@ std::uint64_t random_id() {
   std::uint64_t id = 0;
   while (id == 0) {
     if (getrandom(&id, sizeof id, 0) != sizeof id) {
-      throw BadRegion("no random numbers: " + error_text(errno));
+      throw BadRegion("cannot get random numbers: " + error_text(errno));
     }
   }
   return id;

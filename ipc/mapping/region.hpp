@@ -16,16 +16,17 @@
 
 namespace splinecast::ipc {
 
-/// A mapped region of shared memory. Moves; unmaps and closes when it dies; does not unlink.
+/// A mapped region of shared memory. Movable. The destructor unmaps and closes it, but does not
+/// unlink it.
 class Region {
  public:
-  /// Makes a region without a name, its pages reserved and populated, filled with zeros. Throws
-  /// OutOfResources if shared memory has no room, naming the bytes needed and free.
+  /// Creates a region without a name, its pages reserved, populated and zero. Throws
+  /// OutOfResources, naming the bytes needed and free, if shared memory has no room.
   [[nodiscard]] static Region create(std::size_t bytes, const RegionAccess& access);
 
   /// Maps an existing region; `writable` for its owner only. Populates its pages. Throws
-  /// NoSuchStream if there is none, BadRegion if it is not to be trusted. Never blocks, whatever
-  /// kind of file somebody puts under the name.
+  /// NoSuchStream if there is none, BadRegion if it is not trusted. Never blocks, for any kind of
+  /// file under the name.
   [[nodiscard]] static Region open(std::string_view stream, RegionKind kind, bool writable,
                                    const Trust& trust = {});
 
@@ -33,20 +34,20 @@ class Region {
   Region& operator=(Region&&) noexcept;
   ~Region();
 
-  /// Gives the region its name, whole and at once. Returns false if the name is taken.
+  /// Gives the complete region its name, atomically. Returns false if the name exists.
   [[nodiscard]] bool link(std::string_view stream, RegionKind kind) const;
 
-  /// Whether the name of the stream still leads to this very region. A system call.
+  /// Whether the stream's name still refers to this region. System calls.
   [[nodiscard]] bool is_linked(std::string_view stream, RegionKind kind) const noexcept;
 
-  /// The bytes. Those of a region that was not opened writable must not be written.
+  /// The bytes of the region. Must not be written unless it was opened writable.
   [[nodiscard]] std::span<std::byte> bytes() const noexcept;
 
-  /// -1 once it has been closed.
+  /// -1 after close_descriptor().
   [[nodiscard]] int descriptor() const noexcept;
 
-  /// Gives the descriptor back; the bytes stay mapped. For a process that maps many regions and
-  /// neither links this one nor locks it nor asks for its owner.
+  /// Closes the descriptor; the bytes stay mapped. For a process that maps many regions and does
+  /// not link this one, lock it or query its owner.
   void close_descriptor() noexcept;
 
   /// Whether its pages are locked into memory; best effort, see RLIMIT_MEMLOCK.
@@ -58,27 +59,27 @@ class Region {
   std::unique_ptr<Mapping> mapping_;
 };
 
-/// What a region's file tells without being mapped.
+/// The properties of a region's file, read without mapping it.
 struct RegionFile {
-  std::optional<RegionHeader> header{};  ///< none: the file is shorter than one
+  std::optional<RegionHeader> header{};  ///< empty: the file is shorter than a header
   std::size_t bytes = 0;
-  bool is_own = false;  ///< of this user
+  bool is_own = false;  ///< whether it belongs to this user
 };
 
-/// Opens a region's file and looks at it. Throws NoSuchStream if there is none, BadRegion if it is
-/// not to be trusted.
+/// Reads the properties of a region's file. Throws NoSuchStream if there is none, BadRegion if it
+/// is not trusted.
 [[nodiscard]] RegionFile look_at_region(std::string_view stream, RegionKind kind,
                                         const Trust& trust);
 
-/// The header of a region; nothing if there is no such region, or one too short. Throws BadRegion
-/// if it is not to be trusted.
+/// The header of a region; empty if there is no such region, or if it is too short. Throws
+/// BadRegion if it is not trusted.
 [[nodiscard]] std::optional<RegionHeader> peek_header(std::string_view stream, RegionKind kind,
                                                       const Trust& trust);
 
-/// Whether a region of this name stands. A system call. Throws BadRequest for what is no name.
+/// Whether a region of this name exists. A system call. Throws BadRequest for an invalid name.
 [[nodiscard]] bool region_exists(std::string_view stream, RegionKind kind);
 
-/// Unlinks a region's name; mappings of it stay.
+/// Unlinks a region's name; its mappings remain.
 void unlink_region(std::string_view stream, RegionKind kind) noexcept;
 
 /// Inode of the time namespace of this process: clocks of two namespaces differ.

@@ -11,8 +11,8 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Every owned descriptor of this process. The mutex is held across fork, so that the child sees
-/// the list whole.
+/// All owned descriptors of this process. The mutex is held across fork, so that the child sees a
+/// consistent list.
 struct Registry {
   std::mutex mutex;
   std::vector<int> descriptors;
@@ -26,7 +26,7 @@ Registry& registry() {
                      registry().descriptors.clear();
                      registry().mutex.unlock();
                    });
-    return new Registry;  // lives as long as the process: forks may come in static destructors
+    return new Registry;  // never destroyed: static destructors may fork
   }();
   return *the_registry;
 }
@@ -62,10 +62,10 @@ OwnedDescriptor::~OwnedDescriptor() { close(); }
 void OwnedDescriptor::close() noexcept {
   if (descriptor_ < 0) return;
   const std::scoped_lock guard(registry().mutex);
-  // In a forked child the list is empty and the number may be somebody else's by now.
+  // In a forked child the list is empty, and the number may belong to another file.
   if (std::erase(registry().descriptors, descriptor_) > 0) {
-    // A child that was forked a moment ago may not have closed its copy yet: unlocking through any
-    // copy unlocks them all.
+    // Unlock explicitly: a child that was just forked may still have a copy open, which keeps the
+    // lock. Unlocking one copy unlocks all.
     struct flock whole_file {};
     whole_file.l_type = F_UNLCK;
     fcntl(descriptor_, F_OFD_SETLK, &whole_file);

@@ -6,14 +6,14 @@
 
 namespace splinecast::ipc {
 
-/// A file descriptor that is closed on exec and in every child that this process forks, so that
-/// a lock held through it dies with this process and is nobody else's.
+/// A file descriptor that is closed on exec and in every child that this process forks: a lock held
+/// through it belongs to this process only and ends with it.
 class OwnedDescriptor {
  public:
   OwnedDescriptor() = default;
 
-  /// open(2) with O_CLOEXEC. No fork can come between the opening and the registration for closing
-  /// in children. get() is −1 if the opening fails; errno says why.
+  /// open(2) with O_CLOEXEC. No fork can happen between opening and registration for closing in
+  /// children. get() is −1 if open(2) fails, with errno set.
   [[nodiscard]] static OwnedDescriptor open(const std::string& path, int flags, mode_t mode = 0);
 
   OwnedDescriptor(OwnedDescriptor&& other) noexcept;

@@ -11,7 +11,7 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Linux stamps files by its tick, of 10 ms at most.
+/// File times on Linux have the resolution of the kernel's tick, at most 10 ms.
 constexpr Time kStampStep = std::chrono::milliseconds(20);
 
 Time to_time(const timespec& time) noexcept {
@@ -23,7 +23,7 @@ Time to_time(const timespec& time) noexcept {
 bool FolderWatch::has_changed() noexcept {
   static const std::string folder(kSharedMemoryFolder);
   timespec now{};
-  clock_gettime(CLOCK_REALTIME, &now);  // before the stamp: a change after this look is seen next
+  clock_gettime(CLOCK_REALTIME, &now);  // before stat: the next call sees any later change
   struct stat status {};
   if (stat(folder.c_str(), &status) != 0) return true;
   const Time modified = to_time(status.st_mtim);

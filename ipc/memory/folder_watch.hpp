@@ -4,16 +4,17 @@
 
 namespace splinecast::ipc {
 
-/// Tells whether files have come or gone in the folder of shared memory, by the folder's time of
-/// modification: one system call, no descriptor, and nothing to read where nothing happens.
+/// Detects whether files may have been created or removed in the folder of shared memory, by the
+/// folder's modification time: one system call, no descriptor, no directory to read while nothing
+/// changes.
 class FolderWatch {
  public:
-  /// Whether they may have since the last call; true at the first.
+  /// Whether this may have happened since the last call; true at the first call.
   [[nodiscard]] bool has_changed() noexcept;
 
  private:
   Time modified_ = Time::min();
-  bool was_fresh_ = false;  ///< what came after the last look may bear the same stamp
+  bool was_fresh_ = false;  ///< later changes may have the same modification time
 };
 
 }  // namespace splinecast::ipc

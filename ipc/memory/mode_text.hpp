@@ -6,7 +6,7 @@
 
 namespace splinecast::ipc {
 
-/// Permission bits as they are written: `0640`.
+/// Permission bits in octal: `0640`.
 [[nodiscard]] inline std::string mode_text(mode_t mode) {
   std::string text;
   for (const unsigned shift : {9U, 6U, 3U, 0U}) {

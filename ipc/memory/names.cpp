@@ -48,8 +48,8 @@ std::string_view stream_of(std::string_view file) noexcept {
   return {};
 }
 
-/// Bytes of the UTF-8 character that a text begins with, which is to be printed as it is; 0 for a
-/// control character and for what is not valid UTF-8.
+/// Bytes of the UTF-8 character at the start of a text, if it can be printed unchanged; 0 for a
+/// control character and for invalid UTF-8.
 std::size_t printable_bytes(std::string_view text) noexcept {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned first = byte(0);
@@ -80,8 +80,8 @@ std::string_view owner_role(RegionKind kind) noexcept {
 void require_stream_name(std::string_view stream) {
   if (is_stream_name(stream)) return;
   throw BadRequest("'" + printable(stream) +
-                   "' cannot name a stream: 1 to 128 of A-Z a-z 0-9 . _ - are needed, "
-                   "the first no dot");
+                   "' cannot name a stream: a name has 1 to 128 characters of A-Z a-z 0-9 . _ - "
+                   "and no leading dot");
 }
 
 std::string printable(std::string_view text) {

@@ -16,21 +16,21 @@ enum class RegionKind : std::uint64_t {
   spline = 2,     ///< written by the solver
 };
 
-/// `producer` or `solver`: who writes a region of this kind.
+/// `producer` or `solver`: the role that writes a region of this kind.
 [[nodiscard]] std::string_view owner_role(RegionKind kind) noexcept;
 
 /// Throws BadRequest unless the name has 1 to 128 characters of A–Z a–z 0–9 . _ - and does not
 /// begin with a dot.
 void require_stream_name(std::string_view stream);
 
-/// A text from elsewhere, such as a file's name, for a terminal or a log: control characters, line
-/// ends, escape sequences and what is not valid UTF-8 become `\xNN`, byte by byte.
+/// Escapes an untrusted text, such as a file name, for a terminal or a log: each byte of control
+/// characters, line ends, escape sequences and invalid UTF-8 becomes `\xNN`.
 [[nodiscard]] std::string printable(std::string_view text);
 
 /// Name of a region as shared memory, `splinecast.<stream>.waypoints` or `….spline`.
 [[nodiscard]] std::string region_name(std::string_view stream, RegionKind kind);
 
-/// Path of a region, and of the lock that makes its owner.
+/// Path of a region, and of its owner's lock file.
 [[nodiscard]] std::string region_path(std::string_view stream, RegionKind kind);
 [[nodiscard]] std::string lock_path(std::string_view stream, RegionKind kind);
 

@@ -29,7 +29,7 @@ struct ProcessStat {
   Time started{};  ///< by CLOCK_BOOTTIME
 };
 
-/// Of the text of /proc/PID/stat, see proc(5): the state follows the name in brackets, and the
+/// Parses the text of /proc/PID/stat, see proc(5): the state follows the name in brackets, and the
 /// start time, in ticks, is the 19th field after that.
 std::optional<ProcessStat> parse_stat(std::string_view text) noexcept {
   constexpr int kFieldsBetween = 19;

@@ -6,8 +6,8 @@
 
 namespace splinecast::ipc {
 
-/// Whether the process of this id is the one that had it at an instant of CLOCK_MONOTONIC, and
-/// still runs. True where that cannot be known. System calls.
+/// Whether process `pid` runs and is the one that had this id at `since`, on CLOCK_MONOTONIC. True
+/// if that cannot be determined. System calls.
 [[nodiscard]] bool process_lives(std::uint64_t pid, Time since) noexcept;
 
 }  // namespace splinecast::ipc

@@ -6,7 +6,7 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Stores until the one that does not happen; 0 for never.
+/// Counts down to the store before which this process is killed; 0: never.
 std::atomic<std::uint64_t> stores_left{0};
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 namespace splinecast::ipc {
 
-/// Whether a system call failed because resources are lacking that other processes may give back.
+/// Whether an error means a shortage of resources, which ends when other processes free some.
 inline bool is_shortage(int error) noexcept {
   return error == ENOMEM || error == ENOSPC || error == EMFILE || error == ENFILE ||
          error == EDQUOT;

@@ -10,8 +10,8 @@
 #include "ipc/memory/store_hook.hpp"
 #include "splinecast/time.hpp"
 
-/// Shared memory is made of 64-bit words, and every access to one that another process may write
-/// is atomic: no plain memory is shared, so there is nothing to race on.
+/// Shared memory consists of 64-bit words. Every access to a word that another process may write is
+/// atomic: no plain memory is shared, so that there is no data race.
 namespace splinecast::ipc {
 
 using Word = std::uint64_t;
@@ -19,13 +19,13 @@ static_assert(std::atomic_ref<Word>::is_always_lock_free);
 static_assert(sizeof(double) == sizeof(Word));
 
 #ifdef SPLINECAST_PLAIN_WORD
-/// The one word that a test's own build of this library takes for plain memory, which
-/// ThreadSanitizer must report.
+/// The one word that is plain memory in a test's own build of this library: ThreadSanitizer must
+/// report it.
 inline const Word* plain_word = nullptr;
 #endif
 
-/// Loads a word, also through a read-only mapping: a lock-free 64-bit load stores nothing, which
-/// std::atomic_ref cannot say in its type.
+/// Loads a word, also from a read-only mapping: a lock-free 64-bit load stores nothing, but
+/// std::atomic_ref has no const form in C++20.
 [[nodiscard]] inline Word load(const Word& word, std::memory_order order) noexcept {
 #ifdef SPLINECAST_PLAIN_WORD
   if (&word == plain_word) return word;
@@ -33,7 +33,7 @@ inline const Word* plain_word = nullptr;
   return std::atomic_ref<Word>(const_cast<Word&>(word)).load(order);  // NOLINT(*-const-cast)
 }
 
-/// Every store to a region that stands goes through here.
+/// Stores a word. Every store to a region that has a name uses this function.
 inline void store(Word& word, Word value, std::memory_order order) noexcept {
 #ifdef SPLINECAST_PLAIN_WORD
   if (&word == plain_word) {
@@ -52,14 +52,14 @@ inline void store(Word& word, Word value, std::memory_order order) noexcept {
   return Time(static_cast<std::int64_t>(word));
 }
 
-/// Asks for the cache lines of some memory. Loads nothing.
+/// Prefetches the cache lines of a memory range. Loads nothing.
 inline void prefetch_lines(const void* from, std::size_t bytes) noexcept {
   constexpr std::size_t kLine = 64;
   const auto* const first = static_cast<const std::byte*>(from);
   for (std::size_t at = 0; at < bytes; at += kLine) __builtin_prefetch(first + at);
 }
 
-/// Calls `copy(to[i], from[i])` for each i < n ≤ 8, by one jump.
+/// Calls `copy(to[i], from[i])` for each i < n ≤ 8, with one jump.
 template <typename To, typename From, typename Copy>
 [[gnu::always_inline]] inline void copy_last(To* to, const From* from, std::size_t n,
                                              const Copy& copy) noexcept {
@@ -93,8 +93,8 @@ template <typename To, typename From, typename Copy>
   }
 }
 
-/// Calls `copy(to[i], from[i])` for each i < n, in any order: a load and a store each, and one jump
-/// for the last eight instead of a test for each.
+/// Calls `copy(to[i], from[i])` for each i < n, in any order. Unrolled by eight; the last eight or
+/// fewer take one jump instead of a test each.
 template <typename To, typename From, typename Copy>
 [[gnu::always_inline]] inline void copy_each(To* to, const From* from, std::size_t n,
                                              const Copy& copy) noexcept {
@@ -111,7 +111,7 @@ template <typename To, typename From, typename Copy>
   copy_last(to, from, n, copy);
 }
 
-/// Stores values with release, each in a word of its own from `to` on.
+/// Stores values (release), one per word, from `to` on.
 inline void store_values(Word* to, std::span<const double> values) noexcept {
   copy_each(to, values.data(), values.size(), [](Word& word, double value) {
     store(word, to_word(value), std::memory_order_release);
@@ -128,15 +128,15 @@ inline void store_summed(Word* to, std::span<const double> values, double& sum) 
   sum = own;
 }
 
-/// Loads values with acquire, each from a word of its own from `from` on.
+/// Loads values (acquire), one per word, from `from` on.
 inline void load_values(std::span<double> values, const Word* from) noexcept {
   copy_each(values.data(), from, values.size(), [](double& value, const Word& word) {
     value = to_double(load(word, std::memory_order_acquire));
   });
 }
 
-/// Views part of a region as words. `offset` is a multiple of 8 and lies, with `count` words,
-/// within the region: the caller has checked its layout.
+/// Views part of a region as words. `offset` must be a multiple of 8, and all words must be inside
+/// the region: the caller has checked its layout.
 [[nodiscard]] inline std::span<Word> words_at(std::span<std::byte> region, std::size_t offset,
                                               std::size_t count) noexcept {
   return {reinterpret_cast<Word*>(region.data() + offset), count};  // NOLINT(*-reinterpret-cast)

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kDefaultCapacity = 4096;
 constexpr Time kDefaultStopTime = std::chrono::milliseconds(250);
-/// Longest that anything settles ahead, or is kept: a minute and a day are out of all proportion.
+/// Upper bounds of freeze-ahead and history, beyond any practical value.
 constexpr Time kLongestFreeze = std::chrono::minutes(1);
 constexpr Time kLongestHistory = std::chrono::hours(24);
 template <typename T>
@@ -34,7 +34,7 @@ const Method& method_of(const SolverOptions& options) {
   return options.method == nullptr ? c2() : *options.method;
 }
 
-/// Limits that are asked for must be those of the board; a kind of which none is given may be any.
+/// Limits that are given must be those of the board; a kind without given limits is not compared.
 void require_same_limits(const std::string& stream, const RegionHeader& stands,
                          const SolverOptions& options) {
   const MotionLimits limits = limits_for(options, stands);
@@ -74,19 +74,19 @@ void require_times(const SolverOptions& options) {
   }
   require_time("freeze-ahead", options.freeze_ahead, Time(1), kLongestFreeze);
   require_time("history", options.history, Time::zero(), kLongestHistory);
-  require_time("shortest splice", options.min_splice, Time(1), kLongestFreeze);
+  require_time("shortest entry", options.min_entry, Time(1), kLongestFreeze);
 }
 
-/// The options that some methods take and others do not.
+/// Checks the options that only some methods have.
 void require_parameters_of(const Method& method, const SolverOptions& options) {
   if (method.smooths() && !options.lambda) {
-    throw BadRequest("method smoothing needs a lambda: online it cannot be chosen");
+    throw BadRequest("method smoothing needs a lambda: it cannot be chosen online");
   }
   if (options.lambda && !method.smooths()) {
     throw BadRequest("lambda is for method smoothing, not for " + std::string(method.name));
   }
   if (options.force_lag && !method.smooths()) {
-    throw BadRequest("a lag is forced for method smoothing only, not for " +
+    throw BadRequest("the lag can be forced only for method smoothing, not for " +
                      std::string(method.name));
   }
   if (options.time_scale && method.laws.is_scale_free) {
@@ -103,7 +103,7 @@ void require_parameters_of(const Method& method, const SolverOptions& options) {
 void require_options(const SolverOptions& options) {
   require_times(options);
   require_parameters_of(method_of(options), options);
-  // How many dimensions there will be is not known yet, nor their kinds.
+  // The number of dimensions and their kinds are not known yet.
   SolverOptions curve = options;
   curve.limits.reset();
   curve.named_limits.clear();
@@ -124,7 +124,6 @@ void require_options(const SolverOptions& options) {
   }
 }
 
-/// The options of a new board: what is unset takes its default.
 void write_options(const SolverOptions& options, RegionHeader& header) {
   const Method& method = method_of(options);
   header.method = method.number;
@@ -140,7 +139,7 @@ void write_options(const SolverOptions& options, RegionHeader& header) {
   const Time freeze_ahead = options.freeze_ahead.value_or(live.freeze_ahead);
   header.freeze_ahead = freeze_ahead.count();
   header.history = options.history.value_or(live.history).count();
-  header.min_splice = options.min_splice.value_or(freeze_ahead).count();
+  header.min_entry = options.min_entry.value_or(freeze_ahead).count();
   header.force_lag = options.force_lag ? 1 : 0;
   header.capacity = std::bit_ceil(options.capacity.value_or(kDefaultCapacity));
 }
@@ -149,7 +148,7 @@ std::optional<LiveOptions> live_options(const RegionHeader& header) noexcept {
   if (stream_clock(header) != StreamClock::monotonic) return std::nullopt;
   return LiveOptions{.freeze_ahead = Time(header.freeze_ahead),
                      .history = Time(header.history),
-                     .min_splice = Time(header.min_splice)};
+                     .min_entry = Time(header.min_entry)};
 }
 
 core::WindowOptions window_options(const RegionHeader& header) {
@@ -205,10 +204,10 @@ void require_same_options(const std::string& stream, const RegionHeader& stands,
   };
   require_same_time("freeze-ahead in ns", options.freeze_ahead, stands.freeze_ahead);
   require_same_time("history in ns", options.history, stands.history);
-  require_same_time("shortest splice in ns", options.min_splice, stands.min_splice);
+  require_same_time("shortest entry in ns", options.min_entry, stands.min_entry);
   require_same_limits(stream, stands, options);
   if (options.beyond) {
-    require_same<std::uint64_t>(stream, "what is done beyond limits (0 report, 1 refuse)",
+    require_same<std::uint64_t>(stream, "action beyond the limits (0 report, 1 refuse)",
                                 static_cast<std::uint64_t>(*options.beyond), stands.beyond,
                                 number(static_cast<int>(*options.beyond)), number(stands.beyond));
   }

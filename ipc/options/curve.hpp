@@ -9,25 +9,25 @@
 #include "splinecast/limits.hpp"
 #include "splinecast/options.hpp"
 
-/// The options of a curve, which its solver gives: checked, written to a header, read from one,
-/// compared.
+/// The options of a curve, which its solver sets: checking, writing to a header, reading from one,
+/// comparing.
 namespace splinecast::ipc {
 
-/// Throws BadRequest, with the value, for options that can be no stream's.
+/// Throws BadRequest, with the value, for invalid options.
 void require_options(const SolverOptions& options);
 
-/// Writes the options of a new board into the stream's header: what is unset takes its default.
+/// Writes the options of a new board into the stream's header: unset ones take their defaults.
 /// Throws BadRequest as limits_for does.
 void write_options(const SolverOptions& options, RegionHeader& header);
 
-/// What a header says of the curve: the options that its solver gave.
+/// The curve's options in a header, as its solver set them.
 [[nodiscard]] core::WindowOptions window_options(const RegionHeader& header);
 
-/// Limits that the options ask for on the stream of this header. Throws BadRequest if they do not
-/// go with its dimensions.
+/// The limits that the options give for the stream of this header. Throws BadRequest if they do not
+/// fit its dimensions.
 [[nodiscard]] MotionLimits limits_for(const SolverOptions& options, const RegionHeader& header);
 
-/// What a header says of how a live stream is solved; nothing for a recorded one.
+/// The options of a live stream in a header; empty for a recorded one.
 [[nodiscard]] std::optional<LiveOptions> live_options(const RegionHeader& header) noexcept;
 
 /// Throws BadRequest, naming what differs, if a solver's options contradict the header of the board

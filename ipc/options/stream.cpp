@@ -88,7 +88,7 @@ RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id
       options.limits.max_interval > kLatestTime / 2) {
     throw BadRequest("intervals from " + std::to_string(options.limits.min_interval.count()) +
                      " ns to " + std::to_string(options.limits.max_interval.count()) +
-                     " ns are no range of positive times");
+                     " ns are not a range of positive times");
   }
   require_usable("start", options.start, options.dimensions);
   RegionHeader header{};

@@ -10,17 +10,18 @@
 #include "splinecast/dimension_kind.hpp"
 #include "splinecast/options.hpp"
 
-/// The options of a stream, which its producer gives: written to a header, read from one, compared.
+/// The options of a stream, which its producer sets: writing to a header, reading from one,
+/// comparing.
 namespace splinecast::ipc {
 
-/// A header for a new region, all but what depends on its kind and capacity.
+/// A header for a new region, except the fields that depend on its kind and capacity.
 [[nodiscard]] RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id);
 
 /// Throws BadRequest, which names the condition as `which`, unless its values fit the dimensions
 /// and a stream can meet it.
 void require_usable(const std::string& which, const Condition& condition, std::size_t dimensions);
 
-/// What a header says of the stream: the options that its producer gave.
+/// The stream's options in a header, as its producer set them.
 [[nodiscard]] Condition start_condition(const RegionHeader& header);
 
 [[nodiscard]] std::vector<std::string> dimension_names(const RegionHeader& header);
@@ -33,10 +34,11 @@ void require_usable(const std::string& which, const Condition& condition, std::s
 
 [[nodiscard]] StreamClock stream_clock(const RegionHeader& header) noexcept;
 
-/// The name that a header has of a dimension: cut to kNameBytes − 1 bytes, between characters.
+/// A dimension's name as a header stores it: cut to kNameBytes − 1 bytes, between characters.
 [[nodiscard]] std::string header_name(const std::string& name);
 
-/// Throws BadRegion, naming both, if a live stream's clock is another time namespace's.
+/// Throws BadRegion, naming both namespaces, if a live stream's clock is that of another time
+/// namespace.
 void require_same_clock(const RegionHeader& header, const std::string& stream);
 
 /// Throws BadRegion, naming what differs, unless a board describes the stream of this ring as the

@@ -7,7 +7,7 @@
 namespace splinecast::ipc {
 
 bool is_finite(std::span<const double> values) noexcept {
-  // Mostly even their sum is usable.
+  // Fast path: if the sum of magnitudes is usable, every value is.
   return is_usable(core::magnitude_of(values)) || std::ranges::all_of(values, is_usable);
 }
 

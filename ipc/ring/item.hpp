@@ -14,15 +14,15 @@
 
 namespace splinecast::ipc {
 
-/// What a ring item says.
+/// The kinds of ring items.
 enum class ItemKind : std::uint8_t {
   waypoint = 1,
-  replace = 2,      ///< withdraws the future from a time on; so many waypoints follow
+  replace = 2,      ///< withdraws everything from a time on; `count` waypoints follow
   start_state = 3,  ///< the state that a stream starts in
-  finish = 4,       ///< the stream ends at its last waypoint, with a condition there
+  finish = 4,       ///< the stream ends at its last waypoint, with a boundary condition there
 };
 
-/// A ring item with memory of its own. Allocates when made only.
+/// A copy of a ring item. Allocates only in its constructor.
 struct RingItem {
   explicit RingItem(std::size_t dimensions) : values(3 * dimensions) {}
 
@@ -31,21 +31,23 @@ struct RingItem {
   bool has_acceleration = false;
   ConditionKind condition{};  ///< of a finish
   std::uint32_t count = 0;    ///< of a replacement: waypoints that belong to it
-  Time blend{};               ///< of one with waypoints: its entry takes at least so long
+  Time blend{};               ///< of a replacement with waypoints: least duration of its entry
   Time time{};
-  std::vector<double> values;  ///< positions, velocities, accelerations: those that it has
+  std::vector<double> values;  ///< positions, velocities, accelerations; only those that the item
+                               ///< has are set
 
   /// The item's waypoint or state, a view of `values`.
   [[nodiscard]] Waypoint waypoint() const noexcept;
 };
 
-/// How late a waypoint of a live stream may come, before what has settled, and still shape the
-/// target that an entry leads back to: the straight line behind the one before it is over by then.
-/// It is passed over.
+/// By how much a waypoint of a live stream may be before the settled time and still become part of
+/// the target, to which an entry returns. The waypoint itself is passed over. By then the straight
+/// line after the waypoint before has ended.
 inline constexpr Time kMostLate = core::Extrapolation::kLine;
 static_assert(kMostLate == Time{250'000'000});  // as Refusal::past says
 
-/// Whether a waypoint may follow another one this much earlier: `accepted`, or why not.
+/// Whether a waypoint may follow another one after this interval: `accepted`, or the reason why
+/// not.
 [[nodiscard]] constexpr AppendStatus judge_interval(Time interval,
                                                     const IngestLimits& limits) noexcept {
   if (interval == Time::zero()) return AppendStatus::duplicate;
@@ -55,7 +57,7 @@ static_assert(kMostLate == Time{250'000'000});  // as Refusal::past says
   return AppendStatus::accepted;
 }
 
-/// Whether all values are numbers within ±kLargestValue.
+/// Whether all values are finite and within ±kLargestValue.
 [[nodiscard]] bool is_finite(std::span<const double> values) noexcept;
 [[nodiscard]] bool is_finite(const Waypoint& waypoint) noexcept;
 

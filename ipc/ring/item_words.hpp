@@ -8,13 +8,13 @@
 /// The bits of an item's word kItemKind, and the words that an item takes: see kItemRows.
 namespace splinecast::ipc {
 
-inline constexpr Word kKindMask = 0xff;  ///< ItemKind; of ConditionKind behind its shift
+inline constexpr Word kKindMask = 0xff;  ///< ItemKind; ConditionKind after its shift
 inline constexpr Word kHasVelocity = 1U << 8;
 inline constexpr Word kHasAcceleration = 1U << 9;
 inline constexpr unsigned kConditionShift = 16;  ///< of a finish
 inline constexpr unsigned kCountShift = 32;      ///< of a replacement: waypoints that belong to it
 
-/// From one item to the next.
+/// Words from one item to the next.
 [[nodiscard]] inline std::size_t words_per_item(const RingLayout& layout) noexcept {
   return layout.stride / sizeof(Word);
 }

@@ -55,9 +55,9 @@ std::optional<Time> WaypointRingReader::observe_time(Word i) const noexcept {
   return is_kept(i) ? std::optional(at) : std::nullopt;
 }
 
-/// O2, for what has been loaded of item i.
+/// O2: whether what has been loaded of item i is valid.
 bool WaypointRingReader::is_kept(Word i) const noexcept {
-  const Word next = i + layout_.capacity;  // the item that comes into its place
+  const Word next = i + layout_.capacity;  // the item that will overwrite it
   return load(control_[kHead], std::memory_order_relaxed) < next &&
          load(control_[kClaimed], std::memory_order_relaxed) <= next;
 }

@@ -15,7 +15,7 @@
 
 namespace splinecast::ipc {
 
-/// The solver's side of a waypoint ring, and any passive observer's: the orderings S1 to O2 of
+/// The solver's side of a waypoint ring, also for passive observers: the orderings S1 to O2 of
 /// writer.hpp. No function blocks, allocates or stores.
 class WaypointRingReader {
  public:
@@ -34,34 +34,34 @@ class WaypointRingReader {
     return load(control_[kRetired], std::memory_order_acquire) != 0;
   }
 
-  /// `head` and `retired`, which lie in one cache line: all that has to be looked at of a ring to
-  /// which nothing happens.
+  /// `head` and `retired`, in one cache line: all that must be polled of an idle ring.
   [[nodiscard]] std::span<const Word, 2> polled() const noexcept { return control_.first<2>(); }
 
-  /// Asks for the lines of item i. Loads nothing.
+  /// Prefetches the cache lines of item i. Loads nothing.
   void prefetch(Word i) const noexcept {
     prefetch_lines(&items_[(i & (layout_.capacity - 1)) * (layout_.stride / sizeof(Word))],
                    layout_.stride / 2);
   }
 
-  /// Copies item i < head(), of which the consumer has not yet stored a tail beyond it.
+  /// Copies item i < head(), which the consumer must not have released: it has stored no `tail`
+  /// above i.
   void copy(Word i, RingItem& out) const noexcept;
 
-  /// Kind and time of item i, of which the same holds.
+  /// Kind and time of item i, with the same precondition.
   [[nodiscard]] ItemKind kind(Word i) const noexcept;
-  /// Whether it is a replacement without waypoints.
+  /// Whether item i is a stop: a replacement without waypoints.
   [[nodiscard]] bool is_stop(Word i) const noexcept;
   [[nodiscard]] Time time(Word i) const noexcept;
 
-  /// Copies item i for an observer whom the producer does not wait for. Returns false if the item
-  /// is, or may be, overwritten (O2); then `out` is of no use. Wait-free: O(D).
+  /// Copies item i for an observer, for which the producer does not wait. Returns false if the item
+  /// has been, or may have been, overwritten (O2); then `out` is not valid. Wait-free: O(D).
   [[nodiscard]] bool observe(Word i, RingItem& out) const noexcept;
 
-  /// The time of item i for such an observer; nothing if the item is, or may be, overwritten, or
-  /// has not been appended.
+  /// The time of item i, for such an observer; empty if the item has been, or may have been,
+  /// overwritten, or has not been appended.
   [[nodiscard]] std::optional<Time> observe_time(Word i) const noexcept;
 
-  /// Items that the producer itself refused with this status.
+  /// Number of items that the producer itself refused with this status.
   [[nodiscard]] Word refused(AppendStatus status) const noexcept;
 
  private:

@@ -11,7 +11,7 @@
 namespace splinecast::ipc {
 namespace {
 
-/// The time of a stop if the producer knows no settled time: before every waypoint that can follow.
+/// Time of a stop while the producer knows no settled time: before any waypoint that can follow.
 constexpr Time kEarliestStop = -kLatestTime;
 
 bool fits(std::span<const double> values, std::size_t dimensions) noexcept {
@@ -27,8 +27,8 @@ WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLa
       control_(words_at(region, layout.control, kRingControlWords)),
       items_(words_at(region, layout.items, layout.capacity * words_per_item(layout))),
       head_(load(control_[kHead], std::memory_order_relaxed)) {
-  // Look back for the newest item that says from when on the next may be: behind the last waypoint
-  // there may be a finish.
+  // Search backwards for the newest item that bounds the time of the next one: a finish may come
+  // after the last waypoint.
   const WaypointRingReader past(region, layout);
   ends_with_stop_ = head_ > 0 && past.is_stop(head_ - 1);
   bool is_found = false;
@@ -71,7 +71,7 @@ AppendStatus WaypointRingWriter::check(const Waypoint& waypoint,
                                                                 : AppendStatus::full;
 }
 
-/// Whether a waypoint comes too late to shape the target. The clock is read only if it is late.
+/// Whether a waypoint is too late to be part of the target. Reads the clock only if it is late.
 bool WaypointRingWriter::is_past(Time time, const Solved& solved) const noexcept {
   if (time >= solved.settled_until) return false;
   if (!has_last_) return true;
@@ -79,7 +79,7 @@ bool WaypointRingWriter::is_past(Time time, const Solved& solved) const noexcept
   return time + kMostLate < std::max(now, solved.settled_until);
 }
 
-/// A live stream may continue after a pause of any length: its clock runs also while nothing moves.
+/// A live stream may continue after a pause of any length: its clock also runs at rest.
 bool WaypointRingWriter::follows_pause(Time time, const Solved& solved) const noexcept {
   const auto follows = [&](Time since) {
     return since > last_time_ && time - since <= limits_.max_interval;
@@ -143,7 +143,8 @@ AppendStatus WaypointRingWriter::check_stop(Time t, const Solved& solved) const 
   const Time from = effect_of_stop(t, solved);
   if (!is_time_in_range(from)) return AppendStatus::too_far_apart;
   if (repeats_stop(from, solved)) return AppendStatus::accepted;
-  // Stops ahead leave an item for a stop that takes effect at once; all stops leave one for finish.
+  // A stop ahead leaves a place for a stop that takes effect at once; every stop leaves one for
+  // finish.
   const bool is_ahead = from > solved.settled_until;
   const std::size_t others = control_reserve(layout_.capacity) / 2;
   const bool has_place = has_room(1, solved, is_ahead ? others : std::min<std::size_t>(others, 1));
@@ -162,7 +163,8 @@ AppendStatus WaypointRingWriter::stop_from(Time t, const Solved& solved) noexcep
   return AppendStatus::accepted;
 }
 
-/// Whether a stop would change nothing: the newest item is one, and waits.
+/// Whether a stop would change nothing: the newest item is a stop that still waits, at this time or
+/// earlier.
 bool WaypointRingWriter::repeats_stop(Time from, const Solved& solved) const noexcept {
   return ends_with_stop_ && solved.consumed < head_ && from >= last_time_;
 }
@@ -200,21 +202,21 @@ AppendStatus WaypointRingWriter::finish(const Condition& end, const Solved& solv
   return AppendStatus::accepted;
 }
 
-/// Tells observers, before several items are written, how far that will go: P0. Never back: what a
-/// producer before this one claimed may have been overwritten.
+/// P0: announces to observers how far several items will reach, before these are written. Never
+/// decreases: an earlier producer may have overwritten what it claimed.
 void WaypointRingWriter::claim(Word items) noexcept {
   Word& claimed = control_[kClaimed];
   store(claimed, std::max(load(claimed, std::memory_order_relaxed), head_ + items),
         std::memory_order_relaxed);
 }
 
-/// The words of the item that lies so many behind `head`.
+/// The words of item head_ + index.
 std::span<Word> WaypointRingWriter::item_words(Word index) const noexcept {
   const std::size_t stride = words_per_item(layout_);
   return items_.subspan(((head_ + index) & (layout_.capacity - 1)) * stride, stride);
 }
 
-/// Writes the item that lies so many behind `head`: P1.
+/// Writes item head_ + index: P1.
 void WaypointRingWriter::put_item(Word index, Word kind_and_flags,
                                   const Waypoint& values) noexcept {
   const auto words = item_words(index);

@@ -18,43 +18,44 @@
 
 /// The waypoint ring: items from one producer to one solver, over a span of bytes.
 ///
-/// Items are numbered from 0; item i lies at i modulo the capacity. `head` counts the items
+/// Items are numbered from 0; item i is at i modulo the capacity. `head` counts the items
 /// appended, `tail`, in the solver's region, those consumed; both only grow.
 ///
 /// Orderings of the hand-over:
 ///
-/// P0 claimed.store(relaxed), before a replacement writes its items: how far they go. `head` alone
-///    says that the item behind it may be in writing, but not that many are. Relaxed is enough,
-///    because each P1 is a release: who sees a word of the replacement sees P0.
-/// P1 word.store(release), each. For the solver P2 would do; for an observer it pairs with O1: who
-///    sees a word of item i + capacity sees P0, and the P2 that let `head` reach i + capacity.
-/// P2 head.store(seq_cst), which is also a release. Pairs with S1: who sees the count sees the
-///    words. It comes last, so that a producer who dies before it has appended nothing.
+/// P0 claimed.store(relaxed), before a replacement writes its items: the end of these items. `head`
+///    alone says that the next item may be partly written, but not that several may be. Relaxed is
+///    enough, because each P1 is a release: a process that sees a word of the replacement sees P0.
+/// P1 word.store(release), each. For the solver P2 is enough; for an observer it pairs with O1: if
+///    it sees a word of item i + capacity, it sees P0 and the P2 by which `head` reached
+///    i + capacity.
+/// P2 head.store(seq_cst), which is also a release. Pairs with S1: a process that sees the count
+///    sees the words. It comes last: a producer that dies before it has appended nothing.
 /// S1 head.load(acquire). Pairs with P2.
-/// S2 word.load(acquire), each; relaxed would do, as S1 has ordered it and nobody overwrites the
-///    item before S3: it is the same function as O1.
+/// S2 word.load(acquire), each. Relaxed would be enough, because S1 has ordered it and no process
+///    overwrites the item before S3; it is the same function as O1.
 /// S3 tail.store(release), when the items have been read. Pairs with P3: the loads of S2 come
-///    before the stores of the P1 that overwrite them. Relaxed would let those be seen by S2.
+///    before the stores of the P1 that overwrite them. With relaxed, S2 could see those stores.
 /// P3 tail.load(acquire), before P1. Pairs with S3.
-/// O1 word.load(acquire), each: see P1. Keeps O2 behind it.
+/// O1 word.load(acquire), each: see P1. Keeps O2 after it.
 /// O2 head.load and claimed.load (relaxed), after the copy: item i may be kept iff
 ///    head < i + capacity and claimed ≤ i + capacity. At head = i + capacity the producer may
 ///    already be writing the item that takes its place. Relaxed is enough: O1 has ordered both, and
-///    nothing after them depends on them. `claimed` never goes back, also not at a takeover: what a
+///    nothing after them depends on them. `claimed` never decreases, not even at a takeover: what a
 ///    dead producer overwrote stays lost.
 ///
 /// Orderings of sleep and wake. The solver stores `sleeping` and then loads `head`; the producer
-/// stores `head` and then loads `sleeping`. One of the two must see what the other stored, else the
-/// solver sleeps on beside an item that nobody wakes it for. All four are seq_cst: release and
-/// acquire let each load pass the store before it, on x86 as well. The solver sleeps only if `head`
-/// is still the one up to which it has consumed, and the kernel compares `head` once more.
+/// stores `head` and then loads `sleeping`. At least one of the two must see the other's store,
+/// else the solver sleeps although an item waits. All four are seq_cst: release and acquire let
+/// each load pass the store before it, on x86 as well. The solver sleeps only if `head` still
+/// equals the number of items that it has consumed, and the kernel compares `head` once more.
 ///
-/// `retired` is stored with release and loaded with acquire: nothing depends on more than the word
-/// itself. The counters of refusals are relaxed: each is a number of its own.
+/// `retired` is stored with release and loaded with acquire: nothing but the word itself depends on
+/// it. The counters of refusals are relaxed: each is independent.
 namespace splinecast::ipc {
 
-/// Items that waypoints leave free in a ring, for stops and a finish: these must not wait until the
-/// board has room for what is queued before them.
+/// Places that waypoints leave free in a ring, for stops and a finish, which must not wait until
+/// the board has room for the items queued before them.
 [[nodiscard]] constexpr std::size_t control_reserve(std::size_t capacity) noexcept {
   constexpr std::size_t kMost = 4;
   constexpr std::size_t kShare = 16;
@@ -64,40 +65,39 @@ namespace splinecast::ipc {
 /// The producer's side. One thread of one process uses it. No function blocks or allocates.
 class WaypointRingWriter {
  public:
-  /// `region` holds a ring of this layout and outlives the writer. Goes on behind what it holds;
-  /// throws BadRegion if its last item has a time that no producer writes.
+  /// `region` holds a ring of this layout and outlives the writer. Continues after the items in it;
+  /// throws BadRegion if the last item has a time that no producer writes.
   WaypointRingWriter(std::span<std::byte> region, const RingLayout& layout,
                      const IngestLimits& limits);
 
-  /// What is known of the solver: items that it has taken, and the time before which it no longer
-  /// changes anything, as last published; min() on a recorded stream. At rest nothing is published:
-  /// then a live stream's clock says how long it has paused.
+  /// The state of the solver, as last published: items consumed, and the time before which it no
+  /// longer changes anything; min() on a recorded stream. At rest nothing is published: then the
+  /// clock of a live stream gives the length of the pause.
   struct Solved {
     Word consumed = 0;
     Time settled_until = Time::min();
     const Clock* clock = nullptr;  ///< of a live stream
   };
 
-  /// Appends a waypoint if its form is right and there is room besides control_reserve. O(D),
+  /// Appends a waypoint if it is valid and there is room in addition to control_reserve. O(D),
   /// wait-free.
   [[nodiscard]] AppendStatus append(const Waypoint& waypoint, const Solved& solved) noexcept;
 
-  /// Replaces all that lies behind t: `waypoints`, which may be none, must be later than it, and
-  /// together with the replacement itself fit into the ring besides control_reserve. One store of
-  /// `head` makes all of it visible. O(D) per waypoint. The entry onto them takes at least `blend`:
-  /// a negative one means 0, one beyond the most interval is `too_far_apart`. Without waypoints it
-  /// is a stop, for which there is the reserve. A t that has settled means the earliest time
-  /// possible; a stop that repeats the newest item, a stop that still waits, at the same time or
-  /// later takes no item.
+  /// Replaces everything after t. `waypoints` may be empty; they must be later than t and must fit
+  /// into the ring together with the replacement itself and control_reserve. One store of `head`
+  /// makes all of it visible. O(D) per waypoint. The entry onto them takes at least `blend`:
+  /// negative means 0, more than max_interval is `too_far_apart`. Without waypoints it is a stop,
+  /// which may use the reserve. A t that has settled means the earliest time possible. A stop adds
+  /// no item if the newest item is a stop that still waits, at the same time or earlier.
   [[nodiscard]] AppendStatus replace_from(Time t, std::span<const Waypoint> waypoints,
                                           const Solved& solved, Time blend = {}) noexcept;
 
-  /// What `replace_from` would answer, of a stop as well. Changes nothing.
+  /// What `replace_from` would return, also for a stop. Changes nothing.
   [[nodiscard]] AppendStatus check_replacement(Time t, std::span<const Waypoint> waypoints,
                                                const Solved& solved,
                                                Time blend = {}) const noexcept;
 
-  /// Says in which state the stream starts: before its first waypoint, which must be later.
+  /// Appends the state in which the stream starts: before its first waypoint, which must be later.
   [[nodiscard]] AppendStatus start_from(const Instant& state, const Solved& solved) noexcept;
 
   /// Appends the end of the stream. The condition's values must have been checked.
@@ -107,13 +107,13 @@ class WaypointRingWriter {
   [[nodiscard]] Word head() const noexcept { return head_; }
   [[nodiscard]] bool finished() const noexcept { return finished_; }
 
-  /// The time that the next waypoint must be later than, once there is one.
+  /// The time of the newest item, once there is one: the next waypoint must be later.
   [[nodiscard]] Time last_time() const noexcept { return last_time_; }
 
-  /// The word that waiting solvers watch.
+  /// The word that solvers wait on.
   [[nodiscard]] const Word& head_word() const noexcept { return control_[kHead]; }
 
-  /// Says that the region is of no more use.
+  /// Marks the region as retired.
   void retire() noexcept;
 
  private:

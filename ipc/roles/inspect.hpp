@@ -15,7 +15,7 @@
 
 namespace splinecast::ipc {
 
-/// What stands of a stream on this host, without taking part in it.
+/// The state of a stream on this host, as an observer sees it.
 struct StreamInfo {
   std::string stream;
   bool producer_alive = false;
@@ -26,15 +26,15 @@ struct StreamInfo {
   std::array<Word, kAppendStatuses> refused_by_producer{};  ///< by AppendStatus
   Head head;                                                ///< revision 0: nothing solved yet
   std::array<Word, kStepBuckets> step_times{};  ///< steps of the solver that took 2ⁱ to 2ⁱ⁺¹ ns
-  std::optional<MotionLimits> shown;            ///< of a live stream: what its motion shows, by the
-                                                ///< waypoints on the board; see ShownMotion
+  std::optional<MotionLimits> shown;  ///< of a live stream: limits that its motion shows, from
+                                      ///< the waypoints on the board; see ShownMotion
   std::vector<RefusedItem> refusals;  ///< the last items refused, oldest first: kRefusalsKept,
                                       ///< fewer if the solver has overwritten some meanwhile
-  std::vector<LimitExcess> excesses;  ///< the last places beyond a limit, likewise: kExcessesKept
+  std::vector<LimitExcess> excesses;  ///< the last excesses, oldest first: at most kExcessesKept
 };
 
-/// Looks at a stream. Throws NoSuchStream if nothing of it stands, BadRegion if a region cannot
-/// be used.
+/// Inspects a stream. Throws NoSuchStream if it has no region, BadRegion if a region cannot be
+/// used.
 [[nodiscard]] StreamInfo inspect(const std::string& stream, const Trust& trust = {});
 
 }  // namespace splinecast::ipc

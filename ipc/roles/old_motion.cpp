@@ -21,7 +21,7 @@ Time end_of_motion(const RegionHeader& header, const KnotBoardReader& board) noe
     return Time::min();
   }
   BoardSegment last(board.dimensions(), board.smooths());
-  // Tries again, because the board's solver may overtake an observer.
+  // Retries, because the board's solver may overtake an observer.
   for (int attempt = 0; attempt < kHeadTries; ++attempt) {
     const Look look = board.look();
     Head head;
@@ -35,9 +35,11 @@ Time end_of_motion(const RegionHeader& header, const KnotBoardReader& board) noe
 
 void require_near_end(const std::string& stream, Time end, Time now) {
   if (end <= now || end - now <= kLongestOldMotion) return;
-  throw BadRegion("stream '" + stream + "' was made again, but its old motion ends only at " +
-                  std::to_string(end.count()) + " ns, more than an hour from now; 'splinecast rm " +
-                  stream + "' removes it, once its writers have been stopped");
+  throw BadRegion(
+      "stream '" + stream + "' was recreated, but its old motion ends at " +
+      std::to_string(end.count()) +
+      " ns, more than an hour from now: stop its writers, then remove it with 'splinecast rm " +
+      stream + "'");
 }
 
 Time end_of_old_motion(const std::string& stream, std::uint64_t stream_id, const Trust& trust) {
@@ -48,7 +50,7 @@ Time end_of_old_motion(const std::string& stream, std::uint64_t stream_id, const
     if (header.stream_id == stream_id) return Time::min();
     return end_of_motion(header, KnotBoardReader(region.bytes(), layout));
   } catch (const StreamError&) {
-    return Time::min();  // it went meanwhile, or no solver of ours can use it either
+    return Time::min();  // removed meanwhile, or no solver of this user can use it either
   }
 }
 

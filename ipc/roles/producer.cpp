@@ -24,12 +24,13 @@
 namespace splinecast {
 namespace {
 
-/// A wait is cut into slices: it watches the commit word, and the tail that it waits for is stored
-/// only after that, so that a wake can be missed; and a solver may die before it wakes.
+/// Maximum length of one futex wait. A wake can be missed: the futex word is the commit word, and
+/// the consumed position that the producer waits for is stored only after it. Also, a solver may
+/// die before it wakes the producer.
 constexpr Time kSlice = std::chrono::milliseconds(1);
 constexpr Time kPoll = std::chrono::milliseconds(2);
 
-/// The solver's region as the producer sees it: where the ring's tail comes from.
+/// The solver's region as the producer sees it: it holds the ring's consumed position.
 struct SolverView {
   ipc::Region region;
   ipc::RegionHeader header;
@@ -42,7 +43,7 @@ struct SolverView {
   }
 };
 
-/// A ring region, made or taken over, and its writer.
+/// A ring region, created or taken over, and its writer.
 struct OwnedRing {
   ipc::Region region;
   ipc::RegionLock lock;
@@ -75,13 +76,12 @@ OwnedRing make_ring(const std::string& stream, const ProducerOptions& options) {
   OwnedRing ring(std::move(region), header, layout);
   if (!ring.region.link(stream, ipc::RegionKind::waypoints)) {
     throw BadRegion(ipc::region_path(stream, ipc::RegionKind::waypoints) +
-                    " came to be while it was made");
+                    " was created by another process at the same time");
   }
   return ring;
 }
 
-/// Takes over the ring that stands under the name, if it is one to be continued; retires it if it
-/// is finished.
+/// Takes over the existing ring of that name if it can be continued; retires it if it is finished.
 std::optional<OwnedRing> continue_ring(const std::string& stream, const ProducerOptions& options) {
   if (!ipc::region_exists(stream, ipc::RegionKind::waypoints)) return std::nullopt;
   auto [region, header, layout] = ipc::open_ring(stream, true, options.trust);
@@ -136,12 +136,13 @@ struct Producer::Impl {
     if (solver) refused.skip(solver->board);
   }
 
-  /// Looks for the solver's region until there is one for this very stream.
+  /// Opens the solver's region of this stream, unless that is open already. Does nothing if there
+  /// is none.
   void look_for_solver() noexcept {
     if (solver && !solver->board.retired()) return;
     solver.reset();
     try {
-      // The id first: mapping a large board of an earlier stream each time would be costly.
+      // Checks the id first: mapping a large board of an earlier stream each time would be costly.
       const auto peeked = ipc::peek_header(stream, ipc::RegionKind::spline, options.trust);
       if (!peeked || peeked->stream_id != ring.header.stream_id) return;
       auto [region, header, layout] = ipc::open_board(stream, false, options.trust);
@@ -149,13 +150,13 @@ struct Producer::Impl {
       solver.emplace(std::move(region), header, layout);
       refused.restart();
     } catch (const std::exception&) {
-      solver.reset();  // not there yet, or not ours: looked for again
+      solver.reset();  // missing, or another user's: tried again later
     }
   }
 
   [[nodiscard]] ipc::Word consumed() const noexcept { return solver ? solver->board.tail() : 0; }
 
-  /// What is known of the solver, which is looked for until there is one.
+  /// The known state of the solver; looks for the solver until there is one.
   [[nodiscard]] ipc::WaypointRingWriter::Solved look_at_solver() noexcept {
     if (!solver) look_for_solver();
     ipc::WaypointRingWriter::Solved known{.consumed = consumed()};
@@ -169,9 +170,9 @@ struct Producer::Impl {
     return known;
   }
 
-  /// Wakes the solver for what has been accepted. Returns the status.
+  /// Wakes the solver if an item was accepted. Returns the status.
   AppendStatus wake_solver_for(AppendStatus status) noexcept {
-    // Again after the store: a solver that came meanwhile may already sleep.
+    // Looks again after the store: a solver that attached meanwhile may already sleep.
     if (!solver) look_for_solver();
     if (status == AppendStatus::accepted && solver && solver->board.sleeping()) {
       ipc::wake_all(ring.writer.head_word());
@@ -180,7 +181,7 @@ struct Producer::Impl {
     return status;
   }
 
-  /// Waits until `done()`, or for the timeout, with the solver's revision as the word to watch.
+  /// Waits until `done()` or the timeout. The futex word is the solver's revision.
   template <typename Done>
   bool wait(Time timeout, const Done& done) {
     const Time end = deadline(clock, timeout);

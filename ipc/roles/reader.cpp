@@ -20,13 +20,13 @@ namespace splinecast {
 namespace {
 
 constexpr Time kPoll = std::chrono::milliseconds(2);
-/// A wait is cut into slices, in case a solver dies between its commit and its wake, or a woken
+/// Maximum length of one futex wait: a solver may die between its commit and its wake, or a woken
 /// thread before it has woken the others.
 constexpr Time kSlice = std::chrono::milliseconds(50);
 constexpr int kHeadTries = 16;
 
-/// Whether the board belongs to the stream that its producer has made, if there is one: after a
-/// stream was made anew, the old board stands until a solver comes.
+/// Whether the board belongs to the producer's current stream, if there is a producer: after a
+/// stream was recreated, the old board remains until a solver attaches.
 bool is_of_current_stream(const std::string& stream, const ipc::RegionHeader& header,
                           const Trust& trust) {
   try {
@@ -35,7 +35,7 @@ bool is_of_current_stream(const std::string& stream, const ipc::RegionHeader& he
   } catch (const OutOfResources&) {
     throw;  // nothing is known
   } catch (const StreamError&) {
-    return true;  // a reader need not be allowed to read what the producer writes
+    return true;  // a reader may lack the permission to read the producer's region
   }
 }
 
@@ -59,7 +59,7 @@ struct Reader::Impl {
         sampler(board, ipc::stream_clock(described), ipc::dimension_kinds(described)),
         limits(ipc::motion_limits(described)) {}
 
-  /// Maps the stream's board, or returns nothing if there is none now.
+  /// Maps the stream's board; returns null if there is none now.
   static std::unique_ptr<Impl> open(const std::string& stream, const Trust& trust) {
     if (!ipc::region_exists(stream, ipc::RegionKind::spline)) return nullptr;
     try {
@@ -69,7 +69,7 @@ struct Reader::Impl {
       auto impl = std::make_unique<Impl>(stream, std::move(region), header, layout);
       return impl->board.retired() ? nullptr : std::move(impl);
     } catch (const NoSuchStream&) {
-      return nullptr;  // it went between the look and the opening
+      return nullptr;  // removed between the check and the opening
     }
   }
 

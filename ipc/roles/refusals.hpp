@@ -13,26 +13,26 @@
 
 namespace splinecast::ipc {
 
-/// Follows what a solver refuses, from its board. One thread uses it.
+/// Collects the refusals of a solver from its board. One thread uses it.
 class RefusalReader {
  public:
-  /// Leaves out items below `first`.
+  /// Leaves out items before `first`.
   explicit RefusalReader(Word first = 0) : first_(first), copied_(kRefusalsKept) {}
 
-  /// Leaves out what the board has counted so far.
+  /// Leaves out the refusals that the board has counted so far.
   void skip(const KnotBoardReader& board) noexcept;
 
   /// Begins with the first refusal of another board of the same stream.
   void restart() noexcept;
 
-  /// Gives the refusals since the last look. `ring` is the ring of the board's stream. O(1) if
-  /// nothing was published since, else O(new refusals); no system call. Allocates only where
+  /// Writes the refusals since the last call to `out`. `ring` is the ring of the board's stream.
+  /// O(1) if nothing was published since, else O(new refusals); no system call. Allocates only if
   /// `out.items` has to grow. `missed` is 0 if at most kRefusalsKept items were consumed since.
   void look(const KnotBoardReader& board, const WaypointRingReader& ring, Refusals& out);
 
  private:
   Head head_;      ///< as last seen
-  Word seen_ = 0;  ///< refusals told, over the stream's life
+  Word seen_ = 0;  ///< refusals reported, over the stream's life
   Word first_;
   std::vector<RefusedItem> copied_;
 };

@@ -20,7 +20,7 @@ namespace {
 /// A file under a region's name that this process may remove.
 struct Removable {
   RegionKind kind;
-  std::optional<Region> region{};  ///< none: it cannot be used as a region, so nobody waits for it
+  std::optional<Region> region{};  ///< none: not usable as a region; no process waits on it
   std::size_t control = 0;         ///< where its control lines are
 };
 
@@ -48,12 +48,12 @@ Removable removable(const std::string& stream, RegionKind kind, const Trust& tru
                                        : as_removable(kind, open_board(stream, true, trust));
 }
 
-/// Says that a region is of no more use to whoever has it mapped.
+/// Marks a region as retired, and wakes the processes that wait on it.
 void retire(const Removable& file) noexcept {
   if (!file.region) return;
   const auto words = words_at(file.region->bytes(), file.control, kRetired + 1);
   store(words[kRetired], 1, std::memory_order_release);
-  wake_all(words[0]);  // head or revision: what its readers wait on
+  wake_all(words[0]);  // written position or revision: the word that its readers wait on
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ void remove_stream(const std::string& stream, const Trust& trust) {
   std::vector<ipc::Removable> files;
   try {
     solver_lock.emplace(stream, ipc::RegionKind::spline);
-    // All are looked at before any is touched.
+    // Checks all files before it changes any.
     for (const ipc::RegionKind kind : kKinds) {
       if (ipc::region_exists(stream, kind)) files.push_back(ipc::removable(stream, kind, trust));
     }

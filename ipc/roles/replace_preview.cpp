@@ -41,7 +41,7 @@ ReplacementPlanner::ReplacementPlanner(const KnotBoardReader& board, core::Windo
     : board_(&board),
       options_(std::move(options)),
       kinds_(std::move(kinds)),
-      min_splice_(live ? live->min_splice : Time::zero()),
+      min_entry_(live ? live->min_entry : Time::zero()),
       is_live_(live.has_value()),
       sampler_(board, is_live_ ? StreamClock::monotonic : StreamClock::recorded, kinds_),
       shown_(board),
@@ -51,7 +51,7 @@ ReplacementPlanner::ReplacementPlanner(const KnotBoardReader& board, core::Windo
       segment_(board.dimensions()),
       values_(3 * board.dimensions()) {}
 
-/// Reads the state at t and what the motion before has shown.
+/// Reads the state at t and the motion shown before it.
 bool ReplacementPlanner::read_state(Time t) {
   if (!has_values(sampler_.preview(t, state_.ref()))) return false;
   Head head;
@@ -64,7 +64,7 @@ bool ReplacementPlanner::read_state(Time t) {
   return false;
 }
 
-/// Appends a waypoint in the form that is nearest to the one before, as the solver does.
+/// Appends a waypoint as its representative nearest to the one before, as the solver does.
 void ReplacementPlanner::append(const Waypoint& waypoint) {
   const std::size_t dimensions = window_.dimensions();
   const auto copy = [&](std::size_t part, std::span<const double> from) {
@@ -101,7 +101,7 @@ void ReplacementPlanner::take_stop(ReplacePreview& out, const Instant& from) {
   if (!out.enters) out.duration = length;
 }
 
-/// Takes the entry that has been found, and what follows it.
+/// Adds the entry that was found, and the stop after it, to the preview.
 void ReplacementPlanner::take_entry(ReplacePreview& out) {
   const core::EntryEnd& end = search_.end();
   out.enters = true;
@@ -117,10 +117,10 @@ void ReplacementPlanner::take_entry(ReplacePreview& out) {
   const bool meets_last = end.state.time == window_.time(knots - 1);
   if (meets_last) out.waypoint = knots - 1;
   out.passed_over = knots - (meets_last ? 1 : 0);
-  take_stop(out, end.state);  // the straight line before it is no faster
+  take_stop(out, end.state);  // the straight line before it is not faster
 }
 
-/// Takes segments of the target behind the entry, up to number `end`: before they leave the window.
+/// Adds the target's segments after the entry, up to number `end`, before they leave the window.
 void ReplacementPlanner::take_segments(std::size_t end, ReplacePreview& out) {
   for (; next_segment_ && *next_segment_ < end; ++*next_segment_) {
     window_.segment(*next_segment_, segment_);
@@ -128,13 +128,13 @@ void ReplacementPlanner::take_segments(std::size_t end, ReplacePreview& out) {
   }
 }
 
-/// Appends the waypoints and looks for an entry behind each, as the solver does; then without what
-/// may still come.
+/// Appends the waypoints and searches for an entry after each, as the solver does; then once more,
+/// as if no newer waypoints come.
 bool ReplacementPlanner::find_entry(const Instant& from, std::span<const Waypoint> waypoints,
                                     Time blend, ReplacePreview& out) {
   core::EntryRules rules{.limits = &options_.limits,
                          .shown = is_live_ ? &shown_.limits() : nullptr,
-                         .least = std::max(min_splice_, blend),
+                         .least = std::max(min_entry_, blend),
                          .newer = options_.settle};
   bool is_found = false;
   const auto search = [&] {

@@ -18,20 +18,20 @@
 
 namespace splinecast::ipc {
 
-/// Plans a replacement as a stream's solver would, from what its board shows, without changing
-/// anything. What the motion has shown is taken from the waypoints that are still on the board: a
-/// solver that has seen more may plan otherwise on a stream without limits.
+/// Plans a replacement as the stream's solver would, from its board, without changing anything. The
+/// shown motion comes from the waypoints that are still on the board: on a stream without limits, a
+/// solver that has seen more may plan differently.
 ///
-/// Allocates when made, and in the result as it grows. One thread uses it.
+/// Allocates when constructed, and in the result as it grows. One thread uses it.
 class ReplacementPlanner {
  public:
-  /// `board` outlives the planner; the rest is what its solver has; `live` is set for a live
-  /// stream.
+  /// `board` outlives the planner; the other arguments are those of its solver; `live` is set for a
+  /// live stream.
   ReplacementPlanner(const KnotBoardReader& board, core::WindowOptions options,
                      DimensionKinds kinds, const std::optional<LiveOptions>& live);
 
-  /// Plans the replacement of all behind t by these waypoints, which the ring would accept.
-  /// O(n·K·D) and at most 170 candidates of an entry. Sets all but `status`.
+  /// Plans the replacement of everything after t by these waypoints, which the ring would accept.
+  /// O(n·K·D) and at most 170 candidates of an entry. Sets all members except `status`.
   void plan(Time t, std::span<const Waypoint> waypoints, Time blend, ReplacePreview& out);
 
  private:
@@ -47,13 +47,13 @@ class ReplacementPlanner {
   const KnotBoardReader* board_;
   core::WindowOptions options_;
   DimensionKinds kinds_;
-  Time min_splice_;
+  Time min_entry_;
   bool is_live_;
   Sampler sampler_;
   ShownMotion shown_;
   core::SlidingWindow window_;
   core::EntrySearch search_;
-  std::optional<std::size_t> next_segment_;  ///< of the target, to be taken next
+  std::optional<std::size_t> next_segment_;  ///< the next segment of the target to add
   State state_;
   core::Segment segment_;
   std::vector<double> values_;  ///< of a waypoint: position, velocity, acceleration

@@ -26,7 +26,8 @@
 namespace splinecast {
 namespace {
 
-/// Longest sleep: retiring a ring does not move the word slept on, so its wake can be missed.
+/// Maximum length of one futex wait: retiring a ring does not change the futex word, so its wake
+/// can be missed.
 constexpr Time kSlice = std::chrono::milliseconds(50);
 /// How often a solver without a stream looks for one.
 constexpr Time kPoll = std::chrono::milliseconds(5);
@@ -43,7 +44,7 @@ struct RingView {
   }
 };
 
-/// The solver's own region, made or taken over.
+/// The solver's own region, created or taken over.
 struct OwnedBoard {
   ipc::Region region;
   ipc::RegionLock lock;
@@ -78,7 +79,7 @@ OwnedBoard make_board(const std::string& stream, const ipc::RegionHeader& ring_h
   OwnedBoard board(std::move(region), header, layout, false);
   if (!board.region.link(stream, ipc::RegionKind::spline)) {
     throw BadRegion(ipc::region_path(stream, ipc::RegionKind::spline) +
-                    " came to be while it was made");
+                    " was created by another process at the same time");
   }
   return board;
 }
@@ -96,7 +97,7 @@ std::variant<OwnedBoard, Occupied> own_board(const std::string& stream,
   auto [region, header, layout] = ipc::open_board(stream, true, options.trust);
   OwnedBoard board(std::move(region), header, layout, true);
   if (header.stream_id != ring_header.stream_id || board.reader.retired()) {
-    // Readers follow the old curve to its end: they must not find another one in mid-motion.
+    // Readers follow the old curve to its end: they must not find another one during the motion.
     const Time end = ipc::end_of_motion(header, board.reader);
     const Time now = clock.now();
     ipc::require_near_end(stream, end, now);
@@ -113,7 +114,7 @@ std::variant<OwnedBoard, Occupied> own_board(const std::string& stream,
   return board;
 }
 
-/// What a solver has while a stream stands.
+/// What a solver owns while it is attached.
 struct Attachment {
   RingView ring;
   OwnedBoard board;
@@ -152,7 +153,7 @@ struct Solver::Impl {
         options((ipc::require_options(how), how)),
         lock(stream, ipc::RegionKind::spline) {
     try {
-      // Told now rather than when a producer comes: a board that cannot be taken over.
+      // Reports now, not when a producer comes, that a board cannot be taken over.
       if (ipc::region_exists(stream, ipc::RegionKind::spline))
         (void)ipc::open_board(stream, true, options.trust);
     } catch (const StreamError&) {
@@ -195,7 +196,7 @@ bool Solver::attach(const Clock& clock) {
         std::make_unique<Attachment>(std::move(ring), std::get<OwnedBoard>(std::move(board)));
     impl_->lock.keep_file();
   } catch (const NoSuchStream&) {
-    return false;  // it went between the look and the opening
+    return false;  // removed between the check and the opening
   }
   return true;
 }
@@ -208,7 +209,7 @@ StepResult Solver::step(const Clock& clock) {
   const StepResult result = at.solver.step(clock);
   if (result.damaged) {
     throw BadRegion(ipc::region_path(impl_->stream, ipc::RegionKind::spline) +
-                    " holds what its solver has not written");
+                    " holds data that its solver did not write");
   }
   if (result.published && impl_->options.wake) {
     ipc::wake_some(at.board.writer.revision_word());
@@ -231,8 +232,9 @@ void Solver::wait(Time timeout) noexcept {
   Attachment& at = *impl_->attachment;
   (void)at.board.lock.hold();
   if (timeout <= Time::zero()) return;
-  // The store and the load are seq_cst, as are the producer's store of head and load of sleeping:
-  // either this load sees the new head, or the producer sees that somebody is to be woken.
+  // The store and the load are seq_cst, as are the producer's store of its written position and its
+  // load of sleeping: either this load sees the new position, or the producer sees that this solver
+  // must be woken.
   at.board.writer.store_sleeping(true);
   const ipc::Word head = at.ring.ring.head(std::memory_order_seq_cst);
   const Time due = at.solver.due();

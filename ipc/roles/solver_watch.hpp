@@ -10,38 +10,38 @@
 
 namespace splinecast::ipc {
 
-/// Where to look whether a step of a solver would be of use; for whoever looks after many. Made
-/// anew after each step, and of no use once its solver has detached.
+/// Whether a solver has work to do, for a thread that polls many of them. Created after each step;
+/// invalid once its solver has detached.
 class SolverWatch {
  public:
   SolverWatch(std::span<const Word, 2> polled, Word seen, Time due,
               const SettledRaise& raise) noexcept
       : polled_(polled), seen_(seen), due_(due), raise_(raise) {}
 
-  /// Whether the ring holds what the last step has not seen. One load of a word that only the
+  /// Whether the ring has items that the last step did not see. One load of a word that only the
   /// producer writes.
   [[nodiscard]] bool has_items() const noexcept {
     return load(polled_[kHead], std::memory_order_acquire) != seen_;
   }
 
-  /// Whether a step is of use at `now` whatever the ring holds: a revision is due.
+  /// Whether a step is due at `now` without new items.
   [[nodiscard]] bool is_due(Time now) const noexcept { return due_ <= now; }
 
-  /// Raises the stream's settled time if nothing else is due at `now`. Returns whether that was so;
-  /// else the stream needs a step. Stores at most one word.
+  /// Raises the stream's settled time if nothing else is due at `now`. Returns false if the stream
+  /// needs a step instead. Stores at most one word.
   bool settle(Time now) noexcept {
     if (!raise_.raise(now)) return false;
     due_ = now + raise_.interval();
     return true;
   }
 
-  /// Whether a step is of use for what the producer has done: there are items, or the stream has
-  /// been retired. Loads from one cache line.
+  /// Whether the producer has left work for a step: there are items, or the stream has been
+  /// retired. Loads from one cache line.
   [[nodiscard]] bool calls() const noexcept {
     return has_items() || load(polled_[kRetired], std::memory_order_acquire) != 0;
   }
 
-  /// When the next revision is due without items; max() for never.
+  /// When the next step is due without items; max() for never.
   [[nodiscard]] Time due() const noexcept { return due_; }
 
  private:

@@ -10,8 +10,8 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Whether the curve begins with a segment before which the machine is held in the same position as
-/// in the one seen, and nothing later has been sampled.
+/// Whether both curves hold the machine in the same position before their first segment, and no
+/// later time has been sampled.
 bool is_ahead(const BoardSegment& first, const SeenCurve& seen, std::size_t dimensions) noexcept {
   const bool is_known = seen.own != nullptr && seen.own->number() == 1;
   if (!is_known || first.number() != 1) return false;
@@ -20,7 +20,7 @@ bool is_ahead(const BoardSegment& first, const SeenCurve& seen, std::size_t dime
          std::ranges::equal(position, first.coefficients().first(position.size()));
 }
 
-/// Whether a segment is, as far as it has been sampled, what it was in the curve seen.
+/// Whether the sampled part of a segment is the same as in the curve seen.
 bool is_unchanged(const BoardSegment& segment, const SeenCurve& seen,
                   std::size_t dimensions) noexcept {
   if (segment.changed_by(seen.own) <= seen.head.revision) return true;
@@ -34,8 +34,8 @@ bool is_unchanged(const BoardSegment& segment, const SeenCurve& seen,
          std::ranges::equal(segment.coefficients().first(values), own.coefficients().first(values));
 }
 
-/// Whether the curve still rests behind `last`, which was the newest segment, until after the
-/// latest time sampled. Copies the segment behind it in its place.
+/// Whether the curve still rests after `last`, which was the newest segment, until after the latest
+/// time sampled. Overwrites `last` with the segment after it.
 Compared compare_rest(const KnotBoardReader& board, const Head& head, Time sampled_until,
                       BoardSegment& last, std::span<double> rest) noexcept {
   const Time right = last.right();

@@ -16,7 +16,7 @@ bool KeptSegments::is_confirmed(const KnotBoardReader& board, const Head& head) 
   return stands;
 }
 
-/// Makes a copy that the head's revision holds the current one.
+/// Makes a copy that is part of the summary's revision the current one.
 void KeptSegments::confirm(Kept& copy, const Head& head) noexcept {
   current_ = &copy;
   confirm(head);
@@ -27,7 +27,7 @@ void KeptSegments::confirm(const Head& head) noexcept {
   confirmed_ = head.revision;
   settled_until_ = head.settled_until;
   const BoardSegment& own = current();
-  const bool moves = own.kind() == SegmentKind::spline || own.kind() == SegmentKind::splice;
+  const bool moves = own.kind() == SegmentKind::spline || own.kind() == SegmentKind::entry;
   at_hand_ = {
       .left = own.left(), .right = moves ? own.right() : own.left(), .is_finished = head.finished};
 }

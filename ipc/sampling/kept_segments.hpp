@@ -14,15 +14,15 @@
 namespace splinecast::ipc {
 
 /// A reader's own copies of the segments it used last: the knots, with the tags of the revisions
-/// that wrote them, and the polynomials made from them. While those tags stand, one of them is
-/// taken again without copying anything. One thread uses it. Allocates when made only.
+/// that wrote them, and the polynomials made from them. While those tags are unchanged, a copy is
+/// used again without copying anything. One thread uses it. Allocates only when constructed.
 class KeptSegments {
  public:
-  /// How many are kept; one more is there to copy into.
+  /// Number of copies kept; there is one more to copy into.
   static constexpr std::size_t kMost = 16;
 
-  /// What most samples need of the current copy, as confirmed: where on it the curve moves, and
-  /// whether all of it is settled. Nowhere, unless it lies between two waypoints.
+  /// What most samples need of the current copy, as confirmed: the interval in which the curve
+  /// moves, and whether the curve is finished. The interval is empty for a stop or a hold.
   struct AtHand {
     Time left{};
     Time right{};
@@ -36,7 +36,7 @@ class KeptSegments {
   KeptSegments& operator=(KeptSegments&&) noexcept = default;
   ~KeptSegments() = default;
 
-  /// The copy used last; may be no segment, or one that stands no more.
+  /// The copy used last; may be empty, or no longer current.
   [[nodiscard]] const BoardSegment& current() const noexcept { return current_->segment; }
 
   /// The newest revision that the current copy is known to be part of; 0: none.
@@ -48,15 +48,15 @@ class KeptSegments {
   [[nodiscard]] Time settled_until() const noexcept { return settled_until_; }
   void see_settled(Time settled_until) noexcept { settled_until_ = settled_until; }
 
-  /// One that is not kept, to copy into.
+  /// A copy that is not kept, to copy into.
   [[nodiscard]] BoardSegment& spare() noexcept { return copies_[spare_].segment; }
 
-  /// Whether the current copy is what the head's revision holds, without copying it again: then it
+  /// Whether the current copy is part of the summary's revision, without copying it again: then it
   /// is confirmed.
   [[nodiscard]] bool is_confirmed(const KnotBoardReader& board, const Head& head) noexcept;
 
-  /// Makes the segment that begins at knot `number`, or at the one before if none begins there, the
-  /// current copy; keeps the one before if that fails. O(D), and O(1) if it is kept.
+  /// Makes the segment that begins at knot `number`, or at the knot before if none begins there,
+  /// the current copy; on failure the current copy stays. O(D), and O(1) if it is kept.
   [[nodiscard]] bool take(const KnotBoardReader& board, const Head& head, Word number) noexcept;
 
  private:
@@ -66,7 +66,7 @@ class KeptSegments {
     Word known_by = 0;
   };
 
-  /// Which copy segment `number` is, if it is kept.
+  /// The index of the copy of segment `number`, if it is kept.
   [[nodiscard]] std::uint8_t& place_of(Word number) noexcept { return places_[number % kMost]; }
   void confirm(const Head& head) noexcept;
   void confirm(Kept& copy, const Head& head) noexcept;

@@ -6,19 +6,19 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Where a time would lie if the knots came at an even pace: a segment of the head.
+/// The segment of the summary that would contain t if knots were evenly spaced.
 Word guess_by_pace(const KnotBoardReader& board, const Head& head, Time t) noexcept {
   const Time oldest = board.time_hint(head.first);
   const double share =
       seconds_after(oldest, t) / seconds_after(oldest, board.time_hint(head.newest));
   const auto intervals = static_cast<double>(head.newest - head.first);
-  // Written so that what is no number, or not on the board, becomes an end of it.
+  // NaN or out of range: clamps to the first or last segment.
   if (!(share > 0)) return head.first;
   return share < 1 ? head.first + static_cast<Word>(share * intervals) : head.newest;
 }
 
-/// When the segment at knot `number` begins, or, where none does, the next one; at the end of a
-/// finished curve, when that ends. Returns false if a knot was written meanwhile.
+/// The time at which the segment of knot `number` begins, or the next segment if none begins there;
+/// for the last knot of a finished curve, its end. Returns false if a knot was written meanwhile.
 bool begin_of(const KnotBoardReader& board, const Head& head, Word number, Time& begin,
               bool& is_end) noexcept {
   core::SegmentForm form{};

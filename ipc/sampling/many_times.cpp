@@ -10,7 +10,7 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Copies the derivatives asked for, one behind the other.
+/// Copies the requested derivatives, in sequence.
 void copy_asked(const State& state, Derivatives asked, std::span<double> out) noexcept {
   const std::array<std::pair<Derivatives, std::span<const double>>, 4> parts{
       {{Derivatives::position, state.position()},
@@ -40,7 +40,7 @@ Word Sampler::sample_many(std::span<const Time> times, const SampleBlock& out) n
   return 0;
 }
 
-/// Evaluates all times under head_.revision. Returns false if the writer has gone on meanwhile.
+/// Evaluates all times under head_.revision. Returns false if the writer overtook it.
 bool Sampler::evaluate_many(std::span<const Time> times, const SampleBlock& out) noexcept {
   const std::size_t dimensions = board_->dimensions();
   const std::size_t stride = count(out.derivatives) * dimensions;
@@ -67,14 +67,14 @@ bool Sampler::evaluate_many(std::span<const Time> times, const SampleBlock& out)
   return true;
 }
 
-/// Evaluates as many of the times from `first` on as lie on the current copy, where it moves and
-/// needs no more than its polynomial. Returns how many.
+/// Evaluates the times from `first` on, as long as they are in the moving part of the current copy
+/// and its polynomial is sufficient. Returns their number.
 std::size_t Sampler::evaluate_moving(std::span<const Time> times, std::size_t first,
                                      std::size_t stride, const SampleBlock& out) noexcept {
   if (!all_linear_) return 0;
   const BoardSegment& own = kept_.current();
   const Time settled_until = kept_.at_hand().is_finished ? Time::max() : head_.settled_until;
-  // Not cleared first: that would take as long as the lookup.
+  // Not initialised: that would take as long as the lookup.
   std::array<double, 16> u;  // NOLINT(*-member-init)
   std::size_t n = 0;
   while (n < u.size() && first + n < times.size()) {

@@ -37,8 +37,8 @@ inline bool Sampler::fits(const StateRef& out) const noexcept {
           (out.acceleration.size() ^ wanted) | (out.jerk.size() ^ wanted)) == 0;
 }
 
-/// The sample at t. Mostly nothing has been published since the last one, and t lies in the segment
-/// used last: then there is nothing to look up.
+/// The sample at t. Usually nothing has been published since the last one, and t is in the segment
+/// used last: then no lookup is needed.
 inline SampleStatus Sampler::find(Time t, const StateRef& out) noexcept {
   if (board_->retired()) return SampleStatus::retired;
   const Look look = board_->look();
@@ -73,8 +73,8 @@ SampleStatus Sampler::sample(Time t, State& out) noexcept {
   return fits ? execute(t, out.ref()) : SampleStatus::wrong_dimension;
 }
 
-/// Makes the next segment of the same revision the current one if t may lie there. Returns whether
-/// t lies where it moves.
+/// Makes the next segment of the same revision the current one if t may be in it. Returns whether t
+/// is in its moving part.
 bool Sampler::goes_on(Time t) noexcept {
   const BoardSegment& own = kept_.current();
   if (kept_.confirmed_by() != head_.revision || !own.is_there() || t < own.right()) return false;
@@ -83,8 +83,9 @@ bool Sampler::goes_on(Time t) noexcept {
   return t >= kept_.at_hand().left && t < kept_.at_hand().right;
 }
 
-/// Takes the bounds of a revision over, and whether it, or one before it that this reader has not
-/// seen, changed the curve before a time that this reader has sampled.
+/// Copies the bounds of a revision. Sets `revised_` if it, or an earlier one that this reader has
+/// not seen, changed the curve before a time that this reader has sampled. Returns false if the
+/// writer overtook it.
 bool Sampler::see(const Look& look) noexcept {
   const Head before = head_;
   if (!board_->copy_bounds(look, before.revision, head_)) return false;
@@ -93,7 +94,7 @@ bool Sampler::see(const Look& look) noexcept {
     revised_ = true;
     return true;
   }
-  // More revisions have been missed than the board keeps the changes of.
+  // This reader has missed more revisions than the board keeps the changes of.
   if (sampled_until_ < before.settled_until) return true;
   const BoardSegment& own = kept_.current();
   const bool is_known = kept_.confirmed_by() == before.revision && own.is_there();
@@ -112,8 +113,9 @@ SampleStatus Sampler::preview(Time t, const StateRef& out) noexcept {
   return fits(out) ? find(t, out) : SampleStatus::wrong_dimension;
 }
 
-/// Makes head_ that of the newest revision; t is the time that will be looked up in it. Returns
-/// `settled` if there is a curve, `busy` if the writer has gone on, else the reason for none.
+/// Makes head_ the summary of the newest revision; t is the time that will be looked up in it.
+/// Returns `settled` if there is a curve, `busy` if the writer overtook it, else the reason for
+/// none.
 SampleStatus Sampler::see_newest(Time t) noexcept {
   if (board_->retired()) return SampleStatus::retired;
   const Look look = board_->look();
@@ -154,7 +156,7 @@ Sampler::Found Sampler::locate(Time t) noexcept {
       if (spans(kept_.current(), t)) return Found::segment;
     }
   }
-  // Mostly it has been written again, and it or the next one spans t: their tags are on their way.
+  // Usually republished: it or its successor contains t. Tags are already prefetched.
   Word number = number_near(kept_.current(), t);
   if (number >= head_.first && number <= head_.newest) {
     if (!kept_.take(*board_, head_, number)) return Found::torn;
@@ -166,20 +168,20 @@ Sampler::Found Sampler::locate(Time t) noexcept {
     if (!kept_.take(*board_, head_, number)) return Found::torn;
     if (spans(kept_.current(), t)) return Found::segment;
   }
-  // The hint failed: a writer is at work. The knots decide.
+  // The hint failed because a writer is active: the knots decide.
   if (!number_by_cells(*board_, head_, t, number)) return Found::torn;
   if (number == 0) return Found::before_first;
   if (!kept_.take(*board_, head_, number)) return Found::torn;
   return spans(kept_.current(), t) ? Found::segment : Found::torn;
 }
 
-/// Whether a time belongs to a segment: a time on a knot to the one on its right; all times behind
-/// the last segment to that one.
+/// Whether a segment contains a time. A time on a knot belongs to the segment on its right, all
+/// times after the last segment to that segment.
 bool Sampler::spans(const BoardSegment& segment, Time t) const noexcept {
   return t >= segment.left() && (t < segment.right() || segment.is_last(head_));
 }
 
-/// Evaluates a segment u seconds after its left end, in the form in which dimensions are read.
+/// Evaluates a segment u seconds after its left end, and normalises the values.
 void Sampler::read(const BoardSegment& segment, double u, const StateRef& out) const noexcept {
   core::evaluate(segment.order(), segment.coefficients(), u, out);
   if (!all_linear_) kinds_.normalise(out);
@@ -189,31 +191,31 @@ SampleStatus Sampler::evaluate(const BoardSegment& segment, Time t,
                                const StateRef& out) const noexcept {
   const Time right = segment.right();
   const bool past_end = t > right || segment.kind() == SegmentKind::hold ||
-                        (t == right && segment.kind() == SegmentKind::stop_tail);
+                        (t == right && segment.kind() == SegmentKind::stop);
   const Time at = past_end ? right : t;
   read(segment, seconds_after(segment.left(), at), out);
   if (past_end) come_to_rest(out);
   if (head_.finished && t <= right) return SampleStatus::settled;
   if (past_end) return SampleStatus::holding;
-  if (segment.kind() == SegmentKind::stop_tail) return SampleStatus::stopping;
+  if (segment.kind() == SegmentKind::stop) return SampleStatus::stopping;
   return t < head_.settled_until ? SampleStatus::settled : SampleStatus::provisional;
 }
 
-/// Before the first waypoint of a live stream the machine stands where it will start, unless it
+/// Before the first waypoint of a live stream the machine is held at its start position, unless it
 /// starts in motion.
 SampleStatus Sampler::hold_first(const StateRef& out) noexcept {
   const std::size_t dimensions = board_->dimensions();
   const auto velocity = kept_.current().coefficients().subspan(dimensions, dimensions);
   if (std::ranges::any_of(velocity, [](double v) { return v != 0; })) return SampleStatus::no_data;
-  // Not evaluated: other coefficients, which may still change, would decide on the sign of a 0.
+  // Not evaluated: other coefficients, which may still change, would decide the sign of a 0.
   std::ranges::copy(kept_.current().coefficients().first(dimensions), out.position.begin());
   come_to_rest(out);
   if (!all_linear_) kinds_.normalise(out);
   return SampleStatus::holding;
 }
 
-/// What a reader may still say when the writer has overtaken every try: a time inside its own copy
-/// and before the settled_until copied with it can no longer change.
+/// The sample when the writer has overtaken every try: the curve in the reader's own copy, before
+/// the settled_until copied with it, can no longer change.
 SampleStatus Sampler::from_own_copy(Time t, const StateRef& out) noexcept {
   const BoardSegment& own = kept_.current();
   if (!own.is_there() || t < own.left() || t >= own.right() || t >= kept_.settled_until()) {

@@ -5,7 +5,7 @@
 
 namespace splinecast::ipc {
 
-/// Seconds from a segment's left end; whatever the region holds, without signed overflow.
+/// Seconds from a segment's left end, without signed overflow for any content of the region.
 [[nodiscard]] inline double seconds_after(Time left, Time t) noexcept {
   return to_seconds(to_time(to_word(t) - to_word(left)));
 }

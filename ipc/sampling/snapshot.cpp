@@ -9,16 +9,16 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Takes values from others, one by one.
+/// Subtracts values, element by element.
 void subtract(std::span<double> from, std::span<const double> values) noexcept {
   for (std::size_t d = 0; d < from.size(); ++d) from[d] -= values[d];
 }
 
-/// Makes the acceleration at the left end of a snapshot's oldest segment the step there.
+/// Replaces the acceleration at the left end of a snapshot's oldest segment by the step there.
 bool finish_oldest_step(const SnapshotSource& source, SegmentCopy& oldest) {
   if (oldest.number == 1) {
     const bool is_held = source.is_live && oldest.has_waypoint;
-    if (!is_held) std::ranges::fill(oldest.acceleration_step, 0.0);  // nothing stands before it
+    if (!is_held) std::ranges::fill(oldest.acceleration_step, 0.0);  // no segment before it
     return true;
   }
   const auto before = segment_before(source.board, source.head, oldest.number);
@@ -36,13 +36,13 @@ bool finish_oldest_step(const SnapshotSource& source, SegmentCopy& oldest) {
 
 }  // namespace
 
-/// Copies the segments from one to another under the source's revision, with their acceleration
+/// Copies the segments `oldest` to `newest` under the source's revision, with their acceleration
 /// steps.
 bool BoardSnapshot::copy_segments(const SnapshotSource& source, Word oldest, Word newest) {
   const KnotBoardReader& board = source.board;
   BoardSegment& copy = source.copy;
   std::size_t count = 0;
-  // The newest first: they are the ones that the writer will overwrite first.
+  // The newest first: the writer will overwrite these first.
   for (Word number = newest;;) {
     if (copy.take(board, source.head, number) != BoardSegment::Taken::whole) return false;
     if (segments_.size() == count) segments_.emplace_back();

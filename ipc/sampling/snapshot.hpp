@@ -12,21 +12,21 @@
 
 namespace splinecast::ipc {
 
-/// Where the segments of a snapshot are copied from, and what that takes.
+/// The source of the segments of a snapshot, and scratch memory.
 struct SnapshotSource {
   const KnotBoardReader& board;
-  const Head& head;             ///< of the revision
+  const Head& head;             ///< summary of the revision
   const DimensionKinds& kinds;  ///< of the board's dimensions
   bool is_live;
   BoardSegment& copy;                    ///< scratch
-  std::span<double> start_acceleration;  ///< scratch, as the next
-  std::span<double> end_acceleration;
+  std::span<double> start_acceleration;  ///< scratch
+  std::span<double> end_acceleration;    ///< scratch
 };
 
 /// Several segments of one revision: a consistent piece of the curve, whole or not at all.
 class BoardSnapshot {
  public:
-  /// Allocates as it grows; reuse one to allocate no more.
+  /// Allocates as it grows; a reused one stops allocating.
   explicit BoardSnapshot(std::size_t dimensions) : dimensions_(dimensions) {}
 
   [[nodiscard]] std::size_t dimensions() const noexcept { return dimensions_; }

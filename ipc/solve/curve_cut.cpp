@@ -62,15 +62,15 @@ bool CurveCut::find(const Head& head, Time t) noexcept {
                   state_);
   next_ = cut_;
   ends_ = t >= segment_.right();
-  if (cut_ == head.first && t <= segment_.left()) {  // nothing stands before it
+  if (cut_ == head.first && t <= segment_.left()) {  // no segment before it
     cut_ = 0;
-    // It keeps its bits: readers are held there before it.
+    // Copies the bits: before the first knot readers hold this position.
     if (next_ == 1) {
       std::ranges::copy(segment_.coefficients().first(state_.dimensions()),
                         state_.ref().position.begin());
     }
   } else if (t == segment_.left()) {
-    // The segment before keeps their common knot; or that one has been cut already.
+    // The segment before keeps the common knot, unless it has already been cut.
     const auto before = segment_before(*published_, head, cut_);
     if (!before || *before == 0 || !read(*before)) return false;
     keeps_right_ = *before + 1 == cut_;
@@ -99,11 +99,11 @@ void CurveCut::write() noexcept {
   if (is_held_) {
     write_rest(cut_ + 1, SegmentForm::hold, segment_.right(), position_at(segment_.right()));
   }
-  if (ends_) return;  // it ends as it is
+  if (ends_) return;  // it ends at its natural end
   if (keeps_right_ && cut_ < head_.newest) {
     board_->write_form(cut_ + 1, SegmentForm::none, time_);
   } else if (keeps_right_) {
-    // A stop: how long it would have taken stands at its right knot.
+    // A stop: its right knot stores when the uncut stop would have ended.
     const Time end = segment_.natural_right();
     write_rest(cut_ + 1, SegmentForm::none, end, position_at(end), time_);
   }

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/forms/splice.hpp"
+#include "core/forms/entry.hpp"
 #include "ipc/board/reader.hpp"
 #include "ipc/board/segment.hpp"
 #include "ipc/board/writer.hpp"
@@ -16,29 +16,28 @@
 
 namespace splinecast::ipc {
 
-/// A cut through the committed curve at a time, so that another curve goes on from there: found
-/// first, which changes nothing but scratch, then written. A segment that is cut keeps both its
-/// knots, and no segment begins at the right one any more.
+/// Cuts the committed curve at a time, so that another curve can continue from there. `find`
+/// changes scratch memory only; `write` then changes the board. The cut segment keeps both its
+/// knots, and no segment begins at its right knot any more.
 ///
-/// Allocates when made only; one thread uses it.
+/// Allocates only when constructed; one thread uses it.
 class CurveCut {
  public:
-  /// Both are sides of one board, and outlive the cut.
+  /// `board` and `published` are the two sides of one board; both outlive the cut.
   CurveCut(KnotBoardWriter& board, const KnotBoardReader& published, DimensionKinds kinds);
 
-  /// Finds the cut at t through the curve of a committed head, which has a segment there. Returns
-  /// false if what was read back from the board was nothing that a solver had written.
+  /// Finds the cut at t through the curve of a committed summary, which has a segment there.
+  /// Returns false if the board holds data that no solver wrote.
   [[nodiscard]] bool find(const Head& head, Time t) noexcept;
 
-  /// What goes on from the cut that was found: the state there, and the number of the knot that
-  /// begins the new curve.
+  /// The state at the cut that was found, and the number of the knot that begins the new curve.
   [[nodiscard]] Instant state() const noexcept;
   [[nodiscard]] Word next() const noexcept { return next_; }
 
-  /// Writes what the cut that was found makes of the segment before it.
+  /// Writes the segment before the cut that was found, as the cut leaves it.
   void write() noexcept;
 
-  /// Writes a new knot at rest at which no waypoint stands.
+  /// Writes a new knot at rest that is not a waypoint.
   void write_rest(Word number, core::SegmentForm form, Time time, std::span<const double> position,
                   Time begins = {}) noexcept;
 
@@ -50,19 +49,19 @@ class CurveCut {
   const KnotBoardReader* published_;
   DimensionKinds kinds_;
   Head head_;
-  BoardSegment segment_;  ///< that is cut, or lies before the cut
+  BoardSegment segment_;  ///< the one that is cut, or the one before the cut
   State state_;
   Time time_{};
-  Word cut_ = 0;                  ///< segment before the cut; 0: nothing stands there
-  Word next_ = 0;                 ///< number of the knot that goes on
-  bool ends_ = false;             ///< that segment ends at its natural end
-  bool is_held_ = false;          ///< a hold follows it
-  bool keeps_right_ = false;      ///< it keeps its right knot, where no segment begins any more
+  Word cut_ = 0;                  ///< segment before the cut; 0: none
+  Word next_ = 0;                 ///< number of the knot that begins the new curve
+  bool ends_ = false;             ///< segment cut_ ends at its natural end
+  bool is_held_ = false;          ///< a hold follows segment cut_
+  bool keeps_right_ = false;      ///< segment cut_ keeps its right knot; no segment begins there
   std::vector<double> position_;  ///< scratch
 };
 
-/// The last committed segment of a head whose left end is at or before t; else the first one. By
-/// the packed times, which are the writer's own: for the writer only.
+/// The last segment of a committed summary whose left end is at or before t, or the first segment
+/// if there is none. Uses the packed times: exact for the writer, a hint for other processes.
 [[nodiscard]] Word segment_at(const KnotBoardReader& board, const Head& head, Time t) noexcept;
 
 }  // namespace splinecast::ipc

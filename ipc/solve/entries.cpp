@@ -3,8 +3,8 @@
 
 #include "ipc/solve/published_curve.hpp"
 
-/// How a published curve plans the entries that lead back to its target, and takes them up. A plan
-/// is made in scratch memory; `enter` makes it part of the curve.
+/// Plans the entries of a published curve onto its target. A plan is in scratch memory; `enter`
+/// makes it part of the curve.
 namespace splinecast::ipc {
 
 void PublishedCurve::restart_search() noexcept {
@@ -13,12 +13,12 @@ void PublishedCurve::restart_search() noexcept {
                   {behind_.end, beyond_.position(), beyond_.velocity(), beyond_.acceleration()});
 }
 
-/// A solver that takes over reads back from the board what the motion shows, when an entry is
-/// needed.
+/// Reads the shown motion back from the board when an entry is needed, if this solver has taken
+/// over.
 void PublishedCurve::find_shown() noexcept {
   if (knows_shown_ || !entries_.is_live) return;
   knows_shown_ = true;
-  if (course_ == Course::on_target) {  // the start: the waypoints on the board are the window's
+  if (course_ == Course::on_target) {  // the start: the window has all waypoints on the board
     shown_.restore(window_, *published_, head_, Time::min(), 0);
     return;
   }
@@ -31,7 +31,7 @@ bool PublishedCurve::needs_entry() const noexcept {
   return is_searching_ && (course_ == Course::waiting || course_ == Course::beyond);
 }
 
-/// Whether the stream starts at rest with its first waypoint, and that can still be changed.
+/// Whether the stream starts at rest at its first waypoint and the start can still be changed.
 bool PublishedCurve::is_start_open() const noexcept {
   return course_ == Course::on_target && !window_.is_later_run() &&
          window_.options().held_before_start &&
@@ -39,8 +39,8 @@ bool PublishedCurve::is_start_open() const noexcept {
          window_.oldest_segment() == 0 && window_.frozen_knots() == 0;
 }
 
-/// The first interval of a stream that starts at rest may ask for more than the motion behind it:
-/// then it starts by an entry, from rest.
+/// Starts a stream by an entry from rest if its first interval does not keep the limits: the given
+/// ones, or those that the motion after it shows.
 void PublishedCurve::check_start() noexcept {
   const std::size_t knots = window_.knots();
   find_shown();
@@ -60,12 +60,12 @@ void PublishedCurve::check_start() noexcept {
   is_searching_ = true;
 }
 
-/// Finds the state from which an entry begins: the one from which the open one will begin, if that
-/// has not settled, else that of the committed curve at `settled`.
+/// Finds the state at which an entry begins: that of the open entry if it has not settled, or that
+/// of the committed curve at `settled`.
 bool PublishedCurve::find_state(Time settled) noexcept {
   uses_cut_ = origin_.number == 0 || (!origin_.is_new && settled > origin_.time);
   if (!uses_cut_) return true;
-  // A knot that the curve has met stays.
+  // Knots that the curve has met are kept.
   const std::size_t met = is_on_line() ? window_.knots() : unmet_;
   const bool is_in_window = met > window_.oldest_segment();
   const Time t = is_in_window ? std::max(settled, window_.time(met - 1) + Time(1)) : settled;
@@ -73,7 +73,7 @@ bool PublishedCurve::find_state(Time settled) noexcept {
   return !is_damaged_;
 }
 
-/// The state is found once in a step; what the motion shows follows each waypoint.
+/// Finds the state once per step; updates the shown motion after each waypoint.
 bool PublishedCurve::prepare(Time settled) noexcept {
   find_shown();
   if (entries_.is_live) shown_.look(window_.options().stop_time);
@@ -83,17 +83,15 @@ bool PublishedCurve::prepare(Time settled) noexcept {
 
 core::EntryRules PublishedCurve::entry_rules() const noexcept {
   const Time from = uses_cut_ ? cut_.state().time : origin_.time;
-  const bool blends = blend_until_ > from;  // of a run that none has been cut for it lies long ago
-  return {
-      .limits = &window_.options().limits,
-      .shown = entries_.is_live ? &shown_.limits() : nullptr,
-      .least = blends ? std::max(entries_.min_splice, blend_until_ - from) : entries_.min_splice};
+  const bool blends = blend_until_ > from;  // of a run without a cut: long before `from`
+  return {.limits = &window_.options().limits,
+          .shown = entries_.is_live ? &shown_.limits() : nullptr,
+          .least = blends ? std::max(entries_.min_entry, blend_until_ - from) : entries_.min_entry};
 }
 
 void PublishedCurve::look_for_entry(Time settled, Time keep, bool is_last, int& tries) noexcept {
   if (is_damaged_ || is_ending_ || ends_there_ || window_.finished()) return;
-  // With as many waypoints as a window shows, or, of a live stream, with those that are known when
-  // the start is about to settle.
+  // Once settle + 2 waypoints are known or, on a live stream, shortly before the start settles.
   if (is_start_open() && (window_.knots() == window_.options().settle + 2 ||
                           (is_last && start_decision() <= settled))) {
     check_start();
@@ -110,12 +108,12 @@ void PublishedCurve::look_for_entry(Time settled, Time keep, bool is_last, int& 
   if (is_over) is_searching_ = false;
 }
 
-/// Makes the entry that has been found part of the curve.
+/// Makes the entry that was found part of the curve.
 void PublishedCurve::enter() noexcept {
   if (uses_cut_) {
     cut_.write();
     set_origin(cut_.next(), cut_.state());
-    // The cut writes the newest knot that was met again, but not its row: see find_knot.
+    // The cut rewrites the newest knot that was met, but not its row: see find_knot.
     passed_written_ = passed_lowest_;
   }
   is_searching_ = is_prepared_ = false;
@@ -143,8 +141,8 @@ void PublishedCurve::enter() noexcept {
   note_change(origin_.time);
 }
 
-/// Enters the run at a waypoint before its last one, if one of them passes: no newer ones come. The
-/// state to begin from must have been found. Tries at most the window's knots.
+/// Enters the run at a waypoint before its last one, if an entry to one of them passes: no newer
+/// ones come. The initial state must have been found. Tries at most the knots of the window.
 void PublishedCurve::enter_before_end() noexcept {
   core::EntryRules rules = entry_rules();
   rules.newer = 1;

@@ -2,7 +2,7 @@
 
 #include "ipc/solve/published_curve.hpp"
 
-/// How a published curve ends.
+/// Ends a published curve.
 namespace splinecast::ipc {
 namespace {
 
@@ -15,12 +15,12 @@ bool rests_at(const Instant& state, std::span<const double> position) noexcept {
 
 }  // namespace
 
-/// Ends the curve at the newest waypoint, which lies on the line.
+/// Ends the curve at the newest waypoint; the curve ends with a piece of the target.
 void PublishedCurve::finish_on_line(const Condition& end) noexcept {
   const std::size_t knots = window_.knots();
   window_.finish(end);
   has_changes_ = true;
-  // The last segment may come to a full stop, which is another form.
+  // If the last segment comes to a full stop, it has another form.
   open_ = std::min(open_, knots - std::min<std::size_t>(knots, 2));
 }
 
@@ -47,7 +47,7 @@ void PublishedCurve::enter_end(const Instant& from) noexcept {
 
 bool PublishedCurve::finish(const Condition& end, Time settled, Time keep, int& tries) noexcept {
   const std::size_t knots = window_.knots();
-  if (knots == 0) return true;  // it ends with the stop that it is
+  if (knots == 0) return true;  // it ends with its current stop
   if (is_start_open()) check_start();
   if (!is_on_line() && !seeks_end_ && has_room_to_enter(keep) && prepare(settled)) {
     enter_before_end();

@@ -2,7 +2,7 @@
 
 #include "ipc/solve/stream_solver.hpp"
 
-/// How a solver takes or refuses the items of a ring.
+/// Takes or refuses the items of a ring.
 namespace splinecast::ipc {
 namespace {
 
@@ -41,7 +41,8 @@ void StreamSolver::take(Word number) noexcept {
   refuse(number, Refusal::unknown_kind);
 }
 
-/// The producer has checked most of this; but what another process wrote is never trusted.
+/// The reason to refuse the values of a waypoint, if any. The producer has checked most of them,
+/// but data from another process are never trusted.
 std::optional<Refusal> StreamSolver::form_refusal(const Waypoint& waypoint) const noexcept {
   if (!is_finite(waypoint)) return Refusal::not_finite;
   if (!curve_.kinds().takes(waypoint.position)) return Refusal::zero_quaternion;
@@ -100,8 +101,8 @@ Waypoint StreamSolver::unwrapped(const Waypoint& given) noexcept {
           .acceleration = values.acceleration};
 }
 
-/// Notes where the curve passes a limit with a waypoint. Returns whether the waypoint is to be
-/// refused for it.
+/// Notes where the curve with this waypoint exceeds a limit. Returns whether to refuse the
+/// waypoint.
 bool StreamSolver::note_excess(const Waypoint& waypoint, Word number) noexcept {
   auto excess = curve_.excess_with(waypoint);
   if (!excess) return false;
@@ -121,20 +122,20 @@ void StreamSolver::take_replacement(Word number) noexcept {
     return refuse_replacement(number, Refusal::too_late);
   }
   ++head_.controls;
-  // One revision, as far as the board has room.
+  // The replacement and its waypoints are one revision, as far as the board has room.
   const bool may_follow = number >= suspected_;
   const Word followers = may_follow ? std::min<Word>(item_.count, board_->capacity() / 2) : 0;
   batch_limit_ = is_stop(item_) ? 0 : batch_limit_ + followers;
   if (!has_begun) return;
-  // A stop behind another one changes nothing.
+  // A stop after another one changes nothing.
   if (is_stop(item_) && curve_.is_stop() && t >= curve_.newest_time()) return;
   curve_.begin_run(t, std::clamp(item_.blend, Time::zero(), limits_.max_interval));
   head_.starved = false;
   head_.newest_knot = t;
 }
 
-/// Refuses a replacement, and in the same revision its waypoints, so that no other solver takes
-/// them for appended ones.
+/// Refuses a replacement, and in the same revision its waypoints, so that no other solver treats
+/// them as appended ones.
 void StreamSolver::refuse_replacement(Word number, Refusal reason) noexcept {
   refuse(number, reason);
   const Word end = head_.consumed + std::min<Word>(item_.count, available_ - head_.consumed);

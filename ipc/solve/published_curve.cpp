@@ -15,7 +15,7 @@ namespace {
 
 using core::SegmentForm;
 
-// A window is restored from them, if no waypoint has been met.
+// If no waypoint has been met, a window is restored from these slots.
 static_assert(kPassedSlots >= core::kMaxSettle + core::kMaxReach + 3);
 
 }  // namespace
@@ -90,7 +90,7 @@ void PublishedCurve::freeze(Time t) noexcept {
     unmet_ = met_;
     origin_ = {};
   }
-  // At its end the entry has met the newest waypoint that it knew.
+  // This entry ends at the newest waypoint that it knew, which the curve has now met.
   if (course_ == Course::beyond && ends_at_known_ && t >= behind_.end) {
     passed_before_ += known_ - 1 - unmet_;
     unmet_ = known_;
@@ -98,31 +98,31 @@ void PublishedCurve::freeze(Time t) noexcept {
   }
   if (course_ == Course::on_target && knots > 0) {
     window_.freeze(t);
-    // The stop behind the newest knot is what readers execute from here on.
+    // From here on readers execute the stop after the newest knot.
     if (t >= window_.time(knots - 1)) wait_for_entry();
   } else if (course_ == Course::waiting && !is_searching_ && knots > unmet_ && t < newest_time()) {
-    // The state moves on along the stop: what has not passed may pass from there.
+    // The state advances along the stop: candidates that failed before may pass from there.
     search_.restart(unmet_);
     is_searching_ = true;
   }
   keep_settled();
 }
 
-/// The newest knot has been executed: what comes next is met by an entry.
+/// The newest knot has been executed: an entry must lead to the next waypoint.
 void PublishedCurve::wait_for_entry() noexcept {
   course_ = Course::waiting;
   met_ = unmet_ = placed_ = window_.knots();
-  // The next waypoint changes the rows of the last ones that were met, and many entries in a row
-  // may push them off the board: see write_passed.
+  // The next waypoint changes the rows of the last met ones, and many entries in sequence may push
+  // these off the board: see write_passed.
   passed_lowest_ = unmet_ - std::min(unmet_, kMetKept);
   passed_written_ = passed_committed_ = passed_lowest_;
   origin_ = {};
 }
 
-/// Before anything is changed: all knots are on the board as they are, settled ones for good.
+/// Call before anything is changed: all knots are on the board, and settled ones are final.
 void PublishedCurve::keep_settled() noexcept {
   kept_ = window_.settled_knots();
-  // At the newest knot another segment begins with the next one.
+  // The next knot changes the segment that begins at the newest one.
   open_ = std::min(kept_, std::max<std::size_t>(placed_, 1) - 1);
 }
 
@@ -136,14 +136,15 @@ bool PublishedCurve::has_room_to_cut(Time t, std::size_t knots, Time keep) const
 }
 
 bool PublishedCurve::has_room_behind(Word number, std::size_t knots, Time keep) const noexcept {
-  if (keep == Time::max()) return true;  // a recorded stream keeps nothing
+  if (keep == Time::max()) return true;  // a recorded stream keeps no history
   const Word newest = number + knots;
   const Word lost = newest - std::min<Word>(newest, board_->capacity());
   if (lost < std::max<Word>(first_, 1) || lost >= newest_) return true;
-  return published_->time_hint(lost + 1) <= keep;  // where the last segment that is lost ends
+  return published_->time_hint(lost + 1) <= keep;  // end of the last segment that is lost
 }
 
-/// For the cut, the entry, the piece of the target that is still in the window, and a stop.
+/// Whether there is room for the cut, the entry, the piece of the target that is still in the
+/// window, and a stop.
 bool PublishedCurve::has_room_to_enter(Time keep) const noexcept {
   const std::size_t added = window_.knots() - window_.oldest_segment() + 3 + kAddedByStop;
   return newest_ == 0 || has_room_behind(newest_, added, keep);
@@ -203,7 +204,7 @@ void PublishedCurve::append(const Waypoint& waypoint, Word item) noexcept {
     if (!is_searching_) restart_search();
     is_searching_ = true;
   }
-  // What has settled leaves the window and is written once, with its last value.
+  // Settled knots leave the window and are written once, with their final values.
   const std::size_t settled = window_.settled_knots();
   if (open_ >= settled) return;
   if (!is_on_line()) {

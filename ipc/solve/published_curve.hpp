@@ -16,11 +16,11 @@
 
 namespace splinecast::ipc {
 
-/// How a published curve comes back to its target.
+/// How a published curve returns to its target.
 struct EntryOptions {
-  bool is_live = false;  ///< else an entry is looked for once K newer waypoints are known
-  Time min_splice{};     ///< length of the shortest entry
-  Time notice{};         ///< how long before it settles a live stream's start is decided
+  bool is_live = false;  ///< false: an entry waits until K newer waypoints are known
+  Time min_entry{};      ///< length of the shortest entry
+  Time notice{};         ///< a live stream's start is decided this long before it settles
 };
 
 /// A published curve's part of a revision's summary; see the members of Head.
@@ -44,40 +44,41 @@ struct CurveSummary {
 void put_summary(const CurveSummary& curve, Head& head) noexcept;
 
 /// The curve of one stream: the window that is being solved, which is the *target*, and the board
-/// that knots are published on. Knows neither ring nor clock; what a waypoint must be like is
-/// checked before.
+/// on which knots are published. Has no ring and no clock; the caller checks the waypoints.
 ///
-/// The published curve is the target, but where an *entry* leads from elsewhere onto it: after the
-/// newest knot had settled before its successor came, after a cut, and where a stream starts in
-/// motion. Waypoints before the end of an entry are knots of the target that the curve passes over:
-/// they lie in slots of their own, for a solver that takes over. While no entry is found the curve
-/// that is published stays, which ends at rest. An entry that ends at a waypoint is final once it
-/// has begun; one that ends beyond the newest waypoint is made again when a newer one comes.
+/// The published curve equals the target, except where an *entry* leads onto the target: when the
+/// newest knot has settled before its successor came, after a cut, and where a stream starts in
+/// motion. Waypoints before the end of an entry are knots of the target that the curve passes over;
+/// they have their own slots on the board, for a solver that takes over. Until an entry is found
+/// the published curve does not change, and ends at rest. An entry that ends at a waypoint is final
+/// once it has begun; one that ends beyond the newest waypoint is planned again when a newer one
+/// comes.
 ///
-/// Knots lie on the board under consecutive numbers, run after run: `Head::run` is the first knot
-/// of a run, its first waypoint or the state that it was entered from. The board is the only memory
-/// of what came before: a solver that takes over, and one that has discarded a revision, both go on
-/// from what has been committed.
+/// Knots on the board have consecutive numbers, run after run: `Head::run` is the first knot of a
+/// run, which is its first waypoint or the state that it was entered from. The board is the only
+/// memory of the past: a solver that takes over, and one that has discarded a revision, both
+/// continue from the last commit.
 ///
-/// Allocates when made only; one thread uses it.
+/// Allocates only when constructed; one thread uses it.
 class PublishedCurve {
  public:
-  /// Candidates that are built and compared with the limits in one step: bounds how long it takes.
+  /// Maximum number of candidates that one step builds and compares with the limits: bounds the
+  /// duration of a step.
   static constexpr int kTriesPerStep = 4;
   /// Knots that a stop may add.
   static constexpr std::size_t kAddedByStop = 2;
 
-  /// Both are sides of one board, and outlive the curve. Throws std::invalid_argument for window
-  /// options out of range.
+  /// `board` and `published` are the two sides of one board; both outlive the curve. Throws
+  /// std::invalid_argument for window options out of range.
   PublishedCurve(KnotBoardWriter& board, const KnotBoardReader& published,
                  const core::WindowOptions& options, DimensionKinds kinds,
                  const EntryOptions& entries);
 
-  /// Whether what was read back from the board was nothing that this class had written: then the
-  /// curve is of no more use.
+  /// Whether the board held data that this class did not write: then the curve can no longer be
+  /// used.
   [[nodiscard]] bool is_damaged() const noexcept { return is_damaged_; }
 
-  /// Goes on from what has been committed, of which `head` is the head. O(K·D).
+  /// Continues from the last commit, whose summary is `head`. O(K·D).
   void restore(const Head& head) noexcept;
 
   /// Prefetches the memory outside this object that the next append touches.
@@ -87,8 +88,8 @@ class PublishedCurve {
   [[nodiscard]] const DimensionKinds& kinds() const noexcept { return kinds_; }
   [[nodiscard]] Course course() const noexcept { return course_; }
 
-  /// The position that the next waypoint is to be near: of the newest waypoint of the run, or of
-  /// the state that it was entered from; empty if there is none.
+  /// The position that the next waypoint is unwrapped to: that of the newest waypoint of the run,
+  /// or of the state that the run was entered from; empty if there is neither.
   [[nodiscard]] std::span<const double> newest_position() const noexcept;
 
   /// Whether anything has been changed since the last commit.
@@ -97,11 +98,11 @@ class PublishedCurve {
   /// Whether there is a curve.
   [[nodiscard]] bool has_begun() const noexcept { return newest_ > 0 || has_changes_; }
 
-  /// The time that the next waypoint must be later than: of the newest knot of the run, or the one
-  /// from which the run was entered. There must be a run.
+  /// The next waypoint must be after this time: that of the newest knot of the run, or of the state
+  /// that the run was entered from. There must be a run.
   [[nodiscard]] Time newest_time() const noexcept;
 
-  /// The time before which no append changes the run: of the first knot that has not converged.
+  /// No append changes the run before this time: that of its first knot that has not settled.
   [[nodiscard]] Time settled_until() const noexcept;
 
   /// Whether the run is a stop from a given state, and no waypoint has come since.
@@ -109,64 +110,63 @@ class PublishedCurve {
     return course_ == Course::waiting && window_.knots() == 0;
   }
 
-  /// When a live stream's start has to be decided, before it settles; max() if nothing is to be.
+  /// When a live stream's start must be decided, before it settles; max() if there is no decision.
   [[nodiscard]] Time start_decision() const noexcept {
     return is_start_open() ? window_.time(0) - entries_.notice : Time::max();
   }
 
-  /// When the curve has come to rest.
+  /// The time at which the curve comes to rest.
   [[nodiscard]] Time end_of_motion() const noexcept { return end_; }
 
-  /// Keeps everything up to the right end of the segment that contains t as it has been committed.
-  /// Where the newest knot has settled, an entry becomes necessary.
+  /// Freezes the committed curve up to the right end of the segment that contains t. If this
+  /// freezes the newest knot, the next waypoint needs an entry.
   void freeze(Time t) noexcept;
 
-  /// Whether the board can take so many more knots without losing a segment that ends after `keep`;
-  /// likewise where the committed curve is cut at t first.
+  /// Whether the board can take this many more knots without losing a segment that ends after
+  /// `keep`; the second function: if the committed curve is first cut at t.
   [[nodiscard]] bool has_room(std::size_t knots, Time keep) const noexcept;
   [[nodiscard]] bool has_room_to_cut(Time t, std::size_t knots, Time keep) const noexcept;
 
-  /// Begins the curve in a given state, instead of with a waypoint.
+  /// Begins the curve with a given state instead of a waypoint.
   void begin(const Instant& state) noexcept;
 
-  /// The first time at which the committed curve can be cut: where it begins; min() if it is held
-  /// before, max() if there is none.
+  /// The first time at which the committed curve can be cut: its beginning; min() if a hold
+  /// precedes it, max() if there is no curve.
   [[nodiscard]] Time earliest_cut() const noexcept;
 
-  /// Cuts the committed curve at t, where there is one, and begins a run that goes on from there,
-  /// by an entry that does not end before t + `blend`. There must be no uncommitted changes.
-  /// Changes nothing if the board is damaged.
+  /// Cuts the committed curve at t, where it must have a segment, and begins a run that continues
+  /// from there, by an entry that does not end before t + `blend`. There must be no uncommitted
+  /// changes. Changes nothing if the board is damaged.
   void begin_run(Time t, Time blend) noexcept;
 
-  /// The first segment that would be beyond a limit with this waypoint, and would not be so
-  /// without, where it is farthest beyond; of the segments that it changes, as far as the curve may
-  /// come to follow them. Without limits O(1), else O(K·D). Changes nothing of the curve.
+  /// The first segment that exceeds a limit with this waypoint and not without it, at its largest
+  /// excess. Compares the segments that the waypoint changes and that the curve may follow. O(1)
+  /// without limits, else O(K·D). Does not change the curve.
   [[nodiscard]] std::optional<LimitExcess> excess_with(const Waypoint& waypoint) noexcept {
     return has_limits_ && window_.knots() > 0 ? find_excess(waypoint) : std::nullopt;
   }
 
-  /// Appends a waypoint to the run: the ring's item of this number.
+  /// Appends a waypoint to the run; `item` is its number in the ring.
   void append(const Waypoint& waypoint, Word item) noexcept;
 
-  /// Looks for an entry if one is needed, from `settled` on or from where the open one will begin.
-  /// `tries` is counted down: see kTriesPerStep. `is_last`: no waypoint waits, so that those that
-  /// are known decide.
-  /// Segments that end after `keep` are not lost by it.
+  /// Searches for an entry if one is needed, from `settled` on or from the beginning of the open
+  /// entry. Counts `tries` down: see kTriesPerStep. `is_last`: no waypoint waits in the ring, so
+  /// the known ones decide. Loses no segment that ends after `keep`.
   void plan(Time settled, Time keep, bool is_last, int& tries) noexcept {
     if (is_searching_ || window_.options().held_before_start) {
       look_for_entry(settled, keep, is_last, tries);
     }
   }
 
-  /// Whether an entry is still being looked for: a step is of use without a new waypoint.
+  /// Whether a search for an entry is unfinished: a step has work to do without a new waypoint.
   [[nodiscard]] bool is_planning() const noexcept {
     return is_searching_ && !is_ending_ && !ends_there_ && !window_.finished();
   }
 
-  /// Ends the curve at its newest knot with a condition. Where the published curve does not lead
-  /// there, an entry does, from `settled` on, at the knot's time or as late as it takes. Returns
-  /// false if no such entry has been found yet: then nothing has changed.
-  /// Segments that end after `keep` are not lost by it.
+  /// Ends the curve at its newest knot with a boundary condition. If the published curve does not
+  /// end there, an entry leads there from `settled` on, to the knot's time or as much later as
+  /// needed. Returns false if no such entry has been found yet: then call it again in the next
+  /// step. Loses no segment that ends after `keep`.
   [[nodiscard]] bool finish(const Condition& end, Time settled, Time keep, int& tries) noexcept;
 
   /// Writes the changes to the board. Returns the earliest time at which the curve changes; max()
@@ -176,13 +176,13 @@ class PublishedCurve {
   /// The curve's part of the summary, as of the last write.
   [[nodiscard]] CurveSummary summary() const noexcept;
 
-  /// After the commit of that head.
+  /// Call after the commit of this summary.
   void committed(const Head& head) noexcept;
 
  private:
   /// The state from which an entry, or the stop of a run without waypoints, begins.
   struct Origin {
-    Word number = 0;  ///< of its knot; 0: none stands at the end of the curve
+    Word number = 0;  ///< of its knot; 0: none at the end of the curve
     Time time{};
     bool is_new = false;  ///< the board does not hold it yet
   };
@@ -243,7 +243,7 @@ class PublishedCurve {
   void end_at_newest() noexcept;
   void enter_end(const Instant& from) noexcept;
 
-  // Taking up what a solver before left: restore.cpp.
+  // Resuming from the board: restore.cpp.
   void restore_course() noexcept;
   void restore_run() noexcept;
   void restore_origin() noexcept;
@@ -252,13 +252,13 @@ class PublishedCurve {
   [[nodiscard]] bool find_knot(std::size_t i, Word& line) noexcept;
   [[nodiscard]] core::Knot restore_knot(std::span<double> values) noexcept;
 
-  /// The oldest knot that the window still has whole.
+  /// The oldest knot of which the window still has all values.
   [[nodiscard]] std::size_t passed_first() const noexcept {
     return window_.knots() - std::min(window_.knots(), window_.knots_to_restore());
   }
 
-  /// Knots before those that an entry passes over which a window needs to go on: what a row and a
-  /// slope look back at.
+  /// Knots before the passed-over ones that a window needs to continue: as far back as a row and a
+  /// slope reach.
   static constexpr std::size_t kMetKept = core::kMaxReach + 3;
 
   /// Values of a knot that a window is restored from: waypoint, g, position, velocity, acceleration
@@ -272,7 +272,7 @@ class PublishedCurve {
   DimensionKinds kinds_;
   EntryOptions entries_;
   std::size_t look_ahead_;  ///< how many rows before the newest knot an append may change
-  bool has_plain_knots_;    ///< the method changes the velocities of knots and no more
+  bool has_plain_knots_;    ///< the method changes only the velocities of knots
   bool has_limits_;
   Head head_;  ///< last committed
   CurveCut cut_;
@@ -280,7 +280,7 @@ class PublishedCurve {
   ShownMotion shown_;
   ShownMotion committed_shown_;  ///< before a cut that has not been committed
   bool has_forgotten_ = false;   ///< there is such a cut
-  bool knows_shown_ = false;     ///< shown_ holds what the board does
+  bool knows_shown_ = false;     ///< shown_ is up to date with the board
   BoardSegment read_;            ///< scratch
   KnotCopy knot_;                ///< scratch
   std::vector<core::Knot> knots_;
@@ -294,32 +294,32 @@ class PublishedCurve {
   Time end_{};
   Time stop_{};  ///< length of the stop, if the newest segment is one
   Time changed_from_ = Time::max();
-  std::size_t kept_ = 0;  ///< leading knots of the run that nothing has changed since the commit
-  std::size_t open_ = 0;  ///< leading knots of the run that are written for good
+  std::size_t kept_ = 0;  ///< leading knots of the run that are unchanged since the commit
+  std::size_t open_ = 0;  ///< leading knots of the run whose written values are final
 
   Course course_ = Course::on_target;
   std::size_t met_ = 0;            ///< first knot of the run in the last piece of the target
   Word met_number_ = 1;            ///< its number
   std::size_t unmet_ = 0;          ///< first knot of the run that the open entry passes over
-  std::size_t passed_lowest_ = 0;  ///< first knot in the slots of passed ones: the same, or, where
-                                   ///< a stream starts by an entry, the one before
-  /// Leading knots of the run that the numbered slots hold, if on the line.
+  std::size_t passed_lowest_ = 0;  ///< first knot in the slots of passed ones: up to kMetKept
+                                   ///< before unmet_; 0 where a stream starts by an entry
+  /// Leading knots of the run that the numbered slots hold, if the curve ends on the target.
   std::size_t placed_ = 0;
   /// Leading knots of the run that the slots of passed ones hold or held.
   std::size_t passed_written_ = 0;
   std::size_t passed_committed_ = 0;  ///< those of them that have been committed
-  Word passed_before_ = 0;            ///< waypoints passed over by entries that are over
+  Word passed_before_ = 0;            ///< waypoints passed over by entries that have ended
   Origin origin_;
   State origin_state_;
-  Time blend_until_ = Time::min();  ///< no entry of the run ends before
-  Time entry_end_{};                ///< of one that ends at a waypoint
+  Time blend_until_ = Time::min();  ///< no entry of the run ends before this time
+  Time entry_end_{};                ///< end of an entry that ends at a waypoint
   State beyond_;                    ///< end of an entry beyond the newest waypoint
   BehindEntry behind_;
-  Word known_ = 0;              ///< of an entry beyond the newest waypoint: how many the run had
-  bool ends_at_known_ = false;  ///< at the newest waypoint that it knew, which is not met yet
+  Word known_ = 0;              ///< entry beyond the newest waypoint: waypoints known to it
+  bool ends_at_known_ = false;  ///< that entry ends at waypoint known_ - 1, not met yet
   bool is_entry_new_ = false;   ///< the entry has not been written
-  bool is_prepared_ = false;    ///< this step has found what a search begins with
-  bool uses_cut_ = false;       ///< that is cut_, else the origin
+  bool is_prepared_ = false;    ///< this step has found the state that a search begins with
+  bool uses_cut_ = false;       ///< that state is the one of cut_, else the origin
   bool is_searching_ = false;
   bool seeks_end_ = false;           ///< the search is for an entry that ends the curve
   bool is_ending_ = false;           ///< the curve ends by an entry to `beyond_`

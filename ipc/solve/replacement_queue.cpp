@@ -7,14 +7,14 @@
 namespace splinecast::ipc {
 
 ReplacementQueue::ReplacementQueue(const WaypointRingReader& ring) : ring_(&ring) {
-  // Touches the memory, so that no step meets a page fault.
+  // Touches the memory, so that no step causes a page fault.
   items_.resize(2 * ring.capacity());
   items_.clear();
 }
 
 void ReplacementQueue::note(Word consumed, Word available) noexcept {
   while (first_ < items_.size() && items_[first_] < consumed) ++first_;
-  if (2 * first_ >= items_.size()) {  // moves no more than it forgets
+  if (2 * first_ >= items_.size()) {  // moves at most as many as it drops
     items_.erase(items_.begin(), items_.begin() + static_cast<std::ptrdiff_t>(first_));
     first_ = 0;
   }

@@ -7,7 +7,7 @@
 #include "ipc/layout/summary.hpp"
 #include "ipc/solve/published_curve.hpp"
 
-/// How a published curve is taken up again from the board.
+/// Restores a published curve from the board.
 namespace splinecast::ipc {
 namespace {
 
@@ -17,7 +17,7 @@ bool are_numbers(std::span<const double> values) noexcept {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
 
-/// Whether a knot that was read back can be gone on from.
+/// Whether a curve can continue from a knot that was read back.
 bool is_sound(const core::Knot& knot) noexcept {
   const core::Prefix& prefix = knot.prefix;
   return is_time_in_range(knot.time) &&
@@ -27,7 +27,7 @@ bool is_sound(const core::Knot& knot) noexcept {
          are_numbers(knot.velocity) && are_numbers(knot.acceleration) && are_numbers(knot.residual);
 }
 
-/// Whether what a head says of its run, which goes on, can be.
+/// Whether a summary of an unfinished stream describes a possible run.
 bool describes_a_run(const Head& head) noexcept {
   if (head.course >= kCourses) return false;
   if (head.newest == 0) return head.run_knots == 0 && !head.is_later_run;
@@ -78,8 +78,8 @@ bool PublishedCurve::read_knot(Word number) noexcept {
   return is_there;
 }
 
-/// The knot that has been read, as the window had it; `values` is where its spans lie. Invalid data
-/// leaves the curve damaged.
+/// The knot that was read, as the window had it; its spans are in `values`. Invalid data sets
+/// `is_damaged_`.
 core::Knot PublishedCurve::restore_knot(std::span<double> values) noexcept {
   const std::size_t dimensions = window_.dimensions();
   std::size_t used = 0;
@@ -110,11 +110,11 @@ core::Knot PublishedCurve::restore_knot(std::span<double> values) noexcept {
   return knot;
 }
 
-/// Reads knot i of the run: the last waypoint at or before `line` in the numbered slots at which a
-/// segment begins, or, if it has been passed over, the one in its own slot. The knots behind it
-/// have been read. One that lies in both was passed over first and met later, or is one of the last
-/// that were met, whose row has changed since: the later record counts, or, of one revision, its
-/// own slot, as a cut writes the form of a numbered one again.
+/// Reads knot i of the run: from the numbered slots, the last waypoint at or before `line` at which
+/// a segment begins, or from its own slot if the curve has passed over it. The knots after it have
+/// been read. A knot in both was passed over first and met later, or it is one of the last met
+/// ones, whose row has changed since. Then the record of the later revision counts; in the same
+/// revision the own slot, because a cut rewrites the form of a numbered knot.
 bool PublishedCurve::find_knot(std::size_t i, Word& line) noexcept {
   const Word oldest = std::max(run_, first_);
   const auto find_on_line = [&] {
@@ -159,7 +159,7 @@ void PublishedCurve::restore_course() noexcept {
       !head_.is_later_run && origin_.number == 1 ? 0 : unmet_ - std::min(unmet_, kMetKept);
 }
 
-/// Finds the knot of the state that the open entry begins in.
+/// Finds the knot of the state at which the open entry begins.
 void PublishedCurve::restore_origin() noexcept {
   if (newest_ == 0 || course_ == Course::on_target) return;
   Word number = newest_;
@@ -167,11 +167,11 @@ void PublishedCurve::restore_origin() noexcept {
     number = met_number_ - 1;
   } else {
     if (!read_knot(number)) return;
-    if (knot_.note.is_waypoint) return;  // the stop behind the newest knot that was met
+    if (knot_.note.is_waypoint) return;  // the stop after the newest knot that was met
     if (course_ == Course::beyond && !restore_beyond(number)) return;
   }
   if (course_ == Course::entering && number < first_) {
-    // The entry has left the board: it is over.
+    // The entry is no longer on the board: it has ended.
     passed_before_ += passed_over();
     course_ = Course::on_target;
     unmet_ = met_;
@@ -192,8 +192,8 @@ void PublishedCurve::restore_origin() noexcept {
   std::ranges::copy(knot_.acceleration(), beyond_.ref().acceleration.begin());
 }
 
-/// Takes up the end of an entry beyond the newest waypoint. `number` is that of the newest knot,
-/// which has been read, and becomes that of the entry's beginning.
+/// Restores the end of an entry beyond the newest waypoint. `number` is that of the newest knot,
+/// which has been read; it is set to that of the entry's beginning.
 bool PublishedCurve::restore_beyond(Word& number) noexcept {
   if (!knot_.note.arrives && (number < 2 || !read_knot(--number))) return false;
   is_damaged_ = is_damaged_ || !knot_.note.arrives || number < 2;
@@ -223,7 +223,7 @@ void PublishedCurve::restore_run() noexcept {
   for (Word line = newest_; count < most && !is_damaged_; ++count) {
     const std::size_t i = head_.run_knots - 1 - count;
     const bool is_there = find_knot(i, line);
-    // Those that the open entry does not need may have left the board.
+    // Knots that the open entry does not need may no longer be on the board.
     if (!is_there && !is_damaged_ && i + kMetKept < unmet_) break;
     is_damaged_ = is_damaged_ || !is_there;
     if (is_damaged_) return;

@@ -7,12 +7,12 @@
 #include "ipc/memory/word.hpp"
 #include "splinecast/state.hpp"
 
-/// Where pieces of a published curve meet: what the next one goes on from, and what follows an
-/// entry beyond the newest waypoint. Formulas only, so that verification uses those of the solver.
-/// Nothing allocates or throws.
+/// Where two pieces of a published curve meet: the state from which the next one continues, and the
+/// motion after an entry beyond the newest waypoint. Formulas only, which the solver and
+/// verification share. Nothing allocates or throws.
 namespace splinecast::ipc {
 
-/// Where a segment that is to be cut begins and ends, and its polynomial.
+/// The ends and the polynomial of a segment that is to be cut.
 struct CutSegment {
   Time left{};
   Time right{};
@@ -20,22 +20,22 @@ struct CutSegment {
   std::span<const double> coefficients{};
 };
 
-/// Evaluates a segment where a run is to begin at t: at rest behind the segment's end, and before
-/// its beginning, where the machine stands until then. O(D).
+/// Evaluates a segment at t, where a run is to begin: at rest from the segment's end on, and before
+/// its beginning, where the machine is held until then. O(D).
 void evaluate_at_cut(const CutSegment& segment, Time t, State& out) noexcept;
 
-/// The times of what follows an entry that ends beyond the newest waypoint: the rest of the
-/// straight line, unless the entry ends later, and the stop.
+/// The times of the motion after an entry that ends beyond the newest waypoint: the remainder of
+/// the straight line, unless the entry ends after the line, and the stop.
 struct BehindEntry {
-  Time end{};       ///< of the entry
-  Time line_end{};  ///< of the line
-  Time rest{};      ///< of the stop
+  Time end{};       ///< end of the entry
+  Time line_end{};  ///< end of the line
+  Time rest{};      ///< end of the stop
 
   [[nodiscard]] bool has_line() const noexcept { return end < line_end; }
   [[nodiscard]] Time stop_begin() const noexcept { return has_line() ? line_end : end; }
   [[nodiscard]] Time stop_length() const noexcept;
 
-  /// Writes where the line ends.
+  /// Writes the position at the end of the line.
   void write_line_end(std::span<const double> position, std::span<const double> velocity,
                       std::span<double> out) const noexcept;
 };

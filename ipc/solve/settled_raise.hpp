@@ -5,22 +5,22 @@
 
 namespace splinecast::ipc {
 
-/// Raises a live stream's settled word between two steps of its solver, where a step would do no
-/// more than that: S1 of publication.hpp. A step uses far more memory. The solver makes it after
-/// each step; it is valid until the next one, which takes up what has been stored. Used by the
+/// Raises a live stream's settled word between two steps of its solver, when a step would do
+/// nothing else: S1 of publication.hpp. A step uses far more memory. The solver creates it after
+/// each step; it is valid until the next step, which reads the stored word back. Used by the
 /// solver's thread.
 class SettledRaise {
  public:
   /// Raises nothing.
   SettledRaise() = default;
 
-  /// `stands` is what the word holds. Nothing is raised up to `limit` or beyond, where the solver
-  /// itself has something to do: it starves, or comes to rest.
+  /// `stands` is the value of the word. Never raises it to `limit` or later, where the solver
+  /// itself has work to do: the stream starves, or comes to rest.
   SettledRaise(Word& word, Time stands, Time freeze_ahead, Time limit) noexcept
       : word_(&word), stands_(stands), freeze_ahead_(freeze_ahead), limit_(limit) {}
 
-  /// Says at `now` that the curve is settled until now + freeze-ahead. Returns whether that was all
-  /// there is to do; else nothing is stored.
+  /// Stores at `now` that the curve is settled until now + freeze-ahead. Returns false, and stores
+  /// nothing, if a step is needed.
   bool raise(Time now) noexcept {
     if (word_ == nullptr || now >= limit_ - freeze_ahead_) return false;
     const Time t = now + freeze_ahead_;
@@ -30,7 +30,7 @@ class SettledRaise {
     return true;
   }
 
-  /// How long after one raise the next one is due.
+  /// The time from one raise until the next one is due.
   [[nodiscard]] Time interval() const noexcept { return freeze_ahead_ / 2; }
 
  private:

@@ -61,7 +61,8 @@ void ShownMotion::restore(const core::SlidingWindow& window, const KnotBoardRead
   }
 }
 
-/// Back from `end` by the packed times: the first knot at or after each multiple of kStep.
+/// Takes the first knot at or after each multiple of kStep, searched backwards from `end` by the
+/// packed times.
 void ShownMotion::take_met(const KnotBoardReader& board, const Head& head, Time end) noexcept {
   const Time newest = std::min(end, board.time_hint(head.newest));
   if (!is_time_in_range(newest)) return;

@@ -11,14 +11,14 @@
 
 namespace splinecast::ipc {
 
-/// The limits that a motion itself shows, for entries of a stream that has been given none: per
+/// The limits that a motion itself shows, for entries of a stream without given limits: per
 /// dimension three times the 95 % quantile of the velocities and accelerations of its waypoints
-/// over the last kSpan of motion, an acceleration at least as large as stops from that velocity
-/// take. Velocities are chord slopes over about kStep, accelerations their differences, because
-/// those of neighbouring waypoints would be those of their noise. A solver that takes over knows of
-/// former runs only what the board holds: it may find other limits.
+/// over the last kSpan of motion. The acceleration is at least the one that a stop from that
+/// velocity takes. Velocities are chord slopes over about kStep and accelerations are their
+/// differences, because the differences of neighbouring waypoints would be mostly noise. A solver
+/// that takes over knows earlier runs only from the board, so it may find other limits.
 ///
-/// Allocates when made only; one thread uses it.
+/// Allocates only when constructed; one thread uses it.
 class ShownMotion {
  public:
   static constexpr Time kSpan{5'000'000'000};
@@ -27,30 +27,30 @@ class ShownMotion {
 
   explicit ShownMotion(const KnotBoardReader& board);
 
-  /// Takes a waypoint if it is the first one at or after a multiple of kStep: which ones are taken
-  /// does not depend on where that began. Mostly one comparison; else O(D).
+  /// Takes a waypoint if it is the first one at or after a multiple of kStep, so the choice does
+  /// not depend on the first call. Usually one comparison, else O(D).
   void note(Time time, std::span<const double> position) noexcept {
     if (time >= next_) take(time, position);
   }
 
-  /// Forgets the waypoints behind a time.
+  /// Drops the waypoints after a time.
   void forget_after(Time t) noexcept;
 
-  /// Forgets everything, and takes the waypoints that the curve meets before `end`, by what the
-  /// board holds under a head. Anybody may look: what a writer changes meanwhile is left out.
-  /// O(kSpan/kStep·(log n + D)).
+  /// Drops everything, and takes the waypoints that the curve of a summary meets before `end`, as
+  /// far as the board holds them. Any process may call it: leaves out knots that a writer changes
+  /// meanwhile. O(kSpan/kStep·(log n + D)).
   void restore(const KnotBoardReader& board, const Head& head, Time end) noexcept;
 
-  /// The same for the writer, and then those of the run from number `first` on: from the slots of
-  /// those that are passed over, and from the window. O((kSpan/kStep + kPassedSlots)·D).
+  /// The same for the writer; then takes the waypoints of the run from number `first` on, from the
+  /// slots of passed-over ones and from the window. O((kSpan/kStep + kPassedSlots)·D).
   void restore(const core::SlidingWindow& window, const KnotBoardReader& board, const Head& head,
                Time end, std::size_t first) noexcept;
 
-  /// Finds the limits, if a waypoint has been taken since they were found. `stop_time` is the
-  /// length of a stop, always the same. O(kSpan/kStep·D).
+  /// Finds the limits, if a waypoint has been taken since the last call. `stop_time` is the length
+  /// of a stop, the same in all calls. O(kSpan/kStep·D).
   void look(Time stop_time) noexcept;
 
-  /// As `look` has found them.
+  /// The limits that the last `look` found.
   [[nodiscard]] const MotionLimits& limits() const noexcept { return limits_; }
 
  private:
@@ -61,7 +61,7 @@ class ShownMotion {
                    std::size_t end) noexcept;
   void take(Time time, std::span<const double> position) noexcept;
   void forget_all() noexcept;
-  /// Where the i-th waypoint before the newest one lies.
+  /// The index of the i-th waypoint before the newest one.
   [[nodiscard]] std::size_t place(std::size_t i) const noexcept { return (count_ - 1 - i) % kMost; }
   [[nodiscard]] double quantile(std::size_t count) noexcept;
 
@@ -69,8 +69,8 @@ class ShownMotion {
   MotionLimits limits_;
   std::size_t count_ = 0;  ///< waypoints taken so far
   std::size_t first_ = 0;  ///< the oldest one of them that is kept, at most kMost before the newest
-  bool has_looked_ = false;  ///< the limits are those of what has been taken
-  Time next_ = Time::min();  ///< from when on the next one is taken
+  bool has_looked_ = false;  ///< the limits are up to date
+  Time next_ = Time::min();  ///< the next waypoint is taken from this time on
   std::vector<Time> times_;
   std::vector<double> positions_;  ///< [waypoint][dimension]
   std::vector<double> values_;     ///< scratch

@@ -11,18 +11,18 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Most items of one revision: bounds how long a step takes.
+/// Maximum number of items of one revision: bounds the duration of a step.
 constexpr std::size_t kMaxBatch = 256;
 
-/// Knots that a revision may write besides one per item: the open ones, the one before them, those
-/// at a cut, and those of a way back.
+/// Knots that a revision may write in addition to one per item: the open ones, the one before them,
+/// those at a cut, and those of an entry.
 constexpr std::size_t changed_besides(std::size_t settle) noexcept { return settle + 6; }
 
-/// On a recorded stream, which needs no clock to begin with, one step in so many is timed.
+/// On a recorded stream, which does not depend on the clock, one step out of this many is timed.
 constexpr Word kTimedEvery = 16;
 
-/// Knots that one item may add: those at a cut, its own, and those of a way back; and, as a stop
-/// does not wait for room, those of a stop behind it.
+/// Knots that one item may add: those at a cut, its own, those of an entry, and those of a stop
+/// after it, because a stop does not wait for room.
 constexpr std::size_t kAddedByItem = 4 + PublishedCurve::kAddedByStop;
 
 }  // namespace
@@ -43,7 +43,7 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& boar
       beyond_(beyond),
       curve_(board, published, window, std::move(kinds),
              {.is_live = live.has_value(),
-              .min_splice = live ? live->min_splice : Time::zero(),
+              .min_entry = live ? live->min_entry : Time::zero(),
               .notice = live ? live->freeze_ahead : Time::zero()}),
       max_batch_(std::min(kMaxBatch, board.capacity() / 2 - changed_besides(window.settle))),
       item_(ring.dimensions()),
@@ -58,10 +58,10 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& boar
   most_items_ = max_batch_;
   restore();
   if (is_damaged() || board.revision() >= kLastRevision) {
-    throw BadRegion("the board holds no curve that a solver could go on with at its revision " +
+    throw BadRegion("no solver can continue the curve on the board at its revision " +
                     std::to_string(board.revision()));
   }
-  // The last writer may have died between its commit and what follows it.
+  // The last writer may have died between its commit and the stores after it.
   board_->store_tail(head_.consumed);
   if (!live_ && curve_.has_begun() && !head_.finished) store_settled(curve_.settled_until());
 }
@@ -69,7 +69,7 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& boar
 void StreamSolver::restore() {
   head_ = {};
   const Look look = published_->look();
-  lacks_head_ = look.revision > 0 && !published_->copy_head(look, head_);  // nobody else writes
+  lacks_head_ = look.revision > 0 && !published_->copy_head(look, head_);  // no other writer
   curve_.restore(head_);
 }
 
@@ -122,7 +122,7 @@ StepResult StreamSolver::make_revision(const Clock& clock, Time now) noexcept {
   if (consumed > 0 || has_starved_ || curve_.has_changes()) return publish(clock, consumed);
   if (!live_ || now < due()) return {};
   settled_at_ = now;
-  // Nothing else has changed: one word says so, and readers keep what they have copied.
+  // Only the settled time has changed: stores that word, and readers keep their copies.
   if (head_.newest > 0) store_settled(settled_until_);
   return {};
 }
@@ -132,7 +132,7 @@ void StreamSolver::store_settled(Time t) noexcept {
   board_->store_settled(head_.settled_until);
 }
 
-/// Drops a revision that was not committed.
+/// Discards a revision that was not committed.
 void StreamSolver::take_back(Word misses) noexcept {
   board_->discard();
   restore();
@@ -140,7 +140,7 @@ void StreamSolver::take_back(Word misses) noexcept {
   seen_ = head_.consumed;
 }
 
-/// Drops an unsound revision, and takes fewer items next: in the end the offending one alone.
+/// Discards an unsound revision, and takes fewer items next: finally the offending one alone.
 void StreamSolver::suspect_items() noexcept {
   suspected_ = std::max(suspected_, head_.consumed);
   if (batch_ > 1) {
@@ -151,7 +151,7 @@ void StreamSolver::suspect_items() noexcept {
   take_back(head_.misses);
 }
 
-/// Fixes what this step leaves alone.
+/// Fixes the part of the curve that this step does not change.
 void StreamSolver::freeze(Time now) noexcept {
   settled_until_ = head_.settled_until;
   has_starved_ = false;
@@ -166,16 +166,16 @@ void StreamSolver::freeze(Time now) noexcept {
   ++head_.underruns;
 }
 
-/// Whether nothing of the run may be changed any more, so that what follows must be spliced.
+/// Whether no part of the run may change any more, so that an entry must lead to the next waypoint.
 bool StreamSolver::is_starved() const noexcept {
-  // What has not been committed has not settled: a first waypoint that comes in this step.
+  // Uncommitted knots have not settled: the first waypoint may come in this step.
   if (!live_ || head_.newest == 0) return false;
   return curve_.window().knots() > 0 ? settled_until_ >= curve_.newest_time()
                                      : settled_until_ > curve_.newest_time();
 }
 
-/// How far items can be taken if the ring's head is this: whatever it says, no further than a ring
-/// has items, and not back.
+/// The item before which this step can take items if the ring's written position is `head`: never
+/// before the consumed position, and at most a ring's capacity after it.
 Word StreamSolver::reachable(Word head) const noexcept {
   const Word waiting = head - head_.consumed;
   const bool goes_back = waiting > std::numeric_limits<Word>::max() / 2;
@@ -203,10 +203,10 @@ Word StreamSolver::consume(Time now) noexcept {
     }
     ++batch_;
     curve_.plan(settled_until_, keep_, false, tries_);
-    // The next waypoint would push one out of the window that may still be tried.
+    // The next waypoint would push an untried candidate out of the window.
     if (curve_.is_planning() && tries_ <= 0) break;
   }
-  // No waypoint waits: those that are known decide.
+  // No waypoint waits: the known ones decide.
   if (is_blocked || head_.consumed == available_) {
     curve_.plan(settled_until_, keep_, true, tries_);
   }
@@ -215,19 +215,19 @@ Word StreamSolver::consume(Time now) noexcept {
   return head_.consumed - before;
 }
 
-/// Whether an item can be taken now: without losing what must be kept, and, as a
-/// replacement cuts what has been committed and nothing else, in this revision.
+/// Whether an item can be taken in this revision without losing the history that must be kept. A
+/// replacement cuts the committed curve only, so it must be the first change of a revision.
 bool StreamSolver::has_room(const RingItem& item) const noexcept {
   if (item.kind != ItemKind::replace) return curve_.has_room(kAddedByItem, keep_);
   if (curve_.has_changes()) return false;
-  // A stop costs one segment of the history at most: it does not wait for room.
+  // A stop costs at most one segment of the history: it does not wait for room.
   return is_stop(item) || !curve_.has_begun() ||
          curve_.has_room_to_cut(item.time, kAddedByItem, keep_);
 }
 
-/// Looks ahead for a replacement that is due and withdraws all that is queued before it: other
-/// replacements that are too late or lie ahead, and waypoints that the board may have no room for.
-/// Nothing is withdrawn for a replacement that has to wait for room itself: it may come too late.
+/// Searches the ring for a replacement that is due, and withdraws all items queued before it:
+/// replacements that are too late or not yet due, and waypoints for which the board may have no
+/// room. Withdraws nothing if the replacement itself must wait for room: it may come too late.
 void StreamSolver::withdraw() noexcept {
   if (!curve_.has_begun() || head_.finished) return;
   replacements_.note(head_.consumed, available_);
@@ -241,19 +241,19 @@ void StreamSolver::withdraw() noexcept {
   head_.consumed = *replacement;
 }
 
-/// A commit is late if the process was stopped between reading the clock and the commit; readers
-/// find out by changed_from. Stored at once: the next revision may be discarded, may never come, or
-/// may be another solver's.
+/// Notes whether the last commit was late: the process was stopped between reading the clock and
+/// the commit. Readers detect it by changed_from. Stored at once, because the next revision may be
+/// discarded, may never come, or may be another solver's.
 void StreamSolver::check_commit(Time now) noexcept {
   const bool is_late = head_.changed_from <= now && head_.changed_from < Time::max();
   if (is_late && !board_->is_late()) ++head_.revisions;
   board_->store_checked(is_late);
 }
 
-/// Up to where the curve that has been committed never changes.
+/// The time before which the committed curve never changes.
 Time StreamSolver::settled_by_commit() const noexcept {
   if (!live_) return curve_.settled_until();
-  // What is finished changes no more: it has settled to its end.
+  // A finished curve no longer changes: it has settled to its end.
   return head_.finished ? std::min(std::max(settled_until_, curve_.end_of_motion()), kLatestTime)
                         : settled_until_;
 }
@@ -262,7 +262,7 @@ StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   head_.changed_from = curve_.write();
   if (!board_->is_sound()) return {};
   put_summary(curve_.summary(), head_);
-  // Nothing is compared with the commit time of a recorded stream.
+  // The commit time of a recorded stream is not compared with anything.
   head_.committed = is_timed_ ? clock.now() : std::max(head_.committed, clock.about_now());
   if (live_ && head_.changed_from <= head_.committed) {
     take_back(head_.misses + 1);

@@ -21,70 +21,71 @@ namespace splinecast::ipc {
 
 /// How a live stream is solved.
 struct LiveOptions {
-  Time freeze_ahead{5'000'000};  ///< what lies this long before now + this never changes
-  Time history{1'000'000'000};   ///< what ends after now − this is not overwritten
-  Time min_splice{5'000'000};    ///< length of the shortest splice
+  Time freeze_ahead{5'000'000};  ///< the curve before now + this never changes
+  Time history{1'000'000'000};   ///< segments that end after now − this are not overwritten
+  Time min_entry{5'000'000};     ///< length of the shortest entry
 };
 
-/// The solver without its regions: takes items from a ring, solves the window, publishes knots on a
-/// board. Without a thread or a clock of its own, so that simulated time, fuzzers and
-/// ThreadSanitizer drive the code that runs for real. Allocates when made only; `step` never blocks
-/// and makes no system call but the clock's.
+/// The solver without its regions: takes items from a ring, solves the window, and publishes knots
+/// on a board. Has no thread and no clock of its own, so that tests with simulated time, fuzzers
+/// and ThreadSanitizer run the production code. Allocates only when constructed; `step` never
+/// blocks and makes no system call except the clock's.
 ///
-/// On a live stream everything before `settled_until` = now + freeze_ahead is frozen: before a step
-/// takes anything, up to the right end of the segment that contains that time. Where a waypoint
-/// comes when the newest knot has been frozen, an entry leads from settled_until back to the
-/// waypoints, and so it does to what replaces the future: see PublishedCurve. Directly before the
-/// commit the clock is read again: a revision that would change what may have been executed
-/// meanwhile is discarded, counted and made anew.
+/// On a live stream everything before `settled_until` = now + freeze_ahead is frozen before a step
+/// takes an item, up to the right end of the segment that contains that time. If a waypoint comes
+/// when the newest knot has been frozen, an entry leads from settled_until onto the waypoints; an
+/// entry also leads onto the waypoints of a replacement: see PublishedCurve. Directly before the
+/// commit the clock is read again: a revision that would change a part of the curve that may have
+/// been executed meanwhile is discarded, counted and made again.
 ///
-/// What is published is finite: a revision with a value that is no number, or beyond what readers
-/// accept, is discarded and made again with fewer items, until the one that it comes from is alone
-/// and is refused.
+/// All published values are finite: a revision with a NaN, an infinity or a value out of the range
+/// that readers accept is discarded and made again with fewer items, until the offending item is
+/// alone and is refused.
 ///
-/// Of a stream with limits each waypoint is tried first: where the curve would pass a limit with
-/// it, that is noted, and the waypoint is taken or refused, as `beyond` has it.
+/// On a stream with limits each waypoint is tried first: if the curve with it would exceed a limit,
+/// that is noted, and the waypoint is taken or refused, as `beyond` says.
 ///
-/// A stop, a replacement without waypoints, takes effect at settled_until of the first step that
-/// finds it in the ring, or at its own time if that is later: whatever is queued before it, whether
-/// or not the board has room for those items.
+/// A stop is a replacement without waypoints. It takes effect at settled_until of the first step
+/// that finds it in the ring, or at its own time if that is later, regardless of the items queued
+/// before it and of the room that the board has for them.
 class StreamSolver {
  public:
   /// `board` and `published` are the writing and the reading side of one board; with `ring` they
   /// outlive the solver. `kinds` are those of the ring's dimensions; `live` is set for a live
-  /// stream. Goes on where the board says that a solver before it stood. Throws
-  /// std::invalid_argument for window options out of range or a board too small for them, BadRegion
-  /// if the board holds no curve that a solver can go on with.
+  /// stream. Continues from the last commit on the board. Throws std::invalid_argument for window
+  /// options out of range or a board too small for them, BadRegion if no solver can continue the
+  /// curve on the board.
   StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& board,
                const KnotBoardReader& published, const core::WindowOptions& window,
                const IngestLimits& limits, DimensionKinds kinds = {},
                const std::optional<LiveOptions>& live = std::nullopt,
                Beyond beyond = Beyond::report);
 
-  /// Takes what the ring holds, up to a bounded batch, and publishes the result as one revision; on
-  /// a live stream also says how far the curve is settled, when that is due, which is no revision.
-  /// O(batch·K·D). Whatever the ring holds, a step takes a bounded time and no more items than the
-  /// ring has; what is no item is refused. What it reads back of the board is checked as well.
+  /// Takes the items in the ring, up to a bounded batch, and publishes the result as one revision.
+  /// On a live stream also stores how far the curve is settled when that is due, without a
+  /// revision. O(batch·K·D). For any content of the ring, a step takes a bounded time and at most
+  /// as many items as the ring has; invalid items are refused. Data read back from the board are
+  /// checked as well.
   StepResult step(const Clock& clock) noexcept;
 
-  /// The head last committed.
+  /// The summary last committed.
   [[nodiscard]] const Head& head() const noexcept { return head_; }
 
-  /// The ring's `head` when the last step found nothing more that it could take. A step is of use
-  /// once it has changed, or `due` has come.
+  /// The ring's written position when the last step found nothing more that it could take. A step
+  /// has work to do once it has changed, or `due` has come.
   [[nodiscard]] Word seen() const noexcept { return seen_; }
 
   /// When the next step is due even if no item comes; max() for never.
   [[nodiscard]] Time due() const noexcept;
 
-  /// Asks for the memory outside this object that the next step goes through if it takes one
-  /// waypoint. Loads nothing of that.
+  /// Prefetches the memory outside this object that the next step touches if it takes one waypoint.
+  /// Loads none of it.
   void prefetch() const noexcept;
 
-  /// What can be done without a step until the next one is of use for more.
+  /// Raises the settled time without a step, until a step has other work to do.
   [[nodiscard]] SettledRaise settled_raise() const noexcept;
 
-  /// The smallest board for a settle lag.
+  /// The smallest capacity of a board for a settle lag.
   [[nodiscard]] static std::size_t min_capacity(std::size_t settle) noexcept;
 
  private:
@@ -128,10 +129,10 @@ class StreamSolver {
   PublishedCurve curve_;
   std::size_t max_batch_;
   Head head_;
-  bool lacks_head_ = false;  ///< the board has none of its revision: somebody else wrote to it
-  Time settled_until_ = Time::min();  ///< what this step leaves alone lies before it
-  Time keep_ = Time::max();           ///< what ends after it this step does not overwrite
-  bool is_timed_ = false;             ///< this step
+  bool lacks_head_ = false;  ///< the board lacks its revision's summary: another writer changed it
+  Time settled_until_ = Time::min();  ///< this step changes nothing before this time
+  Time keep_ = Time::max();           ///< this step overwrites no segment that ends after this time
+  bool is_timed_ = false;             ///< this step is timed
   Time started_{};                    ///< the clock when it began, if it is timed
   Time settled_at_ = Time::min();     ///< the clock when settled_until was last stored
   bool has_starved_ = false;          ///< in this step
@@ -142,12 +143,12 @@ class StreamSolver {
   Condition end_;
   Word seen_ = 0;
   Word batch_ = 0;        ///< items taken for this revision, one by one
-  Word batch_limit_ = 0;  ///< of this revision
+  Word batch_limit_ = 0;  ///< maximum of batch_ for this revision
   Word suspected_ = 0;    ///< items before this one were in a revision that was not finite
-  Word most_items_ =
-      0;  ///< of a revision, at this time: max_batch_, or fewer behind an unsound one
+  /// Current maximum of items per revision: max_batch_, or fewer after an unsound revision.
+  Word most_items_ = 0;
   std::optional<Word> unsound_item_{};  ///< the item that alone makes a revision unsound
-  Word available_ = 0;                  ///< how far this step can take items
+  Word available_ = 0;                  ///< this step takes items before this one
   ReplacementQueue replacements_;
 };
 

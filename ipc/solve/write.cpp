@@ -6,7 +6,7 @@
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/solve/published_curve.hpp"
 
-/// How a published curve becomes knots on the board.
+/// Writes a published curve as knots on the board.
 namespace splinecast::ipc {
 namespace {
 
@@ -14,18 +14,18 @@ using core::SegmentForm;
 
 constexpr std::array<double, kMaxDimensions> kZeros{};
 
-/// Knots of a run whose rows an append may change however far back its method looks.
+/// While a run has at most this many knots, an append may change the rows of all of them.
 constexpr std::size_t kFirstKnots = 4;
 
 }  // namespace
 
-/// Writes the state that an entry begins in, or the stop of a run without an entry.
+/// Writes the state at which an entry begins, or the stop of a run without an entry.
 void PublishedCurve::write_origin() noexcept {
   const bool enters = course_ != Course::waiting || is_ending_;
   const auto zeros = std::span(kZeros).first(published_->smooths() ? window_.dimensions() : 0);
   const std::size_t known = course_ == Course::entering ? search_.end().known - 1 - met_ : 0;
   board_->write(origin_.number, {.is_new = true,
-                                 .note = {.form = enters ? SegmentForm::splice : SegmentForm::stop,
+                                 .note = {.form = enters ? SegmentForm::entry : SegmentForm::stop,
                                           .starts = true,
                                           .newer_knots = static_cast<std::uint32_t>(known)},
                                  .time = origin_.time,
@@ -37,8 +37,8 @@ void PublishedCurve::write_origin() noexcept {
   note_change(origin_.time);
 }
 
-/// Writes the end of an entry beyond the newest waypoint, and what follows it: the rest of the
-/// straight line and the stop, or the rest of that.
+/// Writes the end of an entry beyond the newest waypoint, and the motion after it: the remainder of
+/// the straight line and the stop, or the remainder of the stop.
 void PublishedCurve::write_beyond() noexcept {
   const auto zeros = std::span(kZeros).first(window_.dimensions());
   const auto residual = zeros.first(published_->smooths() ? window_.dimensions() : 0);
@@ -85,7 +85,8 @@ void PublishedCurve::write_ending() noexcept {
   end_ = behind_.end;
 }
 
-/// An append changes rows as far back as its method looks, that of a run's first knots all of them.
+/// Adds the row of knot i to its record if it may have changed: an append changes rows as far back
+/// as its method looks, and all rows of a short run.
 void PublishedCurve::give_row(std::size_t i, const core::Knot& knot,
                               KnotRecord& record) const noexcept {
   const std::size_t known = committed_knots_;
@@ -95,8 +96,8 @@ void PublishedCurve::give_row(std::size_t i, const core::Knot& knot,
   record.g = knot.g;
 }
 
-/// Writes waypoints that the curve passes over, for a solver that takes over; and once more the
-/// last ones that it has met, whose rows change with the next.
+/// Writes waypoints that the curve passes over, for a solver that takes over. Also writes the last
+/// met ones again, because the next waypoint changes their rows.
 void PublishedCurve::write_passed(std::size_t first, std::size_t end) noexcept {
   const auto zeros = std::span(kZeros).first(window_.dimensions());
   for (std::size_t i = first; i < end; ++i) {
@@ -126,17 +127,17 @@ void PublishedCurve::write_unmet(std::size_t end) noexcept {
   write_passed(std::max({first, passed_first(), passed_lowest_}), end);
 }
 
-/// Of the knots before this one an append changes nothing but the velocity.
+/// An append changes only the velocity of the knots before this one.
 std::size_t PublishedCurve::plain_knots() const noexcept {
   const bool is_plain = has_plain_knots_ && !window_.finished() && committed_knots_ > kFirstKnots &&
                         placed_ == committed_knots_;
   return is_plain ? placed_ - look_ahead_ : 0;
 }
 
-/// Writes knots of the run as the window has them now, from `first` to the one before `end`.
+/// Writes knots `first` to `end` - 1 of the run as the window has them now.
 void PublishedCurve::write_knots(std::size_t first, std::size_t end) noexcept {
   const std::size_t plain_end = std::min(plain_knots(), end);
-  // Of the first knot of a piece more than the velocity may have changed.
+  // More than the velocity of the first knot of a piece may have changed.
   const std::size_t plain_first = std::max<std::size_t>(kept_, met_ + 1);
   std::size_t i = first;
   for (; i < std::min(plain_first, end); ++i) write_knot(i);
@@ -167,7 +168,7 @@ void PublishedCurve::write_knot(std::size_t i) noexcept {
                     .acceleration = ends_entry ? beyond_.acceleration() : knot.acceleration,
                     .residual = knot.residual};
   if (record.note.form == SegmentForm::stop) {
-    // Where a segment arrives here with a given acceleration, the stop starts with the same one.
+    // If a segment ends here with a given acceleration, the stop starts with the same one.
     stop_ = window_.write_stop(values_);
     end_ = knot.time + stop_;
     record.note.starts = true;
@@ -183,7 +184,7 @@ void PublishedCurve::write_knot(std::size_t i) noexcept {
   }
 }
 
-/// Writes what changed of a curve that is not on the line, and the stop that it ends with.
+/// Writes the changes of a curve that does not end on the target, and the stop at its end.
 void PublishedCurve::write_off_line(bool writes_origin) noexcept {
   if (is_entry_new_) write_beyond();
   if (writes_origin && course_ == Course::waiting) {
@@ -196,7 +197,7 @@ void PublishedCurve::write_off_line(bool writes_origin) noexcept {
   if (window_.knots() > 0) write_unmet(window_.knots());
 }
 
-/// Writes what changed of a curve that ends with a piece of the target.
+/// Writes the changes of a curve that ends with a piece of the target.
 void PublishedCurve::write_on_line() noexcept {
   const std::size_t knots = window_.knots();
   if (is_entry_new_) write_unmet(met_);
@@ -207,13 +208,13 @@ void PublishedCurve::write_on_line() noexcept {
   end_ = window_.time(knots - 1);
 }
 
-/// Forgets the oldest knots, whose slots the newest ones have taken.
+/// Drops the oldest knots, whose slots the newest ones have taken.
 void PublishedCurve::drop_oldest() noexcept {
-  // Never back: a replacement drops knots, but the slots that they took are not given back.
+  // `first_` never decreases: a replacement drops knots, but those that they overwrote stay lost.
   const Word kept = newest_ - std::min<Word>(newest_, board_->capacity()) + 1;
   if (kept <= first_) return;
   first_ = kept;
-  // A segment begins at the first knot: where none does, the one before has been lost.
+  // A segment begins at the first knot: if none does, the segment before it has been lost.
   if (first_ < newest_ && board_->form(first_) == SegmentForm::none) ++first_;
 }
 

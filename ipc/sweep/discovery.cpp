@@ -25,8 +25,7 @@ void StreamSweep::look_around() {
   if (is_any_unheld_) hold_regions();
 }
 
-/// Notes which streams are to be taken up, and forgets those that patterns found and that have
-/// gone.
+/// Lists the streams to attach to, and drops those that patterns found and that no longer exist.
 void StreamSweep::look_for_names() {
   to_take_.clear();
   std::vector<std::string> standing = stream_names();
@@ -46,7 +45,7 @@ void StreamSweep::look_for_names() {
   for (auto& [stream, member] : members_) {
     const bool stands = std::ranges::binary_search(standing, stream);
     if (!stands && !member.is_named) continue;
-    // There are other files under its names: it is another stream, and will be reported as one.
+    // Other files have its names: it is another stream, and is reported as one.
     if (member.state == State::given_up && files_of(stream) != member.files) {
       member.state = State::unowned;
     }
@@ -77,7 +76,7 @@ StreamSweep::Files StreamSweep::files_of(const std::string& stream) {
           lock.st_uid != geteuid() ? lock.st_ino : 0};
 }
 
-/// Streams whose earlier motion has ended are tried again: nothing else tells.
+/// Retries streams whose earlier motion has ended: no other event reports that.
 void StreamSweep::note_ends_of_motion() {
   std::erase_if(moving_, [&](const std::string& stream) {
     const auto found = members_.find(stream);
@@ -89,7 +88,7 @@ void StreamSweep::note_ends_of_motion() {
   });
 }
 
-/// Looks whether streams of others have lost their solver, some each time.
+/// Checks whether streams of other processes have lost their solver, some in each call.
 void StreamSweep::look_elsewhere() {
   if (elsewhere_.empty()) {
     for (const auto& [stream, member] : members_) {
@@ -107,7 +106,7 @@ void StreamSweep::look_elsewhere() {
   }
 }
 
-/// Takes up again the next of the streams that lacked memory or descriptors.
+/// Retries the next of the streams that lacked memory or descriptors.
 void StreamSweep::look_at_postponed() {
   if (now_ < next_retry_) return;
   next_retry_ = now_ + kRetry;

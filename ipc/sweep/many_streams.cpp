@@ -11,7 +11,7 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Descriptors for all else that the process does.
+/// Descriptors reserved for everything else that the process does.
 constexpr std::size_t kOtherDescriptors = 32;
 
 std::size_t most_streams(std::size_t descriptors_each) {
@@ -39,7 +39,7 @@ StreamSweep::StreamSweep(const std::vector<std::string>& wanted, SolverOptions o
     members_[text].is_named = true;
   }
   Solver::require(options_);
-  // Owned at once, and taken up one after the other by the sweeps.
+  // Owned at once; the sweeps attach to them one after the other.
   for (auto& [stream, member] : members_) {
     if (own(stream, member)) become(stream, member, State::waiting, SweepNews::waiting);
   }
@@ -49,7 +49,7 @@ Time StreamSweep::next_pause() const noexcept {
   return all_quiet_ ? std::max(pause_, kQuietPause) : pause_;
 }
 
-/// Notes what has become of a stream, and tells it if that is news.
+/// Sets the state of a stream, and reports it if it has changed.
 void StreamSweep::become(const std::string& stream, Member& member, State state, SweepNews news,
                          const Solver* solver, std::string_view why) noexcept {
   const bool is_news = member.state != state;

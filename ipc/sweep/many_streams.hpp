@@ -18,7 +18,7 @@
 
 namespace splinecast::ipc {
 
-/// What becomes of a stream that a sweep looks after.
+/// What a sweep reports of a stream.
 enum class SweepNews : std::uint8_t {
   waiting,         ///< there is no producer yet, or the stream has been removed
   solving,         ///< it is solved here now
@@ -26,61 +26,62 @@ enum class SweepNews : std::uint8_t {
   elsewhere,       ///< another process solves it; taken over when that dies
   no_descriptors,  ///< RLIMIT_NOFILE leaves none for it; tried again when streams have come or gone
   refused,         ///< an item was refused, the first one for its reason
-  beyond_limits,   ///< the curve passes a limit with a waypoint that was taken, the first one
-  postponed,       ///< memory or descriptors are lacking; tried again from time to time
+  beyond_limits,   ///< the curve exceeds a limit with a waypoint that was taken, the first one
+  postponed,       ///< memory or descriptors are lacking; retried periodically
   given_up,        ///< it cannot be solved; tried again when other files exist under its name
-  gone,            ///< a stream that was found by a pattern stands no more
+  gone,            ///< a stream that was found by a pattern no longer exists
 };
 
-/// One thread's solvers of many streams, named, or found by patterns as they come and go.
+/// The solvers of many streams in one thread. The streams are named, or found by patterns as they
+/// come and go.
 ///
-/// A sweep looks at one cache line of each stream and steps those that have something to do. Of the
-/// streams on which nothing has happened for a second it looks at some, each in its turn every 20
-/// ms, because what such a look costs is fetching that line and its page into caches that have long
-/// forgotten them. The rest of its work, which takes system calls, is done every 50 ms, and then
-/// only if files have come or gone in the folder of shared memory or another process solves a
-/// wanted stream. At most one stream is taken up in a sweep, because that maps memory, and the
-/// others must not wait long. Allocates when streams come and go only.
+/// A sweep polls one cache line of each stream and steps those that have work to do. It polls a
+/// stream that has been idle for a second only every 20 ms, the idle streams in turn, because such
+/// a poll misses the caches for that line and its page. The rest of its work, which takes system
+/// calls, is done every 50 ms, and only if files have come or gone in the folder of shared memory
+/// or another process solves a wanted stream. A sweep attaches to at most one stream, because that
+/// maps memory, and the others must not wait long. Allocates only when streams come and go.
 class StreamSweep {
  public:
-  /// Told at most once until something else becomes of the stream. `solver` is not null where the
-  /// stream is solved here; `why` is for `postponed`, `given_up` and `refused`. What it throws is
-  /// dropped.
+  /// Called when the state of a stream has changed, and for its first refusals, excess and finish.
+  /// `solver` is not null if the stream is solved here; `why` is set for `postponed`, `given_up`,
+  /// `refused` and `beyond_limits`. Exceptions that it throws are ignored.
   using Tell = std::function<void(SweepNews news, const std::string& stream, const Solver* solver,
                                   std::string_view why)>;
 
-  /// Each of `wanted` is a stream's name or a pattern, see is_pattern(). A named stream is solved
-  /// by nobody else from now on, also while it has no producer. All are solved with these options.
-  /// Throws BadRequest for options or names that cannot be; `tell` is called here already.
-  /// `pause` is what lies between two sweeps.
+  /// Each of `wanted` is a stream's name or a pattern, see is_pattern(). From now on no other
+  /// process can solve a named stream, even while it has no producer. All are solved with these
+  /// options. Throws BadRequest for invalid options or names; calls `tell` already here. `pause` is
+  /// the time between two sweeps.
   StreamSweep(const std::vector<std::string>& wanted, SolverOptions options, Tell tell,
               Time pause = std::chrono::milliseconds(1));
 
-  /// Looks after every stream once. Returns whether one of them has more to do than was done:
-  /// sweep again at once. A stream that fails is given up or postponed; the others continue.
+  /// Polls every stream once. Returns whether one of them still has work to do: sweep again at
+  /// once. A stream that fails is given up or postponed; the others continue.
   bool sweep(const Clock& clock);
 
-  /// How long to wait for the next sweep: `pause`, or kQuietPause if that is longer, while nothing
-  /// happens on any stream. The next sweep then looks at all of them.
+  /// The time to wait before the next sweep: `pause`, or kQuietPause if that is longer and all
+  /// streams are idle. The next sweep then polls all of them.
   [[nodiscard]] Time next_pause() const noexcept;
 
-  /// A stream on which nothing has happened for so long is looked at once in so long.
+  /// A stream without work for kQuietAfter is idle: it is polled once per kQuietPause.
   static constexpr Time kQuietAfter = std::chrono::seconds(1);
   static constexpr Time kQuietPause = std::chrono::milliseconds(20);
 
-  /// Streams that are solved here.
+  /// Number of streams that are solved here.
   [[nodiscard]] std::size_t solved() const noexcept { return served_.size(); }
 
   /// File descriptors that a stream takes while it is solved: the lock and the board.
   static constexpr std::size_t kDescriptorsPerStream = 2;
 
  private:
-  /// Streams that are tried at once, and streams of other processes that are looked at each time.
-  /// When one of these has died, the rest follow at once: they were mostly the same process's.
+  /// Maximum number of streams tried in one sweep, and of streams of other processes checked in one
+  /// call. When one of these has lost its solver, the count restarts: usually it solved the
+  /// others too.
   static constexpr std::size_t kTries = 16;
 
-  /// How often one of the streams that lack memory or descriptors is tried again; once one has
-  /// succeeded, the next look tries another.
+  /// Interval between retries of the streams that lack memory or descriptors, one per retry; once
+  /// one has succeeded, the next look retries another.
   static constexpr Time kRetry = std::chrono::milliseconds(100);
 
   enum class State : std::uint8_t {
@@ -109,13 +110,13 @@ class StreamSweep {
     std::exception_ptr failure{};  ///< of a step
   };
 
-  /// What a sweep reads of a stream that has nothing to do.
+  /// What a sweep reads of a stream without work.
   struct Watch {
     SolverWatch solver;
     Time active;  ///< when it was last stepped
   };
 
-  // Which streams are wanted and could be taken up: discovery.cpp.
+  // Which streams are wanted and ready: discovery.cpp.
   void look_around();
   void look_for_names();
   [[nodiscard]] bool is_wanted(const std::string& stream) const;
@@ -125,7 +126,7 @@ class StreamSweep {
   void look_elsewhere();
   void look_at_postponed();
 
-  // Taking streams up, and giving them up: taking_up.cpp.
+  // Attaching to streams, and giving them up: taking_up.cpp.
   void take_next(const Clock& clock);
   [[nodiscard]] bool own(const std::string& stream, Member& member);
   [[nodiscard]] bool attach(const std::string& stream, Member& member, const Clock& clock);
@@ -134,7 +135,7 @@ class StreamSweep {
   void release(Served& served);
   void drop(const std::string& stream, Member& member, const std::exception& error);
 
-  // Stepping those that have something to do: stepping.cpp.
+  // Stepping those that have work to do: stepping.cpp.
   void take_up(const Clock& clock);
   void collect_calling();
   void prefetch_behind(std::size_t i) const noexcept;
@@ -142,7 +143,7 @@ class StreamSweep {
   void tell_first_refusals(Solver& solver) noexcept;
   void release_detached();
 
-  // What becomes of them.
+  // States and reports.
   void become(const std::string& stream, Member& member, State state, SweepNews news,
               const Solver* solver = nullptr, std::string_view why = {}) noexcept;
   void tell(SweepNews news, const std::string& stream, const Solver* solver,
@@ -157,19 +158,19 @@ class StreamSweep {
   Time next_look_ = Time::min();
   bool looks_again_ = false;  ///< the last look for names was not finished
   Time next_retry_ = Time::min();
-  std::string last_retried_;            ///< of the postponed streams
+  std::string last_retried_;            ///< the postponed stream that was retried last
   bool is_any_unheld_ = false;          ///< whether a board may lack its region lock
-  std::vector<std::string> to_take_;    ///< streams to try next, the first one last
-  std::vector<std::string> elsewhere_;  ///< streams that others solve, those to look at next last
+  std::vector<std::string> to_take_;    ///< streams to try next, in reverse order
+  std::vector<std::string> elsewhere_;  ///< streams that others solve, to check in reverse order
   std::vector<std::string> moving_;     ///< streams that wait for the end of an earlier motion
-  std::size_t most_owned_;              ///< what RLIMIT_NOFILE allows
+  std::size_t most_owned_;              ///< the maximum that RLIMIT_NOFILE allows
   std::vector<Watch> watches_;          ///< all that a sweep reads of an idle stream
-  std::vector<Served> served_;          ///< likewise, index by index
-  std::vector<std::size_t> calling_;    ///< of these, those that this sweep steps
+  std::vector<Served> served_;          ///< the same streams, index by index
+  std::vector<std::size_t> calling_;    ///< indices of the streams that this sweep steps
   std::vector<ItemRefusal> refused_;    ///< scratch
-  Time now_{};                          ///< of this sweep
+  Time now_{};                          ///< time of this sweep
   Time pause_;
-  std::size_t quiet_sweeps_;  ///< of so many, one looks at a quiet stream
+  std::size_t quiet_sweeps_;  ///< one sweep out of this many polls an idle stream
   std::size_t sweeps_ = 0;
   bool all_quiet_ = false;
   bool has_detached_ = false;

@@ -17,7 +17,7 @@ bool StreamSweep::sweep(const Clock& clock) {
   try {
     take_up(clock);
   } catch (const std::exception&) {
-    looks_again_ = true;  // the process lacks memory or descriptors; streams that are solved go on
+    looks_again_ = true;  // the process lacks memory or descriptors; solved streams continue
   }
   collect_calling();
   bool has_more = false;
@@ -30,18 +30,18 @@ bool StreamSweep::sweep(const Clock& clock) {
 }
 
 void StreamSweep::take_up(const Clock& clock) {
-  // Not while streams are being taken up: that makes files, for which it would look each time.
+  // Not while attaching to streams: that creates files, and each would trigger another look.
   if (to_take_.empty() && now_ >= next_look_) {
     next_look_ = now_ + kLookAround;
     look_around();
-    // However many files others make there, the looks take a bounded share of the time.
+    // The looks take a bounded share of the time for any number of files that others create.
     constexpr int kShare = 20;
     next_look_ = std::max(next_look_, clock.now() + kShare * (clock.now() - now_));
   }
   if (!to_take_.empty()) take_next(clock);
 }
 
-/// Notes which streams have something to do.
+/// Collects the streams that have work to do.
 void StreamSweep::collect_calling() {
   ++sweeps_;
   const bool looks_at_all = all_quiet_;
@@ -60,8 +60,8 @@ void StreamSweep::collect_calling() {
   all_quiet_ = all_quiet_ && calling_.empty();
 }
 
-/// Asks for what the steps behind the i-th calling stream's go through, while that one is stepped:
-/// of many streams nothing stays in the caches from one step to the next.
+/// Prefetches the memory for the steps after the i-th one while that one runs: with many streams
+/// nothing stays in the caches from one step to the next.
 void StreamSweep::prefetch_behind(std::size_t i) const noexcept {
   const auto ask = [&](std::size_t ahead, Internals::Stage stage) {
     if (i + ahead >= calling_.size()) return;
@@ -105,7 +105,7 @@ void StreamSweep::tell_first_refusals(Solver& solver) noexcept {
       tell_(SweepNews::beyond_limits, solver.stream(), &solver, solver.in_words(*excess));
     }
   } catch (...) {
-    return;  // as in tell()
+    return;  // an exception of the callback is ignored
   }
 }
 
@@ -117,7 +117,7 @@ void StreamSweep::release_detached() {
     watches_.erase(watches_.begin() + static_cast<std::ptrdiff_t>(i));
   }
   has_detached_ = false;
-  // Now, as a stream may already be there again.
+  // Now, because a new stream may already have the name.
   looks_again_ = true;
   next_look_ = now_;
 }

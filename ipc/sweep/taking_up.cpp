@@ -12,7 +12,7 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Whether what failed may succeed later without other files under the stream's name.
+/// Whether a failed attempt may succeed later with the same files under the stream's name.
 bool is_passing(const std::exception& error) noexcept {
   return dynamic_cast<const OutOfResources*>(&error) != nullptr ||
          dynamic_cast<const StreamBusy*>(&error) != nullptr ||
@@ -21,7 +21,7 @@ bool is_passing(const std::exception& error) noexcept {
 
 }  // namespace
 
-/// Takes up the next stream that can be.
+/// Attaches to the next stream that is ready.
 void StreamSweep::take_next(const Clock& clock) {
   for (std::size_t tries = 0; tries < kTries && !to_take_.empty(); ++tries) {
     const std::string stream = std::move(to_take_.back());
@@ -40,7 +40,7 @@ bool StreamSweep::own(const std::string& stream, Member& member) {
     return false;
   }
   try {
-    // Looks before it locks, because the lock makes a file and there may be many streams that
+    // Checks before it locks, because the lock creates a file and there may be many streams that
     // cannot be solved.
     if (!member.is_named) (void)look_at_region(stream, RegionKind::waypoints, options_.trust);
     if (is_owned(stream, RegionKind::spline)) throw StreamBusy(stream);
@@ -49,14 +49,14 @@ bool StreamSweep::own(const std::string& stream, Member& member) {
   } catch (const StreamBusy&) {
     become(stream, member, State::elsewhere, SweepNews::elsewhere);
   } catch (const NoSuchStream&) {
-    looks_again_ = true;  // it has just gone
+    looks_again_ = true;  // it was just removed
   } catch (const std::exception& error) {
     drop(stream, member, error);
   }
   return false;
 }
 
-/// Takes the stream up if it stands. Returns whether it did.
+/// Attaches to the stream if it exists. Returns whether it did.
 bool StreamSweep::attach(const std::string& stream, Member& member, const Clock& clock) {
   try {
     if (!member.waiting->attach(clock)) {
@@ -78,7 +78,7 @@ bool StreamSweep::attach(const std::string& stream, Member& member, const Clock&
   return true;
 }
 
-/// Makes room for one more stream that is solved, so that taking it up cannot fail half-way.
+/// Reserves memory for one more solved stream, so that attaching cannot fail half-way.
 void StreamSweep::make_room() {
   const std::size_t needed = served_.size() + 1;
   if (calling_.capacity() >= needed) return;
@@ -88,7 +88,7 @@ void StreamSweep::make_room() {
   calling_.reserve(room);
 }
 
-/// Boards whose region lock somebody kept from this process when it took them over.
+/// Acquires the region locks that another process held when this one took the boards over.
 void StreamSweep::hold_regions() noexcept {
   is_any_unheld_ = false;
   for (const Served& served : served_) {
@@ -113,8 +113,8 @@ void StreamSweep::release(Served& served) {
   }
 }
 
-/// Gives a stream up for a reason, or postpones it if that may pass. A named one that is postponed
-/// keeps its lock.
+/// Gives a stream up because of an error, or postpones it if the error may be temporary. A named
+/// stream that is postponed keeps its lock.
 void StreamSweep::drop(const std::string& stream, Member& member, const std::exception& error) {
   if (is_passing(error)) {
     if (!member.is_named) member.waiting.reset();

@@ -10,7 +10,7 @@
 namespace splinecast::ipc {
 namespace {
 
-/// How often a state may have been put to unit length by runs that took each other's place.
+/// Maximum number of times that a state may have been normalised, by runs that replaced each other.
 constexpr int kNormalisations = 4;
 
 }  // namespace
@@ -23,8 +23,8 @@ void BeginState::find(std::size_t i, Time natural_right) noexcept {
     return;
   }
   const bool begins_on_knot =
-      segment.left == natural_right && (segments_[i - 1].kind == SegmentKind::spline ||
-                                        segments_[i - 1].kind == SegmentKind::splice);
+      segment.left == natural_right &&
+      (segments_[i - 1].kind == SegmentKind::spline || segments_[i - 1].kind == SegmentKind::entry);
   if (begins_on_knot) return take_state_of(segment);
   CutSegment cut = cut_of(segments_[i - 1]);
   cut.right = natural_right;
@@ -59,7 +59,7 @@ void BeginState::take_state_of(const SegmentCopy& segment) noexcept {
 bool BeginState::is_state_of(const SegmentCopy& segment) const {
   State state(record_.items.dimensions());
   core::evaluate(segment.order, segment.coefficients, 0, state.ref());
-  const bool may_step = segment.kind == SegmentKind::stop_tail;
+  const bool may_step = segment.kind == SegmentKind::stop;
   return same_bits(state.position(), state_.position()) &&
          same_bits(state.velocity(), state_.velocity()) &&
          (may_step || same_bits(state.acceleration(), state_.acceleration()));

@@ -12,19 +12,19 @@
 
 namespace splinecast::ipc {
 
-/// The state that an entry, a stop or a hold of a record begins in: that of the curve before it, as
-/// the solver had it. Segments are counted from 0. One thread uses it.
+/// The state at which an entry, a stop or a hold of a record begins: that of the curve before it,
+/// as the solver had it. Segments are counted from 0. One thread uses it.
 class BeginState {
  public:
   /// The record outlives this.
   explicit BeginState(const StreamRecord& record)
       : record_(record), segments_(record.segments), state_(record.items.dimensions()) {}
 
-  /// Finds the state that the entry, or the stop, of segment i begins in. `natural_right`: where
-  /// the segment before would end had it not been cut. O(D).
+  /// Finds the state at which the entry, or the stop, of segment i begins. `natural_right`: where
+  /// the segment before would end without a cut. O(D).
   void find(std::size_t i, Time natural_right) noexcept;
 
-  /// Takes the state of segment i at a time, whatever lies behind it. O(D).
+  /// Takes the state of segment i at a time, regardless of the segments after it. O(D).
   void take_cut(std::size_t i, Time t) noexcept;
 
   [[nodiscard]] std::span<const double> position() const noexcept { return state_.position(); }
@@ -33,7 +33,7 @@ class BeginState {
     return state_.acceleration();
   }
 
-  /// The state at a time; a view, good until it changes.
+  /// The state at a time; a view, valid until the state changes.
   [[nodiscard]] Instant at(Time t) const noexcept {
     return {
         .time = t, .position = position(), .velocity = velocity(), .acceleration = acceleration()};

@@ -13,7 +13,7 @@
 
 namespace splinecast::ipc {
 
-/// The first thing in which a stream is not what its items and decisions make it.
+/// The first difference between a published stream and the same stream solved again.
 struct Difference {
   Word segment = 0;
   Time left{};         ///< its ends, as published
@@ -27,17 +27,16 @@ struct Difference {
 [[nodiscard]] bool same_bits(double a, double b) noexcept;
 [[nodiscard]] bool same_bits(std::span<const double> a, std::span<const double> b) noexcept;
 
-/// Values as a Difference says them: the shortest text that reads back exactly, `5 ns`, `stop
-/// tail`.
+/// Values as text: the shortest one that reads back exactly, `5 ns`, `hold`.
 [[nodiscard]] std::string in_words(double value);
 [[nodiscard]] std::string in_words(Time time);
 [[nodiscard]] std::string in_words(SegmentKind kind);
 /// The first of several values, at least one.
 [[nodiscard]] std::string first_in_words(std::span<const double> values);
 
-/// Compares a published segment with what has been solved, bit by bit; `may_be_cut`: it may also
-/// end before that. Returns the first thing that differs, without the segment's number and ends;
-/// nothing if it is equal. O(D).
+/// Compares a published segment with the solved one, bit by bit; `may_be_cut`: the published one
+/// may end earlier. Returns the first difference, without the segment's number and ends; nothing if
+/// they are equal. O(D).
 [[nodiscard]] std::optional<Difference> compare(const SegmentCopy& published,
                                                 const core::Segment& solved, std::size_t dimensions,
                                                 bool may_be_cut);

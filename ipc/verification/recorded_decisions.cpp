@@ -8,7 +8,7 @@
 namespace splinecast::ipc {
 
 bool RecordedDecisions::is_entry(std::size_t i) const noexcept {
-  return segments_[i].kind == SegmentKind::splice && segments_[i].origin.item &&
+  return segments_[i].kind == SegmentKind::entry && segments_[i].origin.item &&
          (segments_[i].origin.ends_at_waypoint || segments_[i].origin.known > 0);
 }
 
@@ -17,21 +17,21 @@ bool RecordedDecisions::is_behind_entry(std::size_t i) const noexcept {
     return false;
   }
   const bool follows_line = before(i).kind == SegmentKind::spline && !before(i).has_waypoint;
-  const bool follows_entry = before(i).kind == SegmentKind::splice && before(i).origin.known > 0;
-  return (follows_entry && segments_[i].kind != SegmentKind::splice) ||
-         (follows_line && segments_[i].kind == SegmentKind::stop_tail);
+  const bool follows_entry = before(i).kind == SegmentKind::entry && before(i).origin.known > 0;
+  return (follows_entry && segments_[i].kind != SegmentKind::entry) ||
+         (follows_line && segments_[i].kind == SegmentKind::stop);
 }
 
 bool RecordedDecisions::is_ending(std::size_t i) const noexcept {
   return i + 1 == segments_.size() && record_.head.finished && !is_entry(i) &&
-         segments_[i].kind == SegmentKind::splice;
+         segments_[i].kind == SegmentKind::entry;
 }
 
 bool RecordedDecisions::begins_run(std::size_t i, std::optional<Word> run_item) const noexcept {
   const SegmentCopy& segment = segments_[i];
   if (i == 0) return true;
   if (is_entry(i)) return !run_item || *run_item != *segment.origin.item;
-  return segment.kind == SegmentKind::stop_tail && !segment.has_waypoint && !is_behind_entry(i);
+  return segment.kind == SegmentKind::stop && !segment.has_waypoint && !is_behind_entry(i);
 }
 
 std::size_t RecordedDecisions::end_of_run(std::size_t i,

@@ -10,8 +10,8 @@
 
 namespace splinecast::ipc {
 
-/// What the segments of a record say of how they came about: which are entries, where a run begins
-/// and ends. Segments are counted from 0. Changes nothing; safe from any thread.
+/// The solver's decisions, derived from the segments of a record: which are entries, where a run
+/// begins and ends. Segments are counted from 0. Changes nothing; safe from any thread.
 class RecordedDecisions {
  public:
   /// The record outlives this.
@@ -27,14 +27,14 @@ class RecordedDecisions {
   /// Whether segment i is the entry by which a curve ends at its last waypoint.
   [[nodiscard]] bool is_ending(std::size_t i) const noexcept;
 
-  /// Whether a run begins with segment i, where the present one has begun with `run_item`.
+  /// Whether a run begins with segment i, if the current one has begun with `run_item`.
   [[nodiscard]] bool begins_run(std::size_t i, std::optional<Word> run_item) const noexcept;
 
-  /// The segment behind those of the run that begins with segment i and `run_item`.
+  /// The segment after those of the run that begins with segment i and `run_item`.
   [[nodiscard]] std::size_t end_of_run(std::size_t i, std::optional<Word> run_item) const noexcept;
 
-  /// Whether the curve was cut where segment i begins for the waypoints that follow: else they came
-  /// later, behind a stop.
+  /// Whether the curve was cut where segment i begins, for the waypoints that follow; false: they
+  /// came later, after a stop.
   [[nodiscard]] bool begins_at_cut(std::size_t i) const noexcept;
 
   /// Whether the first run of the record does not begin with the stream's first waypoint: a state

@@ -36,7 +36,7 @@ std::optional<std::size_t> RunTarget::index_of(Time time) const noexcept {
 
 void RunTarget::note_met(std::size_t index, std::size_t newer) {
   if (met_.empty() || met_.back().index < index) met_.push_back({index, 0});
-  // Said twice where there is a segment on both sides: of a knot behind a cut only once.
+  // A knot between two segments is noted twice, a knot after a cut only once.
   if (met_.back().index == index) met_.back().newest = index + newer;
 }
 

@@ -12,9 +12,9 @@
 
 namespace splinecast::ipc {
 
-/// The target of a run, solved again: its waypoints one after the other, each frozen when the
-/// segments of the record say that it was. One run at a time; what came before it stays in the
-/// window, as in the solver. One thread uses it.
+/// The target of a run, solved again: appends its waypoints one after the other, and freezes each
+/// when the segments of the record show that the solver did. One run at a time; earlier knots stay
+/// in the window, as in the solver. One thread uses it.
 class RunTarget {
  public:
   /// The record outlives this. Throws std::invalid_argument for window options out of range.
@@ -26,39 +26,40 @@ class RunTarget {
   /// The spline through the waypoints appended so far.
   [[nodiscard]] const core::SlidingWindow& window() const noexcept { return window_; }
 
-  /// Begins a run in another state than the one before.
+  /// Begins a run at another state than the one before.
   void begin_run() { window_.begin_run(); }
 
-  /// Says where the present run begins, for values that continue from there. Allocates.
+  /// Sets the position at which the current run begins, from which its values continue. Allocates.
   void begin_at(std::span<const double> position) {
     begin_position_.assign(position.begin(), position.end());
   }
 
-  /// Drops what is listed of a run: its waypoints, and those that the curve meets.
+  /// Clears the lists of a run: its waypoints, and those that the curve meets.
   void forget_waypoints() noexcept;
 
-  /// Lists the waypoints of the run that begins with an item. One that is not later than the one
-  /// before was not taken, but withdrawn unread with all behind it. Allocates.
+  /// Lists the waypoints of the run that begins with an item. A waypoint that is not after the one
+  /// before it was not taken: it was withdrawn unread, with all items after it. Allocates.
   void list_waypoints(Word first);
 
-  /// The waypoint of the run at a time; nothing if there is none. O(log n).
+  /// The index of the run's waypoint at a time; nothing if there is none. O(log n).
   [[nodiscard]] std::optional<std::size_t> index_of(Time time) const noexcept;
 
-  /// Notes that the curve meets a waypoint of the run, and how many newer ones that had seen when
-  /// it was last solved: in the order of time. Allocates.
+  /// Notes that the curve meets a waypoint of the run, and how many newer ones were known when that
+  /// waypoint was last solved. Call in the order of time. Allocates.
   void note_met(std::size_t index, std::size_t newer);
 
-  /// The newest waypoint when a met one was last solved; nothing if that is not met.
+  /// The index of the newest waypoint when a met one was last solved; nothing if the curve does not
+  /// meet that one.
   [[nodiscard]] std::optional<std::size_t> newest_of(std::size_t index) const noexcept;
 
-  /// Appends waypoints of the run until the window has `count` of them, and freezes before each
-  /// what it did not change. Returns false if the run has fewer.
+  /// Appends waypoints of the run until the window has `count` of them. Before each, freezes the
+  /// knots that it did not change. Returns false if the run has fewer.
   [[nodiscard]] bool append_until(std::size_t count);
 
   /// Freezes the first waypoints of the run.
   void freeze(std::size_t count) noexcept { window_.freeze_knots(count); }
 
-  /// Finishes the stream, if this has all waypoints of the last run and has not been finished.
+  /// Finishes the stream, if the window has all waypoints of the last run and is not finished.
   void finish_last_run() noexcept;
 
   /// Items before this one are known to the curve, or replaced.
@@ -77,9 +78,9 @@ class RunTarget {
   const StreamRecord& record_;
   core::SlidingWindow window_;
   std::vector<double> values_;          ///< scratch
-  std::vector<double> begin_position_;  ///< where the present run begins
-  std::vector<Word> items_;             ///< of the present run's waypoints
-  std::vector<MetKnot> met_;            ///< of the present run
+  std::vector<double> begin_position_;  ///< where the current run begins
+  std::vector<Word> items_;             ///< of the current run's waypoints
+  std::vector<MetKnot> met_;            ///< of the current run
   std::size_t frozen_met_ = 0;          ///< those of them that have been frozen
   Word used_ = 0;
 };

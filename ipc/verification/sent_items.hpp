@@ -10,7 +10,7 @@
 
 namespace splinecast::ipc {
 
-/// What a stream was sent, item by item from its first one, and what the solver took of it.
+/// The items that were sent to a stream, from its first one, and which of them the solver took.
 /// Allocates as it grows. One thread uses it.
 class SentItems {
  public:
@@ -21,11 +21,11 @@ class SentItems {
   /// Items so far; they are numbered from 0.
   [[nodiscard]] Word size() const noexcept { return items_.size(); }
 
-  /// Adds the next item, with a copy of its values: of a start state all three, of a replacement
-  /// the time only.
+  /// Adds the next item, with a copy of its values: all three of a start state, only the time of a
+  /// replacement.
   void add(ItemKind kind, const Waypoint& values);
 
-  /// Notes that the solver refused an item: one of these, else nothing happens.
+  /// Notes that the solver refused an item. Ignores unknown items.
   void refuse(Word item) noexcept;
 
   [[nodiscard]] ItemKind kind(Word item) const noexcept { return items_[item].kind; }
@@ -35,11 +35,11 @@ class SentItems {
     return items_[item].kind == kind && !items_[item].is_refused;
   }
 
-  /// The first item from `from` on that is of this kind and was not refused; none before `end`
-  /// gives nothing.
+  /// The first item from `from` on and before `end` that is of this kind and was not refused;
+  /// nothing if there is none.
   [[nodiscard]] std::optional<Word> find(ItemKind kind, Word from, Word end) const noexcept;
 
-  /// An item's values: a view, good until the next `add`.
+  /// An item's values: a view, valid until the next `add`.
   [[nodiscard]] Waypoint waypoint(Word item) const noexcept;
 
  private:
@@ -49,7 +49,7 @@ class SentItems {
     bool has_velocity = false;
     bool has_acceleration = false;
     Time time{};
-    std::size_t values = 0;  ///< where its own begin
+    std::size_t values = 0;  ///< index of its first value
   };
   std::size_t dimensions_;
   std::vector<Item> items_;

@@ -27,7 +27,7 @@ void SettledSegments::look() {
   }
 }
 
-/// Takes what has settled under a revision; false if the writer went on meanwhile.
+/// Takes the segments that have settled under a revision; false if the writer overtook it.
 bool SettledSegments::take(const Look& look) {
   if (!board_->copy_head(look, head_)) return false;
   if (head_.newest == 0) return true;

@@ -9,25 +9,25 @@
 
 namespace splinecast::ipc {
 
-/// The settled segments of a stream, collected while it goes on: a passive reader of its board.
+/// Collects the settled segments of a stream while it runs: a passive reader of its board.
 ///
-/// Whoever looks again before the board has lost a settled segment misses none; one that is missed
-/// shows as a gap between a segment's `next` and the number of the one behind it. Keeps all of
-/// them: some (order + 2)·D doubles each. One thread uses it.
+/// Misses none if it looks again before the board has lost a settled segment; a missed one shows as
+/// a gap between a segment's `next` and the number of the segment after it. Keeps all of them:
+/// about (order + 2)·D doubles each. One thread uses it.
 class SettledSegments {
  public:
-  /// `board` is read at every look and outlives this. `is_held_before_start`: the stream is live,
-  /// so that it rests before its first waypoint.
+  /// Each look reads `board`, which outlives this. `is_held_before_start`: the stream is live, so
+  /// that it rests before its first waypoint.
   explicit SettledSegments(const KnotBoardReader& board, bool is_held_before_start = false);
 
-  /// Takes what has settled since the last look, of a finished stream all: O(D) per segment.
-  /// Allocates; stores to shared memory never. Where nothing has settled since it is two loads.
+  /// Takes the segments that have settled since the last look; of a finished stream, all. O(D) per
+  /// segment. Allocates; never stores to shared memory. Two loads if nothing has settled since.
   void look();
 
-  /// Oldest first, with waypoint and acceleration step, which is empty behind a gap.
+  /// Oldest first, with waypoint and acceleration step, which is empty after a gap.
   [[nodiscard]] std::span<const SegmentCopy> segments() const noexcept { return segments_; }
 
-  /// The head under which the last look saw the board.
+  /// The summary of the board at the last look.
   [[nodiscard]] const Head& head() const noexcept { return head_; }
 
  private:

@@ -2,15 +2,15 @@
 #include <string>
 #include <utility>
 
+#include "core/forms/entry.hpp"
 #include "core/forms/knot_segment.hpp"
-#include "core/forms/splice.hpp"
 #include "core/forms/stop.hpp"
 #include "ipc/verification/difference.hpp"
 #include "ipc/verification/stream_replay.hpp"
 
 namespace splinecast::ipc {
 
-/// Solves and compares segment s of the present run.
+/// Solves and compares segment s of the current run.
 bool StreamReplay::solve_in_run(std::size_t s) {
   const SegmentCopy& segment = segments_[s];
   if (decisions_.is_entry(s)) return solve_entry(s);
@@ -19,13 +19,13 @@ bool StreamReplay::solve_in_run(std::size_t s) {
   return segment.kind == SegmentKind::hold ? solve_hold_behind(s) : solve_state_stop(s);
 }
 
-/// A segment of the target, or the stop behind its newest waypoint.
+/// A segment of the target, or the stop after its newest waypoint.
 bool StreamReplay::solve_on_target(std::size_t s) {
   const SegmentCopy& segment = segments_[s];
   const core::SlidingWindow& window = target_.window();
   const auto index = target_.index_of(segment.left);
   if (!index) return differ(s, "left end", in_words(segment.left), "no waypoint");
-  const bool is_stop = segment.kind == SegmentKind::stop_tail;
+  const bool is_stop = segment.kind == SegmentKind::stop;
   const auto newest = target_.newest_of(is_stop ? *index : *index + 1);
   if (!append_until((newest ? *newest : *index) + 1)) return false;
   if (is_last_run()) target_.finish_last_run();
@@ -39,7 +39,7 @@ bool StreamReplay::solve_on_target(std::size_t s) {
                 first_in_words(window.knot(*index).waypoint));
 }
 
-/// Rest behind the segment before, where that has been published to end.
+/// The rest after the segment before, from its published end on.
 bool StreamReplay::solve_hold_behind(std::size_t s) {
   const SegmentCopy& segment = segments_[s];
   begin_.take_cut(s - 1, segment.left);
@@ -47,7 +47,7 @@ bool StreamReplay::solve_hold_behind(std::size_t s) {
   return compare_solved(s);
 }
 
-/// Rest that belongs to no run: where the segment before ends as it was solved.
+/// A rest that belongs to no run: it begins where the segment before ends as it was solved.
 void StreamReplay::solve_hold(std::size_t i) {
   begin_.take_cut(i - 1, segments_[i].left);
   core::build_hold(segments_[i].left, segments_[i].right, begin_.position(), solved_);
@@ -58,7 +58,7 @@ void StreamReplay::solve_hold(std::size_t i) {
   }
 }
 
-/// The stop from the state that a run begins in.
+/// The stop from the state at which a run begins.
 bool StreamReplay::solve_state_stop(std::size_t s) {
   const core::WindowOptions& options = target_.window().options();
   const Time length = core::stop_time_within(options.limits, options.stop_time, begin_.velocity(),
@@ -91,11 +91,11 @@ bool StreamReplay::solve_entry(std::size_t s) {
         .end = end.time, .line_end = extrapolation_.line_end(), .rest = extrapolation_.rest()};
   }
   end.acceleration = end_.acceleration();
-  core::build_splice(begin_.at(segment.left), end, solved_);
+  core::build_entry(begin_.at(segment.left), end, solved_);
   return compare_solved(s);
 }
 
-/// The straight line behind an entry, or the stop.
+/// The straight line after an entry, or the stop.
 bool StreamReplay::solve_behind_entry(std::size_t s) {
   const auto position = std::span(values_);
   const bool is_line = segments_[s].kind == SegmentKind::spline;
@@ -129,8 +129,8 @@ void StreamReplay::solve_ending(std::size_t i) {
   const core::Knot knot = target_.window().knot(target_.window().knots() - 1);
   std::ranges::fill(values_, 0.0);
   const auto zeros = std::span(values_).first(target_.window().dimensions());
-  core::build_splice(begin_.at(segments_[i].left),
-                     {segments_[i].natural_right, knot.position, zeros, zeros}, solved_);
+  core::build_entry(begin_.at(segments_[i].left),
+                    {segments_[i].natural_right, knot.position, zeros, zeros}, solved_);
   if (compare_solved(i)) advance();
 }
 

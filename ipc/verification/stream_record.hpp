@@ -11,14 +11,14 @@
 
 namespace splinecast::ipc {
 
-/// A stream as it went: what it was sent, how it was solved, and what came out.
+/// The record of a stream: the items sent, how it was solved, and the published segments.
 struct StreamRecord {
   core::WindowOptions window;
   DimensionKinds kinds;
   const SentItems& items;
   std::span<const SegmentCopy> segments;  ///< settled ones from number 1
-  Head head;                              ///< the last one
-  Condition end;                          ///< that the stream was finished with
+  Head head;                              ///< the last summary
+  Condition end;                          ///< with which the stream was finished
 };
 
 }  // namespace splinecast::ipc

@@ -38,7 +38,7 @@ void StreamReplay::solve_part() {
   (void)differ(i, "kind: it belongs to no run", in_words(segments_[i].kind), "none");
 }
 
-/// Whether a segment takes up where the one before it ends.
+/// Whether a segment begins where the one before it ends, and has the next number.
 bool StreamReplay::follows(std::size_t i) {
   const SegmentCopy& segment = segments_[i];
   const Word number = i > 0 ? segments_[i - 1].next : segment.number;
@@ -50,7 +50,7 @@ bool StreamReplay::follows(std::size_t i) {
   return differ(i, "left end", in_words(segment.left), in_words(segments_[i - 1].right));
 }
 
-/// The segments of one run: those on its target, and the entries that lead there.
+/// Solves the segments of one run: those on its target, and the entries that lead there.
 void StreamReplay::solve_run(std::size_t i) {
   if (!begin_run(i)) return;
   const std::size_t end = decisions_.end_of_run(i, run_item_);
@@ -67,7 +67,7 @@ bool StreamReplay::begin_run(std::size_t i) {
   const Word items = record_.items.size();
   begin_.find(i, natural_right_);
   const bool is_later = i > 0 || decisions_.begins_elsewhere(i);
-  // A run that has no waypoint yet is the same wherever it is cut again.
+  // A run without waypoints remains the same run when it is cut again.
   const Word first_items = segment.origin.item.value_or(items);
   const bool is_same_run =
       i > 0 && target_.window().knots() == 0 &&
@@ -85,12 +85,13 @@ bool StreamReplay::begin_run(std::size_t i) {
   return true;
 }
 
-/// Lists the knots that segments of a run meet, with what they say of when they were solved.
+/// Lists the waypoints that the segments of a run meet, with what was known when each was last
+/// solved.
 bool StreamReplay::list_met(std::size_t begin, std::size_t end) {
   for (std::size_t s = begin; s < end; ++s) {
     const SegmentCopy& segment = segments_[s];
     if (segment.has_waypoint && !note_met(s, segment.left, segment.newer_knots)) return false;
-    const bool arrives = segment.origin.ends_at_waypoint && segment.kind != SegmentKind::stop_tail;
+    const bool arrives = segment.origin.ends_at_waypoint && segment.kind != SegmentKind::stop;
     if (arrives && !note_met(s, segment.natural_right, segment.origin.right_newer_knots)) {
       return false;
     }
@@ -112,7 +113,7 @@ bool StreamReplay::append_until(std::size_t count) {
                 std::to_string(target_.window().knots()));
 }
 
-/// Whether no segment leads to the last run, as the curve rests where that ends already.
+/// Whether no segment leads to the last run, because the curve already rests at its last waypoint.
 bool StreamReplay::rests_at_last_waypoint() {
   const Word run_item = record_.head.run_item;
   if (segments_.empty() || run_item == 0 || run_item_ == run_item - 1) return false;
@@ -127,7 +128,7 @@ bool StreamReplay::rests_at_last_waypoint() {
          same_bits(window.knot(window.knots() - 1).position, begin_.position());
 }
 
-/// No waypoint may lie between what is on the curve and item `end`, unless it was replaced.
+/// Requires that each waypoint before item `end` is on the curve or was replaced.
 bool StreamReplay::expect_all_used(Word end) {
   const auto missed = record_.items.find(ItemKind::waypoint, target_.used(), end);
   if (!missed || record_.items.find(ItemKind::replace, *missed, end)) return true;

@@ -31,7 +31,7 @@ class StreamReplay {
   [[nodiscard]] Verification run();
 
  private:
-  // Parts of a curve, and what leads from one to the next.
+  // Parts of a curve, and the transitions between them.
   void solve_part();
   bool follows(std::size_t i);
   void solve_run(std::size_t i);
@@ -64,12 +64,12 @@ class StreamReplay {
   RunTarget target_;
   BeginState begin_;
   core::Segment solved_;
-  State end_;  ///< that an entry ends in
+  State end_;  ///< state at the end of an entry
   core::Extrapolation extrapolation_;
   BehindEntry behind_;
   std::vector<double> values_;  ///< scratch
   std::optional<Word> run_item_{};
-  Time natural_right_{};  ///< of the segment before, had it not been cut
+  Time natural_right_{};  ///< end of the segment before, without a cut
   std::size_t next_ = 0;  ///< segment to be compared next
   std::size_t equal_ = 0;
   std::optional<Difference> first_;

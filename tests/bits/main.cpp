@@ -10,8 +10,8 @@
 #include "splinecast/streams.hpp"
 
 /// `bits write STREAM` solves a fixed recording into a stream, `bits read STREAM` prints a hash of
-/// everything it samples there, `bits remove STREAM` removes it. However writer and reader were
-/// compiled, the hash must be the same.
+/// all samples that it takes from it, `bits remove STREAM` removes it. The hash must not depend on
+/// how writer and reader were compiled.
 namespace {
 
 using splinecast::AppendStatus;
@@ -27,7 +27,7 @@ using splinecast::Time;
 constexpr std::size_t kDimensions = 5;
 constexpr int kWaypoints = 2000;
 
-/// The same numbers on every machine.
+/// A generator of the same numbers on every machine.
 class Random {
  public:
   std::uint64_t next() {
@@ -43,7 +43,7 @@ class Random {
 void write(const std::string& stream) {
   using splinecast::DimensionKind;
   std::vector<splinecast::Dimension> kinds(kDimensions, {.kind = DimensionKind::quaternion});
-  kinds[0] = {.kind = DimensionKind::wrap, .period = 0.3};
+  kinds[0] = {.kind = DimensionKind::periodic, .period = 0.3};
   Producer producer(stream, {.dimensions = kDimensions,
                              .kinds = kinds,
                              .clock = StreamClock::recorded,

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds library, solver and reader with -O0 for any x86-64, with -O3 -march=native, where kernels are
-# compiled for AVX2 too, and with clang, and checks that
-# every reader gets the same bits from every writer's stream.
+# Builds library, solver and reader with -O0 for any x86-64, with -O3 -march=native (kernels are also
+# compiled for AVX2) and with clang. Checks that every reader gets the same bits from every writer's
+# stream.
 #   run.sh SOURCE BUILD
 set -euo pipefail
 source=$1
@@ -24,7 +24,7 @@ if command -v clang++ >/dev/null; then
   configure clang clang++ "-O2"
   variants="$variants clang"
 else
-  echo "clang++ is not on this machine: only gcc's builds are compared"
+  echo "clang++ is not on this machine: only the builds of gcc are compared"
 fi
 
 hashes=""

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs what attacks concurrency and real time, and writes its results: model, tsan and realtime.
+"""Runs the attacks on concurrency and real time. Writes the results model, tsan and realtime.
 
     concurrency.py [--tests PROGRAM] [--plain-word PROGRAM]
 
@@ -26,7 +26,7 @@ RACE = "WARNING: ThreadSanitizer: data race"
 
 
 def run(command, **environment):
-    """Its output, whether it ended well, and the seconds that it took."""
+    """Output of a command, whether it ended with 0, and its duration in seconds."""
     begin = time.monotonic()
     ended = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,
                            env={**os.environ, **environment})
@@ -51,8 +51,8 @@ def attack_model():
         held.setdefault(model, []).append(int(states))
     write("model", {
         "promise": [1, 3, 5, 8],
-        "attack": "models of the publication of knots, the ring of changes, the settled word and the waypoint "
-                  "ring's hand-over, writers dying at any store and taken over, all interleavings, with spin",
+        "attack": "models of the publication of knots, the ring of changes, the settled word and the takeover of "
+                  "the waypoint ring, with writers that die at any store; all interleavings, with spin",
         "count": sum(map(sum, held.values())),
         "unit": "states",
         "found": {"states in which a promise fails": 0, "mutants not caught": 0},
@@ -72,8 +72,8 @@ def attack_races(program):
         seconds += took
     write("tsan", {
         "promise": [1, 3, 8],
-        "attack": "a producer, a solver that is taken over, three readers and an observer as threads on one "
-                  "mapping under ThreadSanitizer; then one word of each kind as plain memory",
+        "attack": "threads on one mapping under ThreadSanitizer: a producer, a solver and the one that takes over, "
+                  "three readers and an observer; then the same with each kind of word as plain memory",
         "count": samples,
         "unit": "samples",
         "found": {"races reported": text.count(RACE), "runs with torn payloads": 0 if good else 1,
@@ -99,8 +99,8 @@ def attack_real_time(program):
 
     write("realtime", {
         "promise": 3,
-        "attack": "sampling, appending and solving in a process that dies at a system call; a SCHED_FIFO reader "
-                  "that preempts the writer on its core",
+        "attack": "sampling, appending and solving in a process that is killed at any system call; a SCHED_FIFO "
+                  "reader that preempts the writer on its core",
         "count": total("rounds") + int(preempted["samples"]),
         "unit": "rounds",
         "found": {"killed at a system call": total("killed"), "allocations": total("allocations"),

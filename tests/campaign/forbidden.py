@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Runs the tests Forbidden* of the release build and writes tests/campaign/results/forbidden.json.
 
-Each of these tests counts its attacks: a verb of the program run against one obstacle. As root they
-act as several unprivileged users; else those that need that skip, and are counted as skipped.
+Each test counts its attacks; an attack is one run of a verb against one obstacle. Run as root, the tests
+act as several unprivileged users. Otherwise the tests that need several users are skipped and counted.
 """
 
 import json
@@ -18,9 +18,9 @@ BIN = CAMPAIGN.parent.parent / "build/release/bin"
 SUITES = {
     "ForbiddenFiles": {
         "promise": 6,
-        "attack": "files under a stream's names that are truncated, enlarged, of another layout or byte order, "
-                  "writable by others, another user's, a link, a pipe, a folder; the verbs solve, replay, sample, "
-                  "info, ls, rm as an unprivileged user",
+        "attack": "files with a stream's names: truncated, enlarged, of another layout or byte order, writable by "
+                  "others, owned by another user, links, pipes, folders; the verbs solve, replay, sample, info, ls, "
+                  "rm as an unprivileged user",
     },
     "ForbiddenLimits": {
         "promise": 5,
@@ -29,8 +29,8 @@ SUITES = {
     },
     "ForbiddenSharing": {
         "promise": [6, 8],
-        "attack": "readers of a group and strangers; a reader that locks all it can while a solver is killed "
-                  "and replaced; a child that an owner forked and left",
+        "attack": "readers in and outside the group; a reader that locks all files that it can open while a solver "
+                  "is killed and replaced; a child that a dead owner has forked",
     },
 }
 
@@ -40,7 +40,7 @@ def output_of(*command):
 
 
 def run_suite(name):
-    """The tests of a suite as GoogleTest reports them, and how long they took in seconds."""
+    """GoogleTest's report of a suite's tests, and their duration in seconds."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.json"
         begin = time.monotonic()

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Runs `splinecast solve '*'` with live streams beside a user who attacks it through /dev/shm.
+"""Runs `splinecast solve '*'` with live streams while a user attacks it through /dev/shm.
 
     hostile_user.py [--seconds S] [--seed N] [--bin FOLDER] [--json FILE]
 
-In a mount namespace with a /dev/shm of its own. As root, the streams are one unprivileged user's and
-the attacks another's, who is in the group that may read the streams; else both are the same user,
-whose own files the attacks then spare. Exit code 1 if something was found or a kind of attack was
-not carried out, 77 if there can be no such namespace here. The attacks: hostile_user_attacks.py.
+Uses a mount namespace with its own /dev/shm. Run as root, one unprivileged user owns the streams and another
+one, a member of the group that may read them, attacks. Otherwise both are the same user, and the attacks do
+not touch the files of the streams. Exit code 1: there are findings, or a kind of attack was not carried out;
+77: this machine does not allow such a namespace. hostile_user_attacks.py has the attacks.
 """
 
 import argparse
@@ -27,15 +27,15 @@ from page import this_machine
 CAMPAIGN = Path(__file__).resolve().parent
 VICTIM, ATTACKER, TEAM = 12345, 23456, 54321
 STREAMS = ["arm.left", "arm.right", "base"]
-# Generous: machines that run tests are busy. These bounds find what never ends.
+# Large, because test machines are busy: these limits only find what never ends.
 UNSERVED = 10.0  # seconds without a new settled knot
-HANG = 30.0
-SPARE = 30.0  # by which recordings are longer than the attack
+HANG = 30.0  # seconds
+SPARE = 30.0  # seconds that recordings are longer than the attack
 SKIPPED = 77
 
 
 def identity(user):
-    """What makes a child another user, if this process may."""
+    """Arguments of subprocess that run a child as another user, or none without this right."""
     if not TWO_USERS:
         return {}
     return {"user": user, "group": user, "extra_groups": [TEAM]}
@@ -46,7 +46,7 @@ SHARED = ["--mode", "0640", "--group", str(TEAM)] if TWO_USERS else []
 
 
 class Victim:
-    """The user whose streams are attacked: a solver, producers, readers, and what was found."""
+    """The user whose streams are attacked: solver, producers, readers and findings."""
 
     def __init__(self, program, folder, seconds):
         self.program = program
@@ -72,7 +72,7 @@ class Victim:
             self.measured[what] += number
 
     def run(self, *arguments, codes=(0,)):
-        """Output of a verb that must end well and in time; None if it did not."""
+        """Output of a verb that must end in time with one of `codes`; None if it does not."""
         try:
             ended = subprocess.run([self.program, *arguments], capture_output=True, check=False, timeout=HANG,
                                    **identity(VICTIM))
@@ -85,7 +85,7 @@ class Victim:
         return ended.stdout.decode()
 
     def record(self, name, seconds):
-        """A recording at 100 Hz in which y is 2 x + 1, as is every curve through it."""
+        """A recording at 100 Hz with y = 2 x + 1, which also holds for each curve through it."""
         path = self.folder / name
         rows = (f"{i / 100},{math.sin(i / 30)},{2 * math.sin(i / 30) + 1}\n" for i in range(int(seconds * 100)))
         path.write_text("t,x,y\n" + "".join(rows))
@@ -97,7 +97,7 @@ class Victim:
                           str(HANG), *SHARED, stdout=subprocess.DEVNULL, **more)
 
     def read(self, stream):
-        """Reads a stream and checks that each sample is of its curve."""
+        """Reads a stream and checks that each sample is on its curve."""
         while not self.ended.is_set():
             text = self.run("sample", stream, "--rate", "200", "--count", "100")
             for row in (text or "").splitlines()[1:]:
@@ -105,13 +105,13 @@ class Victim:
                 if fields[-1] not in ("settled", "provisional"):
                     continue
                 x, y, vx, vy = (float(field) for field in fields[1:5])
-                # The motion stays within 1; the way back from a pause may overshoot.
+                # The motion stays within 1; an entry after a pause may overshoot.
                 if abs(y - 2 * x - 1) > 1e-9 or abs(vy - 2 * vx) > 1e-6 or not abs(x) < 2:
                     self.find("wrong samples", f"{stream}: {row}")
                 self.count("samples")
 
     def watch(self, stream):
-        """Checks that the stream keeps settling."""
+        """Checks that the stream continues to settle."""
         settled, since, is_told = None, time.monotonic(), False
         while not self.ended.is_set():
             text = self.run("info", stream, "--json")
@@ -127,14 +127,14 @@ class Victim:
             time.sleep(0.1)
 
     def look(self):
-        """The verbs that look at all names, in turn; doctor finds faults with machines as well."""
+        """Runs the verbs that read all names. The exit code of doctor also depends on the machine."""
         while not self.ended.is_set():
             self.run("ls")
             self.run("doctor", codes=(0, 1))
             time.sleep(0.2)
 
     def come_and_go(self, recording):
-        """Streams that begin during the attack, are served and removed."""
+        """Creates streams during the attack, which must be solved, and removes them."""
         for number in range(1 << 30):
             if self.ended.is_set():
                 return
@@ -151,8 +151,8 @@ class Victim:
 
 
 def attack(seconds, seed):
-    """Runs the attacks as the other user; returns how many of each kind were carried out."""
-    # What another user may run and read: the system's Python, and the program from a pipe.
+    """Runs the attacks as the other user. Returns the number of attacks of each kind."""
+    # The other user may only run the system's Python, and read the program from a pipe.
     command = ["/usr/bin/python3", "-", str(seconds), str(seed), *([] if TWO_USERS else ["--same-user"]), *STREAMS]
     program = (CAMPAIGN / "hostile_user_attacks.py").read_bytes()
     ended = subprocess.run(command, input=program, stdout=subprocess.PIPE, check=True, timeout=seconds + 60, cwd="/",
@@ -161,7 +161,7 @@ def attack(seconds, seed):
 
 
 def await_streams(victim):
-    """Waits until each stream has settled something."""
+    """Waits until each stream is being solved."""
     end = time.monotonic() + HANG
     for stream in STREAMS:
         while True:
@@ -222,8 +222,8 @@ def inside(arguments):
     version = subprocess.run([program, "--version"], check=True, capture_output=True, text=True).stdout.split()[-1]
     result = {
         "promise": [5, 6],
-        "attack": "a hostile local user beside a running `solve '*'` and its producers and readers: names, files "
-                  "of all kinds exchanged under them, links, locks, leases, futex waiters, floods of files",
+        "attack": "a hostile local user while `solve '*'`, producers and readers run: invalid names, files of all "
+                  "kinds that are exchanged, links, locks, leases, futex waiters, floods of files",
         "count": sum(kinds.values()),
         "unit": "attacks",
         "found": victim.found,
@@ -243,12 +243,12 @@ def inside(arguments):
 
 
 def in_namespace():
-    """Runs this program again where /dev/shm is its own."""
+    """Runs this program again in a mount namespace with its own /dev/shm."""
     is_root = os.geteuid() == 0
     unshare = ["unshare", "--mount", *([] if is_root else ["--map-root-user"])]
     mount = "mount -t tmpfs -o mode=1777,size=512m tmpfs /dev/shm"
     if subprocess.run([*unshare, "sh", "-c", mount], check=False, capture_output=True).returncode != 0:
-        print("needs a mount namespace of its own (root, or user namespaces)", file=sys.stderr)
+        print("needs its own mount namespace (root, or user namespaces)", file=sys.stderr)
         return SKIPPED
     environment = {**os.environ, "HOSTILE_USER_NAMESPACE": "root" if is_root else "user"}
     command = ["sh", "-c", f"{mount} && exec \"$@\"", "sh", sys.executable, "-B", *sys.argv]

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What a hostile local user does in /dev/shm; see hostile_user.py, which runs it in one of its own.
+"""Attacks of a hostile local user in /dev/shm. hostile_user.py runs them in a mount namespace.
 
     hostile_user_attacks.py SECONDS SEED [--same-user] STREAM...
 
-Prints how often each kind of attack was carried out, as a JSON object. What the kernel refuses counts:
-that it does is what the streams rely on.
+Prints a JSON object with the number of attacks of each kind. Attacks that the kernel refuses count too,
+because the streams rely on the refusal.
 """
 
 import ctypes
@@ -45,7 +45,7 @@ class Attacker:
         self.counts = {}
 
     def name(self, end=None):
-        """A path under a name of its own that a stream could have."""
+        """A new path with a name that a stream could have."""
         self.number += 1
         return SHM + b"splinecast.evil%d" % self.number + (end or self.random.choice(ENDS))
 
@@ -168,7 +168,7 @@ class Attacker:
         try:
             fcntl.fcntl(descriptor, fcntl.F_SETLEASE, fcntl.F_WRLCK)
         except BlockingIOError:
-            pass  # somebody looks at it
+            pass  # another process has the file open
 
     def locks_on_others_files(self):
         for stream in self.streams:
@@ -199,14 +199,14 @@ class Attacker:
                 continue
             except FileNotFoundError:
                 continue
-            sys.exit(f"the kernel has let this user at {path!r}")
+            sys.exit(f"the kernel lets this user change {path!r}")
 
     def floods_of_files(self):
         for _ in range(200):
             os.close(self.file(self.name()))
 
     def futex_waiters(self):
-        """Many threads that wait for the next revision of a stream, each once."""
+        """Starts many threads that each wait once for the next revision of a stream."""
         path = SHM + b"splinecast." + self.random.choice(self.streams) + b".spline"
         try:
             descriptor = os.open(path, os.O_RDONLY)
@@ -252,14 +252,14 @@ class Attacker:
                 if time.monotonic() > end:
                     break
             if self.random.random() < 0.5:
-                time.sleep(0.1)  # long enough to be looked at
+                time.sleep(0.1)  # so that the solver sees the files
             self.clean()
         self.clean()
         return self.counts
 
 
 def region_address(path):
-    """Maps the beginning of a region to read, and says where."""
+    """Maps the beginning of a region read-only and returns its address."""
     descriptor = os.open(path, os.O_RDONLY)
     LIBC.mmap.argtypes = [ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int, ctypes.c_int, ctypes.c_int, ctypes.c_long]
     address = LIBC.mmap(None, 12288, mmap.PROT_READ, mmap.MAP_SHARED, descriptor, 0)
@@ -270,7 +270,7 @@ def region_address(path):
 def main(arguments):
     seconds, seed, *streams = arguments
     is_same_user = "--same-user" in streams
-    signal.signal(signal.SIGIO, signal.SIG_IGN)  # that a lease is in the way
+    signal.signal(signal.SIGIO, signal.SIG_IGN)  # the kernel sends it when a lease is broken
     attacker = Attacker(int(seed), [stream for stream in streams if stream != "--same-user"], is_same_user)
     print(json.dumps(attacker.run(float(seconds))))
 

@@ -18,7 +18,8 @@ std::string joined(int argc, char** argv) {
   return text;
 }
 
-/// Writes a result where it was asked for. Exit code 3 if a promise was broken.
+/// Writes a result to a file, or to standard output if `path` is empty. Returns exit code 3 if a
+/// promise was broken.
 int report(const Result& result, const std::string& path) {
   const std::string text = result.json.dump(2) + "\n";
   if (path.empty()) {
@@ -31,10 +32,10 @@ int report(const Result& result, const std::string& path) {
   return result.is_sound ? apps::kOk : apps::kFellShort;
 }
 
-/// What the command line asks for.
+/// The command line.
 struct Asked {
   CampaignOptions options{};
-  std::string path{};  ///< of the result; empty: standard output
+  std::string path{};  ///< file for the result; empty: standard output
   bool every_store = false;
   bool has_encoders = false;
   bool is_recorded = false;
@@ -45,55 +46,60 @@ struct Asked {
 using Run = Result (*)(const CampaignOptions&);
 
 void add_kill(CLI::App& program, Asked& asked) {
-  auto* verb = program.add_subcommand("kill", "SIGKILL to every process of a stream");
-  verb->add_option("--kills", asked.options.kills, "How many, at random instants")
+  auto* verb = program.add_subcommand("kill", "Send SIGKILL to every process of a stream");
+  verb->add_option("--kills", asked.options.kills, "Number of kills at random instants")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  verb->add_option("--seed", asked.options.seed, "Of the random instants")->capture_default_str();
+  verb->add_option("--seed", asked.options.seed, "Seed of the random instants")
+      ->capture_default_str();
   verb->add_flag("--every-store", asked.every_store,
-                 "Before each store to shared memory instead; needs a build with hooks");
+                 "Kill before each store to shared memory instead; needs a build with hooks");
 }
 
 void add_stress(CLI::App& program, Asked& asked) {
   auto* verb = program.add_subcommand("stress", "1 to 16 readers against the fastest writers");
-  verb->add_option("--seconds", asked.options.seconds, "For each number of readers")
+  verb->add_option("--seconds", asked.options.seconds, "Duration for each number of readers")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
 }
 
 void add_streams(CLI::App& program, Asked& asked) {
   auto* verb = program.add_subcommand("streams", "Simulated live streams, one per seed");
-  verb->add_option("--seconds", asked.options.seconds, "How long")
+  verb->add_option("--seconds", asked.options.seconds, "Duration")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  verb->add_option("--seed", asked.options.seed, "Of the first stream; the next has the next one")
+  verb->add_option("--seed", asked.options.seed,
+                   "Seed of the first stream; each next stream adds 1")
       ->capture_default_str();
-  verb->add_option("--runs", asked.options.runs, "Number of streams to simulate instead");
+  verb->add_option("--runs", asked.options.runs,
+                   "Number of streams to simulate instead of a duration");
 }
 
 void add_motions(CLI::App& program, Asked& asked) {
-  auto* verb = program.add_subcommand("motions", "A motion whose producer meets mishaps");
-  verb->add_option("--seed", asked.options.seed, "Of the motion")->capture_default_str();
-  verb->add_flag("--encoders", asked.has_encoders, "Measure stops behind each tail instead");
-  verb->add_option("--runs", asked.options.runs, "Instants at which encoders end, per row; 0: 200");
+  auto* verb = program.add_subcommand("motions", "A motion with faults of its producer and solver");
+  verb->add_option("--seed", asked.options.seed, "Seed of the motion")->capture_default_str();
+  verb->add_flag("--encoders", asked.has_encoders, "Measure the stops after each tail instead");
+  verb->add_option("--runs", asked.options.runs,
+                   "Number of instants at which encoders end, per row; 0: 200");
   verb->add_flag("--recordings", asked.is_recorded,
-                 "Play recordings with gaps instead; does nothing where there are none");
-  verb->add_flag("--processes", asked.has_processes, "In real time, with processes, instead");
-  verb->add_flag("--list", asked.lists, "Print the names of the plots and the mishaps, and end");
+                 "Play recordings with gaps instead; does nothing without recordings");
+  verb->add_flag("--processes", asked.has_processes, "Run real processes in real time instead");
+  verb->add_flag("--list", asked.lists, "Print the names of the plots and the faults, and exit");
   verb->add_option("--trace", asked.options.trace,
-                   "Folder for what readers see around each mishap, as CSV");
+                   "Folder for CSV files of what readers see around each fault");
 }
 
 void add_returns(CLI::App& program, Asked& asked) {
-  auto* verb = program.add_subcommand("returns", "Ways back onto the waypoints, one per seed");
-  verb->add_option("--seconds", asked.options.seconds, "How long")
+  auto* verb =
+      program.add_subcommand("returns", "Returns to the waypoints after faults, one per seed");
+  verb->add_option("--seconds", asked.options.seconds, "Duration")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  verb->add_option("--seed", asked.options.seed, "Of the first run")->capture_default_str();
-  verb->add_option("--runs", asked.options.runs, "Number of runs instead");
+  verb->add_option("--seed", asked.options.seed, "Seed of the first run")->capture_default_str();
+  verb->add_option("--runs", asked.options.runs, "Number of runs instead of a duration");
 }
 
-/// The campaign of the verb that was given.
+/// The campaign of the given verb and flags.
 Run run_of(const CLI::App& program, const Asked& asked) {
   if (asked.has_encoders) return run_stops;
   if (asked.is_recorded) return run_recordings;
@@ -106,15 +112,16 @@ Run run_of(const CLI::App& program, const Asked& asked) {
 }
 
 int run_program(int argc, char** argv) {
-  CLI::App program("Attacks streams of its own and counts what breaks", "splinecast_campaign");
+  CLI::App program("Creates streams, attacks them and counts violations", "splinecast_campaign");
   program.require_subcommand(1);
   Asked asked{.options = {.command = joined(argc, argv)}};
   for (const auto& add : {add_kill, add_stress, add_streams, add_motions, add_returns}) {
     add(program, asked);
   }
   for (CLI::App* verb : program.get_subcommands({})) {
-    verb->add_option("--json", asked.path, "File for the result; else standard output");
-    verb->add_option("--command", asked.options.command, "What the result says that runs it again");
+    verb->add_option("--json", asked.path, "File for the result; default: standard output");
+    verb->add_option("--command", asked.options.command,
+                     "Command that the result names to repeat the campaign");
   }
   try {
     program.parse(argc, argv);

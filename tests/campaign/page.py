@@ -1,29 +1,28 @@
 #!/usr/bin/env python3
-"""Makes tests/README.md from what the campaigns found.
+"""Makes tests/README.md from the results of the campaigns.
 
     page.py            writes the page
-    page.py --check    exits 1 if the page is not what the results make of it
-    page.py --machine  prints this machine as the JSON object that a result holds
+    page.py --check    exits with 1 if the page is not up to date with the results
+    page.py --machine  prints the JSON object `machine` of a result, for this machine
 
-Each file tests/campaign/results/*.json holds one result, or a list of them. A result is an object:
+Each file tests/campaign/results/*.json holds one result or a list of results. A result is an object:
 
-    promise   number of the promise attacked, its row in the README's table "What it promises",
+    promise   number of the attacked promise, its row in the table "What it promises" of the README,
               counted from 1; or a list of such numbers
-    attack    what was done, a phrase: it stands in a table
-    count     how often, a whole number from 1
-    unit      of what, in the plural: "kills", "inputs", "samples"
-    found     object of counters, each a whole number under a name that says what it counts
-              ("torn reads"): 0 means that the promise held
-    measured  object of what was measured besides, numbers or texts under names with their unit
-              ("recovery p50 [ms]"); may be empty
-    machine   object of cpu (text), cores (number) and kernel (text): what --machine prints
-    seconds   how long the attack took, a number
-    command   what runs it again, as typed at the project's top
-    version   of splinecast
-    build     of what, how: commit, compiler, flags; a text that may be missing
+    attack    description of the attack, a phrase for a table
+    count     number of attacks, an integer from 1
+    unit      unit of `count`, in the plural: "kills", "inputs", "samples"
+    found     object of counters of violations: name ("torn reads") and integer; 0: the promise held
+    measured  object of other measurements: name with unit ("recovery p50 [ms]") and number or text;
+              may be empty
+    machine   object of cpu (text), cores (number) and kernel (text), as printed by --machine
+    seconds   duration of the attack, a number
+    command   command that repeats the attack, for the project's top folder
+    version   version of splinecast
+    build     commit, compiler and flags, a text; optional
 
-tests/campaign/bugs.json holds a list of the bugs that attacks have found, each an object of texts:
-what (was wrong), found_by (which attack), mended (how).
+tests/campaign/bugs.json holds a list of the bugs that attacks have found. Each is an object of texts:
+what (the bug), found_by (the attack), mended (the correction).
 """
 
 import json
@@ -39,11 +38,11 @@ PAGE = CAMPAIGN.parent / "README.md"
 
 HEAD = """# The promises under attack
 
-Each promise of the [README](../README.md#what-it-promises), what tried to break it, how often, and what was found.
-`./run campaign` runs the attacks and makes this page of what they wrote into [`campaign/results`](campaign/results);
-the schema stands at the head of [`campaign/page.py`](campaign/page.py). `./run test` runs shorter ones.
+For each promise of the [README](../README.md#what-it-promises): the attacks on it, their number and their findings.
+`./run campaign` runs the attacks, which write [`campaign/results`](campaign/results), and makes this page from them.
+[`campaign/page.py`](campaign/page.py) describes the schema of the results. `./run test` runs shorter attacks.
 
-A number under *found* counts violations: 0 means that the promise held each time.
+The numbers under *found* count violations: 0 means that the promise held each time.
 """
 
 
@@ -74,7 +73,7 @@ def is_table_of(check, value):
 
 
 def faults(result, promises):
-    """The keys of a result that are missing, unknown or not as the schema has them."""
+    """The keys of a result that are missing, unknown or do not match the schema."""
     checks = {
         "promise": lambda v: is_promise(v, promises),
         "attack": is_text,
@@ -96,7 +95,7 @@ def faults(result, promises):
 
 
 def read_promises():
-    """The sentences of the README's table of promises, in their order."""
+    """The sentences of the README's table of promises, in order."""
     text = (PROJECT / "README.md").read_text(encoding="utf-8")
     table = text.split("\n## What it promises\n", 1)[1].split("\n## ", 1)[0]
     rows = [line for line in table.splitlines() if line.startswith("| ")]
@@ -110,7 +109,7 @@ def read_results(promises):
         for result in content if isinstance(content, list) else [content]:
             wrong = faults(result, promises)
             if wrong:
-                sys.exit(f"{path}: {', '.join(wrong)}: not as the head of page.py says")
+                sys.exit(f"{path}: {', '.join(wrong)}: does not match the schema in page.py")
             results.append(result)
     return results
 
@@ -151,7 +150,7 @@ def machine_text(machine):
 
 
 def attack_rows(results, machines):
-    lines = ["| attack | how often | found | measured | run |", "|---|---|---|---|---|"]
+    lines = ["| attack | count | found | measured | run |", "|---|---|---|---|---|"]
     for result in results:
         machine = machines.index(machine_text(result["machine"])) + 1
         build = f", build {cell(result['build'])}" if "build" in result else ""
@@ -166,7 +165,7 @@ def attack_rows(results, machines):
 def bug_rows(bugs):
     if not bugs:
         return ["None so far."]
-    return ["| what | found by | mended |", "|---|---|---|"] + [
+    return ["| bug | found by | correction |", "|---|---|---|"] + [
         f"| {cell(bug['what'])} | {cell(bug['found_by'])} | {cell(bug['mended'])} |" for bug in bugs]
 
 
@@ -180,7 +179,7 @@ def make_page():
         attacks = [r for r in results
                    if number in (r["promise"] if isinstance(r["promise"], list) else [r["promise"]])]
         lines += attack_rows(attacks, machines) if attacks else [
-            "No campaign attacks this one; the README names what holds it."]
+            "No campaign attacks this promise. The README names its tests."]
         lines.append("")
     if machines:
         lines += ["## Machines", ""]
@@ -201,7 +200,7 @@ def main(arguments):
         print(json.dumps(this_machine()))
     elif arguments == ["--check"]:
         if PAGE.read_text(encoding="utf-8") != make_page():
-            sys.exit(f"{PAGE} is not what the results make of it: run {Path(__file__).name}")
+            sys.exit(f"{PAGE} is not up to date with the results: run {Path(__file__).name}")
     elif not arguments:
         PAGE.write_text(make_page(), encoding="utf-8")
     else:

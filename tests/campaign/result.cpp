@@ -13,7 +13,7 @@
 namespace splinecast::campaign {
 namespace {
 
-/// What a command prints.
+/// Standard output of a command.
 std::string output_of(const std::string& command) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(popen(command.c_str(), "r"), &pclose);
   std::string text;
@@ -28,7 +28,7 @@ std::string output_of(const std::string& command) {
 
 nlohmann::json this_machine() {
   const std::string text = output_of(SPLINECAST_SOURCE "/tests/campaign/page.py --machine");
-  if (text.empty()) throw apps::Failure("page.py --machine says nothing");
+  if (text.empty()) throw apps::Failure("page.py --machine prints nothing");
   return nlohmann::json::parse(text);
 }
 

@@ -13,7 +13,7 @@ from page import this_machine
 
 CAMPAIGN = Path(__file__).resolve().parent
 PROGRAM = CAMPAIGN.parent.parent / "build/release/bin/splinecast"
-STREAMS, RATE = 100, 100  # what the program does unless told otherwise
+STREAMS, RATE = 100, 100  # the program's defaults
 COUNTERS = ["interpolated", "passed_over", "refused", "withdrawn", "controls", "underruns", "deadline_misses", "late_commits"]
 ROLES = ["solver", "producers", "readers"]
 
@@ -55,7 +55,7 @@ def result_of(report, version):
 
 
 def main(seconds):
-    # It exits with 1 if it found something, which its report then says.
+    # Exit code 1 means findings, which are in its report.
     ended = subprocess.run([PROGRAM, "soak", "--streams", str(STREAMS), "--rate", str(RATE), "--seconds", seconds,
                             "--json"], check=False, stdout=subprocess.PIPE, text=True)
     version = subprocess.run([PROGRAM, "--version"], check=True, capture_output=True, text=True).stdout.split()[-1]

@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
-"""Takes each correction out again and shows that its test then fails; writes tests/defects/README.md.
+"""Removes each correction and checks that its tests then fail. Writes tests/defects/README.md.
 
-    run.py [NAME ...]     all patches, or those named, for example 07: applies, builds, runs its tests, reports
+    run.py [NAME ...]     for all patches, or those named, for example 07: applies, builds, runs its tests, reports
     run.py --page         writes the page from the patches and the results of the last run
-    run.py --check        exits 1 if a patch does not apply, or the page is not what patches and results make of it
-    run.py --tree FOLDER  where the copy of the sources and its build go (build/defects)
+    run.py --check        exits with 1 if a patch does not apply, or the page is not up to date
+    run.py --tree FOLDER  folder for the copy of the sources and its build (build/defects)
 
-A file NAME.patch in tests/defects/core, ipc or apps, by the layer that was corrected, takes one correction out,
-applied with patch -p1. Above its diff are the lines
+Each file NAME.patch removes one correction; patch -p1 applies it. The files are in tests/defects/core, ipc or apps,
+by the corrected layer. Above its diff are the lines
 
-    Defect:      what a user saw
-    Cause:       why
-    Correction:  what was changed
-    Test:        names of the tests that fail without it: of GoogleTest, or ctest:NAME
+    Defect:      the defect that a user saw
+    Cause:       its cause
+    Correction:  the change that corrected it
+    Test:        names of the tests that fail without the correction: of GoogleTest, or ctest:NAME
 
-The results of a run go to tests/defects/results.json. The sources are those of the last commit.
+A run writes its results to tests/defects/results.json. It uses the sources of the last commit.
 """
 
 import argparse
@@ -40,11 +40,12 @@ HANG = "did not end"
 
 HEAD = """# Defects: each correction, and the test that fails without it
 
-`tests/defects/run.py` applies each patch under this folder, which takes one correction out again, builds, and runs the
-tests named here. Its last run: {failed} of {all} patches made their test fail, in {minutes} min.
+`tests/defects/run.py` applies each patch in this folder, which removes one correction, builds, and runs the tests named
+here. In its last run, the tests of {failed} of {all} patches failed; it took {minutes} min.
 
-Nothing is tried on the curve's own window any more, and the time of a stop is a formula: defects of those have no patch, as there is
-nothing to take out. The tests of stops, `StopSegment.OfAnyStateTakesAFiniteTime` and `StopSegment.FollowsOnePositionRepeatedForEver`, remain.
+Some corrections were replaced by a new design and have no patch: no item is tried on the curve's own window any more,
+and the time of a stop is a formula. The tests of stops remain:
+`StopSegment.OfAnyStateTakesAFiniteTime` and `StopSegment.IsValidWhileOnePositionRepeatsUntilVelocitiesAreDenormal`.
 
 | number | defect | cause | correction | test | without the correction |
 |---|---|---|---|---|---|
@@ -52,7 +53,7 @@ nothing to take out. The tests of stops, `StopSegment.OfAnyStateTakesAFiniteTime
 
 
 def read_patch(path):
-    """The fields above the diff of a patch."""
+    """The fields above the diff of a patch, by name."""
     text = path.read_text(encoding="utf-8")
     above = text.split("\n--- ", 1)[0].split("\ndiff --git ", 1)[0]
     fields = dict.fromkeys(FIELDS, "")
@@ -66,7 +67,7 @@ def read_patch(path):
             fields[field] = f"{fields[field]} {line.strip()}".strip()
     missing = [name for name in FIELDS if not fields[name]]
     if missing:
-        sys.exit(f"{path}: lacks the field {', '.join(missing)}")
+        sys.exit(f"{path}: missing field {', '.join(missing)}")
     return fields
 
 
@@ -75,7 +76,7 @@ def find_patches():
     found = {}
     for path in sorted(DEFECTS.rglob("*.patch"), key=lambda path: path.name):
         if path.stem in found:
-            sys.exit(f"{path} has the name of {found[path.stem]}")
+            sys.exit(f"{path} has the same name as {found[path.stem]}")
         found[path.stem] = path
     return found
 
@@ -85,7 +86,7 @@ def read_patches():
 
 
 def patch(tree, path, *options):
-    """Applies a patch to a folder. Returns what patch says, or None where it applied."""
+    """Applies a patch to a folder. Returns None, or the output of patch if it does not apply."""
     ended = subprocess.run(["patch", "-p1", "--force", "--no-backup-if-mismatch", "--reject-file=-", *options,
                             "-i", str(path)], cwd=tree, text=True, check=False,
                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
@@ -93,7 +94,7 @@ def patch(tree, path, *options):
 
 
 def copy_sources(tree):
-    """Makes a folder's files those of the last commit; what is the same stays untouched, for the build."""
+    """Copies the files of the last commit to a folder. Equal files keep their times, for the build."""
     archive = subprocess.run(["git", "archive", "HEAD"], cwd=PROJECT, check=True, stdout=subprocess.PIPE).stdout
     with tarfile.open(fileobj=io.BytesIO(archive)) as files:
         wanted = {member.name: member for member in files.getmembers() if member.isfile()}
@@ -110,7 +111,7 @@ def copy_sources(tree):
 
 
 def build(tree):
-    """Builds program and tests without optimisation. Returns the output where that failed."""
+    """Builds program and tests without optimisation. Returns None, or the output of a failed build."""
     launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
     ended = subprocess.run(
         ["cmake", "-G", "Ninja", "-S", ".", "-B", "build", "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O0 -g0",
@@ -124,11 +125,11 @@ def build(tree):
 
 
 class Unusable(Exception):
-    """A patch or test that shows nothing."""
+    """A patch or a test that cannot show a defect."""
 
 
 def run_test(tree, test):
-    """Whether a test passed, and why not."""
+    """(whether a test passed, why not)."""
     if test.startswith("ctest:"):
         command = ["ctest", "--test-dir", "build", "--output-on-failure", "--no-tests=error",
                    "-R", "^" + re.escape(test.removeprefix("ctest:")) + "$"]
@@ -147,7 +148,7 @@ def run_test(tree, test):
 
 
 def why_failed(output, code):
-    """The first failure that a test reports, in a line."""
+    """The first failure that a test reports, in one line."""
     if code < 0:
         return f"ended by signal {-code}"
     lines = [line.strip() for line in output.splitlines()]
@@ -158,7 +159,7 @@ def why_failed(output, code):
 
 
 def take_out(tree, name, tests):
-    """Runs the tests of one correction without it."""
+    """Removes one correction and runs its tests."""
     path = find_patches()[name]
     refused = patch(tree, path, "--dry-run") or patch(tree, path)
     if refused is not None:
@@ -166,14 +167,14 @@ def take_out(tree, name, tests):
     try:
         output = build(tree)
         if output is not None:
-            raise Unusable(f"without the correction the tree does not build:\n{output[-4000:]}")
+            raise Unusable(f"does not build without the correction:\n{output[-4000:]}")
         return {test: run_test(tree, test) for test in tests}
     finally:
         patch(tree, path, "-R")
 
 
 def fails_as_it_is(tree, tests):
-    """Of these tests, those that show nothing, as they do not pass with all corrections in place."""
+    """The tests that do not pass with all corrections, and so cannot show a defect."""
     found = set()
     for test in tests:
         try:
@@ -181,13 +182,13 @@ def fails_as_it_is(tree, tests):
         except Unusable as error:
             passed, why = False, error
         if not passed:
-            print(f"{test}: does not pass with all corrections in place: {why}", file=sys.stderr, flush=True)
+            print(f"{test}: does not pass with all corrections: {why}", file=sys.stderr, flush=True)
             found.add(test)
     return found
 
 
 def outcome(tree, name, tests, unusable):
-    """What each test of a correction says without it: "passes", or why it fails."""
+    """The outcome of each test without the correction: "passes", or why it fails."""
     try:
         without = take_out(tree, name, tests)
     except Unusable as error:
@@ -247,11 +248,11 @@ def make_page():
 
 
 def check():
-    """Whether every patch still applies, and the page is up to date."""
+    """Exits with messages if a patch does not apply or the page is not up to date."""
     refused = [f"{name}.patch does not apply:\n{said}" for name, path in find_patches().items()
                if (said := patch(PROJECT, path, "--dry-run")) is not None]
     if PAGE.read_text(encoding="utf-8") != make_page():
-        refused.append(f"{PAGE} is not what patches and results make of it: run run.py --page")
+        refused.append(f"{PAGE} is not up to date: run run.py --page")
     sys.exit("\n".join(refused) or 0)
 
 

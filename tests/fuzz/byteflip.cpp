@@ -22,9 +22,9 @@
 #include "ipc/memory/names.hpp"
 #include "tests/fuzz/byteflip_roles.hpp"
 
-/// Flips bytes at random in both regions of live streams, under a producer, a solver and two
-/// readers as processes of their own. Nobody may crash, hang, or say a number that is none; a
-/// damaged region may be refused. Exit code 3 if a promise was broken.
+/// Flips random bytes in both regions of live streams, while the processes of a producer, a solver
+/// and two readers use them. No process may crash, hang, or return a value that is not finite; a
+/// process may refuse a damaged region. Exit code 3 if a promise was broken.
 namespace splinecast::fuzz {
 namespace {
 
@@ -32,10 +32,10 @@ using namespace std::chrono_literals;
 using std::chrono::steady_clock;
 
 constexpr std::array kKinds{ipc::RegionKind::waypoints, ipc::RegionKind::spline};
-/// How long a process may take to see that it is to leave: on a busy machine, many at once.
+/// Timeout of a process for its end after `stop`, on a busy machine.
 constexpr auto kPatience = 30s;
 
-/// Another process's view of a region's file: writable, and without its length changed.
+/// A writable mapping of a region's file that never changes its length.
 class Victim {
  public:
   Victim(const std::string& stream, ipc::RegionKind kind) {
@@ -55,7 +55,7 @@ class Victim {
   }
   [[nodiscard]] bool is_there() const { return !bytes_.empty(); }
 
-  /// Flips one bit, or all of a byte's, in the header and the control block, or anywhere.
+  /// Flips one bit, or random bits, of a byte in the header, in the control block or anywhere.
   void flip(std::mt19937_64& random) {
     const std::size_t limit = random() % 4 == 0 ? ipc::kBodyOffset : bytes_.size();
     const std::size_t at = random() % std::min(limit, bytes_.size());
@@ -117,7 +117,7 @@ class Campaign {
     pid_t pid;
   };
 
-  /// One stream, from its making until somebody has had enough of it, or for a short while.
+  /// Attacks one stream until a process ends, or for a fraction of a second.
   void round() {
     ++rounds_;
     counters_.stop = false;
@@ -153,7 +153,7 @@ class Campaign {
     _exit(code);
   }
 
-  /// Flips bytes, a few each millisecond, from when both regions stand.
+  /// Waits for both regions, then flips a few bytes each millisecond.
   void attack(const std::vector<Child>& children) {
     constexpr auto kRound = 150ms;
     const auto deadline = steady_clock::now() + kPatience;
@@ -163,9 +163,9 @@ class Campaign {
         poll(nullptr, 0, 1);
         victims[i].emplace(name_, kKinds[i]);
       }
-      if (!victims[i]->is_there()) throw std::runtime_error("no stream came to be");
+      if (!victims[i]->is_there()) throw std::runtime_error("no stream was created");
     }
-    const std::uint64_t until = counters_.samples + 100;  // readers are at work
+    const std::uint64_t until = counters_.samples + 100;  // so that readers are sampling
     while (counters_.samples < until && steady_clock::now() < deadline) poll(nullptr, 0, 1);
     const auto end = steady_clock::now() + kRound;
     const std::size_t most = std::size_t{1} << random_() % 6;
@@ -186,7 +186,7 @@ class Campaign {
     });
   }
 
-  /// Waits for a child's end and counts what it was.
+  /// Waits for a child's end and counts it by its kind.
   void end(const Child& child) {
     const auto deadline = steady_clock::now() + kPatience;
     int status = 0;
@@ -202,7 +202,7 @@ class Campaign {
     }
     if (WIFSIGNALED(status)) {
       ++crashes_;
-      apps::say(std::string(child.role) + " died of signal " + std::to_string(WTERMSIG(status)));
+      apps::say(std::string(child.role) + " ended by signal " + std::to_string(WTERMSIG(status)));
     } else if (WEXITSTATUS(status) == kRefused) {
       ++refused_[child.role];
     } else if (WEXITSTATUS(status) != kLeft) {
@@ -232,8 +232,8 @@ int main(int argc, char** argv) {
   CLI::App program("Flips bytes in the regions of live streams", "splinecast_byteflip");
   double seconds = 3;
   std::uint64_t seed = 1;
-  program.add_option("--seconds", seconds, "How long (default 3)");
-  program.add_option("--seed", seed, "Of the random flips (default 1)");
+  program.add_option("--seconds", seconds, "Duration (default 3)");
+  program.add_option("--seed", seed, "Seed of the random flips (default 1)");
   try {
     program.parse(argc, argv);
     splinecast::fuzz::Campaign campaign(seed);

@@ -27,17 +27,17 @@ constexpr std::size_t kDimensions = 5;
 constexpr std::size_t kSegments = 256;
 constexpr Time kLead = 50ms;
 
-/// Lets a millisecond pass.
+/// Sleeps for 1 ms.
 void rest() { poll(nullptr, 0, 1); }
 
 ProducerOptions producer_options() {
   ProducerOptions options{.dimensions = kDimensions, .capacity = 64};
   options.kinds.assign(kDimensions, {.kind = DimensionKind::quaternion});
-  options.kinds[0] = {.kind = DimensionKind::wrap, .period = 6};
+  options.kinds[0] = {.kind = DimensionKind::periodic, .period = 6};
   return options;
 }
 
-/// A reader's life until its region is of no more use to it.
+/// A reader that samples a stream at random times.
 class FlipReader {
  public:
   FlipReader(const std::string& stream, std::uint64_t seed, FlipCounters& counters)

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Runs every fuzzer and the byte flips, and says what they found as JSON.
+"""Runs every fuzzer and the byte flips, and writes their findings as JSON.
 
     campaign.py SECONDS [FOLDER]
 
-Runs each fuzzer for so long, from the seeds and what earlier runs in build/fuzz/corpus have found, then
-splinecast_byteflip. Writes fuzz.json and byteflip.json into FOLDER if it is given, in the form that
-tests/campaign asks for. Exits with 1 if a fuzzer found something, or a byte flip broke a promise; the
-input that did it is left in build/fuzz/found.
+Runs each fuzzer for SECONDS, from the seeds and the corpus of earlier runs in build/fuzz/corpus, and then
+splinecast_byteflip. If FOLDER is given, writes fuzz.json and byteflip.json there, in the schema of
+tests/campaign/page.py. Exits with 1 if a fuzzer found something or a byte flip broke a promise. The inputs
+found are in build/fuzz/found.
 """
 
 import json
@@ -24,10 +24,10 @@ BUILD = PROJECT / "build" / "fuzz"
 SEEDS = PROJECT / "tests" / "fuzz" / "seeds"
 REGIONS = ["reader", "writers", "roles"]
 TEXTS = ["waypoints", "times", "polynomials", "limits", "words", "arguments"]
-PROMISE = 9  # its row in the README's table
-# Of an input: longer is a hang, s; largest, bytes; memory, MiB.
+PROMISE = 9  # row in the README's table
+# Limits of an input: time in s, above which it hangs; size in bytes; memory in MiB.
 LIMITS = ["-timeout=10", "-max_len=65536", "-rss_limit_mb=2048"]
-# urdfdom does not free joints that are in a ring.
+# urdfdom does not free joints that form a cycle.
 LEAKING = ["limits"]
 BYTE_FLIP_SECONDS = 5
 
@@ -42,7 +42,7 @@ def result(attack, report, seconds, command):
 
 
 def run_fuzzer(target, seconds):
-    """Executions of one fuzzer, edges of code that it covers, and whether it found something."""
+    """Number of executions of one fuzzer, number of covered edges, and exit code (not 0: it found something)."""
     corpus, found = BUILD / "corpus" / target, BUILD / "found" / target
     for folder in (corpus, found):
         folder.mkdir(parents=True, exist_ok=True)

@@ -12,8 +12,8 @@
 
 namespace splinecast::fuzz {
 
-/// A copy of a region between two pages that nobody may touch: a read or a store outside of it ends
-/// the process, and so does a store to it while it is read-only.
+/// A copy of a region between two inaccessible pages. A read or a store outside of it ends the
+/// process, and so does a store to it while it is read-only.
 class GuardedBytes {
  public:
   explicit GuardedBytes(std::span<const ipc::Word> words)
@@ -29,8 +29,8 @@ class GuardedBytes {
   GuardedBytes& operator=(const GuardedBytes&) = delete;
   ~GuardedBytes() { munmap(outer_, inner_ + 2 * ipc::kPage); }
 
-  /// The bytes; they end where the page begins that nobody may touch, and where they are whole
-  /// pages they also begin behind one.
+  /// The bytes. They end at the second inaccessible page. If they fill whole pages, they also begin
+  /// at the end of the first one.
   [[nodiscard]] std::span<std::byte> span() const {
     return {outer_ + ipc::kPage + inner_ - size_, size_};
   }

@@ -5,7 +5,7 @@
 
 #include "tests/fuzz/seed_streams.hpp"
 
-/// Writes the seeds of the region targets: make_seeds FOLDER
+/// make_seeds FOLDER: writes the seeds of the region targets.
 int main(int argc, char** argv) {
   using namespace splinecast;
   if (argc != 2) return 2;

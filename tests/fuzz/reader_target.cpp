@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kMostActions = 64;
 
-/// Looks at all of a board that `info` and a producer look at.
+/// Reads everything on a board that `info` and a producer read.
 void look_around(const ipc::KnotBoardReader& board) {
   ipc::Head head;
   const ipc::Look look = board.look();
@@ -31,13 +31,13 @@ void look_around(const ipc::KnotBoardReader& board) {
     (void)board.copy_bounds(look, seen, head);
   }
   std::array<ipc::RefusedItem, 3> refused{};
-  require(board.copy_refusals(head, 0, refused) <= refused.size(), "refusals fit where they go");
+  require(board.copy_refusals(head, 0, refused) <= refused.size(), "refusals fit into their array");
   (void)ipc::segment_before(board, head, head.newest);
   (void)board.step_times();
   (void)(board.tail() + (board.sleeping() ? 1U : 0U));
 }
 
-/// Looks ahead at a few times, mostly one behind the other.
+/// Samples several times with one call, mostly in increasing order.
 void look_ahead(Script& script, Sampling& sampling) {
   std::vector<Time> times(script.byte() % 40);
   Time t = sampling.pick(script);
@@ -104,8 +104,7 @@ void try_reader(const StreamImage& image) {
     play(script, bytes, board, sampling);
     sampling.tour();
   } catch (const BadRegion&) {
-    // Refused: that is an answer.
-    return;
+    return;  // refused
   }
 }
 

@@ -8,8 +8,8 @@
 
 #include "tests/fuzz/region_targets.hpp"
 
-/// Tries region images as the fuzzers do, with any compiler: region_file FILE…, or one from
-/// standard input. Exits with 1 if a promise is broken; dies as the target does.
+/// region_file FILE…: runs all targets on region images, or on one image from standard input, with
+/// any compiler. Exits with 1 if a promise is broken. A crash of a target ends the program.
 namespace {
 
 std::vector<std::uint8_t> bytes_of(std::istream& in) {
@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
       name = argv[i];
       std::ifstream file(name, std::ios::binary);
       if (!file) {
-        std::fprintf(stderr, "region_file: %s cannot be read\n", name);
+        std::fprintf(stderr, "region_file: cannot read %s\n", name);
         return 2;
       }
       try_all(decode(bytes_of(file)));

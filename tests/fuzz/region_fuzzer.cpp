@@ -5,7 +5,7 @@
 
 #include "tests/fuzz/region_targets.hpp"
 
-// libFuzzer's entry to one region target: SPLINECAST_FUZZ_TARGET names it.
+// libFuzzer's entry point for the region target SPLINECAST_FUZZ_TARGET.
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   return 0;
 }
 
-/// Most mutations change words where they mean something; some change the file's own bytes.
+/// Most mutations change words of the image; one in kPlain changes bytes of the file.
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t max_size, unsigned seed) {
   constexpr unsigned kPlain = 16;

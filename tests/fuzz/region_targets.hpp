@@ -2,25 +2,26 @@
 
 #include "tests/fuzz/stream_image.hpp"
 
-/// What is done with hostile regions. Each target takes any image and returns; it throws Broken if
-/// a promise is broken, and the process dies of a read, or store, outside a region. Regions may be
-/// refused by the exceptions that the roles document.
+/// Targets for hostile regions. Each target accepts any image. It throws Broken if a promise is
+/// broken, and an access outside a region ends the process. Regions may be refused with the
+/// exceptions that the roles document.
 ///
-/// The script is a sequence of actions, a byte each with numbers behind it: samples at times near
-/// the segments' ends, snapshots, appends, replacements, solver steps, and words changed meanwhile
-/// as by another process.
+/// The script is a sequence of actions, each one byte followed by its numbers: samples near the
+/// segments' ends, snapshots, appends, replacements, solver steps, and changes of words like those
+/// of another process.
 namespace splinecast::fuzz {
 
-/// Reads the board, mapped read-only: sample, preview, snapshot, heads, refusals, settled segments.
+/// Reads the board, mapped read-only: samples, previews, snapshots, summaries, refusals, settled
+/// segments.
 void try_reader(const StreamImage& image);
 
-/// A solver and a producer go on with both regions, and a reader reads what they publish.
+/// Lets a solver and a producer take over both regions, and reads what they publish.
 void try_writers(const StreamImage& image);
 
-/// Reader, `info`, solver and producer, as real roles, on files in shared memory.
+/// Runs the real roles on files in shared memory: reader, `info`, solver, producer.
 void try_roles(const StreamImage& image);
 
-/// All of them, one after the other.
+/// Runs all three targets.
 void try_all(const StreamImage& image);
 
 }  // namespace splinecast::fuzz

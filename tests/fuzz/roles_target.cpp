@@ -24,7 +24,7 @@ namespace {
 constexpr ipc::RegionKind kWaypoints = ipc::RegionKind::waypoints;
 constexpr ipc::RegionKind kSpline = ipc::RegionKind::spline;
 
-/// The regions of an image under a name of this process's own, until the end of the scope.
+/// Files with the regions of an image, under a name of this process, until the end of the scope.
 class Files {
  public:
   explicit Files(const StreamImage& image) : name_("fuzz" + std::to_string(getpid())) {
@@ -44,7 +44,7 @@ class Files {
  private:
   void write(ipc::RegionKind kind, std::vector<ipc::Word> words) const {
     constexpr std::size_t kNamespaceWord = ipc::word_of(ipc::kHeaderFields, "time namespace");
-    // A live seed was made elsewhere, and says `here` where its clock's namespace stands.
+    // A live seed may come from another machine: replaces kHere by this process's time namespace.
     if (words.size() > kNamespaceWord && words[kNamespaceWord] == kHere) {
       words[kNamespaceWord] = ipc::time_namespace();
     }
@@ -60,7 +60,7 @@ class Files {
   std::string name_;
 };
 
-/// Does something that may refuse, by what the roles say that they throw.
+/// Runs an action that may throw the documented exceptions of the roles.
 void attempt(const auto& action) {
   try {
     action();
@@ -90,7 +90,7 @@ void read(const std::string& name) {
 
 void tell(const std::string& name) {
   const ipc::StreamInfo info = ipc::inspect(name);
-  require(!apps::pretty(apps::to_json(info)).empty(), "info says something");
+  require(!apps::pretty(apps::to_json(info)).empty(), "info prints a report");
 }
 
 void solve(const std::string& name) {

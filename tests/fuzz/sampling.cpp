@@ -67,7 +67,7 @@ void Sampling::sample(Time t, bool preview) {
     require(are_numbers(state_.values()), "a status with values has numbers in all dimensions");
   } else {
     require(std::ranges::all_of(state_.values(), [](double value) { return std::isnan(value); }),
-            "a status without values leaves the state as it was");
+            "a status without values does not change the state");
   }
 }
 

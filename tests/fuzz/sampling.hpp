@@ -10,29 +10,29 @@
 
 namespace splinecast::fuzz {
 
-/// Samples a board and checks each answer.
+/// Samples a board and checks each result.
 class Sampling {
  public:
   Sampling(const ipc::KnotBoardReader& board, ipc::Sampler& sampler);
 
-  /// At the ends of the segments that the board keeps, beside and between them, and at the ends of
-  /// time.
+  /// Samples at, next to and between the ends of the segments on the board, and at the smallest and
+  /// largest time.
   void tour();
 
-  /// Once at t, as executed or not. With values, none may be infinite or no number.
+  /// Samples once at t, as executed or with `preview`. All values must be finite.
   void sample(Time t, bool preview);
 
-  /// At these times under one revision, with these derivatives.
+  /// Samples these derivatives at these times under one revision.
   void sample_many(std::span<const Time> times, Derivatives asked);
 
-  /// Segments between two times.
+  /// Copies the segments between two times.
   void snapshot(Time from, Time to);
 
-  /// A time near an end of a segment, or any.
+  /// A time near an end of a segment, or any time.
   [[nodiscard]] Time pick(Script& script);
 
  private:
-  /// The ends of a segment, and where it would end had it not been cut, and the middle.
+  /// Left and right end of a segment, its right end without a cut, and its middle.
   using Marks = std::array<Time, 4>;
   [[nodiscard]] bool find_marks(const ipc::Head& head, ipc::Word number, Marks& marks);
 

@@ -11,7 +11,7 @@
 
 namespace splinecast::fuzz {
 
-/// A promise that was broken: what a fuzzer reports.
+/// A broken promise, which a fuzzer reports.
 class Broken : public std::logic_error {
  public:
   using std::logic_error::logic_error;
@@ -21,7 +21,7 @@ inline void require(bool holds, const char* promise) {
   if (!holds) throw Broken(promise);
 }
 
-/// Numbers out of a script, one after the other; zeros when it has run out.
+/// Reads numbers from a script in order; zeros after its end.
 class Script {
  public:
   explicit Script(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -34,7 +34,7 @@ class Script {
     for (int i = 0; i < 8; ++i) value = value << 8U | byte();
     return value;
   }
-  /// A time near another one, or any.
+  /// A time near t, or any time.
   Time near(Time t) {
     const auto choice = byte();
     if (choice == 255) return ipc::to_time(word());

@@ -26,8 +26,8 @@ using ipc::Word;
 constexpr Time kTick{10'000'000};
 constexpr Time kBegin{1'000'000'000};
 
-/// The words of a region in shared memory, of which nothing depends on when and where it was made:
-/// stream id, owner and time namespace are set, and the control lines lie where the id asks.
+/// The words of a region in shared memory, made independent of the time and the machine: stream id,
+/// owner and time namespace have fixed values, and the control block is at the offset of that id.
 std::vector<Word> words_of(const std::string& stream, RegionKind kind) {
   const auto region = ipc::Region::open(stream, kind, false);
   const auto from = ipc::words_at(region.bytes(), 0, region.bytes().size() / sizeof(Word));
@@ -61,7 +61,7 @@ class Recorder {
         producer_(name_, std::move(options)),
         solver_(name_, how) {
     clock.time = kBegin;
-    if (!solver_.attach()) throw std::logic_error("a solver finds the stream that stands");
+    if (!solver_.attach()) throw std::logic_error("the solver does not find the stream");
   }
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -167,7 +167,7 @@ SolverOptions limited() {
   return how;
 }
 
-/// So wide that two waypoints are joined from rest to rest, without an entry.
+/// Limits so large that two waypoints are joined from rest to rest, without an entry.
 SolverOptions wide() {
   auto how = with("c2", 2, 32);
   how.limits = {.acceleration = {1e6, 1e6}};
@@ -180,11 +180,11 @@ SolverOptions smoothing() {
   return how;
 }
 
-/// A dimension that wraps, and a quaternion.
+/// A periodic dimension and a quaternion.
 ProducerOptions kinds() {
   auto options = recorded(5);
   options.kinds.assign(5, {.kind = DimensionKind::quaternion});
-  options.kinds[0] = {.kind = DimensionKind::wrap, .period = 1.5};
+  options.kinds[0] = {.kind = DimensionKind::periodic, .period = 1.5};
   options.names = {"heading", "qx", "qy", "qz", "qw"};
   options.units = {"rad", "", "", "", ""};
   return options;
@@ -228,7 +228,7 @@ void replace(Recorder& r) {
 void cut(Recorder& r) {
   r.send_many(kBegin + 2 * kTick, 8);
   r.replace_from(kBegin + 8 * kTick + kTick / 2, kBegin + 10 * kTick);  // within a segment
-  r.replace_from(kBegin + 9 * kTick, kBegin);                           // within a splice
+  r.replace_from(kBegin + 9 * kTick, kBegin);                           // within an entry
   r.replace_from(kBegin + 10 * kTick, kBegin + 12 * kTick);             // within the stop
   r.send_many(kBegin + 13 * kTick, 3);
   r.finish();
@@ -265,7 +265,7 @@ std::vector<Plan> plans() {
   };
 }
 
-/// Actions of every kind, so that a mutation has some to change.
+/// A script of random actions, which mutations change.
 std::vector<std::uint8_t> script_of(std::size_t seed) {
   std::mt19937_64 random(seed);
   std::vector<std::uint8_t> script(160);

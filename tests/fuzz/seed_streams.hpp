@@ -12,9 +12,9 @@ struct Seed {
   StreamImage image;
 };
 
-/// Streams that a real producer and a real solver have made, in all the states that a board knows:
-/// running, starved, entered again, cut, finished; every family of methods and kind of dimension.
-/// The same on each call and machine but for rounding of the C library.
+/// Streams of a real producer and a real solver, in all states of a board: running, starved,
+/// entered again, cut, finished; with every family of methods and every kind of dimension. The same
+/// on each call and machine, except for rounding of the C library.
 [[nodiscard]] std::vector<Seed> make_seeds();
 
 }  // namespace splinecast::fuzz

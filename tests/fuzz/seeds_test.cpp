@@ -18,8 +18,8 @@
 #include "tests/fuzz/seed_streams.hpp"
 #include "tests/fuzz/text_targets.hpp"
 
-/// The fuzzers' targets, over what fuzzers have found and over mutations of whole streams, in every
-/// build.
+/// The fuzzers' targets in every build, with inputs that fuzzers have found and with mutations of
+/// whole streams.
 namespace splinecast::fuzz {
 namespace {
 
@@ -68,7 +68,7 @@ TEST(FuzzSeeds, MutatedStreamsAreReadRefusedOrContinued) {
   }
 }
 
-TEST(FuzzSeeds, HaveSegmentsOfEveryFormAndNoneOfThemIsDamaged) {
+TEST(FuzzSeeds, HaveUndamagedSegmentsOfEveryForm) {
   std::set<core::SegmentForm> forms;
   for (const Seed& seed : make_seeds()) {
     const auto region = std::as_bytes(std::span(seed.image.board));
@@ -88,7 +88,7 @@ TEST(FuzzSeeds, HaveSegmentsOfEveryFormAndNoneOfThemIsDamaged) {
   EXPECT_EQ(forms.size(), static_cast<std::size_t>(core::kSegmentForms));
 }
 
-TEST(FuzzSeeds, AnImageIsWrittenAndReadAsItIs) {
+TEST(FuzzSeeds, AnEncodedImageDecodesToTheSameImage) {
   for (const Seed& seed : make_seeds()) {
     const StreamImage again = decode(encode(seed.image));
     EXPECT_EQ(again.ring, seed.image.ring);
@@ -104,7 +104,7 @@ TEST(FuzzSeeds, LimitFilesAreReadOrRefused) { try_texts("limits", try_limits); }
 TEST(FuzzSeeds, WordsAreReadOrRefused) { try_texts("words", try_words); }
 TEST(FuzzSeeds, CommandLinesAreReadOrRefused) { try_texts("arguments", try_arguments); }
 
-TEST(ByteFlip, NobodyCrashesHangsOrSaysWhatIsNoNumber) {
+TEST(ByteFlip, NoProcessCrashesHangsOrReturnsANonFiniteValue) {
   const testing::Ended ended =
       testing::Process(SPLINECAST_BYTEFLIP, {"--seconds", "3", "--seed", "7"}).wait();
   EXPECT_EQ(ended.code, 0) << ended.out << ended.err;

@@ -18,7 +18,7 @@ namespace {
 
 using ipc::Word;
 
-/// Takes numbers from the front of bytes; zeros when they have run out.
+/// Takes numbers from the front of bytes; zeros after their end.
 class Source {
  public:
   explicit Source(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -48,7 +48,8 @@ void put(std::vector<std::uint8_t>& out, Number value) {
   std::memcpy(out.data() + at, &value, sizeof value);
 }
 
-/// Calls `visit(begin, end)` for each stretch of words that are not 0; a single 0 does not end one.
+/// Calls `visit(begin, end)` for each range of words that are not 0. A single 0 does not end a
+/// range.
 void for_each_stretch(std::span<const Word> words, const auto& visit) {
   std::size_t i = 0;
   while (i < words.size()) {
@@ -68,7 +69,7 @@ void for_each_stretch(std::span<const Word> words, const auto& visit) {
 
 std::size_t below(std::size_t limit, std::mt19937_64& random) { return random() % limit; }
 
-/// Values at the ends of their ranges.
+/// Special values and values at the limits of their ranges.
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::array<double, 12> kDoubles{
     0,     -0.0,   1,      -1,    1e100,     -1e100,
@@ -113,7 +114,7 @@ Word interesting(std::mt19937_64& random, Word before, std::span<const Word> reg
   }
 }
 
-/// Where a region's interesting words are: begin and end, in words.
+/// A range of words in a region, from `begin` to before `end`.
 struct Range {
   std::size_t begin;
   std::size_t end;
@@ -124,14 +125,14 @@ constexpr Range kFixed{0, ipc::word_of(ipc::kHeaderFields, "start value")};
 constexpr Range kPerDimension{kFixed.end, ipc::kHeaderWords};
 constexpr std::size_t kBody = ipc::kBodyOffset / kWord;
 
-/// `count` words of the control block from `first` on, where the header says that it lies.
+/// `count` words of the control block from `first` on, at the offset in the header.
 Range control_of(std::span<const Word> region, std::size_t first, std::size_t count) {
   constexpr std::size_t kOffset = ipc::word_of(ipc::kHeaderFields, "control offset");
   const std::size_t begin = region[kOffset] % ipc::kBodyOffset / kWord + first;
   return {begin, begin + count};
 }
 
-/// The layout of a board's image; of no slots where its header is not sound.
+/// The layout of a board's image; without slots if its header is invalid.
 ipc::BoardLayout layout_of(std::span<const Word> region) {
   if (region.size() < kBody) return {};
   const ipc::RegionHeader header = ipc::decode_header(region);
@@ -143,7 +144,7 @@ ipc::BoardLayout layout_of(std::span<const Word> region) {
   return layout.bytes > region.size_bytes() ? ipc::BoardLayout{} : layout;
 }
 
-/// A part of a knot's slot: a tag, the rest of a cell, a node, what is beside a cell, a row.
+/// A part of a knot's slot: a cell with its tag, a node, the words beside a cell, or a row.
 Range part_of_slot(const ipc::BoardLayout& layout, std::mt19937_64& random) {
   const std::size_t slot = layout.slots + below(layout.capacity, random) * layout.stride;
   const std::size_t which = below(2, random);
@@ -163,8 +164,8 @@ Range part_of_slot(const ipc::BoardLayout& layout, std::mt19937_64& random) {
   }
 }
 
-/// A part of a region in which a word is to be changed. Most of a header's words lie in its first
-/// 256 bytes; most of what a region holds is not 0.
+/// The part of a region in which a mutation changes a word. Most words of a header are in its first
+/// 256 bytes.
 Range part_of(std::span<const Word> region, bool is_board, std::mt19937_64& random) {
   const ipc::BoardLayout board = is_board ? layout_of(region) : ipc::BoardLayout{};
   switch (below(board.capacity > 0 ? 10 : 5, random)) {
@@ -189,8 +190,8 @@ Range part_of(std::span<const Word> region, bool is_board, std::mt19937_64& rand
   }
 }
 
-/// A tag as no writer would have stored it here: another revision, near the committed one, another
-/// form or note, the other node or row.
+/// A wrong tag for this place: with another revision near the committed one, with another form or
+/// note, or of the other node or row.
 Word other_tag(Word tag, Word committed, std::mt19937_64& random) {
   constexpr unsigned kNoteBits = ipc::kTagRevisionShift;
   constexpr Word kNote = (Word{1} << kNoteBits) - 1;
@@ -212,7 +213,7 @@ Word other_tag(Word tag, Word committed, std::mt19937_64& random) {
   }
 }
 
-/// Changes a tag of the head or of a knot.
+/// Changes a tag of the summary or of a knot.
 void mutate_tag(std::vector<Word>& board, std::mt19937_64& random) {
   const ipc::BoardLayout layout = layout_of(board);
   if (layout.capacity == 0) return;
@@ -226,7 +227,7 @@ void mutate_tag(std::vector<Word>& board, std::mt19937_64& random) {
   if (at < board.size()) board[at] = other_tag(board[at], board[control.begin], random);
 }
 
-/// A word in a part, most often one that is not 0, as the parts are mostly empty.
+/// A word in a part. Prefers words that are not 0, because most words of a part are 0.
 std::size_t word_in(std::span<const Word> region, const Range& part, std::mt19937_64& random) {
   const std::size_t size = part.end - part.begin;
   const std::size_t begin = below(size, random);

@@ -8,8 +8,8 @@
 
 #include "ipc/memory/word.hpp"
 
-/// What a fuzzer feeds: the two regions of a stream as bytes, and a script of what is done with
-/// them. A seed is a stream that real roles have made; a mutation of it changes words.
+/// The input of a fuzzer: the two regions of a stream as bytes, and a script of actions on them. A
+/// seed is a stream that real roles have made; a mutation changes words of it.
 namespace splinecast::fuzz {
 
 struct StreamImage {
@@ -18,25 +18,26 @@ struct StreamImage {
   std::vector<std::uint8_t> script;  ///< see region_targets.hpp
 };
 
-/// Time namespace of a live stream in an image: that of whoever tries it.
+/// Placeholder for the time namespace of a live stream in an image; replaced when the image is
+/// used.
 inline constexpr ipc::Word kHere = 1;
 
 /// Largest region that an image holds, in words: 256 KiB.
 inline constexpr std::size_t kMaxWords = std::size_t{1} << 15U;
 
-/// Reads an image from the bytes of a file; any bytes are some image. Of the regions a file holds
-/// the stretches that are not 0: sizes of script, ring and board (32 bits each), the script, then
-/// stretches of words, each with where it begins in ring and board laid end to end, and its length
-/// (32 bits each).
+/// Reads an image from the bytes of a file; any bytes are a valid image. The format: sizes of
+/// script, ring and board (32 bits each); the script; then ranges of words that are not 0, each
+/// with its offset in the concatenation of ring and board and its length (32 bits each).
 [[nodiscard]] StreamImage decode(std::span<const std::uint8_t> bytes);
 
-/// The bytes of which `decode` makes this image.
+/// The bytes that `decode` reads as this image.
 [[nodiscard]] std::vector<std::uint8_t> encode(const StreamImage& image);
 
-/// Changes a few words of the regions, or bytes of the script, at random: of the header, control
-/// block, head, ring of changes, packed times, a knot's cells, nodes and rows and what is beside,
-/// items or anywhere, to a number that is likely to be of interest there; of tags the revision, the
-/// form, the other bits. Equal generators change the same.
+/// Changes random words of the regions or bytes of the script. The words are in the header, the
+/// control block, the summary, the ring of changes, the packed times, a knot's cells, nodes, rows
+/// and the words beside them, the items, or anywhere. The new values are likely to break these
+/// places; in tags, the revision, the form or other bits change. Deterministic for a given
+/// generator state.
 void mutate(StreamImage& image, std::mt19937_64& random);
 
 }  // namespace splinecast::fuzz

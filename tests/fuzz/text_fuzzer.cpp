@@ -3,7 +3,7 @@
 
 #include "tests/fuzz/text_targets.hpp"
 
-// libFuzzer's entry to one text target: SPLINECAST_FUZZ_TARGET names it.
+// libFuzzer's entry point for the text target SPLINECAST_FUZZ_TARGET.
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   splinecast::fuzz::SPLINECAST_FUZZ_TARGET(

@@ -29,7 +29,7 @@
 namespace splinecast::fuzz {
 namespace {
 
-/// A file in memory with a path of its own.
+/// A file in memory with its own path.
 class MemoryFile {
  public:
   explicit MemoryFile(std::string_view text) : descriptor_(memfd_create("fuzz", MFD_CLOEXEC)) {
@@ -57,7 +57,7 @@ std::vector<std::string> lines_of(std::string_view text) {
   return lines;
 }
 
-/// Takes the first line off a text.
+/// Removes the first line from a text and returns it.
 std::string take_line(std::string_view& text) {
   const std::size_t end = text.find('\n');
   const std::string line(text.substr(0, end));
@@ -86,13 +86,13 @@ void require_whole(const apps::WaypointTable& table) {
           "a table has a line for each row and a kind for each dimension");
   for (const auto* values : {&table.velocities, &table.accelerations}) {
     require(values->empty() || values->size() == table.size() * dimensions,
-            "a derivative is given for all positions or none");
+            "a derivative exists for all positions or none");
   }
   require(table.positions.size() == table.size() * dimensions, "each row has each position");
   for (const Time t : table.times) require(is_time_in_range(t), "times are in range");
 }
 
-/// What `replay` does with a table before it sends it, and what `advise` makes of it.
+/// Prepares a table like `replay` and `advise`.
 void prepare(apps::WaypointTable& table) {
   apps::WaypointTable shifted = table;
   apps::drop_unfit_rows(shifted, {}, apps::LatePolicy::shift, nullptr);
@@ -177,16 +177,16 @@ void try_words(std::string_view text) {
     (void)apps::parse_count(line);
     (void)apps::unit_of_time_column(line);
     if (const auto kind = parse_dimension(line)) {
-      require(parse_dimension(to_string(*kind)) == kind, "a kind reads back as it is");
+      require(parse_dimension(to_string(*kind)) == kind, "a printed kind parses to the same kind");
     }
     if (const auto condition = parse_condition(line)) {
       require(parse_condition(to_string(*condition)) == condition,
-              "a condition reads back as it is");
+              "a printed condition parses to the same condition");
     }
     try {
       ipc::require_stream_name(line);
       require(line.find('/') == std::string::npos && line.front() != '.',
-              "a stream's name leads to no other folder");
+              "a stream's name stays in its folder");
     } catch (const BadRequest&) {
       continue;
     }
@@ -200,10 +200,10 @@ void try_arguments(std::string_view text) {
   apps::Command command(program);
   apps::Verb::add_all(command, action);
   auto arguments = lines_of(text);
-  std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+  std::reverse(arguments.begin(), arguments.end());  // the order that CLI11 expects
   try {
     program.parse(arguments);
-    require(static_cast<bool>(action), "a command line that is right has an action");
+    require(static_cast<bool>(action), "a valid command line has an action");
   } catch (const CLI::ParseError&) {
     return;
   } catch (const apps::UsageError&) {

@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kMostActions = 48;
 
-/// Both regions of an image in memory, and the roles that go on with them.
+/// Both regions of an image in memory, and the roles that take them over.
 class Stream {
  public:
   explicit Stream(const StreamImage& image)
@@ -107,7 +107,7 @@ class Stream {
     return known;
   }
 
-  /// A waypoint with all that a method may need, behind the last one.
+  /// A waypoint near the time of the last one, with all derivatives that a method may need.
   Waypoint waypoint(Script& script) {
     for (double& value : state_) {
       const auto byte = script.byte();
@@ -151,7 +151,7 @@ class Stream {
     const auto later = std::int64_t{script.byte()} << script.byte() % 24U;
     clock_.time += Time(later);
     const StepResult result = solver_->step(clock_);
-    require(result.consumed <= ring_layout_.capacity, "a step takes no more than a ring holds");
+    require(result.consumed <= ring_layout_.capacity, "a step takes at most one ring of items");
     sampling_.sample(sampling_.pick(script), false);
   }
 
@@ -181,7 +181,7 @@ void try_writers(const StreamImage& image) {
   } catch (const BadRegion&) {
     return;  // refused
   } catch (const std::invalid_argument&) {
-    return;  // refused: options that a window cannot have
+    return;  // refused: invalid options of a window
   }
 }
 

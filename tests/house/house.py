@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
-"""Measures how the code is laid out, and checks it against limits.
+"""Measures the structure of the code and checks it against limits.
 
-    house.py rooms                 files of each folder
+    house.py rooms                 number of files in each folder
     house.py files                 lines per file, and the longest files
     house.py functions             the longest functions
     house.py headers               the installed headers
-    house.py layers                the rooms from the lowest to the highest, and includes that go up
-    house.py walk                  the files that a waypoint goes through, as CONTRIBUTING.md lists them
-    house.py symbols LIBRARY       what the shared library exports, against exports.txt of this folder
-                [--write]          writes that list instead
-    house.py page [--check]        writes docs/house.md; --check: exits 1 if it differs
+    house.py layers                the rooms from the lowest to the highest, and includes of higher rooms
+    house.py walk                  the files that a waypoint passes through, as listed in CONTRIBUTING.md
+    house.py symbols LIBRARY       compares the symbols that the shared library exports with exports.txt
+                [--write]          writes exports.txt instead
+    house.py page [--check]        writes docs/house.md; --check: exits with 1 if it is not up to date
 
-Each exits with 1 if a limit is passed. The limits: 20 files in a room, 30 in a folder of tests or docs; 400
-lines in a file, half of the files at most 150; 40 lines in a function; 22 installed headers.
+Each command exits with 1 if a limit is exceeded. The limits: 20 files in a room, 30 in a folder of tests or docs;
+400 lines in a file, with a median of at most 150; 40 lines in a function; 22 installed headers.
 """
 
 import argparse
@@ -29,7 +29,7 @@ EXPORTS = Path(__file__).resolve().parent / "exports.txt"
 PAGE = PROJECT / "docs" / "house.md"
 MOST_FILES, MOST_FILES_OF_TESTS, MOST_LINES, MEDIAN_LINES, MOST_FUNCTION_LINES, MOST_HEADERS = 20, 30, 400, 150, 40, 22
 
-# From the lowest room to the highest: a file includes its own room and those before it.
+# The rooms from the lowest to the highest. A file includes only files of its own room and of lower ones.
 ROOMS = {
     "core": "simd basics polynomial limits slopes forms solvers batch methods online",
     "ipc": "memory layout mapping ring board solve options sampling roles sweep verification",
@@ -40,7 +40,7 @@ LAYERS = [f"{layer}/{room}" for layer, rooms in ROOMS.items() for room in rooms.
 
 
 def files(*patterns):
-    """The tracked files, and new ones that are not ignored, that match any of these patterns."""
+    """The tracked files and the new files that are not ignored, if they match one of these patterns."""
     listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", "--", *patterns],
                             cwd=PROJECT, check=True, text=True, stdout=subprocess.PIPE).stdout
     return sorted({name for name in listed.splitlines() if (PROJECT / name).is_file()})
@@ -55,7 +55,7 @@ def sources():
 
 
 def rooms():
-    """Files of each folder."""
+    """Number of files in each folder."""
     out, broken = [], []
     counts = Counter()
     for name in files("core", "ipc", "apps", "bench", "tests", "docs", "examples"):
@@ -82,7 +82,7 @@ def file_lengths():
 
 
 def without_texts(code):
-    """The code with its comments, strings and characters blanked, line for line."""
+    """The code with blanks in place of comments, strings and characters; lines stay."""
     def blank(match):
         return re.sub(r"[^\n]", " ", match.group(0))
     code = re.sub(r'R"(\w*)\((.*?)\)\1"', blank, code, flags=re.S)
@@ -91,7 +91,7 @@ def without_texts(code):
 
 
 def functions_of(name):
-    """Each function's length from its first line to its closing brace, its first line, and its name."""
+    """(length, file, first line, name) of each function; the length includes the closing brace."""
     code = without_texts((PROJECT / name).read_text(encoding="utf-8"))
     found, stack, start = [], [], 0
     for i, c in enumerate(code):
@@ -116,7 +116,7 @@ def functions_of(name):
 
 
 def functions():
-    """The longest functions; tests are functions too."""
+    """The longest functions, including tests."""
     found = sorted((f for name in sources() for f in functions_of(name)), reverse=True)
     out = [f"median {statistics.median(f[0] for f in found):g} lines", "the longest:"]
     out += [f"{length:5}  {file}: {name}" for length, file, _, name in found[:5]]
@@ -126,7 +126,7 @@ def functions():
 
 
 def headers():
-    """The installed headers, which include nothing else of the project."""
+    """The installed headers, which include no other file of the project."""
     found = files("core/include/*.hpp", "ipc/include/*.hpp")
     out = [f"{len(found)} installed headers: " + " ".join(Path(name).stem for name in found)]
     broken = [f"{name} includes {included}, which is not installed"
@@ -142,7 +142,7 @@ def includes_of(name):
 
 
 def goes_up(name):
-    """What a file includes of a room above its own, or of a room without a place."""
+    """The includes of a file from a higher room or from a room that ROOMS does not list."""
     room = os.path.dirname(name)
     if room not in LAYERS:
         return [] if "/include/" in name or not name.startswith(("core/", "ipc/", "apps/")) else [f"{name}: no room"]
@@ -159,17 +159,17 @@ def goes_up(name):
 
 
 def layers():
-    """The rooms from the lowest to the highest, and includes that go up."""
+    """The rooms from the lowest to the highest, and includes of higher rooms."""
     out = [f"{layer}: {rooms_of}" for layer, rooms_of in ROOMS.items()]
     known = {os.path.dirname(name) for name in files("core/*.?pp", "ipc/*.?pp", "apps/*.?pp") if "/include/" not in name}
-    broken = [f"{room} has no place in ROOMS" for room in sorted(known - set(LAYERS))]
+    broken = [f"ROOMS does not list {room}" for room in sorted(known - set(LAYERS))]
     broken += [f"{room} of ROOMS has no file" for room in LAYERS if room not in known]
     broken += [up for name in files("core/*.?pp", "ipc/*.?pp", "apps/*.?pp") for up in goes_up(name)]
     return out, broken
 
 
 def walk():
-    """The files that CONTRIBUTING.md lists as the way of a waypoint."""
+    """The files that a waypoint passes through, as listed in CONTRIBUTING.md."""
     text = (PROJECT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     part = re.search(r"^## The way of a waypoint\n(.*?)(?=^## |\Z)", text, re.M | re.S)
     listed = re.findall(r"^\d+\. `([^`]+)`", part.group(1), re.M) if part else []
@@ -180,7 +180,7 @@ def walk():
 
 
 def symbols(library, write):
-    """What the shared library exports: functions, variables, and what exceptions are known by."""
+    """The exported symbols of the shared library: functions, variables, and type information of exceptions."""
     listed = subprocess.run(["nm", "-D", "--defined-only", "-C", library], check=True, text=True,
                             stdout=subprocess.PIPE).stdout
     exported = set()
@@ -193,7 +193,7 @@ def symbols(library, write):
         EXPORTS.write_text(text, encoding="utf-8")
     wanted = set(EXPORTS.read_text(encoding="utf-8").splitlines())
     broken = [f"not exported: {name}" for name in sorted(wanted - exported)]
-    broken += [f"exported, but not in {EXPORTS.name}: {name}" for name in sorted(exported - wanted)]
+    broken += [f"exported but not in {EXPORTS.name}: {name}" for name in sorted(exported - wanted)]
     return [f"{len(exported)} exported symbols"], broken
 
 
@@ -202,14 +202,16 @@ COMMANDS = {"rooms": rooms, "files": file_lengths, "functions": functions, "head
 
 
 def page():
-    parts = ["# How the code is laid out\n",
-             "`tests/house/house.py page` writes this page. [CONTRIBUTING.md](../CONTRIBUTING.md) says what the rooms are for.\n"]
+    parts = ["# Structure of the code\n",
+             "`tests/house/house.py page` writes this page. [CONTRIBUTING.md](../CONTRIBUTING.md) describes the "
+             "rooms.\n"]
     for name, command in COMMANDS.items():
         out, _ = command()
         parts.append(f"## {command.__doc__.splitlines()[0].rstrip('.')}\n\n`tests/house/house.py {name}`\n")
         parts.append("".join(f"    {line}\n" for line in out))
     count = len(EXPORTS.read_text(encoding="utf-8").splitlines())
-    parts.append("## What the shared library exports\n\n`tests/house/house.py symbols build/release/ipc/libsplinecast.so`\n")
+    parts.append("## The exported symbols of the shared library\n\n"
+                 "`tests/house/house.py symbols build/release/ipc/libsplinecast.so`\n")
     parts.append(f"    {count} exported symbols: tests/house/exports.txt\n")
     return "\n".join(parts)
 
@@ -228,7 +230,7 @@ def main():
             return 0
         if PAGE.read_text(encoding="utf-8") == text:
             return 0
-        print(f"{PAGE.relative_to(PROJECT)} is not what the code is: tests/house/house.py page")
+        print(f"{PAGE.relative_to(PROJECT)} is not up to date: run tests/house/house.py page")
         return 1
     if options.command == "symbols":
         if not options.library:

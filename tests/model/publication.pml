@@ -1,33 +1,33 @@
-/* The publication of ipc/publication.hpp: slots of two cells and two nodes, the ring of changes, the commit
- * word and the settled word; a writer that dies before any of its stores and is taken over; a reader that
- * keeps what it copied.
+/* Model of the publication in ipc/layout/publication.hpp: slots of two cells and two nodes, the ring of
+ * changes, the commit word and the settled word; a writer that may die before any of its stores and is taken
+ * over; a reader that keeps its copies.
  *
- * A tag is 2 · revision + the node that goes with the cell. A revision leaves a slot alone, solves its knot
- * again (stores a tag and a cell) or puts a new knot there (stores a tag, a node and a cell). Revision 0
- * holds zeros. With two slots the reader needs both under one revision, as a segment needs its two knots.
+ * A tag is 2 · revision + the index of the cell's node. A revision leaves a slot unchanged, solves its knot
+ * again (stores a tag and a cell) or stores a new knot in it (a tag, a node and a cell). Revision 0 holds
+ * zeros. With two slots the reader needs both under one revision, as a segment needs its two knots.
  *
- * With CHANGES=N, slot 0 is the head: every revision writes it, and it has no knot. The word of revision r
+ * With CHANGES=N, slot 0 is the summary: every revision writes it, and it has no knot. The word of revision r
  * in the ring of changes is word r mod N.
  *
  * With SETTLED (not together with CHANGES), knot s is the curve at time s. The settled word S promises that
  * no later revision changes a slot s < S.
  *
- * Held, whatever each revision does:
- * - what a reader accepts under revision r, copied now or kept from before, is what r holds;
- * - what a dead writer left can be read, at the first try;
+ * Checked for every sequence of revisions:
+ * - a copy that a reader accepts under revision r, made now or kept, holds the data of r;
+ * - after the death of a writer a reader succeeds at the first try;
  * - the changes that a reader counts are those of the revisions that it missed;
- * - what a reader calls settled is changed by no revision after the one that it reads.
+ * - no revision after the one that a reader reads changes a slot that this reader calls settled.
  *
- * One word stands for all words of a cell, and one for all of a node: which copies are accepted does not
- * depend on these words, so each of them must be right on its own. One reader stands for any number:
- * readers store nothing. A writer that discards its revision does what the successor does of a writer that
- * died just before the commit: it counts as one of LIVES.
+ * One word represents all words of a cell, and one all words of a node: the acceptance of a copy does not
+ * depend on these words, so each of them must be right on its own. One reader represents any number, because
+ * readers store nothing. A writer that discards its revision acts like the successor of a writer that died
+ * just before the commit: it counts as one of LIVES.
  *
- * This checks the algorithm, not its memory orderings: the steps of writer and reader interleave one load
- * or store at a time, each thread in program order (sequential consistency). A release or acquire that is
- * missing never shows here, nor in a test on x86. The orderings have been checked apart, with litmus
- * programs of the same protocol: those of slots and commit word under the memory models RC11 and IMM, those
- * of the ring of changes and the settled word under RC11. publication.hpp argues each of them.
+ * This checks the algorithm, not its memory orderings: the steps of writer and reader interleave one load or
+ * store at a time, each thread in program order (sequential consistency). A missing release or acquire shows
+ * neither here nor in a test on x86. The orderings have been checked separately, with litmus programs of the
+ * same protocol: those of slots and commit word under the memory models RC11 and IMM, those of the ring of
+ * changes and the settled word under RC11. publication.hpp justifies each of them.
  *
  * Each of these flags makes a mutant that must fail:
  * COMMIT_FIRST       stores the commit word before the slots
@@ -35,26 +35,26 @@
  * CELL_FIRST         stores the cell before the tag
  * NODE_FIRST         stores the node before the tag
  * NODE_IN_PLACE      puts a new knot into the node of the newest cell
- * NODE_OF_DEAD       goes by the node of the greatest tag, committed or not
+ * NODE_OF_DEAD       uses the node of the greatest tag, committed or not
  * LIVE_CELL          writes the newest cell, not the spare one
- * NO_RETIRE          the successor leaves tags that no commit has made visible
- * RETIRE_WITH_ZERO   the successor makes them the oldest tags, not the newest
+ * NO_RETIRE          the successor does not retire tags that no commit has made visible
+ * RETIRE_WITH_ZERO   the successor retires them as the oldest tags, not as the newest
  * DISCARD_IN_PLACE   a writer that discards its revision leaves its tags
  * NO_RECHECK         the reader does not load the tag again after the copy
- * KEEP_UNSEEN        uses a kept copy without a look
- * KEEP_OWN           looks only at the tag of the copy's own cell
- * KEEP_OWN_FIRST     looks at it before the tag of the other cell
+ * KEEP_UNSEEN        uses a kept copy without loading its tags
+ * KEEP_OWN           loads only the tag of the copy's own cell
+ * KEEP_OWN_FIRST     loads it before the tag of the other cell
  * KEEP_AT_ONCE       finds the newest cell from both tags in storage order, as if loaded at one instant
- * KEEP_NODE          copies only the cell again where the new tag has the same node bit
- * CHANGE_FIRST       stores the word of the ring before the tag of the head
+ * KEEP_NODE          copies only the cell again if the new tag has the same node bit
+ * CHANGE_FIRST       stores the word of the ring before the tag of the summary
  * CHANGES_LIMIT=N    counts the changes if the greatest tag is at most N, not N - 1, above the revision seen:
- *                    fails where a writer has died and its tag has been retired
- * CHANGES_UNTAGGED   counts them also if both tags are retired: fails where a successor dies as well, and is
+ *                    fails if a writer has died and its tag has been retired
+ * CHANGES_UNTAGGED   counts them also if both tags are retired: fails if a successor dies as well, and is
  *                    taken over, between the loads of the tags
- * TAGS_BEFORE_WORDS  loads the tags of the head before the words of the ring
+ * TAGS_BEFORE_WORDS  loads the tags of the summary before the words of the ring
  * SETTLED_EARLY      stores the settled word of a revision before its commit
  * SETTLED_LATE       the reader loads the settled word after the commit word
- * SETTLED_FORGOTTEN  the successor does not go on from the settled word that it finds */
+ * SETTLED_FORGOTTEN  the successor does not continue from the settled word that it finds */
 
 #ifndef LAST
 #define LAST 3 /* the last revision */
@@ -88,16 +88,16 @@ byte change[CHANGES];
 #ifdef SETTLED
 byte settled;
 #endif
-bool over; /* no writer lives, and none will come */
+bool over; /* no writer is alive, and none will follow */
 
-/* What the committed revision holds, and what readers were told. Nobody acts on it. */
+/* For assertions only: the data of the committed revision, and the promises to readers. */
 byte held_cell[SLOTS];
 byte held_node[SLOTS];
 #ifdef CHANGES
 byte held_change[LAST + 1]; /* of each revision */
 #endif
 #ifdef SETTLED
-byte promised; /* the greatest settled word that a reader has gone by */
+byte promised; /* the greatest settled word that a reader has used */
 #endif
 
 /* The cell that is newest under r, of a slot whose tags are t0 and t1. */
@@ -167,7 +167,7 @@ mtype = { leave, again, fresh }
 #define DISCARD
 #endif
 
-/* Forgets a revision that is committed or lost: fewer states. */
+/* Resets the variables of a revision that is committed or lost: fewer states. */
 #define FORGET s = 0; c = 0; m = 0; r = 0; value = 0; plan[0] = leave; plan[SLOTS - 1] = leave
 #ifdef COMMIT_FIRST
 #define COMMITTED s = 0
@@ -214,7 +214,7 @@ next_life:
 next_revision:
   do
 #ifdef SETTLED
-  :: FROZEN < SLOTS -> STORE(settled, FROZEN + 1) /* S1: of this revision, or later */
+  :: FROZEN < SLOTS -> STORE(settled, FROZEN + 1) /* S1: for this revision, or a later one */
 #endif
   :: atomic {
        revision < LAST ->
@@ -280,7 +280,7 @@ ended:
   over = true
 }
 
-/* Goes to the next slot if the copy kept of this one is what r holds, else drops it. */
+/* Skips to the next slot if the kept copy of this one holds the data of r, else drops the copy. */
 #ifdef KEEP_NODE
 #define DROP skip
 #else
@@ -302,7 +302,7 @@ ended:
   t0 = tag[2 * s + 1 - c]; t1 = tag[2 * s + c]; KEEP_IF(OTHER_IS_OLD(t0) && t1 == kept_tag[s])
 #endif
 
-/* The revision of the greatest tag of the head that is not retired; if there is none, one too high to count. */
+/* The revision of the greatest tag of the summary that is not retired; if both are, one too high to count. */
 #ifdef CHANGES_UNTAGGED
 #define UNTAGGED 0
 #else
@@ -315,7 +315,7 @@ ended:
 proctype Reader() {
   byte try, r, s, c, t0, t1;
   byte kept_tag[SLOTS], kept_cell_index[SLOTS], kept_cell[SLOTS], kept_node[SLOTS];
-  byte r_cell[SLOTS], r_node[SLOTS]; /* what r holds */
+  byte r_cell[SLOTS], r_node[SLOTS]; /* the data of r */
   bool whole, last;
 #ifdef CHANGES
   byte seen, q;
@@ -380,7 +380,7 @@ proctype Reader() {
      atomic {
        t0 = GREATEST(t0, t1);
        assert(right || t0 > seen + CHANGES_LIMIT);
-       assert(!last || t0 <= seen + CHANGES_LIMIT || r + 1 > seen + CHANGES_LIMIT); /* else useless */
+       assert(!last || t0 <= seen + CHANGES_LIMIT || r + 1 > seen + CHANGES_LIMIT); /* else never useful */
        seen = r;
        q = 0;
        right = false;
@@ -417,7 +417,7 @@ proctype Reader() {
         whole = (tag[2 * s + c] == t0); /* R4 */
 #endif
 next_slot:
-        atomic { /* forgets what it needs no more: fewer states */
+        atomic { /* resets variables that are no longer needed: fewer states */
           if
           :: !whole -> kept_tag[s] = NONE; kept_cell_index[s] = 0; kept_cell[s] = 0; kept_node[s] = 0
           :: whole

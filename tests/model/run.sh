@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Checks the models of this folder exhaustively with spin, and that each mutant of them is caught.
-#   run.sh BUILD [DEFINE…]   DEFINE is given to every search that sets no bound itself: -DLAST=4 -DLIVES=3
+#   run.sh BUILD [DEFINE…]   DEFINE is passed to every search that sets no bound itself: -DLAST=4 -DLIVES=3
 # Prints how many states each search stored. Exits with 77 if spin or cc is missing.
 set -euo pipefail
 source=$(cd "$(dirname "$0")" && pwd)
@@ -10,7 +10,7 @@ for tool in spin cc; do
   command -v "$tool" >/dev/null || { echo "$tool is not on this machine: the models are not checked"; exit 77; }
 done
 
-# Searches all states of a model, stopping at the first error; leaves what was found in pan.log.
+# Searches all states of a model up to the first error; writes the result to pan.log.
 level=-O1
 search() {  # model, flags…
   spin "${@:2}" -a "$source/$1.pml" >spin.log || { cat spin.log; exit 1; }
@@ -45,7 +45,7 @@ for mutant in COMMIT_FIRST TAG_LAST CELL_FIRST NODE_FIRST NODE_IN_PLACE NODE_OF_
 done
 holds publication -DLIVES=3  # a successor that dies too
 holds publication -DSLOTS=2 -DLAST=2 -DTRIES=1
-# Kept copies: revisions enough for two to pass between the loads of two tags.
+# Kept copies: enough revisions for two commits between the loads of two tags.
 holds publication -DLAST=4
 holds publication -DLAST=5 -DLIVES=1
 for mutant in KEEP_OWN_FIRST KEEP_AT_ONCE; do

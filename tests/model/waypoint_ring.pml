@@ -1,18 +1,18 @@
-/* The hand-over of ipc/ring/writer.hpp: a producer that appends items singly or several by one store of
- * `head`, dies at any store and is taken over; a solver that consumes, sleeps and is woken; and a passive
- * observer that nobody waits for. Steps interleave one load or store at a time, in program order: this
+/* Model of the ring in ipc/ring/writer.hpp: a producer that appends one or several items by one store of
+ * `head`, may die at any store and is taken over; a solver that consumes, sleeps and is woken; and a passive
+ * observer that no process waits for. Steps interleave one load or store at a time, in program order: this
  * checks the algorithm, not its memory orderings.
  *
- * One observer and one look stand for any number: observers store nothing and remember nothing.
+ * One observer that reads once represents any number: observers store nothing and remember nothing.
  *
- * Held: the solver reads every item whole and in order; the observer keeps no item that was, or was being,
- * overwritten; and the solver never sleeps on while an item waits (an end state that is none).
+ * Checked: the solver reads every item whole and in order; the observer keeps no item that was, or was being,
+ * overwritten; and the solver does not stay asleep while an item waits (that is an invalid end state).
  *
  * Each of these flags makes a mutant that must fail: HEAD_FIRST, TAIL_FIRST, OBSERVER_LE, NO_CLAIM,
  * NO_SECOND_LOOK, NO_WAKE. */
 
 #ifndef LAST
-#define LAST 4 /* items in all */
+#define LAST 4 /* total number of items */
 #endif
 #ifndef LIVES
 #define LIVES 2 /* producers, one after the other */
@@ -26,7 +26,7 @@ byte tail;          /* the solver's region */
 bool sleeping;
 bool asleep;        /* the solver is in the kernel, waiting on `head` */
 
-/* What item i was when `head` made it visible. Nobody acts on it. */
+/* For assertions only: the value of item i when `head` made it visible. */
 byte item[LAST];
 
 /* One store; the producer may die before it. */
@@ -91,7 +91,7 @@ next_life:
   od;
   goto ended;
 died:
-  asleep = false; /* no sleep lasts longer than a slice: a wake that died with its producer is made up for */
+  asleep = false; /* a sleep ends after one slice, so that a wake lost with its producer only delays */
   if
   :: life < LIVES -> goto next_life
   :: life == LIVES -> goto ended
@@ -127,7 +127,7 @@ proctype Solver() {
 #else
      :: h == seen ->
 #endif
-        atomic { /* futex wait: the kernel compares and sleeps in one */
+        atomic { /* futex wait: the kernel compares and sleeps atomically */
           if
           :: head == h -> asleep = true
           :: else
@@ -167,7 +167,7 @@ end_waiting:
   fi
 }
 
-/* Nobody moves any more: then the solver has taken all that there is. */
+/* When no process can take a step, the solver has consumed every item. */
 active proctype Rest() {
   timeout;
   assert(tail == head)

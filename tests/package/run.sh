@@ -33,7 +33,7 @@ g++ -std=c++20 "$source/examples/controller.cpp" $flags "-Wl,-rpath,$libraries" 
 
 for shared in "$work/cmake/controller" "$work/pkg_config"; do
   objdump -p "$shared" | grep -q 'NEEDED *libsplinecast\.so\.0\.1$' ||
-    { echo "$shared does not ask for libsplinecast.so.0.1"; exit 1; }
+    { echo "$shared is not linked to libsplinecast.so.0.1"; exit 1; }
 done
 
 printf 't,x\n0,1.5\n0.1,1.5\n0.2,1.5\n' >"$work/line.csv"

@@ -13,7 +13,7 @@
 
 /// Runs a stream's threads with one of its words as plain memory:
 ///   splinecast_plain_word none|WORD
-/// Built with ThreadSanitizer, which must report each WORD and find nothing wrong with `none`.
+/// Built with ThreadSanitizer, which must report a race for each WORD and none for `none`.
 namespace {
 
 using namespace splinecast;

@@ -3,9 +3,9 @@
 
     run.py README.md FOLDER-OF-SPLINECAST
 
-Its blocks are indented by four blanks; commands are lines that begin with splinecast, printf or
-kill. Durations are shortened. Each must end, with exit code 0 but for those below. Runs with a /dev/shm
-of its own; exits with 77 where that is not allowed.
+Its blocks are indented by four spaces; commands are lines that begin with splinecast, printf or
+kill. Durations are shortened. Each command must end with exit code 0; MACHINE lists the exceptions.
+Runs with a private /dev/shm; exits with 77 if that is not allowed.
 """
 
 import os
@@ -15,10 +15,10 @@ import sys
 import tempfile
 import time
 
-BOUND = 30  # seconds, for each of them
+BOUND = 30  # seconds, for each command
 SHORTER = [(r"--duration 5\b", "--duration 0.5"), (r"--seconds \d+", "--seconds 2"),
            (r"--streams 100\b", "--streams 3")]
-# Those that depend on the machine, and the exit codes that they may have besides 0.
+# Commands whose exit code depends on the machine, and the codes allowed in addition to 0.
 MACHINE = [("splinecast doctor", {1}), ("splinecast latency compare", {2, 3}),
            ("--mode spin", {2})]
 
@@ -41,7 +41,7 @@ def commands(readme):
 
 
 def script(lines):
-    """A shell script that tells each command's exit code."""
+    """A shell script that prints each command's exit code."""
     text = ""
     for number, line in enumerate(lines):
         if line.endswith("&"):
@@ -52,7 +52,7 @@ def script(lines):
 
 
 def is_allowed():
-    """Whether this user may have a /dev/shm of its own."""
+    """Whether this user may have a private /dev/shm."""
     return subprocess.run(private("true"), check=False, capture_output=True).returncode == 0
 
 
@@ -64,7 +64,7 @@ def private(command):
 
 
 def wait_while_it_goes_on(process, output):
-    """Waits for its end, or until it has told of no command for BOUND seconds."""
+    """Waits until the process ends, or until no command has ended for BOUND seconds."""
     told, end = 0, time.monotonic() + BOUND
     while process.poll() is None and time.monotonic() < end:
         time.sleep(0.05)
@@ -75,7 +75,7 @@ def wait_while_it_goes_on(process, output):
 
 
 def main():
-    """Runs them."""
+    """Runs the commands and checks their exit codes."""
     readme, programs = map(os.path.abspath, sys.argv[1:])
     if not is_allowed():
         print("needs a mount namespace of its own (root, or user namespaces)")
@@ -91,7 +91,7 @@ def main():
                                        start_new_session=True)
             wait_while_it_goes_on(started, out.name)
             try:
-                os.killpg(started.pid, 9)  # what hangs, or was left running
+                os.killpg(started.pid, 9)  # commands that hang or still run in the background
             except ProcessLookupError:
                 pass
             started.wait()
@@ -101,7 +101,7 @@ def main():
 
 
 def judge(lines, said, machine):
-    """Compares the exit codes with those there may be."""
+    """Compares the exit codes with the allowed ones."""
     codes = {int(n): int(code) for n, code in re.findall(r"^CODE (\d+) (\d+)$", said, re.MULTILINE)}
     wrong = 0
     for number, line in enumerate(lines):
@@ -110,10 +110,10 @@ def judge(lines, said, machine):
         may_be = {0}.union(*(more for text, more in machine if text in line))
         if codes.get(number) not in may_be:
             wrong += 1
-            print(f"{line}: {'exit code ' + str(codes[number]) if number in codes else 'no end'}")
+            print(f"{line}: {'exit code ' + str(codes[number]) if number in codes else 'hangs'}")
     if wrong:
         print(said)
-    print(f"{len(lines)} commands, {wrong} of them wrong")
+    print(f"{len(lines)} commands, {wrong} failed")
     return 1 if wrong or not lines else 0
 
 

@@ -16,7 +16,7 @@
 #include "tests/fixtures/processes/process.hpp"
 #include "tests/realtime/sending.hpp"
 
-/// The three loops as controllers would run them, in a process that dies at its first system call.
+/// The loops of reader, producer and solver in a process that is killed at its first system call.
 namespace splinecast::testing {
 namespace {
 
@@ -24,11 +24,11 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kDimensions = 7;
 constexpr std::uint64_t kWarmUp = 2'000;
-/// As long as it takes for a stream that has just begun, or has run dry, to be on its waypoints:
-/// until then a look ahead meets only some of the kinds of segments.
+/// How long a stream that has just begun, or has starved, needs to reach its waypoints. Before
+/// that, a horizon contains only some of the kinds of segments.
 constexpr Time kWarmUpTime = 300ms;
 constexpr std::uint64_t kRounds = 20'000;
-constexpr std::size_t kHorizon = 40;  ///< times of a look ahead
+constexpr std::size_t kHorizon = 40;  ///< times per horizon
 const SolverOptions kSolving{.history = Time::zero(), .wake = false};
 
 void expect_undisturbed(const ConfinedEnd& end) {
@@ -46,8 +46,8 @@ void expect_undisturbed(const ConfinedEnd& end) {
   ::testing::Test::RecordProperty("major_faults", std::to_string(end.major_faults));
 }
 
-/// The live loops read CLOCK_MONOTONIC. Where the kernel has no vDSO clock for this machine's clock
-/// source that is a system call, and whoever reads it pays for it.
+/// The live loops read CLOCK_MONOTONIC. The tests are skipped if this is a system call because the
+/// kernel has no vDSO clock for this machine's clock source.
 class RealTime : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -63,7 +63,7 @@ class RealTime : public ::testing::Test {
   }
 };
 
-/// Samples now and at random times around it, and looks ahead now and then.
+/// Samples at now and at random times around it, and sometimes a whole horizon.
 class RandomSampling {
  public:
   RandomSampling(const std::string& stream, ConfinedPage& page)
@@ -180,7 +180,7 @@ TEST_F(RealTime, SolvingMakesNoSystemCallNoAllocationAndNoPageFault) {
   EXPECT_GT(end.answered, 0U);
 }
 
-TEST_F(RealTime, ASolverThatWakesReadersDoesCallTheSystem) {
+TEST_F(RealTime, ASolverThatWakesReadersMakesASystemCall) {
   const TestStream stream;
   Sending sending(stream.name(), kDimensions);
   const ConfinedEnd end = run_confined(
@@ -197,7 +197,7 @@ TEST_F(RealTime, ASolverThatWakesReadersDoesCallTheSystem) {
   EXPECT_EQ(end.signal, SIGSYS);
 }
 
-TEST(Confined, ASystemCallKills) {
+TEST(Confined, ASystemCallKillsTheProcess) {
   const ConfinedEnd end = run_confined([](Confined& process) {
     process.confine();
     (void)syscall(SYS_getpid);
@@ -212,7 +212,7 @@ TEST(Confined, AllocationsAndPageFaultsAreCounted) {
     auto* const pages = static_cast<volatile char*>(
         mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
     madvise(const_cast<char*>(pages), kBytes, MADV_NOHUGEPAGE);
-    { const std::vector<int> first(100, 1); }  // so that the heap has what the next one takes
+    { const std::vector<int> first(100, 1); }  // the heap then has memory for the next one
     process.confine();
     for (std::size_t at = 0; at < kBytes; at += ipc::kPage) pages[at] = 1;
     { const std::vector<int> second(100, pages[0]); }

@@ -23,8 +23,8 @@
 #include "tests/fixtures/processes/process.hpp"
 #include "tests/realtime/sending.hpp"
 
-/// A reader that a priority above the writer's keeps on the writer's core: while it samples, the
-/// writer stands where it was preempted. Whoever waited for that writer would wait for ever.
+/// A reader on the writer's core with a higher priority: while it samples, the writer stays
+/// preempted. A reader that waited for the writer would wait forever.
 namespace splinecast::testing {
 namespace {
 
@@ -32,13 +32,13 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kDimensions = 64;  // most of a revision's time is its publication
 constexpr int kPriority = 10;
-constexpr int kBurst = 50;                             // samples at one preemption
+constexpr int kBurst = 50;                             // samples per preemption
 constexpr std::uint64_t kMidway = 200;                 // preemptions within a publication, at least
 constexpr std::uint64_t kPreemptions = 1000;           // preemptions in all, at least
 constexpr std::int64_t kMostCpuPerSample = 1'000'000;  // ns; a sample takes less than 1000
 constexpr int kForbidden = 77;
 
-/// Keeps this process, and what it forks meanwhile, on one core.
+/// Keeps this process and the processes that it forks on one core.
 class OneCore {
  public:
   OneCore() {
@@ -56,8 +56,7 @@ class OneCore {
   cpu_set_t before_{};
 };
 
-/// A timer that can be waited for. Each wait is of another length, so that the writer is preempted
-/// anywhere.
+/// A timer whose waits have random lengths, so that the writer is preempted at any point.
 class Alarm {
  public:
   void wait() {
@@ -73,7 +72,7 @@ class Alarm {
   std::mt19937_64 random_{1};
 };
 
-/// Sees whether a stream's writer is at work between its first store of a revision and the commit.
+/// Detects whether a stream's writer is between the first store of a revision and its commit.
 class PublicationWatch {
  public:
   explicit PublicationWatch(const std::string& stream)
@@ -102,7 +101,7 @@ class PublicationWatch {
   }
 
  private:
-  static constexpr ipc::Word kChanged = 16;  ///< knots back that a revision may change
+  static constexpr ipc::Word kChanged = 16;  ///< newest knots that a revision may change
 
   ipc::Region region_;
   ipc::BoardLayout layout_;
@@ -142,7 +141,7 @@ void read_above(const std::string& stream, Confined& process) {
   process.finish();
 }
 
-TEST(PreemptedWriter, AReaderOfHigherPriorityOnItsCoreNeverWaitsForIt) {
+TEST(PreemptedWriter, AReaderOfHigherPriorityOnTheSameCoreNeverWaitsForTheWriter) {
   const TestStream stream;
   const OneCore core;
   Sending sending(stream.name(), kDimensions);
@@ -158,7 +157,7 @@ TEST(PreemptedWriter, AReaderOfHigherPriorityOnItsCoreNeverWaitsForIt) {
   while (ipc::Internals::head(solver).knots < 100) work();
   const ConfinedEnd end =
       run_confined([&](Confined& process) { read_above(stream.name(), process); }, work);
-  if (end.code == kForbidden) GTEST_SKIP() << "SCHED_FIFO takes CAP_SYS_NICE or RLIMIT_RTPRIO";
+  if (end.code == kForbidden) GTEST_SKIP() << "SCHED_FIFO needs CAP_SYS_NICE or RLIMIT_RTPRIO";
   EXPECT_EQ(end.signal, 0);
   EXPECT_EQ(end.code, 0);
   RecordProperty("samples", std::to_string(end.rounds));
@@ -169,7 +168,7 @@ TEST(PreemptedWriter, AReaderOfHigherPriorityOnItsCoreNeverWaitsForIt) {
   RecordProperty("unanswered", std::to_string(end.rounds - end.answered));
   RecordProperty("cpu_ns_per_sample",
                  std::to_string(end.cpu_ns / std::max<std::uint64_t>(1, end.rounds)));
-  // Nobody stores while the reader samples, so that not even the first try can fail.
+  // No process stores while the reader samples, so that every sample succeeds at the first try.
   EXPECT_EQ(end.answered, end.rounds);
   EXPECT_GE(end.midway, kMidway);
   EXPECT_LT(end.cpu_ns, end.rounds * kMostCpuPerSample);

@@ -11,8 +11,8 @@
 
 namespace splinecast::testing {
 
-/// A live producer that keeps a lead of up to 100 ms at 20 kHz, and now and then replaces the
-/// future. Allocates when made only.
+/// A live producer that sends at 20 kHz with a lead of up to 100 ms and replaces the future at
+/// every 512th waypoint. Only its constructor allocates.
 class Sending {
  public:
   static constexpr Time kInterval = std::chrono::microseconds(50);
@@ -24,8 +24,8 @@ class Sending {
 
   [[nodiscard]] Producer& producer() { return producer_; }
 
-  /// Appends a waypoint, or replaces the future by a few. Returns false if the ring is full, or
-  /// enough has been sent ahead.
+  /// Appends a waypoint, or replaces the future by 4. Returns false if nothing was accepted: the
+  /// ring is full or the lead is reached.
   bool send() {
     const Time now = clock_.now();
     const Time earliest = std::max(producer_.earliest(), now) + kMargin;

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Applies the recipes of CONTRIBUTING.md, builds what they make, and runs it.
+"""Applies the recipes of CONTRIBUTING.md, builds the result and runs it.
 
-    run.py [TREE]    TREE is where the copy of the sources and its build go (build/recipes)
+    run.py [TREE]    TREE is the folder for the copy of the sources and its build (build/recipes)
 
-A file NAME.patch of this folder follows one recipe. Above its diff are the lines
+Each file NAME.patch in this folder follows one recipe. Above its diff are the lines
 
-    Files: how many files it may touch
-    Run:   a command, with PROGRAM and TESTS for the two programs; it must end with 0
-    Shows: what its output has
+    Files: largest number of files that it touches
+    Run:   a command that must exit with 0; PROGRAM and TESTS are the two programs
+    Shows: a text that the output must contain
 """
 
 import os
@@ -20,12 +20,12 @@ from pathlib import Path
 RECIPES = Path(__file__).resolve().parent
 PROJECT = RECIPES.parent.parent
 PROGRAMS = {"PROGRAM": "bin/splinecast", "TESTS": "bin/splinecast_tests"}
-# The suites that the patches' commands run.
+# The tests that the commands of the patches run.
 TEST_FILES = "core/methods/|apps/streams/count|apps/tables/semicolons|ipc/layout/page|ipc/board/"
 
 
 def copy_sources(tree):
-    """The tracked files and new ones. A file that has not changed keeps its time, so that a second run builds little."""
+    """Copies tracked and new files. They keep their times, so that a second run builds only what has changed."""
     listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=PROJECT, check=True,
                             text=True, stdout=subprocess.PIPE).stdout
     shutil.rmtree(tree / "source", ignore_errors=True)
@@ -76,7 +76,7 @@ def main():
         failed += len(missing)
         print(f"{path.name}: {len(touched)} files: {'failed' if missing else 'built and run'}")
         if missing:
-            print(f"the output lacks {missing}:\n{output}")
+            print(f"the output does not contain {missing}:\n{output}")
     return 1 if failed else 0
 
 

@@ -11,25 +11,25 @@ namespace [[gnu::visibility("default")]] splinecast {
 struct BSpline {
   int degree = kCubicOrder - 1;        ///< 0 … kMaxPolynomialOrder − 1
   std::size_t dimensions = 0;          ///< D
-  Time origin{};                       ///< time that the knots count from
-  std::vector<Time> knots;             ///< n + degree + 1, from the origin; never decreasing
+  Time origin{};                       ///< zero of the knot times
+  std::vector<Time> knots;             ///< n + degree + 1, relative to `origin`; non-decreasing
   std::vector<double> control_points;  ///< [i][dimension], n of them, in the unit of the positions
 };
 
-/// The B-spline of a curve, all of whose segments are raised to the highest order k. The first and
-/// the last knot have multiplicity k; an interior break has degree − continuity(): for cubics 1
-/// where they join C² (2 at a step of the acceleration, 3 at one of the velocity, 4 at one of the
-/// position), for quintics 3 where they join C². Below degree 3 the continuity counts as at most
+/// Converts a curve to a B-spline, with all segments raised to the highest order k. The first and
+/// the last knot have multiplicity k. An interior break has multiplicity degree − continuity(): for
+/// cubics 1 at a C² break (2 at a step of the acceleration, 3 at one of the velocity, 4 at one of
+/// the position), for quintics 3 at a C² break. Below degree 3 the continuity is taken as at most
 /// degree − 1. Exact to rounding.
 ///
 /// Throws std::invalid_argument if the curve has no segment of positive length: the hold of a
-/// single waypoint has no interval for a knot vector to span. O(n·k²·D); allocates.
+/// single waypoint has no interval for a knot vector. O(n·k²·D); allocates.
 [[nodiscard]] BSpline to_b_spline(const PiecewisePolynomial& curve);
 
-/// The curve of a B-spline between its knots `degree` and n, a segment of order degree + 1 for each
-/// interval that is not empty. Exact to rounding. Throws std::invalid_argument,
-/// with index and value, for a degree out of range, knots that decrease or whose number does not go
-/// with the control points, and if no interval is left. O(n·k²·(k + D)); allocates.
+/// Converts a B-spline to a curve between its knots `degree` and n, with one segment of order
+/// degree + 1 for each non-empty interval. Exact to rounding. Throws std::invalid_argument, with
+/// index and value, for a degree out of range, for decreasing knots, for a number of knots that
+/// does not match the control points, and if no interval is left. O(n·k²·(k + D)); allocates.
 [[nodiscard]] PiecewisePolynomial from_b_spline(const BSpline& spline);
 
 }  // namespace splinecast

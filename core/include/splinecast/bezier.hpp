@@ -8,8 +8,8 @@
 
 namespace [[gnu::visibility("default")]] splinecast {
 
-/// A segment by its control points: as many as its order, the first and the last on the curve,
-/// which lies within their convex hull.
+/// A segment given by its control points: `order` of them, the first and the last on the curve. The
+/// curve is inside their convex hull.
 struct BezierSegment {
   Time left{};
   Time right{};
@@ -17,13 +17,13 @@ struct BezierSegment {
   std::vector<double> control_points;  ///< [point][dimension], in the unit of the positions
 };
 
-/// The control points of every segment, each at its own order; exact to rounding. All those of a
-/// hold lie on it. O(n·k²·D); allocates.
+/// The control points of every segment, each at its own order; exact to rounding. All control
+/// points of a hold are its position. O(n·k²·D); allocates.
 [[nodiscard]] std::vector<BezierSegment> to_bezier(const PiecewisePolynomial& curve);
 
-/// The curve of consecutive segments. Exact to rounding; the r-th derivative is a difference of
-/// positions divided by h^r, so that a curve whose positions are large compared with its moves
-/// loses digits of it. A segment of no length must stand alone and holds its first control point.
+/// Converts consecutive Bézier segments to a curve. Exact to rounding. The r-th derivative is a
+/// difference of positions divided by h^r: it loses digits if the positions are large compared with
+/// their changes. A segment of zero length must be the only one; it holds its first control point.
 /// Throws std::invalid_argument as PiecewisePolynomial::append does. O(n·k²·D); allocates.
 [[nodiscard]] PiecewisePolynomial from_bezier(std::size_t dimensions,
                                               std::span<const BezierSegment> segments);

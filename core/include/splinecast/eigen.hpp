@@ -19,7 +19,7 @@ template <int Dimensions = Eigen::Dynamic>
       values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-/// A state of fixed size in Eigen vectors, for programs whose dimensions are known when compiled.
+/// A state of fixed size in Eigen vectors, for programs whose dimensions are known at compile time.
 template <int Dimensions>
 struct EigenState {
   Eigen::Matrix<double, Dimensions, 1> position, velocity, acceleration, jerk;

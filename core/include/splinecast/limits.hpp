@@ -11,20 +11,20 @@
 #include "splinecast/dimension_kind.hpp"
 #include "splinecast/time.hpp"
 
-/// Limits of motion, in the units of the dimensions. Unless a function says otherwise, it is O(D),
-/// allocates nothing and throws nothing.
+/// Motion limits, in the units of the dimensions. Functions are O(D) and do not allocate or throw
+/// unless documented.
 namespace [[gnu::visibility("default")]] splinecast {
 
 /// Limits of velocity, acceleration and jerk, and bounds of the position, in the units of the
-/// dimensions. Each list has one value per dimension, or none: no limit of that kind.
+/// dimensions. A list has one value per dimension; an empty list means no limit of that kind.
 struct MotionLimits {
-  std::vector<double> velocity{};  ///< of the absolute value, as the next two; 0: none
+  std::vector<double> velocity{};  ///< limit of the absolute value, as the next two; 0: none
   std::vector<double> acceleration{};
   std::vector<double> jerk{};
   std::vector<double> lower{};  ///< bounds of the position; −∞ and +∞: none
   std::vector<double> upper{};
 
-  /// Whether there is no limit of any kind: every value says "none".
+  /// Whether no dimension has a limit of any kind.
   [[nodiscard]] bool empty() const noexcept;
 
   friend bool operator==(const MotionLimits&, const MotionLimits&) = default;
@@ -35,17 +35,17 @@ enum class LimitKind : std::uint8_t { velocity = 0, acceleration = 1, jerk = 2, 
 inline constexpr std::size_t kLimitKinds = 4;
 [[nodiscard]] std::string_view to_string(LimitKind kind) noexcept;
 
-/// Where a segment, or a state, comes nearest to a limit, or is farthest beyond it.
+/// The point of a segment, or a state, that is nearest to a limit or exceeds one the most.
 struct Excess {
-  /// Value over limit. Of a position: its distance from the middle of its bounds over half their
-  /// distance; where one bound only is finite, 1 plus what is beyond it over its size, or over 1 if
-  /// that is larger. Negative: there is no limit; infinite: the value is no number.
+  /// Value / limit. For a position: its distance from the middle of the bounds / half the distance
+  /// between them; with only one finite bound b, 1 + the amount by which b is exceeded /
+  /// max(1,|b|). Negative: there is no limit; infinite: the value is NaN.
   double ratio = -1;
   LimitKind kind = LimitKind::velocity;
-  std::size_t dimension = 0;  ///< of a quaternion its first
-  double value = 0;           ///< with its sign; of a quaternion the bound of its magnitude
-  double limit = 0;           ///< the limit, what is allowed instead, or the bound of a position
-  double u = 0;               ///< seconds after the left end of the segment; 0 of a state
+  std::size_t dimension = 0;  ///< for a quaternion its first
+  double value = 0;           ///< signed; for a quaternion, an upper bound of the magnitude
+  double limit = 0;           ///< the limit, the allowance that replaces it, or a position bound
+  double u = 0;               ///< seconds after the left end of the segment; 0 for a state
 };
 
 /// The limits of one joint, as in MotionLimits.
@@ -58,25 +58,25 @@ struct NamedLimits {
   double upper = std::numeric_limits<double>::infinity();
 };
 
-/// What a solver does about a waypoint with which the curve passes a limit.
+/// What a solver does with a waypoint that makes the curve exceed a limit.
 enum class Beyond : std::uint8_t {
-  report = 0,  ///< take it, count it and note where
+  report = 0,  ///< accept it, count it and record where
   refuse = 1,  ///< refuse it
 };
 
-/// Throws std::invalid_argument, naming the limit and its value, unless every limit is a positive
-/// number up to kLargestValue or says "none", and every lower bound lies below its upper bound.
+/// Throws std::invalid_argument, naming the limit and its value, unless every limit is 0 (none) or
+/// positive and at most kLargestValue, and every lower bound is below its upper bound.
 void require_limits(const MotionLimits& limits);
 
 /// The same; in addition every list must be empty or have one value per dimension.
 void require_limits(const MotionLimits& limits, std::size_t dimensions);
 
-/// The same; in addition a wrapping dimension and a quaternion must have no bounds, and a
-/// quaternion's second to fourth dimension no limits but those of the first.
+/// The same; in addition a periodic dimension and a quaternion must have no bounds, and the second
+/// to fourth dimension of a quaternion must have no limit or that of the first.
 void require_limits(const MotionLimits& limits, std::span<const Dimension> dimensions);
 
-/// Limits of which each list has one value per dimension or none: a list of one value holds for
-/// all dimensions. Throws std::invalid_argument for other sizes. Allocates.
+/// Expands lists of one value to all dimensions. The lists of the result are empty or have one
+/// value per dimension. Throws std::invalid_argument for other sizes. Allocates.
 [[nodiscard]] MotionLimits spread(const MotionLimits& limits, std::size_t dimensions);
 
 }  // namespace splinecast

@@ -28,42 +28,42 @@ using FitAtOnce = PiecewisePolynomial (*)(const Waypoints& waypoints, const Cond
 
 namespace [[gnu::visibility("default")]] splinecast {
 
-/// What a method promises of its curves; the tests hold every method to it.
+/// Properties of the curves of a method; the tests check them for every method.
 struct Laws {
   int continuity;            ///< C^0, C^1 or C^2 at the knots
-  int degree;                ///< highest degree of the polynomials in time that it reproduces on
-                             ///< any mesh, given the right ends
+  int degree;                ///< highest degree of polynomials in time that it reproduces on any
+                             ///< mesh, with matching boundary conditions
   int order_of_convergence;  ///< error in position O(h^this) away from the ends, on regular
                              ///< meshes, for a smooth function without extrema
   bool is_interpolating = true;  ///< passes through its waypoints
   bool is_linear = true;  ///< equivariant to every affine map of x, also between dimensions; else
-                          ///< to those of each dimension alone
+                          ///< to those of each dimension separately
   bool is_scale_free = true;  ///< equivariant to scaling of x; else to shifts and mirroring only
 };
 
-/// What follows from how a method finds its knot velocities. Defaults are those of a method that
-/// finds them from the positions around a knot.
+/// Properties that follow from how a method computes its knot velocities. The defaults are those of
+/// a method that computes them from the positions around a knot.
 struct MethodTraits {
-  bool converges = false;       ///< a longer settle lag makes it more accurate
-  bool needs_velocity = false;  ///< of the waypoints; one of order 6 needs their accelerations too
-  bool has_own_tail = false;    ///< at the newest knot, which no option changes
-  bool smooths = false;         ///< it takes λ, and moves the knots too
-  ConditionKind own_end = ConditionKind::own;  ///< at the end of a stream, if nothing is asked for
+  bool converges = false;                      ///< a longer settle lag makes it more accurate
+  bool needs_velocity = false;                 ///< in the waypoints; with order 6 accelerations too
+  bool has_own_tail = false;                   ///< its condition at the newest knot is fixed
+  bool smooths = false;                        ///< it uses λ, and moves the knots
+  ConditionKind own_end = ConditionKind::own;  ///< default at the end of a stream
 };
 
-/// An interpolant. There is one object for each; compare by address.
+/// A method of interpolation. There is one object for each; compare by address.
 struct Method {
   std::string_view name;
-  std::uint64_t number = 0;           ///< names it in shared memory: never given to another
-  core::MakeSolver solver = nullptr;  ///< makes its solver; null: it needs all waypoints at once
-  core::FitAtOnce fit_at_once = nullptr;  ///< makes its curve of all waypoints; null: by its solver
+  std::uint64_t number = 0;               ///< identifies it in shared memory; never reused
+  core::MakeSolver solver = nullptr;      ///< makes its solver; null: batch only
+  core::FitAtOnce fit_at_once = nullptr;  ///< fits all waypoints at once; null: uses `solver`
   MethodTraits traits{};
-  const core::SlopeRule* rule = nullptr;  ///< of a local method
-  int order = kCubicOrder;                ///< of its segments; 6 also takes accelerations
-  std::size_t look_ahead = 0;             ///< knots after which a knot is exact; 0: never quite
+  const core::SlopeRule* rule = nullptr;  ///< slope rule of a local method
+  int order = kCubicOrder;     ///< of its segments; with 6 it may also need accelerations
+  std::size_t look_ahead = 0;  ///< newer knots after which a knot is exact; 0: never
   Laws laws{};
 
-  /// Whether it can be solved while waypoints come.
+  /// Whether it can be solved online, while waypoints arrive.
   [[nodiscard]] bool streams() const noexcept { return solver != nullptr; }
   /// Whether a longer settle lag makes it more accurate.
   [[nodiscard]] bool converges() const noexcept { return traits.converges; }
@@ -71,9 +71,9 @@ struct Method {
   [[nodiscard]] bool needs_acceleration() const noexcept {
     return traits.needs_velocity && order == kMaxOrder;
   }
-  /// Whether it has a tail of its own at the newest knot, which no option changes.
+  /// Whether its condition at the newest knot is fixed, so that no option changes it.
   [[nodiscard]] bool has_own_tail() const noexcept { return traits.has_own_tail; }
-  /// Whether it takes λ and passes near its waypoints, not through them.
+  /// Whether it uses λ and passes near its waypoints, not through them.
   [[nodiscard]] bool smooths() const noexcept { return traits.smooths; }
 };
 
@@ -87,14 +87,14 @@ struct Method {
 [[nodiscard]] const Method* find_method(std::string_view name) noexcept;
 [[nodiscard]] const Method* find_method(std::uint64_t number) noexcept;
 
-/// The names of all methods, or of those that stream, with ", " between.
+/// The names of all methods, or of those that stream, separated by ", ".
 [[nodiscard]] std::string method_names(bool only_streaming);
 
-/// A method and its parameters: all that makes a curve of waypoints but the conditions at its ends.
+/// A method and its parameters: all options of a curve except the boundary conditions.
 struct Interpolant {
   const Method* method = &c2();
-  double lambda = 0;  ///< of `smoothing`: λ, 0 … 1e100, in s³, in Σ(x_i − f(t_i))² + λ∫f″²
-  double time_scale = 1;  ///< of `rounded`: > 0, seconds that count as one unit of position
+  double lambda = 0;  ///< for `smoothing`: λ in Σ(x_i − f(t_i))² + λ∫f″², 0 … 1e100 s³
+  double time_scale = 1;  ///< for `rounded`: > 0, seconds that count as one unit of position
 
   friend bool operator==(const Interpolant&, const Interpolant&) = default;
 };

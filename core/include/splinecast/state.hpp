@@ -21,7 +21,8 @@ struct StateRef {
   std::span<double> jerk;
 };
 
-/// A state with memory of its own. Allocates once, when it is made; may be sampled into for ever.
+/// A state that owns its memory. Only the constructor allocates; one object can be used for any
+/// number of samples.
 class State {
  public:
   /// Makes a zero state of `dimensions` values per derivative.
@@ -52,8 +53,8 @@ class State {
   std::vector<double> values_;
 };
 
-/// A set of derivatives: what is wanted of a sample. Wherever they lie one behind the other, it is
-/// in this order. The bit of the r-th derivative is 1 << r.
+/// A set of derivatives to evaluate. Values of several derivatives are stored in this order. The
+/// bit of the r-th derivative is 1 << r.
 enum class Derivatives : std::uint8_t {
   none = 0,
   position = 1,
@@ -72,7 +73,7 @@ enum class Derivatives : std::uint8_t {
   return (set | wanted) == set;
 }
 
-/// How many derivatives there are in the set: 0 … 4.
+/// Number of derivatives in the set: 0 … 4.
 [[nodiscard]] constexpr std::size_t count(Derivatives set) noexcept {
   return static_cast<std::size_t>(std::popcount(static_cast<std::uint8_t>(set)));
 }

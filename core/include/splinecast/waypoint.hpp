@@ -8,13 +8,13 @@
 
 namespace [[gnu::visibility("default")]] splinecast {
 
-/// The largest magnitude of a position, velocity or acceleration. Far beyond any use, and so far
-/// below a double's range that no formula overflows on the way.
+/// The largest magnitude of a position, velocity or acceleration. Far above any real value, and so
+/// far below the range of a double that no formula overflows.
 inline constexpr double kLargestValue = 1e100;
 
-/// Whether a value can be taken: a number within ±kLargestValue.
+/// Whether a value is valid: not NaN and within ±kLargestValue.
 [[nodiscard]] constexpr bool is_usable(double value) noexcept {
-  return value >= -kLargestValue && value <= kLargestValue;  // no NaN is
+  return value >= -kLargestValue && value <= kLargestValue;  // false for NaN
 }
 
 /// The earliest and latest times: the difference of any two fits into 64 bits.
@@ -24,8 +24,8 @@ static_assert(kLatestTime - -kLatestTime > Time::zero());
   return time >= -kLatestTime && time <= kLatestTime;
 }
 
-/// What a producer gives: a time, a position and, optionally, velocity and acceleration.
-/// Spans hold one value per dimension; an empty span says "not given". Does not own its values.
+/// The input from a producer: a time, a position and, optionally, velocity and acceleration. Spans
+/// hold one value per dimension; an empty span means "not given". Does not own its values.
 struct Waypoint {
   Time time{};
   std::span<const double> position{};
@@ -41,8 +41,8 @@ struct Instant {
   std::span<const double> acceleration;
 };
 
-/// Waypoints of a whole recording: values are [waypoint][dimension], `velocities` and
-/// `accelerations` empty if not given. A view: it owns nothing.
+/// Waypoints of a whole recording: values are [waypoint][dimension]; `velocities` and
+/// `accelerations` are empty if not given. A view: it owns nothing.
 struct Waypoints {
   std::size_t dimensions = 0;
   std::span<const Time> times{};

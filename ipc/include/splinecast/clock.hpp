@@ -8,14 +8,13 @@
 
 namespace [[gnu::visibility("default")]] splinecast {
 
-/// Which clock a stream's times are read against.
+/// The clock of a stream's times.
 enum class StreamClock : std::uint64_t {
-  recorded = 0,   ///< the recording's own stamps, against no clock
+  recorded = 0,   ///< the recording's time stamps; no clock
   monotonic = 1,  ///< CLOCK_MONOTONIC of this host: a live stream
 };
 
-/// Where the time comes from. The solver takes it as an argument, so that tests drive the same
-/// code with a simulated clock.
+/// The source of the time. The solver takes it as an argument, so that tests can simulate a clock.
 class Clock {
  public:
   Clock() = default;
@@ -23,15 +22,15 @@ class Clock {
   Clock& operator=(const Clock&) = delete;
   virtual ~Clock() = default;
 
-  /// The time now, in nanoseconds from the clock's origin; must never go back. Every step of a live
-  /// stream reads it a few times: it should be cheap, and must not block.
+  /// The current time, in nanoseconds since the clock's origin. Must never decrease and must not
+  /// block. Should be cheap: each step of a live stream calls it a few times.
   [[nodiscard]] virtual Time now() const noexcept = 0;
 
-  /// The same to within some milliseconds, never later: cheaper where that is enough.
+  /// The same to within some milliseconds, never later than now(). Cheaper.
   [[nodiscard]] virtual Time about_now() const noexcept { return now(); }
 };
 
-/// The instant when a timeout that begins now has passed; the end of time for very long ones.
+/// The end of a timeout that begins now, at most Time::max().
 [[nodiscard]] inline Time deadline(const Clock& clock, Time timeout) noexcept {
   const Time now = clock.now();
   return now + std::min(timeout, Time::max() - now);

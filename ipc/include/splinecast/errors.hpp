@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
-/// What opening, attaching, stepping, finishing and removing may throw. `append`, `replace_from`,
-/// `start_from`, `sample`, `preview` and `sample_many` never throw: they return statuses.
+/// Exceptions of opening, attaching, stepping, finishing and removing. `append`, `replace_from`,
+/// `start_from`, `sample`, `preview` and `sample_many` never throw: they return a status.
 namespace [[gnu::visibility("default")]] splinecast {
 
 /// Base of the errors below. The message names the stream and the offending values.
@@ -12,32 +12,32 @@ class StreamError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// There is no stream of this name, or none came in time.
+/// There is no stream of this name, or none appeared before the timeout.
 class NoSuchStream : public StreamError {
  public:
   using StreamError::StreamError;
 };
 
-/// Another living process owns the region that was to be written or removed.
+/// Another living process owns the region to be written or removed.
 class StreamBusy : public StreamError {
  public:
   using StreamError::StreamError;
 };
 
-/// A region that must not be used: another layout, a wrong size, an owner or a mode that is not
-/// trusted, another time namespace.
+/// A region that must not be used: another layout, a wrong size, an untrusted owner or mode,
+/// another time namespace.
 class BadRegion : public StreamError {
  public:
   using StreamError::StreamError;
 };
 
-/// No memory, shared memory or file descriptors are left now: trying again later may succeed.
+/// No memory, shared memory or file descriptor is left: a later retry may succeed.
 class OutOfResources : public BadRegion {
  public:
   using BadRegion::BadRegion;
 };
 
-/// What was asked for cannot be, or contradicts the stream as it stands: a usage error.
+/// A usage error: invalid arguments, or options that contradict the existing stream.
 class BadRequest : public StreamError {
  public:
   using StreamError::StreamError;

@@ -14,34 +14,34 @@
 #include "splinecast/method.hpp"
 #include "splinecast/time.hpp"
 
-/// What the roles of a stream are told: structs of values with their defaults. The role that takes
-/// them checks them, and throws BadRequest for a value out of its range.
+/// Options of a stream's roles: structs of values with defaults. The role that takes them checks
+/// them and throws BadRequest for a value out of range.
 namespace [[gnu::visibility("default")]] splinecast {
 
-/// Whose regions this process uses: its own user's and root's, and those of `owner` if set. A
-/// region must also be a regular file that neither its group nor others may write.
+/// The owners whose regions this process uses: its own user, root, and `owner` if set. A region
+/// must also be a regular file that neither its group nor others may write.
 struct Trust {
   std::optional<uid_t> owner{};
 };
 
-/// Who may use the regions that this process makes.
+/// Access to the regions that this process creates.
 struct RegionAccess {
-  mode_t mode = 0600;            ///< permission bits; nobody but the owner ever writes
-  std::optional<gid_t> group{};  ///< group to give it to; unset: this process's
+  mode_t mode = 0600;            ///< permission bits; only the owner ever writes
+  std::optional<gid_t> group{};  ///< group of the regions; unset: this process's
 };
 
-/// The checks that a waypoint must pass, wherever it comes from.
+/// The interval allowed between two consecutive waypoints.
 struct IngestLimits {
   Time min_interval{1'000};              ///< at least 1 ns; default 1 µs
   Time max_interval{3'600'000'000'000};  ///< min_interval or more, below 2⁶¹ ns; default 1 h
 };
 
-/// What a producer fixes about its stream.
+/// The properties of a stream, which its producer sets.
 struct ProducerOptions {
   std::size_t dimensions = 1;        ///< 1 to 64
   std::vector<std::string> names{};  ///< one per dimension, or none; each is cut to at most 31
                                      ///< bytes, between characters of UTF-8
-  std::vector<std::string> units{};  ///< likewise, to 15 bytes
+  std::vector<std::string> units{};  ///< the same, cut to 15 bytes
   std::vector<Dimension> kinds{};    ///< one per dimension, or none: all linear
   StreamClock clock = StreamClock::monotonic;
   Condition start{.kind = ConditionKind::halt, .value = {}};  ///< one for which is_online() holds
@@ -51,35 +51,35 @@ struct ProducerOptions {
   Trust trust{};
 };
 
-/// What a solver fixes about its curve. What is unset takes its default on a new board; a solver
-/// that takes a board over takes its options too, and may not contradict them.
+/// The properties of a curve, which its solver sets. On a new board, unset members take their
+/// defaults. A solver that takes over a board takes its options too, and must not contradict them.
 struct SolverOptions {
-  const Method* method = nullptr;        ///< default c2; one that streams
+  const Method* method = nullptr;        ///< default c2; streams() must hold
   std::optional<double> lambda{};        ///< of smoothing, which needs it: λ, 0 to 1e100, in s³
   std::optional<double> time_scale{};    ///< of rounded: above 0, at most 1e100 s; default 1 s
-  std::optional<std::size_t> settle{};   ///< settle lag K, at most 64: from 0 for `c2`, default
-                                         ///< 8; from 13 for smoothing, unless force_lag,
-                                         ///< default 64; else from what the method looks ahead,
-                                         ///< which is the default
-  std::optional<Tail> tail{};            ///< default bessel; not for a method with one of its own
-  bool force_lag = false;                ///< of smoothing: take a lag that is too short for λ
+  std::optional<std::size_t> settle{};   ///< settle lag K, at most 64. c2: 0 or more, default 8.
+                                         ///< smoothing: 13 or more unless force_lag, default 64.
+                                         ///< Other methods: Method::look_ahead or more, which is
+                                         ///< the default
+  std::optional<Tail> tail{};            ///< default bessel; not for a method with its own tail
+  bool force_lag = false;                ///< of smoothing: accept a lag that is too short for λ
   std::optional<Time> stop_time{};       ///< length of the stop segment; with a limit of
-                                         ///< acceleration or jerk its least length. Above 0, at
+                                         ///< acceleration or jerk, its least length. Above 0, at
                                          ///< most 2⁶⁰ ns; default 250 ms
-  std::optional<MotionLimits> limits{};  ///< lists of one value per dimension or one for all
-  std::vector<NamedLimits> named_limits{};  ///< of dimensions by name, where `limits` has none
-                                            ///< of the kind; other names are of no effect
+  std::optional<MotionLimits> limits{};  ///< lists of one value per dimension, or one for all
+  std::vector<NamedLimits> named_limits{};  ///< limits of dimensions by name, where `limits` has
+                                            ///< none of the kind; unknown names have no effect
   std::optional<Beyond> beyond{};           ///< default report
-  std::optional<Time> freeze_ahead{};       ///< live: what lies this long ahead settles; 1 ns to
-                                            ///< 1 min, default 5 ms
-  std::optional<Time> history{};            ///< live: what ended less than this ago is kept; 0 to
-                                            ///< 24 h, default 1 s
-  std::optional<Time> min_splice{};         ///< live: least length of an entry; 1 ns to 1 min,
-                                            ///< default as freeze_ahead
+  std::optional<Time> freeze_ahead{};       ///< live: the curve settles this long ahead of now;
+                                            ///< 1 ns to 1 min, default 5 ms
+  std::optional<Time> history{};            ///< live: segments that ended less than this ago are
+                                            ///< kept; 0 to 24 h, default 1 s
+  std::optional<Time> min_entry{};          ///< live: least length of an entry; 1 ns to 1 min,
+                                            ///< default freeze_ahead
   std::optional<std::size_t> capacity{};    ///< segments of history, 2(K + 6) + 2 to 2²²; rounded
                                             ///< up to a power of two, default 4,096
-  bool wake = true;  ///< wake waiting readers: one system call a revision, which wakes
-                     ///< at most eight threads
+  bool wake = true;  ///< wake waiting readers: one system call per revision, which wakes at most
+                     ///< eight threads
   RegionAccess access{};
   Trust trust{};
 };

@@ -16,60 +16,62 @@
 
 namespace [[gnu::visibility("default")]] splinecast {
 
-/// An item that the ring had accepted and the solver refused.
+/// An item that the ring accepted and the solver refused.
 struct ItemRefusal {
-  std::uint64_t item = 0;      ///< number of the item: Producer::appended() before its append; of
-                               ///< waypoint i of a replacement: appended() before that, + 1 + i
+  std::uint64_t item = 0;      ///< number of the item: Producer::appended() before its append;
+                               ///< waypoint i of a replacement: appended() before the call, + 1 + i
   std::optional<Time> time{};  ///< of the item; unset if the ring has overwritten it
   Refusal reason{};
-  std::optional<LimitExcess> excess{};  ///< of `beyond_limits`, unless the board no longer has it
+  std::optional<LimitExcess> excess{};  ///< for `beyond_limits`, while the board has it
 };
 
-/// `item 17 refused: too late (time 123 ns)`; of one beyond a limit also where.
+/// `item 17 refused: too late (time 123 ns)`; `beyond_limits` adds the excess.
 [[nodiscard]] std::string to_string(const ItemRefusal& refusal);
 
-/// `acceleration of dimension 2 (wrist) is 12.5 at 456 ns, limit 10`, with the dimension's name if
-/// there is one among these.
+/// `acceleration of dimension 2 (wrist) is 12.5 at 456 ns, limit
+/// 10`, with the dimension's name if `names` has one.
 [[nodiscard]] std::string in_words(const LimitExcess& excess,
                                    std::span<const std::string> names = {});
 
-/// What a solver has refused since it was asked the last time.
+/// The items that a solver has refused since the last call of Producer::refusals().
 struct Refusals {
   std::vector<ItemRefusal> items{};  ///< in the order of the ring; at most 1,024
-  std::uint64_t missed = 0;  ///< further refusals, before these, that the board no longer has
-  std::uint64_t consumed =
-      0;  ///< items below this number are decided: refused ones are told by now
+  std::uint64_t missed = 0;    ///< older refusals since that call, which the board no longer has
+  std::uint64_t consumed = 0;  ///< items below this number are decided: all refusals are reported
 };
 
-/// Largest magnitudes along a motion, one value per dimension; of a quaternion those of its
-/// components' derivatives.
+/// Largest magnitudes along a motion, one value per dimension; for a quaternion, of the derivatives
+/// of its components.
 struct MotionPeaks {
   std::vector<double> velocity;      ///< [unit/s]
   std::vector<double> acceleration;  ///< [unit/s²]
   std::vector<double> jerk;          ///< [unit/s³]
 };
 
-/// What a replacement would do to the curve.
+/// The effect that a replacement would have on the curve.
 struct ReplacePreview {
-  AppendStatus status{};  ///< what `replace_from` would answer now; if not `accepted`, no more
-  bool is_known = false;  ///< a curve stands whose state at t could be read; else no more
-  Time begin{};           ///< of the motion: t, or what has settled if a stop is asked for later
-  Time duration{};        ///< of the entry onto the waypoints; of a stop, until it rests
-  bool enters = false;    ///< there is an entry; else the curve comes to rest from t on
-  std::optional<std::size_t> waypoint{};  ///< at which it ends; none: it ends beyond the last one
-  std::size_t passed_over = 0;            ///< waypoints that lie before its end
-  MotionPeaks entry;                      ///< of the entry, or of the stop instead
-  MotionPeaks motion;                     ///< of all from t until the curve rests
-  Excess worst{};  ///< where that is nearest to a limit or farthest beyond; `u` is of no use here:
-                   ///< it counts from the left end of a segment that is not named. A ratio below 0:
-                   ///< there are no limits
+  AppendStatus status{};  ///< what `replace_from` would return now; unless `accepted`, the other
+                          ///< members are not valid
+  bool is_known = false;  ///< the curve exists and its state at t was read; else the members below
+                          ///< are not valid
+  Time begin{};           ///< of the motion: t; of a stop whose t has settled, the settled time
+  Time duration{};        ///< of the entry onto the waypoints, or of the stop
+  bool enters = false;    ///< whether there is an entry; else the curve comes to rest from t on
+  std::optional<std::size_t> waypoint{};  ///< where the entry ends; unset: it ends beyond the last
+                                          ///< waypoint
+  std::size_t passed_over = 0;            ///< waypoints before the end of the entry
+  MotionPeaks entry;                      ///< of the entry; of the stop if there is no entry
+  MotionPeaks motion;                     ///< of the whole motion, from t until the curve rests
+  Excess worst{};  ///< the place in `motion` nearest to a limit, or farthest beyond one. `u` has no
+                   ///< meaning here: it counts from the left end of a segment that is not given.
+                   ///< Ratio below 0: there are no limits
 };
 
-/// How a replacement goes over from the old motion to the new one.
+/// The transition from the old motion to the new one.
 struct ReplaceOptions {
-  /// The entry onto the new waypoints takes at least so long: those before its end are passed over.
-  /// 0 or less: to the first one, or, with limits, to the first at which they can be kept. At most
-  /// the stream's most interval.
+  /// Least duration of the entry onto the new waypoints; waypoints before its end are passed over.
+  /// 0 or less: the entry ends at the first waypoint or, with limits, at the first one where they
+  /// are kept. At most the stream's max_interval.
   Time blend{};
 };
 
@@ -80,7 +82,7 @@ struct ReplaceOptions {
 ///
 ///     Producer producer("arm", {.dimensions = 7});
 ///     if (!producer.wait_for_solver(10s)) return 1;
-///     // The lead is at least freeze_ahead and (settle + 1) intervals together.
+///     // The lead is at least freeze_ahead + (settle + 1) intervals.
 ///     const Time begin = MonotonicClock().now() + lead;
 ///     for (const Row& row : path) {  // their times count from 0
 ///       const Waypoint waypoint{.time = begin + row.time, .position = row.position};
@@ -93,109 +95,111 @@ struct ReplaceOptions {
 ///     if (producer.finish({.kind = ConditionKind::halt}) != AppendStatus::accepted) return 1;
 ///     while (!producer.wait_until_consumed(10s) && producer.solver_alive()) {}
 ///
-/// `accepted` says only that the ring has the item: see refusals().
+/// `accepted` means only that the ring has the item: see refusals().
 class Producer {
  public:
-  /// Makes the stream, or makes it again if it is finished, or continues it if its producer died
-  /// before finishing. A solver takes up a stream that was made again once the old curve has come
-  /// to rest: on a live one, call wait_for_solver() before choosing times for waypoints. Throws
-  /// StreamBusy if it has a living producer; BadRequest for a name or options that can be no
-  /// stream's, a start condition whose values do not fit the dimensions among them, and if the
-  /// options contradict a stream that is continued; BadRegion if shared memory is full or the files
-  /// of that name cannot be used.
+  /// Creates the stream, creates it again if it is finished, or continues it if its producer died
+  /// before finishing. A solver attaches to a recreated stream once the old curve is at rest: on a
+  /// live stream, call wait_for_solver() before choosing times for waypoints. Throws StreamBusy if
+  /// the stream has a living producer; BadRequest for an invalid name, invalid options (also a
+  /// start condition whose values do not fit the dimensions), or options that contradict the stream
+  /// that it continues; BadRegion if shared memory is full or the files of that name cannot be
+  /// used.
   Producer(std::string stream, ProducerOptions options);
   Producer(Producer&&) noexcept;
   Producer& operator=(Producer&&) noexcept;
   ~Producer();
 
-  /// Appends a waypoint. O(D), never blocks or allocates; one system call where it wakes a sleeping
-  /// solver. Until a solver has come each call looks for one, which is a system call and may
-  /// allocate. `full` asks to try again later.
+  /// Appends a waypoint. O(D), never blocks or allocates; one system call if it wakes a sleeping
+  /// solver. Until a solver has attached, each call looks for one, which takes a system call and
+  /// may allocate. After `full`, retry later.
   [[nodiscard]] AppendStatus append(const Waypoint& waypoint) noexcept;
 
-  /// Replaces all that lies behind time t by these waypoints, from none upwards, as one revision:
-  /// the curve goes on from its state at t by an entry, as ReplaceOptions has it, or, without a
-  /// waypoint, comes to rest. With waypoints, `t` must not lie before earliest() nor, on a live
-  /// stream, before now, else `too_late`; the waypoints must be later than it, and fit into the
-  /// ring besides what it keeps free for stops. On a stream that has no waypoint yet they start it,
+  /// Replaces everything after time t by `waypoints`, which may be empty, as one revision. The
+  /// curve continues from its state at t by an entry onto the waypoints, see ReplaceOptions;
+  /// without waypoints it comes to rest. With waypoints, `t` must not be before earliest() nor, on
+  /// a live stream, before now, else `too_late`; the waypoints must be later than `t` and must fit
+  /// into the ring, which reserves places for stops. On a stream without waypoints they start it,
   /// as appended ones do. O(D) per waypoint; otherwise as append.
   ///
   /// Without waypoints it is a stop, which is never too late: a t that has settled means as soon as
-  /// possible. The solver's next step carries it out at its settled_until, or at t if that is
-  /// later, whatever is queued before it; and that step comes after one sweep, or one wake, at
-  /// most. A stop at a t behind the newest knot waits for its turn, and at the latest for
-  /// settled_until to reach t. A ring of 16 items or more keeps room for stops and for `finish`:
-  /// when it is full of waypoints it takes them.
+  /// possible. The solver's next step executes the stop at settled_until, or at t if that is later,
+  /// regardless of the items queued before it; that step comes after at most one sweep or one wake.
+  /// A stop at a t after the newest knot waits for its turn in the queue, at most until
+  /// settled_until reaches t. A ring of 16 or more items accepts stops and `finish` even when it is
+  /// full of waypoints.
   [[nodiscard]] AppendStatus replace_from(Time t, std::span<const Waypoint> waypoints,
                                           const ReplaceOptions& options = {}) noexcept;
 
-  /// What `replace_from` with these arguments would do, without changing anything: how long the
-  /// entry takes, the largest velocities, accelerations and jerks, and what would be passed over.
-  /// Of a stop: how long it takes from t, or from earliest() if that is later. As the solver would
-  /// plan it now: what is published meanwhile, and the time that passes, may change it. O(n·K·D),
-  /// and reads the board; no system call but the search for a solver, as in append. Allocates: the
-  /// second form reuses its memory. From the producer's thread. Throws std::bad_alloc only.
+  /// Computes what `replace_from` with these arguments would do, without changing anything:
+  /// duration of the entry, largest velocities, accelerations and jerks, waypoints passed over. For
+  /// a stop: its duration from t, or from earliest() if that is later. The result is what the
+  /// solver would plan now: later revisions and the passing of time may change it. O(n·K·D); reads
+  /// the board; no system call except the search for a solver, as in append. Allocates; the second
+  /// form reuses the memory of `out`. Producer's thread only. Throws std::bad_alloc only.
   [[nodiscard]] ReplacePreview preview_replace(Time t, std::span<const Waypoint> waypoints,
                                                const ReplaceOptions& options = {});
   void preview_replace(Time t, std::span<const Waypoint> waypoints, const ReplaceOptions& options,
                        ReplacePreview& out);
 
-  /// Says in which state the stream starts, before its first waypoint, which must be later:
-  /// velocity and acceleration have one value per dimension. Otherwise as append.
+  /// Sets the state in which the stream starts. Call it before the first waypoint is appended; that
+  /// waypoint must be later. Velocity and acceleration have one value per dimension. Otherwise as
+  /// append.
   [[nodiscard]] AppendStatus start_from(const Instant& state) noexcept;
 
-  /// The earliest time that may still be changed: of a live stream what its solver has settled, as
-  /// last published; min() of a recorded one, and while no solver has published. O(1); until a
-  /// solver has come it looks for one, as append does.
+  /// The earliest time at which the curve may still change: of a live stream, the settled time that
+  /// its solver last published; min() of a recorded stream, and before a solver has published.
+  /// O(1); until a solver has attached, looks for one, as append does.
   [[nodiscard]] Time earliest() noexcept;
 
-  /// Ends the stream at its last waypoint; a live one at rest there. The last waypoint is the last
-  /// one that the solver does not refuse: see refusals(). If that knot is frozen already, the stop
-  /// runs and an entry leads back to it. Throws BadRequest if the condition's values do not fit the
-  /// dimensions or ask for motion in a quaternion's, or if a stream cannot meet it: is_online()
-  /// must hold, and on a live stream is_at_rest(); otherwise as append.
+  /// Ends the stream at its last waypoint, with this boundary condition; a live stream ends at
+  /// rest. The last waypoint is the last one that the solver does not refuse: see refusals(). If
+  /// that knot is already frozen, the stop segment runs and an entry returns to the knot. Throws
+  /// BadRequest if the condition's values do not fit the dimensions or are not 0 for a quaternion,
+  /// or if a stream cannot meet the condition: is_online() must hold, and on a live stream
+  /// is_at_rest(). Otherwise as append.
   [[nodiscard]] AppendStatus finish(const Condition& end);
 
-  /// What the solver has refused since the last call, of the items that this producer appended:
-  /// `accepted` says only that the ring has an item. All is known of an item once
+  /// Returns the items of this producer that the solver has refused since the last call: `accepted`
+  /// means only that the ring has an item. The result for an item is final once
   /// `Refusals::consumed` is above its number. The board keeps the last 1,024 refusals; `missed`
-  /// counts those that were overwritten before, and is 0 as long as at most 1,024 items are
-  /// consumed between two calls. O(1) if nothing was published since, else O(refusals); reads the
-  /// board only, no system call but the search for a solver, as in append. Allocates in the result
-  /// only: the second form reuses its memory. From the producer's thread.
+  /// counts those overwritten before, and is 0 as long as at most 1,024 items are consumed between
+  /// two calls. O(1) if nothing was published since the last call, else O(refusals); reads only the
+  /// board; no system call except the search for a solver, as in append. Allocates only in the
+  /// result; the second form reuses the memory of `out`. Producer's thread only.
   [[nodiscard]] Refusals refusals();
   void refusals(Refusals& out);
 
-  /// Waits until a solver has taken the stream up. Returns false after the timeout.
+  /// Waits until a solver has attached to the stream. Returns false after the timeout.
   [[nodiscard]] bool wait_for_solver(Time timeout);
 
   /// Waits until the ring has room for a waypoint, or until the solver has consumed everything.
-  /// Returns false after the timeout. Look at solver_alive() before waiting again.
+  /// Returns false after the timeout. Check solver_alive() before waiting again.
   [[nodiscard]] bool wait_for_room(Time timeout);
   [[nodiscard]] bool wait_until_consumed(Time timeout);
 
-  /// Whether a solver process lives; true where no descriptor is left to look with. System calls.
+  /// Whether a solver process lives; true if no file descriptor is left to find out. System calls.
   [[nodiscard]] bool solver_alive() const;
 
-  /// Items appended and, of these, consumed by the solver.
+  /// Items appended, and items of these that the solver has consumed.
   [[nodiscard]] std::uint64_t appended() const noexcept;
   [[nodiscard]] std::uint64_t consumed() const noexcept;
 
   /// The stream's random number, the same in both of its regions.
   [[nodiscard]] std::uint64_t stream_id() const noexcept;
 
-  /// Whether the ring held items already when this producer was made: of one that died, or was
-  /// destroyed, before finishing.
+  /// Whether the ring already held items when this producer was created: those of a producer that
+  /// died, or was destroyed, before finishing.
   [[nodiscard]] bool continues() const noexcept;
-  /// The time that the next waypoint must be later than: that of the newest item, whichever
-  /// producer appended it; 0 while there is none.
+  /// Time of the newest item, of this or an earlier producer; 0 if there is none. The next waypoint
+  /// must be later.
   [[nodiscard]] Time last_time() const noexcept;
 
   /// Whether the region's pages are locked into memory: best effort, see RLIMIT_MEMLOCK.
   [[nodiscard]] bool is_memory_locked() const noexcept;
 
-  /// Removes the stream's waypoint region: for a stream that no solver ever took up. The producer
-  /// is of no more use; destroy it. System calls.
+  /// Removes the stream's waypoint region: for a stream to which no solver ever attached. Destroy
+  /// the producer afterwards; it cannot be used. System calls.
   void withdraw() noexcept;
 
  private:

@@ -16,10 +16,11 @@ class BoardSnapshot;
 
 namespace [[gnu::visibility("default")]] splinecast {
 
-/// Where `sample_many` writes: N times, D dimensions, and as many derivatives as are asked for.
+/// The output of `sample_many`: N times, D dimensions and the selected derivatives.
 struct SampleBlock {
-  std::span<double> values;        ///< [time][derivative asked for, position first][dimension]
-  std::span<SampleStatus> status;  ///< one per time; those without values leave theirs undefined
+  std::span<double> values;        ///< [time][derivative, position first][dimension]
+  std::span<SampleStatus> status;  ///< one per time; a status without values leaves its values
+                                   ///< undefined
   Derivatives derivatives = Derivatives::all;
 };
 
@@ -31,15 +32,15 @@ struct SnapshotSegment {
   SegmentKind kind{};                    ///< what the segment is for
   std::span<const double> coefficients;  ///< [power][dimension], lowest power first
   std::span<const double> waypoint;      ///< position of the waypoint at `left`; empty: none there
-  std::span<const double> acceleration_step;  ///< a⁺ − a⁻ at `left`; empty where the board no
-                                              ///< longer has the segment before it
+  std::span<const double> acceleration_step;  ///< a⁺ − a⁻ at `left`; empty if the board no longer
+                                              ///< has the segment before it
 };
 
-/// Several segments of one revision: a consistent piece of the curve, whole or not at all. Made by
+/// Consecutive segments of one revision: a consistent part of the curve, complete or empty. Made by
 /// Reader::snapshot. One thread uses it.
 class Snapshot {
  public:
-  /// Allocates as it grows; reuse one to allocate no more.
+  /// Allocates when it grows; reuse one to avoid allocation.
   explicit Snapshot(std::size_t dimensions);
   Snapshot(Snapshot&&) noexcept;
   Snapshot& operator=(Snapshot&&) noexcept;
@@ -47,7 +48,7 @@ class Snapshot {
 
   [[nodiscard]] std::size_t dimensions() const noexcept;
 
-  /// Segments that it holds.
+  /// Number of segments.
   [[nodiscard]] std::size_t size() const noexcept;
 
   /// Segment i < size(), oldest first. O(1).

@@ -10,7 +10,7 @@
 #include "tests/fixtures/processes/process.hpp"
 #include "tests/fixtures/processes/shared_files.hpp"
 
-/// The verb `advise`, and what `info` says of a depth that is too small.
+/// The verb `advise`, and the warning of `info` about a depth that is too small.
 namespace splinecast::apps {
 namespace {
 
@@ -23,7 +23,7 @@ using testing::run;
 using testing::TestFolder;
 using testing::TestStream;
 
-TEST(Advise, TellsOfAFileWhatItFoundAndWhatFollows) {
+TEST(Advise, ReportsTheMeasurementsOfAFileAndTheAdvice) {
   const Ended ended = run({"advise", own_file("duplicates.csv"), "--json"});
   ASSERT_EQ(ended.code, 0) << ended.err;
   const json found = json::parse(ended.out);
@@ -43,17 +43,16 @@ TEST(Advise, TellsOfAFileWhatItFoundAndWhatFollows) {
   }
 }
 
-TEST(Advise, SaysTheSameInWordsWithUnits) {
+TEST(Advise, PrintsTheSameAsTextWithUnits) {
   const Ended ended = run({"advise", own_file("gaps.csv"), "--settle", "4"});
   ASSERT_EQ(ended.code, 0) << ended.err;
   EXPECT_NE(ended.out.find("freeze-ahead 5 ms + 5 intervals of 20 ms = 105 ms"), std::string::npos);
   EXPECT_NE(ended.out.find("3 longer than 100 ms, at most 12000 ms"), std::string::npos);
   EXPECT_NE(ended.out.find("rad/s^2"), std::string::npos) << ended.out;
-  EXPECT_NE(ended.out.find("silence of 300 ms, lead 60 ms: runs dry for 265 ms"),
-            std::string::npos);
+  EXPECT_NE(ended.out.find("silence of 300 ms, lead 60 ms: starves for 265 ms"), std::string::npos);
 }
 
-TEST(Advise, RefusesWhatItCannotRead) {
+TEST(Advise, RefusesUnreadableInput) {
   const TestFolder folder;
   EXPECT_EQ(run({"advise", folder.path("none.csv")}).code, 2);
   EXPECT_NE(run({"advise", "none"}).err.find("neither a file nor a stream 'none'"),
@@ -61,10 +60,10 @@ TEST(Advise, RefusesWhatItCannotRead) {
   EXPECT_EQ(run({"advise", own_file("not_finite.csv")}).code, 2);
   const Ended few = run({"advise", folder.write("a.csv", "t,x\n0,0\n1,1\n")});
   EXPECT_EQ(few.code, 2);
-  EXPECT_NE(few.err.find("2 rows in order: advice takes at least 3"), std::string::npos) << few.err;
+  EXPECT_NE(few.err.find("2 rows in order: advice needs at least 3"), std::string::npos) << few.err;
 }
 
-/// A live stream at 100 Hz whose first waypoints are sent at once, so long before their time.
+/// A live stream at 100 Hz whose first waypoints are sent immediately, `lead` before their time.
 class AdviseStream : public ::testing::Test {
  protected:
   void send(Time lead, int rows) {
@@ -92,7 +91,7 @@ class AdviseStream : public ::testing::Test {
                                     ProducerOptions{.names = {"x"}, .units = {"m"}}};
 };
 
-TEST_F(AdviseStream, TakesWhatTheRingHoldsAndTheStreamsOwnOptions) {
+TEST_F(AdviseStream, UsesTheItemsInTheRingAndTheOptionsOfTheStream) {
   send(std::chrono::seconds(20), 50);
   const json before = testing::info(stream_.name());
   const json found = of(stream_.name());

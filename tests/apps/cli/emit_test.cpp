@@ -26,7 +26,7 @@ Arguments operator+(Arguments a, const Arguments& b) {
   return a;
 }
 
-/// A Python that has SciPy, Debian's first; empty if there is none.
+/// A Python interpreter with SciPy; tries Debian's first. Empty if there is none.
 std::string python_with_scipy() {
   for (const Arguments& start : {Arguments{"/usr/bin/python3"}, {"/usr/bin/env", "python3"}}) {
     const Arguments rest(start.begin() + 1, start.end());
@@ -40,7 +40,7 @@ TEST(BSpline, SciPyEvaluatesTheEmittedCurveAndItsControlPointsToTheSamples) {
   const std::string python = python_with_scipy();
   if (python.empty()) GTEST_SKIP() << "no python3 with SciPy (Debian: python3-scipy)";
   const TestFolder folder;
-  // SciPy's times are doubles in seconds: over a span T they cost the derivatives eps·T/h.
+  // SciPy's times are doubles in seconds: over a span T the error of derivatives is eps·T/h.
   const auto mesh = random_mesh(12, 60, 3, 2);
   const auto file = folder.write("waypoints.csv", to_csv(mesh));
   const auto at = folder.write("at.csv", testing::times_csv(mesh, 7));
@@ -100,12 +100,12 @@ TEST(Emit, OneWaypointHasATimeAndEmptyLists) {
             "{\"degree\":3,\"origin_ns\":5,\"knots\":[],\"control_points\":[]}\n");
 }
 
-TEST(Emit, RefusesAnyOtherFormatAndTimesWhereNoneGo) {
+TEST(Emit, RefusesUnknownFormatsAndTimesForFormatsWithoutSamples) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", "t,x\n0,0\n1,1\n");
   const Ended other = run({"fit", file, "--emit", "nurbs"});
   EXPECT_EQ(other.code, 2);
-  EXPECT_NE(other.err.find("'nurbs' is none of samples, pp, bezier, bspline"), std::string::npos)
+  EXPECT_NE(other.err.find("'nurbs' is not one of samples, pp, bezier, bspline"), std::string::npos)
       << other.err;
   EXPECT_EQ(run({"fit", file, "--emit", "bspline", "--dt", "1"}).code, 2);
 }

@@ -10,7 +10,7 @@
 #include "apps/process/exit_codes.hpp"
 #include "tests/fixtures/processes/process.hpp"
 
-/// Where a verb's files go.
+/// How verbs write their output files.
 namespace splinecast::apps {
 namespace {
 
@@ -35,7 +35,7 @@ class OutputTest : public ::testing::Test {
   TestFolder folder_;
 };
 
-TEST_F(OutputTest, ThatIsAnInputTooIsRefusedAndLeftAsItIs) {
+TEST_F(OutputTest, ThatIsAlsoAnInputIsRefusedAndUnchanged) {
   const std::string rows = "t,x\n0,0\n1,1\n2,0\n";
   const auto file = folder_.write("a.csv", rows);
   const auto link = folder_.path("link.csv");
@@ -59,7 +59,7 @@ TEST_F(OutputTest, ThatIsAnInputTooIsRefusedAndLeftAsItIs) {
   EXPECT_FALSE(fs::exists(report));
 }
 
-TEST_F(OutputTest, OfASampleIsNotItsTimes) {
+TEST_F(OutputTest, OfSampleMustNotBeItsFileOfTimes) {
   const auto at = folder_.write("at.csv", "t\n1\n");
   const Ended ended = run({"sample", "no.such.stream", "--at", at, "-o", at, "--wait", "0"});
   EXPECT_EQ(ended.code, kBadUsageOrInput);
@@ -67,7 +67,7 @@ TEST_F(OutputTest, OfASampleIsNotItsTimes) {
   EXPECT_EQ(read_file(at), "t\n1\n");
 }
 
-TEST_F(OutputTest, IsReplacedAsAWholeAndKeepsItsPermissions) {
+TEST_F(OutputTest, IsReplacedAtomicallyAndKeepsItsPermissions) {
   const auto path = folder_.write("a", "old");
   ASSERT_EQ(chmod(path.c_str(), 0640), 0);
   {
@@ -83,7 +83,7 @@ TEST_F(OutputTest, IsReplacedAsAWholeAndKeepsItsPermissions) {
   EXPECT_EQ(files(), 1U);
 }
 
-TEST_F(OutputTest, BehindALinkIsReplacedAndTheLinkStays) {
+TEST_F(OutputTest, ThroughASymbolicLinkReplacesItsTargetAndKeepsTheLink) {
   const auto path = folder_.write("a", "old");
   const auto link = folder_.path("link");
   fs::create_symlink("a", link);
@@ -100,7 +100,7 @@ TEST_F(OutputTest, BehindALinkIsReplacedAndTheLinkStays) {
   EXPECT_THROW(Output{loop}, Failure);
 }
 
-TEST_F(OutputTest, ThatGrowsCanBeReadMeanwhile) {
+TEST_F(OutputTest, ThatGrowsIsReadableBeforeItIsClosed) {
   const auto path = folder_.path("a");
   Output output(path, Writing::growing);
   output.write("row");

@@ -24,13 +24,13 @@
 #include "splinecast/streams.hpp"
 #include "tests/apps/streams/life.hpp"
 
-/// A signal ends whatever runs: in order if it can, and if not, by force.
+/// A signal ends every verb: with a clean exit if possible, otherwise by force.
 namespace splinecast::apps {
 namespace {
 
 using testing::TestFolder;
 
-/// A process that catches signals and tells of them through a pipe, but does not end.
+/// A process that catches signals and reports them through a pipe, but does not end.
 class Stubborn {
  public:
   explicit Stubborn(const std::function<void()>& catch_signals) {
@@ -59,15 +59,15 @@ class Stubborn {
     waitpid(pid_, nullptr, 0);
   }
 
-  /// What it says next: `r` it catches signals, then `a` or `s`: it has got one, with an alarm or
-  /// without.
+  /// The next report of the process: `r` after it has installed its handlers; then, after a signal,
+  /// `a` if an alarm is set or `s` if not.
   [[nodiscard]] char next() const {
     char said = 0;
     return read(pipe_, &said, 1) == 1 ? said : '-';
   }
   void signal(int number) const { kill(pid_, number); }
 
-  /// The status that it ended with; nothing if it goes on running.
+  /// The exit status of the process; nothing if it still runs after 30 s.
   std::optional<int> wait() {
     constexpr std::chrono::seconds kBound(30);
     int status = 0;
@@ -87,7 +87,7 @@ class Stubborn {
   int pipe_ = -1;
 };
 
-TEST(Signals, TheSecondOneEndsAProcessThatDoesNotEndAtTheFirst) {
+TEST(Signals, ASecondSignalEndsAProcessThatIgnoresTheFirst) {
   for (const auto& [first, second] :
        {std::pair{SIGINT, SIGINT}, {SIGTERM, SIGTERM}, {SIGINT, SIGTERM}}) {
     Stubborn process(catch_stop_signals);
@@ -96,23 +96,23 @@ TEST(Signals, TheSecondOneEndsAProcessThatDoesNotEndAtTheFirst) {
     ASSERT_EQ(process.next(), 'a');
     process.signal(second);
     const auto status = process.wait();
-    ASSERT_TRUE(status) << "goes on after a second signal";
+    ASSERT_TRUE(status) << "still runs after a second signal";
     ASSERT_TRUE(WIFSIGNALED(*status)) << *status;
     EXPECT_EQ(WTERMSIG(*status), second);
   }
 }
 
-TEST(Signals, AProcessThatDoesNotEndWithinSecondsOfOneIsEnded) {
+TEST(Signals, AnAlarmEndsAProcessThatIgnoresASignalForSeconds) {
   Stubborn process(catch_stop_signals);
   ASSERT_EQ(process.next(), 'r');
   process.signal(SIGTERM);
   const auto status = process.wait();
-  ASSERT_TRUE(status) << "goes on after a signal";
+  ASSERT_TRUE(status) << "still runs after a signal";
   ASSERT_TRUE(WIFEXITED(*status)) << *status;
   EXPECT_EQ(WEXITSTATUS(*status), kInterrupted);
 }
 
-TEST(Signals, AChildProcessIsGivenAsLongAsItsParentWaits) {
+TEST(Signals, AChildProcessSetsNoAlarmUnlessItsParentIsDead) {
   const pid_t parent = getpid();
   Stubborn child([parent] { catch_stop_signals_as_child_of(parent); });
   ASSERT_EQ(child.next(), 'r');
@@ -124,7 +124,7 @@ TEST(Signals, AChildProcessIsGivenAsLongAsItsParentWaits) {
   EXPECT_EQ(orphan.next(), 'a');
 }
 
-/// Name and state of a process, as /proc has them: `splinecast S`; empty once it has gone.
+/// Name and state of a process from /proc, such as `splinecast S`; empty after it has ended.
 std::string name_and_state(pid_t pid) {
   const std::string stat = testing::read_file("/proc/" + std::to_string(pid) + "/stat");
   const auto open = stat.find('(');
@@ -142,7 +142,7 @@ bool catches_signals(pid_t pid) {
          (std::stoull(status.substr(at + kField.size()), nullptr, 16) >> (SIGTERM - 1) & 1U) != 0;
 }
 
-/// A pipe that nobody reads and that holds all it can.
+/// A full pipe without a reader.
 class FullPipe {
  public:
   FullPipe() : path_(folder_.path("pipe")) {
@@ -158,7 +158,7 @@ class FullPipe {
   FullPipe& operator=(const FullPipe&) = delete;
   ~FullPipe() { close(end_); }
 
-  /// Starts `splinecast` with its standard output there, and waits until it sleeps.
+  /// Starts `splinecast` with the pipe as standard output, and waits until it sleeps.
   [[nodiscard]] Process start(const std::vector<std::string>& arguments) const {
     std::vector<std::string> shell{"-c", R"(out="$1"; shift; exec "$0" "$@" >"$out")",
                                    SPLINECAST_PROGRAM, path_};
@@ -175,16 +175,16 @@ class FullPipe {
   int end_ = -1;
 };
 
-/// Signals a process and tells how it ended: its exit code, or 128 and the signal's number, as a
-/// shell does.
+/// Sends a signal to a process and waits for its end. Returns its exit code, or 128 plus the number
+/// of the signal that killed it, like a shell.
 int code_after(Process& process, int signal) {
   process.signal(signal);
   const Ended ended = process.wait();
   return ended.signal != 0 ? 128 + ended.signal : ended.code;
 }
 
-/// Waits until no child process is left, also of those that ended, whose children come to this
-/// process.
+/// Waits until this process has no child. As a subreaper it also adopts the children of processes
+/// that have ended.
 bool has_no_children() {
   return await([] {
     while (waitpid(-1, nullptr, WNOHANG) > 0) {
@@ -195,7 +195,7 @@ bool has_no_children() {
 
 class EveryVerb : public Life, public ::testing::WithParamInterface<int> {};
 
-TEST_P(EveryVerb, ThatHoldsNothingEndsByASignalAlsoWhileItsOutputIsStuck) {
+TEST_P(EveryVerb, WithoutCleanUpEndsByASignalAlsoWhileItsOutputIsBlocked) {
   const FullPipe pipe;
   ASSERT_EQ(run({"replay", file_, "--stream", name(), "--rate", "max", "--clock", "recorded",
                  "--embedded"})
@@ -216,12 +216,12 @@ TEST_P(EveryVerb, ThatHoldsNothingEndsByASignalAlsoWhileItsOutputIsStuck) {
   Process measuring({"methods", "--against", long_lasting});
   ASSERT_TRUE(await([&] { return name_and_state(measuring.pid()) == "splinecast R"; }));
   EXPECT_EQ(code_after(measuring, GetParam()), 128 + GetParam());
-  Process removing({"rm", name()});  // done before, or ended by it
+  Process removing({"rm", name()});  // may end before the signal or by it
   const int code = code_after(removing, GetParam());
   EXPECT_TRUE(code == 0 || code == 128 + GetParam()) << code;
 }
 
-TEST_P(EveryVerb, ThatSolvesEndsInOrder) {
+TEST_P(EveryVerb, ThatSolvesExitsCleanlyOnASignal) {
   Process one(solve());
   one.await_message("waiting for a producer");
   EXPECT_EQ(code_after(one, GetParam()), kOk);
@@ -256,7 +256,7 @@ TEST_P(EveryVerb, ThatSendsOrSamplesExitsWith130IfItIsInterrupted) {
   EXPECT_EQ(code_after(solver, signal), kOk);
 }
 
-TEST_P(EveryVerb, OfManyProcessesEndsWithAllOfThemAndWith130) {
+TEST_P(EveryVerb, OfManyProcessesEndsAllOfThemAndExitsWith130) {
   ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"demo", "--seconds", "1000"},
@@ -275,11 +275,11 @@ TEST_P(EveryVerb, OfManyProcessesEndsWithAllOfThemAndWith130) {
     ASSERT_TRUE(await([&] { return interpolated() > 10; })) << arguments[0];
     EXPECT_EQ(code_after(process, GetParam()), kInterrupted) << arguments[0];
     EXPECT_TRUE(has_no_children()) << arguments[0];
-    EXPECT_THROW(remove_stream(stream), NoSuchStream) << "left behind";
+    EXPECT_THROW(remove_stream(stream), NoSuchStream) << "not removed";
   }
 }
 
-TEST_P(EveryVerb, OfManyProcessesEndsWithAllOfThemAtASecondSignal) {
+TEST_P(EveryVerb, OfManyProcessesEndsAllOfThemAtASecondSignal) {
   ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
   Process process({"demo", "--chaos", "--seconds", "1000"});
   const std::string stream = "demo." + std::to_string(process.pid());
@@ -289,12 +289,12 @@ TEST_P(EveryVerb, OfManyProcessesEndsWithAllOfThemAtASecondSignal) {
   EXPECT_TRUE(has_no_children());
   try {
     remove_stream(stream);
-  } catch (const NoSuchStream&) {  // the first signal was enough
+  } catch (const NoSuchStream&) {  // the first signal has already removed it
   }
 }
 
-TEST(Signals, CtrlCLetsTheDemosProcessesEndInOrder) {
-  // A session and process group of its own, as a terminal has one; the signal goes to all of it.
+TEST(Signals, CtrlCLetsTheProcessesOfDemoExitCleanly) {
+  // A new session and process group, as in a terminal: the signal is sent to all its processes.
   Process demo("/usr/bin/setsid", {SPLINECAST_PROGRAM, "demo", "--seconds", "1000", "--json"});
   const std::string stream = "demo." + std::to_string(demo.pid());
   ASSERT_TRUE(await([&] {

@@ -12,8 +12,8 @@
 
 namespace splinecast::apps {
 
-/// What becomes of rows that cannot be interpolated: each is named with its line, whoever refused
-/// it, and all of them are accounted for.
+/// Rows that cannot be interpolated: each one is listed with its line, and the counts of all rows
+/// add up, whether the file, the append or the solver refused them.
 class Ingest : public ::testing::Test {
  protected:
   [[nodiscard]] const std::string& name() const { return stream_.name(); }
@@ -24,7 +24,7 @@ class Ingest : public ::testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return testing::run(arguments);
   }
-  /// Whether a report accounts for `planned` rows, and names each that is not interpolated.
+  /// Expects that a report accounts for `planned` rows and lists each one that is not interpolated.
   static void expect_accounted_for(const testing::Ended& ended, std::size_t planned) {
     const auto report = nlohmann::json::parse(ended.out);
     const auto number = [&](const char* key) { return report[key].get<std::size_t>(); };

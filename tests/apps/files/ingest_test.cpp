@@ -12,7 +12,7 @@
 #include "tests/fixtures/processes/process.hpp"
 #include "tests/fixtures/processes/shared_files.hpp"
 
-/// Rows that file, append and solver refuse.
+/// Rows that the file reader, the append or the solver refuses.
 namespace splinecast::apps {
 namespace {
 
@@ -26,7 +26,7 @@ using testing::shared_file;
 using testing::TestFolder;
 using Arguments = std::vector<std::string>;
 
-/// A recording, and what is wrong with it.
+/// A recording and its errors.
 struct Case {
   std::string file;
   std::size_t rows;
@@ -39,7 +39,7 @@ void PrintTo(const Case& played, std::ostream* out) { *out << played.file; }
 
 class IngestOf : public Ingest, public ::testing::WithParamInterface<Case> {};
 
-TEST_P(IngestOf, WhatIsSkippedIsNamedAndCountedAndTheRestIsInterpolated) {
+TEST_P(IngestOf, SkippedRowsAreListedAndCountedAndTheRestIsInterpolated) {
   const Case& played = GetParam();
   REQUIRE_SHARED_FILE(played.file);
   Process solver({"solve", name()});
@@ -59,12 +59,12 @@ TEST_P(IngestOf, WhatIsSkippedIsNamedAndCountedAndTheRestIsInterpolated) {
   EXPECT_EQ(report["refused"], 0);
   const auto now = info(name());
   EXPECT_EQ(now["state"], "finished");
-  EXPECT_EQ(now["producer"]["appended"], played.rows - skipped + 1);  // and the finish
+  EXPECT_EQ(now["producer"]["appended"], played.rows - skipped + 1);  // plus 1 for the finish
   EXPECT_EQ(now["solver"]["interpolated"], played.rows - skipped);
   EXPECT_EQ(now["solver"]["refused"], 0);
 }
 
-TEST_P(IngestOf, TheFirstBadRowStopsItByNameBeforeAnythingIsSent) {
+TEST_P(IngestOf, TheFirstBadRowIsReportedBeforeAnythingIsSent) {
   const Case& played = GetParam();
   REQUIRE_SHARED_FILE(played.file);
   Process solver({"solve", name()});
@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(
              {{"out of order", 56}},
              ":5: waypoint refused: out of order"}));
 
-TEST_F(Ingest, ARowThatIsEarlierThanTheFirstIsNamedAsWell) {
+TEST_F(Ingest, ARowEarlierThanTheFirstIsListed) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", "t,x\n5,0\n4,1\n6,2\n");
   Process solver({"solve", name()});
@@ -114,7 +114,7 @@ TEST_F(Ingest, ARowThatIsEarlierThanTheFirstIsNamedAsWell) {
   EXPECT_EQ(json::parse(ended.out)["skipped_by_reason"]["out of order"], 1);
 }
 
-TEST_F(Ingest, WhatTheAppendRefusesIsNamedAndSkippedOrEndsTheStream) {
+TEST_F(Ingest, ARowRefusedByAppendIsSkippedOrEndsTheStream) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", "t,x\n5.0000005,0\n6,1\n7,2\n8,1\n");
   const auto leave_unfinished = [&] {
@@ -151,7 +151,7 @@ TEST_F(Ingest, WhatTheAppendRefusesIsNamedAndSkippedOrEndsTheStream) {
   EXPECT_EQ(info(name())["solver"]["newest_knot_ns"], 5'000'000'000);
 }
 
-TEST_F(Ingest, WhatTheSolverRefusesIsNamedByItsLineThoughTheRingHadTakenIt) {
+TEST_F(Ingest, ARowRefusedByTheSolverIsListedWithItsLine) {
   Process solver({"solve", name(), "--method", "smoothing", "--lambda", "1e-3", "--settle", "20"});
   const Ended skipped = replay(own_file("gaps.csv"), {"--on-error", "skip", "--json"});
   EXPECT_EQ(skipped.code, 0) << skipped.err;
@@ -174,9 +174,10 @@ TEST_F(Ingest, WhatTheSolverRefusesIsNamedByItsLineThoughTheRingHadTakenIt) {
   expect_accounted_for(stopped, 150);
 }
 
-TEST_F(Ingest, TheSolverTellsTheFirstRefusalOfEachReasonAtOnce) {
+TEST_F(Ingest, TheSolverReportsTheFirstRefusalOfEachReasonImmediately) {
   const std::string told =
-      "'" + name() + "': item 20 refused: lag too short (time 400000000 ns); more for this reason";
+      "'" + name() +
+      "': item 20 refused: lag too short (time 400000000 ns); further ones for this reason";
   for (const std::string& wanted : {name(), name() + "*"}) {
     Process solver(
         {"solve", wanted, "--method", "smoothing", "--lambda", "1e-3", "--settle", "20"});
@@ -192,7 +193,7 @@ TEST_F(Ingest, TheSolverTellsTheFirstRefusalOfEachReasonAtOnce) {
   }
 }
 
-TEST_F(Ingest, AProducerThatWakesLateIsToldWhatHasGoneBy) {
+TEST_F(Ingest, AProducerThatResumesLateListsItsPastRows) {
   const TestFolder folder;
   std::string rows = "t,x\n";
   for (int i = 0; i < 200; ++i) rows += fmt::format("{},{}\n", 0.01 * i, 0.001 * i);
@@ -201,7 +202,7 @@ TEST_F(Ingest, AProducerThatWakesLateIsToldWhatHasGoneBy) {
   Process replaying(
       {"replay", file, "--stream", name(), "--lead", "100", "--on-error", "skip", "--json"});
   const auto solved = [&](const char* key) {
-    const json stream = info(name());  // null before there is one, the solver's too
+    const json stream = info(name());  // null before the stream or the solver exists
     return stream.is_null() || stream["solver"].is_null()
                ? std::int64_t{0}
                : stream["solver"][key].get<std::int64_t>();
@@ -218,7 +219,7 @@ TEST_F(Ingest, AProducerThatWakesLateIsToldWhatHasGoneBy) {
   EXPECT_GT(json::parse(ended.out)["skipped_by_reason"]["past"], 5);
 }
 
-TEST_F(Ingest, EachOfManyRefusalsIsNamedAlsoInALoop) {
+TEST_F(Ingest, EachOfManyRefusalsIsListedAlsoInALoop) {
   const TestFolder folder;
   std::string rows = "t,x\n";
   for (int i = 0; i < 2500; ++i) rows += fmt::format("{},1\n", i);

@@ -9,7 +9,7 @@
 #include "tests/fixtures/processes/process.hpp"
 #include "tests/fixtures/processes/shared_files.hpp"
 
-/// What becomes of rows that come too late.
+/// How `replay` handles late rows.
 namespace splinecast::apps {
 namespace {
 
@@ -30,7 +30,7 @@ std::string steady_rows() {
 
 class LateIngest : public Ingest {
  protected:
-  /// Replays a file live, and stops the process until the stream has run dry.
+  /// Replays a file live, and pauses the process until the stream has starved.
   [[nodiscard]] Ended replay_with_a_pause(const std::string& file, const std::string& policy,
                                           const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments{"replay",     file,   "--stream", name(),
@@ -65,7 +65,7 @@ class LateIngest : public Ingest {
   }
 };
 
-TEST_F(LateIngest, RowsThatNoCurveCanContainAreLeftOutByPass) {
+TEST_F(LateIngest, PassOmitsDuplicateAndOutOfOrderRows) {
   Process solver({"solve", name()});
   const json report = replay_recorded(own_file("duplicates.csv"), "pass");
   EXPECT_EQ(report["sent"], 100);
@@ -79,10 +79,10 @@ TEST_F(LateIngest, RowsThatNoCurveCanContainAreLeftOutByPass) {
   EXPECT_GT(mixed["late"]["largest_ns"], 0);
 }
 
-TEST_F(LateIngest, ShiftDropsCopiesAndMovesTheRestByAMedianInterval) {
+TEST_F(LateIngest, ShiftDropsCopiesAndDelaysTheRestByAMedianInterval) {
   Process solver({"solve", name()});
   const json report = replay_recorded(own_file("duplicates.csv"), "shift");
-  EXPECT_EQ(report["sent"], 104);  // of 15 duplicates 11 are copies
+  EXPECT_EQ(report["sent"], 104);  // 11 of the 15 duplicates are exact copies
   EXPECT_EQ(report["late"], json::parse(R"({"policy": "shift",
       "by_kind": {"duplicate": 15, "out of order": 0, "past": 0},
       "left_out": 11, "shifts": 4, "shifted_ns": 80000000, "largest_ns": 0})"));
@@ -92,7 +92,7 @@ TEST_F(LateIngest, ShiftDropsCopiesAndMovesTheRestByAMedianInterval) {
   EXPECT_EQ(mixed["sent"], 150);
 }
 
-TEST_F(LateIngest, ShiftMovesARecordingTheSameWayEachTime) {
+TEST_F(LateIngest, ShiftGivesTheSameResultEachTime) {
   Process solver({"solve", name()});
   const auto last = [&] { return info(name())["solver"]["newest_knot_ns"]; };
   const json first = replay_recorded(own_file("out_of_order.csv"), "shift");
@@ -101,7 +101,7 @@ TEST_F(LateIngest, ShiftMovesARecordingTheSameWayEachTime) {
   EXPECT_EQ(last(), end);
 }
 
-TEST_F(LateIngest, AClockThatWasSetBackGoesOnAMedianIntervalBehind) {
+TEST_F(LateIngest, AfterABackwardClockStepTimesContinueAMedianIntervalLater) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", "t,x\n5,0\n5.1,1\n5.2,2\n2,3\n2.1,4\n2.1,4\n2.1,5\n");
   Process solver({"solve", name()});
@@ -114,7 +114,7 @@ TEST_F(LateIngest, AClockThatWasSetBackGoesOnAMedianIntervalBehind) {
   EXPECT_EQ(replay_recorded(file, "pass")["sent"], 3);
 }
 
-TEST_F(LateIngest, OtherBadRowsStopItWhateverBecomesOfLateOnes) {
+TEST_F(LateIngest, OtherBadRowsStopItUnderAnyLatePolicy) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", "t,x\n0,0\n0,1\n0.1,nan\n0.2,2\n");
   Process solver({"solve", name()});
@@ -124,7 +124,7 @@ TEST_F(LateIngest, OtherBadRowsStopItWhateverBecomesOfLateOnes) {
   EXPECT_EQ(run({"replay", file, "--stream", name(), "--late", "drop"}).code, 2);
 }
 
-TEST_F(LateIngest, AProducerThatWakesLateShiftsWhatIsLeft) {
+TEST_F(LateIngest, AProducerThatResumesLateShiftsTheRemainingRows) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", steady_rows());
   Process solver({"solve", name()});
@@ -136,11 +136,11 @@ TEST_F(LateIngest, AProducerThatWakesLateShiftsWhatIsLeft) {
   EXPECT_GE(report["late"]["by_kind"]["past"], 1);
   EXPECT_GE(report["late"]["shifts"], 1);
   EXPECT_GT(report["late"]["largest_ns"], 80'000'000);
-  EXPECT_GT(report["late"]["shifted_ns"], 250'000'000);  // the lead, and what it was late
+  EXPECT_GT(report["late"]["shifted_ns"], 250'000'000);  // the lead plus the delay
   EXPECT_TRUE(report["verification"]["difference"].is_null());
 }
 
-TEST_F(LateIngest, AProducerThatWakesLateWithItsSolverShiftsWhatIsLeftToo) {
+TEST_F(LateIngest, AProducerThatResumesLateWithItsSolverShiftsTheRemainingRows) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", steady_rows());
   const Ended ended = replay_with_a_pause(file, "shift", {"--embedded"});
@@ -153,7 +153,7 @@ TEST_F(LateIngest, AProducerThatWakesLateWithItsSolverShiftsWhatIsLeftToo) {
   EXPECT_TRUE(report["verification"]["difference"].is_null());
 }
 
-TEST_F(LateIngest, AProducerThatWakesLateCountsWhatItPassesOn) {
+TEST_F(LateIngest, AProducerThatResumesLateCountsTheLateRowsThatItSends) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", steady_rows());
   Process solver({"solve", name()});

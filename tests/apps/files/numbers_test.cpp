@@ -43,7 +43,7 @@ TEST(Numbers, TimesAreReadExactlyInEveryUnit) {
   }
 }
 
-TEST(Numbers, OtherTextsAreNoTimes) {
+TEST(Numbers, InvalidTimesAreRejected) {
   for (const char* text : {"", " ", ".", "-", "1.2.3", "1e", "1e+", "1e+-1", "nan", "inf", "0x10",
                            "1 2", "9223372036854775808", "1e30", "1,5", "12s"}) {
     EXPECT_FALSE(parse_time(text, TimeUnit::nanoseconds).has_value()) << text;
@@ -51,7 +51,7 @@ TEST(Numbers, OtherTextsAreNoTimes) {
   EXPECT_FALSE(parse_time("9223372037", TimeUnit::seconds).has_value());
 }
 
-TEST(Numbers, NumbersAreReadWholeOrNotAtAll) {
+TEST(Numbers, NumbersAreReadCompletelyOrRejected) {
   EXPECT_EQ(parse_number("-1.25e-3"), -1.25e-3);
   EXPECT_EQ(parse_number(" +3 "), 3.0);
   EXPECT_TRUE(std::isnan(parse_number("nan").value()));

@@ -11,7 +11,7 @@
 #include "tests/fixtures/processes/process.hpp"
 #include "tests/fixtures/processes/shared_files.hpp"
 
-// Every interpolant by the program, in real processes.
+// Every method of the program, in real processes.
 namespace splinecast::apps {
 namespace {
 
@@ -29,7 +29,7 @@ Arguments operator+(Arguments a, const Arguments& b) {
   return a;
 }
 
-/// A recording with velocities and accelerations, about `interval` apart.
+/// A recording of two dimensions with velocities and accelerations.
 std::string recording(const TestFolder& folder, std::size_t knots) {
   const testing::Trial trial = testing::random_trial(3, knots, 2, 4);
   const Waypoints all = trial.waypoints();
@@ -44,7 +44,7 @@ std::string recording(const TestFolder& folder, std::size_t knots) {
   return folder.write("moves.csv", text);
 }
 
-/// What shapes the curve, beside the method.
+/// The parameters of the method.
 Arguments parameters(const Method& method) {
   if (method.smooths()) return {"--lambda", "1e-9"};
   if (!method.laws.is_scale_free) return {"--time-scale", "0.5"};
@@ -126,7 +126,7 @@ TEST(MethodsVerb, MeasuresAgainstATrajectory) {
   }
 }
 
-TEST(MethodsVerb, MeasuresBeforeAndBehindAJumpOfTheTrajectory) {
+TEST(MethodsVerb, MeasuresBeforeAndAfterAJumpOfTheTrajectory) {
   const TestFolder folder;
   const auto jumping = folder.write("a.csv", "duration,x^0,x^1\n1,0,1\n1,5,1\n");
   const Ended measured = run({"methods", "--against", jumping, "--json"});
@@ -135,7 +135,7 @@ TEST(MethodsVerb, MeasuresBeforeAndBehindAJumpOfTheTrajectory) {
   for (const json& row : json::parse(measured.out)) EXPECT_LT(row["errors"][0], 1e-6) << row.dump();
 }
 
-TEST(MethodsVerb, LeavesOutWhatATrajectoryHasNothingOf) {
+TEST(MethodsVerb, OmitsDerivativesThatTheTrajectoryDoesNotHave) {
   const TestFolder folder;
   const auto straight = folder.write("a.csv", "duration,x^0,x^1\n1,0,1\n");
   const Ended measured = run({"methods", "--against", straight, "--json"});
@@ -146,23 +146,23 @@ TEST(MethodsVerb, LeavesOutWhatATrajectoryHasNothingOf) {
   }
 }
 
-TEST(MethodsVerb, SaysWhatIsWrongWithATrajectory) {
+TEST(MethodsVerb, ReportsErrorsInATrajectory) {
   const TestFolder folder;
   const std::vector<std::pair<std::string, std::string>> cases{
       {"", "there is no header"},
       {"duration,x^0\n", "there are no rows"},
-      {"duration,x\n1,2\n", "a.csv:1: column 'x' names no power"},
+      {"duration,x\n1,2\n", "a.csv:1: column 'x' has no valid power"},
       {"duration,x^0,x^99\n1,2,3\n", "column 'x^99'"},
       {"duration,x^0\n1\n", "a.csv:2: 1 fields; the header has 2"},
-      {"duration,x^0\n0,1\n", "a.csv:2: '0' is no duration"},
-      {"duration,x^0\n1e9,1\n", "is no duration of up to a year"},
-      {"duration,x^0\n20000000,1\n20000000,1\n", "a.csv:3: the trajectory lasts longer"},
-      {"duration,x^0,x^0\n1,1,1\n", "column 'x^0' is there twice"},
-      {"duration,^0\n1,1\n", "column '^0' names no dimension"},
+      {"duration,x^0\n0,1\n", "a.csv:2: '0' is not a duration"},
+      {"duration,x^0\n1e9,1\n", "is not a duration above 0 and up to 366 days"},
+      {"duration,x^0\n20000000,1\n20000000,1\n", "a.csv:3: the trajectory is longer"},
+      {"duration,x^0,x^0\n1,1,1\n", "column 'x^0' occurs twice"},
+      {"duration,^0\n1,1\n", "column '^0' has no dimension name"},
       {"x^0,x^1\n1,1\n", "the first column is not 'duration'"},
       {"duration,x^0\n0.01,1\n", "no trajectory lasts as long as --every"},
       {"duration,x^0\n100000,1\n", "choose a longer --every"},
-      {"duration,x^0\n1,nan\n", "column 'x^0': 'nan' is no number within 1e100"},
+      {"duration,x^0\n1,nan\n", "column 'x^0': 'nan' is not a number from -1e100 to 1e100"},
   };
   for (const auto& [text, message] : cases) {
     const Ended ended = run({"methods", "--against", folder.write("a.csv", text)});
@@ -171,7 +171,7 @@ TEST(MethodsVerb, SaysWhatIsWrongWithATrajectory) {
   }
 }
 
-TEST(Fit, ChoosesLambdaAndSaysWhich) {
+TEST(Fit, ChoosesLambdaAndReportsIt) {
   const TestFolder folder;
   const auto file = recording(folder, 60);
   const Arguments fit{"fit", file, "--method", "smoothing", "--dt", "0.01"};
@@ -186,7 +186,7 @@ TEST(Fit, ChoosesLambdaAndSaysWhich) {
   EXPECT_EQ(run(fit + Arguments{"--lambda", "auto"}).out, chosen.out);
 }
 
-TEST(Fit, RefusesOptionsThatDoNotGoWithTheMethod) {
+TEST(Fit, RefusesOptionsThatDoNotFitTheMethod) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", "t,x\n0,0\n1,1\n2,4\n3,1\n");
   const std::vector<std::pair<Arguments, std::string>> cases{
@@ -197,16 +197,17 @@ TEST(Fit, RefusesOptionsThatDoNotGoWithTheMethod) {
       {{"--online", "--force-lag"}, "--method smoothing only"},
       {{"--start", "own"}, "'own'"},
       {{"--method", "akima", "--online", "--settle", "1"}, "must be 2 to 64, not 1"},
-      {{"--method", "smoothing", "--online", "--tail", "rest", "--lambda", "1"}, "tail of its own"},
-      {{"--method", "smoothing", "--online"}, "online it cannot be chosen"},
+      {{"--method", "smoothing", "--online", "--tail", "clamped", "--lambda", "1"},
+       "tail of its own"},
+      {{"--method", "smoothing", "--online"}, "cross-validation needs all waypoints"},
       {{"--method", "smoothing", "--online", "--lambda", "auto"}, "all waypoints at once"},
       {{"--method", "smoothing", "--lambda", "-1"}, "'-1'"},
       {{"--method", "smoothing", "--online", "--lambda", "1", "--settle", "8"}, "too short"},
-      {{"--method", "normalized", "--start", "rest"}, "ends naturally"},
+      {{"--method", "normalized", "--start", "clamped"}, "ends naturally"},
       {{"--method", "bessel", "--end", "not-a-knot"}, "is for c2"},
       {{"--start", "periodic"}, "other end periodic"},
       {{"--start", "periodic", "--end", "periodic"}, "last position equal"},
-      {{"--method", "akima,pchip"}, "--report alone"},
+      {{"--method", "akima,pchip"}, "--report as the only output"},
   };
   for (const auto& [arguments, text] : cases) {
     const Ended ended = run(Arguments{"fit", file, "--dt", "1"} + arguments);
@@ -219,12 +220,12 @@ TEST(Fit, RefusesOptionsThatDoNotGoWithTheMethod) {
   EXPECT_NE(ended.err.find("needs 3 waypoints; there are 2"), std::string::npos) << ended.err;
 }
 
-TEST(Solve, RefusesOptionsThatDoNotGoWithTheMethod) {
+TEST(Solve, RefusesOptionsThatDoNotFitTheMethod) {
   const std::vector<std::pair<Arguments, std::string>> cases{
       {{"--lambda", "1"}, "lambda is for method smoothing, not for c2"},
-      {{"--method", "pchip", "--force-lag"}, "for method smoothing only, not for pchip"},
+      {{"--method", "pchip", "--force-lag"}, "only for method smoothing, not for pchip"},
       {{"--method", "akima", "--time-scale", "2"}, "for method rounded, not for akima"},
-      {{"--method", "smoothing", "--lambda", "1", "--tail", "rest"}, "has a tail of its own"},
+      {{"--method", "smoothing", "--lambda", "1", "--tail", "clamped"}, "has a tail of its own"},
       {{"--method", "smoothing"}, "needs a lambda"},
   };
   const TestStream stream;
@@ -249,7 +250,7 @@ TEST(Fit, NamesTheLineWhereALagIsTooShortForLambda) {
   EXPECT_EQ(run(fit + Arguments{"--force-lag"}).code, 0);
 }
 
-TEST(Replay, OfWaypointsThatAMethodCannotTakeFailsAndNamesTheReason) {
+TEST(Replay, OfWaypointsThatTheMethodCannotUseFailsWithTheReason) {
   const TestFolder folder;
   const TestStream stream;
   const auto file = folder.write("a.csv", "t,x\n0,0\n1,1\n2,4\n");

@@ -1,4 +1,4 @@
-// Appended to a report's page by tests: notes what the page shows and does, as JSON in its DOM.
+// Tests append this to a report page: it writes what the page shows and does, as JSON, into its DOM.
 const texts = (node, query) => [...node.querySelectorAll(query)].map((found) => found.textContent);
 
 function facts_of_chart(chart) {

@@ -30,14 +30,14 @@ using testing::Ended;
 using testing::run;
 using testing::TestFolder;
 
-/// What report_facts.js notes of a page in a browser: as it opens, with the mouse on it, after a
-/// drag from 0.4 to 0.6 of the first velocity chart, and after a double click.
+/// The facts that report_facts.js records about a page in a browser: after opening, with the mouse
+/// over a chart, after a drag from 0.4 to 0.6 of the first velocity chart, after a double click.
 json facts_of(const TestFolder& folder, const std::string& page,
               const std::string& hash = "draw=all") {
   return testing::facts_of(folder, page, "fit/report_facts.js", hash);
 }
 
-/// Waypoints that all curves of a report share, and the page of that report.
+/// A report: the waypoints that all its curves share, the curves and the page.
 class Recording {
  public:
   Recording(std::vector<Time> times, std::vector<double> positions, std::size_t dimensions)
@@ -71,7 +71,7 @@ class Recording {
   Report report_;
 };
 
-TEST(Report, StepsOfAQuaternionAreThoseOfItsUnitLength) {
+TEST(Report, StepsOfAQuaternionAreMeasuredAtUnitLength) {
   const testing::Coning coning;
   std::vector<Time> times;
   std::vector<double> positions;
@@ -106,7 +106,7 @@ TEST(Report, StepsOfAQuaternionAreThoseOfItsUnitLength) {
   }
 }
 
-TEST(Report, AloneItWritesNoSamplesAndBesidesThemItChangesNone) {
+TEST(Report, WritesNoSamplesAloneAndDoesNotChangeRequestedOnes) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", "t,x\n0,0\n1,1\n3,0\n");
   const Ended alone = run({"fit", file, "--report", folder.path("a.html")});
@@ -117,7 +117,7 @@ TEST(Report, AloneItWritesNoSamplesAndBesidesThemItChangesNone) {
   EXPECT_EQ(testing::read_file(folder.path("a.html")), testing::read_file(folder.path("b.html")));
 }
 
-TEST(Report, LoadsNothingFromElsewhereAndKeepsTheLicenceOfDygraphs) {
+TEST(Report, LoadsNoExternalResourceAndKeepsTheLicenceOfDygraphs) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", "t,x\n0,0\n1,1\n3,0\n");
   ASSERT_EQ(run({"fit", file, "--report", folder.path("a.html")}).code, 0);
@@ -130,7 +130,7 @@ TEST(Report, LoadsNothingFromElsewhereAndKeepsTheLicenceOfDygraphs) {
   EXPECT_NE(page.find("@license https://github.com/danvk/dygraphs"), std::string::npos);
 }
 
-TEST(Report, ShowsWhateverANameHoldsAsText) {
+TEST(Report, ShowsNamesAsPlainText) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", "t,</script><b>x</b>,y&amp;\xe4\n5,0,1\n6,1,1\n8,0,1\n");
   ASSERT_EQ(run({"fit", file, "--report", folder.path("a.html")}).code, 0);
@@ -201,12 +201,12 @@ TEST(Report, OverlaysCurvesAndItsTableHasTheirExactExtremes) {
       EXPECT_GT(range[1], exact.greatest.value);
     }
     EXPECT_EQ(section["table"][0].at("texts").at(6), "≈ 0");  // C2: no steps
-    EXPECT_EQ(section["table"][0]["texts"].at(8), "≈ 0");     // and through the waypoints
-    EXPECT_GT(section["table"][8].at("values").at(3), 1e-3);  // which smoothing passes by
+    EXPECT_EQ(section["table"][0]["texts"].at(8), "≈ 0");     // C2 interpolates the waypoints
+    EXPECT_GT(section["table"][8].at("values").at(3), 1e-3);  // smoothing does not
   }
 }
 
-TEST(Report, TheTableOfAParabolaOfTwoPiecesIsTheOneWorkedOutByHand) {
+TEST(Report, TheTableOfATwoPiecePolynomialMatchesOneComputedByHand) {
   REQUIRE_BROWSER();
   const TestFolder folder;
   Recording recording({Time(0), Time(1'000'000'000), Time(2'000'000'000)}, {0, 1, 0}, 1);
@@ -289,7 +289,7 @@ TEST(Report, DraggingZoomsTheChartsOfADimensionAndADoubleClickShowsAllAgain) {
     return times.at(1).get<double>() - times.at(0).get<double>();
   };
   for (std::size_t r = 0; r < 4; ++r) {
-    EXPECT_NE(charts(1, 0)[r].at("values")[0], "");  // the mouse reads all four
+    EXPECT_NE(charts(1, 0)[r].at("values")[0], "");  // the legend shows values in all four charts
     EXPECT_EQ(charts(2, 0)[r].at("times"), charts(2, 0)[0].at("times"));
     EXPECT_LT(width(charts(2, 0)[r]["times"]), 0.3 * width(charts(0, 0)[r].at("times")));
     EXPECT_EQ(charts(2, 1)[r].at("times"), charts(0, 1)[r].at("times"));
@@ -340,7 +340,7 @@ TEST(Report, OneWaypointIsAPointInEachChart) {
   EXPECT_LT(range[0], 7);
   EXPECT_GT(range[1], 7);
   EXPECT_EQ(section.at("table")[0].at("values"), json({7.0, 7.0, 0.0}));
-  EXPECT_EQ(facts[0].at("notes")[0], "A lone waypoint: the curve holds its position.");
+  EXPECT_EQ(facts[0].at("notes")[0], "A single waypoint: the curve holds its position.");
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
-"""Evaluates what `fit --emit bspline` and `--emit bezier` wrote with SciPy and compares it with
+"""Evaluates the output of `fit --emit bspline` and `--emit bezier` with SciPy and compares it with
 `--emit samples`.
 
     scipy_check.py BSPLINE.json BEZIER.json SAMPLES.csv
 
 Prints, as JSON, the largest difference in position, velocity, acceleration and jerk for each format,
-relative to the largest value of that derivative. Jerks, which jump there, are not compared at knots.
+relative to the largest value of that derivative. The jerk is not compared at knots, where it jumps.
 """
 
 import json

@@ -35,7 +35,7 @@ std::vector<std::vector<double>> rows(const std::string& csv) {
   return all;
 }
 
-TEST(Fit, WritesSamplesFromTheFirstWaypointOnEveryDt) {
+TEST(Fit, WritesSamplesEveryDtFromTheFirstWaypoint) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", "t,x\n10,0\n11,1\n12,4\n");
   const Ended ended = run({"fit", file, "--dt", "0.5"});
@@ -79,7 +79,7 @@ TEST(Fit, OnlineWithALongLagEqualsBatchTo1eMinus12) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", to_csv(random_mesh(2, 150, 3, 3)));
   for (const char* condition :
-       {"natural", "halt", "rest", "velocity=1,2,3", "acceleration=-1,0,1"}) {
+       {"natural", "halt", "clamped", "velocity=1,2,3", "acceleration=-1,0,1"}) {
     const auto batch =
         rows(run({"fit", file, "--start", condition, "--end", condition, "--dt", "0.002"}).out);
     const auto online = rows(run({"fit", file, "--online", "--settle", "48", "--start", condition,
@@ -101,7 +101,7 @@ TEST(Fit, OnlineWithALongLagEqualsBatchTo1eMinus12) {
   }
 }
 
-TEST(Fit, AddingAnEpochToAllTimesChangesNoBitButTheTimes) {
+TEST(Fit, AddingAnEpochToAllTimesChangesNoSampledBit) {
   const TestFolder folder;
   auto mesh = random_mesh(3, 60, 2, 5);
   const auto strip_times = [](const std::string& csv) {
@@ -128,7 +128,7 @@ TEST(Fit, AddingAnEpochToAllTimesChangesNoBitButTheTimes) {
   }
 }
 
-TEST(Fit, OneWaypointHoldsAndTwoMakeALine) {
+TEST(Fit, OneWaypointGivesAConstantAndTwoGiveALine) {
   const TestFolder folder;
   const auto one = folder.write("one.csv", "t_ns,x\n5,7\n");
   EXPECT_EQ(run({"fit", one, "--dt", "1"}).out, "t_ns,p[0],v[0],a[0],j[0]\n5,7,0,0,0\n");
@@ -141,7 +141,7 @@ TEST(Fit, OneWaypointHoldsAndTwoMakeALine) {
             "t_ns,p[0],v[0],a[0],j[0]\n0,0,2,0,0\n1000000000,2,2,0,0\n2000000000,4,2,0,0\n");
 }
 
-TEST(Fit, WritesOverAnOldResultOnlyWhenAllIsWell) {
+TEST(Fit, OverwritesAnOldResultOnlyOnSuccess) {
   const TestFolder folder;
   const auto file = folder.write("a.csv", "t,x\n0,0\n1,1\n2,0\n");
   const auto at = folder.write("at.csv", "t\n0.5\n9\n");
@@ -154,7 +154,7 @@ TEST(Fit, WritesOverAnOldResultOnlyWhenAllIsWell) {
   EXPECT_EQ(run({"fit", file, "--columns", "x", "--emit", "pp", "-o", "/dev/full"}).code, 1);
 }
 
-TEST(Fit, SaysWhatIsWrongAndExitsWith2) {
+TEST(Fit, ReportsWrongUsageAndInputAndExitsWith2) {
   const TestFolder folder;
   const auto good = folder.write("good.csv", "t,x\n0,0\n1,1\n2,0\n");
   const auto bad_order = folder.write("order.csv", "t,x\n0,0\n1,1\n1,0\n");
@@ -166,7 +166,7 @@ TEST(Fit, SaysWhatIsWrongAndExitsWith2) {
       {{"fit", good, "--dt", "x"}, "'x'"},
       {{"fit", bad_order, "--dt", "1"}, "order.csv:4: time 1000000000 ns is not after"},
       {{"fit", bad_value, "--dt", "1"}, "value.csv:3: column 'x': nan is not finite"},
-      {{"fit", good, "--at", outside}, "row 2: time 2500000000 ns lies outside the data"},
+      {{"fit", good, "--at", outside}, "row 2: time 2500000000 ns is outside the data"},
       {{"fit", good, "--dt", "1", "--start", "velocity=1,2"}, "2 values; 1 are needed"},
       {{"fit", good, "--dt", "1", "--start", "sideways"}, "'sideways'"},
       {{"fit", good, "--online", "--dt", "1", "--end", "not-a-knot"}, "'not-a-knot' needs all"},

@@ -18,7 +18,7 @@ ordered_json percentile(double percent, int ns, bool enough) {
   return {{"percent", percent}, {"ns", ns}, {"above", enough ? 10 : 9}, {"enough", enough}};
 }
 
-/// A result with a stage, the floor and a peer.
+/// A result with one stage, the floor and a peer.
 ordered_json result(int p50, int p99, bool enough = true) {
   return {{"splinecast_latency", 1},
           {"environment", {{"cpu", "A"}}},
@@ -31,7 +31,7 @@ ordered_json result(int p50, int p99, bool enough = true) {
             {{"name", "iceoryx"}, {"from", "raw"}, {"percentiles", {percentile(50, 60, true)}}}}}};
 }
 
-TEST(LatencyCompare, ARegressionIsMoreThanTheThresholdAndMoreThanTheLeast) {
+TEST(LatencyCompare, ARegressionExceedsTheThresholdAndTheLeastDifference) {
   const auto regressions = [](int a, int b) {
     return compare_latencies(result(a, 90'000), result(b, 90'000), 20, 1000).regressions();
   };
@@ -53,7 +53,7 @@ TEST(LatencyCompare, LooksOnlyAtPercentilesThatHaveEnoughSamplesInBoth) {
   EXPECT_THROW((void)compare_latencies(none, none, 20, 0), InputError);
 }
 
-TEST(LatencyCompare, TheMachineIsNoRegressionButADifference) {
+TEST(LatencyCompare, AnotherMachineIsADifferenceAndNotARegression) {
   const ordered_json a = result(50'000, 90'000);
   EXPECT_TRUE(compare_latencies(a, a, 20, 0).differences.empty());
   ordered_json b = a;
@@ -70,7 +70,7 @@ TEST(LatencyCompare, TheMachineIsNoRegressionButADifference) {
   EXPECT_EQ(found.differences[2], "floor at 50 %: 60 ns in A, 120 ns in B");
 }
 
-TEST(LatencyCompare, ExitsWith3OnARegressionAndWith2OnWhatIsNoResult) {
+TEST(LatencyCompare, ExitsWith3OnARegressionAndWith2OnAnInvalidResult) {
   const TestFolder folder;
   const auto a = folder.write("a.json", result(50'000, 90'000).dump());
   const auto b = folder.write("b.json", result(50'000, 110'000).dump());

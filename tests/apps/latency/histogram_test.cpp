@@ -37,7 +37,7 @@ TEST(Histogram, CellsPartitionTheTimesToThreeDigits) {
   }
 }
 
-TEST(Histogram, KeepsExactExtremesAndTakesWhatIsOutOfRangeForTheNearest) {
+TEST(Histogram, KeepsExactExtremesAndClampsTimesOutOfRange) {
   Histogram histogram;
   EXPECT_EQ(histogram.count(), 0U);
   EXPECT_EQ(histogram.mean(), 0);
@@ -48,19 +48,19 @@ TEST(Histogram, KeepsExactExtremesAndTakesWhatIsOutOfRangeForTheNearest) {
   EXPECT_EQ(histogram.least(), Time(0));
   EXPECT_EQ(histogram.greatest(), Time(Histogram::kLongest));
   EXPECT_EQ(histogram.at_rank(1), Time(0));
-  // 123457 lies in a cell of 64 ns.
+  // The cell of 123457 is 64 ns wide.
   EXPECT_EQ(histogram.at_rank(2), Time(123'457 / 64 * 64 + 63));
   EXPECT_EQ(histogram.at_rank(3), histogram.greatest());
 }
 
-TEST(Histogram, ItsPercentileTextIsThatOfHdrHistogramByteByByte) {
+TEST(Histogram, ItsPercentileTextEqualsThatOfHdrHistogramByteForByte) {
   const std::string wanted =
       testing::read_file(std::string(SPLINECAST_SOURCE) + "/tests/data/histogram.hgrm");
   ASSERT_FALSE(wanted.empty());
   EXPECT_EQ(percentile_text(reference_times()), wanted);
 }
 
-TEST(Percentile, IsTheTimeAtItsRankAndSaysHowManyRankAbove) {
+TEST(Percentile, IsTheTimeAtItsRankAndCountsTheTimesAbove) {
   Histogram histogram;
   for (int i = 1; i <= 1000; ++i) histogram.record(Time(i));
   EXPECT_EQ(percentile_of(histogram, 50'000).value, Time(500));
@@ -76,7 +76,7 @@ TEST(Percentile, IsTheTimeAtItsRankAndSaysHowManyRankAbove) {
   }
 }
 
-TEST(Percentile, HasEnoughWithTenTimesAboveAndNotWithNine) {
+TEST(Percentile, HasEnoughSamplesWithTenAboveAndNotWithNine) {
   Histogram histogram;
   for (int i = 1; i <= 999; ++i) histogram.record(Time(i));
   EXPECT_EQ(percentile_of(histogram, 99'000).above, 9U);

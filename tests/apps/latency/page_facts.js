@@ -1,4 +1,4 @@
-// Appended to a latency report's page by tests: notes what the page shows, as JSON in its DOM.
+// Tests append this to a latency report page: it writes what the page shows, as JSON, into its DOM.
 const texts = (query) => [...document.querySelectorAll(query)].map((found) => found.textContent);
 
 const facts = {

@@ -14,8 +14,7 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// A pipeline in simulated time: every part takes 1 µs, and before one waypoint the producer
-/// stalls.
+/// A pipeline in simulated time: every stage takes 1 µs; the producer stalls before one waypoint.
 struct SimulatedPipeline {
   Time now = seconds(100);
   std::size_t stall_at = 500;
@@ -62,14 +61,14 @@ TEST(OpenLoop, AStallOf50PeriodsShowsAs50LateWaypointsFromTheIntendedInstants) {
   EXPECT_EQ(seen.missed, 50U);
   EXPECT_EQ(seen.missing, 0U);
   EXPECT_EQ(seen.intended.greatest(), milliseconds(50) + microseconds(4));
-  // The k-th of them waits 50 - k ms, besides the work on those before it: the tail is not lost.
+  // Late waypoint k waits 50 - k ms plus the work on the ones before it: no late one is omitted.
   const Percentile late = percentile_of(seen.intended, 99'000);
   EXPECT_NEAR(static_cast<double>(late.value.count()), 40e6, 0.1e6);
-  // Raw figures count from when the append began, and show none of it.
+  // Raw latencies start when the append begins, and do not show the stall.
   EXPECT_EQ(seen.raw.greatest(), microseconds(4));
 }
 
-TEST(OpenLoop, WithoutAStallEachStageIsAsLongAsItsWork) {
+TEST(OpenLoop, WithoutAStallEachLatencyEqualsTheWork) {
   SimulatedPipeline pipeline;
   const auto stages = pipeline.run_schedule(kSchedule, all_of(kSchedule));
   ASSERT_EQ(stages.size(), 4U);
@@ -80,7 +79,7 @@ TEST(OpenLoop, WithoutAStallEachStageIsAsLongAsItsWork) {
   }
 }
 
-TEST(OpenLoop, EndsEarlyWhenWaitingDoes) {
+TEST(OpenLoop, EndsEarlyIfTheWaitIsInterrupted) {
   std::size_t sent = 0;
   run(
       kSchedule, [&](Time instant) { return instant < kSchedule.intended(7); },
@@ -88,7 +87,7 @@ TEST(OpenLoop, EndsEarlyWhenWaitingDoes) {
   EXPECT_EQ(sent, 7U);
 }
 
-TEST(Latencies, LeaveTheWarmUpOut) {
+TEST(Latencies, ExcludeTheWarmUp) {
   SimulatedPipeline pipeline{.stall_at = 10, .stall = milliseconds(50)};
   Measured measured = all_of(kSchedule);
   measured.from += milliseconds(100);
@@ -97,7 +96,7 @@ TEST(Latencies, LeaveTheWarmUpOut) {
   EXPECT_EQ(stages.back().missed, 0U);
 }
 
-TEST(Latencies, OfSeveralItemsInOneRevisionAndOfOneThatAReaderPassedOver) {
+TEST(Latencies, CoverSeveralItemsPerRevisionAndRevisionsThatAReaderSkipped) {
   const std::vector<AppendStamp> appends{
       {.item = 0, .intended = Time(1000), .begun = Time(1010), .appended = Time(1020)},
       {.item = 1, .intended = Time(2000), .begun = Time(2010), .appended = Time(2020)},
@@ -128,7 +127,7 @@ TEST(Latencies, OfSeveralItemsInOneRevisionAndOfOneThatAReaderPassedOver) {
   EXPECT_EQ(stages[4].missed, 2U);
 }
 
-TEST(Latencies, CountWhatWasRefusedAsMissingAndMissed) {
+TEST(Latencies, CountRefusedItemsAsMissingAndMissed) {
   const std::vector<AppendStamp> appends{
       {.item = 0, .intended = Time(1000), .begun = Time(1010), .appended = Time(1020)},
       {.item = kRefusedItem, .intended = Time(2000), .begun = Time(2010), .appended = Time(2020)},

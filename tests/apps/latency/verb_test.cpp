@@ -13,7 +13,7 @@
 #include "tests/fixtures/processes/browser.hpp"
 #include "tests/fixtures/processes/process.hpp"
 
-/// `latency` with real processes. Nothing is said of how long anything takes.
+/// `latency` with real processes. No test depends on how long anything takes.
 namespace splinecast::apps {
 namespace {
 
@@ -21,8 +21,8 @@ using nlohmann::json;
 using testing::Ended;
 using testing::TestFolder;
 
-/// Runs `latency` for a second, without iceoryx, and so far ahead that no waypoint comes too late
-/// however busy the machine is.
+/// Runs `latency` for 1 s without iceoryx. The long lead prevents late waypoints also on a busy
+/// machine.
 Ended measure(std::vector<std::string> arguments) {
   const std::vector<std::string> common{"latency", "--duration",  "1",   "--warmup",
                                         "0.2",     "--rate",      "200", "--lead",
@@ -45,8 +45,8 @@ const json* find_series(const json& result, const std::string& name, const std::
   return nullptr;
 }
 
-/// Every waypoint of the second is counted at every stage, and none is appended before it is due:
-/// from the intended instant on a percentile is never shorter than raw.
+/// Expects that every stage counts all 200 waypoints and that none is appended before it is due: a
+/// percentile from the intended instant is never shorter than the raw one.
 void expect_pipeline(const json& result, const std::vector<std::string>& stages) {
   for (const std::string& name : stages) {
     const json* const intended = find_series(result, name, "intended");
@@ -75,7 +75,7 @@ void expect_percentiles(const json& series) {
   EXPECT_GE(series.at("max_ns").get<std::int64_t>(), last);
 }
 
-TEST(Latency, MeasuresEveryWaypointAtEveryStageInProcessesOfTheirOwn) {
+TEST(Latency, MeasuresEveryWaypointAtEveryStageInSeparateProcesses) {
   const json result = measure_json({});
   ASSERT_TRUE(result.is_object());
   EXPECT_EQ(result.at("splinecast_latency"), 1);
@@ -85,7 +85,7 @@ TEST(Latency, MeasuresEveryWaypointAtEveryStageInProcessesOfTheirOwn) {
     EXPECT_EQ(series.contains("missed"), series.at("from") == "intended");
   }
   EXPECT_EQ(find_series(result, "seen", "intended")->at("missing"), 0);
-  EXPECT_EQ(result.at("not_measured").at("iceoryx"), "told off");
+  EXPECT_EQ(result.at("not_measured").at("iceoryx"), "disabled by --no-iceoryx");
   EXPECT_EQ(result.at("interrupted"), false);
   EXPECT_EQ(result.at("options").at("mode"), "wait");
   EXPECT_EQ(result["options"].at("deadline_ns"), 5'000'000);
@@ -93,7 +93,7 @@ TEST(Latency, MeasuresEveryWaypointAtEveryStageInProcessesOfTheirOwn) {
   EXPECT_GT(result["clock"].at("resolution_ns").get<double>(), 0);
   EXPECT_FALSE(result.at("environment").at("kernel").get<std::string>().empty());
   EXPECT_EQ(result.at("solver").at("refused"), 0);
-  // The warm-up's 40 waypoints were sent and solved as well.
+  // Includes the 40 waypoints of the warm-up.
   const int interpolated = result["solver"].at("interpolated");
   const int passed_over = result["solver"].at("passed_over");
   EXPECT_EQ(interpolated + passed_over, 240);
@@ -118,7 +118,7 @@ TEST(Latency, MeasuresEachOfSeveralReadersAndASolverInTheProducersProcess) {
   EXPECT_EQ(result["options"].at("settle"), 4);
 }
 
-TEST(Latency, SpinsAndSaysSoWhereThereAreTooFewCpusForThat) {
+TEST(Latency, WarnsIfItSpinsOnTooFewCpus) {
   const std::string cpus = std::to_string(usable_cpus());
   const json result = measure_json({"--mode", "spin", "--readers", cpus});
   ASSERT_TRUE(result.is_object());
@@ -127,7 +127,7 @@ TEST(Latency, SpinsAndSaysSoWhereThereAreTooFewCpusForThat) {
   EXPECT_NE(result["warnings"].dump().find("spin on " + cpus + " CPUs"), std::string::npos);
 }
 
-TEST(Latency, WarnsLoudlyOfPinningThatDidNotTakeEffect) {
+TEST(Latency, WarnsIfPinningFails) {
   const std::vector<std::string> impossible{"--cpu-producer", "999", "--cpu-reader", "998"};
   const Ended text = measure(impossible);
   ASSERT_EQ(text.code, 0) << text.err;
@@ -139,14 +139,14 @@ TEST(Latency, WarnsLoudlyOfPinningThatDidNotTakeEffect) {
   EXPECT_EQ(text.err.find("solver is not pinned"), std::string::npos);
 }
 
-TEST(Latency, WritesWhatHasTooFewSamplesInBrackets) {
+TEST(Latency, PutsPercentilesWithTooFewSamplesInBrackets) {
   const Ended text = measure({});
   ASSERT_EQ(text.code, 0) << text.err;
   // 200 samples: 20 above the 90th percentile, 2 above the 99th.
   const std::string row = testing::between(text.out, "  seen ", "\n");
   EXPECT_EQ(std::ranges::count(row, '('), 4) << row;
   EXPECT_NE(text.out.find("fewer than ten samples"), std::string::npos);
-  EXPECT_NE(text.out.find("iceoryx not measured: told off"), std::string::npos);
+  EXPECT_NE(text.out.find("iceoryx not measured: disabled by --no-iceoryx"), std::string::npos);
 }
 
 TEST(Latency, WritesPercentileTextOfEachStage) {
@@ -170,7 +170,7 @@ TEST(Latency, WarnsOfTheKernelsThrottlingWhereFifoProcessesSpin) {
   EXPECT_NE(throttling_warning(options, environment).find("for 50 ms of each 1000000 us"),
             std::string::npos);
   environment.rt_runtime = "";
-  EXPECT_NE(throttling_warning(options, environment).find("is unknown"), std::string::npos);
+  EXPECT_NE(throttling_warning(options, environment).find("unknown whether"), std::string::npos);
   environment.rt_runtime = "-1";
   EXPECT_EQ(throttling_warning(options, environment), "");
   options.fifo = false;
@@ -178,7 +178,7 @@ TEST(Latency, WarnsOfTheKernelsThrottlingWhereFifoProcessesSpin) {
   EXPECT_EQ(throttling_warning(options, environment), "");
 }
 
-TEST(Latency, RefusesWhatCannotBeMeasured) {
+TEST(Latency, RefusesInvalidOptions) {
   const std::vector<std::vector<std::string>> wrong{
       {"--rate", "0"},
       {"--rate", "1e6"},
@@ -210,7 +210,7 @@ TEST(Latency, LeavesNothingInSharedMemory) {
   }
 }
 
-TEST(Latency, AStopEndsItEarlyWithWhatThereIs) {
+TEST(Latency, AStopSignalEndsItEarlyWithPartialResults) {
   testing::Process measuring({"latency", "--duration", "3600", "--rate", "1000", "--warmup", "0",
                               "--no-iceoryx", "--json"});
   const std::string name = "latency." + std::to_string(measuring.pid());
@@ -227,7 +227,7 @@ TEST(Latency, AStopEndsItEarlyWithWhatThereIs) {
   EXPECT_GT(find_series(result, "append", "intended")->at("count").get<int>(), 10);
 }
 
-TEST(Latency, AStopInItsLastPartInterruptsItToo) {
+TEST(Latency, AStopSignalInItsLastPartAlsoInterruptsIt) {
   testing::Process measuring({"latency", "--duration", "3", "--warmup", "0", "--json"});
   const std::string name = "latency." + std::to_string(measuring.pid());
   ASSERT_TRUE(testing::await([&] { return testing::info(name).is_object(); }));
@@ -243,11 +243,11 @@ TEST(Latency, AStopInItsLastPartInterruptsItToo) {
   EXPECT_EQ(result.at("not_measured").at("iceoryx"), "interrupted");
 }
 
-TEST(Latency, MeasuresIceoryxOrSaysWhyNot) {
+TEST(Latency, MeasuresIceoryxOrReportsWhyNot) {
   const Ended ended =
       testing::run({"latency", "--duration", "1", "--warmup", "0.2", "--rate", "200", "--json"});
   ASSERT_EQ(ended.code, 0) << ended.err;
-  const json result = json::parse(ended.out);  // with nothing of iceoryx's own in it
+  const json result = json::parse(ended.out);  // contains no output of iceoryx itself
   const json* const iceoryx = find_series(result, "iceoryx", "intended");
   if (iceoryx == nullptr) {
     EXPECT_FALSE(result.at("not_measured").at("iceoryx").get<std::string>().empty());

@@ -22,7 +22,7 @@ using testing::PolynomialTrajectory;
 using testing::run;
 using testing::TestFolder;
 
-/// x goes up to 1 and back: the natural c2 spline is ±(1.5 s − 0.5 s³) from either end.
+/// x rises to 1 and returns: the natural c2 spline is 1.5 s − 0.5 s³ at s seconds from either end.
 class Check : public ::testing::Test {
  protected:
   [[nodiscard]] std::vector<std::string> check(const std::vector<std::string>& more) const {
@@ -35,7 +35,7 @@ class Check : public ::testing::Test {
   std::string file_ = folder_.write("hill.csv", "t,x,y\n0,0,5\n1,1,5\n2,0,5\n");
 };
 
-TEST_F(Check, TellsTheWorstOfEachKindAndExitsWith0IfAllIsKept) {
+TEST_F(Check, ReportsTheWorstOfEachKindAndExitsWith0IfAllLimitsHold) {
   const Ended ended = run(check({"--max-velocity", "1.6", "--max-acceleration", "3.1,none",
                                  "--max-jerk", "4", "--bounds", "-1:2,4:6", "--json"}));
   ASSERT_EQ(ended.code, 0) << ended.err;
@@ -53,7 +53,7 @@ TEST_F(Check, TellsTheWorstOfEachKindAndExitsWith0IfAllIsKept) {
   EXPECT_EQ(run(check({"--max-velocity", "1.6"})).err, "");
 }
 
-TEST_F(Check, TellsTheFirstViolationAndWhatSlowingSuffices) {
+TEST_F(Check, ReportsTheFirstViolationAndTheRequiredSlowing) {
   const Ended ended = run(check({"--max-velocity", "1.5", "--max-acceleration", "1.5", "--json"}));
   ASSERT_EQ(ended.code, 3) << ended.err;
   const auto found = json::parse(ended.out);
@@ -67,10 +67,10 @@ TEST_F(Check, TellsTheFirstViolationAndWhatSlowingSuffices) {
   const Ended text = run(check({"--max-velocity", "1.5", "--max-acceleration", "1.5"}));
   EXPECT_EQ(text.code, 3);
   EXPECT_NE(text.out.find("first violation"), std::string::npos) << text.out;
-  EXPECT_NE(text.out.find("0.7071 of the speed"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("0.7071 times the speed"), std::string::npos) << text.out;
 }
 
-TEST_F(Check, SlowingDoesNotHelpAgainstBoundsOfThePosition) {
+TEST_F(Check, SlowingCannotKeepPositionBounds) {
   const Ended ended = run(check({"--bounds", ":0.5,none", "--json"}));
   ASSERT_EQ(ended.code, 3) << ended.err;
   const auto found = json::parse(ended.out);
@@ -82,18 +82,18 @@ TEST_F(Check, SlowingDoesNotHelpAgainstBoundsOfThePosition) {
             std::string::npos);
 }
 
-TEST_F(Check, RefusesLimitsThatCompareNothingAndWhatDoesNotFit) {
+TEST_F(Check, RefusesLimitsThatApplyToNoDimensionAndInvalidOptions) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
       {{}, "needs limits"},
       {{"--max-velocity", "none"}, "none of the limits is for one of its dimensions"},
       {{"--max-velocity", "1,2,3"}, "3 velocity limits for 2 dimensions"},
       {{"--max-velocity", "-1"}, "velocity limit must be positive"},
-      {{"--bounds", "2:1"}, "lower one below an upper one"},
-      {{"--bounds", "2"}, "'2' is no list of bounds"},
-      {{"--max-jerk", "x"}, "is no list of numbers"},
+      {{"--bounds", "2:1"}, "must be below the upper bound"},
+      {{"--bounds", "2"}, "'2' is not a list of bounds"},
+      {{"--max-jerk", "x"}, "is not a list of numbers"},
       {{"--max-jerk", "1", "--settle", "3"}, "go with --online"},
       {{"--max-jerk", "1", "--method", "wavelet"}, "'wavelet'"},
-      {{"--bounds", "-1:1", "--kind", "x:wrap:2"}, "wrap:2, which has no bounds"},
+      {{"--bounds", "-1:1", "--kind", "x:periodic:2"}, "periodic:2, which has no bounds"},
       {{"--limits", folder_.path("none.yaml")}, "none.yaml: no such file"},
   };
   for (const auto& [arguments, text] : cases) {
@@ -121,7 +121,7 @@ TEST_F(Check, ComparesTheAngularVelocityOfAQuaternion) {
   EXPECT_EQ(run({"check", turn, "--max-velocity", "0.19"}).code, 3);
 }
 
-/// The largest absolute value of a derivative, and when.
+/// The largest absolute value of a derivative, and its time.
 struct Peak {
   double value = 0;
   double time = 0;
@@ -140,7 +140,7 @@ std::array<Peak, PolynomialTrajectory::kDimensions> peaks_of(const PolynomialTra
   return peaks;
 }
 
-/// A robot whose joints x0 to x3 may be as fast as a share of the peaks.
+/// A robot whose joints x0 to x3 have a share of the peaks as velocity limit.
 std::string urdf_of(const std::array<Peak, PolynomialTrajectory::kDimensions>& peaks,
                     double share) {
   std::string urdf = "<robot name=\"flight\">\n<link name=\"l0\"/>\n";
@@ -157,7 +157,7 @@ std::string urdf_of(const std::array<Peak, PolynomialTrajectory::kDimensions>& p
          "<child link=\"tool\"/></joint>\n</robot>\n";
 }
 
-TEST_F(Check, FindsTheVelocitiesOfAFlightThatIsKnown) {
+TEST_F(Check, FindsThePeakVelocitiesOfAKnownFlight) {
   const auto path = testing::shared_file("data/crazyswarm2_poly/figure8.csv");
   REQUIRE_SHARED_FILE(path);
   const PolynomialTrajectory flight(path);
@@ -179,7 +179,7 @@ TEST_F(Check, FindsTheVelocitiesOfAFlightThatIsKnown) {
   EXPECT_EQ(beyond["first_violation"]["kind"], "velocity");
   const std::size_t worst = beyond["worst"]["velocity"]["dimension"];
   EXPECT_NEAR(beyond["worst"]["velocity"]["time_ns"].get<double>() / 1e9, peaks[worst].time, 0.02);
-  // An option replaces what the file says of its kind.
+  // An option replaces the limits of its kind from the file.
   EXPECT_EQ(run({"check", file, "--limits", tight, "--max-velocity", "9"}).code, 0);
 }
 

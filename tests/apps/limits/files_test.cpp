@@ -56,7 +56,7 @@ joint_limits:
     max_acceleration: 0
 )";
 
-/// What a file says; skips the test if this build cannot read files of its kind.
+/// Reads limit files. A test is skipped if this build cannot read files of its kind.
 class LimitFiles : public ::testing::Test {
  protected:
   LimitFile read(const std::string& name, const std::string& text) {
@@ -84,7 +84,7 @@ std::string with(std::string text, const std::string& from, const std::string& t
 }
 
 TEST_F(LimitFiles, AJointLimitsFileGivesScaledVelocityAndAccelerationJerkAndBounds) {
-  if (!can_read("joint_limits.yaml", kMoveIt)) GTEST_SKIP() << "made without yaml-cpp";
+  if (!can_read("joint_limits.yaml", kMoveIt)) GTEST_SKIP() << "built without yaml-cpp";
   const LimitFile file = read("joint_limits.yaml", kMoveIt);
   ASSERT_EQ(file.joints.size(), 2U);
   EXPECT_TRUE(file.notes.empty());
@@ -100,20 +100,21 @@ TEST_F(LimitFiles, AJointLimitsFileGivesScaledVelocityAndAccelerationJerkAndBoun
   EXPECT_TRUE(std::isinf(file.joints[1].upper));
 }
 
-TEST_F(LimitFiles, UnknownKeysOfAJointLimitsFileAreToldWithTheirLine) {
-  if (!can_read("joint_limits.yaml", kMoveIt)) GTEST_SKIP() << "made without yaml-cpp";
+TEST_F(LimitFiles, UnknownKeysOfAJointLimitsFileAreReportedWithTheirLine) {
+  if (!can_read("joint_limits.yaml", kMoveIt)) GTEST_SKIP() << "built without yaml-cpp";
   std::string text = with(kMoveIt, "max_effort", "max_speed");
   text += "  scaling: 3\nplanner: none\n";
   const LimitFile file = read("joint_limits.yaml", text);
   ASSERT_EQ(file.notes.size(), 3U);
-  EXPECT_NE(file.notes[0].find("joint_limits.yaml:20: 'planner'"), std::string::npos)
+  EXPECT_NE(file.notes[0].find("joint_limits.yaml:20: unknown key 'planner'"), std::string::npos)
       << file.notes[0];
-  EXPECT_NE(file.notes[1].find(":13: 'max_speed' of joint 'shoulder'"), std::string::npos);
+  EXPECT_NE(file.notes[1].find(":13: unknown key 'max_speed' of joint 'shoulder'"),
+            std::string::npos);
   EXPECT_NE(file.notes[2].find(":19: 'scaling'"), std::string::npos);
 }
 
 TEST_F(LimitFiles, BadValuesOfAJointLimitsFileAreRefusedWithLineAndValue) {
-  if (!can_read("joint_limits.yaml", kMoveIt)) GTEST_SKIP() << "made without yaml-cpp";
+  if (!can_read("joint_limits.yaml", kMoveIt)) GTEST_SKIP() << "built without yaml-cpp";
   const std::vector<std::pair<std::string, std::string>> cases{
       {with(kMoveIt, "max_velocity: 2", "max_velocity: two"), ":6: max_velocity: 'two'"},
       {with(kMoveIt, "max_velocity: 2", "max_velocity: -2"), ":6: max_velocity: -2"},
@@ -122,10 +123,10 @@ TEST_F(LimitFiles, BadValuesOfAJointLimitsFileAreRefusedWithLineAndValue) {
       {with(kMoveIt, "factor: 0.5", "factor: 1.5"), ":1: default_velocity_scaling_factor: 1.5"},
       {with(kMoveIt, "min_position: -1", "min_position: 3"), ":11: min_position 3 is not below"},
       {with(kMoveIt, "limits: true", "limits: maybe"), ":5: has_velocity_limits is neither"},
-      {with(kMoveIt, "  roll:", "  shoulder:"), ":14: joint 'shoulder' comes twice"},
+      {with(kMoveIt, "  roll:", "  shoulder:"), ":14: joint 'shoulder' occurs twice"},
       {"joint_limits:\n  a: [1, {\n", "joint_limits.yaml:"},
       {"a: 1\n", "there is no map 'joint_limits'"},
-      {"joint_limits: 3\n", ":1: 'joint_limits' is no map"},
+      {"joint_limits: 3\n", ":1: 'joint_limits' is not a map"},
       {"", "is empty"},
   };
   for (const auto& [text, message] : cases) {
@@ -134,8 +135,8 @@ TEST_F(LimitFiles, BadValuesOfAJointLimitsFileAreRefusedWithLineAndValue) {
   }
 }
 
-TEST_F(LimitFiles, ARobotGivesVelocitiesOfItsMovingJointsAndBoundsOfThoseThatHaveThem) {
-  if (!can_read("arm.urdf", kRobot)) GTEST_SKIP() << "made without urdfdom";
+TEST_F(LimitFiles, AUrdfFileGivesVelocityLimitsAndBoundsOfItsMovingJoints) {
+  if (!can_read("arm.urdf", kRobot)) GTEST_SKIP() << "built without urdfdom";
   const LimitFile file = read("arm.urdf", kRobot);
   ASSERT_EQ(file.joints.size(), 2U);
   EXPECT_EQ(file.joints[0].name, "shoulder");
@@ -151,8 +152,8 @@ TEST_F(LimitFiles, ARobotGivesVelocitiesOfItsMovingJointsAndBoundsOfThoseThatHav
   EXPECT_NE(unset.notes[0].find("arm.urdf:4: velocity 0"), std::string::npos) << unset.notes[0];
 }
 
-TEST_F(LimitFiles, BadRobotsAreRefusedWithLineAndValue) {
-  if (!can_read("arm.urdf", kRobot)) GTEST_SKIP() << "made without urdfdom";
+TEST_F(LimitFiles, BadUrdfFilesAreRefusedWithLineAndValue) {
+  if (!can_read("arm.urdf", kRobot)) GTEST_SKIP() << "built without urdfdom";
   std::string deep = "<robot name=\"r\">";
   std::string disguised = deep;
   for (int i = 0; i < 100'000; ++i) deep += "<a>";
@@ -166,8 +167,8 @@ TEST_F(LimitFiles, BadRobotsAreRefusedWithLineAndValue) {
       {with(kRobot, "</joint>", "</joynt>"), "arm.urdf:7:"},
       {"<sdf/>", "no element 'robot'"},
       {"<", "arm.urdf:"},
-      {deep, "arm.urdf:1: more than 200 elements"},
-      {disguised, "arm.urdf:1: more than 200 elements"},
+      {deep, "arm.urdf:1: elements are nested more than 200 deep"},
+      {disguised, "arm.urdf:1: elements are nested more than 200 deep"},
       {flat, "arm.urdf:1: Error"},
   };
   for (const auto& [text, message] : cases) {
@@ -176,7 +177,7 @@ TEST_F(LimitFiles, BadRobotsAreRefusedWithLineAndValue) {
   }
 }
 
-TEST(NamedLimits, BelongToTheDimensionOfTheirNameWithOrWithoutItsUnit) {
+TEST(NamedLimits, ApplyToTheDimensionOfTheirNameWithOrWithoutItsUnit) {
   const std::vector<NamedLimits> joints{{.name = "q1", .velocity = 1, .upper = 3},
                                         {.name = "q3", .velocity = 2}};
   const std::vector<std::string> names{"q1 [rad]", "q2"};
@@ -190,8 +191,8 @@ TEST(NamedLimits, BelongToTheDimensionOfTheirNameWithOrWithoutItsUnit) {
   EXPECT_THROW((void)core::matched(twice, names), std::invalid_argument);
 }
 
-TEST_F(LimitFiles, SolveGivesLimitsToTheStreamAndInfoShowsThem) {
-  if (!can_read("arm.urdf", kRobot)) GTEST_SKIP() << "made without urdfdom";
+TEST_F(LimitFiles, SolveStoresLimitsInTheStreamAndInfoShowsThem) {
+  if (!can_read("arm.urdf", kRobot)) GTEST_SKIP() << "built without urdfdom";
   const TestStream stream;
   const auto limits = folder_.write("arm.urdf", kRobot);
   const auto moves = folder_.write("a.csv", "t,shoulder,wrist\n0,0,0\n1,0.1,1\n2,0,0\n");
@@ -207,7 +208,8 @@ TEST_F(LimitFiles, SolveGivesLimitsToTheStreamAndInfoShowsThem) {
   EXPECT_EQ(shown["beyond"], "report");
   solver.signal(SIGTERM);
   const Ended ended = solver.wait();
-  EXPECT_NE(ended.err.find("name of these limits: 'roll'"), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("these limits match no dimension: 'roll'"), std::string::npos)
+      << ended.err;
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
       {{"--max-velocity", "2"}, "velocity limit"},
       {{"--bounds", "-1:1"}, "lower bound none, not -1"}};
@@ -221,7 +223,7 @@ TEST_F(LimitFiles, SolveGivesLimitsToTheStreamAndInfoShowsThem) {
   const Process agreeing({"solve", stream.name(), "--limits", limits});
 }
 
-/// 40 rows, of which one leaves the slow motion.
+/// 40 rows of a slow motion; one row is far off.
 std::string slow_rows_but_one() {
   std::string rows = "t,shoulder,wrist\n";
   for (int i = 0; i < 40; ++i) {
@@ -231,7 +233,7 @@ std::string slow_rows_but_one() {
   return rows;
 }
 
-TEST_F(LimitFiles, SolveReportsWaypointsBeyondThemOrRefusesThemWithTheirPlace) {
+TEST_F(LimitFiles, SolveReportsOrRefusesWaypointsBeyondThemWithTheirPlace) {
   const auto moves = folder_.write("steps.csv", slow_rows_but_one());
   for (const std::string beyond : {"report", "refuse"}) {
     const TestStream stream;
@@ -265,7 +267,7 @@ TEST_F(LimitFiles, SolveReportsWaypointsBeyondThemOrRefusesThemWithTheirPlace) {
           << sent.err;
     } else {
       EXPECT_EQ(report["refused"], 0);
-      EXPECT_NE(ended.err.find("beyond a limit, item 20, " + place), std::string::npos)
+      EXPECT_NE(ended.err.find("limit exceeded, item 20, " + place), std::string::npos)
           << ended.err;
     }
   }

@@ -12,7 +12,7 @@
 
 #include "tests/fixtures/processes/process.hpp"
 
-/// What `doctor` finds of a machine, from its facts.
+/// The findings of `doctor` from the facts of a machine.
 namespace splinecast::apps {
 namespace {
 
@@ -27,7 +27,7 @@ Environment good_environment() {
   return environment;
 }
 
-/// A machine with nothing to mend.
+/// A machine without any finding.
 MachineFacts good_machine() {
   return {.environment = good_environment(),
           .mounts = "proc /proc proc rw 0 0\ntmpfs /dev/shm tmpfs rw,nosuid,nodev 0 0\n",
@@ -50,7 +50,7 @@ MachineFacts good_machine() {
 
 constexpr std::size_t kNeeded = std::size_t{1} << 24U;
 
-TEST(Doctor, HasNothingToSayAboutAGoodMachine) {
+TEST(Doctor, ReportsOnlyOkForAGoodMachine) {
   for (const Finding& finding : check_machine(good_machine(), kNeeded)) {
     EXPECT_EQ(finding.verdict, Verdict::ok) << finding.check << ": " << finding.means;
     EXPECT_FALSE(finding.means.empty()) << finding.check;
@@ -58,7 +58,7 @@ TEST(Doctor, HasNothingToSayAboutAGoodMachine) {
   }
 }
 
-/// One fact changed, and what must come of it.
+/// A change of one fact, and the expected finding.
 struct Case {
   const char* check;
   Verdict verdict;
@@ -66,18 +66,18 @@ struct Case {
   std::function<void(MachineFacts&)> change;
 };
 
-/// What limits a machine.
+/// The limits of a machine that `doctor` reports.
 const std::vector<Case> kLimits{
     {"/dev/shm", Verdict::problem, "not mounted", [](auto& m) { m.mounts = ""; }},
     {"/dev/shm", Verdict::problem, "is ext4",
      [](auto& m) { m.mounts = "/dev/sda1 /dev/shm ext4 rw 0 0\n"; }},
     {"/dev/shm", Verdict::problem, "read-only",
      [](auto& m) { m.mounts += "tmpfs /dev/shm tmpfs nosuid,ro 0 0\n"; }},
-    {"/dev/shm", Verdict::problem, "may not make files",
+    {"/dev/shm", Verdict::problem, "may not create files",
      [](auto& m) { m.may_write_shared = false; }},
     {"room in /dev/shm", Verdict::problem, "needs about 16.0 MiB",
      [](auto& m) { m.room->free = kNeeded - 1; }},
-    {"room in /dev/shm", Verdict::note, "64.0 MiB in all",
+    {"room in /dev/shm", Verdict::note, "64.0 MiB in total",
      [](auto& m) { m.room = Room{.total = 64 << 20U, .free = 64 << 20U}; }},
     {"locked memory", Verdict::note, "RLIMIT_MEMLOCK is 0.1 MiB",
      [](auto& m) { m.lockable = 64 << 10U; }},
@@ -86,14 +86,14 @@ const std::vector<Case> kLimits{
     {"RemoveIPC", Verdict::note, "is on",
      [](auto& m) { m.logind += "[Login]\n RemoveIPC = yes\n"; }},
     {"container", Verdict::note, "share its /dev/shm", [](auto& m) { m.in_container = true; }},
-    {"container", Verdict::note, "process namespace of its own",
+    {"container", Verdict::note, "separate PID namespace",
      [](auto& m) { m.pid_namespace = 4026532000; }},
     {"time namespace", Verdict::note, "clock 1000.000000005 s ahead",
      [](auto& m) {
        m.time_namespace = 4026532001;
        m.clock_offsets = "monotonic        1000         5\nboottime 0 0\n";
      }},
-    {"clock", Verdict::note, "hpet, 20 ns a reading: each reading of it is a system call",
+    {"clock", Verdict::note, "hpet, 20 ns per reading: each reading of it is a system call",
      [](auto& m) { m.environment.clock = "hpet"; }},
     {"cpu governor", Verdict::note, "powersave",
      [](auto& m) { m.environment.governor = "powersave"; }},
@@ -111,13 +111,13 @@ const std::vector<Case> kLimits{
      }},
 };
 
-TEST(Doctor, FindsEachLimitByItself) {
+TEST(Doctor, FindsEachLimitIndependently) {
   for (const Case& one : kLimits) {
     MachineFacts machine = good_machine();
     one.change(machine);
     for (const Finding& finding : check_machine(machine, kNeeded)) {
       if (finding.check != one.check) {
-        EXPECT_EQ(finding.verdict, Verdict::ok) << one.means << " made " << finding.check;
+        EXPECT_EQ(finding.verdict, Verdict::ok) << one.means << " changed " << finding.check;
         continue;
       }
       EXPECT_EQ(finding.verdict, one.verdict) << finding.means;
@@ -127,12 +127,12 @@ TEST(Doctor, FindsEachLimitByItself) {
   }
 }
 
-/// Makes a file one that may not be read.
+/// Makes a file unreadable.
 std::function<void(MachineFacts&)> hide(const char* file) {
   return [file](MachineFacts& m) { m.unread[file] = "Permission denied"; };
 }
 
-/// Facts that cannot be known, and why.
+/// Facts that cannot be read, and the reason.
 const std::vector<Case> kHidden{
     {"/dev/shm",
      {},
@@ -141,7 +141,7 @@ const std::vector<Case> kHidden{
        m.mounts = "";
        hide("/proc/self/mounts")(m);
      }},
-    {"room in /dev/shm", {}, "does not say", [](auto& m) { m.room.reset(); }},
+    {"room in /dev/shm", {}, "does not report", [](auto& m) { m.room.reset(); }},
     {"locked memory",
      {},
      "/proc/self/status: Permission denied",
@@ -171,7 +171,7 @@ const std::vector<Case> kHidden{
      }},
     {"cpu governor",
      {},
-     "under the hypervisor",
+     "in a virtual machine",
      [](auto& m) {
        m.environment.governor = "";
        m.environment.hypervisor = "KVM";
@@ -213,8 +213,8 @@ const std::vector<Case> kHidden{
      }},
 };
 
-/// What cannot be known is not `ok`, and nothing else changes.
-TEST(Doctor, SaysUnknownAndWhyWhereNothingCanBeKnown) {
+/// The check of an unreadable fact is not `ok`, and no other check changes.
+TEST(Doctor, ReportsUnknownWithTheReasonForUnreadableFacts) {
   for (const Case& one : kHidden) {
     MachineFacts machine = good_machine();
     one.change(machine);
@@ -242,8 +242,8 @@ TEST(Doctor, InAContainerTheHostsSystemdIsUnknown) {
   EXPECT_EQ(check_time_namespace(machine).verdict, Verdict::unknown);
 }
 
-/// Nothing can be read: of what files say, nothing is `ok`.
-TEST(Doctor, KnowsNothingOfAMachineWithoutProcAndSys) {
+/// No file can be read: no check that depends on files is `ok`.
+TEST(Doctor, ReportsUnknownWithoutProcAndSys) {
   const testing::TestFolder root;
   const MachineFacts facts = read_machine(root.path(""));
   EXPECT_EQ(facts.unread.at("/proc/stat"), "No such file or directory");
@@ -255,11 +255,11 @@ TEST(Doctor, KnowsNothingOfAMachineWithoutProcAndSys) {
     EXPECT_FALSE(finding.means.empty());
   }
   EXPECT_EQ(check_room(facts, kNeeded).verdict, Verdict::unknown);
-  std::filesystem::create_directories(root.path("proc/stat"));  // it opens, but cannot be read
+  std::filesystem::create_directories(root.path("proc/stat"));  // can be opened but not read
   EXPECT_EQ(read_machine(root.path("")).unread.at("/proc/stat"), "Is a directory");
 }
 
-TEST(Doctor, WhatRootMayOrAnotherMachineLacksIsNoLimit) {
+TEST(Doctor, PrivilegesAndMissingFeaturesAreNotReportedAsLimits) {
   const std::vector<std::function<void(MachineFacts&)>> changes{
       [](auto& m) {  // CAP_IPC_LOCK and CAP_SYS_NICE
         m.lockable = 0;
@@ -313,7 +313,7 @@ TEST(Doctor, ReadsFactsFromTheFilesOfAnyMachine) {
   EXPECT_TRUE(facts.runs_systemd);
   EXPECT_TRUE(facts.in_container);
   EXPECT_EQ(facts.shared_huge_pages, "always [never]\n");
-  EXPECT_FALSE(facts.room);  // there is no dev/shm
+  EXPECT_FALSE(facts.room);  // the machine has no dev/shm
   EXPECT_FALSE(facts.may_write_shared);
   EXPECT_EQ(facts.time_namespace, 0U);
   EXPECT_EQ(facts.user, geteuid());

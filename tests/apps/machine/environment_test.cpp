@@ -11,7 +11,7 @@
 namespace splinecast::apps {
 namespace {
 
-/// A machine made of files.
+/// A machine that consists of files in a test folder.
 class FakeMachine {
  public:
   void say(const std::string& file, const std::string& text) const {
@@ -25,7 +25,7 @@ class FakeMachine {
   testing::TestFolder folder_;
 };
 
-TEST(Environment, NamesWhatAMachineSaysOfItself) {
+TEST(Environment, ReadsTheFactsThatAMachineReports) {
   const FakeMachine machine;
   machine.say("proc/cpuinfo",
               "processor\t: 0\nmodel name\t: A CPU @ 2.50GHz\nflags\t\t: fpu hypervisor sse\n\n"
@@ -57,7 +57,7 @@ TEST(Environment, NamesWhatAMachineSaysOfItself) {
   EXPECT_EQ(to_json(found).at("governor"), "performance,powersave");
 }
 
-TEST(Environment, LeavesEmptyWhatAMachineDoesNotSay) {
+TEST(Environment, LeavesMissingFactsEmpty) {
   const Environment found = FakeMachine().read();
   EXPECT_FALSE(found.version.empty());
   for (const std::string& text :
@@ -80,7 +80,7 @@ TEST(Environment, KnowsWhetherRealTimeProcessesAreThrottled) {
   EXPECT_EQ(throttled_time(environment), Time::zero());
 }
 
-TEST(Environment, TellsBareMetalFromWhatIsVirtualAndPreemptionFromNone) {
+TEST(Environment, DistinguishesBareMetalFromVirtualAndPreemptionFromNone) {
   const FakeMachine machine;
   machine.say("proc/cpuinfo", "flags : fpu sse");
   machine.say("sys/class/dmi/id/sys_vendor", "Maker");
@@ -99,7 +99,7 @@ TEST(Environment, AHypervisorThatHidesItsNameIsUnknown) {
   EXPECT_EQ(machine.read().hypervisor, "unknown");
 }
 
-TEST(Environment, OfThisMachineTheKernelAndTheCpusAreKnown) {
+TEST(Environment, ReadsTheKernelAndTheCpusOfThisMachine) {
   const Environment found = read_environment();
   EXPECT_FALSE(found.kernel.empty());
   EXPECT_FALSE(found.online.empty());

@@ -14,14 +14,14 @@
 #include "tests/fixtures/processes/private_shared_memory.hpp"
 #include "tests/fixtures/processes/process.hpp"
 
-/// Names in /dev/shm whose owners have ended, and how `doctor` removes them.
+/// Names in /dev/shm whose owners have ended: `doctor` removes them.
 namespace splinecast::apps {
 namespace {
 
 using testing::PrivateSharedMemory;
 using testing::TestStream;
 
-TEST(Doctor, TellsLivingNamesFromDeadOnes) {
+TEST(Doctor, DistinguishesLivingFromDeadNames) {
   const TestStream stream;
   EXPECT_THROW((void)look_at_name(stream.name()), NoSuchStream);
   {
@@ -46,7 +46,7 @@ class DoctorVerb : public ::testing::Test {
   std::string file_;
 };
 
-TEST_F(DoctorVerb, CleansNamesWhoseOwnersAreProvenDeadAndNoOthers) {
+TEST_F(DoctorVerb, RemovesOnlyNamesWhoseOwnersAreProvenDead) {
   const PrivateSharedMemory memory("64m");
   ASSERT_EQ(memory.run(replay("dead"), {}).code, 0);
   ASSERT_EQ(mkfifo(memory.file("splinecast.fifo.spline").c_str(), 0600), 0);
@@ -57,7 +57,7 @@ TEST_F(DoctorVerb, CleansNamesWhoseOwnersAreProvenDeadAndNoOthers) {
   EXPECT_EQ(looked.code, 1) << looked.out;  // the FIFO
   for (const char* text :
        {"stream dead", "its writers have ended", "splinecast doctor dead --clean", "stream living",
-        "has a living writer", "splinecast.fifo.spline is no regular file"}) {
+        "has a living writer", "splinecast.fifo.spline is not a regular file"}) {
     EXPECT_NE(looked.out.find(text), std::string::npos) << text << " in " << looked.out;
   }
   EXPECT_EQ(memory.listing(), before);
@@ -74,7 +74,7 @@ TEST_F(DoctorVerb, CleansNamesWhoseOwnersAreProvenDeadAndNoOthers) {
   EXPECT_EQ(memory.listing(), left);
 }
 
-TEST_F(DoctorVerb, LooksAtOneStreamAloneIfItIsNamed) {
+TEST_F(DoctorVerb, ChecksOnlyTheNamedStream) {
   const PrivateSharedMemory memory("64m");
   ASSERT_EQ(memory.run(replay("one"), {}).code, 0);
   ASSERT_EQ(memory.run(replay("two"), {}).code, 0);
@@ -87,7 +87,7 @@ TEST_F(DoctorVerb, LooksAtOneStreamAloneIfItIsNamed) {
   EXPECT_EQ(memory.run({"doctor", "a/b"}, {}).code, 2);
 }
 
-TEST_F(DoctorVerb, LeavesOtherUsersNamesAlone) {
+TEST_F(DoctorVerb, KeepsTheNamesOfOtherUsers) {
   REQUIRE_ROOT();
   const PrivateSharedMemory memory("64m");
   ASSERT_EQ(memory.run(replay("theirs"), {.user = 12345, .group = 12345}).code, 0);

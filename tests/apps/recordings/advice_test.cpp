@@ -16,7 +16,7 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// Rows of one dimension at these times, from a function of seconds.
+/// A table of one dimension: the values of a function of seconds at these times.
 template <typename Function>
 WaypointTable table_of(const std::vector<Time>& times, const Function& x) {
   WaypointTable table;
@@ -36,7 +36,7 @@ std::vector<Time> steady(Time interval, std::size_t rows) {
   return times;
 }
 
-/// 10 s of 0.5 sin(2 t) at 100 Hz, with noise of this standard deviation.
+/// 10 s of 0.5 sin(2 t) at 100 Hz, with Gaussian noise of standard deviation sigma.
 WaypointTable noisy_sine(double sigma, unsigned seed = 1) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, 1);
@@ -64,7 +64,7 @@ TEST(Advice, MeasuresIntervalsJitterAndGaps) {
   EXPECT_EQ(found.jitter, milliseconds(1));
 }
 
-TEST(Advice, AnIntervalOfFiveMediansIsNoGapYet) {
+TEST(Advice, AnIntervalOfFiveMediansIsNotAGap) {
   const Intervals found =
       measure_intervals(std::vector<Time>{Time(0), Time(10), Time(20), Time(30), Time(80)});
   EXPECT_EQ(found.gaps, 0U);
@@ -72,7 +72,7 @@ TEST(Advice, AnIntervalOfFiveMediansIsNoGapYet) {
   EXPECT_EQ(found.jitter, Time(40));
 }
 
-TEST(Advice, FindsTheNoiseThatWasAdded) {
+TEST(Advice, FindsTheAddedNoise) {
   for (const double sigma : {1e-4, 1e-3, 1e-2}) {
     for (const unsigned seed : {1U, 2U, 3U}) {
       EXPECT_NEAR(motion_of(noisy_sine(sigma, seed)).noise, sigma, 0.15 * sigma) << seed;
@@ -80,7 +80,7 @@ TEST(Advice, FindsTheNoiseThatWasAdded) {
   }
 }
 
-TEST(Advice, FindsTheNoiseAlsoBetweenUnevenTimes) {
+TEST(Advice, FindsTheNoiseOfUnevenTimes) {
   for (const unsigned seed : {5U, 6U}) {
     std::mt19937 random(seed);
     std::uniform_int_distribution<int> microsecond(3'000, 20'000);
@@ -93,7 +93,7 @@ TEST(Advice, FindsTheNoiseAlsoBetweenUnevenTimes) {
   }
 }
 
-TEST(Advice, TakesAnyTimesAndValuesThatAFileCanHave) {
+TEST(Advice, AcceptsAnyTimesAndValuesThatAFileCanHave) {
   const Time last = kLatestTime;
   for (const double x : {1e100, 1e-300}) {
     const Advice found = advise(
@@ -125,14 +125,14 @@ TEST(Advice, MeasuresTheMotionAndNotItsNoise) {
   }
 }
 
-TEST(Advice, LeavesRestOutOfTheQuantiles) {
+TEST(Advice, ExcludesRestFromTheQuantiles) {
   const auto moves_late = [](double t) { return t < 9 ? 0.0 : 0.5 * std::pow(t - 9, 2); };
   const DimensionMotion motion = motion_of(table_of(steady(milliseconds(10), 1001), moves_late));
   EXPECT_NEAR(motion.acceleration, 1, 0.05);
   EXPECT_NEAR(motion.velocity, 0.95, 0.06);
 }
 
-TEST(Advice, TakesNoChordAcrossAGap) {
+TEST(Advice, ComputesNoVelocityAcrossAGap) {
   std::vector<Time> times = steady(milliseconds(10), 100);
   for (const Time t : steady(milliseconds(10), 100)) times.push_back(seconds(3) + t);
   const auto jumps = [](double t) { return t < 2 ? t : 1000 + t; };
@@ -151,7 +151,7 @@ TEST(Advice, RefusesRecordingsThatAreTooShort) {
   EXPECT_NO_THROW((void)advise_rows(11));
 }
 
-TEST(Advice, TheLeadCoversWhatKNeedsAndTheJitter) {
+TEST(Advice, TheLeadCoversTheDepthThatKNeedsAndTheJitter) {
   const SolvedHow how{.settle = 8, .freeze_ahead = milliseconds(5)};
   EXPECT_EQ(depth_needed(milliseconds(10), how), milliseconds(95));
   const Intervals fast{.median = milliseconds(10), .jitter = milliseconds(2)};
@@ -162,7 +162,7 @@ TEST(Advice, TheLeadCoversWhatKNeedsAndTheJitter) {
   EXPECT_EQ(advised_lead({.median = Time::max()}, Time::max(), how), Time::max());
 }
 
-TEST(Advice, LowersKWhereTheLeadWouldBeLong) {
+TEST(Advice, LowersKIfTheLeadWouldBeLong) {
   const auto settle = [](Time interval) {
     return advised_settle({.median = interval}, milliseconds(5));
   };
@@ -179,7 +179,7 @@ TEST(Advice, LimitsAreThreeTimesTheMotionAndTheStopKeepsThem) {
   const AdvisedLimits limits = advised_limits(motion);
   EXPECT_EQ(limits.velocity, (std::vector<double>{3, 0.1 * 3, 0}));
   EXPECT_EQ(limits.acceleration, (std::vector<double>{6, 0.1 * 1.5, 0}));
-  EXPECT_EQ(limits.stop_time, seconds(1));  // of the second: 1.5 · 0.1 / 0.15
+  EXPECT_EQ(limits.stop_time, seconds(1));  // of the second dimension: 1.5 · 0.1 / 0.15
   EXPECT_EQ(advised_limits(std::span(motion).first(1)).stop_time, milliseconds(300));
   EXPECT_EQ(advised_limits(std::span(motion).last(1)).stop_time, milliseconds(250));
 }
@@ -193,7 +193,7 @@ class Hiccups : public ::testing::Test {
   AdvisedLimits limits_{.velocity = {3}, .acceleration = {6}, .stop_time = milliseconds(250)};
 };
 
-TEST_F(Hiccups, OneThatTheDepthCoversDoesNothing) {
+TEST_F(Hiccups, ThatTheDepthCoversHaveNoEffect) {
   const Hiccup found = foreseen(milliseconds(200), milliseconds(100));
   EXPECT_EQ(found.depth_left, milliseconds(90));
   EXPECT_EQ(found.dry, Time(0));
@@ -201,20 +201,21 @@ TEST_F(Hiccups, OneThatTheDepthCoversDoesNothing) {
   EXPECT_EQ(found.way_back, std::vector<std::optional<double>>{0.0});
 }
 
-TEST_F(Hiccups, ALongerOneRunsDryAndTheWayBackIsOfMinimumTime) {
+TEST_F(Hiccups, LongerThanTheDepthStarveTheStreamWhichReturnsInMinimumTime) {
   const Hiccup found = foreseen(milliseconds(60), milliseconds(300));
   EXPECT_EQ(found.dry, milliseconds(255));
   EXPECT_TRUE(found.comes_to_rest);
-  // From rest 0.255 − 0.125 behind a path of velocity 1: up to u above it and back to it, with 6.
+  // From rest, 0.255 − 0.125 away from a path of velocity 1: accelerates with 6 to a velocity of
+  // 1 + u, and then decelerates with 6 to velocity 1.
   const double u = std::sqrt(6 * 0.13 + 0.5);
   EXPECT_NEAR(*found.way_back.front(), (2 * u + 1) / 6, 1e-9);
   EXPECT_FALSE(foreseen(milliseconds(60), milliseconds(100)).comes_to_rest);
 }
 
-TEST_F(Hiccups, TheWayBackKeepsTheVelocityLimit) {
+TEST_F(Hiccups, AreFollowedByAReturnWithinTheVelocityLimit) {
   limits_.velocity = {1.5};
   const double capped = *foreseen(milliseconds(60), milliseconds(300)).way_back.front();
-  // 0.13 behind: up from 0 to 1.5, then 0.5 faster than the path, and down to 1.
+  // 0.13 away: accelerates from 0 to 1.5, stays 0.5 faster than the path, decelerates to 1.
   const double ramps = (0.25 - 0.5) / 6;
   EXPECT_NEAR(capped, 1.5 / 6 + (0.13 - ramps) / 0.5 + 0.5 / 6, 1e-9);
   limits_.velocity = {0.9};

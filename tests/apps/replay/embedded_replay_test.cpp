@@ -15,7 +15,7 @@
 #include "splinecast/reader.hpp"
 #include "tests/fixtures/processes/process.hpp"
 
-/// `replay --embedded` on a live stream, played by a thread of this process.
+/// `replay --embedded` on a live stream; a thread of this process plays it.
 namespace splinecast::apps {
 namespace {
 
@@ -35,13 +35,13 @@ WaypointTable sparse_table() {
 
 TEST(EmbeddedReplay, SettlesTheCurveBetweenWaypointsThatAreFarApart) {
   const testing::TestStream stream;
-  // Wide margins for a busy machine: the solver is due every 200 ms, 400 ms ahead.
+  // Wide margins for a busy machine: freeze-ahead is 400 ms, and the solver is due every 200 ms.
   const ReplayOptions options{
       .stream = stream.name(),
       .lead = milliseconds(1500),
       .embedded = true,
       .quiet = true,
-      .solver = {.freeze_ahead = milliseconds(400), .min_splice = milliseconds(5)}};
+      .solver = {.freeze_ahead = milliseconds(400), .min_entry = milliseconds(5)}};
   const WaypointTable table = sparse_table();
   RefusedRows refused;
   ReplayReport report;
@@ -64,7 +64,7 @@ TEST(EmbeddedReplay, SettlesTheCurveBetweenWaypointsThatAreFarApart) {
   EXPECT_EQ(count[static_cast<std::size_t>(SampleStatus::provisional)], 0U);
 }
 
-/// Positions at 100 Hz for half a second, of a motion in seconds.
+/// Positions of a motion at 100 Hz for 0.5 s; `motion` takes seconds.
 std::string recording(double (*motion)(double)) {
   std::string text = "t,x\n";
   for (int i = 0; i <= 50; ++i) {
@@ -79,7 +79,7 @@ class PassedOver : public ::testing::Test {
   [[nodiscard]] testing::Ended replay(double (*motion)(double),
                                       const std::vector<std::string>& more = {}) const {
     const testing::TestFolder folder;
-    // So far ahead that no waypoint comes too late however busy the machine is.
+    // The long lead prevents late waypoints also on a busy machine.
     std::vector<std::string> arguments{"replay",     folder.write("a.csv", recording(motion)),
                                        "--stream",   stream_.name(),
                                        "--embedded", "--lead",
@@ -90,7 +90,7 @@ class PassedOver : public ::testing::Test {
   testing::TestStream stream_;
 };
 
-TEST_F(PassedOver, AreTheWaypointsBeforeTheEndOfTheEntryOfARecordingThatStartsInMidMotion) {
+TEST_F(PassedOver, AreWaypointsBeforeTheEndOfTheEntryIfTheRecordingStartsInMotion) {
   const testing::Ended ended = replay([](double s) { return s; }, {"--json"});
   ASSERT_EQ(ended.code, 0) << ended.err;
   const auto report = nlohmann::json::parse(ended.out);
@@ -105,7 +105,7 @@ TEST_F(PassedOver, AreTheWaypointsBeforeTheEndOfTheEntryOfARecordingThatStartsIn
   EXPECT_EQ(solver["interpolated"], report["interpolated"]);
 }
 
-TEST_F(PassedOver, AreNamedInTheSummary) {
+TEST_F(PassedOver, AreCountedInTheFinalMessage) {
   const testing::Ended ended = replay([](double s) { return s; });
   ASSERT_EQ(ended.code, 0) << ended.err;
   const auto solver = testing::info(stream_.name())["solver"];
@@ -116,7 +116,7 @@ TEST_F(PassedOver, AreNamedInTheSummary) {
       << ended.err;
 }
 
-TEST_F(PassedOver, IsNoWaypointOfARecordingThatStartsAtRestAndIsNeverLate) {
+TEST_F(PassedOver, IsZeroForARecordingThatStartsAtRestAndIsNeverLate) {
   const testing::Ended ended = replay([](double s) { return 1 - std::cos(3 * s); }, {"--json"});
   ASSERT_EQ(ended.code, 0) << ended.err;
   const auto report = nlohmann::json::parse(ended.out);
@@ -124,7 +124,7 @@ TEST_F(PassedOver, IsNoWaypointOfARecordingThatStartsAtRestAndIsNeverLate) {
   EXPECT_EQ(report["passed_over"], 0);
 }
 
-TEST(EmbeddedReplay, OntoAStreamThatStillMovesWaitsForItsEnd) {
+TEST(EmbeddedReplay, OntoAMovingStreamWaitsForTheEndOfItsMotion) {
   const testing::TestStream stream;
   const ReplayOptions options{
       .stream = stream.name(), .lead = milliseconds(700), .embedded = true, .quiet = true};
@@ -144,7 +144,7 @@ TEST(EmbeddedReplay, OntoAStreamThatStillMovesWaitsForItsEnd) {
     (void)reader.wait(milliseconds(1));
     now = clock.now();
   }
-  ipc::Head old;  // its mapping stays
+  ipc::Head old;  // the reader still maps the old board
   EXPECT_TRUE(ipc::Internals::head(reader, old));
   EXPECT_TRUE(old.finished);
   EXPECT_GE(now, old.newest_knot);

@@ -32,7 +32,7 @@ class ReplayLead : public ::testing::Test {
     board_.freeze_ahead = 5'000'000;
     board_.stop_time = 250'000'000;
   }
-  /// The lead, and what is said about it.
+  /// Chooses the lead, and stores the message about it in `said_`.
   Time lead(const WaypointTable& table, const ReplayOptions& options) {
     ::testing::internal::CaptureStderr();
     const Time lead = choose_lead(table, options, board_);
@@ -44,12 +44,12 @@ class ReplayLead : public ::testing::Test {
   std::string said_;
 };
 
-TEST_F(ReplayLead, StaysAt200MillisecondsWhereThatSuffices) {
+TEST_F(ReplayLead, Is200MillisecondsIfThatSuffices) {
   EXPECT_EQ(lead(steady_table(milliseconds(10), 500), {.stream = "arm"}), milliseconds(200));
   EXPECT_EQ(said_, "");
 }
 
-TEST_F(ReplayLead, IsWhatKNeedsOfASlowRecordingAndSaysWhy) {
+TEST_F(ReplayLead, IsTheDepthThatKNeedsForASlowRecordingAndReportsWhy) {
   EXPECT_EQ(lead(steady_table(milliseconds(40), 500), {.stream = "arm"}), milliseconds(365));
   EXPECT_EQ(said_,
             "splinecast: 'arm': lead 365 ms: freeze-ahead 5 ms + 9 intervals of 40 ms = 365 ms, "
@@ -59,12 +59,12 @@ TEST_F(ReplayLead, IsWhatKNeedsOfASlowRecordingAndSaysWhy) {
             milliseconds(365));
 }
 
-TEST_F(ReplayLead, WarnsOfOneThatIsTooShortButTakesIt) {
+TEST_F(ReplayLead, IsUsedWithAWarningIfItIsTooShort) {
   const WaypointTable table = steady_table(milliseconds(10), 500);
   EXPECT_EQ(lead(table, {.stream = "arm", .lead = milliseconds(60)}), milliseconds(60));
   EXPECT_EQ(said_,
             "splinecast: 'arm': the lead of 60 ms is less than the 95 ms that K = 8 needs; a "
-            "silence of 100 ms: runs dry for 55 ms and does not come to rest\n");
+            "silence of 100 ms: starves for 55 ms and does not come to rest\n");
   EXPECT_EQ(lead(table, {.stream = "arm", .lead = milliseconds(95)}), milliseconds(95));
   EXPECT_EQ(said_, "");
   EXPECT_EQ(lead(table, {.stream = "arm", .lead = milliseconds(60), .quiet = true}),
@@ -72,7 +72,7 @@ TEST_F(ReplayLead, WarnsOfOneThatIsTooShortButTakesIt) {
   EXPECT_EQ(said_, "");
 }
 
-TEST_F(ReplayLead, SaysNothingWhereItDoesNotMatter) {
+TEST_F(ReplayLead, GivesNoMessageIfItDoesNotMatter) {
   const WaypointTable slow = steady_table(milliseconds(400), 500);
   EXPECT_EQ(lead(slow, {.stream = "arm", .rate = std::nullopt}), milliseconds(200));
   EXPECT_EQ(lead(steady_table(milliseconds(400), 1), {.stream = "arm"}), milliseconds(200));
@@ -81,7 +81,7 @@ TEST_F(ReplayLead, SaysNothingWhereItDoesNotMatter) {
   EXPECT_EQ(said_, "");
 }
 
-TEST_F(ReplayLead, IsTakenFromTheSolverOfTheStream) {
+TEST_F(ReplayLead, UsesTheSettleLagOfTheSolver) {
   const testing::TestStream stream;
   const testing::TestFolder folder;
   const auto file = folder.write("a.csv", "t,x\n0,0\n0.1,1\n0.2,2\n0.3,1\n0.4,0\n0.5,0\n");

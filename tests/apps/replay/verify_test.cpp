@@ -53,14 +53,14 @@ TEST_F(ReplayVerify, FindsALiveStreamEqual) {
   EXPECT_TRUE(report["verification"]["difference"].is_null());
 }
 
-TEST_F(ReplayVerify, FindsWhatItSolvedItselfEqual) {
+TEST_F(ReplayVerify, FindsAnEmbeddedSolversStreamEqual) {
   expect_equal(
       run({"replay", recording(500), "--stream", stream_.name(), "--rate", "max", "--clock",
            "recorded", "--embedded", "--method", "akima", "--verify", "--json"}),
       499);
 }
 
-TEST(ReplayExitCode, SaysThatADifferenceWasFound) {
+TEST(ReplayExitCode, ReportsADifference) {
   EXPECT_EQ(exit_code({}), kOk);
   EXPECT_EQ(exit_code({.verification = ipc::Verification{.equal = 3}}), kOk);
   EXPECT_EQ(exit_code({.stopped = RefusedBy::solver, .verification = ipc::Verification{}}),

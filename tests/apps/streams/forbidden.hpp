@@ -12,15 +12,15 @@
 
 namespace splinecast::apps {
 
-/// What stands in the way of a verb, in a /dev/shm of the test's own: each attack must end in a
-/// clear error, or be lived with, and leave each file as it was. Counts go to the test's record.
+/// Obstacles for verbs, in a private /dev/shm. Each attack must end with a clear error or be
+/// tolerated, and must leave every file unchanged. The test record contains the counts.
 class Forbidden : public ::testing::Test {
  protected:
   using Listing = std::map<std::string, std::string>;
 
   void SetUp() override {
     REQUIRE_PRIVATE_SHARED_MEMORY();
-    // Where a user other than root may look.
+    // Other users than root must be able to read the folder.
     std::filesystem::permissions(folder_.path(""), std::filesystem::perms(0755));
     file_ = folder_.write("moves.csv", "t,x,y\n0,0,1\n0.1,0.2,1\n0.2,0.6,0.8\n0.3,1,0.5\n");
   }
@@ -32,7 +32,7 @@ class Forbidden : public ::testing::Test {
     RecordProperty("changed", changed_);
   }
 
-  /// Sends the recording, and waits so many seconds for a solver.
+  /// Arguments of `replay`, which sends the recording and waits `wait` seconds for a solver.
   [[nodiscard]] std::vector<std::string> replay(const std::vector<std::string>& more = {},
                                                 const std::string& wait = "0.1") const {
     std::vector<std::string> all{"replay",   file_,    "--stream", "a",      "--clock",
@@ -41,7 +41,7 @@ class Forbidden : public ::testing::Test {
     return all;
   }
 
-  /// One attack: the verb must end with this code and have said each of these texts.
+  /// One attack: the verb must exit with `code` and print each text of `said`.
   testing::Ended attack(const testing::PrivateSharedMemory& memory,
                         const std::vector<std::string>& verb, int code,
                         const std::vector<std::string>& said,
@@ -51,7 +51,7 @@ class Forbidden : public ::testing::Test {
     return ended;
   }
 
-  /// The same, and it must leave the files as they are.
+  /// Like `attack`, but the verb must leave all files unchanged.
   testing::Ended attack_in_vain(const testing::PrivateSharedMemory& memory,
                                 const std::vector<std::string>& verb, int code,
                                 const std::vector<std::string>& said,
@@ -59,7 +59,7 @@ class Forbidden : public ::testing::Test {
     const Listing before = memory.listing();
     const testing::Ended ended = attack(memory, verb, code, said, who);
     const Listing after = memory.listing();
-    EXPECT_EQ(after, before) << verb.front() << " said " << ended.err;
+    EXPECT_EQ(after, before) << verb.front() << " printed " << ended.err;
     if (after != before) ++changed_;
     return ended;
   }
@@ -68,12 +68,13 @@ class Forbidden : public ::testing::Test {
              const std::vector<std::string>& said) {
     ++attacks_;
     EXPECT_EQ(ended.signal, 0) << what << " was killed";
-    EXPECT_EQ(ended.code, code) << what << " said " << ended.err << ended.out;
+    EXPECT_EQ(ended.code, code) << what << " printed " << ended.err << ended.out;
     if (ended.signal != 0) ++killed_;
     bool clear = ended.code == code;
     for (const std::string& text : said) {
       const bool found = (ended.err + ended.out).find(text) != std::string::npos;
-      EXPECT_TRUE(found) << what << " did not say '" << text << "' but " << ended.err << ended.out;
+      EXPECT_TRUE(found) << what << " did not print '" << text << "' but " << ended.err
+                         << ended.out;
       clear = clear && found;
     }
     if (!clear) ++unclear_;

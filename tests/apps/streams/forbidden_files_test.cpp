@@ -13,7 +13,7 @@
 #include "ipc/layout/mark.hpp"
 #include "tests/apps/streams/forbidden.hpp"
 
-/// Files under a stream's names that are not what they should be.
+/// Invalid or untrusted files at the paths of a stream.
 namespace splinecast::apps {
 namespace {
 
@@ -23,14 +23,14 @@ using Path = std::filesystem::path;
 
 constexpr const char* kRing = "splinecast.a.waypoints";
 constexpr const char* kBoard = "splinecast.a.spline";
-/// Owner of what a test finds under a name: the user that the verbs run as, or another one.
+/// Possible owners of a file: the user that runs the verbs, or another user.
 constexpr uid_t kUser = 65534;
 constexpr uid_t kStranger = 12345;
 
-/// Makes the file at a path something that it should not be.
+/// A change that makes the file at a path invalid or untrusted.
 struct Obstacle {
   std::function<void(const Path&)> put;
-  std::vector<std::string> said{};  ///< besides the path
+  std::vector<std::string> said{};  ///< in the error, in addition to the path
   bool is_own_litter = false;       ///< a private regular file of the user: `rm` removes it
 };
 
@@ -41,7 +41,7 @@ void patch(const Path& path, std::size_t offset, std::uint32_t value) {
   close(file);
 }
 
-/// Gives a new file to the user that the verbs run as.
+/// Changes the owner of a new file to the user that runs the verbs.
 void give(const Path& path) {
   if (geteuid() != 0) return;
   ASSERT_EQ(lchown(path.c_str(), kUser, kUser), 0);
@@ -71,7 +71,7 @@ Obstacle instead(const std::function<int(const Path&)>& make) {
                 ASSERT_EQ(make(path), 0);
                 give(path);
               },
-          .said = {"is no regular file"}};
+          .said = {"is not a regular file"}};
 }
 
 consteval std::size_t header_offset(std::string_view field) {
@@ -107,7 +107,7 @@ const std::vector<Obstacle>& obstacles() {
 
 class ForbiddenFiles : public Forbidden {
  protected:
-  /// A finished stream of the user's, with one file made an obstacle.
+  /// Makes a finished stream of the user and turns one of its files into an obstacle.
   void with_obstacle(const char* file, const Obstacle& obstacle,
                      const std::function<void(const PrivateSharedMemory&)>& then) {
     const PrivateSharedMemory memory("128m");
@@ -143,7 +143,7 @@ class ForbiddenFiles : public Forbidden {
         attack_in_vain(memory, {"solve", "a"}, 1, said);
         attack_in_vain(memory, replay(), 4, {"no solver for stream 'a'"});
         attack_in_vain(memory, replay({"--embedded"}), 1, said);
-        // The curve stands: its readers need no producer.
+        // The curve remains readable: readers need no producer.
         attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"});
         attack_in_vain(memory, {"info", "a"}, 1, said);
         attack_in_vain(memory, {"ls"}, 0, said);
@@ -153,23 +153,23 @@ class ForbiddenFiles : public Forbidden {
   }
 };
 
-TEST_F(ForbiddenFiles, UnderTheBoardsNameThatAreNoBoardAreRefusedByEachVerbAndLeftAsTheyAre) {
+TEST_F(ForbiddenFiles, InvalidAsABoardAreRefusedByEachVerbAndUnchanged) {
   expect_refused_under_the_board(true);
 }
 
-TEST_F(ForbiddenFiles, UnderTheBoardsNameThatAreNotToBeTrustedAreRefusedByEachVerb) {
+TEST_F(ForbiddenFiles, UntrustedAsABoardAreRefusedByEachVerbAndUnchanged) {
   expect_refused_under_the_board(false);
 }
 
-TEST_F(ForbiddenFiles, UnderTheRingsNameThatAreNoRingAreRefusedByEachVerbAndLeftAsTheyAre) {
+TEST_F(ForbiddenFiles, InvalidAsARingAreRefusedByEachVerbAndUnchanged) {
   expect_refused_under_the_ring(true);
 }
 
-TEST_F(ForbiddenFiles, UnderTheRingsNameThatAreNotToBeTrustedAreRefusedByEachVerb) {
+TEST_F(ForbiddenFiles, UntrustedAsARingAreRefusedByEachVerbAndUnchanged) {
   expect_refused_under_the_ring(false);
 }
 
-TEST_F(ForbiddenFiles, BesideNothingLeaveNothingBehind) {
+TEST_F(ForbiddenFiles, WithoutOtherFilesAreRefusedAndNoFileIsCreated) {
   for (const Obstacle& obstacle : obstacles()) {
     if (obstacle.is_own_litter) continue;
     auto said = obstacle.said;
@@ -187,7 +187,7 @@ TEST_F(ForbiddenFiles, BesideNothingLeaveNothingBehind) {
   }
 }
 
-TEST_F(ForbiddenFiles, OfTheUsersOwnThatAreNoRegionsAreRemoved) {
+TEST_F(ForbiddenFiles, OfTheUserThatAreInvalidRegionsAreRemovedByRm) {
   for (const Obstacle& obstacle : obstacles()) {
     if (!obstacle.is_own_litter) continue;
     with_obstacle(kBoard, obstacle, [&](const PrivateSharedMemory& memory) {
@@ -197,7 +197,7 @@ TEST_F(ForbiddenFiles, OfTheUsersOwnThatAreNoRegionsAreRemoved) {
   }
 }
 
-TEST_F(ForbiddenFiles, OfAnotherUserAreRefusedByOwnerAndLeftAsTheyAre) {
+TEST_F(ForbiddenFiles, OfAnotherUserAreRefusedWithTheOwnerAndUnchanged) {
   REQUIRE_ROOT();
   for (const mode_t mode : {0600U, 0644U}) {
     for (const char* const file : {kBoard, kRing}) {
@@ -205,10 +205,10 @@ TEST_F(ForbiddenFiles, OfAnotherUserAreRefusedByOwnerAndLeftAsTheyAre) {
         ASSERT_EQ(chown(path.c_str(), kStranger, kStranger), 0);
         ASSERT_EQ(chmod(path.c_str(), mode), 0);
       }};
-      // What may not be opened cannot say whose it is.
+      // The owner of a file that may not be opened is unknown.
       const std::vector<std::string> said{
           file, mode == 0600U ? "Permission denied" : "belongs to user 12345"};
-      // A writer opens for writing, which the kernel refuses first.
+      // A writer opens the file for writing, which the kernel refuses before the owner is checked.
       const std::vector<std::string> to_writers{file};
       with_obstacle(file, strangers, [&](const PrivateSharedMemory& memory) {
         attack_in_vain(memory, {"solve", "a"}, 1, to_writers);
@@ -216,14 +216,14 @@ TEST_F(ForbiddenFiles, OfAnotherUserAreRefusedByOwnerAndLeftAsTheyAre) {
         attack_in_vain(memory, {"info", "a"}, 1, said);
         attack_in_vain(memory, {"ls"}, 0, said);
         attack_in_vain(memory, {"rm", "a"}, 1, said);
-        // Removing a ring and then failing at the board would be half a removal.
+        // No partial removal: a failure at the board must not remove the ring.
         EXPECT_EQ(memory.listing().size(), 4U);
       });
     }
   }
 }
 
-TEST_F(ForbiddenFiles, UnderALocksNameKeepWritersOutByName) {
+TEST_F(ForbiddenFiles, InvalidAsALockStopWritersWithTheirPath) {
   const std::vector<Obstacle> locks{
       with_mode(0644, {"is not a private file", "0644"}),
       instead([](const Path& path) { return mkdir(path.c_str(), 0700); }),
@@ -241,7 +241,7 @@ TEST_F(ForbiddenFiles, UnderALocksNameKeepWritersOutByName) {
   }
 }
 
-TEST_F(ForbiddenFiles, ALockOfAnotherUserKeepsWritersOutByName) {
+TEST_F(ForbiddenFiles, ALockOfAnotherUserStopsWritersWithItsPath) {
   REQUIRE_ROOT();
   const std::string lock = "splinecast.a.spline.lock";
   const Obstacle strangers{
@@ -253,7 +253,7 @@ TEST_F(ForbiddenFiles, ALockOfAnotherUserKeepsWritersOutByName) {
   });
 }
 
-TEST_F(ForbiddenFiles, UnderNamesThatAreNoStreamsEndNoVerbAndAreNotPrinted) {
+TEST_F(ForbiddenFiles, WithInvalidStreamNamesEndNoVerbAndAreNotPrinted) {
   const PrivateSharedMemory memory("8m");
   const int before = memory.run({"doctor"}, {}).code;
   for (const char* const name : {"splinecast.a bad.waypoints", "splinecast.a\033[2J\n.spline",

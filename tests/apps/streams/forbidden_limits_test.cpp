@@ -9,8 +9,8 @@
 
 #include "tests/apps/streams/forbidden.hpp"
 
-/// Shared memory that is full, and limits of the process: each a clear error, with nothing left
-/// behind, or a loss of comfort that is said.
+/// Full shared memory and limits of the process: each one gives a clear error and leaves no file,
+/// or gives a warning about a degraded function.
 namespace splinecast::apps {
 namespace {
 
@@ -20,14 +20,14 @@ using testing::PrivateSharedMemory;
 using testing::Process;
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;  // mlock does nothing, and address space is never enough
+constexpr bool kSanitized = true;  // mlock does nothing, and any address-space limit is too small
 #else
 constexpr bool kSanitized = false;
 #endif
 
 class ForbiddenLimits : public Forbidden {};
 
-/// Takes all of a file system but so many bytes.
+/// Fills a file system except for `left` bytes.
 void fill(const PrivateSharedMemory& memory, std::uint64_t left) {
   const auto space = std::filesystem::space(memory.folder());
   const int file = open(memory.file("filler").c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, 0600);
@@ -48,7 +48,7 @@ TEST_F(ForbiddenLimits, FullSharedMemoryIsRefusedWithNeededAndFreeBytes) {
   attack_in_vain(memory, {"ls"}, 0, {"STREAM"});
 }
 
-TEST_F(ForbiddenLimits, RoomForTheRingAloneLeavesNoRingBehind) {
+TEST_F(ForbiddenLimits, RoomForTheRingAloneLeavesNoRing) {
   const PrivateSharedMemory memory("8m");
   fill(memory, 256 << 10U);
   attack_in_vain(memory, replay({"--embedded"}), 1, {"cannot reserve 2199552 bytes", "are free"});
@@ -60,7 +60,7 @@ TEST_F(ForbiddenLimits, RoomForTheRingAloneLeavesNoRingBehind) {
   EXPECT_EQ(memory.listing(), before);
 }
 
-TEST_F(ForbiddenLimits, AStreamCanBeRemovedAndReadWhereNothingIsFree) {
+TEST_F(ForbiddenLimits, AStreamCanBeReadAndRemovedInFullSharedMemory) {
   const PrivateSharedMemory memory("8m");
   ASSERT_EQ(memory.run(replay({"--embedded"}), {}).code, 0);
   fill(memory, 0);
@@ -70,7 +70,7 @@ TEST_F(ForbiddenLimits, AStreamCanBeRemovedAndReadWhereNothingIsFree) {
   EXPECT_EQ(memory.listing().size(), 1U);
 }
 
-TEST_F(ForbiddenLimits, ARegionWithHolesThatThereIsNoMemoryForIsRefused) {
+TEST_F(ForbiddenLimits, ARegionWithHolesIsRefusedIfNoMemoryIsFree) {
   const PrivateSharedMemory memory("8m");
   ASSERT_EQ(memory.run(replay({"--embedded"}), {}).code, 0);
   const int board = open(memory.file("splinecast.a.spline").c_str(), O_RDWR | O_CLOEXEC);
@@ -81,10 +81,10 @@ TEST_F(ForbiddenLimits, ARegionWithHolesThatThereIsNoMemoryForIsRefused) {
   attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 1, said);
   attack_in_vain(memory, {"info", "a"}, 1, said);
   attack_in_vain(memory, {"solve", "a"}, 1, said);
-  attack_in_vain(memory, {"rm", "a"}, 1, said);  // its readers could not be told
+  attack_in_vain(memory, {"rm", "a"}, 1, said);  // it could not notify the readers
 }
 
-TEST_F(ForbiddenLimits, LittleLockableMemoryIsSaidAndLivedWith) {
+TEST_F(ForbiddenLimits, LittleLockableMemoryGivesOnlyAWarning) {
   if (kSanitized) GTEST_SKIP() << "a sanitizer's mlock does nothing";
   const Confinement little{.limits = {"--memlock=65536"}};
   const PrivateSharedMemory memory("8m");
@@ -92,12 +92,12 @@ TEST_F(ForbiddenLimits, LittleLockableMemoryIsSaidAndLivedWith) {
   attack(memory, replay({}, "60"), 0, {"4 interpolated", "not locked into memory (RLIMIT_MEMLOCK)"},
          little);
   solver.await_message("pages are not locked into memory (RLIMIT_MEMLOCK)");
-  solver.signal(SIGTERM);  // it says in its region when it sleeps
+  solver.signal(SIGTERM);  // a running solver would change its region when it sleeps
   EXPECT_EQ(solver.wait().code, 0);
   attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"}, little);
 }
 
-TEST_F(ForbiddenLimits, AFileSizeLimitIsRefusedAndNotDiedOf) {
+TEST_F(ForbiddenLimits, AFileSizeLimitGivesAnErrorAndKillsNoProcess) {
   const Confinement little{.limits = {"--fsize=65536"}};
   const PrivateSharedMemory memory("8m");
   const std::string limit = "65536 (RLIMIT_FSIZE)";
@@ -106,15 +106,15 @@ TEST_F(ForbiddenLimits, AFileSizeLimitIsRefusedAndNotDiedOf) {
   attack_in_vain(memory, {"demo", "--seconds", "0.2"}, 1, {limit}, little);
   ASSERT_EQ(memory.run(replay({"--embedded"}), {}).code, 0);
   attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"}, little);
-  // Output is a file like any other; /tmp is not in the namespace.
+  // The limit also applies to output files; /tmp is not part of the namespace.
   const std::string out = folder_.write("out.csv", "");
   std::filesystem::permissions(out, std::filesystem::perms(0666));
   attack_in_vain(memory, {"sample", "a", "--rate", "10000", "--count", "2000", "-o", out}, 1,
                  {"out.csv", "File too large"}, little);
 }
 
-TEST_F(ForbiddenLimits, ExhaustedDescriptorsAreRefusedByName) {
-  if (kSanitized) GTEST_SKIP() << "a sanitizer needs descriptors to look at memory";
+TEST_F(ForbiddenLimits, ExhaustedDescriptorsGiveAClearError) {
+  if (kSanitized) GTEST_SKIP() << "a sanitizer needs descriptors of its own";
   const PrivateSharedMemory memory("8m");
   int refused = 0;
   for (int descriptors = 4; descriptors < 12; ++descriptors) {
@@ -137,10 +137,10 @@ TEST_F(ForbiddenLimits, ExhaustedDescriptorsAreRefusedByName) {
            {"sample", "a", "--rate", "10", "--count", "2"}, {"solve", "a"}, {"rm", "a"}}) {
     attack_in_vain(memory, verb, 1, {"Too many open files"}, four);
   }
-  attack_in_vain(memory, {"info", "a"}, 0, {"finished"}, four);  // it opens one file at a time
+  attack_in_vain(memory, {"info", "a"}, 0, {"finished"}, four);  // opens one file at a time
 }
 
-TEST_F(ForbiddenLimits, ExhaustedAddressSpaceIsRefusedWithTheBytesThatItLacks) {
+TEST_F(ForbiddenLimits, ExhaustedAddressSpaceGivesAnErrorWithTheNeededBytes) {
   if (kSanitized) GTEST_SKIP() << "a sanitizer needs all of the address space";
   const PrivateSharedMemory memory("128m");
   Process solver =
@@ -168,7 +168,7 @@ TEST_F(ForbiddenLimits, AnotherTimeNamespacesClockIsRefusedForLiveStreams) {
   attack_in_vain(memory, {"solve", "a"}, 1, said, elsewhere);
   attack_in_vain(memory, {"doctor", "a"}, 1, said, elsewhere);
   attack_in_vain(memory, {"info", "a"}, 0, {"finished"}, elsewhere);
-  // A recorded stream runs on no clock.
+  // A recorded stream uses no clock.
   ASSERT_EQ(memory.run({"rm", "a"}, here).code, 0);
   ASSERT_EQ(memory.run(replay({"--embedded"}), here).code, 0);
   attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"},

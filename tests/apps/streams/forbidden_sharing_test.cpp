@@ -12,7 +12,7 @@
 #include "splinecast/solver.hpp"
 #include "tests/apps/streams/forbidden.hpp"
 
-/// Users who share a stream, and processes that hold on to what is an owner's.
+/// Users who share a stream, and processes that hold locks or descriptors of an owner.
 namespace splinecast::apps {
 namespace {
 
@@ -35,7 +35,7 @@ class ForbiddenSharing : public Forbidden {
   Confinement stranger_{.user = 34567, .group = 34567};
 };
 
-TEST_F(ForbiddenSharing, AGroupReadsAndNobodyElse) {
+TEST_F(ForbiddenSharing, OnlyMembersOfTheGroupCanRead) {
   REQUIRE_ROOT();
   const PrivateSharedMemory memory("64m");
   Process solver = memory.start(shared({"solve", "a"}), writer_);
@@ -63,7 +63,7 @@ TEST_F(ForbiddenSharing, AGroupReadsAndNobodyElse) {
   attack_in_vain(memory, into_the_group, 1, {"cannot give the region to group 54321"}, stranger_);
 }
 
-/// Takes each kind of lock, on each file that it may open in any way.
+/// Takes each kind of lock on each file that it can open for writing or reading.
 constexpr const char* kLocker = R"(
 import fcntl, os, signal, struct, sys
 held = []
@@ -89,7 +89,7 @@ print('locked', len(held), file=sys.stderr, flush=True)
 while True: signal.pause()
 )";
 
-TEST_F(ForbiddenSharing, AReaderThatLocksAllItCanStopsNoTakeover) {
+TEST_F(ForbiddenSharing, AReaderThatLocksEveryFileItCanPreventsNoTakeover) {
   REQUIRE_ROOT();
   const PrivateSharedMemory memory("64m");
   auto solver = std::make_unique<Process>(memory.start(shared({"solve", "a"}), writer_));
@@ -99,21 +99,21 @@ TEST_F(ForbiddenSharing, AReaderThatLocksAllItCanStopsNoTakeover) {
   Process producer = memory.start(sending, writer_);
   solver->await_message("solving");
   Process locker = memory.start("/usr/bin/python3", {"-c", kLocker}, member_);
-  locker.await_message("locked 2");  // both regions, to read; neither lock file
+  locker.await_message("locked 2");  // both regions, opened for reading; no lock file
   solver->signal(SIGKILL);
   solver->wait();
-  // The dead owner's lock on the board is gone: now the reader's is in the way of the next one's.
+  // The lock of the dead owner on the board is gone: the reader's lock now blocks its successor's.
   locker.signal(SIGUSR1);
   locker.await_message("got one");
   Process next = memory.start(shared({"solve", "a"}), writer_);
   next.await_message("taken over");
   attack(memory, {"info", "a", "--json"}, 0, {"\"state\": \"running\""}, writer_);
-  producer.signal(SIGINT);  // it finishes the stream, for which it needs a living solver
+  producer.signal(SIGINT);  // finishes the stream, which needs a living solver
   judge(producer.wait(), "replay", 130, {"interrupted"});
   next.await_message("finished");
 }
 
-TEST_F(ForbiddenSharing, AChildThatAnOwnerForkedStopsNoTakeover) {
+TEST_F(ForbiddenSharing, AForkedChildOfAnOwnerPreventsNoTakeover) {
   const TestStream stream;
   std::array<int, 2> pipe_ends{};
   ASSERT_EQ(pipe(pipe_ends.data()), 0);
@@ -136,7 +136,7 @@ TEST_F(ForbiddenSharing, AChildThatAnOwnerForkedStopsNoTakeover) {
   kill(owner, SIGKILL);
   waitpid(owner, nullptr, 0);
   for (const auto kind : {ipc::RegionKind::waypoints, ipc::RegionKind::spline}) {
-    // As soon as the child has had its first instant.
+    // The locks are free as soon as the child has run its fork handler.
     EXPECT_TRUE(testing::await([&] { return !ipc::is_owned(stream.name(), kind); }));
     EXPECT_TRUE(testing::await([&] { return !ipc::owner_lives(stream.name(), kind); }));
   }
@@ -146,7 +146,7 @@ TEST_F(ForbiddenSharing, AChildThatAnOwnerForkedStopsNoTakeover) {
   judge(next.wait(), "solve", 0, {"taken over"});
   Producer producer(stream.name(), {.dimensions = 1, .clock = StreamClock::recorded});
   EXPECT_TRUE(producer.continues());
-  EXPECT_EQ(kill(child, 0), 0) << "the child has ended too early to show anything";
+  EXPECT_EQ(kill(child, 0), 0) << "the child has ended before the check";
   kill(child, SIGKILL);
   close(pipe_ends[0]);
   close(pipe_ends[1]);

@@ -19,7 +19,7 @@ using testing::Process;
 using testing::run;
 using testing::TestStream;
 
-/// A recording, where to sample it, and what must come out.
+/// A recording, sample times, and the expected samples.
 class Life : public ::testing::Test {
  protected:
   Life() {

@@ -13,13 +13,13 @@
 #include "splinecast/streams.hpp"
 #include "tests/apps/streams/life.hpp"
 
-/// A stream's life with real processes: who may come first, who may pause, who is refused.
+/// The life of a stream with real processes: start order, pauses, refused processes, removal.
 namespace splinecast::apps {
 namespace {
 
 using ipc::RegionKind;
 
-TEST_F(Life, EveryOrderOfArrivalGivesTheWholeStream) {
+TEST_F(Life, EveryStartOrderGivesTheCompleteStream) {
   const std::vector<std::string> orders[] = {
       {"solve", "replay", "sample"}, {"solve", "sample", "replay"}, {"replay", "solve", "sample"},
       {"replay", "sample", "solve"}, {"sample", "solve", "replay"}, {"sample", "replay", "solve"}};
@@ -35,7 +35,7 @@ TEST_F(Life, EveryOrderOfArrivalGivesTheWholeStream) {
       processes.emplace_back(arguments);
       if (verb == "solve") processes.back().await_message(stream.name());
       if (verb == "replay") {
-        // The next one comes when the producer's region stands, or has already been worked off.
+        // The next process starts when the producer's region exists.
         EXPECT_TRUE(await([&] {
           return std::filesystem::exists(ipc::region_path(stream.name(), RegionKind::waypoints));
         }));
@@ -46,7 +46,7 @@ TEST_F(Life, EveryOrderOfArrivalGivesTheWholeStream) {
   }
 }
 
-TEST_F(Life, APausedSolverHoldsTheProducerBackAndNothingIsLost) {
+TEST_F(Life, APausedSolverBlocksTheProducerAndNothingIsLost) {
   Process solver(solve());
   solver.await_message("waiting");
   Process replaying({"replay", file_, "--stream", name(), "--rate", "max", "--clock", "recorded",
@@ -54,7 +54,7 @@ TEST_F(Life, APausedSolverHoldsTheProducerBackAndNothingIsLost) {
   ASSERT_TRUE(await([&] { return field("solver", "interpolated") > 100; }));
   solver.signal(SIGSTOP);
   ipc::Word before = 0;
-  // Full but for what is kept for control items: the producer waits however long the solver sleeps.
+  // Full except for the reserve for control items: the producer waits until the solver continues.
   const ipc::Word full_ring = 64 - ipc::control_reserve(64);
   const bool full = await([&] {
     const auto now = info(name());
@@ -68,7 +68,7 @@ TEST_F(Life, APausedSolverHoldsTheProducerBackAndNothingIsLost) {
   expect_all_sampled(sampling);
 }
 
-TEST_F(Life, APausedProducerHoldsNobodyElseUp) {
+TEST_F(Life, APausedProducerDelaysNoOtherProcess) {
   Process solver(solve());
   Process replaying({"replay", file_, "--stream", name(), "--rate", "1", "--clock", "recorded",
                      "--duration", "2"});
@@ -91,7 +91,7 @@ TEST_F(Life, APausedProducerHoldsNobodyElseUp) {
   EXPECT_EQ(replaying.wait().code, 0);
 }
 
-TEST_F(Life, ASecondProducerAndASecondSolverAreRefusedWithTheFirstOnesProcess) {
+TEST_F(Life, ASecondProducerAndASecondSolverAreRefusedWithThePidOfTheFirst) {
   Process solver(solve());
   Process replaying({"replay", file_, "--stream", name(), "--rate", "1"});
   solver.await_message("solving");
@@ -122,7 +122,7 @@ TEST_F(Life, ANewSolverIsRefusedWhileTheFirstStillWaitsForAProducer) {
   EXPECT_FALSE(std::filesystem::exists(ipc::lock_path(name(), RegionKind::spline)));
 }
 
-TEST_F(Life, RemovingAStreamTellsItsReadersToAttachAgain) {
+TEST_F(Life, RemovingAStreamMakesItsReadersAttachAgain) {
   {
     Process solver(solve());
     ASSERT_EQ(run(replay()).code, 0);
@@ -156,7 +156,7 @@ TEST_F(Life, AReaderIsWokenWhenItsStreamIsRemoved) {
   EXPECT_EQ(removal.wait().code, 0);
 }
 
-TEST_F(Life, AReplayOntoAFinishedStreamMakesItAnewAndReadersAttachAgain) {
+TEST_F(Life, AReplayOntoAFinishedStreamRecreatesItAndReadersAttachAgain) {
   Process solver(solve());
   ASSERT_EQ(run(replay()).code, 0);
   const auto first = info(name());
@@ -172,7 +172,7 @@ TEST_F(Life, AReplayOntoAFinishedStreamMakesItAnewAndReadersAttachAgain) {
   expect_all_sampled(sampling);
 }
 
-TEST_F(Life, AReplayOntoAFinishedStreamLeavesItAloneUntilASolverComes) {
+TEST_F(Life, AReplayOntoAFinishedStreamKeepsItUntilASolverAttaches) {
   {
     Process solver(solve());
     ASSERT_EQ(run(replay()).code, 0);
@@ -206,7 +206,7 @@ TEST_F(Life, ALoopShiftsTimesByTheDurationPlusTheMedianInterval) {
   EXPECT_EQ(now["solver"]["newest_knot_ns"], 5'000'000'000);
 }
 
-TEST_F(Life, ALiveStreamPlaysNowFromHaltToHalt) {
+TEST_F(Life, ALiveStreamPlaysNowAndStartsAndEndsAtRest) {
   Process solver(solve());
   Process replaying({"replay", file_, "--stream", name(), "--duration", "1", "--lead", "3000"});
   Reader reader(name(), Time(30'000'000'000));
@@ -250,9 +250,9 @@ TEST_F(Life, OneSolverProcessServesSeveralStreams) {
   EXPECT_EQ(finished, 2U);
 }
 
-TEST_F(Life, AHistoryShorterThanTheStreamEndsWhereItBegins) {
+TEST_F(Life, AHistoryShorterThanTheStreamLimitsTheSampledTimes) {
   Process solver({"solve", name(), "--capacity", "32"});
-  // Paced, so that the finish comes as a revision of its own.
+  // Paced, so that the finish is a separate revision.
   ASSERT_EQ(
       run({"replay", file_, "--stream", name(), "--clock", "recorded", "--duration", "1"}).code, 0);
   const Ended sampled = run({"sample", name(), "--rate", "1000", "--count", "5"});
@@ -273,12 +273,12 @@ TEST_F(Life, ASignalStopsAReplayThatNeverWaits) {
   EXPECT_NE(ended.err.find("interrupted"), std::string::npos) << ended.err;
 }
 
-TEST_F(Life, ALiveStreamsSamplesAreWrittenWhenTheyAreThere) {
+TEST_F(Life, SamplesOfALiveStreamAreWrittenImmediately) {
   Process solver(solve());
   Process replaying({"replay", file_, "--stream", name(), "--loop", "1000"});
   ASSERT_TRUE(await([&] { return field("solver", "interpolated") > 0; }));
   Process sampling({"sample", name(), "--rate", "0.0001", "--count", "2"});
-  sampling.await_lines(2);  // the header and the first one; the next one comes in hours
+  sampling.await_lines(2);  // the header and the first sample; the second one follows hours later
 }
 
 TEST_F(Life, ASignalToTheDemoStopsItAndItCleansUp) {
@@ -294,7 +294,7 @@ TEST_F(Life, ASignalToTheDemoStopsItAndItCleansUp) {
   EXPECT_EQ(info(stream), nlohmann::json());
 }
 
-TEST_F(Life, BadNamesAndFullOutputsAreErrorsEverywhere) {
+TEST_F(Life, BadNamesCountsAndRatesAreErrors) {
   for (const char* bad : {"../x", ".x", "", "a b"}) {
     EXPECT_EQ(run({"info", bad}).code, 2) << bad;
     EXPECT_EQ(run({"rm", bad}).code, 2) << bad;
@@ -311,7 +311,7 @@ TEST_F(Life, BadNamesAndFullOutputsAreErrorsEverywhere) {
   EXPECT_FALSE(std::filesystem::exists(ipc::lock_path(name(), RegionKind::waypoints)));
 }
 
-TEST_F(Life, NamesThatAreCutOrNotUtf8StillMakeJson) {
+TEST_F(Life, TruncatedOrNonUtf8NamesGiveValidJson) {
   std::string wide = "t,";
   for (int i = 0; i < 16; ++i) wide += "\xc3\xa9";
   const auto file = folder_.write("names.csv", wide + ",\xe9\n0,1,1\n1,2,2\n");
@@ -323,7 +323,7 @@ TEST_F(Life, NamesThatAreCutOrNotUtf8StillMakeJson) {
   EXPECT_EQ(run({"ls", "--json"}).code, 0);
 }
 
-TEST_F(Life, TheDemoEndsWithASummaryAndLeavesNothingBehind) {
+TEST_F(Life, TheDemoEndsWithAReportAndLeavesNoStream) {
   const Ended ended = run({"demo", "--seconds", "1", "--json"});
   ASSERT_EQ(ended.code, 0) << ended.err;
   const auto summary = nlohmann::json::parse(ended.out);

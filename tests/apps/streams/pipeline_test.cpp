@@ -13,8 +13,8 @@
 #include "tests/fixtures/processes/process.hpp"
 #include "tests/fixtures/processes/shared_files.hpp"
 
-/// Recorded streams through three processes: what is sampled from shared memory is what `fit
-/// --online` computes, bit for bit.
+/// Recorded streams through three processes: the samples from shared memory equal the output of
+/// `fit --online`, bit for bit.
 namespace splinecast::apps {
 namespace {
 
@@ -34,7 +34,7 @@ struct Shape {
 const std::vector<Shape>& shapes() {
   static const std::vector<Shape> all{{"8", "bessel", "natural", "halt"},
                                       {"0", "parabolic", "halt", "natural"},
-                                      {"1", "rest", "rest", "rest"},
+                                      {"1", "clamped", "clamped", "clamped"},
                                       {"64", "natural", "natural", "natural"}};
   return all;
 }
@@ -66,7 +66,7 @@ void expect_same_bits(const std::string& file, const std::vector<std::string>& c
   EXPECT_EQ(solver.wait().code, 0);
 }
 
-/// Times spread over a recording whose own times are read by `fit`.
+/// Writes times every `dt` seconds over a recording, with `fit`. Returns the path.
 std::string times_within(const TestFolder& folder, const std::string& file,
                          const std::vector<std::string>& columns, const std::string& dt) {
   std::vector<std::string> fit{"fit", file, "--dt", dt, "-o", folder.path("at.csv")};
@@ -132,7 +132,7 @@ TEST(Pipeline, ASolverKilledInTheMiddleIsTakenOverBitForBit) {
   const TestFolder folder;
   const TestStream stream;
   auto mesh = testing::random_mesh(3, 3000, 2, 5);
-  // Paced, about 2 s long, so that every solver is killed somewhere inside the stream.
+  // Paced, about 2 s long, so that every solver is killed in the middle of the stream.
   const double scale = 2e9 / static_cast<double>(mesh.times.back().count());
   for (Time& t : mesh.times) {
     t = Time(std::llround(static_cast<double>(t.count()) * scale));

@@ -5,7 +5,7 @@
 namespace splinecast::apps {
 namespace {
 
-TEST(StreamReport, KeepsEachBitOfTheStreamsNumberForReadersThatTakeJsonNumbersForDoubles) {
+TEST(StreamReport, WritesThe64BitStreamIdAsAString) {
   ipc::RegionHeader header{};
   header.stream_id = (std::uint64_t{1} << 63U) + 1;
   header.dimensions = 1;

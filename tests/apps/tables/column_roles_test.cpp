@@ -10,13 +10,13 @@
 #include "tests/fixtures/processes/allocations.hpp"
 #include "tests/fixtures/processes/process.hpp"
 
-/// What columns become by their names.
+/// The roles of columns, from their names.
 namespace splinecast::apps {
 namespace {
 
 using testing::TestFolder;
 
-/// A header and a row of as many numbers.
+/// Reads a CSV with a header and one row of as many numbers.
 class ColumnRolesTest : public ::testing::Test {
  protected:
   [[nodiscard]] std::string file(const std::string& header) const {
@@ -42,23 +42,24 @@ class ColumnRolesTest : public ::testing::Test {
   }
 
   TestFolder folder_;
-  std::string said_;  ///< on standard error, or by the error
+  std::string said_;  ///< text on standard error, or of the error
 };
 
-TEST_F(ColumnRolesTest, WhatOnlyLooksLikeATimeOrADerivativeIsRefusedByItsName) {
-  expect_refused("t,x,v[-1]", "column 3, 'v[-1]', is no velocity: v[i] has an index i of 0 to 63");
+TEST_F(ColumnRolesTest, InvalidTimeOrDerivativeColumnsAreRefusedByName) {
+  expect_refused("t,x,v[-1]",
+                 "column 3, 'v[-1]', is not a valid velocity: v[i] has an index i from 0 to 63");
   expect_refused("t,x,v[18446744073709551616]",
-                 "column 3, 'v[18446744073709551616]', is no velocity");
-  expect_refused("t,a[],x", "column 2, 'a[]', is no acceleration");
-  expect_refused("t,x,a[1.5]", "column 3, 'a[1.5]', is no acceleration");
-  expect_refused("t,x,v[7]", "column 3, 'v[7]', goes with none of the 1 positions (x)");
-  expect_refused("t,x,v[0],v[1]", "column 4, 'v[1]', goes with none of the 1 positions (x)");
-  expect_refused("t_ns,x,time", "column 3, 'time', is a second time column besides 't_ns'");
+                 "column 3, 'v[18446744073709551616]', is not a valid velocity");
+  expect_refused("t,a[],x", "column 2, 'a[]', is not a valid acceleration");
+  expect_refused("t,x,a[1.5]", "column 3, 'a[1.5]', is not a valid acceleration");
+  expect_refused("t,x,v[7]", "column 3, 'v[7]', belongs to none of the 1 positions (x)");
+  expect_refused("t,x,v[0],v[1]", "column 4, 'v[1]', belongs to none of the 1 positions (x)");
+  expect_refused("t_ns,x,time", "column 3, 'time', is a second time column after 't_ns'");
   EXPECT_EQ(read("t_ns,x,time,v[-1],v[7]", {"x"}).names, std::vector<std::string>{"x"});
   EXPECT_EQ(read("t_ns,x,time", {"x", "time"}).dimensions(), 2U);
 }
 
-TEST_F(ColumnRolesTest, AreSaidWhereNamesLeaveThemOpen) {
+TEST_F(ColumnRolesTest, AreReportedIfNamesAreAmbiguous) {
   EXPECT_EQ(read("t,x,vx,ax").names, (std::vector<std::string>{"x", "vx", "ax"}));
   EXPECT_NE(said_.find("a.csv: time: t; positions: x, vx, ax; velocities: none; accelerations: "
                        "none"),
@@ -74,17 +75,17 @@ TEST_F(ColumnRolesTest, AreSaidWhereNamesLeaveThemOpen) {
   EXPECT_EQ(said_, "");
 }
 
-TEST_F(ColumnRolesTest, TooManyPositionsAreToldByTheFirstColumnBeyond) {
+TEST_F(ColumnRolesTest, TooManyPositionsAreReportedWithTheFirstExcessColumn) {
   std::string header = "t";
   for (int i = 0; i < 64; ++i) header += fmt::format(",x{}", i);
   EXPECT_EQ(read(header).dimensions(), 64U);
   expect_refused(header + ",x64,x65",
-                 "column 66, 'x64', would be the position of dimension 65; at most 64");
+                 "column 66, 'x64', would be the position of dimension 65; the maximum is 64");
 }
 
-/// By the memory it takes, which grows with the fields looked at: a row is split once, not once per
-/// column.
-TEST_F(ColumnRolesTest, AreFoundWithWorkThatGrowsWithTheColumns) {
+/// Measures the work by allocations, which grow with the fields that are read: a row is split once,
+/// not once per column.
+TEST_F(ColumnRolesTest, AreFoundWithWorkLinearInTheColumns) {
   constexpr std::size_t kColumns = 8'000;
   std::string header = "t";
   for (std::size_t i = 0; i < kColumns; ++i) header += fmt::format(",x{}", i);

@@ -19,7 +19,7 @@
 #include "tests/fixtures/processes/process.hpp"
 #include "tests/fixtures/processes/shared_files.hpp"
 
-/// Files whose columns wrap or hold quaternions: which they are, and what comes out of a stream.
+/// Files with periodic columns or quaternions: their kinds, and the samples of their streams.
 namespace splinecast::apps {
 namespace {
 
@@ -31,7 +31,7 @@ using testing::TestStream;
 
 using Names = std::vector<std::string>;
 
-/// `linear quaternion …` of columns of these names.
+/// The kinds of columns with these names, as text: `linear quaternion …`.
 std::string kinds_of(const Names& names, const Names& asked = {}, const Names& aliases = {}) {
   std::vector<KindOption> options;
   for (const std::string& text : asked) options.push_back(parse_kind_option(text).value());
@@ -62,29 +62,30 @@ TEST(Kinds, ColumnsNamedAsAnOrientationAreAQuaternion) {
   }
 }
 
-TEST(Kinds, WhatIsAskedForGoesBeforeWhatNamesSay) {
+TEST(Kinds, OptionsTakePrecedenceOverNames) {
   EXPECT_EQ(kinds_of({"a", "qx", "qy", "qz", "qw"}, {"qz:linear"}),
             "linear linear linear linear linear");
-  EXPECT_EQ(kinds_of({"a", "b"}, {"1:wrap:360"}), "linear wrap:360");
-  EXPECT_EQ(kinds_of({"tx", "ty"}, {"y:wrap:2"}, {"x", "y"}), "linear wrap:2");
-  EXPECT_EQ(kinds_of({"yaw [deg]", "b"}, {"yaw:wrap:360"}), "wrap:360 linear");
-  EXPECT_EQ(kinds_of({"1", "0"}, {"0:wrap:2"}), "linear wrap:2");
+  EXPECT_EQ(kinds_of({"a", "b"}, {"1:periodic:360"}), "linear periodic:360");
+  EXPECT_EQ(kinds_of({"tx", "ty"}, {"y:periodic:2"}, {"x", "y"}), "linear periodic:2");
+  EXPECT_EQ(kinds_of({"yaw [deg]", "b"}, {"yaw:periodic:360"}), "periodic:360 linear");
+  EXPECT_EQ(kinds_of({"1", "0"}, {"0:periodic:2"}), "linear periodic:2");
   EXPECT_EQ(kinds_of({"q[0]", "q[1]", "q[2]", "q[3]"}, {"q[0]:quaternion-wxyz"}),
             "quaternion-wxyz quaternion-wxyz quaternion-wxyz quaternion-wxyz");
   EXPECT_EQ(kinds_of({"o.w", "o.x", "o.y", "o.z"}, {"0:quaternion"}),
             "quaternion-wxyz quaternion-wxyz quaternion-wxyz quaternion-wxyz");
-  EXPECT_EQ(kinds_of({"a:b", "c"}, {"a:b:wrap:3"}), "wrap:3 linear");
+  EXPECT_EQ(kinds_of({"a:b", "c"}, {"a:b:periodic:3"}), "periodic:3 linear");
 }
 
-TEST(Kinds, WhatCannotBeIsRefusedWithItsDimension) {
-  EXPECT_EQ(kinds_of({"x", "y"}, {"9:wrap:360"}),
-            "f.csv: --kind 9:wrap:360: there is no dimension '9' among 0 to 1 (x, y)");
+TEST(Kinds, InvalidKindsAreRefusedWithTheirDimension) {
+  EXPECT_EQ(kinds_of({"x", "y"}, {"9:periodic:360"}),
+            "f.csv: --kind 9:periodic:360: there is no dimension '9' among 0 to 1 (x, y)");
   EXPECT_EQ(
       kinds_of({"x", "y"}, {"y:quaternion"}),
       "f.csv: --kind y:quaternion: a quaternion has four dimensions; from 'y' on there are 1");
-  EXPECT_EQ(kinds_of({"x", "y"}, {"y:wrap:1", "1:wrap:2"}),
-            "f.csv: --kind 1:wrap:2: dimension 'y' is given two kinds");
-  for (const char* text : {"", ":", "x", "x:", "x:wrap", "x:wrap:", "x:wrap:0", ":linear"}) {
+  EXPECT_EQ(kinds_of({"x", "y"}, {"y:periodic:1", "1:periodic:2"}),
+            "f.csv: --kind 1:periodic:2: dimension 'y' is given two kinds");
+  for (const char* text :
+       {"", ":", "x", "x:", "x:wrap", "x:periodic:", "x:periodic:0", ":linear"}) {
     EXPECT_FALSE(parse_kind_option(text).has_value()) << text;
   }
 }
@@ -94,8 +95,8 @@ TEST(Kinds, WrongKindsAreWrongUsage) {
   const auto file = folder.write("a.csv", "t,x,qx,qy,qz,qw\n0,1,0,0,0,1\n1,2,0,0,0,0\n");
   const TestStream stream;
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
-      {{"--kind", "9:wrap:360"}, "--kind 9:wrap:360: there is no dimension '9'"},
-      {{"--kind", "x:wrap:0"}, "'x:wrap:0' is no I:linear"},
+      {{"--kind", "9:periodic:360"}, "--kind 9:periodic:360: there is no dimension '9'"},
+      {{"--kind", "x:periodic:0"}, "'x:periodic:0' is not one of I:linear"},
       {{"--kind", "qy:quaternion"}, "four dimensions; from 'qy' on there are 3"},
       {{}, "a.csv:3: waypoint refused: columns 'qx' to 'qw': a quaternion of length 0"},
       {{"--clock", "recorded", "--on-error", "skip", "--end", "velocity=1,0,2,0,0"},
@@ -113,7 +114,7 @@ TEST(Kinds, WrongKindsAreWrongUsage) {
   EXPECT_EQ(run({"fit", file, "--dt", "1", "--kind", "qx:linear"}).code, 0);
 }
 
-/// A CSV's columns by name.
+/// The columns of a CSV by name.
 std::map<std::string, std::vector<double>> columns_of(const std::string& csv) {
   std::istringstream lines(csv);
   std::string line;
@@ -135,7 +136,7 @@ std::map<std::string, std::vector<double>> columns_of(const std::string& csv) {
   return columns;
 }
 
-/// Sends a file through solve, replay and sample; what is sampled must be the bits of fit --online.
+/// Sends a file through solve, replay and sample. The samples must have the bits of fit --online.
 std::string through_a_stream(const std::string& file, const std::string& at,
                              const std::vector<std::string>& options, std::string& kinds) {
   const TestStream stream;
@@ -156,7 +157,7 @@ std::string through_a_stream(const std::string& file, const std::string& at,
   return sampled.out;
 }
 
-/// Times every `step` from `first` to `last`, as an `--at` file.
+/// Writes times every `step` from `first` to `last` into an `--at` file. Returns its path.
 std::string times(const TestFolder& folder, std::int64_t first, std::int64_t last,
                   std::int64_t step) {
   std::string text = "t_ns\n";
@@ -168,7 +169,7 @@ constexpr std::int64_t kPeriod = 10'000'000;  // ns
 constexpr double kH = 0.01;
 constexpr int kRows = 400;
 
-/// A coning rotation at 100 Hz with random signs, the columns named and ordered as asked.
+/// A CSV of a coning rotation at 100 Hz with random signs and this header.
 std::string coning_csv(const std::string& header, bool w_first) {
   const testing::Coning coning;
   std::mt19937_64 random(11);  // NOLINT(*-msc51-cpp): the same flips in every run
@@ -217,7 +218,7 @@ void expect_motion_of_coning(const std::string& header, bool w_first, const std:
       errors[0], bounds[0], errors[1], bounds[1]);
   EXPECT_LT(errors[0], bounds[0]);
   EXPECT_LT(errors[1], bounds[1]);
-  // No jump at a change of sign: in 1.3 ms no component goes further than the speed takes it.
+  // No jump at a change of sign: each component changes by at most its speed times 1.3 ms.
   for (const char* name : {"p[1]", "p[2]", "p[3]", "p[4]"}) {
     const std::vector<double>& p = samples.at(name);
     for (std::size_t i = 1; i < p.size(); ++i) {
@@ -231,15 +232,15 @@ TEST(KindsPipeline, AQuaternionStreamHasTheAngularMotionOfItsRotation) {
                           R"(["linear","quaternion","quaternion","quaternion","quaternion"])");
 }
 
-TEST(KindsPipeline, SoHasAFileInEurocStyleWhereWComesFirst) {
+TEST(KindsPipeline, AEurocFileWithWFirstHasTheAngularMotionOfItsRotation) {
   expect_motion_of_coning(
       "#timestamp [ns],p_RS_R_x [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []", true,
       R"(["linear","quaternion-wxyz","quaternion-wxyz","quaternion-wxyz","quaternion-wxyz"])");
 }
 
-TEST(KindsPipeline, AHeadingGoesRoundWithoutAJump) {
+TEST(KindsPipeline, AHeadingWrapsWithoutAJump) {
   const TestFolder folder;
-  // 300 degrees a second to and fro, over ±180 degrees several times.
+  // Oscillates with up to 300 degrees per second and crosses ±180 degrees several times.
   const auto heading = [](double t) { return 170 + 250 * std::sin(1.2 * t); };
   std::string text = "t_ns,heading [deg],x\n";
   for (int i = 0; i < 1500; ++i) {
@@ -249,8 +250,8 @@ TEST(KindsPipeline, AHeadingGoesRoundWithoutAJump) {
   const auto at = times(folder, 30 * kPeriod, 1450 * kPeriod, 1'700'000);
   std::string kinds;
   const auto samples =
-      columns_of(through_a_stream(file, at, {"--kind", "heading:wrap:360"}, kinds));
-  EXPECT_EQ(kinds, R"(["wrap:360","linear"])");
+      columns_of(through_a_stream(file, at, {"--kind", "heading:periodic:360"}, kinds));
+  EXPECT_EQ(kinds, R"(["periodic:360","linear"])");
   int crossings = 0;
   for (std::size_t i = 0; i < samples.at("t_ns").size(); ++i) {
     const double t = samples.at("t_ns")[i] / 1e9;
@@ -280,7 +281,7 @@ TEST(KindsPipeline, ACamerasPosesComeThroughBitForBit) {
     off_unit = std::max(off_unit, std::abs(std::sqrt(square) - 1));
   }
   EXPECT_LT(off_unit, 1e-15);
-  // Linear if that is asked for: then there are no angular columns.
+  // With `--kind qx:linear` there are no angular columns.
   const auto plain =
       columns_of(through_a_stream(file, folder.path("at.csv"), {"--kind", "qx:linear"}, kinds));
   EXPECT_FALSE(plain.contains("omega[0]"));

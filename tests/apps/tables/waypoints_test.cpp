@@ -58,7 +58,7 @@ TEST(WaypointTable, EveryOtherNumericColumnIsAPositionUnlessSelected) {
   EXPECT_EQ(selected.velocities, (std::vector<double>{4, 10}));
 }
 
-TEST(WaypointTable, TakesItsOwnSamplesWithoutTheirJerk) {
+TEST(WaypointTable, ReadsItsOwnSamplesWithoutTheirJerk) {
   const TestFolder folder;
   const auto path = folder.write("a.csv", "t_ns,p[0],v[0],a[0],j[0],status\n1,2,3,4,5,settled\n");
   const auto table = read_waypoints(path, {});
@@ -80,7 +80,7 @@ TEST(WaypointTable, ReadsTumTextWithItsOwnNamesOrTheComments) {
   }
 }
 
-TEST(WaypointTable, NamesFileLineAndColumnOfWhatItCannotRead) {
+TEST(WaypointTable, ReportsFileLineAndColumnOfUnreadableInput) {
   const TestFolder folder;
   const auto message = [&](const std::string& text, const TableOptions& options = {}) {
     return error_of(folder.write("bad.csv", text), options);
@@ -106,7 +106,7 @@ TEST(WaypointTable, NamesFileLineAndColumnOfWhatItCannotRead) {
   EXPECT_NE(error_of(folder.path("none.csv")).find("no such file"), std::string::npos);
 }
 
-TEST(WaypointTable, QuotedNamesMayHoldCommasAndAHeaderMayHaveCommentsBehindIt) {
+TEST(WaypointTable, QuotedNamesMayContainCommasAndCommentsMayFollowTheHeader) {
   const TestFolder folder;
   const auto quoted = folder.write("q.csv", "\"t\",\"a,b\",\"y\"\n0,1,2\n");
   EXPECT_EQ(read_waypoints(quoted, {}).names, (std::vector<std::string>{"a,b", "y"}));
@@ -122,14 +122,14 @@ TEST(WaypointTable, ABadFirstCellIsAnErrorAndNotAMissingDimension) {
   EXPECT_NE(error_of(path, {.columns = {"t"}}).find("is the time"), std::string::npos);
 }
 
-TEST(WaypointTable, TimesWhoseDifferencesDoNotFitAreRefused) {
+TEST(WaypointTable, TimesWhoseDifferencesOverflowAreRefused) {
   const TestFolder folder;
   const auto path = folder.write("a.csv", "t,x\n-9223372036,1\n9223372036,2\n");
-  EXPECT_NE(error_of(path).find("a.csv:2:1: column 't': '-9223372036' lies beyond"),
+  EXPECT_NE(error_of(path).find("a.csv:2:1: column 't': '-9223372036' is not within"),
             std::string::npos);
 }
 
-TEST(WaypointTable, LeavesOutUnreadableRowsWhenAskedTo) {
+TEST(WaypointTable, SkipsUnreadableRowsOnRequest) {
   const TestFolder folder;
   const auto path = folder.write("a.csv", "t,x\n1,2\n2,abc\n3,4\n4\n5,6\n");
   std::vector<std::size_t> lines;

@@ -10,10 +10,10 @@
 namespace splinecast::apps {
 namespace {
 
-/// Real processes, killed by SIGKILL and stopped by SIGSTOP, on the real clock.
-TEST(Chaos, NoReaderNoticesThatEverybodyIsKilledAndStarved) {
+/// Real processes on the real clock, killed with SIGKILL and paused with SIGSTOP.
+TEST(Chaos, NoReaderNoticesThatWritersAreKilledAndStarved) {
 #ifdef __SANITIZE_THREAD__
-  constexpr int kLeast = 10;  // everything takes so much longer
+  constexpr int kLeast = 10;  // everything is about ten times slower
 #else
   constexpr int kLeast = 100;
 #endif
@@ -31,14 +31,14 @@ TEST(Chaos, NoReaderNoticesThatEverybodyIsKilledAndStarved) {
   for (const auto& reader : found["readers"]) {
     EXPECT_EQ(reader["changed"], 0);
     EXPECT_GT(reader["joins"].get<int>(), kLeast);
-    // Ten times the motion's own is the limit given; rounding apart.
+    // The limit is ten times the peak of the motion; 0.01 is for rounding.
     EXPECT_LT(reader["acceleration"].get<double>(),
               10.01 * found["peak_acceleration_of_the_motion"].get<double>());
   }
 }
 
 TEST(Chaos, IsNotJudgedIfItIsInterruptedAndNoReaderSpins) {
-  constexpr int kMoving = 200;  // waypoints until the motion has begun: it takes time to end
+  constexpr int kMoving = 200;  // waypoints until the motion has begun, which takes time to stop
   const MonotonicClock clock;
   const Time begin = clock.now();
   testing::Process demo({"demo", "--chaos", "--seconds", "1000", "--json"});

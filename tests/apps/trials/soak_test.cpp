@@ -22,14 +22,14 @@
 namespace splinecast::apps {
 namespace {
 
-TEST_F(Life, OneProcessSolvesWhatAPatternFindsAndASecondTakesOverWhenItIsKilled) {
+TEST_F(Life, OneProcessSolvesTheStreamsOfAPatternAndASecondTakesOverWhenItIsKilled) {
   const std::string pattern = name() + "*";
   const TestStream another;
   Process first({"solve", pattern, "--capacity", "4096"});
   Producer producer(name(), {.dimensions = 1, .clock = StreamClock::recorded, .start = {}});
   first.await_message("'" + name() + "': solving");
   Process second({"solve", pattern, another.name()});
-  second.await_message("'" + name() + "': left to the process that solves it");
+  second.await_message("'" + name() + "': solved by another process");
   ASSERT_TRUE(producer.wait_for_solver(Time(1)));
   const std::vector<double> x{1};
   ASSERT_EQ(producer.append({.time = Time(0), .position = x}), AppendStatus::accepted);
@@ -42,24 +42,24 @@ TEST_F(Life, OneProcessSolvesWhatAPatternFindsAndASecondTakesOverWhenItIsKilled)
   EXPECT_EQ(second.wait().code, 0);
 }
 
-TEST(Solve, OptionsThatCanBeNoStreamsAreWrongUsageForAPatternToo) {
-  EXPECT_EQ(testing::run({"solve", "nobody.*", "--capacity", "3"}).code, 2);
+TEST(Solve, AnInvalidCapacityIsWrongUsageForAPatternToo) {
+  EXPECT_EQ(testing::run({"solve", "unused.*", "--capacity", "3"}).code, 2);
 }
 
-/// An AddressSanitizer in what is run gives back at once what is freed: it would keep that, and so
-/// grow, to find uses of it.
+/// Makes an AddressSanitizer in the program release freed memory immediately. By default it keeps
+/// freed memory, to detect its use, and the process grows.
 class Soak : public ::testing::Test {
  protected:
   void SetUp() override {
 #ifdef __SANITIZE_THREAD__
-    GTEST_SKIP() << "what ThreadSanitizer remembers grows";
+    GTEST_SKIP() << "the memory of ThreadSanitizer grows";
 #endif
   }
   Soak() { setenv("ASAN_OPTIONS", "quarantine_size_mb=0:thread_local_quarantine_size_kb=0", 1); }
   ~Soak() override { unsetenv("ASAN_OPTIONS"); }
 };
 
-/// How long the streams run; SPLINECAST_SOAK_SECONDS asks for more.
+/// Duration of the streams in seconds; SPLINECAST_SOAK_SECONDS overrides it.
 std::string soak_seconds() {
   const char* const asked = std::getenv("SPLINECAST_SOAK_SECONDS");
   return asked == nullptr ? "20" : asked;
@@ -122,7 +122,7 @@ TEST_F(Soak, IsNotJudgedIfItIsInterrupted) {
   }
 }
 
-TEST_F(Life, AProducerOfSoakThatHasRunDryGoesOn) {
+TEST_F(Life, AProducerOfSoakContinuesAfterAnUnderrun) {
   constexpr ipc::Word kMore = 20;
   Process solver(solve());
   const Child producer(
@@ -135,7 +135,7 @@ TEST_F(Life, AProducerOfSoakThatHasRunDryGoesOn) {
   EXPECT_TRUE(await([&] { return field("solver", "interpolated") > before + kMore; }));
 }
 
-TEST(Flatness, GrowthOfTheSecondHalfBeyondTheToleranceIsToldAndWarmingUpIsNot) {
+TEST(Flatness, ReportsGrowthOfTheSecondHalfBeyondTheToleranceButNotTheWarmUp) {
   Flatness flat(10);
   flat.add(0.1, 1000);  // warming up
   flat.add(0.3, 100);
@@ -148,7 +148,7 @@ TEST(Flatness, GrowthOfTheSecondHalfBeyondTheToleranceIsToldAndWarmingUpIsNot) {
   EXPECT_EQ(flat.second(), 111U);
 }
 
-TEST(ProcessUse, CountsADescriptorAndMemoryThatAreTaken) {
+TEST(ProcessUse, CountsNewDescriptorsAndMemory) {
   const auto before = process_use(getpid());
   ASSERT_TRUE(before);
   constexpr std::size_t kBytes = std::size_t{64} << 20U;
@@ -164,8 +164,8 @@ TEST(ProcessUse, CountsADescriptorAndMemoryThatAreTaken) {
   }
 }
 
-TEST(ProcessUse, CpuTimeIsThatOfTheProcess) {
-  constexpr pid_t kNoProcess = 4'194'305;  // beyond what Linux gives
+TEST(ProcessUse, ReportsTheCpuTimeOfTheProcess) {
+  constexpr pid_t kNoProcess = 4'194'305;  // above the largest pid on Linux
 
   const Time before = cpu_time(getpid());
   EXPECT_TRUE(

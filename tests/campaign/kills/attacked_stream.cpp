@@ -19,7 +19,7 @@
 namespace splinecast::campaign {
 namespace {
 
-/// Between two looks of a wait.
+/// Polling interval of a wait.
 constexpr Time kTick = std::chrono::microseconds(500);
 
 constexpr std::size_t index_of(Role role) { return static_cast<std::size_t>(role); }
@@ -79,7 +79,7 @@ std::uint64_t AttackedStream::observed_id() const {
   return observer_ ? ipc::Internals::header(*observer_).stream_id : 0;
 }
 
-/// The stream's ring as it stands, if it does.
+/// The stream's ring, if it exists.
 std::optional<RingCheck> AttackedStream::ring() const {
   try {
     return RingCheck(plan_, journal_->observer);
@@ -114,8 +114,8 @@ void AttackedStream::reap() {
   for (Reading& reading : readers_) reap(reading.child, Role::reader);
 }
 
-/// A process that ended by itself: by its hook, by an error, or, a producer, because its stream is
-/// finished.
+/// Handles a process that ended without kill(): through its hook, with an error, or, for a
+/// producer, because its stream is finished.
 void AttackedStream::reap(std::optional<apps::Child>& child, Role role) {
   const auto code = child ? child->ended() : std::nullopt;
   if (!code) return;
@@ -143,7 +143,7 @@ void AttackedStream::note_kill(Role role) {
   if (role != Role::producer) return;
   if (auto left = ring()) {
     mark = {.stream_id = left->stream_id(), .count = left->appended()};
-    // What it was writing when it died lies among the items.
+    // An item that it was writing when it died is among these.
     for (ipc::Word back = 0; back < left->capacity(); ++back) left->look(back);
   }
 }
@@ -169,7 +169,7 @@ void AttackedStream::restart() {
   if (!producer_ && may_produce()) start_producer();
 }
 
-/// A finished stream stands until its end has been compared; only then it is made anew.
+/// A finished stream is recreated only after its end has been compared.
 bool AttackedStream::may_produce() const {
   const auto left = ring();
   return !left || !left->is_finished() || left->stream_id() == compared_id_;
@@ -194,7 +194,7 @@ void AttackedStream::watch(Time now) {
   if (progress.stream_id != progress_.stream_id || progress.count != progress_.count) moved_ = now;
   progress_ = progress;
   if (is_ending_ || now - moved_ < kPatience) return;
-  count_hang("nothing is solved any more");
+  count_hang("the solver makes no progress");
   moved_ = now;
 }
 
@@ -211,8 +211,8 @@ bool AttackedStream::is_calm() const {
          std::ranges::none_of(findings_.recovery, &apps::Recovery::is_awaited);
 }
 
-/// The stream has been finished and solved: all of it must be there, as an undisturbed solver has
-/// it.
+/// Compares a finished and solved stream: all segments must exist and be those of an undisturbed
+/// solve.
 void AttackedStream::end_life() {
   count_items();
   const std::uint64_t before = journal_->observer.segments;
@@ -229,8 +229,8 @@ void AttackedStream::end_life() {
   if (removal_) remove_at_end();
 }
 
-/// Every item of a stream that has come to its end: what the ring holds is what was accepted, and
-/// all of it was interpolated, passed over, refused with a reason, withdrawn, or carried out.
+/// Counts the items of a stream at its end: the ring holds exactly the accepted items, and each one
+/// was interpolated, passed over, refused with a reason, withdrawn, or carried out.
 void AttackedStream::count_items() {
   findings_.waypoints += head_.interpolated();
   findings_.passed_over += head_.passed_over;
@@ -243,8 +243,10 @@ void AttackedStream::count_items() {
   const ipc::Word least = std::min(appended, told);
   if (most == least) return;
   findings_.lost += most - least;
-  apps::say(fmt::format("'{}': {} items appended, {} of them accepted by word, {} accounted for",
-                        plan_.stream, appended, journal_->accepted.load(), told));
+  apps::say(
+      fmt::format("'{}': {} items in the ring, {} reported as accepted, {} counted by the "
+                  "solver",
+                  plan_.stream, appended, journal_->accepted.load(), told));
 }
 
 void AttackedStream::remove_at_end() {
@@ -274,7 +276,7 @@ bool AttackedStream::tick_until(const std::function<bool()>& condition) {
   return true;
 }
 
-/// Asks a process to end and waits until it has.
+/// Sends SIGTERM to a process and waits for its end.
 void AttackedStream::end(std::optional<apps::Child>& child) {
   if (!child) return;
   child->stop();
@@ -287,7 +289,7 @@ void AttackedStream::end(std::optional<apps::Child>& child) {
     }
     apps::sleep_until(clock_.now() + kTick);
   }
-  // It may be too young to have heard of being asked.
+  // A process that was just started may not have installed its handler of SIGTERM yet.
   if (code && *code != 0 && *code != -SIGTERM) ++findings_.unusable;
   child.reset();
 }
@@ -318,14 +320,14 @@ Findings AttackedStream::finish() {
   return findings_;
 }
 
-/// Removes the stream as `rm` does: nothing must be left that a person would have to remove.
+/// Removes the stream as `rm` does. No file may remain that must be removed by hand.
 void AttackedStream::remove_files() {
   check_.reset();
   observer_.reset();
   try {
     remove_stream(plan_.stream);
   } catch (const NoSuchStream&) {
-    // it has been removed
+    // already removed
   } catch (const std::exception& error) {
     apps::say(error.what());
     ++findings_.clean_ups;

@@ -14,44 +14,45 @@
 
 namespace splinecast::campaign {
 
-/// One stream with all of its processes: kills them, starts others in their place, watches how long
-/// it takes until there is new data to sample, and sees each life of the stream to its end.
+/// One stream with all of its processes. Kills processes, restarts them, measures the time until
+/// new data can be sampled, and compares each life of the stream with its reference at its end.
 class AttackedStream {
  public:
   /// Starts all processes.
   explicit AttackedStream(Plan plan);
   AttackedStream(const AttackedStream&) = delete;
   AttackedStream& operator=(const AttackedStream&) = delete;
-  /// Kills what still runs and removes the stream.
+  /// Kills the remaining processes and removes the stream.
   ~AttackedStream();
 
   [[nodiscard]] const Plan& plan() const noexcept { return plan_; }
   [[nodiscard]] Journal& journal() const noexcept { return *journal_; }
   [[nodiscard]] const Findings& findings() const noexcept { return findings_; }
 
-  /// Looks after everything once; recovery is measured no finer than it is called.
+  /// Polls all processes once. The interval between calls is the resolution of recovery times.
   void tick();
 
-  /// Kills a process that runs. `which` tells readers apart. Returns whether there was one.
+  /// Kills a running process. `which` is the index of a reader. Returns whether it was running.
   bool kill(Role role, std::size_t which = 0);
 
-  /// Lets `rm` remove the stream once it has come to its end, with its solver killed, and kills
-  /// `rm` after so long, if it is still at it then. For recorded streams.
+  /// At the end of this life of the stream, kills its solver and runs `rm`; kills `rm` if it still
+  /// runs when `after` has passed. For recorded streams.
   void kill_remover_at_end(Time after) { removal_ = after; }
 
-  /// Whether everybody runs, and new data has been sampled since the last kill.
+  /// Whether all processes run, and new data has been sampled since the last kill.
   [[nodiscard]] bool is_calm() const;
 
-  /// Lets the stream come to its end, ends all processes, and removes it. Returns what was found.
+  /// Waits for the end of the stream, ends all processes and removes the stream. Returns the
+  /// findings.
   Findings finish();
 
  private:
   struct Reading {
     std::optional<apps::Child> child;
     std::uint64_t turns = 0;
-    Time moved{};  ///< when `turns` last did
+    Time moved{};  ///< when `turns` last changed
   };
-  /// What stood when a writer was killed: what is more is new.
+  /// State when a writer was killed: another id or a larger count means new data.
   struct Mark {
     std::uint64_t stream_id = 0;
     ipc::Word count = 0;
@@ -88,14 +89,14 @@ class AttackedStream {
   std::optional<Reader> observer_;
   std::optional<CurveCheck> check_;
   ipc::Head head_;
-  bool has_sampled_ = false;  ///< at the newest knot, in this tick
+  bool has_sampled_ = false;  ///< whether this tick has sampled the newest knot
   std::array<Mark, kRoles> marks_;
-  std::uint64_t compared_id_ = 0;  ///< stream whose end has been compared
+  std::uint64_t compared_id_ = 0;  ///< id of the last stream whose end was compared
   Mark progress_;
   Time moved_{};
   std::optional<Time> removal_;
   bool is_last_life_ = false;  ///< the next end of the stream is the last one
-  bool is_ending_ = false;     ///< nobody is started any more
+  bool is_ending_ = false;     ///< no process is started any more
   Findings findings_;
 };
 

@@ -13,8 +13,8 @@
 namespace splinecast::campaign {
 namespace {
 
-/// What rounding may leave of a step where positions are of the order of 1, velocities up to some
-/// 10³ and accelerations up to some 10⁵ a second.
+/// Steps that rounding may cause, with positions near 1, velocities up to 10³/s and accelerations
+/// up to 10⁵/s².
 constexpr double kPositionRounding = 1e-9;
 constexpr double kVelocityRounding = 1e-7;
 constexpr double kAccelerationRounding = 1e-3;
@@ -56,7 +56,7 @@ SampleStatus CurveCheck::tick(Time t) {
 void CurveCheck::check_steps(const apps::WatchReport& before, Time t) {
   const apps::WatchReport& now = watch_.report();
   if (now.changed > before.changed) {
-    found(facts_->changed, fmt::format("what was read before {} reads otherwise", t.count()));
+    found(facts_->changed, fmt::format("a settled sample before {} has changed", t.count()));
   }
   const auto grew = [](double value, double old, double rounding) {
     return value > std::max(old, rounding);
@@ -114,8 +114,8 @@ void CurveCheck::check_segment(const ipc::SegmentCopy& segment) {
   check_reference(segment);
 }
 
-/// On a recorded stream segment n begins at waypoint n − 1, whoever was killed meanwhile, and once
-/// settled it has the bits of an undisturbed solve.
+/// On a recorded stream segment n begins at waypoint n − 1, regardless of the kills. Once settled,
+/// it has the bits of an undisturbed solve.
 void CurveCheck::check_reference(const ipc::SegmentCopy& segment) {
   if (plan_->is_live()) return;
   const auto number = plan_->payload.number_at(segment.left);
@@ -133,7 +133,7 @@ void CurveCheck::check_reference(const ipc::SegmentCopy& segment) {
           std::span(wanted->coefficients)
               .first(static_cast<std::size_t>(segment.order) * Payload::kDimensions))) {
     found(facts_->wrong,
-          fmt::format("segment {} is settled, but not as an undisturbed solver settles it",
+          fmt::format("segment {} is settled, but differs from that of an undisturbed solver",
                       segment.number));
   }
 }
@@ -150,7 +150,8 @@ void CurveCheck::check_join(const ipc::SegmentCopy& before, const ipc::SegmentCo
   }
 }
 
-/// The newest segment comes to rest, unless a recorded stream has been given another end.
+/// The newest segment ends at rest, except on a finished recorded stream, which has its own end
+/// condition.
 void CurveCheck::check_end(const ipc::SegmentCopy& segment) {
   const ipc::Head& head = snapshot_.head();
   if (segment.number != head.newest || (head.finished && !plan_->is_live())) return;
@@ -160,7 +161,7 @@ void CurveCheck::check_end(const ipc::SegmentCopy& segment) {
   const std::vector<double> rest(reader_->dimensions());
   if (differ(right_.velocity(), rest, kVelocityRounding) ||
       differ(right_.acceleration(), rest, kAccelerationRounding)) {
-    found(facts_->restless, fmt::format("the newest segment, {}, moves at its end {}",
+    found(facts_->restless, fmt::format("segment {}, the newest, does not rest at its end {}",
                                         segment.number, segment.right.count()));
   }
 }

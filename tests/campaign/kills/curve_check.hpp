@@ -9,22 +9,23 @@
 
 namespace splinecast::campaign {
 
-/// What one reader checks of a stream's curve, counted in its facts; what it finds it says on
-/// standard error. One thread uses it; it lives as long as its reader is attached.
+/// The checks of one reader on a stream's curve. Counts violations in the reader's facts and prints
+/// them to standard error. For one thread; lives as long as its reader is attached.
 class CurveCheck {
  public:
-  /// All outlive the check, which is the reader's only user.
+  /// All arguments outlive the check, which is the only user of `reader`.
   CurveCheck(const Plan& plan, Reader& reader, ReaderFacts& facts);
 
-  /// Samples at t as a controller does, t never going back: the sample is of one version, what was
-  /// settled reads as it did, and nothing steps between t and the tick before.
+  /// Samples at t like a controller; t never decreases. Checks that the sample is not torn, that
+  /// settled samples keep their values, and that nothing steps between t and the tick before.
   SampleStatus tick(Time t);
 
-  /// Samples at t, anywhere: of one version, whatever its status.
+  /// Samples at any t. Checks that the sample is not torn.
   SampleStatus peek(Time t);
 
-  /// Copies all segments between two times: each is of one version, begins at its waypoint, joins
-  /// the one before, and is, once settled, the one that it must be; the newest one ends at rest.
+  /// Copies all segments between two times. Checks that each one is not torn, begins at its
+  /// waypoint, joins the one before, and equals its reference once settled, and that the newest one
+  /// ends at rest.
   void survey(Time from, Time to);
 
  private:

@@ -10,11 +10,11 @@
 namespace splinecast::campaign {
 namespace {
 
-/// Waypoints of a recorded stream's life: a long one, and one that ends at once.
+/// Number of waypoints of a recorded stream: a long one, and one that ends soon.
 constexpr ipc::Word kLongLife = 1400;
 constexpr ipc::Word kShortLife = 12;
-/// A step may have fewer stores than another of its kind, so it must be survived so many times
-/// before it is taken to have no more.
+/// Steps of one kind differ in their number of stores. A step counts as having no store n after
+/// this many survivals.
 constexpr int kSurvivals = 8;
 
 std::string_view to_string(Step step) {
@@ -49,7 +49,7 @@ class Sweep {
  public:
   explicit Sweep(Plan plan) : stream_(std::move(plan)) {}
 
-  /// Kills before each store of this step in turn. Returns how many there are.
+  /// Kills before each store of this step in turn. Returns the number of stores.
   std::uint64_t every_store_of(Step step) {
     for (std::uint64_t store = 1;; ++store) {
       int survived = 0;
@@ -61,7 +61,7 @@ class Sweep {
   Findings finish() { return stream_.finish(); }
 
  private:
-  /// Waits until everybody is there, arms the step, and returns whether somebody died in it.
+  /// Waits until all processes run, arms the step, and returns whether a process died in it.
   bool dies_in(Step step, std::uint64_t store) {
     tick_until([this] { return stream_.is_calm(); });
     if (step == Step::make_ring) stream_.kill(Role::producer);
@@ -83,7 +83,7 @@ class Sweep {
     const Time end = deadline(clock_, 2 * kPatience);
     while (!condition()) {
       if (clock_.now() > end || !apps::sleep_until(clock_.now() + kLook)) {
-        throw apps::Failure("'" + stream_.plan().stream + "' does not come to the step");
+        throw apps::Failure("'" + stream_.plan().stream + "' does not reach the step");
       }
       stream_.tick();
     }
@@ -118,7 +118,7 @@ Result run_every_store(const CampaignOptions& options) {
          Step::publish_replacement, Step::sleep});
   measured.update(findings.killing());
   return make_result(options, {1, 2, 4, 5, 8},
-                     "SIGKILL before every single store of every step of producer, solver and rm",
+                     "SIGKILL before every store of every step of producer, solver and rm",
                      findings.all_kills(), "kills", findings, measured,
                      to_seconds(clock.now() - begin));
 }

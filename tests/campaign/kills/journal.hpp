@@ -10,52 +10,52 @@
 
 namespace splinecast::campaign {
 
-/// What a writer does to shared memory, from a marker on: where a kill can be asked for.
+/// Steps of a writer that store to shared memory. A kill can be armed for each of them.
 enum class Step : std::uint64_t {
   none,
-  make_ring,            ///< the producer makes its region, continues one or makes a stream anew
-  append,               ///< it appends a waypoint
-  replace,              ///< it replaces the future
-  finish,               ///< it ends the stream
-  make_board,           ///< the solver makes its region, or takes one over
-  publish,              ///< it takes a waypoint and publishes
-  publish_replacement,  ///< it takes a replacement and publishes
-  publish_finish,       ///< it takes the end and publishes
-  sleep,                ///< it says that it sleeps, and that it is awake
+  make_ring,            ///< the producer creates, takes over or recreates its region
+  append,               ///< the producer appends a waypoint
+  replace,              ///< the producer replaces the future
+  finish,               ///< the producer finishes the stream
+  make_board,           ///< the solver creates or takes over its region
+  publish,              ///< the solver consumes a waypoint and publishes
+  publish_replacement,  ///< the solver consumes a replacement and publishes
+  publish_finish,       ///< the solver consumes the end and publishes
+  sleep,                ///< the solver stores that it sleeps, and that it is awake
   remove,               ///< `rm` removes the stream
 };
 
 inline constexpr std::size_t kMostReaders = 16;
 
-/// What a reader has counted, over all its lives.
+/// Counters of a reader over all its processes.
 struct ReaderFacts {
-  std::atomic<std::uint64_t> turns;         ///< grows as long as it does not hang
-  std::atomic<std::uint64_t> life_samples;  ///< with values, in this life of its process
-  std::atomic<std::uint64_t> samples;       ///< with values
+  std::atomic<std::uint64_t> turns;         ///< grows unless the reader hangs
+  std::atomic<std::uint64_t> life_samples;  ///< samples with values of the current process
+  std::atomic<std::uint64_t> samples;       ///< samples with values
   std::atomic<std::uint64_t> busy;          ///< samples that the writer overtook
-  std::atomic<std::uint64_t> segments;      ///< copied and checked
-  std::atomic<std::uint64_t> items;         ///< of the ring, observed and checked
-  std::atomic<std::uint64_t> torn;          ///< samples, segments or items mixed of two versions
+  std::atomic<std::uint64_t> segments;      ///< segments copied and checked
+  std::atomic<std::uint64_t> items;         ///< ring items observed and checked
+  std::atomic<std::uint64_t> torn;          ///< samples, segments or items that mix two versions
   std::atomic<std::uint64_t> stepped;       ///< joins where the curve steps
-  std::atomic<std::uint64_t> ends;          ///< newest segments seen, behind which nothing stands
-  std::atomic<std::uint64_t> restless;      ///< those at whose end the curve moves
-  std::atomic<std::uint64_t> changed;       ///< settled samples that read otherwise later
-  std::atomic<std::uint64_t> wrong;         ///< settled segments that are not those they must be
+  std::atomic<std::uint64_t> ends;          ///< newest segments of unfinished curves, checked
+  std::atomic<std::uint64_t> restless;      ///< those of `ends` that do not end at rest
+  std::atomic<std::uint64_t> changed;       ///< settled samples that changed later
+  std::atomic<std::uint64_t> wrong;         ///< settled segments that differ from their reference
 };
 
-/// What the processes of one stream tell one another, in memory that outlives each of them.
+/// Memory that the processes of one stream share; it outlives each of them.
 struct Journal {
-  std::atomic<Step> armed;               ///< the step in which to die; none once it was survived
-  std::atomic<std::uint64_t> store;      ///< before which of its stores, from 1
+  std::atomic<Step> armed;               ///< step in which to die; none once it was survived
+  std::atomic<std::uint64_t> store;      ///< number of the store to die before, from 1
   std::atomic<std::uint64_t> accepted;   ///< ring items whose append was accepted
-  std::atomic<ipc::ItemKind> last_sent;  ///< what the producer appended last
+  std::atomic<ipc::ItemKind> last_sent;  ///< kind of the item that the producer appended last
   std::array<ReaderFacts, kMostReaders> readers;
-  ReaderFacts observer;  ///< the process that attacks reads too
+  ReaderFacts observer;  ///< counters of the attacking process, which also reads
 };
 static_assert(std::atomic<Step>::is_always_lock_free);
 static_assert(std::atomic<ipc::ItemKind>::is_always_lock_free);
 
-/// A journal, zero at first, that children which are forked from now on share.
+/// A zero-initialised journal, shared with all children forked after its construction.
 class SharedJournal {
  public:
   SharedJournal();
@@ -67,8 +67,8 @@ class SharedJournal {
   Journal* journal_;
 };
 
-/// While it lives, a writer is within a step: if that step is armed, and the build has hooks, the
-/// process dies before the store that the journal says.
+/// Scope of a step of a writer. If the step is armed and the build has hooks, the process dies
+/// before store number `Journal::store` of this scope.
 class WithinStep {
  public:
   WithinStep(Journal& journal, Step step) noexcept;
@@ -76,7 +76,7 @@ class WithinStep {
   WithinStep& operator=(const WithinStep&) = delete;
   ~WithinStep();
 
-  /// The step has done all its stores: there was none to die before.
+  /// Reports that the step has done all its stores, fewer than `Journal::store`.
   void survived() noexcept;
 
  private:
@@ -84,7 +84,7 @@ class WithinStep {
   bool is_armed_;
 };
 
-/// Whether this build can die within a step.
+/// Whether this build has hooks.
 [[nodiscard]] bool has_hooks() noexcept;
 
 }  // namespace splinecast::campaign

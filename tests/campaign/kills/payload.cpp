@@ -10,7 +10,7 @@ namespace {
 constexpr Payload::Row kFactors{1, -1, 2, 0.25};
 constexpr double kAngularFrequency = 3;  // rad/s, of the smooth shape
 
-/// −1 to 1, without any order: Knuth's multiplicative hash.
+/// A pseudorandom value from −1 to 1: Knuth's multiplicative hash.
 double rough(ipc::Word number) noexcept {
   constexpr std::uint32_t kMultiplier = 2654435761U;
   const auto hash = static_cast<std::uint32_t>(number + 1) * kMultiplier;

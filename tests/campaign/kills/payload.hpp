@@ -10,22 +10,22 @@
 
 namespace splinecast::campaign {
 
-/// Waypoints that prove themselves, and with them the curve through them.
+/// Self-checking waypoints: a torn copy of a waypoint, or of the curve through them, is detected.
 ///
-/// Waypoint n stands at `origin + n·interval`, and its position is a function of n alone, so that a
-/// waypoint under another's time shows. Dimension d is dimension 0 times ±a power of two; the solve
-/// treats dimensions alike and is linear in them, and such a factor costs no rounding, so the same
-/// holds, bit for bit, of every coefficient and of every sample: a copy that is mixed of two
-/// versions within a row of dimensions shows. A mixture between rows shows where segments meet.
+/// Waypoint n is at `origin + n·interval`, and its position is a function of n alone. A waypoint
+/// with the time of another one is therefore detected. Dimension d is dimension 0 times ± a power
+/// of two. The solve is linear, the same for each dimension, and such a factor causes no rounding.
+/// So each coefficient and each sample has the same factors, bit for bit, and a row of dimensions
+/// that mixes two versions is detected. A mixture of rows is detected where segments join.
 class Payload {
  public:
   static constexpr std::size_t kDimensions = 4;
   using Row = std::array<double, kDimensions>;
 
-  /// How positions follow one another.
+  /// Sequence of the positions.
   enum class Shape {
-    rough,   ///< without any order: what one version of the curve has, another has not
-    smooth,  ///< a cosine in time, for a stream that is spliced
+    rough,   ///< pseudorandom, so that two versions of the curve always differ
+    smooth,  ///< a cosine in time, for a stream with entries
   };
 
   Payload(Time origin, Time interval, Shape shape);
@@ -33,15 +33,15 @@ class Payload {
   [[nodiscard]] Time interval() const noexcept { return interval_; }
   [[nodiscard]] Time time_of(ipc::Word number) const noexcept;
 
-  /// The waypoint at a time, if one may stand there.
+  /// The number of the waypoint at t; nullopt if t is not the time of a waypoint.
   [[nodiscard]] std::optional<ipc::Word> number_at(Time t) const noexcept;
 
-  /// The first waypoint at or after a time.
+  /// The number of the first waypoint at or after t.
   [[nodiscard]] ipc::Word number_from(Time t) const noexcept;
 
   [[nodiscard]] Row position_of(ipc::Word number) const noexcept;
 
-  /// Whether rows of kDimensions values each, one after the other, are rows of one version.
+  /// Whether none of these consecutive rows of kDimensions values is torn.
   [[nodiscard]] static bool is_whole(std::span<const double> rows) noexcept;
 
  private:

@@ -17,7 +17,7 @@ Condition start_condition(StreamClock clock) {
 
 Payload rough_payload() { return {Time::zero(), milliseconds(10), Payload::Shape::rough}; }
 
-/// What an undisturbed solve of the stream gives.
+/// The segments of an undisturbed solve of the stream.
 std::vector<core::Segment> solve(const Payload& payload, ipc::Word life) {
   std::vector<Time> times;
   std::vector<double> positions;

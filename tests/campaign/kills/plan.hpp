@@ -13,22 +13,22 @@
 
 namespace splinecast::campaign {
 
-/// How long anything that must happen may take on a busy machine before it counts as hung.
+/// Timeout of each expected event, for a busy machine; afterwards it counts as a hang.
 inline constexpr Time kPatience{30'000'000'000};
 
-/// A stream to be attacked, known to all of its processes.
+/// A stream to attack; all of its processes know it.
 struct Plan {
   std::string stream;
   StreamClock clock = StreamClock::recorded;
   Payload payload;
-  /// Waypoints of a recorded stream, which is then finished and made anew.
+  /// Number of waypoints of a recorded stream, which is then finished and recreated.
   ipc::Word life = std::numeric_limits<ipc::Word>::max();
-  Time pace{};  ///< real time from one append to the next; 0 for as fast as it goes
+  Time pace{};  ///< real time from one append to the next; 0: no pause
   std::size_t ring_capacity = 64;
   std::size_t board_capacity = 2048;
   std::size_t readers = 2;
-  Time tick{1'000'000};  ///< of the readers; 0 for as fast as they can
-  /// The segments that a recorded stream ends with; none to compare with if empty.
+  Time tick{1'000'000};  ///< period of the readers; 0: no pause
+  /// Reference for the segments of a recorded stream at its end; empty: not compared.
   std::vector<core::Segment> reference{};
 
   [[nodiscard]] bool is_live() const noexcept { return clock == StreamClock::monotonic; }
@@ -36,16 +36,16 @@ struct Plan {
   [[nodiscard]] SolverOptions solver_options() const;
 };
 
-/// A recorded stream of `life` waypoints, and the segments that it must end with.
+/// A recorded stream of `life` waypoints, with its reference.
 [[nodiscard]] Plan recorded_plan(std::string stream, ipc::Word life);
 
-/// A recorded stream without end, as fast as it goes, on a ring and a board as small as may be.
+/// An endless recorded stream at full speed, with the smallest ring and board.
 [[nodiscard]] Plan stress_plan(std::string stream, std::size_t readers);
 
-/// A live stream from soon on.
+/// A live stream that starts 200 ms from now.
 [[nodiscard]] Plan live_plan(std::string stream);
 
-/// The condition that streams end with: at rest.
+/// The end condition of all streams: full stop.
 [[nodiscard]] Condition end_condition();
 
 }  // namespace splinecast::campaign

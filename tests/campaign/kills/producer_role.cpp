@@ -19,7 +19,7 @@ using std::chrono::milliseconds;
 constexpr Time kRoomSlice = milliseconds(50);
 /// How far ahead live waypoints are sent.
 constexpr Time kLead = milliseconds(60);
-/// Least distance of a live waypoint from what has settled: a splice may have to lead to it.
+/// Least distance of a live waypoint from the settled curve, which leaves time for an entry.
 constexpr Time kLeastLead = milliseconds(20);
 constexpr int kReplacementsOneIn = 300;  // ticks
 constexpr int kMostReplaced = 10;        // waypoints
@@ -49,7 +49,7 @@ class ProducerRole {
   }
 
  private:
-  /// Keeps the pace. Returns false when the process is asked to end.
+  /// Waits for the time of the next append. Returns false after SIGTERM.
   bool pause(Time& due) {
     if (plan_->pace == Time::zero()) return !apps::stop_requested();
     due = std::max(due + plan_->pace, clock_.now() - plan_->pace);
@@ -69,7 +69,7 @@ class ProducerRole {
     return status;
   }
 
-  /// Returns false when the process is asked to end meanwhile.
+  /// Sends one waypoint, waiting for room. Returns false after SIGTERM.
   bool send_recorded(ipc::Word number) {
     for (;;) {
       const AppendStatus status = append(number);
@@ -89,7 +89,7 @@ class ProducerRole {
     const bool must_replace = armed == Step::replace || armed == Step::publish_replacement;
     if (must_replace || random_() % kReplacementsOneIn == 0) return replace(now);
     skip_past(now);
-    // What is refused is refused under its number; the motion goes on.
+    // A refused waypoint keeps its number: the next one has the next position of the motion.
     while (plan_->payload.time_of(next_) - kLead <= now) (void)append(next_++);
   }
 
@@ -98,7 +98,7 @@ class ProducerRole {
     next_ = std::max(next_, plan_->payload.number_from(earliest));
   }
 
-  /// Replaces the future by waypoints of the same payload, from none upwards.
+  /// Replaces the future by 0 to kMostReplaced waypoints of the same payload.
   void replace(Time now) {
     const Time t = std::max(now, producer_->earliest()) + kLeastLead;
     const ipc::Word first = plan_->payload.number_from(t + kLeastLead);

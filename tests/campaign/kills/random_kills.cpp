@@ -11,21 +11,21 @@ namespace {
 
 using std::chrono::microseconds;
 
-/// Waypoints of a recorded stream's life: some 0.7 s.
+/// Number of waypoints of a recorded stream, which takes about 0.7 s.
 constexpr ipc::Word kLife = 1400;
 constexpr std::size_t kStreamsOfEachClock = 2;
-/// From one kill on a stream to the next: up to the first, now and then, to strike those who have
-/// hardly begun; else up to the second.
+/// Longest time from one kill on a stream to the next: kSoon for one in four, to kill processes
+/// that have just started, else kLater.
 constexpr Time kSoon = microseconds(6'000);
 constexpr Time kLater = microseconds(80'000);
 constexpr Time kRemoval = microseconds(3'000);
 
-/// A stream and when somebody of it is to be killed.
+/// A stream and the time of its next kill.
 class Victim {
  public:
   Victim(Plan plan, std::uint64_t seed) : stream_(std::move(plan)), random_(seed) {}
 
-  /// Looks after the stream, and kills when it is time. Returns how many were killed.
+  /// Polls the stream, and kills a process when it is time.
   void tick(Time now) {
     stream_.tick();
     if (now < next_) return;

@@ -18,12 +18,12 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr Time kAttachSlice = milliseconds(100);
-/// Ticks from one look at many segments to the next.
+/// Ticks from one survey of segments to the next.
 constexpr std::uint64_t kSurveyEvery = 8;
-/// How much of a live stream a look covers, before and after now.
+/// Range of a survey of a live stream, before and after now.
 constexpr Time kAround = milliseconds(100);
-/// How many intervals of a recorded stream it covers before what has settled: at most so many, and
-/// at most this part of the board.
+/// Range of a survey of a recorded stream before `settled_until`: at most kIntervalsBack intervals,
+/// and at most 1/kPartOfTheBoard of the board.
 constexpr std::size_t kIntervalsBack = 24;
 constexpr std::size_t kPartOfTheBoard = 4;
 
@@ -37,7 +37,7 @@ class ReaderRole {
         check_(plan, reader_, facts),
         ring_(plan, facts) {}
 
-  /// Reads until the stream is retired, or the process is asked to end.
+  /// Reads until the stream is retired or SIGTERM arrives.
   void run() {
     Time due = clock_.now();
     while (!apps::stop_requested()) {
@@ -65,11 +65,11 @@ class ReaderRole {
     return status;
   }
 
-  /// Follows what has settled, and looks at random into what has not.
+  /// Samples close before `settled_until`, and at a random time up to the newest knot.
   SampleStatus tick_recorded() {
     const auto oldest = reader_.first_time();
     if (!oldest || !ipc::Internals::head(reader_, head_) || head_.newest == 0) {
-      return check_.peek(Time{});  // says why
+      return check_.peek(Time{});  // its status is the reason
     }
     const Time first = *oldest;
     const Time back = static_cast<std::int64_t>(
@@ -101,7 +101,7 @@ void run_reader(const Plan& plan, ReaderFacts& facts) {
     try {
       ReaderRole(plan, facts).run();
     } catch (const NoSuchStream&) {
-      continue;  // not there yet, or removed: it comes again
+      continue;  // not created yet, or removed and soon recreated
     }
   }
 }

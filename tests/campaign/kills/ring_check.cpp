@@ -37,7 +37,7 @@ void RingCheck::look(ipc::Word back) {
     return;
   }
   ++facts_->torn;
-  apps::say(fmt::format("'{}': item {} of the ring, at {}, is not the one that was sent",
+  apps::say(fmt::format("'{}': item {} of the ring, at {}, differs from the one that was sent",
                         plan_->stream, i, item_.time.count()));
 }
 

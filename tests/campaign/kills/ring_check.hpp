@@ -8,18 +8,19 @@
 
 namespace splinecast::campaign {
 
-/// A passive observer of a stream's waypoint ring, whom the producer does not wait for: an item
-/// that it may keep is whole, and the one that was sent. One thread uses it.
+/// A passive observer of a stream's waypoint ring: the producer does not wait for it. Checks that
+/// an item that it may keep is not torn and equals the item that was sent. For one thread.
 class RingCheck {
  public:
-  /// `plan` and `facts` outlive the check. Throws as ipc::Region::open does.
+  /// `plan` and `facts` outlive the check. Throws the exceptions of ipc::Region::open().
   RingCheck(const Plan& plan, ReaderFacts& facts);
 
-  /// Looks at the item that was appended `back` items before the newest, if there is one.
+  /// Checks the item that was appended `back` items before the newest, if it exists.
   void look(ipc::Word back);
 
-  /// Items appended so far, and whether the newest ends the stream.
+  /// Number of items appended so far.
   [[nodiscard]] ipc::Word appended() const noexcept { return ring_.head(); }
+  /// Whether the newest item finishes the stream.
   [[nodiscard]] bool is_finished() const noexcept;
 
   [[nodiscard]] std::uint64_t stream_id() const noexcept { return header_.stream_id; }

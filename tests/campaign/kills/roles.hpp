@@ -2,22 +2,22 @@
 
 #include "tests/campaign/kills/plan.hpp"
 
-/// What the processes of an attacked stream run, until SIGTERM asks them to end or SIGKILL ends
-/// them. Each throws what it cannot go on after, which ends its process with a code other than 0.
+/// Main functions of the processes of an attacked stream. They run until SIGTERM or SIGKILL. A
+/// fatal error is thrown and ends the process with a code other than 0.
 namespace splinecast::campaign {
 
-/// Sends the stream's waypoints, from where the one before it died. A recorded stream is finished
-/// behind its last waypoint, a live one when the process is asked to end; a live one replaces its
-/// future now and then.
+/// Sends the stream's waypoints and continues where a killed producer stopped. Finishes a recorded
+/// stream after its last waypoint, and a live one on SIGTERM. Replaces the future of a live stream
+/// at random instants.
 void run_producer(const Plan& plan, Journal& journal);
 
-/// Solves whatever stands under the stream's name.
+/// Solves the stream of this name.
 void run_solver(const Plan& plan, Journal& journal);
 
-/// Reads and checks; attaches again when the stream was removed or made anew.
+/// Reads and checks the stream; attaches again when it was removed or recreated.
 void run_reader(const Plan& plan, ReaderFacts& facts);
 
-/// Removes the stream, as `rm` does.
+/// Removes the stream like `rm`.
 void run_remover(const Plan& plan, Journal& journal);
 
 }  // namespace splinecast::campaign

@@ -23,9 +23,9 @@ Result run_stress(const CampaignOptions& options) {
     findings.add(found);
   }
   return make_result(options, {1, 3, 5},
-                     "1, 2, 4, 8 and 16 reader processes that read all they can, while a producer "
-                     "and a solver process go as fast as they can over a ring of 16 items and a "
-                     "board of 32 segments",
+                     "1, 2, 4, 8 and 16 reader processes at full speed, while a producer and a "
+                     "solver process run at full speed over a ring of 16 items and a board of 32 "
+                     "segments",
                      findings.samples, "samples", findings, measured,
                      to_seconds(clock.now() - begin));
 }

@@ -20,10 +20,11 @@ std::vector<Data> all_data() {
           {"30 Hz", 30, 0}};
 }
 
-/// Every tail of `c2`, and smoothing with about the largest λ whose lag a window has at 1 kHz.
+/// Every tail of `c2`, and smoothing with about the largest λ whose lag fits into a window at 1
+/// kHz.
 std::vector<Curve> all_curves(double rate) {
   std::vector<Curve> curves;
-  for (const Tail tail : {Tail::bessel, Tail::parabolic, Tail::natural, Tail::rest}) {
+  for (const Tail tail : {Tail::bessel, Tail::parabolic, Tail::natural, Tail::clamped}) {
     curves.push_back({fmt::format("c2, {}", to_string(tail)), {.tail = tail}});
   }
   constexpr double kLambda = 5e-7;
@@ -38,7 +39,7 @@ double quantile(const std::vector<double>& sorted, double share) {
   return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
 }
 
-/// docs/plots.py reads it: quantities are separated by "; ", names from values by ": ".
+/// Text that docs/plots.py parses: "; " between quantities, ": " between name and value.
 std::string text_of(const StopMeasures& m) {
   const std::string read = fmt::format(
       "in entries: {:.1f} %; path error as read: {:.3g} mrad; acceleration as read: "
@@ -90,8 +91,8 @@ Result run_stops(const CampaignOptions& options) {
                              {"stops further than half the stop time at their velocity", too_far},
                              {"stops that readers go down otherwise than published", others}};
   return make_result(options, 4,
-                     "live waypoints of encoders, and exact ones, that end at any millisecond: the "
-                     "published stop of every tail",
+                     "the published stop of every tail when live waypoints, exact ones or those of "
+                     "encoders, end at any millisecond",
                      stops, "stops of six joints", found, std::move(measured),
                      to_seconds(clock.now() - begin));
 }

@@ -13,10 +13,11 @@
 namespace splinecast::campaign {
 namespace {
 
-/// Rows at a time: three processes each.
+/// Concurrent rows, with three processes each.
 constexpr std::size_t kAtOnce = 6;
 constexpr std::array kLimits{10.0, 0.0};  ///< rad/s²; 0: none
-/// A process that is so late, in s, was not run in time for a lead of 50 ms to be of use.
+/// Lateness of a process in s above which a row counts as held up by the machine: a lead of 50 ms
+/// cannot cover it.
 constexpr double kLate = 0.02;
 
 struct LiveFindings {
@@ -37,7 +38,7 @@ struct LiveFindings {
     limits_passed += is_beyond && limit > 0 ? 1U : 0U;
     jumps += is_beyond && limit == 0 ? 1U : 0U;
     refusals += seen.refused;
-    // A late commit is told: it changes the curve behind the reader.
+    // After a late commit the curve has changed at times already read, so steps are allowed.
     steps += seen.late_commits == 0 ? seen.steps : 0;
     const bool is_late =
         seen.producer_late > kLate || seen.solver_late > kLate || seen.late_commits > 0;
@@ -59,8 +60,8 @@ struct LiveFindings {
 std::string text_of(const LiveSeen& seen) {
   return fmt::format(
       "peaks {:.2f} rad/s, {:.2f} rad/s2; path error p99 {:.4f}, largest {:.4f} rad; passed over "
-      "{:.1f} %; holding {:.2f} %; samples {}; came late {}; kills {}; deadline misses {}, late "
-      "commits {}, samples revised {}; producer at most {:.1f} ms late, solver {:.1f} ms",
+      "{:.1f} %; holding {:.2f} %; samples {}; came late {}; kills {}; deadline_misses {}, "
+      "late_commits {}, samples revised {}; producer at most {:.1f} ms late, solver {:.1f} ms",
       seen.peak_velocity, seen.peak_acceleration, seen.error_p99, seen.largest_error,
       seen.knots > 0 ? 100 * static_cast<double>(seen.passed_over) / static_cast<double>(seen.knots)
                      : 0,
@@ -100,7 +101,7 @@ Result run_live_motions(const CampaignOptions& options) {
   }
   measured["rows in which the machine held a process up for more than 20 ms"] = findings.late_rows;
   return make_result(options, {2, 4, 5, 8},
-                     "the mishaps of the motions in real time: producers, solvers and readers at 1 "
+                     "the faults of the motions in real time: producers, solvers and readers at 1 "
                      "kHz as processes, deaths by SIGKILL",
                      rows, "runs of 10 s", findings.json(), std::move(measured),
                      to_seconds(clock.now() - begin));

@@ -22,8 +22,8 @@ using std::chrono::milliseconds;
 
 constexpr Time kTick = milliseconds(1);
 constexpr Time kPatience = std::chrono::seconds(5);
-constexpr double kSettling = 2;  // s, after which the start is not measured any more
-constexpr double kEnd = LiveRow::kSeconds - 0.1;  // s: the stream runs dry behind
+constexpr double kSettling = 2;                   // s: errors are measured from here on
+constexpr double kEnd = LiveRow::kSeconds - 0.1;  // s: the stream starves after it
 
 Time to_time(double seconds) { return Time(std::llround(seconds * 1e9)); }
 
@@ -36,7 +36,7 @@ bool is_in(const std::vector<std::pair<double, double>>& intervals, double t) {
                              [&](const auto& i) { return t >= i.first && t < i.second; });
 }
 
-/// The samples of one reader, which looks for steps of the position from one to the next.
+/// Statistics of the samples of one reader; also detects steps of the position between samples.
 class Samples {
  public:
   Samples(const Sines& motion, const Schedule& schedule) : motion_(motion), schedule_(schedule) {}
@@ -78,8 +78,8 @@ class Samples {
   }
 
  private:
-  /// A position may differ from what both velocities make of it by the trapezoidal rule by what a
-  /// change of the acceleration by 2·kMost within the interval explains.
+  /// Compares the change of position with the trapezoidal rule over both velocities. The tolerance
+  /// is the error of this rule if the acceleration changes by 2·kMost within the interval.
   void look_for_step(double t, const State& state) {
     constexpr double kMost = 1000;  // rad/s²
     const double h = t - before_t_;
@@ -182,7 +182,7 @@ void LiveRow::run_producer() const {
     const Call& call = schedule_.calls[facts_->calls];
     if (!apps::sleep_until(stream_time(call.at))) return;
     if (call.at > 0) raise(facts_->producer_late, clock.now() - stream_time(call.at));
-    // One that was sent by the producer before this one, which died before it counted it.
+    // Skip a call that the previous producer sent but did not count before it died.
     if (call.replaces_from || stream_time(call.times.back()) > last) send(producer, call);
     ++facts_->calls;
   }

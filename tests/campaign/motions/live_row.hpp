@@ -15,26 +15,26 @@
 
 namespace splinecast::campaign {
 
-/// What the processes of a row tell the one that started them, in memory that outlives them.
+/// Memory that the processes of a row share with the one that started them; it outlives them.
 struct LiveFacts {
-  std::atomic<std::uint64_t> calls;          ///< of the schedule that have been made
-  std::atomic<std::int64_t> producer_late;   ///< ns, largest: a call behind its time
-  std::atomic<std::int64_t> solver_late;     ///< ns, largest: a step behind `due`
-  std::atomic<std::uint64_t> late_calls;     ///< answered `past` or `too late`
-  std::atomic<std::uint64_t> refused_calls;  ///< refused for other reasons
+  std::atomic<std::uint64_t> calls;          ///< completed calls of the schedule
+  std::atomic<std::int64_t> producer_late;   ///< ns, largest delay of a call after its time
+  std::atomic<std::int64_t> solver_late;     ///< ns, largest delay of a step after `due`
+  std::atomic<std::uint64_t> late_calls;     ///< calls that returned `past` or `too late`
+  std::atomic<std::uint64_t> refused_calls;  ///< calls refused for other reasons
 };
 
-/// What a row showed: as in Seen, and what the machine did to it.
+/// Results of a row: those of Seen, and delays that the machine caused.
 struct LiveSeen {
   double peak_velocity = 0;
   double peak_acceleration = 0;
   double error_p99 = 0;      ///< rad, from 2 s on
-  double largest_error = 0;  ///< rad, likewise
-  double holding = 0;        ///< share of the samples, but those in pauses
+  double largest_error = 0;  ///< rad, from 2 s on
+  double holding = 0;        ///< share of the samples outside pauses and deaths
   std::uint64_t samples = 0;
-  std::uint64_t steps = 0;    ///< of the position, from sample to sample
-  std::uint64_t revised = 0;  ///< samples: the curve was changed behind the reader
-  std::uint64_t refused = 0;  ///< but those that came too late
+  std::uint64_t steps = 0;    ///< steps of the position from sample to sample
+  std::uint64_t revised = 0;  ///< samples with the status `revised`
+  std::uint64_t refused = 0;  ///< without those that came too late
   std::uint64_t came_late = 0;
   std::uint64_t passed_over = 0;
   std::uint64_t passed_at_start = 0;
@@ -42,31 +42,32 @@ struct LiveSeen {
   std::uint64_t late_commits = 0;
   std::uint64_t misses = 0;
   std::uint64_t kills = 0;
-  double producer_late = 0;  ///< s, as in LiveFacts
-  double solver_late = 0;    ///< s
+  double producer_late = 0;  ///< s, see LiveFacts
+  double solver_late = 0;    ///< s, see LiveFacts
 };
 
-/// A mishap with real processes over real shared memory, in real time: a producer, a solver and a
-/// reader at 1 kHz. A schedule with deaths has them die by SIGKILL, the producer in its pauses.
+/// A fault with real processes over real shared memory, in real time: a producer, a solver and a
+/// reader at 1 kHz. If the schedule has deaths, SIGKILL ends the solver at its deaths and the
+/// producer in its pauses.
 class LiveRow {
  public:
   static constexpr double kSeconds = 10;  ///< of the motion
 
-  /// Starts the processes. The motion begins at `begin` on CLOCK_MONOTONIC. `limit` in rad/s², 0:
-  /// none. The arguments outlive it.
+  /// Starts the processes. The motion begins at `begin` on CLOCK_MONOTONIC. `limit` is in rad/s²;
+  /// 0: none. The arguments outlive the row.
   LiveRow(const Sines& motion, const Mishap& mishap, double limit, Time begin, std::string stream);
   LiveRow(const LiveRow&) = delete;
   LiveRow& operator=(const LiveRow&) = delete;
-  /// Kills what still runs and removes the stream.
+  /// Kills the remaining processes and removes the stream.
   ~LiveRow();
 
   [[nodiscard]] const Mishap& mishap() const noexcept { return mishap_; }
   [[nodiscard]] double limit() const noexcept { return limit_; }
 
-  /// Kills and starts who is to be. To be called every few ms, until the motion has ended.
+  /// Kills and starts processes by the schedule. Call it every few ms until the end of the motion.
   void tick(Time now);
 
-  /// Ends all processes once the reader has read to the end. Returns what it saw.
+  /// Waits until the reader has read to the end. Returns its results.
   [[nodiscard]] LiveSeen finish();
 
  private:

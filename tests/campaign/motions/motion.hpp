@@ -5,13 +5,13 @@
 
 namespace splinecast::campaign {
 
-/// A motion that a producer sends: what a reader should see if nothing happened.
+/// A motion that a producer sends, and that a reader sees if there is no fault.
 class Motion {
  public:
   virtual ~Motion() = default;
 
   [[nodiscard]] virtual std::size_t joints() const noexcept = 0;
-  /// Length in s; it begins at 0.
+  /// Duration in s; the motion begins at 0.
   [[nodiscard]] virtual double seconds() const noexcept = 0;
   /// A joint's position in rad, or a derivative of it, at a time in s.
   [[nodiscard]] virtual double at(std::size_t joint, double t, int derivative = 0) const = 0;

@@ -10,10 +10,10 @@
 
 namespace splinecast::campaign {
 
-/// A recording: the natural `c2` spline through all of its waypoints at once.
+/// A recording: the natural `c2` batch spline through all of its waypoints.
 class Recorded final : public Motion {
  public:
-  /// Reads a waypoint file: its columns of these names, in m or rad.
+  /// Reads the columns of these names, in m or rad, from a waypoint file.
   [[nodiscard]] static Recorded from_waypoints(const std::filesystem::path& file,
                                                const std::vector<std::string>& columns);
   /// Samples a file of polynomials at 100 Hz.
@@ -21,13 +21,13 @@ class Recorded final : public Motion {
 
   [[nodiscard]] std::size_t joints() const noexcept override { return curve_.dimensions(); }
   [[nodiscard]] double seconds() const noexcept override;
-  /// Outside of the recording what it is at its nearest end.
+  /// t outside the recording clamps to its nearest end.
   [[nodiscard]] double at(std::size_t joint, double t, int derivative = 0) const override;
   /// In closed form.
   [[nodiscard]] double peak(std::size_t joint, int derivative) const override;
 
-  /// Its waypoints, each sent `lead` s before its time. Those in the gaps are missing, and so the
-  /// producer is silent from `lead` before a gap on.
+  /// The waypoints of the recording, each sent `lead` s before its time, without those in the gaps.
+  /// The producer is therefore silent from `lead` before each gap.
   [[nodiscard]] Schedule schedule(double lead, std::vector<std::pair<double, double>> gaps) const;
 
  private:

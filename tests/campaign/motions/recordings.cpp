@@ -14,7 +14,7 @@ namespace {
 
 using Gaps = std::vector<std::pair<double, double>>;
 
-constexpr std::array kFactors{1.5, 2.0, 4.0, 0.0};  ///< times the spline's own peaks; 0: no limit
+constexpr std::array kFactors{1.5, 2.0, 4.0, 0.0};  ///< limit / peak of the spline; 0: no limit
 
 struct Recording {
   std::string name;
@@ -55,8 +55,8 @@ Gaps long_gap(double seconds) {
   return {{from, from + 1.7}};
 }
 
-/// The limits of velocity and acceleration of each joint; one that does not move has none. Of the
-/// two flights whose pieces do not meet, they are those of the jumps, and bind nothing else.
+/// Limits of velocity and acceleration of each joint; a joint that does not move has none. For the
+/// two flights whose pieces do not join, the jumps set the limits, so they bind nothing else.
 core::WindowOptions window_within(const Recorded& motion, double factor) {
   core::WindowOptions window;
   for (std::size_t joint = 0; factor > 0 && joint < motion.joints(); ++joint) {
@@ -74,7 +74,7 @@ double largest_peak(const Recorded& motion, int derivative) {
   return most;
 }
 
-/// How many joints go beyond their limit.
+/// Number of joints that exceed their limit.
 std::uint64_t beyond(const std::vector<double>& peaks, const std::vector<double>& limits) {
   constexpr double kRounding = 1e-9;
   std::uint64_t count = 0;
@@ -152,9 +152,8 @@ Result run_recordings(const CampaignOptions& options) {
     }
   }
   return make_result(options, {2, 4, 5},
-                     "recorded motions and flights from which waypoints are missing, with limits "
-                     "and without, in simulated time through the real ring, solver, board and "
-                     "sampler",
+                     "recorded motions and flights with missing waypoints, with and without "
+                     "limits, in simulated time through the real ring, solver, board and sampler",
                      rows, "runs", findings.json(), std::move(measured),
                      to_seconds(clock.now() - begin));
 }

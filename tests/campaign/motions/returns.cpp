@@ -25,13 +25,13 @@ using std::chrono::milliseconds;
 
 constexpr Time kBegin{1'000'000'000'000};
 constexpr Time kTick = milliseconds(1);
-/// The last hiccup is over by then; the motion is known for Sines::kSeconds.
+/// End of the last fault. The motion is defined for Sines::kSeconds.
 constexpr Time kLastHiccup = std::chrono::seconds(10);
 constexpr Time kEnd = std::chrono::seconds(19);
 
 Time to_time(double seconds) { return Time(std::llround(seconds * 1e9)); }
 
-/// What happened in all runs.
+/// Counters over all runs.
 struct ReturnCounts {
   std::uint64_t runs = 0;
   std::uint64_t silences = 0;
@@ -46,8 +46,8 @@ struct ReturnCounts {
   std::vector<double> shares;  ///< time of the last return over the time allowed
 };
 
-/// The least acceleration of a motion in two phases that takes a time from one velocity to another
-/// over a way.
+/// The least acceleration of a two-phase motion that covers the distance `way` in `time`, with the
+/// velocities `from` at its start and `to` at its end.
 double two_phase_acceleration(double way, double from, double to, double time) {
   const double beside = std::abs(way - (from + to) / 2 * time);
   const double change = to - from;
@@ -55,7 +55,7 @@ double two_phase_acceleration(double way, double from, double to, double time) {
          (time * time);
 }
 
-/// One stream in plain memory whose producer has hiccups and then none any more.
+/// One stream in plain memory with faults until kLastHiccup.
 class ReturnRun {
  public:
   ReturnRun(std::uint64_t seed, ReturnCounts& counts)
@@ -113,7 +113,7 @@ class ReturnRun {
     return how;
   }
 
-  /// Some hiccups in the first seconds, and one that ends at kLastHiccup.
+  /// One to four faults in the first seconds, and a last one that ends at kLastHiccup.
   void plan_hiccups() {
     Time t = std::chrono::seconds(2);
     for (std::size_t i = 1 + random_.below(4); i > 0; --i) {
@@ -163,7 +163,7 @@ class ReturnRun {
       if (status == AppendStatus::full) return;
     }
   }
-  /// Sends what lies ahead once more.
+  /// Replaces the future by the same motion, with shifted waypoint times.
   void replace() {
     const Time from = now_ + milliseconds(10);
     std::vector<std::vector<double>> values;
@@ -194,8 +194,8 @@ class ReturnRun {
     }
   }
 
-  /// What the stream is allowed from the end of its last hiccup on: the least time in which a
-  /// motion in two phases is on the path again, twice, and half a second.
+  /// Sets the allowed time from the end of the last fault: twice the least time in which a
+  /// two-phase motion reaches the path, plus 0.5 s.
   void measure_distance() {
     constexpr Time kLook = milliseconds(5);
     constexpr double kBesides = 0.5;
@@ -214,7 +214,7 @@ class ReturnRun {
     return true;
   }
 
-  /// When the curve is on its waypoints again, and stays.
+  /// Notes since when the curve has been on its waypoints without interruption.
   void look() {
     was_dead_ = was_dead_ || is_dead();
     const ipc::Head& head = stream_.solver.head();
@@ -228,17 +228,17 @@ class ReturnRun {
     const ipc::Head& head = stream_.solver.head();
     counts_->starvations += head.underruns;
     counts_->passed_over += head.passed_over;
-    // On its way back no later than allowed, and on the path at the end.
+    // The return must be in time, and the curve on the path at the end.
     if (!back_at_ || !allowed_) {
       ++counts_->never_back;
-      return tell("never back");
+      return tell("never back on the waypoints");
     }
     const Time taken = std::max(Time(0), *back_at_ - kLastHiccup);
     const double share = to_seconds(taken) / to_seconds(*allowed_);
     counts_->shares.push_back(share);
     if (share > 1) {
       ++counts_->late_returns;
-      tell(fmt::format("back after {:.3f} s, allowed {:.3f} s", to_seconds(taken),
+      tell(fmt::format("back after {:.3f} s, allowed: {:.3f} s", to_seconds(taken),
                        to_seconds(*allowed_)));
     }
     const Time at = kEnd - lead_;
@@ -248,7 +248,7 @@ class ReturnRun {
       const double error = state_.position()[d] - motion_.at(d, to_seconds(at));
       if (std::abs(error) < kNear) continue;
       ++counts_->off_path;
-      return tell(fmt::format("{} rad beside its path at the end", error));
+      return tell(fmt::format("{} rad off the path at the end", error));
     }
   }
   void tell(const std::string& what) const {
@@ -316,9 +316,9 @@ Result run_returns(const CampaignOptions& options) {
       {"time of the return over that allowed, largest", quantile(counts.shares, 1)}};
   return make_result(options, 10,
                      "motions with random intervals, leads, limits and methods, whose producers "
-                     "fall silent, are late, plan anew and whose solvers die; then nothing more "
-                     "happens: back on the waypoints within twice the least time of a two-phase "
-                     "motion under the same limits, and 0.5 s",
+                     "are silent, late or replan, and whose solvers die: after the last fault, the "
+                     "return to the waypoints takes at most twice the least time of a two-phase "
+                     "motion under the same limits, plus 0.5 s",
                      counts.runs, "returns", found, measured, to_seconds(clock.now() - begin));
 }
 

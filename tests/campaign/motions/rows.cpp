@@ -23,7 +23,7 @@ core::WindowOptions window_within(double limit) {
   return window;
 }
 
-/// What must not happen in a row.
+/// Violations of a row.
 struct MotionFindings {
   std::uint64_t limits_passed = 0;
   std::uint64_t freezes = 0;
@@ -42,7 +42,7 @@ struct MotionFindings {
 
 void judge(const Mishap& mishap, double limit, bool has_noise, const Seen& seen,
            MotionFindings& findings) {
-  // The spline of noisy waypoints is beyond the limits itself.
+  // The spline through noisy waypoints itself exceeds the limits.
   const bool is_noisy = has_noise || mishap.quantum > 0;
   const bool is_beyond = limit > 0 && !is_noisy && seen.peak_acceleration() > limit * (1 + 1e-9);
   findings.limits_passed += is_beyond ? 1U : 0U;
@@ -125,9 +125,9 @@ Result run_motions(const CampaignOptions& options) {
     }
   }
   return make_result(options, {2, 4, 5},
-                     "a motion of six joints whose producer is late, silent, dead or of another "
-                     "mind, with limits and without, in simulated time through the real ring, "
-                     "solver, board and sampler",
+                     "a motion of six joints whose producer is late, silent, dead or replans, with "
+                     "and without limits, in simulated time through the real ring, solver, board "
+                     "and sampler",
                      rows, "runs of 20 s", findings.json(), std::move(measured),
                      to_seconds(clock.now() - begin));
 }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLength = Sines::kSeconds;
 
-/// What would have been sent in a pause is sent behind it.
+/// Moves all calls within a pause to its end.
 void pause(Schedule& schedule, double from, double until) {
   schedule.pauses.emplace_back(from, until);
   for (Call& call : schedule.calls) {
@@ -69,7 +69,7 @@ Schedule one_pause(const Sines& motion, std::uint64_t /*seed*/) {
   return schedule;
 }
 
-/// The same at 1 kHz, as encoders give it.
+/// The schedule of one_pause at 1 kHz, the rate of an encoder.
 Schedule encoders(const Sines& motion, std::uint64_t /*seed*/) {
   Schedule schedule = steady(motion, 1000, 0.06);
   pause(schedule, 8, 8.3);
@@ -87,7 +87,7 @@ Schedule deaths(const Sines& motion, std::uint64_t seed) {
   return schedule;
 }
 
-/// A recording that was interrupted: the motion went on meanwhile.
+/// A recording that was interrupted while the motion continued.
 Schedule gap(const Sines& motion, std::uint64_t /*seed*/) {
   Schedule schedule = steady(motion, 100, 0.05);
   schedule.pauses.emplace_back(6, 7.7);
@@ -96,7 +96,7 @@ Schedule gap(const Sines& motion, std::uint64_t /*seed*/) {
   return schedule;
 }
 
-/// Plans that differ by 3 mrad, from 60 ms ahead on.
+/// Plans that differ by 3 mrad; each replaces the future from 60 ms ahead.
 Schedule plans(const Sines& motion, std::uint64_t /*seed*/) {
   constexpr double kDifference = 3e-3;
   Schedule schedule = steady(motion, 100, 0.2);
@@ -106,7 +106,7 @@ Schedule plans(const Sines& motion, std::uint64_t /*seed*/) {
     if (call.at >= next) {
       next += 0.5;
       offset = kDifference - offset;
-      // In place of what lies between 60 ms ahead and the newest waypoint.
+      // Replaces the waypoints from 60 ms ahead to the newest one.
       const double newest = call.times[0];
       call.replaces_from = call.at + 0.06;
       schedule.offsets.emplace_back(*call.replaces_from, offset);

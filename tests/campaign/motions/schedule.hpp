@@ -13,7 +13,8 @@
 
 namespace splinecast::campaign {
 
-/// A call of a producer: waypoints appended, or in place of all behind `replaces_from`. Times in s.
+/// A call of a producer: appends waypoints, or replaces all waypoints from `replaces_from` on.
+/// Times are in s.
 struct Call {
   double at = 0;
   std::vector<double> times;
@@ -21,16 +22,16 @@ struct Call {
   std::optional<double> replaces_from{};
 };
 
-/// What a producer does while the motion goes on, and what happens to it and to the solver.
+/// Calls of a producer during a motion, and faults of the producer and of the solver. Times in s.
 struct Schedule {
-  std::vector<Call> calls;                          ///< by `at`
+  std::vector<Call> calls;                          ///< sorted by `at`
   std::vector<std::pair<double, double>> pauses{};  ///< of the producer: from, until
   std::vector<std::pair<double, double>>
-      deaths{};  ///< of the solver: from, until another one comes
-  /// What plans add to the motion, in rad: from when on, how much. None: they follow it.
+      deaths{};  ///< of the solver: from, until another one takes over
+  /// Offsets of the plans from the motion: start time in s, offset in rad. Empty: no offset.
   std::vector<std::pair<double, double>> offsets{};
 
-  /// What the plan that holds at t adds to the motion.
+  /// The offset at t of the plan that is valid then.
   [[nodiscard]] double offset(double t) const noexcept {
     double sum = 0;
     for (const auto& [from, much] : offsets) sum = from <= t ? much : sum;
@@ -38,16 +39,16 @@ struct Schedule {
   }
 };
 
-/// One way in which a producer fails to deliver a motion in time.
+/// A fault that keeps a motion from being delivered in time.
 struct Mishap {
   std::string_view name;
-  std::string_view file;  ///< names its plot; empty: nothing happens that a plot could show
+  std::string_view file;  ///< name of its plots; empty: no plot
   Schedule (*make)(const Sines& motion, std::uint64_t seed);
-  /// In rad: waypoints are multiples of it, as encoders give them; 0: they are not.
+  /// Resolution of an encoder in rad: waypoints are rounded to multiples of it; 0: not rounded.
   double quantum = 0;
-  bool is_covered = false;  ///< the lead covers it: nothing may be passed over behind the start
-  /// Path errors that a simulation apart from this code has found, in rad: p99 and largest, with limits of 5, 10
-  /// and 20 rad/s²; 0: none given.
+  bool is_covered = false;  ///< the lead covers it: after the start no waypoint may be passed over
+  /// Path errors in rad that an independent simulation has found: p99 and largest, with limits of
+  /// 5, 10 and 20 rad/s²; 0: unknown.
   std::array<std::pair<double, double>, 3> simulated{};
 };
 

@@ -18,7 +18,7 @@ Sines::Sines(std::uint64_t seed) {
     joint = {Sine{0.8 / slow, slow, between(0, 2 * std::numbers::pi)},
              Sine{0.35 / fast, fast, between(0, 2 * std::numbers::pi)}};
   }
-  // Time and amplitude are scaled so that both peaks are as wanted.
+  // Scale time and amplitude so that both peaks have their given values.
   const double rate = kPeakAcceleration / kPeakVelocity * peak_of_all(1) / peak_of_all(2);
   for (auto& joint : sines_) {
     for (Sine& sine : joint) sine.frequency *= rate;

@@ -11,7 +11,7 @@ namespace splinecast::campaign {
 namespace {
 
 constexpr double kLead = 0.06;   // s
-constexpr double kMeasured = 2;  // s: the start is over
+constexpr double kMeasured = 2;  // s: measured from here on, after the start
 constexpr double kRounding = 1e-9;
 
 Schedule schedule_of(const Sines& motion, const Data& data, double until) {
@@ -20,7 +20,7 @@ Schedule schedule_of(const Sines& motion, const Data& data, double until) {
   return schedule;
 }
 
-/// A closed-form look at a segment.
+/// Ranges and values of a segment in closed form.
 struct Look {
   const ipc::SegmentCopy& segment;
   std::size_t dimensions;
@@ -46,9 +46,9 @@ class Measuring {
  public:
   Measuring(const Sines& motion, StopMeasures& measures) : motion_(motion), measures_(measures) {}
 
-  /// Measures what is published: the two newest segments.
+  /// Measures the two newest published segments.
   void look(std::span<const ipc::SegmentCopy> segments) {
-    const bool is_stop = segments.size() >= 2 && segments.back().kind == SegmentKind::stop_tail &&
+    const bool is_stop = segments.size() >= 2 && segments.back().kind == SegmentKind::stop &&
                          segments[segments.size() - 2].kind == SegmentKind::spline;
     if (!is_stop) {
       ++measures_.in_entries;
@@ -120,7 +120,7 @@ TrialOptions options_of(const Data& data, const Curve& curve) {
   return {.window = curve.window, .quantum = data.quantum};
 }
 
-/// The two newest segments that are published.
+/// Copies the two newest published segments.
 bool take_newest(Trial& trial, ipc::BoardSnapshot& out) {
   const Time newest = trial.head().newest_knot;
   return has_values(trial.sampler().snapshot(newest - Time(1), newest, out));
@@ -160,7 +160,7 @@ double cut_off(const Sines& motion, const Data& data, const Curve& curve, double
   ipc::BoardSnapshot newest(Sines::kJoints);
   while (trial.now() < cut) trial.tick();
   const bool is_stop = take_newest(trial, newest) && !newest.segments().empty() &&
-                       newest.segments().back().kind == SegmentKind::stop_tail;
+                       newest.segments().back().kind == SegmentKind::stop;
   if (!is_stop) return 0;
   const Look stop{newest.segments().back(), Sines::kJoints};
   while (trial.now() < cut + kAtRest) trial.tick();

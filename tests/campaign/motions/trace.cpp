@@ -11,22 +11,22 @@
 namespace splinecast::campaign {
 namespace {
 
-constexpr double kBefore = 0.3;               ///< s that are shown before the mishap
-constexpr double kLongest = 4;                ///< s that are shown in all
-constexpr double kOnPath = 2e-4;              ///< rad: nearer is on the path
-constexpr double kCalm = 0.08;                ///< s on the path, after which the mishap is over
-constexpr double kStarted = 1.9;              ///< s, after which the start is over
-constexpr double kEnd = Sines::kSeconds - 1;  ///< s, after which the motion ends
+constexpr double kBefore = 0.3;               ///< s shown before the fault
+constexpr double kLongest = 4;                ///< s, longest time shown
+constexpr double kOnPath = 2e-4;              ///< rad: largest path error on the path
+constexpr double kCalm = 0.08;                ///< s on the path until the fault is over
+constexpr double kStarted = 1.9;              ///< s: faults are searched from here on
+constexpr double kEnd = Sines::kSeconds - 1;  ///< s: faults are searched up to here
 constexpr double kTick = 1e-3;                ///< s
 
-/// A sample, kept.
+/// A stored sample.
 struct Row {
   double t = 0;
   SampleStatus status{};
   bool is_entry = false;
   std::uint64_t starvations = 0;
   State state{Sines::kJoints};
-  double error = 0;  ///< rad, the largest of all joints; from 0 s on
+  double error = 0;  ///< rad, the largest of all joints; 0 before 0 s
 };
 
 double error_of(const Row& row, const Motion& motion, const Schedule& schedule, std::size_t joint) {
@@ -38,7 +38,7 @@ bool is_at_rest(const Row& row) {
   return row.status == SampleStatus::stopping || row.status == SampleStatus::holding;
 }
 
-/// When the first mishap begins: the stream runs dry, or its future is replaced, or the start.
+/// Time of the first fault: the stream starves, else its future is replaced, else the start.
 double mishap_of(const std::vector<Row>& rows, const Schedule& schedule) {
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const bool is_measured = rows[i].t >= kStarted && rows[i].t < kEnd;
@@ -54,7 +54,7 @@ struct Window {
   double mishap = 0;
   std::size_t first = 0;
   std::size_t end = 0;
-  double back = 0;  ///< s behind the mishap: on the path again; −1: not within the window
+  double back = 0;  ///< s from the fault until the path is reached; −1: not within the window
 };
 
 Window window_of(const std::vector<Row>& rows, const Schedule& schedule) {
@@ -122,7 +122,7 @@ void write_file(const std::filesystem::path& path, const std::string& text) {
   output.close();
 }
 
-/// Seconds of the samples for which `holds` says so.
+/// Duration in s of the samples for which `holds` is true.
 double seconds_of(std::span<const Row> rows, const auto& holds) {
   return kTick * static_cast<double>(std::ranges::count_if(rows, holds));
 }
@@ -133,7 +133,7 @@ double largest_error(std::span<const Row> rows) {
   return most;
 }
 
-/// Those of the intervals that begin within the samples.
+/// The intervals that begin within the samples.
 nlohmann::json within(std::span<const std::pair<double, double>> intervals,
                       std::span<const Row> rows) {
   nlohmann::json kept = nlohmann::json::array();
@@ -151,7 +151,7 @@ nlohmann::json replacements_within(const Schedule& schedule, std::span<const Row
   return within(found, rows);
 }
 
-/// How long the samples show each state of the curve, and how far it is from the path.
+/// Durations of the states of the curve in the samples, and the largest path error.
 nlohmann::json shown_json(std::span<const Row> shown) {
   const auto is_stopping = [](const Row& row) { return row.status == SampleStatus::stopping; };
   const auto is_holding = [](const Row& row) { return row.status == SampleStatus::holding; };
@@ -162,7 +162,7 @@ nlohmann::json shown_json(std::span<const Row> shown) {
           {"largest path error shown [rad]", largest_error(shown)}};
 }
 
-/// What a whole trial has seen.
+/// Results of a whole trial.
 nlohmann::json seen_json(const Seen& seen) {
   return {{"largest path error [rad]", seen.error(1)},
           {"path error p99 [rad]", seen.error(0.99)},

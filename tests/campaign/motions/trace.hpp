@@ -9,15 +9,15 @@
 
 namespace splinecast::campaign {
 
-/// Writes what a reader sees around the first mishap of each schedule, for docs/plots.py: a file
-/// `NAME.csv` per row, and `rows.json`, which says what each one shows. In simulated time, without
-/// noise, the same on every machine.
+/// Writes what a reader sees around the first fault of each schedule, for docs/plots.py: a file
+/// `NAME.csv` per row, and `rows.json`, which describes each of them. Uses simulated time without
+/// noise, so the files are the same on every machine.
 class Traces {
  public:
   /// Creates the folder if it is missing.
   explicit Traces(std::filesystem::path folder);
 
-  /// Runs a row and writes its file. `limit` in rad/s², 0: none.
+  /// Runs a row and writes its file. `limit` is in rad/s²; 0: none.
   void add(const Sines& motion, const Mishap& mishap, double limit, TrialOptions options);
 
   /// Writes `rows.json`.

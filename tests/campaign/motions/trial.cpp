@@ -7,8 +7,8 @@ namespace splinecast::campaign {
 namespace {
 
 constexpr int kMilliseconds = 1000;
-constexpr int kLead = 500;       ///< ms: the first call may be so early
-constexpr double kSettling = 2;  ///< s, after which the start is not measured any more
+constexpr int kLead = 500;       ///< ms: largest lead of the first call
+constexpr double kSettling = 2;  ///< s: errors are measured from here on
 
 Time to_time(double seconds) { return Time(std::llround(seconds * 1e9)); }
 
@@ -148,7 +148,7 @@ bool Trial::is_entry() {
   const Time t = stream_.clock.time;
   if (!has_values(sampler_.snapshot(t, t, snapshot_))) return false;
   return std::ranges::any_of(snapshot_.segments(), [&](const ipc::SegmentCopy& segment) {
-    return segment.left <= t && t < segment.right && segment.kind == SegmentKind::splice;
+    return segment.left <= t && t < segment.right && segment.kind == SegmentKind::entry;
   });
 }
 

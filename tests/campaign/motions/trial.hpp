@@ -13,14 +13,14 @@
 
 namespace splinecast::campaign {
 
-/// What a 1 kHz reader saw of one schedule, and what became of the waypoints.
+/// Results of one schedule: samples of a 1 kHz reader and counters of the waypoints.
 struct Seen {
-  std::vector<double> errors;           ///< rad, at each sample: the largest of all joints; sorted
-  std::vector<double> peak_velocities;  ///< of each joint
+  std::vector<double> errors;              ///< rad, largest of all joints at each sample; sorted
+  std::vector<double> peak_velocities;     ///< of each joint
   std::vector<double> peak_accelerations;  ///< of each joint
   double entry_acceleration = 0;           ///< rad/s², the largest in entries
-  double holding = 0;                      ///< share of the samples, but those in pauses
-  std::uint64_t refused = 0;               ///< but those that came too late
+  double holding = 0;                      ///< share of the samples outside pauses and deaths
+  std::uint64_t refused = 0;               ///< without those that came too late
   std::uint64_t past = 0;                  ///< refused because they came too late
   std::uint64_t knots = 0;
   std::uint64_t passed_over = 0;
@@ -34,35 +34,35 @@ struct Seen {
   [[nodiscard]] double peak_acceleration() const;
 };
 
-/// A sample of a 1 kHz reader. The state is valid during the call that hands it over.
+/// A sample of a 1 kHz reader. `state` is valid only during the call of TrialOptions::watch.
 struct Sight {
   double t = 0;
   SampleStatus status{};
   bool is_entry = false;
-  std::uint64_t starvations = 0;  ///< so far
+  std::uint64_t starvations = 0;  ///< count up to this sample
   const State* state = nullptr;
 };
 
-/// How a schedule is carried out.
+/// Options of a trial.
 struct TrialOptions {
-  core::WindowOptions window{};  ///< a live stream's start is added
-  double noise = 0;              ///< rad: standard deviation of what is added to waypoints
-  double quantum = 0;            ///< rad: waypoints are rounded to multiples of it; 0: they are not
+  core::WindowOptions window{};  ///< the trial sets the start of a live stream
+  double noise = 0;              ///< rad: standard deviation of the noise added to waypoints
+  double quantum = 0;            ///< rad: waypoints are rounded to multiples of it; 0: not rounded
   std::uint64_t seed = 1;        ///< of the noise
   std::function<void(const Sight&)> watch{};  ///< called with each sample that has values
 };
 
-/// A live stream in plain memory, in simulated time, with a reader at 1 kHz: the real ring, solver,
-/// board and sampler.
+/// A live stream in plain memory and simulated time, with the real ring, solver, board and sampler,
+/// and a reader at 1 kHz.
 class Trial {
  public:
-  /// `motion` and `schedule` outlive it.
+  /// `motion` and `schedule` outlive the trial.
   Trial(const Motion& motion, const Schedule& schedule, TrialOptions options);
 
-  /// From kLead before the motion to its end.
+  /// Runs from kLead before the motion to its end.
   Seen run();
 
-  /// Advances by a millisecond: the producer's calls, the solver's steps and one sample.
+  /// Advances by 1 ms: the producer's calls, the solver's steps and one sample.
   void tick();
   [[nodiscard]] double now() const noexcept { return now_; }
   [[nodiscard]] const ipc::Head& head() const noexcept { return stream_.solver.head(); }

@@ -13,7 +13,7 @@
 namespace splinecast::campaign {
 namespace {
 
-/// No stream takes so long, s: one that does hangs, and nothing but a signal ends it.
+/// Time limit of one stream in s. A stream that exceeds it hangs, and SIGALRM ends the program.
 constexpr unsigned kHangsAfter = 120;
 
 volatile std::sig_atomic_t is_running = 0;
@@ -27,12 +27,12 @@ void tell_hang(int /*signal*/) {
   _exit(3);
 }
 
-/// Ends the program, with the stream's seed, if a stream does not end.
+/// Ends the program with a message that names the seed if a stream hangs.
 class HangGuard {
  public:
   explicit HangGuard(std::uint64_t seed) {
     std::snprintf(hang_text.data(), hang_text.size(),
-                  "splinecast_campaign: seed %llu: hangs, a step without bound\n",
+                  "splinecast_campaign: seed %llu: hangs: unbounded step\n",
                   static_cast<unsigned long long>(seed));
     is_running = 1;
     (void)std::signal(SIGALRM, tell_hang);
@@ -55,7 +55,7 @@ void run_stream(std::uint64_t seed, StreamFindings& findings) {
 
 nlohmann::json found(const StreamFindings& findings, bool all_streams) {
   auto breaches = findings.found();
-  breaches["hangs"] = 0;  // one that hangs ends the program
+  breaches["hangs"] = 0;  // a hang ends the program
   if (!all_streams) return breaches;
   const auto missing = findings.not_covered();
   breaches["things never tried"] = missing.size();
@@ -83,9 +83,9 @@ Result run_streams(const CampaignOptions& options) {
   measured["first seed"] = options.seed;
   return make_result(
       options, {1, 2, 3, 4, 5, 8},
-      "simulated live streams, one per seed: random producers, clocks, limits, kinds "
-      "and methods, replacements, stops, deaths and hold-ups, through the real ring, "
-      "solver, board and samplers in plain memory",
+      "simulated live streams, one per seed: random producers, clocks, limits, kinds of dimensions "
+      "and methods, replacements, stops, deaths and delays, through the real ring, solver, board "
+      "and samplers in plain memory",
       findings.streams(), "streams", breaches, std::move(measured), seconds);
 }
 

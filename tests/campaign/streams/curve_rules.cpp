@@ -9,14 +9,14 @@
 namespace splinecast::campaign {
 namespace {
 
-/// Shorter quaternions amplify rounding too much when they are brought to length 1.
+/// Normalising quaternions shorter than this amplifies rounding too much.
 constexpr double kShortest = 1e-3;
 
 double length_of(const ipc::SegmentCopy& segment) {
   return to_seconds(segment.right - segment.left);
 }
 
-/// Sums of the magnitudes that make up a segment's derivatives in one dimension.
+/// Sums of the absolute terms of a segment's derivatives 0 to 2 in one dimension.
 std::array<double, 3> scales(const ipc::SegmentCopy& segment, std::size_t dimensions,
                              std::size_t d) {
   const double h = length_of(segment);
@@ -43,7 +43,7 @@ double norm(std::span<const double> values) {
   return std::sqrt(sum);
 }
 
-/// The size of a difference in units of what rounding may leave.
+/// A difference divided by the tolerance for rounding.
 double excess(double difference, double scale) {
   const double allowed = CurveRules::kRounding * scale + 1e-290;
   const double size = std::abs(difference);

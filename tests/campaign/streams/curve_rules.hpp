@@ -8,8 +8,8 @@
 
 namespace splinecast::campaign {
 
-/// What holds of the segments of one curve, up to rounding: of what is added up to evaluate them,
-/// in each dimension, nothing may be off by more than kRounding.
+/// Rules for the segments of one curve. The tolerance in each dimension is kRounding times the sum
+/// of the absolute terms of the evaluated polynomial.
 class CurveRules {
  public:
   static constexpr double kRounding = 1e-10;
@@ -17,18 +17,18 @@ class CurveRules {
   explicit CurveRules(const DimensionKinds& kinds, std::size_t dimensions)
       : kinds_(&kinds), left_(dimensions), right_(dimensions) {}
 
-  /// By how much more than rounding position and velocity step where `after` follows `before`; at
-  /// most 1 is right. Quaternions are compared at unit length.
+  /// Steps of position and velocity from `before` to `after`, divided by the tolerance; up to 1 is
+  /// correct. Quaternions are compared at unit length.
   struct Step {
     double position = 0;
     double velocity = 0;
   };
   [[nodiscard]] Step step(const ipc::SegmentCopy& before, const ipc::SegmentCopy& after);
 
-  /// Whether a segment is at rest at its end; with `halts` also without acceleration.
+  /// Whether a segment ends with velocity 0, and with `halts` also with acceleration 0.
   [[nodiscard]] bool ends_at_rest(const ipc::SegmentCopy& segment, bool halts);
 
-  /// Whether a segment begins, or at `at_end` ends, at a waypoint's position.
+  /// Whether a segment begins, or with `at_end` ends, at a waypoint's position.
   [[nodiscard]] bool passes(const ipc::SegmentCopy& segment, bool at_end,
                             std::span<const double> position, std::span<const Dimension> of);
 

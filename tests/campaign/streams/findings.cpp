@@ -63,13 +63,13 @@ constexpr std::array<std::string_view, kEvents> kEventNames{"streams",
                                                             "ring items observed",
                                                             "segments verified"};
 
-/// Refusals that a producer that is no attacker can come by.
+/// Refusals that a producer without bad intent can cause.
 constexpr std::array kRefusalsToSee{
     Refusal::past,          Refusal::duplicate,       Refusal::out_of_order,
     Refusal::too_close,     Refusal::too_far_apart,   Refusal::too_late,
     Refusal::lag_too_short, Refusal::zero_quaternion, Refusal::lacks_derivatives,
     Refusal::beyond_limits};
-/// Statuses of samples, but for those that take another process at the same time.
+/// Statuses of samples, without those that need another concurrent process.
 constexpr std::array kStatusesToSee{SampleStatus::settled,       SampleStatus::provisional,
                                     SampleStatus::stopping,      SampleStatus::holding,
                                     SampleStatus::revised,       SampleStatus::no_data,
@@ -77,7 +77,7 @@ constexpr std::array kStatusesToSee{SampleStatus::settled,       SampleStatus::p
 
 constexpr std::array<std::string_view, kLimitClasses> kLimitNames{"no", "generous", "tight"};
 
-/// Breaches of one campaign that are told one by one.
+/// Number of breaches of one campaign that are reported individually.
 constexpr std::uint64_t kTold = 100;
 
 template <std::size_t N>
@@ -126,7 +126,7 @@ nlohmann::json StreamFindings::found() const {
   return all;
 }
 
-/// The counters that a campaign is to see above 0.
+/// The counters that must be above 0 at the end of a campaign.
 std::map<std::string, std::uint64_t> StreamFindings::required() const {
   std::map<std::string, std::uint64_t> all;
   for (std::size_t i = 0; i < kEvents; ++i) all.emplace(kEventNames[i], events_[i]);
@@ -146,7 +146,7 @@ std::map<std::string, std::uint64_t> StreamFindings::required() const {
     all.emplace(fmt::format("streams of {}", method->name),
                 found == methods_.end() ? 0 : found->second);
   }
-  constexpr std::array kKinds{"linear", "wrap", "quaternion", "quaternion-wxyz"};
+  constexpr std::array kKinds{"linear", "periodic", "quaternion", "quaternion-wxyz"};
   for (std::size_t i = 0; i < kKinds.size(); ++i) {
     all.emplace(fmt::format("dimensions {}", kKinds[i]), kinds_[i]);
   }

@@ -15,31 +15,31 @@ namespace splinecast::campaign {
 
 /// A promise that a simulated stream can break.
 enum class Breach : std::uint8_t {
-  settled_changed,   ///< a settled sample read otherwise later
-  position_step,     ///< where two settled segments meet
-  velocity_step,     ///< likewise
-  not_finite,        ///< a sample with values that are no numbers
-  not_at_rest,       ///< the newest segment moves at its end
-  no_answer,         ///< a sample at now without values although nobody overtook the reader
+  settled_changed,   ///< a settled sample changed later
+  position_step,     ///< a step of the position between two settled segments
+  velocity_step,     ///< a step of the velocity between two settled segments
+  not_finite,        ///< a sample with NaN or infinite values
+  not_at_rest,       ///< the newest segment does not end at rest
+  no_answer,         ///< a sample at now without values although no writer overtook the reader
   items_lost,        ///< consumed ≠ interpolated + passed over + refused + withdrawn + controls
-  waypoint_missed,   ///< a waypoint that the curve does not pass through, and is not passed over
-  settled_back,      ///< settled_until went back, or less than freeze-ahead was settled
-  unsettled_at_now,  ///< a solver in time, and a sample at now that has not settled
-  false_revised,     ///< `revised` although nothing that was sampled has changed
-  change_not_told,   ///< what was sampled has changed, without `revised`
-  miscounted,        ///< a late commit or a deadline miss that was not counted
+  waypoint_missed,   ///< the curve misses a waypoint that is not counted as passed over
+  settled_back,      ///< settled_until decreased, or a step settled less than freeze-ahead
+  unsettled_at_now,  ///< a sample at now that has not settled although the solver was in time
+  false_revised,     ///< `revised` although no sampled value has changed
+  change_not_told,   ///< a sampled value has changed without `revised`
+  miscounted,        ///< wrong count of late_commits or deadline_misses
   stop_late,         ///< a stop did not take effect in the step after it
   unbounded_step,    ///< more clock readings or items than a step may take
   board_refused,     ///< a solver found damage on a board that only solvers had written
-  ring_torn,         ///< an item of the ring is not the one that was sent
-  not_verified,      ///< solved again, the curve has other bits
-  beyond_limits,     ///< an entry or a stop is beyond a limit that it does not begin beyond
-  stop_turned,       ///< a stop speeds up, turns round or goes further than |v|·T/2
+  ring_torn,         ///< an item of the ring differs from the one that was sent
+  not_verified,      ///< a repeated solve gives a curve with other bits
+  beyond_limits,     ///< an entry or a stop exceeds a limit, and its own value at its start
+  stop_turned,       ///< a stop speeds up, reverses or moves further than |v|·T/2
 };
 inline constexpr std::size_t kBreaches = 20;
 [[nodiscard]] std::string_view to_string(Breach breach) noexcept;
 
-/// What happened to simulated streams: each is to happen in a campaign.
+/// Events of simulated streams. Each must occur in a campaign.
 enum class Event : std::uint8_t {
   streams,
   revisions,
@@ -75,10 +75,10 @@ enum class Event : std::uint8_t {
 inline constexpr std::size_t kEvents = 30;
 [[nodiscard]] std::string_view to_string(Event event) noexcept;
 
-/// What simulated streams did and broke, summed over all of them.
+/// Counters of events and breaches over all simulated streams.
 class StreamFindings {
  public:
-  /// The stream that is being simulated from now on.
+  /// Begins the findings of the next stream.
   void begin_stream(const StreamPlan& plan);
   [[nodiscard]] std::uint64_t seed() const noexcept { return seed_; }
 
@@ -90,21 +90,21 @@ class StreamFindings {
   void count(Refusal refusal) noexcept { ++refusals_[static_cast<std::size_t>(refusal)]; }
   void count_simulated(Time time) noexcept { simulated_ += to_seconds(time); }
 
-  /// Counts a breach, says on standard error what it is and of which seed; the stream has failed.
+  /// Counts a breach, reports it with the seed to standard error, and marks the stream as failed.
   void breach(Breach breach, const std::string& what);
   [[nodiscard]] bool stream_failed() const noexcept { return stream_failed_; }
 
-  /// Seconds of simulated time, and streams.
+  /// Simulated time in s.
   [[nodiscard]] double simulated() const noexcept { return simulated_; }
   [[nodiscard]] std::uint64_t streams() const noexcept {
     return events_[static_cast<std::size_t>(Event::streams)];
   }
 
-  /// Breaches by name, with `extra`, more counters of the same kind.
+  /// Breaches by name.
   [[nodiscard]] nlohmann::json found() const;
-  /// Everything that was counted, by name.
+  /// All other counters by name.
   [[nodiscard]] nlohmann::json coverage() const;
-  /// The counters that are 0 but must not be.
+  /// Names of the required counters that are 0.
   [[nodiscard]] std::vector<std::string> not_covered() const;
 
  private:

@@ -42,7 +42,7 @@ std::vector<Dimension> make_dimensions(Random& random) {
     } else if (random.chance(kShareOfWraps)) {
       constexpr std::array kPeriods{1.0, 6.283185307179586, 360.0, 1e-6};
       dimensions.push_back(
-          {.kind = DimensionKind::wrap, .period = kPeriods[random.below(kPeriods.size())]});
+          {.kind = DimensionKind::periodic, .period = kPeriods[random.below(kPeriods.size())]});
     } else {
       dimensions.push_back({});
     }
@@ -73,14 +73,14 @@ std::size_t make_settle(const Interpolant& interpolant, Random& random, bool& fo
 }
 
 Condition make_start(Random& random) {
-  constexpr std::array kKinds{ConditionKind::rest, ConditionKind::natural, ConditionKind::own};
+  constexpr std::array kKinds{ConditionKind::clamped, ConditionKind::natural, ConditionKind::own};
   if (random.chance(0.8)) return {.kind = ConditionKind::halt, .value = {}};
   return {.kind = kKinds[random.below(kKinds.size())], .value = {}};
 }
 
-/// An end condition; where it has values they are small, and 0 in quaternions.
+/// An end condition. Its values, if any, are small, and 0 in quaternions.
 Condition make_end(const StreamPlan& plan, Random& random) {
-  constexpr std::array kKinds{ConditionKind::rest, ConditionKind::natural, ConditionKind::own,
+  constexpr std::array kKinds{ConditionKind::clamped, ConditionKind::natural, ConditionKind::own,
                               ConditionKind::velocity, ConditionKind::acceleration};
   if (random.chance(0.6)) return {.kind = ConditionKind::halt, .value = {}};
   Condition end{.kind = kKinds[random.below(kKinds.size())], .value = {}};
@@ -94,12 +94,12 @@ Condition make_end(const StreamPlan& plan, Random& random) {
   return end;
 }
 
-/// Limits of `times` times the accelerations of the motion; some dimensions may have none.
+/// Limits of `times` times the motion's accelerations; some dimensions have no limit.
 std::vector<double> make_limits(const StreamPlan& plan, double times, Random& random) {
   std::vector<double> limits;
   for (const Dimension& dimension : plan.dimensions) {
     double size = plan.magnitude;
-    if (dimension.kind == DimensionKind::wrap) size = dimension.period;
+    if (dimension.kind == DimensionKind::periodic) size = dimension.period;
     if (dimension.kind >= DimensionKind::quaternion) size = 1;
     const double limit = size * plan.frequency * plan.frequency * times;
     limits.push_back(random.chance(0.1) ? 0 : std::clamp(limit, 1e-90, 1e90));
@@ -110,7 +110,7 @@ std::vector<double> make_limits(const StreamPlan& plan, double times, Random& ra
 core::WindowOptions make_window(const StreamPlan& plan, Random& random) {
   core::WindowOptions window{.interpolant = make_interpolant(plan.seed, plan.interval, random)};
   window.settle = make_settle(window.interpolant, random, window.force_lag);
-  constexpr std::array kTails{Tail::bessel, Tail::parabolic, Tail::natural, Tail::rest};
+  constexpr std::array kTails{Tail::bessel, Tail::parabolic, Tail::natural, Tail::clamped};
   window.tail = kTails[random.below(kTails.size())];
   window.start = make_start(random);
   window.held_before_start = true;
@@ -132,7 +132,7 @@ void choose_times(StreamPlan& plan, Random& random) {
   if (plan.length < seconds(2)) plan.tick = log_between(random, microseconds(50), milliseconds(2));
   const Time least = std::max<Time>(microseconds(500), plan.length / 20'000);
   plan.live.freeze_ahead = log_between(random, least, std::max<Time>(least, milliseconds(50)));
-  plan.live.min_splice =
+  plan.live.min_entry =
       random.chance(0.5) ? plan.live.freeze_ahead : random.part(plan.live.freeze_ahead, 0.3, 3);
   plan.live.history =
       random.chance(0.2) ? Time(0) : log_between(random, milliseconds(5), seconds(1));

@@ -11,11 +11,11 @@
 
 namespace splinecast::campaign {
 
-/// What acceleration limits a stream has, next to its motion's own accelerations.
+/// Acceleration limits of a stream compared with its motion's accelerations.
 enum class LimitClass : std::uint8_t { none, generous, tight };
 inline constexpr std::size_t kLimitClasses = 3;
 
-/// Everything that is fixed about one simulated live stream.
+/// The random parameters of one simulated live stream.
 struct StreamPlan {
   std::uint64_t seed = 0;
   std::vector<Dimension> dimensions{};
@@ -26,20 +26,20 @@ struct StreamPlan {
   IngestLimits ingest{};
   std::size_t ring_capacity = 0;
   std::size_t board_capacity = 0;
-  Time begin{};             ///< the clock when the stream is made
+  Time begin{};             ///< clock reading at the creation of the stream
   Time interval{};          ///< between two waypoints
-  Time length{};            ///< until its producer finishes
-  Time tick{};              ///< of the controller
+  Time length{};            ///< time until its producer finishes
+  Time tick{};              ///< period of the controller
   double frequency = 0;     ///< of the motion, rad/s
   double magnitude = 1;     ///< of positions
   double offset = 0;        ///< of positions, in magnitudes
-  double step_trouble = 0;  ///< share of the solver's steps in which something goes wrong
+  double step_trouble = 0;  ///< share of the solver's steps with a fault
   bool starts_in_motion = false;
   Beyond beyond{};
-  Condition end{};  ///< that it is finished with
+  Condition end{};  ///< end condition
 };
 
-/// The plan of a seed; `random` is of that seed, too.
+/// The plan of a seed. `random` has the same seed.
 [[nodiscard]] StreamPlan make_plan(std::uint64_t seed, Random& random);
 
 }  // namespace splinecast::campaign

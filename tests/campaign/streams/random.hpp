@@ -8,7 +8,7 @@
 
 namespace splinecast::campaign {
 
-/// Random numbers of one seed: SplitMix64, so that a seed gives the same numbers with any compiler.
+/// Random numbers of one seed: SplitMix64, the same numbers with any compiler.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -21,17 +21,17 @@ class Random {
     return z ^ (z >> 31U);
   }
 
-  /// From 0 to 1, less than 1.
+  /// A number in [0, 1).
   [[nodiscard]] double unit() noexcept { return static_cast<double>(next() >> 11U) * 0x1p-53; }
   [[nodiscard]] double uniform(double low, double high) noexcept {
     return low + (high - low) * unit();
   }
-  /// Each order of magnitude as often; 0 < low ≤ high.
+  /// A number whose logarithm is uniform; 0 < low ≤ high.
   [[nodiscard]] double log_uniform(double low, double high) noexcept {
     return low * std::pow(high / low, unit());
   }
   [[nodiscard]] bool chance(double probability) noexcept { return unit() < probability; }
-  /// 0 … n − 1, n ≥ 1.
+  /// An integer from 0 to n − 1; n ≥ 1.
   [[nodiscard]] std::size_t below(std::size_t n) noexcept {
     return static_cast<std::size_t>(next() % n);
   }
@@ -39,7 +39,7 @@ class Random {
     return low +
            Time(static_cast<std::int64_t>(unit() * static_cast<double>((high - low).count())));
   }
-  /// A part of a time, from low to high times as long.
+  /// `time` times a uniform factor from low to high.
   [[nodiscard]] Time part(Time time, double low, double high) noexcept {
     return Time(static_cast<std::int64_t>(static_cast<double>(time.count()) * uniform(low, high)));
   }

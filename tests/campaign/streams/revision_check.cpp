@@ -40,9 +40,9 @@ void RevisionCheck::look(Time now, bool is_complete) {
   if (!board.copy_head(look, head_)) {
     if (look.revision == 0) return;
     return findings_->breach(Breach::board_refused,
-                             fmt::format("no head of revision {}", look.revision));
+                             fmt::format("no summary of revision {}", look.revision));
   }
-  // A solver that dies behind its commit has not said how far that settles the curve.
+  // A solver that dies right after its commit has not stored the new `settled_until`.
   check_settled_until(before, is_complete ? now : Time::min());
   if (look.revision == before.revision) {
     settled_.look();
@@ -84,7 +84,8 @@ void RevisionCheck::check_counts(const Head& before) {
   }
 }
 
-/// What is settled never shrinks; a revision settles what lies freeze_ahead before it.
+/// `settled_until` never decreases, and each revision settles the curve up to freeze_ahead after
+/// the start of its step.
 void RevisionCheck::check_settled_until(const Head& before, Time now) {
   const bool had_curve = before.newest > 0;
   const bool is_back = had_curve && head_.settled_until < before.settled_until;
@@ -97,7 +98,7 @@ void RevisionCheck::check_settled_until(const Head& before, Time now) {
   }
 }
 
-/// Copies the segment at knot `number`, or at the one before if none begins there.
+/// Copies the segment that begins at knot `number`, or else at the knot before.
 bool RevisionCheck::copy(Word number) {
   const auto& board = stream_->board.reader;
   auto taken = board_segment_.take(board, head_, number);
@@ -116,11 +117,11 @@ void RevisionCheck::count_events(const Head& before) {
   findings_->count(Event::deadline_misses, head_.misses - before.misses);
   if (!head_.finished || before.finished) return;
   findings_->count(Event::finishes);
-  if (copy_.kind == SegmentKind::splice) findings_->count(Event::returns_after_finish);
+  if (copy_.kind == SegmentKind::entry) findings_->count(Event::returns_after_finish);
 }
 
-/// A board that has overwritten the waypoints before a splice shapes it without them, of which its
-/// segments say nothing.
+/// A board that has overwritten the waypoints before an entry shapes it without them. The segments
+/// do not record this, so such a curve cannot be verified.
 void RevisionCheck::check_verifiable() {
   constexpr Word kLookBack = 16;
   constexpr Word kKnotsThatShape = 3;
@@ -128,7 +129,7 @@ void RevisionCheck::check_verifiable() {
   if (head_.is_later_run && head_.run_knots <= kKnotsThatShape && is_short) is_verifiable_ = false;
 }
 
-/// What became of the items that this revision consumed.
+/// Updates the records for the items that this revision consumed.
 void RevisionCheck::take_items(const Head& before) {
   const auto& items = items_.items();
   const bool withdraws = head_.withdrawn > before.withdrawn;
@@ -139,8 +140,8 @@ void RevisionCheck::take_items(const Head& before) {
     if (!items.is_taken(item, ItemKind::replace)) continue;
     findings_->count(Event::replacements);
     is_replaced_ = true;
-    // Entered where it begins, a curve in motion begins with quaternions at unit length, and
-    // without a negative 0: neither is recorded.
+    // An entry at the very start of a curve in motion normalises quaternions and removes negative
+    // zeros. Neither is recorded, so such a curve cannot be verified.
     is_verifiable_ = is_verifiable_ && head_.run > 1;
     if (t < end_) findings_->count(Event::cuts);
     std::erase_if(pending_, [t](const Pending& waypoint) { return waypoint.time >= t; });
@@ -148,17 +149,16 @@ void RevisionCheck::take_items(const Head& before) {
   }
   const bool is_replaced = head_.controls > before.controls;
   if (!withdraws || is_replaced) return check_passed(before);
-  breach(Breach::items_lost, fmt::format("{} items withdrawn, and nothing in their place",
+  breach(Breach::items_lost, fmt::format("{} items withdrawn without a replacement",
                                          head_.withdrawn - before.withdrawn));
 }
 
-/// Waypoints from an item on may have been withdrawn before they were taken, each or none.
+/// Forgets the waypoints from an item on: each of them may have been withdrawn before it was taken.
 void RevisionCheck::forget_from(Word item) {
   std::erase_if(pending_, [item](const Pending& waypoint) { return waypoint.item >= item; });
 }
 
-/// Whether the waypoints that were interpolated just now lie on the curve: from the newest on, back
-/// along the segments.
+/// Checks that the curve passes through the waypoints of this revision, from the newest back.
 void RevisionCheck::check_passed(const Head& before) {
   if (head_.course != 0 || head_.passed_over != before.passed_over) return;
   if (plan_->window.interpolant.method->smooths()) return;
@@ -184,8 +184,8 @@ void RevisionCheck::check_settled_segments() {
   const auto segments = settled_.segments();
   for (; joined_ < segments.size(); ++joined_) {
     const ipc::SegmentCopy& segment = segments[joined_];
-    if (segment.kind == SegmentKind::splice) check_entry(segment);
-    if (segment.kind == SegmentKind::stop_tail) check_stop_segment(segment);
+    if (segment.kind == SegmentKind::entry) check_entry(segment);
+    if (segment.kind == SegmentKind::stop) check_stop_segment(segment);
     const Word expected = joined_ > 0 ? segments[joined_ - 1].next : 1;
     if (segment.number != expected) {
       has_gap_ = true;
@@ -194,8 +194,8 @@ void RevisionCheck::check_settled_segments() {
       const auto step = rules_.step(segments[joined_ - 1], segment);
       findings_->count(Event::knots_compared);
       const auto tell = [&](Breach what, double size) {
-        breach(what, fmt::format("{} times what rounding leaves, at {}, before segment {}", size,
-                                 segment.left.count(), segment.number));
+        breach(what, fmt::format("{} times the tolerance for rounding, at {}, before segment {}",
+                                 size, segment.left.count(), segment.number));
       };
       if (segments[joined_ - 1].right != segment.left) {
         tell(Breach::position_step, 0);
@@ -208,7 +208,8 @@ void RevisionCheck::check_settled_segments() {
   if (head_.finished && !segments.empty()) check_last_waypoint(segments.back());
 }
 
-/// Waypoints up to the left end of a settled segment are where they were sent to.
+/// Checks that the settled curve passes through the waypoints up to the segment's left end, or that
+/// they are counted as passed over.
 void RevisionCheck::check_waypoint_at(const ipc::SegmentCopy& segment) {
   const bool smooths = plan_->window.interpolant.method->smooths();
   while (!pending_.empty() && pending_.front().time <= segment.left) {
@@ -221,16 +222,17 @@ void RevisionCheck::check_waypoint_at(const ipc::SegmentCopy& segment) {
     }
     findings_->count(Event::waypoints_passed_over);
     last_passed_ = waypoint.item;
-    // The last one may still be met, late.
+    // The curve may still reach the last waypoint after its time.
     if (++passed_seen_ <= head_.passed_over + (head_.finished ? 1 : 0)) continue;
     breach(Breach::waypoint_missed,
-           fmt::format("item {} at {} when it had settled, segment {} from {}, {} passed over",
-                       waypoint.item, waypoint.time.count(), segment.number, segment.left.count(),
+           fmt::format("settled item {} at {}, segment {} from {}, {} passed over", waypoint.item,
+                       waypoint.time.count(), segment.number, segment.left.count(),
                        head_.passed_over));
   }
 }
 
-/// An entry keeps the acceleration limits, but where it begins beyond them.
+/// An entry never exceeds an acceleration limit, or its own acceleration at its start if that is
+/// larger.
 void RevisionCheck::check_entry(const ipc::SegmentCopy& segment) {
   findings_->count(Event::entries);
   if (segment.origin.known > 0) findings_->count(Event::extrapolated_ends);
@@ -251,7 +253,7 @@ void RevisionCheck::check_entry(const ipc::SegmentCopy& segment) {
   }
 }
 
-/// A stop moves every dimension one way, ever slower, by at most |v|·T/2.
+/// In a stop no dimension reverses or speeds up, or moves further than |v|·T/2.
 void RevisionCheck::check_stop_segment(const ipc::SegmentCopy& segment) {
   findings_->count(Event::stop_segments);
   const std::size_t dimensions = plan_->dimensions.size();
@@ -272,7 +274,7 @@ void RevisionCheck::check_stop_segment(const ipc::SegmentCopy& segment) {
     const double most = std::abs(v) * whole / 2 * kSlack + 1e-12 * std::abs(position.least.value);
     if (slows && way <= most) continue;
     breach(Breach::stop_turned,
-           fmt::format("stop {} from {}: dimension {} at {} goes {} of {}, v from {} to {}",
+           fmt::format("stop {} from {}: dimension {}, v {}: moves {}, limit {}, v from {} to {}",
                        segment.number, segment.left.count(), d, v, way, most, velocity.least.value,
                        velocity.greatest.value));
     return;
@@ -314,23 +316,23 @@ void RevisionCheck::check_end() {
   }
   end_ = copy_.right;
   const bool is_open = !head_.finished;
-  const bool is_stop = copy_.kind == SegmentKind::stop_tail;
+  const bool is_stop = copy_.kind == SegmentKind::stop;
   const bool halts =
       is_stop || copy_.kind != SegmentKind::spline || plan_->end.kind == ConditionKind::halt;
-  const bool rests = halts || plan_->end.kind == ConditionKind::rest;
+  const bool rests = halts || plan_->end.kind == ConditionKind::clamped;
   if ((is_open && !is_stop) || (rests && !rules_.ends_at_rest(copy_, halts))) {
     breach(Breach::not_at_rest, fmt::format("segment {}", copy_.number));
   }
 }
 
-/// A stop takes effect in the first step, but for one behind the newest knot: that waits until the
-/// curve comes there or its time comes, and one step more at most.
+/// A stop takes effect in the first step after it. A stop after the newest knot waits until the
+/// curve reaches it or its time has come, and takes effect at most one step later.
 void RevisionCheck::check_stop() {
   if (!due_stop_) return;
   const Stop stop = *due_stop_;
   const bool is_last = stream_->ring.reader.head() == stop.item + 1;
   if (!is_last || head_.finished) return due_stop_.reset();
-  // The first waypoint comes before the stop: that takes effect one step later.
+  // The first waypoint is taken before the stop, which takes effect one step later.
   if (head_.newest == 0) return;
   if (!had_curve_ && head_.consumed <= stop.item) return;
   const bool is_due = head_.settled_until > stop.time;
@@ -342,7 +344,7 @@ void RevisionCheck::check_stop() {
                          .first(static_cast<std::size_t>(copy_.order) * plan_->dimensions.size())
                          .subspan(plan_->dimensions.size());
   const bool moves = std::ranges::any_of(above, [](double c) { return c != 0; });
-  const bool starts_later = copy_.number == 1;  // it comes to rest from the start of the motion
+  const bool starts_later = copy_.number == 1;  // the curve stops from the start of the motion
   if (head_.consumed > stop.item && (!moves || starts_later)) return;
   const bool has_limits = !plan_->window.limits.acceleration.empty();
   if (copy_.left > effect || (!has_limits && copy_.right > effect + plan_->window.stop_time)) {

@@ -12,39 +12,41 @@
 
 namespace splinecast::campaign {
 
-/// Checks every revision of a simulated stream: what became of the items, where the waypoints are,
-/// that the curve goes on without a step and ends at rest. Keeps what a verification needs.
+/// Checks every revision of a simulated stream: the counters of the items, that the curve passes
+/// through its waypoints, that it does not step, and that it ends at rest. Keeps the data for a
+/// verification.
 class RevisionCheck {
  public:
   RevisionCheck(const StreamPlan& plan, testing::MemoryStream& stream, StreamFindings& findings);
 
-  /// Notes what the producer has appended: after each of its calls.
+  /// Records the items that the producer has appended. Call it after each call of the producer.
   void note_items() { items_.note_items(stream_->ring.reader); }
 
-  /// Checks the newest revision, if it is a new one: after each step of a solver, which read the
-  /// clock as `now` first.
+  /// Checks the newest revision if it is new. Call it after each step of a solver; `now` is the
+  /// step's first clock reading.
   void look(Time now, bool is_complete = true);
 
-  /// A stop that the ring has accepted as this item: takes effect in the step that begins next.
+  /// Records a stop that the ring has accepted as this item. It takes effect in the next step.
   void expect_stop(ipc::Word item, Time t) {
     accepted_stop_ = Stop{.item = item, .time = t};
     findings_->count(Event::stops);
   }
 
-  /// Before a step begins.
+  /// Call it before each step.
   void begin_step() {
     had_curve_ = head_.newest > 0;
     if (accepted_stop_) due_stop_ = std::exchange(accepted_stop_, std::nullopt);
   }
 
-  /// After a step that was not discarded: the curve comes to rest from the stop on.
+  /// Checks that a due stop has taken effect. Call it after each step that was not discarded.
   void check_stop();
 
-  /// Solves everything that has settled again, if nothing of it was lost.
+  /// Verifies the settled curve, if all of its segments were seen.
   void verify();
 
-  /// The newest revision's head, and when its curve has come to rest.
+  /// The newest revision's summary.
   [[nodiscard]] const ipc::Head& head() const noexcept { return head_; }
+  /// The time at which the newest revision's curve is at rest.
   [[nodiscard]] Time end_of_motion() const noexcept { return end_; }
   [[nodiscard]] const ipc::SentItems& items() const noexcept { return items_.items(); }
 
@@ -56,7 +58,7 @@ class RevisionCheck {
   struct Stop {
     ipc::Word item = 0;
     Time time{};
-    int steps_due = 0;  ///< in which it was not taken although its time had come
+    int steps_due = 0;  ///< steps since its time that did not take it
   };
 
   void check_counts(const ipc::Head& before);
@@ -81,13 +83,13 @@ class RevisionCheck {
   CurveRules rules_;
   testing::ItemRecord items_;
   ipc::SettledSegments settled_;
-  std::size_t joined_ = 0;  ///< settled segments that have been checked
+  std::size_t joined_ = 0;  ///< number of checked settled segments
   bool has_gap_ = false;    ///< a settled segment was overwritten before it was seen
   bool is_verifiable_ = true;
-  ipc::Word passed_seen_ = 0;               ///< waypoints that have settled beside the curve
+  ipc::Word passed_seen_ = 0;               ///< waypoints that were found to be passed over
   std::optional<ipc::Word> last_passed_{};  ///< the last of them
   std::optional<ipc::Word> last_taken_{};   ///< the last waypoint that was taken
-  bool is_replaced_ = false;                ///< waypoints have been
+  bool is_replaced_ = false;                ///< whether a replacement was taken
   std::deque<Pending> pending_;  ///< interpolated waypoints that have not settled, by time
   ipc::BoardSegment board_segment_;
   ipc::SegmentCopy copy_;
@@ -95,7 +97,7 @@ class RevisionCheck {
   Time end_{};
   std::optional<Stop> accepted_stop_;
   std::optional<Stop> due_stop_;
-  bool had_curve_ = false;  ///< before the step
+  bool had_curve_ = false;  ///< whether a curve existed before the step
 };
 
 }  // namespace splinecast::campaign

@@ -8,12 +8,13 @@
 
 namespace splinecast::campaign {
 
-/// From when on each revision of a board changed the curve: what readers must be told, and no more.
+/// The time from which each revision of a board changed the curve. Readers must get `revised` for
+/// these changes, and for no others.
 class RevisionLog {
  public:
   explicit RevisionLog(const ipc::KnotBoardReader& board) : board_(&board) {}
 
-  /// Takes a new revision in; to be called after each. Returns whether none was missed.
+  /// Records a new revision. Call it after each revision. Returns false if a revision was missed.
   bool catch_up() {
     const ipc::Look look = board_->look();
     if (look.revision == changed_from_.size()) return true;
@@ -25,10 +26,10 @@ class RevisionLog {
     return true;
   }
 
-  /// When the curve begins, as far as the board still said so.
+  /// Start of the curve; Time::max() if the board has already overwritten it.
   [[nodiscard]] Time start() const noexcept { return start_; }
 
-  /// The earliest change of the revisions after `seen` up to r.
+  /// The earliest change of the revisions seen + 1 to r.
   [[nodiscard]] Time earliest(ipc::Word seen, ipc::Word r) const {
     Time earliest = Time::max();
     for (ipc::Word i = seen; i < std::min<ipc::Word>(r, changed_from_.size()); ++i) {

@@ -10,7 +10,7 @@
 namespace splinecast::campaign {
 namespace {
 
-/// Shares of a producer's acts.
+/// Probabilities of a producer's actions.
 constexpr double kReplaces = 0.04;
 constexpr double kStops = 0.01;
 constexpr double kMistakes = 0.02;
@@ -19,7 +19,7 @@ constexpr double kSkipsWhatIsPast = 0.85;
 constexpr double kKnowsLess = 0.1;
 constexpr double kSendsAgain = 0.4;
 constexpr double kBlends = 0.4;
-/// Waypoints that are sent at once at most.
+/// Largest number of waypoints sent in one action.
 constexpr int kMostAtOnce = 300;
 constexpr std::size_t kMostReplaced = 40;
 
@@ -66,7 +66,7 @@ void SimulatedProducer::act(Time now) {
 
 void SimulatedProducer::start(Time now) {
   has_started_ = true;
-  lead_ = plan_->live.freeze_ahead + plan_->live.min_splice + plan_->interval;
+  lead_ = plan_->live.freeze_ahead + plan_->live.min_entry + plan_->interval;
   next_waypoint_ = now + lead_;
   if (!plan_->starts_in_motion) return;
   const Waypoint state = source_.smooth_at(now + lead_);
@@ -82,7 +82,7 @@ void SimulatedProducer::change_phase(Time now) {
   phase_ = kPhases[random_->below(kPhases.size())];
   phase_end_ = now + random_->part(plan_->interval, 3, 60);
   source_.change_mode();
-  const Time enough = plan_->live.freeze_ahead + plan_->live.min_splice;
+  const Time enough = plan_->live.freeze_ahead + plan_->live.min_entry;
   switch (phase_) {
     case Phase::late:
       lead_ = random_->part(enough, -0.2, 1.2);
@@ -142,7 +142,7 @@ void SimulatedProducer::do_something_else(Time now) {
   }
 }
 
-/// As early as can be, within what has been sent, far ahead, or too late.
+/// A time as early as possible, within the sent waypoints, far ahead, or too late.
 Time SimulatedProducer::replacement_time(Time now) {
   const Time settled = std::max(check_->head().settled_until, now);
   const Time last = stream_->ring.writer.last_time();
@@ -171,7 +171,7 @@ void SimulatedProducer::replace(Time now) {
     return std::span<const double>(values.back());
   };
   values.reserve(3 * count);
-  Time at = t + random_->part(plan_->live.min_splice, 0.5, 4);
+  Time at = t + random_->part(plan_->live.min_entry, 0.5, 4);
   for (std::size_t i = 0; i < count; ++i) {
     at += random_->part(plan_->interval, 0.5, 1.5);
     const Waypoint waypoint = source_.at(at);
@@ -186,7 +186,7 @@ void SimulatedProducer::replace(Time now) {
   if (blend > Time(0)) findings_->count(Event::blends);
   const Time last = std::exchange(last_sent_, at);
   next_waypoint_ = (count == 0 ? t : at) + plan_->interval;
-  // As a producer does that takes the replacement for refused.
+  // Acts like a producer that considers the replacement refused.
   if (last > at && random_->chance(kSendsAgain)) next_waypoint_ = last;
   if (count == 0) check_->expect_stop(stream_->ring.writer.head() - 1, t);
 }
@@ -202,7 +202,7 @@ void SimulatedProducer::stop(Time now) {
   phase_end_ = now + random_->part(plan_->window.stop_time, 0, 2);
 }
 
-/// A call that is refused.
+/// Makes a call that is refused.
 void SimulatedProducer::make_mistake(Time now) {
   auto& writer = stream_->ring.writer;
   Waypoint waypoint = source_.at(next_waypoint_);
@@ -242,7 +242,7 @@ void SimulatedProducer::replace_too_many(Time now) {
       {state.time, state.position, state.velocity, state.acceleration}, solved()));
 }
 
-/// Dies between two calls, or within one, before `head` is stored; a new one goes on.
+/// Dies between two calls, or within one before it stores `head`. A new producer takes over.
 void SimulatedProducer::die(Time now) {
   if (random_->chance(0.5)) {
     const auto words = ipc::words_at(stream_->ring.bytes.span(), 0,
@@ -268,7 +268,7 @@ void SimulatedProducer::finish(Time now) {
   }
 }
 
-/// Looks at an item of the ring as one that nobody waits for.
+/// Reads an item of the ring like a passive observer.
 void SimulatedProducer::observe() {
   const ipc::SentItems& items = check_->items();
   if (items.size() == 0) return;

@@ -10,14 +10,14 @@
 
 namespace splinecast::campaign {
 
-/// The producer of a simulated stream: sends waypoints in time or not, falls silent, replaces the
-/// future, makes mistakes, dies, and finishes.
+/// The producer of a simulated stream. It sends waypoints in time or late, pauses, replaces the
+/// future, makes invalid calls, dies, and finishes.
 class SimulatedProducer {
  public:
   SimulatedProducer(const StreamPlan& plan, testing::MemoryStream& stream, RevisionCheck& check,
                     StreamFindings& findings, Random& random);
 
-  /// When it wants to act next.
+  /// Time of its next action.
   [[nodiscard]] Time next() const noexcept { return next_; }
 
   void act(Time now);
@@ -48,7 +48,7 @@ class SimulatedProducer {
   RevisionCheck* check_;
   StreamFindings* findings_;
   Random* random_;
-  Random blends_;  ///< of their own, so that what a seed does else depends on nothing of them
+  Random blends_;  ///< separate, so that blends do not change the rest of a seed's stream
   WaypointSource source_;
   ipc::RingItem observed_;
   Phase phase_ = Phase::steady;
@@ -56,7 +56,7 @@ class SimulatedProducer {
   Time next_{};
   Time next_waypoint_{};
   Time lead_{};
-  Time last_sent_{};  ///< time of the last waypoint that was accepted
+  Time last_sent_{};  ///< time of the last accepted waypoint
   bool is_full_ = false;
   bool has_started_ = false;
 };

@@ -12,7 +12,7 @@ namespace splinecast::campaign {
 namespace {
 
 constexpr std::size_t kExecutedKept = 8;
-/// Of the samples that are offered once a memory is full, the share that is taken.
+/// Share of the offered samples that a full memory takes.
 constexpr double kShareKept = 0.1;
 
 bool same_bits(std::span<const double> a, std::span<const double> b) {
@@ -75,15 +75,15 @@ SampleStatus SimulatedReader::preview(Time t, SampleMemory& settled) {
   return status;
 }
 
-/// Whether t is before a start that the first waypoint alone does not fix: its position, if the
-/// method smooths, and whether it is at rest.
+/// Whether t is before a start whose state still depends on later waypoints: its position if the
+/// method smooths, or its velocity if the start is not at rest.
 bool SimulatedReader::is_open_start(Time t) const {
   const bool is_fixed =
       is_at_rest(plan_->window.start.kind) && !plan_->window.interpolant.method->smooths();
   return !is_fixed && t < log_->start();
 }
 
-/// Whether one of the revisions that have come since allows for the status `revised`.
+/// Notes whether one of the revisions since `seen` allows the status `revised`.
 void SimulatedReader::note_revisions(ipc::Word seen) {
   const ipc::Word r = sampler_.revision_seen();
   if (r == seen) return;
@@ -91,7 +91,7 @@ void SimulatedReader::note_revisions(ipc::Word seen) {
     settled_until_seen_ = sampler_.settled_until();
     return;
   }
-  // A reader that is far behind may be careful about what had not settled when it was sampled.
+  // A reader that missed many revisions may report `revised` for samples that had not settled.
   const bool is_careful = r - seen >= ipc::kChangesKept && sampled_until_ >= settled_until_seen_;
   may_be_revised_ = may_be_revised_ || is_careful || sampled_until_ >= log_->earliest(seen, r);
   settled_until_seen_ = sampler_.settled_until();
@@ -116,7 +116,7 @@ void SimulatedReader::read_executed_again() {
   if (same_bits(again_.values(), seen.values)) return;
   findings_->breach(
       Breach::change_not_told,
-      fmt::format("what was sampled at {}: {}, revision {}", seen.time.count(),
+      fmt::format("sample at {}: {}, revision {}", seen.time.count(),
                   difference(seen.values, again_.values()), sampler_.revision_seen()));
   executed_.clear();
 }

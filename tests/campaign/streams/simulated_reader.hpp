@@ -8,7 +8,7 @@
 
 namespace splinecast::campaign {
 
-/// Samples to be taken again later: a bounded random choice of what was offered.
+/// Samples that are read again later: a bounded random choice of the offered ones.
 class SampleMemory {
  public:
   SampleMemory(std::size_t size, std::size_t dimensions);
@@ -26,16 +26,16 @@ class SampleMemory {
   std::size_t used_ = 0;
 };
 
-/// One reader of a simulated stream, which checks what it is told.
+/// One reader of a simulated stream, which checks its samples.
 class SimulatedReader {
  public:
   SimulatedReader(const ipc::KnotBoardReader& board, const StreamPlan& plan, RevisionLog& log,
                   StreamFindings& findings, Random& random);
 
-  /// Samples as a controller does. What is settled goes to `settled`.
+  /// Samples like a controller. Offers settled samples to `settled`.
   SampleStatus sample(Time t, SampleMemory& settled);
 
-  /// Looks ahead or back.
+  /// Previews the curve at a time before or after now.
   SampleStatus preview(Time t, SampleMemory& settled);
 
   [[nodiscard]] Time settled_until() const noexcept { return sampler_.settled_until(); }
@@ -58,12 +58,12 @@ class SimulatedReader {
   State again_;
   SampleMemory executed_;  ///< since the last `revised`
   Time sampled_until_ = Time::min();
-  Time settled_until_seen_ = Time::min();  ///< under the revision seen last
+  Time settled_until_seen_ = Time::min();  ///< `settled_until` of the last revision seen
   bool may_be_revised_ = false;
   bool has_read_ = false;
 };
 
-/// Takes settled samples again with a reader that has seen nothing before.
+/// Reads settled samples again with a new reader.
 void read_settled_again(const ipc::KnotBoardReader& board, const StreamPlan& plan,
                         const SampleMemory& settled, StreamFindings& findings);
 

@@ -12,11 +12,11 @@ namespace splinecast::campaign {
 namespace {
 
 constexpr std::size_t kSettledKept = 48;
-/// Readings of the clock in one step.
+/// Largest number of clock readings in one step.
 constexpr std::size_t kMostReadings = 4;
-/// Steps that may be discarded one after the other when nothing holds the solver up.
+/// Largest number of consecutive discarded steps without a delay of the solver.
 constexpr int kMostMisses = 20;
-/// How long a stream is watched after its producer's end, at most.
+/// Longest time that a stream is watched after its producer's end.
 constexpr Time kLongestRest = std::chrono::seconds(20);
 
 }  // namespace
@@ -66,7 +66,7 @@ void SimulatedStream::run() {
   findings_->count_simulated(now_ - plan_.begin);
 }
 
-/// All but the solver goes on until t.
+/// Runs everything except the solver until t.
 void SimulatedStream::advance_to(Time t) {
   while (!findings_->stream_failed()) {
     const Time next = std::min({producer_.next(), next_tick_, next_seldom_, next_look_});
@@ -97,7 +97,7 @@ void SimulatedStream::read_now() {
   check_kept_up(status);
 }
 
-/// What a controller reads at now has settled, or rests, if the solver has been stepped in time.
+/// If the solver has been stepped in time, a sample at now has settled or rests.
 void SimulatedStream::check_kept_up(SampleStatus status) {
   const bool is_unsettled = status == SampleStatus::provisional || status == SampleStatus::stopping;
   if (!is_unsettled || now_ >= kept_up_until_ || now_ < controller_.settled_until()) return;
@@ -131,8 +131,8 @@ void SimulatedStream::work() {
   step();
 }
 
-/// What a sweep of many streams does in place of a step that would do no more. Returns whether it
-/// was of use.
+/// Raises `settled_until` without a step if there is no other work, as a sweep of many streams
+/// does. Returns whether it was raised.
 bool SimulatedStream::settle_without_step() {
   const bool has_items = stream_.ring.reader.head() != stream_.solver.seen();
   if (has_items || !stream_.solver.settled_raise().raise(now_)) return false;
@@ -142,7 +142,7 @@ bool SimulatedStream::settle_without_step() {
   return true;
 }
 
-/// Steps until a revision is not discarded: nothing holds the solver up but what was arranged.
+/// Steps until a step is not discarded. Only the planned faults delay the solver.
 void SimulatedStream::step() {
   check_.begin_step();
   for (int tries = 0; tries < kMostMisses; ++tries) {
@@ -176,7 +176,7 @@ void SimulatedStream::check_step(const StepResult& result, ipc::Word misses, ipc
     if (is_late) findings_->count(Event::late_commits);
     was_in_time_ = committed == began;
     const bool is_counted = stream_.solver.head().revisions == late + (is_late ? 1 : 0);
-    // A solver that takes over may count a commit of the one before it.
+    // A solver that takes over may count a late commit of its predecessor.
     const bool takes_over = std::exchange(has_taken_over_, false);
     if (!takes_over && !is_counted) {
       findings_->breach(Breach::miscounted, fmt::format("{} late commits", late));
@@ -186,7 +186,7 @@ void SimulatedStream::check_step(const StepResult& result, ipc::Word misses, ipc
   kept_up_until_ = keeps_up ? began + plan_.live.freeze_ahead / 2 : Time::min();
 }
 
-/// Held up between two steps or within one, taken over, or both.
+/// Injects a fault: a delay between two steps or within one, a death within a step, or a takeover.
 void SimulatedStream::step_in_trouble() {
   const Time pause = random_->part(plan_.live.freeze_ahead, 0.1,
                                    random_->chance(0.2) ? random_->log_uniform(1, 200) : 3);
@@ -210,7 +210,7 @@ void SimulatedStream::step_in_trouble() {
   }
 }
 
-/// Dies within a step, with any part of the revision stored. Readers go on meanwhile.
+/// Dies within a step, with any part of the revision stored. Readers continue meanwhile.
 void SimulatedStream::step_and_die() {
   testing::TornPublication torn(stream_.board);
   stream_.clock.time = now_;
@@ -245,7 +245,7 @@ void SimulatedStream::replace_solver() {
   }
 }
 
-/// When the solver looks again: at its pace, but not where it has nothing to do.
+/// Schedules the solver's next step: after its pace, or later if it has no work until then.
 void SimulatedStream::schedule_solver() {
   if (random_->chance(0.01)) pace_ = random_->part(plan_.live.freeze_ahead, 0.02, 0.6);
   next_step_ = now_ + pace_;

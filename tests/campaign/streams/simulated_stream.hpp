@@ -9,15 +9,15 @@
 
 namespace splinecast::campaign {
 
-/// One live stream, all of it: the real ring, board, solver and samplers in plain memory, with a
-/// producer and a clock that are simulated. Everything that happens follows from the plan's seed.
+/// A whole live stream: the real ring, board, solver and samplers in plain memory, with a simulated
+/// producer and a simulated clock. The plan's seed determines everything.
 class SimulatedStream {
  public:
   SimulatedStream(const StreamPlan& plan, StreamFindings& findings, Random& random);
   SimulatedStream(const SimulatedStream&) = delete;
   SimulatedStream& operator=(const SimulatedStream&) = delete;
 
-  /// Lets it go on until it has finished and rests, or has broken a promise.
+  /// Runs the stream until it has finished and is at rest, or has broken a promise.
   void run();
 
  private:
@@ -48,17 +48,17 @@ class SimulatedStream {
   SimulatedProducer producer_;
   SampleMemory settled_;
   SimulatedReader controller_;  ///< samples at now, every tick
-  SimulatedReader seldom_;      ///< samples at now, many revisions later
-  SimulatedReader eager_;       ///< samples ahead of what has settled
-  SimulatedReader previewer_;   ///< looks ahead and back
+  SimulatedReader seldom_;      ///< samples at now, with many revisions between samples
+  SimulatedReader eager_;       ///< samples after the settled curve
+  SimulatedReader previewer_;   ///< previews before and after now
   Time next_tick_{};
   Time next_seldom_{};
   Time next_look_{};
   Time next_step_{};
-  Time pace_{};                  ///< between two steps of the solver
-  Time kept_up_until_{};         ///< up to which the last steps have settled the curve
-  bool has_taken_over_ = false;  ///< no revision has been committed since
-  bool was_in_time_ = true;      ///< the last revision was committed when its step began
+  Time pace_{};                  ///< period of the solver's steps
+  Time kept_up_until_{};         ///< the last steps must have settled the curve up to here
+  bool has_taken_over_ = false;  ///< whether no revision has been committed since a takeover
+  bool was_in_time_ = true;      ///< whether the last step committed without a delay
 };
 
 }  // namespace splinecast::campaign

@@ -7,7 +7,7 @@
 namespace splinecast::campaign {
 namespace {
 
-/// How seldom a waypoint is one that is to be refused.
+/// Probabilities that a waypoint lacks derivatives, or a quaternion is 0 or not of unit length.
 constexpr double kLacksDerivatives = 0.02;
 constexpr double kZeroQuaternion = 0.005;
 constexpr double kOtherLength = 0.05;
@@ -25,7 +25,7 @@ WaypointSource::WaypointSource(const StreamPlan& plan, Random& random)
               .frequency = plan.frequency * random.uniform(0.5, 1),
               .phase = random.uniform(0, 6.28),
               .offset = plan.offset * plan.magnitude};
-    if (dimension.kind == DimensionKind::wrap) {
+    if (dimension.kind == DimensionKind::periodic) {
       wave.amplitude = dimension.period * random.uniform(0.1, 3);
       wave.offset = dimension.period * random.uniform(-2, 2);
     } else if (dimension.kind >= DimensionKind::quaternion) {
@@ -92,7 +92,7 @@ void WaypointSource::write_motion(Time t) {
   }
 }
 
-/// A turn by an angle about an axis in the plane of two of the components.
+/// A rotation by an angle about an axis in the x-y plane.
 void WaypointSource::write_quaternion(std::size_t d, const Values& angle) {
   const double sine = std::sin(angle.x / 2);
   const double cosine = std::cos(angle.x / 2);
@@ -113,7 +113,7 @@ void WaypointSource::write_quaternion(std::size_t d, const Values& angle) {
   acceleration_[w] = -sine * bend - cosine * rate * rate;
 }
 
-/// Makes of the smooth motion what the mode says.
+/// Changes the smooth motion according to the mode.
 void WaypointSource::spoil() {
   for (std::size_t d = 0; d < waves_.size(); ++d) {
     if (plan_->dimensions[d].kind >= DimensionKind::quaternion) {

@@ -7,18 +7,20 @@
 
 namespace splinecast::campaign {
 
-/// The values of a simulated producer's waypoints: a smooth motion, or something else for a while.
+/// The values of a simulated producer's waypoints: a smooth, quantised, constant or noisy motion.
 class WaypointSource {
  public:
   WaypointSource(const StreamPlan& plan, Random& random);
 
-  /// Decides what comes from now on.
+  /// Chooses the mode of the next waypoints at random.
   void change_mode();
 
-  /// The waypoint at t, with derivatives if the method takes them; a view until the next call.
+  /// The waypoint at t, mostly with derivatives if the method needs them. The view is valid until
+  /// the next call.
   [[nodiscard]] Waypoint at(Time t);
 
-  /// The state of the smooth motion at t, with all derivatives; a view until the next call.
+  /// The state of the smooth motion at t, with all derivatives. The view is valid until the next
+  /// call.
   [[nodiscard]] Waypoint smooth_at(Time t);
 
  private:
@@ -41,7 +43,7 @@ class WaypointSource {
   const StreamPlan* plan_;
   Random* random_;
   Mode mode_ = Mode::smooth;
-  double grid_ = 1;  ///< of quantised values, in amplitudes
+  double grid_ = 1;  ///< grid of quantised values, in amplitudes
   std::vector<Wave> waves_;
   std::vector<double> position_, velocity_, acceleration_;
 };

@@ -8,14 +8,14 @@
 namespace splinecast::core {
 namespace {
 
-TEST(Condition, ReadsBackWhatItWrites) {
+TEST(Condition, ParsesTheTextThatItPrints) {
   for (const char* text :
-       {"natural", "rest", "halt", "velocity=1,-2.5,3e-07", "acceleration=0.1"}) {
+       {"natural", "clamped", "halt", "velocity=1,-2.5,3e-07", "acceleration=0.1"}) {
     const auto condition = parse_condition(text);
     ASSERT_TRUE(condition.has_value()) << text;
     EXPECT_EQ(to_string(*condition), text);
   }
-  for (const char* text : {"bessel", "parabolic", "natural", "rest"}) {
+  for (const char* text : {"bessel", "parabolic", "natural", "clamped"}) {
     const auto tail = parse_tail(text);
     ASSERT_TRUE(tail.has_value()) << text;
     EXPECT_EQ(to_string(*tail), text);
@@ -30,7 +30,7 @@ TEST(Condition, RefusesOtherTexts) {
   EXPECT_FALSE(parse_tail("halt").has_value());
 }
 
-TEST(Condition, NeedsOneFiniteValuePerDimensionWhereItTakesValues) {
+TEST(Condition, RequiresOneFiniteValuePerDimensionIfItTakesValues) {
   EXPECT_NO_THROW(require_values({ConditionKind::velocity, {1, 2}}, 2));
   EXPECT_NO_THROW(require_values({ConditionKind::halt, {}}, 2));
   EXPECT_THROW(require_values({ConditionKind::velocity, {1}}, 2), std::invalid_argument);

@@ -54,10 +54,10 @@ double dot(std::span<const double> a, std::span<const double> b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
 }
 
-TEST(DimensionKinds, AWrappingValueTakesTheShortWay) {
+TEST(DimensionKinds, UnwrappingMovesAPeriodicValueToWithinHalfAPeriodOfItsPredecessor) {
   EXPECT_TRUE(rc::check([] {
     const double period = 0.5 + std::abs(any(400));
-    const auto kinds = kinds_of({kLinear, {.kind = DimensionKind::wrap, .period = period}});
+    const auto kinds = kinds_of({kLinear, {.kind = DimensionKind::periodic, .period = period}});
     const std::vector<double> before{any(1), any(1e4)};
     const std::vector<double> given{any(1e4), any(1e4)};
     std::vector<double> moved = given;
@@ -72,8 +72,8 @@ TEST(DimensionKinds, AWrappingValueTakesTheShortWay) {
   }));
 }
 
-TEST(DimensionKinds, AWrappedPositionIsReadWithinHalfAPeriodOfZero) {
-  const auto kinds = kinds_of({{.kind = DimensionKind::wrap, .period = 360}});
+TEST(DimensionKinds, APeriodicPositionIsReadWithinHalfAPeriodOfZero) {
+  const auto kinds = kinds_of({{.kind = DimensionKind::periodic, .period = 360}});
   const auto read = [&](double position) {
     State state(1);
     state.ref().position[0] = position;
@@ -90,7 +90,7 @@ TEST(DimensionKinds, AWrappedPositionIsReadWithinHalfAPeriodOfZero) {
   EXPECT_EQ(read(-181), 179);
 }
 
-TEST(DimensionKinds, AQuaternionTakesTheSignNearestToTheOneBefore) {
+TEST(DimensionKinds, AQuaternionTakesTheSignNearestToItsPredecessor) {
   EXPECT_TRUE(rc::check([] {
     const auto kinds = one_quaternion(*rc::gen::arbitrary<bool>() ? kQuaternion : kWFirst);
     const auto before = any_quaternion();
@@ -101,7 +101,7 @@ TEST(DimensionKinds, AQuaternionTakesTheSignNearestToTheOneBefore) {
     kinds.continue_from(before, {.position = one, .velocity = derivative});
     RC_ASSERT(std::abs(length_of(one) - 1) < 1e-15);
     RC_ASSERT(dot(one, before) >= 0);
-    // The curve that the waypoint was taken from, times one number, and that number only.
+    // Position and velocity are multiplied by the same factor.
     const double factor = dot(one, given) / dot(given, given);
     for (std::size_t d = 0; d < 4; ++d) {
       RC_ASSERT(std::abs(one[d] - factor * given[d]) < 1e-14);
@@ -114,18 +114,18 @@ TEST(DimensionKinds, AQuaternionTakesTheSignNearestToTheOneBefore) {
   }));
 }
 
-TEST(DimensionKinds, TheFirstWaypointKeepsItsSignAndItsTurn) {
+TEST(DimensionKinds, TheFirstWaypointKeepsItsSignAndIsNotUnwrapped) {
   const auto kinds = kinds_of({kQuaternion,
                                kQuaternion,
                                kQuaternion,
                                kQuaternion,
-                               {.kind = DimensionKind::wrap, .period = 2}});
+                               {.kind = DimensionKind::periodic, .period = 2}});
   std::vector<double> first{0, 0, 0, -4, 7};
   kinds.continue_from({}, {.position = first});
   EXPECT_EQ(first, (std::vector<double>{0, 0, 0, -1, 7}));
 }
 
-TEST(DimensionKinds, AQuaternionOfLengthZeroOrNextToItIsNotTaken) {
+TEST(DimensionKinds, AQuaternionOfLengthNearZeroOrAbove1e100IsRefused) {
   const auto kinds = kinds_of({kLinear, kQuaternion, kQuaternion, kQuaternion, kQuaternion});
   EXPECT_TRUE(kinds.takes(std::vector<double>{0, 0, 0, 1e-99, 0}));
   for (const double length : {1e-101, 1e-200, 1e-310, 1e101}) {
@@ -139,7 +139,7 @@ TEST(DimensionKinds, AQuaternionOfLengthZeroOrNextToItIsNotTaken) {
   EXPECT_NEAR(tiny[4], -0.8, 1e-15);
 }
 
-TEST(DimensionKinds, RefusesPeriodsAndQuaternionsThatAreNone) {
+TEST(DimensionKinds, RefusesInvalidPeriodsAndQuaternions) {
   const auto refusal = [](const std::vector<Dimension>& dimensions) -> std::string {
     try {
       (void)DimensionKinds(dimensions);
@@ -150,7 +150,7 @@ TEST(DimensionKinds, RefusesPeriodsAndQuaternionsThatAreNone) {
   };
   for (const double period : {0.0, -1.0, 1e-200, 1e200, std::nan(""), HUGE_VAL}) {
     EXPECT_NE(
-        refusal({kLinear, {.kind = DimensionKind::wrap, .period = period}}).find("dimension 1"),
+        refusal({kLinear, {.kind = DimensionKind::periodic, .period = period}}).find("dimension 1"),
         std::string::npos)
         << period;
   }
@@ -165,20 +165,21 @@ TEST(DimensionKinds, RefusesPeriodsAndQuaternionsThatAreNone) {
             "taken");
 }
 
-TEST(Dimension, ReadsBackWhatItWrites) {
-  for (const char* text : {"linear", "wrap:360", "wrap:6.283185307179586", "wrap:1e-100",
-                           "quaternion", "quaternion-wxyz"}) {
+TEST(Dimension, ParsesTheTextThatItPrints) {
+  for (const char* text : {"linear", "periodic:360", "periodic:6.283185307179586",
+                           "periodic:1e-100", "quaternion", "quaternion-wxyz"}) {
     const auto dimension = parse_dimension(text);
     ASSERT_TRUE(dimension.has_value()) << text;
     EXPECT_EQ(to_string(*dimension), text);
   }
-  for (const char* text : {"", "wrap", "wrap:", "wrap:0", "wrap:-1", "wrap:nan", "wrap:inf",
-                           "wrap:1x", "wrap:1e200", "Linear", "quaternion:4"}) {
+  for (const char* text :
+       {"", "periodic", "periodic:", "periodic:0", "periodic:-1", "periodic:nan", "periodic:inf",
+        "wrap:1", "periodic:1x", "periodic:1e200", "Linear", "quaternion:4"}) {
     EXPECT_FALSE(parse_dimension(text).has_value()) << text;
   }
 }
 
-TEST(DimensionKinds, AnEndConditionAsksForNothingOfAQuaternion) {
+TEST(DimensionKinds, AnEndConditionWithValuesForAQuaternionIsRefused) {
   const auto kinds = kinds_of({kLinear, kQuaternion, kQuaternion, kQuaternion, kQuaternion});
   EXPECT_NO_THROW(kinds.require_end({.kind = ConditionKind::halt}));
   EXPECT_NO_THROW(kinds.require_end({ConditionKind::velocity, {3, 0, 0, 0, 0}}));
@@ -186,7 +187,7 @@ TEST(DimensionKinds, AnEndConditionAsksForNothingOfAQuaternion) {
                std::invalid_argument);
 }
 
-/// A random quintic, evaluated and normalised: what a reader gets.
+/// A random quintic, evaluated and normalised as in a reader.
 struct Curve {
   std::vector<double> coefficients;
 
@@ -238,7 +239,7 @@ TEST(DimensionKinds, AReadVelocityIsOrthogonalToItsQuaternion) {
   }));
 }
 
-TEST(DimensionKinds, AStateToGoOnFromIsThatOfTheReadCurve) {
+TEST(DimensionKinds, NormaliseQuaternionsGivesTheStateOfTheReadCurve) {
   EXPECT_TRUE(rc::check([] {
     const Curve curve = any_curve();
     State raw(4);
@@ -250,7 +251,7 @@ TEST(DimensionKinds, AStateToGoOnFromIsThatOfTheReadCurve) {
   }));
 }
 
-TEST(DimensionKinds, ACurveThroughZeroIsLeftAsItIs) {
+TEST(DimensionKinds, AZeroQuaternionIsLeftUnchanged) {
   State state(4);
   state.ref().velocity[2] = 5;
   one_quaternion().normalise(state.ref());
@@ -288,7 +289,7 @@ TEST(AngularMotion, OfASteadyRotationIsItsRateAboutItsAxis) {
   }
 }
 
-TEST(AngularMotion, OfAConingBodyIsThatOfItsOwnFrame) {
+TEST(AngularMotion, OfAConingBodyIsExpressedInTheBodyFrame) {
   const testing::Coning coning;
   constexpr double h = 1e-3;
   for (const double seconds : {0.0, 0.4, 1.3}) {

@@ -30,7 +30,7 @@ Condition with_values(ConditionKind kind, std::uint64_t seed, std::size_t dimens
   return {kind, takes ? testing::random_values(seed, dimensions) : std::vector<double>{}};
 }
 
-constexpr ConditionKind kAllKinds[] = {ConditionKind::natural, ConditionKind::rest,
+constexpr ConditionKind kAllKinds[] = {ConditionKind::natural, ConditionKind::clamped,
                                        ConditionKind::halt, ConditionKind::velocity,
                                        ConditionKind::acceleration};
 
@@ -97,7 +97,7 @@ TEST(C2Spline, InterpolatesIsC2AndAgreesWithADenseSolveForEveryPairingOfConditio
   }
 }
 
-TEST(C2Spline, HaltsWithoutVelocityOrAccelerationAtBothEnds) {
+TEST(C2Spline, AFullStopHasNoVelocityAndNoAccelerationAtBothEnds) {
   for (const std::size_t knots : {2U, 3U, 10U}) {
     const Mesh mesh = random_mesh(3, knots, 2, 3);
     const auto curve = spline(mesh, {ConditionKind::halt, {}}, {ConditionKind::halt, {}});
@@ -178,7 +178,7 @@ TEST(C2Spline, ShiftingTimeChangesNoBit) {
   }
 }
 
-/// A mesh whose last position is its first.
+/// A mesh whose last position equals its first.
 Mesh closed_mesh(std::uint64_t seed, std::size_t knots, double ratio) {
   Mesh mesh = random_mesh(seed, knots, 2, ratio);
   std::ranges::copy(mesh.first(1).positions, mesh.positions.end() - 2);
@@ -240,7 +240,7 @@ TEST(C2Spline, NotAKnotHasOneCubicOverTheFirstAndLastTwoIntervals) {
   }
 }
 
-TEST(C2Spline, RefusesPairingsThatMakeNoSense) {
+TEST(C2Spline, RefusesInvalidPairingsOfConditions) {
   const Condition periodic{ConditionKind::periodic, {}};
   const Condition not_a_knot{ConditionKind::not_a_knot, {}};
   const auto reason = [](const Mesh& mesh, const Condition& start, const Condition& end) {
@@ -266,7 +266,7 @@ TEST(C2Spline, RefusesPairingsThatMakeNoSense) {
   EXPECT_EQ(reason(closed.first(4), not_a_knot, not_a_knot), "");
 }
 
-TEST(C2Spline, NamesWhatIsWrongWithItsInput) {
+TEST(C2Spline, ErrorsNameTheInvalidInput) {
   const std::vector<Time> times{Time(0), Time(10), Time(10)};
   const std::vector<double> positions{0, 1, 2};
   const auto message = [&](std::span<const Time> t, std::span<const double> x, std::size_t d) {

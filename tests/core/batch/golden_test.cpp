@@ -16,18 +16,43 @@ namespace {
 
 using nlohmann::json;
 
-/// The names of all golden cases; "none" where there are none.
-std::vector<std::string> cases() {
-  std::vector<std::string> names;
-  const auto folder = testing::shared_file("golden");
-  if (std::filesystem::is_directory(folder)) {
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-      if (entry.path().extension() == ".json") names.push_back(entry.path().stem());
-    }
+/// A case, and the file that has it: the project's own files have several, by name.
+struct Case {
+  std::string name;
+  std::filesystem::path path;
+  bool is_own;
+};
+
+void PrintTo(const Case& tested, std::ostream* out) { *out << tested.name; }
+
+std::vector<std::filesystem::path> json_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  if (!std::filesystem::is_directory(folder)) return files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
   }
-  std::ranges::sort(names);
-  if (names.empty()) names.emplace_back("none");
-  return names;
+  std::ranges::sort(files);
+  return files;
+}
+
+/// The cases that tests/golden/golden.py computes.
+std::vector<Case> own_cases() {
+  std::vector<Case> cases;
+  for (const auto& path : json_files(SPLINECAST_SOURCE "/tests/golden")) {
+    const json file = json::parse(std::ifstream(path));
+    for (const auto& [name, content] : file.items()) cases.push_back({name, path, true});
+  }
+  return cases;
+}
+
+/// The cases beside the project; "none" where there are none.
+std::vector<Case> shared_cases() {
+  std::vector<Case> cases;
+  for (const auto& path : json_files(testing::shared_file("golden"))) {
+    cases.push_back({path.stem(), path, false});
+  }
+  if (cases.empty()) cases.push_back({"none", testing::shared_file("golden/none.json"), false});
+  return cases;
 }
 
 Condition condition(const json& golden, const char* end) {
@@ -57,8 +82,8 @@ double largest(const json& array) {
   return most;
 }
 
-/// `shortest`: an interval in seconds. Where the expected accelerations are themselves but
-/// rounding, of velocities over it, they are no measure.
+/// `shortest`: the shortest interval, s. The tolerance of accelerations and jerks is at least the
+/// rounding error of the velocities divided by it: the expected ones may be only rounding errors.
 void expect_samples(const PiecewisePolynomial& curve, const json& golden, double shortest) {
   const std::size_t dimensions = curve.dimensions();
   const json& expected = golden.at("expected");
@@ -97,12 +122,12 @@ void expect_segments(const PiecewisePolynomial& curve, const json& golden) {
   }
 }
 
-class Golden : public ::testing::TestWithParam<std::string> {};
+class Golden : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Golden, AgreesTo1eMinus9OfTheLargestValue) {
-  const auto path = testing::shared_file("golden/" + GetParam() + ".json");
-  REQUIRE_SHARED_FILE(path);
-  const json golden = json::parse(std::ifstream(path));
+  REQUIRE_SHARED_FILE(GetParam().path);
+  const json file = json::parse(std::ifstream(GetParam().path));
+  const json& golden = GetParam().is_own ? file.at(GetParam().name) : file;
   std::vector<Time> times;
   for (const std::int64_t t : golden.at("t_ns")) times.emplace_back(t);
   const auto positions = flat(golden, "x");
@@ -134,12 +159,15 @@ TEST_P(Golden, AgreesTo1eMinus9OfTheLargestValue) {
   expect_segments(other, golden);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shared, Golden, ::testing::ValuesIn(cases()), [](const auto& tested) {
-  std::string name = tested.param;
+std::string test_name(const ::testing::TestParamInfo<Case>& tested) {
+  std::string name = tested.param.name;
   std::ranges::replace_if(
       name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
   return name;
-});
+}
+
+INSTANTIATE_TEST_SUITE_P(Computed, Golden, ::testing::ValuesIn(own_cases()), test_name);
+INSTANTIATE_TEST_SUITE_P(Shared, Golden, ::testing::ValuesIn(shared_cases()), test_name);
 
 }  // namespace
 }  // namespace splinecast::core

@@ -31,8 +31,8 @@ FitOptions smoothing(double lambda) {
   return {.interpolant = {.method = find_method("smoothing"), .lambda = lambda}};
 }
 
-/// The matrix H that takes waypoints to smoothed positions, by dense algebra and, for the
-/// roughness ∫f″², Green and Silverman's K = Q R⁻¹ Qᵀ: shares no code with the library.
+/// The matrix H that maps waypoints to smoothed positions, by dense algebra with Green and
+/// Silverman's K = Q R⁻¹ Qᵀ for the roughness ∫f″². Shares no code with the library.
 Eigen::MatrixXd dense_influence(const Mesh& mesh, double lambda) {
   const auto n = static_cast<Eigen::Index>(mesh.size());
   const auto h = [&](Eigen::Index i) {
@@ -84,7 +84,7 @@ TEST(Smoothing, EqualsADenseSolve) {
   }
 }
 
-TEST(Smoothing, WithoutLambdaIsTheNaturalSpline) {
+TEST(Smoothing, WithLambdaZeroIsTheNaturalSpline) {
   const Mesh mesh = random_mesh(6, 60, 2, 10);
   const auto curve = fit(waypoints_of(mesh), smoothing(0));
   const auto spline = fit(waypoints_of(mesh), {});
@@ -97,7 +97,7 @@ TEST(Smoothing, WithoutLambdaIsTheNaturalSpline) {
   }
 }
 
-/// The line of least squares from the first knot on: offset and slope of each dimension.
+/// The least-squares line: its value at the first knot and its slope, of each dimension.
 Eigen::MatrixXd line_through(const Mesh& mesh) {
   const auto n = static_cast<Eigen::Index>(mesh.size());
   Eigen::MatrixXd basis(n, 2);
@@ -108,7 +108,7 @@ Eigen::MatrixXd line_through(const Mesh& mesh) {
   return basis.colPivHouseholderQr().solve(positions_of(mesh));
 }
 
-TEST(Smoothing, WithEverLargerLambdaTendsToTheLineOfLeastSquares) {
+TEST(Smoothing, WithGrowingLambdaTendsToTheLeastSquaresLine) {
   const Mesh mesh = random_mesh(7, 40, 2, 4);
   const Eigen::MatrixXd line = line_through(mesh);
   State state(2);
@@ -129,7 +129,7 @@ TEST(Smoothing, WithEverLargerLambdaTendsToTheLineOfLeastSquares) {
   EXPECT_LT(before, 1e-5);
 }
 
-TEST(Smoothing, KeepsItsDigitsHoweverManyKnotsAndHoweverLargeLambda) {
+TEST(Smoothing, KeepsItsDigitsWithManyKnotsAndLargeLambda) {
   Mesh mesh = regular_mesh(20'000, 1, Time(1'000'000));
   mesh.positions = random_values(1, mesh.size());
   const Eigen::MatrixXd line = line_through(mesh);
@@ -144,8 +144,8 @@ TEST(Smoothing, KeepsItsDigitsHoweverManyKnotsAndHoweverLargeLambda) {
   }
 }
 
-TEST(Smoothing, TwoWaypointsNextToEachOtherDisturbNothing) {
-  // A nanosecond apart, with λ/h³ of 1e25: two waypoints that count at one place.
+TEST(Smoothing, TwoWaypointsANanosecondApartDisturbNothing) {
+  // A nanosecond apart, with λ/h³ = 1e25: two waypoints at practically the same time.
   Mesh mesh = regular_mesh(9, 1, Time(10'000'000));
   mesh.positions = {0, 0.2, 0.4, 0.6, 0.8, 1.0, 0.9, 1.1, 1.0};
   const auto smooth = fit(waypoints_of(mesh), smoothing(0.01));
@@ -153,7 +153,7 @@ TEST(Smoothing, TwoWaypointsNextToEachOtherDisturbNothing) {
   close.times.insert(close.times.begin() + 4, mesh.times[3] + Time(1));
   State state(1);
   smooth.evaluate(mesh.times[3] + Time(1), state.ref());
-  // A waypoint on the curve itself pulls nowhere.
+  // A waypoint on the curve does not change the curve.
   close.positions.insert(close.positions.begin() + 4, state.position()[0]);
   const auto curve = fit(waypoints_of(close), smoothing(0.01));
   State other(1);
@@ -165,7 +165,7 @@ TEST(Smoothing, TwoWaypointsNextToEachOtherDisturbNothing) {
   }
 }
 
-TEST(Smoothing, ALargeOffsetOfThePositionsCostsNoDigitsOfTheirMoves) {
+TEST(Smoothing, ALargeOffsetOfThePositionsCostsNoDigitsOfTheDerivatives) {
   Mesh mesh = regular_mesh(50, 1, Time(1'000'000));
   for (std::size_t i = 0; i < 50; ++i) {
     // Multiples of 2⁻²⁰, so that adding 2³⁰ loses nothing.
@@ -192,7 +192,7 @@ TEST(Smoothing, ALargeOffsetOfThePositionsCostsNoDigitsOfTheirMoves) {
   }
 }
 
-TEST(Smoothing, BothEndsOfTwoWaypointsHaveTheConditionsAskedFor) {
+TEST(Smoothing, ACurveOfTwoWaypointsKeepsTheConditionsOfBothEnds) {
   Mesh mesh = regular_mesh(2, 1, Time(1'000'000'000));
   mesh.positions = {0, 1};
   FitOptions options = smoothing(1);
@@ -219,7 +219,7 @@ TEST(CrossValidation, ScoresWithTheExactTrace) {
   }
 }
 
-/// A sine with noise of the given size: what smoothing is for.
+/// A sine and a cosine with noise of the given size.
 Mesh noisy_sine(std::size_t knots, double noise) {
   Mesh mesh = regular_mesh(knots, 2, Time(10'000'000));
   const auto random = random_values(3, 2 * knots);
@@ -231,7 +231,7 @@ Mesh noisy_sine(std::size_t knots, double noise) {
   return mesh;
 }
 
-TEST(CrossValidation, ChoosesTheLeastScoreAndTakesOutTheNoise) {
+TEST(CrossValidation, ChoosesTheLeastScoreAndRemovesHalfOfTheNoise) {
   const Mesh mesh = noisy_sine(200, 0.05);
   const double lambda = cross_validated_lambda(waypoints_of(mesh));
   const double score = cross_validation_score(waypoints_of(mesh), lambda);
@@ -248,7 +248,7 @@ TEST(CrossValidation, ChoosesTheLeastScoreAndTakesOutTheNoise) {
   EXPECT_LT(std::sqrt(error / 200), 0.05 / std::sqrt(3.0) / 2);  // half of the noise is gone
 }
 
-TEST(CrossValidation, OfWhatIsSmoothAlreadyChangesNothingThatMatters) {
+TEST(CrossValidation, ChangesSmoothDataByLessThan1eMinus5) {
   const Mesh mesh = noisy_sine(200, 0);
   const auto curve = fit(waypoints_of(mesh), smoothing(cross_validated_lambda(waypoints_of(mesh))));
   State state(2);
@@ -260,7 +260,7 @@ TEST(CrossValidation, OfWhatIsSmoothAlreadyChangesNothingThatMatters) {
 }
 
 /// Largest acceleration step at a knot of the settled curve, as a fraction of the peak acceleration
-/// that smoothing at once has.
+/// of the batch curve.
 double step_left(double ratio, std::size_t lag) {
   const Mesh mesh = noisy_sine(600, 0.05);
   const double h = 0.01;
@@ -282,7 +282,7 @@ double step_left(double ratio, std::size_t lag) {
   return step / peak;
 }
 
-TEST(Smoothing, TheLagsErrorDecaysAndTheLagAskedForLeavesAHundredthOrLess) {
+TEST(Smoothing, TheErrorDecaysWithTheLagAndIsAHundredthOrLessAtTheRequiredLag) {
   for (const double ratio : {0.1, 1.0, 10.0, 100.0, 500.0}) {
     double before = std::numeric_limits<double>::infinity();
     for (const std::size_t lag : {4U, 8U, 16U, 32U, 64U}) {
@@ -298,7 +298,8 @@ TEST(Smoothing, TheLagsErrorDecaysAndTheLagAskedForLeavesAHundredthOrLess) {
 
 TEST(Smoothing, OnlineWithALongLagEqualsTheBatchWithinTheStatedBound) {
   const Mesh mesh = noisy_sine(400, 0.05);
-  const double lambda = 1e-6;  // λ/h³ = 1: a lag of 13 leaves a thousandth, 64 next to nothing
+  // λ/h³ = 1: a lag of 13 leaves an error of a thousandth, one of 64 a negligible error.
+  const double lambda = 1e-6;
   const auto online = testing::online(waypoints_of(mesh),
                                       {.interpolant = smoothing(lambda).interpolant, .settle = 64},
                                       {ConditionKind::own, {}});
@@ -326,7 +327,7 @@ TEST(Smoothing, RefusesALagTooShortForItsLambdaUnlessForced) {
   EXPECT_NO_THROW(SlidingWindow(1, how(12, 0, true)));
   const double zero = 0;
   for (const bool force : {false, true}) {
-    // λ/h³ = 10 at 10 ms asks for a lag of 24.
+    // λ/h³ = 10 at 10 ms requires a lag of 24.
     for (const std::size_t lag : {23U, 24U}) {
       SlidingWindow window(1, how(lag, 1e-5, force));
       for (std::size_t i = 0; i < lag; ++i) {

@@ -21,7 +21,7 @@ using std::chrono::milliseconds;
 
 Time from_seconds(double seconds) { return Time(std::llround(seconds * 1e9)); }
 
-/// Calls `look` with the state at many times of a segment, both ends among them.
+/// Calls `look` with the state at many times of a segment, including both ends.
 template <typename Look>
 void for_each_state(const Segment& segment, std::size_t dimensions, const Look& look) {
   constexpr int kLooks = 1000;
@@ -55,10 +55,10 @@ Time stop_time(double v, double a, double limit, Time least = kLeastStopTime) {
   return stop_time_within({.acceleration = {limit}}, least, std::array{v}, std::array{a});
 }
 
-TEST(StopSegment, NeverSpeedsUpNorTurnsNorGoesFurtherThanHalfItsTimeAtItsVelocity) {
+TEST(StopSegment, NeverSpeedsUpOrReversesOrTravelsFurtherThanHalfItsTimeAtItsVelocity) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> exponent(-3, 3);
-  constexpr std::size_t kDimensions = 5;  // some in vectors, one behind them
+  constexpr std::size_t kDimensions = 5;  // some in a SIMD vector, one in the remainder
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     const auto x = testing::random_values(3 * seed, kDimensions);
     auto v = testing::random_values(3 * seed + 1, kDimensions);
@@ -108,7 +108,7 @@ TEST(StopSegment, BeginsWithItsStateAndComesToAFullStop) {
   }
 }
 
-TEST(StopSegment, ClampsItsFirstAccelerationBetweenNoneAndTheSteepestWithoutReversal) {
+TEST(StopSegment, ClampsItsInitialAccelerationToTheRangeWithoutReversal) {
   EXPECT_EQ(stop_acceleration(2, -5, 0.5), -5);
   EXPECT_EQ(stop_acceleration(2, -12, 0.5), -12);
   EXPECT_EQ(stop_acceleration(2, -12.1, 0.5), -12);
@@ -120,7 +120,7 @@ TEST(StopSegment, ClampsItsFirstAccelerationBetweenNoneAndTheSteepestWithoutReve
   EXPECT_EQ(stop_acceleration(0, -7, 0.5), 0);
 }
 
-TEST(StopSegment, OfAllDimensionsClampsLikeThatOfOne) {
+TEST(StopSegment, ClampsEachDimensionLikeAStopOfOneDimension) {
   for (std::size_t dimensions = 1; dimensions <= 9; ++dimensions) {
     const auto x = testing::random_values(dimensions, dimensions);
     const auto v = testing::random_values(dimensions + 20, dimensions);
@@ -134,8 +134,8 @@ TEST(StopSegment, OfAllDimensionsClampsLikeThatOfOne) {
   }
 }
 
-/// A dimension that decelerates beyond its limit already must only not go beyond it any more.
-TEST(StopSegment, KeepsItsAccelerationLimitFromTheFirstInstantOn) {
+/// Also if the state decelerates beyond the limit: the stop clamps its initial acceleration.
+TEST(StopSegment, KeepsItsAccelerationLimitFromItsBeginning) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> value(-10, 10);
   for (int i = 0; i < 2000; ++i) {
@@ -149,13 +149,13 @@ TEST(StopSegment, KeepsItsAccelerationLimitFromTheFirstInstantOn) {
   }
 }
 
-TEST(StopSegment, TakesNoLongerThanItsAccelerationLimitAsksFor) {
+TEST(StopSegment, TakesNoLongerThanItsAccelerationLimitRequires) {
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> value(-10, 10);
   for (int i = 0; i < 2000; ++i) {
     const double limit = 1 + std::abs(value(random));
     const double v = value(random);
-    // Decelerating within the limit, or accelerating, which the stop leaves out.
+    // A deceleration within the limit, or an acceleration, which the stop clamps to 0.
     const double a = std::clamp(value(random), -limit, limit);
     const Time time = stop_time(v, a, limit);
     if (time == kLeastStopTime) continue;
@@ -163,14 +163,14 @@ TEST(StopSegment, TakesNoLongerThanItsAccelerationLimitAsksFor) {
     if (!decelerates) {
       EXPECT_NEAR(to_seconds(time), 1.5 * std::abs(v) / limit, 2e-9);
     }
-    // From the limit itself on a stop has its peak at its beginning, whatever time it takes.
+    // A stop that begins near its limit has its peak at its beginning, for any stop time.
     if (decelerates && std::abs(a) > 0.9 * limit) continue;
     const Time shorter = from_seconds(0.99 * to_seconds(time));
     EXPECT_GT(sampled_peaks(shorter, v, a).acceleration, limit) << v << ' ' << a << ' ' << limit;
   }
 }
 
-TEST(StopSegment, ThatDeceleratesBeyondItsLimitTakesThreeTimesTheVelocityOverIt) {
+TEST(StopSegment, ThatDeceleratesBeyondItsLimitTakesThreeTimesTheVelocityOverTheLimit) {
   EXPECT_NEAR(to_seconds(stop_time(2, -50, 10)), 0.6, 2e-9);
   EXPECT_NEAR(to_seconds(stop_time(-2, 50, 10)), 0.6, 2e-9);
   EXPECT_LE(sampled_peaks(stop_time(2, -50, 10), 2, -50).acceleration, 10 * (1 + 1e-9));
@@ -194,7 +194,7 @@ TEST(StopSegment, KeepsItsJerkLimit) {
 TEST(StopSegment, TakesAsLongAsTheDimensionThatNeedsLongest) {
   const std::array v{1.0, -3.0, 20.0};
   const std::array a{0.0, 0.0, 0.0};
-  const MotionLimits limits{.acceleration = {10, 10, 0}};  // the last one has none
+  const MotionLimits limits{.acceleration = {10, 10, 0}};  // the last dimension has no limit
   EXPECT_NEAR(to_seconds(stop_time_within(limits, kLeastStopTime, v, a)), 0.45, 2e-9);
   EXPECT_EQ(stop_time_within(limits, milliseconds(500), v, a), milliseconds(500));
   EXPECT_EQ(stop_time_within({}, milliseconds(250), v, a), milliseconds(250));
@@ -219,8 +219,8 @@ TEST(StopSegment, OfAnyStateTakesAFiniteTime) {
   }
 }
 
-/// Velocities decay by 0.27 a knot until they are denormal.
-TEST(StopSegment, FollowsOnePositionRepeatedForEver) {
+/// Velocities decay by a factor of 0.27 per knot until they are denormal.
+TEST(StopSegment, IsValidWhileOnePositionRepeatsUntilVelocitiesAreDenormal) {
   for (const Tail tail : {Tail::natural, Tail::parabolic, Tail::bessel}) {
     WindowOptions options{.tail = tail, .limits = {.acceleration = {10}}};
     SlidingWindow window(1, options);
@@ -229,7 +229,7 @@ TEST(StopSegment, FollowsOnePositionRepeatedForEver) {
       const double x = i < 20 ? std::sin(i) : 0;
       window.append({.time = milliseconds(10 * i), .position = {&x, 1}});
       window.segment(window.segments() - 1, last);
-      ASSERT_EQ(last.kind, SegmentKind::stop_tail);
+      ASSERT_EQ(last.kind, SegmentKind::stop);
       ASSERT_GE(last.right - last.left, options.stop_time);
     }
   }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A quintic with the given coefficients, [power][dimension], over a time.
+/// A segment of the given duration with the given coefficients, [power][dimension].
 Segment segment_of(std::size_t dimensions, Time length, std::vector<double> coefficients) {
   Segment segment(dimensions);
   segment.right = length;
@@ -52,7 +52,7 @@ MotionLimits limits_at(const WorstExcesses& peaks, std::size_t dimensions, doubl
   return limits;
 }
 
-TEST(LimitCheck, ALimitAtThePeakIsKeptAndOneABillionthBelowItIsNot) {
+TEST(LimitCheck, ALimitAtThePeakIsKeptAndALimitABillionthBelowItIsExceeded) {
   std::mt19937_64 random(1);
   const MotionLimits ones{.velocity = {1, 1}, .acceleration = {1, 1}, .jerk = {1, 1}};
   for (int i = 0; i < 20'000; ++i) {
@@ -74,7 +74,7 @@ TEST(LimitCheck, ALimitAtThePeakIsKeptAndOneABillionthBelowItIsNot) {
   }
 }
 
-TEST(LimitCheck, WhatBeginsBeyondItsLimitMayStayThereButNotRise) {
+TEST(LimitCheck, AValueThatBeginsAboveItsLimitMayStayThereButNotRise) {
   const Segment move = segment_of(1, Time(1'000'000'000), {0, 2, 0.1, 0});  // 2 to 2.2
   const MotionLimits limits{.velocity = {1}};
   EXPECT_FALSE(keeps_within(limits, nullptr, move));
@@ -88,7 +88,7 @@ TEST(LimitCheck, WhatBeginsBeyondItsLimitMayStayThereButNotRise) {
   EXPECT_TRUE(keeps_within({.velocity = {0}}, nullptr, move, {.velocity = less}));
 }
 
-TEST(LimitCheck, BoundsHoldForThePositionOverTheWholeSegment) {
+TEST(LimitCheck, PositionBoundsApplyToTheWholeSegment) {
   const Segment hill = segment_of(1, Time(1'000'000'000), {0, 4, -4});  // up to 1 at 0.5 s
   EXPECT_TRUE(keeps_within({.lower = {0}, .upper = {1}}, nullptr, hill));
   EXPECT_FALSE(keeps_within({.upper = {1 - 1e-9}}, nullptr, hill));
@@ -103,9 +103,9 @@ TEST(LimitCheck, BoundsHoldForThePositionOverTheWholeSegment) {
   EXPECT_NEAR(worst_excess({.upper = {0.5}}, nullptr, hill).ratio, 1.5, 1e-12);
 }
 
-TEST(LimitCheck, TheFirstViolationIsWhereTheLimitIsPassed) {
+TEST(LimitCheck, TheFirstViolationIsAtTheFirstTimeBeyondTheLimit) {
   const Segment move = move_over_a_second();
-  // v = 30 s² (1 − s)² passes 1 where s (1 − s) = 1/√30.
+  // v = 30 s² (1 − s)² reaches 1 at s (1 − s) = 1/√30.
   const auto first = first_violation({.velocity = {1}, .jerk = {100}}, nullptr, move);
   ASSERT_TRUE(first);
   EXPECT_EQ(first->kind, LimitKind::velocity);
@@ -117,7 +117,7 @@ TEST(LimitCheck, TheFirstViolationIsWhereTheLimitIsPassed) {
   EXPECT_FALSE(first_violation({.velocity = {1.875}, .jerk = {60}}, nullptr, move));
 }
 
-TEST(LimitCheck, WhatIsNoNumberKeepsNoLimit) {
+TEST(LimitCheck, ASegmentWithNaNCoefficientsExceedsEveryLimit) {
   Segment bad = move_over_a_second();
   bad.coefficients[1] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(keeps_within({.velocity = {1e9}}, nullptr, bad));
@@ -157,7 +157,7 @@ DimensionKinds rotation_behind_one_dimension(DimensionKind kind) {
   return DimensionKinds(dimensions);
 }
 
-TEST(LimitCheck, AQuaternionIsBoundedByItsAngularMotion) {
+TEST(LimitCheck, TheLimitsOfAQuaternionApplyToItsAngularMotion) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> value(-1, 1);
   for (int i = 0; i < 60; ++i) {
@@ -200,14 +200,14 @@ TEST(LimitCheck, ATurnAtNearlyConstantSpeedHasNearlyNoAngularAcceleration) {
   EXPECT_FALSE(keeps_within({.velocity = {0.2 - 1e-6, 0, 0, 0}}, &kinds, turn));
 }
 
-TEST(LimitCheck, AQuaternionThatPassesZeroKeepsNoLimit) {
+TEST(LimitCheck, AQuaternionThatPassesThroughZeroExceedsEveryLimit) {
   const Segment through = segment_of(4, Time(1'000'000'000), {0, 0, 0, 1, 0, 0, 0, -2});
   const std::vector<Dimension> quaternion(4, {.kind = DimensionKind::quaternion});
   const DimensionKinds kinds(quaternion);
   EXPECT_FALSE(keeps_within({.velocity = {1e6, 0, 0, 0}}, &kinds, through));
 }
 
-TEST(MotionLimits, AreRefusedWithTheirValueWhereTheyMakeNoSense) {
+TEST(MotionLimits, InvalidLimitsAreRefusedWithTheirValue) {
   const auto refusal = [](const MotionLimits& limits, const std::vector<Dimension>& dimensions) {
     try {
       require_limits(limits, dimensions);
@@ -221,9 +221,11 @@ TEST(MotionLimits, AreRefusedWithTheirValueWhereTheyMakeNoSense) {
   EXPECT_NE(refusal({.velocity = {-1, 2}}, two).find("velocity limit must be positive"),
             std::string::npos);
   EXPECT_NE(refusal({.jerk = {1}}, two).find("1 jerk limits for 2 dimensions"), std::string::npos);
-  EXPECT_NE(refusal({.lower = {2, 0}, .upper = {1, 1}}, two).find("2.0"), std::string::npos);
-  const std::vector<Dimension> wrap{{.kind = DimensionKind::wrap, .period = 360}};
-  EXPECT_NE(refusal({.upper = {1}}, wrap).find("wrap:360, which has no bounds"), std::string::npos);
+  EXPECT_NE(refusal({.lower = {2, 0}, .upper = {1, 1}}, two).find("not 2 and 1"),
+            std::string::npos);
+  const std::vector<Dimension> wrap{{.kind = DimensionKind::periodic, .period = 360}};
+  EXPECT_NE(refusal({.upper = {1}}, wrap).find("periodic:360, which has no bounds"),
+            std::string::npos);
   EXPECT_EQ(refusal({.velocity = {1}, .upper = {kInfinity}}, wrap), "");
   const std::vector<Dimension> quaternion(4, {.kind = DimensionKind::quaternion});
   EXPECT_EQ(refusal({.velocity = {1, 1, 1, 1}, .jerk = {1, 0, 0, 0}}, quaternion), "");

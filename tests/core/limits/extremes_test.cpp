@@ -13,7 +13,7 @@
 namespace splinecast::core {
 namespace {
 
-/// One random dimension of a cubic or quintic, over the whole of it or a part.
+/// A random cubic or quintic of one dimension: the whole of it or a part.
 class RandomPart {
  public:
   explicit RandomPart(std::uint64_t seed) : random_(seed) {}
@@ -54,7 +54,7 @@ class RandomPart {
     for (double& c : c_) c *= between(0, 1) < 0.3 ? 0 : std::pow(10, between(-12, 0));
   }
 
-  /// The velocity is a product of (s − root), two of which are the same or nearly so.
+  /// Makes the velocity a product of factors (s − root), two of them equal or nearly equal.
   void make_double_roots(int order) {
     const double root = between(0, 1);
     const double near = between(0, 1) < 0.5 ? root : root + 1e-8 * between(-1, 1);
@@ -81,7 +81,7 @@ double value_at(const SegmentPart& part, int derivative, double u) {
   return value;
 }
 
-/// The greatest value, times a sign, near the i-th of n + 1 samples.
+/// The maximum of sign · value near the i-th of n + 1 samples, by ternary search.
 double refined(const SegmentPart& part, int derivative, double sign, int i, int n) {
   const double step = (part.to - part.from) / n;
   double low = std::max(part.from, part.from + step * (i - 1));
@@ -96,8 +96,8 @@ double refined(const SegmentPart& part, int derivative, double sign, int i, int 
   return sign * value_at(part, derivative, low);
 }
 
-/// The greatest value, times a sign: the best of n + 1 samples, and around each that is greater
-/// than its neighbours if `refines`.
+/// The maximum of sign · value over n + 1 samples; with `refines`, also around each sample that is
+/// not less than its neighbours.
 double sampled(const SegmentPart& part, int derivative, double sign, int n, bool refines) {
   std::vector<double> values;
   for (int i = 0; i <= n; ++i) {
@@ -113,7 +113,7 @@ double sampled(const SegmentPart& part, int derivative, double sign, int n, bool
   return most;
 }
 
-/// That every extreme is a value of the curve, and none of the samples lies beyond it.
+/// Expects that every extreme is a value of the curve and that no sample is beyond it.
 void expect_extremes(const SegmentPart& part, int samples, bool refines) {
   std::array<SegmentRange, 4> ranges;
   write_ranges(part, 0, Derivatives::all, ranges);
@@ -133,7 +133,7 @@ void expect_extremes(const SegmentPart& part, int samples, bool refines) {
   }
 }
 
-TEST(SegmentExtremes, AreValuesOfTheCurveThatNoSampleIsBeyond) {
+TEST(SegmentExtremes, AreValuesOfTheCurveAndNoSampleIsBeyondThem) {
   RandomPart parts(1);
   for (int i = 0; i < 1'000'000; ++i) {
     expect_extremes(parts.next(), 5, false);
@@ -141,7 +141,7 @@ TEST(SegmentExtremes, AreValuesOfTheCurveThatNoSampleIsBeyond) {
   }
 }
 
-TEST(SegmentExtremes, AreThoseOfDenseSamplesThatAreRefined) {
+TEST(SegmentExtremes, EqualTheExtremesOfDenseRefinedSamples) {
   RandomPart parts(2);
   for (int i = 0; i < 10'000; ++i) {
     expect_extremes(parts.next(), 100, true);
@@ -149,7 +149,7 @@ TEST(SegmentExtremes, AreThoseOfDenseSamplesThatAreRefined) {
   }
 }
 
-TEST(SegmentExtremes, OfAMoveFromRestToRestLieWhereTheyAreKnownToLie) {
+TEST(SegmentExtremes, OfAMinimumJerkMoveMatchTheClosedForm) {
   // x = 10 s³ − 15 s⁴ + 6 s⁵ over a second: v peaks in the middle at 15/8, a at 10/√3.
   const std::vector<double> c{0, 0, 0, 10, -15, 6};
   const SegmentRange velocity = range_of(6, c, 1, 0, 1, 0, 1);
@@ -165,7 +165,7 @@ TEST(SegmentExtremes, OfAMoveFromRestToRestLieWhereTheyAreKnownToLie) {
               1e-15);
 }
 
-TEST(SegmentExtremes, OfAConstantAreItAndOfNoNumberAreNone) {
+TEST(SegmentExtremes, OfAConstantEqualTheConstantAndOfNaNAreNaN) {
   const std::vector<double> hold{3};
   EXPECT_EQ(range_of(1, hold, 1, 0, 0, 0, 1).greatest.value, 3);
   EXPECT_EQ(range_of(1, hold, 1, 0, 1, 0, 1).least.value, 0);

@@ -11,8 +11,8 @@
 #include "splinecast/fit.hpp"
 #include "tests/fixtures/curves/method_trial.hpp"
 
-// The laws that every method states of itself, tried on random meshes. A method that is added to
-// the registry is tried without a line here.
+// The laws that each method declares, tested on random meshes. A method that is added to the
+// registry is tested without a change here.
 namespace splinecast::core {
 namespace {
 
@@ -42,7 +42,7 @@ double largest(std::span<const double> values) {
   return most;
 }
 
-/// All four derivatives at an instant.
+/// Position, velocity, acceleration and jerk at a time.
 std::vector<double> state_at(const PiecewisePolynomial& curve, Time t) {
   State state(curve.dimensions());
   curve.evaluate(t, state.ref());
@@ -62,9 +62,9 @@ std::array<double, 4> scales(const PiecewisePolynomial& curve, const Mesh& mesh)
   return most;
 }
 
-/// The largest jump of the r-th derivative at an interior knot, as a fraction of its largest value,
-/// or of what the waypoints themselves would make of it: a curve much smoother than they are bears
-/// their rounding.
+/// The largest jump of the r-th derivative at an interior knot, as a fraction of the largest value
+/// of this derivative, or of Δx/h^r between two waypoints if that is larger: a curve much smoother
+/// than its waypoints has their rounding error.
 double largest_jump(const PiecewisePolynomial& curve, const Mesh& mesh, std::size_t r) {
   double scale = scales(curve, mesh)[r];
   for (std::size_t i = 0; i + 1 < mesh.size(); ++i) {
@@ -91,7 +91,7 @@ TEST_P(Methods, PassesThroughItsWaypoints) {
   EXPECT_TRUE(rc::check("interpolates", [](std::uint64_t seed) {
     const Trial trial = random_trial(seed, 1 + seed % 40, 3, 1 + static_cast<double>(seed % 50));
     const auto curve = plain(trial);
-    // Between waypoints very unlike in distance a curve swings out, and rounds accordingly.
+    // On a very uneven mesh the curve overshoots, and its rounding error grows with its size.
     const double scale = std::max(largest(trial.mesh.positions), scales(curve, trial.mesh)[0]);
     for (std::size_t i = 0; i < trial.mesh.size(); ++i) {
       const auto state = state_at(curve, trial.mesh.times[i]);
@@ -143,7 +143,7 @@ double difference(const PiecewisePolynomial& curve, const Mesh& mesh, const Func
   return most / scale;
 }
 
-/// A mesh of seconds, so that powers of time are of one size.
+/// A mesh with intervals of about 0.1 s, so that powers of time have similar sizes.
 Mesh slow_mesh(std::uint64_t seed, std::size_t knots) {
   Mesh mesh = random_mesh(seed, knots, 2, 3);
   for (Time& t : mesh.times) t *= 10;
@@ -162,7 +162,7 @@ TEST_P(Methods, ReproducesPolynomialsUpToItsDegreeAndNoFurther) {
   EXPECT_GT(error(3, degree + 1), 1e-9);
 }
 
-/// x → A x + b, also of the derivatives.
+/// Applies x → A x + b to the positions and x → A x to the derivatives.
 Trial mapped(const Trial& trial, const std::array<double, 4>& a, const std::array<double, 2>& b) {
   Trial result = trial;
   const auto apply = [&](std::vector<double>& values, bool shifts) {
@@ -227,7 +227,7 @@ TEST_P(Methods, ConvergesWithTheOrderThatItClaims) {
   const Function f = [](double t, std::size_t, int r) {
     return std::pow(0.9, r) * std::exp(0.9 * t) + (r == 0 ? t : r == 1 ? 1 : 0);
   };
-  // In the middle of two seconds, away from the ends.
+  // The error in the middle of two seconds, away from the ends.
   const auto error = [&](std::size_t intervals) {
     const Time h(2'000'000'000 / static_cast<std::int64_t>(intervals));
     const Trial trial = sampled_trial(regular_mesh(intervals + 1, 1, h), f);
@@ -240,14 +240,14 @@ TEST_P(Methods, ConvergesWithTheOrderThatItClaims) {
     }
     return most;
   };
-  // Coarser for order 6, whose errors soon reach those of rounding.
+  // Coarser for order 6: its errors soon reach the rounding error.
   const std::size_t coarse = method().laws.order_of_convergence > 4 ? 8 : 32;
   const double measured = std::log2(error(coarse) / error(2 * coarse));
   std::printf("%s converges with order %.2f\n", std::string(method().name).c_str(), measured);
   EXPECT_NEAR(measured, method().laws.order_of_convergence, 0.25);
 }
 
-TEST_P(Methods, TakesAsFewWaypointsAsOne) {
+TEST_P(Methods, WorksWithOneToFourWaypoints) {
   for (std::size_t knots = 1; knots <= 4; ++knots) {
     const Trial trial = random_trial(3, knots, 2, 2);
     const auto curve = plain(trial);
@@ -271,7 +271,7 @@ std::vector<const Method*> all_methods() {
 INSTANTIATE_TEST_SUITE_P(Every, Methods, ::testing::ValuesIn(all_methods()),
                          [](const auto& tested) { return std::string(tested.param->name); });
 
-TEST(Method, IsFoundByNameAndByNumberAndNoTwoShareEither) {
+TEST(Method, IsFoundByItsUniqueNameAndNumber) {
   for (const Method& method : methods()) {
     EXPECT_EQ(find_method(method.name), &method);
     EXPECT_EQ(find_method(method.number), &method);
@@ -296,8 +296,8 @@ TEST(Pchip, NeverOvershoots) {
   }));
 }
 
-TEST(Akima, TakesWhatRoundingLeavesOfEqualChordsForNothing) {
-  // Slope 1, then slope 10, in steps of 0.1 s: the chords on either side are equal but for an ulp.
+TEST(Akima, TreatsChordsThatDifferByRoundingAsEqual) {
+  // Slope 1, then slope 10, in steps of 0.1 s: the chords of equal slope differ by an ulp at most.
   Mesh mesh = regular_mesh(9, 1, Time(100'000'000));
   mesh.positions = {0, 0.1, 0.2, 0.3, 0.4, 1.4, 2.4, 3.4, 4.4};
   const auto curve = fit({.dimensions = 1, .times = mesh.times, .positions = mesh.positions},
@@ -305,7 +305,7 @@ TEST(Akima, TakesWhatRoundingLeavesOfEqualChordsForNothing) {
   EXPECT_NEAR(state_at(curve, mesh.times[4])[1], 5.5, 1e-12);
 }
 
-TEST(Methods, RefuseValuesThatNoFormulaCouldTake) {
+TEST(Methods, RefuseValuesAbove1e100AndAreFiniteAt1e100) {
   const Mesh mesh = regular_mesh(3, 1, Time(1'000'000));
   for (const Method& method : methods()) {
     for (const double largest_value : {1e100, 1.01e100}) {
@@ -331,7 +331,7 @@ TEST(Rounded, DependsOnItsTimeScale) {
   const Trial trial = random_trial(4, 20, 1, 3);
   FitOptions options = plain_options(*find_method("rounded"));
   const auto plain = fit(trial.waypoints(), options);
-  // Positions in thousandths with a time scale a thousandth as long make the same curve.
+  // Positions times 1000 with a time scale of 1/1000 give the same curve times 1000.
   Trial fine = trial;
   for (double& x : fine.mesh.positions) x *= 1000;
   options.interpolant.time_scale = 1e-3;

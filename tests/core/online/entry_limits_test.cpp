@@ -9,13 +9,14 @@
 
 #include "tests/core/online/entry_trial.hpp"
 
-/// What an entry keeps all along: limits, what the motion has shown, the length of a quaternion.
+/// What an entry keeps from its beginning to its end: the limits, the observed velocity and
+/// acceleration, and the length of a quaternion.
 namespace splinecast::core::entries {
 namespace {
 
 using std::chrono::milliseconds;
 
-/// What an entry may have that begins beyond a limit: as much as it begins with.
+/// An entry that begins beyond a limit may keep its initial value but not exceed it.
 TEST(EntrySearch, FindsEntriesThatKeepEveryLimitFromRandomStates) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -54,14 +55,14 @@ TEST(EntrySearch, FindsEntriesThatKeepEveryLimitFromRandomStates) {
   EXPECT_GT(beyond, 20);
 }
 
-TEST(EntrySearch, FindsNothingWhereAnEntryOrItsStopLeavesItsBounds) {
+TEST(EntrySearch, FindsNothingIfTheEntryOrItsStopLeavesThePositionBounds) {
   const MotionLimits limits{.acceleration = {4}, .lower = {-1}, .upper = {0.05}};
-  SlidingWindow target = target_of(1, sine, 5, limits);  // which lies beyond the bounds
+  SlidingWindow target = target_of(1, sine, 5, limits);  // beyond the bounds
   const From from = at_rest(milliseconds(50), {0});
   EntrySearch search(1, {});
   const EntryRules rules{.limits = &limits, .goes_beyond = true};
   EXPECT_EQ(look_for(search, target, from, rules).outcome, Outcome::none);
-  // Within them, but not where the stop behind it comes to rest.
+  // The target is within the bounds, but the stop after it comes to rest outside.
   const MotionLimits near{.acceleration = {4}, .lower = {-1}, .upper = {0.3}};
   SlidingWindow moving = target_of(1, sine, 5, near);
   const EntryRules near_rules{.limits = &near, .goes_beyond = true};
@@ -77,8 +78,9 @@ DimensionKinds quaternion() {
   return DimensionKinds(dimensions);
 }
 
-/// Far away at first, where the straight way leads past zero, and near in the end.
-TEST(EntrySearch, KeepsTheLengthOfAQuaternionAlongAnEntry) {
+/// The first knots are far from the state, so that the straight path passes near zero; the last
+/// knots are near.
+TEST(EntrySearch, RefusesEntriesThatShortenAQuaternionTooMuch) {
   const double pi = std::numbers::pi;
   const Motion turn = [pi](double s, std::size_t d) {
     return turned(0.95 * pi - (s - 0.1) / 0.18 * 0.75 * pi)[d];
@@ -107,12 +109,12 @@ TEST(EntrySearch, KeepsTheLengthOfAQuaternionAlongAnEntry) {
   for (std::size_t k = 0; k < *found.end.knot; ++k) {
     EXPECT_LT(shortest(quintic_to(target, from, k)), 0.71) << k;
   }
-  // Of four dimensions that are no rotation nothing is asked.
+  // Four linear dimensions need not keep a length.
   EntrySearch linear(4, {});
   EXPECT_EQ(look_for(linear, target, from, {.limits = &none}).end.knot, 0U);
 }
 
-TEST(EntrySearch, WithoutLimitsStaysWithinWhatTheMotionHasShown) {
+TEST(EntrySearch, WithoutLimitsStaysWithinTheObservedVelocityAndAcceleration) {
   const MotionLimits none;
   const MotionLimits shown{.velocity = {3}, .acceleration = {9}};
   SlidingWindow target = target_of(1, sine, 9);
@@ -129,7 +131,7 @@ TEST(EntrySearch, WithoutLimitsStaysWithinWhatTheMotionHasShown) {
   EXPECT_LE(peak(found.entry, 1, 0, 2), 9 * (1 + 1e-9));
 }
 
-TEST(EntrySearch, WithoutLimitsFindsAnEntryFromAnywhereInThreeSecondsAtMost) {
+TEST(EntrySearch, WithoutLimitsFindsAnEntryOfAtMostThreeSecondsFromAnyState) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> exponent(-4, 4);
   std::uniform_real_distribution<double> unit(-1, 1);

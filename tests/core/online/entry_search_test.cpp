@@ -24,7 +24,7 @@ TEST(EntrySearch, TakesTheFirstKnotThatTheLimitsAllow) {
     EntrySearch search(1, {});
     const Found found = look_for(search, target, from, {.limits = &limits, .goes_beyond = true});
     ASSERT_EQ(found.outcome, Outcome::found) << i;
-    // The newest one counts as beyond.
+    // The newest knot counts as beyond.
     const std::size_t end = found.end.knot.value_or(target.knots() - 1);
     for (std::size_t k = 0; k < end; ++k) {
       EXPECT_FALSE(keeps_within(limits, nullptr, quintic_to(target, from, k))) << i << ' ' << k;
@@ -40,7 +40,7 @@ TEST(EntrySearch, TakesTheFirstKnotThatTheLimitsAllow) {
   EXPECT_GT(later, 20);
 }
 
-TEST(EntrySearch, PassesOverKnotsThatAreNearerThanTheShortestEntry) {
+TEST(EntrySearch, PassesOverKnotsThatAreCloserThanTheShortestEntry) {
   const MotionLimits none;
   SlidingWindow target = target_of(1, sine, 10);
   const From from = at_rest(milliseconds(90), {sine(0.09, 0)});
@@ -54,7 +54,7 @@ TEST(EntrySearch, PassesOverKnotsThatAreNearerThanTheShortestEntry) {
   }
 }
 
-TEST(EntrySearch, GoesBeyondTheNewestKnotOntoItsExtrapolationWhereNoKnotPasses) {
+TEST(EntrySearch, EntersTheExtrapolationIfTheLimitsAllowNoKnot) {
   const MotionLimits limits{.acceleration = {4}};
   SlidingWindow target = target_of(1, sine, 5, limits);
   const From from = at_rest(milliseconds(90), {sine(0.09, 0) - 0.5});
@@ -80,8 +80,8 @@ TEST(EntrySearch, GoesBeyondTheNewestKnotOntoItsExtrapolationWhereNoKnotPasses) 
   EXPECT_LE(peak(found.entry, 1, 0, 2), 4 * (1 + 1e-9));
 }
 
-TEST(EntrySearch, FallsBackToTheFirstKnotThatItReachesWhereWhatLiesBehindItBreaksTheLimits) {
-  // A jump at the end of the target, which is beyond the limits wherever it is entered.
+TEST(EntrySearch, FallsBackToTheFirstReachableKnotIfTheTargetAfterItExceedsTheLimits) {
+  // The jump at the end of the target exceeds the limits, whichever knot the entry ends at.
   const Motion jumps = [](double s, std::size_t) { return s < 0.29 ? 0.1 * s : 5.0; };
   const MotionLimits limits{.acceleration = {10}};
   SlidingWindow target = target_of(1, jumps, 11, limits);
@@ -97,12 +97,12 @@ TEST(EntrySearch, FallsBackToTheFirstKnotThatItReachesWhereWhatLiesBehindItBreak
       EXPECT_FALSE(keeps_within(limits, nullptr, quintic_to(target, from, k))) << k;
     }
   } else {
-    ADD_FAILURE() << "went beyond the jump";
+    ADD_FAILURE() << "the entry ends after the jump";
   }
 }
 
-TEST(EntrySearch, PrefersALaterKnotBehindWhichTheTargetKeepsItsLimits) {
-  // A hump at the beginning that is beyond the limits, and rest behind it.
+TEST(EntrySearch, PrefersALaterKnotAfterWhichTheTargetKeepsTheLimits) {
+  // A hump that exceeds the limits at the beginning, then rest.
   const Motion hump = [](double s, std::size_t) { return s > 0.13 && s < 0.15 ? 0.02 : 0.0; };
   const MotionLimits limits{.acceleration = {10}};
   SlidingWindow target = target_of(1, hump, 9, limits, milliseconds(40));
@@ -120,7 +120,7 @@ TEST(EntrySearch, PrefersALaterKnotBehindWhichTheTargetKeepsItsLimits) {
   EXPECT_FALSE(keeps_within(limits, nullptr, segment));
 }
 
-TEST(EntrySearch, TriesNoMoreCandidatesAtOnceThanItMayAndFindsTheSame) {
+TEST(EntrySearch, FindsTheSameEntryForAnyNumberOfTriesPerCall) {
   std::mt19937_64 random(6);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int i = 0; i < 100; ++i) {
@@ -143,7 +143,7 @@ TEST(EntrySearch, TriesNoMoreCandidatesAtOnceThanItMayAndFindsTheSame) {
   }
 }
 
-TEST(EntrySearch, WithoutATryLeftTriesNothing) {
+TEST(EntrySearch, TriesNothingIfNoTryIsLeft) {
   const MotionLimits limits{.acceleration = {10}};
   SlidingWindow target = target_of(1, sine, 9, limits);
   const From from = at_rest(milliseconds(90), {sine(0.09, 0)});
@@ -165,7 +165,7 @@ TEST(EntrySearch, SpendsNoTryOnKnotsThatAreOutOfReach) {
   EXPECT_EQ(found.tried, 0);
 }
 
-TEST(EntrySearch, TakesAKnotOnceAsManyNewerOnesAreKnownAsItMust) {
+TEST(EntrySearch, TakesAKnotOnlyAfterTheRequiredNumberOfNewerKnotsIsKnown) {
   const MotionLimits none;
   const EntryRules rules{.limits = &none, .newer = 8};
   SlidingWindow target(1, {});
@@ -185,14 +185,14 @@ TEST(EntrySearch, TakesAKnotOnceAsManyNewerOnesAreKnownAsItMust) {
   EXPECT_EQ(search.end().known, 9U);
 }
 
-TEST(EntrySearch, LooksOnlyAtNewKnotsUntilItIsRestarted) {
+TEST(EntrySearch, ConsidersOnlyNewKnotsUntilItIsRestarted) {
   const MotionLimits limits{.acceleration = {10}};
   SlidingWindow target = target_of(1, sine, 4, limits);
   const From from = at_rest(milliseconds(90), {sine(0.09, 0) - 0.5});
   EntrySearch search(1, {});
   const EntryRules rules{.limits = &limits};
   EXPECT_EQ(look_for(search, target, from, rules).outcome, Outcome::none);
-  // A state from which it would reach the first knot, if it looked at it.
+  // The search would reach the first knot from this state, if it considered that knot.
   From near = from;
   near.position[0] = sine(0.06, 0);
   near.velocity[0] = 1;

@@ -13,16 +13,16 @@
 
 #include "core/online/entry_search.hpp"
 
-/// What the tests of entries share: states beside a target, targets, and searches from one to the
-/// other.
+/// Shared by the tests of entries: states beside a target, targets, and searches from a state onto
+/// a target.
 namespace splinecast::core::entries {
 
 using Outcome = EntrySearch::Outcome;
 
-/// More tries than any search takes.
+/// More tries than any search needs.
 inline constexpr int kAny = 1000;
 
-/// A state with values of its own.
+/// A state that owns its values.
 struct From {
   Time time{};
   std::vector<double> position, velocity, acceleration;
@@ -39,10 +39,10 @@ inline From at_rest(Time t, std::vector<double> x) {
 /// The position of dimension d after s seconds.
 using Motion = std::function<double(double, std::size_t)>;
 
-/// Velocities and accelerations of up to 1.
+/// A motion with velocities and accelerations of at most 1.
 inline double sine(double s, std::size_t d) { return std::sin(s + static_cast<double>(d)); }
 
-/// A target with knots every `step` from 100 ms on.
+/// A target with a knot every `step`, the first one at 100 ms.
 inline SlidingWindow target_of(std::size_t dimensions, const Motion& motion, int knots,
                                const MotionLimits& limits = {},
                                Time step = std::chrono::milliseconds(20)) {
@@ -58,7 +58,7 @@ inline SlidingWindow target_of(std::size_t dimensions, const Motion& motion, int
   return window;
 }
 
-/// All that one search finds, however few candidates it may try at once.
+/// The result of one search, over all of its calls.
 struct Found {
   Outcome outcome = Outcome::more;
   EntryEnd end;
@@ -66,7 +66,8 @@ struct Found {
   int tried = 0;
 };
 
-/// Starts a search anew, with the end that an entry before it had if there was one.
+/// Restarts a search and runs it to its end with at most `at_once` tries per call. `former_end`:
+/// when the previous entry ended, if there was one.
 inline Found look_for(EntrySearch& search, const SlidingWindow& target, const From& from,
                       const EntryRules& rules, int at_once = kAny,
                       std::optional<Time> former_end = std::nullopt) {
@@ -102,20 +103,20 @@ inline double peak(const Segment& segment, std::size_t dimensions, std::size_t d
   return most;
 }
 
-/// The quintic from a state to the target's at a knot.
+/// The quintic from a state to the target's state at a knot.
 inline Segment quintic_to(const SlidingWindow& target, const From& from, std::size_t knot) {
   const Knot at = target.knot(knot);
   std::vector<double> acceleration(target.dimensions());
   target.write_acceleration(knot, acceleration);
   Segment out(target.dimensions());
-  build_splice(from.instant(), {at.time, at.position, at.velocity, acceleration}, out);
+  build_entry(from.instant(), {at.time, at.position, at.velocity, acceleration}, out);
   return out;
 }
 
 /// Expects an entry to join two states.
 inline void expect_leads(const Segment& entry, const From& from, const Instant& to) {
   State state(from.position.size());
-  EXPECT_EQ(entry.kind, SegmentKind::splice);
+  EXPECT_EQ(entry.kind, SegmentKind::entry);
   EXPECT_EQ(entry.left, from.time);
   EXPECT_EQ(entry.right, to.time);
   evaluate(entry.order, entry.coefficients, 0, state.ref());

@@ -15,7 +15,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// A window of a random walk.
+/// A window whose waypoints are a random walk.
 SlidingWindow walk(std::uint64_t seed, std::size_t dimensions, const WindowOptions& how = {},
                    std::size_t knots = 12) {
   const testing::Mesh mesh = testing::random_mesh(seed, knots, dimensions, 3);
@@ -30,7 +30,7 @@ State state_of(const Extrapolation& extrapolation, Time t, std::size_t dimension
   return state;
 }
 
-TEST(Extrapolation, IsAStraightLineAtTheNewestKnotsVelocityAndThenItsStop) {
+TEST(Extrapolation, IsAStraightLineAtTheNewestKnotsVelocityFollowedByAStop) {
   for (std::uint64_t seed = 1; seed < 20; ++seed) {
     const SlidingWindow window = walk(seed, 3);
     const Knot newest = window.knot(window.knots() - 1);
@@ -64,7 +64,7 @@ TEST(Extrapolation, IsAStraightLineAtTheNewestKnotsVelocityAndThenItsStop) {
   }
 }
 
-TEST(Extrapolation, IsContinuousUpToItsAccelerationAndRestsForEver) {
+TEST(Extrapolation, IsContinuousUpToItsAccelerationAndEndsAtRest) {
   const SlidingWindow window = walk(5, 2);
   Extrapolation extrapolation(2);
   extrapolation.begin(window);
@@ -91,7 +91,7 @@ TEST(Extrapolation, IsContinuousUpToItsAccelerationAndRestsForEver) {
   }
 }
 
-TEST(Extrapolation, KeepsFourFifthsOfAVelocityLimitAndStopsWithinTheOthers) {
+TEST(Extrapolation, UsesAtMostFourFifthsOfAVelocityLimitAndStopsWithinTheOthers) {
   for (std::uint64_t seed = 1; seed < 20; ++seed) {
     WindowOptions how{.stop_time = milliseconds(1)};
     how.limits = {.velocity = {3, 0}, .acceleration = {5, 7}, .jerk = {0, 200}};
@@ -112,7 +112,7 @@ TEST(Extrapolation, KeepsFourFifthsOfAVelocityLimitAndStopsWithinTheOthers) {
   }
 }
 
-TEST(Extrapolation, GoesOnFromTheNewestKnotThatThereIsNow) {
+TEST(Extrapolation, StartsFromTheNewestKnotAtEachBegin) {
   SlidingWindow window = walk(9, 1);
   Extrapolation extrapolation(1);
   extrapolation.begin(window);

@@ -6,13 +6,13 @@
 
 #include "tests/core/online/entry_trial.hpp"
 
-/// A search that is begun again takes the end that it had before.
+/// A restarted search reuses the end of its previous entry.
 namespace splinecast::core::entries {
 namespace {
 
 using std::chrono::milliseconds;
 
-/// The durations beyond the newest knot of a target that is 0.5 away, and the first that passes.
+/// A search onto a target that is 0.5 away, so that the entry ends after the newest knot.
 class FormerEnd : public ::testing::Test {
  protected:
   [[nodiscard]] Found look(std::optional<Time> former_end, int at_once = kAny) {
@@ -25,11 +25,11 @@ class FormerEnd : public ::testing::Test {
     State at(1);
     extrapolation.state_at(end, at.ref());
     Segment quintic(1);
-    build_splice(from_.instant(), {end, at.position(), at.velocity(), at.acceleration()}, quintic);
+    build_entry(from_.instant(), {end, at.position(), at.velocity(), at.acceleration()}, quintic);
     return keeps_within(limits_, nullptr, quintic);
   }
-  /// A time after the last duration that does not pass and before the first one that does, which
-  /// passes or not.
+  /// A time between the last duration that exceeds the limits and the first one that keeps them.
+  /// `passing`: whether an entry that ends at this time keeps them.
   [[nodiscard]] Time between(bool passing) {
     const Time found = look(std::nullopt).end.state.time;
     const auto before = Time(
@@ -38,7 +38,7 @@ class FormerEnd : public ::testing::Test {
       const Time end = from_.time + before + (found - from_.time - before) * i / 100;
       if (passes(end) == passing) return end;
     }
-    ADD_FAILURE() << "there is none";
+    ADD_FAILURE() << "no such time exists";
     return {};
   }
 
@@ -63,19 +63,19 @@ TEST_F(FormerEnd, IsTakenAgainBeforeTheNextLongerDuration) {
   }
 }
 
-TEST_F(FormerEnd, ThatDoesNotPassIsTriedOnceAndDelaysTheSearchByNothingElse) {
+TEST_F(FormerEnd, BeyondTheLimitsCostsOneTryAndDelaysTheEntryByAtMostOneGrowthStep) {
   const Found anew = look(std::nullopt);
   const Found found = look(between(false));
   ASSERT_EQ(found.outcome, Outcome::found);
-  // The next duration grows from the former end: it is no longer than the one that was found plus
-  // one step.
+  // The next duration grows from the former end: the entry is at most one growth step longer than
+  // without it.
   EXPECT_GT(found.end.state.time, anew.end.state.time);
   EXPECT_LE(found.end.state.time - from_.time,
             (anew.end.state.time - from_.time) * EntrySearch::kGrowth);
   EXPECT_LE(found.tried, anew.tried + 1);
 }
 
-TEST_F(FormerEnd, ThatLiesBeforeTheNewestKnotOrBehindAShorterDurationThatPassesIsNotTaken) {
+TEST_F(FormerEnd, BeforeTheNewestKnotOrAfterAShorterDurationWithinTheLimitsIsNotTaken) {
   const Found anew = look(std::nullopt);
   for (const Time former :
        {from_.time - milliseconds(1), target_.time(2), target_.time(4),

@@ -15,7 +15,7 @@ namespace {
 
 constexpr Time kMillisecond{1'000'000};
 
-/// x(t) = 1 + 2t − 3t² and its derivatives; of the second dimension twice as much.
+/// x(t) = 1 + 2t − 3t² and its derivatives; the second dimension has twice these values.
 std::vector<double> parabola(Time t, int derivative) {
   const double s = to_seconds(t);
   const std::array<double, 3> x{1 + 2 * s - 3 * s * s, 2 - 6 * s, -6};
@@ -67,7 +67,7 @@ void expect_near(const std::vector<double>& got, const std::vector<double>& want
   for (std::size_t d = 0; d < got.size(); ++d) EXPECT_NEAR(got[d], wanted[d], 1e-10) << d;
 }
 
-TEST(LaterRun, IsThePolynomialThatItsWaypointsLieOn) {
+TEST(LaterRun, ReproducesTheParabolaThroughItsWaypoints) {
   LaterRun run;
   for (const int t : {17, 30, 37, 50, 62, 70, 81, 99, 110}) run.append(t * kMillisecond);
   EXPECT_TRUE(run.window.is_later_run());
@@ -75,21 +75,21 @@ TEST(LaterRun, IsThePolynomialThatItsWaypointsLieOn) {
   EXPECT_EQ(run.window.segments(), 9U);
   EXPECT_EQ(run.segment(0).left, 17 * kMillisecond);
   for (std::size_t i = 0; i + 1 < run.window.segments(); ++i) expect_parabola(run.segment(i), 1e-8);
-  EXPECT_EQ(run.segment(8).kind, SegmentKind::stop_tail);
+  EXPECT_EQ(run.segment(8).kind, SegmentKind::stop);
 }
 
 TEST(LaterRun, BeginsWithTheSlopeOfTheParabolaThroughItsFirstThreeWaypoints) {
   LaterRun run;
   for (const int t : {17, 30, 37}) run.append(t * kMillisecond);
   expect_near(run.first_velocity(), parabola(17 * kMillisecond, 1));
-  // What follows does not change it.
+  // Later waypoints do not change it.
   const std::vector<double> third = run.first_velocity();
   const std::array far{7.0, -7.0};
   run.window.append({.time = 50 * kMillisecond, .position = far});
   EXPECT_EQ(run.first_velocity(), third);
 }
 
-TEST(LaterRun, WithoutAnyOtherWaypointBeginsAtRestAndWithOneOtherAlongTheirLine) {
+TEST(LaterRun, OfOneWaypointBeginsAtRestAndOfTwoWithTheSlopeBetweenThem) {
   LaterRun run;
   run.append(17 * kMillisecond);
   EXPECT_EQ(run.first_velocity(), std::vector<double>(2));
@@ -117,7 +117,7 @@ TEST(LaterRun, DoesNotDependOnTheRunBefore) {
   }
 }
 
-TEST(LaterRun, OfOneWaypointRestsThereAtItsFinish) {
+TEST(LaterRun, OfOneWaypointIsAHoldAfterTheFinish) {
   LaterRun run;
   run.append(17 * kMillisecond);
   run.window.finish({.kind = ConditionKind::natural, .value = {}});
@@ -125,7 +125,7 @@ TEST(LaterRun, OfOneWaypointRestsThereAtItsFinish) {
   EXPECT_EQ(run.segment(0).kind, SegmentKind::hold);
 }
 
-TEST(LaterRun, AnAppendLeavesEverythingFrozenAlone) {
+TEST(LaterRun, AnAppendChangesNoFrozenSegment) {
   for (const std::size_t settle : {0U, 1U, 8U}) {
     LaterRun run({.settle = settle});
     for (const int t : {17, 30, 37, 50}) run.append(t * kMillisecond);
@@ -142,7 +142,7 @@ TEST(LaterRun, AnAppendLeavesEverythingFrozenAlone) {
   }
 }
 
-TEST(SlidingWindow, ChangesThawedKnotsAgainAsIfTheyHadNeverBeenFrozen) {
+TEST(SlidingWindow, ChangesThawedKnotsAsIfTheyHadNeverBeenFrozen) {
   LaterRun frozen;
   LaterRun never;
   for (const int t : {17, 30, 37, 50}) {
@@ -160,11 +160,11 @@ TEST(SlidingWindow, ChangesThawedKnotsAgainAsIfTheyHadNeverBeenFrozen) {
   for (std::size_t i = 0; i < 5; ++i) {
     EXPECT_EQ(frozen.segment(i).coefficients, never.segment(i).coefficients) << i;
   }
-  frozen.window.thaw_knots(3);  // no more are frozen by it
+  frozen.window.thaw_knots(3);  // freezes no knots
   EXPECT_EQ(frozen.window.frozen_knots(), 1U);
 }
 
-TEST(SlidingWindow, SaysTheAccelerationsAtItsKnots) {
+TEST(SlidingWindow, WritesTheAccelerationsAtItsKnots) {
   for (const auto* method : {"c2", "pchip", "akima", "smoothing"}) {
     WindowOptions how{.interpolant = {.method = find_method(method), .lambda = 1e-6}};
     how.settle = default_settle(*how.interpolant.method);
@@ -194,7 +194,7 @@ TEST(SlidingWindow, SaysTheAccelerationsAtItsKnots) {
   }
 }
 
-TEST(LaterRun, GoesOnBitForBitWhereAWindowStoodThatDied) {
+TEST(LaterRun, ContinuesBitForBitInARestoredWindow) {
   const std::vector<int> times{17, 30, 37, 50, 62, 70, 81, 99, 110, 120, 131, 140, 150};
   for (std::size_t cut = 0; cut < times.size(); ++cut) {
     LaterRun whole({.settle = 4});
@@ -219,7 +219,7 @@ TEST(LaterRun, GoesOnBitForBitWhereAWindowStoodThatDied) {
 constexpr std::array kGiven{1.5, -0.5};
 constexpr std::array kBent{3.0, 7.0};
 
-/// A later run of a window whose streams start from a halt.
+/// A later run of a window whose start is a full stop.
 LaterRun run_by(std::string_view method, WindowOptions how = {}) {
   how.interpolant = {.method = find_method(method), .lambda = 1e-6};
   how.settle = std::max(how.settle, default_settle(*how.interpolant.method));
@@ -251,7 +251,7 @@ TEST(LaterRun, KeepsTheDerivativesThatItsFirstWaypointGives) {
   }
 }
 
-TEST(LaterRun, SaysByHowManyKnotsItsFirstOneWasShaped) {
+TEST(LaterRun, CountsTheNewerKnotsThatShapedItsFirstKnot) {
   LaterRun run({.settle = 8});
   for (std::uint32_t i = 0; i < 12; ++i) {
     run.append(10 * (static_cast<int>(i) + 1) * kMillisecond);

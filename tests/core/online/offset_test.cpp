@@ -10,9 +10,9 @@
 #include "splinecast/method.hpp"
 #include "tests/fixtures/curves/method_trial.hpp"
 
-// Adding a constant to every value moves the curve and changes nothing else, but for what rounding
-// makes of the positions. Encoder readings are the hard case: many chords of theirs are equal, or
-// would be but for rounding.
+// Adding a constant to every value shifts the curve and changes nothing else, except by the
+// rounding of the positions. Encoder readings are the hard case: many of their chords are equal, or
+// differ only by rounding.
 namespace splinecast::core {
 namespace {
 
@@ -21,8 +21,8 @@ using testing::plain_options;
 constexpr std::size_t kKnots = 4000;
 constexpr double kInterval = 0.002;
 
-/// A joint of a robot arm as its log has it, 500 Hz: moves at constant speed with ramps of constant
-/// acceleration between rests, in steps of `quantum`.
+/// The log of a robot arm's joint at 500 Hz, in steps of `quantum`: alternately rest and constant
+/// speed, with ramps of constant acceleration between them.
 std::vector<double> joint_log(double quantum) {
   std::vector<double> positions;
   double x = 0.3;
@@ -43,7 +43,7 @@ std::vector<double> velocities(const Method& method, std::vector<double> positio
   for (std::size_t i = 0; i < kKnots; ++i) {
     times.emplace_back(static_cast<std::int64_t>(i) * 2'000'000);
   }
-  // What is given to methods that ask for it; it has no part in this.
+  // For the methods that need derivatives; they do not matter here.
   const std::vector<double> zeros(kKnots);
   const auto curve = fit({.dimensions = 1,
                           .times = times,
@@ -71,8 +71,8 @@ TEST(Offset, ChangesNoVelocityOfALogBeyondRounding) {
       const double peak = std::abs(*std::ranges::max_element(wanted));
       for (const double offset : {4.0, -4.0, 1e3, 1e6}) {
         const double found = largest_difference(velocities(method, log, offset), wanted);
-        // A position is off by ε·|x|, a chord by that over h. Weights of a few quanta are off by
-        // ε·|x|/quantum of themselves.
+        // The rounding error of a position is ε·|x|, that of a chord ε·|x|/h. The relative error of
+        // weights that are a few quanta is ε·|x|/quantum.
         const double position = std::abs(offset) * std::numeric_limits<double>::epsilon();
         const double tolerance = 4 * position / kInterval + position / quantum * peak;
         EXPECT_LT(found, std::max(tolerance, 1e-9 * peak))

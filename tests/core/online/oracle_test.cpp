@@ -18,7 +18,7 @@ class Errors {
   Errors(const testing::PolynomialTrajectory& trajectory, std::size_t dimensions)
       : trajectory_(trajectory), segment_(dimensions), state_(dimensions) {}
 
-  /// Takes the segments that have settled since the last call.
+  /// Compares the segments that have settled since the last call.
   void compare(const SlidingWindow& window) {
     for (; next_ < window.settled_segments(); ++next_) {
       window.segment(next_, segment_);
@@ -30,7 +30,7 @@ class Errors {
     }
   }
   [[nodiscard]] std::size_t compared() const { return next_; }
-  /// 0: of position; 1: of velocity.
+  /// The largest error: 0: of the position; 1: of the velocity.
   [[nodiscard]] double worst(std::size_t derivative) const { return worst_[derivative]; }
 
  private:
@@ -49,7 +49,7 @@ class Errors {
   std::size_t next_ = 0;
 };
 
-TEST(SlidingWindowAgainstPolynomials, TheFigureEightIsMetWithin2eMinus5InPosition) {
+TEST(SlidingWindowAgainstPolynomials, TheFigureEightIsReproducedWithin2eMinus5InPosition) {
   const auto path = testing::shared_file("data/crazyswarm2_poly/figure8.csv");
   REQUIRE_SHARED_FILE(path);
   const testing::PolynomialTrajectory trajectory(path);

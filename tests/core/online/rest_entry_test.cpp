@@ -5,13 +5,13 @@
 
 #include "tests/core/online/entry_trial.hpp"
 
-/// Entries to the rest at the end of a stream.
+/// Entries that end at rest at the end of a stream.
 namespace splinecast::core::entries {
 namespace {
 
 using std::chrono::milliseconds;
 
-TEST(EntrySearch, OfTheEndTakesItsOwnTimeIfTheLimitsAllow) {
+TEST(EntrySearch, EndsTheEntryToRestAtItsOwnTimeIfTheLimitsAllow) {
   const MotionLimits limits{.acceleration = {10}};
   const From from = at_rest(milliseconds(100), {0});
   const From end = at_rest(milliseconds(600), {0.2});
@@ -24,10 +24,10 @@ TEST(EntrySearch, OfTheEndTakesItsOwnTimeIfTheLimitsAllow) {
   expect_leads(search.entry(), from, end.instant());
 }
 
-TEST(EntrySearch, OfTheEndIsAsLateAsTheLimitsAskForAndHardlyLater) {
+TEST(EntrySearch, DelaysTheEntryToRestByAtMostOneGrowthStepMoreThanTheLimitsRequire) {
   const MotionLimits limits{.acceleration = {10}};
   for (const double distance : {0.01, 0.2, 3.0, 1000.0}) {
-    for (const int own : {-500, 0, 1, 30}) {  // it may have passed
+    for (const int own : {-500, 0, 1, 30}) {  // ms; the first one is in the past
       const From from = at_rest(milliseconds(100), {0});
       const From end = at_rest(milliseconds(100 + own), {distance});
       EntrySearch search(1, {});

@@ -20,7 +20,7 @@ using testing::Mesh;
 using testing::query_times;
 using testing::random_mesh;
 
-constexpr Tail kTails[] = {Tail::bessel, Tail::parabolic, Tail::natural, Tail::rest};
+constexpr Tail kTails[] = {Tail::bessel, Tail::parabolic, Tail::natural, Tail::clamped};
 
 WindowOptions options(std::size_t settle, Tail tail, Condition start = {}) {
   return {.settle = settle, .tail = tail, .start = std::move(start), .stop_time = Time(1000)};
@@ -42,7 +42,7 @@ PiecewisePolynomial online(const Mesh& mesh, const WindowOptions& how, const Con
   return joined(online_segments(mesh, how, end));
 }
 
-TEST(SlidingWindow, AConvergedVelocityIsThatOfAFullSolveWithTheTailAtTheLastWaypoint) {
+TEST(SlidingWindow, AConvergedVelocityEqualsAFullSolveWithTheTailAtTheLastWaypoint) {
   for (const std::size_t settle : {0U, 1U, 4U, 8U, 16U}) {
     for (const Tail tail : kTails) {
       for (const std::uint64_t seed : {1U, 2U, 3U}) {
@@ -67,7 +67,7 @@ TEST(SlidingWindow, AConvergedVelocityIsThatOfAFullSolveWithTheTailAtTheLastWayp
   }
 }
 
-TEST(SlidingWindow, NoAppendTouchesASettledSegment) {
+TEST(SlidingWindow, NoAppendChangesASettledSegment) {
   for (const std::size_t settle : {0U, 1U, 2U, 8U}) {
     const Mesh mesh = random_mesh(4, 40, 3, 10);
     SlidingWindow window(3, options(settle, Tail::bessel));
@@ -110,7 +110,7 @@ TEST(SlidingWindow, WithALongLagEqualsTheBatchSolveInPositionVelocityAndAccelera
   }
 }
 
-TEST(SlidingWindow, PositionAndVelocityNeverStepAndTheAccelerationStepIsTheOneCarried) {
+TEST(SlidingWindow, PositionAndVelocityNeverStepAndEachSegmentCarriesItsAccelerationStep) {
   EXPECT_TRUE(rc::check("joins", [](std::uint64_t seed) {
     const std::size_t settle = seed % 9;
     const Mesh mesh = random_mesh(seed, 2 + seed % 50, 2, 10);
@@ -149,7 +149,7 @@ TEST(SlidingWindow, TheNewestSegmentComesToRestWhileTheStreamRuns) {
     window.append({mesh.times[n], mesh.position(n)});
     ASSERT_EQ(window.segments(), n + 1);
     window.segment(n, segment);
-    EXPECT_EQ(segment.kind, SegmentKind::stop_tail);
+    EXPECT_EQ(segment.kind, SegmentKind::stop);
     EXPECT_EQ(segment.left, mesh.times[n]);
     core::evaluate(segment.order, segment.coefficients, 0.3, state.ref());
     for (std::size_t d = 0; d < 2; ++d) {
@@ -165,7 +165,7 @@ TEST(SlidingWindow, OneWaypointIsAHoldBeforeAndAfterTheFinish) {
   window.append({Time(77), x});
   Segment segment(2);
   State state(2);
-  for (const SegmentKind kind : {SegmentKind::stop_tail, SegmentKind::hold}) {
+  for (const SegmentKind kind : {SegmentKind::stop, SegmentKind::hold}) {
     ASSERT_EQ(window.segments(), 1U);
     window.segment(0, segment);
     EXPECT_EQ(segment.kind, kind);
@@ -176,7 +176,7 @@ TEST(SlidingWindow, OneWaypointIsAHoldBeforeAndAfterTheFinish) {
   }
 }
 
-TEST(SlidingWindow, AFinishKeepsItsConditionWhateverTheLag) {
+TEST(SlidingWindow, AFinishKeepsItsConditionAtAnyLag) {
   for (const std::size_t settle : {0U, 1U, 2U, 8U, 64U}) {
     const Mesh mesh = random_mesh(9, 12, 1, 3);
     const auto curve = online(mesh, options(settle, Tail::bessel), {ConditionKind::halt, {}});
@@ -187,7 +187,7 @@ TEST(SlidingWindow, AFinishKeepsItsConditionWhateverTheLag) {
   }
 }
 
-TEST(SlidingWindow, ARestoredWindowGoesOnBitForBit) {
+TEST(SlidingWindow, ARestoredWindowContinuesBitForBit) {
   for (const std::size_t settle : {0U, 1U, 8U}) {
     for (std::size_t cut = 1; cut < 24; ++cut) {
       const Mesh mesh = random_mesh(10, 24, 2, 4);
@@ -217,9 +217,9 @@ TEST(SlidingWindow, ARestoredWindowGoesOnBitForBit) {
 TEST(SlidingWindow, RefusesOptionsOutOfRange) {
   EXPECT_THROW(SlidingWindow(0, {}), std::invalid_argument);
   EXPECT_THROW(SlidingWindow(65, {}), std::invalid_argument);
-  EXPECT_THROW(SlidingWindow(1, options(65, Tail::rest)), std::invalid_argument);
+  EXPECT_THROW(SlidingWindow(1, options(65, Tail::clamped)), std::invalid_argument);
   EXPECT_THROW(SlidingWindow(1, {.stop_time = Time(0)}), std::invalid_argument);
-  EXPECT_THROW(SlidingWindow(2, options(8, Tail::rest, {ConditionKind::velocity, {1}})),
+  EXPECT_THROW(SlidingWindow(2, options(8, Tail::clamped, {ConditionKind::velocity, {1}})),
                std::invalid_argument);
 }
 

@@ -25,7 +25,7 @@ bool keeps_start(const Motion& motion, int knots, Time step, const MotionLimits&
 }
 
 double slow(double s, std::size_t /*d*/) { return 1 - std::cos(s); }
-double sudden(double s, std::size_t /*d*/) { return s; }  // at once at velocity 1
+double sudden(double s, std::size_t /*d*/) { return s; }  // velocity 1 from the beginning
 
 TEST(EntrySearch, AllowsAStartWhoseSegmentsKeepTheLimits) {
   for (const int knots : {2, 3, 5, 8}) {
@@ -36,26 +36,26 @@ TEST(EntrySearch, AllowsAStartWhoseSegmentsKeepTheLimits) {
   }
 }
 
-TEST(EntrySearch, AllowsAStartWithoutALimitThatStaysWithinWhatTheMotionShows) {
+TEST(EntrySearch, WithoutALimitAllowsAStartWithinTheObservedVelocityAndAcceleration) {
   const MotionLimits shown{.velocity = {3}, .acceleration = {4}};
   for (const int knots : {2, 3, 4, 5, 8}) {
     EXPECT_TRUE(keeps_start(slow, knots, milliseconds(20), {}, &shown)) << knots;
     EXPECT_FALSE(keeps_start(sudden, knots, milliseconds(20), {}, &shown)) << knots;
   }
-  // A given limit counts instead of what the motion shows.
+  // A given limit replaces the observed one.
   const MotionLimits wide{.acceleration = {10'000}};
   EXPECT_TRUE(keeps_start(sudden, 8, milliseconds(20), wide, &shown));
 }
 
-/// What a motion at 30 Hz shows by its first waypoints: three times the mean velocity, and the
-/// acceleration of a stop from that velocity.
+/// The limits that the first waypoints of a motion at 30 Hz show: three times the mean velocity,
+/// and the mean velocity divided by the stop time as acceleration.
 MotionLimits shown_at_30_hz(const Motion& motion, Time step) {
   const double mean =
       std::abs(motion(to_seconds(2 * step), 0) - motion(0, 0)) / to_seconds(2 * step);
   return {.velocity = {3 * mean}, .acceleration = {mean / to_seconds(WindowOptions().stop_time)}};
 }
 
-TEST(EntrySearch, AllowsNoStartInMidMotionOfWhichThreeWaypointsAreKnown) {
+TEST(EntrySearch, AllowsNoStartInMidMotionIfThreeWaypointsAreKnown) {
   const Time step{33'333'333};
   for (const double phase : {0.0, 0.3, 0.6, 2.5}) {
     const Motion moving = [phase](double s, std::size_t) { return std::sin(2 * s + phase); };
@@ -66,7 +66,7 @@ TEST(EntrySearch, AllowsNoStartInMidMotionOfWhichThreeWaypointsAreKnown) {
   }
 }
 
-TEST(EntrySearch, AllowsTheStartOfAMinimumJerkMotionOfWhichThreeWaypointsAreKnown) {
+TEST(EntrySearch, AllowsTheStartOfAMinimumJerkMotionIfThreeWaypointsAreKnown) {
   const Time step{33'333'333};
   for (const double duration : {0.5, 1.0, 2.0, 5.0}) {
     const Motion min_jerk = [duration](double s, std::size_t) {

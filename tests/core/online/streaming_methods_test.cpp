@@ -11,7 +11,7 @@
 #include "tests/fixtures/curves/online.hpp"
 #include "tests/fixtures/curves/streaming_methods.hpp"
 
-// Every method in the sliding window: what it gives there is what it gives at once.
+// Every method gives the same curve in the sliding window as in the batch.
 namespace splinecast::core {
 namespace {
 
@@ -27,7 +27,7 @@ class StreamingMethods : public ::testing::TestWithParam<const Method*> {
 
 std::vector<Condition> online_conditions() {
   return {{ConditionKind::own, {}},           {ConditionKind::natural, {}},
-          {ConditionKind::rest, {}},          {ConditionKind::halt, {}},
+          {ConditionKind::clamped, {}},       {ConditionKind::halt, {}},
           {ConditionKind::velocity, {1, -2}}, {ConditionKind::acceleration, {3, 0.5}}};
 }
 
@@ -59,7 +59,7 @@ TEST_P(StreamingMethods, GiveTheBitsOfTheBatchWithTheSameConditionsIfTheyAreLoca
   }
 }
 
-TEST_P(StreamingMethods, SettleAsManyKnotsBehindAsTheyLookAhead) {
+TEST_P(StreamingMethods, SettleAfterAsManyKnotsAsTheyLookAhead) {
   const Trial trial = random_trial(5, 30, 2, 4);
   SlidingWindow window(2, options());
   for (std::size_t n = 0; n < 30; ++n) {
@@ -69,7 +69,7 @@ TEST_P(StreamingMethods, SettleAsManyKnotsBehindAsTheyLookAhead) {
   }
 }
 
-TEST_P(StreamingMethods, TouchNoSettledSegmentAndNeverStepInPositionOrVelocity) {
+TEST_P(StreamingMethods, ChangeNoSettledSegmentAndNeverStepInPositionOrVelocity) {
   EXPECT_TRUE(rc::check("settled", [](std::uint64_t seed) {
     const Trial trial = random_trial(seed, 2 + seed % 90, 2, 6);
     const auto all = trial.waypoints();
@@ -101,7 +101,7 @@ TEST_P(StreamingMethods, TouchNoSettledSegmentAndNeverStepInPositionOrVelocity) 
   }));
 }
 
-TEST_P(StreamingMethods, GoOnBitForBitInANewWindow) {
+TEST_P(StreamingMethods, ContinueBitForBitInARestoredWindow) {
   const Trial trial = random_trial(10, 100, 2, 4);
   const auto all = trial.waypoints();
   for (const std::size_t cut : {1U, 2U, 3U, 4U, 5U, 6U, 12U, 40U, 63U, 64U, 65U, 66U, 67U, 80U}) {
@@ -143,7 +143,7 @@ TEST_P(StreamingMethods, RefuseALagShorterThanTheirLookAhead) {
 INSTANTIATE_TEST_SUITE_P(Every, StreamingMethods, ::testing::ValuesIn(testing::streaming_methods()),
                          [](const auto& tested) { return std::string(tested.param->name); });
 
-TEST(SlidingWindow, RefusesWhatNeedsAllWaypointsAtOnce) {
+TEST(SlidingWindow, RefusesMethodsAndConditionsThatNeedAllWaypointsAtOnce) {
   EXPECT_THROW(SlidingWindow(1, {.interpolant = {.method = find_method("normalized")}}),
                std::invalid_argument);
   for (const ConditionKind kind : {ConditionKind::not_a_knot, ConditionKind::periodic}) {
@@ -151,7 +151,7 @@ TEST(SlidingWindow, RefusesWhatNeedsAllWaypointsAtOnce) {
   }
 }
 
-TEST(SlidingWindow, TakesOnlyWaypointsThatCarryWhatTheMethodNeeds) {
+TEST(SlidingWindow, TakesOnlyWaypointsWithTheDerivativesThatTheMethodNeeds) {
   const double x = 1;
   const std::span<const double> one(&x, 1);
   const Waypoint bare{.time = {}, .position = one};

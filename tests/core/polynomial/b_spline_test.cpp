@@ -31,14 +31,14 @@ std::vector<int> multiplicities(const BSpline& spline) {
   return result;
 }
 
-/// `ends`, `inner` …, `ends`.
+/// The multiplicities `ends`, `inner`, …, `inner`, `ends`.
 std::vector<int> pattern(int ends, int inner, std::size_t breaks) {
   std::vector<int> result(breaks, inner);
   result.front() = result.back() = ends;
   return result;
 }
 
-TEST(BSpline, ThereAndBackIsTheCurveInEveryDerivative) {
+TEST(BSpline, ARoundTripKeepsTheCurveInEveryDerivative) {
   EXPECT_TRUE(rc::check("round trip", [](std::uint64_t seed) {
     const double ratio = seed % 3 == 0 ? 1000 : 30;
     const auto curve = random_curve(seed, 3, ratio);
@@ -63,7 +63,7 @@ TEST(BSpline, KnotsOfC2CubicsAreSimpleAndThoseOfC2QuinticsTriple) {
   EXPECT_EQ(multiplicities(to_b_spline(batch_curve(mesh, true))), pattern(6, 3, 40));
 }
 
-TEST(BSpline, KnotsWhereAnOnlineCurveStepsAreDouble) {
+TEST(BSpline, KnotsAtAccelerationStepsAreDoubleInCubicsAndQuadrupleInQuintics) {
   const auto mesh = random_mesh(9, 40, 2, 10);
   const auto cubic = multiplicities(to_b_spline(online_curve(mesh, 2, false)));
   const auto quintic = multiplicities(to_b_spline(online_curve(mesh, 2, true)));
@@ -116,7 +116,7 @@ TEST(BSpline, TheOriginIsTheFirstBreakAndMovesWithTheCurve) {
   EXPECT_EQ(far.control_points, near.control_points);
 }
 
-TEST(BSpline, OverUniformKnotsIsTheCardinalOne) {
+TEST(BSpline, OverUniformKnotsIsTheCardinalBSpline) {
   BSpline spline{
       .degree = 3, .dimensions = 1, .origin = Time(7), .knots = {}, .control_points = {}};
   for (int i = 0; i < 11; ++i) spline.knots.emplace_back(std::chrono::seconds(i));
@@ -128,7 +128,7 @@ TEST(BSpline, OverUniformKnotsIsTheCardinalOne) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(curve.coefficients(i)[0], wanted[i], 1e-15);
 }
 
-TEST(BSpline, RefusesAHoldAndNamesWhatIsWrongWithKnots) {
+TEST(BSpline, RefusesAHoldAndInvalidKnotsWithAReason) {
   PiecewisePolynomial hold(1);
   EXPECT_THROW((void)to_b_spline(hold), std::invalid_argument);
   hold.append(Time(5), Time(5), 1, std::vector{3.0});

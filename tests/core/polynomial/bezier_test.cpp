@@ -18,7 +18,7 @@ using testing::largest_difference;
 using testing::random_curve;
 using testing::relative_bound;
 
-TEST(Bezier, ThereAndBackIsTheCurveInEveryDerivative) {
+TEST(Bezier, ARoundTripKeepsTheCurveInEveryDerivative) {
   EXPECT_TRUE(rc::check("round trip", [](std::uint64_t seed) {
     const double ratio = seed % 3 == 0 ? 1000 : 30;
     const auto curve = random_curve(seed, 3, ratio);
@@ -34,7 +34,7 @@ TEST(Bezier, ThereAndBackIsTheCurveInEveryDerivative) {
   }));
 }
 
-TEST(Bezier, TheEndsLieOnTheCurveAndTheCurveWithinTheHull) {
+TEST(Bezier, TheEndPointsAreOnTheCurveAndTheCurveIsInTheConvexHull) {
   EXPECT_TRUE(rc::check("hull", [](std::uint64_t seed) {
     const auto curve = random_curve(seed, 1, 100);
     const double rounding = 1e-13 * largest(curve, 0);
@@ -57,14 +57,14 @@ TEST(Bezier, TheEndsLieOnTheCurveAndTheCurveWithinTheHull) {
   }));
 }
 
-TEST(Bezier, TheControlPointsOfACubicAreAThirdOfItsSlopesFromItsEnds) {
+TEST(Bezier, TheInnerControlPointsOfACubicAreAThirdOfTheSlopesFromItsEnds) {
   PiecewisePolynomial curve(1);  // 1 + 3u at the left end, slope 3 + 12u + 12u² in 2 s
   curve.append(Time(0), Time(2'000'000'000), 4, std::vector{1.0, 3.0, 6.0, 4.0});
   const auto points = to_bezier(curve)[0].control_points;
   EXPECT_EQ(points, (std::vector<double>{1, 3, 13, 63}));
 }
 
-TEST(Bezier, AHoldStaysOneAndAWrongNumberOfPointsIsRefused) {
+TEST(Bezier, AHoldStaysAHoldAndAWrongNumberOfPointsIsRefused) {
   PiecewisePolynomial hold(2);
   Segment segment(2);
   build_hold(Time(5), Time(5), std::vector{3.0, 4.0}, segment);

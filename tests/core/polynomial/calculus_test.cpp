@@ -30,7 +30,7 @@ Time between(const PiecewisePolynomial& curve, std::uint64_t seed) {
   return times[seed % times.size()];
 }
 
-TEST(Calculus, DerivativesOfTheDerivativeAreThoseOfTheCurve) {
+TEST(Calculus, DerivativesOfTheDerivativeAreTheHigherDerivativesOfTheCurve) {
   EXPECT_TRUE(rc::check("derivatives", [](std::uint64_t seed) {
     const auto curve = random_curve(seed, 2, 1000);
     const auto slope = differentiated(curve);
@@ -88,7 +88,7 @@ TEST(Calculus, APartHasTheValuesOfTheWholeAndKeepsTheBitsOfUncutSegments) {
     const auto part = restricted(curve, from, to);
     RC_ASSERT(part.breaks().front() == from);
     RC_ASSERT(part.breaks().back() == to);
-    // The last break belongs to the segment on its left, in the whole to the one on its right.
+    // At `to` the part evaluates the segment on the left, the curve the one on the right.
     const auto whole = restricted(curve, curve.breaks().front(), to);
     for (int r = 0; r < 4; ++r) {
       RC_ASSERT(largest_difference(part, whole, r) <= 1e-12 * largest(curve, r));
@@ -137,7 +137,7 @@ TEST(Calculus, ShiftingAndRaisingChangeNoBitOfAnyValue) {
   }));
 }
 
-TEST(Calculus, AHoldIsACurveToo) {
+TEST(Calculus, EveryOperationAcceptsAHold) {
   PiecewisePolynomial hold(1);
   hold.append(Time(5), Time(5), 1, std::vector{3.0});
   EXPECT_TRUE(same_bits(restricted(hold, Time(5), Time(5)), hold));
@@ -150,7 +150,7 @@ TEST(Calculus, AHoldIsACurveToo) {
   EXPECT_TRUE(restricted(line, Time(7), Time(7)).is_hold());
 }
 
-TEST(Calculus, NamesTheTimesAndOrdersItRefuses) {
+TEST(Calculus, ErrorsNameTheRefusedTimesAndOrders) {
   PiecewisePolynomial line(1);
   line.append(Time(5), Time(9), 2, std::vector{3.0, 1.0});
   const auto message = [](const auto& call) -> std::string {
@@ -162,9 +162,9 @@ TEST(Calculus, NamesTheTimesAndOrdersItRefuses) {
     return "nothing";
   };
   EXPECT_EQ(message([&] { return concatenated(line, line); }),
-            "a curve that ends at 9 ns cannot go on as one that begins at 5 ns");
+            "a curve that ends at 9 ns cannot be followed by one that begins at 5 ns");
   EXPECT_EQ(message([&] { return concatenated(line, PiecewisePolynomial(2)); }),
-            "a curve of 1 dimensions cannot go on as one of 2");
+            "a curve of 1 dimensions cannot be followed by one of 2");
   EXPECT_EQ(message([&] { return restricted(line, Time(4), Time(8)); }),
             "no part from 4 ns to 8 ns of a curve from 5 ns to 9 ns");
   EXPECT_EQ(message([&] { return restricted(line, Time(8), Time(6)); }),

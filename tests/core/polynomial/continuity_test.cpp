@@ -14,7 +14,7 @@ namespace {
 
 using testing::random_mesh;
 
-TEST(Continuity, BatchSplinesAreC2HoweverTheirIntervalsDifferAndFarFromZero) {
+TEST(Continuity, BatchSplinesAreC2OnUnevenMeshesAndFarFromZero) {
   EXPECT_TRUE(rc::check("C2", [](std::uint64_t seed, bool halts, bool far) {
     auto mesh = random_mesh(seed, 2 + seed % 60, 2, 1000);
     if (far) {
@@ -25,7 +25,7 @@ TEST(Continuity, BatchSplinesAreC2HoweverTheirIntervalsDifferAndFarFromZero) {
   }));
 }
 
-TEST(Continuity, KnotsFrozenWithKnotsStillToComeAreC1) {
+TEST(Continuity, KnotsFrozenBeforeLaterKnotsArriveAreC1) {
   for (const std::size_t settle : {0U, 1U, 2U, 4U, 8U}) {
     EXPECT_TRUE(rc::check("C1", [settle](std::uint64_t seed) {
       const auto curve = testing::online_curve(random_mesh(seed, 60, 2, 5), settle, true);
@@ -36,7 +36,7 @@ TEST(Continuity, KnotsFrozenWithKnotsStillToComeAreC1) {
   }
 }
 
-TEST(Continuity, AStepOfAMillionthOfTheAccelerationIsSeenAndSoIsOneOfVelocityOrPosition) {
+TEST(Continuity, AStepOfAMillionthInAccelerationVelocityOrPositionIsDetected) {
   const auto smooth = testing::batch_curve(random_mesh(5, 20, 2, 10), false);
   for (const int r : {0, 1, 2}) {
     const double step = 1e-6 * testing::largest(smooth, r);
@@ -51,7 +51,7 @@ TEST(Continuity, AStepOfAMillionthOfTheAccelerationIsSeenAndSoIsOneOfVelocityOrP
   }
 }
 
-TEST(Continuity, DoesNotDependOnTheOrderASegmentIsWrittenIn) {
+TEST(Continuity, DoesNotDependOnTheOrderThatASegmentIsRaisedTo) {
   EXPECT_TRUE(rc::check("orders", [](std::uint64_t seed) {
     const auto curve = testing::random_curve(seed, 2, 1000);
     const auto high = raised(curve, 10);
@@ -61,7 +61,7 @@ TEST(Continuity, DoesNotDependOnTheOrderASegmentIsWrittenIn) {
   }));
 }
 
-TEST(Continuity, RestAndConstantsAreSmooth) {
+TEST(Continuity, ConstantSegmentsAreC2IfEqualAndDiscontinuousIfNot) {
   PiecewisePolynomial curve(1);
   curve.append(Time(0), Time(10), 1, std::vector{3.0});
   curve.append(Time(10), Time(20), 4, std::vector{3.0, 0.0, 0.0, 0.0});

@@ -22,7 +22,7 @@ using testing::times_of;
 
 constexpr Time kSecond{1'000'000'000};
 
-/// One-sided values of a derivative at a time, from both segments that meet there.
+/// One-sided values of a derivative at a time, from both adjacent segments.
 std::vector<double> one_sided(const PiecewisePolynomial& curve, Time t, std::size_t d, int r) {
   std::vector<double> value(curve.dimensions());
   std::vector<double> jump(curve.dimensions());
@@ -36,7 +36,7 @@ std::vector<double> one_sided(const PiecewisePolynomial& curve, Time t, std::siz
   return values;
 }
 
-TEST(Measures, NoSampleBeatsAnExtremumAndEachIsAttainedAtItsTime) {
+TEST(Measures, NoSampleIsBeyondAnExtremumAndEachExtremumIsAttainedAtItsTime) {
   EXPECT_TRUE(rc::check("extremes", [](std::uint64_t seed) {
     const auto curve = random_curve(seed, 2, 1000);
     for (int r = 0; r < 5; ++r) {
@@ -61,7 +61,7 @@ TEST(Measures, NoSampleBeatsAnExtremumAndEachIsAttainedAtItsTime) {
   }));
 }
 
-TEST(Measures, BothSidesOfAJumpCountAndTheEarliestOfEqualsIsNamed) {
+TEST(Measures, ExtremesIncludeBothSidesOfAJumpAndReportTheEarliestTime) {
   PiecewisePolynomial curve(1);
   curve.append(Time(0), kSecond, 2, std::vector{0.0, 1.0});
   curve.append(kSecond, 2 * kSecond, 2, std::vector{-2.0, 1.0});
@@ -74,7 +74,7 @@ TEST(Measures, BothSidesOfAJumpCountAndTheEarliestOfEqualsIsNamed) {
   EXPECT_EQ(extremes_of_segment(curve, 1, 0, 0).greatest.value, -1);
 }
 
-TEST(Measures, TheExtremesOfAParabolaAndAHoldAreTheirs) {
+TEST(Measures, TheExtremesOfAParabolaAndAHoldAreExact) {
   PiecewisePolynomial curve(1);
   curve.append(Time(0), kSecond, 3, std::vector{1.0, -1.0, 1.0});
   EXPECT_EQ(extremes(curve, 0, 0).least.value, 0.75);
@@ -86,7 +86,7 @@ TEST(Measures, TheExtremesOfAParabolaAndAHoldAreTheirs) {
   EXPECT_EQ(extremes(hold, 0, 0).greatest.time, Time(5));
 }
 
-TEST(Measures, BetweenTwoCrossingsTheCurveStaysOnOneSideAndAtEachItHasTheValue) {
+TEST(Measures, BetweenCrossingsTheCurveStaysOnOneSideAndAtEachCrossingItHasTheValue) {
   EXPECT_TRUE(rc::check("crossings", [](std::uint64_t seed) {
     const auto curve = random_curve(seed, 1, 1000);
     const auto range = extremes(curve, 0, 0);
@@ -115,7 +115,7 @@ TEST(Measures, BetweenTwoCrossingsTheCurveStaysOnOneSideAndAtEachItHasTheValue) 
   }));
 }
 
-TEST(Measures, AWaypointThatIsPassedIsOneCrossing) {
+TEST(Measures, ThePositionOfAWaypointIsCrossedOnceAtItsTime) {
   const auto mesh = random_mesh(3, 40, 1, 1000);
   const auto curve = testing::batch_curve(mesh, true);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
@@ -160,7 +160,7 @@ TEST(Measures, InOneDimensionTheArcLengthIsTheTotalVariation) {
   }));
 }
 
-TEST(Measures, TheArcLengthOfAStraightPathIsItsLengthHoweverItIsTravelled) {
+TEST(Measures, TheArcLengthOfAStraightPathIsItsLengthAtAnySpeed) {
   PiecewisePolynomial curve(2);
   // 3/5 and 4/5 of 10 s³ − 15 s⁴ + 6 s⁵: at rest at both ends.
   std::vector<double> c(12);
@@ -175,7 +175,7 @@ TEST(Measures, TheArcLengthOfAStraightPathIsItsLengthHoweverItIsTravelled) {
   EXPECT_EQ(arc_length(curve, kSecond, kSecond), 0);
 }
 
-TEST(Measures, TheArcLengthOfAParabolaAndOfACuspAreTheirClosedForms) {
+TEST(Measures, TheArcLengthsOfAParabolaAndOfACuspMatchTheClosedForms) {
   PiecewisePolynomial parabola(2);  // (s, s²)
   parabola.append(Time(0), kSecond, 3, std::vector{0.0, 0.0, 1.0, 0.0, 0.0, 1.0});
   EXPECT_NEAR(arc_length(parabola, Time(0), kSecond), std::sqrt(5.0) / 2 + std::asinh(2.0) / 4,
@@ -216,7 +216,7 @@ TEST(Measures, ArcLengthsOfPartsAddUp) {
   }));
 }
 
-TEST(Measures, NameWhatTheyRefuse) {
+TEST(Measures, RefuseInvalidArguments) {
   PiecewisePolynomial line(1);
   EXPECT_THROW((void)extremes(line, 0, 0), std::invalid_argument);
   EXPECT_THROW((void)arc_length(line, Time(0), Time(0)), std::invalid_argument);

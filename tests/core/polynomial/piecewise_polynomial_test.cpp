@@ -36,7 +36,7 @@ TEST(PiecewisePolynomial, AKnotBelongsToTheSegmentOnItsRightAndTheLastToTheOneOn
   }
 }
 
-TEST(PiecewisePolynomial, RefusesAGapOtherDimensionsAndAnythingBehindAHold) {
+TEST(PiecewisePolynomial, RefusesAGapOtherDimensionsAndAnythingAfterAHold) {
   PiecewisePolynomial curve(1);
   append(constant(0, 10, 1), curve);
   EXPECT_THROW(append(constant(11, 20, 2), curve), std::invalid_argument);
@@ -52,7 +52,7 @@ TEST(PiecewisePolynomial, RefusesAGapOtherDimensionsAndAnythingBehindAHold) {
   EXPECT_THROW(append(constant(5, 20, 2), held), std::invalid_argument);
 }
 
-TEST(PiecewisePolynomial, NamesTheSegmentAndTheValueItRefuses) {
+TEST(PiecewisePolynomial, ErrorsNameTheSegmentAndTheRefusedValue) {
   PiecewisePolynomial curve(2);
   curve.append(Time(0), Time(10), 1, std::vector{1.0, 2.0});
   const auto message = [&](int left, int right, int order, std::size_t values) -> std::string {
@@ -66,12 +66,12 @@ TEST(PiecewisePolynomial, NamesTheSegmentAndTheValueItRefuses) {
   EXPECT_EQ(message(10, 20, 0, 0), "segment 1: order must be 1 to 16, not 0");
   EXPECT_EQ(message(10, 20, 17, 34), "segment 1: order must be 1 to 16, not 17");
   EXPECT_EQ(message(10, 20, 3, 4), "segment 1: 4 coefficients for order 3 and 2 dimensions");
-  EXPECT_EQ(message(11, 20, 1, 2), "segment 1 begins at 11 ns behind a curve that ends at 10 ns");
-  EXPECT_EQ(message(10, 10, 1, 2), "segment 1 ends at 10 ns, not after its begin");
+  EXPECT_EQ(message(11, 20, 1, 2), "segment 1 begins at 11 ns, but the curve ends at 10 ns");
+  EXPECT_EQ(message(10, 10, 1, 2), "segment 1 ends at 10 ns, not after its start");
   EXPECT_EQ(curve.segments(), 1U);
 }
 
-TEST(PiecewisePolynomial, DerivativesUpToTheThirdAreTheEvaluationToTheBit) {
+TEST(PiecewisePolynomial, DerivativesUpToTheThirdHaveTheBitsOfEvaluate) {
   EXPECT_TRUE(rc::check("derivatives", [](std::uint64_t seed) {
     const auto curve = testing::random_curve(seed, 3, 1000);
     State state(3);

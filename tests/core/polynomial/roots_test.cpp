@@ -26,7 +26,7 @@ std::vector<double> found(const std::vector<double>& c, double tolerance = 0) {
   return {roots.begin(), roots.end()};
 }
 
-TEST(Roots, OfProductsOfFactorsAreThoseOfTheFactorsInTheUnitInterval) {
+TEST(Roots, OfAProductOfLinearFactorsAreThoseInTheUnitInterval) {
   EXPECT_TRUE(rc::check("roots", [](std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> place(0.02, 0.08);
@@ -55,7 +55,7 @@ TEST(Roots, OfNearlyLinearAndNearlyQuadraticPolynomialsKeepTheirDigits) {
   }
 }
 
-TEST(Roots, WhereItTouchesZeroAndAtTheEndsRoundingCountsAsZero) {
+TEST(Roots, AtTangenciesAndAtTheEndsAreFoundWithinTheTolerance) {
   const double tolerance = 1e-15;
   EXPECT_EQ(found({0.25 + 1e-16, -1, 1}, tolerance), std::vector{0.5});
   EXPECT_EQ(found({0.25 + 1e-12, -1, 1}, tolerance), std::vector<double>{});
@@ -67,7 +67,7 @@ TEST(Roots, WhereItTouchesZeroAndAtTheEndsRoundingCountsAsZero) {
   EXPECT_NEAR(twice[1], 0.7, 1e-14);
 }
 
-TEST(Roots, AreFoundWhereTheyCoincideAndAtTheHighestDegree) {
+TEST(Roots, AreFoundIfTheyCoincideAndAtTheHighestDegree) {
   const auto thrice = found(with_roots({0.4, 0.4, 0.4}, 1));
   ASSERT_FALSE(thrice.empty());
   for (const double s : thrice) EXPECT_NEAR(s, 0.4, 1e-5);
@@ -87,7 +87,7 @@ TEST(Roots, AConstantHasNone) {
   EXPECT_EQ(found({0, 1}), std::vector{0.0});
 }
 
-TEST(Roots, EndWhateverTheCoefficients) {
+TEST(Roots, TerminateForAnyCoefficients) {
   EXPECT_TRUE(rc::check("any coefficients", [](const std::vector<double>& some) {
     std::vector<double> c(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(std::min(
                                                            some.size(), kMaxRootCoefficients)));

@@ -52,11 +52,11 @@ void expect_near(std::span<const double> got, std::span<const double> wanted, do
   for (std::size_t d = 0; d < got.size(); ++d) EXPECT_NEAR(got[d], wanted[d], tolerance) << d;
 }
 
-TEST(Segment, EvaluatesToTheBitsOfASingleDerivativeWhateverOrderAndDimensions) {
+TEST(Segment, EvaluateGivesTheBitsOfEvaluateDerivativeForAnyOrderAndDimensions) {
   for (int order = 1; order <= kMaxOrder; ++order) {
     for (std::size_t dimensions = 1; dimensions <= 9; ++dimensions) {
       auto c = random_values(5, static_cast<std::size_t>(order) * dimensions);
-      c.back() = -3;  // of which 0 times is −0
+      c.back() = -3;  // 0 · (−3) is −0
       State state(dimensions);
       evaluate(order, c, 0.7, state.ref());
       const StateRef whole = state.ref();
@@ -78,7 +78,7 @@ TEST(Segment, EvaluatesToTheBitsOfASingleDerivativeWhateverOrderAndDimensions) {
 constexpr std::array kEach{Derivatives::position, Derivatives::velocity, Derivatives::acceleration,
                            Derivatives::jerk};
 
-/// What evaluate_many writes where each time has `gap` doubles more than it needs.
+/// What evaluate_many writes with a stride that is `gap` doubles longer than needed.
 std::vector<double> written_by_many(int order, std::span<const double> c, std::size_t dimensions,
                                     std::span<const double> u, Derivatives which, std::size_t gap) {
   constexpr double kUntouched = -77;
@@ -106,11 +106,11 @@ std::vector<double> written_by_evaluate(int order, std::span<const double> c,
   return out;
 }
 
-TEST(Segment, EvaluatesManyTimesToTheBitsOfOne) {
+TEST(Segment, EvaluateManyGivesTheBitsOfEvaluate) {
   for (int order = 1; order <= kMaxOrder + 1; ++order) {
     for (const std::size_t dimensions : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 64U}) {
       auto c = random_values(5, static_cast<std::size_t>(order) * dimensions);
-      c.back() = -3;  // of which 0 times is −0
+      c.back() = -3;  // 0 · (−3) is −0
       for (const std::size_t times : {0U, 1U, 2U, 23U, 24U, 25U, 60U}) {
         auto u = random_values(6, times);
         if (times > 1) u[1] = 0;
@@ -175,7 +175,7 @@ TEST(Segment, AnOrderSixPolynomialWithoutItsHighPowersIsTheCubicBitForBit) {
   }
 }
 
-TEST(Segment, MeetsPositionsAndVelocitiesAtBothEndsWhetherCubicOrQuintic) {
+TEST(Segment, HasTheGivenPositionsAndVelocitiesAtBothEndsAsCubicAndAsQuintic) {
   const Ends ends(5);
   for (const bool left : {false, true}) {
     for (const bool right : {false, true}) {
@@ -193,7 +193,7 @@ TEST(Segment, MeetsPositionsAndVelocitiesAtBothEndsWhetherCubicOrQuintic) {
   }
 }
 
-TEST(Segment, AHaltingEndHasNoAccelerationAndTheOtherEndKeepsTheCubics) {
+TEST(Segment, AFullStopAtOneEndHasNoAccelerationAndTheOtherEndKeepsThatOfTheCubic) {
   const Ends ends(3);
   const Interval halting = ends.interval(true, false);
   Segment cubic(3);

@@ -10,7 +10,7 @@
 namespace splinecast::core {
 namespace {
 
-/// Waypoints on an uneven mesh, with a zero here and there.
+/// A waypoint of an uneven mesh; some positions are 0 and some velocities are −0.
 struct Given {
   std::vector<double> position, velocity, acceleration;
   Time time{};
@@ -28,7 +28,7 @@ struct Given {
   }
 };
 
-/// The bits of what is kept of a knot; −0 is not 0.
+/// All values that are kept of a knot, with their sign bits: −0 differs from 0.
 std::vector<double> kept(const KnotRing& knots, std::size_t i) {
   const Knot knot = knots.knot(i);
   std::vector<double> all{to_seconds(knot.time), knot.prefix.gamma, knots.row(i).h};
@@ -46,8 +46,8 @@ TEST(KnotSolver, AppendGivesTheBitsOfPushAndSolve) {
   constexpr std::size_t kLag = 8;
   for (const auto* name : {"c2", "pchip", "hermite", "quintic", "smoothing"}) {
     const Interpolant how{.method = find_method(name), .lambda = 1e-6};
-    for (const ConditionKind start : {ConditionKind::rest, ConditionKind::natural}) {
-      for (const Tail tail : {Tail::bessel, Tail::parabolic, Tail::natural, Tail::rest}) {
+    for (const ConditionKind start : {ConditionKind::clamped, ConditionKind::natural}) {
+      for (const Tail tail : {Tail::bessel, Tail::parabolic, Tail::natural, Tail::clamped}) {
         for (const std::size_t dimensions : {1U, 2U, 3U, 4U, 5U, 7U, 8U, 9U, 13U, 64U}) {
           const Condition condition{.kind = start, .value = {}};
           const auto solver = make_knot_solver(how, condition, dimensions, Use::online);

@@ -7,7 +7,7 @@
 #include "ipc/layout/summary.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
-/// Heads and refusals on a board.
+/// Summaries and refusals on a board.
 namespace splinecast::ipc {
 namespace {
 
@@ -24,7 +24,7 @@ TEST(KnotBoard, KeepsTheLastRefusalsWithTheirItems) {
   }
 }
 
-TEST(KnotBoard, AHeadThatCannotBeIsNotBelieved) {
+TEST(KnotBoard, RejectsASummaryWithValuesOutOfRange) {
   MemoryBoard board(1, 16);
   Head head;
   for (const auto& [first, newest] :
@@ -40,11 +40,11 @@ TEST(KnotBoard, AHeadThatCannotBeIsNotBelieved) {
   }
 }
 
-TEST(KnotBoard, AHeadIsWholeThoughOnlyWhatIsNotThereIsStored) {
+TEST(KnotBoard, ASummaryIsCompleteAlthoughOnlyChangedWordsAreStored) {
   MemoryBoard board(1, 16);
   for (Word value = 1; value <= 12; ++value) {
     Head head{.first = 1, .newest = 2};
-    // Members change in turn, each seldom enough to be left alone for a while.
+    // The members change in turn, so that most commits leave most words unchanged.
     head.consumed = value;
     head.misses = value / 3;
     head.run_frozen = value % 3;

@@ -21,7 +21,7 @@
 #include "tests/fixtures/streams/board_words.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
-/// What fuzzers have found in regions that hold what no role of ours writes: case by case.
+/// Faults that fuzzers found in regions whose bytes no role of this library writes.
 namespace splinecast::ipc {
 namespace {
 
@@ -48,7 +48,7 @@ Word& word_of(testing::RegionBytes& bytes, std::size_t offset) {
   return words_at(bytes.span(), offset, 1)[0];
 }
 
-/// A word of a part of a knot's slot, in both places.
+/// Offset of one part of a knot's slot, for copy c = 0 or 1.
 using Offset = std::size_t (*)(const BoardLayout&, Word number, std::size_t c);
 void set_both(MemoryStream& stream, Offset offset, Word number, std::size_t word, Word value) {
   for (const std::size_t c : {0U, 1U}) {
@@ -69,7 +69,7 @@ void set_rows(MemoryStream& stream, Word number, std::size_t word, Word value) {
   set_both(stream, testing::row_offset, number, word, value);
 }
 
-/// Changes bits of both tags of a knot.
+/// Flips bits in both tags of a knot.
 void flip_tag_bits(MemoryStream& stream, Word number, Word bits) {
   for (const std::size_t c : {0U, 1U}) {
     word_of(stream.board.bytes, testing::cell_offset(stream.board.layout, number, c)) ^= bits;
@@ -87,7 +87,7 @@ void set_control(testing::RegionBytes& bytes, std::size_t word, Word value) {
   word_of(bytes, kHeaderBytes + word * sizeof(Word)) = value;
 }
 
-TEST(HostileRegions, AKnotThatIsNoNumberIsNeverEvaluated) {
+TEST(HostileRegions, AKnotWithAnInvalidValueIsNeverEvaluated) {
   for (const double value : {std::nan(""), std::numeric_limits<double>::infinity(), -1e300}) {
     for (const bool is_velocity : {false, true}) {
       SolvedStream stream;
@@ -98,7 +98,7 @@ TEST(HostileRegions, AKnotThatIsNoNumberIsNeverEvaluated) {
       }
       Sampler sampler(stream.board.reader, StreamClock::recorded);
       State state(1);
-      // Both segments at the knot are made of it.
+      // Both segments that meet at the knot use its values.
       EXPECT_EQ(sampler.sample(kTick + Time(1), state.ref()), SampleStatus::busy);
       EXPECT_EQ(sampler.sample(2 * kTick + Time(1), state.ref()), SampleStatus::busy);
       EXPECT_EQ(sampler.sample(4 * kTick + Time(1), state.ref()), SampleStatus::provisional);
@@ -118,7 +118,7 @@ TEST(HostileRegions, ASegmentThatEndsBeforeItBeginsIsNeverEvaluated) {
   }
 }
 
-TEST(HostileRegions, AFormThatNoKnotOfThisStreamHasIsNeverEvaluated) {
+TEST(HostileRegions, ASegmentFormInvalidForTheStreamIsNeverEvaluated) {
   constexpr unsigned kFormShift = 1;
   constexpr Word kCubic = static_cast<Word>(core::SegmentForm::cubic);
   for (Word form = 0; form < 16; ++form) {
@@ -132,12 +132,12 @@ TEST(HostileRegions, AFormThatNoKnotOfThisStreamHasIsNeverEvaluated) {
     flip_tag_bits(stream, 3, (kCubic ^ form) << kFormShift);
     Sampler sampler(stream.board.reader, StreamClock::recorded);
     State state(1);
-    // Where none begins, the segment before it would end behind its own right knot.
+    // With form `none`, the previous segment would end after its own right knot.
     EXPECT_EQ(sampler.sample(2 * kTick + Time(1), state.ref()), SampleStatus::busy) << form;
   }
 }
 
-TEST(HostileRegions, ADerivativeOutOfAllProportionLeavesAQuaternionOfNumbers) {
+TEST(HostileRegions, NormalisingAQuaternionWithAHugeVelocityGivesFiniteValues) {
   const std::vector<Dimension> four(4, {.kind = DimensionKind::quaternion});
   const DimensionKinds kinds(four);
   State state(4);
@@ -148,7 +148,7 @@ TEST(HostileRegions, ADerivativeOutOfAllProportionLeavesAQuaternionOfNumbers) {
   for (const double value : state.values()) EXPECT_TRUE(std::isfinite(value));
 }
 
-TEST(HostileRegions, TheLastOfAllRevisionsIsReadInBoundedTime) {
+TEST(HostileRegions, TheLargestRevisionIsReadInBoundedTime) {
   SolvedStream stream;
   set_control(stream.board.bytes, kRevision, kLargestWord);
   Head head;
@@ -160,7 +160,7 @@ TEST(HostileRegions, TheLastOfAllRevisionsIsReadInBoundedTime) {
   EXPECT_THROW(stream.replace_solver(), BadRegion);
 }
 
-TEST(HostileRegions, AHeadThatIsNoneLeavesWhatWasCopiedBefore) {
+TEST(HostileRegions, AnInvalidSummaryLeavesThePreviousCopyUnchanged) {
   SolvedStream stream;
   Head head;
   const Look look = stream.board.reader.look();
@@ -172,7 +172,7 @@ TEST(HostileRegions, AHeadThatIsNoneLeavesWhatWasCopiedBefore) {
   EXPECT_EQ(head.refused, 0U);
 }
 
-TEST(HostileRegions, AHeadFarAheadMakesASolverTakeNoMoreThanARing) {
+TEST(HostileRegions, AWrittenPositionFarAheadMakesASolverTakeAtMostOneRing) {
   SolvedStream stream;
   for (const Word ahead : {kLargestWord / 2, Word{1} << 40U}) {
     set_control(stream.ring.bytes, kHead, stream.solver.head().consumed + ahead);
@@ -182,14 +182,14 @@ TEST(HostileRegions, AHeadFarAheadMakesASolverTakeNoMoreThanARing) {
   }
 }
 
-TEST(HostileRegions, AHeadThatGoesBackIsWaitedFor) {
+TEST(HostileRegions, ASolverWaitsWhenTheWrittenPositionDecreases) {
   SolvedStream stream;
   set_control(stream.ring.bytes, kHead, 3);
   EXPECT_EQ(stream.solver.step(stream.clock).consumed, 0U);
-  EXPECT_EQ(stream.solver.seen(), 3U);  // so that it sleeps until the word changes
+  EXPECT_EQ(stream.solver.seen(), 3U);  // the solver sleeps until the word changes
 }
 
-TEST(HostileRegions, AReplacementAtTheEndOfTimeIsRefused) {
+TEST(HostileRegions, AReplacementAfterTheLatestTimeIsRefused) {
   SolvedStream stream;
   ASSERT_EQ(stream.ring.writer.replace_from(12 * kTick, {}, {stream.board.reader.tail()}),
             AppendStatus::accepted);
@@ -199,7 +199,7 @@ TEST(HostileRegions, AReplacementAtTheEndOfTimeIsRefused) {
   EXPECT_EQ(stream.solver.head().reasons[static_cast<std::size_t>(Refusal::too_late)], 1U);
 }
 
-TEST(HostileRegions, AReplacementOfMoreThanTheRingHasEndsWithTheRing) {
+TEST(HostileRegions, AReplacementLongerThanTheRingEndsWithTheRing) {
   SolvedStream stream;
   ASSERT_EQ(stream.ring.writer.replace_from(12 * kTick, {}, {stream.board.reader.tail()}),
             AppendStatus::accepted);
@@ -210,7 +210,7 @@ TEST(HostileRegions, AReplacementOfMoreThanTheRingHasEndsWithTheRing) {
   EXPECT_LE(stream.solver.step(stream.clock).consumed, stream.ring.layout.capacity);
 }
 
-TEST(HostileRegions, ASolverDoesNotGoOnFromWhatIsNoCurve) {
+TEST(HostileRegions, ASolverRefusesToTakeOverADamagedCurve) {
   const auto refuses = [](const auto& damage) {
     SolvedStream stream;
     damage(stream);
@@ -226,11 +226,11 @@ TEST(HostileRegions, ASolverDoesNotGoOnFromWhatIsNoCurve) {
   refuses([](MemoryStream& s) { set_cells(s, 11, kCellVelocity, to_word(std::nan(""))); });
   refuses([](MemoryStream& s) { set_rows(s, 12, kRowGamma, to_word(std::nan(""))); });
   refuses([](MemoryStream& s) { set_rows(s, 12, kRowG, to_word(std::nan(""))); });
-  refuses([](MemoryStream& s) { flip_tag_bits(s, 11, kWaypointBit); });  // no waypoint stands there
+  refuses([](MemoryStream& s) { flip_tag_bits(s, 11, kWaypointBit); });  // not a waypoint
   refuses([](MemoryStream& s) { set_cells(s, 12, kCellTag, kRetiredTag); });
 }
 
-TEST(HostileRegions, ASolverStopsWhenItsOwnBoardHoldsWhatItHasNotWritten) {
+TEST(HostileRegions, ASolverStopsWhenItsBoardHoldsValuesItDidNotWrite) {
   SolvedStream stream;
   ASSERT_EQ(stream.ring.writer.replace_from(11 * kTick, {}, {stream.board.reader.tail()}),
             AppendStatus::accepted);
@@ -243,7 +243,7 @@ TEST(HostileRegions, ASolverStopsWhenItsOwnBoardHoldsWhatItHasNotWritten) {
   EXPECT_EQ(stream.board.reader.revision(), revision);
 }
 
-TEST(HostileRegions, AProducerDoesNotGoOnBehindATimeThatIsNone) {
+TEST(HostileRegions, AProducerRefusesToContinueAfterAnInvalidTime) {
   MemoryRing ring(1, 8);
   const std::vector<double> x{1};
   ASSERT_EQ(ring.writer.append({.time = Time(0), .position = x}, {}), AppendStatus::accepted);
@@ -251,13 +251,13 @@ TEST(HostileRegions, AProducerDoesNotGoOnBehindATimeThatIsNone) {
   EXPECT_THROW(WaypointRingWriter(ring.bytes.span(), ring.layout, {}), BadRegion);
 }
 
-TEST(HostileRegions, ARingAndABoardOfDifferentStreamsAreNotSolved) {
+TEST(HostileRegions, ARingAndABoardOfDifferentStreamsAreRefused) {
   const RegionHeader ring = make_header({.dimensions = 2}, 7);
   EXPECT_NO_THROW(require_same_stream(ring, ring));
   EXPECT_THROW(require_same_stream(ring, make_header({.dimensions = 2}, 8)), BadRegion);
   EXPECT_THROW(require_same_stream(ring, make_header({.dimensions = 3}, 7)), BadRegion);
   RegionHeader board = ring;
-  board.dimension_kind[1] = static_cast<std::uint64_t>(DimensionKind::wrap);
+  board.dimension_kind[1] = static_cast<std::uint64_t>(DimensionKind::periodic);
   board.period[1] = 1;
   EXPECT_THROW(require_same_stream(ring, board), BadRegion);
   board = ring;

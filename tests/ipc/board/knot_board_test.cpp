@@ -14,7 +14,7 @@
 #include "tests/fixtures/streams/board_words.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
-/// Which knots a reader finds on a board, under which revision.
+/// Which knots a reader finds on a board, and in which revision.
 namespace splinecast::ipc {
 namespace {
 
@@ -27,7 +27,7 @@ Time time_of(Word number) { return Time(static_cast<std::int64_t>(number) * 100)
 
 std::vector<double> all(double value) { return std::vector<double>(kDimensions, value); }
 
-/// Writes a knot all of whose values say which number and revision it is of.
+/// Writes a knot whose position is its number and whose velocity is its revision.
 void write(MemoryBoard& board, Word number, bool is_new = false) {
   const auto velocity = all(static_cast<double>(board.writer.revision() + 1));
   const auto position = all(static_cast<double>(number));
@@ -47,8 +47,8 @@ bool are_all(std::span<const double> values, double value) {
   return std::ranges::all_of(values, [=](double each) { return each == value; });
 }
 
-/// The revision that knot `number` was written by, as seen under r; 0 if it cannot be had,
-/// kRetiredTag if the copy is not whole.
+/// The revision that wrote knot `number`, as seen under revision r; 0 if the knot cannot be copied,
+/// kRetiredTag if the copy is torn.
 Word revision_of_knot(const KnotBoardReader& board, Word number, Word r, KnotCopy& copy) {
   if (!board.copy_knot(number, r, copy)) return 0;
   const auto revision = static_cast<Word>(copy.velocity()[0]);
@@ -58,7 +58,7 @@ Word revision_of_knot(const KnotBoardReader& board, Word number, Word r, KnotCop
   return is_whole ? revision : kRetiredTag;
 }
 
-TEST(KnotBoard, ARevisionAppearsAtOnceAndTheOneBeforeStaysReadable) {
+TEST(KnotBoard, ARevisionAppearsAtomicallyAndThePreviousOneStaysReadable) {
   MemoryBoard board(kDimensions, 16);
   KnotCopy copy(kDimensions, false);
   Head head;
@@ -81,7 +81,7 @@ TEST(KnotBoard, ARevisionAppearsAtOnceAndTheOneBeforeStaysReadable) {
   EXPECT_EQ(head.newest, 6U);
 }
 
-TEST(KnotBoard, ACopyIsCurrentUntilItsKnotIsWrittenAgain) {
+TEST(KnotBoard, ACopyIsCurrentUntilItsKnotIsRepublished) {
   MemoryBoard board(kDimensions, 16);
   KnotCopy copy(kDimensions, false);
   write(board, 1, true);
@@ -97,7 +97,7 @@ TEST(KnotBoard, ACopyIsCurrentUntilItsKnotIsWrittenAgain) {
   EXPECT_FALSE(board.reader.is_current(copy, 3));
 }
 
-TEST(KnotBoard, ANewWriterRetiresWhatTheDeadOneDidNotCommit) {
+TEST(KnotBoard, ANewWriterRetiresTheTagsThatTheDeadWriterDidNotCommit) {
   MemoryBoard board(kDimensions, 16);
   KnotCopy copy(kDimensions, false);
   for (Word n = 1; n <= 3; ++n) write(board, n, true);
@@ -114,13 +114,13 @@ TEST(KnotBoard, ANewWriterRetiresWhatTheDeadOneDidNotCommit) {
   EXPECT_EQ(revision_of_knot(board.reader, 3, 2, copy), 2U);
 }
 
-TEST(KnotBoard, ASlotHoldsOneKnotAfterTheOtherOverManyRounds) {
+TEST(KnotBoard, ASlotHoldsSuccessiveKnotsOverManyRounds) {
   constexpr Word kCapacity = 4;
   MemoryBoard board(kDimensions, kCapacity);
   KnotCopy copy(kDimensions, false);
   for (Word n = 1; n <= 40; ++n) {
-    // Each append solves the knot before it again, as solvers do: three cells of a slot are written
-    // per round, so that cells and nodes come round in different ways.
+    // Each append republishes the previous knot, as solvers do: three cells of a slot are written
+    // per round, so that cells and nodes alternate in different ways.
     if (n > 1) write(board, n - 1);
     write(board, n, true);
     commit(board, n > kCapacity ? n - kCapacity + 1 : 1, n);
@@ -128,14 +128,14 @@ TEST(KnotBoard, ASlotHoldsOneKnotAfterTheOtherOverManyRounds) {
       const Word last_written = back == 0 ? n : n - back + 1;
       EXPECT_EQ(revision_of_knot(board.reader, n - back, n, copy), last_written) << n;
     }
-    // The slot was written once since: under the revision before, its old knot is whole.
+    // Since then the slot was written once: in the previous revision its old knot is complete.
     if (n > kCapacity) {
       EXPECT_EQ(revision_of_knot(board.reader, n - kCapacity, n - 1, copy), n - kCapacity + 1);
     }
   }
 }
 
-TEST(KnotBoard, ACopyIsNotCurrentWhenTwoKnotsLaterItsNodeIsNamedAgain) {
+TEST(KnotBoard, ACopyIsNotCurrentWhenANewerKnotReusesItsNode) {
   constexpr Word kCapacity = 4;
   MemoryBoard board(kDimensions, kCapacity);
   KnotCopy old(kDimensions, false);
@@ -153,7 +153,7 @@ TEST(KnotBoard, ACopyIsNotCurrentWhenTwoKnotsLaterItsNodeIsNamedAgain) {
   EXPECT_FALSE(board.reader.is_current(old, 3));
 }
 
-TEST(KnotBoard, ANodeIsNotTouchedWhereAKnotStays) {
+TEST(KnotBoard, RepublishingAKnotDoesNotWriteItsNode) {
   MemoryBoard board(kDimensions, 4);
   write(board, 1, true);
   commit(board, 1, 1);
@@ -167,7 +167,7 @@ TEST(KnotBoard, ANodeIsNotTouchedWhereAKnotStays) {
   EXPECT_TRUE(std::ranges::equal(words, before));
 }
 
-TEST(KnotBoard, ADiscardedRevisionLeavesTheKnotsTheirTimesAndTheNextRevisionAsTheyWere) {
+TEST(KnotBoard, ADiscardedRevisionChangesNoKnotNoTimeAndNoLaterRevision) {
   constexpr Word kCapacity = 4;
   MemoryBoard board(kDimensions, kCapacity);
   KnotCopy copy(kDimensions, false);
@@ -193,7 +193,7 @@ TEST(KnotBoard, ADiscardedRevisionLeavesTheKnotsTheirTimesAndTheNextRevisionAsTh
   EXPECT_EQ(revision_of_knot(board.reader, 1, 1, copy), 1U);
 }
 
-TEST(KnotBoard, ARowStaysThatOfTheCommittedKnotWhenOneIsDiscarded) {
+TEST(KnotBoard, ADiscardedRevisionKeepsTheRowOfTheCommittedKnot) {
   MemoryBoard board(kDimensions, 4);
   KnotCopy copy(kDimensions, false);
   const auto zeros = all(0);
@@ -227,13 +227,13 @@ TEST(KnotBoard, ARowStaysThatOfTheCommittedKnotWhenOneIsDiscarded) {
     }
     expect_row(round);
     if (round % 3 != 0) continue;
-    write(board, 1);  // without a row: it keeps the one that it has
+    write(board, 1);  // without a row: the knot keeps its row
     commit(board, 1, 1);
     expect_row(round);
   }
 }
 
-TEST(KnotBoard, AFormWrittenAgainLeavesTheRestOfTheKnotAndTellsWhenTheNextSegmentBegins) {
+TEST(KnotBoard, RewritingAFormKeepsTheRestOfTheKnotAndUpdatesThePackedTime) {
   for (const bool smooths : {false, true}) {
     MemoryBoard board(kDimensions, 8, smooths);
     const auto position = all(1);
@@ -242,7 +242,7 @@ TEST(KnotBoard, AFormWrittenAgainLeavesTheRestOfTheKnotAndTellsWhenTheNextSegmen
     const auto residual = all(4);
     board.writer.write(
         1, {.is_new = true,
-            .note = {.form = SegmentForm::splice, .starts = true, .newer_knots = 5},
+            .note = {.form = SegmentForm::entry, .starts = true, .newer_knots = 5},
             .time = time_of(1),
             .position = position,
             .velocity = velocity,
@@ -253,11 +253,11 @@ TEST(KnotBoard, AFormWrittenAgainLeavesTheRestOfTheKnotAndTellsWhenTheNextSegmen
     KnotCopy copy(kDimensions, smooths);
     for (int round = 0; round < 4; ++round) {
       const bool is_end = round % 2 == 0;
-      board.writer.write_form(1, is_end ? SegmentForm::none : SegmentForm::splice, time_of(7));
-      EXPECT_EQ(board.writer.form(1), is_end ? SegmentForm::none : SegmentForm::splice);
+      board.writer.write_form(1, is_end ? SegmentForm::none : SegmentForm::entry, time_of(7));
+      EXPECT_EQ(board.writer.form(1), is_end ? SegmentForm::none : SegmentForm::entry);
       commit(board, 1, 1);
       ASSERT_TRUE(board.reader.copy_knot(1, board.reader.revision(), copy));
-      EXPECT_EQ(copy.note.form, is_end ? SegmentForm::none : SegmentForm::splice);
+      EXPECT_EQ(copy.note.form, is_end ? SegmentForm::none : SegmentForm::entry);
       EXPECT_TRUE(copy.note.starts);
       EXPECT_EQ(copy.note.newer_knots, 5U);
       EXPECT_EQ(copy.item, 17U);
@@ -272,7 +272,7 @@ TEST(KnotBoard, AFormWrittenAgainLeavesTheRestOfTheKnotAndTellsWhenTheNextSegmen
   }
 }
 
-TEST(KnotBoard, ANewWriterMakesThePackedTimesThoseOfTheCommittedKnots) {
+TEST(KnotBoard, ANewWriterRestoresThePackedTimesOfTheCommittedKnots) {
   constexpr Word kCapacity = 4;
   MemoryBoard board(kDimensions, kCapacity);
   for (Word n = 1; n <= kCapacity; ++n) write(board, n, true);
@@ -289,13 +289,13 @@ TEST(KnotBoard, ANewWriterMakesThePackedTimesThoseOfTheCommittedKnots) {
   EXPECT_EQ(board.reader.time_hint(4), time_of(4));
 }
 
-/// What several readers of one board count while it is written. Revision r has the knots from r on,
-/// of which the last one is new, and writes those from r + r mod 3 on.
+/// Counts complete and torn revisions that several readers see while the board is written. Revision
+/// r has the knots from r on, the last of which is new, and writes the knots from r + r mod 3 on.
 class Readers {
  public:
   explicit Readers(const KnotBoardReader& board) : board_(board) {}
 
-  /// Reads until it is stopped.
+  /// Reads until `stop` is called.
   void read() {
     KnotCopy copy(kDimensions, false);
     Head head;
@@ -326,9 +326,9 @@ class Readers {
   std::atomic<std::size_t> whole_{0};
 };
 
-/// One writer and several readers on one mapping, which is how ThreadSanitizer sees them. Every
-/// payload says which revision and knot it is of: all knots of one revision must agree with its
-/// head.
+/// One writer and several readers use one mapping, so that ThreadSanitizer sees their accesses.
+/// Every payload contains its revision and knot number: all knots of one revision must agree with
+/// its summary.
 TEST(KnotBoard, ThreadsReadWholeRevisionsWhileOneWrites) {
   constexpr Word kRevisions = 20'000;
   constexpr Word kKnots = 6;

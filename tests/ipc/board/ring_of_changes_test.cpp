@@ -6,17 +6,17 @@
 #include "tests/fixtures/streams/board_words.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
-/// From when on the curve has changed since a revision that a reader has seen.
+/// The earliest time at which the curve changed since a revision that a reader has seen.
 namespace splinecast::ipc {
 namespace {
 
 using testing::MemoryBoard;
 
-/// A board of which each revision changed the curve from a time of its own.
+/// A board on which each revision changes the curve from a different time on.
 struct Changing : MemoryBoard {
   Changing() : MemoryBoard(1, 16) {}
 
-  /// Revision r changes the curve from 1000 − r, so that the newest one is the earliest.
+  /// Revision r changes the curve from 1000 − r on: the newest change is the earliest in time.
   static Time change_of(Word r) { return Time(1000) - Time(static_cast<std::int64_t>(r)); }
   void publish_to(Word revision) {
     while (writer.revision() < revision) {
@@ -24,7 +24,7 @@ struct Changing : MemoryBoard {
       writer.commit(head);
     }
   }
-  /// What a reader that has seen a revision is told of those after it.
+  /// The change that a reader which has seen revision `seen` gets for the later ones.
   Time change_since(Word seen) {
     Head head;
     EXPECT_TRUE(reader.copy_bounds(reader.look(), seen, head));
@@ -35,7 +35,7 @@ struct Changing : MemoryBoard {
   }
 };
 
-TEST(RingOfChanges, SixtyThreeMissedRevisionsCountAndSixtyFourDoNot) {
+TEST(RingOfChanges, ReportsTheChangeAfter63MissedRevisionsButNotAfter64) {
   for (const Word newest : {64U, 65U, 130U, 200U}) {
     Changing board;
     board.publish_to(newest);
@@ -46,7 +46,7 @@ TEST(RingOfChanges, SixtyThreeMissedRevisionsCountAndSixtyFourDoNot) {
   }
 }
 
-TEST(RingOfChanges, TheEarliestOfTheMissedRevisionsIsTold) {
+TEST(RingOfChanges, ReportsTheEarliestChangeOfTheMissedRevisions) {
   MemoryBoard board(1, 16);
   for (const int change : {50, 20, 30, 40}) {
     Head head{.first = 1, .newest = 1, .changed_from = Time(change)};
@@ -63,22 +63,22 @@ TEST(RingOfChanges, TheEarliestOfTheMissedRevisionsIsTold) {
   EXPECT_EQ(change_since(3), Time(40));
 }
 
-/// A writer that stored the word of the next revision and died leaves one word fewer that counts;
-/// its successor retires the tag, so that nothing says whether it had.
-TEST(RingOfChanges, TheWordOfARevisionThatWasNotCommittedIsNotTakenForTheOldestOne) {
+/// A writer that dies after it stored the word of the next revision leaves one valid word fewer.
+/// Its successor retires the tag, so that a reader cannot see whether that word was stored.
+TEST(RingOfChanges, TheWordOfAnUncommittedRevisionIsNotUsedAsTheOldestOne) {
   Changing board;
   board.publish_to(64);
   const Time before = board.change_since(1);
   const auto revision = words_at(board.bytes.span(), board.layout.control, 1);
   board.publish_to(65);
-  revision[0] = 64;                               // as if it had died before the commit
-  EXPECT_EQ(board.change_since(1), Time::min());  // its tag stands: word 1 has been overwritten
+  revision[0] = 64;                               // as if the writer had died before the commit
+  EXPECT_EQ(board.change_since(1), Time::min());  // its tag is valid: word 1 is overwritten
   board.replace_writer();
   EXPECT_EQ(board.change_since(1), before);  // the words of revisions 2 to 64
   EXPECT_EQ(board.change_since(0), Time::min());
 }
 
-TEST(RingOfChanges, CountsAfterADiscard) {
+TEST(RingOfChanges, StaysCorrectAfterADiscard) {
   Changing board;
   board.publish_to(70);
   const std::vector<double> zero(1);
@@ -90,8 +90,8 @@ TEST(RingOfChanges, CountsAfterADiscard) {
   EXPECT_EQ(board.change_since(7), Time::min());
 }
 
-/// As two writers leave it that died one after the other while a reader looked.
-TEST(RingOfChanges, SaysNothingWhereBothTagsOfTheHeadAreRetired) {
+/// The state after two writers died in sequence while a reader read the tags.
+TEST(RingOfChanges, ReportsNothingWhenBothTagsOfTheSummaryAreRetired) {
   Changing board;
   board.publish_to(10);
   Head head{.changed_from = Time(5)};

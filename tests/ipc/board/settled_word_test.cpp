@@ -7,7 +7,7 @@ namespace {
 
 using testing::MemoryBoard;
 
-TEST(SettledWord, IsStoredWithoutARevisionAndStaysThatOfTheNextWriter) {
+TEST(SettledWord, IsStoredWithoutARevisionAndKeptByTheNextWriter) {
   MemoryBoard board(1, 16);
   Head head{.first = 1, .newest = 1};
   board.writer.commit(head);

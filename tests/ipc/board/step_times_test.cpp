@@ -14,7 +14,7 @@ namespace {
 
 using testing::MemoryBoard;
 
-TEST(StepTimes, AreCountedByTheirPowerOfTwo) {
+TEST(StepTimes, AreCountedInPowerOfTwoBuckets) {
   MemoryBoard board(1, 16);
   const std::vector<std::pair<std::int64_t, std::size_t>> steps{
       {-5, 0},

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-/// The hash of the layout tells any two layouts apart.
+/// Any two layouts have different hashes.
 namespace splinecast::ipc {
 namespace {
 
-/// The parts of the layout with tables that can be changed.
+/// A modifiable copy of the parts of the layout and their tables.
 struct Tables {
   std::vector<std::vector<Field>> fields;
   std::vector<LayoutPart> parts;
@@ -30,7 +30,7 @@ struct Tables {
   }
 };
 
-TEST(LayoutHash, IsThatOfTheTables) { EXPECT_EQ(Tables().hash(), layout_hash()); }
+TEST(LayoutHash, IsComputedFromTheTables) { EXPECT_EQ(Tables().hash(), layout_hash()); }
 
 TEST(LayoutHash, ChangesWithEachPropertyOfEachField) {
   using Change = std::pair<const char*, void (*)(Field&)>;
@@ -61,7 +61,7 @@ TEST(LayoutHash, ChangesWithEachPropertyOfEachField) {
   EXPECT_EQ(hashes.size(), changes + 1);
 }
 
-TEST(LayoutHash, ChangesWithRowsAddedTakenAwayAndExchanged) {
+TEST(LayoutHash, ChangesWhenRowsAreAddedRemovedOrSwapped) {
   std::set<std::uint64_t> hashes{layout_hash()};
   std::size_t changes = 0;
   const auto expect_other = [&](Tables& tables, const std::string& what) {
@@ -90,7 +90,7 @@ TEST(LayoutHash, ChangesWithRowsAddedTakenAwayAndExchanged) {
   EXPECT_EQ(hashes.size(), changes + 1);
 }
 
-TEST(LayoutHash, ChangesWithPartsExchangedOrRenamed) {
+TEST(LayoutHash, ChangesWhenPartsAreSwappedOrRenamed) {
   Tables tables;
   std::swap(tables.parts[0], tables.parts[1]);
   std::swap(tables.fields[0], tables.fields[1]);
@@ -100,7 +100,7 @@ TEST(LayoutHash, ChangesWithPartsExchangedOrRenamed) {
   EXPECT_NE(renamed.hash(), layout_hash());
 }
 
-TEST(LayoutHash, DoesNotChangeWithMeanings) {
+TEST(LayoutHash, DoesNotDependOnMeanings) {
   Tables tables;
   tables.fields[1][3].meaning = "otherwise";
   EXPECT_EQ(tables.hash(), layout_hash());

@@ -20,7 +20,7 @@
 #include "splinecast/options.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
-/// Which headers of regions are accepted, and what is said of the others.
+/// Which region headers are accepted, and the error messages for the others.
 namespace splinecast::ipc {
 namespace {
 
@@ -34,7 +34,7 @@ RegionHeader ring_header() {
   return header;
 }
 
-/// What a header must not say: part of the refusal, and a change for which it is refused.
+/// Part of the expected error message, and a change that makes a header invalid.
 using Spoiled = std::pair<std::string, std::function<void(RegionHeader&)>>;
 
 std::vector<Spoiled> spoiled_headers() {
@@ -72,7 +72,7 @@ std::vector<Spoiled> spoiled_headers() {
   };
 }
 
-TEST(Layout, AHeaderThatSaysSomethingElseIsRefusedWithTheValue) {
+TEST(Layout, AnInvalidHeaderIsRefusedWithTheOffendingValue) {
   const RegionHeader good = ring_header();
   EXPECT_NO_THROW(checked_ring_layout(good, good.region_bytes));
   for (const auto& [text, spoil] : spoiled_headers()) {
@@ -90,7 +90,7 @@ TEST(Layout, AHeaderThatSaysSomethingElseIsRefusedWithTheValue) {
   EXPECT_THROW(checked_board_layout(good, good.region_bytes), BadRegion);
 }
 
-/// What is said of a region that another build has made.
+/// The error message for a header; empty if the header is accepted.
 std::string refusal_of(const RegionHeader& header) {
   try {
     checked_ring_layout(header, header.region_bytes);
@@ -100,13 +100,13 @@ std::string refusal_of(const RegionHeader& header) {
   return "";
 }
 
-TEST(Layout, ARegionOfAnotherVersionIsRefusedWithBothVersionsAndHowToGoOn) {
+TEST(Layout, ARegionOfAnotherVersionIsRefusedWithBothVersionsAndARemedy) {
   const std::string own = std::to_string(kLayoutVersion);
   for (const std::uint32_t version : {3U, 9U}) {
     RegionHeader header = ring_header();
     header.mark.version = version;
     header.layout_hash = 5;
-    header.kind = 0;  // nothing else of it is looked at
+    header.kind = 0;  // no other field is checked
     EXPECT_EQ(refusal_of(header),
               "region has layout version " + std::to_string(version) +
                   ", this splinecast has version " + own +
@@ -123,7 +123,7 @@ TEST(Layout, ARegionOfAnotherVersionIsRefusedWithBothVersionsAndHowToGoOn) {
                                     "`splinecast rm`");
 }
 
-TEST(Layout, AHeaderComesBackAsItWasWritten) {
+TEST(Layout, AHeaderIsReadAsItWasWritten) {
   testing::RegionBytes bytes(kBodyOffset);
   const ProducerOptions options{.dimensions = 2,
                                 .names = {"left", "a name far too long for its thirty-one bytes"},

@@ -33,13 +33,13 @@ RegionHeader header_of(std::size_t dimensions) {
                      7);
 }
 
-TEST(HeaderLimits, AHeaderOfZerosHasNone) {
+TEST(HeaderLimits, AHeaderOfZerosHasNoLimits) {
   const RegionHeader header = header_of(3);
   EXPECT_EQ(motion_limits(header), MotionLimits{});
   EXPECT_EQ(beyond(header), Beyond::report);
 }
 
-TEST(HeaderLimits, ComeBackAsTheyWereWritten) {
+TEST(HeaderLimits, AreReadAsTheyWereWritten) {
   const MotionLimits limits{.velocity = {1, 0, 2},
                             .acceleration = {},
                             .jerk = {0, 0, 5},
@@ -58,7 +58,7 @@ TEST(HeaderLimits, ComeBackAsTheyWereWritten) {
   EXPECT_THROW(put_limits({.velocity = {1}}, header), std::invalid_argument);
 }
 
-/// A header of a board of this stream that can be read.
+/// A valid board header.
 RegionHeader board_header(std::size_t dimensions) {
   RegionHeader header = header_of(dimensions);
   header.kind = static_cast<std::uint64_t>(RegionKind::spline);
@@ -66,7 +66,7 @@ RegionHeader board_header(std::size_t dimensions) {
   header.settle = 8;
   header.stop_time = 1;
   header.freeze_ahead = 1;
-  header.min_splice = 1;
+  header.min_entry = 1;
   header.time_scale = 1;
   const BoardLayout layout = BoardLayout::of(dimensions, 32, header.control, false);
   header.stride = layout.stride;
@@ -74,20 +74,20 @@ RegionHeader board_header(std::size_t dimensions) {
   return header;
 }
 
-TEST(HeaderLimits, ABoardWithSuchAsCannotBeIsRefused) {
+TEST(HeaderLimits, ABoardWithInvalidLimitsIsRefused) {
   ASSERT_NO_THROW((void)checked_board_layout(board_header(2), board_header(2).region_bytes));
   const std::vector<std::pair<std::string, std::function<void(RegionHeader&)>>> cases{
       {"velocity limit", [](RegionHeader& h) { h.max_velocity[1] = -1; }},
       {"jerk limit", [](RegionHeader& h) { h.max_jerk[0] = kInfinity; }},
-      {"bounds", [](RegionHeader& h) { h.lower_bound[0] = 1; }},
-      {"bounds", [](RegionHeader& h) { h.upper_bound[0] = std::nan(""); }},
+      {"lower bound", [](RegionHeader& h) { h.lower_bound[0] = 1; }},
+      {"upper bound", [](RegionHeader& h) { h.upper_bound[0] = std::nan(""); }},
       {"no bounds",
        [](RegionHeader& h) {
-         h.dimension_kind[0] = static_cast<std::uint64_t>(DimensionKind::wrap);
+         h.dimension_kind[0] = static_cast<std::uint64_t>(DimensionKind::periodic);
          h.period[0] = 360;
          h.upper_bound[0] = 1;
        }},
-      {"beyond limits", [](RegionHeader& h) { h.beyond = 2; }}};
+      {"action beyond the limits", [](RegionHeader& h) { h.beyond = 2; }}};
   for (const auto& [message, damage] : cases) {
     RegionHeader header = board_header(2);
     damage(header);
@@ -100,7 +100,7 @@ TEST(HeaderLimits, ABoardWithSuchAsCannotBeIsRefused) {
   }
 }
 
-TEST(HeaderLimits, NamedOnesMeetNamesThatTheHeaderHasCut) {
+TEST(HeaderLimits, NamedLimitsMatchNamesThatTheHeaderTruncated) {
   const std::string name = "left_arm_shoulder_pan_joint_of_the_second_robot";
   const RegionHeader header = make_header({.dimensions = 2,
                                            .names = {name, "q2"},

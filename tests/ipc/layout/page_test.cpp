@@ -9,14 +9,14 @@
 
 #include "ipc/layout/mark.hpp"
 
-/// The page of the layout is written from its tables.
+/// `ipc/layout.md` is generated from the tables of the layout.
 namespace splinecast::ipc {
 namespace {
 
 constexpr const char* kPagePath = SPLINECAST_SOURCE "/ipc/layout.md";
 
-/// With SPLINECAST_WRITE_LAYOUT set, the page is written instead.
-TEST(LayoutPage, IsWhatTheTablesSay) {
+/// If SPLINECAST_WRITE_LAYOUT is set, the test writes the page instead of comparing it.
+TEST(LayoutPage, MatchesTheTables) {
   if (std::getenv("SPLINECAST_WRITE_LAYOUT") != nullptr) {
     std::ofstream(kPagePath) << layout_page();
     GTEST_SKIP() << kPagePath << " has been written";
@@ -25,17 +25,17 @@ TEST(LayoutPage, IsWhatTheTablesSay) {
   std::ostringstream page;
   page << file.rdbuf();
   EXPECT_EQ(page.str(), layout_page())
-      << kPagePath << " is out of date; write it again with\n  SPLINECAST_WRITE_LAYOUT=1 "
+      << kPagePath << " is out of date; regenerate it with\n  SPLINECAST_WRITE_LAYOUT=1 "
       << "splinecast_tests --gtest_filter=LayoutPage.*";
 }
 
-TEST(LayoutPage, SaysWhichVersionItIsOf) {
+TEST(LayoutPage, StatesItsLayoutVersion) {
   const std::string version = std::to_string(kLayoutVersion);
   EXPECT_NE(layout_page().find("layout version " + version), std::string::npos);
   EXPECT_NE(layout_page().find("32 bits each: " + version + " and"), std::string::npos);
 }
 
-TEST(LayoutPage, SaysHowManyPositionsTheControlBlockMayHave) {
+TEST(LayoutPage, StatesTheNumberOfControlBlockPositions) {
   const std::string positions = std::to_string(kControlPositions);
   EXPECT_NE(layout_page().find("(stream id mod " + positions + ")"), std::string::npos);
 }

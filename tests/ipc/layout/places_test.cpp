@@ -18,11 +18,11 @@
 #include "ipc/options/stream.hpp"
 #include "splinecast/options.hpp"
 
-/// Where the parts of regions lie, and how large they are.
+/// Offsets and sizes of the parts of regions.
 namespace splinecast::ipc {
 namespace {
 
-TEST(Layout, PartsOfARegionFollowEachOtherAlignedAndWithinIt) {
+TEST(Layout, PartsOfARegionAreInOrderAlignedAndWithinIt) {
   for (const std::size_t dimensions : {1U, 3U, 7U, 64U}) {
     const auto ring = RingLayout::of(dimensions, 1024, kHeaderBytes);
     EXPECT_GE(ring.items, ring.control + kRingControlWords * sizeof(Word));
@@ -47,7 +47,7 @@ TEST(Layout, PartsOfARegionFollowEachOtherAlignedAndWithinIt) {
   }
 }
 
-TEST(Layout, TheRegionsOfSevenDimensionsAreAsLargeAsTheReadmeSays) {
+TEST(Layout, RegionsOfSevenDimensionsHaveTheSizesStatedInTheReadme) {
   const std::string said =
       "| board of 4,096 knots, ring of 1,024 waypoints | 2,199,552 and 212,992 bytes of shared";
   EXPECT_EQ(BoardLayout::of(7, 4096, kHeaderBytes, false).bytes, 2'199'552U);
@@ -60,7 +60,7 @@ TEST(Layout, TheRegionsOfSevenDimensionsAreAsLargeAsTheReadmeSays) {
   EXPECT_NE(readme.str().find("at one of " + positions + " offsets"), std::string::npos);
 }
 
-TEST(Layout, PartsOfASlotOfSevenDimensionsAreACacheLineEach) {
+TEST(Layout, EachPartOfASlotOfSevenDimensionsIsOneCacheLine) {
   const auto board = BoardLayout::of(7, 4096, kHeaderBytes, false);
   EXPECT_EQ(board.cell, kCacheLine);
   EXPECT_EQ(board.node, kCacheLine);
@@ -69,7 +69,7 @@ TEST(Layout, PartsOfASlotOfSevenDimensionsAreACacheLineEach) {
   EXPECT_EQ(board.stride, 8 * kCacheLine);
 }
 
-TEST(Layout, WhatDifferentProcessesWriteOrPollLiesTwoCacheLinesApart) {
+TEST(Layout, WordsOfDifferentProcessesAreTwoCacheLinesApart) {
   const auto line = [](std::size_t word) { return word * sizeof(Word) / kSeparation; };
   EXPECT_NE(line(kHead), line(kProducerCounters));
   for (const std::size_t word : {kTail, kSleeping, kHeadSlot}) {
@@ -79,7 +79,7 @@ TEST(Layout, WhatDifferentProcessesWriteOrPollLiesTwoCacheLinesApart) {
   EXPECT_NE(line(kSleeping), line(kHeadSlot));
 }
 
-TEST(Layout, TheControlBlockOfEveryStreamLiesInItsArea) {
+TEST(Layout, TheControlBlockOfEveryStreamIsInItsArea) {
   std::set<std::uint64_t> places;
   for (std::uint64_t id = 1; id < 200; ++id) {
     const auto header = make_header({.dimensions = 1}, id);
@@ -91,8 +91,8 @@ TEST(Layout, TheControlBlockOfEveryStreamLiesInItsArea) {
   EXPECT_EQ(places.size(), kControlPositions);
 }
 
-/// Fields whose order and sizes a part's table gives lie one behind the other.
-TEST(Layout, TheFieldsOfEachPartFollowEachOtherAndHaveNamesOfTheirOwn) {
+/// The fields of a part are contiguous, in the order and with the sizes of its table.
+TEST(Layout, TheFieldsOfEachPartAreContiguousAndHaveUniqueNames) {
   for (const LayoutPart& part : layout_parts()) {
     Extent offset;
     std::set<std::string_view> names;

@@ -17,13 +17,13 @@ struct Slot {
   [[nodiscard]] SlotView<const Word> reading() const { return {words.data(), kCellWords}; }
   [[nodiscard]] Tags tags() const { return reading().tags(std::memory_order_acquire); }
 
-  /// Writes revision r, the one after `committed`.
+  /// Writes revision r into the cell that `committed` does not use.
   void write(Word r, Word committed, Word payload) {
     Word* const cell = writing().cell(1 - tags().newest(committed));
     store(cell[0], tag_of(r), std::memory_order_release);
     for (std::size_t i = 1; i < kCellWords; ++i) put(cell[i], payload + i);
   }
-  /// The payload under r, or 0.
+  /// The payload as seen under revision r, or 0.
   [[nodiscard]] Word read(Word r) const {
     if (!tags().holds_any(r)) return 0;
     const Word* const cell = reading().cell(tags().newest(r));
@@ -33,7 +33,7 @@ struct Slot {
   }
 };
 
-TEST(Publication, TheNewestCellIsTheOneWithTheLargestRevisionNotAboveTheOneAskedFor) {
+TEST(Publication, TheNewestCellHasTheLargestRevisionUpToTheRequestedOne) {
   EXPECT_EQ((Tags{{tag_of(3), tag_of(5)}}.newest(5)), 1U);
   EXPECT_EQ((Tags{{tag_of(3), tag_of(5)}}.newest(4)), 0U);
   EXPECT_EQ((Tags{{tag_of(7), tag_of(5)}}.newest(6)), 1U);
@@ -52,7 +52,7 @@ TEST(Publication, TheLowerBitsOfATagDoNotDecideWhichCellIsNewest) {
   EXPECT_FALSE((Tags{{0, tag_of(5) | kBits}}.holds_any(4)));
 }
 
-TEST(Publication, ARevisionIsSeenOnlyUnderItsNumberAndLeavesTheOneBeforeIt) {
+TEST(Publication, ARevisionIsVisibleFromItsNumberOnAndKeepsThePreviousOne) {
   Slot slot;
   EXPECT_EQ(slot.read(10), 0U);
   slot.write(1, 0, 100);
@@ -67,7 +67,7 @@ TEST(Publication, ARevisionIsSeenOnlyUnderItsNumberAndLeavesTheOneBeforeIt) {
   EXPECT_EQ(slot.read(5), 500U);
 }
 
-TEST(Publication, ACopyIsTheNewestUntilItsSlotIsWrittenAndThatIsCommitted) {
+TEST(Publication, ACopyIsTheNewestUntilANewerOneIsCommittedToItsSlot) {
   Slot slot;
   slot.write(1, 0, 100);
   slot.write(2, 1, 200);
@@ -77,7 +77,7 @@ TEST(Publication, ACopyIsTheNewestUntilItsSlotIsWrittenAndThatIsCommitted) {
   slot.write(3, 2, 300);
   EXPECT_TRUE(is_newest(slot.reading(), own, tag_of(2), 2));  // not committed yet
   EXPECT_FALSE(is_newest(slot.reading(), own, tag_of(2), 3));
-  slot.write(4, 3, 400);  // over the copy's own cell
+  slot.write(4, 3, 400);  // overwrites the cell of the copy
   EXPECT_FALSE(is_newest(slot.reading(), own, tag_of(2), 2));
   EXPECT_FALSE(is_newest(slot.reading(), own, tag_of(2), 3));
 }
@@ -89,7 +89,7 @@ TEST(Publication, ACopyWhoseTagDiffersInItsLowerBitsOnlyIsNotTheNewest) {
   EXPECT_FALSE(is_newest(slot.reading(), own, tag_of(1) | 1, 1));
 }
 
-TEST(Publication, WhatWasNotCommittedIsRetiredAndNeverComesToBeTheNewest) {
+TEST(Publication, AnUncommittedCellIsRetiredAndNeverBecomesTheNewest) {
   Slot slot;
   slot.write(1, 0, 100);
   slot.write(2, 1, 200);  // not committed: the writer died

@@ -10,12 +10,12 @@
 
 #include "ipc/layout/summary.hpp"
 
-/// Members of a struct lie at the words that the rows of its table name.
+/// Each member of a struct is stored at the words that its row in the table names.
 namespace splinecast::ipc {
 namespace {
 
-/// Fills the bytes of one member with what no other member has, and expects them, and nothing else,
-/// at the words that its row says; and back.
+/// Fills one member with a unique pattern. Expects the pattern at the words of its row, all other
+/// words unchanged, and the same member after decoding.
 template <typename Struct, auto Member>
 void expect_member_at_its_place(const auto& rows, std::span<const Field> fields,
                                 const MemberRow<Member>& row) {
@@ -61,16 +61,16 @@ void expect_members_at_their_places(const Rows& rows, std::span<const Field> fie
       rows);
 }
 
-TEST(LayoutTable, EveryMemberOfTheHeaderComesBackFromTheWordsThatItsRowNames) {
+TEST(LayoutTable, EveryHeaderMemberIsStoredAtTheWordsThatItsRowNames) {
   expect_members_at_their_places<RegionHeader>(kHeaderRows, kHeaderFields);
 }
 
-TEST(LayoutTable, EveryMemberOfTheHeadComesBackFromTheWordsThatItsRowNames) {
+TEST(LayoutTable, EverySummaryMemberIsStoredAtTheWordsThatItsRowNames) {
   expect_members_at_their_places<Head>(kHeadRows, kHeadFields);
 }
 
-/// A member without a row would be lost on the way through shared memory.
-TEST(LayoutTable, TheRowsOfHeaderAndHeadNameAllTheirMembers) {
+/// A member without a row would not be stored in shared memory.
+TEST(LayoutTable, TheRowsOfHeaderAndSummaryNameAllTheirMembers) {
   const auto count = [](const auto&... row) {
     const auto bytes = []<typename Row>(const Row& each) -> std::size_t {
       if constexpr (std::is_same_v<Row, FieldRow>) {
@@ -82,7 +82,7 @@ TEST(LayoutTable, TheRowsOfHeaderAndHeadNameAllTheirMembers) {
     return (bytes(row) + ...);
   };
   EXPECT_EQ(std::apply(count, kHeaderRows), sizeof(RegionHeader));
-  // Three members are not of the revision alone and lie elsewhere; two flags share a word here.
+  // Three members are stored outside the summary; two flags share one word.
   constexpr std::size_t kElsewhere =
       sizeof(Head::revision) + sizeof(Head::settled_until) + sizeof(Head::changed_from);
   EXPECT_EQ(std::apply(count, kHeadRows) + kElsewhere, sizeof(Head) + sizeof(Word));

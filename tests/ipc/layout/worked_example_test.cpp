@@ -18,7 +18,7 @@
 #include "splinecast/options.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
-/// The bytes that ipc/README.md shows are the bytes that ring and board write.
+/// The ring and the board write the bytes that ipc/README.md shows.
 namespace splinecast::ipc {
 namespace {
 
@@ -71,7 +71,7 @@ struct Example {
   }
 };
 
-TEST(WorkedExample, EveryWordThatTheReadmeShowsIsThere) {
+TEST(WorkedExample, HasEveryWordThatTheReadmeShows) {
   Example example;
   std::ifstream readme(SPLINECAST_SOURCE "/ipc/README.md");
   ASSERT_TRUE(readme.good());
@@ -80,7 +80,7 @@ TEST(WorkedExample, EveryWordThatTheReadmeShowsIsThere) {
   for (std::string line; std::getline(readme, line);) {
     if (line.find("example.waypoints:") != std::string::npos) region = example.waypoints.span();
     if (line.find("example.spline:") != std::string::npos) region = example.spline.span();
-    // A row is an offset, 16 hexadecimal digits and a meaning.
+    // A row has an offset, 16 hexadecimal digits and a meaning.
     std::istringstream fields(line);
     std::size_t offset = 0;
     std::string digits;

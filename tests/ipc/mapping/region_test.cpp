@@ -37,7 +37,7 @@ TEST(Region, HasNoNameUntilItIsLinkedAndReplacesNothing) {
   EXPECT_FALSE(second.is_linked(stream.name(), RegionKind::waypoints));
 }
 
-TEST(Region, ItsPagesAreReservedAndItsModeIsTheOneAskedFor) {
+TEST(Region, HasReservedPagesAndTheRequestedMode) {
   const TestStream stream;
   const mode_t before = umask(077);
   const Region region = Region::create(kSize, {.mode = 0640});
@@ -50,7 +50,7 @@ TEST(Region, ItsPagesAreReservedAndItsModeIsTheOneAskedFor) {
   EXPECT_GE(static_cast<std::size_t>(status.st_blocks) * 512, kSize);
 }
 
-TEST(Region, MoreThanSharedMemoryHoldsIsRefusedWithNeededAndFreeBytes) {
+TEST(Region, LargerThanSharedMemoryIsRefusedWithNeededAndFreeBytes) {
   try {
     (void)Region::create(std::size_t{1} << 50U, {});
     FAIL();
@@ -61,7 +61,7 @@ TEST(Region, MoreThanSharedMemoryHoldsIsRefusedWithNeededAndFreeBytes) {
   }
 }
 
-TEST(Region, WhatOthersMayWriteIsNotTrusted) {
+TEST(Region, WritableByOthersIsNotTrusted) {
   const TestStream stream;
   const Region region = Region::create(kSize, {});
   ASSERT_TRUE(region.link(stream.name(), RegionKind::waypoints));
@@ -73,7 +73,7 @@ TEST(Region, WhatOthersMayWriteIsNotTrusted) {
   ASSERT_EQ(fchmod(region.descriptor(), 0600), 0);
 }
 
-TEST(Region, OtherUsersRegionsAreTrustedOnlyByName) {
+TEST(Region, OfAnotherUserIsTrustedOnlyIfThatUserIsNamed) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can give a region away";
   const TestStream stream;
   const Region region = Region::create(kSize, {});
@@ -85,7 +85,7 @@ TEST(Region, OtherUsersRegionsAreTrustedOnlyByName) {
   ASSERT_EQ(fchown(region.descriptor(), 0, static_cast<gid_t>(-1)), 0);
 }
 
-TEST(Region, NoRegularFileIsOpenedOrWaitedFor) {
+TEST(Region, OpensOnlyRegularFilesAndDoesNotBlock) {
   const TestStream stream;
   const std::string path = region_path(stream.name(), RegionKind::waypoints);
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
@@ -97,7 +97,7 @@ TEST(Region, NoRegularFileIsOpenedOrWaitedFor) {
   EXPECT_THROW((void)Region::open(stream.name(), RegionKind::waypoints, false), NoSuchStream);
 }
 
-TEST(OwnerLock, IsHeldByOneAndFreeWhenItsHolderDies) {
+TEST(OwnerLock, IsHeldByOneProcessAndFreeAfterItsDeath) {
   const TestStream stream;
   const pid_t child = fork();
   if (child == 0) {
@@ -115,9 +115,9 @@ TEST(OwnerLock, IsHeldByOneAndFreeWhenItsHolderDies) {
   EXPECT_NO_THROW(OwnerLock(stream.name(), RegionKind::spline));
 }
 
-TEST(OwnerLock, AForkedChildDoesNotKeepIt) {
+TEST(OwnerLock, IsNotKeptByAForkedChild) {
   const TestStream stream;
-  // An owner that forks a child and is killed; the child lives on.
+  // An owner forks a child and is killed; the child continues to run.
   std::array<int, 2> pipe_ends{};
   ASSERT_EQ(pipe(pipe_ends.data()), 0);
   const pid_t owner = fork();
@@ -139,7 +139,7 @@ TEST(OwnerLock, AForkedChildDoesNotKeepIt) {
   EXPECT_THROW(OwnerLock(stream.name(), RegionKind::spline), StreamBusy);
   kill(owner, SIGKILL);
   waitpid(owner, nullptr, 0);
-  // As soon as the child has had its first instant.
+  // The lock is free as soon as the child has run its fork handler.
   EXPECT_TRUE(testing::await([&] { return !owner_lives(stream.name(), RegionKind::spline); }));
   EXPECT_TRUE(testing::await([&] {
     try {
@@ -155,7 +155,7 @@ TEST(OwnerLock, AForkedChildDoesNotKeepIt) {
   close(pipe_ends[1]);
 }
 
-TEST(OwnerLock, IsFreeAtOnceWhenItsHolderLetsGoEvenIfAChildWasJustForked) {
+TEST(OwnerLock, IsFreeOnReleaseEvenIfAChildWasJustForked) {
   const TestStream stream;
   pid_t child = -1;
   {
@@ -171,7 +171,7 @@ TEST(OwnerLock, IsFreeAtOnceWhenItsHolderLetsGoEvenIfAChildWasJustForked) {
   waitpid(child, nullptr, 0);
 }
 
-TEST(OwnerLock, AReaderThatLocksWhatItCanStopsNobody) {
+TEST(OwnerLock, IsNotBlockedByTheLockOfAReader) {
   const TestStream stream;
   const Region region = Region::create(kSize, {});
   ASSERT_TRUE(region.link(stream.name(), RegionKind::spline));
@@ -192,7 +192,7 @@ TEST(Names, AreCheckedBeforeTheyBecomePaths) {
   EXPECT_NO_THROW(require_stream_name("arm-1.left_hand"));
 }
 
-TEST(Names, OfFilesThatAreNoStreamsAreNotListed) {
+TEST(Names, ThatAreInvalidForStreamsAreNotListed) {
   const TestStream stream;
   const Region region = Region::create(kSize, {});
   ASSERT_TRUE(region.link(stream.name(), RegionKind::spline));
@@ -211,19 +211,19 @@ TEST(Names, OfFilesThatAreNoStreamsAreNotListed) {
   for (const std::string& path : invalid) unlink(path.c_str());
 }
 
-TEST(Names, OfOthersArePrintedWithoutWhatATerminalObeys) {
+TEST(Names, ArePrintedWithoutTerminalControlCharacters) {
   EXPECT_EQ(printable("arm-1.left hand \u00e4\u20ac\U0001f916"),
             "arm-1.left hand \u00e4\u20ac\U0001f916");
   EXPECT_EQ(printable("a\033[2J\r\n\t\x7f"), R"(a\x1b[2J\x0d\x0a\x09\x7f)");
-  EXPECT_EQ(printable("\xc3"), R"(\xc3)");                                  // cut off
-  EXPECT_EQ(printable("\xc3("), R"(\xc3()");                                // no continuation
-  EXPECT_EQ(printable("\xc0\x80\xe0\x80\x8a"), R"(\xc0\x80\xe0\x80\x8a)");  // longer than need be
-  EXPECT_EQ(printable("\xed\xa0\x80"), R"(\xed\xa0\x80)");  // half of a surrogate pair
+  EXPECT_EQ(printable("\xc3"), R"(\xc3)");                                  // truncated
+  EXPECT_EQ(printable("\xc3("), R"(\xc3()");                                // no continuation byte
+  EXPECT_EQ(printable("\xc0\x80\xe0\x80\x8a"), R"(\xc0\x80\xe0\x80\x8a)");  // overlong encoding
+  EXPECT_EQ(printable("\xed\xa0\x80"), R"(\xed\xa0\x80)");                  // surrogate
   EXPECT_EQ(printable("\xf4\x90\x80\x80\xff"), R"(\xf4\x90\x80\x80\xff)");
   EXPECT_EQ(printable("\xc2\x9b"
                       "2J"),
             R"(\xc2\x9b)"
-            "2J");  // CSI in one character
+            "2J");  // CSI as one C1 control character
   EXPECT_EQ(printable("\u202e\u2028"), R"(\xe2\x80\xae\xe2\x80\xa8)");
   try {
     require_stream_name("a\033[2J");

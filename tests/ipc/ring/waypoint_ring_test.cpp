@@ -21,7 +21,7 @@ AppendStatus append(MemoryRing& ring, Time t, std::vector<double> x, Word consum
                             {consumed});
 }
 
-TEST(WaypointRing, GivesBackWhatWasAppended) {
+TEST(WaypointRing, ReturnsTheAppendedItems) {
   MemoryRing ring(2, 4);
   const std::vector<double> x{1, 2};
   const std::vector<double> v{3, 4};
@@ -40,7 +40,7 @@ TEST(WaypointRing, GivesBackWhatWasAppended) {
   EXPECT_EQ(ring.reader.head(), 2U);
 }
 
-TEST(WaypointRing, RefusesBadFormWithTheReasonAndCountsIt) {
+TEST(WaypointRing, RefusesInvalidWaypointsWithAReasonAndCountsThem) {
   MemoryRing ring(2, 8);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
@@ -67,7 +67,7 @@ TEST(WaypointRing, RefusesBadFormWithTheReasonAndCountsIt) {
   EXPECT_EQ(ring.reader.refused(AppendStatus::too_far_apart), 1U);
 }
 
-TEST(WaypointRing, TheEarliestAndTheLatestTimeAreInOrder) {
+TEST(WaypointRing, AcceptsTheEarliestAndTheLatestTimeInOrder) {
   MemoryRing ring(1, 8);
   EXPECT_EQ(append(ring, -kLatestTime - Time(1), {0}), AppendStatus::too_far_apart);
   EXPECT_EQ(append(ring, -kLatestTime, {0}), AppendStatus::accepted);
@@ -111,12 +111,12 @@ TEST(WaypointRing, APassiveObserverKeepsAnItemOnlyWhileItCannotBeOverwritten) {
   for (int i = 0; i < 4; ++i) {
     ASSERT_EQ(append(ring, Time(10'000 * (i + 1)), {1.0 * i}), AppendStatus::accepted);
   }
-  EXPECT_FALSE(ring.reader.observe(0, item));  // the producer may be writing item 4 over it
+  EXPECT_FALSE(ring.reader.observe(0, item));  // the producer may be overwriting it with item 4
   EXPECT_TRUE(ring.reader.observe(1, item));
   EXPECT_EQ(item.values[0], 1);
 }
 
-TEST(WaypointRing, APassiveObserverKeepsNothingThatAReplacementInWritingOverwrites) {
+TEST(WaypointRing, APassiveObserverKeepsNoItemThatAnUnfinishedReplacementOverwrites) {
   MemoryRing ring(1, 8);
   RingItem item(1);
   for (int i = 0; i < 8; ++i) {
@@ -126,19 +126,19 @@ TEST(WaypointRing, APassiveObserverKeepsNothingThatAReplacementInWritingOverwrit
   const std::vector<Waypoint> replacing{{.time = Time(200'000), .position = x},
                                         {.time = Time(300'000), .position = x}};
   ASSERT_EQ(ring.writer.replace_from(Time(100'000), replacing, {8}), AppendStatus::accepted);
-  // As the region was before the one store that appended all of it.
+  // Restores the region to its state before the one store that appended the whole replacement.
   const auto control = words_at(ring.bytes.span(), ring.layout.control, kClaimed + 1);
   store(control[kHead], 8, std::memory_order_relaxed);
   for (Word i = 0; i < 3; ++i) EXPECT_FALSE(ring.reader.observe(i, item)) << i;
   for (Word i = 3; i < 8; ++i) EXPECT_TRUE(ring.reader.observe(i, item)) << i;
-  // Its producer has died: the next one claims less, and what was overwritten stays lost.
+  // The producer has died. The next one claims fewer items; the overwritten ones stay lost.
   WaypointRingWriter next(ring.bytes.span(), ring.layout, {});
   ASSERT_EQ(next.replace_from(Time(100'000), {}, {8}), AppendStatus::accepted);
   EXPECT_FALSE(ring.reader.observe(2, item));
   EXPECT_TRUE(ring.reader.observe(3, item));
 }
 
-TEST(WaypointRing, NothingFollowsAFinishAndItCarriesItsCondition) {
+TEST(WaypointRing, RefusesItemsAfterAFinishAndKeepsItsCondition) {
   MemoryRing ring(2, 4);
   ASSERT_EQ(append(ring, kMillisecond, {1, 2}), AppendStatus::accepted);
   ASSERT_EQ(ring.writer.finish({ConditionKind::velocity, {3, 4}}, {}), AppendStatus::accepted);
@@ -152,7 +152,7 @@ TEST(WaypointRing, NothingFollowsAFinishAndItCarriesItsCondition) {
   EXPECT_EQ(item.values[3], 4);
 }
 
-TEST(WaypointRing, ANewWriterGoesOnBehindTheLastWaypoint) {
+TEST(WaypointRing, ANewWriterContinuesAfterTheLastWaypoint) {
   MemoryRing ring(1, 4);
   for (int i = 1; i <= 3; ++i)
     ASSERT_EQ(append(ring, i * kMillisecond, {0}), AppendStatus::accepted);
@@ -166,7 +166,7 @@ TEST(WaypointRing, ANewWriterGoesOnBehindTheLastWaypoint) {
   EXPECT_TRUE(WaypointRingWriter(ring.bytes.span(), ring.layout, {}).finished());
 }
 
-/// Fills a ring of this capacity with waypoints, every 10 ms. Returns how many it took.
+/// Fills a ring with waypoints every 10 ms. Returns the number of items in it.
 Word fill(MemoryRing& ring) {
   while (append(ring, static_cast<std::int64_t>(ring.writer.head() + 1) * 10 * kMillisecond, {0}) ==
          AppendStatus::accepted) {
@@ -182,10 +182,11 @@ TEST(WaypointRing, KeepsRoomForStopsAndAFinish) {
   const auto stop = [&](Time t) { return ring.writer.replace_from(t, {}, {0, 5 * kMillisecond}); };
   const auto replace = ring.writer.replace_from(9'000 * kMillisecond, {&waypoint, 1}, {});
   EXPECT_EQ(replace, AppendStatus::full);
-  // Each earlier than the one before, so that it says something new.
+  // Each stop is earlier than the previous one, so that it needs an item. Stops in the future leave
+  // two items, for an immediate stop and a finish.
   EXPECT_EQ(stop(300 * kMillisecond), AppendStatus::accepted);
   EXPECT_EQ(stop(200 * kMillisecond), AppendStatus::accepted);
-  EXPECT_EQ(stop(100 * kMillisecond), AppendStatus::full);  // the last two are for what cannot wait
+  EXPECT_EQ(stop(100 * kMillisecond), AppendStatus::full);
   EXPECT_EQ(stop(Time(0)), AppendStatus::accepted);
   for (int i = 0; i < 100; ++i) EXPECT_EQ(stop(Time(i)), AppendStatus::accepted);
   EXPECT_EQ(ring.writer.head(), 63U);
@@ -193,7 +194,7 @@ TEST(WaypointRing, KeepsRoomForStopsAndAFinish) {
   EXPECT_EQ(ring.writer.head(), 64U);
 }
 
-TEST(WaypointRing, AStopThatRepeatsOneThatWaitsTakesNoItem) {
+TEST(WaypointRing, AStopThatRepeatsAQueuedStopTakesNoItem) {
   MemoryRing ring(1, 64);
   ASSERT_EQ(append(ring, 10 * kMillisecond, {0}), AppendStatus::accepted);
   const auto stop = [&](Time t, Word consumed) {
@@ -204,11 +205,11 @@ TEST(WaypointRing, AStopThatRepeatsOneThatWaitsTakesNoItem) {
   EXPECT_EQ(stop(5 * kMillisecond, 1), 2U);
   EXPECT_EQ(stop(7 * kMillisecond, 1), 2U);
   EXPECT_EQ(stop(4 * kMillisecond, 1), 3U);  // earlier
-  EXPECT_EQ(stop(4 * kMillisecond, 3), 4U);  // the one before has been taken
+  EXPECT_EQ(stop(4 * kMillisecond, 3), 4U);  // the previous stop is consumed
   ASSERT_EQ(append(ring, 20 * kMillisecond, {0}, 3), AppendStatus::accepted);
-  EXPECT_EQ(stop(20 * kMillisecond, 3), 6U);  // a waypoint lies between
+  EXPECT_EQ(stop(20 * kMillisecond, 3), 6U);  // a waypoint is in between
   ring.writer = WaypointRingWriter(ring.bytes.span(), ring.layout, {});
-  EXPECT_EQ(stop(20 * kMillisecond, 3), 6U);  // also of the producer before
+  EXPECT_EQ(stop(20 * kMillisecond, 3), 6U);  // also a repeat of the previous producer's stop
 }
 
 TEST(WaypointRing, AReplacementThatLeavesNoRoomForAStopIsTooLong) {

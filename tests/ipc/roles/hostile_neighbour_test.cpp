@@ -30,8 +30,8 @@
 
 namespace {
 
-/// What signals do to posix_fallocate on kernels where any signal interrupts it: pieces longer than
-/// `longest_whole` bytes are never finished, the others after `of_each` interruptions.
+/// Simulates posix_fallocate on kernels where any signal interrupts it: a piece longer than
+/// `longest_whole` bytes never completes, a shorter one completes after `of_each` interruptions.
 struct Interruptions {
   std::size_t longest_whole = std::numeric_limits<std::size_t>::max();
   int of_each = 0;
@@ -41,7 +41,7 @@ Interruptions interruptions;
 
 }  // namespace
 
-/// In place of the C library's.
+/// Replaces the function of the C library.
 extern "C" int posix_fallocate(int descriptor, off_t offset, off_t length) {
   const bool is_whole = static_cast<std::size_t>(length) <= interruptions.longest_whole &&
                         interruptions.tries++ >= interruptions.of_each;
@@ -50,7 +50,7 @@ extern "C" int posix_fallocate(int descriptor, off_t offset, off_t length) {
   return fallocate(descriptor, 0, offset, length) == 0 ? 0 : errno;
 }
 
-/// What other processes of the machine do to a stream's files while they are opened and owned.
+/// What other processes of the machine may do to a stream's files.
 namespace splinecast::ipc {
 namespace {
 
@@ -66,7 +66,7 @@ Solver solve(const std::string& stream) {
   return solver;
 }
 
-/// Another open file of a region, as a reader has it.
+/// A read-only open file description of a region, as a reader has one.
 class OpenFile {
  public:
   explicit OpenFile(const std::string& path) : descriptor_(open(path.c_str(), O_RDONLY)) {}
@@ -84,8 +84,8 @@ class OpenFile {
   int descriptor_;
 };
 
-/// A write lease on a file: a process that opens the file waits until the holder has given it back,
-/// up to 45 s. This holder does so as soon as it is asked to.
+/// A write lease on a file: a process that opens the file waits up to 45 s until the holder
+/// releases the lease. This holder releases it on the first request (SIGIO).
 class Lease {
  public:
   explicit Lease(const std::string& path) {
@@ -110,11 +110,11 @@ class Lease {
   bool is_held_ = false;
 };
 
-TEST(HostileNeighbour, AnOpenWaitsForNoLease) {
+TEST(HostileNeighbour, OpeningARegionDoesNotWaitForALease) {
   const TestStream stream;
   const Region region = Region::create(4 * kPage, {});
   ASSERT_TRUE(region.link(stream.name(), RegionKind::waypoints));
-  // A lease is put on what lstat calls a regular file. It needs a file that nobody has open.
+  // A lease needs a regular file that no process has open.
   const std::string path = region_path(stream.name(), RegionKind::spline);
   close(open(path.c_str(), O_CREAT | O_RDWR, 0600));
   const auto refused = [&](const auto& look) {
@@ -139,12 +139,12 @@ TEST(HostileNeighbour, AnOpenWaitsForNoLease) {
   EXPECT_THROW(OwnerLock(name, RegionKind::spline), BadRegion);
 }
 
-/// Opens each fifo for both directions, which ends the wait of whoever opens it for one.
+/// Opens each FIFO for both directions, which ends the wait of a thread that opens it for one.
 void free_openers(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) close(open(path.c_str(), O_RDWR | O_NONBLOCK));
 }
 
-TEST(HostileNeighbour, AFifoThatTakesTheRegionsPlaceWhileItIsOpenedHangsNobody) {
+TEST(HostileNeighbour, AFifoThatReplacesARegionDuringItsOpeningBlocksNoProcess) {
   const TestStream stream;
   const Region region = Region::create(4 * kPage, {});
   ASSERT_TRUE(region.link(stream.name(), RegionKind::spline));
@@ -155,7 +155,7 @@ TEST(HostileNeighbour, AFifoThatTakesTheRegionsPlaceWhileItIsOpenedHangsNobody) 
   std::thread exchanger([&] {
     while (!done) renameat2(AT_FDCWD, path.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE);
   });
-  // Frees a thread that hangs in an open, and notes that it hung.
+  // Ends the wait of a thread that hangs in `open`, and sets `hung`.
   std::atomic<int> looks = 0;
   std::atomic<bool> hung = false;
   std::thread watchdog([&] {
@@ -178,14 +178,14 @@ TEST(HostileNeighbour, AFifoThatTakesTheRegionsPlaceWhileItIsOpenedHangsNobody) 
   done = true;
   exchanger.join();
   watchdog.join();
-  EXPECT_FALSE(hung) << "after " << looks << " looks";
+  EXPECT_FALSE(hung) << "after " << looks << " attempts";
   EXPECT_GT(regular, 0);
   EXPECT_GT(refused, 0);
   unlink(path.c_str());
   unlink(other.c_str());
 }
 
-TEST(HostileNeighbour, ASecondNameOfARegionMakesNoSecondOwner) {
+TEST(HostileNeighbour, AHardLinkToARegionAllowsNoSecondOwner) {
   const TestStream stream;
   const TestStream second;
   const Producer producer(stream.name(), kRecorded);
@@ -203,7 +203,7 @@ TEST(HostileNeighbour, ASecondNameOfARegionMakesNoSecondOwner) {
   }
 }
 
-TEST(HostileNeighbour, AReadLockHidesNoNewOwnerFromThoseWhoCannotOpenItsLock) {
+TEST(HostileNeighbour, AReadLockDoesNotHideANewOwnerFromProcessesThatCannotOpenItsLock) {
   const TestStream stream;
   const Producer producer(stream.name(), kRecorded);
   { const Solver dead = solve(stream.name()); }
@@ -223,7 +223,7 @@ TEST(HostileNeighbour, AReadLockHidesNoNewOwnerFromThoseWhoCannotOpenItsLock) {
   EXPECT_FALSE(hostile.lock(F_RDLCK));
 }
 
-TEST(HostileNeighbour, ADeadOwnerIsDeadUnderAReadLockToo) {
+TEST(HostileNeighbour, ADeadOwnerIsDetectedUnderAReadLock) {
   const TestStream stream;
   const Producer producer(stream.name(), kRecorded);
   { const Solver dead = solve(stream.name()); }
@@ -242,13 +242,13 @@ TEST(HostileNeighbour, ADeadOwnerIsDeadUnderAReadLockToo) {
   ASSERT_TRUE(WIFSTOPPED(status));
   EXPECT_TRUE(region_owner_lives(observer.get()));
   kill(owner, SIGKILL);
-  // Until its parent waits for it, it is a zombie: its id exists, but it is dead.
+  // The dead process is a zombie until its parent waits for it: its id still exists.
   EXPECT_TRUE(testing::await([&] { return !region_owner_lives(observer.get()); }));
   waitpid(owner, &status, 0);
   EXPECT_FALSE(region_owner_lives(observer.get()));
 }
 
-TEST(HostileNeighbour, WithoutFreeDescriptorsNobodyIsTakenForDead) {
+TEST(HostileNeighbour, WithoutFreeDescriptorsNoWriterIsReportedDead) {
   const TestStream stream;
   const Producer producer(stream.name(), kRecorded);
   const Solver solver = solve(stream.name());
@@ -265,7 +265,7 @@ TEST(HostileNeighbour, WithoutFreeDescriptorsNobodyIsTakenForDead) {
   EXPECT_TRUE(producer.solver_alive());
 }
 
-TEST(HostileNeighbour, SignalsAtAHighRateKeepNobodyFromReservingPages) {
+TEST(HostileNeighbour, FrequentSignalsDoNotPreventReservingPages) {
   constexpr std::size_t kBytes = 100 * kPage;
   {
     const Interruptions few{.longest_whole = 2 * kPage, .of_each = 3};
@@ -281,7 +281,7 @@ TEST(HostileNeighbour, SignalsAtAHighRateKeepNobodyFromReservingPages) {
   interruptions = {};
 }
 
-/// Whether this process has a file open, by its inode.
+/// Whether this process has a file open; compares inodes.
 bool has_open(const struct stat& file) {
   constexpr int kDescriptors = 256;
   for (int descriptor = 0; descriptor < kDescriptors; ++descriptor) {
@@ -294,7 +294,7 @@ bool has_open(const struct stat& file) {
   return false;
 }
 
-TEST(HostileNeighbour, AForkWhileALockIsOpenedLeavesTheChildNothing) {
+TEST(HostileNeighbour, AForkDuringTheOpeningOfALockLeavesTheChildNoDescriptor) {
   const TestStream stream;
   const std::string path = lock_path(stream.name(), RegionKind::spline);
   close(open(path.c_str(), O_CREAT | O_RDWR, 0600));

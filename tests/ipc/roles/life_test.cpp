@@ -24,7 +24,7 @@
 #include "tests/fixtures/processes/process.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
-/// The three roles over real shared memory, within one process.
+/// The three roles over real shared memory, in one process.
 namespace splinecast::ipc {
 namespace {
 
@@ -61,7 +61,7 @@ TEST(Roles, AWaypointTravelsFromProducerToReader) {
   EXPECT_EQ(reader.clock(), StreamClock::recorded);
 }
 
-TEST(Roles, AProducerGoesOnAfterAPauseLongerThanTheMostInterval) {
+TEST(Roles, AProducerContinuesAfterAPauseLongerThanTheLargestInterval) {
   const TestStream stream;
   constexpr Time kMost{30'000'000};
   Producer producer(stream.name(), {.dimensions = 1, .limits = {.max_interval = kMost}});
@@ -74,13 +74,13 @@ TEST(Roles, AProducerGoesOnAfterAPauseLongerThanTheMostInterval) {
   EXPECT_EQ(producer.append({first + 2 * kMost, x, {}, {}}), AppendStatus::accepted);
 }
 
-TEST(Roles, TheDescriptionTravelsWithTheStream) {
+TEST(Roles, AReaderSeesTheNamesUnitsAndSettleLagOfTheStream) {
   const TestStream stream;
   auto options = recorded(2);
   options.names = {"shoulder", "elbow"};
   options.units = {"rad", "rad"};
   Producer producer(stream.name(), options);
-  Solver solver(stream.name(), {.settle = 3, .tail = Tail::rest});
+  Solver solver(stream.name(), {.settle = 3, .tail = Tail::clamped});
   ASSERT_TRUE(solver.attach());
   const Reader reader(stream.name());
   EXPECT_EQ(reader.names(), options.names);
@@ -96,7 +96,7 @@ TEST(Roles, ASleepingSolverIsWokenByAnAppend) {
   ASSERT_TRUE(producer.wait_for_solver(kSecond));
   const std::vector<double> x{0};
   std::thread appending([&] {
-    // Appends only once the solver says that it sleeps.
+    // Appends as soon as the solver reports that it sleeps.
     const Region region = Region::open(stream.name(), RegionKind::spline, false);
     const RegionHeader header = copy_header(region.bytes());
     const KnotBoardReader board(region.bytes(),
@@ -130,7 +130,7 @@ TEST(Roles, AReaderThatWaitsIsWokenByARevision) {
   EXPECT_EQ(status, WaitStatus::advanced);
 }
 
-TEST(Roles, WaitingEndsAtItsTimeOut) {
+TEST(Roles, WaitsEndAtTheirTimeout) {
   const TestStream stream;
   EXPECT_THROW(Reader(stream.name(), Time(1)), NoSuchStream);
   auto options = recorded(1);
@@ -146,7 +146,7 @@ TEST(Roles, WaitingEndsAtItsTimeOut) {
   EXPECT_FALSE(producer.solver_alive());
 }
 
-TEST(Roles, SolversThatComeOneAfterTheOtherShareOneBoard) {
+TEST(Roles, SuccessiveSolversShareOneBoard) {
   const TestStream stream;
   const auto mesh = testing::random_mesh(1, 40, 1, 3);
   Producer producer(stream.name(), recorded(1));
@@ -166,7 +166,7 @@ TEST(Roles, SolversThatComeOneAfterTheOtherShareOneBoard) {
   EXPECT_EQ(Internals::header(*reader).epoch, 1U);
 }
 
-TEST(Roles, AForkedChildThatEndsItsCopyOfASolverTakesNothingAway) {
+TEST(Roles, AForkedChildThatDestroysItsSolverDoesNotReleaseTheLock) {
   const TestStream stream;
   std::optional<Solver> solver;
   solver.emplace(stream.name(), SolverOptions{});
@@ -181,14 +181,14 @@ TEST(Roles, AForkedChildThatEndsItsCopyOfASolverTakesNothingAway) {
   EXPECT_THROW(Solver(stream.name(), {}), StreamBusy);
 }
 
-TEST(Roles, ARemovalThatIsRefusedLeavesNoLockBehind) {
+TEST(Roles, ARefusedRemovalLeavesNoLockFile) {
   const TestStream stream;
   const Solver solver(stream.name(), {});
   EXPECT_THROW(remove_stream(stream.name()), StreamBusy);
   EXPECT_FALSE(std::filesystem::exists(lock_path(stream.name(), RegionKind::waypoints)));
 }
 
-TEST(Roles, VeryLongWaitsDoNotTimeOutAtOnce) {
+TEST(Roles, VeryLongWaitsDoNotTimeOutImmediately) {
   const TestStream stream;
   testing::FixedClock clock;
   clock.time = Time(5);
@@ -196,7 +196,7 @@ TEST(Roles, VeryLongWaitsDoNotTimeOutAtOnce) {
   EXPECT_EQ(deadline(clock, Time(7)), Time(12));
 }
 
-TEST(Roles, BadOptionsAreRefusedBeforeAnythingIsMade) {
+TEST(Roles, BadOptionsAreRefusedBeforeARegionIsCreated) {
   const TestStream stream;
   EXPECT_THROW(Producer(stream.name(), recorded(0)), BadRequest);
   EXPECT_THROW(Producer(stream.name(), recorded(65)), BadRequest);

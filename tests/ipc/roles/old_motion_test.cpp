@@ -14,8 +14,8 @@
 #include "tests/fixtures/processes/process.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
-/// A live stream that is made again while readers still follow its old curve, in real regions and
-/// on a clock that the test sets.
+/// A live stream is recreated while readers still follow its old curve. Uses real regions and a
+/// clock that the test sets.
 namespace splinecast::ipc {
 namespace {
 
@@ -30,7 +30,7 @@ class OldMotion : public ::testing::Test {
     return producer.append({.time = t, .position = {&x, 1}});
   }
 
-  /// Ten waypoints, 100 ms apart, of a motion that ends at 2 s.
+  /// Sends eleven waypoints, 100 ms apart, of a motion that ends at 2 s.
   void send_first(Producer& producer) {
     for (int i = 0; i <= 10; ++i) {
       const double x = std::sin(0.5 * i);
@@ -43,7 +43,7 @@ class OldMotion : public ::testing::Test {
   ProducerOptions options_{.dimensions = 1};
 };
 
-TEST_F(OldMotion, OfAFinishedStreamEndsBeforeItIsMadeAgain) {
+TEST_F(OldMotion, OfAFinishedStreamEndsBeforeTheStreamIsRecreated) {
   Solver solver(stream_.name(), {});
   std::optional<Producer> producer(std::in_place, stream_.name(), options_);
   ASSERT_TRUE(solver.attach(clock_));
@@ -71,7 +71,7 @@ TEST_F(OldMotion, OfAFinishedStreamEndsBeforeItIsMadeAgain) {
   }
   EXPECT_EQ(samples, 550);
   EXPECT_EQ(clock_.time, seconds(2));
-  EXPECT_LT(std::abs(state.velocity()[0]), 0.05);  // of 1 ms before the end, which is a halt
+  EXPECT_LT(std::abs(state.velocity()[0]), 0.05);  // 1 ms before the full stop
   EXPECT_EQ(reader.sample(clock_.time, state), SampleStatus::retired);
   ASSERT_EQ(append(*producer, seconds(3), 7), AppendStatus::accepted);
   solver.step(clock_);
@@ -98,7 +98,7 @@ TEST_F(OldMotion, OfAStreamWhoseProducerWithdrewEndsWithItsStopSegment) {
   EXPECT_EQ(end_of_old_motion(stream_.name(), producer->stream_id(), {}), Time::min());
 }
 
-TEST_F(OldMotion, OfAStreamInASweepIsWaitedForToo) {
+TEST_F(OldMotion, OfAStreamInASweepAlsoEndsBeforeTheStreamIsRecreated) {
   std::vector<SweepNews> news;
   StreamSweep sweep({stream_.name()}, {},
                     [&](SweepNews what, const std::string& /*stream*/, const Solver* /*solver*/,
@@ -123,7 +123,7 @@ TEST_F(OldMotion, OfAStreamInASweepIsWaitedForToo) {
                                SweepNews::waiting, SweepNews::solving}));
 }
 
-TEST_F(OldMotion, OfMoreThanAnHourIsRefusedByItsEnd) {
+TEST_F(OldMotion, OfMoreThanAnHourIsRefusedWithItsEnd) {
   Solver solver(stream_.name(), {});
   std::optional<Producer> producer(std::in_place, stream_.name(), options_);
   ASSERT_TRUE(solver.attach(clock_));
@@ -138,7 +138,7 @@ TEST_F(OldMotion, OfMoreThanAnHourIsRefusedByItsEnd) {
     solver.attach(clock_);
     FAIL() << "attached";
   } catch (const BadRegion& error) {
-    EXPECT_NE(std::string(error.what()).find("ends only at 6000000000000 ns"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("ends at 6000000000000 ns"), std::string::npos);
   }
 }
 

@@ -12,7 +12,7 @@
 #include "splinecast/solver.hpp"
 #include "tests/fixtures/processes/process.hpp"
 
-/// What a reader says of a stream, by the public headers alone.
+/// What a reader reports about a stream, through the public headers only.
 namespace splinecast {
 namespace {
 
@@ -50,7 +50,7 @@ class PublicReader : public ::testing::Test {
   Solver solver_;
 };
 
-TEST_F(PublicReader, SaysHowFarTheCurveHasCome) {
+TEST_F(PublicReader, ReportsTheProgressOfTheCurve) {
   const Reader reader(stream_.name());
   EXPECT_FALSE(reader.progress().has_value());
   EXPECT_FALSE(reader.first_time().has_value());
@@ -66,13 +66,13 @@ TEST_F(PublicReader, SaysHowFarTheCurveHasCome) {
   EXPECT_EQ(reader.first_time(), Time::zero());
 }
 
-TEST_F(PublicReader, SaysWhatTheProducerHasNamed) {
+TEST_F(PublicReader, ReportsTheNamesAndUnitsOfTheProducer) {
   const Reader reader(stream_.name());
   EXPECT_EQ(reader.names(), (std::vector<std::string>{"x", "y"}));
   EXPECT_EQ(reader.units(), (std::vector<std::string>{"m", "rad"}));
 }
 
-TEST_F(PublicReader, ASnapshotIsTheCurveThatIsSampled) {
+TEST_F(PublicReader, ASnapshotEqualsTheSampledCurve) {
   send_all();
   Reader reader(stream_.name());
   Snapshot snapshot(reader.dimensions());
@@ -99,7 +99,7 @@ TEST_F(PublicReader, ASnapshotIsTheCurveThatIsSampled) {
   }
 }
 
-TEST_F(PublicReader, ASnapshotOfOtherDimensionsIsRefused) {
+TEST_F(PublicReader, ASnapshotWithAnotherNumberOfDimensionsIsRefused) {
   send_all();
   Reader reader(stream_.name());
   Snapshot snapshot(3);

@@ -13,13 +13,13 @@
 #include "tests/fixtures/processes/process.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
-/// What producers, and programs that inspect a stream, learn of the items that its solver refuses.
+/// How producers and `inspect` report the items that a solver refuses.
 namespace splinecast::ipc {
 namespace {
 
 constexpr Time kInterval{1'000'000};
 
-/// A stream whose solver refuses every waypoint: its method needs velocities.
+/// A stream whose solver refuses every waypoint, because its method needs velocities.
 class ProducerRefusals : public ::testing::Test {
  protected:
   ProducerOptions options() const {
@@ -52,7 +52,7 @@ class ProducerRefusals : public ::testing::Test {
   Solver solver_{stream_.name(), {.method = find_method("hermite")}};
 };
 
-TEST_F(ProducerRefusals, AreToldOnceWithItemTimeAndReason) {
+TEST_F(ProducerRefusals, AreReportedOnceWithItemTimeAndReason) {
   Producer producer(stream_.name(), options());
   EXPECT_TRUE(producer.refusals().items.empty());
   append(producer, 3);
@@ -68,7 +68,7 @@ TEST_F(ProducerRefusals, AreToldOnceWithItemTimeAndReason) {
   EXPECT_EQ(producer.refusals().consumed, 4U);
 }
 
-TEST_F(ProducerRefusals, CountWhatTheBoardDoesNotKeep) {
+TEST_F(ProducerRefusals, CountThoseThatTheBoardNoLongerKeeps) {
   Producer producer(stream_.name(), options());
   append(producer, 2000);
   solve();
@@ -91,7 +91,7 @@ TEST_F(ProducerRefusals, HaveNoTimeOnceTheRingHasOverwrittenTheItem) {
   EXPECT_EQ(found.items[2].time, 3 * kInterval);
 }
 
-TEST_F(ProducerRefusals, OfAProducerThatDiedAreNotItsSuccessors) {
+TEST_F(ProducerRefusals, OfADeadProducerAreNotReportedToItsSuccessor) {
   {
     Producer dies(stream_.name(), options());
     append(dies, 2);
@@ -105,7 +105,7 @@ TEST_F(ProducerRefusals, OfAProducerThatDiedAreNotItsSuccessors) {
   EXPECT_EQ(items(producer.refusals()), std::vector<Word>{4});
 }
 
-TEST_F(ProducerRefusals, AllocateNothingInAResultThatIsUsedAgain) {
+TEST_F(ProducerRefusals, AllocateNothingWhenTheResultIsReused) {
   Producer producer(stream_.name(), options());
   Refusals found;
   append(producer, 10);
@@ -119,7 +119,7 @@ TEST_F(ProducerRefusals, AllocateNothingInAResultThatIsUsedAgain) {
   EXPECT_EQ(items(found).size(), 10U);
 }
 
-TEST_F(ProducerRefusals, FirstOfEachReasonIsWhatTheSolverTells) {
+TEST_F(ProducerRefusals, AreReportedByTheSolverOncePerReason) {
   Producer producer(stream_.name(), options());
   std::vector<ItemRefusal> told;
   append(producer, 5);
@@ -134,7 +134,7 @@ TEST_F(ProducerRefusals, FirstOfEachReasonIsWhatTheSolverTells) {
   EXPECT_TRUE(told.empty());
 }
 
-TEST_F(ProducerRefusals, AreAllInspectedThatTheBoardKeeps) {
+TEST_F(ProducerRefusals, AreAllReturnedByInspectIfTheBoardKeepsThem) {
   Producer producer(stream_.name(), options());
   append(producer, 1500);
   solve();
@@ -144,7 +144,7 @@ TEST_F(ProducerRefusals, AreAllInspectedThatTheBoardKeeps) {
   EXPECT_EQ(info.refusals.back().item, 1499U);
 }
 
-TEST(RefusalsOfABoard, EndWhereALaterOneIsBeingWritten) {
+TEST(RefusalsOfABoard, ExcludeThoseThatLaterOnesMayOverwrite) {
   testing::MemoryBoard board(1, 32);
   Head head{.first = 1};
   for (; head.refused < kRefusalsKept + 3; ++head.refused) {
@@ -155,14 +155,14 @@ TEST(RefusalsOfABoard, EndWhereALaterOneIsBeingWritten) {
   std::vector<RefusedItem> copied(kRefusalsKept);
   EXPECT_EQ(board.reader.copy_refusals(head, 0, copied), kRefusalsKept);
   EXPECT_EQ(copied.front().item, 6U);
-  // Two more, not committed: they are of later items than the head has consumed.
+  // Two more refusals, not committed: their items are after those that the summary has consumed.
   for (Word i = 0; i < 2; ++i) {
     board.writer.write_refusal(head.refused + i,
                                {.item = head.consumed + i, .reason = Refusal::past});
   }
   EXPECT_EQ(board.reader.copy_refusals(head, 0, copied), kRefusalsKept - 2);
   EXPECT_EQ(copied.front().item, 10U);
-  // They were discarded, and the items taken by a later revision that refuses none.
+  // They are discarded; a later revision takes the items and refuses none.
   head.consumed += 10;
   board.writer.commit(head);
   EXPECT_EQ(board.reader.copy_refusals(head, 0, copied), kRefusalsKept - 2);

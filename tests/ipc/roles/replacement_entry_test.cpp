@@ -16,8 +16,8 @@
 #include "tests/fixtures/processes/process.hpp"
 #include "tests/fixtures/streams/live_stream.hpp"
 
-/// How a replacement goes over to its waypoints: not before its blend is over, and as the preview
-/// of it has told.
+/// The entry of a replacement onto its waypoints: it does not end before the blend ends, and it is
+/// the one that the preview reports.
 namespace splinecast::ipc {
 namespace {
 
@@ -32,7 +32,7 @@ core::WindowOptions acceleration_limit(double acceleration) {
   return how;
 }
 
-/// A stream in motion at 1 s, and a plan that leaves it from 1.1 s on.
+/// A stream in motion at 1 s, and a plan that replaces its future from 1.1 s on.
 struct Replaced : LiveStream {
   explicit Replaced(double limit = 0, double offset = 0.02)
       : LiveStream(acceleration_limit(limit)) {
@@ -57,7 +57,7 @@ struct Replaced : LiveStream {
     planner.plan(time_at(1100), plan, blend, out);
     return out;
   }
-  /// Replaces, and returns the entry that comes of it; with another solver after each step.
+  /// Replaces the future and returns its entry. With `takes_over`, a new solver makes each step.
   std::optional<SegmentCopy> replace(Time blend, bool takes_over = false) {
     EXPECT_EQ(ring.writer.replace_from(time_at(1100), plan, solved(), blend),
               AppendStatus::accepted);
@@ -71,7 +71,7 @@ struct Replaced : LiveStream {
     for (Word n = solver.head().run; n <= solver.head().newest; ++n) {
       if (segment.take(board.reader, solver.head(), n) != BoardSegment::Taken::whole) continue;
       segment.copy_to(found);
-      if (found.kind == SegmentKind::splice) return found;
+      if (found.kind == SegmentKind::entry) return found;
     }
     return std::nullopt;
   }
@@ -81,7 +81,7 @@ struct Replaced : LiveStream {
   std::vector<Waypoint> plan;
 };
 
-TEST(ReplacementEntry, DoesNotEndBeforeItsBlendIsOver) {
+TEST(ReplacementEntry, DoesNotEndBeforeItsBlendEnds) {
   for (const bool takes_over : {false, true}) {
     for (const int blend : {0, 5, 14, 100, 333, 890}) {
       Replaced live(20);
@@ -97,7 +97,7 @@ TEST(ReplacementEntry, DoesNotEndBeforeItsBlendIsOver) {
   }
 }
 
-TEST(ReplacementEntry, GoesBeyondTheLastWaypointForABlendThatIsLonger) {
+TEST(ReplacementEntry, EndsAfterTheLastWaypointForALongerBlend) {
   Replaced live(20);
   const auto entry = live.replace(milliseconds(1500));
   ASSERT_TRUE(entry);
@@ -105,7 +105,7 @@ TEST(ReplacementEntry, GoesBeyondTheLastWaypointForABlendThatIsLonger) {
   EXPECT_EQ(live.solver.head().passed_over, live.plan.size());
 }
 
-TEST(ReplacementEntry, TakesNoBlendBeyondTheMostIntervalAndANegativeOneForNone) {
+TEST(ReplacementEntry, RefusesABlendBeyondTheLargestIntervalAndTreatsANegativeOneAsZero) {
   Replaced live;
   EXPECT_EQ(
       live.ring.writer.replace_from(time_at(1100), live.plan, live.solved(), std::chrono::hours(2)),
@@ -115,7 +115,7 @@ TEST(ReplacementEntry, TakesNoBlendBeyondTheMostIntervalAndANegativeOneForNone) 
   EXPECT_EQ(live.solver.head().controls, 1U);
 }
 
-TEST(ReplacementPreview, TellsTheEntryThatTheSolverMakes) {
+TEST(ReplacementPreview, ReportsTheEntryThatTheSolverMakes) {
   for (const double limit : {0.0, 3.0, 20.0}) {
     for (const int blend : {0, 100, 400, 1500}) {
       SCOPED_TRACE(::testing::Message() << "limit " << limit << ", blend " << blend);
@@ -150,7 +150,7 @@ TEST(ReplacementPreview, TellsTheEntryThatTheSolverMakes) {
   }
 }
 
-TEST(ReplacementPreview, OfAStopTellsHowLongItTakes) {
+TEST(ReplacementPreview, OfAStopReportsItsDuration) {
   Replaced live(4);
   live.plan.clear();
   const ReplacePreview told = live.preview({});
@@ -162,7 +162,7 @@ TEST(ReplacementPreview, OfAStopTellsHowLongItTakes) {
   EXPECT_EQ(live.solver.head().stop, told.duration);
 }
 
-/// Waypoints at 100 Hz of a motion of two dimensions, one of which wraps.
+/// Positions at 100 Hz of a motion with two dimensions; the second one is periodic.
 std::vector<std::array<double, 2>> positions_from(Time first, std::size_t count, double offset) {
   std::vector<std::array<double, 2>> positions;
   for (std::size_t i = 0; i < count; ++i) {
@@ -172,7 +172,7 @@ std::vector<std::array<double, 2>> positions_from(Time first, std::size_t count,
   return positions;
 }
 
-/// The same with their times; they must outlive them.
+/// The positions as waypoints, 10 ms apart; `positions` must outlive the result.
 std::vector<Waypoint> waypoints_at(const std::vector<std::array<double, 2>>& positions,
                                    Time first) {
   std::vector<Waypoint> waypoints;
@@ -183,9 +183,10 @@ std::vector<Waypoint> waypoints_at(const std::vector<std::array<double, 2>>& pos
   return waypoints;
 }
 
-TEST(ReplacementPreview, OfAProducerChangesNothingAndComesTrue) {
+TEST(ReplacementPreview, OfAProducerChangesNothingAndMatchesTheReplacement) {
   const testing::TestStream stream;
-  Producer producer(stream.name(), {.dimensions = 2, .kinds = {{}, {DimensionKind::wrap, 6.0}}});
+  Producer producer(stream.name(),
+                    {.dimensions = 2, .kinds = {{}, {DimensionKind::periodic, 6.0}}});
   Solver solver(stream.name(), {.limits = MotionLimits{.acceleration = {20}}});
   const MonotonicClock clock;
   EXPECT_FALSE(producer.preview_replace(clock.now(), {}).is_known);
@@ -200,7 +201,7 @@ TEST(ReplacementPreview, OfAProducerChangesNothingAndComesTrue) {
   const auto other = positions_from(milliseconds(520), 60, 0.01);
   const auto plan = waypoints_at(other, t + milliseconds(20));
   const Word appended = producer.appended();
-  const Word passed_before = Internals::head(solver).passed_over;  // as it started in mid-motion
+  const Word passed_before = Internals::head(solver).passed_over;  // > 0: starts in motion
   const ReplacePreview told = producer.preview_replace(t, plan, {.blend = milliseconds(100)});
   EXPECT_EQ(producer.appended(), appended);
   ASSERT_EQ(told.status, AppendStatus::accepted);
@@ -222,7 +223,7 @@ TEST(ReplacementPreview, OfAProducerChangesNothingAndComesTrue) {
   EXPECT_EQ(reader.limits().acceleration.size(), 2U);
 }
 
-TEST(ReplacementPreview, KnowsNothingOfAStreamWithoutACurve) {
+TEST(ReplacementPreview, IsUnknownForAStreamWithoutACurve) {
   LiveStream live;
   ReplacementPlanner planner(live.board.reader, live.window, live.kinds, live.live);
   ReplacePreview told;

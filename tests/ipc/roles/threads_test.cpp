@@ -5,7 +5,7 @@
 namespace splinecast::testing {
 namespace {
 
-TEST(Threads, OnOneMappingReadersAndObserversGetWholePayloadsWhileWritersComeAndGo) {
+TEST(Threads, ReadersAndObserversOfOneMappingGetWholePayloadsDuringTakeovers) {
   const ThreadedCounts counts = run_threads({});
   RecordProperty("appended", std::to_string(counts.appended));
   RecordProperty("replacements", std::to_string(counts.replacements));

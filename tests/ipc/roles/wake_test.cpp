@@ -23,7 +23,7 @@ namespace {
 
 using std::chrono::minutes;
 
-/// Whether a thread of this process sleeps: here, that it has parked on a futex.
+/// Whether a thread of this process sleeps; in these tests it then waits on a futex.
 bool sleeps(pid_t thread) {
   std::ifstream stat("/proc/self/task/" + std::to_string(thread) + "/stat");
   std::string text;
@@ -32,7 +32,7 @@ bool sleeps(pid_t thread) {
   return name_end != std::string::npos && text[name_end + 2] == 'S';
 }
 
-/// Threads that do nothing but wait once.
+/// Threads that only wait, once.
 class Waiters {
  public:
   template <typename Wait>
@@ -58,16 +58,16 @@ class Waiters {
   std::vector<std::thread> threads_;
 };
 
-/// Waits as somebody who wakes nobody else. Bounded, so that a failure does not hang.
+/// Waits without waking other threads. The timeout prevents a hang if the test fails.
 void park(const Word& word, Word seen) { wait_while_equal(word, seen, minutes(1)); }
 
-/// Wakes all that are parked; how many these were.
+/// Wakes all parked threads. Returns their number.
 int wake_rest(const Word& word) {
   return static_cast<int>(
       syscall(SYS_futex, &word, FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0));  // NOLINT
 }
 
-TEST(Wake, OfARevisionWakesAFewHoweverManyAreParked) {
+TEST(Wake, WakesAFixedNumberOfParkedThreads) {
   constexpr int kParked = 100;
   alignas(8) Word word = 7;
   const Waiters waiters(kParked, [&word] { park(word, 7); });
@@ -89,7 +89,7 @@ TEST(Wake, ReachesEveryThreadThatWaitsForAChange) {
   EXPECT_EQ(woken, kWaiting);
 }
 
-TEST(Wake, DoesNotPassBetweenThreadsThatHaveSeenTheRevision) {
+TEST(Wake, IsNotForwardedByThreadsThatHaveSeenTheRevision) {
   constexpr std::size_t kWaiting = 20;
   alignas(8) Word word = 8;
   std::atomic<std::size_t> woken{0};
@@ -101,13 +101,13 @@ TEST(Wake, DoesNotPassBetweenThreadsThatHaveSeenTheRevision) {
   EXPECT_EQ(wake_rest(word), static_cast<int>(kWaiting) - kWokenAtOnce);
 }
 
-TEST(Wake, AStepWakesAFewHoweverManyThreadsAreParkedOnItsBoard) {
+TEST(Wake, AStepWakesAFixedNumberOfThreadsParkedOnItsBoard) {
   constexpr int kParked = 100;
   const testing::TestStream stream;
   Producer producer(stream.name(), {.dimensions = 1, .clock = StreamClock::recorded, .start = {}});
   Solver solver(stream.name(), {});
   ASSERT_TRUE(solver.attach());
-  // As any process maps it that may read it.
+  // A read-only mapping, as readers have one.
   const auto [region, header, layout] = open_board(stream.name(), false, {});
   const KnotBoardReader board(region.bytes(), layout);
   const Waiters waiters(kParked, [&board] { park(board.revision_word(), 0); });

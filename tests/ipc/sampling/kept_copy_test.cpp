@@ -1,6 +1,6 @@
-/// Between any two loads of a reader, a writer may publish. Here it does so between the loads of
-/// the two tags of a slot: with 64 dimensions the cells of one slot lie on different pages, and the
-/// first access to one of them lets the writer act.
+/// A writer may publish between any two loads of a reader. Here it publishes between the loads of
+/// the two tags of a slot: with 64 dimensions the cells of one slot are on different pages, and the
+/// first access to one of these pages triggers the writer.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ constexpr Word kNewest = kKnot + 1;
 
 Time time_of(Word number) { return kInterval * static_cast<int>(number); }
 
-/// A board of knots all of whose velocities are the revision that wrote them.
+/// A board whose knots have the number of their revision as velocity.
 struct Board : MemoryBoard {
   Board() : MemoryBoard(kDimensions, 16) {}
 
@@ -65,15 +65,15 @@ struct Board : MemoryBoard {
   }
 };
 
-/// Knots published under revisions up to `copied` and again under r = `copied` + 1, which a reader
-/// sees. At the first access to cell `trapped` the writer publishes r + 1 and begins r + 2.
+/// Publishes all knots in revisions 1 to r = `copied` + 1; a reader sees r. At the first access to
+/// cell `trapped` the writer publishes r + 1 and begins r + 2.
 class Interleaving {
  public:
   Interleaving(Word copied, std::size_t trapped) : trapped_(trapped) {
     for (Word r = 1; r <= copied; ++r) board.publish();
   }
 
-  /// What `look` gives under r; the revision that it takes the values to be of, 0 if none.
+  /// The result of `look` when r is current: the revision of the values that it read, or 0.
   template <typename Look>
   Word run(const Look& look) {
     board.publish();
@@ -104,7 +104,7 @@ void for_each_interleaving(const Test& test) {
   }
 }
 
-TEST(KeptCopy, TheCellsOfTheKnotLieOnDifferentPages) {
+TEST(KeptCopy, TheCellsOfTheKnotAreOnDifferentPages) {
   const Board board;
   const auto page_of = [&](std::size_t c) {
     return testing::cell_offset(board.layout, kKnot, c) / kPage;
@@ -112,7 +112,7 @@ TEST(KeptCopy, TheCellsOfTheKnotLieOnDifferentPages) {
   EXPECT_NE(page_of(0), page_of(1));
 }
 
-TEST(KeptCopy, IsNotCurrentWhenTwoRevisionsPassBetweenTheLoadsOfTheTags) {
+TEST(KeptCopy, IsNotCurrentIfTwoRevisionsAreWrittenBetweenTheTagLoads) {
   for_each_interleaving([](Word copied, std::size_t trapped) {
     Interleaving at(copied, trapped);
     KnotCopy copy(kDimensions, false);
@@ -120,12 +120,12 @@ TEST(KeptCopy, IsNotCurrentWhenTwoRevisionsPassBetweenTheLoadsOfTheTags) {
     const Word seen =
         at.run([&] { return at.board.reader.is_current(copy, copied + 1) ? copy.tag : 0; });
     EXPECT_EQ(seen, 0U);
-    // The other cell holds r: where the writer does not act there, no second look is needed.
+    // The other cell's tag is r, which suffices: the reader does not access the copy's own cell.
     EXPECT_EQ(at.has_acted, trapped != copy.cell);
   });
 }
 
-TEST(KeptCopy, IsOfTheRevisionAskedForOrNoneWhenTwoRevisionsPassBetweenTheTags) {
+TEST(KeptCopy, IsEmptyIfTwoRevisionsAreWrittenBetweenTheTagLoads) {
   for_each_interleaving([](Word copied, std::size_t trapped) {
     Interleaving knots(copied, trapped);
     KnotCopy copy(kDimensions, false);
@@ -163,7 +163,7 @@ TEST(KeptCopy, ASampleIsNeverOfARevisionOlderThanItsBounds) {
   });
 }
 
-TEST(KeptCopy, ASegmentIsMadeOfTwoKnotsOfOneRevisionWhereverTheWriterActs) {
+TEST(KeptCopy, ASegmentNeverCombinesKnotsOfTwoRevisions) {
   for_each_interleaving([](Word copied, std::size_t trapped) {
     for (const Word number : {kKnot - 1, kKnot}) {
       Interleaving at(copied, trapped);
@@ -180,8 +180,8 @@ TEST(KeptCopy, ASegmentIsMadeOfTwoKnotsOfOneRevisionWhereverTheWriterActs) {
   });
 }
 
-/// The writer acts after the first of the times has been evaluated: all are evaluated again.
-TEST(KeptCopy, ManySamplesAreOfOneRevisionThoughTheWriterActsBetweenThem) {
+/// The writer publishes after the first time is evaluated: all times are evaluated again.
+TEST(KeptCopy, SampleManyReturnsOneRevisionAlthoughTheWriterPublishesMeanwhile) {
   for_each_interleaving([](Word copied, std::size_t trapped) {
     Interleaving at(copied, trapped);
     Sampler sampler(at.board.reader, StreamClock::recorded);

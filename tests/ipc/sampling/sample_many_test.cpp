@@ -14,7 +14,7 @@
 #include "tests/fixtures/processes/allocations.hpp"
 #include "tests/fixtures/streams/live_stream.hpp"
 
-/// Sampler::sample_many against as many calls of `preview`.
+/// Compares Sampler::sample_many with one call of `preview` per time.
 namespace splinecast::ipc {
 namespace {
 
@@ -26,7 +26,7 @@ using testing::random_mesh;
 
 constexpr double kUntouched = 42;
 
-/// Memory for samples at some times.
+/// Memory for the samples at several times.
 struct Block {
   std::vector<double> values;
   std::vector<SampleStatus> status;
@@ -39,7 +39,7 @@ struct Block {
   SampleBlock out() { return {values, status, derivatives}; }
 };
 
-/// What a block holds of a state: the derivatives asked for, in their order.
+/// The values of a state that a block stores: the requested derivatives, in ascending order.
 std::vector<double> asked_of(const State& state, Derivatives asked) {
   std::vector<double> values;
   const auto add = [&](Derivatives one, std::span<const double> from) {
@@ -52,7 +52,7 @@ std::vector<double> asked_of(const State& state, Derivatives asked) {
   return values;
 }
 
-/// Expects the bits and statuses of previews at the same times, of the revision of the board.
+/// Expects the bits, the statuses and the revision of previews at the same times.
 void expect_previews(const KnotBoardReader& board, StreamClock clock, const DimensionKinds& kinds,
                      const std::vector<Time>& times, Derivatives asked = Derivatives::all) {
   const std::size_t dimensions = board.dimensions();
@@ -75,11 +75,11 @@ void expect_previews(const KnotBoardReader& board, StreamClock clock, const Dime
   }
 }
 
-/// A live stream with a stop and a hold between two runs and a stop behind them, as it settles.
+/// A live stream of two runs. A stop and a hold separate them; a stop ends the second run.
 struct Runs : LiveStream {
   Runs() {
     put_all(50, 150);
-    // Where it rests by then, so that the first one is met.
+    // The rest position at that time, so that the entry ends at the first waypoint.
     const double rest = position_at(kNow + milliseconds(450));
     std::vector<Waypoint> waypoints;
     for (const int ms : {520, 530, 545}) {
@@ -91,7 +91,7 @@ struct Runs : LiveStream {
     clock.time += milliseconds(60);
     drain();
   }
-  /// Edges of everything, and times between them.
+  /// The ends of all segments ± 1 ns, and times between them.
   [[nodiscard]] static std::vector<Time> times() {
     std::vector<Time> all;
     for (int ms = 0; ms < 1000; ms += 7) all.push_back(kNow + milliseconds(ms));
@@ -109,7 +109,7 @@ std::vector<Time> shuffled(std::vector<Time> times) {
   return times;
 }
 
-TEST(SampleMany, HasTheBitsOfPreviewsWhateverTheOrderOfTimes) {
+TEST(SampleMany, EqualsPreviewsBitForBitInAnyOrderOfTimes) {
   Runs live;
   std::vector<Time> times = live.times();
   const auto check = [&] { expect_previews(live.board.reader, StreamClock::monotonic, {}, times); };
@@ -120,11 +120,11 @@ TEST(SampleMany, HasTheBitsOfPreviewsWhateverTheOrderOfTimes) {
   check();
   times = shuffled(times);
   check();
-  times.insert(times.end(), 40, times[7]);  // one time often
+  times.insert(times.end(), 40, times[7]);  // the same time 40 times
   check();
 }
 
-TEST(SampleMany, GivesEachStatusItsTime) {
+TEST(SampleMany, ReturnsTheStatusOfEachTime) {
   Runs live;
   const std::vector<Time> times = live.times();
   Block block(times.size(), 1);
@@ -143,7 +143,7 @@ TEST(SampleMany, GivesEachStatusItsTime) {
   EXPECT_EQ(status_at(795), SampleStatus::holding);
 }
 
-TEST(SampleMany, HasTheBitsOfPreviewsOfARecordedStreamBeforeAndAfterItsEnd) {
+TEST(SampleMany, EqualsPreviewsOfARecordedStreamBeforeAndAfterItsEnd) {
   const Mesh mesh = random_mesh(1, 300, 3, 4);
   MemoryStream stream(3, {}, 64, 64);
   const auto check = [&] {
@@ -158,12 +158,12 @@ TEST(SampleMany, HasTheBitsOfPreviewsOfARecordedStreamBeforeAndAfterItsEnd) {
   check();
   stream.send(mesh, 5, mesh.size());
   stream.drain();
-  check();  // the board has lost the first ones
+  check();  // the board no longer holds the first waypoints
   stream.finish();
   check();
 }
 
-TEST(SampleMany, GivesTheDerivativesAskedForInTheirOrder) {
+TEST(SampleMany, ReturnsTheRequestedDerivativesInOrder) {
   const Mesh mesh = random_mesh(2, 60, 5, 4);
   MemoryStream stream(5);
   stream.send(mesh, 0, mesh.size());
@@ -174,13 +174,13 @@ TEST(SampleMany, GivesTheDerivativesAskedForInTheirOrder) {
   }
 }
 
-TEST(SampleMany, PutsDimensionsIntoTheFormInWhichTheyAreRead) {
+TEST(SampleMany, NormalisesQuaternionsAndWrapsPeriodicDimensions) {
   const std::vector<Dimension> dimensions{
       {.kind = DimensionKind::quaternion},
       {.kind = DimensionKind::quaternion},
       {.kind = DimensionKind::quaternion},
       {.kind = DimensionKind::quaternion},
-      {.kind = DimensionKind::wrap, .period = 2 * std::numbers::pi},
+      {.kind = DimensionKind::periodic, .period = 2 * std::numbers::pi},
       {}};
   const DimensionKinds kinds(dimensions);
   MemoryStream stream(6, {}, 64, 1024, {}, kinds);
@@ -205,7 +205,7 @@ TEST(SampleMany, PutsDimensionsIntoTheFormInWhichTheyAreRead) {
   }
 }
 
-TEST(SampleMany, SaysWhyThereIsNothingAndLeavesTheValues) {
+TEST(SampleMany, WithoutDataReturnsTheReasonAndLeavesTheValues) {
   const std::vector<Time> times{Time(1), Time(2)};
   MemoryStream stream(1);
   Sampler sampler(stream.board.reader, StreamClock::recorded);
@@ -225,12 +225,12 @@ TEST(SampleMany, SaysWhyThereIsNothingAndLeavesTheValues) {
   expect_none(SampleStatus::retired);
 }
 
-TEST(SampleMany, IsBusyWhereNoTryCouldBeWholeAndLeavesNoStatusOfAnEarlierTime) {
+TEST(SampleMany, IsBusyForAllTimesIfOneKnotCannotBeCopied) {
   const Mesh mesh = random_mesh(3, 20, 1, 2);
   MemoryStream stream(1);
   stream.send(mesh, 0, mesh.size());
   stream.drain();
-  // A knot that only a writer at work could leave: both its cells are newer than the revision.
+  // A state that exists only while a writer is active: both cells are newer than the revision.
   const BoardLayout& layout = stream.board.layout;
   for (const std::size_t c : {0U, 1U}) {
     words_at(stream.board.bytes.span(), layout.slots + 10 * layout.stride + c * layout.cell, 1)[0] =
@@ -243,7 +243,7 @@ TEST(SampleMany, IsBusyWhereNoTryCouldBeWholeAndLeavesNoStatusOfAnEarlierTime) {
   EXPECT_EQ(block.status, std::vector<SampleStatus>(2, SampleStatus::busy));
 }
 
-TEST(SampleMany, RefusesBlocksOfOtherSizes) {
+TEST(SampleMany, RefusesBlocksOfTheWrongSize) {
   const Mesh mesh = random_mesh(4, 20, 3, 2);
   MemoryStream stream(3);
   stream.send(mesh, 0, mesh.size());
@@ -266,13 +266,13 @@ TEST(SampleMany, RefusesBlocksOfOtherSizes) {
   expect_refused(0, 4, Derivatives::all);
 }
 
-TEST(SampleMany, OfNoTimesGivesTheRevision) {
+TEST(SampleMany, WithoutTimesReturnsTheRevision) {
   Runs live;
   EXPECT_EQ(live.sampler.sample_many({}, {}), live.board.reader.revision());
   EXPECT_EQ(live.sampler.revision_seen(), live.board.reader.revision());
 }
 
-TEST(SampleMany, DoesNotCountAsExecuted) {
+TEST(SampleMany, DoesNotCountAsAnExecutedSample) {
   Runs live;
   const std::vector<Time> ahead{LiveStream::kNow + milliseconds(130)};
   Block block(1, 1);
@@ -285,7 +285,7 @@ TEST(SampleMany, DoesNotCountAsExecuted) {
   EXPECT_EQ(live.sampler.sample(now, live.state.ref()), SampleStatus::settled);
 }
 
-TEST(SampleMany, DoesNotTakeBackThatAnExecutedSampleHasBeenRevised) {
+TEST(SampleMany, DoesNotConsumeTheRevisedStatusOfAnExecutedSample) {
   Runs live;
   const Time ahead = LiveStream::kNow + milliseconds(130);
   ASSERT_EQ(live.sampler.sample(ahead, live.state.ref()), SampleStatus::provisional);

@@ -20,7 +20,7 @@ struct Stream : testing::MemoryStream {
   explicit Stream(std::size_t dimensions, core::WindowOptions how = {})
       : MemoryStream(dimensions, std::move(how), 1024) {}
 
-  /// Appends, a revision each.
+  /// Appends waypoints, one revision for each.
   void send(const Mesh& mesh, std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
       ASSERT_EQ(append(mesh.times[i], mesh.position(i)), AppendStatus::accepted);
@@ -30,7 +30,7 @@ struct Stream : testing::MemoryStream {
   void finish() { MemoryStream::finish({ConditionKind::halt, {}}); }
 };
 
-TEST(Sampler, GivesEachStatusItsTime) {
+TEST(Sampler, ReturnsTheStatusOfEachTime) {
   const Mesh mesh = random_mesh(1, 20, 2, 2);
   Stream stream(2, {.settle = 4,
                     .start = {.kind = ConditionKind::halt, .value = {}},
@@ -92,7 +92,7 @@ TEST(Sampler, JumpsGiveTheSameBitsAsAdvancingTime) {
   }
 }
 
-TEST(Sampler, FindsTheSegmentWhenThePackedTimesLie) {
+TEST(Sampler, FindsTheSegmentWhenThePackedTimesAreWrong) {
   const Mesh mesh = random_mesh(3, 100, 1, 3);
   Stream stream(1);
   stream.send(mesh, 0, mesh.size());
@@ -129,20 +129,20 @@ TEST(Sampler, ASnapshotIsTheCurveOfOneRevision) {
   }
   ASSERT_EQ(sampler.snapshot(mesh.times[30], mesh.times.back() + Time(1), snapshot),
             SampleStatus::provisional);
-  EXPECT_EQ(snapshot.segments().back().kind, SegmentKind::stop_tail);
+  EXPECT_EQ(snapshot.segments().back().kind, SegmentKind::stop);
   EXPECT_EQ(sampler.snapshot(mesh.times[0] - Time(1), mesh.times[5], snapshot),
             SampleStatus::before_history);
   EXPECT_TRUE(snapshot.segments().empty());
 }
 
-TEST(Sampler, SpansOfAnotherSizeGetNoValuesAndStayAsTheyWere) {
+TEST(Sampler, LeavesSpansOfTheWrongSizeUnchanged) {
   const Mesh mesh = random_mesh(7, 20, 3, 2);
   Stream stream(3);
   stream.send(mesh, 0, mesh.size());
   stream.finish();
   Sampler sampler(stream.board.reader, StreamClock::recorded);
   const Time t = mesh.times[10] + Time(1);
-  // Guarded on both sides: a value written outside of a span is seen as well.
+  // Guard values on both sides of each span detect writes outside of it.
   std::vector<double> memory(4 * kMaxDimensions + 8, 42.0);
   for (std::size_t part = 0; part < 4; ++part) {
     for (const std::size_t size : {0U, 1U, 2U, 4U, 64U}) {
@@ -200,8 +200,8 @@ TEST(Sampler, SamplingAllocatesNothing) {
   EXPECT_EQ(answered, times.size());
 }
 
-/// A solver and readers on one mapping, for ThreadSanitizer. What is read before settled_until must
-/// be the final curve, bit for bit.
+/// A solver and readers use one mapping, for ThreadSanitizer. Settled samples must equal the final
+/// curve bit for bit.
 TEST(Sampler, ThreadsReadTheFinalBitsWhileTheSolverRuns) {
   const Mesh mesh = random_mesh(6, 900, 2, 3);
   Stream whole(2);

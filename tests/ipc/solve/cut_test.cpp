@@ -7,8 +7,8 @@
 #include "ipc/sampling/snapshot.hpp"
 #include "tests/fixtures/streams/live_stream.hpp"
 
-/// A replacement cuts a published segment: what lies before the cut keeps its bits, its kind and
-/// where it would have ended.
+/// A replacement cuts a published segment: the part before the cut keeps its bits, its kind and the
+/// time at which it would have ended.
 namespace splinecast::ipc {
 namespace {
 
@@ -28,8 +28,8 @@ std::vector<SegmentCopy> segments_of(Live& live) {
   return {snapshot.segments().begin(), snapshot.segments().end()};
 }
 
-/// Expects the packed times to be when the knots' segments begin, and knots at which none begins
-/// neither first nor next to each other.
+/// Expects each packed time to be the start of its knot's segment. A knot without a segment is
+/// neither the first one nor next to another one.
 void expect_times_in_order(Live& live) {
   const Head& head = live.solver.head();
   const KnotBoardReader& board = live.board.reader;
@@ -51,7 +51,7 @@ void expect_times_in_order(Live& live) {
   }
 }
 
-/// Expects segments to be as they were before a cut at t, but for where the last one ends.
+/// Expects the segments before a cut at t to be unchanged, except that the last one ends at t.
 void expect_kept(const std::vector<SegmentCopy>& before, const std::vector<SegmentCopy>& after,
                  Time t) {
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -63,7 +63,7 @@ void expect_kept(const std::vector<SegmentCopy>& before, const std::vector<Segme
     EXPECT_EQ(after[i].coefficients, before[i].coefficients);
     EXPECT_EQ(after[i].has_waypoint, before[i].has_waypoint);
     EXPECT_EQ(after[i].waypoint, before[i].waypoint);
-    if (i > 0 || before[i].number == 1) {  // else the segment before it may be lost now
+    if (i > 0 || before[i].number == 1) {  // otherwise the previous segment may be lost
       EXPECT_EQ(after[i].acceleration_step, before[i].acceleration_step);
     }
     EXPECT_EQ(after[i].newer_knots, before[i].newer_knots);
@@ -73,7 +73,7 @@ void expect_kept(const std::vector<SegmentCopy>& before, const std::vector<Segme
   }
 }
 
-/// Expects the curve to go on without a gap, also from the state in which it was cut.
+/// Expects position and velocity to be continuous everywhere, also at the cut.
 void expect_no_gap(const std::vector<SegmentCopy>& after) {
   State left(1);
   State right(1);
@@ -88,8 +88,8 @@ void expect_no_gap(const std::vector<SegmentCopy>& after) {
   }
 }
 
-/// Cuts the curve at t and expects that of what was before `t` nothing changes but where its last
-/// segment ends.
+/// Cuts the curve at t and expects that nothing before t changes, except that the last segment ends
+/// at t.
 void cut(Live& live, Time t, int waypoints = 3) {
   SCOPED_TRACE(::testing::Message() << "cut at " << to_seconds(t - Live::kNow) << " s");
   auto before = segments_of(live);
@@ -119,11 +119,11 @@ SegmentCopy segment_at(Live& live, Time t) {
   return {};
 }
 
-/// Whether the segment that contains t is an entry or, while none is found, a stop.
+/// Whether the segment that contains t is an entry or, if no entry is found yet, a stop segment.
 bool begins_beside_target(Live& live, Time t) {
   const SegmentCopy segment = segment_at(live, t);
   return !segment.has_waypoint &&
-         (segment.kind == SegmentKind::splice || segment.kind == SegmentKind::stop_tail);
+         (segment.kind == SegmentKind::entry || segment.kind == SegmentKind::stop);
 }
 
 std::size_t count_forms(Live& live, SegmentForm wanted) {
@@ -190,7 +190,7 @@ TEST(Cut, EarlierInTheSameSegmentKeepsItsBitsToo) {
   });
 }
 
-TEST(Cut, InsideTheSpliceOfAnotherCutKeepsBoth) {
+TEST(Cut, InsideTheEntryOfAnotherCutKeepsBoth) {
   for_each_method([](Live& live) {
     cut(live, at(103));
     cut(live, at(107));
@@ -199,7 +199,7 @@ TEST(Cut, InsideTheSpliceOfAnotherCutKeepsBoth) {
     EXPECT_EQ(segment_at(live, at(104)).right, at(107));
     EXPECT_EQ(segment_at(live, at(102)).natural_right, at(110));
     EXPECT_EQ(count_forms(live, SegmentForm::none), 2U);
-    cut(live, at(103));  // where the first one was
+    cut(live, at(103));  // at the first cut
     EXPECT_EQ(count_forms(live, SegmentForm::none), 1U);
   });
 }
@@ -220,11 +220,11 @@ TEST(Cut, InAStopKeepsItsBitsAndItsLength) {
   for_each_method([](Live& live) {
     const Time length = live.window.stop_time;
     const auto before = segment_at(live, at(151));
-    ASSERT_EQ(before.kind, SegmentKind::stop_tail);
+    ASSERT_EQ(before.kind, SegmentKind::stop);
     cut(live, at(200));
     cut(live, at(180));
     const SegmentCopy stop = segment_at(live, at(160));
-    EXPECT_EQ(stop.kind, SegmentKind::stop_tail);
+    EXPECT_EQ(stop.kind, SegmentKind::stop);
     EXPECT_EQ(stop.coefficients, before.coefficients);
     EXPECT_EQ(stop.right, at(180));
     EXPECT_EQ(stop.natural_right, at(150) + length);
@@ -235,7 +235,7 @@ TEST(Cut, AtTheEndOfAStopKeepsIt) {
   for_each_method([](Live& live) {
     const Time end = at(150) + live.window.stop_time;
     cut(live, end);
-    EXPECT_EQ(segment_at(live, end - Time(1)).kind, SegmentKind::stop_tail);
+    EXPECT_EQ(segment_at(live, end - Time(1)).kind, SegmentKind::stop);
     EXPECT_TRUE(begins_beside_target(live, end));
     EXPECT_EQ(count_forms(live, SegmentForm::hold), 0U);
   });
@@ -259,13 +259,13 @@ TEST(Cut, InAHoldKeepsTheStopBeforeIt) {
 TEST(Cut, ByAStopKeepsTheSegmentBeforeIt) {
   for_each_method([](Live& live) {
     cut(live, at(105), 0);
-    EXPECT_EQ(segment_at(live, at(106)).kind, SegmentKind::stop_tail);
+    EXPECT_EQ(segment_at(live, at(106)).kind, SegmentKind::stop);
     cut(live, at(120), 2);
     cut(live, at(125), 0);
   });
 }
 
-TEST(Cut, GoesOnAfterEachOfManySolvers) {
+TEST(Cut, WorksAfterEachOfManyTakeovers) {
   for_each_method([](Live& live) {
     for (const int ms : {145, 140, 133, 150, 127, 127, 200, 126, 160}) {
       cut(live, at(ms));
@@ -275,7 +275,7 @@ TEST(Cut, GoesOnAfterEachOfManySolvers) {
   });
 }
 
-TEST(Cut, OneAfterAnotherKeepTheBoardInOrderWhileItsSlotsComeRound) {
+TEST(Cut, ManyTimesKeepsTheBoardInOrderWhileItsSlotsAreReused) {
   core::WindowOptions how;
   how.settle = 2;
   Live live(how, 32, {.history = milliseconds(20)});

@@ -20,7 +20,7 @@
 #include "tests/fixtures/processes/process.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
-/// Streams whose dimensions wrap or hold quaternions, through ring, solver, board and sampler.
+/// Streams with periodic dimensions or quaternions, through ring, solver, board and sampler.
 namespace splinecast::ipc {
 namespace {
 
@@ -29,17 +29,17 @@ constexpr double kH = 0.01;
 constexpr int kWaypoints = 500;
 constexpr std::size_t kSettle = 16;
 
-/// The linear dimension beside the quaternion shows that it is left alone.
+/// A linear dimension, which must stay unchanged, and a quaternion.
 DimensionKinds pose_kinds() {
   std::vector<Dimension> dimensions(5, {.kind = DimensionKind::quaternion});
   dimensions[0] = {};
   return DimensionKinds(dimensions);
 }
 
-/// A stream of `pose_kinds` that has been sent a coning rotation.
+/// A stream of `pose_kinds` with the waypoints of a coning rotation.
 class ConingStream {
  public:
-  /// With `flips`, every waypoint has a random sign and length; the solver is replaced half-way.
+  /// With `flips`, every waypoint has a random sign and length, and a solver takes over halfway.
   explicit ConingStream(bool flips, std::string_view method = "c2")
       : stream_(5, {.interpolant = {.method = find_method(method)}, .settle = kSettle}, 64, 1024,
                 {}, pose_kinds()),
@@ -77,7 +77,7 @@ AngularMotion motion_of(const State& state) {
   return angular_motion({.first = 1}, state.position(), state.velocity(), state.acceleration());
 }
 
-/// What readers see of a segment at u seconds.
+/// The state that readers see u seconds after the start of a segment.
 State seen_at(const SegmentCopy& segment, double u) {
   State state(5);
   core::evaluate(segment.order, segment.coefficients, u, state.ref());
@@ -115,12 +115,13 @@ double length_of(std::span<const double> q) {
   return std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
 }
 
-TEST(QuaternionStream, AngularMotionIsThatOfTheRotationToTheOrderOfTheSpline) {
+TEST(QuaternionStream, AngularMotionEqualsTheRotationsWithinTheErrorBoundOfTheSpline) {
   ConingStream stream(true);
   double velocity = 0;
   double acceleration = 0;
   double off_unit = 0;
-  // Away from the ends, whose condition is not the rotation's: 0.27 per waypoint, 2e-17 after 30.
+  // Not near the ends: the error of the boundary condition decays by a factor of 0.27 per waypoint,
+  // to 2e-17 after 30 waypoints.
   for (Time t = 30 * kPeriod; t <= (kWaypoints - 30) * kPeriod; t += Time(1'234'567)) {
     const State state = stream.at(t);
     const AngularMotion got = motion_of(state);
@@ -130,10 +131,9 @@ TEST(QuaternionStream, AngularMotionIsThatOfTheRotationToTheOrderOfTheSpline) {
         std::max(acceleration, testing::difference(got.acceleration, wanted.acceleration));
     off_unit = std::max(off_unit, std::abs(length_of(state.position().subspan(1)) - 1));
   }
-  // A complete cubic spline errs by at most h³M/24 in the first and 3h²M/8 in the second
-  // derivative, M being the largest fourth derivative (Hall and Meyer 1976); ω and α are twice a
-  // product with a unit quaternion; the error in position enters with h⁴, for which there is a
-  // tenth.
+  // The error of a complete cubic spline is at most h³M/24 in the first and 3h²M/8 in the second
+  // derivative, where M is the largest fourth derivative (Hall and Meyer 1976). ω and α are twice a
+  // product with a unit quaternion. The factor 1.1 covers the position error, which is of order h⁴.
   const double m = stream.coning().derivative_bound(4);
   const double velocity_bound = 1.1 * 2 * kH * kH * kH * m / 24;
   const double acceleration_bound = 1.1 * 2 * 3 * kH * kH * m / 8;
@@ -163,11 +163,11 @@ TEST(QuaternionStream, SignsAndLengthsOfTheWaypointsDoNotMatter) {
     before = other;
   }
   EXPECT_LT(difference, 1e-14);
-  // Within a millisecond it goes no further than its speed takes it: there is no jump.
+  // In 1 ms each component changes by at most its speed times 1 ms: there is no jump.
   EXPECT_LT(step, 1.01e-3 * plain.coning().derivative_bound(1));
 }
 
-TEST(QuaternionStream, GivenVelocitiesTurnWithTheirQuaternion) {
+TEST(QuaternionStream, GivenVelocitiesChangeSignWithTheirQuaternion) {
   const Method* const method = find_method("hermite");
   const std::vector<Dimension> four(4, {.kind = DimensionKind::quaternion});
   const DimensionKinds kinds(four);
@@ -198,7 +198,7 @@ TEST(QuaternionStream, GivenVelocitiesTurnWithTheirQuaternion) {
   }
 }
 
-TEST(QuaternionStream, AQuaternionOfLengthZeroIsRefusedUnderItsNumber) {
+TEST(QuaternionStream, AQuaternionOfLengthZeroIsRefused) {
   testing::MemoryStream stream(5, {}, 64, 1024, {}, pose_kinds());
   stream.send({.time = Time(0), .position = std::vector<double>{1, 0, 0, 0, 1}});
   stream.send({.time = kPeriod, .position = std::vector<double>{1, 0, 0, 0, 0}});
@@ -230,13 +230,13 @@ TEST(QuaternionStream, HoldsAndStopsAtUnitLength) {
   EXPECT_EQ(motion_of(state).velocity, Vector3{});
 }
 
-/// A heading that turns on at a steady rate, as a compass gives it: wrapped into [0, P).
-TEST(WrappingStream, AHeadingGoesRoundAndRound) {
+/// A heading that turns at a constant rate, wrapped into [0, P) as a compass gives it.
+TEST(WrappingStream, AHeadingKeepsItsRateOverManyTurns) {
   EXPECT_TRUE(rc::check([] {
     const double period = *rc::gen::element(360.0, 6.283185307179586, 1.0);
-    const double rate = period * (*rc::gen::inRange(-90, 91) / 10.0);  // turns a second
+    const double rate = period * (*rc::gen::inRange(-90, 91) / 10.0);  // turns per second
     const DimensionKinds kinds(
-        std::vector<Dimension>{{.kind = DimensionKind::wrap, .period = period}});
+        std::vector<Dimension>{{.kind = DimensionKind::periodic, .period = period}});
     testing::MemoryStream stream(1, {}, 64, 1024, {}, kinds);
     const auto wrapped = [&](double x) { return x - period * std::floor(x / period); };
     for (int i = 0; i < 200; ++i) {
@@ -257,15 +257,15 @@ TEST(WrappingStream, AHeadingGoesRoundAndRound) {
   }));
 }
 
-TEST(StreamKinds, AProducersKindsStandInTheHeader) {
-  const std::vector<Dimension> kinds{{.kind = DimensionKind::wrap, .period = 360}, {}};
+TEST(StreamKinds, AProducersKindsAreInTheHeader) {
+  const std::vector<Dimension> kinds{{.kind = DimensionKind::periodic, .period = 360}, {}};
   const RegionHeader header = make_header({.dimensions = 2, .kinds = kinds}, 1);
   EXPECT_EQ(dimensions_of(header), kinds);
   EXPECT_FALSE(dimension_kinds(header).all_linear());
   EXPECT_TRUE(dimension_kinds(make_header({.dimensions = 2}, 1)).all_linear());
 }
 
-TEST(StreamKinds, KindsThatCannotBeAreRefused) {
+TEST(StreamKinds, InvalidKindsAreRefused) {
   const auto refusal = [](std::size_t dimensions,
                           const std::vector<Dimension>& kinds) -> std::string {
     try {
@@ -273,10 +273,10 @@ TEST(StreamKinds, KindsThatCannotBeAreRefused) {
     } catch (const BadRequest& error) {
       return error.what();
     }
-    return "taken";
+    return "accepted";
   };
   EXPECT_EQ(refusal(2, {{}}), "1 kinds for 2 dimensions");
-  EXPECT_NE(refusal(1, {{.kind = DimensionKind::wrap, .period = -3}}).find("period -3"),
+  EXPECT_NE(refusal(1, {{.kind = DimensionKind::periodic, .period = -3}}).find("period -3"),
             std::string::npos);
   EXPECT_NE(refusal(2, {{}, {.kind = DimensionKind::quaternion}}).find("at dimension 1"),
             std::string::npos);
@@ -284,11 +284,11 @@ TEST(StreamKinds, KindsThatCannotBeAreRefused) {
 
 TEST(StreamKinds, AContinuedStreamKeepsItsKinds) {
   const testing::TestStream stream;
-  const std::vector<Dimension> kinds{{.kind = DimensionKind::wrap, .period = 360}};
+  const std::vector<Dimension> kinds{{.kind = DimensionKind::periodic, .period = 360}};
   { const Producer first(stream.name(), {.dimensions = 1, .kinds = kinds}); }
   EXPECT_NO_THROW(Producer(stream.name(), {.dimensions = 1, .kinds = kinds}));
   for (const std::vector<Dimension>& other :
-       {std::vector<Dimension>{}, {{.kind = DimensionKind::wrap, .period = 2}}}) {
+       {std::vector<Dimension>{}, {{.kind = DimensionKind::periodic, .period = 2}}}) {
     EXPECT_THROW(Producer(stream.name(), {.dimensions = 1, .kinds = other}), BadRequest);
   }
   Producer again(stream.name(), {.dimensions = 1, .kinds = kinds});

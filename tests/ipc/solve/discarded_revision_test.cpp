@@ -13,8 +13,8 @@
 #include "tests/fixtures/curves/streaming_methods.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
-/// A revision that is discarded, because it came too late or its solver died, leaves no trace in
-/// what this solver or a later one computes: the curve has the bits of an undisturbed one.
+/// A revision that is discarded, because it is late or because its solver died, does not affect the
+/// later results of this solver or of its successor: the curve has the bits of an undisturbed one.
 namespace splinecast::ipc {
 namespace {
 
@@ -26,7 +26,7 @@ constexpr std::size_t kFirstKnots = 20;  ///< of the run that a replacement cuts
 constexpr std::size_t kKnots = 40;
 constexpr Time kTick = milliseconds(10);
 
-/// A solver held up for hours between its first look at the clock and the one before the commit.
+/// The clock of a solver that is stopped for 9 hours after its first reading.
 class HeldUpClock final : public Clock {
  public:
   explicit HeldUpClock(Time now) : now_(now) {}
@@ -41,8 +41,8 @@ class HeldUpClock final : public Clock {
 
 enum class Disturbance { none, missed, missed_and_taken_over };
 
-/// A live stream. After each item the first revision that would change the curve is made as late as
-/// its disturbance says, and then all are made in time.
+/// A live stream. With a disturbance, the first revision of each item that would change the curve
+/// misses its deadline; all following revisions are in time.
 class Stream {
  public:
   Stream(const core::WindowOptions& how, Disturbance disturbance)
@@ -53,8 +53,8 @@ class Stream {
     for (Time& time : trial_.mesh.times) time = t += kTick;
   }
 
-  /// Appends waypoints one by one, replaces the future with a run of `entered` waypoints, goes on,
-  /// and finishes. Returns all segments.
+  /// Appends waypoints one by one, replaces the future by a run of `entered` waypoints, appends the
+  /// remaining waypoints and finishes. Returns all segments.
   std::vector<SegmentCopy> play(std::size_t entered) {
     const Waypoints waypoints = trial_.waypoints();
     for (std::size_t i = 0; i < kFirstKnots; ++i) append(waypoints[i]);
@@ -70,7 +70,7 @@ class Stream {
     EXPECT_TRUE(stream_.solver.head().finished);
     EXPECT_EQ(stream_.solver.head().refused, 0U);
     EXPECT_EQ(stream_.solver.head().knots, kKnots);
-    // Of other items nothing but the counts changes.
+    // Revisions that change only counters have no deadline, so that not every item is discarded.
     if (disturbance_ != Disturbance::none) {
       EXPECT_GT(discarded_, kKnots / 2);
     }
@@ -89,15 +89,15 @@ class Stream {
     stream_.clock.time += kTick;
   }
   void step() {
-    // Early enough for the waypoints to be ahead of what settles; then the clock follows them.
+    // `append` then advances the clock, so that the waypoints stay after the settled time.
     if (disturbance_ != Disturbance::none && misses_one(true)) {
       ++discarded_;
       if (disturbance_ == Disturbance::missed_and_taken_over) stream_.replace_solver();
     }
     EXPECT_FALSE(misses_one(false));
   }
-  /// Steps until a revision is discarded, or there is nothing more to do at this time: a search for
-  /// an entry takes several steps, of which some publish nothing.
+  /// Steps until a revision is discarded or the solver has no work to do at this time. A search for
+  /// an entry takes several steps, and some of them publish nothing.
   [[nodiscard]] bool misses_one(bool is_held_up) {
     constexpr int kMostSteps = 100;
     for (int i = 0; i < kMostSteps; ++i) {
@@ -107,7 +107,7 @@ class Stream {
         return true;
       if (stream_.solver.due() > stream_.clock.time) return false;
     }
-    ADD_FAILURE() << "steps without an end";
+    ADD_FAILURE() << "too many steps";
     return false;
   }
 
@@ -150,12 +150,12 @@ class DiscardedRevision : public ::testing::TestWithParam<const Method*> {
   }
 };
 
-TEST_P(DiscardedRevision, LeavesNoTraceWhateverTheLag) {
+TEST_P(DiscardedRevision, LeavesNoTraceForAnySettleLag) {
   for (const std::size_t settle : {0U, 1U, 2U, 3U, 8U, 64U}) expect_no_trace(options(settle), 3);
 }
 
-TEST_P(DiscardedRevision, LeavesNoTraceWhateverTheTail) {
-  for (const Tail tail : {Tail::bessel, Tail::parabolic, Tail::natural, Tail::rest}) {
+TEST_P(DiscardedRevision, LeavesNoTraceForAnyTail) {
+  for (const Tail tail : {Tail::bessel, Tail::parabolic, Tail::natural, Tail::clamped}) {
     expect_no_trace(options(4, tail), 2);
   }
 }
@@ -166,7 +166,7 @@ TEST_P(DiscardedRevision, LeavesNoTraceInRunsOfOneToFiveKnots) {
   }
 }
 
-/// A curve and its board, without a solver: what is discarded may be anything, whatever follows.
+/// A curve and its board, without a solver, so that the discarded revisions can have any content.
 class Curve {
  public:
   explicit Curve(const core::WindowOptions& how)
@@ -174,8 +174,8 @@ class Curve {
     take_over();
   }
 
-  /// Publishes waypoints `from` to `to` of a trial, in one revision; first the curve is cut at
-  /// `entry`, if there is one.
+  /// Publishes the waypoints [from, to) of a trial in one revision. If `entry` has a value, the
+  /// curve is cut there first.
   void publish(const Trial& trial, std::size_t from, std::size_t to, std::optional<Time> entry) {
     change(trial, from, to, entry);
     head_.changed_from = curve_->write();
@@ -190,7 +190,7 @@ class Curve {
     publish({}, 0, 0, std::nullopt);
   }
 
-  /// The same, or a finish, discarded: by its own writer, or by the next one.
+  /// Like `publish`, optionally with a finish, but the writer or its successor discards it.
   void disturb(const Trial& other, std::size_t from, std::size_t to, std::optional<Time> entry,
                bool finishes, bool takes_over) {
     change(other, from, to, entry);
@@ -205,7 +205,7 @@ class Curve {
     ASSERT_FALSE(curve_->is_damaged());
   }
 
-  /// Everything that the board holds.
+  /// All segments on the board.
   [[nodiscard]] std::vector<SegmentCopy> segments() const {
     std::vector<SegmentCopy> all;
     BoardSegment segment(kDimensions, board_.reader.smooths());
@@ -239,7 +239,7 @@ class Curve {
     EXPECT_TRUE(curve_->finish({ConditionKind::halt, {}}, Time::min(), Time::max(), tries));
   }
 
-  static constexpr int kTries = 1000;  // a search is never interrupted
+  static constexpr int kTries = 1000;  // enough for any search
 
   core::WindowOptions how_;
   testing::MemoryBoard board_;
@@ -247,12 +247,12 @@ class Curve {
   Head head_;
 };
 
-/// A time at which the curve is cut: in the last interval before waypoint `from`.
+/// A time for a cut: in the interval that ends at waypoint `from` - 1.
 Time before_waypoint(const Trial& trial, std::size_t from) {
   return trial.mesh.times[from - 1] - (trial.mesh.times[from - 1] - trial.mesh.times[from - 2]) / 3;
 }
 
-/// Other waypoints than a trial's, each a nanosecond later.
+/// Different waypoints, each 1 ns after the waypoint of the trial with the same index.
 Trial beside(const Trial& trial, std::uint64_t seed) {
   Trial other = testing::random_trial(seed, trial.mesh.size(), kDimensions, 4);
   for (std::size_t i = 0; i < trial.mesh.size(); ++i) {
@@ -261,7 +261,7 @@ Trial beside(const Trial& trial, std::uint64_t seed) {
   return other;
 }
 
-/// Discards up to two revisions of other waypoints from `next` on.
+/// Discards zero to two revisions of other waypoints, from index `next` on.
 void disturb_at_random(Curve& disturbed, const Trial& trial, const Trial& other, std::size_t next,
                        std::mt19937_64& random, bool takes_over) {
   for (int times = static_cast<int>(random() % 3); times > 0; --times) {
@@ -273,13 +273,13 @@ void disturb_at_random(Curve& disturbed, const Trial& trial, const Trial& other,
   }
 }
 
-/// Publishes waypoints in revisions of one to three, enters runs of one to five knots, and
-/// finishes; beside it the same with revisions of other waypoints that are discarded. A solver that
-/// takes over knows less of what the motion has shown: then there are limits.
+/// Publishes the same waypoints on two curves, in revisions of one to three waypoints and in runs
+/// of one to five knots, and finishes. On one curve, revisions of other waypoints are also
+/// discarded. A solver that takes over knows less about the motion: this case needs limits.
 void expect_no_trace_of_others(core::WindowOptions how, std::uint64_t seed, bool takes_over) {
   if (takes_over) how.limits.acceleration.assign(kDimensions, 100);
   SCOPED_TRACE(::testing::Message() << "lag " << how.settle << ", seed " << seed);
-  constexpr std::size_t kMore = 3;  // behind the last one that is published
+  constexpr std::size_t kMore = 3;  // after the last published one
   const Trial trial = testing::random_trial(seed, kKnots + kMore, kDimensions, 4);
   const Trial other = beside(trial, seed + 1000);
   std::mt19937_64 random(seed);
@@ -312,7 +312,7 @@ void expect_no_trace_of_others(core::WindowOptions how, std::uint64_t seed, bool
 
 TEST_P(DiscardedRevision, OfOtherWaypointsLeavesNoTrace) {
   std::uint64_t seed = 1;
-  for (const Tail tail : {Tail::bessel, Tail::parabolic, Tail::natural, Tail::rest}) {
+  for (const Tail tail : {Tail::bessel, Tail::parabolic, Tail::natural, Tail::clamped}) {
     for (const std::size_t settle : {0U, 1U, 2U, 3U, 8U, 20U}) {
       for (int round = 0; round < 3; ++round) {
         expect_no_trace_of_others(options(settle, tail), seed, false);

@@ -5,14 +5,14 @@
 
 #include "tests/ipc/solve/watched_stream.hpp"
 
-/// Entries to the last waypoint of a stream that finishes behind it.
+/// Entries to the last waypoint of a stream that finishes after that waypoint has settled.
 namespace splinecast::ipc::entries {
 namespace {
 
 using std::chrono::seconds;
 
-TEST(Entry, ToTheLastWaypointEndsAStreamThatFinishesBehindIt) {
-  for (const int late : {0, 100, 500}) {  // frozen, in the stop, and at rest
+TEST(Entry, ToTheLastWaypointEndsAStreamThatFinishesAfterIt) {
+  for (const int late : {0, 100, 500}) {  // frozen, in the stop segment, and at rest
     for (const double limit : {0.0, 5.0}) {
       SCOPED_TRACE(::testing::Message() << late << " ms late, limit " << limit);
       Watched live(limited(limit));
@@ -20,7 +20,7 @@ TEST(Entry, ToTheLastWaypointEndsAStreamThatFinishesBehindIt) {
       live.run_to(796 + late);
       live.end();
       const Time end = live.solver.head().settled_until;
-      EXPECT_GT(end, at(800));  // later than its own time
+      EXPECT_GT(end, at(800));  // after the time of the waypoint
       EXPECT_LT(end, at(800 + late) + seconds(3));
       EXPECT_NEAR(live.position_at(end), motion(at(800)), 1e-12);
       EXPECT_NEAR(live.position_at(end + seconds(5)), motion(at(800)), 1e-12);
@@ -34,7 +34,7 @@ TEST(Entry, ToTheLastWaypointEndsAStreamThatFinishesBehindIt) {
   }
 }
 
-TEST(Entry, ToTheLastWaypointEndsAsLateAsTheLimitAsksFor) {
+TEST(Entry, ToTheLastWaypointIsAsLongAsTheLimitRequires) {
   Watched live(limited(1));
   live.send_all(50, 300, 60);
   live.run_to(1500);

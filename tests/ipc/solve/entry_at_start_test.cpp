@@ -4,18 +4,18 @@
 
 #include "tests/ipc/solve/watched_stream.hpp"
 
-/// Whether a stream begins with an entry.
+/// Streams that begin with an entry, and streams that do not.
 namespace splinecast::ipc::entries {
 namespace {
 
-/// A start from rest whose first interval asks for more than the limit, however many waypoints the
-/// first step finds.
-TEST(Entry, BeginsAStreamWhoseFirstIntervalAsksForMoreThanItsLimit) {
+/// A start from rest whose first interval requires more than the limit, for different numbers of
+/// waypoints in the first step.
+TEST(Entry, BeginsAStreamWhoseFirstIntervalExceedsItsLimit) {
   for (const double limit : {5.0, 0.0}) {
     for (const int at_once : {2, 8, 31}) {
-      SCOPED_TRACE(::testing::Message() << "limit " << limit << ", " << at_once << " at once");
+      SCOPED_TRACE(::testing::Message() << "limit " << limit << ", " << at_once << " in one step");
       Watched live(limited(limit));
-      const auto send = [&](int ms) { live.send(ms, 1e-3 * ms); };  // at once at 1 /s
+      const auto send = [&](int ms) { live.send(ms, 1e-3 * ms); };  // 1 /s from the start
       for (int i = 0; i < at_once; ++i) send(300 + 10 * i);
       live.drain();
       for (int ms = 300 + 10 * at_once; ms <= 2000; ms += 10) {
@@ -37,7 +37,7 @@ TEST(Entry, BeginsAStreamWhoseFirstIntervalAsksForMoreThanItsLimit) {
   }
 }
 
-TEST(Entry, IsNotNeededByAStartThatKeepsItsLimit) {
+TEST(Entry, IsNotNeededIfTheStartIsWithinItsLimit) {
   Watched live(limited(5));
   for (int ms = 100; ms <= 1500; ms += 10) {
     live.run_to(ms - 100);

@@ -6,11 +6,11 @@
 
 #include "tests/ipc/solve/watched_stream.hpp"
 
-/// Entries survive the solver: another one makes the same ones.
+/// A solver that takes over makes the same entries as its predecessor would have made.
 namespace splinecast::ipc::entries {
 namespace {
 
-/// What happens to a stream, step by step.
+/// The actions of a scenario on a stream.
 using Script = std::function<void(Watched&)>;
 
 struct Scenario {
@@ -79,7 +79,7 @@ std::vector<Scenario> scenarios() {
           {"late finish", 2, finish_late}};
 }
 
-TEST(Entry, IsTheSameToItsBitsWhereAnotherSolverTakesOverBeforeEveryStepThatEndsItsSearch) {
+TEST(Entry, IsBitIdenticalIfANewSolverTakesOverBeforeEachSearch) {
   for (const Scenario& scenario : scenarios()) {
     SCOPED_TRACE(scenario.name);
     Watched one(limited(scenario.limit));
@@ -90,8 +90,7 @@ TEST(Entry, IsTheSameToItsBitsWhereAnotherSolverTakesOverBeforeEveryStepThatEnds
       EXPECT_EQ(live->verified(), "") << (live == &many ? "taken over" : "undisturbed");
       expect_continuous(*live);
     }
-    // Without limits what the motion has shown decides, of which a solver that takes over knows
-    // less.
+    // Without limits the entry depends on the past motion, which a new solver does not fully know.
     if (scenario.limit == 0) continue;
     const auto a = one.collected.segments();
     const auto b = many.collected.segments();
@@ -107,7 +106,7 @@ TEST(Entry, IsTheSameToItsBitsWhereAnotherSolverTakesOverBeforeEveryStepThatEnds
   }
 }
 
-TEST(Entry, IsVerifiedWhereOneSolverDiesAtAnyTime) {
+TEST(Entry, IsVerifiedIfASolverDiesAtAnyTime) {
   for (const Scenario& scenario : scenarios()) {
     for (int dies_at = 105; dies_at <= 1500; dies_at += 97) {
       SCOPED_TRACE(::testing::Message() << scenario.name << ", dies at " << dies_at);

@@ -7,11 +7,11 @@
 #include "core/online/extrapolation.hpp"
 #include "tests/ipc/solve/watched_stream.hpp"
 
-/// How a curve comes back to its waypoints, and which of them it passes over.
+/// How a curve returns to its waypoints, and which waypoints it passes over.
 namespace splinecast::ipc::entries {
 namespace {
 
-TEST(Entry, LeadsBackToTheWaypointsAfterAStarvationAndPassesOverThoseBeforeItsEnd) {
+TEST(Entry, ReturnsToTheWaypointsAfterAStarvationAndPassesOverThoseBeforeItsEnd) {
   for (const double limit : {0.0, 3.0, 10.0}) {
     SCOPED_TRACE(limit);
     Watched live(limited(limit));
@@ -41,7 +41,7 @@ TEST(Entry, LeadsBackToTheWaypointsAfterAStarvationAndPassesOverThoseBeforeItsEn
   }
 }
 
-TEST(Entry, CountsNothingAsPassedOverWhereTheCurveMeetsAllItsWaypoints) {
+TEST(Entry, CountsNoWaypointAsPassedOverIfTheCurveInterpolatesAll) {
   Watched live;
   live.send_all(50, 1000, 150);
   live.end();
@@ -51,12 +51,12 @@ TEST(Entry, CountsNothingAsPassedOverWhereTheCurveMeetsAllItsWaypoints) {
   EXPECT_EQ(live.verified(), "");
 }
 
-TEST(Entry, MeetsTheFirstWaypointThatItsLimitsAllowAndNotTheOnesBefore) {
+TEST(Entry, EndsAtTheFirstWaypointThatItsLimitsAllow) {
   Watched live(limited(8));
   live.send_all(50, 300, 60);
-  live.run_to(600);  // at rest behind x(0.3)
+  live.run_to(600);  // at rest past x(0.3)
   const double rest = live.position_at(at(600));
-  // All at once, ahead and near by: the curve has to cover the way from its rest.
+  // All in one step, in the future and at a distance of 0.05 from the rest position.
   for (int ms = 650; ms <= 1500; ms += 10) live.send(ms, rest + 0.05);
   live.drain();
   live.note();
@@ -64,18 +64,18 @@ TEST(Entry, MeetsTheFirstWaypointThatItsLimitsAllowAndNotTheOnesBefore) {
   const Head& head = live.solver.head();
   EXPECT_GT(head.passed_over, 0U);
   live.run_to(1510);
-  // Rest to rest over 0.05 within 8: at least 0.19 s from 605 ms on.
+  // From rest to rest over 0.05 with an acceleration of at most 8 takes at least 0.19 s.
   const double least = std::sqrt(10 / std::sqrt(3.0) * 0.05 / 8);
   const auto entry =
-      std::ranges::find(live.collected.segments(), SegmentKind::splice, &SegmentCopy::kind);
+      std::ranges::find(live.collected.segments(), SegmentKind::entry, &SegmentCopy::kind);
   ASSERT_NE(entry, live.collected.segments().end());
   const double took = to_seconds(entry->right - entry->left);
   EXPECT_GE(took, least - 1e-6);
-  EXPECT_LE(took, least + 0.02 + 1e-6);  // two knots' distance at most
+  EXPECT_LE(took, least + 0.02 + 1e-6);  // at most the distance of two knots
   EXPECT_LE(live.peak(2), 8 * (1 + 1e-6));
 }
 
-TEST(Entry, WithoutAWaypointInReachGoesBeyondTheNewestOneAlongALineToAStop) {
+TEST(Entry, WithoutAReachableWaypointContinuesAlongALineToAStop) {
   Watched live(limited(2));
   live.send_all(50, 300, 60);
   live.run_to(800);
@@ -86,7 +86,7 @@ TEST(Entry, WithoutAWaypointInReachGoesBeyondTheNewestOneAlongALineToAStop) {
   live.note();
   ASSERT_EQ(live.course(), Course::beyond);
   EXPECT_EQ(live.solver.head().passed_over, 3U);
-  // The line, where there still is one, goes on from the newest waypoint at its velocity.
+  // At this time the extrapolation line from the newest waypoint ends.
   const Time line_end = at(920) + core::Extrapolation::kLine;
   State end(1);
   EXPECT_TRUE(has_values(live.sampler.preview(line_end, end.ref())));
@@ -97,7 +97,7 @@ TEST(Entry, WithoutAWaypointInReachGoesBeyondTheNewestOneAlongALineToAStop) {
   EXPECT_EQ(live.verified(), "");
 }
 
-TEST(Entry, BeyondTheNewestWaypointIsMadeAgainForANewerOneUntilItMeetsOne) {
+TEST(Entry, BeyondTheNewestWaypointIsReplannedForNewerOnesUntilItReachesOne) {
   Watched live(limited(2));
   live.send_all(50, 300, 60);
   live.run_to(800);
@@ -110,8 +110,8 @@ TEST(Entry, BeyondTheNewestWaypointIsMadeAgainForANewerOneUntilItMeetsOne) {
   EXPECT_EQ(live.verified(), "");
 }
 
-/// More candidates than one step may try: those that only the jerk forbids.
-TEST(Entry, IsFoundHoweverManyStepsItsSearchTakes) {
+/// Only the jerk limit excludes the early candidates, which are more than one step may try.
+TEST(Entry, IsFoundByASearchOfAnyNumberOfSteps) {
   core::WindowOptions how;
   how.limits = {.acceleration = {10}, .jerk = {15}};
   Watched live(how);
@@ -129,8 +129,8 @@ TEST(Entry, IsFoundHoweverManyStepsItsSearchTakes) {
   EXPECT_NEAR(live.position_at(at(4000)), 0.1, 1e-12);
 }
 
-/// Not made again and again: a plan whose end recedes with every waypoint never comes to it.
-TEST(Entry, IsOverInASecondAlsoWhereANewWaypointComesEveryTenMilliseconds) {
+/// A plan that is replaced for every new waypoint, and then ends later, would never end.
+TEST(Entry, EndsWithinSecondsAlthoughAWaypointArrivesEveryTenMilliseconds) {
   for (const double limit : {3.0, 10.0}) {
     SCOPED_TRACE(limit);
     Watched live(limited(limit));
@@ -142,7 +142,7 @@ TEST(Entry, IsOverInASecondAlsoWhereANewWaypointComesEveryTenMilliseconds) {
   }
 }
 
-TEST(Entry, ThatEndsAtAWaypointStandsWhateverComesBehindIt) {
+TEST(Entry, ThatEndsAtAWaypointIsNotChangedByLaterWaypoints) {
   Watched live(limited(8));
   live.send_all(50, 300, 60);
   live.run_to(600);

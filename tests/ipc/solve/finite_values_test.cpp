@@ -16,7 +16,7 @@
 #include "tests/fixtures/curves/streaming_methods.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
-// What is published is finite, whatever is sent.
+// All published values are finite, for any waypoints.
 namespace splinecast::ipc {
 namespace {
 
@@ -33,7 +33,7 @@ void expect_balance(const Head& head) {
   EXPECT_EQ(head.consumed, head.knots + head.refused + head.withdrawn + head.controls);
 }
 
-/// A stream whose producer takes intervals from 1 ns.
+/// A stream whose producer accepts intervals from 1 ns.
 struct FastStream : MemoryStream {
   explicit FastStream(const core::WindowOptions& how,
                       const std::vector<Dimension>& dimension_kinds = {},
@@ -42,7 +42,7 @@ struct FastStream : MemoryStream {
                      DimensionKinds(dimension_kinds), how_live) {
     ring.writer = WaypointRingWriter(ring.bytes.span(), ring.layout, kNanosecond);
   }
-  /// Every sample between two times has values, and these are numbers.
+  /// Expects every sample between two times to have finite values.
   void expect_finite_samples(Time from, Time to) {
     Sampler sampler(board.reader, live ? StreamClock::monotonic : StreamClock::recorded);
     State state(ring.reader.dimensions());
@@ -68,8 +68,8 @@ TEST(FiniteValues, AQuaternionTooShortForItsVelocityIsRefused) {
     EXPECT_NO_THROW(stream.replace_solver());
   };
   send(0, 1, 1);
-  send(10, 1e-310, 1);    // of which no rotation can be made
-  send(20, 1e-99, 1e10);  // its derivative at unit length is beyond what is usable
+  send(10, 1e-310, 1);    // does not define a rotation
+  send(20, 1e-99, 1e10);  // its derivative at unit length is out of range
   send(30, 1e-99, 1e-90);
   send(40, 1e100, 1);
   send(50, 1, 1);
@@ -85,8 +85,8 @@ core::WindowOptions smoothing(double lambda) {
           .force_lag = true};
 }
 
-/// With λ/h³ = 1e33 beside intervals of 1,000 s the equations of a smoothing spline leave the range
-/// of a double.
+/// With λ/h³ = 1e33 next to intervals of 1,000 s, the equations of a smoothing spline exceed the
+/// range of a double.
 struct Poisoned : FastStream {
   Poisoned() : FastStream(smoothing(1e6)) {
     std::mt19937 random(1);
@@ -108,7 +108,7 @@ struct Poisoned : FastStream {
   std::vector<std::pair<Time, double>> sent;
 };
 
-TEST(FiniteValues, AWaypointThatMakesTheCurveNotFiniteIsRefusedAndTheOthersAreNot) {
+TEST(FiniteValues, OnlyTheWaypointThatMakesTheCurveNotFiniteIsRefused) {
   Poisoned stream;
   EXPECT_NO_THROW(stream.replace_solver());
   stream.finish({ConditionKind::own, {}});
@@ -122,9 +122,9 @@ TEST(FiniteValues, AWaypointThatMakesTheCurveNotFiniteIsRefusedAndTheOthersAreNo
   stream.expect_finite_samples(Time(0), stream.sent.back().first);
 }
 
-/// However many waypoints were taken at once, the curve is the one through those that were not
+/// For any number of waypoints in one step, the curve is the one of the waypoints that were not
 /// refused.
-TEST(FiniteValues, WhatIsRefusedLeavesNoTrace) {
+TEST(FiniteValues, ARefusedWaypointLeavesNoTrace) {
   Poisoned stream;
   FastStream other(smoothing(1e6));
   for (Word item = 0; item < stream.sent.size(); ++item) {
@@ -146,7 +146,7 @@ TEST(FiniteValues, WhatIsRefusedLeavesNoTrace) {
 
 class AnyValues : public ::testing::TestWithParam<const Method*> {};
 
-/// Values and intervals from the ends of their ranges.
+/// Random values and intervals from the limits of their ranges.
 class Extremes {
  public:
   explicit Extremes(std::uint64_t seed) : random_(seed) {}
@@ -186,8 +186,8 @@ core::WindowOptions window_of(const Method& method, Extremes& extremes) {
   return how;
 }
 
-/// Appends a waypoint at t, or replaces the future by it; the first one may be a state to start
-/// from.
+/// Appends a waypoint at t, or replaces the future by it. The first one may instead be a start
+/// state.
 void send_any(FastStream& stream, Extremes& extremes, Time t, bool is_first) {
   const auto x = extremes.values(5);
   const auto v = extremes.values(5);

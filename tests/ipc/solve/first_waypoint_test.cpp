@@ -11,8 +11,8 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// The first waypoint lies where the step settles the curve: it and the next come in one step.
-TEST(FirstWaypoint, MayLieExactlyWhereTheStepThatTakesItSettles) {
+/// The time of the first waypoint is the settled time of the step that takes it and the next ones.
+TEST(FirstWaypoint, MayBeAtTheSettledTimeOfTheStepThatTakesIt) {
   const LiveOptions live;
   testing::MemoryStream stream(
       1, {.start = {.kind = ConditionKind::halt, .value = {}}, .held_before_start = true}, 16, 64,

@@ -12,8 +12,7 @@ namespace {
 using std::chrono::milliseconds;
 using Live = testing::LiveStream;
 
-/// The process is stopped for `pause` after reading the clock for the `look`-th time, counted from
-/// 1.
+/// The clock of a process that is stopped for `pause` after reading number `look`, counted from 1.
 class StoppedClock final : public Clock {
  public:
   StoppedClock(Time now, int look, Time pause) : now_(now), look_(look), pause_(pause) {}
@@ -28,23 +27,23 @@ class StoppedClock final : public Clock {
   mutable int looks_ = 0;
 };
 
-/// A step looks when it begins, directly before the commit, and behind it.
+/// A step reads the clock when it begins, directly before the commit, and after it.
 constexpr int kBeforeCommit = 2;
 constexpr Time kPause = milliseconds(50);
 
-/// What a reader finds on the board.
+/// The counter as a reader sees it.
 Word late_commits(const Live& live) {
   Head head;
   EXPECT_TRUE(live.board.reader.copy_head(live.board.reader.look(), head));
   return head.revisions;
 }
 
-/// The words that a solver stores behind a commit, when it has looked at the clock.
+/// The words that a solver stores after a commit, when it has read the clock.
 std::span<Word> words_behind_commit(Live& live) {
   return words_at(live.board.bytes.span(), live.board.layout.control, kChecked + 1).subspan(kLate);
 }
 
-/// A stream whose last commit came too late.
+/// A stream whose last commit was late.
 struct LateCommit : Live {
   LateCommit() {
     put_all(50, 100);
@@ -54,7 +53,7 @@ struct LateCommit : Live {
     EXPECT_TRUE(solver.step(StoppedClock(clock.time, kBeforeCommit, kPause)).published);
     clock.time += kPause;
   }
-  /// As if the solver had died behind the commit, `stores` stores later; and another one.
+  /// Simulates that the solver died after the commit and `stores` more stores. Starts a new solver.
   void die_behind_commit(std::size_t stores) {
     std::ranges::copy(before.begin() + static_cast<std::ptrdiff_t>(stores), before.end(),
                       words_behind_commit(*this).begin() + static_cast<std::ptrdiff_t>(stores));
@@ -80,7 +79,7 @@ TEST(LateCommit, IsCountedAlsoIfTheNextRevisionMissesItsDeadline) {
   EXPECT_EQ(late_commits(live), 1U);
 }
 
-TEST(LateCommit, IsCountedOnceByTheNextSolverIfTheFirstDiesBehindIt) {
+TEST(LateCommit, IsCountedOnceByTheNextSolverIfTheFirstDiesAfterIt) {
   for (const std::size_t stores : {0U, 1U, 2U}) {
     LateCommit live;
     live.die_behind_commit(stores);
@@ -95,12 +94,12 @@ TEST(LateCommit, IsCountedOnceByTheNextSolverIfTheFirstDiesBehindIt) {
   }
 }
 
-TEST(LateCommit, IsNotWhatComesInTimeThoughItsSolverDiesBehindIt) {
+TEST(LateCommit, IsNotCountedForATimelyCommitWhoseSolverDiesAfterIt) {
   Live live;
   live.put_all(50, 100);
   std::ranges::fill(words_behind_commit(live), 0);
   live.replace_solver();
-  live.clock.time += milliseconds(30);  // what was published begins at 50 ms
+  live.clock.time += milliseconds(30);  // the published curve begins at 50 ms
   live.solver.step(live.clock);
   live.clock.time += milliseconds(100);
   live.solver.step(live.clock);

@@ -5,11 +5,11 @@
 
 #include "tests/ipc/solve/watched_stream.hpp"
 
-/// What a curve makes of waypoints that come late, or are refused while it looks for an entry.
+/// How a curve uses waypoints that are late, or refused during the search for an entry.
 namespace splinecast::ipc::entries {
 namespace {
 
-TEST(Entry, OfAStreamThatIsLateLeavesTheCountsThatItsSegmentsShow) {
+TEST(Entry, OfALateStreamGivesCountsThatMatchItsSegments) {
   for (const double limit : {0.0, 5.0}) {
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       SCOPED_TRACE(::testing::Message() << "limit " << limit << ", seed " << seed);
@@ -17,7 +17,7 @@ TEST(Entry, OfAStreamThatIsLateLeavesTheCountsThatItsSegmentsShow) {
       Watched live(limited(limit));
       int ms = 100;
       while (ms < 4000) {
-        // Each up to 40 ms too late, or with lead.
+        // Each waypoint is up to 40 ms late or up to 60 ms early.
         live.run_to(ms - 60 + static_cast<int>(random() % 100));
         live.send(ms);
         ms += 20 + static_cast<int>(random() % 20) + (random() % 20 == 0 ? 300 : 0);
@@ -35,12 +35,12 @@ TEST(Entry, OfAStreamThatIsLateLeavesTheCountsThatItsSegmentsShow) {
   }
 }
 
-TEST(Entry, IsShapedByAWaypointThatComesAQuarterSecondLateAndByNoneThatIsOlder) {
+TEST(Entry, UsesAWaypointUpToAQuarterSecondLateAndRefusesLaterOnes) {
   for (const int late : {1, 100, 250, 251, 400}) {
     Watched live;
     live.send_all(50, 300, 60);
     live.run_to(1000);
-    live.send(1005 - late);  // settled is 1005
+    live.send(1005 - late);  // the settled time is 1005
     live.step();
     const Head& head = live.solver.head();
     const bool is_taken = late <= 250;
@@ -51,27 +51,27 @@ TEST(Entry, IsShapedByAWaypointThatComesAQuarterSecondLateAndByNoneThatIsOlder) 
   }
 }
 
-TEST(Entry, IsNotLedToAWaypointThatWasLate) {
+TEST(Entry, NeverEndsAtALateWaypoint) {
   Watched live;
   live.send_all(50, 300, 60);
   live.run_to(1000);
   const double before = live.position_at(at(1005));
   live.send(900);
   live.step();
-  EXPECT_EQ(live.position_at(at(1005)), before);  // nothing of what has settled
+  EXPECT_EQ(live.position_at(at(1005)), before);  // settled, therefore unchanged
   live.send_all(1100, 2000, 60);
   live.end();
   EXPECT_EQ(live.met(), live.solver.head().interpolated());
   EXPECT_EQ(live.verified(), "");
 }
 
-TEST(Entry, IgnoresWaypointsThatAreRefusedWhileItIsBeingLookedFor) {
+TEST(Entry, IgnoresWaypointsRefusedDuringItsSearch) {
   Watched live(limited(1));
   live.send_all(50, 300, 60);
   live.run_to(800);
   live.send(900);
   live.step();
-  // What the producer did not know to be one.
+  // The producer below does not recognize these waypoints as duplicate or out of order.
   live.replace_producer();
   const double x = 0.3;
   const auto send_blindly = [&](int ms) {

@@ -9,7 +9,7 @@
 #include "ipc/roles/refusals.hpp"
 #include "tests/fixtures/streams/live_stream.hpp"
 
-/// What becomes of waypoints with which the curve passes a limit.
+/// How a solver handles waypoints with which the curve exceeds a limit.
 namespace splinecast::ipc {
 namespace {
 
@@ -25,7 +25,7 @@ core::WindowOptions step_limits() {
   return how;
 }
 
-/// A motion that keeps its limits, with steps of 5 mm at some of its waypoints.
+/// A motion within its limits, except for steps of 5 mm at some waypoints.
 struct Stepping : LiveStream {
   explicit Stepping(Beyond what) : LiveStream(step_limits()) {
     beyond = what;
@@ -52,12 +52,12 @@ struct Stepping : LiveStream {
   }
 };
 
-TEST(LimitExcess, IsReportedAndTheWaypointTaken) {
+TEST(LimitExcess, IsReportedAndTheWaypointIsTaken) {
   Stepping live(Beyond::report);
   live.play({700});
   EXPECT_EQ(live.solver.head().refused, 0U);
   EXPECT_GT(live.peak(), 100);
-  // The step itself, and what comes back from it.
+  // The step and the return from it.
   ASSERT_GE(live.solver.head().exceeding, 1U);
   EXPECT_LE(live.solver.head().exceeding, 8U);
   const auto excess = live.board.reader.excess(live.solver.head(), 0);
@@ -70,7 +70,7 @@ TEST(LimitExcess, IsReportedAndTheWaypointTaken) {
   EXPECT_LE(excess->time, instant(700));
 }
 
-TEST(LimitExcess, IsRefusedWithItsPlaceSoThatNothingBeyondIsPublished) {
+TEST(LimitExcess, IsRefusedWithItsPlaceAndNoExcessIsPublished) {
   for (const bool takes_over : {false, true}) {
     Stepping live(Beyond::refuse);
     live.play({700, 900, 910}, takes_over);
@@ -96,7 +96,7 @@ TEST(LimitExcess, IsRefusedWithItsPlaceSoThatNothingBeyondIsPublished) {
   }
 }
 
-TEST(LimitExcess, DoesNotConcernAMotionWithinItsLimits) {
+TEST(LimitExcess, IsNotReportedForAMotionWithinItsLimits) {
   Stepping live(Beyond::refuse);
   live.play({});
   EXPECT_EQ(live.solver.head().exceeding, 0U);
@@ -104,7 +104,7 @@ TEST(LimitExcess, DoesNotConcernAMotionWithinItsLimits) {
   EXPECT_EQ(live.solver.head().passed_over, 0U);
 }
 
-TEST(LimitExcess, KeepsTheLastOnesOnly) {
+TEST(LimitExcess, IsKeptOnlyIfItIsAmongTheLastOnes) {
   testing::MemoryBoard board(1, 64);
   Head head;
   for (Word i = 0; i < kExcessesKept + 10; ++i) {

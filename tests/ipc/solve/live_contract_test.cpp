@@ -11,28 +11,28 @@ using std::chrono::seconds;
 using testing::LiveWorld;
 using testing::WorldOptions;
 
-/// What holds whatever happens. Positions are of order 1, velocities of order 10, accelerations of
-/// order 100.
+/// Conditions that hold after any faults. Positions are of order 1, velocities of order 10,
+/// accelerations of order 100.
 void expect_trusted(const LiveWorld& world, std::uint64_t seed) {
   const auto& report = world.report();
   EXPECT_EQ(report.changed, 0U) << "seed " << seed;
-  // What a controller reads at its instant has settled, but while the solver is paused.
+  // A controller's sample at `now` has settled, unless the solver is paused.
   EXPECT_LE(report.unsettled, world.pauses * 200) << "seed " << seed;
   EXPECT_LT(report.position_step, 1e-11) << "seed " << seed;
   EXPECT_LT(report.velocity_step, 1e-9) << "seed " << seed;
   EXPECT_LT(report.unpublished_step, 1e-5) << "seed " << seed;
-  // A solver that is stopped while the start is still open leaves it as it has been published.
+  // A solver that is paused before the start has settled cannot improve the published start.
   EXPECT_LE(report.acceleration, (world.pauses > 0 ? 15 : 10) * world.ideal_peak())
       << "seed " << seed;
   const Head& head = world.head();
-  // Nothing is lost silently, whoever was killed when.
+  // No item is lost silently, for any kills.
   EXPECT_EQ(head.consumed, head.knots + head.refused + head.withdrawn + head.controls)
       << "seed " << seed;
   EXPECT_EQ(head.consumed, world.items()) << "seed " << seed;
 }
 
-/// Solved again from the same items with the recorded decisions, every settled segment has its
-/// bits.
+/// Solves again from the same items with the recorded decisions, and expects the bits of every
+/// settled segment.
 void expect_verified(const LiveWorld& world, std::uint64_t seed) {
   const Verification found = world.verify();
   EXPECT_GT(found.equal, 0U) << "seed " << seed;
@@ -41,8 +41,8 @@ void expect_verified(const LiveWorld& world, std::uint64_t seed) {
                             << found.first->solved << " solved";
 }
 
-/// Where each waypoint comes when the one before it has been frozen, the curve is always on its way
-/// back to them, within its limits.
+/// Each waypoint arrives when the previous one is frozen, so that the curve is always in an entry
+/// to its waypoints, within its limits.
 TEST(LiveContract, StaysNearTheMotionAtADepthOfOneKnot) {
   for (std::uint64_t seed = 1; seed < 20; ++seed) {
     LiveWorld world({.seed = seed, .starts_in_motion = true, .max_lead_knots = 1});
@@ -54,12 +54,12 @@ TEST(LiveContract, StaysNearTheMotionAtADepthOfOneKnot) {
     expect_verified(world, seed);
     EXPECT_EQ(world.sent, world.interpolated + world.passed_over);
     EXPECT_GT(world.interpolated, world.sent / 4) << "seed " << seed;
-    // Where the curve ends, no segment begins.
+    // No segment begins at the end of the curve.
     EXPECT_LE(world.passed_over, world.head().passed_over + 1) << "seed " << seed;
   }
 }
 
-/// Everything at once, for a second or two each, in many worlds.
+/// All faults together, for 1.5 s in each of many worlds.
 TEST(LiveContract, HoldsInThousandsOfShortWorlds) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   constexpr std::uint64_t kSeeds = 60;
@@ -83,7 +83,7 @@ TEST(LiveContract, HoldsInThousandsOfShortWorlds) {
   }
 }
 
-TEST(LiveContract, HoldsThroughEverythingThatHappensInHalfAMinute) {
+TEST(LiveContract, HoldsThroughHalfAMinuteOfFaults) {
   LiveWorld world({.seed = 1,
                    .starts_in_motion = true,
                    .starvations = 2,

@@ -7,7 +7,7 @@
 #include "tests/fixtures/streams/live_stream.hpp"
 #include "tests/ipc/solve/running_clock.hpp"
 
-/// What a live stream takes and refuses, how it starts, rests and finishes.
+/// Which items a live stream takes and refuses, and how it starts, rests and finishes.
 namespace splinecast::ipc {
 namespace {
 
@@ -16,7 +16,7 @@ using std::chrono::seconds;
 
 using Live = testing::LiveStream;
 
-TEST(LiveSolver, RefusesAWaypointOnlyIfItIsLaterThanTheStraightLineLasts) {
+TEST(LiveSolver, RefusesOnlyWaypointsThatAreLaterThanTheMaximum) {
   Live live;
   live.put_all(50, 200);
   live.clock.time = Live::kNow + milliseconds(600);
@@ -29,7 +29,7 @@ TEST(LiveSolver, RefusesAWaypointOnlyIfItIsLaterThanTheStraightLineLasts) {
   EXPECT_EQ(live.solver.head().passed_over, 1U);
 }
 
-TEST(LiveSolver, RefusesNothingForBeingNearAndEntersAgainAfterAStarvation) {
+TEST(LiveSolver, AcceptsNearWaypointsAndEntersAgainAfterAStarvation) {
   Live live;
   live.put_all(50, 200);
   live.clock.time = Live::kNow + milliseconds(300);
@@ -39,7 +39,7 @@ TEST(LiveSolver, RefusesNothingForBeingNearAndEntersAgainAfterAStarvation) {
   EXPECT_EQ(live.solver.head().low_water, Time::zero());
   const double settled = live.position_at(Live::kNow + milliseconds(305));
   ASSERT_EQ(live.put(Live::kNow + milliseconds(250)), AppendStatus::accepted);  // late
-  ASSERT_EQ(live.put(Live::kNow + milliseconds(307)), AppendStatus::accepted);  // too near to meet
+  ASSERT_EQ(live.put(Live::kNow + milliseconds(307)), AppendStatus::accepted);  // too near
   for (int ms = 350; ms <= 900; ms += 10) {
     ASSERT_EQ(live.put(Live::kNow + milliseconds(ms)), AppendStatus::accepted);
   }
@@ -59,8 +59,8 @@ TEST(LiveSolver, RefusesNothingForBeingNearAndEntersAgainAfterAStarvation) {
   EXPECT_EQ(head.underruns, 1U);
 }
 
-TEST(LiveSolver, AFinishBehindASettledKnotGoesBackToIt) {
-  for (const int late : {0, 100, 500}) {  // frozen, in the stop, and at rest
+TEST(LiveSolver, AFinishAfterASettledKnotReturnsToIt) {
+  for (const int late : {0, 100, 500}) {  // frozen, in the stop segment, and at rest
     Live live;
     live.put_all(50, 600);
     const Time newest = Live::kNow + milliseconds(600);
@@ -71,17 +71,17 @@ TEST(LiveSolver, AFinishBehindASettledKnotGoesBackToIt) {
     EXPECT_TRUE(live.solver.head().finished);
     EXPECT_GT(live.solver.head().changed_from, live.clock.time);
     const Time end = live.solver.head().settled_until;
-    EXPECT_GT(end, newest);  // at its time or later
+    EXPECT_GT(end, newest);  // after its time
     EXPECT_NEAR(live.position_at(end), Live::x(newest), 1e-12) << late;
     EXPECT_NEAR(live.position_at(end + seconds(5)), Live::x(newest), 1e-12) << late;
     EXPECT_EQ(live.sampler.preview(end + seconds(5), live.state.ref()), SampleStatus::holding);
-    // On the way there it has passed it.
+    // The curve overshoots the knot and returns.
     const Time between = newest + (end - newest) / 2;
     EXPECT_GT(live.position_at(between), Live::x(newest));
   }
 }
 
-TEST(LiveSolver, StartsFromAGivenStateAndGivesNothingBeforeIt) {
+TEST(LiveSolver, StartsFromAGivenStateAndHasNoDataBeforeIt) {
   Live live;
   const Time t = Live::kNow + milliseconds(20);
   const std::vector<double> position{Live::x(t)};
@@ -100,7 +100,7 @@ TEST(LiveSolver, StartsFromAGivenStateAndGivesNothingBeforeIt) {
               Live::x(Live::kNow + milliseconds(35)), 1e-5);
 }
 
-TEST(LiveSolver, DiscardsARevisionThatComesTooLateAndMakesItAnew) {
+TEST(LiveSolver, DiscardsALateRevisionAndRepeatsIt) {
   Live live;
   live.put_all(50, 100);
   const Word revision = live.board.reader.revision();
@@ -119,12 +119,12 @@ TEST(LiveSolver, DiscardsARevisionThatComesTooLateAndMakesItAnew) {
               Live::x(Live::kNow + milliseconds(110)), 1e-12);
 }
 
-TEST(LiveSolver, AStreamThatHasRestedLongerThanTheMostIntervalGoesOn) {
+TEST(LiveSolver, AStreamContinuesAfterARestLongerThanTheLargestInterval) {
   for (const bool replaces : {false, true}) {
     Live live;
     live.put_all(50, 200);
     live.clock.time = Live::kNow + std::chrono::seconds(1);
-    EXPECT_TRUE(live.solver.step(live.clock).published);  // the last time: it rests
+    EXPECT_TRUE(live.solver.step(live.clock).published);  // the last revision: the stream rests
     live.clock.time = Live::kNow + std::chrono::hours(2);
     EXPECT_FALSE(live.solver.step(live.clock).published);
     const Time t = live.clock.time + milliseconds(500);
@@ -139,7 +139,7 @@ TEST(LiveSolver, AStreamThatHasRestedLongerThanTheMostIntervalGoesOn) {
     live.drain();
     EXPECT_EQ(live.solver.head().refused, 0U);
     EXPECT_EQ(live.solver.head().newest_knot, t);
-    // What it has shown is too long ago for the first waypoint to be met: the next ones are.
+    // The motion is too long ago to reach the first waypoint, but the curve reaches later ones.
     const double x = Live::x(t);
     for (int ms = 10; ms <= 1000; ms += 10) {
       ASSERT_EQ(live.append(t + milliseconds(ms), {&x, 1}), AppendStatus::accepted);

@@ -11,7 +11,7 @@
 #include "tests/fixtures/curves/streaming_methods.hpp"
 #include "tests/fixtures/streams/memory_stream.hpp"
 
-// Every method that streams, through ring and board.
+// Every online method, through ring and board.
 namespace splinecast::ipc {
 namespace {
 
@@ -22,7 +22,7 @@ class MethodsThroughRegions : public ::testing::TestWithParam<const Method*> {
  protected:
   [[nodiscard]] static core::WindowOptions options() { return testing::plain_window(*GetParam()); }
 
-  /// Expects every sample of a finished stream to have the bits of a curve.
+  /// Expects every sample of a finished stream to have the bits of the curve `wanted`.
   static void expect_same_bits(MemoryStream& stream, const Trial& trial,
                                const PiecewisePolynomial& wanted) {
     Sampler sampler(stream.board.reader, StreamClock::recorded);
@@ -36,7 +36,7 @@ class MethodsThroughRegions : public ::testing::TestWithParam<const Method*> {
   }
 };
 
-TEST_P(MethodsThroughRegions, GiveTheBitsOfTheWindowAndIfLocalOfTheBatch) {
+TEST_P(MethodsThroughRegions, EqualTheWindowBitForBitAndIfLocalTheBatch) {
   for (const ConditionKind kind : {ConditionKind::own, ConditionKind::halt}) {
     const Condition end{kind, {}};
     core::WindowOptions how = options();
@@ -70,7 +70,7 @@ TEST_P(MethodsThroughRegions, AreTakenOverBitForBit) {
   }
 }
 
-TEST_P(MethodsThroughRegions, RefuseWaypointsThatLackWhatTheyNeed) {
+TEST_P(MethodsThroughRegions, RefuseWaypointsWithoutTheDerivativesTheyNeed) {
   const Trial trial = testing::random_trial(9, 3, 2, 1);
   MemoryStream stream(2, options());
   for (std::size_t i = 0; i < 3; ++i) {
@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(Every, MethodsThroughRegions,
 TEST(StreamSolver, RefusesWaypointsTooCloseForItsLagAndLambda) {
   core::WindowOptions how{.interpolant = {.method = find_method("smoothing"), .lambda = 1e-5},
                           .settle = 20};
-  MemoryStream stream(1, how);  // λ/h³ = 10 at 10 ms asks for a lag of 24
+  MemoryStream stream(1, how);  // λ/h³ = 10 at 10 ms needs a lag of 24
   const double x = 0;
   for (int i = 0; i < 30; ++i) stream.send({.time = Time(i * 10'000'000), .position = {&x, 1}});
   stream.finish({ConditionKind::own, {}});

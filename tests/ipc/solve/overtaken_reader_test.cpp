@@ -7,7 +7,7 @@
 #include "tests/fixtures/streams/live_stream.hpp"
 #include "tests/ipc/solve/running_clock.hpp"
 
-/// What a reader is told that sampled what was changed since.
+/// Which status a reader gets after a revision has changed the curve at a time that it sampled.
 namespace splinecast::ipc {
 namespace {
 
@@ -15,25 +15,25 @@ using std::chrono::milliseconds;
 
 using Live = testing::LiveStream;
 
-TEST(LiveSolver, AReaderThatSampledWhatWasChangedIsToldOnce) {
+TEST(LiveSolver, AReaderThatSampledAChangedTimeGetsRevisedOnce) {
   Live live;
   live.put_all(50, 100);
   State& state = live.state;
   live.clock.time = Live::kNow + milliseconds(60);
   live.solver.step(live.clock);
-  // Ahead of what is settled, as if the commit had come late.
+  // After the settled time, as if the commit had been late.
   EXPECT_TRUE(has_values(live.sampler.sample(Live::kNow + milliseconds(98), state.ref())));
   live.put_all(110, 150);
   const Time now = Live::kNow + milliseconds(62);
   EXPECT_EQ(live.sampler.sample(now, state.ref()), SampleStatus::revised);
   EXPECT_EQ(live.sampler.sample(now, state.ref()), SampleStatus::settled);
-  // A look ahead is none of it.
+  // A preview does not count as a sample.
   EXPECT_TRUE(has_values(live.sampler.preview(Live::kNow + milliseconds(148), state.ref())));
   live.put_all(160, 170);
   EXPECT_EQ(live.sampler.sample(now, state.ref()), SampleStatus::settled);
 }
 
-TEST(LiveSolver, AReaderFarBehindIsToldIfItSampledPastWhatWasSettled) {
+TEST(LiveSolver, ALaggingReaderGetsRevisedIfItSampledPastTheSettledTime) {
   for (const bool past : {false, true}) {
     Live live;
     live.put_all(50, 100);
@@ -48,8 +48,7 @@ TEST(LiveSolver, AReaderFarBehindIsToldIfItSampledPastWhatWasSettled) {
   }
 }
 
-/// What a reader is told that samples once, and again when more revisions have passed than the
-/// board keeps the changes of.
+/// A reader samples once, and again after more revisions than the board keeps changes of.
 struct Gap {
   Live live;
 
@@ -66,7 +65,7 @@ struct Gap {
   SampleStatus sample(int ms) {
     return live.sampler.sample(Live::kNow + milliseconds(ms), live.state.ref());
   }
-  /// Goes on for 100 revisions and more.
+  /// Appends 100 waypoints, which gives more revisions than the board keeps changes of.
   void move_on(int from_ms) {
     const Word revision = live.board.reader.revision();
     for (int ms = from_ms; ms < from_ms + 1000; ms += 10) {
@@ -78,7 +77,7 @@ struct Gap {
   }
 };
 
-TEST(LiveSolver, AReaderFarBehindIsNotToldOfARestThatWentOn) {
+TEST(LiveSolver, ALaggingReaderDoesNotGetRevisedForARestThatContinued) {
   Gap gap;
   gap.rest(100, 500);
   ASSERT_EQ(gap.sample(500), SampleStatus::holding);
@@ -86,7 +85,7 @@ TEST(LiveSolver, AReaderFarBehindIsNotToldOfARestThatWentOn) {
   EXPECT_EQ(gap.sample(1400), SampleStatus::settled);
 }
 
-TEST(LiveSolver, AReaderFarBehindIsNotToldOfAStartThatIsStillAhead) {
+TEST(LiveSolver, ALaggingReaderDoesNotGetRevisedForAStartThatIsStillAhead) {
   Gap gap;
   gap.live.put_all(900, 1000);
   ASSERT_EQ(gap.sample(20), SampleStatus::holding);
@@ -94,7 +93,7 @@ TEST(LiveSolver, AReaderFarBehindIsNotToldOfAStartThatIsStillAhead) {
   EXPECT_EQ(gap.sample(500), SampleStatus::holding);
 }
 
-TEST(LiveSolver, AReaderFarBehindIsNotToldOfAStopThatWasCutBehindItsSample) {
+TEST(LiveSolver, ALaggingReaderDoesNotGetRevisedForAStopCutAfterItsSample) {
   Gap gap;
   gap.rest(100, 90);
   const Time settled_until = gap.live.sampler.settled_until();
@@ -105,13 +104,13 @@ TEST(LiveSolver, AReaderFarBehindIsNotToldOfAStopThatWasCutBehindItsSample) {
   EXPECT_EQ(gap.sample(1000), SampleStatus::settled);
 }
 
-TEST(LiveSolver, AReaderFarBehindIsToldOfALateCommitIntoItsRest) {
+TEST(LiveSolver, ALaggingReaderGetsRevisedForALateCommitIntoItsRest) {
   Gap gap;
   gap.rest(100, 500);
   ASSERT_EQ(gap.sample(506), SampleStatus::holding);
-  // So far ahead that the first entry that is tried passes.
+  // Far in the future, so that the first candidate for the entry succeeds.
   ASSERT_EQ(gap.live.put(Live::kNow + milliseconds(2000)), AppendStatus::accepted);
-  // Stopped between the look at the clock and the commit, until after the start of the entry.
+  // Stopped between reading the clock and the commit, until after the start of the entry.
   gap.live.solver.step(RunningClock(gap.live.clock.time, std::chrono::microseconds(2600)));
   ASSERT_EQ(gap.live.solver.head().revisions, 1U);
   gap.run_to(510);
@@ -120,7 +119,7 @@ TEST(LiveSolver, AReaderFarBehindIsToldOfALateCommitIntoItsRest) {
   EXPECT_EQ(gap.sample(1400), SampleStatus::settled);
 }
 
-TEST(LiveSolver, AReaderFarBehindIsToldThatItsStopWasCutBeforeItsSample) {
+TEST(LiveSolver, ALaggingReaderGetsRevisedForAStopCutBeforeItsSample) {
   Gap gap;
   gap.rest(100, 90);
   ASSERT_EQ(gap.sample(340), SampleStatus::stopping);

@@ -6,7 +6,7 @@
 #include "ipc/sampling/sampler.hpp"
 #include "tests/fixtures/streams/live_stream.hpp"
 
-/// What replacing the future of a live stream changes.
+/// Replacing the future of a live stream.
 namespace splinecast::ipc {
 namespace {
 
@@ -15,7 +15,7 @@ using std::chrono::seconds;
 
 using Live = testing::LiveStream;
 
-TEST(LiveSolver, ReplacesTheFutureInOneRevisionAndLeavesWhatIsBeforeIt) {
+TEST(LiveSolver, ReplacesTheFutureInOneRevisionAndKeepsThePast) {
   Live live;
   live.put_all(50, 800);
   const Time t = Live::kNow + milliseconds(423);
@@ -40,7 +40,7 @@ TEST(LiveSolver, ReplacesTheFutureInOneRevisionAndLeavesWhatIsBeforeIt) {
             SampleStatus::stopping);
 }
 
-TEST(LiveSolver, AReplacementByNothingIsAStopTailFromThere) {
+TEST(LiveSolver, AnEmptyReplacementIsAStopSegment) {
   Live live;
   live.put_all(50, 500);
   const Time t = Live::kNow + milliseconds(250);
@@ -51,7 +51,7 @@ TEST(LiveSolver, AReplacementByNothingIsAStopTailFromThere) {
   EXPECT_EQ(live.sampler.preview(t + milliseconds(251), live.state.ref()), SampleStatus::holding);
 }
 
-TEST(LiveSolver, AReplacementThatComesTooLateIsRefusedWithAllThatBelongsToIt) {
+TEST(LiveSolver, ALateReplacementIsRefusedWithAllItsWaypoints) {
   Live live;
   live.put_all(50, 500);
   EXPECT_EQ(live.replace(Live::kNow + milliseconds(4), {Live::kNow + milliseconds(30)}),
@@ -59,7 +59,7 @@ TEST(LiveSolver, AReplacementThatComesTooLateIsRefusedWithAllThatBelongsToIt) {
   const Time t = Live::kNow + milliseconds(10);
   ASSERT_EQ(live.replace(t, {t + milliseconds(20), t + milliseconds(30)}), AppendStatus::accepted);
   ASSERT_EQ(live.put(Live::kNow + milliseconds(510)), AppendStatus::accepted);
-  live.clock.time += milliseconds(20);  // the solver wakes when it is too late
+  live.clock.time += milliseconds(20);  // the solver wakes too late
   live.drain();
   EXPECT_EQ(live.reason(Refusal::too_late), 3U);
   EXPECT_EQ(live.solver.head().newest_knot, Live::kNow + milliseconds(510));
@@ -67,14 +67,14 @@ TEST(LiveSolver, AReplacementThatComesTooLateIsRefusedWithAllThatBelongsToIt) {
               Live::x(Live::kNow + milliseconds(400)), 1e-12);
 }
 
-TEST(LiveSolver, KeepsItsHistoryAndWithdrawsWhatHasNotBeenTaken) {
+TEST(LiveSolver, KeepsItsHistoryAndWithdrawsItemsNotYetTaken) {
   Live live({.settle = 2}, 64, {.history = seconds(1)});
   live.put_all(50, 2050);
   const Head& head = live.solver.head();
   EXPECT_LT(head.newest, 65U);
   EXPECT_LT(head.consumed, live.ring.writer.head());
   EXPECT_EQ(head.first, 1U);
-  EXPECT_FALSE(live.solver.step(live.clock).published);  // full: nothing may be overwritten
+  EXPECT_FALSE(live.solver.step(live.clock).published);  // full: may not overwrite a knot
   const Time t = Live::kNow + milliseconds(300);
   ASSERT_EQ(live.replace(t, {}), AppendStatus::accepted);
   live.drain();
@@ -84,7 +84,7 @@ TEST(LiveSolver, KeepsItsHistoryAndWithdrawsWhatHasNotBeenTaken) {
   EXPECT_EQ(live.sampler.preview(t + milliseconds(300), live.state.ref()), SampleStatus::holding);
 }
 
-/// As a producer does that replaces the future with each chunk, the first one too.
+/// Some producers replace the future by each chunk of waypoints, including the first one.
 TEST(LiveSolver, AReplacementOnAStreamWithoutWaypointsStartsIt) {
   for (const bool stops_first : {false, true}) {
     Live live;

@@ -4,7 +4,7 @@
 
 namespace splinecast::ipc {
 
-/// A clock that goes on by itself behind every look.
+/// A clock that advances by `step` after every reading.
 class RunningClock final : public Clock {
  public:
   RunningClock(Time now, Time step) : now_(now), step_(step) {}

@@ -5,7 +5,7 @@
 #include "ipc/sampling/sampler.hpp"
 #include "tests/fixtures/streams/live_stream.hpp"
 
-/// Up to when a live stream has settled, without and with a step of its solver.
+/// The settled time of a live stream, without and with a step of its solver.
 namespace splinecast::ipc {
 namespace {
 
@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 
 using Live = testing::LiveStream;
 
-TEST(LiveSolver, SettlesByTimeAndSaysSoWithoutWaypointsOrRevisionsUntilTheMotionEnds) {
+TEST(LiveSolver, RaisesTheSettledTimeWithoutWaypointsOrRevisionsUntilTheMotionEnds) {
   Live live;
   live.put_all(50, 200);
   const auto settled = [&] { return live.board.reader.look().settled_until; };
@@ -28,22 +28,22 @@ TEST(LiveSolver, SettlesByTimeAndSaysSoWithoutWaypointsOrRevisionsUntilTheMotion
   EXPECT_EQ(live.solver.head().settled_until, settled());
   EXPECT_EQ(live.solver.due(), live.clock.time + Time(2'500'000));
   EXPECT_EQ(live.board.reader.revision(), revision);
-  live.clock.time = Live::kNow + milliseconds(445);     // the stop ends at 450
-  EXPECT_TRUE(live.solver.step(live.clock).published);  // it has starved
+  live.clock.time = Live::kNow + milliseconds(445);     // the stop segment ends at 450 ms
+  EXPECT_TRUE(live.solver.step(live.clock).published);  // the stream has starved
   EXPECT_EQ(settled(), Live::kNow + milliseconds(450));
   EXPECT_EQ(live.solver.due(), Time::max());
   EXPECT_EQ(live.sampler.sample(Live::kNow + milliseconds(460), live.state.ref()),
             SampleStatus::holding);
 }
 
-TEST(LiveSolver, ItsNextStepTakesUpWhatHasBeenRaisedWithoutOne) {
+TEST(LiveSolver, ItsNextStepKeepsTheSettledTimeRaisedWithoutAStep) {
   Live live;
   live.put_all(50, 200);
   const auto settled = [&] { return live.board.reader.look().settled_until; };
   SettledRaise raise = live.solver.settled_raise();
   EXPECT_TRUE(raise.raise(Live::kNow + milliseconds(20)));
   EXPECT_EQ(settled(), Live::kNow + milliseconds(25));
-  EXPECT_TRUE(raise.raise(Live::kNow + milliseconds(10)));  // never back
+  EXPECT_TRUE(raise.raise(Live::kNow + milliseconds(10)));  // never decreases
   EXPECT_EQ(settled(), Live::kNow + milliseconds(25));
   live.clock.time += milliseconds(15);
   const Time early = settled() - Time(1);
@@ -54,21 +54,21 @@ TEST(LiveSolver, ItsNextStepTakesUpWhatHasBeenRaisedWithoutOne) {
   EXPECT_EQ(settled(), Live::kNow + milliseconds(25));
 }
 
-TEST(LiveSolver, NothingIsRaisedWhereAStepHasMoreToDo) {
+TEST(LiveSolver, TheSettledTimeIsNotRaisedIfAStepHasWorkToDo) {
   Live live;
-  EXPECT_FALSE(live.solver.settled_raise().raise(Live::kNow));  // there is no curve
+  EXPECT_FALSE(live.solver.settled_raise().raise(Live::kNow));  // no curve yet
   live.put_all(50, 200);
   const Time newest = live.solver.head().newest_knot;
   SettledRaise raise = live.solver.settled_raise();
   EXPECT_TRUE(raise.raise(newest - milliseconds(5) - Time(1)));
-  EXPECT_FALSE(raise.raise(newest - milliseconds(5)));  // there it starves
+  EXPECT_FALSE(raise.raise(newest - milliseconds(5)));  // the stream starves at this time
   live.clock.time = newest - milliseconds(5);
   EXPECT_TRUE(live.solver.step(live.clock).published);
   EXPECT_TRUE(live.solver.head().starved);
   EXPECT_FALSE(live.solver.settled_raise().raise(live.clock.time + milliseconds(1)));
 }
 
-TEST(LiveSolver, ASolverThatTakesOverGoesOnFromTheSettledTimeThatWasToldLast) {
+TEST(LiveSolver, ASolverThatTakesOverContinuesFromTheLastSettledTime) {
   Live live;
   live.put_all(50, 200);
   live.clock.time += milliseconds(20);
@@ -77,7 +77,7 @@ TEST(LiveSolver, ASolverThatTakesOverGoesOnFromTheSettledTimeThatWasToldLast) {
   EXPECT_EQ(live.board.reader.look().settled_until, settled);
   live.replace_solver();
   EXPECT_EQ(live.solver.head().settled_until, settled);
-  // Whatever its clock says.
+  // Also if the clock is earlier.
   live.clock.time = Live::kNow;
   live.drain();
   EXPECT_EQ(live.board.reader.look().settled_until, settled);

@@ -18,7 +18,7 @@ void expect_balance(const Head& head) {
   EXPECT_EQ(head.consumed, head.knots + head.refused + head.withdrawn + head.controls);
 }
 
-/// Sends a stop as soon as possible and steps once: it has taken effect then.
+/// Sends a stop for the earliest possible time and expects that one step makes it effective.
 void expect_immediate_stop(Live& live) {
   ASSERT_EQ(live.replace(live.solved().settled_until, {}), AppendStatus::accepted);
   const Word stop = live.ring.writer.head() - 1;
@@ -32,18 +32,18 @@ void expect_immediate_stop(Live& live) {
   EXPECT_EQ(live.sampler.preview(rest, live.state.ref()), SampleStatus::holding);
 }
 
-TEST(Stop, TakesEffectInTheNextStepBehindAReplacementThatIsTooLate) {
+TEST(Stop, TakesEffectInTheNextStepAfterALateReplacement) {
   Live live;
   live.put_all(50, 2000);
   const Time t = live.solved().settled_until;
   ASSERT_EQ(live.replace(t, {t + milliseconds(500), t + milliseconds(900)}),
             AppendStatus::accepted);
-  live.clock.time += milliseconds(10);  // it has missed its time
+  live.clock.time += milliseconds(10);  // too late for the replacement
   expect_immediate_stop(live);
   EXPECT_EQ(live.reason(Refusal::too_late), 0U);
 }
 
-TEST(Stop, TakesEffectInTheNextStepBehindAReplacementThatLiesAhead) {
+TEST(Stop, TakesEffectInTheNextStepAfterAReplacementInTheFuture) {
   Live live({.settle = 2}, 64);
   live.put_all(50, 2050);  // more than the board has room for
   const Time t = Live::kNow + milliseconds(1900);
@@ -63,11 +63,11 @@ TEST(Stop, DoesNotWaitForRoomOnTheBoard) {
   live.clock.time = newest - milliseconds(8);
   live.solver.step(live.clock);
   ASSERT_LT(live.solver.head().consumed, live.ring.writer.head());
-  live.clock.time = newest - milliseconds(6);  // in the last segment before the stop tail
+  live.clock.time = newest - milliseconds(6);  // in the last segment before the stop segment
   expect_immediate_stop(live);
 }
 
-/// Waypoints are withdrawn in the revision that replaces them, also if that must wait for room.
+/// Waypoints are withdrawn in the revision that replaces them, also if it has to wait for room.
 TEST(Stop, OrReplacementThatWaitsForRoomWithdrawsNothing) {
   Live live({.settle = 2}, 64, {.history = seconds(10)});
   live.put_all(50, 630);
@@ -81,12 +81,12 @@ TEST(Stop, OrReplacementThatWaitsForRoomWithdrawsNothing) {
   live.solver.step(live.clock);
   EXPECT_EQ(live.solver.head().withdrawn, 0U);
   EXPECT_EQ(live.solver.head().consumed + 4, live.ring.writer.head());
-  // Another one that the board has room for withdraws them.
+  // A stop for which the board has room withdraws them.
   expect_immediate_stop(live);
   EXPECT_EQ(live.solver.head().withdrawn, 4U);
 }
 
-TEST(Stop, AtTheEndOfTimeLeavesABoardThatCanBeReadBehindAFinish) {
+TEST(Stop, AtTheLatestTimeLeavesAReadableBoardAfterAFinish) {
   Live live;
   live.put_all(50, 100);
   ASSERT_EQ(live.replace(kLatestTime, {}), AppendStatus::accepted);
@@ -98,13 +98,13 @@ TEST(Stop, AtTheEndOfTimeLeavesABoardThatCanBeReadBehindAFinish) {
   EXPECT_NO_THROW(live.replace_solver());
 }
 
-TEST(Stop, ThatIsCutAtTheEndOfTimeLeavesABoardThatCanBeRead) {
+TEST(Stop, ThatIsCutAtTheLatestTimeLeavesAReadableBoard) {
   Live live;
   live.put_all(50, 100);
   const Time t = kLatestTime - live.window.stop_time / 2;
   ASSERT_EQ(live.replace(t, {}), AppendStatus::accepted);
   live.drain();
-  ASSERT_EQ(live.replace(kLatestTime, {}), AppendStatus::accepted);  // within the stop
+  ASSERT_EQ(live.replace(kLatestTime, {}), AppendStatus::accepted);  // in the stop segment
   live.drain();
   Sampler later(live.board.reader, StreamClock::monotonic);
   for (const Time at : {t - Time(1), t, t + Time(1), kLatestTime}) {
@@ -113,7 +113,7 @@ TEST(Stop, ThatIsCutAtTheEndOfTimeLeavesABoardThatCanBeRead) {
   EXPECT_NO_THROW(live.replace_solver());
 }
 
-TEST(Stop, AtATimeAheadTakesEffectThereAtTheLatest) {
+TEST(Stop, AtAFutureTimeTakesEffectAtThatTimeAtTheLatest) {
   Live live({.settle = 2}, 64, {.history = seconds(10)});
   live.put_all(50, 2000);
   const Time newest = live.solver.head().newest_knot;
@@ -141,11 +141,11 @@ TEST(Stop, IsNeverTooLate) {
   EXPECT_EQ(live.solver.head().refused, 0U);
   EXPECT_EQ(live.replace(Live::kNow + milliseconds(4), {Live::kNow + milliseconds(400)}),
             AppendStatus::too_late);
-  // The stream goes on behind it.
+  // The stream continues after the stop.
   EXPECT_EQ(live.put(live.clock.time + milliseconds(300)), AppendStatus::accepted);
 }
 
-TEST(Stop, OfAnUnknownTimeLetsAnyWaypointFollowAlsoBehindANewProducer) {
+TEST(Stop, AtAnUnknownTimeAllowsAnyLaterWaypointAlsoFromANewProducer) {
   Live live;
   ASSERT_EQ(live.put(Live::kNow + milliseconds(50)), AppendStatus::accepted);
   ASSERT_EQ(live.ring.writer.replace_from(Time::min(), {}, {}), AppendStatus::accepted);
@@ -180,9 +180,9 @@ TEST(Stop, FindsRoomInAFullRingAndTakesEffectInTheNextStep) {
   expect_immediate_stop(live);
 }
 
-/// The bound that replace_from states, among replacements that come too late, replacements ahead,
-/// waypoints under back-pressure and a solver that is stopped meanwhile.
-TEST(Stop, TakesEffectAtTheNextSettledTimeWhateverIsQueued) {
+/// The bound that replace_from states, with late replacements, replacements in the future,
+/// waypoints under back-pressure and a paused solver.
+TEST(Stop, TakesEffectAtTheNextSettledTimeForAnyQueuedItems) {
   for (std::uint64_t seed = 1; seed <= 60 && !HasFailure(); ++seed) {
     LiveWorld world({.seed = seed,
                      .dimensions = 1 + seed % 3,

@@ -18,7 +18,7 @@ using testing::MemoryStream;
 using testing::Mesh;
 using testing::random_mesh;
 
-/// The segments that a window gives when it is fed directly.
+/// The segments of a window that gets the waypoints directly.
 PiecewisePolynomial direct(const Mesh& mesh, const core::WindowOptions& how, const Condition& end) {
   return testing::online(
       {.dimensions = mesh.dimensions, .times = mesh.times, .positions = mesh.positions}, how, end);
@@ -35,7 +35,7 @@ void expect_same_bits(MemoryStream& stream, const Mesh& mesh, const PiecewisePol
   }
 }
 
-TEST(StreamSolver, PublishesTheBitsOfTheWindowHoweverTheItemsAreBatched) {
+TEST(StreamSolver, PublishesTheBitsOfTheWindowForAnyBatchSize) {
   for (const std::size_t settle : {0U, 1U, 8U}) {
     const core::WindowOptions how{.settle = settle};
     const Mesh mesh = random_mesh(settle + 1, 300, 3, 5);
@@ -55,7 +55,7 @@ TEST(StreamSolver, PublishesTheBitsOfTheWindowHoweverTheItemsAreBatched) {
   }
 }
 
-TEST(StreamSolver, ASolverThatTakesOverGoesOnBitForBitWhereverTheFirstOneDied) {
+TEST(StreamSolver, ASolverThatTakesOverContinuesBitForBitAfterADeathAtAnyKnot) {
   const core::WindowOptions how{.settle = 8};
   const Mesh mesh = random_mesh(3, 60, 2, 5);
   const auto wanted = direct(mesh, how, {});
@@ -71,17 +71,17 @@ TEST(StreamSolver, ASolverThatTakesOverGoesOnBitForBitWhereverTheFirstOneDied) {
   }
 }
 
-TEST(StreamSolver, RefusesWhatAProducerShouldNotHaveSentWithReasonAndNumber) {
+TEST(StreamSolver, RefusesInvalidIntervalsWithReasonAndItemNumber) {
   MemoryStream stream(1, {}, 64, 64, {.min_interval = Time(5000), .max_interval = Time(1'000'000)});
   const auto put = [&](std::int64_t t, double x) {
     const std::vector<double> position{x};
     ASSERT_EQ(stream.append(Time(t), position), AppendStatus::accepted);
   };
   put(10'000, 1);
-  put(12'000, 2);  // closer than the solver takes
+  put(12'000, 2);  // closer than the solver accepts
   put(20'000, 3);
   put(2'000'000, 4);  // farther
-  put(2'005'000, 5);  // farther still from the last one interpolated
+  put(2'005'000, 5);  // too far from the last interpolated one
   stream.finish();
   const Head& head = stream.solver.head();
   EXPECT_EQ(head.knots, 2U);
@@ -93,7 +93,7 @@ TEST(StreamSolver, RefusesWhatAProducerShouldNotHaveSentWithReasonAndNumber) {
   EXPECT_EQ(head.consumed, 6U);
 }
 
-TEST(StreamSolver, TellsTheProducerWhatItConsumedAndReadersWhatChanged) {
+TEST(StreamSolver, ReportsTheConsumedItemsAndFromWhenTheCurveChanged) {
   const Mesh mesh = random_mesh(4, 40, 1, 2);
   MemoryStream stream(1, {.settle = 4});
   for (std::size_t i = 0; i < mesh.size(); ++i) {
@@ -115,7 +115,7 @@ TEST(StreamSolver, TellsTheProducerWhatItConsumedAndReadersWhatChanged) {
   EXPECT_FALSE(stream.solver.step(stream.clock).published);
 }
 
-TEST(StreamSolver, PromisesNothingOfNegativeTimesBeforeTheyHaveSettled) {
+TEST(StreamSolver, DoesNotReportNegativeTimesAsSettledTooEarly) {
   MemoryStream stream(1, {.settle = 4});
   Sampler sampler(stream.board.reader, StreamClock::recorded);
   State state(1);
@@ -126,7 +126,7 @@ TEST(StreamSolver, PromisesNothingOfNegativeTimesBeforeTheyHaveSettled) {
     stream.drain();
   };
   for (std::int64_t i = 0; i < 3; ++i) put(i);
-  stream.replace_solver();  // which must not promise more than the one before
+  stream.replace_solver();  // must not report more as settled than its predecessor
   for (std::int64_t i = 3; i < 10; ++i) put(i);
   EXPECT_EQ(sampler.sample(Time(-95'500'000), state.ref()), SampleStatus::settled);
   EXPECT_EQ(sampler.sample(Time(-91'500'000), state.ref()), SampleStatus::provisional);
@@ -142,7 +142,7 @@ TEST(StreamSolver, KeepsAsMuchHistoryAsTheBoardHolds) {
   stream.finish();
   const Head& head = stream.solver.head();
   EXPECT_EQ(head.newest, 500U);
-  EXPECT_EQ(head.newest - head.first + 1, 64U);  // knots: a segment fewer
+  EXPECT_EQ(head.newest - head.first + 1, 64U);  // 64 knots, 63 segments
   Sampler sampler(stream.board.reader, StreamClock::recorded);
   State state(1);
   EXPECT_EQ(sampler.sample(mesh.times[500 - 64] - Time(1), state.ref()),
@@ -150,7 +150,7 @@ TEST(StreamSolver, KeepsAsMuchHistoryAsTheBoardHolds) {
   EXPECT_EQ(sampler.sample(mesh.times[500 - 64], state.ref()), SampleStatus::settled);
 }
 
-TEST(StreamSolver, AFinishOfItsOwnGivesNoSegmentBackThatTheBoardHasLost) {
+TEST(StreamSolver, AFinishDoesNotRestoreSegmentsThatTheBoardHasLost) {
   for (const bool takes_over : {false, true}) {
     const Mesh mesh = random_mesh(7, 300, 1, 2);
     MemoryStream stream(1, {}, 64, 32);

@@ -19,26 +19,26 @@ namespace splinecast::ipc::entries {
 using std::chrono::milliseconds;
 using testing::LiveStream;
 
-/// How the streams end.
+/// The end condition of the streams.
 inline constexpr Condition kHalt{.kind = ConditionKind::halt, .value = {}};
 
-/// A motion that begins at rest 50 ms after the start: up to 1 /s and 1 /s².
+/// A motion that begins at rest 50 ms after the start. Its maxima are 1 /s and 1 /s².
 inline double motion(Time t) {
   const double s = to_seconds(t - LiveStream::kNow) - 0.05;
   return 0.5 * s - 0.25 * std::sin(2 * s);
 }
 
-/// So long after the start.
+/// The time `ms` after the start.
 inline Time at(int ms) { return LiveStream::kNow + milliseconds(ms); }
 
-/// 0: without a limit.
+/// Options with an acceleration limit; 0 means no limit.
 inline core::WindowOptions limited(double acceleration) {
   core::WindowOptions how;
   how.limits.acceleration = {acceleration};
   return how;
 }
 
-/// A live stream whose curve, items and refusals are all kept.
+/// A live stream that records its curve, items and refusals.
 struct Watched : LiveStream {
   struct Sent {
     Time time{};
@@ -72,7 +72,7 @@ struct Watched : LiveStream {
   void run_to(int ms) {
     for (; clock.time < at(ms); clock.time += milliseconds(1)) step();
   }
-  /// Sends a waypoint whatever the producer knows.
+  /// Sends a waypoint without the checks that depend on the settled time.
   void send(int ms, double position) {
     ASSERT_EQ(
         ring.writer.append({.time = at(ms), .position = {&position, 1}}, {board.reader.tail()}),
@@ -81,7 +81,7 @@ struct Watched : LiveStream {
     sent.push_back({at(ms), position});
   }
   void send(int ms) { send(ms, motion(at(ms))); }
-  /// One every 10 ms, each `lead` before its time, while the clock goes on.
+  /// Sends a waypoint every 10 ms, each one `lead` ms before its time. Advances the clock.
   void send_all(int from_ms, int to_ms, int lead) {
     for (int ms = from_ms; ms <= to_ms; ms += 10) {
       run_to(ms - lead);
@@ -109,7 +109,7 @@ struct Watched : LiveStream {
     return std::to_string(found.first->segment) + ": " + found.first->what + ", " +
            found.first->published + " published, " + found.first->solved + " solved";
   }
-  /// Sent waypoints that the curve passes at their time, or ends at.
+  /// The number of sent waypoints that the curve interpolates at their time or ends at.
   [[nodiscard]] Word met() const {
     Word count = 0;
     for (const Sent& waypoint : sent) count += is_met(waypoint) || ends_at(waypoint) ? 1U : 0U;
@@ -121,7 +121,7 @@ struct Watched : LiveStream {
       return s.left == waypoint.time && begin == waypoint.position;
     });
   }
-  /// Where the curve ends no segment begins.
+  /// Separate check for the last waypoint, because no segment begins at the end of the curve.
   [[nodiscard]] bool ends_at(const Sent& waypoint) const {
     const SegmentCopy& last = collected.segments().back();
     State end(1);
@@ -129,7 +129,7 @@ struct Watched : LiveStream {
     return waypoint.time == sent.back().time &&
            std::abs(end.position()[0] - waypoint.position) < 1e-9;
   }
-  /// The largest derivative of what the solver has chosen itself: entries, stops and the like.
+  /// The largest derivative on segments that the solver chooses: entries, stop segments and holds.
   [[nodiscard]] double peak(int derivative) const {
     State at(1);
     double most = 0;
@@ -146,19 +146,19 @@ struct Watched : LiveStream {
   }
   [[nodiscard]] std::size_t entries() const {
     return static_cast<std::size_t>(
-        std::ranges::count(collected.segments(), SegmentKind::splice, &SegmentCopy::kind));
+        std::ranges::count(collected.segments(), SegmentKind::entry, &SegmentCopy::kind));
   }
   [[nodiscard]] Course course() const { return static_cast<Course>(solver.head().course); }
 
   std::vector<Sent> sent;
   testing::ItemRecord items;
   SettledSegments collected;
-  bool takes_over_each_step;  ///< but not within a search, which the next solver begins again
+  bool takes_over_each_step;  ///< not during a search, which a new solver would restart
   bool is_searching = false;
-  Time takes_over_at = Time::max();  ///< once
+  Time takes_over_at = Time::max();  ///< one takeover at this time
 };
 
-/// Expects each segment to begin where the one before it ends, at its velocity.
+/// Expects position and velocity to be continuous from each segment to the next.
 inline void expect_continuous(const Watched& live) {
   const auto segments = live.collected.segments();
   State left(1);

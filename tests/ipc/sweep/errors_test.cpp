@@ -17,7 +17,7 @@
 #include "tests/fixtures/streams/board_words.hpp"
 #include "tests/ipc/sweep/told.hpp"
 
-/// What goes wrong with one stream of a sweep, and what somebody else does to it: the others go on.
+/// Errors of one stream of a sweep, and changes by other processes, do not affect other streams.
 namespace splinecast::ipc {
 namespace {
 
@@ -27,13 +27,13 @@ using testing::make_producer;
 using testing::TestStream;
 using testing::Told;
 
-/// A clock whose time passes between sweeps.
+/// A clock that advances between sweeps.
 struct SteppedClock final : Clock {
   [[nodiscard]] Time now() const noexcept override { return time; }
   Time time{};
 };
 
-/// Sweeps, with time for a look around each time. Returns whether the condition came to hold.
+/// Sweeps at intervals that allow a scan each time. Returns whether the condition became true.
 template <typename Condition>
 bool sweep_until(StreamSweep& sweep, const Condition& holds) {
   constexpr int kSweeps = 500;
@@ -49,7 +49,7 @@ bool await_news(Told& told, SweepNews news, const std::string& stream) {
   return sweep_until(told.sweep, [&] { return told.count(news, stream) > 0; });
 }
 
-/// A file in the folder of shared memory, removed at the end.
+/// A file in the shared-memory folder; the destructor removes it.
 class ForeignFile {
  public:
   explicit ForeignFile(const std::string& name) : path_(kSharedMemoryFolder) {
@@ -64,7 +64,7 @@ class ForeignFile {
   std::string path_;
 };
 
-/// Overwrites a velocity of every knot that a board holds.
+/// Overwrites a velocity of every knot on a board with NaN.
 void damage(const std::string& stream) {
   const auto header = peek_header(stream, RegionKind::spline, {});
   ASSERT_TRUE(header);
@@ -80,7 +80,7 @@ void damage(const std::string& stream) {
   close(board);
 }
 
-TEST(StreamSweepErrors, FilesUnderNamesThatAreNoStreamsEndNoSweep) {
+TEST(StreamSweepErrors, FilesWithInvalidStreamNamesDoNotEndASweep) {
   const TestStream family;
   const std::string stream = family.name() + ".x";
   const TestStream awaited;
@@ -101,7 +101,7 @@ TEST(StreamSweepErrors, FilesUnderNamesThatAreNoStreamsEndNoSweep) {
   OwnerLock(stream, RegionKind::spline).remove_file();
 }
 
-TEST(StreamSweepErrors, AStepThatFailsGivesItsStreamUpAndTheOthersGoOn) {
+TEST(StreamSweepErrors, AFailedStepGivesUpItsStreamAndTheOthersContinue) {
   const TestStream bad;
   const TestStream good;
   Producer of_bad = make_producer(bad.name());
@@ -112,21 +112,22 @@ TEST(StreamSweepErrors, AStepThatFailsGivesItsStreamUpAndTheOthersGoOn) {
   damage(bad.name());
   ASSERT_EQ(of_bad.replace_from(Time(110'000'000), {}), AppendStatus::accepted);
   ASSERT_TRUE(await_news(told, SweepNews::given_up, bad.name()));
-  EXPECT_NE(told.why.find("holds what its solver has not written"), std::string::npos) << told.why;
+  EXPECT_NE(told.why.find("holds data that its solver did not write"), std::string::npos)
+      << told.why;
   EXPECT_FALSE(is_owned(bad.name(), RegionKind::spline));
   append_at(of_good, Time(0));
   EXPECT_TRUE(sweep_until(told.sweep, [&] { return of_good.wait_until_consumed(Time(0)); }));
   EXPECT_EQ(told.count(SweepNews::given_up, bad.name()), 1);
 }
 
-TEST(StreamSweepErrors, WhatTheOneWhoIsToldThrowsLosesNoStream) {
+TEST(StreamSweepErrors, AnExceptionFromTheNewsCallbackLosesNoStream) {
   const TestStream family;
   const std::string first = family.name() + ".1";
   const std::string second = family.name() + ".2";
   Producer of_first = make_producer(first);
   Producer of_second = make_producer(second);
   StreamSweep sweep({family.name() + ".*"}, Told::small(),
-                    [](auto&&...) { throw std::runtime_error("nobody hears"); });
+                    [](auto&&...) { throw std::runtime_error("callback failed"); });
   EXPECT_TRUE(sweep_until(sweep, [&] { return sweep.solved() == 2; }));
   of_first.withdraw();
   of_second.withdraw();
@@ -138,7 +139,7 @@ TEST(StreamSweepErrors, WhatTheOneWhoIsToldThrowsLosesNoStream) {
   }
 }
 
-TEST(StreamSweepErrors, ANamedStreamThatWasGivenUpIsTriedAgainWhenItsNameHasComeAgain) {
+TEST(StreamSweepErrors, AGivenUpNamedStreamIsRetriedWhenItIsRecreated) {
   const TestStream bad;
   const TestStream other;
   Producer before = make_producer(bad.name());
@@ -150,14 +151,14 @@ TEST(StreamSweepErrors, ANamedStreamThatWasGivenUpIsTriedAgainWhenItsNameHasCome
   ASSERT_TRUE(await_news(told, SweepNews::given_up, bad.name()));
   before.withdraw();
   unlink_region(bad.name(), RegionKind::spline);
-  // Between two looks: the sweep need not see that the name was free.
+  // Between two scans, so that the sweep need not see that the name was free.
   Producer after = make_producer(bad.name());
   append_at(after, Time(0));
   EXPECT_TRUE(await_news(told, SweepNews::solving, bad.name()));
   EXPECT_EQ(told.count(SweepNews::given_up, bad.name()), 1);
 }
 
-/// Sweeps with so few descriptors that one of two streams cannot be solved, and then with enough.
+/// Sweeps with too few descriptors for two streams, and then with enough.
 void expect_postponed(Told& told, rlim_t free, const std::vector<std::string>& streams) {
   const auto count = [&](SweepNews news) {
     return told.count(news, streams[0]) + told.count(news, streams[1]);
@@ -176,16 +177,16 @@ void expect_postponed(Told& told, rlim_t free, const std::vector<std::string>& s
   EXPECT_EQ(count(SweepNews::given_up), 0);
 }
 
-TEST(StreamSweepErrors, ANamedStreamForWhichNoDescriptorsAreLeftIsTriedAgain) {
+TEST(StreamSweepErrors, ANamedStreamIsRetriedAfterDescriptorsRanOut) {
   const TestStream first;
   const TestStream second;
   Told told({first.name(), second.name()});
   Producer of_first = make_producer(first.name());
   Producer of_second = make_producer(second.name());
-  expect_postponed(told, 1, {first.name(), second.name()});  // their locks are held already
+  expect_postponed(told, 1, {first.name(), second.name()});  // the sweep already holds their locks
 }
 
-TEST(StreamSweepErrors, AStreamOfAPatternForWhichNoDescriptorsAreLeftIsTriedAgain) {
+TEST(StreamSweepErrors, AStreamOfAPatternIsRetriedAfterDescriptorsRanOut) {
   const TestStream first;
   const TestStream second;
   Told told({"[" + first.name().substr(0, 1) + "]" + first.name().substr(1),

@@ -14,7 +14,7 @@
 #include "splinecast/errors.hpp"
 #include "tests/ipc/sweep/told.hpp"
 
-/// One thread's solvers of many streams, over real shared memory, within one process.
+/// One thread solves many streams over real shared memory, in one process.
 namespace splinecast::ipc {
 namespace {
 
@@ -25,7 +25,7 @@ using testing::News;
 using testing::TestStream;
 using testing::Told;
 
-/// A clock that the test sets and that counts how often it is read.
+/// A clock that the test sets. Counts its readings.
 class SetClock final : public Clock {
  public:
   [[nodiscard]] Time now() const noexcept override {
@@ -36,7 +36,7 @@ class SetClock final : public Clock {
   mutable int reads = 0;
 };
 
-TEST(StreamSweep, APatternFindsStreamsAsTheyComeAndForgetsThoseThatGo) {
+TEST(StreamSweep, APatternFindsNewStreamsAndForgetsRemovedOnes) {
   const TestStream family;
   const std::string stream = family.name() + ".x";
   const TestStream other;
@@ -68,7 +68,7 @@ TEST(StreamSweep, APatternFindsStreamsAsTheyComeAndForgetsThoseThatGo) {
   OwnerLock(stream, RegionKind::spline).remove_file();
 }
 
-TEST(StreamSweep, ANamedStreamIsOwnedBeforeItsProducerComes) {
+TEST(StreamSweep, ANamedStreamIsOwnedBeforeItsProducerStarts) {
   const TestStream stream;
   Told told({stream.name()});
   EXPECT_EQ(told.count(SweepNews::waiting, stream.name()), 1);
@@ -79,7 +79,7 @@ TEST(StreamSweep, ANamedStreamIsOwnedBeforeItsProducerComes) {
   EXPECT_TRUE(producer.wait_for_solver(Time(1)));
 }
 
-TEST(StreamSweep, WhatAnotherSolvesIsLeftToItAndTakenOverWhenThatDies) {
+TEST(StreamSweep, AStreamOfAnotherSolverIsTakenOverOnlyWhenThatSolverDies) {
   const TestStream stream;
   Producer producer = make_producer(stream.name());
   std::optional<Solver> other(std::in_place, stream.name(), Told::small());
@@ -109,14 +109,14 @@ TEST(StreamSweep, AnIdleStreamCostsNoStep) {
   told.sweep.sweep(clock);
   clock.reads = 0;
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(told.sweep.sweep(clock));
-  EXPECT_EQ(clock.reads, 10);  // its own; a step that publishes reads the clock twice
+  EXPECT_EQ(clock.reads, 10);  // one per sweep; a step that publishes adds two more
   append_at(producer, Time(0));
   EXPECT_FALSE(told.sweep.sweep(clock));
   EXPECT_EQ(clock.reads, 13);
   EXPECT_EQ(producer.consumed(), 1U);
 }
 
-TEST(StreamSweep, AStreamThatHasLongBeenQuietIsLookedAtInOneOfSomeSweeps) {
+TEST(StreamSweep, AnIdleStreamIsPolledOnlyInSomeSweeps) {
   const TestStream quiet;
   const TestStream busy;
   Producer first = make_producer(quiet.name());
@@ -144,10 +144,10 @@ TEST(StreamSweep, AStreamThatHasLongBeenQuietIsLookedAtInOneOfSomeSweeps) {
     clock.time += StreamSweep::kQuietAfter;
     told.sweep.sweep(clock);
     EXPECT_EQ(told.sweep.next_pause(), StreamSweep::kQuietPause);
-    EXPECT_EQ(sweeps_to_take(second), 1);  // all are looked at after the pause
+    EXPECT_EQ(sweeps_to_take(second), 1);  // after the long pause the sweep polls all streams
     EXPECT_EQ(told.sweep.next_pause(), kPause);
     EXPECT_EQ(sweeps_to_take(second), 1);
-    // In its turn, while the other one keeps the sweep awake; and from then on at once.
+    // The idle stream is polled in one of some sweeps; after that it is busy and polled in each.
     most_sweeps = std::max(most_sweeps, sweeps_to_take(first));
     EXPECT_EQ(sweeps_to_take(first), 1);
   }
@@ -155,7 +155,7 @@ TEST(StreamSweep, AStreamThatHasLongBeenQuietIsLookedAtInOneOfSomeSweeps) {
   EXPECT_LE(most_sweeps, StreamSweep::kQuietPause / kPause);
 }
 
-TEST(StreamSweep, QuietStreamsDoNotMakeALongPauseLongerNorPutOffWhatIsElsewhere) {
+TEST(StreamSweep, IdleStreamsKeepALongPauseAndASweepWithoutStreamsAShortOne) {
   const TestStream stream;
   Producer producer = make_producer(stream.name());
   StreamSweep sweep(
@@ -197,12 +197,13 @@ TEST(StreamSweep, ALiveStreamSettlesWithoutWaypointsUntilItRests) {
     settled = producer.earliest();
     ++revisions;
   }
-  // Every half freeze-ahead, at 1 ms steps every 3 ms, through 60 ms of curve and 250 ms of stop.
+  // The settled time is raised every half freeze-ahead, which is every 3 ms with steps of 1 ms, for
+  // 60 ms of curve and 250 ms of stop segment.
   EXPECT_GE(revisions, 100);
   EXPECT_LE(revisions, 105);
 }
 
-TEST(StreamSweep, MoreThanABatchIsSweptAgainAtOnce) {
+TEST(StreamSweep, AStreamWithMoreThanOneBatchIsSweptAgainWithoutAPause) {
   const TestStream stream;
   Producer producer(stream.name(),
                     {.dimensions = 1, .clock = StreamClock::recorded, .capacity = 512});
@@ -214,7 +215,7 @@ TEST(StreamSweep, MoreThanABatchIsSweptAgainAtOnce) {
   EXPECT_TRUE(producer.wait_until_consumed(Time(0)));
 }
 
-TEST(StreamSweep, AFinishIsToldOnceAndANewStreamOfTheNameIsTakenUp) {
+TEST(StreamSweep, AFinishIsReportedOnceAndANewStreamOfThatNameIsSolved) {
   const TestStream stream;
   Told told({stream.name()});
   {
@@ -233,7 +234,7 @@ TEST(StreamSweep, AFinishIsToldOnceAndANewStreamOfTheNameIsTakenUp) {
   EXPECT_EQ(told.count(SweepNews::finished, stream.name()), 1);
 }
 
-TEST(StreamSweep, AStreamThatCannotBeSolvedIsGivenUpOnceAndTheOthersGoOn) {
+TEST(StreamSweep, AnUnsolvableStreamIsGivenUpOnceAndTheOthersContinue) {
   const TestStream bad;
   const TestStream good;
   Producer of_bad = make_producer(bad.name());
@@ -246,19 +247,19 @@ TEST(StreamSweep, AStreamThatCannotBeSolvedIsGivenUpOnceAndTheOthersGoOn) {
   EXPECT_TRUE(told.await_news(SweepNews::given_up, bad.name()));
   EXPECT_NE(told.why.find("settle lag 3, not 4"), std::string::npos) << told.why;
   EXPECT_TRUE(told.await_news(SweepNews::solving, good.name()));
-  Producer passing = make_producer(good.name() + ".passing");  // the folder changes
+  Producer passing = make_producer(good.name() + ".passing");  // changes the folder
   told.sweep.sweep(told.clock);
   passing.withdraw();
   EXPECT_EQ(told.count(SweepNews::given_up, bad.name()), 1);
   EXPECT_FALSE(is_owned(bad.name(), RegionKind::spline));
 }
 
-TEST(StreamSweep, OptionsThatCanBeNoStreamsAreRefusedAtOnce) {
-  EXPECT_THROW(Told({"nobody.*"}, {.capacity = 1}), BadRequest);
+TEST(StreamSweep, InvalidOptionsAreRefusedImmediately) {
+  EXPECT_THROW(Told({"unused.*"}, {.capacity = 1}), BadRequest);
   EXPECT_THROW(Told({"no/name"}), BadRequest);
 }
 
-TEST(StreamSweep, StreamsBeyondTheDescriptorsAreLeftOutUntilOthersGo) {
+TEST(StreamSweep, StreamsBeyondTheDescriptorLimitWaitUntilOthersEnd) {
   const TestStream family;
   std::vector<std::string> names;
   std::vector<Producer> producers;
@@ -287,7 +288,7 @@ TEST(StreamSweep, StreamsBeyondTheDescriptorsAreLeftOutUntilOthersGo) {
   }
 }
 
-TEST(Names, PatternsAreThoseOfAShell) {
+TEST(Names, MatchShellPatterns) {
   EXPECT_TRUE(is_pattern("arm.*"));
   EXPECT_TRUE(is_pattern("arm.[12]"));
   EXPECT_FALSE(is_pattern("arm.1"));
@@ -297,11 +298,11 @@ TEST(Names, PatternsAreThoseOfAShell) {
   EXPECT_FALSE(matches("arm.?", "arm.10"));
 }
 
-TEST(FolderWatch, NoticesFilesThatComeAndGoAndThenFallsSilent) {
+TEST(FolderWatch, ReportsCreatedAndRemovedFilesOnce) {
   FolderWatch watch;
   EXPECT_TRUE(watch.has_changed());
   const TestStream stream;
-  // Others' files may come and go as well, but not all the time.
+  // Other processes may also create and remove files, but not continuously.
   EXPECT_TRUE(await([&] { return !watch.has_changed(); }));
   Producer producer = make_producer(stream.name());
   EXPECT_TRUE(watch.has_changed());

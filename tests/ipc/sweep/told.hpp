@@ -15,7 +15,7 @@ namespace splinecast::testing {
 
 using News = std::vector<std::pair<ipc::SweepNews, std::string>>;
 
-/// A sweep that keeps the news it tells.
+/// A sweep that records the news it reports.
 struct Told {
   News news;
   std::string why;
@@ -35,7 +35,7 @@ struct Told {
   [[nodiscard]] std::ptrdiff_t count(ipc::SweepNews what, const std::string& stream) const {
     return std::ranges::count(news, std::pair(what, stream));
   }
-  /// Sweeps until that has been told.
+  /// Sweeps until this news is reported.
   bool await_news(ipc::SweepNews what, const std::string& stream) {
     return await([&] {
       sweep.sweep(clock);

@@ -19,7 +19,7 @@ namespace {
 using testing::MemoryStream;
 using testing::Trial;
 
-/// A recorded stream that has been played to its end, and what was collected of it.
+/// A recorded stream, played to its end, with its collected segments and items.
 class Played {
  public:
   explicit Played(const core::WindowOptions& how, const Condition& end = {},
@@ -74,7 +74,7 @@ void flip_last_bit(double& value) {
 
 class VerificationOfMethods : public ::testing::TestWithParam<const Method*> {};
 
-TEST_P(VerificationOfMethods, SolvesEverySettledSegmentAgainToItsBits) {
+TEST_P(VerificationOfMethods, ReproducesEverySettledSegmentBitForBit) {
   for (const ConditionKind kind : {ConditionKind::own, ConditionKind::halt}) {
     for (const std::size_t knots : {1U, 2U, 3U, 150U}) {
       core::WindowOptions how = testing::plain_window(*GetParam());
@@ -91,8 +91,8 @@ INSTANTIATE_TEST_SUITE_P(Streaming, VerificationOfMethods,
                          ::testing::ValuesIn(testing::streaming_methods()),
                          [](const auto& at) { return std::string(at.param->name); });
 
-TEST(Verification, TakesLimitsKindsAndAShortLag) {
-  const std::vector<Dimension> kinds{{.kind = DimensionKind::wrap, .period = 0.7}, {}};
+TEST(Verification, HandlesPeriodicDimensionsAndShortSettleLags) {
+  const std::vector<Dimension> kinds{{.kind = DimensionKind::periodic, .period = 0.7}, {}};
   for (const std::size_t settle : {0U, 1U, 8U}) {
     EXPECT_EQ(what(Played({.settle = settle}, {}, DimensionKinds(kinds)).verify()), "");
   }
@@ -112,7 +112,7 @@ TEST(Verification, FindsOneFlippedBit) {
   }
 }
 
-TEST(Verification, FindsWhateverElseDiffers) {
+TEST(Verification, FindsAnyOtherDifference) {
   const Played played(core::WindowOptions{});
   const auto found = [&](const auto& change) {
     Played changed = played;
@@ -122,13 +122,13 @@ TEST(Verification, FindsWhateverElseDiffers) {
   };
   EXPECT_EQ(found([](SegmentCopy& at) { flip_last_bit(at.waypoint[1]); }), "waypoint");
   EXPECT_EQ(found([](SegmentCopy& at) { at.right += Time(1); }), "right end");
-  EXPECT_EQ(found([](SegmentCopy& at) { at.kind = SegmentKind::stop_tail; }), "kind");
+  EXPECT_EQ(found([](SegmentCopy& at) { at.kind = SegmentKind::stop; }), "kind");
   EXPECT_NE(found([](SegmentCopy& at) { at.newer_knots = 3; }), "");
   EXPECT_NE(found([](SegmentCopy& at) { at.newer_knots = 4'000'000'000; }), "");
   EXPECT_NE(found([](SegmentCopy& at) { at.number = 7; }), "");
 }
 
-TEST(Verification, MissesAWaypointThatIsNotOnTheCurve) {
+TEST(Verification, ReportsAWaypointThatIsNotOnTheCurve) {
   const Played played(core::WindowOptions{});
   SentItems more = played.items();
   more.add(ItemKind::waypoint, played.items().waypoint(more.size() - 1));
@@ -142,7 +142,7 @@ TEST(Verification, MissesAWaypointThatIsNotOnTheCurve) {
   EXPECT_TRUE(played.verify(fewer).first);
 }
 
-/// Kills, starvation and replacement, with a local method, with smoothing, and without limits.
+/// Kills, starvation and replacements, with local methods, with smoothing, with and without limits.
 TEST(Verification, HoldsInLiveWorldsOfOtherMethods) {
   for (const char* name : {"c2", "akima", "pchip", "bessel", "smoothing"}) {
     core::WindowOptions window = testing::plain_window(*find_method(name));

@@ -1,4 +1,4 @@
-#include "core/forms/splice.hpp"
+#include "core/forms/entry.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include "splinecast/state.hpp"
 
 namespace splinecast::core {
-void build_splice(const Instant& from, const Instant& to, Segment& out) noexcept {
+void build_entry(const Instant& from, const Instant& to, Segment& out) noexcept {
   const std::size_t dimensions = from.position.size();
   const double h = to_seconds(to.time - from.time);
   std::array<double, kMaxDimensions> chord{};
@@ -22,7 +22,7 @@ void build_splice(const Instant& from, const Instant& to, Segment& out) noexcept
                  .a0 = from.acceleration,
                  .a1 = to.acceleration},
                 out);
-  out.kind = SegmentKind::splice;
+  out.kind = SegmentKind::entry;
 }
 
 }  // namespace splinecast::core
