@@ -22,7 +22,7 @@ struct CurveCheck {
   std::optional<TimedExcess> first_violation{};
   std::array<std::optional<TimedExcess>, kLimitKinds> worst{};  ///< by LimitKind
   /// The largest speed factor r ≤ 1 for which velocities r·v, accelerations r²·a and jerks r³·j
-  /// keep their limits; 0: there is none.
+  /// keep their limits; 0: no speed does.
   double slowing = 1;
   bool keeps_bounds = true;  ///< of the position; slowing does not change it
 

@@ -19,7 +19,7 @@ namespace splinecast::apps {
 void add_table_options(Command& verb, TableOptions& options);
 void add_time_unit(Command& verb, std::optional<TimeUnit>& unit);
 
-/// The method of this name. Throws UsageError if there is none.
+/// The method of this name. Throws UsageError for an unknown name.
 [[nodiscard]] const Method& method_named(const std::string& text);
 
 /// Adds the options of a curve that is solved online: `--method`, `--lambda`, `--time-scale`,

@@ -16,7 +16,7 @@ inline constexpr std::size_t kDerivatives = 4;
 /// One row of a report's tables: one derivative of one dimension of a curve.
 struct ReportRow {
   Extremes extremes;
-  Extremum step;  ///< largest jump at a knot, by magnitude; 0 at the first break if there is none
+  Extremum step;  ///< largest jump at a knot, by magnitude; 0 at the first break if no knot has one
 };
 
 /// The table of one curve.

@@ -47,7 +47,7 @@ ordered_json refused_by_reason(const ReplayReport& report) {
   return json;
 }
 
-/// ` (3 duplicate, 1 not finite)`; empty if there is none.
+/// ` (3 duplicate, 1 not finite)`; empty if all counts are 0.
 std::string in_words(const ordered_json& by_reason) {
   std::string text;
   for (const auto& [reason, count] : by_reason.items()) {
@@ -228,9 +228,9 @@ void add_row_policies(Command& verb, ReplayOptions& options) {
             }
             options.late = *policy;
           },
-          "On a late row, whose time is not after that of the row before or has settled when it "
-          "can be sent: refuse (default) it; pass: leave it out, or send it as it is; shift: move "
-          "it and all later rows")
+          "On a row that is not after the row before: refuse (default) it; pass: leave it out; "
+          "shift: move it and all later rows. On a row whose time has settled when it can be "
+          "sent: shift moves them too, refuse and pass send it as it is")
       .type("pass|shift|refuse");
 }
 
@@ -256,7 +256,7 @@ void require_agreeing(const ReplayOptions& options) {
   }
   const bool is_live = options.clock == StreamClock::monotonic;
   if (is_live && options.end && !is_at_rest(options.end->kind)) {
-    throw UsageError("--end", "a live stream ends at rest: rest or halt");
+    throw UsageError("--end", "a live stream ends at rest: clamped or halt");
   }
 }
 

@@ -17,7 +17,7 @@
 
 namespace splinecast::core {
 
-/// An interval between waypoints: length in seconds and chord slopes; length 0 if there is none.
+/// An interval between waypoints: length in seconds and chord slopes; length 0: no interval.
 struct ChordInterval {
   double h = 0;
   std::span<const double> chord{};

@@ -39,7 +39,7 @@ EndRow not_a_knot_row(const EndIntervals& at) noexcept {
           .value = at.chord_next};
 }
 
-/// Natural is the acceleration row with a = 0, rest and halt the velocity row with v = 0
+/// Natural is the acceleration row with a = 0, clamped and halt the velocity row with v = 0
 /// (math 6a, 6b).
 EndRow end_row(const Condition& condition, const EndIntervals& at, Side side) noexcept {
   const double half_h = side == Side::start ? -at.h / 2 : at.h / 2;

@@ -255,7 +255,7 @@ AppendStatus Producer::finish(const Condition& end) {
   }
   if (ipc::stream_clock(impl_->ring.header) == StreamClock::monotonic && !is_at_rest(end.kind)) {
     throw BadRequest("end condition '" + to_string(end) +
-                     "' is not at rest: a live stream ends with rest or halt");
+                     "' is not at rest: a live stream ends with clamped or halt");
   }
   return impl_->wake_solver_for(impl_->ring.writer.finish(end, impl_->look_at_solver()));
 }

@@ -18,8 +18,8 @@ struct StreamImage {
   std::vector<std::uint8_t> script;  ///< see region_targets.hpp
 };
 
-/// Placeholder for the time namespace of a live stream in an image; replaced when the image is
-/// used.
+/// The time namespace of a live stream in an image. A target writes the real one before it uses the
+/// image.
 inline constexpr ipc::Word kHere = 1;
 
 /// Largest region that an image holds, in words: 256 KiB.

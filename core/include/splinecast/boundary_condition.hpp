@@ -49,7 +49,7 @@ enum class Tail {
   return kind == ConditionKind::clamped || kind == ConditionKind::halt;
 }
 
-/// The text of a condition on a command line: `natural`, `rest`, `halt`, `velocity=1,2,3`,
+/// The text of a condition on a command line: `natural`, `clamped`, `halt`, `velocity=1,2,3`,
 /// `acceleration=1,2,3`, `not-a-knot`, `periodic`; and `own`, the default when none is given.
 [[nodiscard]] std::string to_string(const Condition& condition);
 [[nodiscard]] std::string_view to_string(Tail tail) noexcept;

@@ -2,14 +2,15 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <functional>
 #include <optional>
@@ -41,11 +42,11 @@ class Stubborn {
       prctl(PR_SET_PDEATHSIG, SIGKILL);
       catch_signals();
       (void)!write(ends[1], "r", 1);
-      while (!stop_requested()) poll_a_while();
+      while (!stop_requested()) poll(nullptr, 0, 1000);  // until a signal; 1 s if it came before
       const unsigned left = alarm(0);
       alarm(left);
       (void)!write(ends[1], left > 0 ? "a" : "s", 1);
-      for (;;) poll_a_while();
+      for (;;) pause();
     }
     close(ends[1]);
     pipe_ = ends[0];
@@ -69,20 +70,19 @@ class Stubborn {
 
   /// The exit status of the process; nothing if it still runs after 30 s.
   std::optional<int> wait() {
-    constexpr std::chrono::seconds kBound(30);
+    constexpr int kBoundMilliseconds = 30'000;
+    pollfd ended{
+        .fd = static_cast<int>(syscall(SYS_pidfd_open, pid_, 0)), .events = POLLIN, .revents = 0};
+    const bool has_ended = poll(&ended, 1, kBoundMilliseconds) == 1;
+    close(ended.fd);
+    if (!has_ended) return std::nullopt;
     int status = 0;
-    const auto end = std::chrono::steady_clock::now() + kBound;
-    while (waitpid(pid_, &status, WNOHANG) == 0) {
-      if (std::chrono::steady_clock::now() > end) return std::nullopt;
-      poll_a_while();
-    }
+    waitpid(pid_, &status, 0);
     pid_ = -1;
     return status;
   }
 
  private:
-  static void poll_a_while() { usleep(1000); }
-
   pid_t pid_ = -1;
   int pipe_ = -1;
 };

@@ -56,7 +56,7 @@ TEST(EmbeddedReplay, SettlesTheCurveBetweenWaypointsThatAreFarApart) {
     const SampleStatus status = reader.sample(now, state);
     ++count[static_cast<std::size_t>(status)];
     if (ipc::Internals::head(reader, head) && head.finished && now > head.newest_knot) break;
-    std::this_thread::sleep_for(milliseconds(1));
+    (void)reader.wait(milliseconds(1));
   }
   replaying.join();
   EXPECT_EQ(report.interpolated, 3U);
