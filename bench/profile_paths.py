@@ -89,7 +89,7 @@ stores nothing.
             (r"Waypoint|Producer|is_finite|judge_interval", "the ring: checks, one item in, one item out"),
             (r"StreamSolver|Solver::step|Quaternion|DimensionKinds", "the step: whether to consume items, and how many"),
         ],
-        lines="""Cache lines, K = 8, 7 dimensions: the producer stores 2 of the ring's item and 1 with `head`, and loads the 2 with
+        lines="""Cache lines, K = 8, 7 dimensions: the producer stores 2 of the ring's item and 1 with `written`, and loads the 2 with
 `tail` and `sleeping`; the solver loads 3 of the ring and stores one cell for each of the K + 1 knots that a waypoint
 solves, a node, a row, the acceleration of the stop, 1 of the packed times per eight knots, 2 of the summary,
 `changed from`, `revision` with `settled until`, and `tail`: about 17 lines and 110 words.
@@ -101,7 +101,7 @@ solves, a node, a row, the acceleration of the stop, 1 of the packed times per e
 # What limits a subject, by the beginning of its name; printed if its target is missed.
 LIMITS = {
     "roundtrip/": """- `roundtrip/…`: a ping moves two lines. A round trip moves at least four, in sequence: the commit word (for
-  `solver` the ring's `head` before it), the bounds with the tags of the knots near by, and the acknowledgement. Before the
+  `solver` the ring's `written` before it), the bounds with the tags of the knots near by, and the acknowledgement. Before the
   commit, it takes the time of `publish` in the table of times. iceoryx only moves the waypoint and solves nothing.
 """,
     "publish": """- `publish`: the instructions above. The window, the cells, node and row that a waypoint changes, the item in the ring and

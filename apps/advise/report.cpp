@@ -41,8 +41,9 @@ std::string why_settle(const Advice& advice) {
 
 std::string why_freeze_ahead(const AdviceSource& source) {
   if (!source.solved) return "the default";
-  if (source.solved->misses == 0) return "no revision was late";
-  return fmt::format("doubled: {} revisions were late with {}", source.solved->misses,
+  if (!source.solved->was_late()) return "no revision was late";
+  return fmt::format("doubled: {} deadline misses and {} late commits with {}",
+                     source.solved->deadline_misses, source.solved->late_commits,
                      in_milliseconds(source.solved->how.freeze_ahead));
 }
 
@@ -114,12 +115,13 @@ ordered_json to_json(const Hiccup& hiccup) {
 
 ordered_json solved_json(const AdviceSource& source) {
   if (!source.solved) return nullptr;
-  const auto& [how, stop_time, low_water, misses] = *source.solved;
+  const auto& [how, stop_time, low_water, deadline_misses, late_commits] = *source.solved;
   return {{"settle", how.settle},
           {"freeze_ahead_ns", how.freeze_ahead.count()},
           {"stop_time_ns", stop_time.count()},
           {"low_water_ns", low_water ? ordered_json(low_water->count()) : ordered_json()},
-          {"late_revisions", misses}};
+          {"deadline_misses", deadline_misses},
+          {"late_commits", late_commits}};
 }
 
 ordered_json late_json(const AdviceSource& source) {
@@ -157,11 +159,12 @@ std::string intervals_in_words(const Advice& advice, const AdviceSource& source)
 
 std::string solved_in_words(const AdviceSource& source) {
   if (!source.solved) return {};
-  const auto& [how, stop_time, low_water, misses] = *source.solved;
+  const auto& [how, stop_time, low_water, deadline_misses, late_commits] = *source.solved;
   return fmt::format(
-      "{:<15} K = {}, freeze-ahead {}, stop time {}; least depth {}; {} revisions late\n", "solver",
-      how.settle, in_milliseconds(how.freeze_ahead), in_milliseconds(stop_time),
-      low_water ? in_milliseconds(*low_water) : "unknown", misses);
+      "{:<15} K = {}, freeze-ahead {}, stop time {}; least depth {}; {} deadline misses, "
+      "{} late commits\n",
+      "solver", how.settle, in_milliseconds(how.freeze_ahead), in_milliseconds(stop_time),
+      low_water ? in_milliseconds(*low_water) : "unknown", deadline_misses, late_commits);
 }
 
 std::string motion_in_words(const Advice& advice, const AdviceSource& source) {

@@ -24,7 +24,10 @@ struct AdviceSource {
     SolvedHow how{};
     Time stop_time{};
     std::optional<Time> low_water{};  ///< least depth so far
-    std::size_t misses = 0;           ///< revisions that were discarded or came too late
+    std::size_t deadline_misses = 0;  ///< revisions discarded because they were too late
+    std::size_t late_commits = 0;     ///< revisions committed although they were too late
+
+    [[nodiscard]] bool was_late() const { return deadline_misses + late_commits > 0; }
   };
   std::optional<Solved> solved{};
 };

@@ -56,8 +56,9 @@ std::optional<AdviceSource::Solved> solved_of(const ipc::StreamInfo& info) {
   AdviceSource::Solved solved{
       .how = {.settle = info.spline->settle, .freeze_ahead = live.freeze_ahead},
       .stop_time = Time(info.spline->stop_time),
-      .misses = info.head.misses + info.head.revisions};
-  if (info.head.low_water < Time::max()) solved.low_water = info.head.low_water;
+      .deadline_misses = info.summary.deadline_misses,
+      .late_commits = info.summary.late_commits};
+  if (info.summary.low_water < Time::max()) solved.low_water = info.summary.low_water;
   return solved;
 }
 
@@ -95,7 +96,7 @@ Time freeze_ahead_of(const AdviseOptions& options, const AdviceSource& source) {
   if (options.freeze_ahead) return *options.freeze_ahead;
   if (!source.solved) return SolvedHow{}.freeze_ahead;
   const Time own = source.solved->how.freeze_ahead;
-  return source.solved->misses > 0 ? saturated_product(own, 2) : own;
+  return source.solved->was_late() ? saturated_product(own, 2) : own;
 }
 
 int run_advise(const AdviseOptions& options) {

@@ -60,13 +60,14 @@ json run_chaos_reader(const std::string& stream) {
   Reader reader = attach_reader(stream, kPatience);
   CurveWatch watch(ipc::Internals::sampler(reader), reader.dimensions());
   const MonotonicClock clock;
-  ipc::Head head;
+  ipc::Summary summary;
   Time due = clock.now();
   while (sleep_until(due)) {
     due = std::max(due + kTick, clock.now() - kTick);
     const Time now = clock.now();
     const auto status = watch.tick(now);
-    if (status == SampleStatus::holding && ipc::Internals::head(reader, head) && head.finished)
+    if (status == SampleStatus::holding && ipc::Internals::summary(reader, summary) &&
+        summary.finished)
       break;
   }
   return to_json(watch.report());
@@ -120,9 +121,9 @@ class Chaos {
   void tick() {
     const Time now = clock_.now();
     watch_->tick(now);
-    (void)ipc::Internals::head(*reader_, head_);
-    if (solver_down_.is_awaited() && head_.revision > revision_then_) solver_down_.end(now);
-    if (producer_down_.is_awaited() && head_.consumed > appended_then_) producer_down_.end(now);
+    (void)ipc::Internals::summary(*reader_, summary_);
+    if (solver_down_.is_awaited() && summary_.revision > revision_then_) solver_down_.end(now);
+    if (producer_down_.is_awaited() && summary_.consumed > appended_then_) producer_down_.end(now);
     if (resumes_ && now >= *resumes_) {
       solver_->signal(SIGCONT);
       resumes_.reset();
@@ -134,8 +135,8 @@ class Chaos {
       resumes_ = now + milliseconds(std::uniform_int_distribution<int>(1, 200)(random_));
     } else if (happens(kSolverKills)) {
       solver_.reset();  // SIGKILL
-      (void)ipc::Internals::head(*reader_, head_);
-      revision_then_ = head_.revision;
+      (void)ipc::Internals::summary(*reader_, summary_);
+      revision_then_ = summary_.revision;
       solver_down_.begin(clock_.now());
       start_solver();
     } else if (!producer_down_.is_awaited() && happens(kProducerKills)) {
@@ -155,7 +156,7 @@ class Chaos {
     }
     print_report(fmt::format(
         "{:>5.0f} {:>8} {:>7} {:>7} {:>7} {:>8} {:>8} {:>7} {:>9.1e} {:>9.1e}\n", to_seconds(since),
-        report.samples, kills(), pauses_, head_.underruns, head_.knots, head_.refused,
+        report.samples, kills(), pauses_, summary_.underruns, summary_.knots, summary_.refused,
         report.changed, report.position_step, report.velocity_step));
   }
 
@@ -170,7 +171,7 @@ class Chaos {
     for (Time due = clock_.now(); clock_.now() < end && sleep_until(due);
          due = clock_.now() + kTick) {
       const SampleStatus status = watch_->tick(clock_.now());
-      const bool has_ended = ipc::Internals::head(*reader_, head_) && head_.finished;
+      const bool has_ended = ipc::Internals::summary(*reader_, summary_) && summary_.finished;
       if (has_ended && status == SampleStatus::holding) break;
     }
   }
@@ -186,29 +187,29 @@ class Chaos {
     for (Child& reader : readers_) seen.push_back(reader.result());
     solver_->stop();
     solver_->result();
-    (void)ipc::Internals::head(*reader_, head_);
+    (void)ipc::Internals::summary(*reader_, summary_);
     const ipc::StreamInfo info = ipc::inspect(stream_);
-    const ipc::Word lost =
-        info.appended - (head_.knots + head_.refused + head_.withdrawn + head_.controls);
+    const ipc::Word lost = info.appended - (summary_.knots + summary_.refused + summary_.withdrawn +
+                                            summary_.controls);
     const bool all_sound =
         std::ranges::all_of(seen, [](const json& one) { return one["sound"].get<bool>(); });
     json found = {
         {"lost", lost},
         {"items", info.appended},
-        {"interpolated", head_.interpolated()},
-        {"passed_over", head_.passed_over},
-        {"refused", head_.refused},
-        {"withdrawn", head_.withdrawn},
-        {"replacements", std::max<ipc::Word>(head_.controls, 1) - 1},
-        {"underruns", head_.underruns},
-        {"deadline_misses", head_.misses},
-        {"late_commits", head_.revisions},
+        {"interpolated", summary_.interpolated()},
+        {"passed_over", summary_.passed_over},
+        {"refused", summary_.refused},
+        {"withdrawn", summary_.withdrawn},
+        {"replacements", std::max<ipc::Word>(summary_.controls, 1) - 1},
+        {"underruns", summary_.underruns},
+        {"deadline_misses", summary_.deadline_misses},
+        {"late_commits", summary_.late_commits},
         {"pauses", pauses_},
         {"solver", solver_down_.result()},
         {"producer", producer_down_.result()},
         {"readers", seen},
         {"peak_acceleration_of_the_motion", std::ranges::max(JointMotion::peak_acceleration())}};
-    add_judgement(found, all_sound && lost == 0 && head_.finished);
+    add_judgement(found, all_sound && lost == 0 && summary_.finished);
     return found;
   }
 
@@ -221,7 +222,7 @@ class Chaos {
   std::vector<Child> readers_;
   std::optional<Reader> reader_;
   std::optional<CurveWatch> watch_;
-  ipc::Head head_;
+  ipc::Summary summary_;
   Recovery solver_down_;
   Recovery producer_down_;
   ipc::Word revision_then_ = 0;

@@ -72,8 +72,8 @@ class DemoReader {
     costs_.push_back(static_cast<double>((clock_.now() - t).count()));
     ++samples_;
     ++by_status_[static_cast<std::size_t>(status)];
-    if (ipc::Internals::head(reader_, head_) && !head_.finished) {
-      ages_.push_back(to_seconds(t - head_.committed) * 1e3);
+    if (ipc::Internals::summary(reader_, summary_) && !summary_.finished) {
+      ages_.push_back(to_seconds(t - summary_.committed) * 1e3);
     }
     if (has_values(status)) check(t);
   }
@@ -110,13 +110,13 @@ class DemoReader {
   }
 
   [[nodiscard]] bool has_ended() const {
-    return head_.finished && clock_.now() > head_.newest_knot + kAfterEnd;
+    return summary_.finished && clock_.now() > summary_.newest_time + kAfterEnd;
   }
 
   MonotonicClock clock_;
   Reader reader_;
   DimensionKinds kinds_;
-  ipc::Head head_;
+  ipc::Summary summary_;
   ipc::BoardSnapshot snapshot_;
   State now_, before_, left_, right_;
   Time before_time_{};

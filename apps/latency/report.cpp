@@ -81,12 +81,12 @@ std::string series_row(const ordered_json& series, bool dim) {
 }
 
 std::string table_head(const std::string& title, bool with_missed) {
-  std::string head = fmt::format("\n{}\n  {:<{}} {:>9}", title, "", kNameWidth, "count");
+  std::string summary = fmt::format("\n{}\n  {:<{}} {:>9}", title, "", kNameWidth, "count");
   for (const std::uint64_t thousandths : kPercentiles) {
-    head += fmt::format(" {:>{}}", fmt::format("{} %", static_cast<double>(thousandths) / 1000),
-                        kWidth);
+    summary += fmt::format(" {:>{}}", fmt::format("{} %", static_cast<double>(thousandths) / 1000),
+                           kWidth);
   }
-  return head + fmt::format(" {:>{}}", "max", kWidth) + (with_missed ? "   missed\n" : "\n");
+  return summary + fmt::format(" {:>{}}", "max", kWidth) + (with_missed ? "   missed\n" : "\n");
 }
 
 std::string table(const ordered_json& result, const char* from, const std::string& title,
@@ -139,10 +139,10 @@ std::string machine_text(const ordered_json& result) {
   const auto& clock = result["clock"];
   const auto& solver = result["solver"];
   std::string text = fmt::format(
-      "\nsolver: {} revisions, {} discarded as too late, {} committed late\n"
+      "\nsolver: {} revisions, {} deadline misses, {} late commits\n"
       "clock: {:.1f} ns per reading, steps of {} ns\n",
-      solver["revisions"].get<std::uint64_t>(), solver["discarded"].get<std::uint64_t>(),
-      solver["committed_late"].get<std::uint64_t>(), clock["cost_ns"].get<double>(),
+      solver["revisions"].get<std::uint64_t>(), solver["deadline_misses"].get<std::uint64_t>(),
+      solver["late_commits"].get<std::uint64_t>(), clock["cost_ns"].get<double>(),
       clock["resolution_ns"].get<double>());
   std::string facts;
   for (const auto& [name, value] : result["environment"].items()) {

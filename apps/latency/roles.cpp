@@ -88,25 +88,25 @@ class LatencySolver {
     const StepResult result = solver_.step(clock_);
     if (result.published) {
       const Time published = clock_.now();
-      const ipc::Head& head = ipc::Internals::head(solver_);
-      push(shared_->revisions, {.revision = head.revision,
-                                .consumed = head.consumed,
-                                .solved = head.committed,
+      const ipc::Summary& summary = ipc::Internals::summary(solver_);
+      push(shared_->revisions, {.revision = summary.revision,
+                                .consumed = summary.consumed,
+                                .solved = summary.committed,
                                 .published = published});
-      if (head.finished) {
-        shared_->meeting->last_revision.store(head.revision, std::memory_order_release);
+      if (summary.finished) {
+        shared_->meeting->last_revision.store(summary.revision, std::memory_order_release);
       }
     }
     return result.consumed > 0 || result.missed;
   }
 
-  [[nodiscard]] bool has_finished() const { return ipc::Internals::head(solver_).finished; }
+  [[nodiscard]] bool has_finished() const { return ipc::Internals::summary(solver_).finished; }
   void wait(Time timeout) { solver_.wait(timeout); }
   [[nodiscard]] json counters() const {
-    const ipc::Head& head = ipc::Internals::head(solver_);
-    return {{"revisions", head.revision},       {"discarded", head.misses},
-            {"committed_late", head.revisions}, {"interpolated", head.interpolated()},
-            {"passed_over", head.passed_over},  {"refused", head.refused}};
+    const ipc::Summary& summary = ipc::Internals::summary(solver_);
+    return {{"revisions", summary.revision},        {"deadline_misses", summary.deadline_misses},
+            {"late_commits", summary.late_commits}, {"interpolated", summary.interpolated()},
+            {"passed_over", summary.passed_over},   {"refused", summary.refused}};
   }
 
  private:

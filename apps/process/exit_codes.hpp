@@ -24,7 +24,7 @@ class Failure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The reader of the output closed the pipe (`| head`): exit code 1, without a message.
+/// The reader of the output closed the pipe (`| summary`): exit code 1, without a message.
 class ClosedPipe : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -59,7 +59,7 @@ class Replay {
     }
     if (!await_consumption()) return false;
     board_.emplace(options_.stream, producer_.stream_id(), options_.trust);
-    before_ = board_->head();
+    before_ = board_->summary();
     lead_ = choose_lead(table_, options_, board_->header());
     freeze_ahead_ = ipc::live_options(board_->header()).value_or(ipc::LiveOptions{}).freeze_ahead;
     rows_.begin();
@@ -198,7 +198,7 @@ class Replay {
     const bool is_behind =
         rows_.undecided() >= ipc::kRefusalsKept && options_.capacity <= ipc::kRefusalsKept;
     if (!is_behind) return producer_.append(waypoint);
-    (void)board_->head();  // throws if there is no summary: no refusal can be read
+    (void)board_->summary();  // throws if there is no summary: no refusal can be read
     return AppendStatus::full;
   }
 
@@ -252,7 +252,7 @@ class Replay {
 
   [[nodiscard]] ReplayReport report(bool complete) {
     rows_.finish();
-    const ipc::Head now = board_->head();
+    const ipc::Summary now = board_->summary();
     // Also if none of the refused rows could be named.
     std::optional<RefusedBy> stopped = rows_.stopped();
     if (now.refused > before_.refused && !options_.skip_bad && !stopped) {
@@ -289,7 +289,7 @@ class Replay {
   Time freeze_ahead_{};
   LateRows late_;
   std::optional<OwnBoard> board_;  ///< set once there is a board
-  ipc::Head before_;               ///< the summary when this replay began
+  ipc::Summary before_;            ///< the summary when this replay began
 };
 
 }  // namespace

@@ -97,7 +97,8 @@ class Soak {
     for (std::size_t r = 0; r < options.readers; ++r) {
       readers_.processes.emplace_back(std::in_place, [this] { return run_soak_reader(streams_); });
     }
-    for (const std::string& stream : streams_) heads_.push_back(attach_reader(stream, kPatience));
+    for (const std::string& stream : streams_)
+      summaries_.push_back(attach_reader(stream, kPatience));
   }
 
   json run() {
@@ -148,25 +149,25 @@ class Soak {
 
   /// The sums of the counters in all streams' summaries.
   [[nodiscard]] json counted() const {
-    ipc::Head sum;
-    ipc::Head head;
-    for (const Reader& reader : heads_) {
-      if (!ipc::Internals::head(reader, head)) continue;
-      sum.consumed += head.consumed;
-      sum.knots += head.knots;
-      sum.passed_over += head.passed_over;
-      sum.refused += head.refused;
-      sum.withdrawn += head.withdrawn;
-      sum.controls += head.controls;
-      sum.underruns += head.underruns;
-      sum.misses += head.misses;
-      sum.revisions += head.revisions;
+    ipc::Summary sum;
+    ipc::Summary summary;
+    for (const Reader& reader : summaries_) {
+      if (!ipc::Internals::summary(reader, summary)) continue;
+      sum.consumed += summary.consumed;
+      sum.knots += summary.knots;
+      sum.passed_over += summary.passed_over;
+      sum.refused += summary.refused;
+      sum.withdrawn += summary.withdrawn;
+      sum.controls += summary.controls;
+      sum.underruns += summary.underruns;
+      sum.deadline_misses += summary.deadline_misses;
+      sum.late_commits += summary.late_commits;
     }
-    return {{"consumed", sum.consumed},       {"interpolated", sum.interpolated()},
-            {"passed_over", sum.passed_over}, {"refused", sum.refused},
-            {"withdrawn", sum.withdrawn},     {"controls", sum.controls},
-            {"underruns", sum.underruns},     {"deadline_misses", sum.misses},
-            {"late_commits", sum.revisions}};
+    return {{"consumed", sum.consumed},        {"interpolated", sum.interpolated()},
+            {"passed_over", sum.passed_over},  {"refused", sum.refused},
+            {"withdrawn", sum.withdrawn},      {"controls", sum.controls},
+            {"underruns", sum.underruns},      {"deadline_misses", sum.deadline_misses},
+            {"late_commits", sum.late_commits}};
   }
 
   void print_line(Time since) {
@@ -219,11 +220,11 @@ class Soak {
     std::size_t unfinished = 0;
     for (const std::string& stream : streams_) {
       const ipc::StreamInfo info = ipc::inspect(stream);
-      const ipc::Head& head = info.head;
+      const ipc::Summary& summary = info.summary;
       appended += info.appended;
-      const ipc::Word told = head.knots + head.refused + head.withdrawn + head.controls;
-      if (info.appended != told || head.consumed != told) ++lossy;
-      if (!head.finished) ++unfinished;
+      const ipc::Word told = summary.knots + summary.refused + summary.withdrawn + summary.controls;
+      if (info.appended != told || summary.consumed != told) ++lossy;
+      if (!summary.finished) ++unfinished;
     }
     found["appended"] = appended;
     found["lossy_streams"] = lossy;
@@ -242,7 +243,7 @@ class Soak {
   Role solver_{"solver"};
   Role producers_{"producers"};
   Role readers_{"readers"};
-  std::vector<Reader> heads_;
+  std::vector<Reader> summaries_;
   std::size_t kills_ = 0;
   std::size_t lines_ = 0;
 };

@@ -37,8 +37,8 @@ std::string table_of(const ordered_json& json, int indent) {
 
 /// The time since the last publication, as text.
 std::string age_of(const ipc::StreamInfo& info) {
-  if (info.head.revision == 0) return {};
-  const double age = to_seconds(MonotonicClock().now() - info.head.committed);
+  if (info.summary.revision == 0) return {};
+  const double age = to_seconds(MonotonicClock().now() - info.summary.committed);
   return fmt::format("{:<26}  {:.3f} s ago\n", "last published", age);
 }
 

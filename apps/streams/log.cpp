@@ -21,7 +21,7 @@ ipc::Verification StreamLog::verify(const Condition& end) {
                       .kinds = ipc::dimension_kinds(board_.header()),
                       .items = items_,
                       .segments = settled_.segments(),
-                      .head = settled_.head(),
+                      .summary = settled_.summary(),
                       .end = end});
 }
 

@@ -33,11 +33,11 @@ void remove_board_without_ring(const std::string& stream, const Trust& trust) {
   }
 }
 
-ipc::Head OwnBoard::head() const {
+ipc::Summary OwnBoard::summary() const {
   constexpr int kTries = 64;
-  ipc::Head head;
+  ipc::Summary summary;
   for (int attempt = 0; attempt < kTries; ++attempt) {
-    if (reader_.copy_newest_head(head) || reader_.look().revision == 0) return head;
+    if (reader_.copy_newest_summary(summary) || reader_.look().revision == 0) return summary;
   }
   throw Failure("the summary of the newest revision cannot be read from the board");
 }

@@ -21,7 +21,7 @@ class OwnBoard {
   [[nodiscard]] const ipc::RegionHeader& header() const noexcept { return board_.header; }
   /// The newest summary; that of revision 0 if nothing is published yet. Throws Failure if it
   /// cannot be read.
-  [[nodiscard]] ipc::Head head() const;
+  [[nodiscard]] ipc::Summary summary() const;
   [[nodiscard]] const ipc::KnotBoardReader& reader() const noexcept { return reader_; }
 
  private:

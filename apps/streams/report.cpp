@@ -110,8 +110,8 @@ ordered_json shown_json(const ipc::StreamInfo& info) {
 
 /// Time from now to the newest knot; null for a recorded stream, and without a knot.
 ordered_json depth(const ipc::StreamInfo& info) {
-  if (clock_name(*info.spline) == "recorded" || info.head.newest == 0) return nullptr;
-  const Time left = info.head.newest_knot - MonotonicClock().now();
+  if (clock_name(*info.spline) == "recorded" || info.summary.newest == 0) return nullptr;
+  const Time left = info.summary.newest_time - MonotonicClock().now();
   return std::max(left, Time::zero()).count();
 }
 
@@ -126,10 +126,10 @@ ordered_json step_times_json(const ipc::StreamInfo& info) {
 }
 
 /// The number of items that the solver has refused, by reason.
-ordered_json refused_json(const ipc::Head& head) {
+ordered_json refused_json(const ipc::Summary& summary) {
   ordered_json refused = ordered_json::object();
   for (std::size_t i = 1; i < kRefusals; ++i) {
-    refused[std::string(to_string(static_cast<Refusal>(i)))] = head.reasons[i];
+    refused[std::string(to_string(static_cast<Refusal>(i)))] = summary.reasons[i];
   }
   return refused;
 }
@@ -159,34 +159,35 @@ ordered_json solving_json(const ipc::StreamInfo& info) {
 }
 
 ordered_json solver_json(const ipc::StreamInfo& info) {
-  const ipc::Head& head = info.head;
-  const bool has_settled = head.settled_until > -kLatestTime;
-  const bool has_low_water = head.low_water < Time::max();
+  const ipc::Summary& summary = info.summary;
+  const bool has_settled = summary.settled_until > -kLatestTime;
+  const bool has_low_water = summary.low_water < Time::max();
   ordered_json found = solving_json(info);
   found.update(ordered_json{
-      {"revision", head.revision},
-      {"consumed", head.consumed},
-      {"interpolated", head.interpolated()},
-      {"passed_over", head.passed_over},
-      {"refused", head.refused},
-      {"refused_by_reason", refused_json(head)},
+      {"revision", summary.revision},
+      {"consumed", summary.consumed},
+      {"interpolated", summary.interpolated()},
+      {"passed_over", summary.passed_over},
+      {"refused", summary.refused},
+      {"refused_by_reason", refused_json(summary)},
       {"refusals", refusals_json(info)},
-      {"exceeding", head.exceeding},
+      {"exceeding", summary.exceeding},
       {"excesses", excesses_json(info)},
-      {"first_segment", head.first},
-      {"newest_segment", head.newest},
-      {"settled_until_ns", has_settled ? ordered_json(head.settled_until.count()) : ordered_json()},
-      {"newest_knot_ns", head.newest_knot.count()},
-      {"committed_ns", head.committed.count()},
-      {"withdrawn", head.withdrawn},
-      {"controls", head.controls},
+      {"first_segment", summary.first},
+      {"newest_segment", summary.newest},
+      {"settled_until_ns",
+       has_settled ? ordered_json(summary.settled_until.count()) : ordered_json()},
+      {"newest_knot_ns", summary.newest_time.count()},
+      {"committed_ns", summary.committed.count()},
+      {"withdrawn", summary.withdrawn},
+      {"controls", summary.controls},
       {"depth_ns", depth(info)},
-      {"low_water_ns", has_low_water ? ordered_json(head.low_water.count()) : ordered_json()},
-      {"starved", head.starved},
-      {"underruns", head.underruns},
-      {"deadline_misses", head.misses},
-      {"late_commits", head.revisions},
-      {"finished", head.finished},
+      {"low_water_ns", has_low_water ? ordered_json(summary.low_water.count()) : ordered_json()},
+      {"starved", summary.starved},
+      {"underruns", summary.underruns},
+      {"deadline_misses", summary.deadline_misses},
+      {"late_commits", summary.late_commits},
+      {"finished", summary.finished},
       {"step_times_ns", step_times_json(info)},
   });
   return found;
@@ -203,7 +204,7 @@ std::string state_of(const ipc::StreamInfo& info) {
   if (!info.spline || info.spline->stream_id != info.waypoints->stream_id) {
     return "waiting for a solver";
   }
-  if (info.head.finished) return "finished";
+  if (info.summary.finished) return "finished";
   if (info.producer_alive && info.solver_alive) return "running";
   return info.producer_alive || info.solver_alive ? "one writer gone" : "both writers gone";
 }

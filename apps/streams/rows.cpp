@@ -58,7 +58,7 @@ WaypointTable read_stream_rows(const std::string& stream, const Trust& trust) {
   table.names = names_with_units(header);
   table.kinds = ipc::dimensions_of(header);
   ipc::RingItem item(header.dimensions);
-  const ipc::Word end = ring.head();
+  const ipc::Word end = ring.written();
   for (ipc::Word i = end - std::min<ipc::Word>(end, ring.capacity()); i < end; ++i) {
     if (ring.observe(i, item)) take_item(item, i, table);
   }
@@ -66,7 +66,7 @@ WaypointTable read_stream_rows(const std::string& stream, const Trust& trust) {
 }
 
 std::string depth_warning(const ipc::StreamInfo& info, const Trust& trust) {
-  const bool is_measured = info.head.low_water < Time::max() && state_of(info) == "running";
+  const bool is_measured = info.summary.low_water < Time::max() && state_of(info) == "running";
   const auto live = is_measured ? ipc::live_options(*info.spline) : std::nullopt;
   if (!live) return {};
   WaypointTable table;
@@ -82,11 +82,11 @@ std::string depth_warning(const ipc::StreamInfo& info, const Trust& trust) {
   // Just before a waypoint is consumed, the depth is one interval less. Half an interval is left
   // for jitter.
   const Time usual = needed - interval;
-  if (info.head.low_water >= usual - interval / 2) return {};
+  if (info.summary.low_water >= usual - interval / 2) return {};
   return fmt::format(
       "least depth {:.6g} ms: settle lag K = {} needs {:.6g} ms with one waypoint every {:.6g} ms; "
       "increase the lead",
-      to_seconds(info.head.low_water) * 1e3, info.spline->settle, to_seconds(usual) * 1e3,
+      to_seconds(info.summary.low_water) * 1e3, info.spline->settle, to_seconds(usual) * 1e3,
       to_seconds(interval) * 1e3);
 }
 

@@ -147,8 +147,8 @@ class Sampling {
     if (status == SampleStatus::settled || status == SampleStatus::before_history) {
       return true;
     }
-    ipc::Head head;
-    return ipc::Internals::head(reader_, head) && head.finished;
+    ipc::Summary summary;
+    return ipc::Internals::summary(reader_, summary) && summary.finished;
   }
 
   void reattach() {

@@ -70,9 +70,9 @@ class Announcer {
         return solver->took_over() ? "taken over" : "solving";
       case ipc::SweepNews::finished:
         return fmt::format("finished; {} waypoints interpolated{}, {} items refused",
-                           ipc::Internals::head(*solver).interpolated(),
-                           passed_over_in_words(ipc::Internals::head(*solver).passed_over),
-                           ipc::Internals::head(*solver).refused);
+                           ipc::Internals::summary(*solver).interpolated(),
+                           passed_over_in_words(ipc::Internals::summary(*solver).passed_over),
+                           ipc::Internals::summary(*solver).refused);
       case ipc::SweepNews::elsewhere:
         return "solved by another process";
       case ipc::SweepNews::no_descriptors:
@@ -137,7 +137,7 @@ int solve_one(const SolveOptions& options) {
     if (const auto excess = solver.take_first_excess()) {
       tell(ipc::SweepNews::beyond_limits, solver.in_words(*excess));
     }
-    if (solver.attached() && ipc::Internals::head(solver).finished && !was_finished) {
+    if (solver.attached() && ipc::Internals::summary(solver).finished && !was_finished) {
       was_finished = true;
       tell(ipc::SweepNews::finished);
     }

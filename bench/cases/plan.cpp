@@ -93,7 +93,7 @@ class PlannedStream {
       if (!begin_) begin_ = t - next_->time;
       const Time time = *begin_ + next_->time;
       if (time > t) return;
-      const ipc::WaypointRingWriter::Solved solved{.consumed = board_.tail(),
+      const ipc::WaypointRingWriter::Solved solved{.consumed = board_.consumed(),
                                                    .settled_until = board_.look().settled_until,
                                                    .clock = &clock_};
       const auto status = ring_writer_.append({.time = time, .position = next_->position}, solved);

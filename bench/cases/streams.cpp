@@ -56,11 +56,11 @@ class ManyStreams {
   };
   [[nodiscard]] Solved solved() const {
     Solved sum;
-    ipc::Head head;
+    ipc::Summary summary;
     for (const Reader& reader : readers_) {
-      if (!ipc::Internals::head(reader, head)) continue;
-      sum.waypoints += static_cast<double>(head.knots);
-      sum.missed += static_cast<double>(head.misses + head.revisions);
+      if (!ipc::Internals::summary(reader, summary)) continue;
+      sum.waypoints += static_cast<double>(summary.knots);
+      sum.missed += static_cast<double>(summary.deadline_misses + summary.late_commits);
     }
     return sum;
   }
@@ -68,9 +68,9 @@ class ManyStreams {
  private:
   /// Whether every stream has two knots, so that it can move.
   [[nodiscard]] bool all_move() const {
-    ipc::Head head;
+    ipc::Summary summary;
     for (const Reader& reader : readers_) {
-      if (!ipc::Internals::head(reader, head) || head.knots < 2) return false;
+      if (!ipc::Internals::summary(reader, summary) || summary.knots < 2) return false;
     }
     return true;
   }

@@ -36,8 +36,8 @@ std::array<Word, kStepBuckets> KnotBoardReader::step_times() const noexcept {
 }
 
 void KnotBoardReader::prefetch(Word r, Word number) const noexcept {
-  const auto head = head_cells();
-  for (std::size_t c = 0; c < 2; ++c) __builtin_prefetch(head.cell(c));
+  const auto summary = summary_cells();
+  for (std::size_t c = 0; c < 2; ++c) __builtin_prefetch(summary.cell(c));
   for (const Word knot : {number, number + 1}) {
     const Word* const at = slot(knot);
     for (std::size_t c = 0; c < 2; ++c) {

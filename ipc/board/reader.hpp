@@ -53,8 +53,8 @@ class KnotBoardReader {
   }
 
   /// Items consumed, which the producer may overwrite: P3.
-  [[nodiscard]] Word tail() const noexcept {
-    return load(control_[kTail], std::memory_order_acquire);
+  [[nodiscard]] Word consumed() const noexcept {
+    return load(control_[kConsumed], std::memory_order_acquire);
   }
   /// Whether the solver sleeps; seq_cst, see ring/writer.hpp.
   [[nodiscard]] bool sleeping() const noexcept {
@@ -77,14 +77,14 @@ class KnotBoardReader {
   /// newest, stop, finished, settled_until; and the earliest changed_from of the revisions after
   /// `seen` up to that one, min() if some of these are no longer kept. The other members do not
   /// change; on failure none does.
-  [[nodiscard]] bool copy_bounds(const Look& look, Word seen, Head& out) const noexcept;
+  [[nodiscard]] bool copy_bounds(const Look& look, Word seen, Summary& out) const noexcept;
 
   /// Copies the whole summary. On failure `out` does not change.
-  [[nodiscard]] bool copy_head(const Look& look, Head& out) const noexcept;
+  [[nodiscard]] bool copy_summary(const Look& look, Summary& out) const noexcept;
 
   /// Copies the summary of the newest revision, in a bounded number of tries. Returns false,
   /// without changing `out`, if there is no revision or if the writer overtook every try.
-  [[nodiscard]] bool copy_newest_head(Head& out) const noexcept;
+  [[nodiscard]] bool copy_newest_summary(Summary& out) const noexcept;
 
   /// Copies knot `number`, which must be on the board under r. On failure `out.tag` is 0 and the
   /// rest is not valid. O(D).
@@ -119,17 +119,19 @@ class KnotBoardReader {
   /// exist.
   [[nodiscard]] RefusedItem refusal(Word index) const noexcept;
 
-  /// Copies the refusals that `head` counts, from number `from` on, oldest first. Returns how many
-  /// still exist, at most out.size(): these are the last ones; those before them have been
+  /// Copies the refusals that `summary` counts, from number `from` on, oldest first. Returns how
+  /// many still exist, at most out.size(): these are the last ones; those before them have been
   /// overwritten.
-  [[nodiscard]] std::size_t copy_refusals(const Head& head, Word from,
+  [[nodiscard]] std::size_t copy_refusals(const Summary& summary, Word from,
                                           std::span<RefusedItem> out) const noexcept;
 
-  /// Excess number `index` < head.exceeding; empty if it has been, or is being, overwritten.
-  [[nodiscard]] std::optional<LimitExcess> excess(const Head& head, Word index) const noexcept;
+  /// Excess number `index` < summary.exceeding; empty if it has been, or is being, overwritten.
+  [[nodiscard]] std::optional<LimitExcess> excess(const Summary& summary,
+                                                  Word index) const noexcept;
 
   /// The excess of an item, if it is one of the last kExcessesKept. O(kExcessesKept).
-  [[nodiscard]] std::optional<LimitExcess> excess_of(const Head& head, Word item) const noexcept;
+  [[nodiscard]] std::optional<LimitExcess> excess_of(const Summary& summary,
+                                                     Word item) const noexcept;
 
   /// Copies the right side of the row of a copied knot into `g`, and returns the row's scalars. For
   /// the writer only, which has no concurrent writer.
@@ -147,8 +149,8 @@ class KnotBoardReader {
   [[nodiscard]] SlotView<const Word> cells(Word number) const noexcept {
     return {slot(number), cell_words_};
   }
-  [[nodiscard]] SlotView<const Word> head_cells() const noexcept {
-    return {control_.data() + kHeadSlot, kHeadWords};
+  [[nodiscard]] SlotView<const Word> summary_cells() const noexcept {
+    return {control_.data() + kSummarySlot, kSummaryWords};
   }
   [[nodiscard]] Time earliest_change(Word seen, Word r) const noexcept;
 

@@ -38,14 +38,14 @@ RefusedItem KnotBoardReader::refusal(Word index) const noexcept {
   return {.item = word >> kRefusalItemShift, .reason = static_cast<Refusal>(word & kByteMask)};
 }
 
-std::size_t KnotBoardReader::copy_refusals(const Head& head, Word from,
+std::size_t KnotBoardReader::copy_refusals(const Summary& summary, Word from,
                                            std::span<RefusedItem> out) const noexcept {
-  const Word wanted = head.refused - std::min(from, head.refused);
+  const Word wanted = summary.refused - std::min(from, summary.refused);
   const auto most = std::min<Word>({wanted, kRefusalsKept, out.size()});
-  Word next = head.consumed;  // the item before which this one must come
+  Word next = summary.consumed;  // the item before which this one must come
   std::size_t count = 0;
   for (; count < most; ++count) {
-    const RefusedItem item = refusal(head.refused - 1 - count);
+    const RefusedItem item = refusal(summary.refused - 1 - count);
     if (item.item >= next) break;  // overwritten, and so are all before it
     next = item.item;
     out[count] = item;
@@ -54,8 +54,9 @@ std::size_t KnotBoardReader::copy_refusals(const Head& head, Word from,
   return count;
 }
 
-std::optional<LimitExcess> KnotBoardReader::excess(const Head& head, Word index) const noexcept {
-  if (index >= head.exceeding || head.exceeding - index > kExcessesKept) return std::nullopt;
+std::optional<LimitExcess> KnotBoardReader::excess(const Summary& summary,
+                                                   Word index) const noexcept {
+  if (index >= summary.exceeding || summary.exceeding - index > kExcessesKept) return std::nullopt;
   const auto words = excesses_.subspan(index % kExcessesKept * kExcessWords, kExcessWords);
   const Word tag = load(words[0], std::memory_order_acquire);
   constexpr Word kKindMask = 7;
@@ -68,13 +69,14 @@ std::optional<LimitExcess> KnotBoardReader::excess(const Head& head, Word index)
                           .value = to_double(load(words[2], std::memory_order_acquire)),
                           .limit = to_double(load(words[3], std::memory_order_acquire))};
   const bool is_whole = tag != 0 && load(words[0], std::memory_order_relaxed) == tag;
-  return is_whole && found.item < head.consumed ? std::optional(found) : std::nullopt;
+  return is_whole && found.item < summary.consumed ? std::optional(found) : std::nullopt;
 }
 
-std::optional<LimitExcess> KnotBoardReader::excess_of(const Head& head, Word item) const noexcept {
-  const Word kept = std::min<Word>(head.exceeding, kExcessesKept);
+std::optional<LimitExcess> KnotBoardReader::excess_of(const Summary& summary,
+                                                      Word item) const noexcept {
+  const Word kept = std::min<Word>(summary.exceeding, kExcessesKept);
   for (Word back = 1; back <= kept; ++back) {
-    const auto found = excess(head, head.exceeding - back);
+    const auto found = excess(summary, summary.exceeding - back);
     if (found && found->item == item) return found;
   }
   return std::nullopt;

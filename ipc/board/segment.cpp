@@ -44,26 +44,27 @@ inline bool BoardSegment::fetch(const KnotBoardReader& board, Word number, Word 
   return board.copy_knot(number, r, out);
 }
 
-BoardSegment::Taken BoardSegment::take(const KnotBoardReader& board, const Head& head, Word number,
-                                       const BoardSegment* near) noexcept {
+BoardSegment::Taken BoardSegment::take(const KnotBoardReader& board, const Summary& summary,
+                                       Word number, const BoardSegment* near) noexcept {
   is_there_ = false;
   right_.tag = 0;
   after_.tag = 0;
-  const Word r = head.revision;
+  const Word r = summary.revision;
   if (!fetch(board, number, r, near, left_)) return Taken::torn;
   if (left_.note.form == core::SegmentForm::none) return Taken::none;
-  if (number < head.newest && !fetch(board, number + 1, r, near, right_)) return Taken::torn;
+  if (number < summary.newest && !fetch(board, number + 1, r, near, right_)) return Taken::torn;
   const bool is_cut = right_.is_there() && right_.note.form == core::SegmentForm::none &&
-                      right_.number < head.newest;
+                      right_.number < summary.newest;
   if (is_cut && !fetch(board, number + 2, r, near, after_)) return Taken::torn;
-  is_there_ = build(head);
+  is_there_ = build(summary);
   return is_there_ ? Taken::whole : Taken::torn;
 }
 
-bool BoardSegment::take_last(const KnotBoardReader& board, const Head& head) noexcept {
+bool BoardSegment::take_last(const KnotBoardReader& board, const Summary& summary) noexcept {
   // No segment begins at the last knot of a finished stream.
-  Taken taken = take(board, head, head.newest);
-  if (taken == Taken::none && head.newest > head.first) taken = take(board, head, head.newest - 1);
+  Taken taken = take(board, summary, summary.newest);
+  if (taken == Taken::none && summary.newest > summary.first)
+    taken = take(board, summary, summary.newest - 1);
   return taken == Taken::whole;
 }
 
@@ -82,7 +83,7 @@ inline bool BoardSegment::build_cubic() noexcept {
                            segment_) <= kLargestSum;
 }
 
-bool BoardSegment::build(const Head& head) noexcept {
+bool BoardSegment::build(const Summary& summary) noexcept {
   using core::SegmentForm;
   const SegmentForm form = left_.note.form;
   const bool is_plain = right_.is_there() && !after_.is_there() && left_.residual().empty();
@@ -92,7 +93,7 @@ bool BoardSegment::build(const Head& head) noexcept {
   next_ = left_.number + 1;
   if (!right_.is_there()) {
     if (form != SegmentForm::stop && form != SegmentForm::hold) return false;
-    right.time = left_.time + (form == SegmentForm::stop ? head.stop : Time::zero());
+    right.time = left_.time + (form == SegmentForm::stop ? summary.stop : Time::zero());
   } else if (!has_arrival(form, right_.note)) {
     return false;
   }
@@ -115,19 +116,19 @@ bool BoardSegment::build(const Head& head) noexcept {
   return core::magnitude_of(std::span(segment_.coefficients).first(values)) <= kLargestSum;
 }
 
-bool BoardSegment::is_current(const KnotBoardReader& board, const Head& head) const noexcept {
-  const Word r = head.revision;
+bool BoardSegment::is_current(const KnotBoardReader& board, const Summary& summary) const noexcept {
+  const Word r = summary.revision;
   const Word last = after_.is_there()   ? after_.number
                     : right_.is_there() ? right_.number
                                         : number();
-  return is_there_ && number() >= head.first && last <= head.newest && board.is_current(left_, r) &&
-         (!right_.is_there() || board.is_current(right_, r)) &&
+  return is_there_ && number() >= summary.first && last <= summary.newest &&
+         board.is_current(left_, r) && (!right_.is_there() || board.is_current(right_, r)) &&
          (!after_.is_there() || board.is_current(after_, r));
 }
 
-bool BoardSegment::is_last(const Head& head) const noexcept {
-  if (!right_.is_there()) return number() == head.newest;
-  return right_.number == head.newest && right_.note.form == core::SegmentForm::none;
+bool BoardSegment::is_last(const Summary& summary) const noexcept {
+  if (!right_.is_there()) return number() == summary.newest;
+  return right_.number == summary.newest && right_.note.form == core::SegmentForm::none;
 }
 
 /// Whether it would end in the same way with another copy of its right knot.
@@ -187,14 +188,14 @@ void BoardSegment::copy_to(SegmentCopy& out) const {
   out.waypoint.assign(waypoint.begin(), waypoint.end());
 }
 
-std::optional<Word> segment_before(const KnotBoardReader& board, const Head& head,
+std::optional<Word> segment_before(const KnotBoardReader& board, const Summary& summary,
                                    Word number) noexcept {
   // Between two knots at which segments begin there is at most one at which none does.
   constexpr Word kLookBack = 2;
-  for (Word back = 1; back <= kLookBack && number >= head.first + back; ++back) {
+  for (Word back = 1; back <= kLookBack && number >= summary.first + back; ++back) {
     Time time{};
     core::SegmentForm form{};
-    if (!board.copy_time(number - back, head.revision, time, form)) return std::nullopt;
+    if (!board.copy_time(number - back, summary.revision, time, form)) return std::nullopt;
     if (form != core::SegmentForm::none) return number - back;
   }
   return 0;

@@ -53,18 +53,20 @@ class BoardSegment {
 
   BoardSegment(std::size_t dimensions, bool smooths);
 
-  /// Makes this the segment that begins at knot `number`, between head.first and head.newest, under
-  /// head.revision. Takes the knots that `near`, another segment, has copied and that are still
-  /// current. Unless it returns `whole`, this holds no segment afterwards. O(D).
-  [[nodiscard]] Taken take(const KnotBoardReader& board, const Head& head, Word number,
+  /// Makes this the segment that begins at knot `number`, between summary.first and summary.newest,
+  /// under summary.revision. Takes the knots that `near`, another segment, has copied and that are
+  /// still current. Unless it returns `whole`, this holds no segment afterwards. O(D).
+  [[nodiscard]] Taken take(const KnotBoardReader& board, const Summary& summary, Word number,
                            const BoardSegment* near = nullptr) noexcept;
 
-  /// Makes this the last segment under head.revision, of which there must be one. Returns whether
-  /// it is whole.
-  [[nodiscard]] bool take_last(const KnotBoardReader& board, const Head& head) noexcept;
+  /// Makes this the last segment under summary.revision, of which there must be one. Returns
+  /// whether it is whole.
+  [[nodiscard]] bool take_last(const KnotBoardReader& board, const Summary& summary) noexcept;
 
-  /// Whether it is also what the board holds under head.revision, which must not be older: K1, K2.
-  [[nodiscard]] bool is_current(const KnotBoardReader& board, const Head& head) const noexcept;
+  /// Whether it is also what the board holds under summary.revision, which must not be older: K1,
+  /// K2.
+  [[nodiscard]] bool is_current(const KnotBoardReader& board,
+                                const Summary& summary) const noexcept;
 
   [[nodiscard]] bool is_there() const noexcept { return is_there_; }
   [[nodiscard]] Word number() const noexcept { return left_.number; }
@@ -79,8 +81,8 @@ class BoardSegment {
   }
   [[nodiscard]] const KnotCopy& left_knot() const noexcept { return left_; }
 
-  /// Whether no segment follows it. It must be current under `head`.
-  [[nodiscard]] bool is_last(const Head& head) const noexcept;
+  /// Whether no segment follows it. It must be current under `summary`.
+  [[nodiscard]] bool is_last(const Summary& summary) const noexcept;
 
   /// The revision that last changed it. `known`, another copy or null, is of a revision in between:
   /// if it has a right knot with the same values, the knot was written again without a change.
@@ -95,7 +97,7 @@ class BoardSegment {
  private:
   [[nodiscard]] static bool fetch(const KnotBoardReader& board, Word number, Word r,
                                   const BoardSegment* near, KnotCopy& out) noexcept;
-  [[nodiscard]] bool build(const Head& head) noexcept;
+  [[nodiscard]] bool build(const Summary& summary) noexcept;
   [[nodiscard]] bool build_cubic() noexcept;
   [[nodiscard]] bool arrives_alike(const KnotCopy& knot) const noexcept;
 
@@ -108,10 +110,10 @@ class BoardSegment {
   bool is_there_ = false;
 };
 
-/// Finds the segment before the one that begins at knot `number` > head.first: the nearest earlier
-/// knot at which one begins. Returns 0 if there is none on the board, std::nullopt if a knot was
-/// written meanwhile.
-[[nodiscard]] std::optional<Word> segment_before(const KnotBoardReader& board, const Head& head,
-                                                 Word number) noexcept;
+/// Finds the segment before the one that begins at knot `number` > summary.first: the nearest
+/// earlier knot at which one begins. Returns 0 if there is none on the board, std::nullopt if a
+/// knot was written meanwhile.
+[[nodiscard]] std::optional<Word> segment_before(const KnotBoardReader& board,
+                                                 const Summary& summary, Word number) noexcept;
 
 }  // namespace splinecast::ipc

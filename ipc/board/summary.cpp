@@ -10,12 +10,13 @@ namespace {
 
 /// Whether the knots of a summary can all be on a board and its times are valid. Always true for
 /// what a solver writes.
-bool has_sane_bounds(const Head& head, std::size_t capacity) noexcept {
-  if (!is_time_in_range(head.settled_until)) return false;
-  if (head.newest == 0) return true;
-  return head.first >= 1 && head.first <= head.newest && head.newest - head.first < capacity &&
-         head.newest <= std::numeric_limits<Word>::max() / 2 && head.stop >= Time::zero() &&
-         head.stop <= kLongestStop;
+bool has_sane_bounds(const Summary& summary, std::size_t capacity) noexcept {
+  if (!is_time_in_range(summary.settled_until)) return false;
+  if (summary.newest == 0) return true;
+  return summary.first >= 1 && summary.first <= summary.newest &&
+         summary.newest - summary.first < capacity &&
+         summary.newest <= std::numeric_limits<Word>::max() / 2 && summary.stop >= Time::zero() &&
+         summary.stop <= kLongestStop;
 }
 
 }  // namespace
@@ -32,7 +33,7 @@ Time KnotBoardReader::earliest_change(Word seen, Word r) const noexcept {
   }
   // C3. One word fewer than the ring has counts, because a writer that died may have stored the
   // next one. If both tags have been retired since, it is unknown how far writers have advanced.
-  const Tags tags = head_cells().tags(std::memory_order_acquire);
+  const Tags tags = summary_cells().tags(std::memory_order_acquire);
   bool stands = false;
   for (const Word tag : tags.of) {
     if (tag == kRetiredTag) continue;
@@ -42,10 +43,10 @@ Time KnotBoardReader::earliest_change(Word seen, Word r) const noexcept {
   return stands ? earliest : Time::min();
 }
 
-bool KnotBoardReader::copy_bounds(const Look& look, Word seen, Head& out) const noexcept {
+bool KnotBoardReader::copy_bounds(const Look& look, Word seen, Summary& out) const noexcept {
   const Word r = look.revision;
   const Time changed_from = earliest_change(seen, r);
-  const auto view = head_cells();
+  const auto view = summary_cells();
   const Tags tags = view.tags(std::memory_order_acquire);
   if (!tags.holds_any(r)) return false;
   const std::size_t c = tags.newest(r);
@@ -55,7 +56,7 @@ bool KnotBoardReader::copy_bounds(const Look& look, Word seen, Head& out) const 
     words[i] = load(cell[i], std::memory_order_acquire);
   }
   if (load(cell[0], std::memory_order_relaxed) != tags.of[c]) return false;
-  Head bounds;
+  Summary bounds;
   decode(kBoundsRows, words.data(), bounds);
   bounds.settled_until = look.settled_until;
   if (!has_sane_bounds(bounds, layout_.capacity)) return false;
@@ -66,39 +67,39 @@ bool KnotBoardReader::copy_bounds(const Look& look, Word seen, Head& out) const 
   return true;
 }
 
-bool KnotBoardReader::copy_head(const Look& look, Head& out) const noexcept {
+bool KnotBoardReader::copy_summary(const Look& look, Summary& out) const noexcept {
   const Word r = look.revision;
   const Time changed_from = earliest_change(r - 1, r);
-  const auto view = head_cells();
+  const auto view = summary_cells();
   const Tags tags = view.tags(std::memory_order_acquire);
   if (!tags.holds_any(r)) return false;
   const std::size_t c = tags.newest(r);
-  std::array<Word, kHeadWords> words{};
+  std::array<Word, kSummaryWords> words{};
   for (std::size_t i = 1; i < words.size(); ++i) {
     words[i] = load(view.cell(c)[i], std::memory_order_acquire);
   }
   if (load(view.cell(c)[0], std::memory_order_relaxed) != tags.of[c]) return false;
-  Head head;
-  decode(kHeadRows, words.data(), head);
-  head.revision = r;
-  head.settled_until = look.settled_until;
-  head.changed_from = changed_from;
-  if (!has_sane_bounds(head, layout_.capacity) || !is_time_in_range(head.newest_knot) ||
-      !is_time_in_range(head.committed)) {
+  Summary summary;
+  decode(kSummaryRows, words.data(), summary);
+  summary.revision = r;
+  summary.settled_until = look.settled_until;
+  summary.changed_from = changed_from;
+  if (!has_sane_bounds(summary, layout_.capacity) || !is_time_in_range(summary.newest_time) ||
+      !is_time_in_range(summary.committed)) {
     return false;
   }
   const bool is_late = r > 0 && load(control_[kLate], std::memory_order_relaxed) == r;
-  head.revisions += is_late ? 1 : 0;
-  out = head;
+  summary.late_commits += is_late ? 1 : 0;
+  out = summary;
   return true;
 }
 
-bool KnotBoardReader::copy_newest_head(Head& out) const noexcept {
+bool KnotBoardReader::copy_newest_summary(Summary& out) const noexcept {
   constexpr int kTries = 16;
   for (int attempt = 0; attempt < kTries; ++attempt) {
     const Look seen = look();
     if (seen.revision == 0) return false;
-    if (copy_head(seen, out)) return true;
+    if (copy_summary(seen, out)) return true;
   }
   return false;
 }

@@ -25,7 +25,7 @@ KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout&
   // Touches the memory, so that no step causes a page fault, for any number of knots.
   held_times_.resize(layout.capacity);
   held_times_.clear();
-  retire_uncommitted(head_cells(), revision_);
+  retire_uncommitted(summary_cells(), revision_);
   for (std::size_t i = 0; i < states_.size(); ++i) retire_uncommitted(cells_at(i), revision_);
   read_state();
   restore_times();
@@ -36,11 +36,11 @@ KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout&
 /// Reads the state of the board.
 void KnotBoardWriter::read_state() noexcept {
   for (std::size_t c = 0; c < 2; ++c) {
-    for (std::size_t i = 0; i < kHeadWords; ++i) {
-      head_[c][i] = load(head_cells().cell(c)[i], std::memory_order_relaxed);
+    for (std::size_t i = 0; i < kSummaryWords; ++i) {
+      summary_[c][i] = load(summary_cells().cell(c)[i], std::memory_order_relaxed);
     }
   }
-  head_cell_ = head_cells().tags(std::memory_order_relaxed).newest(revision_);
+  summary_cell_ = summary_cells().tags(std::memory_order_relaxed).newest(revision_);
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const Tags tags = cells_at(i).tags(std::memory_order_relaxed);
     const std::size_t c = tags.newest(revision_);
@@ -51,16 +51,16 @@ void KnotBoardWriter::read_state() noexcept {
 /// Restores packed times that an earlier writer stored for a revision that it did not commit: they
 /// would mislead lookups as long as those knots are on the board.
 void KnotBoardWriter::restore_times() noexcept {
-  Head head;
-  decode(kHeadRows, head_[head_cell_].data(), head);
-  if (head.newest == 0 || head.newest - head.first >= layout_.capacity) return;
+  Summary summary;
+  decode(kSummaryRows, summary_[summary_cell_].data(), summary);
+  if (summary.newest == 0 || summary.newest - summary.first >= layout_.capacity) return;
   Word begins = 0;
-  for (Word number = head.newest; number >= head.first && number > 0; --number) {
+  for (Word number = summary.newest; number >= summary.first && number > 0; --number) {
     const std::size_t c = (states_[index_of(number)] & kCellBit) != 0 ? 1 : 0;
     const Word tag = load(cells(number).cell(c)[kCellTag], std::memory_order_relaxed);
     const Word* const node =
         slot(number) + (layout_.nodes + node_of(tag) * layout_.node) / sizeof(Word);
-    const bool is_end = note_of(tag).form == core::SegmentForm::none && number < head.newest;
+    const bool is_end = note_of(tag).form == core::SegmentForm::none && number < summary.newest;
     if (!is_end) begins = load(node[kNodeTime], std::memory_order_relaxed);
     Word& hint = times_[index_of(number)];
     if (load(hint, std::memory_order_relaxed) != begins) {
@@ -70,7 +70,7 @@ void KnotBoardWriter::restore_times() noexcept {
 }
 
 void KnotBoardWriter::discard() noexcept {
-  retire_uncommitted(head_cells(), revision_);
+  retire_uncommitted(summary_cells(), revision_);
   for (const WrittenSlot& slot : written()) {
     retire_uncommitted(cells_at(slot.index), revision_);
     states_[slot.index] &= ~kWrittenBit;

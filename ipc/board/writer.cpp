@@ -50,11 +50,11 @@ void KnotBoardWriter::prefetch(Word first, Word newest) const noexcept {
   const Word* const slot = at_.slot(index_of(newest));
   prefetch_lines(slot + layout_.nodes / sizeof(Word), layout_.stride - layout_.nodes);
   __builtin_prefetch(&times_[index_of(newest)], 1);
-  const Word* const head = head_cells().cell(1 - head_cell_);
-  __builtin_prefetch(head, 1);
-  __builtin_prefetch(head + kCacheLine / sizeof(Word), 1);
+  const Word* const summary = summary_cells().cell(1 - summary_cell_);
+  __builtin_prefetch(summary, 1);
+  __builtin_prefetch(summary + kCacheLine / sizeof(Word), 1);
   __builtin_prefetch(&control_[kRevision], 1);
-  __builtin_prefetch(&control_[kTail], 1);
+  __builtin_prefetch(&control_[kConsumed], 1);
   __builtin_prefetch(&control_[kChanges + (revision_ + 1) % kChangesKept], 1);
   __builtin_prefetch(written_.data(), 1);
   __builtin_prefetch(held_times_.data(), 1);
@@ -164,22 +164,22 @@ core::SegmentForm KnotBoardWriter::form(Word number) const noexcept {
   return note_of(load(cells(number).cell(c)[kCellTag], std::memory_order_relaxed)).form;
 }
 
-void KnotBoardWriter::commit(Head& head) noexcept {
+void KnotBoardWriter::commit(Summary& summary) noexcept {
   const Word r = revision_ + 1;
-  head.revision = r;
-  const std::size_t spare = 1 - head_cell_;
-  std::array<Word, kHeadWords>& held = head_[spare];
-  Word* const cell = head_cells().cell(spare);
+  summary.revision = r;
+  const std::size_t spare = 1 - summary_cell_;
+  std::array<Word, kSummaryWords>& held = summary_[spare];
+  Word* const cell = summary_cells().cell(spare);
   held[0] = r << kTagRevisionShift;
-  store(cell[0], held[0], std::memory_order_release);                      // W1
-  put(control_[kChanges + r % kChangesKept], to_word(head.changed_from));  // C1
+  store(cell[0], held[0], std::memory_order_release);                         // W1
+  put(control_[kChanges + r % kChangesKept], to_word(summary.changed_from));  // C1
   // Words that the cell already holds are not stored: this writer, or one whose lock it has taken
   // over, stored them before this revision's tag, and a reader that acquires that tag sees them.
-  encode_changes(kHeadRows, head, held.data(),
+  encode_changes(kSummaryRows, summary, held.data(),
                  [cell](std::size_t i, Word word) { put(cell[i], word); });
   store(control_[kRevision], r, std::memory_order_release);  // W3
   revision_ = r;
-  head_cell_ = spare;
+  summary_cell_ = spare;
   for (const WrittenSlot& slot : written()) states_[slot.index] = slot.next;
   forget_written();
 }

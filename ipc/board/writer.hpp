@@ -111,8 +111,8 @@ class KnotBoardWriter {
   /// Writes where a limit was exceeded: the `index`-th excess of the stream, counted from 0.
   void write_excess(Word index, const LimitExcess& excess) noexcept;
 
-  /// Makes everything written visible, as the next revision: W3. Sets head.revision.
-  void commit(Head& head) noexcept;
+  /// Makes everything written visible, as the next revision: W3. Sets summary.revision.
+  void commit(Summary& summary) noexcept;
 
   /// Promises that no later revision changes anything before t: S1. Stores nothing if t has already
   /// been promised.
@@ -133,8 +133,8 @@ class KnotBoardWriter {
   }
 
   /// Releases items to the producer, after the commit that consumed them: S3.
-  void store_tail(Word consumed) noexcept {
-    store(control_[kTail], consumed, std::memory_order_release);
+  void store_consumed(Word consumed) noexcept {
+    store(control_[kConsumed], consumed, std::memory_order_release);
   }
 
   /// Counts a step of this length in the histogram.
@@ -214,8 +214,8 @@ class KnotBoardWriter {
   [[nodiscard]] SlotView<Word> cells(Word number) const noexcept {
     return cells_at(index_of(number));
   }
-  [[nodiscard]] SlotView<Word> head_cells() const noexcept {
-    return {control_.data() + kHeadSlot, kHeadWords};
+  [[nodiscard]] SlotView<Word> summary_cells() const noexcept {
+    return {control_.data() + kSummarySlot, kSummaryWords};
   }
   [[nodiscard]] static Claimed claim(Slots& slots, std::size_t index, Word tag,
                                      SlotState changed) noexcept;
@@ -244,8 +244,8 @@ class KnotBoardWriter {
   Word settled_;
   Word late_;
   Word checked_;
-  std::size_t head_cell_ = 0;                           ///< of the newest committed summary
-  std::array<std::array<Word, kHeadWords>, 2> head_{};  ///< what both cells hold
+  std::size_t summary_cell_ = 0;                              ///< of the newest committed summary
+  std::array<std::array<Word, kSummaryWords>, 2> summary_{};  ///< what both cells hold
   std::vector<SlotState> states_;
   std::vector<WrittenSlot> written_;
   Slots at_;  ///< views of the region and of the two vectors

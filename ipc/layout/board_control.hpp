@@ -22,7 +22,8 @@ inline constexpr std::tuple kBoardControlRows{
              FieldWriter::owner,
              "ns: no revision after the one at which it was stored changes anything before"},
     padding(kLineWords - 3),
-    FieldRow{"tail", {.words = 1}, FieldWriter::owner, "items consumed, a copy for the producer"},
+    FieldRow{
+        "consumed", {.words = 1}, FieldWriter::owner, "items consumed, a copy for the producer"},
     FieldRow{"late",
              {.words = 1},
              FieldWriter::owner,
@@ -32,10 +33,10 @@ inline constexpr std::tuple kBoardControlRows{
              FieldWriter::owner,
              "the last revision whose commit was compared with the clock, on a live stream"},
     padding(kLineWords - 3),
-    FieldRow{"sleeping", {.words = 1}, FieldWriter::owner, "the solver waits on `head`"},
+    FieldRow{"sleeping", {.words = 1}, FieldWriter::owner, "the solver waits on `written`"},
     padding(kLineWords - 1),
-    FieldRow{"head, cell 0", {.words = kHeadWords}, FieldWriter::owner, "see below"},
-    FieldRow{"head, cell 1", {.words = kHeadWords}, FieldWriter::owner, "see below"},
+    FieldRow{"summary, cell 0", {.words = kSummaryWords}, FieldWriter::owner, "see below"},
+    FieldRow{"summary, cell 1", {.words = kSummaryWords}, FieldWriter::owner, "see below"},
     FieldRow{"changed from",
              {.words = kChangesKept},
              FieldWriter::owner,
@@ -49,11 +50,11 @@ inline constexpr auto kBoardControlFields = place(kBoardControlRows);
 inline constexpr std::size_t kBoardControlWords = size_of(kBoardControlFields).words;
 inline constexpr std::size_t kRevision = word_of(kBoardControlFields, "revision");
 inline constexpr std::size_t kSettledUntil = word_of(kBoardControlFields, "settled until");
-inline constexpr std::size_t kTail = word_of(kBoardControlFields, "tail");
+inline constexpr std::size_t kConsumed = word_of(kBoardControlFields, "consumed");
 inline constexpr std::size_t kLate = word_of(kBoardControlFields, "late");
 inline constexpr std::size_t kChecked = word_of(kBoardControlFields, "checked");
 inline constexpr std::size_t kSleeping = word_of(kBoardControlFields, "sleeping");
-inline constexpr std::size_t kHeadSlot = word_of(kBoardControlFields, "head, cell 0");
+inline constexpr std::size_t kSummarySlot = word_of(kBoardControlFields, "summary, cell 0");
 inline constexpr std::size_t kChanges = word_of(kBoardControlFields, "changed from");
 inline constexpr std::size_t kStepTimes = word_of(kBoardControlFields, "step times");
 

@@ -14,7 +14,7 @@ namespace splinecast::ipc {
 /// The word that marks a region as retired: at the same place in both control blocks.
 inline constexpr std::size_t kRetired = word_of(kBoardControlFields, "retired");
 static_assert(word_of(kRingControlFields, "retired") == kRetired);
-static_assert(kRevision == 0 && kHead == 0);  // the words that processes wait on
+static_assert(kRevision == 0 && kWritten == 0);  // the words that processes wait on
 
 /// Number of positions that the control block may have in the control area.
 inline constexpr std::size_t kControlPositions =

@@ -11,7 +11,7 @@ namespace splinecast::ipc {
 /// The control block of a waypoints region.
 inline constexpr std::size_t kProducerRefusals = 16;
 inline constexpr std::tuple kRingControlRows{
-    FieldRow{"head", {.words = 1}, FieldWriter::owner, "items appended"},
+    FieldRow{"written", {.words = 1}, FieldWriter::owner, "items appended"},
     FieldRow{"retired", {.words = 1}, FieldWriter::owner, "not 0 once the region is of no use"},
     FieldRow{"claimed",
              {.words = 1},
@@ -24,7 +24,7 @@ inline constexpr std::tuple kRingControlRows{
              "items refused by the producer, a word per reason"}};
 inline constexpr auto kRingControlFields = place(kRingControlRows);
 inline constexpr std::size_t kRingControlWords = size_of(kRingControlFields).words;
-inline constexpr std::size_t kHead = word_of(kRingControlFields, "head");
+inline constexpr std::size_t kWritten = word_of(kRingControlFields, "written");
 inline constexpr std::size_t kClaimed = word_of(kRingControlFields, "claimed");
 inline constexpr std::size_t kProducerCounters = word_of(kRingControlFields, "refused");
 

@@ -26,7 +26,7 @@ enum class Course : std::uint8_t {
 inline constexpr int kCourses = 4;
 
 /// The summary: the values of a whole revision.
-struct Head {
+struct Summary {
   Word revision = 0;  ///< the revision of this summary; 0: none yet
   Word first = 0;     ///< oldest knot on the board; a segment begins there
   Word newest = 0;    ///< newest knot; 0: none. Unless the stream is finished, its stop begins
@@ -43,7 +43,7 @@ struct Head {
   Word passed_over = 0;       ///< waypoints that entries pass over, of all runs
   Word consumed = 0;          ///< ring items consumed
   Word knots = 0;             ///< waypoints accepted, including replaced ones
-  Time newest_knot{};         ///< time of the newest waypoint, or of the state that a run begins in
+  Time newest_time{};         ///< time of the newest waypoint, or of the state that a run begins in
   Time committed{};           ///< the solver's clock at the commit; of a recorded stream,
                               ///< approximate
   Word run_frozen = 0;        ///< waypoints of the run that were frozen when this revision was made
@@ -51,8 +51,8 @@ struct Head {
   bool starved = false;       ///< a live stream's settled time has passed its newest knot
   Time low_water = Time::max();  ///< least depth so far; max() if there was none yet
   Word underruns = 0;            ///< times that a live stream has starved
-  Word misses = 0;               ///< revisions discarded because they were too late
-  Word revisions = 0;            ///< revisions committed too late, including this one: readers may
+  Word deadline_misses = 0;      ///< revisions discarded because they were too late
+  Word late_commits = 0;         ///< revisions committed too late, including this one: readers may
                                  ///< get `revised`
   Word withdrawn = 0;            ///< items that a replacement withdrew before they were read
   Word controls = 0;             ///< replacements, start states and finishes carried out
@@ -70,68 +70,72 @@ struct Head {
 /// The values that lookups need, in one cache line: the first rows of the summary's cell.
 inline constexpr std::tuple kBoundsRows{
     FieldRow{"tag", {.words = 1}, FieldWriter::owner, "revision · 65,536"},
-    MemberRow<&Head::first>{"first", FieldWriter::owner,
-                            "oldest knot on the board; a segment begins there"},
-    MemberRow<&Head::newest>{"newest", FieldWriter::owner, "newest knot; 0: none"},
-    MemberRow<&Head::stop>{"stop", FieldWriter::owner,
-                           "ns: length of the stop, while it is the newest segment"},
-    MemberRow<&Head::finished>{"finished", FieldWriter::owner, "1: nothing follows"}};
+    MemberRow<&Summary::first>{"first", FieldWriter::owner,
+                               "oldest knot on the board; a segment begins there"},
+    MemberRow<&Summary::newest>{"newest", FieldWriter::owner, "newest knot; 0: none"},
+    MemberRow<&Summary::stop>{"stop", FieldWriter::owner,
+                              "ns: length of the stop, while it is the newest segment"},
+    MemberRow<&Summary::finished>{"finished", FieldWriter::owner, "1: nothing follows"}};
 inline constexpr std::size_t kBoundsWords = size_of(place(kBoundsRows)).words;
 static_assert(kBoundsWords <= kCacheLine / sizeof(Word));
 
 /// The other values of a revision. Those that change rarely come last: a revision stores only words
 /// that differ from the cell's.
 inline constexpr std::tuple kFurtherRows{
-    MemberRow<&Head::run>{"run", FieldWriter::owner, "first knot of the run"},
-    MemberRow<&Head::run_knots>{"knots of the run", FieldWriter::owner, "its waypoints"},
-    MemberRow<&Head::run_item>{"item of the run", FieldWriter::owner,
-                               "number of its first waypoint's item, plus 1; 0: none yet"},
-    MemberRow<&Head::course>{"course", FieldWriter::owner,
-                             "0 on the target, 1 waiting, 2 entering at a waypoint, 3 beyond the "
-                             "newest one"},
-    MemberRow<&Head::met>{"met", FieldWriter::owner,
-                          "waypoints of the run before the piece of the target that ends at the "
-                          "newest knot"},
-    MemberRow<&Head::unmet>{"unmet", FieldWriter::owner,
-                            "waypoints of the run before those that the open entry passes over"},
-    MemberRow<&Head::blend_until>{"blend until", FieldWriter::owner,
-                                  "ns: no entry of the run ends before"},
-    MemberRow<&Head::passed_over>{"passed over", FieldWriter::owner,
-                                  "waypoints that entries pass over"},
-    MemberRow<&Head::consumed>{"consumed", FieldWriter::owner, "items taken"},
-    MemberRow<&Head::knots>{"knots", FieldWriter::owner, "waypoints taken"},
-    MemberRow<&Head::newest_knot>{"newest time", FieldWriter::owner,
-                                  "time of the newest waypoint, or of the state that a run begins "
-                                  "in, ns"},
-    MemberRow<&Head::committed>{"committed", FieldWriter::owner,
-                                "the solver's clock at the commit, ns; of a recorded stream to "
-                                "within some milliseconds"},
-    MemberRow<&Head::run_frozen>{"frozen", FieldWriter::owner,
-                                 "waypoints of the run that were frozen when this revision was "
-                                 "made"},
-    MemberRow<&Head::is_later_run>{"later run", FieldWriter::owner,
-                                   "1: the run is not the stream's first, or begins in a given "
-                                   "state"},
-    MemberRow<&Head::starved>{"starved", FieldWriter::owner,
-                              "1: the settled time of a live stream has passed its newest knot"},
-    MemberRow<&Head::low_water>{"least depth", FieldWriter::owner, "so far, ns"},
-    MemberRow<&Head::underruns>{"underruns", FieldWriter::owner, "times starved"},
-    MemberRow<&Head::misses>{"misses", FieldWriter::owner, "revisions discarded as too late"},
-    MemberRow<&Head::revisions>{"late revisions", FieldWriter::owner,
-                                "revisions before this one that were committed too late"},
-    MemberRow<&Head::withdrawn>{"withdrawn", FieldWriter::owner, "items withdrawn unread"},
-    MemberRow<&Head::controls>{"controls", FieldWriter::owner,
-                               "replacements, start states and finishes carried out"},
-    MemberRow<&Head::exceeding>{"exceeding", FieldWriter::owner,
-                                "waypoints that brought the curve, or would have, beyond a limit"},
-    MemberRow<&Head::refused>{"refused", FieldWriter::owner, "items refused"},
-    MemberRow<&Head::reasons>{"reasons", FieldWriter::owner, "items refused, by reason"},
+    MemberRow<&Summary::run>{"run", FieldWriter::owner, "first knot of the run"},
+    MemberRow<&Summary::run_knots>{"knots of the run", FieldWriter::owner, "its waypoints"},
+    MemberRow<&Summary::run_item>{"item of the run", FieldWriter::owner,
+                                  "number of its first waypoint's item, plus 1; 0: none yet"},
+    MemberRow<&Summary::course>{
+        "course", FieldWriter::owner,
+        "0 on the target, 1 waiting, 2 entering at a waypoint, 3 beyond the "
+        "newest one"},
+    MemberRow<&Summary::met>{"met", FieldWriter::owner,
+                             "waypoints of the run before the piece of the target that ends at the "
+                             "newest knot"},
+    MemberRow<&Summary::unmet>{"unmet", FieldWriter::owner,
+                               "waypoints of the run before those that the open entry passes over"},
+    MemberRow<&Summary::blend_until>{"blend until", FieldWriter::owner,
+                                     "ns: no entry of the run ends before"},
+    MemberRow<&Summary::passed_over>{"passed over", FieldWriter::owner,
+                                     "waypoints that entries pass over"},
+    MemberRow<&Summary::consumed>{"consumed", FieldWriter::owner, "items taken"},
+    MemberRow<&Summary::knots>{"knots", FieldWriter::owner, "waypoints taken"},
+    MemberRow<&Summary::newest_time>{
+        "newest time", FieldWriter::owner,
+        "time of the newest waypoint, or of the state that a run begins "
+        "in, ns"},
+    MemberRow<&Summary::committed>{"committed", FieldWriter::owner,
+                                   "the solver's clock at the commit, ns; of a recorded stream to "
+                                   "within some milliseconds"},
+    MemberRow<&Summary::run_frozen>{"frozen", FieldWriter::owner,
+                                    "waypoints of the run that were frozen when this revision was "
+                                    "made"},
+    MemberRow<&Summary::is_later_run>{"later run", FieldWriter::owner,
+                                      "1: the run is not the stream's first, or begins in a given "
+                                      "state"},
+    MemberRow<&Summary::starved>{"starved", FieldWriter::owner,
+                                 "1: the settled time of a live stream has passed its newest knot"},
+    MemberRow<&Summary::low_water>{"least depth", FieldWriter::owner, "so far, ns"},
+    MemberRow<&Summary::underruns>{"underruns", FieldWriter::owner, "times starved"},
+    MemberRow<&Summary::deadline_misses>{"deadline misses", FieldWriter::owner,
+                                         "revisions discarded as too late"},
+    MemberRow<&Summary::late_commits>{"late commits", FieldWriter::owner,
+                                      "revisions before this one that were committed too late"},
+    MemberRow<&Summary::withdrawn>{"withdrawn", FieldWriter::owner, "items withdrawn unread"},
+    MemberRow<&Summary::controls>{"controls", FieldWriter::owner,
+                                  "replacements, start states and finishes carried out"},
+    MemberRow<&Summary::exceeding>{
+        "exceeding", FieldWriter::owner,
+        "waypoints that brought the curve, or would have, beyond a limit"},
+    MemberRow<&Summary::refused>{"refused", FieldWriter::owner, "items refused"},
+    MemberRow<&Summary::reasons>{"reasons", FieldWriter::owner, "items refused, by reason"},
     padding(4)};
 
-/// A cell of the summary's slot. Only a field's member of Head and its row here define it.
-inline constexpr auto kHeadRows = std::tuple_cat(kBoundsRows, kFurtherRows);
-inline constexpr auto kHeadFields = place(kHeadRows);
-inline constexpr std::size_t kHeadWords = size_of(kHeadFields).words;
-static_assert(kHeadWords % (kCacheLine / sizeof(Word)) == 0);
+/// A cell of the summary's slot. Only a field's member of Summary and its row here define it.
+inline constexpr auto kSummaryRows = std::tuple_cat(kBoundsRows, kFurtherRows);
+inline constexpr auto kSummaryFields = place(kSummaryRows);
+inline constexpr std::size_t kSummaryWords = size_of(kSummaryFields).words;
+static_assert(kSummaryWords % (kCacheLine / sizeof(Word)) == 0);
 
 }  // namespace splinecast::ipc

@@ -26,7 +26,8 @@ constexpr std::array kParts{
                kItemFields},
     LayoutPart{"Control block of a spline region", "the control offset of the header",
                kBoardControlFields},
-    LayoutPart{"Cell of the head", "two in the control block of a spline region", kHeadFields},
+    LayoutPart{"Cell of the summary", "two in the control block of a spline region",
+               kSummaryFields},
     LayoutPart{"Body of a spline region",
                "the body; slots follow the times, at the next multiple of "
                "4096 bytes",

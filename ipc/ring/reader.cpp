@@ -50,7 +50,7 @@ bool WaypointRingReader::observe(Word i, RingItem& out) const noexcept {
 }
 
 std::optional<Time> WaypointRingReader::observe_time(Word i) const noexcept {
-  if (i >= head()) return std::nullopt;
+  if (i >= written()) return std::nullopt;
   const Time at = time(i);
   return is_kept(i) ? std::optional(at) : std::nullopt;
 }
@@ -58,7 +58,7 @@ std::optional<Time> WaypointRingReader::observe_time(Word i) const noexcept {
 /// O2: whether what has been loaded of item i is valid.
 bool WaypointRingReader::is_kept(Word i) const noexcept {
   const Word next = i + layout_.capacity;  // the item that will overwrite it
-  return load(control_[kHead], std::memory_order_relaxed) < next &&
+  return load(control_[kWritten], std::memory_order_relaxed) < next &&
          load(control_[kClaimed], std::memory_order_relaxed) <= next;
 }
 

@@ -26,15 +26,15 @@ class WaypointRingReader {
   [[nodiscard]] std::size_t capacity() const noexcept { return layout_.capacity; }
 
   /// Items appended so far; S1, or seq_cst for a solver about to sleep.
-  [[nodiscard]] Word head(std::memory_order order = std::memory_order_acquire) const noexcept {
-    return load(control_[kHead], order);
+  [[nodiscard]] Word written(std::memory_order order = std::memory_order_acquire) const noexcept {
+    return load(control_[kWritten], order);
   }
-  [[nodiscard]] const Word& head_word() const noexcept { return control_[kHead]; }
+  [[nodiscard]] const Word& written_word() const noexcept { return control_[kWritten]; }
   [[nodiscard]] bool retired() const noexcept {
     return load(control_[kRetired], std::memory_order_acquire) != 0;
   }
 
-  /// `head` and `retired`, in one cache line: all that must be polled of an idle ring.
+  /// `written` and `retired`, in one cache line: all that must be polled of an idle ring.
   [[nodiscard]] std::span<const Word, 2> polled() const noexcept { return control_.first<2>(); }
 
   /// Prefetches the cache lines of item i. Loads nothing.
@@ -43,8 +43,8 @@ class WaypointRingReader {
                    layout_.stride / 2);
   }
 
-  /// Copies item i < head(), which the consumer must not have released: it has stored no `tail`
-  /// above i.
+  /// Copies item i < written(), which the consumer must not have released: it has stored no
+  /// `consumed` above i.
   void copy(Word i, RingItem& out) const noexcept;
 
   /// Kind and time of item i, with the same precondition.

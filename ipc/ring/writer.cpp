@@ -26,17 +26,17 @@ WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLa
       limits_(limits),
       control_(words_at(region, layout.control, kRingControlWords)),
       items_(words_at(region, layout.items, layout.capacity * words_per_item(layout))),
-      head_(load(control_[kHead], std::memory_order_relaxed)) {
+      written_(load(control_[kWritten], std::memory_order_relaxed)) {
   // Search backwards for the newest item that bounds the time of the next one: a finish may come
   // after the last waypoint.
   const WaypointRingReader past(region, layout);
-  ends_with_stop_ = head_ > 0 && past.is_stop(head_ - 1);
+  ends_with_stop_ = written_ > 0 && past.is_stop(written_ - 1);
   bool is_found = false;
-  for (Word back = 1; back <= std::min<Word>(head_, layout.capacity) && !is_found; ++back) {
-    const ItemKind kind = past.kind(head_ - back);
+  for (Word back = 1; back <= std::min<Word>(written_, layout.capacity) && !is_found; ++back) {
+    const ItemKind kind = past.kind(written_ - back);
     finished_ = finished_ || kind == ItemKind::finish;
     is_found = kind != ItemKind::finish;
-    last_time_ = past.time(head_ - back);
+    last_time_ = past.time(written_ - back);
     has_last_ = is_found && last_time_ != kEarliestStop;
   }
   if (!is_time_in_range(last_time_)) {
@@ -166,7 +166,7 @@ AppendStatus WaypointRingWriter::stop_from(Time t, const Solved& solved) noexcep
 /// Whether a stop would change nothing: the newest item is a stop that still waits, at this time or
 /// earlier.
 bool WaypointRingWriter::repeats_stop(Time from, const Solved& solved) const noexcept {
-  return ends_with_stop_ && solved.consumed < head_ && from >= last_time_;
+  return ends_with_stop_ && solved.consumed < written_ && from >= last_time_;
 }
 
 AppendStatus WaypointRingWriter::start_from(const Instant& state, const Solved& solved) noexcept {
@@ -175,7 +175,7 @@ AppendStatus WaypointRingWriter::start_from(const Instant& state, const Solved& 
   if (status == AppendStatus::accepted && (state.velocity.empty() || state.acceleration.empty())) {
     status = AppendStatus::wrong_dimension;
   }
-  if (status == AppendStatus::accepted && head_ > 0) status = AppendStatus::already_started;
+  if (status == AppendStatus::accepted && written_ > 0) status = AppendStatus::already_started;
   if (status == AppendStatus::accepted && state.time < solved.settled_until) {
     status = AppendStatus::past;
   }
@@ -206,17 +206,17 @@ AppendStatus WaypointRingWriter::finish(const Condition& end, const Solved& solv
 /// decreases: an earlier producer may have overwritten what it claimed.
 void WaypointRingWriter::claim(Word items) noexcept {
   Word& claimed = control_[kClaimed];
-  store(claimed, std::max(load(claimed, std::memory_order_relaxed), head_ + items),
+  store(claimed, std::max(load(claimed, std::memory_order_relaxed), written_ + items),
         std::memory_order_relaxed);
 }
 
-/// The words of item head_ + index.
+/// The words of item written_ + index.
 std::span<Word> WaypointRingWriter::item_words(Word index) const noexcept {
   const std::size_t stride = words_per_item(layout_);
-  return items_.subspan(((head_ + index) & (layout_.capacity - 1)) * stride, stride);
+  return items_.subspan(((written_ + index) & (layout_.capacity - 1)) * stride, stride);
 }
 
-/// Writes item head_ + index: P1.
+/// Writes item written_ + index: P1.
 void WaypointRingWriter::put_item(Word index, Word kind_and_flags,
                                   const Waypoint& values) noexcept {
   const auto words = item_words(index);
@@ -231,11 +231,11 @@ void WaypointRingWriter::put_item(Word index, Word kind_and_flags,
 }
 
 void WaypointRingWriter::publish(Word items, Time last) noexcept {
-  head_ += items;
+  written_ += items;
   has_last_ = true;
   ends_with_stop_ = false;
   last_time_ = last;
-  store(control_[kHead], head_, std::memory_order_seq_cst);  // P2
+  store(control_[kWritten], written_, std::memory_order_seq_cst);  // P2
 }
 
 AppendStatus WaypointRingWriter::counted(AppendStatus status) noexcept {

@@ -18,37 +18,38 @@
 
 /// The waypoint ring: items from one producer to one solver, over a span of bytes.
 ///
-/// Items are numbered from 0; item i is at i modulo the capacity. `head` counts the items
-/// appended, `tail`, in the solver's region, those consumed; both only grow.
+/// Items are numbered from 0; item i is at i modulo the capacity. `written` counts the items
+/// appended, `consumed`, in the solver's region, those consumed; both only grow.
 ///
 /// Orderings of the hand-over:
 ///
-/// P0 claimed.store(relaxed), before a replacement writes its items: the end of these items. `head`
+/// P0 claimed.store(relaxed), before a replacement writes its items: the end of these items.
+/// `written`
 ///    alone says that the next item may be partly written, but not that several may be. Relaxed is
 ///    enough, because each P1 is a release: a process that sees a word of the replacement sees P0.
 /// P1 word.store(release), each. For the solver P2 is enough; for an observer it pairs with O1: if
-///    it sees a word of item i + capacity, it sees P0 and the P2 by which `head` reached
+///    it sees a word of item i + capacity, it sees P0 and the P2 by which `written` reached
 ///    i + capacity.
-/// P2 head.store(seq_cst), which is also a release. Pairs with S1: a process that sees the count
+/// P2 written.store(seq_cst), which is also a release. Pairs with S1: a process that sees the count
 ///    sees the words. It comes last: a producer that dies before it has appended nothing.
-/// S1 head.load(acquire). Pairs with P2.
+/// S1 written.load(acquire). Pairs with P2.
 /// S2 word.load(acquire), each. Relaxed would be enough, because S1 has ordered it and no process
 ///    overwrites the item before S3; it is the same function as O1.
-/// S3 tail.store(release), when the items have been read. Pairs with P3: the loads of S2 come
+/// S3 consumed.store(release), when the items have been read. Pairs with P3: the loads of S2 come
 ///    before the stores of the P1 that overwrite them. With relaxed, S2 could see those stores.
-/// P3 tail.load(acquire), before P1. Pairs with S3.
+/// P3 consumed.load(acquire), before P1. Pairs with S3.
 /// O1 word.load(acquire), each: see P1. Keeps O2 after it.
-/// O2 head.load and claimed.load (relaxed), after the copy: item i may be kept iff
-///    head < i + capacity and claimed ≤ i + capacity. At head = i + capacity the producer may
+/// O2 written.load and claimed.load (relaxed), after the copy: item i may be kept iff
+///    written < i + capacity and claimed ≤ i + capacity. At written = i + capacity the producer may
 ///    already be writing the item that takes its place. Relaxed is enough: O1 has ordered both, and
 ///    nothing after them depends on them. `claimed` never decreases, not even at a takeover: what a
 ///    dead producer overwrote stays lost.
 ///
-/// Orderings of sleep and wake. The solver stores `sleeping` and then loads `head`; the producer
-/// stores `head` and then loads `sleeping`. At least one of the two must see the other's store,
+/// Orderings of sleep and wake. The solver stores `sleeping` and then loads `written`; the producer
+/// stores `written` and then loads `sleeping`. At least one of the two must see the other's store,
 /// else the solver sleeps although an item waits. All four are seq_cst: release and acquire let
-/// each load pass the store before it, on x86 as well. The solver sleeps only if `head` still
-/// equals the number of items that it has consumed, and the kernel compares `head` once more.
+/// each load pass the store before it, on x86 as well. The solver sleeps only if `written` still
+/// equals the number of items that it has consumed, and the kernel compares `written` once more.
 ///
 /// `retired` is stored with release and loaded with acquire: nothing but the word itself depends on
 /// it. The counters of refusals are relaxed: each is independent.
@@ -84,7 +85,7 @@ class WaypointRingWriter {
   [[nodiscard]] AppendStatus append(const Waypoint& waypoint, const Solved& solved) noexcept;
 
   /// Replaces everything after t. `waypoints` may be empty; they must be later than t and must fit
-  /// into the ring together with the replacement itself and control_reserve. One store of `head`
+  /// into the ring together with the replacement itself and control_reserve. One store of `written`
   /// makes all of it visible. O(D) per waypoint. The entry onto them takes at least `blend`:
   /// negative means 0, more than max_interval is `too_far_apart`. Without waypoints it is a stop,
   /// which may use the reserve. A t that has settled means the earliest time possible. A stop adds
@@ -104,14 +105,14 @@ class WaypointRingWriter {
   [[nodiscard]] AppendStatus finish(const Condition& end, const Solved& solved) noexcept;
 
   /// Items appended so far.
-  [[nodiscard]] Word head() const noexcept { return head_; }
+  [[nodiscard]] Word written() const noexcept { return written_; }
   [[nodiscard]] bool finished() const noexcept { return finished_; }
 
   /// The time of the newest item, once there is one: the next waypoint must be later.
   [[nodiscard]] Time last_time() const noexcept { return last_time_; }
 
   /// The word that solvers wait on.
-  [[nodiscard]] const Word& head_word() const noexcept { return control_[kHead]; }
+  [[nodiscard]] const Word& written_word() const noexcept { return control_[kWritten]; }
 
   /// Marks the region as retired.
   void retire() noexcept;
@@ -120,7 +121,7 @@ class WaypointRingWriter {
   [[nodiscard]] AppendStatus check_form(const Waypoint& waypoint) const noexcept;
   [[nodiscard]] AppendStatus check(const Waypoint& waypoint, const Solved& solved) const noexcept;
   [[nodiscard]] bool has_room(Word items, const Solved& solved, std::size_t free) const noexcept {
-    return head_ - solved.consumed + items + free <= layout_.capacity;
+    return written_ - solved.consumed + items + free <= layout_.capacity;
   }
   [[nodiscard]] bool repeats_stop(Time from, const Solved& solved) const noexcept;
   [[nodiscard]] bool is_past(Time time, const Solved& solved) const noexcept;
@@ -138,7 +139,7 @@ class WaypointRingWriter {
   IngestLimits limits_;
   std::span<Word> control_;
   std::span<Word> items_;
-  Word head_ = 0;
+  Word written_ = 0;
   bool finished_ = false;
   bool has_last_ = false;
   bool ends_with_stop_ = false;  ///< the newest item is a stop

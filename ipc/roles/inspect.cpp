@@ -19,7 +19,7 @@ void inspect_waypoints(StreamInfo& info, const Trust& trust) {
   const auto [region, header, layout] = open_ring(info.stream, false, trust);
   info.waypoints = header;
   const WaypointRingReader ring(region.bytes(), layout);
-  info.appended = ring.head();
+  info.appended = ring.written();
   for (std::size_t i = 0; i < info.refused_by_producer.size(); ++i) {
     info.refused_by_producer[i] = ring.refused(static_cast<AppendStatus>(i));
   }
@@ -29,19 +29,19 @@ void inspect_spline(StreamInfo& info, const Trust& trust) {
   const auto [region, header, layout] = open_board(info.stream, false, trust);
   info.spline = header;
   const KnotBoardReader board(region.bytes(), layout);
-  (void)board.copy_newest_head(info.head);
+  (void)board.copy_newest_summary(info.summary);
   info.step_times = board.step_times();
   if (live_options(header)) {
     ShownMotion shown(board);
-    shown.restore(board, info.head, Time::max());
+    shown.restore(board, info.summary, Time::max());
     shown.look(Time(header.stop_time));
     info.shown = shown.limits();
   }
   info.refusals.resize(kRefusalsKept);
-  info.refusals.resize(board.copy_refusals(info.head, 0, info.refusals));
-  const Word excesses = info.head.exceeding;
+  info.refusals.resize(board.copy_refusals(info.summary, 0, info.refusals));
+  const Word excesses = info.summary.exceeding;
   for (Word i = excesses - std::min<Word>(excesses, kExcessesKept); i < excesses; ++i) {
-    if (const auto excess = board.excess(info.head, i)) info.excesses.push_back(*excess);
+    if (const auto excess = board.excess(info.summary, i)) info.excesses.push_back(*excess);
   }
 }
 

@@ -24,7 +24,7 @@ struct StreamInfo {
   std::optional<RegionHeader> spline;     ///< header of the solver's region
   Word appended = 0;
   std::array<Word, kAppendStatuses> refused_by_producer{};  ///< by AppendStatus
-  Head head;                                                ///< revision 0: nothing solved yet
+  Summary summary;                                          ///< revision 0: nothing solved yet
   std::array<Word, kStepBuckets> step_times{};  ///< steps of the solver that took 2ⁱ to 2ⁱ⁺¹ ns
   std::optional<MotionLimits> shown;  ///< of a live stream: limits that its motion shows, from
                                       ///< the waypoints on the board; see ShownMotion

@@ -21,10 +21,10 @@ struct Internals {
   [[nodiscard]] static const RegionHeader& header(const Reader& reader) noexcept;
   /// Copies the summary of the newest revision. Returns false if there is none, or if the writer
   /// overtook every try.
-  [[nodiscard]] static bool head(const Reader& reader, Head& out) noexcept;
+  [[nodiscard]] static bool summary(const Reader& reader, Summary& out) noexcept;
 
   /// The summary last committed. This and the next two functions require an attached solver.
-  [[nodiscard]] static const Head& head(const Solver& solver) noexcept;
+  [[nodiscard]] static const Summary& summary(const Solver& solver) noexcept;
   /// The header of the board, which holds the solver's options.
   [[nodiscard]] static const RegionHeader& board(const Solver& solver) noexcept;
   /// What to poll before the next step.

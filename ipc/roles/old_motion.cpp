@@ -11,7 +11,7 @@
 namespace splinecast::ipc {
 namespace {
 
-constexpr int kHeadTries = 16;
+constexpr int kSummaryTries = 16;
 
 }  // namespace
 
@@ -22,13 +22,13 @@ Time end_of_motion(const RegionHeader& header, const KnotBoardReader& board) noe
   }
   BoardSegment last(board.dimensions(), board.smooths());
   // Retries, because the board's solver may overtake an observer.
-  for (int attempt = 0; attempt < kHeadTries; ++attempt) {
+  for (int attempt = 0; attempt < kSummaryTries; ++attempt) {
     const Look look = board.look();
-    Head head;
+    Summary summary;
     if (look.revision == 0) break;
-    if (!board.copy_head(look, head)) continue;
-    if (head.newest == 0) break;
-    if (last.take_last(board, head)) return last.right();
+    if (!board.copy_summary(look, summary)) continue;
+    if (summary.newest == 0) break;
+    if (last.take_last(board, summary)) return last.right();
   }
   return Time::min();
 }

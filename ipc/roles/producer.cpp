@@ -89,7 +89,7 @@ std::optional<OwnedRing> continue_ring(const std::string& stream, const Producer
   const ipc::WaypointRingReader past(ring.region.bytes(), layout);
   if (past.retired() || ring.writer.finished()) {
     ring.writer.retire();
-    ipc::wake_all(ring.writer.head_word());
+    ipc::wake_all(ring.writer.written_word());
     ipc::unlink_region(stream, ipc::RegionKind::waypoints);
     return std::nullopt;
   }
@@ -129,9 +129,9 @@ struct Producer::Impl {
         options(std::move(how)),
         lock(stream, ipc::RegionKind::waypoints),
         ring(own_ring(stream, options, lock)),
-        continues(ring.writer.head() > 0),
+        continues(ring.writer.written() > 0),
         sent(ring.region.bytes(), ring.layout),
-        refused(ring.writer.head()) {
+        refused(ring.writer.written()) {
     if (continues) look_for_solver();
     if (solver) refused.skip(solver->board);
   }
@@ -154,7 +154,9 @@ struct Producer::Impl {
     }
   }
 
-  [[nodiscard]] ipc::Word consumed() const noexcept { return solver ? solver->board.tail() : 0; }
+  [[nodiscard]] ipc::Word consumed() const noexcept {
+    return solver ? solver->board.consumed() : 0;
+  }
 
   /// The known state of the solver; looks for the solver until there is one.
   [[nodiscard]] ipc::WaypointRingWriter::Solved look_at_solver() noexcept {
@@ -175,7 +177,7 @@ struct Producer::Impl {
     // Looks again after the store: a solver that attached meanwhile may already sleep.
     if (!solver) look_for_solver();
     if (status == AppendStatus::accepted && solver && solver->board.sleeping()) {
-      ipc::wake_all(ring.writer.head_word());
+      ipc::wake_all(ring.writer.written_word());
       (void)ring.lock.hold();
     }
     return status;
@@ -282,14 +284,14 @@ bool Producer::wait_for_solver(Time timeout) {
 
 bool Producer::wait_for_room(Time timeout) {
   return impl_->wait(timeout, [this] {
-    const ipc::Word waiting = impl_->ring.writer.head() - impl_->consumed();
+    const ipc::Word waiting = impl_->ring.writer.written() - impl_->consumed();
     const std::size_t capacity = impl_->ring.header.capacity;
     return waiting + ipc::control_reserve(capacity) < capacity;
   });
 }
 
 bool Producer::wait_until_consumed(Time timeout) {
-  return impl_->wait(timeout, [this] { return impl_->consumed() == impl_->ring.writer.head(); });
+  return impl_->wait(timeout, [this] { return impl_->consumed() == impl_->ring.writer.written(); });
 }
 
 bool Producer::solver_alive() const {
@@ -300,7 +302,7 @@ bool Producer::solver_alive() const {
   }
 }
 
-ipc::Word Producer::appended() const noexcept { return impl_->ring.writer.head(); }
+ipc::Word Producer::appended() const noexcept { return impl_->ring.writer.written(); }
 ipc::Word Producer::consumed() const noexcept { return impl_->consumed(); }
 std::uint64_t Producer::stream_id() const noexcept { return impl_->ring.header.stream_id; }
 bool Producer::continues() const noexcept { return impl_->continues; }
@@ -309,7 +311,7 @@ bool Producer::is_memory_locked() const noexcept { return impl_->ring.region.is_
 
 void Producer::withdraw() noexcept {
   impl_->ring.writer.retire();
-  ipc::wake_all(impl_->ring.writer.head_word());
+  ipc::wake_all(impl_->ring.writer.written_word());
   ipc::unlink_region(impl_->stream, ipc::RegionKind::waypoints);
   impl_->lock.remove_file();
 }

@@ -23,7 +23,7 @@ constexpr Time kPoll = std::chrono::milliseconds(2);
 /// Maximum length of one futex wait: a solver may die between its commit and its wake, or a woken
 /// thread before it has woken the others.
 constexpr Time kSlice = std::chrono::milliseconds(50);
-constexpr int kHeadTries = 16;
+constexpr int kSummaryTries = 16;
 
 /// Whether the board belongs to the producer's current stream, if there is a producer: after a
 /// stream was recreated, the old board remains until a solver attaches.
@@ -113,20 +113,20 @@ SampleStatus Reader::snapshot(Time from, Time to, Snapshot& out) {
 }
 
 std::optional<CurveProgress> Reader::progress() const noexcept {
-  ipc::Head head;
-  if (!ipc::Internals::head(*this, head)) return std::nullopt;
-  return CurveProgress{.revision = head.revision,
-                       .newest = head.newest_knot,
-                       .settled_until = head.settled_until,
-                       .is_finished = head.finished,
-                       .waypoints = head.knots,
-                       .refused = head.refused};
+  ipc::Summary summary;
+  if (!ipc::Internals::summary(*this, summary)) return std::nullopt;
+  return CurveProgress{.revision = summary.revision,
+                       .newest = summary.newest_time,
+                       .settled_until = summary.settled_until,
+                       .is_finished = summary.finished,
+                       .waypoints = summary.knots,
+                       .refused = summary.refused};
 }
 
 std::optional<Time> Reader::first_time() const noexcept {
-  ipc::Head bounds;
+  ipc::Summary bounds;
   for (int attempt = 0;
-       attempt < kHeadTries && ipc::Internals::head(*this, bounds) && bounds.newest != 0;
+       attempt < kSummaryTries && ipc::Internals::summary(*this, bounds) && bounds.newest != 0;
        ++attempt) {
     core::SegmentForm form{};
     Time first{};
@@ -187,8 +187,8 @@ const ipc::RegionHeader& ipc::Internals::header(const Reader& reader) noexcept {
   return reader.impl_->header;
 }
 
-bool ipc::Internals::head(const Reader& reader, ipc::Head& out) noexcept {
-  return reader.impl_->board.copy_newest_head(out);
+bool ipc::Internals::summary(const Reader& reader, ipc::Summary& out) noexcept {
+  return reader.impl_->board.copy_newest_summary(out);
 }
 
 }  // namespace ipc

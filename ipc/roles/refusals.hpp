@@ -31,8 +31,8 @@ class RefusalReader {
   void look(const KnotBoardReader& board, const WaypointRingReader& ring, Refusals& out);
 
  private:
-  Head head_;      ///< as last seen
-  Word seen_ = 0;  ///< refusals reported, over the stream's life
+  Summary summary_;  ///< as last seen
+  Word seen_ = 0;    ///< refusals reported, over the stream's life
   Word first_;
   std::vector<RefusedItem> copied_;
 };

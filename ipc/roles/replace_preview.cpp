@@ -54,11 +54,11 @@ ReplacementPlanner::ReplacementPlanner(const KnotBoardReader& board, core::Windo
 /// Reads the state at t and the motion shown before it.
 bool ReplacementPlanner::read_state(Time t) {
   if (!has_values(sampler_.preview(t, state_.ref()))) return false;
-  Head head;
+  Summary summary;
   for (int i = 0; i < kTries; ++i) {
-    if (!board_->copy_head(board_->look(), head)) continue;
+    if (!board_->copy_summary(board_->look(), summary)) continue;
     window_.begin_run();
-    shown_.restore(*board_, head, t);
+    shown_.restore(*board_, summary, t);
     return true;
   }
   return false;

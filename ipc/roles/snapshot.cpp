@@ -25,8 +25,8 @@ SnapshotSegment Snapshot::operator[](std::size_t i) const noexcept {
           .acceleration_step = copy.acceleration_step};
 }
 
-std::uint64_t Snapshot::revision() const noexcept { return board_->head().revision; }
+std::uint64_t Snapshot::revision() const noexcept { return board_->summary().revision; }
 
-Time Snapshot::settled_until() const noexcept { return board_->head().settled_until; }
+Time Snapshot::settled_until() const noexcept { return board_->summary().settled_until; }
 
 }  // namespace splinecast

@@ -132,8 +132,8 @@ struct Attachment {
         solver(ring.ring, board.writer, board.reader, ipc::window_options(board.header),
                ipc::ingest_limits(ring.header), ipc::dimension_kinds(ring.header),
                ipc::live_options(board.header), ipc::beyond(board.header)),
-        refusals_seen(solver.head().refused),
-        excesses_seen(solver.head().exceeding) {
+        refusals_seen(solver.summary().refused),
+        excesses_seen(solver.summary().exceeding) {
     refusals.skip(board.reader);
     refused.items.reserve(ipc::kRefusalsKept);
   }
@@ -236,11 +236,12 @@ void Solver::wait(Time timeout) noexcept {
   // load of sleeping: either this load sees the new position, or the producer sees that this solver
   // must be woken.
   at.board.writer.store_sleeping(true);
-  const ipc::Word head = at.ring.ring.head(std::memory_order_seq_cst);
+  const ipc::Word written = at.ring.ring.written(std::memory_order_seq_cst);
   const Time due = at.solver.due();
   const Time now = due < Time::max() ? MonotonicClock().now() : Time::zero();
-  if (head == at.solver.seen() && due > now && !at.ring.ring.retired()) {
-    ipc::wait_while_equal(at.ring.ring.head_word(), head, std::min({timeout, kSlice, due - now}));
+  if (written == at.solver.seen() && due > now && !at.ring.ring.retired()) {
+    ipc::wait_while_equal(at.ring.ring.written_word(), written,
+                          std::min({timeout, kSlice, due - now}));
   }
   at.board.writer.store_sleeping(false);
 }
@@ -249,8 +250,8 @@ void Solver::take_first_refusals(std::vector<ItemRefusal>& out) {
   out.clear();
   if (!attached()) return;
   Attachment& at = *impl_->attachment;
-  if (at.solver.head().refused == at.refusals_seen) return;
-  at.refusals_seen = at.solver.head().refused;
+  if (at.solver.summary().refused == at.refusals_seen) return;
+  at.refusals_seen = at.solver.summary().refused;
   at.refusals.look(at.board.reader, at.ring.ring, at.refused);
   for (const ItemRefusal& refusal : at.refused.items) {
     bool& told = at.told[static_cast<std::size_t>(refusal.reason) % at.told.size()];
@@ -262,9 +263,9 @@ void Solver::take_first_refusals(std::vector<ItemRefusal>& out) {
 std::optional<LimitExcess> Solver::take_first_excess() noexcept {
   if (!attached() || impl_->attachment->is_excess_told) return std::nullopt;
   Attachment& at = *impl_->attachment;
-  const ipc::Head& head = at.solver.head();
-  while (at.excesses_seen < head.exceeding) {
-    const auto excess = at.board.reader.excess(head, at.excesses_seen++);
+  const ipc::Summary& summary = at.solver.summary();
+  while (at.excesses_seen < summary.exceeding) {
+    const auto excess = at.board.reader.excess(summary, at.excesses_seen++);
     at.is_excess_told = excess && !excess->is_refused;
     if (at.is_excess_told) return excess;
   }
@@ -286,8 +287,8 @@ const std::string& Solver::stream() const noexcept { return impl_->stream; }
 
 namespace ipc {
 
-const ipc::Head& ipc::Internals::head(const Solver& solver) noexcept {
-  return solver.impl_->attachment->solver.head();
+const ipc::Summary& ipc::Internals::summary(const Solver& solver) noexcept {
+  return solver.impl_->attachment->solver.summary();
 }
 
 const ipc::RegionHeader& ipc::Internals::board(const Solver& solver) noexcept {

@@ -21,7 +21,7 @@ class SolverWatch {
   /// Whether the ring has items that the last step did not see. One load of a word that only the
   /// producer writes.
   [[nodiscard]] bool has_items() const noexcept {
-    return load(polled_[kHead], std::memory_order_acquire) != seen_;
+    return load(polled_[kWritten], std::memory_order_acquire) != seen_;
   }
 
   /// Whether a step is due at `now` without new items.

@@ -23,7 +23,7 @@ bool is_ahead(const BoardSegment& first, const SeenCurve& seen, std::size_t dime
 /// Whether the sampled part of a segment is the same as in the curve seen.
 bool is_unchanged(const BoardSegment& segment, const SeenCurve& seen,
                   std::size_t dimensions) noexcept {
-  if (segment.changed_by(seen.own) <= seen.head.revision) return true;
+  if (segment.changed_by(seen.own) <= seen.summary.revision) return true;
   if (seen.own == nullptr || seen.own->number() != segment.number()) return false;
   const BoardSegment& own = *seen.own;
   const bool ends_alike =
@@ -36,13 +36,13 @@ bool is_unchanged(const BoardSegment& segment, const SeenCurve& seen,
 
 /// Whether the curve still rests after `last`, which was the newest segment, until after the latest
 /// time sampled. Overwrites `last` with the segment after it.
-Compared compare_rest(const KnotBoardReader& board, const Head& head, Time sampled_until,
+Compared compare_rest(const KnotBoardReader& board, const Summary& summary, Time sampled_until,
                       BoardSegment& last, std::span<double> rest) noexcept {
   const Time right = last.right();
   core::evaluate_derivative(last.order(), last.coefficients(), seconds_after(last.left(), right), 0,
                             rest);
   BoardSegment& next = last;
-  const BoardSegment::Taken taken = next.take(board, head, last.next());
+  const BoardSegment::Taken taken = next.take(board, summary, last.next());
   if (taken == BoardSegment::Taken::torn) return Compared::torn;
   const bool rests = taken == BoardSegment::Taken::whole && next.kind() == SegmentKind::hold &&
                      next.left() == right && sampled_until < next.right() &&
@@ -52,24 +52,25 @@ Compared compare_rest(const KnotBoardReader& board, const Head& head, Time sampl
 
 }  // namespace
 
-Compared compare_curve(const KnotBoardReader& board, const Head& head, const SeenCurve& seen,
+Compared compare_curve(const KnotBoardReader& board, const Summary& summary, const SeenCurve& seen,
                        BoardSegment& copy, std::span<double> rest) noexcept {
   Word number = 0;
-  if (head.newest == 0) return Compared::changed;
-  if (!number_by_cells(board, head, seen.head.settled_until, number)) return Compared::torn;
-  if (number == 0 && head.first == 1) number = 1;  // the machine is held before it
-  number = std::min(number, seen.head.newest);
-  if (number < head.first) return Compared::changed;
+  if (summary.newest == 0) return Compared::changed;
+  if (!number_by_cells(board, summary, seen.summary.settled_until, number)) return Compared::torn;
+  if (number == 0 && summary.first == 1) number = 1;  // the machine is held before it
+  number = std::min(number, seen.summary.newest);
+  if (number < summary.first) return Compared::changed;
   for (int compared = 0; compared < kMostCompared; ++compared) {
-    const BoardSegment::Taken taken = copy.take(board, head, number);
+    const BoardSegment::Taken taken = copy.take(board, summary, number);
     if (taken == BoardSegment::Taken::torn) return Compared::torn;
     if (taken == BoardSegment::Taken::none) return Compared::changed;
     if (is_ahead(copy, seen, board.dimensions())) return Compared::same;
     if (!is_unchanged(copy, seen, board.dimensions())) return Compared::changed;
     if (seen.sampled_until < copy.right()) return Compared::same;
-    const bool is_last = copy.is_last(head);
-    if (number == seen.head.newest) {
-      return is_last ? Compared::same : compare_rest(board, head, seen.sampled_until, copy, rest);
+    const bool is_last = copy.is_last(summary);
+    if (number == seen.summary.newest) {
+      return is_last ? Compared::same
+                     : compare_rest(board, summary, seen.sampled_until, copy, rest);
     }
     if (is_last) return Compared::changed;  // the stop has been dropped
     number = copy.next();

@@ -15,7 +15,7 @@ inline constexpr int kMostCompared = 16;
 
 /// The part of a curve that a reader has seen.
 struct SeenCurve {
-  const Head& head;         ///< of the revision that it saw
+  const Summary& summary;   ///< of the revision that it saw
   const BoardSegment* own;  ///< a copy that is known to be part of that revision; null: none
   Time sampled_until;       ///< the latest time that it sampled
 };
@@ -28,7 +28,7 @@ enum class Compared : std::uint8_t { same, changed, torn };
 /// continue as a hold. Returns `changed` also for segments that cannot be compared, and if there
 /// are more than kMostCompared. `copy`, and `rest` with one value per dimension, are scratch. O(D)
 /// per segment, wait-free.
-[[nodiscard]] Compared compare_curve(const KnotBoardReader& board, const Head& head,
+[[nodiscard]] Compared compare_curve(const KnotBoardReader& board, const Summary& summary,
                                      const SeenCurve& seen, BoardSegment& copy,
                                      std::span<double> rest) noexcept;
 

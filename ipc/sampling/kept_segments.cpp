@@ -9,46 +9,48 @@ KeptSegments::KeptSegments(std::size_t dimensions, bool smooths)
   std::iota(places_.begin(), places_.end(), std::uint8_t{0});
 }
 
-bool KeptSegments::is_confirmed(const KnotBoardReader& board, const Head& head) noexcept {
-  if (confirmed_ == head.revision) return true;
-  const bool stands = current().is_current(board, head);
-  if (stands) confirm(head);
+bool KeptSegments::is_confirmed(const KnotBoardReader& board, const Summary& summary) noexcept {
+  if (confirmed_ == summary.revision) return true;
+  const bool stands = current().is_current(board, summary);
+  if (stands) confirm(summary);
   return stands;
 }
 
 /// Makes a copy that is part of the summary's revision the current one.
-void KeptSegments::confirm(Kept& copy, const Head& head) noexcept {
+void KeptSegments::confirm(Kept& copy, const Summary& summary) noexcept {
   current_ = &copy;
-  confirm(head);
+  confirm(summary);
 }
 
-void KeptSegments::confirm(const Head& head) noexcept {
-  current_->known_by = head.revision;
-  confirmed_ = head.revision;
-  settled_until_ = head.settled_until;
+void KeptSegments::confirm(const Summary& summary) noexcept {
+  current_->known_by = summary.revision;
+  confirmed_ = summary.revision;
+  settled_until_ = summary.settled_until;
   const BoardSegment& own = current();
   const bool moves = own.kind() == SegmentKind::spline || own.kind() == SegmentKind::entry;
-  at_hand_ = {
-      .left = own.left(), .right = moves ? own.right() : own.left(), .is_finished = head.finished};
+  at_hand_ = {.left = own.left(),
+              .right = moves ? own.right() : own.left(),
+              .is_finished = summary.finished};
 }
 
-bool KeptSegments::take(const KnotBoardReader& board, const Head& head, Word number) noexcept {
+bool KeptSegments::take(const KnotBoardReader& board, const Summary& summary,
+                        Word number) noexcept {
   Kept& kept = copies_[place_of(number)];
   const bool is_kept = kept.segment.is_there() && kept.segment.number() == number;
-  if (is_kept && (kept.known_by == head.revision || kept.segment.is_current(board, head))) {
-    confirm(kept, head);
+  if (is_kept && (kept.known_by == summary.revision || kept.segment.is_current(board, summary))) {
+    confirm(kept, summary);
     return true;
   }
   BoardSegment& copy = spare();
-  BoardSegment::Taken taken = copy.take(board, head, number, &current());
-  if (taken == BoardSegment::Taken::none && number > head.first) {
-    taken = copy.take(board, head, number - 1, &current());
+  BoardSegment::Taken taken = copy.take(board, summary, number, &current());
+  if (taken == BoardSegment::Taken::none && number > summary.first) {
+    taken = copy.take(board, summary, number - 1, &current());
   }
   if (taken != BoardSegment::Taken::whole) return false;
   std::uint8_t& place = place_of(copy.number());
   const std::size_t freed = place;
   place = static_cast<std::uint8_t>(spare_);
-  confirm(copies_[spare_], head);
+  confirm(copies_[spare_], summary);
   spare_ = freed;
   return true;
 }

@@ -53,11 +53,12 @@ class KeptSegments {
 
   /// Whether the current copy is part of the summary's revision, without copying it again: then it
   /// is confirmed.
-  [[nodiscard]] bool is_confirmed(const KnotBoardReader& board, const Head& head) noexcept;
+  [[nodiscard]] bool is_confirmed(const KnotBoardReader& board, const Summary& summary) noexcept;
 
   /// Makes the segment that begins at knot `number`, or at the knot before if none begins there,
   /// the current copy; on failure the current copy stays. O(D), and O(1) if it is kept.
-  [[nodiscard]] bool take(const KnotBoardReader& board, const Head& head, Word number) noexcept;
+  [[nodiscard]] bool take(const KnotBoardReader& board, const Summary& summary,
+                          Word number) noexcept;
 
  private:
   /// A copy of a segment, and the newest revision that it is known to be part of.
@@ -68,8 +69,8 @@ class KeptSegments {
 
   /// The index of the copy of segment `number`, if it is kept.
   [[nodiscard]] std::uint8_t& place_of(Word number) noexcept { return places_[number % kMost]; }
-  void confirm(const Head& head) noexcept;
-  void confirm(Kept& copy, const Head& head) noexcept;
+  void confirm(const Summary& summary) noexcept;
+  void confirm(Kept& copy, const Summary& summary) noexcept;
 
   Word confirmed_ = 0;    ///< current_->known_by
   Time settled_until_{};  ///< of that revision

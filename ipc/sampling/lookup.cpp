@@ -7,25 +7,25 @@ namespace splinecast::ipc {
 namespace {
 
 /// The segment of the summary that would contain t if knots were evenly spaced.
-Word guess_by_pace(const KnotBoardReader& board, const Head& head, Time t) noexcept {
-  const Time oldest = board.time_hint(head.first);
+Word guess_by_pace(const KnotBoardReader& board, const Summary& summary, Time t) noexcept {
+  const Time oldest = board.time_hint(summary.first);
   const double share =
-      seconds_after(oldest, t) / seconds_after(oldest, board.time_hint(head.newest));
-  const auto intervals = static_cast<double>(head.newest - head.first);
+      seconds_after(oldest, t) / seconds_after(oldest, board.time_hint(summary.newest));
+  const auto intervals = static_cast<double>(summary.newest - summary.first);
   // NaN or out of range: clamps to the first or last segment.
-  if (!(share > 0)) return head.first;
-  return share < 1 ? head.first + static_cast<Word>(share * intervals) : head.newest;
+  if (!(share > 0)) return summary.first;
+  return share < 1 ? summary.first + static_cast<Word>(share * intervals) : summary.newest;
 }
 
 /// The time at which the segment of knot `number` begins, or the next segment if none begins there;
 /// for the last knot of a finished curve, its end. Returns false if a knot was written meanwhile.
-bool begin_of(const KnotBoardReader& board, const Head& head, Word number, Time& begin,
+bool begin_of(const KnotBoardReader& board, const Summary& summary, Word number, Time& begin,
               bool& is_end) noexcept {
   core::SegmentForm form{};
-  if (!board.copy_time(number, head.revision, begin, form)) return false;
+  if (!board.copy_time(number, summary.revision, begin, form)) return false;
   is_end = form == core::SegmentForm::none;
-  if (!is_end || number == head.newest) return true;
-  return board.copy_time(number + 1, head.revision, begin, form);
+  if (!is_end || number == summary.newest) return true;
+  return board.copy_time(number + 1, summary.revision, begin, form);
 }
 
 }  // namespace
@@ -37,11 +37,11 @@ Word number_near(const BoardSegment& copy, Time t) noexcept {
   return to_word(t) - to_word(copy.right()) < length ? copy.next() : 0;
 }
 
-Word number_by_hint(const KnotBoardReader& board, const Head& head, Time t) noexcept {
-  Word low = head.first;
-  Word high = head.newest + 1;
+Word number_by_hint(const KnotBoardReader& board, const Summary& summary, Time t) noexcept {
+  Word low = summary.first;
+  Word high = summary.newest + 1;
   const auto is_behind = [&](Word number) { return board.time_hint(number) > t; };
-  const Word guess = guess_by_pace(board, head, t);
+  const Word guess = guess_by_pace(board, summary, t);
   if (is_behind(guess)) {
     high = guess;
     for (Word step = 1; step <= high - low; step *= 2) {
@@ -69,28 +69,28 @@ Word number_by_hint(const KnotBoardReader& board, const Head& head, Time t) noex
       low = middle + 1;
     }
   }
-  return low == head.first ? 0 : low - 1;
+  return low == summary.first ? 0 : low - 1;
 }
 
-bool number_by_cells(const KnotBoardReader& board, const Head& head, Time t,
+bool number_by_cells(const KnotBoardReader& board, const Summary& summary, Time t,
                      Word& number) noexcept {
-  Word low = head.first;
-  Word high = head.newest + 1;
+  Word low = summary.first;
+  Word high = summary.newest + 1;
   bool is_end = false;
   while (low < high) {
     const Word middle = low + (high - low) / 2;
     Time begin{};
-    if (!begin_of(board, head, middle, begin, is_end)) return false;
+    if (!begin_of(board, summary, middle, begin, is_end)) return false;
     if (begin <= t) {
       low = middle + 1;
     } else {
       high = middle;
     }
   }
-  number = low == head.first ? 0 : low - 1;
-  if (number > head.first && number == head.newest) {
+  number = low == summary.first ? 0 : low - 1;
+  if (number > summary.first && number == summary.newest) {
     Time begin{};
-    if (!begin_of(board, head, number, begin, is_end)) return false;
+    if (!begin_of(board, summary, number, begin, is_end)) return false;
     if (is_end) --number;
   }
   return true;

@@ -15,11 +15,12 @@ namespace splinecast::ipc {
 /// The last knot whose time is at or before t and at which a segment begins, by the packed times; 0
 /// if t is before all. Exponential search from a guess that assumes even spacing, then bisection:
 /// one or two loads for even spacing, at most 2 log n.
-[[nodiscard]] Word number_by_hint(const KnotBoardReader& board, const Head& head, Time t) noexcept;
+[[nodiscard]] Word number_by_hint(const KnotBoardReader& board, const Summary& summary,
+                                  Time t) noexcept;
 
 /// The same by the knots, under the summary's revision: copies log n of them. Returns false if one
 /// was written meanwhile.
-[[nodiscard]] bool number_by_cells(const KnotBoardReader& board, const Head& head, Time t,
+[[nodiscard]] bool number_by_cells(const KnotBoardReader& board, const Summary& summary, Time t,
                                    Word& number) noexcept;
 
 }  // namespace splinecast::ipc

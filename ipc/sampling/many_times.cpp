@@ -33,14 +33,14 @@ Word Sampler::sample_many(std::span<const Time> times, const SampleBlock& out) n
   for (int attempt = 0; attempt < kTries && seen == SampleStatus::busy; ++attempt) {
     seen = see_newest(times.empty() ? Time{} : times.front());
     if (seen != SampleStatus::settled) continue;
-    if (evaluate_many(times, out)) return head_.revision;
+    if (evaluate_many(times, out)) return summary_.revision;
     seen = SampleStatus::busy;
   }
   std::ranges::fill(out.status, seen);
   return 0;
 }
 
-/// Evaluates all times under head_.revision. Returns false if the writer overtook it.
+/// Evaluates all times under summary_.revision. Returns false if the writer overtook it.
 bool Sampler::evaluate_many(std::span<const Time> times, const SampleBlock& out) noexcept {
   const std::size_t dimensions = board_->dimensions();
   const std::size_t stride = count(out.derivatives) * dimensions;
@@ -52,9 +52,9 @@ bool Sampler::evaluate_many(std::span<const Time> times, const SampleBlock& out)
       i += evaluated;
       if (evaluated > 0) continue;
       out.status[i] = evaluate(kept_.current(), times[i], state_.ref());
-    } else if (clock_ != StreamClock::monotonic || head_.first != 1) {
+    } else if (clock_ != StreamClock::monotonic || summary_.first != 1) {
       out.status[i] = SampleStatus::before_history;
-    } else if (kept_.take(*board_, head_, head_.first)) {
+    } else if (kept_.take(*board_, summary_, summary_.first)) {
       out.status[i] = hold_first(state_.ref());
     } else {
       return false;
@@ -73,7 +73,7 @@ std::size_t Sampler::evaluate_moving(std::span<const Time> times, std::size_t fi
                                      std::size_t stride, const SampleBlock& out) noexcept {
   if (!all_linear_) return 0;
   const BoardSegment& own = kept_.current();
-  const Time settled_until = kept_.at_hand().is_finished ? Time::max() : head_.settled_until;
+  const Time settled_until = kept_.at_hand().is_finished ? Time::max() : summary_.settled_until;
   // Not initialised: that would take as long as the lookup.
   std::array<double, 16> u;  // NOLINT(*-member-init)
   std::size_t n = 0;

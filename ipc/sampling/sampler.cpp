@@ -45,7 +45,7 @@ inline SampleStatus Sampler::find(Time t, const StateRef& out) noexcept {
   const bool is_at_hand = look.revision == kept_.confirmed_by() && t >= kept_.at_hand().left &&
                           t < kept_.at_hand().right;
   if (!is_at_hand && (look.revision != kept_.confirmed_by() || !goes_on(t))) return look_up(t, out);
-  head_.settled_until = look.settled_until;
+  summary_.settled_until = look.settled_until;
   kept_.see_settled(look.settled_until);
   const BoardSegment& own = kept_.current();
   core::evaluate(own.order(), own.coefficients(), seconds_after(kept_.at_hand().left, t), out);
@@ -77,9 +77,9 @@ SampleStatus Sampler::sample(Time t, State& out) noexcept {
 /// is in its moving part.
 bool Sampler::goes_on(Time t) noexcept {
   const BoardSegment& own = kept_.current();
-  if (kept_.confirmed_by() != head_.revision || !own.is_there() || t < own.right()) return false;
+  if (kept_.confirmed_by() != summary_.revision || !own.is_there() || t < own.right()) return false;
   const Word next = own.next();
-  if (next > head_.newest || !kept_.take(*board_, head_, next)) return false;
+  if (next > summary_.newest || !kept_.take(*board_, summary_, next)) return false;
   return t >= kept_.at_hand().left && t < kept_.at_hand().right;
 }
 
@@ -87,10 +87,10 @@ bool Sampler::goes_on(Time t) noexcept {
 /// not seen, changed the curve before a time that this reader has sampled. Returns false if the
 /// writer overtook it.
 bool Sampler::see(const Look& look) noexcept {
-  const Head before = head_;
-  if (!board_->copy_bounds(look, before.revision, head_)) return false;
-  if (revised_ || before.revision == 0 || sampled_until_ < head_.changed_from) return true;
-  if (head_.changed_from > Time::min()) {
+  const Summary before = summary_;
+  if (!board_->copy_bounds(look, before.revision, summary_)) return false;
+  if (revised_ || before.revision == 0 || sampled_until_ < summary_.changed_from) return true;
+  if (summary_.changed_from > Time::min()) {
     revised_ = true;
     return true;
   }
@@ -99,10 +99,10 @@ bool Sampler::see(const Look& look) noexcept {
   const BoardSegment& own = kept_.current();
   const bool is_known = kept_.confirmed_by() == before.revision && own.is_there();
   const Compared compared =
-      compare_curve(*board_, head_, {before, is_known ? &own : nullptr, sampled_until_},
+      compare_curve(*board_, summary_, {before, is_known ? &own : nullptr, sampled_until_},
                     kept_.spare(), state_.ref().position);
   if (compared == Compared::torn) {
-    head_ = before;
+    summary_ = before;
     return false;
   }
   revised_ = compared == Compared::changed;
@@ -113,21 +113,21 @@ SampleStatus Sampler::preview(Time t, const StateRef& out) noexcept {
   return fits(out) ? find(t, out) : SampleStatus::wrong_dimension;
 }
 
-/// Makes head_ the summary of the newest revision; t is the time that will be looked up in it.
+/// Makes summary_ the summary of the newest revision; t is the time that will be looked up in it.
 /// Returns `settled` if there is a curve, `busy` if the writer overtook it, else the reason for
 /// none.
 SampleStatus Sampler::see_newest(Time t) noexcept {
   if (board_->retired()) return SampleStatus::retired;
   const Look look = board_->look();
   if (look.revision == 0) return SampleStatus::no_data;
-  if (look.revision == head_.revision) {
-    head_.settled_until = look.settled_until;
+  if (look.revision == summary_.revision) {
+    summary_.settled_until = look.settled_until;
   } else {
     const Word likely = number_near(kept_.current(), t);
     board_->prefetch(look.revision, likely != 0 ? likely : kept_.current().number());
     if (!see(look)) return SampleStatus::busy;
   }
-  return head_.newest == 0 ? SampleStatus::no_data : SampleStatus::settled;
+  return summary_.newest == 0 ? SampleStatus::no_data : SampleStatus::settled;
 }
 
 SampleStatus Sampler::look_up(Time t, const StateRef& out) noexcept {
@@ -138,47 +138,47 @@ SampleStatus Sampler::look_up(Time t, const StateRef& out) noexcept {
     const Found found = locate(t);
     if (found == Found::segment) return evaluate(kept_.current(), t, out);
     if (found == Found::before_first) {
-      const bool holds = clock_ == StreamClock::monotonic && head_.first == 1;
+      const bool holds = clock_ == StreamClock::monotonic && summary_.first == 1;
       if (!holds) return SampleStatus::before_history;
-      if (kept_.take(*board_, head_, head_.first)) return hold_first(out);
+      if (kept_.take(*board_, summary_, summary_.first)) return hold_first(out);
     }
   }
   return from_own_copy(t, out);
 }
 
-/// Makes the segment of `t` under head_.revision the current copy.
+/// Makes the segment of `t` under summary_.revision the current copy.
 Sampler::Found Sampler::locate(Time t) noexcept {
   const BoardSegment& last = kept_.current();
-  if (kept_.is_confirmed(*board_, head_)) {
+  if (kept_.is_confirmed(*board_, summary_)) {
     if (spans(last, t)) return Found::segment;
-    if (t >= last.right() && last.next() <= head_.newest) {
-      if (!kept_.take(*board_, head_, last.next())) return Found::torn;
+    if (t >= last.right() && last.next() <= summary_.newest) {
+      if (!kept_.take(*board_, summary_, last.next())) return Found::torn;
       if (spans(kept_.current(), t)) return Found::segment;
     }
   }
   // Usually republished: it or its successor contains t. Tags are already prefetched.
   Word number = number_near(kept_.current(), t);
-  if (number >= head_.first && number <= head_.newest) {
-    if (!kept_.take(*board_, head_, number)) return Found::torn;
+  if (number >= summary_.first && number <= summary_.newest) {
+    if (!kept_.take(*board_, summary_, number)) return Found::torn;
     if (spans(kept_.current(), t)) return Found::segment;
   }
-  number = number_by_hint(*board_, head_, t);
+  number = number_by_hint(*board_, summary_, t);
   if (number != 0) {
     board_->prefetch_segment(number);
-    if (!kept_.take(*board_, head_, number)) return Found::torn;
+    if (!kept_.take(*board_, summary_, number)) return Found::torn;
     if (spans(kept_.current(), t)) return Found::segment;
   }
   // The hint failed because a writer is active: the knots decide.
-  if (!number_by_cells(*board_, head_, t, number)) return Found::torn;
+  if (!number_by_cells(*board_, summary_, t, number)) return Found::torn;
   if (number == 0) return Found::before_first;
-  if (!kept_.take(*board_, head_, number)) return Found::torn;
+  if (!kept_.take(*board_, summary_, number)) return Found::torn;
   return spans(kept_.current(), t) ? Found::segment : Found::torn;
 }
 
 /// Whether a segment contains a time. A time on a knot belongs to the segment on its right, all
 /// times after the last segment to that segment.
 bool Sampler::spans(const BoardSegment& segment, Time t) const noexcept {
-  return t >= segment.left() && (t < segment.right() || segment.is_last(head_));
+  return t >= segment.left() && (t < segment.right() || segment.is_last(summary_));
 }
 
 /// Evaluates a segment u seconds after its left end, and normalises the values.
@@ -195,10 +195,10 @@ SampleStatus Sampler::evaluate(const BoardSegment& segment, Time t,
   const Time at = past_end ? right : t;
   read(segment, seconds_after(segment.left(), at), out);
   if (past_end) come_to_rest(out);
-  if (head_.finished && t <= right) return SampleStatus::settled;
+  if (summary_.finished && t <= right) return SampleStatus::settled;
   if (past_end) return SampleStatus::holding;
   if (segment.kind() == SegmentKind::stop) return SampleStatus::stopping;
-  return t < head_.settled_until ? SampleStatus::settled : SampleStatus::provisional;
+  return t < summary_.settled_until ? SampleStatus::settled : SampleStatus::provisional;
 }
 
 /// Before the first waypoint of a live stream the machine is held at its start position, unless it

@@ -78,7 +78,7 @@ class Sampler {
   Word sample_many(std::span<const Time> times, const SampleBlock& out) noexcept;
 
   /// The curve of the last sample never changes before this time, for any status of that sample.
-  [[nodiscard]] Time settled_until() const noexcept { return head_.settled_until; }
+  [[nodiscard]] Time settled_until() const noexcept { return summary_.settled_until; }
 
   /// Copies every segment that has a part between `from` and `to` (inclusive), all under one
   /// revision. Returns `settled` or `provisional` for the whole; `before_history`, `no_data`,
@@ -92,7 +92,7 @@ class Sampler {
   [[nodiscard]] const DimensionKinds& kinds() const noexcept { return kinds_; }
 
   /// The revision that the last sample saw; 0 before the first.
-  [[nodiscard]] Word revision_seen() const noexcept { return head_.revision; }
+  [[nodiscard]] Word revision_seen() const noexcept { return summary_.revision; }
 
  private:
   /// Maximum number of tries of a sample when the writer overtakes it. A try takes well under a
@@ -124,7 +124,7 @@ class Sampler {
   StreamClock clock_;
   DimensionKinds kinds_;
   bool all_linear_;
-  Head head_;                         ///< bounds of the last revision that was copied completely
+  Summary summary_;                   ///< bounds of the last revision that was copied completely
   Time sampled_until_ = Time::min();  ///< latest time sampled as executed
   bool revised_ = false;              ///< the curve before that time has changed: not yet reported
   KeptSegments kept_;

@@ -21,14 +21,14 @@ bool finish_oldest_step(const SnapshotSource& source, SegmentCopy& oldest) {
     if (!is_held) std::ranges::fill(oldest.acceleration_step, 0.0);  // no segment before it
     return true;
   }
-  const auto before = segment_before(source.board, source.head, oldest.number);
+  const auto before = segment_before(source.board, source.summary, oldest.number);
   if (!before) return false;
   if (*before == 0) {
     oldest.acceleration_step.clear();
     return true;
   }
   BoardSegment& copy = source.copy;
-  if (copy.take(source.board, source.head, *before) != BoardSegment::Taken::whole) return false;
+  if (copy.take(source.board, source.summary, *before) != BoardSegment::Taken::whole) return false;
   copy.write_accelerations(source.start_acceleration, source.end_acceleration);
   subtract(oldest.acceleration_step, source.end_acceleration);
   return true;
@@ -44,7 +44,7 @@ bool BoardSnapshot::copy_segments(const SnapshotSource& source, Word oldest, Wor
   std::size_t count = 0;
   // The newest first: the writer will overwrite these first.
   for (Word number = newest;;) {
-    if (copy.take(board, source.head, number) != BoardSegment::Taken::whole) return false;
+    if (copy.take(board, source.summary, number) != BoardSegment::Taken::whole) return false;
     if (segments_.size() == count) segments_.emplace_back();
     SegmentCopy& segment = segments_[count];
     copy.copy_to(segment);
@@ -53,7 +53,7 @@ bool BoardSnapshot::copy_segments(const SnapshotSource& source, Word oldest, Wor
     if (count > 0) subtract(segments_[count - 1].acceleration_step, source.end_acceleration);
     ++count;
     if (number == oldest) break;
-    const auto before = segment_before(board, source.head, number);
+    const auto before = segment_before(board, source.summary, number);
     if (!before || *before < oldest) return false;
     number = *before;
   }
@@ -72,7 +72,7 @@ SampleStatus Sampler::snapshot(Time from, Time to, BoardSnapshot& out) {
   out.size_ = 0;
   if (out.dimensions() != board_->dimensions()) return SampleStatus::wrong_dimension;
   const SnapshotSource source{.board = *board_,
-                              .head = head_,
+                              .summary = summary_,
                               .kinds = kinds_,
                               .is_live = clock_ == StreamClock::monotonic,
                               .copy = kept_.spare(),
@@ -82,20 +82,21 @@ SampleStatus Sampler::snapshot(Time from, Time to, BoardSnapshot& out) {
     if (board_->retired()) return SampleStatus::retired;
     const Look look = board_->look();
     if (look.revision == 0) return SampleStatus::no_data;
-    head_.settled_until =
-        look.revision == head_.revision ? look.settled_until : head_.settled_until;
-    if ((look.revision != head_.revision && !see(look)) || !board_->copy_head(look, out.head_)) {
+    summary_.settled_until =
+        look.revision == summary_.revision ? look.settled_until : summary_.settled_until;
+    if ((look.revision != summary_.revision && !see(look)) ||
+        !board_->copy_summary(look, out.summary_)) {
       continue;
     }
-    if (head_.newest == 0) return SampleStatus::no_data;
+    if (summary_.newest == 0) return SampleStatus::no_data;
     Word oldest = 0;
     Word newest = 0;
-    if (!number_by_cells(*board_, head_, from, oldest)) continue;
-    if (!number_by_cells(*board_, head_, to, newest)) continue;
+    if (!number_by_cells(*board_, summary_, from, oldest)) continue;
+    if (!number_by_cells(*board_, summary_, to, newest)) continue;
     if (oldest == 0) return SampleStatus::before_history;
     if (newest >= oldest && !out.copy_segments(source, oldest, newest)) continue;
-    return head_.finished || to < head_.settled_until ? SampleStatus::settled
-                                                      : SampleStatus::provisional;
+    return summary_.finished || to < summary_.settled_until ? SampleStatus::settled
+                                                            : SampleStatus::provisional;
   }
   return SampleStatus::busy;
 }

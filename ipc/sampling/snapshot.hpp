@@ -15,7 +15,7 @@ namespace splinecast::ipc {
 /// The source of the segments of a snapshot, and scratch memory.
 struct SnapshotSource {
   const KnotBoardReader& board;
-  const Head& head;             ///< summary of the revision
+  const Summary& summary;       ///< summary of the revision
   const DimensionKinds& kinds;  ///< of the board's dimensions
   bool is_live;
   BoardSegment& copy;                    ///< scratch
@@ -30,7 +30,7 @@ class BoardSnapshot {
   explicit BoardSnapshot(std::size_t dimensions) : dimensions_(dimensions) {}
 
   [[nodiscard]] std::size_t dimensions() const noexcept { return dimensions_; }
-  [[nodiscard]] const Head& head() const noexcept { return head_; }
+  [[nodiscard]] const Summary& summary() const noexcept { return summary_; }
 
   /// The segments, oldest first.
   [[nodiscard]] std::span<const SegmentCopy> segments() const noexcept {
@@ -42,7 +42,7 @@ class BoardSnapshot {
   [[nodiscard]] bool copy_segments(const SnapshotSource& source, Word oldest, Word newest);
 
   std::size_t dimensions_;
-  Head head_;
+  Summary summary_;
   std::size_t size_ = 0;
   std::vector<SegmentCopy> segments_;
 };

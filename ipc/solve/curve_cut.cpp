@@ -18,9 +18,9 @@ constexpr std::array<double, kMaxDimensions> kZeros{};
 
 }  // namespace
 
-Word segment_at(const KnotBoardReader& board, const Head& head, Time t) noexcept {
-  Word low = head.first;
-  Word high = head.newest;
+Word segment_at(const KnotBoardReader& board, const Summary& summary, Time t) noexcept {
+  Word low = summary.first;
+  Word high = summary.newest;
   while (low < high) {
     const Word middle = high - (high - low) / 2;
     if (board.time_hint(middle) <= t) {
@@ -48,21 +48,21 @@ Instant CurveCut::state() const noexcept {
 }
 
 bool CurveCut::read(Word number) noexcept {
-  return segment_.take(*published_, head_, number) == BoardSegment::Taken::whole &&
+  return segment_.take(*published_, summary_, number) == BoardSegment::Taken::whole &&
          is_time_in_range(segment_.left());
 }
 
-bool CurveCut::find(const Head& head, Time t) noexcept {
-  head_ = head;
+bool CurveCut::find(const Summary& summary, Time t) noexcept {
+  summary_ = summary;
   time_ = t;
-  cut_ = segment_at(*published_, head, t);
+  cut_ = segment_at(*published_, summary, t);
   is_held_ = keeps_right_ = false;
   if (!read(cut_)) return false;
   evaluate_at_cut({segment_.left(), segment_.right(), segment_.order(), segment_.coefficients()}, t,
                   state_);
   next_ = cut_;
   ends_ = t >= segment_.right();
-  if (cut_ == head.first && t <= segment_.left()) {  // no segment before it
+  if (cut_ == summary.first && t <= segment_.left()) {  // no segment before it
     cut_ = 0;
     // Copies the bits: before the first knot readers hold this position.
     if (next_ == 1) {
@@ -71,7 +71,7 @@ bool CurveCut::find(const Head& head, Time t) noexcept {
     }
   } else if (t == segment_.left()) {
     // The segment before keeps the common knot, unless it has already been cut.
-    const auto before = segment_before(*published_, head, cut_);
+    const auto before = segment_before(*published_, summary, cut_);
     if (!before || *before == 0 || !read(*before)) return false;
     keeps_right_ = *before + 1 == cut_;
     next_ = keeps_right_ ? cut_ + 1 : cut_;
@@ -100,7 +100,7 @@ void CurveCut::write() noexcept {
     write_rest(cut_ + 1, SegmentForm::hold, segment_.right(), position_at(segment_.right()));
   }
   if (ends_) return;  // it ends at its natural end
-  if (keeps_right_ && cut_ < head_.newest) {
+  if (keeps_right_ && cut_ < summary_.newest) {
     board_->write_form(cut_ + 1, SegmentForm::none, time_);
   } else if (keeps_right_) {
     // A stop: its right knot stores when the uncut stop would have ended.

@@ -28,7 +28,7 @@ class CurveCut {
 
   /// Finds the cut at t through the curve of a committed summary, which has a segment there.
   /// Returns false if the board holds data that no solver wrote.
-  [[nodiscard]] bool find(const Head& head, Time t) noexcept;
+  [[nodiscard]] bool find(const Summary& summary, Time t) noexcept;
 
   /// The state at the cut that was found, and the number of the knot that begins the new curve.
   [[nodiscard]] Instant state() const noexcept;
@@ -48,7 +48,7 @@ class CurveCut {
   KnotBoardWriter* board_;
   const KnotBoardReader* published_;
   DimensionKinds kinds_;
-  Head head_;
+  Summary summary_;
   BoardSegment segment_;  ///< the one that is cut, or the one before the cut
   State state_;
   Time time_{};
@@ -62,6 +62,7 @@ class CurveCut {
 
 /// The last segment of a committed summary whose left end is at or before t, or the first segment
 /// if there is none. Uses the packed times: exact for the writer, a hint for other processes.
-[[nodiscard]] Word segment_at(const KnotBoardReader& board, const Head& head, Time t) noexcept;
+[[nodiscard]] Word segment_at(const KnotBoardReader& board, const Summary& summary,
+                              Time t) noexcept;
 
 }  // namespace splinecast::ipc

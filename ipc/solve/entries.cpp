@@ -19,12 +19,12 @@ void PublishedCurve::find_shown() noexcept {
   if (knows_shown_ || !entries_.is_live) return;
   knows_shown_ = true;
   if (course_ == Course::on_target) {  // the start: the window has all waypoints on the board
-    shown_.restore(window_, *published_, head_, Time::min(), 0);
+    shown_.restore(window_, *published_, summary_, Time::min(), 0);
     return;
   }
   const Time end = origin_.number > 0 ? origin_.time : Time::max();
   const bool starts_stream = !window_.is_later_run() && origin_.number == 1;
-  shown_.restore(window_, *published_, head_, end, starts_stream ? 0 : unmet_);
+  shown_.restore(window_, *published_, summary_, end, starts_stream ? 0 : unmet_);
 }
 
 bool PublishedCurve::needs_entry() const noexcept {
@@ -69,7 +69,7 @@ bool PublishedCurve::find_state(Time settled) noexcept {
   const std::size_t met = is_on_line() ? window_.knots() : unmet_;
   const bool is_in_window = met > window_.oldest_segment();
   const Time t = is_in_window ? std::max(settled, window_.time(met - 1) + Time(1)) : settled;
-  is_damaged_ = is_damaged_ || !cut_.find(head_, t);
+  is_damaged_ = is_damaged_ || !cut_.find(summary_, t);
   return !is_damaged_;
 }
 

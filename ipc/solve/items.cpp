@@ -23,7 +23,7 @@ Refusal to_refusal(AppendStatus interval) noexcept {
 }  // namespace
 
 void StreamSolver::take(Word number) noexcept {
-  if (head_.finished) return refuse(number, Refusal::after_finish);
+  if (summary_.finished) return refuse(number, Refusal::after_finish);
   if (number == unsound_item_) {
     return item_.kind == ItemKind::replace ? refuse_replacement(number, Refusal::not_finite)
                                            : refuse(number, Refusal::not_finite);
@@ -79,9 +79,9 @@ void StreamSolver::take_waypoint(Word number) noexcept {
   }
   if (note_excess(waypoint, number)) return refuse(number, Refusal::beyond_limits);
   curve_.append(waypoint, number);
-  if (waypoint.time > settled_until_) head_.starved = false;
-  ++head_.knots;
-  head_.newest_knot = waypoint.time;
+  if (waypoint.time > settled_until_) summary_.starved = false;
+  ++summary_.knots;
+  summary_.newest_time = waypoint.time;
 }
 
 /// The waypoint, moved to its representative nearest to the curve. Valid until the next call.
@@ -108,7 +108,7 @@ bool StreamSolver::note_excess(const Waypoint& waypoint, Word number) noexcept {
   if (!excess) return false;
   excess->item = number;
   excess->is_refused = beyond_ == Beyond::refuse;
-  board_->write_excess(head_.exceeding++, *excess);
+  board_->write_excess(summary_.exceeding++, *excess);
   return excess->is_refused;
 }
 
@@ -121,7 +121,7 @@ void StreamSolver::take_replacement(Word number) noexcept {
   if (has_begun && (t < settled_until_ || !is_time_in_range(t) || t < curve_.earliest_cut())) {
     return refuse_replacement(number, Refusal::too_late);
   }
-  ++head_.controls;
+  ++summary_.controls;
   // The replacement and its waypoints are one revision, as far as the board has room.
   const bool may_follow = number >= suspected_;
   const Word followers = may_follow ? std::min<Word>(item_.count, board_->capacity() / 2) : 0;
@@ -130,16 +130,16 @@ void StreamSolver::take_replacement(Word number) noexcept {
   // A stop after another one changes nothing.
   if (is_stop(item_) && curve_.is_stop() && t >= curve_.newest_time()) return;
   curve_.begin_run(t, std::clamp(item_.blend, Time::zero(), limits_.max_interval));
-  head_.starved = false;
-  head_.newest_knot = t;
+  summary_.starved = false;
+  summary_.newest_time = t;
 }
 
 /// Refuses a replacement, and in the same revision its waypoints, so that no other solver treats
 /// them as appended ones.
 void StreamSolver::refuse_replacement(Word number, Refusal reason) noexcept {
   refuse(number, reason);
-  const Word end = head_.consumed + std::min<Word>(item_.count, available_ - head_.consumed);
-  while (head_.consumed < end) refuse(head_.consumed++, reason);
+  const Word end = summary_.consumed + std::min<Word>(item_.count, available_ - summary_.consumed);
+  while (summary_.consumed < end) refuse(summary_.consumed++, reason);
 }
 
 void StreamSolver::take_start_state(Word number) noexcept {
@@ -152,12 +152,12 @@ void StreamSolver::take_start_state(Word number) noexcept {
   }
   if (!is_time_in_range(state.time)) return refuse(number, Refusal::too_far_apart);
   if (live_ && state.time < settled_until_) return refuse(number, Refusal::past);
-  ++head_.controls;
+  ++summary_.controls;
   curve_.begin({.time = state.time,
                 .position = state.position,
                 .velocity = state.velocity,
                 .acceleration = state.acceleration});
-  head_.newest_knot = state.time;
+  summary_.newest_time = state.time;
 }
 
 void StreamSolver::take_finish(Word number) noexcept {
@@ -176,13 +176,13 @@ void StreamSolver::take_finish(Word number) noexcept {
   }
   is_finish_postponed_ = curve_.has_begun() && !curve_.finish(end_, settled_until_, keep_, tries_);
   if (is_finish_postponed_) return;
-  head_.finished = true;
-  ++head_.controls;
+  summary_.finished = true;
+  ++summary_.controls;
 }
 
 void StreamSolver::refuse(Word number, Refusal reason) noexcept {
-  board_->write_refusal(head_.refused++, {.item = number, .reason = reason});
-  ++head_.reasons[static_cast<std::size_t>(reason)];
+  board_->write_refusal(summary_.refused++, {.item = number, .reason = reason});
+  ++summary_.reasons[static_cast<std::size_t>(reason)];
 }
 
 }  // namespace splinecast::ipc

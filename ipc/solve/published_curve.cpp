@@ -132,7 +132,7 @@ bool PublishedCurve::has_room(std::size_t knots, Time keep) const noexcept {
 }
 
 bool PublishedCurve::has_room_to_cut(Time t, std::size_t knots, Time keep) const noexcept {
-  return has_room_behind(segment_at(*published_, head_, t), knots, keep);
+  return has_room_behind(segment_at(*published_, summary_, t), knots, keep);
 }
 
 bool PublishedCurve::has_room_behind(Word number, std::size_t knots, Time keep) const noexcept {
@@ -175,7 +175,7 @@ void PublishedCurve::begin(const Instant& state) noexcept {
 }
 
 void PublishedCurve::begin_run(Time t, Time blend) noexcept {
-  is_damaged_ = is_damaged_ || !cut_.find(head_, t);
+  is_damaged_ = is_damaged_ || !cut_.find(summary_, t);
   if (is_damaged_) return;
   cut_.write();
   run_ = cut_.next();
@@ -222,11 +222,11 @@ std::size_t PublishedCurve::passed_over() const noexcept {
   return end - std::min(end, unmet_);
 }
 
-void PublishedCurve::committed(const Head& head) noexcept {
+void PublishedCurve::committed(const Summary& summary) noexcept {
   has_changes_ = has_forgotten_ = false;
   is_entry_new_ = false;
   origin_.is_new = false;
-  head_ = head;
+  summary_ = summary;
   passed_committed_ = passed_written_;
   committed_knots_ = window_.knots();
   if (is_on_line()) placed_ = window_.knots();

@@ -23,7 +23,7 @@ struct EntryOptions {
   Time notice{};         ///< a live stream's start is decided this long before it settles
 };
 
-/// A published curve's part of a revision's summary; see the members of Head.
+/// A published curve's part of a revision's summary; see the members of Summary.
 struct CurveSummary {
   Word first = 0;
   Word newest = 0;
@@ -41,7 +41,7 @@ struct CurveSummary {
 };
 
 /// Copies the curve's part into a summary; the counters stay as they are.
-void put_summary(const CurveSummary& curve, Head& head) noexcept;
+void put_summary(const CurveSummary& curve, Summary& summary) noexcept;
 
 /// The curve of one stream: the window that is being solved, which is the *target*, and the board
 /// on which knots are published. Has no ring and no clock; the caller checks the waypoints.
@@ -54,8 +54,8 @@ void put_summary(const CurveSummary& curve, Head& head) noexcept;
 /// once it has begun; one that ends beyond the newest waypoint is planned again when a newer one
 /// comes.
 ///
-/// Knots on the board have consecutive numbers, run after run: `Head::run` is the first knot of a
-/// run, which is its first waypoint or the state that it was entered from. The board is the only
+/// Knots on the board have consecutive numbers, run after run: `Summary::run` is the first knot of
+/// a run, which is its first waypoint or the state that it was entered from. The board is the only
 /// memory of the past: a solver that takes over, and one that has discarded a revision, both
 /// continue from the last commit.
 ///
@@ -78,8 +78,8 @@ class PublishedCurve {
   /// used.
   [[nodiscard]] bool is_damaged() const noexcept { return is_damaged_; }
 
-  /// Continues from the last commit, whose summary is `head`. O(K·D).
-  void restore(const Head& head) noexcept;
+  /// Continues from the last commit, whose summary is `summary`. O(K·D).
+  void restore(const Summary& summary) noexcept;
 
   /// Prefetches the memory outside this object that the next append touches.
   void prefetch() const noexcept;
@@ -177,7 +177,7 @@ class PublishedCurve {
   [[nodiscard]] CurveSummary summary() const noexcept;
 
   /// Call after the commit of this summary.
-  void committed(const Head& head) noexcept;
+  void committed(const Summary& summary) noexcept;
 
  private:
   /// The state from which an entry, or the stop of a run without waypoints, begins.
@@ -274,7 +274,7 @@ class PublishedCurve {
   std::size_t look_ahead_;  ///< how many rows before the newest knot an append may change
   bool has_plain_knots_;    ///< the method changes only the velocities of knots
   bool has_limits_;
-  Head head_;  ///< last committed
+  Summary summary_;  ///< last committed
   CurveCut cut_;
   core::EntrySearch search_;
   ShownMotion shown_;

@@ -28,44 +28,45 @@ bool is_sound(const core::Knot& knot) noexcept {
 }
 
 /// Whether a summary of an unfinished stream describes a possible run.
-bool describes_a_run(const Head& head) noexcept {
-  if (head.course >= kCourses) return false;
-  if (head.newest == 0) return head.run_knots == 0 && !head.is_later_run;
-  const bool is_on_line = static_cast<Course>(head.course) == Course::on_target ||
-                          static_cast<Course>(head.course) == Course::entering;
-  const bool has_piece = !is_on_line || (head.met < head.run_knots &&
-                                         head.run_knots - head.met <= head.newest - head.run + 1);
-  return head.run >= 1 && head.run <= head.newest && head.unmet <= head.run_knots &&
-         head.met <= head.run_knots && has_piece && head.run_knots < Word{1} << 62U;
+bool describes_a_run(const Summary& summary) noexcept {
+  if (summary.course >= kCourses) return false;
+  if (summary.newest == 0) return summary.run_knots == 0 && !summary.is_later_run;
+  const bool is_on_line = static_cast<Course>(summary.course) == Course::on_target ||
+                          static_cast<Course>(summary.course) == Course::entering;
+  const bool has_piece =
+      !is_on_line || (summary.met < summary.run_knots &&
+                      summary.run_knots - summary.met <= summary.newest - summary.run + 1);
+  return summary.run >= 1 && summary.run <= summary.newest && summary.unmet <= summary.run_knots &&
+         summary.met <= summary.run_knots && has_piece && summary.run_knots < Word{1} << 62U;
 }
 
 }  // namespace
 
-void PublishedCurve::restore(const Head& head) noexcept {
+void PublishedCurve::restore(const Summary& summary) noexcept {
   has_changes_ = false;
   is_entry_new_ = is_searching_ = is_ending_ = seeks_end_ = ends_there_ = is_prepared_ = false;
-  knows_shown_ = knows_shown_ || head.revision == 0;
+  knows_shown_ = knows_shown_ || summary.revision == 0;
   changed_from_ = Time::max();
-  blend_until_ = head.blend_until;
-  head_ = head;
-  run_ = head.run;
-  run_item_ = head.run_item;
-  first_ = head.first;
-  newest_ = head.newest;
-  stop_ = head.stop;
+  blend_until_ = summary.blend_until;
+  summary_ = summary;
+  run_ = summary.run;
+  run_item_ = summary.run_item;
+  first_ = summary.first;
+  newest_ = summary.newest;
+  stop_ = summary.stop;
   end_ = {};
   course_ = Course::on_target;
   met_ = unmet_ = placed_ = passed_written_ = passed_committed_ = 0;
   met_number_ = 1;
   passed_before_ = 0;
   origin_ = {};
-  committed_knots_ = head.run_knots;
+  committed_knots_ = summary.run_knots;
   is_damaged_ = ends_at_known_ = false;
   if (newest_ > 0) {
-    is_damaged_ = !read_.take_last(*published_, head_);
+    is_damaged_ = !read_.take_last(*published_, summary_);
     end_ = read_.right();
   }
-  if (!head.finished && !is_damaged_) restore_run();
+  if (!summary.finished && !is_damaged_) restore_run();
   if (has_forgotten_) shown_ = committed_shown_;
   has_forgotten_ = false;
   shown_.forget_after(window_.knots() > 0 ? newest_time() : origin_.time);
@@ -139,10 +140,10 @@ bool PublishedCurve::find_knot(std::size_t i, Word& line) noexcept {
 }
 
 void PublishedCurve::restore_course() noexcept {
-  course_ = static_cast<Course>(head_.course);
-  met_ = head_.met;
-  unmet_ = head_.unmet;
-  const std::size_t knots = head_.run_knots;
+  course_ = static_cast<Course>(summary_.course);
+  met_ = summary_.met;
+  unmet_ = summary_.unmet;
+  const std::size_t knots = summary_.run_knots;
   if (is_on_line()) {
     placed_ = knots;
     met_number_ = knots > 0 ? newest_ - (knots - std::min(knots, met_ + 1)) : 1;
@@ -153,10 +154,10 @@ void PublishedCurve::restore_course() noexcept {
   }
   const std::size_t end = is_on_line() ? met_ : knots;
   const Word open = end - std::min(end, unmet_);
-  passed_before_ = head_.passed_over - std::min(head_.passed_over, open);
+  passed_before_ = summary_.passed_over - std::min(summary_.passed_over, open);
   restore_origin();
   passed_lowest_ =
-      !head_.is_later_run && origin_.number == 1 ? 0 : unmet_ - std::min(unmet_, kMetKept);
+      !summary_.is_later_run && origin_.number == 1 ? 0 : unmet_ - std::min(unmet_, kMetKept);
 }
 
 /// Finds the knot of the state at which the open entry begins.
@@ -202,7 +203,7 @@ bool PublishedCurve::restore_beyond(Word& number) noexcept {
   std::ranges::copy(knot_.waypoint(), to.position.begin());
   std::ranges::copy(knot_.velocity(), to.velocity.begin());
   if (knot_.note.arrives) std::ranges::copy(knot_.acceleration(), to.acceleration.begin());
-  known_ = std::min<Word>(knot_.item, head_.run_knots);
+  known_ = std::min<Word>(knot_.item, summary_.run_knots);
   --number;
   ends_at_known_ =
       known_ > unmet_ && published_->copy_passed(known_ - 1, board_->revision(), knot_) &&
@@ -211,17 +212,17 @@ bool PublishedCurve::restore_beyond(Word& number) noexcept {
 }
 
 void PublishedCurve::restore_run() noexcept {
-  if (!describes_a_run(head_)) {
+  if (!describes_a_run(summary_)) {
     is_damaged_ = true;
     return;
   }
   restore_course();
   const std::size_t size = kKnotValues * window_.dimensions();
   const std::size_t end = knots_.size();
-  const std::size_t most = std::min<std::size_t>(head_.run_knots, end);
+  const std::size_t most = std::min<std::size_t>(summary_.run_knots, end);
   std::size_t count = 0;
   for (Word line = newest_; count < most && !is_damaged_; ++count) {
-    const std::size_t i = head_.run_knots - 1 - count;
+    const std::size_t i = summary_.run_knots - 1 - count;
     const bool is_there = find_knot(i, line);
     // Knots that the open entry does not need may no longer be on the board.
     if (!is_there && !is_damaged_ && i + kMetKept < unmet_) break;
@@ -232,14 +233,14 @@ void PublishedCurve::restore_run() noexcept {
     is_damaged_ = is_damaged_ || (count > 0 && knots_[k].time >= knots_[k + 1].time);
   }
   if (is_damaged_) return;
-  const std::size_t first = head_.run_knots - count;
+  const std::size_t first = summary_.run_knots - count;
   const auto knots = std::span(knots_).last(count);
-  if (!head_.is_later_run) {
+  if (!summary_.is_later_run) {
     window_.restore(first, knots);
   } else {
     window_.restore_run(first, knots);
   }
-  window_.freeze_knots(head_.run_frozen);
+  window_.freeze_knots(summary_.run_frozen);
   const bool is_open = course_ == Course::waiting || course_ == Course::beyond;
   is_searching_ = is_open && window_.knots() > (course_ == Course::beyond ? known_ : unmet_);
   restart_search();

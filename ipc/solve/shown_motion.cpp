@@ -45,16 +45,16 @@ void ShownMotion::forget_after(Time t) noexcept {
   next_ = (times_[place(0)] / kStep + 1) * kStep;
 }
 
-void ShownMotion::restore(const KnotBoardReader& board, const Head& head, Time end) noexcept {
+void ShownMotion::restore(const KnotBoardReader& board, const Summary& summary, Time end) noexcept {
   forget_all();
-  if (head.newest > 0) take_met(board, head, end);
+  if (summary.newest > 0) take_met(board, summary, end);
 }
 
 void ShownMotion::restore(const core::SlidingWindow& window, const KnotBoardReader& board,
-                          const Head& head, Time end, std::size_t first) noexcept {
-  restore(board, head, end);
+                          const Summary& summary, Time end, std::size_t first) noexcept {
+  restore(board, summary, end);
   if (window.knots() == 0) return;
-  take_passed(board, head, first, window.oldest_segment());
+  take_passed(board, summary, first, window.oldest_segment());
   for (std::size_t i = std::max(first, window.oldest_segment()); i < window.knots(); ++i) {
     const core::Knot knot = window.knot(i);
     note(knot.time, knot.waypoint);
@@ -63,32 +63,33 @@ void ShownMotion::restore(const core::SlidingWindow& window, const KnotBoardRead
 
 /// Takes the first knot at or after each multiple of kStep, searched backwards from `end` by the
 /// packed times.
-void ShownMotion::take_met(const KnotBoardReader& board, const Head& head, Time end) noexcept {
-  const Time newest = std::min(end, board.time_hint(head.newest));
+void ShownMotion::take_met(const KnotBoardReader& board, const Summary& summary,
+                           Time end) noexcept {
+  const Time newest = std::min(end, board.time_hint(summary.newest));
   if (!is_time_in_range(newest)) return;
   Time t = (newest / kStep + 1) * kStep;
   std::size_t found = 0;
   for (std::size_t i = 0; i < kMost; ++i, t -= kStep) {
-    const Word before = segment_at(board, head, t - Time(1));
-    const bool is_first = before == head.first && board.time_hint(before) >= t;
-    const Word number = std::min(is_first ? before : before + 1, head.newest);
+    const Word before = segment_at(board, summary, t - Time(1));
+    const bool is_first = before == summary.first && board.time_hint(before) >= t;
+    const Word number = std::min(is_first ? before : before + 1, summary.newest);
     if (found == 0 || number != numbers_[found - 1]) numbers_[found++] = number;
-    if (before == head.first) break;
+    if (before == summary.first) break;
   }
   while (found > 0) {
-    const bool is_there = board.copy_knot(numbers_[--found], head.revision, knot_);
+    const bool is_there = board.copy_knot(numbers_[--found], summary.revision, knot_);
     const bool is_met = is_there && knot_.note.is_waypoint && knot_.time < end &&
                         knot_.note.form != core::SegmentForm::none;
     if (is_met) note(knot_.time, knot_.waypoint());
   }
 }
 
-void ShownMotion::take_passed(const KnotBoardReader& board, const Head& head, std::size_t first,
-                              std::size_t end) noexcept {
+void ShownMotion::take_passed(const KnotBoardReader& board, const Summary& summary,
+                              std::size_t first, std::size_t end) noexcept {
   first = std::max(first, end - std::min(end, kPassedSlots));
   for (std::size_t i = first; i < end; ++i) {
-    const bool is_there = board.copy_passed(i, head.revision, knot_) && knot_.note.is_waypoint &&
-                          knot_.item == (head.run_item << kPassedItemShift | i);
+    const bool is_there = board.copy_passed(i, summary.revision, knot_) && knot_.note.is_waypoint &&
+                          knot_.item == (summary.run_item << kPassedItemShift | i);
     if (is_there) note(knot_.time, knot_.waypoint());
   }
 }

@@ -39,12 +39,12 @@ class ShownMotion {
   /// Drops everything, and takes the waypoints that the curve of a summary meets before `end`, as
   /// far as the board holds them. Any process may call it: leaves out knots that a writer changes
   /// meanwhile. O(kSpan/kStep·(log n + D)).
-  void restore(const KnotBoardReader& board, const Head& head, Time end) noexcept;
+  void restore(const KnotBoardReader& board, const Summary& summary, Time end) noexcept;
 
   /// The same for the writer; then takes the waypoints of the run from number `first` on, from the
   /// slots of passed-over ones and from the window. O((kSpan/kStep + kPassedSlots)·D).
-  void restore(const core::SlidingWindow& window, const KnotBoardReader& board, const Head& head,
-               Time end, std::size_t first) noexcept;
+  void restore(const core::SlidingWindow& window, const KnotBoardReader& board,
+               const Summary& summary, Time end, std::size_t first) noexcept;
 
   /// Finds the limits, if a waypoint has been taken since the last call. `stop_time` is the length
   /// of a stop, the same in all calls. O(kSpan/kStep·D).
@@ -56,8 +56,8 @@ class ShownMotion {
  private:
   static constexpr std::size_t kMost = kSpan / kStep + 1;
 
-  void take_met(const KnotBoardReader& board, const Head& head, Time end) noexcept;
-  void take_passed(const KnotBoardReader& board, const Head& head, std::size_t first,
+  void take_met(const KnotBoardReader& board, const Summary& summary, Time end) noexcept;
+  void take_passed(const KnotBoardReader& board, const Summary& summary, std::size_t first,
                    std::size_t end) noexcept;
   void take(Time time, std::span<const double> position) noexcept;
   void forget_all() noexcept;

@@ -62,42 +62,43 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& boar
                     std::to_string(board.revision()));
   }
   // The last writer may have died between its commit and the stores after it.
-  board_->store_tail(head_.consumed);
-  if (!live_ && curve_.has_begun() && !head_.finished) store_settled(curve_.settled_until());
+  board_->store_consumed(summary_.consumed);
+  if (!live_ && curve_.has_begun() && !summary_.finished) store_settled(curve_.settled_until());
 }
 
 void StreamSolver::restore() {
-  head_ = {};
+  summary_ = {};
   const Look look = published_->look();
-  lacks_head_ = look.revision > 0 && !published_->copy_head(look, head_);  // no other writer
-  curve_.restore(head_);
+  lacks_summary_ =
+      look.revision > 0 && !published_->copy_summary(look, summary_);  // no other writer
+  curve_.restore(summary_);
 }
 
 Time StreamSolver::due() const noexcept {
   if (live_ && (curve_.is_planning() || is_finish_postponed_)) return settled_at_;
-  const bool settles =
-      live_ && !head_.finished && head_.newest > 0 && head_.settled_until < curve_.end_of_motion();
-  const bool waits = live_ && seen_ != head_.consumed;
+  const bool settles = live_ && !summary_.finished && summary_.newest > 0 &&
+                       summary_.settled_until < curve_.end_of_motion();
+  const bool waits = live_ && seen_ != summary_.consumed;
   return settles || waits ? settled_at_ + live_->freeze_ahead / 2 : Time::max();
 }
 
 void StreamSolver::prefetch() const noexcept {
-  ring_->prefetch(head_.consumed);
+  ring_->prefetch(summary_.consumed);
   curve_.prefetch();
 }
 
 SettledRaise StreamSolver::settled_raise() const noexcept {
-  const bool settles = live_ && !head_.finished && !head_.starved && head_.newest > 0;
+  const bool settles = live_ && !summary_.finished && !summary_.starved && summary_.newest > 0;
   const bool is_busy = curve_.is_planning() || curve_.course() == Course::waiting;
-  if (!settles || is_busy || seen_ != head_.consumed) return {};
+  if (!settles || is_busy || seen_ != summary_.consumed) return {};
   const Time limit =
       std::min({curve_.newest_time(), curve_.end_of_motion(), curve_.start_decision()});
-  return {board_->settled_word(), head_.settled_until, live_->freeze_ahead, limit};
+  return {board_->settled_word(), summary_.settled_until, live_->freeze_ahead, limit};
 }
 
 StepResult StreamSolver::step(const Clock& clock) noexcept {
   if (is_damaged()) return {.damaged = true};
-  if (live_) head_.settled_until = std::max(head_.settled_until, board_->take_up_settled());
+  if (live_) summary_.settled_until = std::max(summary_.settled_until, board_->take_up_settled());
   is_timed_ = live_ || board_->revision() % kTimedEvery == 0;
   if (is_timed_) started_ = clock.now();
   const Time now = live_ ? started_ : Time::min();
@@ -123,82 +124,83 @@ StepResult StreamSolver::make_revision(const Clock& clock, Time now) noexcept {
   if (!live_ || now < due()) return {};
   settled_at_ = now;
   // Only the settled time has changed: stores that word, and readers keep their copies.
-  if (head_.newest > 0) store_settled(settled_until_);
+  if (summary_.newest > 0) store_settled(settled_until_);
   return {};
 }
 
 void StreamSolver::store_settled(Time t) noexcept {
-  head_.settled_until = std::max(head_.settled_until, t);
-  board_->store_settled(head_.settled_until);
+  summary_.settled_until = std::max(summary_.settled_until, t);
+  board_->store_settled(summary_.settled_until);
 }
 
 /// Discards a revision that was not committed.
 void StreamSolver::take_back(Word misses) noexcept {
   board_->discard();
   restore();
-  head_.misses = misses;
-  seen_ = head_.consumed;
+  summary_.deadline_misses = misses;
+  seen_ = summary_.consumed;
 }
 
 /// Discards an unsound revision, and takes fewer items next: finally the offending one alone.
 void StreamSolver::suspect_items() noexcept {
-  suspected_ = std::max(suspected_, head_.consumed);
+  suspected_ = std::max(suspected_, summary_.consumed);
   if (batch_ > 1) {
     most_items_ = std::min<Word>(batch_, max_batch_) / 2;
   } else {
-    unsound_item_ = head_.consumed - 1;
+    unsound_item_ = summary_.consumed - 1;
   }
-  take_back(head_.misses);
+  take_back(summary_.deadline_misses);
 }
 
 /// Fixes the part of the curve that this step does not change.
 void StreamSolver::freeze(Time now) noexcept {
-  settled_until_ = head_.settled_until;
+  settled_until_ = summary_.settled_until;
   has_starved_ = false;
   if (!live_) return;
   settled_until_ = std::max(settled_until_, now + live_->freeze_ahead);
-  if (!curve_.has_begun() || head_.finished) return;
+  if (!curve_.has_begun() || summary_.finished) return;
   curve_.freeze(settled_until_);
-  head_.low_water = std::min(head_.low_water, std::max(Time::zero(), curve_.newest_time() - now));
-  if (head_.starved || !is_starved()) return;
+  summary_.low_water =
+      std::min(summary_.low_water, std::max(Time::zero(), curve_.newest_time() - now));
+  if (summary_.starved || !is_starved()) return;
   has_starved_ = true;
-  head_.starved = true;
-  ++head_.underruns;
+  summary_.starved = true;
+  ++summary_.underruns;
 }
 
 /// Whether no part of the run may change any more, so that an entry must lead to the next waypoint.
 bool StreamSolver::is_starved() const noexcept {
   // Uncommitted knots have not settled: the first waypoint may come in this step.
-  if (!live_ || head_.newest == 0) return false;
+  if (!live_ || summary_.newest == 0) return false;
   return curve_.window().knots() > 0 ? settled_until_ >= curve_.newest_time()
                                      : settled_until_ > curve_.newest_time();
 }
 
-/// The item before which this step can take items if the ring's written position is `head`: never
-/// before the consumed position, and at most a ring's capacity after it.
-Word StreamSolver::reachable(Word head) const noexcept {
-  const Word waiting = head - head_.consumed;
+/// The item before which this step can take items if the ring's written position is `summary`:
+/// never before the consumed position, and at most a ring's capacity after it.
+Word StreamSolver::reachable(Word summary) const noexcept {
+  const Word waiting = summary - summary_.consumed;
   const bool goes_back = waiting > std::numeric_limits<Word>::max() / 2;
-  return head_.consumed + (goes_back ? 0 : std::min<Word>(waiting, ring_->capacity()));
+  return summary_.consumed + (goes_back ? 0 : std::min<Word>(waiting, ring_->capacity()));
 }
 
 Word StreamSolver::consume(Time now) noexcept {
-  const Word head = ring_->head();
-  available_ = reachable(head);
-  const Word before = head_.consumed;
+  const Word summary = ring_->written();
+  available_ = reachable(summary);
+  const Word before = summary_.consumed;
   keep_ = live_ ? now - live_->history : Time::max();
   withdraw();
   bool is_blocked = false;
   is_finish_postponed_ = false;
   tries_ = PublishedCurve::kTriesPerStep;
   batch_limit_ = most_items_;
-  for (batch_ = 0; head_.consumed < available_ && batch_ < batch_limit_ && !is_damaged();) {
-    ring_->copy(head_.consumed, item_);
+  for (batch_ = 0; summary_.consumed < available_ && batch_ < batch_limit_ && !is_damaged();) {
+    ring_->copy(summary_.consumed, item_);
     is_blocked = !has_room(item_);
     if (is_blocked) break;
-    take(head_.consumed++);
+    take(summary_.consumed++);
     if (is_finish_postponed_) {
-      --head_.consumed;
+      --summary_.consumed;
       break;
     }
     ++batch_;
@@ -207,12 +209,12 @@ Word StreamSolver::consume(Time now) noexcept {
     if (curve_.is_planning() && tries_ <= 0) break;
   }
   // No waypoint waits: the known ones decide.
-  if (is_blocked || head_.consumed == available_) {
+  if (is_blocked || summary_.consumed == available_) {
     curve_.plan(settled_until_, keep_, true, tries_);
   }
   const bool waits = is_blocked && !curve_.has_changes();
-  seen_ = waits || available_ == before ? head : head_.consumed;
-  return head_.consumed - before;
+  seen_ = waits || available_ == before ? summary : summary_.consumed;
+  return summary_.consumed - before;
 }
 
 /// Whether an item can be taken in this revision without losing the history that must be kept. A
@@ -229,24 +231,24 @@ bool StreamSolver::has_room(const RingItem& item) const noexcept {
 /// replacements that are too late or not yet due, and waypoints for which the board may have no
 /// room. Withdraws nothing if the replacement itself must wait for room: it may come too late.
 void StreamSolver::withdraw() noexcept {
-  if (!curve_.has_begun() || head_.finished) return;
-  replacements_.note(head_.consumed, available_);
+  if (!curve_.has_begun() || summary_.finished) return;
+  replacements_.note(summary_.consumed, available_);
   if (replacements_.empty()) return;
   const Time earliest = std::max(settled_until_, curve_.earliest_cut());
   const auto replacement = replacements_.due(earliest, curve_.newest_time());
   if (!replacement) return;
   ring_->copy(*replacement, item_);
   if (!has_room(item_)) return;
-  head_.withdrawn += *replacement - head_.consumed;
-  head_.consumed = *replacement;
+  summary_.withdrawn += *replacement - summary_.consumed;
+  summary_.consumed = *replacement;
 }
 
 /// Notes whether the last commit was late: the process was stopped between reading the clock and
 /// the commit. Readers detect it by changed_from. Stored at once, because the next revision may be
 /// discarded, may never come, or may be another solver's.
 void StreamSolver::check_commit(Time now) noexcept {
-  const bool is_late = head_.changed_from <= now && head_.changed_from < Time::max();
-  if (is_late && !board_->is_late()) ++head_.revisions;
+  const bool is_late = summary_.changed_from <= now && summary_.changed_from < Time::max();
+  if (is_late && !board_->is_late()) ++summary_.late_commits;
   board_->store_checked(is_late);
 }
 
@@ -254,29 +256,29 @@ void StreamSolver::check_commit(Time now) noexcept {
 Time StreamSolver::settled_by_commit() const noexcept {
   if (!live_) return curve_.settled_until();
   // A finished curve no longer changes: it has settled to its end.
-  return head_.finished ? std::min(std::max(settled_until_, curve_.end_of_motion()), kLatestTime)
-                        : settled_until_;
+  return summary_.finished ? std::min(std::max(settled_until_, curve_.end_of_motion()), kLatestTime)
+                           : settled_until_;
 }
 
 StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
-  head_.changed_from = curve_.write();
+  summary_.changed_from = curve_.write();
   if (!board_->is_sound()) return {};
-  put_summary(curve_.summary(), head_);
+  put_summary(curve_.summary(), summary_);
   // The commit time of a recorded stream is not compared with anything.
-  head_.committed = is_timed_ ? clock.now() : std::max(head_.committed, clock.about_now());
-  if (live_ && head_.changed_from <= head_.committed) {
-    take_back(head_.misses + 1);
+  summary_.committed = is_timed_ ? clock.now() : std::max(summary_.committed, clock.about_now());
+  if (live_ && summary_.changed_from <= summary_.committed) {
+    take_back(summary_.deadline_misses + 1);
     return {.missed = true};
   }
-  board_->commit(head_);
+  board_->commit(summary_);
   settled_at_ = started_;
-  if (head_.newest > 0) store_settled(settled_by_commit());
-  board_->store_tail(head_.consumed);
-  if (is_timed_) board_->count_step(head_.committed - started_);
-  curve_.committed(head_);
+  if (summary_.newest > 0) store_settled(settled_by_commit());
+  board_->store_consumed(summary_.consumed);
+  if (is_timed_) board_->count_step(summary_.committed - started_);
+  curve_.committed(summary_);
   most_items_ = std::min<Word>(2 * most_items_, max_batch_);
-  const bool changes = head_.changed_from < Time::max();
-  if (live_) check_commit(changes ? clock.now() : head_.committed);
+  const bool changes = summary_.changed_from < Time::max();
+  if (live_) check_commit(changes ? clock.now() : summary_.committed);
   return {.consumed = consumed, .published = true};
 }
 

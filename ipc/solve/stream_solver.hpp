@@ -69,7 +69,7 @@ class StreamSolver {
   StepResult step(const Clock& clock) noexcept;
 
   /// The summary last committed.
-  [[nodiscard]] const Head& head() const noexcept { return head_; }
+  [[nodiscard]] const Summary& summary() const noexcept { return summary_; }
 
   /// The ring's written position when the last step found nothing more that it could take. A step
   /// has work to do once it has changed, or `due` has come.
@@ -95,8 +95,8 @@ class StreamSolver {
   void take_back(Word misses) noexcept;
   void suspect_items() noexcept;
   [[nodiscard]] Word consume(Time now) noexcept;
-  [[nodiscard]] bool is_damaged() const noexcept { return lacks_head_ || curve_.is_damaged(); }
-  [[nodiscard]] Word reachable(Word head) const noexcept;
+  [[nodiscard]] bool is_damaged() const noexcept { return lacks_summary_ || curve_.is_damaged(); }
+  [[nodiscard]] Word reachable(Word summary) const noexcept;
   [[nodiscard]] bool has_room(const RingItem& item) const noexcept;
   void withdraw() noexcept;
   /// Whether an item is a stop: a replacement without waypoints.
@@ -128,8 +128,9 @@ class StreamSolver {
   Beyond beyond_;
   PublishedCurve curve_;
   std::size_t max_batch_;
-  Head head_;
-  bool lacks_head_ = false;  ///< the board lacks its revision's summary: another writer changed it
+  Summary summary_;
+  bool lacks_summary_ =
+      false;  ///< the board lacks its revision's summary: another writer changed it
   Time settled_until_ = Time::min();  ///< this step changes nothing before this time
   Time keep_ = Time::max();           ///< this step overwrites no segment that ends after this time
   bool is_timed_ = false;             ///< this step is timed

@@ -250,20 +250,20 @@ CurveSummary PublishedCurve::summary() const noexcept {
           .passed_over = passed_before_ + passed_over()};
 }
 
-void put_summary(const CurveSummary& curve, Head& head) noexcept {
-  head.first = curve.first;
-  head.newest = curve.newest;
-  head.stop = curve.stop;
-  head.run = curve.run;
-  head.run_knots = curve.run_knots;
-  head.run_item = curve.run_item;
-  head.run_frozen = curve.run_frozen;
-  head.is_later_run = curve.is_later_run;
-  head.course = static_cast<Word>(curve.course);
-  head.met = curve.met;
-  head.unmet = curve.unmet;
-  head.blend_until = curve.blend_until;
-  head.passed_over = curve.passed_over;
+void put_summary(const CurveSummary& curve, Summary& summary) noexcept {
+  summary.first = curve.first;
+  summary.newest = curve.newest;
+  summary.stop = curve.stop;
+  summary.run = curve.run;
+  summary.run_knots = curve.run_knots;
+  summary.run_item = curve.run_item;
+  summary.run_frozen = curve.run_frozen;
+  summary.is_later_run = curve.is_later_run;
+  summary.course = static_cast<Word>(curve.course);
+  summary.met = curve.met;
+  summary.unmet = curve.unmet;
+  summary.blend_until = curve.blend_until;
+  summary.passed_over = curve.passed_over;
 }
 
 }  // namespace splinecast::ipc

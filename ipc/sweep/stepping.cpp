@@ -88,7 +88,7 @@ bool StreamSweep::serve(std::size_t index, const Clock& clock) {
   }
   watches_[index] = {.solver = Internals::watch(*served.solver), .active = now_};
   tell_first_refusals(*served.solver);
-  if (!served.was_finished && Internals::head(*served.solver).finished) {
+  if (!served.was_finished && Internals::summary(*served.solver).finished) {
     served.was_finished = true;
     tell(SweepNews::finished, served.solver->stream(), served.solver.get(), {});
   }

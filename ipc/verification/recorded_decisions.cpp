@@ -23,7 +23,7 @@ bool RecordedDecisions::is_behind_entry(std::size_t i) const noexcept {
 }
 
 bool RecordedDecisions::is_ending(std::size_t i) const noexcept {
-  return i + 1 == segments_.size() && record_.head.finished && !is_entry(i) &&
+  return i + 1 == segments_.size() && record_.summary.finished && !is_entry(i) &&
          segments_[i].kind == SegmentKind::entry;
 }
 
@@ -60,7 +60,7 @@ bool RecordedDecisions::begins_elsewhere(std::size_t i) const noexcept {
 }
 
 bool RecordedDecisions::is_last_run(std::optional<Word> run_item) const noexcept {
-  return record_.head.finished && run_item && *run_item + 1 == record_.head.run_item;
+  return record_.summary.finished && run_item && *run_item + 1 == record_.summary.run_item;
 }
 
 }  // namespace splinecast::ipc

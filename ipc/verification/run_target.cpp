@@ -60,8 +60,8 @@ bool RunTarget::append_until(std::size_t count) {
 }
 
 void RunTarget::finish_last_run() noexcept {
-  if (window_.knots() != record_.head.run_knots || window_.finished()) return;
-  window_.freeze_knots(record_.head.run_frozen);
+  if (window_.knots() != record_.summary.run_knots || window_.finished()) return;
+  window_.freeze_knots(record_.summary.run_frozen);
   if (window_.frozen_knots() < window_.knots()) window_.finish(record_.end);
 }
 

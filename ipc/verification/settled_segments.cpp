@@ -29,16 +29,16 @@ void SettledSegments::look() {
 
 /// Takes the segments that have settled under a revision; false if the writer overtook it.
 bool SettledSegments::take(const Look& look) {
-  if (!board_->copy_head(look, head_)) return false;
-  if (head_.newest == 0) return true;
-  Word number = std::max(segments_.empty() ? 1 : segments_.back().next, head_.first);
-  while (number <= head_.newest) {
-    const BoardSegment::Taken taken = copy_.take(*board_, head_, number);
+  if (!board_->copy_summary(look, summary_)) return false;
+  if (summary_.newest == 0) return true;
+  Word number = std::max(segments_.empty() ? 1 : segments_.back().next, summary_.first);
+  while (number <= summary_.newest) {
+    const BoardSegment::Taken taken = copy_.take(*board_, summary_, number);
     if (taken == BoardSegment::Taken::torn) return false;
     if (taken == BoardSegment::Taken::none) break;  // the end of a finished curve
-    if (!head_.finished && copy_.right() > head_.settled_until) break;
+    if (!summary_.finished && copy_.right() > summary_.settled_until) break;
     keep();
-    if (copy_.is_last(head_)) break;
+    if (copy_.is_last(summary_)) break;
     number = copy_.next();
   }
   return true;

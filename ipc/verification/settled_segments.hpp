@@ -28,7 +28,7 @@ class SettledSegments {
   [[nodiscard]] std::span<const SegmentCopy> segments() const noexcept { return segments_; }
 
   /// The summary of the board at the last look.
-  [[nodiscard]] const Head& head() const noexcept { return head_; }
+  [[nodiscard]] const Summary& summary() const noexcept { return summary_; }
 
  private:
   [[nodiscard]] bool take(const Look& look);
@@ -36,7 +36,7 @@ class SettledSegments {
 
   const KnotBoardReader* board_;
   bool is_held_before_start_;
-  Head head_;
+  Summary summary_;
   Look seen_;  ///< of the last look that was complete
   BoardSegment copy_;
   std::vector<double> start_;    ///< scratch

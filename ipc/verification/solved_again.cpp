@@ -121,7 +121,7 @@ bool StreamReplay::begins_at_end(std::size_t i) const noexcept {
 /// The entry by which a curve ends at its last waypoint.
 void StreamReplay::solve_ending(std::size_t i) {
   if (begins_at_end(i) && !begin_run(i)) return;
-  if (run_item_ && !append_until(record_.head.run_knots)) return;
+  if (run_item_ && !append_until(record_.summary.run_knots)) return;
   if (target_.window().knots() == 0) {
     return (void)differ(i, "kind: it belongs to no run", in_words(segments_[i].kind), "none");
   }
@@ -135,7 +135,7 @@ void StreamReplay::solve_ending(std::size_t i) {
 }
 
 bool StreamReplay::compare_solved(std::size_t i) {
-  const bool may_be_cut = i + 1 < segments_.size() || !record_.head.finished;
+  const bool may_be_cut = i + 1 < segments_.size() || !record_.summary.finished;
   auto difference = compare(segments_[i], solved_, record_.items.dimensions(), may_be_cut);
   return difference ? differ(i, std::move(*difference)) : true;
 }

@@ -17,7 +17,7 @@ struct StreamRecord {
   DimensionKinds kinds;
   const SentItems& items;
   std::span<const SegmentCopy> segments;  ///< settled ones from number 1
-  Head head;                              ///< the last summary
+  Summary summary;                        ///< the last summary
   Condition end;                          ///< with which the stream was finished
 };
 

@@ -23,7 +23,7 @@ StreamReplay::StreamReplay(const StreamRecord& record)
 
 Verification StreamReplay::run() {
   while (!first_ && next_ < segments_.size()) solve_part();
-  if (!first_ && record_.head.finished && !rests_at_last_waypoint()) {
+  if (!first_ && record_.summary.finished && !rests_at_last_waypoint()) {
     (void)expect_all_used(record_.items.size());
   }
   return {.equal = equal_, .first = std::move(first_)};
@@ -59,7 +59,7 @@ void StreamReplay::solve_run(std::size_t i) {
     if (!follows(s) || !solve_in_run(s)) return;
     advance();
   }
-  if (target_.window().knots() > 0 && is_last_run()) (void)append_until(record_.head.run_knots);
+  if (target_.window().knots() > 0 && is_last_run()) (void)append_until(record_.summary.run_knots);
 }
 
 bool StreamReplay::begin_run(std::size_t i) {
@@ -115,7 +115,7 @@ bool StreamReplay::append_until(std::size_t count) {
 
 /// Whether no segment leads to the last run, because the curve already rests at its last waypoint.
 bool StreamReplay::rests_at_last_waypoint() {
-  const Word run_item = record_.head.run_item;
+  const Word run_item = record_.summary.run_item;
   if (segments_.empty() || run_item == 0 || run_item_ == run_item - 1) return false;
   if (!expect_all_used(run_item - 1)) return false;
   begin_.take_cut(segments_.size() - 1, segments_.back().right);
@@ -124,7 +124,7 @@ bool StreamReplay::rests_at_last_waypoint() {
   target_.forget_waypoints();
   target_.list_waypoints(run_item - 1);
   const core::SlidingWindow& window = target_.window();
-  return append_until(record_.head.run_knots) && window.knots() > 0 &&
+  return append_until(record_.summary.run_knots) && window.knots() > 0 &&
          same_bits(window.knot(window.knots() - 1).position, begin_.position());
 }
 

@@ -20,8 +20,8 @@ from page import this_machine
 
 CAMPAIGN = Path(__file__).resolve().parent
 PROJECT = CAMPAIGN.parent.parent
-WORDS = ["tag", "velocity", "node", "acceleration", "head-tag", "head-slot", "changed-from", "settled-until", "knot-time",
-         "revision", "tail", "head", "claimed", "item"]
+WORDS = ["tag", "velocity", "node", "acceleration", "summary-tag", "summary-slot", "changed-from", "settled-until", "knot-time",
+         "revision", "consumed", "written", "claimed", "item"]
 RACE = "WARNING: ThreadSanitizer: data race"
 
 

@@ -23,18 +23,19 @@ constexpr int kMostActions = 64;
 
 /// Reads everything on a board that `info` and a producer read.
 void look_around(const ipc::KnotBoardReader& board) {
-  ipc::Head head;
+  ipc::Summary summary;
   const ipc::Look look = board.look();
   const ipc::Word r = look.revision;
-  (void)board.copy_head(look, head);
+  (void)board.copy_summary(look, summary);
   for (const ipc::Word seen : {r, r - 1, r - ipc::kChangesKept, ipc::Word{0}}) {
-    (void)board.copy_bounds(look, seen, head);
+    (void)board.copy_bounds(look, seen, summary);
   }
   std::array<ipc::RefusedItem, 3> refused{};
-  require(board.copy_refusals(head, 0, refused) <= refused.size(), "refusals fit into their array");
-  (void)ipc::segment_before(board, head, head.newest);
+  require(board.copy_refusals(summary, 0, refused) <= refused.size(),
+          "refusals fit into their array");
+  (void)ipc::segment_before(board, summary, summary.newest);
   (void)board.step_times();
-  (void)(board.tail() + (board.sleeping() ? 1U : 0U));
+  (void)(board.consumed() + (board.sleeping() ? 1U : 0U));
 }
 
 /// Samples several times with one call, mostly in increasing order.

@@ -75,9 +75,9 @@ void read(const std::string& name) {
   Reader reader(name);
   State state(reader.dimensions());
   const Time first = reader.first_time().value_or(Time(0));
-  ipc::Head head;
-  (void)ipc::Internals::head(reader, head);
-  for (const Time t : {first, head.settled_until, head.newest_knot, Time::max()}) {
+  ipc::Summary summary;
+  (void)ipc::Internals::summary(reader, summary);
+  for (const Time t : {first, summary.settled_until, summary.newest_time, Time::max()}) {
     if (!has_values(reader.sample(t, state))) continue;
     for (const double value : state.values()) {
       require(value - value == 0, "a status with values has numbers in all dimensions");

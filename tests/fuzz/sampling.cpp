@@ -21,9 +21,9 @@ Sampling::Sampling(const ipc::KnotBoardReader& board, ipc::Sampler& sampler)
       snapshot_(board.dimensions()),
       segment_(board.dimensions(), board.smooths()) {}
 
-bool Sampling::find_marks(const ipc::Head& head, ipc::Word number, Marks& marks) {
+bool Sampling::find_marks(const ipc::Summary& summary, ipc::Word number, Marks& marks) {
   using Taken = ipc::BoardSegment::Taken;
-  if (segment_.take(*board_, head, number) != Taken::whole) return false;
+  if (segment_.take(*board_, summary, number) != Taken::whole) return false;
   const auto used = static_cast<std::size_t>(segment_.order()) * board_->dimensions();
   require(are_numbers(segment_.coefficients().first(used)), "a segment's coefficients are numbers");
   require(segment_.left() <= segment_.right() && segment_.right() <= segment_.natural_right(),
@@ -37,17 +37,18 @@ bool Sampling::find_marks(const ipc::Head& head, ipc::Word number, Marks& marks)
 
 void Sampling::tour() {
   constexpr ipc::Word kMost = 24;
-  ipc::Head head;
-  if (board_->copy_head(board_->look(), head) && head.newest > 0) {
-    const ipc::Word oldest = std::max(head.first, head.newest - std::min(head.newest, kMost));
-    for (ipc::Word number = oldest; number <= head.newest; ++number) {
+  ipc::Summary summary;
+  if (board_->copy_summary(board_->look(), summary) && summary.newest > 0) {
+    const ipc::Word oldest =
+        std::max(summary.first, summary.newest - std::min(summary.newest, kMost));
+    for (ipc::Word number = oldest; number <= summary.newest; ++number) {
       Marks marks{};
-      if (!find_marks(head, number, marks)) continue;
+      if (!find_marks(summary, number, marks)) continue;
       for (const Time t : marks) sample(t, false);
       sample(ipc::to_time(ipc::to_word(marks[0]) - 1), false);
       sample_many(marks, Derivatives::all);
     }
-    snapshot(head.settled_until, head.newest_knot);
+    snapshot(summary.settled_until, summary.newest_time);
   }
   for (const Time t : std::array{Time::min(), Time(0), Time::max()}) {
     sample(t, true);
@@ -111,9 +112,9 @@ void Sampling::snapshot(Time from, Time to) {
 
 Time Sampling::pick(Script& script) {
   Marks marks{};
-  ipc::Head head;
-  if (board_->copy_head(board_->look(), head) && head.newest > 0) {
-    (void)find_marks(head, head.newest - script.byte() % head.newest, marks);
+  ipc::Summary summary;
+  if (board_->copy_summary(board_->look(), summary) && summary.newest > 0) {
+    (void)find_marks(summary, summary.newest - script.byte() % summary.newest, marks);
   }
   return script.near(marks[script.byte() % marks.size()]);
 }

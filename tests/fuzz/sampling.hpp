@@ -34,7 +34,7 @@ class Sampling {
  private:
   /// Left and right end of a segment, its right end without a cut, and its middle.
   using Marks = std::array<Time, 4>;
-  [[nodiscard]] bool find_marks(const ipc::Head& head, ipc::Word number, Marks& marks);
+  [[nodiscard]] bool find_marks(const ipc::Summary& summary, ipc::Word number, Marks& marks);
 
   const ipc::KnotBoardReader* board_;
   ipc::Sampler* sampler_;

@@ -74,14 +74,14 @@ TEST(FuzzSeeds, HaveUndamagedSegmentsOfEveryForm) {
     const auto region = std::as_bytes(std::span(seed.image.board));
     const auto layout = ipc::checked_board_layout(ipc::copy_header(region), region.size());
     const ipc::KnotBoardReader board(region, layout);
-    ipc::Head head;
-    if (!board.copy_head(board.look(), head)) continue;
+    ipc::Summary summary;
+    if (!board.copy_summary(board.look(), summary)) continue;
     ipc::KnotCopy knot(board.dimensions(), board.smooths());
     ipc::BoardSegment segment(board.dimensions(), board.smooths());
-    for (ipc::Word number = head.first; number > 0 && number <= head.newest; ++number) {
-      ASSERT_TRUE(board.copy_knot(number, head.revision, knot)) << seed.name << ' ' << number;
+    for (ipc::Word number = summary.first; number > 0 && number <= summary.newest; ++number) {
+      ASSERT_TRUE(board.copy_knot(number, summary.revision, knot)) << seed.name << ' ' << number;
       forms.insert(knot.note.form);
-      EXPECT_NE(segment.take(board, head, number), ipc::BoardSegment::Taken::torn)
+      EXPECT_NE(segment.take(board, summary, number), ipc::BoardSegment::Taken::torn)
           << seed.name << ' ' << number;
     }
   }

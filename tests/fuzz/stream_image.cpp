@@ -180,7 +180,7 @@ Range part_of(std::span<const Word> region, bool is_board, std::mt19937_64& rand
     case 4:
       return {0, region.size()};
     case 5:
-      return control_of(region, ipc::kHeadSlot, 2 * ipc::kHeadWords);
+      return control_of(region, ipc::kSummarySlot, 2 * ipc::kSummaryWords);
     case 6:
       return control_of(region, ipc::kChanges, ipc::kChangesKept);
     case 7:
@@ -219,7 +219,7 @@ void mutate_tag(std::vector<Word>& board, std::mt19937_64& random) {
   if (layout.capacity == 0) return;
   const Range control = control_of(board, 0, ipc::kBoardControlWords);
   const std::size_t cell = below(2, random);
-  std::size_t at = control.begin + ipc::kHeadSlot + cell * ipc::kHeadWords;
+  std::size_t at = control.begin + ipc::kSummarySlot + cell * ipc::kSummaryWords;
   if (below(8, random) != 0) {
     const std::size_t slot = below(layout.capacity, random);
     at = (layout.slots + slot * layout.stride + cell * layout.cell) / kWord;

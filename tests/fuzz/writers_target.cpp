@@ -42,7 +42,7 @@ class Stream {
     ipc::require_same_stream(ring_header_, board_header_);
     replace_solver();
     replace_producer();
-    clock_.time = solver_->head().committed;
+    clock_.time = solver_->summary().committed;
   }
 
   void play(Script script) {
@@ -100,7 +100,7 @@ class Stream {
   }
 
   [[nodiscard]] ipc::WaypointRingWriter::Solved solved() {
-    ipc::WaypointRingWriter::Solved known{.consumed = published_.tail()};
+    ipc::WaypointRingWriter::Solved known{.consumed = published_.consumed()};
     const ipc::Look look = published_.look();
     const bool is_known = look.revision > 0 && is_time_in_range(look.settled_until);
     if (ipc::live_options(board_header_) && is_known) known.settled_until = look.settled_until;

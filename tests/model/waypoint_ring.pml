@@ -1,5 +1,5 @@
 /* Model of the ring in ipc/ring/writer.hpp: a producer that appends one or several items by one store of
- * `head`, may die at any store and is taken over; a solver that consumes, sleeps and is woken; and a passive
+ * `written`, may die at any store and is taken over; a solver that consumes, sleeps and is woken; and a passive
  * observer that no process waits for. Steps interleave one load or store at a time, in program order: this
  * checks the algorithm, not its memory orderings.
  *
@@ -19,14 +19,14 @@
 #endif
 #define CAPACITY 2
 
-byte head, claimed; /* the producer's region */
+byte written, claimed; /* the producer's region */
 byte word0[CAPACITY];
 byte word1[CAPACITY];
-byte tail;          /* the solver's region */
+byte consumed;          /* the solver's region */
 bool sleeping;
-bool asleep;        /* the solver is in the kernel, waiting on `head` */
+bool asleep;        /* the solver is in the kernel, waiting on `written` */
 
-/* For assertions only: the value of item i when `head` made it visible. */
+/* For assertions only: the value of item i when `written` made it visible. */
 byte item[LAST];
 
 /* One store; the producer may die before it. */
@@ -37,10 +37,10 @@ byte item[LAST];
   :: d_step { \
        k = 0; \
        do \
-       :: k < count -> item[head + k] = 10 * life + head + k; k++ \
+       :: k < count -> item[written + k] = 10 * life + written + k; k++ \
        :: else -> break \
        od; \
-       head = head + count; \
+       written = written + count; \
      } \
   :: goto died \
   fi
@@ -51,19 +51,19 @@ proctype Producer() {
 next_life:
   life++;
   do
-  :: head < LAST ->
+  :: written < LAST ->
      if /* an append, or a replacement with its waypoints */
      :: count = 1
-     :: head + 2 <= LAST -> count = 2
+     :: written + 2 <= LAST -> count = 2
      fi;
-     head + count - tail <= CAPACITY; /* else `full`: tried again later */
+     written + count - consumed <= CAPACITY; /* else `full`: tried again later */
 #ifndef NO_CLAIM
      if
-     :: count > 1 -> STORE(claimed, head + count)
+     :: count > 1 -> STORE(claimed, written + count)
      :: else
      fi;
 #endif
-     at = head;
+     at = written;
 #ifdef HEAD_FIRST
      PUBLISH;
 #endif
@@ -87,7 +87,7 @@ next_life:
 #endif
      :: !sleeping
      fi
-  :: head == LAST -> break
+  :: written == LAST -> break
   od;
   goto ended;
 died:
@@ -104,11 +104,11 @@ proctype Solver() {
   byte seen, h, c0, c1;
 
   do
-  :: h = head;
+  :: h = written;
      do
      :: seen < h ->
 #ifdef TAIL_FIRST
-        tail = seen + 1;
+        consumed = seen + 1;
 #endif
         c0 = word0[seen % CAPACITY];
         c1 = word1[seen % CAPACITY];
@@ -117,10 +117,10 @@ proctype Solver() {
      :: else -> break
      od;
 #ifndef TAIL_FIRST
-     tail = seen;
+     consumed = seen;
 #endif
      sleeping = true;
-     h = head;
+     h = written;
      if
 #ifdef NO_SECOND_LOOK
      :: true ->
@@ -129,7 +129,7 @@ proctype Solver() {
 #endif
         atomic { /* futex wait: the kernel compares and sleeps atomically */
           if
-          :: head == h -> asleep = true
+          :: written == h -> asleep = true
           :: else
           fi
         };
@@ -147,14 +147,14 @@ proctype Observer() {
   byte i, c0, c1, h, cl;
 
 end_waiting:
-  head > 0;
+  written > 0;
   if /* the newest item, or the one before it */
-  :: i = head - 1
-  :: head > 1 -> i = head - 2
+  :: i = written - 1
+  :: written > 1 -> i = written - 2
   fi;
   c0 = word0[i % CAPACITY];
   c1 = word1[i % CAPACITY];
-  h = head;
+  h = written;
   cl = claimed;
   if
 #ifdef OBSERVER_LE
@@ -170,7 +170,7 @@ end_waiting:
 /* When no process can take a step, the solver has consumed every item. */
 active proctype Rest() {
   timeout;
-  assert(tail == head)
+  assert(consumed == written)
 }
 
 init {

@@ -163,8 +163,8 @@ TEST_F(RealTime, SolvingMakesNoSystemCallNoAllocationAndNoPageFault) {
         Solver solver(stream.name(), kSolving);
         if (!solver.attach()) _exit(1);
         const auto solve = [&](std::uint64_t waypoints) {
-          const ipc::Word enough = ipc::Internals::head(solver).knots + waypoints;
-          while (ipc::Internals::head(solver).knots < enough) {
+          const ipc::Word enough = ipc::Internals::summary(solver).knots + waypoints;
+          while (ipc::Internals::summary(solver).knots < enough) {
             if (solver.step(clock).published) ++process.page().answered;
             ++process.page().rounds;
           }

@@ -86,9 +86,9 @@ class PublicationWatch {
   [[nodiscard]] bool is_midway() {
     const ipc::Look look = board_.look();
     const ipc::Word r = look.revision;
-    if (r == 0 || !board_.copy_bounds(look, r, head_)) return false;
-    const ipc::Word first = head_.newest > kChanged ? head_.newest - kChanged : 1;
-    for (ipc::Word number = first; number <= head_.newest + 1; ++number) {
+    if (r == 0 || !board_.copy_bounds(look, r, summary_)) return false;
+    const ipc::Word first = summary_.newest > kChanged ? summary_.newest - kChanged : 1;
+    for (ipc::Word number = first; number <= summary_.newest + 1; ++number) {
       const auto words = ipc::words_at(std::span<const std::byte>(region_.bytes()),
                                        layout_.slots + (number % layout_.capacity) * layout_.stride,
                                        layout_.stride / sizeof(ipc::Word));
@@ -106,7 +106,7 @@ class PublicationWatch {
   ipc::Region region_;
   ipc::BoardLayout layout_;
   ipc::KnotBoardReader board_;
-  ipc::Head head_;
+  ipc::Summary summary_;
 };
 
 std::int64_t cpu_time() {
@@ -154,7 +154,7 @@ TEST(PreemptedWriter, AReaderOfHigherPriorityOnTheSameCoreNeverWaitsForTheWriter
       solver.step(clock);
     }
   };
-  while (ipc::Internals::head(solver).knots < 100) work();
+  while (ipc::Internals::summary(solver).knots < 100) work();
   const ConfinedEnd end =
       run_confined([&](Confined& process) { read_above(stream.name(), process); }, work);
   if (end.code == kForbidden) GTEST_SKIP() << "SCHED_FIFO needs CAP_SYS_NICE or RLIMIT_RTPRIO";

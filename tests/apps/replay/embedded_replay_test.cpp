@@ -49,13 +49,14 @@ TEST(EmbeddedReplay, SettlesTheCurveBetweenWaypointsThatAreFarApart) {
   Reader reader(stream.name(), testing::kPatience);
   State state(reader.dimensions());
   const MonotonicClock clock;
-  ipc::Head head;
+  ipc::Summary summary;
   std::array<std::size_t, kSampleStatuses> count{};
   const Time patience = clock.now() + testing::kPatience;
   for (Time now = clock.now(); now < patience; now = clock.now()) {
     const SampleStatus status = reader.sample(now, state);
     ++count[static_cast<std::size_t>(status)];
-    if (ipc::Internals::head(reader, head) && head.finished && now > head.newest_knot) break;
+    if (ipc::Internals::summary(reader, summary) && summary.finished && now > summary.newest_time)
+      break;
     (void)reader.wait(milliseconds(1));
   }
   replaying.join();
@@ -144,15 +145,15 @@ TEST(EmbeddedReplay, OntoAMovingStreamWaitsForTheEndOfItsMotion) {
     (void)reader.wait(milliseconds(1));
     now = clock.now();
   }
-  ipc::Head old;  // the reader still maps the old board
-  EXPECT_TRUE(ipc::Internals::head(reader, old));
+  ipc::Summary old;  // the reader still maps the old board
+  EXPECT_TRUE(ipc::Internals::summary(reader, old));
   EXPECT_TRUE(old.finished);
-  EXPECT_GE(now, old.newest_knot);
+  EXPECT_GE(now, old.newest_time);
   replaying.join();
-  ipc::Head second;
-  ASSERT_TRUE(ipc::Internals::head(Reader(stream.name()), second));
+  ipc::Summary second;
+  ASSERT_TRUE(ipc::Internals::summary(Reader(stream.name()), second));
   EXPECT_EQ(second.knots, 3U);
-  EXPECT_GE(second.newest_knot, old.newest_knot + *options.lead + milliseconds(600));
+  EXPECT_GE(second.newest_time, old.newest_time + *options.lead + milliseconds(600));
 }
 
 }  // namespace

@@ -80,11 +80,11 @@ TEST_F(Life, APausedProducerDelaysNoOtherProcess) {
   }));
   Reader reader(name());
   State state(reader.dimensions());
-  ipc::Head head;
-  ASSERT_TRUE(ipc::Internals::head(reader, head));
-  EXPECT_EQ(reader.sample(head.newest_knot - Time(1), state), SampleStatus::provisional);
-  EXPECT_EQ(reader.sample(head.newest_knot, state), SampleStatus::stopping);
-  EXPECT_EQ(reader.sample(head.newest_knot + Time(1'000'000'000), state), SampleStatus::holding);
+  ipc::Summary summary;
+  ASSERT_TRUE(ipc::Internals::summary(reader, summary));
+  EXPECT_EQ(reader.sample(summary.newest_time - Time(1), state), SampleStatus::provisional);
+  EXPECT_EQ(reader.sample(summary.newest_time, state), SampleStatus::stopping);
+  EXPECT_EQ(reader.sample(summary.newest_time + Time(1'000'000'000), state), SampleStatus::holding);
   EXPECT_TRUE(reader.alive().producer);
   EXPECT_TRUE(reader.alive().solver);
   replaying.signal(SIGCONT);
@@ -221,9 +221,9 @@ TEST_F(Life, ALiveStreamPlaysNowAndStartsAndEndsAtRest) {
   const Time first = *oldest;
   EXPECT_LT(first - now, Time(3'000'000'000));
   ASSERT_EQ(replaying.wait().code, 0);
-  ipc::Head head;
-  ASSERT_TRUE(ipc::Internals::head(reader, head));
-  for (const Time end : {first, head.newest_knot}) {
+  ipc::Summary summary;
+  ASSERT_TRUE(ipc::Internals::summary(reader, summary));
+  for (const Time end : {first, summary.newest_time}) {
     EXPECT_TRUE(has_values(reader.sample(end, state)));
     for (const double v : state.velocity()) EXPECT_NEAR(v, 0, 1e-9);
     for (const double a : state.acceleration()) EXPECT_NEAR(a, 0, 1e-5);

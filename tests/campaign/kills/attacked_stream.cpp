@@ -67,7 +67,7 @@ void AttackedStream::tick() {
   reap();
   const Time now = clock_.now();
   note_recoveries(now);
-  if (!plan_.is_live() && head_.finished && observed_id() != compared_id_ && !producer_) {
+  if (!plan_.is_live() && summary_.finished && observed_id() != compared_id_ && !producer_) {
     end_life();
     is_ending_ = is_last_life_;
   }
@@ -92,20 +92,20 @@ void AttackedStream::observe() {
   has_sampled_ = false;
   try {
     if (!observer_) {
-      head_ = {};
+      summary_ = {};
       observer_.emplace(plan_.stream);
       check_.emplace(plan_, *observer_, journal_->observer);
     }
   } catch (const NoSuchStream&) {
     return;
   }
-  const bool has_head = ipc::Internals::head(*observer_, head_);
-  const SampleStatus status = check_->peek(head_.newest_knot);
-  has_sampled_ = has_head && has_values(status);
+  const bool has_summary = ipc::Internals::summary(*observer_, summary_);
+  const SampleStatus status = check_->peek(summary_.newest_time);
+  has_sampled_ = has_summary && has_values(status);
   if (status != SampleStatus::retired) return;
   check_.reset();
   observer_.reset();
-  head_ = {};
+  summary_ = {};
 }
 
 void AttackedStream::reap() {
@@ -139,7 +139,7 @@ void AttackedStream::note_kill(Role role) {
   ++findings_.kills[index_of(role)];
   findings_.recovery[index_of(role)].begin(clock_.now());
   Mark& mark = marks_[index_of(role)];
-  mark = {.stream_id = observed_id(), .count = head_.consumed};
+  mark = {.stream_id = observed_id(), .count = summary_.consumed};
   if (role != Role::producer) return;
   if (auto left = ring()) {
     mark = {.stream_id = left->stream_id(), .count = left->appended()};
@@ -153,7 +153,7 @@ void AttackedStream::note_recoveries(Time now) {
     apps::Recovery& recovery = findings_.recovery[index_of(role)];
     if (!recovery.is_awaited() || !has_sampled_) continue;
     const Mark& mark = marks_[index_of(role)];
-    if (observed_id() != mark.stream_id || head_.consumed > mark.count) recovery.end(now);
+    if (observed_id() != mark.stream_id || summary_.consumed > mark.count) recovery.end(now);
   }
   apps::Recovery& recovery = findings_.recovery[index_of(Role::reader)];
   const bool is_back = readers_.empty() || (readers_[killed_reader_].child &&
@@ -190,7 +190,7 @@ void AttackedStream::watch(Time now) {
     count_hang(fmt::format("no new data after the kill of a {}", to_string(role)));
     recovery.forget();
   }
-  const Mark progress{.stream_id = observed_id(), .count = head_.consumed};
+  const Mark progress{.stream_id = observed_id(), .count = summary_.consumed};
   if (progress.stream_id != progress_.stream_id || progress.count != progress_.count) moved_ = now;
   progress_ = progress;
   if (is_ending_ || now - moved_ < kPatience) return;
@@ -201,7 +201,7 @@ void AttackedStream::watch(Time now) {
 void AttackedStream::count_hang(const std::string& what) {
   ++findings_.hangs;
   apps::say(fmt::format("'{}': {}; {} items consumed, {} accepted, revision {}", plan_.stream, what,
-                        head_.consumed, journal_->accepted.load(), head_.revision));
+                        summary_.consumed, journal_->accepted.load(), summary_.revision));
 }
 
 bool AttackedStream::is_calm() const {
@@ -216,12 +216,12 @@ bool AttackedStream::is_calm() const {
 void AttackedStream::end_life() {
   count_items();
   const std::uint64_t before = journal_->observer.segments;
-  if (const auto first = observer_->first_time()) check_->survey(*first, head_.newest_knot);
-  if (journal_->observer.segments - before != plan_.reference.size() || head_.refused > 0) {
+  if (const auto first = observer_->first_time()) check_->survey(*first, summary_.newest_time);
+  if (journal_->observer.segments - before != plan_.reference.size() || summary_.refused > 0) {
     ++journal_->observer.wrong;
     apps::say(fmt::format("'{}': {} segments of {}, {} items refused", plan_.stream,
                           journal_->observer.segments - before, plan_.reference.size(),
-                          head_.refused));
+                          summary_.refused));
   }
   compared_id_ = observed_id();
   journal_->accepted = 0;
@@ -232,13 +232,13 @@ void AttackedStream::end_life() {
 /// Counts the items of a stream at its end: the ring holds exactly the accepted items, and each one
 /// was interpolated, passed over, refused with a reason, withdrawn, or carried out.
 void AttackedStream::count_items() {
-  findings_.waypoints += head_.interpolated();
-  findings_.passed_over += head_.passed_over;
-  findings_.refused += head_.refused;
-  findings_.withdrawn += head_.withdrawn;
+  findings_.waypoints += summary_.interpolated();
+  findings_.passed_over += summary_.passed_over;
+  findings_.refused += summary_.refused;
+  findings_.withdrawn += summary_.withdrawn;
   const auto left = ring();
   const ipc::Word appended = left ? left->appended() : 0;
-  const ipc::Word told = head_.knots + head_.refused + head_.withdrawn + head_.controls;
+  const ipc::Word told = summary_.knots + summary_.refused + summary_.withdrawn + summary_.controls;
   const ipc::Word most = std::max({appended, told, journal_->accepted.load()});
   const ipc::Word least = std::min(appended, told);
   if (most == least) return;
@@ -301,7 +301,7 @@ Findings AttackedStream::finish() {
     end(producer_);
     const bool all_consumed = tick_until([this] {
       const auto left = ring();
-      return left && head_.consumed == left->appended() && head_.finished == plan_.is_live();
+      return left && summary_.consumed == left->appended() && summary_.finished == plan_.is_live();
     });
     if (!all_consumed) count_hang("the stream does not end");
     count_items();

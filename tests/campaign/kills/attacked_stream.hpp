@@ -88,7 +88,7 @@ class AttackedStream {
   std::size_t killed_reader_ = 0;
   std::optional<Reader> observer_;
   std::optional<CurveCheck> check_;
-  ipc::Head head_;
+  ipc::Summary summary_;
   bool has_sampled_ = false;  ///< whether this tick has sampled the newest knot
   std::array<Mark, kRoles> marks_;
   std::uint64_t compared_id_ = 0;  ///< id of the last stream whose end was compared

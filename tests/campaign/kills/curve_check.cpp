@@ -123,7 +123,7 @@ void CurveCheck::check_reference(const ipc::SegmentCopy& segment) {
     found(facts_->wrong, fmt::format("segment {} begins at {}: a waypoint is missing",
                                      segment.number, segment.left.count()));
   }
-  if (plan_->reference.empty() || segment.right > snapshot_.head().settled_until) return;
+  if (plan_->reference.empty() || segment.right > snapshot_.summary().settled_until) return;
   const bool is_known = segment.number <= plan_->reference.size();
   const core::Segment* const wanted = is_known ? &plan_->reference[segment.number - 1] : nullptr;
   if (!is_known || segment.right != wanted->right || segment.order != wanted->order ||
@@ -153,8 +153,8 @@ void CurveCheck::check_join(const ipc::SegmentCopy& before, const ipc::SegmentCo
 /// The newest segment ends at rest, except on a finished recorded stream, which has its own end
 /// condition.
 void CurveCheck::check_end(const ipc::SegmentCopy& segment) {
-  const ipc::Head& head = snapshot_.head();
-  if (segment.number != head.newest || (head.finished && !plan_->is_live())) return;
+  const ipc::Summary& summary = snapshot_.summary();
+  if (segment.number != summary.newest || (summary.finished && !plan_->is_live())) return;
   ++facts_->ends;
   core::evaluate(segment.order, segment.coefficients, to_seconds(segment.right - segment.left),
                  right_.ref());

@@ -68,18 +68,18 @@ class ReaderRole {
   /// Samples close before `settled_until`, and at a random time up to the newest knot.
   SampleStatus tick_recorded() {
     const auto oldest = reader_.first_time();
-    if (!oldest || !ipc::Internals::head(reader_, head_) || head_.newest == 0) {
+    if (!oldest || !ipc::Internals::summary(reader_, summary_) || summary_.newest == 0) {
       return check_.peek(Time{});  // its status is the reason
     }
     const Time first = *oldest;
     const Time back = static_cast<std::int64_t>(
                           std::min(kIntervalsBack, plan_->board_capacity / kPartOfTheBoard)) *
                       plan_->payload.interval();
-    last_ = std::max({last_, first, head_.settled_until - Time(1) - up_to(back / 8)});
-    if (last_ < head_.settled_until) (void)check_.tick(last_);
-    const Time from = std::max(first, head_.settled_until - back);
-    if (facts_->turns % kSurveyEvery == 0) check_.survey(from, head_.newest_knot);
-    return check_.peek(from + up_to(std::max(Time::zero(), head_.newest_knot - from)));
+    last_ = std::max({last_, first, summary_.settled_until - Time(1) - up_to(back / 8)});
+    if (last_ < summary_.settled_until) (void)check_.tick(last_);
+    const Time from = std::max(first, summary_.settled_until - back);
+    if (facts_->turns % kSurveyEvery == 0) check_.survey(from, summary_.newest_time);
+    return check_.peek(from + up_to(std::max(Time::zero(), summary_.newest_time - from)));
   }
 
   const Plan* plan_;
@@ -89,7 +89,7 @@ class ReaderRole {
   Reader reader_;
   CurveCheck check_;
   RingCheck ring_;
-  ipc::Head head_;
+  ipc::Summary summary_;
   Time last_ = Time::min();
 };
 

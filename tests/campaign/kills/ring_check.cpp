@@ -19,14 +19,14 @@ RingCheck::RingCheck(const Plan& plan, ReaderFacts& facts)
       item_(Payload::kDimensions) {}
 
 bool RingCheck::is_finished() const noexcept {
-  const ipc::Word head = ring_.head();
-  return head > 0 && ring_.kind(head - 1) == ipc::ItemKind::finish;
+  const ipc::Word written = ring_.written();
+  return written > 0 && ring_.kind(written - 1) == ipc::ItemKind::finish;
 }
 
 void RingCheck::look(ipc::Word back) {
-  const ipc::Word head = ring_.head();
-  if (back >= head) return;
-  const ipc::Word i = head - 1 - back;
+  const ipc::Word written = ring_.written();
+  if (back >= written) return;
+  const ipc::Word i = written - 1 - back;
   if (!ring_.observe(i, item_) || item_.kind != ipc::ItemKind::waypoint) return;
   ++facts_->items;
   const auto number = plan_->payload.number_at(item_.time);

@@ -19,7 +19,7 @@ class RingCheck {
   void look(ipc::Word back);
 
   /// Number of items appended so far.
-  [[nodiscard]] ipc::Word appended() const noexcept { return ring_.head(); }
+  [[nodiscard]] ipc::Word appended() const noexcept { return ring_.written(); }
   /// Whether the newest item finishes the stream.
   [[nodiscard]] bool is_finished() const noexcept;
 

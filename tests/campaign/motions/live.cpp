@@ -65,8 +65,8 @@ std::string text_of(const LiveSeen& seen) {
       seen.peak_velocity, seen.peak_acceleration, seen.error_p99, seen.largest_error,
       seen.knots > 0 ? 100 * static_cast<double>(seen.passed_over) / static_cast<double>(seen.knots)
                      : 0,
-      100 * seen.holding, seen.samples, seen.came_late, seen.kills, seen.misses, seen.late_commits,
-      seen.revised, 1e3 * seen.producer_late, 1e3 * seen.solver_late);
+      100 * seen.holding, seen.samples, seen.came_late, seen.kills, seen.deadline_misses,
+      seen.late_commits, seen.revised, 1e3 * seen.producer_late, 1e3 * seen.solver_late);
 }
 
 }  // namespace

@@ -245,15 +245,15 @@ void LiveRow::tick(Time now) {
       return;
     }
   }
-  if (ipc::Internals::head(*observer_, head_) && t <= kSettling)
-    passed_at_start_ = head_.passed_over;
+  if (ipc::Internals::summary(*observer_, summary_) && t <= kSettling)
+    passed_at_start_ = summary_.passed_over;
 }
 
 LiveSeen LiveRow::finish() {
   const nlohmann::json read = reader_->result();
-  if (observer_) (void)ipc::Internals::head(*observer_, head_);
+  if (observer_) (void)ipc::Internals::summary(*observer_, summary_);
   const auto reason = [&](Refusal refusal) {
-    return head_.reasons[static_cast<std::size_t>(refusal)];
+    return summary_.reasons[static_cast<std::size_t>(refusal)];
   };
   const std::uint64_t late = reason(Refusal::past) + reason(Refusal::too_late);
   return {.peak_velocity = read.at("velocity"),
@@ -264,13 +264,13 @@ LiveSeen LiveRow::finish() {
           .samples = read.at("samples"),
           .steps = read.at("steps"),
           .revised = read.at("revised"),
-          .refused = head_.refused - late + facts_->refused_calls,
+          .refused = summary_.refused - late + facts_->refused_calls,
           .came_late = late + facts_->late_calls,
-          .passed_over = head_.passed_over,
+          .passed_over = summary_.passed_over,
           .passed_at_start = passed_at_start_,
-          .knots = head_.knots,
-          .late_commits = head_.revisions,
-          .misses = head_.misses,
+          .knots = summary_.knots,
+          .late_commits = summary_.late_commits,
+          .deadline_misses = summary_.deadline_misses,
           .kills = kills_,
           .producer_late = static_cast<double>(facts_->producer_late) * 1e-9,
           .solver_late = static_cast<double>(facts_->solver_late) * 1e-9};

@@ -40,7 +40,7 @@ struct LiveSeen {
   std::uint64_t passed_at_start = 0;
   std::uint64_t knots = 0;
   std::uint64_t late_commits = 0;
-  std::uint64_t misses = 0;
+  std::uint64_t deadline_misses = 0;
   std::uint64_t kills = 0;
   double producer_late = 0;  ///< s, see LiveFacts
   double solver_late = 0;    ///< s, see LiveFacts
@@ -93,7 +93,7 @@ class LiveRow {
   std::optional<apps::Child> producer_;
   std::optional<apps::Child> reader_;
   std::optional<Reader> observer_;
-  ipc::Head head_;
+  ipc::Summary summary_;
   std::uint64_t passed_at_start_ = 0;
   std::uint64_t kills_ = 0;
 };

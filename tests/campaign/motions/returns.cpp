@@ -143,7 +143,7 @@ class ReturnRun {
     return all;
   }
   [[nodiscard]] ipc::WaypointRingWriter::Solved solved() const {
-    return {.consumed = stream_.board.reader.tail(),
+    return {.consumed = stream_.board.reader.consumed(),
             .settled_until = stream_.board.reader.look().settled_until,
             .clock = &stream_.clock};
   }
@@ -217,17 +217,17 @@ class ReturnRun {
   /// Notes since when the curve has been on its waypoints without interruption.
   void look() {
     was_dead_ = was_dead_ || is_dead();
-    const ipc::Head& head = stream_.solver.head();
-    const auto course = static_cast<ipc::Course>(head.course);
-    const bool is_on_target = course == ipc::Course::on_target && !head.starved && !is_dead();
+    const ipc::Summary& summary = stream_.solver.summary();
+    const auto course = static_cast<ipc::Course>(summary.course);
+    const bool is_on_target = course == ipc::Course::on_target && !summary.starved && !is_dead();
     if (!is_on_target) back_at_.reset();
     if (is_on_target && !back_at_) back_at_ = now_;
   }
 
   void judge() {
-    const ipc::Head& head = stream_.solver.head();
-    counts_->starvations += head.underruns;
-    counts_->passed_over += head.passed_over;
+    const ipc::Summary& summary = stream_.solver.summary();
+    counts_->starvations += summary.underruns;
+    counts_->passed_over += summary.passed_over;
     // The return must be in time, and the curve on the path at the end.
     if (!back_at_ || !allowed_) {
       ++counts_->never_back;

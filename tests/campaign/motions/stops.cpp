@@ -122,7 +122,7 @@ TrialOptions options_of(const Data& data, const Curve& curve) {
 
 /// Copies the two newest published segments.
 bool take_newest(Trial& trial, ipc::BoardSnapshot& out) {
-  const Time newest = trial.head().newest_knot;
+  const Time newest = trial.summary().newest_time;
   return has_values(trial.sampler().snapshot(newest - Time(1), newest, out));
 }
 

@@ -45,12 +45,12 @@ Trial::Trial(const Motion& motion, const Schedule& schedule, TrialOptions option
 Seen Trial::run() {
   const int end = static_cast<int>(motion_.seconds() * kMilliseconds);
   while (ms_ < end) tick();
-  const auto past = head().reasons[static_cast<std::size_t>(Refusal::past)];
+  const auto past = summary().reasons[static_cast<std::size_t>(Refusal::past)];
   seen_.past += past;
-  seen_.refused = head().refused - past + refused_;
-  seen_.knots = head().knots;
-  seen_.passed_over = head().passed_over;
-  seen_.starvations = head().underruns;
+  seen_.refused = summary().refused - past + refused_;
+  seen_.knots = summary().knots;
+  seen_.passed_over = summary().passed_over;
+  seen_.starvations = summary().underruns;
   seen_.holding = samples_ > 0 ? static_cast<double>(held_) / static_cast<double>(samples_) : 1;
   std::ranges::sort(seen_.errors);
   return std::move(seen_);
@@ -62,7 +62,7 @@ void Trial::tick() {
   produce();
   solve();
   read();
-  if (now_ <= kSettling) seen_.passed_at_start = head().passed_over;
+  if (now_ <= kSettling) seen_.passed_at_start = summary().passed_over;
   ++ms_;
 }
 
@@ -84,7 +84,7 @@ void Trial::send(const Call& call) {
     waypoints.push_back({.time = stream_time(call.times[i]), .position = positions[i]});
   }
   const ipc::WaypointRingWriter::Solved solved{
-      .consumed = stream_.board.reader.tail(),
+      .consumed = stream_.board.reader.consumed(),
       .settled_until = stream_.board.reader.look().settled_until,
       .clock = &stream_.clock};
   if (call.replaces_from) {
@@ -119,7 +119,7 @@ void Trial::read() {
   const auto status = sampler_.sample(stream_.clock.time, state_);
   if (!has_values(status)) return;
   const bool enters = is_entry();
-  if (options_.watch) options_.watch({now_, status, enters, head().underruns, &state_});
+  if (options_.watch) options_.watch({now_, status, enters, summary().underruns, &state_});
   if (now_ < 0) return;
   const auto is_now = [&](const auto& pause) { return now_ >= pause.first && now_ < pause.second; };
   if (std::ranges::none_of(schedule_.pauses, is_now) &&

@@ -65,7 +65,7 @@ class Trial {
   /// Advances by 1 ms: the producer's calls, the solver's steps and one sample.
   void tick();
   [[nodiscard]] double now() const noexcept { return now_; }
-  [[nodiscard]] const ipc::Head& head() const noexcept { return stream_.solver.head(); }
+  [[nodiscard]] const ipc::Summary& summary() const noexcept { return stream_.solver.summary(); }
   [[nodiscard]] ipc::Sampler& sampler() noexcept { return sampler_; }
   [[nodiscard]] static Time stream_time(double t);
 

@@ -12,8 +12,8 @@
 
 namespace splinecast::campaign {
 
-using ipc::Head;
 using ipc::ItemKind;
+using ipc::Summary;
 using ipc::Word;
 
 RevisionCheck::RevisionCheck(const StreamPlan& plan, testing::MemoryStream& stream,
@@ -29,15 +29,15 @@ RevisionCheck::RevisionCheck(const StreamPlan& plan, testing::MemoryStream& stre
 void RevisionCheck::breach(Breach breach, const std::string& what) {
   findings_->breach(
       breach, fmt::format("{}, revision {}: course {}, {} of {} waypoints met, unmet {}, newest {}",
-                          what, head_.revision, head_.course, head_.met, head_.run_knots,
-                          head_.unmet, head_.newest));
+                          what, summary_.revision, summary_.course, summary_.met,
+                          summary_.run_knots, summary_.unmet, summary_.newest));
 }
 
 void RevisionCheck::look(Time now, bool is_complete) {
   const auto& board = stream_->board.reader;
   const ipc::Look look = board.look();
-  const Head before = head_;
-  if (!board.copy_head(look, head_)) {
+  const Summary before = summary_;
+  if (!board.copy_summary(look, summary_)) {
     if (look.revision == 0) return;
     return findings_->breach(Breach::board_refused,
                              fmt::format("no summary of revision {}", look.revision));
@@ -48,7 +48,7 @@ void RevisionCheck::look(Time now, bool is_complete) {
     settled_.look();
     return check_settled_segments();
   }
-  items_.note_refusals(board, head_.refused);
+  items_.note_refusals(board, summary_.refused);
   findings_->count(Event::revisions);
   check_counts(before);
   take_items(before);
@@ -59,26 +59,27 @@ void RevisionCheck::look(Time now, bool is_complete) {
   check_settled_segments();
 }
 
-void RevisionCheck::check_counts(const Head& before) {
+void RevisionCheck::check_counts(const Summary& before) {
   const bool adds_up =
-      head_.consumed == head_.knots + head_.refused + head_.withdrawn + head_.controls &&
-      head_.refused == std::reduce(head_.reasons.begin(), head_.reasons.end()) &&
-      head_.passed_over <= head_.knots && head_.consumed >= before.consumed &&
-      head_.consumed <= stream_->ring.reader.head();
+      summary_.consumed ==
+          summary_.knots + summary_.refused + summary_.withdrawn + summary_.controls &&
+      summary_.refused == std::reduce(summary_.reasons.begin(), summary_.reasons.end()) &&
+      summary_.passed_over <= summary_.knots && summary_.consumed >= before.consumed &&
+      summary_.consumed <= stream_->ring.reader.written();
   if (!adds_up) {
     breach(Breach::items_lost,
            fmt::format("consumed {}, interpolated {}, passed over {}, refused {}, withdrawn {}, "
                        "controls {}",
-                       head_.consumed, head_.interpolated(), head_.passed_over, head_.refused,
-                       head_.withdrawn, head_.controls));
+                       summary_.consumed, summary_.interpolated(), summary_.passed_over,
+                       summary_.refused, summary_.withdrawn, summary_.controls));
   }
-  if (head_.consumed - before.consumed > plan_->ring_capacity) {
+  if (summary_.consumed - before.consumed > plan_->ring_capacity) {
     breach(Breach::unbounded_step,
-           fmt::format("{} items in one step", head_.consumed - before.consumed));
+           fmt::format("{} items in one step", summary_.consumed - before.consumed));
   }
-  findings_->count(Event::excesses, head_.exceeding - before.exceeding);
+  findings_->count(Event::excesses, summary_.exceeding - before.exceeding);
   for (std::size_t i = 0; i < kRefusals; ++i) {
-    for (Word n = before.reasons[i]; n < head_.reasons[i]; ++n) {
+    for (Word n = before.reasons[i]; n < summary_.reasons[i]; ++n) {
       findings_->count(static_cast<Refusal>(i));
     }
   }
@@ -86,36 +87,37 @@ void RevisionCheck::check_counts(const Head& before) {
 
 /// `settled_until` never decreases, and each revision settles the curve up to freeze_ahead after
 /// the start of its step.
-void RevisionCheck::check_settled_until(const Head& before, Time now) {
+void RevisionCheck::check_settled_until(const Summary& before, Time now) {
   const bool had_curve = before.newest > 0;
-  const bool is_back = had_curve && head_.settled_until < before.settled_until;
-  const bool is_late = head_.revision != before.revision && head_.newest > 0 && !head_.finished &&
-                       head_.settled_until < now + plan_->live.freeze_ahead;
+  const bool is_back = had_curve && summary_.settled_until < before.settled_until;
+  const bool is_late = summary_.revision != before.revision && summary_.newest > 0 &&
+                       !summary_.finished &&
+                       summary_.settled_until < now + plan_->live.freeze_ahead;
   if (is_back || is_late) {
     breach(Breach::settled_back,
-           fmt::format("settled until {}, before {}, step began at {}", head_.settled_until.count(),
-                       before.settled_until.count(), now.count()));
+           fmt::format("settled until {}, before {}, step began at {}",
+                       summary_.settled_until.count(), before.settled_until.count(), now.count()));
   }
 }
 
 /// Copies the segment that begins at knot `number`, or else at the knot before.
 bool RevisionCheck::copy(Word number) {
   const auto& board = stream_->board.reader;
-  auto taken = board_segment_.take(board, head_, number);
-  if (taken == ipc::BoardSegment::Taken::none && number > head_.first) {
-    taken = board_segment_.take(board, head_, number - 1);
+  auto taken = board_segment_.take(board, summary_, number);
+  if (taken == ipc::BoardSegment::Taken::none && number > summary_.first) {
+    taken = board_segment_.take(board, summary_, number - 1);
   }
   if (taken != ipc::BoardSegment::Taken::whole) return false;
   board_segment_.copy_to(copy_);
   return true;
 }
 
-void RevisionCheck::count_events(const Head& before) {
-  findings_->count(Event::starvations, head_.underruns - before.underruns);
-  findings_->count(Event::withdrawals, head_.withdrawn - before.withdrawn);
-  findings_->count(Event::waypoints_interpolated, head_.knots - before.knots);
-  findings_->count(Event::deadline_misses, head_.misses - before.misses);
-  if (!head_.finished || before.finished) return;
+void RevisionCheck::count_events(const Summary& before) {
+  findings_->count(Event::starvations, summary_.underruns - before.underruns);
+  findings_->count(Event::withdrawals, summary_.withdrawn - before.withdrawn);
+  findings_->count(Event::waypoints_interpolated, summary_.knots - before.knots);
+  findings_->count(Event::deadline_misses, summary_.deadline_misses - before.deadline_misses);
+  if (!summary_.finished || before.finished) return;
   findings_->count(Event::finishes);
   if (copy_.kind == SegmentKind::entry) findings_->count(Event::returns_after_finish);
 }
@@ -125,15 +127,16 @@ void RevisionCheck::count_events(const Head& before) {
 void RevisionCheck::check_verifiable() {
   constexpr Word kLookBack = 16;
   constexpr Word kKnotsThatShape = 3;
-  const bool is_short = head_.first > 1 && head_.run < head_.first + kLookBack;
-  if (head_.is_later_run && head_.run_knots <= kKnotsThatShape && is_short) is_verifiable_ = false;
+  const bool is_short = summary_.first > 1 && summary_.run < summary_.first + kLookBack;
+  if (summary_.is_later_run && summary_.run_knots <= kKnotsThatShape && is_short)
+    is_verifiable_ = false;
 }
 
 /// Updates the records for the items that this revision consumed.
-void RevisionCheck::take_items(const Head& before) {
+void RevisionCheck::take_items(const Summary& before) {
   const auto& items = items_.items();
-  const bool withdraws = head_.withdrawn > before.withdrawn;
-  for (Word item = before.consumed; item < head_.consumed; ++item) {
+  const bool withdraws = summary_.withdrawn > before.withdrawn;
+  for (Word item = before.consumed; item < summary_.consumed; ++item) {
     const Time t = items.waypoint(item).time;
     if (items.is_taken(item, ItemKind::waypoint)) last_taken_ = item;
     if (items.is_taken(item, ItemKind::waypoint)) pending_.push_back({.item = item, .time = t});
@@ -142,15 +145,15 @@ void RevisionCheck::take_items(const Head& before) {
     is_replaced_ = true;
     // An entry at the very start of a curve in motion normalises quaternions and removes negative
     // zeros. Neither is recorded, so such a curve cannot be verified.
-    is_verifiable_ = is_verifiable_ && head_.run > 1;
+    is_verifiable_ = is_verifiable_ && summary_.run > 1;
     if (t < end_) findings_->count(Event::cuts);
     std::erase_if(pending_, [t](const Pending& waypoint) { return waypoint.time >= t; });
     if (withdraws) forget_from(before.consumed);
   }
-  const bool is_replaced = head_.controls > before.controls;
+  const bool is_replaced = summary_.controls > before.controls;
   if (!withdraws || is_replaced) return check_passed(before);
   breach(Breach::items_lost, fmt::format("{} items withdrawn without a replacement",
-                                         head_.withdrawn - before.withdrawn));
+                                         summary_.withdrawn - before.withdrawn));
 }
 
 /// Forgets the waypoints from an item on: each of them may have been withdrawn before it was taken.
@@ -159,13 +162,13 @@ void RevisionCheck::forget_from(Word item) {
 }
 
 /// Checks that the curve passes through the waypoints of this revision, from the newest back.
-void RevisionCheck::check_passed(const Head& before) {
-  if (head_.course != 0 || head_.passed_over != before.passed_over) return;
+void RevisionCheck::check_passed(const Summary& before) {
+  if (summary_.course != 0 || summary_.passed_over != before.passed_over) return;
   if (plan_->window.interpolant.method->smooths()) return;
-  bool has_copy = copy(head_.newest);
+  bool has_copy = copy(summary_.newest);
   for (auto waypoint = pending_.rbegin();
        waypoint != pending_.rend() && waypoint->item >= before.consumed; ++waypoint) {
-    while (has_copy && copy_.left > waypoint->time && copy_.number > head_.first) {
+    while (has_copy && copy_.left > waypoint->time && copy_.number > summary_.first) {
       has_copy = copy(copy_.number - 1);
     }
     const bool at_end = waypoint->time != copy_.left;
@@ -205,7 +208,7 @@ void RevisionCheck::check_settled_segments() {
     }
     check_waypoint_at(segment);
   }
-  if (head_.finished && !segments.empty()) check_last_waypoint(segments.back());
+  if (summary_.finished && !segments.empty()) check_last_waypoint(segments.back());
 }
 
 /// Checks that the settled curve passes through the waypoints up to the segment's left end, or that
@@ -223,11 +226,11 @@ void RevisionCheck::check_waypoint_at(const ipc::SegmentCopy& segment) {
     findings_->count(Event::waypoints_passed_over);
     last_passed_ = waypoint.item;
     // The curve may still reach the last waypoint after its time.
-    if (++passed_seen_ <= head_.passed_over + (head_.finished ? 1 : 0)) continue;
+    if (++passed_seen_ <= summary_.passed_over + (summary_.finished ? 1 : 0)) continue;
     breach(Breach::waypoint_missed,
            fmt::format("settled item {} at {}, segment {} from {}, {} passed over", waypoint.item,
                        waypoint.time.count(), segment.number, segment.left.count(),
-                       head_.passed_over));
+                       summary_.passed_over));
   }
 }
 
@@ -293,29 +296,29 @@ void RevisionCheck::check_last_waypoint(const ipc::SegmentCopy& segment) {
     }
     findings_->count(Event::waypoints_passed_over);
     last_passed_ = waypoint.item;
-    if (++passed_seen_ <= head_.passed_over + 1) continue;
+    if (++passed_seen_ <= summary_.passed_over + 1) continue;
     breach(Breach::waypoint_missed,
            fmt::format("item {} at {} in the finished curve, {} passed over", waypoint.item,
-                       waypoint.time.count(), head_.passed_over));
+                       waypoint.time.count(), summary_.passed_over));
   }
   const bool comes_late =
       last_passed_ && last_passed_ == last_taken_ && segment.kind != SegmentKind::spline &&
       (smooths || rules_.passes(segment, true, items_.items().waypoint(*last_passed_).position,
                                 plan_->dimensions));
   const Word passed = passed_seen_ - (comes_late ? 1 : 0);
-  if (!has_gap_ && !is_replaced_ && passed != head_.passed_over) {
+  if (!has_gap_ && !is_replaced_ && passed != summary_.passed_over) {
     breach(Breach::items_lost,
-           fmt::format("{} waypoints passed over, {} counted", passed, head_.passed_over));
+           fmt::format("{} waypoints passed over, {} counted", passed, summary_.passed_over));
   }
 }
 
 void RevisionCheck::check_end() {
-  if (head_.newest == 0) return;
-  if (!copy(head_.newest)) {
-    return breach(Breach::no_answer, fmt::format("no segment {}", head_.newest));
+  if (summary_.newest == 0) return;
+  if (!copy(summary_.newest)) {
+    return breach(Breach::no_answer, fmt::format("no segment {}", summary_.newest));
   }
   end_ = copy_.right;
-  const bool is_open = !head_.finished;
+  const bool is_open = !summary_.finished;
   const bool is_stop = copy_.kind == SegmentKind::stop;
   const bool halts =
       is_stop || copy_.kind != SegmentKind::spline || plan_->end.kind == ConditionKind::halt;
@@ -330,22 +333,22 @@ void RevisionCheck::check_end() {
 void RevisionCheck::check_stop() {
   if (!due_stop_) return;
   const Stop stop = *due_stop_;
-  const bool is_last = stream_->ring.reader.head() == stop.item + 1;
-  if (!is_last || head_.finished) return due_stop_.reset();
+  const bool is_last = stream_->ring.reader.written() == stop.item + 1;
+  if (!is_last || summary_.finished) return due_stop_.reset();
   // The first waypoint is taken before the stop, which takes effect one step later.
-  if (head_.newest == 0) return;
-  if (!had_curve_ && head_.consumed <= stop.item) return;
-  const bool is_due = head_.settled_until > stop.time;
-  if (head_.consumed <= stop.item && (!is_due || due_stop_->steps_due++ == 0)) return;
-  const Time effect = std::max(stop.time, head_.settled_until);
+  if (summary_.newest == 0) return;
+  if (!had_curve_ && summary_.consumed <= stop.item) return;
+  const bool is_due = summary_.settled_until > stop.time;
+  if (summary_.consumed <= stop.item && (!is_due || due_stop_->steps_due++ == 0)) return;
+  const Time effect = std::max(stop.time, summary_.settled_until);
   due_stop_.reset();
-  if (!copy(head_.newest)) return;
+  if (!copy(summary_.newest)) return;
   const auto above = std::span(copy_.coefficients)
                          .first(static_cast<std::size_t>(copy_.order) * plan_->dimensions.size())
                          .subspan(plan_->dimensions.size());
   const bool moves = std::ranges::any_of(above, [](double c) { return c != 0; });
   const bool starts_later = copy_.number == 1;  // the curve stops from the start of the motion
-  if (head_.consumed > stop.item && (!moves || starts_later)) return;
+  if (summary_.consumed > stop.item && (!moves || starts_later)) return;
   const bool has_limits = !plan_->window.limits.acceleration.empty();
   if (copy_.left > effect || (!has_limits && copy_.right > effect + plan_->window.stop_time)) {
     breach(Breach::stop_late,
@@ -360,7 +363,7 @@ void RevisionCheck::verify() {
                                   .kinds = plan_->kinds,
                                   .items = items_.items(),
                                   .segments = settled_.segments(),
-                                  .head = settled_.head(),
+                                  .summary = settled_.summary(),
                                   .end = plan_->end});
   findings_->count(Event::segments_verified, found.equal);
   if (!found.first) return;

@@ -34,7 +34,7 @@ class RevisionCheck {
 
   /// Call it before each step.
   void begin_step() {
-    had_curve_ = head_.newest > 0;
+    had_curve_ = summary_.newest > 0;
     if (accepted_stop_) due_stop_ = std::exchange(accepted_stop_, std::nullopt);
   }
 
@@ -45,7 +45,7 @@ class RevisionCheck {
   void verify();
 
   /// The newest revision's summary.
-  [[nodiscard]] const ipc::Head& head() const noexcept { return head_; }
+  [[nodiscard]] const ipc::Summary& summary() const noexcept { return summary_; }
   /// The time at which the newest revision's curve is at rest.
   [[nodiscard]] Time end_of_motion() const noexcept { return end_; }
   [[nodiscard]] const ipc::SentItems& items() const noexcept { return items_.items(); }
@@ -61,13 +61,13 @@ class RevisionCheck {
     int steps_due = 0;  ///< steps since its time that did not take it
   };
 
-  void check_counts(const ipc::Head& before);
+  void check_counts(const ipc::Summary& before);
   [[nodiscard]] bool copy(ipc::Word number);
-  void check_settled_until(const ipc::Head& before, Time now);
-  void count_events(const ipc::Head& before);
-  void take_items(const ipc::Head& before);
+  void check_settled_until(const ipc::Summary& before, Time now);
+  void count_events(const ipc::Summary& before);
+  void take_items(const ipc::Summary& before);
   void forget_from(ipc::Word item);
-  void check_passed(const ipc::Head& before);
+  void check_passed(const ipc::Summary& before);
   void check_settled_segments();
   void check_waypoint_at(const ipc::SegmentCopy& segment);
   void check_last_waypoint(const ipc::SegmentCopy& segment);
@@ -93,7 +93,7 @@ class RevisionCheck {
   std::deque<Pending> pending_;  ///< interpolated waypoints that have not settled, by time
   ipc::BoardSegment board_segment_;
   ipc::SegmentCopy copy_;
-  ipc::Head head_;
+  ipc::Summary summary_;
   Time end_{};
   std::optional<Stop> accepted_stop_;
   std::optional<Stop> due_stop_;

@@ -18,11 +18,12 @@ class RevisionLog {
   bool catch_up() {
     const ipc::Look look = board_->look();
     if (look.revision == changed_from_.size()) return true;
-    ipc::Head head;
-    if (look.revision != changed_from_.size() + 1 || !board_->copy_head(look, head)) return false;
-    changed_from_.push_back(head.changed_from);
+    ipc::Summary summary;
+    if (look.revision != changed_from_.size() + 1 || !board_->copy_summary(look, summary))
+      return false;
+    changed_from_.push_back(summary.changed_from);
     core::SegmentForm form{};
-    if (head.first == 1) (void)board_->copy_time(1, look.revision, start_, form);
+    if (summary.first == 1) (void)board_->copy_time(1, look.revision, start_, form);
     return true;
   }
 

@@ -40,9 +40,9 @@ SimulatedProducer::SimulatedProducer(const StreamPlan& plan, testing::MemoryStre
       next_waypoint_(plan.begin) {}
 
 ipc::WaypointRingWriter::Solved SimulatedProducer::solved() {
-  const bool knows = check_->head().newest > 0 && !random_->chance(kKnowsLess);
-  return {.consumed = stream_->board.reader.tail(),
-          .settled_until = knows ? check_->head().settled_until : Time::min()};
+  const bool knows = check_->summary().newest > 0 && !random_->chance(kKnowsLess);
+  return {.consumed = stream_->board.reader.consumed(),
+          .settled_until = knows ? check_->summary().settled_until : Time::min()};
 }
 
 AppendStatus SimulatedProducer::answered(AppendStatus status) {
@@ -144,7 +144,7 @@ void SimulatedProducer::do_something_else(Time now) {
 
 /// A time as early as possible, within the sent waypoints, far ahead, or too late.
 Time SimulatedProducer::replacement_time(Time now) {
-  const Time settled = std::max(check_->head().settled_until, now);
+  const Time settled = std::max(check_->summary().settled_until, now);
   const Time last = stream_->ring.writer.last_time();
   switch (random_->below(5)) {
     case 0:
@@ -188,14 +188,14 @@ void SimulatedProducer::replace(Time now) {
   next_waypoint_ = (count == 0 ? t : at) + plan_->interval;
   // Acts like a producer that considers the replacement refused.
   if (last > at && random_->chance(kSendsAgain)) next_waypoint_ = last;
-  if (count == 0) check_->expect_stop(stream_->ring.writer.head() - 1, t);
+  if (count == 0) check_->expect_stop(stream_->ring.writer.written() - 1, t);
 }
 
 void SimulatedProducer::stop(Time now) {
   const Time t = replacement_time(now);
   if (answered(stream_->ring.writer.replace_from(t, {}, solved())) != AppendStatus::accepted)
     return;
-  check_->expect_stop(stream_->ring.writer.head() - 1, t);
+  check_->expect_stop(stream_->ring.writer.written() - 1, t);
   next_waypoint_ = t + plan_->interval;
   if (random_->chance(0.5)) return;
   phase_ = Phase::silent;
@@ -235,24 +235,24 @@ void SimulatedProducer::make_mistake(Time now) {
 
 void SimulatedProducer::replace_too_many(Time now) {
   const std::vector<Waypoint> waypoints(plan_->ring_capacity);
-  const Time later = std::max(now, check_->head().settled_until) + plan_->interval;
+  const Time later = std::max(now, check_->summary().settled_until) + plan_->interval;
   (void)answered(stream_->ring.writer.replace_from(later, waypoints, solved()));
   const Waypoint state = source_.smooth_at(now);
   (void)answered(stream_->ring.writer.start_from(
       {state.time, state.position, state.velocity, state.acceleration}, solved()));
 }
 
-/// Dies between two calls, or within one before it stores `head`. A new producer takes over.
+/// Dies between two calls, or within one before it stores `summary`. A new producer takes over.
 void SimulatedProducer::die(Time now) {
   if (random_->chance(0.5)) {
     const auto words = ipc::words_at(stream_->ring.bytes.span(), 0,
                                      stream_->ring.layout.bytes / sizeof(ipc::Word));
-    ipc::Word& head = words[stream_->ring.layout.control / sizeof(ipc::Word) + ipc::kHead];
-    const ipc::Word before = head;
-    const Time t = std::max(now, check_->head().settled_until) + plan_->interval;
+    ipc::Word& summary = words[stream_->ring.layout.control / sizeof(ipc::Word) + ipc::kWritten];
+    const ipc::Word before = summary;
+    const Time t = std::max(now, check_->summary().settled_until) + plan_->interval;
     const std::array waypoints{source_.at(t + plan_->interval)};
     (void)stream_->ring.writer.replace_from(t, waypoints, solved());
-    head = before;
+    summary = before;
     findings_->count(Event::torn_appends);
   }
   stream_->replace_producer();

@@ -50,7 +50,7 @@ SimulatedStream::SimulatedStream(const StreamPlan& plan, StreamFindings& finding
 bool SimulatedStream::is_over() const {
   if (findings_->stream_failed()) return true;
   const Time end = plan_.begin + plan_.length;
-  const bool rests = check_.head().finished && now_ > check_.end_of_motion();
+  const bool rests = check_.summary().finished && now_ > check_.end_of_motion();
   return rests || now_ > end + kLongestRest;
 }
 
@@ -134,7 +134,7 @@ void SimulatedStream::work() {
 /// Raises `settled_until` without a step if there is no other work, as a sweep of many streams
 /// does. Returns whether it was raised.
 bool SimulatedStream::settle_without_step() {
-  const bool has_items = stream_.ring.reader.head() != stream_.solver.seen();
+  const bool has_items = stream_.ring.reader.written() != stream_.solver.seen();
   if (has_items || !stream_.solver.settled_raise().raise(now_)) return false;
   findings_->count(Event::settled_raises);
   check_.look(now_);
@@ -146,8 +146,8 @@ bool SimulatedStream::settle_without_step() {
 void SimulatedStream::step() {
   check_.begin_step();
   for (int tries = 0; tries < kMostMisses; ++tries) {
-    const ipc::Word misses = stream_.solver.head().misses;
-    const ipc::Word late = stream_.solver.head().revisions;
+    const ipc::Word misses = stream_.solver.summary().deadline_misses;
+    const ipc::Word late = stream_.solver.summary().late_commits;
     const auto result = stream_.solver.step(clock_);
     check_step(result, misses, late);
     clock_.restart();
@@ -163,7 +163,7 @@ void SimulatedStream::check_step(const StepResult& result, ipc::Word misses, ipc
   if (clock_.readings() > kMostReadings) {
     findings_->breach(Breach::unbounded_step, fmt::format("{} readings", clock_.readings()));
   }
-  if (stream_.solver.head().misses != misses + (result.missed ? 1 : 0)) {
+  if (stream_.solver.summary().deadline_misses != misses + (result.missed ? 1 : 0)) {
     findings_->breach(Breach::miscounted, fmt::format("{} misses", misses));
   }
   check_.note_items();
@@ -172,17 +172,17 @@ void SimulatedStream::check_step(const StepResult& result, ipc::Word misses, ipc
   const Time committed = clock_.left_reading(2);
   if (result.published) {
     const bool is_late =
-        check_.head().changed_from < Time::max() && check_.head().changed_from <= committed;
+        check_.summary().changed_from < Time::max() && check_.summary().changed_from <= committed;
     if (is_late) findings_->count(Event::late_commits);
     was_in_time_ = committed == began;
-    const bool is_counted = stream_.solver.head().revisions == late + (is_late ? 1 : 0);
+    const bool is_counted = stream_.solver.summary().late_commits == late + (is_late ? 1 : 0);
     // A solver that takes over may count a late commit of its predecessor.
     const bool takes_over = std::exchange(has_taken_over_, false);
     if (!takes_over && !is_counted) {
       findings_->breach(Breach::miscounted, fmt::format("{} late commits", late));
     }
   }
-  const bool keeps_up = !result.missed && was_in_time_ && check_.head().newest > 0;
+  const bool keeps_up = !result.missed && was_in_time_ && check_.summary().newest > 0;
   kept_up_until_ = keeps_up ? began + plan_.live.freeze_ahead / 2 : Time::min();
 }
 
@@ -249,7 +249,7 @@ void SimulatedStream::replace_solver() {
 void SimulatedStream::schedule_solver() {
   if (random_->chance(0.01)) pace_ = random_->part(plan_.live.freeze_ahead, 0.02, 0.6);
   next_step_ = now_ + pace_;
-  const bool has_items = stream_.ring.reader.head() != stream_.solver.seen();
+  const bool has_items = stream_.ring.reader.written() != stream_.solver.seen();
   const Time wakes = has_items ? now_ : producer_.next();
   next_step_ = std::max(next_step_, std::min(stream_.solver.due(), wakes));
   next_step_ = std::min(next_step_, now_ + kLongestRest);

@@ -25,9 +25,9 @@
 namespace splinecast::ipc {
 namespace {
 
-using testing::head_word;
 using testing::MemoryRing;
 using testing::MemoryStream;
+using testing::summary_word;
 
 constexpr Word kLargestWord = std::numeric_limits<Word>::max();
 constexpr Time kTick{10'000'000};
@@ -76,10 +76,10 @@ void flip_tag_bits(MemoryStream& stream, Word number, Word bits) {
   }
 }
 
-void set_head(MemoryStream& stream, std::size_t word, Word value) {
+void set_summary(MemoryStream& stream, std::size_t word, Word value) {
   for (const std::size_t c : {0U, 1U}) {
     word_of(stream.board.bytes,
-            testing::head_offset(stream.board.layout, c) + word * sizeof(Word)) = value;
+            testing::summary_offset(stream.board.layout, c) + word * sizeof(Word)) = value;
   }
 }
 
@@ -151,9 +151,9 @@ TEST(HostileRegions, NormalisingAQuaternionWithAHugeVelocityGivesFiniteValues) {
 TEST(HostileRegions, TheLargestRevisionIsReadInBoundedTime) {
   SolvedStream stream;
   set_control(stream.board.bytes, kRevision, kLargestWord);
-  Head head;
+  Summary summary;
   EXPECT_TRUE(stream.board.reader.copy_bounds({.settled_until = {}, .revision = kLargestWord},
-                                              kLargestWord, head));
+                                              kLargestWord, summary));
   Sampler sampler(stream.board.reader, StreamClock::recorded);
   State state(1);
   EXPECT_EQ(sampler.sample(kTick, state.ref()), SampleStatus::settled);
@@ -162,20 +162,20 @@ TEST(HostileRegions, TheLargestRevisionIsReadInBoundedTime) {
 
 TEST(HostileRegions, AnInvalidSummaryLeavesThePreviousCopyUnchanged) {
   SolvedStream stream;
-  Head head;
+  Summary summary;
   const Look look = stream.board.reader.look();
-  ASSERT_TRUE(stream.board.reader.copy_head(look, head));
-  set_head(stream, head_word("newest time"), to_word(Time::max()));
-  set_head(stream, head_word("refused"), kLargestWord);
-  EXPECT_FALSE(stream.board.reader.copy_head(look, head));
-  EXPECT_EQ(head.newest_knot, 11 * kTick);
-  EXPECT_EQ(head.refused, 0U);
+  ASSERT_TRUE(stream.board.reader.copy_summary(look, summary));
+  set_summary(stream, summary_word("newest time"), to_word(Time::max()));
+  set_summary(stream, summary_word("refused"), kLargestWord);
+  EXPECT_FALSE(stream.board.reader.copy_summary(look, summary));
+  EXPECT_EQ(summary.newest_time, 11 * kTick);
+  EXPECT_EQ(summary.refused, 0U);
 }
 
 TEST(HostileRegions, AWrittenPositionFarAheadMakesASolverTakeAtMostOneRing) {
   SolvedStream stream;
   for (const Word ahead : {kLargestWord / 2, Word{1} << 40U}) {
-    set_control(stream.ring.bytes, kHead, stream.solver.head().consumed + ahead);
+    set_control(stream.ring.bytes, kWritten, stream.solver.summary().consumed + ahead);
     const StepResult step = stream.solver.step(stream.clock);
     EXPECT_GT(step.consumed, 0U);
     EXPECT_LE(step.consumed, stream.ring.layout.capacity);
@@ -184,29 +184,29 @@ TEST(HostileRegions, AWrittenPositionFarAheadMakesASolverTakeAtMostOneRing) {
 
 TEST(HostileRegions, ASolverWaitsWhenTheWrittenPositionDecreases) {
   SolvedStream stream;
-  set_control(stream.ring.bytes, kHead, 3);
+  set_control(stream.ring.bytes, kWritten, 3);
   EXPECT_EQ(stream.solver.step(stream.clock).consumed, 0U);
   EXPECT_EQ(stream.solver.seen(), 3U);  // the solver sleeps until the word changes
 }
 
 TEST(HostileRegions, AReplacementAfterTheLatestTimeIsRefused) {
   SolvedStream stream;
-  ASSERT_EQ(stream.ring.writer.replace_from(12 * kTick, {}, {stream.board.reader.tail()}),
+  ASSERT_EQ(stream.ring.writer.replace_from(12 * kTick, {}, {stream.board.reader.consumed()}),
             AppendStatus::accepted);
   const std::size_t item = stream.ring.layout.items + 12 * stream.ring.layout.stride;
   word_of(stream.ring.bytes, item + kItemTime * sizeof(Word)) = to_word(Time::max());
   EXPECT_EQ(stream.solver.step(stream.clock).consumed, 1U);
-  EXPECT_EQ(stream.solver.head().reasons[static_cast<std::size_t>(Refusal::too_late)], 1U);
+  EXPECT_EQ(stream.solver.summary().reasons[static_cast<std::size_t>(Refusal::too_late)], 1U);
 }
 
 TEST(HostileRegions, AReplacementLongerThanTheRingEndsWithTheRing) {
   SolvedStream stream;
-  ASSERT_EQ(stream.ring.writer.replace_from(12 * kTick, {}, {stream.board.reader.tail()}),
+  ASSERT_EQ(stream.ring.writer.replace_from(12 * kTick, {}, {stream.board.reader.consumed()}),
             AppendStatus::accepted);
   const std::size_t item = stream.ring.layout.items + 12 * stream.ring.layout.stride;
   word_of(stream.ring.bytes, item) = static_cast<Word>(ItemKind::replace) | Word{0xffffffff} << 32U;
   word_of(stream.ring.bytes, item + kItemTime * sizeof(Word)) = to_word(Time::min());
-  set_control(stream.ring.bytes, kHead, kLargestWord / 2);
+  set_control(stream.ring.bytes, kWritten, kLargestWord / 2);
   EXPECT_LE(stream.solver.step(stream.clock).consumed, stream.ring.layout.capacity);
 }
 
@@ -216,10 +216,10 @@ TEST(HostileRegions, ASolverRefusesToTakeOverADamagedCurve) {
     damage(stream);
     EXPECT_THROW(stream.replace_solver(), BadRegion);
   };
-  refuses([](MemoryStream& s) { set_head(s, head_word("knots of the run"), kLargestWord); });
-  refuses([](MemoryStream& s) { set_head(s, head_word("run"), 0); });
-  refuses([](MemoryStream& s) { set_head(s, head_word("newest"), kLargestWord); });
-  refuses([](MemoryStream& s) { set_head(s, head_word("stop"), to_word(Time::max())); });
+  refuses([](MemoryStream& s) { set_summary(s, summary_word("knots of the run"), kLargestWord); });
+  refuses([](MemoryStream& s) { set_summary(s, summary_word("run"), 0); });
+  refuses([](MemoryStream& s) { set_summary(s, summary_word("newest"), kLargestWord); });
+  refuses([](MemoryStream& s) { set_summary(s, summary_word("stop"), to_word(Time::max())); });
   refuses([](MemoryStream& s) { set_control(s.board.bytes, kSettledUntil, to_word(Time::max())); });
   refuses([](MemoryStream& s) { set_nodes(s, 12, kNodeTime, 0); });
   refuses([](MemoryStream& s) { set_nodes(s, 12, kNodePosition, to_word(std::nan(""))); });
@@ -232,7 +232,7 @@ TEST(HostileRegions, ASolverRefusesToTakeOverADamagedCurve) {
 
 TEST(HostileRegions, ASolverStopsWhenItsBoardHoldsValuesItDidNotWrite) {
   SolvedStream stream;
-  ASSERT_EQ(stream.ring.writer.replace_from(11 * kTick, {}, {stream.board.reader.tail()}),
+  ASSERT_EQ(stream.ring.writer.replace_from(11 * kTick, {}, {stream.board.reader.consumed()}),
             AppendStatus::accepted);
   for (Word number = 1; number <= 12; ++number) {
     set_cells(stream, number, kCellVelocity, to_word(std::nan("")));

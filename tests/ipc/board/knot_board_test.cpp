@@ -39,8 +39,8 @@ void write(MemoryBoard& board, Word number, bool is_new = false) {
 }
 
 void commit(MemoryBoard& board, Word first, Word newest) {
-  Head head{.first = first, .newest = newest};
-  board.writer.commit(head);
+  Summary summary{.first = first, .newest = newest};
+  board.writer.commit(summary);
 }
 
 bool are_all(std::span<const double> values, double value) {
@@ -61,9 +61,9 @@ Word revision_of_knot(const KnotBoardReader& board, Word number, Word r, KnotCop
 TEST(KnotBoard, ARevisionAppearsAtomicallyAndThePreviousOneStaysReadable) {
   MemoryBoard board(kDimensions, 16);
   KnotCopy copy(kDimensions, false);
-  Head head;
+  Summary summary;
   EXPECT_EQ(board.reader.revision(), 0U);
-  EXPECT_FALSE(board.reader.copy_head({}, head));
+  EXPECT_FALSE(board.reader.copy_summary({}, summary));
   for (Word n = 1; n <= 5; ++n) write(board, n, true);
   EXPECT_EQ(board.reader.revision(), 0U);
   commit(board, 1, 5);
@@ -75,10 +75,10 @@ TEST(KnotBoard, ARevisionAppearsAtomicallyAndThePreviousOneStaysReadable) {
     EXPECT_EQ(revision_of_knot(board.reader, n, 2, copy), n < 3 ? 1U : 2U) << n;
     EXPECT_EQ(revision_of_knot(board.reader, n, 1, copy), n < 6 ? 1U : 0U) << n;
   }
-  ASSERT_TRUE(board.reader.copy_head({.settled_until = {}, .revision = 1}, head));
-  EXPECT_EQ(head.newest, 5U);
-  ASSERT_TRUE(board.reader.copy_head({.settled_until = {}, .revision = 2}, head));
-  EXPECT_EQ(head.newest, 6U);
+  ASSERT_TRUE(board.reader.copy_summary({.settled_until = {}, .revision = 1}, summary));
+  EXPECT_EQ(summary.newest, 5U);
+  ASSERT_TRUE(board.reader.copy_summary({.settled_until = {}, .revision = 2}, summary));
+  EXPECT_EQ(summary.newest, 6U);
 }
 
 TEST(KnotBoard, ACopyIsCurrentUntilItsKnotIsRepublished) {
@@ -298,14 +298,14 @@ class Readers {
   /// Reads until `stop` is called.
   void read() {
     KnotCopy copy(kDimensions, false);
-    Head head;
+    Summary summary;
     while (!done_.load()) {
       const Look look = board_.look();
       const Word r = look.revision;
-      if (r == 0 || !board_.copy_head(look, head)) continue;
-      if (head.consumed != r || head.first != r) ++torn_;
+      if (r == 0 || !board_.copy_summary(look, summary)) continue;
+      if (summary.consumed != r || summary.first != r) ++torn_;
       bool complete = true;
-      for (Word n = head.newest; n >= head.first && complete; --n) {
+      for (Word n = summary.newest; n >= summary.first && complete; --n) {
         const Word seen = revision_of_knot(board_, n, r, copy);
         complete = seen != 0;
         Word wanted = r;
@@ -339,8 +339,8 @@ TEST(KnotBoard, ThreadsReadWholeRevisionsWhileOneWrites) {
   for (Word r = 1; r <= kRevisions || reading.whole() < 100; ++r) {
     const Word newest = r + kKnots - 1;
     for (Word n = r == 1 ? 1 : r + r % 3; n <= newest; ++n) write(board, n, r == 1 || n == newest);
-    Head head{.first = r, .newest = newest, .consumed = r};
-    board.writer.commit(head);
+    Summary summary{.first = r, .newest = newest, .consumed = r};
+    board.writer.commit(summary);
   }
   reading.stop();
   for (std::thread& reader : readers) reader.join();

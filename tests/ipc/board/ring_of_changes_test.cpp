@@ -20,18 +20,18 @@ struct Changing : MemoryBoard {
   static Time change_of(Word r) { return Time(1000) - Time(static_cast<std::int64_t>(r)); }
   void publish_to(Word revision) {
     while (writer.revision() < revision) {
-      Head head{.first = 1, .newest = 1, .changed_from = change_of(writer.revision() + 1)};
-      writer.commit(head);
+      Summary summary{.first = 1, .newest = 1, .changed_from = change_of(writer.revision() + 1)};
+      writer.commit(summary);
     }
   }
   /// The change that a reader which has seen revision `seen` gets for the later ones.
   Time change_since(Word seen) {
-    Head head;
-    EXPECT_TRUE(reader.copy_bounds(reader.look(), seen, head));
-    return head.changed_from;
+    Summary summary;
+    EXPECT_TRUE(reader.copy_bounds(reader.look(), seen, summary));
+    return summary.changed_from;
   }
-  Word& head_tag(std::size_t c) {
-    return words_at(bytes.span(), testing::head_offset(layout, c), 1)[0];
+  Word& summary_tag(std::size_t c) {
+    return words_at(bytes.span(), testing::summary_offset(layout, c), 1)[0];
   }
 };
 
@@ -49,13 +49,13 @@ TEST(RingOfChanges, ReportsTheChangeAfter63MissedRevisionsButNotAfter64) {
 TEST(RingOfChanges, ReportsTheEarliestChangeOfTheMissedRevisions) {
   MemoryBoard board(1, 16);
   for (const int change : {50, 20, 30, 40}) {
-    Head head{.first = 1, .newest = 1, .changed_from = Time(change)};
-    board.writer.commit(head);
+    Summary summary{.first = 1, .newest = 1, .changed_from = Time(change)};
+    board.writer.commit(summary);
   }
   const auto change_since = [&](Word seen) {
-    Head head;
-    EXPECT_TRUE(board.reader.copy_bounds(board.reader.look(), seen, head));
-    return head.changed_from;
+    Summary summary;
+    EXPECT_TRUE(board.reader.copy_bounds(board.reader.look(), seen, summary));
+    return summary.changed_from;
   };
   EXPECT_EQ(change_since(0), Time(20));
   EXPECT_EQ(change_since(1), Time(20));
@@ -94,10 +94,10 @@ TEST(RingOfChanges, StaysCorrectAfterADiscard) {
 TEST(RingOfChanges, ReportsNothingWhenBothTagsOfTheSummaryAreRetired) {
   Changing board;
   board.publish_to(10);
-  Head head{.changed_from = Time(5)};
-  for (const std::size_t c : {0U, 1U}) board.head_tag(c) = kRetiredTag;
-  EXPECT_FALSE(board.reader.copy_bounds(board.reader.look(), 9, head));
-  EXPECT_EQ(head.changed_from, Time(5));
+  Summary summary{.changed_from = Time(5)};
+  for (const std::size_t c : {0U, 1U}) board.summary_tag(c) = kRetiredTag;
+  EXPECT_FALSE(board.reader.copy_bounds(board.reader.look(), 9, summary));
+  EXPECT_EQ(summary.changed_from, Time(5));
 }
 
 }  // namespace

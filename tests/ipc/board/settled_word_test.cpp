@@ -9,8 +9,8 @@ using testing::MemoryBoard;
 
 TEST(SettledWord, IsStoredWithoutARevisionAndKeptByTheNextWriter) {
   MemoryBoard board(1, 16);
-  Head head{.first = 1, .newest = 1};
-  board.writer.commit(head);
+  Summary summary{.first = 1, .newest = 1};
+  board.writer.commit(summary);
   board.writer.store_settled(Time(50));
   EXPECT_EQ(board.reader.look().settled_until, Time(50));
   EXPECT_EQ(board.reader.look().revision, 1U);

@@ -71,12 +71,12 @@ TEST(Layout, EachPartOfASlotOfSevenDimensionsIsOneCacheLine) {
 
 TEST(Layout, WordsOfDifferentProcessesAreTwoCacheLinesApart) {
   const auto line = [](std::size_t word) { return word * sizeof(Word) / kSeparation; };
-  EXPECT_NE(line(kHead), line(kProducerCounters));
-  for (const std::size_t word : {kTail, kSleeping, kHeadSlot}) {
+  EXPECT_NE(line(kWritten), line(kProducerCounters));
+  for (const std::size_t word : {kConsumed, kSleeping, kSummarySlot}) {
     EXPECT_NE(line(word), line(kRevision)) << word;
   }
-  EXPECT_NE(line(kTail), line(kSleeping));
-  EXPECT_NE(line(kSleeping), line(kHeadSlot));
+  EXPECT_NE(line(kConsumed), line(kSleeping));
+  EXPECT_NE(line(kSleeping), line(kSummarySlot));
 }
 
 TEST(Layout, TheControlBlockOfEveryStreamIsInItsArea) {

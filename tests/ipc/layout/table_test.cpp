@@ -66,7 +66,7 @@ TEST(LayoutTable, EveryHeaderMemberIsStoredAtTheWordsThatItsRowNames) {
 }
 
 TEST(LayoutTable, EverySummaryMemberIsStoredAtTheWordsThatItsRowNames) {
-  expect_members_at_their_places<Head>(kHeadRows, kHeadFields);
+  expect_members_at_their_places<Summary>(kSummaryRows, kSummaryFields);
 }
 
 /// A member without a row would not be stored in shared memory.
@@ -84,8 +84,8 @@ TEST(LayoutTable, TheRowsOfHeaderAndSummaryNameAllTheirMembers) {
   EXPECT_EQ(std::apply(count, kHeaderRows), sizeof(RegionHeader));
   // Three members are stored outside the summary; two flags share one word.
   constexpr std::size_t kElsewhere =
-      sizeof(Head::revision) + sizeof(Head::settled_until) + sizeof(Head::changed_from);
-  EXPECT_EQ(std::apply(count, kHeadRows) + kElsewhere, sizeof(Head) + sizeof(Word));
+      sizeof(Summary::revision) + sizeof(Summary::settled_until) + sizeof(Summary::changed_from);
+  EXPECT_EQ(std::apply(count, kSummaryRows) + kElsewhere, sizeof(Summary) + sizeof(Word));
 }
 
 }  // namespace

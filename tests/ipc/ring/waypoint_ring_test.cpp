@@ -37,7 +37,7 @@ TEST(WaypointRing, ReturnsTheAppendedItems) {
   ring.reader.copy(1, item);
   EXPECT_FALSE(item.has_velocity || item.has_acceleration);
   EXPECT_EQ(item.values[0], 7);
-  EXPECT_EQ(ring.reader.head(), 2U);
+  EXPECT_EQ(ring.reader.written(), 2U);
 }
 
 TEST(WaypointRing, RefusesInvalidWaypointsWithAReasonAndCountsThem) {
@@ -58,7 +58,7 @@ TEST(WaypointRing, RefusesInvalidWaypointsWithAReasonAndCountsThem) {
   EXPECT_EQ(append(ring, kMillisecond + Time(3'600'000'000'001), {1, 2}),
             AppendStatus::too_far_apart);
   EXPECT_EQ(append(ring, kMillisecond + Time(1000), {1, 2}), AppendStatus::accepted);
-  EXPECT_EQ(ring.writer.head(), 2U);
+  EXPECT_EQ(ring.writer.written(), 2U);
   EXPECT_EQ(ring.reader.refused(AppendStatus::not_finite), 2U);
   EXPECT_EQ(ring.reader.refused(AppendStatus::wrong_dimension), 2U);
   EXPECT_EQ(ring.reader.refused(AppendStatus::duplicate), 1U);
@@ -80,7 +80,7 @@ TEST(WaypointRing, AcceptsTheEarliestAndTheLatestTimeInOrder) {
   EXPECT_EQ(stream.append(-kLatestTime, std::span(x).first(1)), AppendStatus::accepted);
   EXPECT_EQ(stream.append(kLatestTime, std::span(x).last(1)), AppendStatus::accepted);
   stream.drain();
-  EXPECT_EQ(stream.solver.head().knots, 2U);
+  EXPECT_EQ(stream.solver.summary().knots, 2U);
   KnotCopy knot(1, false);
   ASSERT_TRUE(stream.board.reader.copy_knot(1, stream.board.reader.revision(), knot));
   EXPECT_NEAR(knot.velocity()[0] * 2 * to_seconds(kLatestTime), 1, 1e-12);
@@ -97,7 +97,7 @@ TEST(WaypointRing, IsFullUntilTheSolverConsumesAndLosesNothing) {
                   {consumed}) == AppendStatus::accepted) {
       ++next_in;
     }
-    EXPECT_EQ(ring.writer.head() - consumed, 4U);
+    EXPECT_EQ(ring.writer.written() - consumed, 4U);
     for (int i = 0; i <= round % 4; ++i) {
       ring.reader.copy(consumed++, item);
       EXPECT_EQ(item.values[0], next_out++);
@@ -128,7 +128,7 @@ TEST(WaypointRing, APassiveObserverKeepsNoItemThatAnUnfinishedReplacementOverwri
   ASSERT_EQ(ring.writer.replace_from(Time(100'000), replacing, {8}), AppendStatus::accepted);
   // Restores the region to its state before the one store that appended the whole replacement.
   const auto control = words_at(ring.bytes.span(), ring.layout.control, kClaimed + 1);
-  store(control[kHead], 8, std::memory_order_relaxed);
+  store(control[kWritten], 8, std::memory_order_relaxed);
   for (Word i = 0; i < 3; ++i) EXPECT_FALSE(ring.reader.observe(i, item)) << i;
   for (Word i = 3; i < 8; ++i) EXPECT_TRUE(ring.reader.observe(i, item)) << i;
   // The producer has died. The next one claims fewer items; the overwritten ones stay lost.
@@ -157,7 +157,7 @@ TEST(WaypointRing, ANewWriterContinuesAfterTheLastWaypoint) {
   for (int i = 1; i <= 3; ++i)
     ASSERT_EQ(append(ring, i * kMillisecond, {0}), AppendStatus::accepted);
   WaypointRingWriter next(ring.bytes.span(), ring.layout, {});
-  EXPECT_EQ(next.head(), 3U);
+  EXPECT_EQ(next.written(), 3U);
   EXPECT_FALSE(next.finished());
   EXPECT_EQ(next.last_time(), 3 * kMillisecond);
   const std::vector<double> x{0};
@@ -168,10 +168,10 @@ TEST(WaypointRing, ANewWriterContinuesAfterTheLastWaypoint) {
 
 /// Fills a ring with waypoints every 10 ms. Returns the number of items in it.
 Word fill(MemoryRing& ring) {
-  while (append(ring, static_cast<std::int64_t>(ring.writer.head() + 1) * 10 * kMillisecond, {0}) ==
-         AppendStatus::accepted) {
+  while (append(ring, static_cast<std::int64_t>(ring.writer.written() + 1) * 10 * kMillisecond,
+                {0}) == AppendStatus::accepted) {
   }
-  return ring.writer.head();
+  return ring.writer.written();
 }
 
 TEST(WaypointRing, KeepsRoomForStopsAndAFinish) {
@@ -189,9 +189,9 @@ TEST(WaypointRing, KeepsRoomForStopsAndAFinish) {
   EXPECT_EQ(stop(100 * kMillisecond), AppendStatus::full);
   EXPECT_EQ(stop(Time(0)), AppendStatus::accepted);
   for (int i = 0; i < 100; ++i) EXPECT_EQ(stop(Time(i)), AppendStatus::accepted);
-  EXPECT_EQ(ring.writer.head(), 63U);
+  EXPECT_EQ(ring.writer.written(), 63U);
   EXPECT_EQ(ring.writer.finish({}, {}), AppendStatus::accepted);
-  EXPECT_EQ(ring.writer.head(), 64U);
+  EXPECT_EQ(ring.writer.written(), 64U);
 }
 
 TEST(WaypointRing, AStopThatRepeatsAQueuedStopTakesNoItem) {
@@ -199,7 +199,7 @@ TEST(WaypointRing, AStopThatRepeatsAQueuedStopTakesNoItem) {
   ASSERT_EQ(append(ring, 10 * kMillisecond, {0}), AppendStatus::accepted);
   const auto stop = [&](Time t, Word consumed) {
     EXPECT_EQ(ring.writer.replace_from(t, {}, {consumed}), AppendStatus::accepted);
-    return ring.writer.head();
+    return ring.writer.written();
   };
   EXPECT_EQ(stop(5 * kMillisecond, 0), 2U);
   EXPECT_EQ(stop(5 * kMillisecond, 1), 2U);

@@ -107,7 +107,7 @@ TEST(Roles, ASleepingSolverIsWokenByAnAppend) {
   const MonotonicClock clock;
   while (solver.step(clock).consumed == 0) solver.wait(60 * kSecond);
   appending.join();
-  EXPECT_EQ(Internals::head(solver).knots, 1U);
+  EXPECT_EQ(Internals::summary(solver).knots, 1U);
 }
 
 TEST(Roles, AReaderThatWaitsIsWokenByARevision) {

@@ -146,28 +146,29 @@ TEST_F(ProducerRefusals, AreAllReturnedByInspectIfTheBoardKeepsThem) {
 
 TEST(RefusalsOfABoard, ExcludeThoseThatLaterOnesMayOverwrite) {
   testing::MemoryBoard board(1, 32);
-  Head head{.first = 1};
-  for (; head.refused < kRefusalsKept + 3; ++head.refused) {
-    board.writer.write_refusal(head.refused, {.item = 2 * head.refused, .reason = Refusal::past});
+  Summary summary{.first = 1};
+  for (; summary.refused < kRefusalsKept + 3; ++summary.refused) {
+    board.writer.write_refusal(summary.refused,
+                               {.item = 2 * summary.refused, .reason = Refusal::past});
   }
-  head.consumed = 2 * head.refused;
-  board.writer.commit(head);
+  summary.consumed = 2 * summary.refused;
+  board.writer.commit(summary);
   std::vector<RefusedItem> copied(kRefusalsKept);
-  EXPECT_EQ(board.reader.copy_refusals(head, 0, copied), kRefusalsKept);
+  EXPECT_EQ(board.reader.copy_refusals(summary, 0, copied), kRefusalsKept);
   EXPECT_EQ(copied.front().item, 6U);
   // Two more refusals, not committed: their items are after those that the summary has consumed.
   for (Word i = 0; i < 2; ++i) {
-    board.writer.write_refusal(head.refused + i,
-                               {.item = head.consumed + i, .reason = Refusal::past});
+    board.writer.write_refusal(summary.refused + i,
+                               {.item = summary.consumed + i, .reason = Refusal::past});
   }
-  EXPECT_EQ(board.reader.copy_refusals(head, 0, copied), kRefusalsKept - 2);
+  EXPECT_EQ(board.reader.copy_refusals(summary, 0, copied), kRefusalsKept - 2);
   EXPECT_EQ(copied.front().item, 10U);
   // They are discarded; a later revision takes the items and refuses none.
-  head.consumed += 10;
-  board.writer.commit(head);
-  EXPECT_EQ(board.reader.copy_refusals(head, 0, copied), kRefusalsKept - 2);
-  EXPECT_EQ(board.reader.copy_refusals(head, head.refused - 1, copied), 1U);
-  EXPECT_EQ(copied.front().item, 2 * head.refused - 2);
+  summary.consumed += 10;
+  board.writer.commit(summary);
+  EXPECT_EQ(board.reader.copy_refusals(summary, 0, copied), kRefusalsKept - 2);
+  EXPECT_EQ(board.reader.copy_refusals(summary, summary.refused - 1, copied), 1U);
+  EXPECT_EQ(copied.front().item, 2 * summary.refused - 2);
 }
 
 }  // namespace

@@ -68,8 +68,8 @@ struct Replaced : LiveStream {
     drain();
     BoardSegment segment(1, false);
     SegmentCopy found;
-    for (Word n = solver.head().run; n <= solver.head().newest; ++n) {
-      if (segment.take(board.reader, solver.head(), n) != BoardSegment::Taken::whole) continue;
+    for (Word n = solver.summary().run; n <= solver.summary().newest; ++n) {
+      if (segment.take(board.reader, solver.summary(), n) != BoardSegment::Taken::whole) continue;
       segment.copy_to(found);
       if (found.kind == SegmentKind::entry) return found;
     }
@@ -92,7 +92,7 @@ TEST(ReplacementEntry, DoesNotEndBeforeItsBlendEnds) {
       EXPECT_LT(entry->right - entry->left, milliseconds(std::max(blend, 200) + 20)) << blend;
       const auto passed =
           std::ranges::count_if(live.times, [&](Time t) { return t < entry->right; });
-      EXPECT_EQ(live.solver.head().passed_over, static_cast<Word>(passed)) << blend;
+      EXPECT_EQ(live.solver.summary().passed_over, static_cast<Word>(passed)) << blend;
     }
   }
 }
@@ -102,7 +102,7 @@ TEST(ReplacementEntry, EndsAfterTheLastWaypointForALongerBlend) {
   const auto entry = live.replace(milliseconds(1500));
   ASSERT_TRUE(entry);
   EXPECT_GE(entry->right - entry->left, milliseconds(1500));
-  EXPECT_EQ(live.solver.head().passed_over, live.plan.size());
+  EXPECT_EQ(live.solver.summary().passed_over, live.plan.size());
 }
 
 TEST(ReplacementEntry, RefusesABlendBeyondTheLargestIntervalAndTreatsANegativeOneAsZero) {
@@ -112,7 +112,7 @@ TEST(ReplacementEntry, RefusesABlendBeyondTheLargestIntervalAndTreatsANegativeOn
       AppendStatus::too_far_apart);
   const auto entry = live.replace(milliseconds(-7));
   ASSERT_TRUE(entry);
-  EXPECT_EQ(live.solver.head().controls, 1U);
+  EXPECT_EQ(live.solver.summary().controls, 1U);
 }
 
 TEST(ReplacementPreview, ReportsTheEntryThatTheSolverMakes) {
@@ -129,7 +129,7 @@ TEST(ReplacementPreview, ReportsTheEntryThatTheSolverMakes) {
       ASSERT_TRUE(entry);
       EXPECT_EQ(told.begin, entry->left);
       EXPECT_EQ(told.duration, entry->right - entry->left);
-      EXPECT_EQ(told.passed_over, live.solver.head().passed_over);
+      EXPECT_EQ(told.passed_over, live.solver.summary().passed_over);
       if (told.waypoint) {
         EXPECT_EQ(live.times[*told.waypoint], entry->right);
       }
@@ -159,7 +159,7 @@ TEST(ReplacementPreview, OfAStopReportsItsDuration) {
   EXPECT_EQ(live.ring.writer.replace_from(time_at(1100), {}, live.solved()),
             AppendStatus::accepted);
   live.drain();
-  EXPECT_EQ(live.solver.head().stop, told.duration);
+  EXPECT_EQ(live.solver.summary().stop, told.duration);
 }
 
 /// Positions at 100 Hz of a motion with two dimensions; the second one is periodic.
@@ -201,7 +201,7 @@ TEST(ReplacementPreview, OfAProducerChangesNothingAndMatchesTheReplacement) {
   const auto other = positions_from(milliseconds(520), 60, 0.01);
   const auto plan = waypoints_at(other, t + milliseconds(20));
   const Word appended = producer.appended();
-  const Word passed_before = Internals::head(solver).passed_over;  // > 0: starts in motion
+  const Word passed_before = Internals::summary(solver).passed_over;  // > 0: starts in motion
   const ReplacePreview told = producer.preview_replace(t, plan, {.blend = milliseconds(100)});
   EXPECT_EQ(producer.appended(), appended);
   ASSERT_EQ(told.status, AppendStatus::accepted);
@@ -214,7 +214,7 @@ TEST(ReplacementPreview, OfAProducerChangesNothingAndMatchesTheReplacement) {
             AppendStatus::too_late);
   ASSERT_EQ(producer.replace_from(t, plan, {.blend = milliseconds(100)}), AppendStatus::accepted);
   for (int i = 0; i < 100; ++i) solver.step(clock);
-  EXPECT_EQ(Internals::head(solver).passed_over - passed_before, told.passed_over);
+  EXPECT_EQ(Internals::summary(solver).passed_over - passed_before, told.passed_over);
   Reader reader(stream.name());
   State state(2);
   ASSERT_TRUE(has_values(reader.preview(t + told.duration / 2, state)));

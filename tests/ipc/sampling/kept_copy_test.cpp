@@ -51,8 +51,8 @@ struct Board : MemoryBoard {
     }
   }
   void commit() {
-    Head head{.first = kFirst, .newest = kNewest};
-    writer.commit(head);
+    Summary summary{.first = kFirst, .newest = kNewest};
+    writer.commit(summary);
   }
   void publish() {
     write();
@@ -168,10 +168,10 @@ TEST(KeptCopy, ASegmentNeverCombinesKnotsOfTwoRevisions) {
     for (const Word number : {kKnot - 1, kKnot}) {
       Interleaving at(copied, trapped);
       BoardSegment segment(kDimensions, false);
-      Head head;
+      Summary summary;
       const Word seen = at.run([&] {
-        EXPECT_TRUE(at.board.reader.copy_bounds(at.board.look(), 0, head));
-        return static_cast<Word>(segment.take(at.board.reader, head, number));
+        EXPECT_TRUE(at.board.reader.copy_bounds(at.board.look(), 0, summary));
+        return static_cast<Word>(segment.take(at.board.reader, summary, number));
       });
       EXPECT_TRUE(at.has_acted);
       EXPECT_EQ(seen, static_cast<Word>(BoardSegment::Taken::torn));

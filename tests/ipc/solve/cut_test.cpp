@@ -22,8 +22,8 @@ Time at(int ms) { return Live::kNow + milliseconds(ms); }
 std::vector<SegmentCopy> segments_of(Live& live) {
   BoardSnapshot snapshot(1);
   KnotCopy knot(1, live.board.reader.smooths());
-  const Head& head = live.solver.head();
-  EXPECT_TRUE(live.board.reader.copy_knot(head.first, head.revision, knot));
+  const Summary& summary = live.solver.summary();
+  EXPECT_TRUE(live.board.reader.copy_knot(summary.first, summary.revision, knot));
   EXPECT_TRUE(has_values(live.sampler.snapshot(knot.time, Time::max(), snapshot)));
   return {snapshot.segments().begin(), snapshot.segments().end()};
 }
@@ -31,20 +31,20 @@ std::vector<SegmentCopy> segments_of(Live& live) {
 /// Expects each packed time to be the start of its knot's segment. A knot without a segment is
 /// neither the first one nor next to another one.
 void expect_times_in_order(Live& live) {
-  const Head& head = live.solver.head();
+  const Summary& summary = live.solver.summary();
   const KnotBoardReader& board = live.board.reader;
   bool was_none = true;
-  for (Word n = head.first; n <= head.newest; ++n) {
+  for (Word n = summary.first; n <= summary.newest; ++n) {
     Time begins{};
     SegmentForm form{};
-    ASSERT_TRUE(board.copy_time(n, head.revision, begins, form));
+    ASSERT_TRUE(board.copy_time(n, summary.revision, begins, form));
     const bool is_none = form == SegmentForm::none;
-    if (is_none && n < head.newest) {
+    if (is_none && n < summary.newest) {
       EXPECT_FALSE(was_none) << n;
-      ASSERT_TRUE(board.copy_time(n + 1, head.revision, begins, form));
+      ASSERT_TRUE(board.copy_time(n + 1, summary.revision, begins, form));
     }
     EXPECT_EQ(board.time_hint(n), begins) << n;
-    if (n > head.first) {
+    if (n > summary.first) {
       EXPECT_LE(board.time_hint(n - 1), board.time_hint(n)) << n;
     }
     was_none = is_none;
@@ -97,12 +97,12 @@ void cut(Live& live, Time t, int waypoints = 3) {
   for (int i = 1; i <= waypoints; ++i) times.push_back(t + i * milliseconds(10));
   ASSERT_EQ(live.replace(t, times), AppendStatus::accepted);
   live.drain();
-  EXPECT_EQ(live.solver.head().refused, 0U);
-  EXPECT_EQ(live.solver.head().changed_from, t);
+  EXPECT_EQ(live.solver.summary().refused, 0U);
+  EXPECT_EQ(live.solver.summary().changed_from, t);
   const auto after = segments_of(live);
   expect_times_in_order(live);
   std::erase_if(before, [&](const SegmentCopy& old) {
-    return old.left >= t || old.number < live.solver.head().first;
+    return old.left >= t || old.number < live.solver.summary().first;
   });
   ASSERT_FALSE(before.empty());
   ASSERT_LT(before.size(), after.size());
@@ -127,12 +127,12 @@ bool begins_beside_target(Live& live, Time t) {
 }
 
 std::size_t count_forms(Live& live, SegmentForm wanted) {
-  const Head& head = live.solver.head();
+  const Summary& summary = live.solver.summary();
   std::size_t count = 0;
-  for (Word n = head.first; n <= head.newest; ++n) {
+  for (Word n = summary.first; n <= summary.newest; ++n) {
     Time time{};
     SegmentForm form{};
-    EXPECT_TRUE(live.board.reader.copy_time(n, head.revision, time, form));
+    EXPECT_TRUE(live.board.reader.copy_time(n, summary.revision, time, form));
     count += form == wanted ? 1U : 0U;
   }
   return count;
@@ -287,8 +287,8 @@ TEST(Cut, ManyTimesKeepsTheBoardInOrderWhileItsSlotsAreReused) {
     expect_times_in_order(live);
     if (i % 7 == 0) live.replace_solver();
   }
-  EXPECT_GT(live.solver.head().newest, 6 * live.board.layout.capacity);
-  EXPECT_GT(live.solver.head().first, 1U);
+  EXPECT_GT(live.solver.summary().newest, 6 * live.board.layout.capacity);
+  EXPECT_GT(live.solver.summary().first, 1U);
 }
 
 }  // namespace

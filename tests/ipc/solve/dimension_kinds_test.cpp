@@ -204,10 +204,10 @@ TEST(QuaternionStream, AQuaternionOfLengthZeroIsRefused) {
   stream.send({.time = kPeriod, .position = std::vector<double>{1, 0, 0, 0, 0}});
   stream.send({.time = 2 * kPeriod, .position = std::vector<double>{1, 0, 1, 0, 0}});
   stream.finish();
-  const Head& head = stream.solver.head();
-  EXPECT_EQ(head.knots, 2U);
-  EXPECT_EQ(head.refused, 1U);
-  EXPECT_EQ(head.reasons[static_cast<std::size_t>(Refusal::zero_quaternion)], 1U);
+  const Summary& summary = stream.solver.summary();
+  EXPECT_EQ(summary.knots, 2U);
+  EXPECT_EQ(summary.refused, 1U);
+  EXPECT_EQ(summary.reasons[static_cast<std::size_t>(Refusal::zero_quaternion)], 1U);
 }
 
 TEST(QuaternionStream, HoldsAndStopsAtUnitLength) {

@@ -67,9 +67,9 @@ class Stream {
     EXPECT_EQ(stream_.ring.writer.finish({ConditionKind::own, {}}, solved()),
               AppendStatus::accepted);
     step();
-    EXPECT_TRUE(stream_.solver.head().finished);
-    EXPECT_EQ(stream_.solver.head().refused, 0U);
-    EXPECT_EQ(stream_.solver.head().knots, kKnots);
+    EXPECT_TRUE(stream_.solver.summary().finished);
+    EXPECT_EQ(stream_.solver.summary().refused, 0U);
+    EXPECT_EQ(stream_.solver.summary().knots, kKnots);
     // Revisions that change only counters have no deadline, so that not every item is discarded.
     if (disturbance_ != Disturbance::none) {
       EXPECT_GT(discarded_, kKnots / 2);
@@ -81,7 +81,8 @@ class Stream {
 
  private:
   [[nodiscard]] WaypointRingWriter::Solved solved() {
-    return {stream_.board.reader.tail(), stream_.board.reader.look().settled_until, &stream_.clock};
+    return {stream_.board.reader.consumed(), stream_.board.reader.look().settled_until,
+            &stream_.clock};
   }
   void append(const Waypoint& waypoint) {
     EXPECT_EQ(stream_.ring.writer.append(waypoint, solved()), AppendStatus::accepted);
@@ -178,15 +179,15 @@ class Curve {
   /// curve is cut there first.
   void publish(const Trial& trial, std::size_t from, std::size_t to, std::optional<Time> entry) {
     change(trial, from, to, entry);
-    head_.changed_from = curve_->write();
-    put_summary(curve_->summary(), head_);
+    summary_.changed_from = curve_->write();
+    put_summary(curve_->summary(), summary_);
     ASSERT_TRUE(board_.writer.is_sound());
-    board_.writer.commit(head_);
-    curve_->committed(head_);
+    board_.writer.commit(summary_);
+    curve_->committed(summary_);
   }
   void finish() {
     expect_finish();
-    head_.finished = true;
+    summary_.finished = true;
     publish({}, 0, 0, std::nullopt);
   }
 
@@ -200,7 +201,7 @@ class Curve {
       take_over();
     } else {
       board_.writer.discard();
-      curve_->restore(head_);
+      curve_->restore(summary_);
     }
     ASSERT_FALSE(curve_->is_damaged());
   }
@@ -209,9 +210,9 @@ class Curve {
   [[nodiscard]] std::vector<SegmentCopy> segments() const {
     std::vector<SegmentCopy> all;
     BoardSegment segment(kDimensions, board_.reader.smooths());
-    for (Word n = head_.first; n <= head_.newest && n > 0;) {
-      const auto taken = segment.take(board_.reader, head_, n);
-      if (taken == BoardSegment::Taken::none && n == head_.newest) break;
+    for (Word n = summary_.first; n <= summary_.newest && n > 0;) {
+      const auto taken = segment.take(board_.reader, summary_, n);
+      if (taken == BoardSegment::Taken::none && n == summary_.newest) break;
       EXPECT_EQ(taken, BoardSegment::Taken::whole) << n;
       if (taken != BoardSegment::Taken::whole) break;
       segment.copy_to(all.emplace_back());
@@ -225,7 +226,7 @@ class Curve {
     board_.replace_writer();
     curve_.emplace(board_.writer, board_.reader, how_, DimensionKinds(),
                    EntryOptions{.is_live = true});
-    curve_->restore(head_);
+    curve_->restore(summary_);
   }
   void change(const Trial& trial, std::size_t from, std::size_t to, std::optional<Time> entry) {
     curve_->freeze(Time::min());
@@ -244,7 +245,7 @@ class Curve {
   core::WindowOptions how_;
   testing::MemoryBoard board_;
   std::optional<PublishedCurve> curve_;
-  Head head_;
+  Summary summary_;
 };
 
 /// A time for a cut: in the interval that ends at waypoint `from` - 1.

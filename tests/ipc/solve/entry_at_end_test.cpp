@@ -19,7 +19,7 @@ TEST(Entry, ToTheLastWaypointEndsAStreamThatFinishesAfterIt) {
       live.send_all(50, 800, 60);
       live.run_to(796 + late);
       live.end();
-      const Time end = live.solver.head().settled_until;
+      const Time end = live.solver.summary().settled_until;
       EXPECT_GT(end, at(800));  // after the time of the waypoint
       EXPECT_LT(end, at(800 + late) + seconds(3));
       EXPECT_NEAR(live.position_at(end), motion(at(800)), 1e-12);
@@ -41,7 +41,7 @@ TEST(Entry, ToTheLastWaypointIsAsLongAsTheLimitRequires) {
   live.send(1600, 30.0);  // far away
   live.send(1610, 30.0);
   live.end();
-  const Time end = live.solver.head().settled_until;
+  const Time end = live.solver.summary().settled_until;
   const double least = std::sqrt(10 / std::sqrt(3.0) * 29.5);
   EXPECT_GT(to_seconds(end - at(1500)), 0.9 * least);
   EXPECT_LT(to_seconds(end - at(1500)), 1.3 * least);

@@ -23,9 +23,9 @@ TEST(Entry, BeginsAStreamWhoseFirstIntervalExceedsItsLimit) {
         send(ms);
       }
       live.end();
-      const Head& head = live.solver.head();
-      EXPECT_GE(head.passed_over, 1U);
-      EXPECT_EQ(live.met(), head.interpolated());
+      const Summary& summary = live.solver.summary();
+      EXPECT_GE(summary.passed_over, 1U);
+      EXPECT_EQ(live.met(), summary.interpolated());
       ASSERT_FALSE(live.collected.segments().empty());
       EXPECT_NE(live.collected.segments()[0].kind, SegmentKind::spline);
       EXPECT_EQ(live.collected.segments()[0].left, at(300));
@@ -44,7 +44,7 @@ TEST(Entry, IsNotNeededIfTheStartIsWithinItsLimit) {
     live.send(ms, 1 - std::cos(1e-3 * (ms - 100)));
   }
   live.end();
-  EXPECT_EQ(live.solver.head().passed_over, 0U);
+  EXPECT_EQ(live.solver.summary().passed_over, 0U);
   EXPECT_EQ(live.entries(), 0U);
   EXPECT_EQ(live.verified(), "");
 }

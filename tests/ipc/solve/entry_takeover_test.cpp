@@ -101,8 +101,8 @@ TEST(Entry, IsBitIdenticalIfANewSolverTakesOverBeforeEachSearch) {
       ASSERT_EQ(a[i].kind, b[i].kind) << i;
       ASSERT_EQ(a[i].coefficients, b[i].coefficients) << i;
     }
-    EXPECT_EQ(one.solver.head().passed_over, many.solver.head().passed_over);
-    EXPECT_EQ(one.solver.head().knots, many.solver.head().knots);
+    EXPECT_EQ(one.solver.summary().passed_over, many.solver.summary().passed_over);
+    EXPECT_EQ(one.solver.summary().knots, many.solver.summary().knots);
   }
 }
 
@@ -116,7 +116,7 @@ TEST(Entry, IsVerifiedIfASolverDiesAtAnyTime) {
       live.end();
       ASSERT_EQ(live.verified(), "");
       if (scenario.appends_only) {
-        ASSERT_EQ(live.met(), live.solver.head().interpolated());
+        ASSERT_EQ(live.met(), live.solver.summary().interpolated());
       }
     }
   }

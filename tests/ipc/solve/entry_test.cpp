@@ -17,22 +17,22 @@ TEST(Entry, ReturnsToTheWaypointsAfterAStarvationAndPassesOverThoseBeforeItsEnd)
     Watched live(limited(limit));
     live.send_all(50, 500, 60);
     live.run_to(700);
-    EXPECT_TRUE(live.solver.head().starved);
+    EXPECT_TRUE(live.solver.summary().starved);
     EXPECT_EQ(live.course(), Course::waiting);
-    EXPECT_EQ(live.solver.head().underruns, 1U);
+    EXPECT_EQ(live.solver.summary().underruns, 1U);
     live.send_all(800, 2500, 300);
-    EXPECT_FALSE(live.solver.head().starved);
+    EXPECT_FALSE(live.solver.summary().starved);
     EXPECT_EQ(live.course(), Course::on_target);
     for (int ms = 2300; ms <= 2500; ms += 10) {
       EXPECT_NEAR(live.position_at(at(ms)), motion(at(ms)), 1e-12) << ms;
     }
-    const Head& head = live.solver.head();
-    EXPECT_EQ(head.refused, 0U);
-    EXPECT_EQ(head.knots, live.sent.size());
-    EXPECT_GT(head.passed_over, 0U);
+    const Summary& summary = live.solver.summary();
+    EXPECT_EQ(summary.refused, 0U);
+    EXPECT_EQ(summary.knots, live.sent.size());
+    EXPECT_GT(summary.passed_over, 0U);
     EXPECT_GE(live.entries(), 1U);
     live.end();
-    EXPECT_EQ(live.met(), live.solver.head().interpolated());
+    EXPECT_EQ(live.met(), live.solver.summary().interpolated());
     expect_continuous(live);
     EXPECT_EQ(live.verified(), "");
     if (limit > 0) {
@@ -45,8 +45,8 @@ TEST(Entry, CountsNoWaypointAsPassedOverIfTheCurveInterpolatesAll) {
   Watched live;
   live.send_all(50, 1000, 150);
   live.end();
-  EXPECT_EQ(live.solver.head().passed_over, 0U);
-  EXPECT_EQ(live.solver.head().interpolated(), live.sent.size());
+  EXPECT_EQ(live.solver.summary().passed_over, 0U);
+  EXPECT_EQ(live.solver.summary().interpolated(), live.sent.size());
   EXPECT_EQ(live.met(), live.sent.size());
   EXPECT_EQ(live.verified(), "");
 }
@@ -61,8 +61,8 @@ TEST(Entry, EndsAtTheFirstWaypointThatItsLimitsAllow) {
   live.drain();
   live.note();
   ASSERT_EQ(live.course(), Course::entering);
-  const Head& head = live.solver.head();
-  EXPECT_GT(head.passed_over, 0U);
+  const Summary& summary = live.solver.summary();
+  EXPECT_GT(summary.passed_over, 0U);
   live.run_to(1510);
   // From rest to rest over 0.05 with an acceleration of at most 8 takes at least 0.19 s.
   const double least = std::sqrt(10 / std::sqrt(3.0) * 0.05 / 8);
@@ -85,7 +85,7 @@ TEST(Entry, WithoutAReachableWaypointContinuesAlongALineToAStop) {
   live.drain();
   live.note();
   ASSERT_EQ(live.course(), Course::beyond);
-  EXPECT_EQ(live.solver.head().passed_over, 3U);
+  EXPECT_EQ(live.solver.summary().passed_over, 3U);
   // At this time the extrapolation line from the newest waypoint ends.
   const Time line_end = at(920) + core::Extrapolation::kLine;
   State end(1);
@@ -104,8 +104,8 @@ TEST(Entry, BeyondTheNewestWaypointIsReplannedForNewerOnesUntilItReachesOne) {
   live.send_all(860, 3500, 60);
   EXPECT_TRUE(live.course() == Course::on_target);
   live.end();
-  EXPECT_EQ(live.met(), live.solver.head().interpolated());
-  EXPECT_GT(live.solver.head().interpolated(), 40U);
+  EXPECT_EQ(live.met(), live.solver.summary().interpolated());
+  EXPECT_GT(live.solver.summary().interpolated(), 40U);
   EXPECT_LE(live.peak(2), 2 * (1 + 1e-6));
   EXPECT_EQ(live.verified(), "");
 }
@@ -152,11 +152,11 @@ TEST(Entry, ThatEndsAtAWaypointIsNotChangedByLaterWaypoints) {
   ASSERT_EQ(live.course(), Course::entering);
   live.run_to(610);  // the entry has begun
   const double on_the_way = live.position_at(at(660));
-  const Word passed = live.solver.head().passed_over;
+  const Word passed = live.solver.summary().passed_over;
   for (int ms = 1210; ms <= 1250; ms += 10) live.send(ms, 0.1 + 0.01 * (ms - 1200));
   live.drain();
   EXPECT_EQ(live.position_at(at(660)), on_the_way);
-  EXPECT_EQ(live.solver.head().passed_over, passed);
+  EXPECT_EQ(live.solver.summary().passed_over, passed);
 }
 
 }  // namespace

@@ -26,11 +26,12 @@ using testing::MemoryStream;
 constexpr IngestLimits kNanosecond{.min_interval = Time(1)};
 
 Word reason(const MemoryStream& stream, Refusal refusal) {
-  return stream.solver.head().reasons[static_cast<std::size_t>(refusal)];
+  return stream.solver.summary().reasons[static_cast<std::size_t>(refusal)];
 }
 
-void expect_balance(const Head& head) {
-  EXPECT_EQ(head.consumed, head.knots + head.refused + head.withdrawn + head.controls);
+void expect_balance(const Summary& summary) {
+  EXPECT_EQ(summary.consumed,
+            summary.knots + summary.refused + summary.withdrawn + summary.controls);
 }
 
 /// A stream whose producer accepts intervals from 1 ns.
@@ -75,7 +76,7 @@ TEST(FiniteValues, AQuaternionTooShortForItsVelocityIsRefused) {
   send(50, 1, 1);
   EXPECT_EQ(reason(stream, Refusal::zero_quaternion), 2U);
   EXPECT_EQ(reason(stream, Refusal::not_finite), 1U);
-  EXPECT_EQ(stream.solver.head().knots, 3U);
+  EXPECT_EQ(stream.solver.summary().knots, 3U);
   stream.expect_finite_samples(Time(0), milliseconds(300));
 }
 
@@ -100,7 +101,7 @@ struct Poisoned : FastStream {
     drain();
   }
   [[nodiscard]] bool is_refused(Word item) const {
-    for (Word k = 0; k < solver.head().refused; ++k) {
+    for (Word k = 0; k < solver.summary().refused; ++k) {
       if (board.reader.refusal(k).item == item) return true;
     }
     return false;
@@ -113,12 +114,12 @@ TEST(FiniteValues, OnlyTheWaypointThatMakesTheCurveNotFiniteIsRefused) {
   EXPECT_NO_THROW(stream.replace_solver());
   stream.finish({ConditionKind::own, {}});
   EXPECT_NO_THROW(stream.replace_solver());
-  const Head& head = stream.solver.head();
+  const Summary& summary = stream.solver.summary();
   EXPECT_GT(reason(stream, Refusal::not_finite), 0U);
   EXPECT_LT(reason(stream, Refusal::not_finite), 20U);
-  EXPECT_EQ(reason(stream, Refusal::not_finite), head.refused);
-  EXPECT_EQ(head.knots + head.refused, stream.sent.size());
-  expect_balance(head);
+  EXPECT_EQ(reason(stream, Refusal::not_finite), summary.refused);
+  EXPECT_EQ(summary.knots + summary.refused, stream.sent.size());
+  expect_balance(summary);
   stream.expect_finite_samples(Time(0), stream.sent.back().first);
 }
 
@@ -133,7 +134,7 @@ TEST(FiniteValues, ARefusedWaypointLeavesNoTrace) {
     other.send({.time = time, .position = {&x, 1}});
     other.drain();
   }
-  EXPECT_EQ(other.solver.head().refused, 0U);
+  EXPECT_EQ(other.solver.summary().refused, 0U);
   Sampler sampler(stream.board.reader, StreamClock::recorded);
   Sampler wanted(other.board.reader, StreamClock::recorded);
   State got(1);
@@ -193,7 +194,7 @@ void send_any(FastStream& stream, Extremes& extremes, Time t, bool is_first) {
   const auto v = extremes.values(5);
   const auto a = extremes.values(5);
   const Waypoint waypoint{.time = t, .position = x, .velocity = v, .acceleration = a};
-  const WaypointRingWriter::Solved solved{stream.board.reader.tail()};
+  const WaypointRingWriter::Solved solved{stream.board.reader.consumed()};
   if (is_first && extremes.pick(4) == 0) {
     (void)stream.ring.writer.start_from({t, x, v, a}, solved);
   } else if (extremes.pick(8) == 0) {
@@ -226,12 +227,12 @@ TEST_P(AnyValues, LeaveTheBoardFiniteAndRestorableAfterEveryStep) {
       stream.clock.time += extremes.pick(4) == 0 ? milliseconds(50) : Time(1000);
       for (int step = 0; step < 100 && stream.solver.step(stream.clock).consumed > 0; ++step) {
       }
-      ASSERT_EQ(stream.solver.head().consumed, stream.ring.writer.head());
+      ASSERT_EQ(stream.solver.summary().consumed, stream.ring.writer.written());
       ASSERT_NO_THROW(stream.replace_solver());
       stream.expect_finite_samples(stream.clock.time, t + milliseconds(300));
     }
     stream.finish({is_live ? ConditionKind::halt : ConditionKind::own, {}});
-    expect_balance(stream.solver.head());
+    expect_balance(stream.solver.summary());
     ASSERT_NO_THROW(stream.replace_solver());
   }
 }

@@ -27,8 +27,8 @@ TEST(FirstWaypoint, MayBeAtTheSettledTimeOfTheStepThatTakesIt) {
   const StepResult result = stream.solver.step(stream.clock);
   EXPECT_FALSE(result.damaged);
   EXPECT_TRUE(result.published);
-  EXPECT_EQ(stream.solver.head().knots, 3U);
-  EXPECT_EQ(stream.solver.head().newest_knot, first + milliseconds(20));
+  EXPECT_EQ(stream.solver.summary().knots, 3U);
+  EXPECT_EQ(stream.solver.summary().newest_time, first + milliseconds(20));
 }
 
 }  // namespace

@@ -33,9 +33,9 @@ constexpr Time kPause = milliseconds(50);
 
 /// The counter as a reader sees it.
 Word late_commits(const Live& live) {
-  Head head;
-  EXPECT_TRUE(live.board.reader.copy_head(live.board.reader.look(), head));
-  return head.revisions;
+  Summary summary;
+  EXPECT_TRUE(live.board.reader.copy_summary(live.board.reader.look(), summary));
+  return summary.late_commits;
 }
 
 /// The words that a solver stores after a commit, when it has read the clock.
@@ -64,7 +64,7 @@ struct LateCommit : Live {
 
 TEST(LateCommit, IsCountedAlsoIfNoRevisionFollows) {
   const LateCommit live;
-  EXPECT_EQ(live.solver.head().revisions, 1U);
+  EXPECT_EQ(live.solver.summary().late_commits, 1U);
   EXPECT_EQ(late_commits(live), 1U);
 }
 
@@ -72,10 +72,10 @@ TEST(LateCommit, IsCountedAlsoIfTheNextRevisionMissesItsDeadline) {
   LateCommit live;
   ASSERT_EQ(live.replace(live.solved().settled_until, {}), AppendStatus::accepted);
   EXPECT_TRUE(live.solver.step(StoppedClock(live.clock.time, 1, kPause)).missed);
-  EXPECT_EQ(live.solver.head().revisions, 1U);
+  EXPECT_EQ(live.solver.summary().late_commits, 1U);
   live.clock.time += milliseconds(3);
   live.drain();
-  EXPECT_EQ(live.solver.head().misses, 1U);
+  EXPECT_EQ(live.solver.summary().deadline_misses, 1U);
   EXPECT_EQ(late_commits(live), 1U);
 }
 

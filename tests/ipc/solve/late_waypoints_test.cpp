@@ -23,9 +23,9 @@ TEST(Entry, OfALateStreamGivesCountsThatMatchItsSegments) {
         ms += 20 + static_cast<int>(random() % 20) + (random() % 20 == 0 ? 300 : 0);
       }
       live.end();
-      const Head& head = live.solver.head();
-      EXPECT_EQ(head.knots + head.refused, live.sent.size());
-      EXPECT_EQ(live.met(), head.interpolated());
+      const Summary& summary = live.solver.summary();
+      EXPECT_EQ(summary.knots + summary.refused, live.sent.size());
+      EXPECT_EQ(live.met(), summary.interpolated());
       expect_continuous(live);
       EXPECT_EQ(live.verified(), "");
       if (limit > 0) {
@@ -42,12 +42,12 @@ TEST(Entry, UsesAWaypointUpToAQuarterSecondLateAndRefusesLaterOnes) {
     live.run_to(1000);
     live.send(1005 - late);  // the settled time is 1005
     live.step();
-    const Head& head = live.solver.head();
+    const Summary& summary = live.solver.summary();
     const bool is_taken = late <= 250;
     EXPECT_EQ(live.reason(Refusal::past), is_taken ? 0U : 1U) << late;
-    EXPECT_EQ(head.refused, is_taken ? 0U : 1U) << late;
-    EXPECT_EQ(head.passed_over, is_taken ? 1U : 0U) << late;
-    EXPECT_EQ(head.knots, is_taken ? 27U : 26U) << late;
+    EXPECT_EQ(summary.refused, is_taken ? 0U : 1U) << late;
+    EXPECT_EQ(summary.passed_over, is_taken ? 1U : 0U) << late;
+    EXPECT_EQ(summary.knots, is_taken ? 27U : 26U) << late;
   }
 }
 
@@ -61,7 +61,7 @@ TEST(Entry, NeverEndsAtALateWaypoint) {
   EXPECT_EQ(live.position_at(at(1005)), before);  // settled, therefore unchanged
   live.send_all(1100, 2000, 60);
   live.end();
-  EXPECT_EQ(live.met(), live.solver.head().interpolated());
+  EXPECT_EQ(live.met(), live.solver.summary().interpolated());
   EXPECT_EQ(live.verified(), "");
 }
 
@@ -80,12 +80,12 @@ TEST(Entry, IgnoresWaypointsRefusedDuringItsSearch) {
     return blind.append({.time = at(ms), .position = {&x, 1}}, {});
   };
   for (const int ms : {900, 890}) {
-    const Word before = live.solver.head().refused;
-    const Word passed = live.solver.head().passed_over;
+    const Word before = live.solver.summary().refused;
+    const Word passed = live.solver.summary().passed_over;
     if (send_blindly(ms) != AppendStatus::accepted) continue;
     live.step();
-    EXPECT_EQ(live.solver.head().refused, before + 1) << ms;
-    EXPECT_EQ(live.solver.head().passed_over, passed) << ms;
+    EXPECT_EQ(live.solver.summary().refused, before + 1) << ms;
+    EXPECT_EQ(live.solver.summary().passed_over, passed) << ms;
   }
 }
 

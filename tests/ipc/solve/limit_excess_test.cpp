@@ -55,12 +55,12 @@ struct Stepping : LiveStream {
 TEST(LimitExcess, IsReportedAndTheWaypointIsTaken) {
   Stepping live(Beyond::report);
   live.play({700});
-  EXPECT_EQ(live.solver.head().refused, 0U);
+  EXPECT_EQ(live.solver.summary().refused, 0U);
   EXPECT_GT(live.peak(), 100);
   // The step and the return from it.
-  ASSERT_GE(live.solver.head().exceeding, 1U);
-  EXPECT_LE(live.solver.head().exceeding, 8U);
-  const auto excess = live.board.reader.excess(live.solver.head(), 0);
+  ASSERT_GE(live.solver.summary().exceeding, 1U);
+  EXPECT_LE(live.solver.summary().exceeding, 8U);
+  const auto excess = live.board.reader.excess(live.solver.summary(), 0);
   ASSERT_TRUE(excess);
   EXPECT_EQ(excess->item, 65U);
   EXPECT_FALSE(excess->is_refused);
@@ -75,8 +75,8 @@ TEST(LimitExcess, IsRefusedWithItsPlaceAndNoExcessIsPublished) {
     Stepping live(Beyond::refuse);
     live.play({700, 900, 910}, takes_over);
     EXPECT_EQ(live.reason(Refusal::beyond_limits), 3U);
-    EXPECT_EQ(live.solver.head().refused, 3U);
-    EXPECT_EQ(live.solver.head().exceeding, 3U);
+    EXPECT_EQ(live.solver.summary().refused, 3U);
+    EXPECT_EQ(live.solver.summary().exceeding, 3U);
     EXPECT_LE(live.peak(), 4 * (1 + 1e-9));
     RefusalReader reader;
     Refusals told;
@@ -99,14 +99,14 @@ TEST(LimitExcess, IsRefusedWithItsPlaceAndNoExcessIsPublished) {
 TEST(LimitExcess, IsNotReportedForAMotionWithinItsLimits) {
   Stepping live(Beyond::refuse);
   live.play({});
-  EXPECT_EQ(live.solver.head().exceeding, 0U);
-  EXPECT_EQ(live.solver.head().refused, 0U);
-  EXPECT_EQ(live.solver.head().passed_over, 0U);
+  EXPECT_EQ(live.solver.summary().exceeding, 0U);
+  EXPECT_EQ(live.solver.summary().refused, 0U);
+  EXPECT_EQ(live.solver.summary().passed_over, 0U);
 }
 
 TEST(LimitExcess, IsKeptOnlyIfItIsAmongTheLastOnes) {
   testing::MemoryBoard board(1, 64);
-  Head head;
+  Summary summary;
   for (Word i = 0; i < kExcessesKept + 10; ++i) {
     board.writer.write_excess(i, {.item = 3 * i,
                                   .kind = LimitKind::jerk,
@@ -115,12 +115,12 @@ TEST(LimitExcess, IsKeptOnlyIfItIsAmongTheLastOnes) {
                                   .value = -1.5 * static_cast<double>(i),
                                   .limit = 2});
   }
-  head.exceeding = kExcessesKept + 10;
-  head.consumed = 3 * head.exceeding;
-  EXPECT_FALSE(board.reader.excess(head, 9));
-  EXPECT_FALSE(board.reader.excess(head, head.exceeding));
-  for (Word i = 10; i < head.exceeding; ++i) {
-    const auto excess = board.reader.excess(head, i);
+  summary.exceeding = kExcessesKept + 10;
+  summary.consumed = 3 * summary.exceeding;
+  EXPECT_FALSE(board.reader.excess(summary, 9));
+  EXPECT_FALSE(board.reader.excess(summary, summary.exceeding));
+  for (Word i = 10; i < summary.exceeding; ++i) {
+    const auto excess = board.reader.excess(summary, i);
     ASSERT_TRUE(excess) << i;
     EXPECT_EQ(excess->item, 3 * i);
     EXPECT_EQ(excess->kind, LimitKind::jerk);
@@ -128,9 +128,9 @@ TEST(LimitExcess, IsKeptOnlyIfItIsAmongTheLastOnes) {
     EXPECT_EQ(excess->time, milliseconds(-static_cast<int>(i)));
     EXPECT_EQ(excess->value, -1.5 * static_cast<double>(i));
     EXPECT_EQ(excess->limit, 2);
-    EXPECT_EQ(board.reader.excess_of(head, 3 * i)->dimension, excess->dimension);
+    EXPECT_EQ(board.reader.excess_of(summary, 3 * i)->dimension, excess->dimension);
   }
-  EXPECT_FALSE(board.reader.excess_of(head, 31));
+  EXPECT_FALSE(board.reader.excess_of(summary, 31));
 }
 
 }  // namespace

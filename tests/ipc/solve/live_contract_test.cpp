@@ -24,11 +24,12 @@ void expect_trusted(const LiveWorld& world, std::uint64_t seed) {
   // A solver that is paused before the start has settled cannot improve the published start.
   EXPECT_LE(report.acceleration, (world.pauses > 0 ? 15 : 10) * world.ideal_peak())
       << "seed " << seed;
-  const Head& head = world.head();
+  const Summary& summary = world.summary();
   // No item is lost silently, for any kills.
-  EXPECT_EQ(head.consumed, head.knots + head.refused + head.withdrawn + head.controls)
+  EXPECT_EQ(summary.consumed,
+            summary.knots + summary.refused + summary.withdrawn + summary.controls)
       << "seed " << seed;
-  EXPECT_EQ(head.consumed, world.items()) << "seed " << seed;
+  EXPECT_EQ(summary.consumed, world.items()) << "seed " << seed;
 }
 
 /// Solves again from the same items with the recorded decisions, and expects the bits of every
@@ -48,14 +49,14 @@ TEST(LiveContract, StaysNearTheMotionAtADepthOfOneKnot) {
     LiveWorld world({.seed = seed, .starts_in_motion = true, .max_lead_knots = 1});
     world.run(seconds(5));
     EXPECT_LT(world.report().acceleration, 10 * world.ideal_peak()) << "seed " << seed;
-    EXPECT_EQ(world.head().refused, 0U);
+    EXPECT_EQ(world.summary().refused, 0U);
     world.finish();
     expect_trusted(world, seed);
     expect_verified(world, seed);
     EXPECT_EQ(world.sent, world.interpolated + world.passed_over);
     EXPECT_GT(world.interpolated, world.sent / 4) << "seed " << seed;
     // No segment begins at the end of the curve.
-    EXPECT_LE(world.passed_over, world.head().passed_over + 1) << "seed " << seed;
+    EXPECT_LE(world.passed_over, world.summary().passed_over + 1) << "seed " << seed;
   }
 }
 

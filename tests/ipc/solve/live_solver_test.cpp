@@ -25,8 +25,8 @@ TEST(LiveSolver, RefusesOnlyWaypointsThatAreLaterThanTheMaximum) {
   EXPECT_EQ(live.put(settled - kMostLate - Time(1)), AppendStatus::past);
   EXPECT_EQ(live.put(settled - kMostLate), AppendStatus::accepted);
   live.drain();
-  EXPECT_EQ(live.solver.head().refused, 0U);
-  EXPECT_EQ(live.solver.head().passed_over, 1U);
+  EXPECT_EQ(live.solver.summary().refused, 0U);
+  EXPECT_EQ(live.solver.summary().passed_over, 1U);
 }
 
 TEST(LiveSolver, AcceptsNearWaypointsAndEntersAgainAfterAStarvation) {
@@ -34,9 +34,9 @@ TEST(LiveSolver, AcceptsNearWaypointsAndEntersAgainAfterAStarvation) {
   live.put_all(50, 200);
   live.clock.time = Live::kNow + milliseconds(300);
   live.solver.step(live.clock);
-  EXPECT_EQ(live.solver.head().underruns, 1U);
-  EXPECT_TRUE(live.solver.head().starved);
-  EXPECT_EQ(live.solver.head().low_water, Time::zero());
+  EXPECT_EQ(live.solver.summary().underruns, 1U);
+  EXPECT_TRUE(live.solver.summary().starved);
+  EXPECT_EQ(live.solver.summary().low_water, Time::zero());
   const double settled = live.position_at(Live::kNow + milliseconds(305));
   ASSERT_EQ(live.put(Live::kNow + milliseconds(250)), AppendStatus::accepted);  // late
   ASSERT_EQ(live.put(Live::kNow + milliseconds(307)), AppendStatus::accepted);  // too near
@@ -44,19 +44,19 @@ TEST(LiveSolver, AcceptsNearWaypointsAndEntersAgainAfterAStarvation) {
     ASSERT_EQ(live.put(Live::kNow + milliseconds(ms)), AppendStatus::accepted);
   }
   live.drain();
-  const Head& head = live.solver.head();
-  EXPECT_EQ(head.refused, 0U);
-  EXPECT_FALSE(head.starved);
-  EXPECT_EQ(static_cast<Course>(head.course), Course::entering);
-  EXPECT_GE(head.passed_over, 1U);
-  EXPECT_EQ(head.interpolated() + head.passed_over, head.knots);
-  EXPECT_EQ(head.changed_from, Live::kNow + milliseconds(305));
+  const Summary& summary = live.solver.summary();
+  EXPECT_EQ(summary.refused, 0U);
+  EXPECT_FALSE(summary.starved);
+  EXPECT_EQ(static_cast<Course>(summary.course), Course::entering);
+  EXPECT_GE(summary.passed_over, 1U);
+  EXPECT_EQ(summary.interpolated() + summary.passed_over, summary.knots);
+  EXPECT_EQ(summary.changed_from, Live::kNow + milliseconds(305));
   EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(305)), settled, 1e-12);
   for (int ms = 850; ms <= 900; ms += 10) {
     const Time t = Live::kNow + milliseconds(ms);
     EXPECT_NEAR(live.position_at(t), Live::x(t), 1e-12);
   }
-  EXPECT_EQ(head.underruns, 1U);
+  EXPECT_EQ(summary.underruns, 1U);
 }
 
 TEST(LiveSolver, AFinishAfterASettledKnotReturnsToIt) {
@@ -67,10 +67,10 @@ TEST(LiveSolver, AFinishAfterASettledKnotReturnsToIt) {
     live.clock.time = newest - milliseconds(4) + milliseconds(late);
     live.solver.step(live.clock);
     live.finish({.kind = ConditionKind::halt, .value = {}});
-    for (int i = 0; i < 20 && !live.solver.head().finished; ++i) live.solver.step(live.clock);
-    EXPECT_TRUE(live.solver.head().finished);
-    EXPECT_GT(live.solver.head().changed_from, live.clock.time);
-    const Time end = live.solver.head().settled_until;
+    for (int i = 0; i < 20 && !live.solver.summary().finished; ++i) live.solver.step(live.clock);
+    EXPECT_TRUE(live.solver.summary().finished);
+    EXPECT_GT(live.solver.summary().changed_from, live.clock.time);
+    const Time end = live.solver.summary().settled_until;
     EXPECT_GT(end, newest);  // after its time
     EXPECT_NEAR(live.position_at(end), Live::x(newest), 1e-12) << late;
     EXPECT_NEAR(live.position_at(end + seconds(5)), Live::x(newest), 1e-12) << late;
@@ -114,7 +114,7 @@ TEST(LiveSolver, DiscardsALateRevisionAndRepeatsIt) {
               Live::x(Live::kNow + milliseconds(75)), 1e-3);
   live.clock.time += milliseconds(2);
   EXPECT_EQ(live.solver.step(live.clock).consumed, 1U);
-  EXPECT_EQ(live.solver.head().misses, 1U);
+  EXPECT_EQ(live.solver.summary().deadline_misses, 1U);
   EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(110)),
               Live::x(Live::kNow + milliseconds(110)), 1e-12);
 }
@@ -137,8 +137,8 @@ TEST(LiveSolver, AStreamContinuesAfterARestLongerThanTheLargestInterval) {
       ASSERT_EQ(live.put(t), AppendStatus::accepted);
     }
     live.drain();
-    EXPECT_EQ(live.solver.head().refused, 0U);
-    EXPECT_EQ(live.solver.head().newest_knot, t);
+    EXPECT_EQ(live.solver.summary().refused, 0U);
+    EXPECT_EQ(live.solver.summary().newest_time, t);
     // The motion is too long ago to reach the first waypoint, but the curve reaches later ones.
     const double x = Live::x(t);
     for (int ms = 10; ms <= 1000; ms += 10) {
@@ -146,7 +146,7 @@ TEST(LiveSolver, AStreamContinuesAfterARestLongerThanTheLargestInterval) {
       live.clock.time += milliseconds(10);
       live.drain();
     }
-    const auto course = static_cast<Course>(live.solver.head().course);
+    const auto course = static_cast<Course>(live.solver.summary().course);
     EXPECT_TRUE(course == Course::on_target || course == Course::entering);
     EXPECT_NEAR(live.position_at(t + milliseconds(1000)), x, 1e-12);
   }

@@ -78,8 +78,8 @@ TEST_P(MethodsThroughRegions, RefuseWaypointsWithoutTheDerivativesTheyNeed) {
   }
   stream.finish({ConditionKind::own, {}});
   const bool lacks = GetParam()->needs_velocity();
-  EXPECT_EQ(stream.solver.head().knots, lacks ? 0U : 3U);
-  EXPECT_EQ(stream.solver.head().reasons[static_cast<std::size_t>(Refusal::lacks_derivatives)],
+  EXPECT_EQ(stream.solver.summary().knots, lacks ? 0U : 3U);
+  EXPECT_EQ(stream.solver.summary().reasons[static_cast<std::size_t>(Refusal::lacks_derivatives)],
             lacks ? 3U : 0U);
 }
 
@@ -94,10 +94,10 @@ TEST(StreamSolver, RefusesWaypointsTooCloseForItsLagAndLambda) {
   const double x = 0;
   for (int i = 0; i < 30; ++i) stream.send({.time = Time(i * 10'000'000), .position = {&x, 1}});
   stream.finish({ConditionKind::own, {}});
-  const Head& head = stream.solver.head();
-  EXPECT_EQ(head.knots + head.refused, 30U);
-  EXPECT_GT(head.reasons[static_cast<std::size_t>(Refusal::lag_too_short)], 0U);
-  EXPECT_GE(head.knots, 20U);
+  const Summary& summary = stream.solver.summary();
+  EXPECT_EQ(summary.knots + summary.refused, 30U);
+  EXPECT_GT(summary.reasons[static_cast<std::size_t>(Refusal::lag_too_short)], 0U);
+  EXPECT_GE(summary.knots, 20U);
 }
 
 }  // namespace

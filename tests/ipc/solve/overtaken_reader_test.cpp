@@ -112,7 +112,7 @@ TEST(LiveSolver, ALaggingReaderGetsRevisedForALateCommitIntoItsRest) {
   ASSERT_EQ(gap.live.put(Live::kNow + milliseconds(2000)), AppendStatus::accepted);
   // Stopped between reading the clock and the commit, until after the start of the entry.
   gap.live.solver.step(RunningClock(gap.live.clock.time, std::chrono::microseconds(2600)));
-  ASSERT_EQ(gap.live.solver.head().revisions, 1U);
+  ASSERT_EQ(gap.live.solver.summary().late_commits, 1U);
   gap.run_to(510);
   gap.move_on(2010);
   EXPECT_EQ(gap.sample(1400), SampleStatus::revised);

@@ -26,16 +26,16 @@ TEST(LiveSolver, ReplacesTheFutureInOneRevisionAndKeepsThePast) {
   ASSERT_EQ(live.replace(t, times), AppendStatus::accepted);
   EXPECT_TRUE(live.solver.step(live.clock).published);
   EXPECT_EQ(live.board.reader.revision(), revision + 1);
-  EXPECT_EQ(live.solver.head().changed_from, t);
-  EXPECT_EQ(live.solver.head().newest_knot, times.back());
+  EXPECT_EQ(live.solver.summary().changed_from, t);
+  EXPECT_EQ(live.solver.summary().newest_time, times.back());
   EXPECT_EQ(live.position_at(t - milliseconds(1)), before);
   live.drain();
-  const Head& head = live.solver.head();
-  EXPECT_EQ(static_cast<Course>(head.course), Course::entering);
-  for (std::size_t i = head.passed_over; i < times.size(); ++i) {
+  const Summary& summary = live.solver.summary();
+  EXPECT_EQ(static_cast<Course>(summary.course), Course::entering);
+  for (std::size_t i = summary.passed_over; i < times.size(); ++i) {
     EXPECT_NEAR(live.position_at(times[i]), Live::x(times[i]), 1e-12) << i;
   }
-  EXPECT_LT(head.passed_over, times.size());
+  EXPECT_LT(summary.passed_over, times.size());
   EXPECT_EQ(live.sampler.preview(times.back() + milliseconds(7), live.state.ref()),
             SampleStatus::stopping);
 }
@@ -62,7 +62,7 @@ TEST(LiveSolver, ALateReplacementIsRefusedWithAllItsWaypoints) {
   live.clock.time += milliseconds(20);  // the solver wakes too late
   live.drain();
   EXPECT_EQ(live.reason(Refusal::too_late), 3U);
-  EXPECT_EQ(live.solver.head().newest_knot, Live::kNow + milliseconds(510));
+  EXPECT_EQ(live.solver.summary().newest_time, Live::kNow + milliseconds(510));
   EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(400)),
               Live::x(Live::kNow + milliseconds(400)), 1e-12);
 }
@@ -70,17 +70,18 @@ TEST(LiveSolver, ALateReplacementIsRefusedWithAllItsWaypoints) {
 TEST(LiveSolver, KeepsItsHistoryAndWithdrawsItemsNotYetTaken) {
   Live live({.settle = 2}, 64, {.history = seconds(1)});
   live.put_all(50, 2050);
-  const Head& head = live.solver.head();
-  EXPECT_LT(head.newest, 65U);
-  EXPECT_LT(head.consumed, live.ring.writer.head());
-  EXPECT_EQ(head.first, 1U);
+  const Summary& summary = live.solver.summary();
+  EXPECT_LT(summary.newest, 65U);
+  EXPECT_LT(summary.consumed, live.ring.writer.written());
+  EXPECT_EQ(summary.first, 1U);
   EXPECT_FALSE(live.solver.step(live.clock).published);  // full: may not overwrite a knot
   const Time t = Live::kNow + milliseconds(300);
   ASSERT_EQ(live.replace(t, {}), AppendStatus::accepted);
   live.drain();
-  EXPECT_EQ(head.consumed, live.ring.writer.head());
-  EXPECT_GT(head.withdrawn, 100U);
-  EXPECT_EQ(head.consumed, head.knots + head.refused + head.withdrawn + head.controls);
+  EXPECT_EQ(summary.consumed, live.ring.writer.written());
+  EXPECT_GT(summary.withdrawn, 100U);
+  EXPECT_EQ(summary.consumed,
+            summary.knots + summary.refused + summary.withdrawn + summary.controls);
   EXPECT_EQ(live.sampler.preview(t + milliseconds(300), live.state.ref()), SampleStatus::holding);
 }
 
@@ -91,7 +92,7 @@ TEST(LiveSolver, AReplacementOnAStreamWithoutWaypointsStartsIt) {
     if (stops_first) {
       ASSERT_EQ(live.replace(Live::kNow, {}), AppendStatus::accepted);
       live.drain();
-      EXPECT_EQ(live.solver.head().newest, 0U);
+      EXPECT_EQ(live.solver.summary().newest, 0U);
     }
     Live appended;
     std::vector<Time> times;
@@ -99,11 +100,11 @@ TEST(LiveSolver, AReplacementOnAStreamWithoutWaypointsStartsIt) {
     ASSERT_EQ(live.replace(Live::kNow + milliseconds(40), times), AppendStatus::accepted);
     live.drain();
     appended.put_all(50, 200);
-    const Head& head = live.solver.head();
-    EXPECT_EQ(head.refused, 0U);
-    EXPECT_EQ(head.controls, stops_first ? 2U : 1U);
-    EXPECT_EQ(head.knots, times.size());
-    EXPECT_EQ(head.consumed, head.knots + head.controls);
+    const Summary& summary = live.solver.summary();
+    EXPECT_EQ(summary.refused, 0U);
+    EXPECT_EQ(summary.controls, stops_first ? 2U : 1U);
+    EXPECT_EQ(summary.knots, times.size());
+    EXPECT_EQ(summary.consumed, summary.knots + summary.controls);
     for (int ms = 0; ms < 400; ++ms) {
       const Time t = Live::kNow + milliseconds(ms);
       EXPECT_EQ(live.position_at(t), appended.position_at(t)) << ms;

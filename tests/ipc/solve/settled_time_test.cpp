@@ -25,7 +25,7 @@ TEST(LiveSolver, RaisesTheSettledTimeWithoutWaypointsOrRevisionsUntilTheMotionEn
   live.clock.time += milliseconds(3);
   EXPECT_FALSE(live.solver.step(live.clock).published);
   EXPECT_EQ(settled(), Live::kNow + milliseconds(8));
-  EXPECT_EQ(live.solver.head().settled_until, settled());
+  EXPECT_EQ(live.solver.summary().settled_until, settled());
   EXPECT_EQ(live.solver.due(), live.clock.time + Time(2'500'000));
   EXPECT_EQ(live.board.reader.revision(), revision);
   live.clock.time = Live::kNow + milliseconds(445);     // the stop segment ends at 450 ms
@@ -49,8 +49,8 @@ TEST(LiveSolver, ItsNextStepKeepsTheSettledTimeRaisedWithoutAStep) {
   const Time early = settled() - Time(1);
   ASSERT_EQ(live.replace(settled(), {settled() + milliseconds(20)}), AppendStatus::accepted);
   live.drain();
-  EXPECT_EQ(live.solver.head().controls, 1U);
-  EXPECT_GT(live.solver.head().changed_from, early);
+  EXPECT_EQ(live.solver.summary().controls, 1U);
+  EXPECT_GT(live.solver.summary().changed_from, early);
   EXPECT_EQ(settled(), Live::kNow + milliseconds(25));
 }
 
@@ -58,13 +58,13 @@ TEST(LiveSolver, TheSettledTimeIsNotRaisedIfAStepHasWorkToDo) {
   Live live;
   EXPECT_FALSE(live.solver.settled_raise().raise(Live::kNow));  // no curve yet
   live.put_all(50, 200);
-  const Time newest = live.solver.head().newest_knot;
+  const Time newest = live.solver.summary().newest_time;
   SettledRaise raise = live.solver.settled_raise();
   EXPECT_TRUE(raise.raise(newest - milliseconds(5) - Time(1)));
   EXPECT_FALSE(raise.raise(newest - milliseconds(5)));  // the stream starves at this time
   live.clock.time = newest - milliseconds(5);
   EXPECT_TRUE(live.solver.step(live.clock).published);
-  EXPECT_TRUE(live.solver.head().starved);
+  EXPECT_TRUE(live.solver.summary().starved);
   EXPECT_FALSE(live.solver.settled_raise().raise(live.clock.time + milliseconds(1)));
 }
 
@@ -76,7 +76,7 @@ TEST(LiveSolver, ASolverThatTakesOverContinuesFromTheLastSettledTime) {
   const Time settled = Live::kNow + milliseconds(25);
   EXPECT_EQ(live.board.reader.look().settled_until, settled);
   live.replace_solver();
-  EXPECT_EQ(live.solver.head().settled_until, settled);
+  EXPECT_EQ(live.solver.summary().settled_until, settled);
   // Also if the clock is earlier.
   live.clock.time = Live::kNow;
   live.drain();
@@ -84,8 +84,8 @@ TEST(LiveSolver, ASolverThatTakesOverContinuesFromTheLastSettledTime) {
   EXPECT_EQ(live.replace(settled - Time(1), {settled + milliseconds(20)}), AppendStatus::too_late);
   ASSERT_EQ(live.replace(settled, {settled + milliseconds(20)}), AppendStatus::accepted);
   live.drain();
-  EXPECT_EQ(live.solver.head().controls, 1U);
-  EXPECT_EQ(live.solver.head().changed_from, settled);
+  EXPECT_EQ(live.solver.summary().controls, 1U);
+  EXPECT_EQ(live.solver.summary().changed_from, settled);
 }
 
 }  // namespace

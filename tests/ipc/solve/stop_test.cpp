@@ -14,21 +14,22 @@ using std::chrono::seconds;
 using Live = testing::LiveStream;
 using testing::LiveWorld;
 
-void expect_balance(const Head& head) {
-  EXPECT_EQ(head.consumed, head.knots + head.refused + head.withdrawn + head.controls);
+void expect_balance(const Summary& summary) {
+  EXPECT_EQ(summary.consumed,
+            summary.knots + summary.refused + summary.withdrawn + summary.controls);
 }
 
 /// Sends a stop for the earliest possible time and expects that one step makes it effective.
 void expect_immediate_stop(Live& live) {
   ASSERT_EQ(live.replace(live.solved().settled_until, {}), AppendStatus::accepted);
-  const Word stop = live.ring.writer.head() - 1;
+  const Word stop = live.ring.writer.written() - 1;
   EXPECT_TRUE(live.solver.step(live.clock).published);
-  const Head& head = live.solver.head();
-  EXPECT_EQ(head.consumed, stop + 1);
-  EXPECT_EQ(head.changed_from, live.clock.time + milliseconds(5));
-  EXPECT_EQ(head.newest_knot, live.clock.time + milliseconds(5));
-  expect_balance(head);
-  const Time rest = head.newest_knot + live.window.stop_time;
+  const Summary& summary = live.solver.summary();
+  EXPECT_EQ(summary.consumed, stop + 1);
+  EXPECT_EQ(summary.changed_from, live.clock.time + milliseconds(5));
+  EXPECT_EQ(summary.newest_time, live.clock.time + milliseconds(5));
+  expect_balance(summary);
+  const Time rest = summary.newest_time + live.window.stop_time;
   EXPECT_EQ(live.sampler.preview(rest, live.state.ref()), SampleStatus::holding);
 }
 
@@ -47,7 +48,7 @@ TEST(Stop, TakesEffectInTheNextStepAfterAReplacementInTheFuture) {
   Live live({.settle = 2}, 64);
   live.put_all(50, 2050);  // more than the board has room for
   const Time t = Live::kNow + milliseconds(1900);
-  ASSERT_GT(t, live.solver.head().newest_knot);
+  ASSERT_GT(t, live.solver.summary().newest_time);
   ASSERT_EQ(live.replace(t, {t + milliseconds(10)}), AppendStatus::accepted);
   ASSERT_EQ(live.replace(t, {}), AppendStatus::accepted);
   EXPECT_FALSE(live.solver.step(live.clock).published);
@@ -59,10 +60,10 @@ TEST(Stop, TakesEffectInTheNextStepAfterAReplacementInTheFuture) {
 TEST(Stop, DoesNotWaitForRoomOnTheBoard) {
   Live live({.settle = 2}, 64, {.history = seconds(10)});
   live.put_all(50, 2000);
-  const Time newest = live.solver.head().newest_knot;
+  const Time newest = live.solver.summary().newest_time;
   live.clock.time = newest - milliseconds(8);
   live.solver.step(live.clock);
-  ASSERT_LT(live.solver.head().consumed, live.ring.writer.head());
+  ASSERT_LT(live.solver.summary().consumed, live.ring.writer.written());
   live.clock.time = newest - milliseconds(6);  // in the last segment before the stop segment
   expect_immediate_stop(live);
 }
@@ -79,11 +80,11 @@ TEST(Stop, OrReplacementThatWaitsForRoomWithdrawsNothing) {
             AppendStatus::accepted);
   live.clock.time += milliseconds(3);
   live.solver.step(live.clock);
-  EXPECT_EQ(live.solver.head().withdrawn, 0U);
-  EXPECT_EQ(live.solver.head().consumed + 4, live.ring.writer.head());
+  EXPECT_EQ(live.solver.summary().withdrawn, 0U);
+  EXPECT_EQ(live.solver.summary().consumed + 4, live.ring.writer.written());
   // A stop for which the board has room withdraws them.
   expect_immediate_stop(live);
-  EXPECT_EQ(live.solver.head().withdrawn, 4U);
+  EXPECT_EQ(live.solver.summary().withdrawn, 4U);
 }
 
 TEST(Stop, AtTheLatestTimeLeavesAReadableBoardAfterAFinish) {
@@ -92,7 +93,7 @@ TEST(Stop, AtTheLatestTimeLeavesAReadableBoardAfterAFinish) {
   ASSERT_EQ(live.replace(kLatestTime, {}), AppendStatus::accepted);
   live.drain();
   live.finish({.kind = ConditionKind::halt, .value = {}});
-  EXPECT_TRUE(live.solver.head().finished);
+  EXPECT_TRUE(live.solver.summary().finished);
   Sampler later(live.board.reader, StreamClock::monotonic);
   EXPECT_EQ(later.sample(Live::kNow + milliseconds(80), live.state.ref()), SampleStatus::settled);
   EXPECT_NO_THROW(live.replace_solver());
@@ -116,17 +117,17 @@ TEST(Stop, ThatIsCutAtTheLatestTimeLeavesAReadableBoard) {
 TEST(Stop, AtAFutureTimeTakesEffectAtThatTimeAtTheLatest) {
   Live live({.settle = 2}, 64, {.history = seconds(10)});
   live.put_all(50, 2000);
-  const Time newest = live.solver.head().newest_knot;
+  const Time newest = live.solver.summary().newest_time;
   const Time t = newest + milliseconds(100);
   ASSERT_EQ(live.replace(t, {}), AppendStatus::accepted);
   for (; live.clock.time < t - milliseconds(5); live.clock.time += milliseconds(1)) {
     live.solver.step(live.clock);
-    ASSERT_LT(live.solver.head().consumed, live.ring.writer.head());
+    ASSERT_LT(live.solver.summary().consumed, live.ring.writer.written());
   }
   live.solver.step(live.clock);
-  EXPECT_EQ(live.solver.head().consumed, live.ring.writer.head());
-  EXPECT_EQ(live.solver.head().controls, 1U);
-  expect_balance(live.solver.head());
+  EXPECT_EQ(live.solver.summary().consumed, live.ring.writer.written());
+  EXPECT_EQ(live.solver.summary().controls, 1U);
+  expect_balance(live.solver.summary());
 }
 
 TEST(Stop, IsNeverTooLate) {
@@ -137,8 +138,8 @@ TEST(Stop, IsNeverTooLate) {
     live.clock.time += milliseconds(7);
     live.drain();
   }
-  EXPECT_EQ(live.solver.head().controls, 4U);
-  EXPECT_EQ(live.solver.head().refused, 0U);
+  EXPECT_EQ(live.solver.summary().controls, 4U);
+  EXPECT_EQ(live.solver.summary().refused, 0U);
   EXPECT_EQ(live.replace(Live::kNow + milliseconds(4), {Live::kNow + milliseconds(400)}),
             AppendStatus::too_late);
   // The stream continues after the stop.
@@ -164,8 +165,8 @@ TEST(Stop, BeforeAStreamThatStartsInMotionTakesEffectAtItsStart) {
   live.put_all(250, 500);
   ASSERT_EQ(live.replace(Live::kNow + milliseconds(20), {}), AppendStatus::accepted);
   live.solver.step(live.clock);
-  EXPECT_EQ(live.solver.head().controls, 2U);
-  EXPECT_EQ(live.solver.head().newest_knot, t);
+  EXPECT_EQ(live.solver.summary().controls, 2U);
+  EXPECT_EQ(live.solver.summary().newest_time, t);
   EXPECT_EQ(live.sampler.preview(t + live.window.stop_time, live.state.ref()),
             SampleStatus::holding);
 }
@@ -195,8 +196,8 @@ TEST(Stop, TakesEffectAtTheNextSettledTimeForAnyQueuedItems) {
       world.stop_behind_misses();
     }
     EXPECT_EQ(world.stops, 5U) << "seed " << seed;
-    const Head& head = world.head();
-    expect_balance(head);
+    const Summary& summary = world.summary();
+    expect_balance(summary);
     EXPECT_EQ(world.report().changed, 0U) << "seed " << seed;
     EXPECT_LT(world.report().position_step, 1e-11) << "seed " << seed;
     EXPECT_LT(world.report().velocity_step, 1e-9) << "seed " << seed;

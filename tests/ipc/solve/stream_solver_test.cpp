@@ -48,8 +48,8 @@ TEST(StreamSolver, PublishesTheBitsOfTheWindowForAnyBatchSize) {
         stream.drain();
       }
       stream.finish(halt);
-      EXPECT_TRUE(stream.solver.head().finished);
-      EXPECT_EQ(stream.solver.head().knots, mesh.size());
+      EXPECT_TRUE(stream.solver.summary().finished);
+      EXPECT_EQ(stream.solver.summary().knots, mesh.size());
       expect_same_bits(stream, mesh, wanted);
     }
   }
@@ -64,7 +64,7 @@ TEST(StreamSolver, ASolverThatTakesOverContinuesBitForBitAfterADeathAtAnyKnot) {
     stream.send(mesh, 0, cut);
     stream.drain();
     stream.replace_solver();
-    EXPECT_EQ(stream.solver.head().knots, cut);
+    EXPECT_EQ(stream.solver.summary().knots, cut);
     stream.send(mesh, cut, mesh.size());
     stream.finish();
     expect_same_bits(stream, mesh, wanted);
@@ -83,14 +83,14 @@ TEST(StreamSolver, RefusesInvalidIntervalsWithReasonAndItemNumber) {
   put(2'000'000, 4);  // farther
   put(2'005'000, 5);  // too far from the last interpolated one
   stream.finish();
-  const Head& head = stream.solver.head();
-  EXPECT_EQ(head.knots, 2U);
-  EXPECT_EQ(head.refused, 3U);
-  EXPECT_EQ(head.reasons[static_cast<std::size_t>(Refusal::too_close)], 1U);
-  EXPECT_EQ(head.reasons[static_cast<std::size_t>(Refusal::too_far_apart)], 2U);
+  const Summary& summary = stream.solver.summary();
+  EXPECT_EQ(summary.knots, 2U);
+  EXPECT_EQ(summary.refused, 3U);
+  EXPECT_EQ(summary.reasons[static_cast<std::size_t>(Refusal::too_close)], 1U);
+  EXPECT_EQ(summary.reasons[static_cast<std::size_t>(Refusal::too_far_apart)], 2U);
   EXPECT_EQ(stream.board.reader.refusal(0).item, 1U);
   EXPECT_EQ(stream.board.reader.refusal(2).item, 4U);
-  EXPECT_EQ(head.consumed, 6U);
+  EXPECT_EQ(summary.consumed, 6U);
 }
 
 TEST(StreamSolver, ReportsTheConsumedItemsAndFromWhenTheCurveChanged) {
@@ -101,16 +101,16 @@ TEST(StreamSolver, ReportsTheConsumedItemsAndFromWhenTheCurveChanged) {
     stream.clock.time = Time(static_cast<std::int64_t>(i));
     const auto result = stream.solver.step(stream.clock);
     EXPECT_EQ(result.consumed, 1U);
-    Head head;
-    ASSERT_TRUE(stream.board.reader.copy_head(stream.board.reader.look(), head));
-    EXPECT_EQ(head.revision, i + 1);
-    EXPECT_EQ(head.consumed, i + 1);
-    EXPECT_EQ(stream.board.reader.tail(), i + 1);
-    EXPECT_EQ(head.newest, i + 1);
-    EXPECT_EQ(head.newest_knot, mesh.times[i]);
-    EXPECT_EQ(head.changed_from, mesh.times[i >= 5 ? i - 5 : 0]);
-    EXPECT_EQ(head.settled_until, mesh.times[i >= 4 ? i - 4 : 0]);
-    EXPECT_EQ(head.committed, stream.clock.time);
+    Summary summary;
+    ASSERT_TRUE(stream.board.reader.copy_summary(stream.board.reader.look(), summary));
+    EXPECT_EQ(summary.revision, i + 1);
+    EXPECT_EQ(summary.consumed, i + 1);
+    EXPECT_EQ(stream.board.reader.consumed(), i + 1);
+    EXPECT_EQ(summary.newest, i + 1);
+    EXPECT_EQ(summary.newest_time, mesh.times[i]);
+    EXPECT_EQ(summary.changed_from, mesh.times[i >= 5 ? i - 5 : 0]);
+    EXPECT_EQ(summary.settled_until, mesh.times[i >= 4 ? i - 4 : 0]);
+    EXPECT_EQ(summary.committed, stream.clock.time);
   }
   EXPECT_FALSE(stream.solver.step(stream.clock).published);
 }
@@ -140,9 +140,9 @@ TEST(StreamSolver, KeepsAsMuchHistoryAsTheBoardHolds) {
   MemoryStream stream(1, {}, 64, 64);
   stream.send(mesh, 0, mesh.size());
   stream.finish();
-  const Head& head = stream.solver.head();
-  EXPECT_EQ(head.newest, 500U);
-  EXPECT_EQ(head.newest - head.first + 1, 64U);  // 64 knots, 63 segments
+  const Summary& summary = stream.solver.summary();
+  EXPECT_EQ(summary.newest, 500U);
+  EXPECT_EQ(summary.newest - summary.first + 1, 64U);  // 64 knots, 63 segments
   Sampler sampler(stream.board.reader, StreamClock::recorded);
   State state(1);
   EXPECT_EQ(sampler.sample(mesh.times[500 - 64] - Time(1), state.ref()),
@@ -156,11 +156,11 @@ TEST(StreamSolver, AFinishDoesNotRestoreSegmentsThatTheBoardHasLost) {
     MemoryStream stream(1, {}, 64, 32);
     stream.send(mesh, 0, mesh.size());
     stream.drain();
-    EXPECT_EQ(stream.solver.head().first, 269U);
+    EXPECT_EQ(stream.solver.summary().first, 269U);
     if (takes_over) stream.replace_solver();
     stream.finish();
-    EXPECT_EQ(stream.solver.head().newest, 300U);
-    EXPECT_EQ(stream.solver.head().first, 269U);
+    EXPECT_EQ(stream.solver.summary().newest, 300U);
+    EXPECT_EQ(stream.solver.summary().first, 269U);
     Sampler sampler(stream.board.reader, StreamClock::recorded);
     State state(1);
     EXPECT_EQ(sampler.sample(Time(0), state.ref()), SampleStatus::before_history);
@@ -175,7 +175,7 @@ TEST(StreamSolver, AFinishDoesNotRestoreSegmentsThatTheBoardHasLost) {
 TEST(StreamSolver, AFinishWithoutWaypointsEndsAStreamWithoutData) {
   MemoryStream stream(1);
   stream.finish();
-  EXPECT_TRUE(stream.solver.head().finished);
+  EXPECT_TRUE(stream.solver.summary().finished);
   Sampler sampler(stream.board.reader, StreamClock::recorded);
   State state(1);
   EXPECT_EQ(sampler.sample(Time(0), state.ref()), SampleStatus::no_data);

@@ -60,13 +60,14 @@ struct Watched : LiveStream {
     solver.step(clock);
     is_searching = solver.due() <= clock.time;
     note();
-    const Head& head = solver.head();
-    EXPECT_EQ(head.consumed, head.knots + head.refused + head.withdrawn + head.controls);
-    EXPECT_LE(head.passed_over, head.knots);
+    const Summary& summary = solver.summary();
+    EXPECT_EQ(summary.consumed,
+              summary.knots + summary.refused + summary.withdrawn + summary.controls);
+    EXPECT_LE(summary.passed_over, summary.knots);
   }
   void note() {
     items.note_items(ring.reader);
-    items.note_refusals(board.reader, solver.head().refused);
+    items.note_refusals(board.reader, solver.summary().refused);
     collected.look();
   }
   void run_to(int ms) {
@@ -75,7 +76,7 @@ struct Watched : LiveStream {
   /// Sends a waypoint without the checks that depend on the settled time.
   void send(int ms, double position) {
     ASSERT_EQ(
-        ring.writer.append({.time = at(ms), .position = {&position, 1}}, {board.reader.tail()}),
+        ring.writer.append({.time = at(ms), .position = {&position, 1}}, {board.reader.consumed()}),
         AppendStatus::accepted)
         << ms;
     sent.push_back({at(ms), position});
@@ -90,12 +91,12 @@ struct Watched : LiveStream {
     step();
   }
   void end() {
-    while (ring.writer.finish(kHalt, {board.reader.tail()}) == AppendStatus::full) step();
-    for (int i = 0; i < 5000 && !solver.head().finished; ++i) {
+    while (ring.writer.finish(kHalt, {board.reader.consumed()}) == AppendStatus::full) step();
+    for (int i = 0; i < 5000 && !solver.summary().finished; ++i) {
       step();
       clock.time += milliseconds(1);
     }
-    ASSERT_TRUE(solver.head().finished);
+    ASSERT_TRUE(solver.summary().finished);
     note();
   }
   [[nodiscard]] std::string verified() {
@@ -103,7 +104,7 @@ struct Watched : LiveStream {
                                        .kinds = kinds,
                                        .items = items.items(),
                                        .segments = collected.segments(),
-                                       .head = collected.head(),
+                                       .summary = collected.summary(),
                                        .end = kHalt});
     if (!found.first) return found.equal > 0 ? "" : "nothing was compared";
     return std::to_string(found.first->segment) + ": " + found.first->what + ", " +
@@ -148,7 +149,7 @@ struct Watched : LiveStream {
     return static_cast<std::size_t>(
         std::ranges::count(collected.segments(), SegmentKind::entry, &SegmentCopy::kind));
   }
-  [[nodiscard]] Course course() const { return static_cast<Course>(solver.head().course); }
+  [[nodiscard]] Course course() const { return static_cast<Course>(solver.summary().course); }
 
   std::vector<Sent> sent;
   testing::ItemRecord items;

@@ -38,7 +38,7 @@ class Played {
     stream.finish(end);
     settled.look();
     segments.assign(settled.segments().begin(), settled.segments().end());
-    head = settled.head();
+    summary = settled.summary();
   }
 
   [[nodiscard]] Verification verify() const { return verify(items_); }
@@ -47,13 +47,13 @@ class Played {
                         .kinds = kinds_,
                         .items = items,
                         .segments = segments,
-                        .head = head,
+                        .summary = summary,
                         .end = end_});
   }
   [[nodiscard]] const SentItems& items() const { return items_; }
 
   std::vector<SegmentCopy> segments;
-  Head head;
+  Summary summary;
 
  private:
   core::WindowOptions window_;

@@ -26,41 +26,41 @@ TEST(KnotBoard, KeepsTheLastRefusalsWithTheirItems) {
 
 TEST(KnotBoard, RejectsASummaryWithValuesOutOfRange) {
   MemoryBoard board(1, 16);
-  Head head;
+  Summary summary;
   for (const auto& [first, newest] :
        std::vector<std::pair<Word, Word>>{{0, 5}, {6, 5}, {1, 17}, {1, kRetiredTag}}) {
-    Head lying{.first = first, .newest = newest};
+    Summary lying{.first = first, .newest = newest};
     board.writer.commit(lying);
-    EXPECT_FALSE(board.reader.copy_bounds(board.reader.look(), 0, head)) << newest;
+    EXPECT_FALSE(board.reader.copy_bounds(board.reader.look(), 0, summary)) << newest;
   }
   for (const Time stop : {Time(-1), kLongestStop + Time(1)}) {
-    Head lying{.first = 1, .newest = 5, .stop = stop};
+    Summary lying{.first = 1, .newest = 5, .stop = stop};
     board.writer.commit(lying);
-    EXPECT_FALSE(board.reader.copy_bounds(board.reader.look(), 0, head)) << stop.count();
+    EXPECT_FALSE(board.reader.copy_bounds(board.reader.look(), 0, summary)) << stop.count();
   }
 }
 
 TEST(KnotBoard, ASummaryIsCompleteAlthoughOnlyChangedWordsAreStored) {
   MemoryBoard board(1, 16);
   for (Word value = 1; value <= 12; ++value) {
-    Head head{.first = 1, .newest = 2};
+    Summary summary{.first = 1, .newest = 2};
     // The members change in turn, so that most commits leave most words unchanged.
-    head.consumed = value;
-    head.misses = value / 3;
-    head.run_frozen = value % 3;
-    head.finished = value % 4 == 3;
-    head.reasons[value % kRefusalReasons] = value;
-    head.refused = value;
+    summary.consumed = value;
+    summary.deadline_misses = value / 3;
+    summary.run_frozen = value % 3;
+    summary.finished = value % 4 == 3;
+    summary.reasons[value % kRefusalReasons] = value;
+    summary.refused = value;
     if (value % 5 == 4) board.replace_writer();
-    board.writer.commit(head);
-    Head seen;
-    ASSERT_TRUE(board.reader.copy_head(board.reader.look(), seen));
-    EXPECT_EQ(seen.consumed, head.consumed);
-    EXPECT_EQ(seen.misses, head.misses);
-    EXPECT_EQ(seen.run_frozen, head.run_frozen);
-    EXPECT_EQ(seen.finished, head.finished);
-    EXPECT_EQ(seen.refused, head.refused);
-    EXPECT_EQ(seen.reasons, head.reasons);
+    board.writer.commit(summary);
+    Summary seen;
+    ASSERT_TRUE(board.reader.copy_summary(board.reader.look(), seen));
+    EXPECT_EQ(seen.consumed, summary.consumed);
+    EXPECT_EQ(seen.deadline_misses, summary.deadline_misses);
+    EXPECT_EQ(seen.run_frozen, summary.run_frozen);
+    EXPECT_EQ(seen.finished, summary.finished);
+    EXPECT_EQ(seen.refused, summary.refused);
+    EXPECT_EQ(seen.reasons, summary.reasons);
     EXPECT_EQ(seen.low_water, Time::max());
   }
 }
