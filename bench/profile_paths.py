@@ -1,7 +1,7 @@
 """The profile of the hot paths: instructions, counted by callgrind, and cache lines.
 
     profile_paths.py SPLINECAST_BENCH    lists the functions of each path: instructions per call, purpose, name;
-                                         "(no pattern)" marks those that count as the rest
+                                         "(no pattern)" marks functions whose purpose is REST
 
 Instruction counts are repeatable for one binary, regardless of other load on the machine.
 """
@@ -18,12 +18,14 @@ CALLS = 10_000
 # The purpose of functions that no pattern matches.
 REST = "copies and fills of the C library, and the rest"
 
+LOOKUP = "checks for a new revision, finds the segment, time within it, status"
+
 
 class Path:
     """A counted path: `benchmark` runs it, `entries` are the functions in which instructions are counted.
 
     `purposes` is a list of (regular expression, purpose); a function has the purpose of the first expression found in
-    its name. `lines` is a text on the cache lines that the path touches.
+    its name. `lines` describe the cache lines that the path touches: a sentence and the items of a list.
     """
 
     def __init__(self, title, benchmark, entries, purposes, lines):
@@ -59,20 +61,25 @@ PATHS = [
         benchmark="counted/sample",
         entries=["splinecast::Reader::sample*"],
         purposes=[
-            (r"KeptSegments::|ipc::number_(near|by)", "checks for a new revision, finds the segment, time within it, status"),
+            (r"KeptSegments::|ipc::number_(near|by)", LOOKUP),
             (r"core::evaluate", "the polynomial and three derivatives, 7 dimensions"),
-            (r"KnotBoardReader|KnotCopy|fetch|load_values", "copies the next knot out of shared memory, once every 10 samples"),
-            (r"BoardSegment|build_segment|build_cubic|magnitude", "builds the segment from its knots, once every 10 samples"),
+            (r"KnotBoardReader|KnotCopy|fetch|load_values",
+             "copies the next knot out of shared memory, once every 10 samples"),
+            (r"BoardSegment|build_segment|build_cubic|magnitude",
+             "builds the segment from its knots, once every 10 samples"),
             (r"copy_bounds|see\(", "copies the bounds of a revision"),
-            (r"Sampler::", "checks for a new revision, finds the segment, time within it, status"),
+            (r"Sampler::", LOOKUP),
         ],
-        lines="""It loads these cache lines of shared memory (64 bytes, 7 dimensions): one, with `revision`, `retired` and
-`settled until`, while the revision is unchanged and the time is in the segment used last. The next segment adds 3: the
-two cells of its right knot, whose tags are in the same lines as the velocities, and a node. A new revision adds 7: the
-tags of the summary's two cells with the bounds beside them, the `changed from` of the revisions missed, the cells of the
-segment's two knots, and, if these were republished, their nodes; all of them are prefetched before the first load. It
-stores nothing.
-""",
+        lines=[
+            "It loads these cache lines of shared memory (64 bytes, 7 dimensions) and stores nothing:",
+            "1 line with `revision`, `retired` and `settled until`, while the revision is unchanged and the time is in "
+            "the segment used last",
+            "3 more for the next segment: the two cells of its right knot, whose tags are in the same lines as the "
+            "velocities, and a node",
+            "7 more for a new revision: the tags of the summary's two cells with the bounds beside them, the `changed "
+            "from` of the revisions missed, the cells of the segment's two knots, and, if these were republished, their "
+            "nodes; all of them are prefetched before the first load",
+        ],
     ),
     Path(
         title="`publish/dims:7`, K = 8: one append, solved and published",
@@ -82,82 +89,84 @@ stores nothing.
             (r"KnotBoardWriter::commit", "the summary, and the commit"),
             (r"KnotBoardWriter|magnitude", "writes the knots that the waypoint changes into spare cells"),
             (r"acceleration", "the initial acceleration of the stop"),
-            (r"PublishedCurve|KnotRing::knot|SlidingWindow::(segment|newer|left)", "which knots changed, and their values"),
-            (r"append_behind|back_substitute|solve|eliminate|close|TridiagonalSolver|SlidingWindow|KnotRing|write_chord|end_intervals",
+            (r"PublishedCurve|KnotRing::knot|SlidingWindow::(segment|newer|left)",
+             "which knots changed, and their values"),
+            (r"append_behind|back_substitute|solve|eliminate|close|TridiagonalSolver|SlidingWindow|KnotRing|"
+             r"write_chord|end_intervals",
              "the window: forward row, tail, K backward rows"),
             (r"stop_time", "the stop segment"),
             (r"Waypoint|Producer|is_finite|judge_interval", "the ring: checks, one item in, one item out"),
-            (r"StreamSolver|Solver::step|Quaternion|DimensionKinds", "the step: whether to consume items, and how many"),
+            (r"StreamSolver|Solver::step|Quaternion|DimensionKinds",
+             "the step: whether to consume items, and how many"),
         ],
-        lines="""Cache lines, K = 8, 7 dimensions: the producer stores 2 of the ring's item and 1 with `written`, and loads the 2 with
-`tail` and `sleeping`; the solver loads 3 of the ring and stores one cell for each of the K + 1 knots that a waypoint
-solves, a node, a row, the acceleration of the stop, 1 of the packed times per eight knots, 2 of the summary,
-`changed from`, `revision` with `settled until`, and `tail`: about 17 lines and 110 words.
-""",
+        lines=[
+            "Cache lines of shared memory, K = 8, 7 dimensions:",
+            "The producer stores 2 lines of the ring's item and 1 with `written`.",
+            "The producer loads the 2 lines with `consumed` and `sleeping`.",
+            "The solver loads 3 lines of the ring.",
+            "The solver stores one cell for each of the K + 1 knots that a waypoint solves, a node, a row, the "
+            "acceleration of the stop, 1 line of the packed times per eight knots, 2 of the summary, `changed from`, "
+            "`revision` with `settled until`, and `consumed`: about 17 lines and 110 words.",
+        ],
     ),
 ]
 
 
-# What limits a subject, by the beginning of its name; printed if its target is missed.
+# Why a subject misses its target, by the first characters of its name; the page shows it only for missed targets.
 LIMITS = {
-    "roundtrip/": """- `roundtrip/…`: a ping moves two lines. A round trip moves at least four, in sequence: the commit word (for
-  `solver` the ring's `written` before it), the bounds with the tags of the knots near by, and the acknowledgement. Before the
-  commit, it takes the time of `publish` in the table of times. iceoryx only moves the waypoint and solves nothing.
-""",
-    "publish": """- `publish`: the instructions above. The window, the cells, node and row that a waypoint changes, the item in the ring and
-  the commit take about 2,200 of them, more than four times the window alone, without checks and counters: each
-  word of shared memory is stored by one instruction after one load, 63 words for the velocities alone.
-""",
-    "streams:1000/busy": """- `streams:1000/busy`: 100,000 waypoints a second in a tenth of a core leave 1 µs for each. A step touches about 120
-  cache lines: 65 of the solver's own state, 30 of the window, 25 shared ones. For a thousand streams that is 8 MB, more
-  than the second-level cache holds; they are prefetched during the step before.
-""",
-    "sample_random": """- `sample_random`: 65,536 slots take 33 MB, on 8,192 pages; a sample loads two slots, up to eight lines, after a line of
-  the packed times.
-""",
-    "sample_many": """- `sample_many`: the copies of a horizon's segments are kept from call to call. Each time takes about 130 instructions: 67
-  evaluate; the rest find the segment (five times fall into each) and compute the time within it and the status.
-""",
-    "sample": """- `sample`: status, lookup and copy of the table above together may take the time that the target leaves in addition to
-  the polynomial alone (`floor/eval`).
-""",
-    "append": """- `append`: K rows form a dependency chain, each a multiplication and a subtraction after the one before, and the first waits
-  for three divisions: chord slope, pivot, tail.
-""",
-    "parse": """- `parse`: half of it is the conversion of digits to doubles (fast_float), the rest finding lines and fields.
-""",
-    "replay": """- `replay` parses, solves and publishes in one thread: its time is the sum of `parse`, of one append through the window
-  and of one settled segment written per waypoint; the revisions themselves are shared by 256 waypoints.
-""",
+    "roundtrip/":
+        "`roundtrip/…`: a ping moves two lines. A round trip moves at least four, in sequence: the commit word "
+        "(for `solver` the ring's `written` before it), the bounds with the tags of the nearby knots, and the "
+        "acknowledgement. Before the commit, it takes the time of `publish`. iceoryx only moves the waypoint and "
+        "solves nothing.",
+    "publish":
+        "`publish`: the instructions of its table. The window, the cells, node and row that a waypoint changes, "
+        "the item in the ring and the commit take about 2,200 of them, more than four times the window alone, "
+        "without checks and counters. Each word of shared memory is stored by one instruction after one load, 63 "
+        "words for the velocities alone.",
+    "streams:1000/busy":
+        "`streams:1000/busy`: 100,000 waypoints a second in a tenth of a core leave 1 µs for each. A step touches "
+        "about 120 cache lines: 65 of the solver's own state, 30 of the window, 25 shared ones. For a thousand "
+        "streams that is 8 MB, more than the second-level cache holds. They are prefetched during the step "
+        "before.",
+    "sample_random":
+        "`sample_random`: 65,536 slots take 33 MB, on 8,192 pages. A sample loads two slots, up to eight lines, "
+        "after a line of the packed times.",
+    "sample_many":
+        "`sample_many`: the copies of a horizon's segments are kept from call to call. Each time takes about 130 "
+        "instructions: 67 evaluate; the rest find the segment (five times fall into each) and compute the time "
+        "within it and the status.",
+    "sample":
+        "`sample`: status, lookup and copy of its table together may take the time that the target leaves in "
+        "addition to the polynomial alone (`floor/eval`).",
+    "append":
+        "`append`: K rows form a dependency chain, each a multiplication and a subtraction after the one before, "
+        "and the first waits for three divisions: chord slope, pivot, tail.",
+    "parse":
+        "`parse`: half of it is the conversion of digits to doubles (fast_float), the rest finding lines and "
+        "fields.",
+    "replay":
+        "`replay` parses, solves and publishes in one thread. Its time is the sum of `parse`, of one append "
+        "through the window and of one settled segment written per waypoint. The revisions themselves are shared "
+        "by 256 waypoints.",
 }
 
 
-def write_limits(missed):
-    told = [text for name, text in LIMITS.items() if any(subject.startswith(name) for subject in missed)]
-    if told:
-        print("### What limits the subjects that miss their target\n")
-        print("".join(told))
+def limits_of(missed):
+    """The texts of LIMITS for the subjects that have missed a target."""
+    return [text for name, text in LIMITS.items() if any(subject.startswith(name) for subject in missed)]
 
 
-def write_table(path, functions):
-    groups = defaultdict(float)
-    for function, instructions in functions.items():
-        groups[path.purpose(function) or REST] += instructions
-    total = sum(groups.values())
-    print("| instructions | share | purpose |\n|---|---|---|")
-    for purpose, instructions in sorted(groups.items(), key=lambda group: -group[1]):
-        print(f"| {instructions:,.0f} | {instructions / total:.0%} | {purpose} |")
-    print(f"| **{total:,.0f}** | | total |\n")
-
-
-def write(binary, missed):
-    print("## Where the time goes\n")
-    print("Instructions per call, counted by valgrind's callgrind.\n")
+def count_all(binary):
+    """Instructions per call of each path: benchmark → purpose → number."""
+    counted = {}
     for path in PATHS:
-        print(f"### {path.title}\n")
-        write_table(path, path.count(binary))
-        print(path.lines)
-    write_limits(missed)
+        groups = defaultdict(float)
+        for function, instructions in path.count(binary).items():
+            groups[path.purpose(function) or REST] += instructions
+        counted[path.benchmark] = {purpose: round(groups[purpose], 1)
+                                   for purpose in sorted(groups, key=groups.get, reverse=True)}
+    return counted
 
 
 def list_functions(binary):

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Plots what readers see around each fault, and writes the measured numbers into the pages.
+"""Plots what readers get around each fault, and writes the measured numbers into the pages.
 
     plots.py FOLDER           draws docs/plots/*.svg from the files of `splinecast_campaign motions --trace FOLDER`
                               and updates the tables of docs/what-happens-when.md; also updates the tables of
-                              docs/tails.md from tests/campaign/results/stops.json
-    plots.py --check PROGRAM  exits with 1 unless every plot exists, and the page shows every plot and describes
-                              every fault of `PROGRAM motions --list`
+                              docs/choosing-a-method.md from tests/campaign/results/stops.json
+    plots.py --check PROGRAM  exits with 1 unless docs/what-happens-when.md shows every plot and names every fault
+                              of `PROGRAM motions --list`, every plot exists, and the tables of
+                              docs/choosing-a-method.md are those of stops.json
 
 `./run plots` runs the campaign and this program.
 """
@@ -20,7 +21,7 @@ from pathlib import Path
 DOCS = Path(__file__).resolve().parent
 PLOTS = DOCS / "plots"
 PAGE = DOCS / "what-happens-when.md"
-TAILS = DOCS / "tails.md"
+TAILS = DOCS / "choosing-a-method.md"
 STOPS = DOCS.parent / "tests" / "campaign" / "results" / "stops.json"
 
 WIDTH = 760
@@ -206,7 +207,7 @@ def draw(row, numbers, statuses):
         values = [v for v in numbers[name] + numbers["target " + name] if v is not None]
         panels.append(Panel(number, label, times, min(values), max(values)))
     panels.append(Panel(2, "acceleration [rad/s²]", times, -most, most))
-    title = row["mishap"] + (f", limit {limit:g} rad/s²" if limit else ", no limit")
+    title = row["fault"] + (f", limit {limit:g} rad/s²" if limit else ", no limit")
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
              f'width="{WIDTH}" height="{HEIGHT}" font-family="sans-serif" font-size="12" '
              f'fill="{INK}">', f"<title>{title}</title>",
@@ -262,31 +263,31 @@ def table_of(rows):
         return f"{t:.2f} s" if t >= 0 else "not in the plot"
 
     lines = ["| | " + " | ".join(heads) + " |", "|---" * (len(rows) + 1) + "|"]
-    lines.append(line("plot: largest path error", lambda r: mrad(r["largest path error shown [rad]"])))
-    lines.append(line("plot: back on the path after", back))
-    lines.append(line("plot: stopping, holding, in entries",
-                      lambda r: f"{r['stopping [s]']:.2f} s, {r['holding [s]']:.2f} s, "
-                      f"{r['in entries [s]']:.2f} s"))
-    lines.append(line("20 s: path error from 2 s on, p99, largest",
-                      lambda r: f"{mrad(r['path error p99 [rad]'])}, "
-                      f"{mrad(r['largest path error [rad]'])}"))
-    lines.append(line("20 s: peak velocity, acceleration",
-                      lambda r: f"{r['peak velocity [rad/s]']:.2f} rad/s, "
-                      f"{r['peak acceleration [rad/s2]']:.2f} rad/s²"))
-    lines.append(line("20 s: peak acceleration in entries",
-                      lambda r: f"{r['peak acceleration in entries [rad/s2]']:.2f} rad/s²"))
-    lines.append(line("20 s: waypoints; passed over",
-                      lambda r: f"{r['waypoints']:,}; {percent(r['passed over'], r['waypoints'])}"))
-    lines.append(line("20 s: refused as `past`; for other reasons",
-                      lambda r: f"{r['refused as past']}; {r['refused otherwise']}"))
-    lines.append(line("20 s: starved (`underruns`)", lambda r: f"{r['ran dry']}"))
-    lines.append(line("20 s: holding outside the silences",
-                      lambda r: f"{r['holding besides the pauses [%]']:.2f} %"))
+    for name, text in (
+            ("plot: path error, largest", lambda r: mrad(r["largest path error shown [rad]"])),
+            ("plot: back on the path after", back),
+            ("plot: time in the stop", lambda r: f"{r['stopping [s]']:.2f} s"),
+            ("plot: time holding", lambda r: f"{r['holding [s]']:.2f} s"),
+            ("plot: time in entries", lambda r: f"{r['in entries [s]']:.2f} s"),
+            ("20 s: path error from 2 s on, p99", lambda r: mrad(r["path error p99 [rad]"])),
+            ("20 s: path error from 2 s on, largest", lambda r: mrad(r["largest path error [rad]"])),
+            ("20 s: peak velocity", lambda r: f"{r['peak velocity [rad/s]']:.2f} rad/s"),
+            ("20 s: peak acceleration", lambda r: f"{r['peak acceleration [rad/s2]']:.2f} rad/s²"),
+            ("20 s: peak acceleration in entries",
+             lambda r: f"{r['peak acceleration in entries [rad/s2]']:.2f} rad/s²"),
+            ("20 s: waypoints", lambda r: f"{r['waypoints']:,}"),
+            ("20 s: waypoints passed over", lambda r: percent(r["passed over"], r["waypoints"])),
+            ("20 s: waypoints refused as `past`", lambda r: f"{r['refused as past']}"),
+            ("20 s: waypoints refused for other reasons", lambda r: f"{r['refused for other reasons']}"),
+            ("20 s: times that the stream starved (`underruns`)", lambda r: f"{r['starvations']}"),
+            ("20 s: time holding, outside silences and deaths",
+             lambda r: f"{r['holding outside the pauses [%]']:.2f} %")):
+        lines.append(line(name, text))
     return "\n".join(lines)
 
 
-def put_tables(path, tables):
-    """Writes each table between the marks with its name."""
+def with_tables(path, tables):
+    """The text of a page with each table between the marks with its name."""
     text = path.read_text(encoding="utf-8")
     for name, table in tables.items():
         begin, end = f"<!-- measured: {name} -->\n", "\n<!-- end -->"
@@ -294,17 +295,18 @@ def put_tables(path, tables):
             sys.exit(f"{path}: missing mark for the table of {name}")
         head, rest = text.split(begin, 1)
         text = head + begin + "\n" + table + "\n" + end + rest.split(end, 1)[1]
-    path.write_text(text, encoding="utf-8")
+    return text
 
 
-def update_page(rows):
+def tables_of_faults(rows):
+    """A table for each section, from rows.json."""
     sections = dict.fromkeys(row["section"] for row in rows)
-    put_tables(PAGE, {section: table_of([row for row in rows if row["section"] == section])
-                      for section in sections})
+    return {section: table_of([row for row in rows if row["section"] == section])
+            for section in sections}
 
 
-def update_tails():
-    """Writes a table for each source, with a row for each quantity and a column for each curve."""
+def tables_of_tails():
+    """A table for each source of waypoints, from stops.json: a row per quantity, a column per curve."""
     measured = json.loads(STOPS.read_text(encoding="utf-8"))["measured"]
     sources = {}
     for name, text in measured.items():
@@ -316,11 +318,13 @@ def update_tails():
     for source, curves in sources.items():
         lines = ["| | " + " | ".join(f"`{curve.split(',')[0]}`" for curve in order) + " |",
                  "|---" * (len(order) + 1) + "|"]
-        for quantity in max(curves.values(), key=len):
-            cells = [curves[curve].get(quantity, "none") for curve in order]
-            lines.append(f"| {quantity.replace('|', chr(92) + '|')} | " + " | ".join(cells) + " |")
-        tables[source] = "\n".join(lines).replace("/s2", "/s²").replace("/s3", "/s³")
-    put_tables(TAILS, tables)
+        for quantity, text in max(curves.values(), key=len).items():
+            unit = text.split(" ")[1].replace("/s2", "/s²").replace("/s3", "/s³")
+            cells = [curves[curve].get(quantity, "none").split(" ")[0] for curve in order]
+            name = quantity.replace("|", r"\|")
+            lines.append(f"| {name} [{unit}] | " + " | ".join(cells) + " |")
+        tables[source] = "\n".join(lines)
+    return tables
 
 
 def make(folder):
@@ -331,27 +335,30 @@ def make(folder):
     for row in rows:
         svg = draw(row, *read_trace(folder / f"{row['file']}.csv"))
         (PLOTS / f"{row['file']}.svg").write_text(svg, encoding="utf-8")
-    update_page(rows)
-    update_tails()
+    PAGE.write_text(with_tables(PAGE, tables_of_faults(rows)), encoding="utf-8")
+    TAILS.write_text(with_tables(TAILS, tables_of_tails()), encoding="utf-8")
 
 
 def check(program):
     page = PAGE.read_text(encoding="utf-8")
+    words = " ".join(page.split())
     shown = set(re.findall(r"\(plots/([^)]+\.svg)\)", page))
     there = {path.name for path in PLOTS.glob("*.svg")}
-    faults = [f"missing plot {name}" for name in sorted(shown - there)]
-    faults += [f"the page does not show {name}" for name in sorted(there - shown)]
+    problems = [f"missing plot {name}" for name in sorted(shown - there)]
+    problems += [f"the page does not show {name}" for name in sorted(there - shown)]
     listed = subprocess.run([program, "motions", "--list"], check=True, capture_output=True,
                             text=True).stdout
     for line in listed.splitlines():
-        name, mishap = line.split("\t")
-        if mishap not in page:
-            faults.append(f"the page does not describe “{mishap}”")
-        faults += [f"the page does not show {plot}"
-                   for plot in (f"{name}_limit.svg", f"{name}_no_limit.svg")
-                   if name and plot not in shown]
-    if faults:
-        sys.exit("\n".join(faults))
+        name, fault = line.split("\t")
+        if fault not in words:
+            problems.append(f"the page does not name “{fault}”")
+        problems += [f"the page does not show {plot}"
+                     for plot in (f"{name}_limit.svg", f"{name}_no_limit.svg")
+                     if name and plot not in shown]
+    if with_tables(TAILS, tables_of_tails()) != TAILS.read_text(encoding="utf-8"):
+        problems.append(f"{TAILS.name}: the tables are not those of {STOPS.name}: ./run plots writes them")
+    if problems:
+        sys.exit("\n".join(problems))
 
 
 def main(arguments):

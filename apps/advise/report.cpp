@@ -100,16 +100,16 @@ ordered_json to_json(const DimensionMotion& motion, const std::string& column) {
           {"peak_acceleration", motion.peak_acceleration}};
 }
 
-ordered_json to_json(const Hiccup& hiccup) {
+ordered_json to_json(const SilenceEffect& silence) {
   ordered_json way_back = ordered_json::array();
-  for (const auto& seconds : hiccup.way_back) {
+  for (const auto& seconds : silence.way_back) {
     way_back.push_back(seconds ? ordered_json(*seconds) : ordered_json());
   }
-  return {{"lead_ns", hiccup.lead.count()},
-          {"silence_ns", hiccup.silence.count()},
-          {"depth_left_ns", hiccup.depth_left.count()},
-          {"dry_ns", hiccup.dry.count()},
-          {"comes_to_rest", hiccup.comes_to_rest},
+  return {{"lead_ns", silence.lead.count()},
+          {"silence_ns", silence.silence.count()},
+          {"depth_left_ns", silence.depth_left.count()},
+          {"dry_ns", silence.dry.count()},
+          {"comes_to_rest", silence.comes_to_rest},
           {"way_back_s", way_back}};
 }
 
@@ -180,11 +180,11 @@ std::string motion_in_words(const Advice& advice, const AdviceSource& source) {
   return text;
 }
 
-std::string way_back_in_words(const Hiccup& hiccup, const AdviceSource& source) {
-  if (hiccup.dry == Time::zero()) return {};
+std::string way_back_in_words(const SilenceEffect& silence, const AdviceSource& source) {
+  if (silence.dry == Time::zero()) return {};
   std::string text;
-  for (std::size_t d = 0; d < hiccup.way_back.size(); ++d) {
-    const auto& seconds = hiccup.way_back[d];
+  for (std::size_t d = 0; d < silence.way_back.size(); ++d) {
+    const auto& seconds = silence.way_back[d];
     text += fmt::format("{}{} {}", text.empty() ? "; time to return: " : ", ",
                         name_and_unit(ipc::printable(source.columns[d])).first,
                         seconds ? fmt::format("{:.2g} s", *seconds) : "never at its peak velocity");
@@ -207,12 +207,12 @@ std::string lead_in_words(const Intervals& intervals, const SolvedHow& how, Time
   return why;
 }
 
-std::string in_words(const Hiccup& hiccup) {
-  if (hiccup.dry == Time::zero()) {
-    return fmt::format("no effect: {} of depth remains", in_milliseconds(hiccup.depth_left));
+std::string in_words(const SilenceEffect& silence) {
+  if (silence.dry == Time::zero()) {
+    return fmt::format("no effect: {} of depth remains", in_milliseconds(silence.depth_left));
   }
-  return fmt::format("starves for {} and {}", in_milliseconds(hiccup.dry),
-                     hiccup.comes_to_rest ? "comes to rest" : "does not come to rest");
+  return fmt::format("starves for {} and {}", in_milliseconds(silence.dry),
+                     silence.comes_to_rest ? "comes to rest" : "does not come to rest");
 }
 
 ordered_json to_json(const Advice& advice, const AdviceSource& source) {
@@ -232,7 +232,7 @@ ordered_json to_json(const Advice& advice, const AdviceSource& source) {
     json["dimensions"].push_back(to_json(advice.motion[d], source.columns[d]));
   }
   for (const Item& item : items_of(advice, source)) json["why"][item.key] = item.why;
-  for (const Hiccup& hiccup : advice.hiccups) json["hiccups"].push_back(to_json(hiccup));
+  for (const SilenceEffect& silence : advice.silences) json["hiccups"].push_back(to_json(silence));
   return json;
 }
 
@@ -245,10 +245,10 @@ std::string in_words(const Advice& advice, const AdviceSource& source) {
     text += fmt::format("{:<20} {:<12} {}\n", item.name, item.value, item.why);
   }
   text += "\n";
-  for (const Hiccup& hiccup : advice.hiccups) {
-    text += fmt::format("silence of {}, lead {}: {}{}\n", in_milliseconds(hiccup.silence),
-                        in_milliseconds(hiccup.lead), in_words(hiccup),
-                        way_back_in_words(hiccup, source));
+  for (const SilenceEffect& silence : advice.silences) {
+    text += fmt::format("silence of {}, lead {}: {}{}\n", in_milliseconds(silence.silence),
+                        in_milliseconds(silence.lead), in_words(silence),
+                        way_back_in_words(silence, source));
   }
   for (const std::string& note : notes_of(advice, source)) {
     text += fmt::format("note: {}\n", ipc::printable(note));

@@ -41,7 +41,7 @@ struct AdviceSource {
                                         Time lead);
 
 /// The effect of a silence of the producer, as text.
-[[nodiscard]] std::string in_words(const Hiccup& hiccup);
+[[nodiscard]] std::string in_words(const SilenceEffect& silence);
 
 /// A time in milliseconds, with its unit.
 [[nodiscard]] std::string in_milliseconds(Time t);

@@ -22,9 +22,9 @@ struct CurveCheck {
   std::optional<TimedExcess> first_violation{};
   std::array<std::optional<TimedExcess>, kLimitKinds> worst{};  ///< by LimitKind
   /// The largest speed factor r ≤ 1 for which velocities r·v, accelerations r²·a and jerks r³·j
-  /// keep their limits; 0: no speed does.
+  /// keep their limits; 0 if there is none.
   double slowing = 1;
-  bool keeps_bounds = true;  ///< of the position; slowing does not change it
+  bool keeps_bounds = true;  ///< the position is within its bounds; slowing does not change this
 
   [[nodiscard]] bool keeps_limits() const noexcept { return segments_beyond == 0; }
 };

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/cli/description.hpp"
+
 namespace CLI {
 class App;
 class Option;
@@ -61,10 +63,15 @@ class Command {
   Argument option(const std::string& names, std::vector<std::string>& values,
                   const std::string& help);
 
-  /// Adds a flag that sets `value`, or clears it if its name begins with `!`: "!--no-wake".
+  /// Adds a flag that sets `value`, or with `clear` one that clears it.
   Argument flag(const std::string& names, bool& value, const std::string& help);
+  Argument clear(const std::string& names, bool& value, const std::string& help);
 
   Command subcommand(const std::string& name, const std::string& summary);
+  /// The command that this one is a subcommand of.
+  [[nodiscard]] Command parent() const;
+  /// This command with all its arguments and subcommands.
+  [[nodiscard]] CommandDescription description() const;
   /// Whether the command line selects this command. Valid after parsing.
   [[nodiscard]] bool is_chosen() const;
 

@@ -49,14 +49,15 @@ Argument add_number(Command& verb, const std::string& name, Target& value, const
       .type("N");
 }
 
-/// The present word for a value, which may be the one of earlier versions: says so on stderr.
+/// Replaces the word `rest` of earlier versions by `clamped`, with a message on stderr.
 std::string present_word(const std::string& option, const std::string& text) {
   if (text != "rest") return text;
   say(fmt::format("{}: 'rest' is now 'clamped'", option));
   return "clamped";
 }
 
-/// As parse_kind_option, and takes I:wrap:PERIOD, the form of earlier versions: says so on stderr.
+/// Like parse_kind_option. Also accepts `I:wrap:PERIOD`, the form of earlier versions, with a
+/// message on stderr.
 std::optional<KindOption> parse_kind(const std::string& text) {
   const auto kind = parse_kind_option(text);
   constexpr std::string_view kOld = ":wrap:";
@@ -115,8 +116,8 @@ void add_time_unit(Command& verb, std::optional<TimeUnit>& unit) {
                                fmt::format("'{}' is not one of ns, us, ms, s", text));
             }
           },
-          "Unit of the time column: ns, us, ms or s (default: from its name, else s)")
-      .type("UNIT");
+          "Unit of the time column (default: from its name, else s)")
+      .type("ns|us|ms|s");
 }
 
 const Method& method_named(const std::string& text) {
@@ -203,9 +204,8 @@ void add_tail(Command& verb, std::optional<Tail>& value) {
                 "--tail",
                 fmt::format("'{}' is not one of bessel, parabolic, natural, clamped", text));
           },
-          "Boundary condition at the newest waypoint of a stream that continues: bessel, "
-          "parabolic, natural or clamped (default bessel)")
-      .type("TAIL");
+          "Boundary condition at the newest waypoint of a stream that continues (default bessel)")
+      .type("bessel|parabolic|natural|clamped");
 }
 
 Argument add_settle(Command& verb, std::optional<std::size_t>& value) {
@@ -335,7 +335,8 @@ void add_trust(Command& verb, Trust& trust) {
             }
             trust.owner = entry != nullptr ? entry->pw_uid : static_cast<uid_t>(*number);
           },
-          "Also trust regions of this user, by name or number (default: only one's own and root's)")
+          "Also trust regions of this user, by name or number (default: only those of this user "
+          "and root)")
       .type("USER");
 }
 

@@ -71,7 +71,7 @@ Argument add_count(Command& verb, const std::string& name, int& value, const std
 Argument add_count(Command& verb, const std::string& name, std::optional<std::size_t>& value,
                    const std::string& help, const CountRange& range = kAnyCount);
 
-/// Adds an option with two words to choose from. `is_first`: the first one is chosen.
+/// Adds an option with two words to choose from. `take` gets whether the user chose the first one.
 void add_choice(Command& verb, const std::string& name, const std::string& first,
                 const std::string& second, const std::function<void(bool is_first)>& take,
                 const std::string& help);
@@ -90,7 +90,7 @@ void add_rate(Command& verb, const std::string& name, double& value, const std::
 /// Adds `--mode` and `--group`, for new regions.
 void add_access(Command& verb, RegionAccess& access);
 
-/// Adds `--owner`: a user whose regions are trusted, in addition to one's own and root's.
+/// Adds `--owner`: a user whose regions are trusted, in addition to those of this user and of root.
 void add_trust(Command& verb, Trust& trust);
 
 }  // namespace splinecast::apps

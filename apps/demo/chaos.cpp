@@ -258,15 +258,15 @@ std::string chaos_summary(const json& found) {
   text += recovery("solver") + recovery("producer");
   text +=
       line("pauses of the solver, up to 200 ms", fmt::format("{}", count("pauses"))) +
-      line("starved, and recovered", fmt::format("{}", count("underruns"))) +
-      line("futures replaced", fmt::format("{}", count("replacements"))) +
+      line("starvations", fmt::format("{}", count("underruns"))) +
+      line("replacements of the future", fmt::format("{}", count("replacements"))) +
       line("waypoints",
            fmt::format("{} interpolated, {} passed over, {} refused with a reason, {} withdrawn, "
                        "{} {}",
                        count("interpolated"), count("passed_over"), count("refused"),
                        count("withdrawn"), count("lost"),
                        found["judged"].get<bool>() ? "lost" : "not consumed")) +
-      line("samples that changed later",
+      line("settled samples that changed",
            fmt::format("{:.0f} of {:.0f}", most("changed"), most("samples"))) +
       line("largest step at a join", fmt::format("position {:.1e}, velocity {:.1e}",
                                                  most("position_step"), most("velocity_step"))) +

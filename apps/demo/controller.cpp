@@ -78,8 +78,8 @@ class DemoReader {
     if (has_values(status)) check(t);
   }
 
-  /// Checks the knots passed since the last tick, and that the curve at that tick is as it was read
-  /// then.
+  /// Compares the segments on both sides of each knot since the last tick, and the curve at that
+  /// tick with the sample that was read then.
   void check(Time t) {
     if (has_before_) {
       if (has_values(reader_.sample(before_time_, left_))) of_the_past_.compare(left_, before_);

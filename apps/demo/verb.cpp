@@ -100,7 +100,7 @@ std::string summary(const WaypointTable& table, const json& sent, const json& re
                           sent["interpolated"].get<std::size_t>(),
                           passed_over_in_words(sent["passed_over"].get<ipc::Word>()),
                           sent["refused"].get<std::size_t>())) +
-         line("samples at 1 kHz", fmt::format("{} in all: {}", read["samples"].get<std::size_t>(),
+         line("samples at 1 kHz", fmt::format("{} in total: {}", read["samples"].get<std::size_t>(),
                                               counts_by_status(read["by_status"]))) +
          steps_line("largest step at a knot", read["step_at_knots"]) +
          steps_line("largest change of past samples", read["change_of_the_past"]) +

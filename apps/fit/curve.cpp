@@ -57,7 +57,7 @@ double chosen_lambda(const Waypoints& waypoints, const CurveOptions& options) {
   const double mean = ahead / static_cast<double>(how.settle);
   throw InputError(fmt::format(
       "{}: settle lag {} is too short for lambda {} with waypoints {:.3g} s apart: at least {} is "
-      "needed (the most is {}); --force-lag accepts it",
+      "needed (the maximum is {}); --force-lag accepts it",
       table.where(i), how.settle, how.interpolant.lambda, mean,
       static_cast<std::size_t>(std::ceil(core::smoothing_lag(how.interpolant.lambda, mean))),
       core::kMaxSettle));
@@ -106,7 +106,7 @@ PiecewisePolynomial fit_table(const WaypointTable& table, const Method& method,
                {.interpolant = how, .start = or_own(options.start), .end = or_own(options.end)});
   }
   if (options.tail && method.has_own_tail()) {
-    throw std::invalid_argument("method " + std::string(method.name) + " has a tail of its own");
+    throw std::invalid_argument("the tail of method " + std::string(method.name) + " is fixed");
   }
   core::WindowOptions window{.interpolant = how,
                              .settle = options.settle.value_or(core::default_settle(method)),

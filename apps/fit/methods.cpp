@@ -23,7 +23,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Comparisons of a curve with the truth per interval between waypoints.
+/// Number of times per interval between waypoints at which a curve is compared with the truth.
 constexpr int kComparisons = 100;
 constexpr std::int64_t kMostWaypoints = 100'000;
 constexpr double kUnmeasured = std::numeric_limits<double>::quiet_NaN();
@@ -34,15 +34,16 @@ struct MethodsOptions {
   bool json = false;
 };
 
-/// A method with a settle lag; nullopt: batch.
+/// A method and its settle lag; nullopt: in batch.
 struct Choice {
   const Method* method;
   std::optional<std::size_t> settle;
   double lambda_per_h3 = 0;
 };
 
-/// Errors of a curve: largest errors in p, v and a and largest acceleration step, each relative to
-/// the truth's largest p, v, a and a; NaN if the truth's value is only rounding.
+/// Errors of a curve: the largest errors in p, v and a, relative to the largest p, v and a of the
+/// truth, and the largest acceleration step, relative to the largest a of the truth. NaN if the
+/// value of the truth is only rounding.
 using Errors = std::array<double, 4>;
 
 double largest(std::span<const double> values) {

@@ -51,7 +51,7 @@ Measured measure(const Report& report) {
   return all;
 }
 
-/// Largest difference of a derivative of a dimension that is only rounding.
+/// The largest difference between values of a derivative that rounding alone can cause.
 double resolution(const Measured& all, std::size_t d, std::size_t derivative) {
   double size = 0;
   for (const ReportTable& table : all.tables) {
@@ -107,7 +107,7 @@ ordered_json curve_json(const Measured& all, std::size_t c, std::size_t d) {
           {"distance", extremum_json(all, all.tables[c].distance[d])}};
 }
 
-/// One in this many of `count` items is marked.
+/// The step from one marked item to the next, so that at most kMostMarks of `count` are marked.
 std::size_t stride(std::size_t count) { return (count + kMostMarks - 1) / kMostMarks; }
 
 ordered_json times_json(std::span<const Time> times, Time origin) {

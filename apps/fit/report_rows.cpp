@@ -17,13 +17,13 @@ constexpr std::int64_t kMostValues = 400'000;  // per derivative: a few MB of th
 constexpr std::size_t kBuckets = 2000;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// A time, as the limit from one side.
+/// A time at which curves are evaluated: as the limit from the left, or from the right.
 struct Instant {
   Time time{};
   bool from_left = false;
 };
 
-/// From each break to the next in at least `fewest` steps, none longer than `longest`.
+/// The instants from each break to the next: at least `fewest` steps, none longer than `longest`.
 std::vector<Instant> instants_of(const std::vector<Time>& breaks, std::int64_t fewest,
                                  Time longest) {
   if (breaks.size() == 1) return {{.time = breaks.front(), .from_left = false}};
@@ -39,7 +39,7 @@ std::vector<Instant> instants_of(const std::vector<Time>& breaks, std::int64_t f
   return instants;
 }
 
-/// NaN outside the curve.
+/// Evaluates a curve. All values are NaN outside its time range.
 void evaluate(const PiecewisePolynomial& curve, const Instant& at, State& out) {
   if (at.time < curve.breaks().front() || at.time > curve.breaks().back()) {
     std::ranges::fill(out.ref().position, kNone);
@@ -92,7 +92,7 @@ class Envelope {
     if (!(value <= e.greatest.value)) e.greatest = {.time = time, .value = value};
   }
 
-  /// Two values per interval, NaN where none was considered.
+  /// Writes two values per interval, in time order; NaN for an interval without values.
   void write(std::span<double> out) const {
     for (std::size_t i = 0; i < kBuckets; ++i) {
       const Extremes& e = extremes_[i];
@@ -109,8 +109,8 @@ class Envelope {
                                                      .greatest = {.time = {}, .value = kNone}}};
 };
 
-/// Writes the columns of one curve. They contain its greatest and least values exactly; values
-/// between samples may be missed.
+/// Writes the columns of one curve. The extremes of the whole curve are exact; those of a single
+/// interval are the extremes of its samples.
 void write_envelopes(const PiecewisePolynomial& curve, const ReportTable& table,
                      const std::vector<Instant>& instants, std::span<double> out) {
   const std::size_t dimensions = curve.dimensions();

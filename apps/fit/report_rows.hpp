@@ -29,9 +29,9 @@ struct ReportRows {
 };
 
 /// Samples curves of equal dimensions, whose extremes are in `tables`, densely enough to look
-/// smooth: each break from both sides, and between breaks. If that makes more rows than a limit,
-/// 40000 or less for many curves and dimensions but at least 4000, returns the least and greatest
-/// values of 2000 equal intervals instead.
+/// smooth: each break from both sides, and between breaks. The number of rows has a limit: 40000,
+/// less for many curves and dimensions, but at least 4000. Above this limit, returns the least and
+/// greatest values of 2000 equal intervals instead.
 [[nodiscard]] ReportRows rows_of(std::span<const ReportCurve> curves,
                                  std::span<const ReportTable> tables);
 

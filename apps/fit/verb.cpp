@@ -70,7 +70,7 @@ void require_samples(const PiecewisePolynomial& curve, Time dt) {
   const std::int64_t samples = (curve.breaks().back() - curve.breaks().front()) / dt;
   if (samples <= kMost) return;
   throw InputError(
-      fmt::format("--dt {} makes {} samples; the most is {}", to_seconds(dt), samples, kMost));
+      fmt::format("--dt {} makes {} samples; the maximum is {}", to_seconds(dt), samples, kMost));
 }
 
 /// Whether a report is the only output.
@@ -157,7 +157,7 @@ void add_emit(Command& verb, Emit& value) {
           },
           "Output: samples (CSV, default), or as JSON: pp (piecewise polynomial), bezier (control "
           "points), bspline")
-      .type("WHAT");
+      .type("samples|pp|bezier|bspline");
 }
 
 void add_fit(Command& verb, Action& action) {

@@ -26,7 +26,7 @@ struct LatencyOptions {
   bool spin = false;      ///< poll instead of sleeping until there is work to do
   std::optional<int> cpu_producer{};
   std::optional<int> cpu_solver{};
-  std::vector<int> cpu_readers{};  ///< reader r uses the one at r modulo their number
+  std::vector<int> cpu_readers{};  ///< reader r uses the entry r modulo their number
   bool fifo = false;
   int priority = 50;
   bool lock_memory = false;

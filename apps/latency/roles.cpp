@@ -24,8 +24,8 @@ using ipc::Word;
 using nlohmann::json;
 using std::chrono::milliseconds;
 
-/// Longest sleep of a process that waits for another one, hence its longest delay in seeing the
-/// end.
+/// Longest sleep of a process that waits for another one: the end of the run is seen after at most
+/// this delay.
 constexpr Time kLongestWait = milliseconds(50);
 /// History that the solver keeps: just enough for a reader's late sample.
 constexpr Time kHistory = milliseconds(100);
@@ -36,7 +36,7 @@ std::size_t waypoints_in(const LatencyOptions& options, Time time) {
   return static_cast<std::size_t>(time / options.period()) + 1;
 }
 
-/// The producer can be a second ahead of the solver before the ring is full.
+/// The ring holds the waypoints of one second: the producer can be this far ahead of the solver.
 std::size_t ring_capacity(const LatencyOptions& options) {
   return std::bit_ceil(std::max<std::size_t>(1024, waypoints_in(options, std::chrono::seconds(1))));
 }
@@ -49,8 +49,8 @@ SolverOptions solver_options(const LatencyOptions& options) {
           .wake = !options.spin};
 }
 
-/// An upper bound: one revision per item, plus twice the number of those that only settle, one per
-/// half freeze-ahead.
+/// An upper bound of the number of revisions: one per item, plus twice the expected number of
+/// revisions that only raise `settled_until`, one per half freeze-ahead.
 std::size_t most_revisions(const LatencyOptions& options) {
   const Time all = options.warmup + options.duration + options.lead + kLatencyPatience;
   const Time settles = ipc::LiveOptions().freeze_ahead / 4;

@@ -84,7 +84,7 @@ void measure_pipeline(LatencyResult& result) {
                                result.options.measured(start));
   if (result.stages.front().intended.count() + result.stages.front().missing == 0) {
     if (stop_requested()) throw Interrupted("interrupted before the warm-up was over");
-    throw Failure("nothing was measured: the warm-up was not over");
+    throw Failure("nothing was measured: the run ended during the warm-up");
   }
   note_processes(returned, result);
   warn_of_sharing(result);

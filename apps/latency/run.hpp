@@ -27,8 +27,8 @@ struct LatencyResult {
   nlohmann::ordered_json solver;     ///< its counters
 };
 
-/// A warning that the kernel stops spinning SCHED_FIFO processes, or may do so, which the figures
-/// then include; empty if it does not, or if no process spins.
+/// A warning if the kernel stops spinning SCHED_FIFO processes, or may do so: the measured
+/// latencies then include these stops. Empty if it does not, or if no process spins.
 [[nodiscard]] std::string throttling_warning(const LatencyOptions& options,
                                              const Environment& environment);
 

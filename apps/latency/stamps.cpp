@@ -9,14 +9,15 @@ namespace splinecast::apps {
 namespace {
 
 /// Returns the first entry from `at` on for which `reached` holds, and moves `at` to it; nullptr if
-/// there is none. Targets ascend, so that all calls together cost one pass over the entries.
+/// there is none. Callers search for ascending targets, so all calls together make one pass over
+/// the entries.
 template <typename T, typename Reached>
 const T* first_from(std::span<const T> entries, std::size_t& at, const Reached& reached) {
   while (at < entries.size() && !reached(entries[at])) ++at;
   return at < entries.size() ? &entries[at] : nullptr;
 }
 
-/// Append, solved, published, and one per reader, all empty.
+/// The stages append, solved, published, and one per reader, without latencies.
 std::vector<Latencies> make_stages(std::size_t readers, const Measured& measured) {
   std::vector<Latencies> stages;
   stages.push_back(make_stage("append", measured));

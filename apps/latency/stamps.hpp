@@ -43,11 +43,10 @@ struct SeenStamp {
 /// The latencies of one stage between the producer's append and a reader's sample.
 struct Latencies {
   std::string stage;
-  Histogram intended;        ///< from the intended instant on: the wait of a waypoint's user
-  Histogram raw;             ///< from the start of the append on: the time in the pipeline, without
-                             ///< delays of the producer
-  TimeGrid over_time;        ///< `intended`, over the measured time
-  std::uint64_t missed = 0;  ///< of `intended`, above the deadline; with those that never arrived
+  Histogram intended;         ///< from the intended instant, with delays of the producer
+  Histogram raw;              ///< from the start of the append, without delays of the producer
+  TimeGrid over_time;         ///< `intended`, over the measured time
+  std::uint64_t missed = 0;   ///< waypoints later than the deadline, with the `missing` ones
   std::uint64_t missing = 0;  ///< waypoints that never reached this stage
 };
 
@@ -60,7 +59,7 @@ struct Measured {
 
 /// Computes latencies from stamps: at the stages `append`, `solved` and `published`, and `seen` for
 /// each reader. Items in `refused` (ascending), which the solver consumed but did not interpolate,
-/// count as missing from `solved` on. Each span is in the order of its numbers.
+/// count as missing from `solved` on. Each span is sorted by item or revision number.
 [[nodiscard]] std::vector<Latencies> latencies_of(
     std::span<const AppendStamp> appends, std::span<const RevisionStamp> revisions,
     const std::vector<std::span<const SeenStamp>>& readers, std::span<const ipc::Word> refused,

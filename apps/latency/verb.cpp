@@ -82,7 +82,7 @@ void require_measurable(const LatencyOptions& options) {
   const double bytes = bytes_noted(options);
   if (bytes > kMostNoted) {
     throw InputError(fmt::format(
-        "{} s with {} readers would record {:.0f} bytes; the most is {:.0f}: choose a shorter "
+        "{} s with {} readers would record {:.0f} bytes; the maximum is {:.0f}: choose a shorter "
         "--duration",
         to_seconds(options.warmup + options.duration), options.readers, bytes, kMostNoted));
   }
@@ -122,7 +122,8 @@ ordered_json read_result(const std::string& file) {
   try {
     return ordered_json::parse(in);
   } catch (const nlohmann::json::exception& error) {
-    throw InputError(fmt::format("{}: {}", file, error.what()));
+    throw InputError(
+        fmt::format("{}: not a result of 'splinecast latency --json': {}", file, error.what()));
   }
 }
 
@@ -203,16 +204,17 @@ void add_processes(Command& verb, LatencyOptions& options) {
   add_count(verb, "--prio", options.priority, "Priority with --policy fifo, 1 to 99 (default 50)",
             {1, 99});
   verb.flag("--mlock", options.lock_memory, "Lock all memory (mlockall)");
-  verb.flag("--iceoryx,!--no-iceoryx", options.iceoryx,
+  verb.flag("--iceoryx", options.iceoryx,
             "Measure iceoryx too, and start its daemon for that (default: if it is built in)");
+  verb.clear("--no-iceoryx", options.iceoryx, "Do not measure iceoryx");
 }
 
 /// Adds the subcommand `compare`, and returns it.
 Command add_compare(Command& verb, const std::shared_ptr<CompareCommand>& command) {
   Command compare = verb.subcommand(
       "compare", "Compare two results of --json; exit code 3 if B is slower than A");
-  compare.option("A", command->a, "Reference result of --json").required();
-  compare.option("B", command->b, "Result of --json to compare with A").required();
+  compare.option("A", command->a, "File with the reference result of --json").required();
+  compare.option("B", command->b, "File with the result of --json to compare with A").required();
   compare
       .option(
           "--threshold",

@@ -25,7 +25,8 @@ std::vector<std::string_view> fields_of(std::string_view text) {
   }
 }
 
-/// A number; the value `none` for an empty field and for the word none. Nothing for any other text.
+/// Reads a number. Returns the argument `none` for an empty field and for the word "none", and
+/// nullopt for any other text.
 std::optional<double> number_or(double none, std::string_view field) {
   if (field.empty() || field == "none") return none;
   return parse_number(field);

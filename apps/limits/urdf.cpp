@@ -38,8 +38,8 @@ class Messages : public console_bridge::OutputHandler {
   std::string text_;
 };
 
-/// The end of the part of `text` that begins at `at` with `opening` and ends with `closing`; `at`
-/// if there is no such part.
+/// If `opening` is at `at`, returns the position after the next `closing`, or the end of the text
+/// if `closing` is missing. Otherwise returns `at`.
 std::size_t skip(std::string_view text, std::size_t at, std::string_view opening,
                  std::string_view closing) {
   if (!text.substr(at).starts_with(opening)) return at;

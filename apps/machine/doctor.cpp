@@ -21,6 +21,8 @@
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
 #include "ipc/options/stream.hpp"
+#include "ipc/roles/old_motion.hpp"
+#include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/options.hpp"
 #include "splinecast/streams.hpp"
@@ -72,12 +74,12 @@ Finding finding_of(const LeftName& name) {
     case NameState::foreign:
       return {.check = check,
               .verdict = Verdict::note,
-              .means = name.why + ": left alone",
+              .means = name.why + ": not changed",
               .mend = "that user can remove it; readers give the user's name with --owner"};
     case NameState::unknown:
       return {.check = check,
               .verdict = Verdict::note,
-              .means = name.why + ": left alone",
+              .means = name.why + ": not changed",
               .mend = "correct this, then run splinecast doctor again"};
     case NameState::hostile:
       break;
@@ -85,13 +87,21 @@ Finding finding_of(const LeftName& name) {
   return {.check = check,
           .verdict = Verdict::problem,
           .means = name.why + ": it is neither used nor removed, and blocks the name",
-          .mend = "find out who put it there, then remove it by hand"};
+          .mend = "find the process that created it, then remove it manually"};
 }
 
 /// Removes a stream whose owners are proven dead; an error becomes the finding.
 Finding clean(const LeftName& name) {
   const std::string check = fmt::format("stream {}", name.stream);
   try {
+    const Time end = ipc::end_of_motion(name.stream, {});
+    const Time now = MonotonicClock().now();
+    if (end > now && end - now <= ipc::kLongestOldMotion) {
+      return {
+          .check = check,
+          .means = fmt::format("its writers have ended; not removed, because it moves for {:.1f} s",
+                               to_seconds(end - now))};
+    }
     remove_stream(name.stream);
     return {.check = check,
             .means = fmt::format("its writers had ended: removed ({} bytes)", name.bytes)};
@@ -103,7 +113,7 @@ Finding clean(const LeftName& name) {
     return {.check = check,
             .verdict = Verdict::problem,
             .means = error.what(),
-            .mend = "find out who put it there, then remove it by hand"};
+            .mend = "find the process that created it, then remove it manually"};
   }
 }
 

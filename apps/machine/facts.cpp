@@ -35,8 +35,8 @@ int error_of_reading(const fs::path& file) {
   return is_read ? 0 : error;
 }
 
-/// The files needed by checks that cannot be read, with those of the environment. A missing file
-/// that a kernel may lack counts only if its folder is missing too.
+/// The files that the checks and the environment need but that cannot be read, with the reason.
+/// logind.conf may be missing. `shmem_enabled` may be missing if its folder exists.
 std::map<std::string, std::string> unread_files(const fs::path& root) {
   std::map<std::string, std::string> unread;
   const auto look = [&](const char* file, bool may_lack) {

@@ -7,7 +7,7 @@ namespace splinecast::apps {
 
 /// The state of a stream's name on this host.
 enum class NameState {
-  living,  ///< a writer is alive, or waits for the other one
+  living,  ///< at least one writer is alive
   dead,  ///< its files are this user's and their owners are proven dead: no process holds the locks
   foreign,  ///< a file under it is another user's: whether its owner is alive is unknown
   hostile,  ///< a file under it is not a stream's file: neither used nor removed

@@ -26,7 +26,8 @@ constexpr mode_t kNewFile = 0666;  // minus the umask
       fmt::format("{}: cannot be written: {}", path, std::generic_category().message(errno)));
 }
 
-/// The status of the regular file at a path, or of a standard stream that is one; else nothing.
+/// The status of the file at a path or, with `is_standard`, of a standard stream. nullopt unless it
+/// exists and is regular.
 std::optional<struct stat> regular_file(const std::string& path, bool is_standard, int standard) {
   struct stat status {};
   const int found = is_standard ? fstat(standard, &status) : stat(path.c_str(), &status);
@@ -38,12 +39,12 @@ bool is_same(const std::optional<struct stat>& a, const std::optional<struct sta
   return a && b && a->st_dev == b->st_dev && a->st_ino == b->st_ino;
 }
 
-/// Whether a file is in a directory of devices or of open files: such a file is never replaced.
+/// Whether a file is under /dev or /proc. Such a file is written directly, never replaced.
 bool is_special(const std::string& file) {
   return file.starts_with("/dev/") || file.starts_with("/proc/");
 }
 
-/// The end of a chain of symbolic links; no file needs to exist there.
+/// The target of a chain of symbolic links. The target need not exist.
 std::string behind_links(const std::string& path) {
   constexpr int kMostLinks = 40;  // as in the kernel
   fs::path at(path);
@@ -110,9 +111,9 @@ OutputFile::OutputFile(const std::string& path, Writing writing) : target_(behin
   fail(path);
 }
 
-/// Opens the file that will replace the target. Returns a negative number with `temporary_` empty
-/// if the target must be written directly, because no file can be created in its directory or given
-/// its owner; other negative numbers are errors.
+/// Opens the file that will replace the target. A negative result with an empty `temporary_` means
+/// that the target must be written directly, because no file can be created in its directory or
+/// given its owner. Any other negative result is an error.
 int OutputFile::open_replacement() {
   struct stat old {};
   const bool exists = stat(target_.c_str(), &old) == 0;

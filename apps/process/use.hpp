@@ -12,8 +12,8 @@ namespace splinecast::apps {
 /// Memory and open files of a process.
 struct ProcessUse {
   std::size_t mapped_bytes = 0;    ///< address space
-  std::size_t resident_bytes = 0;  ///< of it in memory, shared pages included
-  std::size_t private_bytes = 0;   ///< of this, pages that are not shared
+  std::size_t resident_bytes = 0;  ///< part of it in memory, shared pages included
+  std::size_t private_bytes = 0;   ///< part of the resident pages that is not shared
   std::size_t descriptors = 0;     ///< open files
 };
 

@@ -18,9 +18,9 @@ Time rounded_up_to_ms(Time t) noexcept {
   return std::chrono::ceil<std::chrono::milliseconds>(t);
 }
 
-/// Duration in s of the minimum-time motion onto a path that moves at constant velocity. The motion
-/// starts with a lag of `distance`, slower than the path by `deficit`, and is faster than the path
-/// by at most `most`.
+/// Duration in s of the minimum-time motion that catches up with a target of constant velocity. At
+/// its start the motion has a position lag of `distance` and is slower than the target by
+/// `deficit`; it is never faster than the target by more than `most`.
 double catch_up_time(double distance, double deficit, double acceleration, double most) {
   const double peak = std::sqrt(acceleration * distance + deficit * deficit / 2);
   if (peak <= most) return (2 * peak + deficit) / acceleration;
@@ -28,8 +28,8 @@ double catch_up_time(double distance, double deficit, double acceleration, doubl
   return (2 * most + deficit) / acceleration + (distance - covered) / most;
 }
 
-/// Time in s to return onto the path after `dry` s of a stop of `stop` s from velocity v. Nothing
-/// if the velocity limit is not above v.
+/// Time in s to return onto a path of constant velocity v, after the curve has followed a stop
+/// segment of duration `stop` for `dry` s. nullopt if the velocity limit is not above v.
 std::optional<double> way_back(double v, double dry, double stop, double max_velocity,
                                double max_acceleration) {
   if (v == 0 || dry <= 0) return 0.0;
@@ -88,20 +88,20 @@ AdvisedLimits advised_limits(std::span<const DimensionMotion> motion) {
   return limits;
 }
 
-Hiccup foresee(Time lead, Time silence, Time interval, Time freeze_ahead,
-               std::span<const DimensionMotion> motion, const AdvisedLimits& limits) {
+SilenceEffect foresee(Time lead, Time silence, Time interval, Time freeze_ahead,
+                      std::span<const DimensionMotion> motion, const AdvisedLimits& limits) {
   const Time left = std::max(saturated_sum(saturated_sum(lead, -interval), -silence), -Time::max());
-  Hiccup hiccup{.lead = lead,
-                .silence = silence,
-                .depth_left = std::max(left, Time::zero()),
-                .dry = std::max(saturated_sum(freeze_ahead, -left), Time::zero())};
-  hiccup.comes_to_rest = hiccup.dry >= limits.stop_time;
+  SilenceEffect effect{.lead = lead,
+                       .silence = silence,
+                       .depth_left = std::max(left, Time::zero()),
+                       .dry = std::max(saturated_sum(freeze_ahead, -left), Time::zero())};
+  effect.comes_to_rest = effect.dry >= limits.stop_time;
   for (std::size_t d = 0; d < motion.size(); ++d) {
-    hiccup.way_back.push_back(way_back(motion[d].peak_velocity, to_seconds(hiccup.dry),
+    effect.way_back.push_back(way_back(motion[d].peak_velocity, to_seconds(effect.dry),
                                        to_seconds(limits.stop_time), limits.velocity[d],
                                        limits.acceleration[d]));
   }
-  return hiccup;
+  return effect;
 }
 
 Advice advise(const WaypointTable& table, Time freeze_ahead, std::optional<std::size_t> settle,
@@ -124,7 +124,7 @@ Advice advise(const WaypointTable& table, Time freeze_ahead, std::optional<std::
   advice.limits = advised_limits(advice.motion);
   for (const Time lead : {advice.lead, kShortLead}) {
     for (const Time silence : kSilences) {
-      advice.hiccups.push_back(
+      advice.silences.push_back(
           foresee(lead, silence, intervals.median, freeze_ahead, advice.motion, advice.limits));
     }
   }

@@ -26,7 +26,8 @@ struct SolvedHow {
   Time freeze_ahead{5'000'000};
 };
 
-/// The depth at which each knot has `settle` newer knots before it is frozen.
+/// The depth (time from now to the newest knot) that gives each knot `settle` newer knots before it
+/// is frozen.
 [[nodiscard]] Time depth_needed(Time interval, const SolvedHow& how) noexcept;
 
 /// The same, but at most the depth that a recording of this length allows. The length of a stream
@@ -50,7 +51,7 @@ struct AdvisedLimits {
 [[nodiscard]] AdvisedLimits advised_limits(std::span<const DimensionMotion> motion);
 
 /// The effect of a silence of the producer on a live stream.
-struct Hiccup {
+struct SilenceEffect {
   Time lead{};
   Time silence{};
   Time depth_left{};           ///< just before the next waypoint of the producer
@@ -64,8 +65,9 @@ struct Hiccup {
 /// Predicts the effect of a silence in the worst case: it starts just before a waypoint is due. The
 /// return is a minimum-time motion within the limits, while the path continues at the peak
 /// velocity.
-[[nodiscard]] Hiccup foresee(Time lead, Time silence, Time interval, Time freeze_ahead,
-                             std::span<const DimensionMotion> motion, const AdvisedLimits& limits);
+[[nodiscard]] SilenceEffect foresee(Time lead, Time silence, Time interval, Time freeze_ahead,
+                                    std::span<const DimensionMotion> motion,
+                                    const AdvisedLimits& limits);
 
 /// The recommendations for a recording.
 struct Advice {
@@ -75,7 +77,8 @@ struct Advice {
   Time depth_needed{};
   Time lead{};
   AdvisedLimits limits{};
-  std::vector<Hiccup> hiccups{};  ///< silences of 100 and 300 ms, with `lead` and kShortLead
+  std::vector<SilenceEffect>
+      silences{};  ///< silences of 100 and 300 ms, with `lead` and kShortLead
 };
 
 /// Recommendations for a table, see measure_motion(). With `goes_on` the stream continues after the

@@ -110,7 +110,7 @@ std::vector<ChordPair> chord_pairs(const WaypointTable& table, const Chords& cho
     const auto k = j ? chords.end(*j) : std::nullopt;
     if (k) pairs.push_back({i, *j, *k, moves(table, i, *j, motion)});
   }
-  // A recording without motion: measure its noise.
+  // In a recording without motion all pairs count: they measure its noise.
   if (std::ranges::none_of(pairs, &ChordPair::moves)) {
     for (ChordPair& pair : pairs) pair.moves = true;
   }

@@ -16,11 +16,11 @@ namespace {
 void judge_lead(Time lead, Time needed, Time interval, const SolvedHow& how,
                 const ReplayOptions& options, Time stop_time) {
   if (lead >= needed) return;
-  const Hiccup hiccup = foresee(lead, std::chrono::milliseconds(100), interval, how.freeze_ahead,
-                                {}, {.stop_time = stop_time});
+  const SilenceEffect effect = foresee(lead, std::chrono::milliseconds(100), interval,
+                                       how.freeze_ahead, {}, {.stop_time = stop_time});
   say(fmt::format("'{}': the lead of {} is less than the {} that K = {} needs; a silence of {}: {}",
                   options.stream, in_milliseconds(lead), in_milliseconds(needed), how.settle,
-                  in_milliseconds(hiccup.silence), in_words(hiccup)));
+                  in_milliseconds(effect.silence), in_words(effect)));
 }
 
 }  // namespace

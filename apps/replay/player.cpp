@@ -36,7 +36,7 @@ class Replay {
     try {
       if (!prepare()) return {.unsent = planned(), .interrupted = true};
     } catch (...) {
-      withdraw_if_new();  // nothing has been sent: leaves no stream
+      withdraw_if_new();  // nothing has been sent: removes a new stream
       throw;
     }
     if (!producer_.is_memory_locked() && !options_.quiet) {
@@ -98,7 +98,7 @@ class Replay {
 
   [[nodiscard]] Condition end() const { return options_.end.value_or(unasked()); }
 
-  /// The boundary condition at an end for which none was given.
+  /// The default boundary condition: full stop on a live stream, else the method's own condition.
   [[nodiscard]] Condition unasked() const {
     const bool live = options_.clock == StreamClock::monotonic;
     return {.kind = live ? ConditionKind::halt : ConditionKind::own, .value = {}};
@@ -171,8 +171,9 @@ class Replay {
     return status;
   }
 
-  /// The lateness of a waypoint that is sent now: how long before the end of what settles now its
-  /// time is; 0 if it is after it. With `--late shift`, moves a late waypoint to `lead` after now.
+  /// Returns the lateness of a waypoint that is sent now: the time from the waypoint to the settled
+  /// time, 0 if the waypoint is later. With `--late shift`, moves a late waypoint to `lead` after
+  /// now.
   Time shift_if_late(Waypoint& waypoint) {
     if (options_.clock != StreamClock::monotonic) return {};
     const Time now = clock_.now();
@@ -184,15 +185,16 @@ class Replay {
     return lateness;
   }
 
-  /// Counts a late waypoint, and moves all later ones by the same time.
+  /// Counts a late waypoint. If it was moved, moves all later ones by the same time.
   void note_lateness(Time lateness, Time moved_by) {
     if (lateness == Time::zero()) return;
     late_.count(&LateRows::past, lateness);
     if (moved_by > Time::zero()) late_.shift(moved_by);
   }
 
-  /// Appends a waypoint, unless kRefusalsKept items before it are undecided: the board could then
-  /// overwrite a refusal before it is read. A ring of more items than that is not throttled.
+  /// Appends a waypoint. Returns `full` while kRefusalsKept earlier items are undecided, because
+  /// the board could overwrite a refusal before it is read. A ring of more than kRefusalsKept items
+  /// is not throttled.
   AppendStatus append(const Waypoint& waypoint) {
     rows_.look();
     const bool is_behind =
@@ -253,13 +255,13 @@ class Replay {
   [[nodiscard]] ReplayReport report(bool complete) {
     rows_.finish();
     const ipc::Summary now = board_->summary();
-    // Also if none of the refused rows could be named.
+    // The solver may have refused rows of which none could be named.
     std::optional<RefusedBy> stopped = rows_.stopped();
     if (now.refused > before_.refused && !options_.skip_bad && !stopped) {
       stopped = RefusedBy::solver;
     }
-    // An entry that was open before may since have reached waypoints that were counted as passed
-    // over.
+    // `passed_over` can decrease: an entry that was open at the beginning of this replay may have
+    // reached waypoints that were counted as passed over.
     const ipc::Word taken = now.knots - before_.knots;
     const ipc::Word passed_over =
         std::min(taken, now.passed_over - std::min(now.passed_over, before_.passed_over));

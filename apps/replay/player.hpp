@@ -44,9 +44,9 @@ struct ReplayOptions {
 struct ReplayReport {
   ipc::Word sent = 0;          ///< waypoints accepted by the ring
   ipc::Word unsent = 0;        ///< not reached: the replay was stopped or interrupted
-  ipc::Word interpolated = 0;  ///< of these, by the solver
-  ipc::Word passed_over = 0;   ///< of these, by entries: consumed, but not on the curve
-  ipc::Word refused = 0;       ///< of these, by the solver, with a reason
+  ipc::Word interpolated = 0;  ///< sent waypoints that the solver interpolated
+  ipc::Word passed_over = 0;   ///< sent waypoints that entries passed over: not on the curve
+  ipc::Word refused = 0;       ///< sent waypoints that the solver refused, with a reason
   std::array<ipc::Word, kRefusals> refused_by_reason{};
   LateRows late{};                     ///< rows that were late when they could be sent
   std::optional<RefusedBy> stopped{};  ///< who refused the row that stopped it (--on-error stop)

@@ -39,7 +39,7 @@ Time rest_of_old_motion(const ReplayOptions& options, std::uint64_t stream_id) {
   ipc::require_near_end(options.stream, end, now);
   if (end <= now) return Time::zero();
   if (!options.quiet) {
-    say(fmt::format("'{}': waits {:.1f} s for the end of the earlier motion", options.stream,
+    say(fmt::format("'{}': waiting {:.1f} s for the end of the previous motion", options.stream,
                     to_seconds(end - now)));
   }
   return end - now;

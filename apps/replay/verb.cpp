@@ -34,6 +34,8 @@ ordered_json skipped_by_reason(const RefusedRows& refused) {
     if (status == AppendStatus::full) continue;  // retried until there is room
     json[std::string(to_string(status))] = count(to_string(status));
   }
+  const std::string_view no_rotation = to_string(Refusal::zero_quaternion);
+  json[std::string(no_rotation)] = count(no_rotation);
   return json;
 }
 
@@ -179,7 +181,7 @@ void require_loops(const WaypointTable& table, std::size_t loops) {
   const Time once = table.times.back() - table.times.front() + median_interval(table);
   const double seconds = static_cast<double>(loops) * to_seconds(once);
   if (seconds <= to_seconds(kLongestTime)) return;
-  throw InputError(fmt::format("{}: --loop {} takes {} s; the most is {} s", table.file, loops,
+  throw InputError(fmt::format("{}: --loop {} takes {} s; the maximum is {} s", table.file, loops,
                                seconds, to_seconds(kLongestTime)));
 }
 
@@ -264,7 +266,7 @@ void add_replay(Command& verb, Action& action) {
   auto options = std::make_shared<ReplayOptions>();
   verb.option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
       .required();
-  verb.option("--stream", options->stream, "Stream to produce").required();
+  verb.option("--stream", options->stream, "Stream to produce").type("STREAM").required();
   add_playback_options(verb, *options);
   add_row_policies(verb, *options);
   add_ring_options(verb, *options);

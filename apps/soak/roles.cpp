@@ -61,7 +61,8 @@ class SoakProducer {
 
   /// Advances to the first waypoint that may follow the appended ones.
   void skip_past(Time now) {
-    // A waypoint that was postponed before and is due now is sent now.
+    // A waypoint is late if less than half of its lead remains. A postponed waypoint has its whole
+    // lead when it is due, so it is not postponed again.
     const bool is_late = producer_.earliest() > producer_.last_time() && next_ < now + kLead / 2;
     const Time earliest =
         producer_.continues() || sent_ > 0

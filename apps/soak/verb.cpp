@@ -340,8 +340,8 @@ void add_soak(Command& verb, Action& action) {
 }
 
 const Verb soak_verb("soak", 140,
-                     "Run many streams for a long time, kill producers meanwhile, and check that "
-                     "no process grows and no item is lost; exit code 1 if a check fails",
+                     "Run many streams for a long time, kill producers, and check every sample, "
+                     "memory and descriptors",
                      add_soak);
 
 }  // namespace

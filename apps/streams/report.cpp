@@ -102,7 +102,7 @@ ordered_json limits_json(const ipc::RegionHeader& header) {
   };
 }
 
-/// The limits that entries on a live stream keep if none are given.
+/// The limits that the motion of a live stream shows: entries keep them if no limits are given.
 ordered_json shown_json(const ipc::StreamInfo& info) {
   if (!info.shown) return nullptr;
   return {{"velocity", info.shown->velocity}, {"acceleration", info.shown->acceleration}};
@@ -200,7 +200,7 @@ std::string pretty(const ordered_json& json) {
 }
 
 std::string state_of(const ipc::StreamInfo& info) {
-  if (!info.waypoints) return info.solver_alive ? "waiting for a producer" : "left behind";
+  if (!info.waypoints) return info.solver_alive ? "waiting for a producer" : "stale";
   if (!info.spline || info.spline->stream_id != info.waypoints->stream_id) {
     return "waiting for a solver";
   }

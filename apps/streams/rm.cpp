@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 
@@ -5,18 +7,41 @@
 #include "apps/cli/options.hpp"
 #include "apps/cli/verb.hpp"
 #include "apps/process/exit_codes.hpp"
+#include "apps/process/messages.hpp"
+#include "apps/process/signals.hpp"
+#include "ipc/mapping/owner_lock.hpp"
+#include "ipc/roles/old_motion.hpp"
+#include "splinecast/clock.hpp"
 #include "splinecast/streams.hpp"
 
 namespace splinecast::apps {
 namespace {
 
+/// Waits while a motion whose writers have ended continues to its stop, because readers follow it.
+/// A motion that would end after more than an hour is removed at once. Returns false after a
+/// signal.
+bool wait_for_rest(const std::string& stream, const Trust& trust) {
+  for (const auto kind : {ipc::RegionKind::waypoints, ipc::RegionKind::spline}) {
+    if (ipc::is_owned(stream, kind)) return true;  // remove_stream() refuses it
+  }
+  const Time end = ipc::end_of_motion(stream, trust);
+  const Time now = MonotonicClock().now();
+  if (end <= now || end - now > ipc::kLongestOldMotion) return true;
+  say(fmt::format("'{}': waiting {:.1f} s for the end of its motion", stream,
+                  to_seconds(end - now)));
+  return sleep_until(end);
+}
+
 void add_rm(Command& verb, Action& action) {
   struct Options {
     std::vector<std::string> streams;
     Trust trust;
+    bool now = false;
   };
   auto options = std::make_shared<Options>();
   verb.option("STREAM", options->streams, "Names of the streams to remove").required();
+  verb.flag("--now", options->now,
+            "Do not wait for the end of a motion: readers lose the curve while it moves");
   add_trust(verb, options->trust);
   verb.callback([&action, options] {
     action = [options] {
@@ -24,6 +49,9 @@ void add_rm(Command& verb, Action& action) {
       for (const std::string& stream : options->streams) {
         // Continues after a failure.
         code = std::max(code, run_guarded([&] {
+                          if (!options->now && !wait_for_rest(stream, options->trust)) {
+                            return kInterrupted;
+                          }
                           remove_stream(stream, options->trust);
                           return kOk;
                         }));

@@ -79,8 +79,8 @@ std::string depth_warning(const ipc::StreamInfo& info, const Trust& trust) {
   const Time interval = measure_intervals(table.times).median;
   const Time needed =
       depth_needed(interval, {.settle = info.spline->settle, .freeze_ahead = live->freeze_ahead});
-  // Just before a waypoint is consumed, the depth is one interval less. Half an interval is left
-  // for jitter.
+  // The depth is least just before a waypoint is consumed: one interval less than `needed`. Another
+  // half interval is allowed for jitter.
   const Time usual = needed - interval;
   if (info.summary.low_water >= usual - interval / 2) return {};
   return fmt::format(

@@ -27,7 +27,8 @@
 namespace splinecast::apps {
 namespace {
 
-/// Longest sleep on one stream: the delay of a signal that arrives just before a sleep.
+/// Longest sleep while one stream is solved. A signal that arrives just before a sleep is noticed
+/// after at most this time.
 constexpr Time kLongestWait = std::chrono::milliseconds(50);
 
 constexpr TimeRange kSweeps{Time(1), std::chrono::seconds(1)};
@@ -231,8 +232,8 @@ void add_solve(Command& verb, Action& action) {
       ". Applies to entries and stop segments, not to the spline through the waypoints: "
       "see --beyond");
   add_beyond(verb, options->solver.beyond);
-  verb.flag("!--no-wake", options->solver.wake,
-            "Do not wake waiting readers: for hosts where every reader polls");
+  verb.clear("--no-wake", options->solver.wake,
+             "Do not wake waiting readers: for hosts where every reader polls");
   add_sweep(verb, *options);
   verb.flag("--quiet", options->quiet,
             "Print no messages about streams, except those that cannot be solved");

@@ -133,8 +133,8 @@ std::size_t ColumnRoles::selected_column(const std::string& wanted) const {
   return *c;
 }
 
-/// The columns that hold positions if none are selected: numeric ones without another role. Stops
-/// after the first one too many.
+/// The columns that hold positions if none are selected: numeric ones without another role. Without
+/// a selection, stops at the first column above kMaxDimensions.
 ColumnRoles::Columns ColumnRoles::position_columns(bool is_selected, const Lines& rest) const {
   const std::vector<bool> is_numeric = numeric_columns(rest);
   Columns columns;
@@ -155,8 +155,8 @@ ColumnRoles::Columns ColumnRoles::position_columns(bool is_selected, const Lines
   return columns;
 }
 
-/// Whether each column holds numbers: one of its cells does. (A bad first cell must not remove a
-/// dimension.)
+/// For each column, whether at least one of its cells is a number. (One invalid cell must not
+/// remove a dimension.)
 std::vector<bool> ColumnRoles::numeric_columns(Lines rest) const {
   std::vector<bool> is_numeric(format_.names.size(), format_.first_row.number == 0);
   Columns open;
@@ -191,7 +191,7 @@ void ColumnRoles::require_usable(std::size_t c) const {
   }
 }
 
-/// Whether a column is the jerk or the angular motion of samples that this program wrote, and thus
+/// Whether a column is the jerk or the angular motion of samples that this program wrote, and so
 /// not a position: j[i] if p[i], v[i] and a[i] exist, omega[i] and alpha[i] if p[0] to j[0] exist.
 bool ColumnRoles::is_sampled(const std::string& name) const {
   const bool is_angular = index_of(name, "omega") || index_of(name, "alpha");

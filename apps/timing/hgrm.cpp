@@ -38,7 +38,7 @@ void for_each_percentile(const Histogram& histogram,
     up_to += counts[cell];
     const Time value(Histogram::last_of(cell));
     const double reached = 100 * static_cast<double>(up_to) / all;
-    // The last cell takes one step, for any number of levels, and then the step to 100 %.
+    // The last cell gives one step, even if it reaches several levels, and then the step to 100 %.
     while (reached >= level) {
       visit({.value = value, .level = level, .up_to = up_to});
       level = next_level(level);

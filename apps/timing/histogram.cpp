@@ -13,7 +13,8 @@ int width_bits(std::int64_t ns) noexcept {
       0, static_cast<int>(std::bit_width(static_cast<std::uint64_t>(ns))) - Histogram::kCellBits);
 }
 
-/// The cells are in order of width: kCells of the first width, then kCells/2 of each next one.
+/// The index of the cell of a time. The first kCells cells are 1 ns wide; after them, each group of
+/// kCells/2 cells is twice as wide as the group before.
 std::size_t cell_of(std::int64_t ns) noexcept {
   const int bits = width_bits(ns);
   return static_cast<std::size_t>((bits * Histogram::kCells / 2) + (ns >> bits));

@@ -55,7 +55,7 @@ SampleStatus CurveWatch::tick(Time now) {
   if (ticks_ > 0) {
     check_joins(seen_[(ticks_ - 1) % kKept].time, now);
     read_again(1);
-    // Steps of a prime visit all kept samples, regardless of their number.
+    // Also reads one older sample. Steps of 37, a prime, visit all kept samples in turn.
     read_again(1 + report_.samples * 37 % std::min(ticks_, kKept));
   }
   Seen& seen = seen_[ticks_++ % kKept];

@@ -13,14 +13,14 @@ namespace splinecast::apps {
 struct WatchReport {
   std::uint64_t samples = 0;
   std::array<std::uint64_t, kSampleStatuses> by_status{};
-  std::uint64_t changed = 0;     ///< samples that read differently later, without `revised`
+  std::uint64_t changed = 0;     ///< samples whose values changed later, without `revised`
   std::uint64_t unsettled = 0;   ///< samples in motion that had not settled at their instant
   std::uint64_t knots = 0;       ///< joins between segments that were compared
   double position_step = 0;      ///< largest at a join
   double velocity_step = 0;      ///< largest at a join
-  double unpublished_step = 0;   ///< largest difference of an acceleration step from the published
-  double acceleration_step = 0;  ///< largest published one
-  double acceleration = 0;       ///< largest sampled
+  double unpublished_step = 0;   ///< largest difference of actual and published acceleration step
+  double acceleration_step = 0;  ///< largest published acceleration step
+  double acceleration = 0;       ///< largest sampled acceleration
 };
 
 /// Whether a motion of joint angles in rad had no forbidden step and no forbidden change.
@@ -28,7 +28,7 @@ struct WatchReport {
 
 /// Samples a live curve as a controller does, and checks that every sample reads the same later,
 /// that position and velocity never step, and that every acceleration step is the published one.
-/// One thread uses a watch.
+/// Not thread-safe.
 class CurveWatch {
  public:
   /// `sampler` outlives the watch, which is its only user.

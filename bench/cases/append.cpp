@@ -34,7 +34,7 @@ void append(benchmark::State& bench) {
   for (auto _ : bench) window.append();
 }
 
-/// The same after ten million waypoints: the window is kept from block to block.
+/// The same after ten million waypoints. All blocks use the same window.
 void append_late(benchmark::State& bench) {
   static FedWindow window(7, 8, 10'000'000);
   for (auto _ : bench) window.append();

@@ -20,7 +20,7 @@ constexpr std::size_t kStreams = 1'000;
 constexpr std::size_t kAppends = 200;
 constexpr std::size_t kDimensions = 7;
 constexpr Time kPatience = std::chrono::seconds(60);
-/// How far ahead of now the time of a waypoint is.
+/// Time of a waypoint minus the time at which it is appended.
 constexpr Time kLead = milliseconds(200);
 
 void append(Producer& producer, Time t, double x) {
@@ -41,8 +41,8 @@ void await_motion(Reader& reader, Time t, State& state) {
   throw std::runtime_error("the waypoint of an idle stream was not solved");
 }
 
-/// The time from an append to one of many streams, idle for a second or more, until a reader sees
-/// its knot. The appends are at random phases of the solver's poll period.
+/// Measures the time from an append to an idle stream until a reader sees its knot. Each append is
+/// to another stream, at a random phase of the solver's poll period.
 nlohmann::json append_to_idle(std::vector<Producer>& producers, std::vector<Reader>& readers) {
   const MonotonicClock clock;
   std::mt19937_64 random(1);

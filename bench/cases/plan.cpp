@@ -21,7 +21,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// A clock that shows the time that is set.
+/// A clock whose time the benchmark sets.
 class SetClock final : public Clock {
  public:
   [[nodiscard]] Time now() const noexcept override { return time; }
@@ -117,13 +117,13 @@ class PlannedStream {
   std::optional<Time> begin_;
 };
 
-/// The steps of a solver that returns to the waypoints after 300 ms of silence, one by one: it
-/// consumes the waypoints that arrive at once, searches for the entry and publishes it.
+/// Times each step of a solver that returns to the waypoints after 300 ms without any: it consumes
+/// all the waypoints that were held back, searches for the entry and publishes it.
 void plan(benchmark::State& bench) {
   constexpr std::size_t kSilences = 400;
   constexpr std::size_t kMostSteps = 64;
   const auto dimensions = static_cast<std::size_t>(bench.range(0));
-  // The motion's own peak is about 40 /s².
+  // The peak acceleration of the motion itself is about 40 unit/s².
   constexpr double kLimit = 60;
   const Pinned pin(kNear);
   const Time cost = clock_cost();

@@ -17,7 +17,7 @@
 namespace splinecast::bench {
 namespace {
 
-/// Samples the newest settled time at 1 kHz until a stop is requested.
+/// Samples at settled_until() at 1 kHz until a stop is requested.
 void poll_at_1_khz(const std::string& stream, std::atomic<std::uint64_t>& ready) {
   Reader reader(stream);
   State state(reader.dimensions());
@@ -28,7 +28,7 @@ void poll_at_1_khz(const std::string& stream, std::atomic<std::uint64_t>& ready)
   }
 }
 
-/// A process on the far core with this many readers, one thread each.
+/// For a child process: runs this many readers on the far core, one thread each.
 nlohmann::json poll_with(std::size_t readers, const std::string& stream, const SharedLines& ready) {
   const Pinned pin(kFar);
   std::vector<std::thread> threads;
@@ -39,8 +39,8 @@ nlohmann::json poll_with(std::size_t readers, const std::string& stream, const S
   return nullptr;
 }
 
-/// One waypoint from producer to published segments, both roles in this process, while readers in
-/// another one poll at 1 kHz.
+/// Measures one waypoint from the append to the published knots. Producer and solver run in this
+/// process, while readers in another one poll at 1 kHz.
 void publish(benchmark::State& bench) {
   const auto dimensions = static_cast<std::size_t>(bench.range(0));
   const auto readers = static_cast<std::size_t>(bench.range(1));

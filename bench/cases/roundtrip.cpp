@@ -33,7 +33,8 @@ namespace {
 
 constexpr Time kPatience{10'000'000'000};
 
-/// A time before waypoint i at which the curve is the stop segment until waypoint i is appended.
+/// A time half an interval before waypoint i. The curve is the stop segment there until waypoint i
+/// is appended.
 Time asked_for(std::uint64_t i) { return time_of(i) - kTripInterval / 2; }
 
 /// Appends the waypoints of the round trips to a stream of this process.
@@ -91,7 +92,7 @@ void floor_ping(benchmark::State& bench) {
   }
 }
 
-/// The near core appends and publishes, a reader on the far one samples and acknowledges.
+/// The near core appends and publishes; a reader on the far core samples and acknowledges.
 void roundtrip_embedded(benchmark::State& bench, std::optional<std::size_t> settle) {
   const SharedLines lines;
   const StreamName stream;
@@ -129,7 +130,7 @@ void roundtrip_embedded(benchmark::State& bench, std::optional<std::size_t> sett
   }
 }
 
-/// The near core appends, the solver on the far one publishes, the near one samples.
+/// The near core appends, a solver on the far core publishes, the near core samples.
 void roundtrip_solver(benchmark::State& bench) {
   const StreamName stream;
   for (auto _ : bench) {
@@ -166,7 +167,7 @@ BENCHMARK_CAPTURE(roundtrip_embedded, , std::nullopt)
     ->Name("roundtrip/embedded")
     ->Iterations(1)
     ->UseManualTime();
-/// A waypoint changes the fewest segments: the rest is the transport itself.
+/// With settle lag 0 a waypoint changes the fewest segments: most of the time is transport.
 BENCHMARK_CAPTURE(roundtrip_embedded, , 0)
     ->Name("roundtrip/embedded/settle:0")
     ->Iterations(1)

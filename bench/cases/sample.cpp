@@ -19,14 +19,14 @@ struct Recorded {
       : waypoints(count, dimensions), stream(waypoints) {}
 };
 
-/// The streams are created once and exist until the end.
+/// Returns the stream of this size. Creates it at the first call and keeps it until the end.
 const Recorded& recorded(std::size_t count, std::size_t dimensions) {
   static std::map<std::pair<std::size_t, std::size_t>, Recorded> streams;
   return streams.try_emplace({count, dimensions}, count, dimensions).first->second;
 }
 
-/// Position, velocity, acceleration and jerk at 1 kHz steps through 100 Hz knots, from shared
-/// memory, through the public interface.
+/// Measures one sample of position, velocity, acceleration and jerk through the public `Reader`.
+/// The times are 1 ms apart, the knots about 10 ms.
 void sample(benchmark::State& bench) {
   const auto dimensions = static_cast<std::size_t>(bench.range(0));
   const Recorded& from = recorded(4096, dimensions);
@@ -56,8 +56,8 @@ void sample_random(benchmark::State& bench) {
   }
 }
 
-/// Times 2 ms apart for even and for odd calls, the latter 1 ms later, as a predictive controller
-/// at 1 kHz requests them; each call uses a part of one of them.
+/// Two lists of times 2 ms apart; the second list is 1 ms later. Even calls sample a part of the
+/// first list, odd calls a part of the second, as a predictive controller at 1 kHz does.
 std::array<std::vector<Time>, 2> horizons_until(Time end) {
   constexpr Time kApart{2'000'000};
   std::array<std::vector<Time>, 2> times;
@@ -68,8 +68,8 @@ std::array<std::vector<Time>, 2> horizons_until(Time end) {
   return times;
 }
 
-/// Many times from one revision: the horizon of a predictive controller over a curve that is
-/// published whole. The counter `times` is the number of times per call.
+/// Measures one call that samples many times of a finished stream: the horizon of a predictive
+/// controller. The counter `times` is the number of times per call.
 void sample_many(benchmark::State& bench) {
   const auto dimensions = static_cast<std::size_t>(bench.range(0));
   const auto count = static_cast<std::size_t>(bench.range(1));

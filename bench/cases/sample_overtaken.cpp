@@ -13,7 +13,7 @@
 #include "ipc/roles/internals.hpp"
 #include "splinecast/reader.hpp"
 
-/// Samples while the board is written as fast as possible.
+/// Samples while another process writes the board as fast as possible.
 namespace splinecast::bench {
 namespace {
 
@@ -21,7 +21,7 @@ constexpr std::size_t kSamples = 1'000'000;
 constexpr Time kPatience{10'000'000'000};
 
 /// `replay --embedded --rate max` on the far core, until a stop is requested.
-nlohmann::json replay_for_ever(const std::string& stream) {
+nlohmann::json replay_until_stopped(const std::string& stream) {
   const Pinned pin(kFar);
   apps::ReplayOptions options{.file = csv_recording().path(),
                               .stream = stream,
@@ -37,8 +37,7 @@ nlohmann::json replay_for_ever(const std::string& stream) {
   return nullptr;
 }
 
-/// Samples in the segments that a revision changes, one after the other; every sample is timed
-/// alone.
+/// Samples the segments that a revision changes, in turn, and times every sample separately.
 nlohmann::json sample_open_segments(const std::string& stream) {
   constexpr std::size_t kSegments = 8;
   constexpr Time kInterval{10'000'000};
@@ -88,12 +87,12 @@ void sample_overtaken(benchmark::State& bench,
 
 BENCHMARK_CAPTURE(sample_overtaken, replay,
                   [](const std::string& stream, std::atomic<std::uint64_t>&) {
-                    return replay_for_ever(stream);
+                    return replay_until_stopped(stream);
                   })
     ->Name("sample/dims:7/beside:replay")
     ->Iterations(1)
     ->UseManualTime();
-/// The same with a revision for each waypoint, which overtakes readers most often.
+/// The same with one revision per waypoint: the case in which readers are overtaken most often.
 BENCHMARK_CAPTURE(sample_overtaken, publish,
                   [](const std::string& stream, std::atomic<std::uint64_t>& ready) {
                     return write_stream(stream, kWrittenKnots, Time::zero(), ready);

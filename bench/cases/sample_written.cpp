@@ -16,11 +16,11 @@ namespace splinecast::bench {
 namespace {
 
 constexpr std::size_t kSamples = 2'000'000;
-/// The minimum number of first samples of a new revision in a run.
+/// The minimum number of samples in a run that are the first of a new revision.
 constexpr std::size_t kFirstSamples = 100;
 constexpr Time kPatience{10'000'000'000};
 
-/// Samples in steps of 1 ms, repeatedly from 20 s before settled_until() to after the newest knot.
+/// Samples in steps of 1 ms from 20 s before settled_until() to after the newest knot, repeatedly.
 class Walk {
  public:
   explicit Walk(const std::string& stream) : reader_(stream, kPatience) {
@@ -57,7 +57,7 @@ Time cpu_now() {
   return std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec);
 }
 
-/// CPU time of a sample [ns], the mean of many: the clock is too coarse for a single one.
+/// Mean CPU time of a sample [ns]. The clock is too coarse to time a single one.
 double mean_time(Walk& walk) {
   const Time start = cpu_now();
   for (std::size_t i = 0; i < kSamples; ++i) {
@@ -67,8 +67,8 @@ double mean_time(Walk& walk) {
   return static_cast<double>((cpu_now() - start).count()) / kSamples;
 }
 
-/// Times every sample alone. If the stream `is_written` meanwhile, also reports those that found a
-/// new revision.
+/// Times every sample separately. If the stream `is_written` at the same time, also reports the p50
+/// of the samples that found a new revision.
 nlohmann::json time_alone(Walk& walk, bool is_written) {
   const MonotonicClock clock;
   const Time cost = clock_cost();
@@ -89,7 +89,8 @@ nlohmann::json time_alone(Walk& walk, bool is_written) {
   return summary;
 }
 
-/// A sample while another process publishes.
+/// Measures samples while another process publishes a waypoint per `interval`, or none if it is
+/// unset.
 void sample_written(benchmark::State& bench, std::optional<Time> interval) {
   const Pinned pin(kNear);
   const StreamName stream;

@@ -12,8 +12,8 @@
 #include "ipc/roles/internals.hpp"
 #include "ipc/sweep/many_streams.hpp"
 
-/// The cost of many streams of seven dimensions for the one process that solves them. The time of
-/// these rows is the CPU time of this process per second: 10 ms are 1 % of a core.
+/// The CPU time that one process needs to solve many streams of seven dimensions. The time of these
+/// rows is the CPU time of that process per second: 10 ms are 1 % of a core.
 namespace splinecast::bench {
 namespace {
 
@@ -27,14 +27,14 @@ constexpr Time kWindow = seconds(1);
 /// Streams that one process solves, and their producers in another one.
 class ManyStreams {
  public:
-  /// Their motion begins in a second, or, if they are idle, never.
+  /// The motion begins in one second; idle streams do not move.
   ManyStreams(std::size_t count, bool are_idle, const SolverOptions& options)
       : solved_(count, options), producers_([&] {
           const Time begin = clock_.now() + (are_idle ? seconds(1'000'000) : seconds(1));
           return apps::run_soak_producers(solved_.streams(), kRate, begin);
         }) {
     readers_ = solved_.attach_readers(kPatience);
-    const Time end = clock_.now() + kPatience;  // the rows report the number of waypoints
+    const Time end = clock_.now() + kPatience;  // no error: the rows report waypoints_per_s
     while (!are_idle && !all_move() && clock_.now() < end) {
       apps::sleep_until(clock_.now() + milliseconds(10));
     }
@@ -85,7 +85,7 @@ class ManyStreams {
 struct Row {
   std::size_t streams;
   bool is_idle;
-  bool wakes = false;  ///< readers, by one system call per revision
+  bool wakes = false;  ///< the solver wakes readers, by one system call per revision
   Time freeze_ahead = milliseconds(5);
 };
 
@@ -124,7 +124,7 @@ void solve(benchmark::State& bench, Row row) {
   }
 }
 
-/// A reader of all streams: one sample per iteration, of each stream in turn.
+/// Samples all streams in turn, one sample per iteration.
 void sample(benchmark::State& bench, Row row) {
   ManyStreams world(row.streams, row.is_idle, options_of(row));
   const MonotonicClock clock;

@@ -25,7 +25,7 @@ struct Waypoints {
   }
 };
 
-/// Endless waypoints: repeats the same ones, with times that continue.
+/// An endless sequence of waypoints: repeats the same positions at times that continue.
 class Feed {
  public:
   explicit Feed(std::size_t dimensions);

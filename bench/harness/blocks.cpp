@@ -12,14 +12,14 @@
 namespace splinecast::bench {
 namespace {
 
-/// Benchmarks that run in alternation, as a regular expression over names, and their maximum number
-/// of blocks.
+/// Benchmarks that run alternately, as a regular expression over their names, and the maximum
+/// number of blocks.
 struct Group {
   const char* names;
   int most_blocks = std::numeric_limits<int>::max();
 };
 
-/// A ratio is taken within a group: a benchmark that is compared with several others is in several
+/// A ratio compares two benchmarks of one group: a benchmark with several peers is in several
 /// groups.
 constexpr std::array kGroups = {
     Group{"^(floor/eval|sample|gsl/sample)/dims:1$"},

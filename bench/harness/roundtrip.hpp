@@ -9,7 +9,7 @@
 #include "bench/harness/trips.hpp"
 #include "splinecast/time.hpp"
 
-/// Shared by all round trips: payload, count and assignment of cores.
+/// What all round trips share: payload, cache lines and measurement.
 namespace splinecast::bench {
 
 inline constexpr std::size_t kTripDimensions = 7;

@@ -13,15 +13,15 @@
 
 namespace splinecast::bench {
 
-/// Knots of a board that holds 1 s of history at 100 Hz and the producers' lead.
+/// Number of knots of a board: 1 s of history at 100 Hz, and the knots ahead of the present.
 inline constexpr std::size_t kBusyCapacity = 256;
 
 /// Pause between two polls of the busy streams by the solver process.
 inline constexpr Time kSweep{1'000'000};
 
-/// Names for many streams, and one process that solves them as `solve` does once they have
-/// producers. Raises this process's limit of open files. The destructor removes the streams; their
-/// producers must have ended.
+/// Names of many streams, and one process that solves them, as the command `solve` does, as soon as
+/// they have producers. Raises this process's limit of open files. The destructor removes the
+/// streams; their producers must have ended.
 class SolvedStreams {
  public:
   SolvedStreams(std::size_t count, const SolverOptions& options);

@@ -51,7 +51,8 @@ class Trips {
 /// with one iteration, which has run.
 void report(benchmark::State& bench, const nlohmann::json& summary);
 
-/// Words that processes forked later share, each with its own pair of cache lines.
+/// Words in memory shared with processes that are forked later, each on its own pair of cache
+/// lines.
 class SharedLines {
  public:
   static constexpr std::size_t kLines = 4;

@@ -11,7 +11,7 @@
 namespace splinecast::bench {
 namespace {
 
-/// Sleeps at most this long at a time while there is nothing to publish.
+/// Longest sleep of a writer that has nothing to publish.
 constexpr Time kLongestSleep{3'600'000'000'000};
 
 }  // namespace

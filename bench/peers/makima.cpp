@@ -5,8 +5,8 @@
 
 #include "bench/harness/bench_stream.hpp"
 
-/// Boost.Math's modified Akima: the library interpolator to which single points can be appended. It
-/// is C¹ only; an append changes only the last two slopes.
+/// Boost.Math's modified Akima interpolator, to which single points can be appended. It is C¹ only;
+/// an append changes only the last two slopes.
 namespace splinecast::bench {
 namespace {
 

@@ -72,8 +72,8 @@ double length(const Quaternion& q) noexcept {
   return largest * std::sqrt(dot(unit, unit));
 }
 
-/// Whether a quaternion of this length represents a rotation. A length that is 0, close to 0 or too
-/// large does not; no curve between rotations reaches one.
+/// Whether a quaternion of this length represents a rotation. It does not if the length is 0, close
+/// to 0 or too large; a curve between rotations never has such a length.
 bool is_length(double n) noexcept { return n > 1 / kLargestValue && n < kLargestValue; }
 
 /// Divides a quaternion and its derivatives by its length. Returns whether the length is valid.
@@ -81,7 +81,7 @@ template <typename... Derivatives>
 bool to_unit_length(Quaternion& q, Derivatives&... derivatives) noexcept {
   const double n = length(q);
   if (!is_length(n)) return false;
-  const double inverse = 1 / n;  // one division only: every sample needs it
+  const double inverse = 1 / n;  // one division only: every sample calls this
   const auto shorten = [inverse](Quaternion& values) {
     for (double& value : values) value *= inverse;
   };
@@ -119,7 +119,7 @@ void normalise_quaternion(const StateRef& state, std::size_t first) noexcept {
   subtract(j, 3 * m1, a);
   subtract(j, 3 * m2, v);
   subtract(j, m3, q);
-  // A derivative far too large for the length: no curve between rotations has one.
+  // A derivative is too large for the length. This does not occur on a curve between rotations.
   if (!are_finite(v) || !are_finite(a) || !are_finite(j)) return;
   store(q, state.position, first);
   store(v, state.velocity, first);
@@ -257,8 +257,8 @@ void DimensionKinds::normalise_step(std::span<const double> position,
     Quaternion q = load(position, first);
     Quaternion s = load(step, first);
     if (!to_unit_length(q, s)) continue;
-    // The second derivative of r = q/|q| is r'' = (q'' − (r·q'') r)/|q| + …, without q'' in the
-    // rest.
+    // The second derivative of r = q/|q| is r'' = (q'' − (r·q'') r)/|q| + …, where the other terms
+    // do not contain q''.
     subtract(s, dot(q, s), q);
     store(s, step, first);
   }

@@ -5,11 +5,11 @@
 namespace splinecast::core {
 
 /// An unevaluated sum of two doubles: about 106 bits, by Dekker's and Knuth's error-free sums and
-/// products. Only IEEE additions and multiplications, so that its bits are the same everywhere.
+/// products. Uses only the basic IEEE operations, so that its bits are the same everywhere.
 class DoubleDouble {
  public:
   constexpr DoubleDouble() = default;
-  // NOLINTNEXTLINE(google-explicit-constructor): every double is one
+  // NOLINTNEXTLINE(google-explicit-constructor): every double is a DoubleDouble
   constexpr DoubleDouble(double value) : high_(value) {}
 
   [[nodiscard]] constexpr explicit operator double() const noexcept { return high_; }

@@ -11,8 +11,8 @@ namespace splinecast::core {
 [[nodiscard]] PiecewisePolynomial fit_c2(const Waypoints& waypoints, const Condition& start,
                                          const Condition& end);
 
-/// The C² cubic spline in a parameter that increases by 1 from waypoint to waypoint (math 14); each
-/// segment is then stretched to its real interval. The ends are natural.
+/// The C² cubic spline in a parameter that increases by 1 from waypoint to waypoint (math 14), with
+/// natural ends. Each segment is then stretched to its real interval.
 [[nodiscard]] PiecewisePolynomial fit_normalized(const Waypoints& waypoints, const Condition& start,
                                                  const Condition& end);
 

@@ -56,8 +56,8 @@ Condition velocity(std::vector<double> value) {
   return {.kind = ConditionKind::velocity, .value = std::move(value)};
 }
 
-/// The periodic spline: all velocities are linear in the velocity at the join, v = y + z·v_join,
-/// where y is 0 and z is 1 at both ends; the row of the join then gives v_join.
+/// The periodic spline. All velocities are linear in the velocity at the join: v = y + z·v_join,
+/// where y is 0 and z is 1 at both ends. The row of the join then gives v_join.
 KnotRing solve_periodic(const Waypoints& waypoints) {
   const std::size_t n = waypoints.size() - 1;
   const Condition rest{.kind = ConditionKind::clamped, .value = {}};

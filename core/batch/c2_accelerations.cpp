@@ -16,7 +16,8 @@ struct Row {
   double upper = 0;
 };
 
-/// The system of the acceleration form (math 5, 7), in full second derivatives.
+/// The system of the acceleration form (math 5, 7). The unknowns are second derivatives, without a
+/// factor.
 class AccelerationSystem {
  public:
   /// `knots` holds the waypoints and their measured intervals.
@@ -78,7 +79,8 @@ class AccelerationSystem {
     }
   }
 
-  /// Writes the acceleration at an end with not-a-knot: on the line through the next two.
+  /// Writes the acceleration at an end with not-a-knot, by linear extrapolation from the next two
+  /// knots.
   void extrapolate(bool is_start) {
     const std::size_t n = knots_.newest();
     const auto end = at(is_start ? 0 : n);
@@ -94,7 +96,8 @@ class AccelerationSystem {
   [[nodiscard]] double h(std::size_t i) const { return knots_.row(i).h; }
 
  private:
-  /// Inserts the line of `extrapolate` into the row next to the end, which removes the end from it.
+  /// Substitutes the acceleration that `extrapolate` writes into the row next to the end, so that
+  /// this row no longer refers to the end.
   void pass(bool is_start) {
     const std::size_t n = knots_.newest();
     Row& row = rows_[is_start ? 1 : n - 1];

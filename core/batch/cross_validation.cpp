@@ -34,7 +34,7 @@ template <typename Function>
 double minimum_between(double low, double high, const Function& f) {
   constexpr double kGolden = 0.6180339887498949;
   constexpr double kEnough = 1e-4;
-  constexpr int kMostRounds = 200;  // each leaves 0.62 of the bracket: more than doubles resolve
+  constexpr int kMostRounds = 200;  // each keeps 0.62 of the bracket: enough for any doubles
   double left = high - kGolden * (high - low);
   double right = low + kGolden * (high - low);
   double at_left = f(left);
@@ -77,8 +77,7 @@ double cross_validated_lambda(const Waypoints& waypoints) {
   const core::SmoothingMesh mesh(knots);
   double shortest = knots.row(0).h;
   for (std::size_t i = 1; i < knots.newest(); ++i) shortest = std::min(shortest, knots.row(i).h);
-  // From no smoothing to a straight line: λ/h³ measures the first, λ·(seconds per knot)/duration⁴
-  // the second.
+  // Searches from no smoothing (λ/h³ ≪ 1) to a straight line (λ·(seconds per knot)/duration⁴ ≫ 1).
   const double duration = to_seconds(waypoints.times.back() - waypoints.times.front());
   const double mean = duration / static_cast<double>(knots.newest());
   constexpr double kMargin = 1e6;

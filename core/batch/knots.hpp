@@ -16,7 +16,7 @@ void require_waypoints(const Waypoints& waypoints);
 void require_values_of(const Waypoints& waypoints, std::span<const double> values,
                        const char* what);
 
-/// All waypoints as knots with measured intervals, not solved; with the values that `c2` needs.
+/// All waypoints as knots with measured intervals, not solved. Stores the values that `c2` needs.
 [[nodiscard]] KnotRing measure_knots(const Waypoints& waypoints, bool halts_at_start);
 
 /// All waypoints as knots, solved by a method that streams.

@@ -6,13 +6,13 @@
 #include "core/polynomial/segment.hpp"
 #include "splinecast/time.hpp"
 
-/// Builds segments from the knots at their ends. This is the only way from knots to polynomials,
-/// for the window that solves them and for all readers, so that all get the same bits.
+/// Builds segments from the data of the knots at their ends. Uses the same formulas as the window
+/// that solves the knots, so that all processes get the same bits.
 namespace splinecast::core {
 
 /// How the segment that begins at a knot is built from its knots.
 enum class SegmentForm : std::uint8_t {
-  none = 0,    ///< no segment begins here
+  none = 0,    ///< no segment begins at this knot
   cubic,       ///< from position and velocity at both ends
   halt_left,   ///< order 6: acceleration 0 at the left end, that of the cubic at the right end
   halt_right,  ///< order 6: acceleration 0 at the right end, that of the cubic at the left end
@@ -57,13 +57,13 @@ struct CubicEnds {
   const double* right_velocity;
 };
 
-/// The same for the form `cubic` without residuals, the most common case. Returns a sum of the
-/// magnitudes of the coefficients, in which some may count twice: at least the largest of them, and
-/// NaN if one of them is NaN. O(D).
+/// Writes a segment of the form `cubic` without residuals, the most common case. Returns a sum of
+/// the magnitudes of its coefficients, in which some may count twice: at least the largest
+/// magnitude, and NaN if a coefficient is NaN. O(D).
 double build_cubic(const CubicEnds& ends, Segment& out) noexcept;
 
-/// Writes the accelerations at the start and the end of such a segment, if it is not cut, to
-/// `start` and `end`. O(D).
+/// Writes the accelerations at the start and the end of the segment that `build_segment` writes for
+/// the same arguments. O(D).
 void write_end_accelerations(SegmentForm form, const SegmentEnd& left, const SegmentEnd& right,
                              std::span<double> start, std::span<double> end) noexcept;
 

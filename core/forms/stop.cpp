@@ -9,7 +9,7 @@
 namespace splinecast::core {
 namespace {
 
-/// Longest stop, s: limits that need a longer one are unreasonable.
+/// Longest stop in seconds: limits that need a longer one are unreasonable.
 constexpr double kLongest = 1e6;
 
 /// The acceleration clamped between 0 and the steepest deceleration without reversal.
@@ -23,9 +23,9 @@ template <typename Lane>
   return raised > high ? high : raised;
 }
 
-/// Shortest time in which a stop respects an acceleration limit A. With β = |a₀|/A, a deceleration
-/// of A·β at the start and q = √(1 − β), the largest deceleration of a stop of length T is at
-/// T·q/(1+q) and equals A for T = 3/((1 + q)(2 − q))·|v|/A.
+/// Shortest time in which a stop respects an acceleration limit A. With β = |a₀|/A, where a₀
+/// decelerates, and q = √(1 − β): the deceleration of a stop of length T is largest at T·q/(1+q),
+/// and is A there if T = 3/((1 + q)(2 − q))·|v|/A.
 double seconds_within(double v, double a, double limit) noexcept {
   const double beta = v * a < 0 ? std::abs(a) / limit : 0;
   if (beta > 1) return 3 * std::abs(v) / limit;

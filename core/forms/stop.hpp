@@ -32,8 +32,7 @@ void build_stop(Time from, Time stop_time, std::span<const double> position,
 
 /// The length of the shortest stop, at least `least`, in which every dimension respects its
 /// acceleration and jerk limit; `least` without limits. A dimension that already decelerates beyond
-/// its limit takes 3|v|/limit, in which its deceleration is within the limit from the first instant
-/// on.
+/// its limit gets 3|v|/limit, which respects the limit from the first instant on.
 [[nodiscard]] Time stop_time_within(const MotionLimits& limits, Time least,
                                     std::span<const double> velocity,
                                     std::span<const double> acceleration) noexcept;

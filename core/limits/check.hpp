@@ -14,8 +14,8 @@
 
 /// Compares segments with motion limits.
 ///
-/// Compares every dimension by its extremes (extremes.hpp). A limit is respected if it is exceeded
-/// by no more than their rounding. NaN exceeds every limit.
+/// Compares every dimension by its extremes (extremes.hpp). A limit counts as respected if an
+/// extreme exceeds it by no more than its rounding error. NaN exceeds every limit.
 ///
 /// The four dimensions of a quaternion q are one rotation. The limits of its first dimension apply
 /// to |ω|, |α| and |α̇| in the body frame, as readers see them: those of q/|q|. They follow from N
@@ -24,16 +24,15 @@
 ///     ω = 2W/N,   α = ω̇ = 2(ẆN − WṄ)/N²,
 ///
 /// so that |ω| ≤ 2|q̇|/|q| and |α| ≤ 2|q̈|/|q| + 4|q̇|²/|q|². These are rational functions of the
-/// time. Each is bounded from above, within 10⁻⁶ of its peak. A quaternion that comes near 0
-/// exceeds every limit.
+/// time. The check uses an upper bound of each, within 10⁻⁶ of its peak. A quaternion that comes
+/// near 0 exceeds every limit.
 ///
 /// Limits must have passed `require_limits` for the curve's dimensions. `kinds` may be null: all
 /// linear. Functions are O(D), do not allocate or throw, and are safe from any thread.
 namespace splinecast::core {
 
 /// Values that are allowed although they exceed a limit: one per dimension, or an empty span. A
-/// motion that begins above its limit may stay at that value. A value below the limit has no
-/// effect.
+/// motion that begins above its limit may keep that value. A value below the limit has no effect.
 struct Allowance {
   std::span<const double> velocity{};
   std::span<const double> acceleration{};

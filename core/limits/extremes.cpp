@@ -6,7 +6,7 @@
 namespace splinecast::core {
 namespace {
 
-/// Accepted error of an extreme from an inexact zero, relative to its terms.
+/// Accepted error of an extreme due to an inexact zero, relative to its largest term.
 constexpr double kNegligible = 0x1p-55;
 
 struct Ends {
@@ -80,9 +80,10 @@ struct Place {
   double value;
 };
 
-/// The zero between two places with different signs, between which a polynomial is monotone. Ends
-/// when residual times distance, which bounds the change of the integral, is negligible. Bisects a
-/// bracket that Halley's steps do not halve.
+/// The zero of a polynomial between two places where its signs differ; it must be monotone between
+/// them. Uses Halley's method inside the bracket, and bisects if two steps do not halve the
+/// bracket. Stops when the residual times Newton's step is negligible: this bounds the error of the
+/// integral at the zero, which is the extreme.
 template <int N>
 double bracketed_zero(const Polynomial<N>& p, Place low, Place high, double negligible) noexcept {
   constexpr int kTries = 100;
@@ -166,7 +167,8 @@ SegmentRange range_with(const double* coefficients, std::size_t dimensions, cons
   }
 }
 
-/// From the highest derivative down: the zeros of each are the turning points of the previous one.
+/// Works from the highest derivative down: the zeros of each derivative are the turning points of
+/// the one below it.
 template <int Order>
 void write_ranges_of(const double* coefficients, std::size_t dimensions, const Ends& ends,
                      Derivatives which, std::array<SegmentRange, 4>& out) noexcept {

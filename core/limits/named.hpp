@@ -29,8 +29,8 @@ namespace splinecast::core {
 [[nodiscard]] std::vector<std::size_t> without_limits(const MotionLimits& limits,
                                                       std::span<const Dimension> dimensions);
 
-/// The limits of `base`, with each list replaced that `by` has. Lower and upper bounds are replaced
-/// together.
+/// The limits of `base`; a list that `by` has replaces that of `base`. Lower and upper bounds are
+/// replaced together.
 [[nodiscard]] MotionLimits overridden(const MotionLimits& base, const MotionLimits& by);
 
 }  // namespace splinecast::core

@@ -53,7 +53,7 @@ void require_size(const NamedList& list, std::size_t dimensions) {
                               "s for " + std::to_string(dimensions) + " dimensions");
 }
 
-/// A quaternion has one limit of each kind, that of its first dimension.
+/// Throws unless the second to fourth dimension of a quaternion have no limit or that of the first.
 void require_first_alone(const MotionLimits& limits, std::size_t first) {
   for (const auto& [name, values] : magnitudes(limits)) {
     if (values->empty()) continue;

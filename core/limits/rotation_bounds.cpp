@@ -10,7 +10,7 @@ namespace splinecast::core {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Accepted ratio of a bound to the largest value found.
+/// Accepted ratio of a bound to the largest value found so far.
 constexpr double kSlack = 1 + 1e-6;
 constexpr std::size_t kMaxPieces = 64;
 constexpr int kMaxSplits = 300;
@@ -57,8 +57,8 @@ void add_product(std::span<double> to, double factor, std::span<const double> a,
   }
 }
 
-/// Bounds the largest value of a quotient on [0, width] from above. Bounds up to `accepted` and
-/// values above `rejected` are not refined.
+/// Bounds the largest value of a quotient on [0, width] from above. Does not refine a bound that is
+/// at most `accepted`; stops at a value above `rejected`.
 class PeakSearch {
  public:
   PeakSearch(const RotationQuotient& rotation, double accepted, double rejected) noexcept

@@ -17,7 +17,7 @@ namespace splinecast::core {
 
 /// A vector of polynomials divided by a polynomial, all with `terms` coefficients in s.
 struct RotationQuotient {
-  /// Those of N³ for a quintic.
+  /// The number of coefficients of N³ for a quintic.
   static constexpr std::size_t kMaxTerms = 3 * 2 * (kMaxOrder - 1) + 1;
   using Terms = std::array<double, kMaxTerms>;
 
@@ -30,8 +30,9 @@ class RotationBounds {
  public:
   RotationBounds(const SegmentPart& part, const QuaternionDimensions& quaternion) noexcept;
 
-  /// An upper bound of the r-th of |ω|, |α| and |α̇|, at most 10⁻⁶ of it above the largest value,
-  /// and the approximate place of that value. Infinite if the quaternion comes near 0 or is NaN.
+  /// An upper bound of the r-th of |ω|, |α| and |α̇|, and the approximate place of the largest
+  /// value. Exceeds that value by at most 10⁻⁶ of it. Infinite if the quaternion comes near 0 or is
+  /// NaN.
   [[nodiscard]] Extreme bound(int r) const noexcept;
 
   /// Whether the bound is at most `limit`.

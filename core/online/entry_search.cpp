@@ -10,7 +10,8 @@
 namespace splinecast::core {
 namespace {
 
-/// Least soft limit: smaller values cannot be distinguished from rounding.
+/// Least allowed value that follows from the shown motion: smaller values cannot be distinguished
+/// from rounding.
 constexpr double kLeastAllowed = 1e-9;
 
 double limit_of(const std::vector<double>& limits, std::size_t d) noexcept {
@@ -137,9 +138,9 @@ EntrySearch::Outcome EntrySearch::search_beyond(const SlidingWindow& target, con
   return Outcome::none;
 }
 
-/// The next duration: first that to the newest knot, if it was not tried as a knot, then longer
-/// ones; nothing after the longest one. A recomputed entry may end when it did before; otherwise
-/// its end would move later with every waypoint.
+/// The next duration: first that to the newest knot, if the search did not try this knot, then
+/// longer ones; nothing after the longest one. A recomputed entry may end at the same time as
+/// before; otherwise its end would move later with every waypoint.
 std::optional<Time> EntrySearch::next_duration(Time from, Time to_newest, bool tries_newest,
                                                Time shortest) noexcept {
   if (is_longest_) return std::nullopt;
@@ -155,7 +156,8 @@ std::optional<Time> EntrySearch::next_duration(Time from, Time to_newest, bool t
   return comes_first ? *former_end_ - from : next;
 }
 
-/// Uses the first knot at which the entry itself respects the limits, if it still does.
+/// Builds the entry to the first knot for which the entry itself respects the limits. Returns
+/// `none` if there is no such knot, or if the entry no longer respects them.
 EntrySearch::Outcome EntrySearch::fall_back(const SlidingWindow& target, const Instant& from,
                                             const EntryRules& rules) noexcept {
   if (!fallback_knot_ || *fallback_knot_ < target.oldest_segment()) return Outcome::none;
@@ -221,8 +223,8 @@ void EntrySearch::end_beyond(const SlidingWindow& target, Time t) noexcept {
           .rest = extrapolation_.rest()};
 }
 
-/// Whether all segments after the knot at which the entry ends respect the limits. Finds the newest
-/// segment that does not once per search.
+/// Whether all segments after the knot at which the entry ends respect the limits. The first call
+/// of a search finds the last segment that exceeds a limit; the next calls use this result.
 bool EntrySearch::keeps_behind(const SlidingWindow& target, const MotionLimits& limits) noexcept {
   if (!knows_behind_) {
     knows_behind_ = true;
@@ -235,11 +237,11 @@ bool EntrySearch::keeps_behind(const SlidingWindow& target, const MotionLimits& 
   return !last_beyond_ || *last_beyond_ < *end_.knot;
 }
 
-/// Whether the rest of the line and the stop segment respect the position bounds; they respect all
-/// other limits.
+/// Whether the rest of the line and the stop segment respect the position bounds. They respect all
+/// other limits by construction.
 bool EntrySearch::keeps_beyond(const MotionLimits& limits) noexcept {
   if (limits.lower.empty() && limits.upper.empty()) return true;
-  // Each dimension moves in one direction only.
+  // Each dimension moves in one direction only, so that its position at rest is the farthest.
   extrapolation_.state_at(extrapolation_.rest(), rest_.ref());
   const auto position = rest_.position();
   for (std::size_t d = 0; d < position.size(); ++d) {
@@ -250,7 +252,7 @@ bool EntrySearch::keeps_beyond(const MotionLimits& limits) noexcept {
 }
 
 /// Sets the allowed velocities and accelerations of the entry: the limit, or the value at the start
-/// of the entry if that exceeds the limit.
+/// of the entry if that exceeds the limit. Without a limit, see `allow_shown`.
 void EntrySearch::allow(const Instant& from, const EntryRules& rules) noexcept {
   allowed_.jerk = rules.limits->jerk;
   allowed_.lower = rules.limits->lower;
@@ -260,6 +262,10 @@ void EntrySearch::allow(const Instant& from, const EntryRules& rules) noexcept {
     const double a_max = limit_of(rules.limits->acceleration, d);
     allowed_.velocity[d] = v_max > 0 ? std::max(v_max, std::abs(from.velocity[d])) : 0;
     allowed_.acceleration[d] = a_max > 0 ? std::max(a_max, std::abs(from.acceleration[d])) : 0;
+    if (!rules.must_reach || allowed_.lower.empty()) continue;
+    const double to = end_.state.position[d];
+    allowed_.lower[d] = std::min({allowed_.lower[d], from.position[d], to});
+    allowed_.upper[d] = std::max({allowed_.upper[d], from.position[d], to});
   }
   if (rules.shown != nullptr) allow_shown(from, rules);
 }
@@ -273,7 +279,8 @@ void EntrySearch::allow_shown(const Instant& from, const EntryRules& rules) noex
     }
     allowed_.acceleration[d] = std::max({acceleration, granted_.acceleration[d], kLeastAllowed});
   };
-  // A motion from rest to rest over a distance x in 1 s peaks at 1.875 x and 5.77 x.
+  // From rest to rest over a distance x in 1 s, the peak velocity is 1.875 x and the peak
+  // acceleration 5.77 x.
   const auto velocity_of = [&](std::size_t d) {
     const double way = std::abs(to.position[d] - from.position[d]);
     return std::max(
@@ -287,9 +294,9 @@ void EntrySearch::allow_shown(const Instant& from, const EntryRules& rules) noex
   write_of_dimensions(velocity_of, acceleration_of, allow_dimension);
 }
 
-/// Whether no motion of the entry's duration T from one state to the other is within the allowed
-/// values: its mean acceleration is Δv/T, its mean velocity Δx/T, and with |a| ≤ A its distance
-/// differs by at most A·T²/4 from that at the mean of both velocities.
+/// Whether no motion from `from` to the end of the entry can respect the allowed values. With the
+/// duration T, the mean acceleration is Δv/T and the mean velocity is Δx/T. With |a| ≤ A, Δx
+/// differs by at most A·T²/4 from T times the mean of the velocities at both ends.
 bool EntrySearch::is_out_of_reach(const Instant& from) const noexcept {
   constexpr double kSlack = 1 + 1e-9;
   const double duration = to_seconds(end_.state.time - from.time) * kSlack;
@@ -313,14 +320,15 @@ bool EntrySearch::passes(const Instant& from) noexcept {
   return keeps_within(allowed_, &kinds_, entry_) && keeps_length();
 }
 
-/// The same for the longest entry, which may exceed what the motion has shown.
+/// The same without the shown limits: for entries of at least kLongest.
 bool EntrySearch::passes_at_last(const Instant& from, const EntryRules& rules) noexcept {
   if (rules.shown == nullptr) return false;
-  allow(from, {.limits = rules.limits});
+  allow(from, {.limits = rules.limits, .must_reach = rules.must_reach});
   return passes(from);
 }
 
-/// Whether quaternions are long enough along the entry that their direction is well defined.
+/// Whether quaternions keep at least the length kLeast along the entry, so that their rotation is
+/// well defined. Tests kLooks − 1 times.
 bool EntrySearch::keeps_length() const noexcept {
   constexpr int kLooks = 16;
   constexpr double kLeast = 0.7;
@@ -347,7 +355,7 @@ double peak_acceleration(const Segment& segment, std::size_t d) noexcept {
                       .value);
 }
 
-/// The acceleration that the first three waypoints show; 0 if there are fewer.
+/// The mean acceleration over the first three waypoints; 0 if there are fewer.
 double shown_at_start(const SlidingWindow& target, std::size_t d) noexcept {
   constexpr std::size_t kWaypoints = 3;
   if (target.knots() < kWaypoints) return 0;

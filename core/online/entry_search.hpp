@@ -20,22 +20,21 @@ struct EntryRules {
   const MotionLimits* limits = nullptr;  ///< given limits
   const MotionLimits* shown = nullptr;  ///< limits shown by the motion: see EntrySearch; null: none
   Time least{};                         ///< shortest duration of an entry
-  std::size_t newer = 0;  ///< number of newer knots that must be known if an entry ends at a knot
+  std::size_t newer = 0;     ///< an entry may end at a knot only if this many newer knots are known
   bool goes_beyond = false;  ///< the entry may also end after the newest knot
+  bool must_reach = false;   ///< bounds are widened to contain both ends of the entry
 };
 
 /// The end of an entry. Spans refer to memory of the search and are valid until its next call.
 struct EntryEnd {
   std::optional<std::size_t> knot{};  ///< knot of the target; none: after the newest one
-  std::size_t known = 0;              ///< number of knots that the target had
+  std::size_t known = 0;              ///< number of knots of the target at the search
   Instant state{};
-  Time line_end{};  ///< after the newest knot: end of the straight line; at or before the state if
-                    ///< that is in the stop segment, or at rest
-  Time rest{};      ///< after the newest knot: end of the stop segment
+  Time line_end{};  ///< only without `knot`: end of the straight line, which may be before `state`
+  Time rest{};      ///< only without `knot`: end of the stop segment
 };
 
-/// Number of segments after which the effect of a start at rest on the target has faded to less
-/// than a fiftieth.
+/// Number of segments after which the effect of a start at rest on the target is below 1/50.
 inline constexpr std::size_t kStartFades = 3;
 
 /// Searches for the entry from a state onto the *target*: the spline through the knots of a run
@@ -44,22 +43,23 @@ inline constexpr std::size_t kStartFades = 3;
 /// An entry is the quintic from the state to the target's state at its end. Candidates for the end
 /// are, in this order, the target's knots that are still in the window, then times after the newest
 /// one, each duration kGrowth times the previous one, up to kLongest. The search takes the first
-/// candidate for which the quintic and everything after it respect the limits; if there is none,
-/// the first for which the quintic itself does.
+/// candidate for which the quintic and everything after it respect the limits. If there is none and
+/// the entry may end after the newest knot, it takes the first knot for which the quintic itself
+/// respects them.
 ///
-/// The velocity of the newest knot, unless given, is an estimate until the next knot is known. An
-/// entry to that knot therefore counts as one that ends after it: the shortest one, onto the
-/// beginning of the straight line.
+/// The velocity of the newest knot, unless given, is an estimate until the next knot is known. The
+/// search therefore treats an entry to that knot as one that ends after it: as the shortest of
+/// these, which ends at the beginning of the straight line.
 ///
-/// The velocities and accelerations that a motion has *shown* are estimates; they limit a dimension
-/// without an acceleration limit. An entry may always have the values at its two ends, those of a
-/// motion over its distance in 1 s, and those of the entry that it replaces. Segments after the
-/// entry are not compared with them, and an entry of kLongest may exceed them.
+/// The velocities and accelerations that a motion has *shown* are estimates. They limit the entry
+/// in a dimension without an acceleration limit. An entry may always have the values at its two
+/// ends, those of a motion over its distance in 1 s, and those of the entry that it replaces.
+/// Segments after the entry are not compared with them, and an entry of kLongest may exceed them.
 ///
 /// The search can be interrupted after any candidate; it does not try a rejected one again until
-/// `restart`. A candidate that cannot pass, because the mean acceleration or velocity that it needs
-/// exceeds its limit, costs O(D) and does not count as tried; there are at most K + 2 knots and 170
-/// durations. Only the constructor allocates. Not thread-safe: one thread uses it.
+/// `restart`. A candidate that needs a mean acceleration or velocity above its limit cannot pass:
+/// it costs O(D) and does not count as tried. There are at most K + 2 knots and 170 durations. Only
+/// the constructor allocates. Not thread-safe: one thread uses it.
 class EntrySearch {
  public:
   static constexpr Time kLongest{3'000'000'000};
@@ -76,7 +76,8 @@ class EntrySearch {
   /// Restarts at knot `first` of the target.
   void restart(std::size_t first) noexcept;
 
-  /// The same, to recompute the entry from `from` to `end`, which was after the newest knot. O(D).
+  /// The same, to recompute an entry from `from` to `end`, where `end` was after the newest knot.
+  /// O(D).
   void restart(std::size_t first, const Instant& from, const Instant& end) noexcept;
 
   /// Tries candidates until one passes, none is left, or `tries` of them have been tried; counts
@@ -84,15 +85,16 @@ class EntrySearch {
   Outcome search(const SlidingWindow& target, const Instant& from, const EntryRules& rules,
                  int& tries) noexcept;
 
-  /// The same for a state at which the curve ends: tries its own time, then later times until one
-  /// passes. Call `restart` first.
+  /// The same with one end, the state `rest` at which the curve ends: tries the time of `rest`,
+  /// then later times until one passes. Call `restart` first.
   Outcome search_rest(const Instant& rest, const Instant& from, const EntryRules& rules,
                       int& tries) noexcept;
 
   /// Whether a target that starts at rest at its knot 0, which must be in the window, respects the
-  /// limits as far as it is known. In a dimension without an acceleration limit, the peak
-  /// acceleration of the first segment may be three times that of the segments from kStartFades on,
-  /// or, with fewer segments, of the first three waypoints; or the shown one if that is larger.
+  /// limits as far as it is known. If `rules.shown` is given, this also limits the peak
+  /// acceleration of the first segment in a dimension without an acceleration limit: to the shown
+  /// one, or to three times the peak of the segments from kStartFades on (with fewer segments,
+  /// three times the acceleration of the first three waypoints) if that is larger.
   [[nodiscard]] bool keeps_start(const SlidingWindow& target, const EntryRules& rules) noexcept;
 
   /// The end found by the last search.
@@ -129,7 +131,7 @@ class EntrySearch {
   DimensionKinds kinds_;
   std::size_t next_knot_ = 0;
   std::optional<Time> former_end_;  ///< end of the recomputed entry, if after the newest knot
-  double duration_ = 0;             ///< s, of the last candidate after the newest knot; 0: none yet
+  double duration_ = 0;             ///< s, of the last end tried after the newest knot; 0: none yet
   bool is_longest_ = false;
   std::optional<std::size_t> fallback_knot_;
   std::optional<std::size_t> last_beyond_;  ///< last segment of the target that exceeds a limit

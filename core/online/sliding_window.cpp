@@ -134,8 +134,9 @@ void SlidingWindow::start_with_waypoints() noexcept {
   }
 }
 
-/// Appends one of the knots that shape the start. Solves the same rows whether or not knots are
-/// frozen: frozen velocities are not a boundary condition, and rows depend on the waypoints only.
+/// Appends one of the first kKnotsThatShapeTheStart knots of a later run. Eliminates the same rows
+/// whether or not knots are frozen: a frozen velocity is not a boundary condition, and rows depend
+/// on the waypoints only.
 void SlidingWindow::append_to_start(const Waypoint& waypoint) noexcept {
   solver_->push(knots_, waypoint);
   start_with_waypoints();
@@ -185,8 +186,8 @@ void SlidingWindow::finish(const Condition& end) noexcept {
         from_start ? 0 : newest - (reach() - 1));
 }
 
-/// A later run of one knot ends at rest there, under any boundary condition: nothing else gives it
-/// a slope.
+/// Sets the velocity of the only knot of a later run to 0, under any end condition: its segment is
+/// a hold.
 void SlidingWindow::rest_at_only_knot() noexcept {
   std::ranges::fill(knots_.values(0, KnotRing::kVelocity), 0.0);
 }
@@ -237,7 +238,7 @@ void SlidingWindow::restore_run(std::size_t first, std::span<const Knot> knots) 
   first_ = first;
   knots_.restore(first, knots);
   if (first > 0 || knots.empty()) return;
-  // The rows are already eliminated: restores only the start condition.
+  // The rows are already eliminated: only the start condition is missing.
   if (!options_.interpolant.method->needs_velocity()) {
     write_run_start(knots_, run_start_);
     solver_->start_with(run_start_);

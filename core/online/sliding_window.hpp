@@ -19,8 +19,8 @@
 
 namespace splinecast::core {
 
-/// Largest settle lag. The effect of a new waypoint has faded below 2⁻⁵² after 52 knots on the
-/// worst mesh, so that a longer lag would change no bit.
+/// Largest settle lag. After 52 knots the effect of a new waypoint is below 2⁻⁵² on the worst mesh,
+/// so that a longer lag would change no bit.
 inline constexpr std::size_t kMaxSettle = 64;
 
 /// The default settle lag of a method: 8 for `c2`; the look-ahead for a local method, which is then
@@ -51,9 +51,9 @@ struct WindowOptions {
 /// - segment i is between knots i and i+1; segment n is the stop segment, until `finish`.
 ///
 /// A *run* is a sequence of knots with one elimination. The first run begins with the start
-/// condition; `begin_run` begins another one, whose first velocity comes from its waypoints and
-/// whose knots are numbered from 0. A live stream also *freezes* knots: segments that readers may
-/// have executed do not change, converged or not.
+/// condition. `begin_run` begins another one: its first velocity follows from its waypoints, and
+/// its knots are numbered from 0. A live stream also *freezes* knots: segments that readers may
+/// have executed do not change, whether or not they have converged.
 ///
 /// Only the constructor allocates. Not thread-safe: one thread uses it.
 class SlidingWindow {
@@ -100,9 +100,9 @@ class SlidingWindow {
   /// Whether a waypoint carries the velocity and acceleration that the method needs.
   [[nodiscard]] bool takes(const Waypoint& waypoint) const noexcept;
 
-  /// Whether the settle lag is long enough for λ at the knots that a waypoint at `time` would
-  /// settle: see smoothing_lag, with the mean of the intervals in the lag. Always true for methods
-  /// other than `smoothing`, and with `force_lag`. O(1).
+  /// Whether the settle lag is long enough for λ (see smoothing_lag) at the knots that a waypoint
+  /// at `time` would settle. Uses the mean interval over the lag. Always true for methods other
+  /// than `smoothing`, and with `force_lag`. O(1).
   [[nodiscard]] bool lag_suffices(Time time) const noexcept;
 
   /// Appends a waypoint: its forward rows and K backward rows for all dimensions at once, O(K·D)
@@ -115,7 +115,7 @@ class SlidingWindow {
   void begin_run() noexcept;
 
   /// Freezes every knot of this run up to the right end of the segment that contains t: no append
-  /// changes the segments between them. O(1) amortised.
+  /// changes the segments between these knots. O(1) amortised.
   void freeze(Time t) noexcept;
 
   /// Freezes the leading `count` knots of this run, or all if there are fewer, until `thaw_knots`.
@@ -163,9 +163,9 @@ class SlidingWindow {
   /// Number of the newest knots that another window needs to continue from this one.
   [[nodiscard]] std::size_t knots_to_restore() const noexcept { return reach() + kMaxReach + 3; }
 
-  /// Continues the first run of a window with the same options. `first` is the number of the oldest
-  /// knot given; `knots` are its consecutive knots up to the newest: n of them, at least min(first
-  /// + n, knots_to_restore()). The stream must not be finished.
+  /// Continues the first run of a window with the same options. `knots` are consecutive, from knot
+  /// number `first` to the newest: at least knots_to_restore() of them, or all knots of the run if
+  /// it has fewer. The stream must not be finished.
   void restore(std::size_t first, std::span<const Knot> knots) noexcept;
 
   /// The same for a later run.
@@ -180,8 +180,8 @@ class SlidingWindow {
   [[nodiscard]] std::size_t reach() const noexcept {
     return options_.settle > 0 ? options_.settle : 1;
   }
-  /// With an exact method, the slope at the start may depend on one knot more than the slopes after
-  /// it: knot 0 may change as long as its segment may.
+  /// Whether the append of knot `newest` may change knot 0. For a local method, the slope at the
+  /// start may depend on one knot more than the slopes after it.
   [[nodiscard]] bool is_start_open(std::size_t newest) const noexcept {
     return newest <= reach() + 1 && !options_.interpolant.method->converges();
   }

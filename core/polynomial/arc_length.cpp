@@ -17,9 +17,8 @@ constexpr std::array<double, 5> kNodes{0.14887433898163122, 0.4333953941292472, 
 constexpr std::array<double, 5> kWeights{0.2955242247147529, 0.2692667193099964, 0.219086362515982,
                                          0.14945134915058059, 0.06667134430868814};
 
-/// Largest number of halvings of a piece. Each halving increases the relative distance of the
-/// nearest complex zero of |v|², of which there are at most 2k, so that the work is linear in this
-/// depth, not exponential.
+/// Maximum depth of halving. Only pieces near a complex zero of |v|² need more halvings, and there
+/// are at most 2k such zeros, so that the work is linear in this depth, not exponential.
 constexpr int kMostHalvings = 24;
 
 /// Largest difference between an integral and the sum of its halves, relative to the length of the

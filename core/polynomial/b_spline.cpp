@@ -47,12 +47,11 @@ std::size_t longest_interval(const std::vector<Time>& knots, std::size_t first, 
   return longest;
 }
 
-/// The interval whose polynomial gives control point i. The blossom at knots i + 1 … i + degree is
-/// the same for all intervals between them, but the polynomial of a short interval would be
-/// extrapolated over longer neighbours, and its rounding grows with the degree-th power of the
-/// ratio of the lengths. The longest interval has the smallest extrapolation. If these knots
-/// coincide, any interval next to them gives the same point; at a jump of the position, it must be
-/// within the support.
+/// The interval whose polynomial gives control point i. All intervals between knots i + 1 … i +
+/// degree give the same blossom. The longest one gives the smallest rounding error: the polynomial
+/// of a short interval would be extrapolated over longer neighbours, and the error grows with the
+/// degree-th power of the ratio of the lengths. If these knots coincide, any interval next to them
+/// gives the same point; at a jump of the position, the interval must be within the support.
 std::size_t interval_for(const std::vector<Time>& knots, std::size_t i, std::size_t degree) {
   const std::size_t inner = longest_interval(knots, i + 1, i + degree);
   return inner < i + degree ? inner : longest_interval(knots, i, i + degree + 1);

@@ -5,8 +5,8 @@
 namespace splinecast {
 namespace {
 
-/// With the control points b_j, the degree n and the length h, Δ^k b_0 = c_k h^k / C(n, k) and b_j
-/// = Σ C(j, k) Δ^k b_0: repeated sums in one direction, repeated differences in the other.
+/// The control points b_j of degree n and length h follow from Δ^k b_0 = c_k h^k / C(n, k) and b_j
+/// = Σ C(j, k) Δ^k b_0: by repeated sums, and back by repeated differences.
 void scale_to_differences(std::span<double> c, std::size_t dimensions, double h) noexcept {
   const std::size_t degree = c.size() / dimensions - 1;
   double power_of_h = 1;

@@ -40,7 +40,7 @@ class Terms {
   static constexpr std::size_t kTerms = kOrder - kDerivative;
   using Powers = std::make_index_sequence<kTerms>;
 
-  // Not in loops: compilers unroll loops too late to keep the arrays in registers.
+  // Fold expressions, not loops: compilers unroll loops too late to keep the arrays in registers.
   template <std::size_t... kTerm>
   [[gnu::always_inline]] Terms(const double* coefficients, std::size_t dimensions,
                                std::index_sequence<kTerm...> /*terms*/) noexcept
@@ -57,11 +57,11 @@ class Terms {
   std::array<Lane, kTerms> values_;
 };
 
-/// As for_overlapping_lanes, but with one copy of the body, which is long here, for each kind of
-/// lane.
+/// Does the same as for_overlapping_lanes, but uses only one type of lane per call, and calls
+/// `body` at one place for each type. This keeps the code small: `body` is long and is inlined.
 template <typename Body>
-[[gnu::always_inline]] inline void for_most_lanes(std::size_t dimensions,
-                                                  const Body& body) noexcept {
+[[gnu::always_inline]] inline void for_widest_lanes(std::size_t dimensions,
+                                                    const Body& body) noexcept {
   const auto cover = [&](auto lane) __attribute__((always_inline)) {
     const std::size_t last = dimensions - kWidth<typename decltype(lane)::type>;
     for (std::size_t first = 0;;
@@ -75,7 +75,7 @@ template <typename Body>
   body(std::type_identity<double>{}, 0);
 }
 
-/// All derivatives of some dimensions, one time after the other.
+/// Evaluates all derivatives of some dimensions, one time after the other.
 template <typename Lane, int kOrder>
 [[gnu::always_inline]] inline void evaluate_all(const double* coefficients, std::size_t dimensions,
                                                 const Times& times) noexcept {
@@ -94,8 +94,8 @@ template <typename Lane, int kOrder>
   }
 }
 
-/// One derivative of some dimensions at all times, if it is in the set. Returns where the next one
-/// is written.
+/// Evaluates one derivative of some dimensions at all times, if it is in the set. Returns where to
+/// write the next one.
 template <typename Lane, int kOrder, int kDerivative>
 [[gnu::always_inline]] inline double* evaluate_one(const double* coefficients,
                                                    std::size_t dimensions, Derivatives which,
@@ -127,10 +127,10 @@ template <int kOrder>
     out = evaluate_one<Lane, kOrder, 2>(c, dimensions, which, times, out);
     (void)evaluate_one<Lane, kOrder, 3>(c, dimensions, which, times, out);
   };
-  for_most_lanes(dimensions, body);
+  for_widest_lanes(dimensions, body);
 }
 
-/// The same for orders that are rarely evaluated.
+/// The same for all other orders, which are rarely used.
 void evaluate_any_order(int order, std::span<const double> coefficients, std::size_t dimensions,
                         Derivatives which, const Times& times) noexcept {
   for (std::size_t i = 0; i < times.size; ++i) {

@@ -28,11 +28,11 @@ void require_knots(const BSpline& spline) {
                               std::to_string(falls->count()) + " ns");
 }
 
-/// The polynomial on the interval after knot j, from its derivatives at that knot. Uses De Boor's
-/// algorithm, for the r-th derivative on r-fold differences of the control points, divided by knot
-/// spans, which cover the intervals that a control point belongs to. (Bézier points on the interval
-/// would be exact too, but their differences are divided by the length of a possibly short
-/// interval.)
+/// The polynomial on the interval after knot j, from its derivatives at that knot. The r-th
+/// derivative is De Boor's algorithm on r-fold differences of the control points. Each difference
+/// is divided by a knot span that covers several intervals. (Bézier points of the interval would be
+/// exact too, but their differences are divided by the length of this interval, which may be
+/// short.)
 class LocalPolynomial {
  public:
   LocalPolynomial(const BSpline& spline, std::size_t j)
@@ -59,8 +59,8 @@ class LocalPolynomial {
  private:
   [[nodiscard]] std::size_t degree() const { return static_cast<std::size_t>(spline_.degree); }
 
-  /// Seconds between the first and the last knot of the span that points i − 1 and i share after
-  /// `steps` steps.
+  /// The denominator of step `steps` of De Boor's algorithm for points i − 1 and i: the length, in
+  /// seconds, of the knot span on which both depend.
   [[nodiscard]] double span(std::size_t i, std::size_t steps) const {
     return to_seconds(spline_.knots[j_ + 1 + i - steps] - spline_.knots[j_ - degree() + i]);
   }

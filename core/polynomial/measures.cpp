@@ -16,7 +16,7 @@ namespace {
 /// Tolerance of equality, relative to the largest terms.
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
 
-/// A polynomial in s = u/h, 0 ≤ s ≤ 1. The magnitudes of its coefficients are those of its terms.
+/// A polynomial in s = u/h, 0 ≤ s ≤ 1, so that the magnitude of a coefficient bounds its term.
 struct UnitPolynomial {
   std::array<double, kMaxPolynomialOrder> values{};
   std::size_t count = 0;
@@ -43,7 +43,7 @@ UnitPolynomial unit_polynomial(const PiecewisePolynomial& curve, std::size_t seg
   return result;
 }
 
-/// Σ |terms|: no value of the polynomial is larger.
+/// An upper bound of the magnitude of the polynomial on [0, 1]: Σ |c_k|.
 double size_of(const UnitPolynomial& p) noexcept {
   double size = 0;
   for (const double term : p.coefficients()) size += std::abs(term);

@@ -19,8 +19,9 @@ void add(Roots& roots, double s) noexcept {
   if (roots.count == 0 || s > roots.values[roots.count - 1]) roots.values[roots.count++] = s;
 }
 
-/// The root of a quadratic between two ends of different sign. The first of both roots comes from
-/// the sum without cancellation, the second from their product.
+/// The root of a quadratic between two ends of different sign. Computes both roots, the first from
+/// the sum without cancellation, the second from their product, and returns the one between the
+/// ends.
 double quadratic_root(std::span<const double> c, const End& low, const End& high) noexcept {
   const double discriminant = std::max(c[1] * c[1] - 4 * c[0] * c[2], 0.0);
   const double q = -(c[1] + std::copysign(std::sqrt(discriminant), c[1])) / 2;

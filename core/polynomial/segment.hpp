@@ -69,9 +69,9 @@ struct Interval {
 };
 
 /// Writes the segment of an interval. Without knot accelerations, it is the cubic of the knot
-/// velocities (math 2). With a knot acceleration at either end, it
-/// is the quintic with that acceleration; at an end without one, it has the acceleration of the
-/// cubic. Sets everything except `acceleration_step`.
+/// velocities (math 2). With a knot acceleration at either end, it is the quintic with that
+/// acceleration; at an end without one, it has the acceleration of the cubic. Sets everything
+/// except `acceleration_step`.
 void build_segment(const Interval& interval, Segment& out) noexcept;
 
 /// Writes the one-sided accelerations of an interval's segment at its knots: D values, which must

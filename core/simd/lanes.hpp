@@ -18,8 +18,9 @@ inline constexpr std::size_t kWidth = sizeof(Lane) / sizeof(double);
 /// Calls `body(lane, first)` so that each dimension is covered once, four at a time, then two, then
 /// one: `decltype(lane)::type` is FourLanes, TwoLanes or double, and the body handles as many
 /// dimensions as it holds, from `first` on. This avoids the setup of a loop over few values, and
-/// each dimension goes through the same operations in all cases. One body loads the same pieces
-/// that another one stored, so that a processor need not wait for the stores.
+/// each dimension goes through the same operations in all cases. All bodies of for_lanes divide an
+/// array in the same way, so that a load has the size of the store before it and the processor can
+/// forward the value.
 template <typename Body>
 [[gnu::always_inline]] inline void for_lanes(std::size_t dimensions, const Body& body) noexcept {
   std::size_t first = 0;
@@ -32,7 +33,7 @@ template <typename Body>
 }
 
 /// The same, but always four at a time if there are four or more: the last four overlap those
-/// before. For bodies that write nothing that any body reads.
+/// before. Only for bodies that do not read what a body writes.
 template <typename Body>
 [[gnu::always_inline]] inline void for_overlapping_lanes(std::size_t dimensions,
                                                          const Body& body) noexcept {
@@ -68,7 +69,7 @@ template <typename Lane>
   std::memcpy(to, &value, sizeof(Lane));
 }
 
-/// The magnitudes of the values of a lane, and their sum.
+/// The magnitudes of the values of a lane, and the sum of the values.
 template <typename Lane>
 [[gnu::always_inline]] inline Lane without_sign(Lane values) noexcept {
   if constexpr (std::is_same_v<Lane, double>) {

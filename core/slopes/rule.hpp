@@ -20,7 +20,7 @@ class Stencil {
  public:
   explicit Stencil(double time_scale) : time_scale_(time_scale) {}
 
-  /// Length in seconds and chord slope of interval k, −behind ≤ k < ahead of the rule.
+  /// Length in seconds and chord slope of interval k, for −`behind` ≤ k < `ahead` of the rule.
   [[nodiscard]] double h(int k) const noexcept { return h_[index(k)]; }
   [[nodiscard]] double m(int k) const noexcept { return m_[index(k)]; }
   /// Rounding error of the chord slope of interval k, to a factor of about 3: ε·|x|/h, with the
@@ -53,8 +53,8 @@ struct EndStencil {
   double h1, m1;
 };
 
-/// The difference between the slope at the end of the parabola through the three end knots and the
-/// chord slope there, relative to the change of the chord slope.
+/// The weight w with which the parabola through the three end knots has the slope m0 + w·(m0 − m1)
+/// at the end.
 [[nodiscard]] constexpr double parabola_weight(double h0, double h1) noexcept {
   return h0 / (h1 + h0);
 }
@@ -64,7 +64,8 @@ struct EndStencil {
   return s.m0 + parabola_weight(s.h0, s.h1) * (s.m0 - s.m1);
 }
 
-/// A local method. A rule is odd and time-symmetric, so that one end formula serves both ends.
+/// A local method. A rule is odd in the chord slopes and symmetric in time, so that one end formula
+/// serves both ends.
 struct SlopeRule {
   std::string_view name;
   std::uint64_t number;  ///< identifies the rule in shared memory; never reused
@@ -72,8 +73,8 @@ struct SlopeRule {
   int ahead;             ///< knots it uses after the knot, 1 … kMaxReach: its settle lag
   double (*slope)(const Stencil&) noexcept;
 
-  /// The slope at an end knot. If null: zero acceleration there if `natural_end`, else `slope` with
-  /// the chord slopes extrapolated linearly beyond the end.
+  /// The slope at an end knot. If null, `natural_end` selects zero acceleration at the end;
+  /// otherwise `slope` is used, with the chord slopes extrapolated linearly beyond the end.
   double (*end_slope)(const EndStencil&) noexcept;
   bool natural_end;
   Laws laws;

@@ -8,17 +8,17 @@
 namespace splinecast::core {
 namespace {
 
-/// math 8: the slope of the parabola through the knot and
-/// its neighbours.
+/// The slope of the parabola through the knot and its neighbours (math 8).
 double bessel(const Stencil& s) noexcept {
   return (s.h(0) * s.m(-1) + s.h(-1) * s.m(0)) / (s.h(-1) + s.h(0));
 }
 
 double bessel_end(const EndStencil& s) noexcept { return parabola_end_slope(s); }
 
-/// The share of weights with this sum in the result, if rounding may have changed them by
-/// `rounding`: 0 if they are nothing but rounding, 1 to the last bit if they are 3,000 times as
-/// large. Smooth in between, because rounding would cross any threshold somewhere.
+/// The share of the weighted mean in the slope, from 0 to 1. `sum` is the sum of the weights,
+/// `rounding` its rounding error. The share is 0 if the sum is only rounding, and exactly 1 from
+/// about 3,000 times the rounding on. It is smooth in between: at a threshold, rounding would
+/// decide.
 double share_of_weights(double sum, double rounding) noexcept {
   constexpr double kLarge = 32;
   const double z = sum / (kLarge * rounding);
@@ -29,7 +29,8 @@ double share_of_weights(double sum, double rounding) noexcept {
 }
 
 /// The mean of the neighbouring chord slopes, each weighted by the variation of the slopes on the
-/// other side; `without_weights` if the weights are only rounding errors of the chord slopes.
+/// other side. Blends into `without_weights` if the weights are only rounding errors of the chord
+/// slopes.
 double weighted(const Stencil& s, double before, double after, double without_weights) noexcept {
   const double sum = after + before;
   double rounding = 0;
@@ -40,7 +41,7 @@ double weighted(const Stencil& s, double before, double after, double without_we
   return share * mean + (1 - share) * without_weights;
 }
 
-/// math 9.
+/// Akima's rule (math 9).
 double akima(const Stencil& s) noexcept {
   const double before = std::abs(s.m(-1) - s.m(-2));
   const double after = std::abs(s.m(1) - s.m(0));
@@ -75,8 +76,8 @@ double pchip_end(const EndStencil& s) noexcept {
   return slope;
 }
 
-/// math 12: normal to the bisector of the angle
-/// between the two chords in the plane of time and position.
+/// Normal to the bisector of the angle between the two chords in the plane of time and position
+/// (math 12).
 double rounded(const Stencil& s) noexcept {
   const auto length_per_h = [&s](int k) {
     return std::sqrt(1 / (s.time_scale() * s.time_scale()) + s.m(k) * s.m(k));

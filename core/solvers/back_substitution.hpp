@@ -13,7 +13,7 @@ namespace splinecast::core {
 template <typename Lane>
 [[nodiscard, gnu::always_inline]] inline Lane back_substituted(double gamma, Lane g,
                                                                Lane v_after) noexcept {
-  return gamma == 0 ? g : g - gamma * v_after;  // else the sign of a zero would depend on v_after
+  return gamma == 0 ? g : g - gamma * v_after;  // otherwise v_after could change the sign of a zero
 }
 
 /// The rows of a ring from the one before the newest down to a last one: at most two contiguous

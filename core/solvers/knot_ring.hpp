@@ -17,12 +17,6 @@
 
 namespace splinecast::core {
 
-/// An interval between waypoints: length in seconds and chord slopes; length 0: no interval.
-struct ChordInterval {
-  double h = 0;
-  std::span<const double> chord{};
-};
-
 /// The scalars of a knot's eliminated row: γ, and the smoothing spline's factors.
 struct Prefix {
   double gamma = 0;
@@ -128,11 +122,11 @@ class KnotRing {
                              : static_cast<std::uint32_t>(newest_solved_ - i);
   }
 
-  /// Replaces all knots by those of another ring: `first` is the number of the oldest knot given,
-  /// and `knots` are consecutive up to the newest one.
+  /// Replaces all knots by those of another ring: `knots` are consecutive, from knot number `first`
+  /// to the newest.
   void restore(std::size_t first, std::span<const Knot> knots) noexcept;
 
-  /// Removes all knots, for a run that begins with or without a full stop.
+  /// Removes all knots, before a new run, which begins with a full stop if `halts_at_start`.
   void clear(bool halts_at_start) noexcept {
     size_ = 0;
     first_solved_ = 0;
@@ -287,8 +281,7 @@ class KnotRing {
 };
 
 /// Writes the acceleration step a⁺ − a⁻ at the left knot of interval i, which is `interval`. At
-/// knot 0 it is a⁺ if a hold precedes the knot (`held_before`), else 0, because nothing precedes
-/// it.
+/// knot 0 the step is a⁺ if a hold precedes the knot (`held_before`), else 0.
 void write_acceleration_step(const KnotRing& knots, std::size_t i, const Interval& interval,
                              bool held_before, std::span<double> step) noexcept;
 

@@ -11,8 +11,8 @@
 
 namespace splinecast::core {
 
-/// Computes the knot velocities of one method in the rows of a KnotRing: for the batch solver over
-/// all knots at once, for the sliding window over those that an append still changes.
+/// Computes the knot velocities of one method in the rows of a KnotRing. The batch solver uses it
+/// over all knots at once, the sliding window over the knots that an append still changes.
 ///
 /// Holds parameters only: the ring holds the state. No function throws; the functions for online
 /// use do not allocate.

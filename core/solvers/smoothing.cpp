@@ -11,8 +11,8 @@ namespace splinecast::core {
 namespace {
 
 /// `smoothing`. Its condition at the newest knot is natural. A boundary condition does not move the
-/// knots: it replaces the velocity at its end by the one that it gives for the neighbour's
-/// velocity.
+/// knots: it only replaces the velocity at its end, which is solved from the velocity of the
+/// neighbouring knot.
 class SmoothingSolver final : public KnotSolver {
  public:
   SmoothingSolver(const Interpolant& how, const Condition& start, std::size_t dimensions, Use use)
@@ -52,7 +52,7 @@ class SmoothingSolver final : public KnotSolver {
 
  private:
   void eliminate(KnotRing& knots, std::size_t i) const noexcept {
-    const std::size_t before2 = i > 1 ? i - 2 : 0;  // row 1 has none: uses the empty row 0
+    const std::size_t before2 = i > 1 ? i - 2 : 0;  // row 1 has no row −1: uses the empty row 0
     const SmoothingIntervals at = smoothing_intervals(knots, i);
     const SmoothingRow row = factor_smoothing(lambda_, at, roughness_row<double>(at),
                                               knots.smoothing(before2), knots.smoothing(i - 1));
@@ -67,7 +67,7 @@ class SmoothingSolver final : public KnotSolver {
     }
   }
 
-  /// Accelerations of knots `first` to the newest; they are 0 at both ends.
+  /// Writes the accelerations of knots `first` to the newest; they are 0 at both ends.
   static void write_accelerations(KnotRing& knots, std::size_t first) noexcept {
     const std::size_t n = knots.newest();
     const auto a = [&](std::size_t i) { return knots.values(i, KnotRing::kAcceleration); };
@@ -96,7 +96,7 @@ class SmoothingSolver final : public KnotSolver {
     }
   }
 
-  /// Chord slopes of intervals `first` to the last.
+  /// Writes the chord slopes of the smoothed curve from interval `first` to the last one.
   static void write_chords(KnotRing& knots, std::size_t first) noexcept {
     for (std::size_t i = first; i < knots.newest(); ++i) knots.measure_smoothed(i);
   }
@@ -110,7 +110,7 @@ class SmoothingSolver final : public KnotSolver {
     }
   }
 
-  /// Accelerations, residuals and chord slopes of all knots.
+  /// Writes the accelerations, residuals and chord slopes of all knots.
   void solve_at_once(KnotRing& knots) const {
     const std::size_t n = knots.newest();
     const SmoothingMesh mesh(knots);
@@ -127,7 +127,7 @@ class SmoothingSolver final : public KnotSolver {
     }
   }
 
-  /// Velocities of knots `first` to the newest, from chords and accelerations (math 3).
+  /// Writes the velocities of knots `first` to the newest, from chords and accelerations (math 3).
   static void write_velocities(KnotRing& knots, std::size_t first) noexcept {
     const std::size_t n = knots.newest();
     for (std::size_t i = first; i <= n; ++i) {

@@ -23,8 +23,8 @@ void eliminate(KnotRing& knots, std::size_t i) noexcept {
 
 /// Does `push` and `solve` in one pass, for the fourth knot or a later one: writes the waypoint of
 /// the newest knot, which was pushed without it, eliminates the row before it and solves the knots
-/// from `last` on. Each dimension stays in its register. Row 0 is left out: its γ depends on the
-/// start condition and may be 0.
+/// from `last` on. The values of a dimension stay in registers. Does not solve row 0: its γ depends
+/// on the start condition and may be 0.
 SPLINECAST_VECTOR_CLONES
 void append_behind(KnotRing& knots, std::span<const double> waypoint, Tail tail,
                    std::size_t last) noexcept {
@@ -65,7 +65,7 @@ void append_behind(KnotRing& knots, std::span<const double> waypoint, Tail tail,
   for_padded_lanes(knots.stride(), body);
 }
 
-/// `c2`.
+/// The solver of `c2`.
 class TridiagonalSolver final : public KnotSolver {
  public:
   TridiagonalSolver(const Condition& start, std::size_t dimensions)

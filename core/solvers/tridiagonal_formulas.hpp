@@ -28,8 +28,8 @@ struct InteriorRow {
 };
 
 /// The part of the newest row that all dimensions share while a stream continues: lengths of the
-/// last interval and of the one before it (any value if there is none, but Tail::bessel needs one),
-/// and γ of the row before.
+/// last interval and of the one before it, and γ of the row before. Without an interval before, any
+/// length is valid, except for Tail::bessel, which needs this interval.
 class TailRow {
  public:
   TailRow(Tail tail, double h, double h_next, double gamma_before) noexcept

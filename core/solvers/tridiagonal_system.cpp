@@ -39,8 +39,8 @@ EndRow not_a_knot_row(const EndIntervals& at) noexcept {
           .value = at.chord_next};
 }
 
-/// Natural is the acceleration row with a = 0, clamped and halt the velocity row with v = 0
-/// (math 6a, 6b).
+/// The row of an end condition (math 6a, 6b). Natural and `own` are the row of acceleration 0,
+/// clamped and halt the row of velocity 0.
 EndRow end_row(const Condition& condition, const EndIntervals& at, Side side) noexcept {
   const double half_h = side == Side::start ? -at.h / 2 : at.h / 2;
   switch (condition.kind) {

@@ -4,8 +4,7 @@
 
 #include "splinecast/boundary_condition.hpp"
 
-/// The rows of the C² cubic spline in velocity form, eliminated from the left (math 4,
-/// 6, 16).
+/// The rows of the C² cubic spline in velocity form, eliminated from the left (math 4, 6, 16).
 ///
 /// After elimination a row reads v_i = g_i − γ_i v_{i+1}. γ is one scalar per knot, shared by all
 /// dimensions; g has one value per dimension. A row needs the knots up to i+1 only, so it is final

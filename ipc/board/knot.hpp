@@ -15,11 +15,11 @@ namespace splinecast::ipc {
 
 /// The properties of a knot other than its values.
 struct KnotNote {
-  core::SegmentForm form{};     ///< of the segment that begins here
+  core::SegmentForm form{};     ///< of its segment, which begins here
   bool is_waypoint = false;     ///< whether the knot is a waypoint's
-  bool arrives = false;         ///< has the acceleration of the segment that ends here
-  bool starts = false;          ///< has the acceleration of the segment that begins here
-  std::uint32_t newer_knots{};  ///< number of newer knots when it was solved: 0 … 127
+  bool arrives = false;         ///< has the acceleration at which the segment before it ends
+  bool starts = false;          ///< has the acceleration at which its own segment begins
+  std::uint32_t newer_knots{};  ///< number of newer knots when it was last solved: 0 … 127
 };
 
 /// A knot as a revision writes it. Spans hold one value per dimension.
@@ -28,12 +28,12 @@ struct KnotRecord {
   KnotNote note;
   Time time{};                       ///< of a new knot
   Time begins{};                     ///< when the next segment begins, if none begins here
-  std::span<const double> position;  ///< of a new knot: its waypoint's, else the curve's
+  std::span<const double> position;  ///< of a new knot: its waypoint; without one, of the curve
   std::span<const double> velocity;
-  std::span<const double> acceleration{};  ///< iff the note says that there is one
+  std::span<const double> acceleration{};  ///< iff note.arrives or note.starts
   std::span<const double> residual{};      ///< iff the board smooths
-  Word item = 0;                           ///< as the layout has it beside the acceleration
-  const core::Prefix* prefix = nullptr;    ///< with `g`: the knot's row, if it has changed
+  Word item = 0;                           ///< the field `item` of kBesideRows
+  const core::Prefix* prefix = nullptr;    ///< with `g`: the knot's row; null if unchanged
   std::span<const double> g{};
 };
 
@@ -75,7 +75,7 @@ class KnotCopy {
   Word number = 0;
   Time time{};
   KnotNote note;
-  Word item = 0;  ///< as the layout has it beside the acceleration
+  Word item = 0;  ///< the field `item` of kBesideRows
 
  private:
   friend class KnotBoardReader;

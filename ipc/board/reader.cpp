@@ -7,8 +7,8 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Whether a solver can write a knot with this time: of a waypoint, or, after the last one, at the
-/// end of a stop or of a return from there.
+/// Whether a solver can write a knot with this time: the time of a waypoint or, after the last
+/// waypoint, the end of a stop segment or of an entry that returns from it.
 bool is_knot_time(Time time) noexcept {
   return time >= -kLatestTime && time <= kLatestTime + 2 * kLongestStop;
 }

@@ -26,10 +26,11 @@ struct Look {
   Word revision = 0;
 };
 
-/// A reader's side of a knot board; writer.hpp explains the orderings. No function blocks,
-/// allocates or stores. Every copy is made under a revision `r` that the caller has loaded. It
+/// The reading side of a knot board; writer.hpp explains the orderings. No function blocks,
+/// allocates or stores. Every copy is made under a revision `r` that the caller has loaded. A copy
 /// fails if the writer has advanced too far meanwhile, or if the data is not what a solver writes.
-/// For any bytes, each call takes a bounded number of steps within the region.
+/// For any content of the region, each call takes a bounded number of steps and stays within the
+/// region.
 class KnotBoardReader {
  public:
   /// `region` holds a board of this layout and outlives the reader.
@@ -64,19 +65,20 @@ class KnotBoardReader {
   /// Histogram of the solver's steps: element i counts those of 2ⁱ to 2ⁱ⁺¹ ns.
   [[nodiscard]] std::array<Word, kStepBuckets> step_times() const noexcept;
 
-  /// Prefetches, all at once, the cache lines that a reader will load to get segment `number` of a
-  /// revision that it has not seen: each may have to come from the writer's core, and the loads
-  /// would wait for them one after the other. Loads nothing.
+  /// Prefetches the cache lines that a reader will load for segment `number` under revision r,
+  /// which it has not seen yet. Each line may have to come from the writer's core; without the
+  /// prefetch, the loads would wait for one line after the other. Loads nothing.
   void prefetch(Word r, Word number) const noexcept;
 
-  /// The same for a segment anywhere: both cells and both nodes of its knots, because the tags,
-  /// which select the valid ones, would have to arrive first.
+  /// Prefetches the cache lines of a segment anywhere on the board: both cells and both nodes of
+  /// its knots, because the tags, which select the valid ones, have not been loaded yet. Loads
+  /// nothing.
   void prefetch_segment(Word number) const noexcept;
 
-  /// Copies the values of the summary that lookups need, under a look's revision: revision, first,
-  /// newest, stop, finished, settled_until; and the earliest changed_from of the revisions after
-  /// `seen` up to that one, min() if some of these are no longer kept. The other members do not
-  /// change; on failure none does.
+  /// Copies the values of the summary that lookups need, under the revision of `look`: revision,
+  /// first, newest, stop, finished, settled_until; and changed_from, the earliest of the revisions
+  /// after `seen` up to that one, min() if some of these are no longer kept. The other members do
+  /// not change; on failure none changes.
   [[nodiscard]] bool copy_bounds(const Look& look, Word seen, Summary& out) const noexcept;
 
   /// Copies the whole summary. On failure `out` does not change.
@@ -97,7 +99,8 @@ class KnotBoardReader {
   }
 
   /// Copies waypoint `i` of a run from the slots of passed-over waypoints. The slot may hold
-  /// another waypoint, as its item says. For the writer only, which has no concurrent writer.
+  /// another waypoint: compare the copy's item. Only the writer calls it, so that no other process
+  /// writes concurrently.
   [[nodiscard]] bool copy_passed(Word i, Word r, KnotCopy& out) const noexcept;
 
   /// is_current() for a copy that may be of another knot.
@@ -105,23 +108,23 @@ class KnotBoardReader {
     return copy.number == number && is_current(copy, r);
   }
 
-  /// Copies a knot's time and the form of the segment that begins there, under r.
+  /// Copies a knot's time, and the form of the segment that begins there, under r. On failure both
+  /// are not valid.
   [[nodiscard]] bool copy_time(Word number, Word r, Time& time,
                                core::SegmentForm& form) const noexcept;
 
-  /// The time at which the segment of knot `number` begins, from the packed times: a hint, which
-  /// must be confirmed.
+  /// The time at which the segment of knot `number` begins, from the packed times. This is a hint:
+  /// confirm it by the knot.
   [[nodiscard]] Time time_hint(Word number) const noexcept {
     return to_time(load(times_[number & (layout_.capacity - 1)], std::memory_order_relaxed));
   }
 
-  /// Refusal number `index`, counted from 0 over the stream's life. Only the last kRefusalsKept
-  /// exist.
+  /// Refusal number `index`, counted from 0 over the stream's life. The board has only the last
+  /// kRefusalsKept: for an older index, the result is a later refusal.
   [[nodiscard]] RefusedItem refusal(Word index) const noexcept;
 
-  /// Copies the refusals that `summary` counts, from number `from` on, oldest first. Returns how
-  /// many still exist, at most out.size(): these are the last ones; those before them have been
-  /// overwritten.
+  /// Copies refusals that `summary` counts, from number `from` on, oldest first: the newest ones
+  /// that fit into `out` and have not been overwritten. Returns how many.
   [[nodiscard]] std::size_t copy_refusals(const Summary& summary, Word from,
                                           std::span<RefusedItem> out) const noexcept;
 
@@ -133,8 +136,8 @@ class KnotBoardReader {
   [[nodiscard]] std::optional<LimitExcess> excess_of(const Summary& summary,
                                                      Word item) const noexcept;
 
-  /// Copies the right side of the row of a copied knot into `g`, and returns the row's scalars. For
-  /// the writer only, which has no concurrent writer.
+  /// Copies the right side of the row of a copied knot into `g`, and returns the row's scalars.
+  /// Only the writer calls it, so that no other process writes concurrently.
   [[nodiscard]] core::Prefix copy_row(const KnotCopy& knot, std::span<double> g) const noexcept;
 
  private:

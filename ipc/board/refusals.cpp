@@ -42,11 +42,11 @@ std::size_t KnotBoardReader::copy_refusals(const Summary& summary, Word from,
                                            std::span<RefusedItem> out) const noexcept {
   const Word wanted = summary.refused - std::min(from, summary.refused);
   const auto most = std::min<Word>({wanted, kRefusalsKept, out.size()});
-  Word next = summary.consumed;  // the item before which this one must come
+  Word next = summary.consumed;  // the refusal's item must be before this one
   std::size_t count = 0;
   for (; count < most; ++count) {
     const RefusedItem item = refusal(summary.refused - 1 - count);
-    if (item.item >= next) break;  // overwritten, and so are all before it
+    if (item.item >= next) break;  // overwritten, and so are all older ones
     next = item.item;
     out[count] = item;
   }

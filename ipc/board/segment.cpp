@@ -9,8 +9,8 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Largest sum of magnitudes of a segment's coefficients: up to it no polynomial of a solver
-/// exceeds the range of a double. Knots that KnotBoardWriter accepts stay below it.
+/// Largest sum of magnitudes of a segment's coefficients: up to this sum, no polynomial of a solver
+/// exceeds the range of a double. The sum is smaller for all knots that KnotBoardWriter accepts.
 constexpr double kLargestSum = 1e200;
 
 /// Whether the note of a knot has the acceleration that a form needs there.
@@ -33,8 +33,8 @@ BoardSegment::BoardSegment(std::size_t dimensions, bool smooths)
 inline bool BoardSegment::fetch(const KnotBoardReader& board, Word number, Word r,
                                 const BoardSegment* near, KnotCopy& out) noexcept {
   if (near != nullptr) {
-    // Usually the left knot is the right one of the segment before, or the right knot that of the
-    // same segment.
+    // The right knot of `near` first: usually it is the left knot of the next segment, or the right
+    // knot of the same segment.
     for (const KnotCopy* const knot : {&near->right_, &near->left_}) {
       if (!board.is_current(*knot, number, r)) continue;
       out.assign(*knot);
@@ -131,7 +131,8 @@ bool BoardSegment::is_last(const Summary& summary) const noexcept {
   return right_.number == summary.newest && right_.note.form == core::SegmentForm::none;
 }
 
-/// Whether it would end in the same way with another copy of its right knot.
+/// Whether this segment would end in the same way with `knot` as its right knot: the same number,
+/// time and values.
 bool BoardSegment::arrives_alike(const KnotCopy& knot) const noexcept {
   const bool arrives = core::arrives_with_acceleration(left_.note.form);
   return knot.is_there() && knot.number == right_.number && knot.time == right_.time &&
@@ -142,7 +143,8 @@ bool BoardSegment::arrives_alike(const KnotCopy& knot) const noexcept {
 }
 
 Word BoardSegment::changed_by(const BoardSegment* known) const noexcept {
-  // If only the end of a stop or hold changes, the left knot is written again.
+  // A stop or a hold has no other input than its left knot and its end. If only its end changes,
+  // the solver writes the left knot again.
   const core::SegmentForm form = left_.note.form;
   const bool has_one = form == core::SegmentForm::stop || form == core::SegmentForm::hold;
   const Word left = revision_of(left_.tag);

@@ -12,12 +12,12 @@
 
 namespace splinecast::ipc {
 
-/// Further inputs of a segment, to solve it again.
+/// Further inputs of a segment, with which it can be solved again.
 struct SegmentOrigin {
   std::uint32_t right_newer_knots = 0;  ///< newer knots when its right knot was last solved
-  std::optional<Word> item{};           ///< of an entry: the run's first waypoint
+  std::optional<Word> item{};           ///< of an entry: item of the run's first waypoint
   bool ends_at_waypoint = false;        ///< whether its right knot is a waypoint's
-  Word known = 0;  ///< of an entry beyond the newest waypoint: waypoints that the run had
+  Word known = 0;  ///< of an entry beyond the newest waypoint: waypoints that the run had then
 };
 
 /// A copy of a segment of a published curve.
@@ -53,18 +53,18 @@ class BoardSegment {
 
   BoardSegment(std::size_t dimensions, bool smooths);
 
-  /// Makes this the segment that begins at knot `number`, between summary.first and summary.newest,
-  /// under summary.revision. Takes the knots that `near`, another segment, has copied and that are
-  /// still current. Unless it returns `whole`, this holds no segment afterwards. O(D).
+  /// Builds the segment that begins at knot `number`, summary.first to summary.newest, under
+  /// summary.revision. Uses the copies of knots in `near`, another segment, if they are still
+  /// current. Unless the result is `whole`, this object has no segment afterwards. O(D).
   [[nodiscard]] Taken take(const KnotBoardReader& board, const Summary& summary, Word number,
                            const BoardSegment* near = nullptr) noexcept;
 
-  /// Makes this the last segment under summary.revision, of which there must be one. Returns
-  /// whether it is whole.
+  /// Builds the last segment under summary.revision; the board must have one. Returns whether the
+  /// result of take() is `whole`.
   [[nodiscard]] bool take_last(const KnotBoardReader& board, const Summary& summary) noexcept;
 
-  /// Whether it is also what the board holds under summary.revision, which must not be older: K1,
-  /// K2.
+  /// Whether the board holds the same segment under summary.revision, which must not be older than
+  /// that of this copy: K1, K2.
   [[nodiscard]] bool is_current(const KnotBoardReader& board,
                                 const Summary& summary) const noexcept;
 
@@ -76,22 +76,24 @@ class BoardSegment {
   [[nodiscard]] Time natural_right() const noexcept { return segment_.right; }
   [[nodiscard]] int order() const noexcept { return segment_.order; }
   [[nodiscard]] SegmentKind kind() const noexcept { return segment_.kind; }
+  /// [power][dimension]; only the first order() powers are valid.
   [[nodiscard]] std::span<const double> coefficients() const noexcept {
     return segment_.coefficients;
   }
   [[nodiscard]] const KnotCopy& left_knot() const noexcept { return left_; }
 
-  /// Whether no segment follows it. It must be current under `summary`.
+  /// Whether this is the last segment. is_current() must hold for the same `summary`.
   [[nodiscard]] bool is_last(const Summary& summary) const noexcept;
 
-  /// The revision that last changed it. `known`, another copy or null, is of a revision in between:
-  /// if it has a right knot with the same values, the knot was written again without a change.
+  /// The revision that last changed this segment. `known` is another copy, of an earlier revision,
+  /// or null. If it has a knot with the values of this segment's right knot, then that knot was
+  /// written again without a change: the revision that wrote it does not count.
   [[nodiscard]] Word changed_by(const BoardSegment* known = nullptr) const noexcept;
 
-  /// Writes the accelerations with which it starts and ends, D values each.
+  /// Writes the accelerations at the start and at the end of the segment, D values each.
   void write_accelerations(std::span<double> start, std::span<double> end) const noexcept;
 
-  /// Copies it, except the acceleration step. Allocates if `out` must grow.
+  /// Copies the segment, except the acceleration step. Allocates if `out` must grow.
   void copy_to(SegmentCopy& out) const;
 
  private:

@@ -31,8 +31,8 @@ Time KnotBoardReader::earliest_change(Word seen, Word r) const noexcept {
     const Word& word = control_[kChanges + (r - back) % kChangesKept];
     earliest = std::min(earliest, to_time(load(word, std::memory_order_acquire)));
   }
-  // C3. One word fewer than the ring has counts, because a writer that died may have stored the
-  // next one. If both tags have been retired since, it is unknown how far writers have advanced.
+  // C3. At most N − 1 of the N words are valid, because a writer that died may have stored the next
+  // one. If both tags are retired, it is unknown how far writers have advanced.
   const Tags tags = summary_cells().tags(std::memory_order_acquire);
   bool stands = false;
   for (const Word tag : tags.of) {

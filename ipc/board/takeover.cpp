@@ -22,18 +22,18 @@ KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout&
           .cell_words = layout.cell / sizeof(Word),
           .states = states_.data(),
           .written = written_.data()} {
-  // Touches the memory, so that no step causes a page fault, for any number of knots.
+  // Touches the memory now, so that no later step causes a page fault, for any number of knots.
   held_times_.resize(layout.capacity);
   held_times_.clear();
   retire_uncommitted(summary_cells(), revision_);
   for (std::size_t i = 0; i < states_.size(); ++i) retire_uncommitted(cells_at(i), revision_);
   read_state();
   restore_times();
-  // A new board. Times may be negative: 0 would be a promise.
+  // A new board: no time has settled. Times may be negative, so that 0 would be a promise.
   if (revision_ == 0 && settled_ == 0) store_settled(-kLatestTime);
 }
 
-/// Reads the state of the board.
+/// Loads both cells of the summary, and the state of each slot.
 void KnotBoardWriter::read_state() noexcept {
   for (std::size_t c = 0; c < 2; ++c) {
     for (std::size_t i = 0; i < kSummaryWords; ++i) {
@@ -75,7 +75,7 @@ void KnotBoardWriter::discard() noexcept {
     retire_uncommitted(cells_at(slot.index), revision_);
     states_[slot.index] &= ~kWrittenBit;
   }
-  // The oldest last, because a time may have been stored twice.
+  // In reverse order: if a time was stored twice, its first record has the committed value.
   for (std::size_t i = held_times_.size(); i-- > 0;) {
     store(times_[held_times_[i].index], held_times_[i].time, std::memory_order_relaxed);
   }

@@ -19,9 +19,10 @@ KnotBoardWriter::WrittenSlot& KnotBoardWriter::written_slot(const Slots& slots,
   return slots.written[i];
 }
 
-/// W1: claims the spare cell of a slot. A node or row is never stored to while a cell with a valid
-/// tag names it: the committed cell names the other one, and this one is the spare's. `changed`:
-/// whether node and row differ from the committed cell's.
+/// W1: claims the spare cell of a slot by storing its tag. No node or row is overwritten while a
+/// cell with a valid tag names it: the committed cell names the other one, and the old tag of the
+/// spare cell is overwritten here. `changed` has the bit of the node, and of the row, if the
+/// revision writes a new one.
 inline KnotBoardWriter::Claimed KnotBoardWriter::claim(Slots& slots, std::size_t index, Word tag,
                                                        SlotState changed) noexcept {
   const SlotState state = slots.states[index];
@@ -121,8 +122,8 @@ inline void KnotBoardWriter::write_slot(std::size_t index, const KnotRecord& kno
   }
   written_sum_ += sum;
   if (!has_row) return;
-  // Only writers read it; the owner's lock, which one takes over from the other, orders their
-  // accesses.
+  // Only writers read the row. The owner's lock, which passes from one writer to the next, orders
+  // their accesses.
   Word* const row =
       claimed.slot + (layout_.rows + row_of(claimed.next) * layout_.row) / sizeof(Word);
   put(row[kRowGamma], to_word(knot.prefix->gamma));

@@ -27,31 +27,32 @@
 ///
 /// Segment n begins at knot n. It is made from knots n and n + 1 and ends where the next segment
 /// begins: at knot n + 1 or, if none begins there, at knot n + 2. So a segment that was cut keeps
-/// both its knots, and its bits.
+/// both its knots, and the bits of its polynomial.
 ///
 /// Orderings of the words outside the slots; those of the slots, of `settled until` and of the ring
 /// of changes are publication.hpp's:
 ///
-/// - `tail` and `sleeping`: S3, P3 and the sleep of ring/writer.hpp. `tail` is stored after the
-///   commit: if a solver dies between the two, its items are consumed, and the next solver stores
-///   `tail` again.
+/// - `consumed` and `sleeping`: S3, P3 and the sleep of ring/writer.hpp. `consumed` is stored after
+///   the commit: if a solver dies between the two, its items are consumed, and the next solver
+///   stores `consumed` again.
 /// - `late` and `checked`: stored after the commit, when it is known whether the commit was too
 ///   late: first `late`, if it was, then `checked`. If a writer dies before `checked`, its
 ///   successor decides about that revision. Others load them relaxed: each is independent.
-/// - Packed times: relaxed. They are a hint; the knot that they lead to decides.
+/// - Packed times: relaxed. They are a hint, which a reader confirms by the knot.
 /// - Step times: relaxed. Each is independent.
 /// - Refusals: one word each, which is never torn, stored before W3 of the summary that counts it
-///   and loaded after R1. A later refusal, committed or not, overwrites the oldest one first; its
-///   item is later. So a word is the refusal of its index iff its item is before that of the next
-///   index; the last one's item must be before the first item not consumed under that summary.
-/// - Excesses: four words each. W3 of the summary that counts it and R1 order a committed one; that
-///   of a later revision may overwrite the oldest. The writer stores the first word as 0, then the
-///   other words, then the first word's value, each with release. A reader loads the first word,
-///   the others (acquire), and the first word again (relaxed). If it is the same and not 0, the
-///   reader has copied one whole record: no item appears twice.
+///   and loaded after R1. A later refusal, committed or not, overwrites the oldest one first and
+///   has a greater item number. So a word is the refusal of its index iff its item number is less
+///   than that of the next index; for the last index, less than the number of items consumed under
+///   that summary.
+/// - Excesses: four words each. W3 of the summary that counts it and R1 order a committed one; an
+///   excess of a later revision may overwrite the oldest one. The writer stores the first word as
+///   0, then the other words, then the first word's value, each with release. A reader loads the
+///   first word, the others (acquire), and the first word again (relaxed). If it is the same and
+///   not 0, the reader has copied one whole record, because no item has two records.
 /// - `retired`: stored with release and loaded with acquire; nothing but the word depends on it.
-/// - The writer's loads of its own board are relaxed: it made these stores itself, or its
-///   predecessor did, whose lock the kernel released at its death.
+/// - The writer's loads of its own board are relaxed: the stores are its own, or those of its
+///   predecessor, whose lock the kernel released when it died.
 namespace splinecast::ipc {
 
 /// The solver's side. One thread of one process uses it; no function but the constructor allocates,
@@ -76,10 +77,11 @@ class KnotBoardWriter {
   /// is new.
   void prefetch(Word first, Word newest) const noexcept;
 
-  /// Writes a knot for the next revision: at most once each. O(D).
+  /// Writes a knot for the next revision: each knot at most once per revision. O(D).
   void write(Word number, const KnotRecord& knot) noexcept;
 
-  /// Writes waypoint `i` of a run, which an entry passes over, for a solver that takes over. O(D).
+  /// Writes waypoint `i` of a run to the slots of passed-over waypoints, for a solver that takes
+  /// over. O(D).
   void write_passed(Word i, const KnotRecord& knot) noexcept;
 
   /// Writes consecutive committed knots again, from `first` on, of which only the velocities have
@@ -90,7 +92,8 @@ class KnotBoardWriter {
                         const core::KnotVelocities& velocities) noexcept;
 
   /// Writes a committed knot again with another form and, if that is `none`, with the time at which
-  /// the next segment begins. Nothing else changes; readers see that its segment has. O(D).
+  /// the next segment begins. Nothing else changes, but the new tag shows readers that the segment
+  /// has changed. O(D).
   void write_form(Word number, core::SegmentForm form, Time begins = {}) noexcept;
 
   /// The form of a knot's segment, as the next revision will have it.
@@ -108,7 +111,8 @@ class KnotBoardWriter {
   /// Writes a refusal for the next revision: the `index`-th of the stream, counted from 0.
   void write_refusal(Word index, const RefusedItem& refusal) noexcept;
 
-  /// Writes where a limit was exceeded: the `index`-th excess of the stream, counted from 0.
+  /// Writes the place where a limit was exceeded: the `index`-th excess of the stream, counted from
+  /// 0.
   void write_excess(Word index, const LimitExcess& excess) noexcept;
 
   /// Makes everything written visible, as the next revision: W3. Sets summary.revision.
@@ -148,7 +152,7 @@ class KnotBoardWriter {
   [[nodiscard]] bool is_checked() const noexcept { return checked_ == revision_; }
   [[nodiscard]] bool is_late() const noexcept { return revision_ > 0 && late_ == revision_; }
 
-  /// For a solver about to sleep, or awake again: seq_cst, see ring/writer.hpp.
+  /// Stores whether the solver is about to sleep, or is awake again: seq_cst, see ring/writer.hpp.
   void store_sleeping(bool sleeping) noexcept {
     store(control_[kSleeping], sleeping ? 1 : 0, std::memory_order_seq_cst);
   }
@@ -160,31 +164,34 @@ class KnotBoardWriter {
   [[nodiscard]] const Word& revision_word() const noexcept { return control_[kRevision]; }
 
  private:
-  /// Largest sum of magnitudes of what one revision writes. Values within ±kLargestValue stay below
-  /// it, even at the shortest intervals; below it readers accept every segment, for any interval.
+  /// Largest sum of the magnitudes of everything that one revision writes. Values within
+  /// ±kLargestValue stay below it, even at the shortest intervals. Below it, readers accept every
+  /// segment, for any interval.
   static constexpr double kLargestSum = 1e150;
 
-  /// The writer's own record of a slot: the node and the row that the newest committed cell names,
-  /// as in its tag; which cell that is; whether the slot has been written for the next revision.
+  /// The writer's own record of a slot: the node and row bits of the newest committed cell's tag;
+  /// kCellBit if that cell is cell 1; kWrittenBit if the slot has been written for the next
+  /// revision.
   using SlotState = std::uint32_t;
   static constexpr SlotState kCellBit = 1U << 16;
   static constexpr SlotState kWrittenBit = 1U << 17;
 
-  /// A slot that has been written for the next revision, and its state when that is committed.
+  /// A slot that has been written for the next revision, and its state after that revision's
+  /// commit.
   struct WrittenSlot {
     std::uint32_t index;
     SlotState next;
   };
 
-  /// The slots and what is known of them.
+  /// The slots, and the writer's records of them.
   struct Slots {
     Word* words;
     std::size_t mask;
     std::size_t slot_words;
     std::size_t cell_words;
     SlotState* states;
-    WrittenSlot* written;           ///< each once
-    std::size_t written_count = 0;  ///< at most as many as there are slots
+    WrittenSlot* written;           ///< each slot at most once
+    std::size_t written_count = 0;  ///< at most the number of slots
 
     [[nodiscard]] Word* slot(std::size_t index) const noexcept {
       return words + index * slot_words;

@@ -15,17 +15,16 @@ inline constexpr std::tuple kRegionRows{
     FieldRow{"header",
              {.words = 2 * kPage / sizeof(Word)},
              FieldWriter::maker,
-             "see below; the rest is 0"},
+             "see the part Header; the rest is 0"},
     FieldRow{"control area",
              {.words = 2 * kPage / sizeof(Word)},
              FieldWriter::owner,
-             "it contains the control block, at 8192 + 128 · (stream id mod 49), so that those of "
-             "many streams do not fall into one cache set"},
+             "contains the control block, at offset 8192 + 128 · (stream id mod 49),\n"
+             "so that the blocks of many streams are spread over the cache sets"},
     FieldRow{"body",
              {},
              FieldWriter::owner,
-             "ring items; or the refusals, times and slots of a "
-             "board"}};
+             "ring items; or refusals, excesses, times and slots of a board"}};
 inline constexpr auto kRegionFields = place(kRegionRows);
 inline constexpr std::size_t kHeaderBytes = word_of(kRegionFields, "control area") * sizeof(Word);
 inline constexpr std::size_t kBodyOffset = word_of(kRegionFields, "body") * sizeof(Word);

@@ -14,38 +14,39 @@ inline constexpr std::size_t kStepBuckets = 40;
 
 /// The control block of a spline region.
 inline constexpr std::tuple kBoardControlRows{
-    FieldRow{
-        "revision", {.words = 1}, FieldWriter::owner, "the commit word, and what readers wait on"},
-    FieldRow{"retired", {.words = 1}, FieldWriter::owner, "not 0 once the region is of no use"},
+    FieldRow{"revision",
+             {.words = 1},
+             FieldWriter::owner,
+             "number of the newest committed revision: the commit word; readers sleep on it"},
+    FieldRow{"retired", {.words = 1}, FieldWriter::owner, "not 0: the region is no longer in use"},
     FieldRow{"settled until",
              {.words = 1},
              FieldWriter::owner,
-             "ns: no revision after the one at which it was stored changes anything before"},
+             "ns: no later revision changes the curve before this time"},
     padding(kLineWords - 3),
     FieldRow{
-        "consumed", {.words = 1}, FieldWriter::owner, "items consumed, a copy for the producer"},
+        "consumed", {.words = 1}, FieldWriter::owner, "number of items consumed, for the producer"},
     FieldRow{"late",
              {.words = 1},
              FieldWriter::owner,
-             "the last revision that was committed too late, on a live stream"},
+             "of a live stream: the last revision that was committed too late"},
     FieldRow{"checked",
              {.words = 1},
              FieldWriter::owner,
-             "the last revision whose commit was compared with the clock, on a live stream"},
+             "of a live stream: the last revision whose commit was compared with the clock"},
     padding(kLineWords - 3),
-    FieldRow{"sleeping", {.words = 1}, FieldWriter::owner, "the solver waits on `written`"},
+    FieldRow{"sleeping", {.words = 1}, FieldWriter::owner, "1: the solver sleeps on `written`"},
     padding(kLineWords - 1),
-    FieldRow{"summary, cell 0", {.words = kSummaryWords}, FieldWriter::owner, "see below"},
-    FieldRow{"summary, cell 1", {.words = kSummaryWords}, FieldWriter::owner, "see below"},
+    FieldRow{"summary, cell 0", {.words = kSummaryWords}, FieldWriter::owner, "see the next part"},
+    FieldRow{"summary, cell 1", {.words = kSummaryWords}, FieldWriter::owner, "see the next part"},
     FieldRow{"changed from",
              {.words = kChangesKept},
              FieldWriter::owner,
-             "ns: earliest time whose curve revision r changed, at r mod 64"},
+             "ns: revision r changed the curve from the time in word r mod 64 on"},
     FieldRow{"step times",
              {.words = kStepBuckets},
              FieldWriter::owner,
-             "how many of the solver's steps took 2ⁱ to 2ⁱ⁺¹ ns, at i; the last one counts all "
-             "that took longer"}};
+             "word i: number of solver steps that took 2ⁱ to 2ⁱ⁺¹ ns; the last word: or longer"}};
 inline constexpr auto kBoardControlFields = place(kBoardControlRows);
 inline constexpr std::size_t kBoardControlWords = size_of(kBoardControlFields).words;
 inline constexpr std::size_t kRevision = word_of(kBoardControlFields, "revision");

@@ -20,7 +20,7 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Longer than any interval, and short enough to be added to any time.
+/// An upper bound of all intervals. Its sum with any valid time does not overflow.
 constexpr std::uint64_t kLongestNanoseconds = std::uint64_t{1} << 61U;
 
 /// kByteOrder as a machine with the other byte order writes it.
@@ -49,7 +49,8 @@ void require_dimension_kinds(const RegionHeader& header) {
   }
 }
 
-/// Refuses the region of another splinecast: the message names both layouts and the remedy.
+/// Throws BadRegion for a region of another version or build of splinecast. The message names both
+/// layouts and the remedy.
 void require_this_layout(const RegionHeader& header) {
   const std::uint32_t version = header.mark.version;
   if (version != kLayoutVersion) {
@@ -103,8 +104,8 @@ void require_common(const RegionHeader& header, RegionKind kind, std::size_t rea
   require(header.region_bytes == real_bytes, "size", real_bytes, header.region_bytes);
 }
 
-/// Checks the values that define the curve. SlidingWindow would refuse invalid ones too, but not as
-/// a bad region.
+/// Checks the values that define the curve. SlidingWindow refuses invalid ones too, but does not
+/// throw BadRegion.
 void require_curve(const RegionHeader& header) {
   const Method* const method = find_method(header.method);
   if (method == nullptr || !method->streams()) {

@@ -9,7 +9,8 @@
 namespace splinecast::ipc {
 
 /// Returns the layout that a copied header describes. Throws BadRegion, naming the offending value,
-/// unless the header is of this kind, layout version, byte order and real size.
+/// unless the header has the right kind, layout version and byte order, valid values, and the size
+/// `real_bytes` of the file.
 RingLayout checked_ring_layout(const RegionHeader& header, std::size_t real_bytes);
 BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_bytes);
 

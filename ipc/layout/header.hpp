@@ -65,82 +65,99 @@ inline constexpr std::tuple kHeaderRows{
     MemberRow<&RegionHeader::magic>{"magic", FieldWriter::maker, "the characters `SPLNCAST`"},
     MemberRow<&RegionHeader::mark>{"layout version, byte order", FieldWriter::maker,
                                    "32 bits each: 5 and `0x01020304`"},
-    MemberRow<&RegionHeader::layout_hash>{"layout hash", FieldWriter::maker,
-                                          "FNV-1a over the fields of this page"},
-    MemberRow<&RegionHeader::kind>{"kind", FieldWriter::maker, "1 waypoints, 2 spline"},
-    MemberRow<&RegionHeader::region_bytes>{"region bytes", FieldWriter::maker, "size of the file"},
+    MemberRow<&RegionHeader::layout_hash>{
+        "layout hash", FieldWriter::maker,
+        "64-bit FNV-1a of all names, offsets, sizes and writers on this page"},
+    MemberRow<&RegionHeader::kind>{"kind", FieldWriter::maker,
+                                   "1 waypoints region, 2 spline region"},
+    MemberRow<&RegionHeader::region_bytes>{"region bytes", FieldWriter::maker,
+                                           "size of the file, in bytes"},
     MemberRow<&RegionHeader::stream_id>{"stream id", FieldWriter::maker,
                                         "random, not 0; the same in both regions"},
     MemberRow<&RegionHeader::dimensions>{"dimensions", FieldWriter::maker, "D, 1 to 64"},
-    MemberRow<&RegionHeader::capacity>{"capacity", FieldWriter::maker,
-                                       "ring items or knot slots; a power of two"},
-    MemberRow<&RegionHeader::clock>{"clock", FieldWriter::maker, "0 recorded, 1 CLOCK_MONOTONIC"},
+    MemberRow<&RegionHeader::capacity>{
+        "capacity", FieldWriter::maker,
+        "number of ring items, or of slots of numbered knots; a power of two"},
+    MemberRow<&RegionHeader::clock>{"clock", FieldWriter::maker,
+                                    "0 recorded stream, 1 live stream (CLOCK_MONOTONIC)"},
     MemberRow<&RegionHeader::time_namespace>{"time namespace", FieldWriter::maker,
-                                             "inode of `/proc/self/ns/time` on a live stream"},
+                                             "of a live stream: inode of `/proc/self/ns/time`"},
     MemberRow<&RegionHeader::control>{"control offset", FieldWriter::maker,
-                                      "where the control block begins, in bytes"},
+                                      "offset of the control block, in bytes"},
     MemberRow<&RegionHeader::stride>{"stride", FieldWriter::maker,
                                      "bytes from one item or slot to the next"},
     MemberRow<&RegionHeader::min_interval>{"least interval", FieldWriter::maker,
-                                           "between waypoints, ns"},
-    MemberRow<&RegionHeader::max_interval>{"most interval", FieldWriter::maker, "ns"},
+                                           "ns: shortest interval between two waypoints"},
+    MemberRow<&RegionHeader::max_interval>{"most interval", FieldWriter::maker,
+                                           "ns: longest interval between two waypoints"},
     MemberRow<&RegionHeader::start_kind>{
         "start condition", FieldWriter::maker,
-        "0 natural, 1 clamped, 2 halt, 3 velocity, 4 acceleration, 7 the method's own"},
+        "0 natural, 1 clamped, 2 halt, 3 velocity, 4 acceleration, 7 the method's default"},
     MemberRow<&RegionHeader::method>{
         "method", FieldWriter::maker,
-        "0 c2, 1 hermite, 2 quintic, 4 smoothing, 16 bessel, 17 akima, 18 makima, 19 pchip, 20 "
-        "rounded (spline region, as all up to the stop time)"},
-    MemberRow<&RegionHeader::settle>{"settle lag", FieldWriter::maker, "K"},
-    MemberRow<&RegionHeader::tail>{"tail", FieldWriter::maker,
-                                   "0 bessel, 1 parabolic, 2 natural, 3 clamped"},
-    MemberRow<&RegionHeader::stop_time>{"stop time", FieldWriter::maker, "ns"},
+        "0 c2, 1 hermite, 2 quintic, 4 smoothing, 16 bessel, 17 akima, 18 makima,\n"
+        "19 pchip, 20 rounded\n"
+        "in a spline region only, as all fields up to the stop time"},
+    MemberRow<&RegionHeader::settle>{"settle lag", FieldWriter::maker,
+                                     "K: an append does not change a knot that has K newer ones"},
+    MemberRow<&RegionHeader::tail>{
+        "tail", FieldWriter::maker,
+        "end condition at the newest knot: 0 bessel, 1 parabolic, 2 natural, 3 clamped"},
+    MemberRow<&RegionHeader::stop_time>{
+        "stop time", FieldWriter::maker,
+        "ns: length of a stop segment; longer if a limit requires it"},
     MemberRow<&RegionHeader::epoch>{"epoch", FieldWriter::owner,
-                                    "number of the owner's life, from 1"},
+                                    "number of owners so far, this one included"},
     MemberRow<&RegionHeader::owner_pid>{"process id", FieldWriter::owner, "of the owner"},
-    MemberRow<&RegionHeader::owner_since>{"since", FieldWriter::owner,
-                                          "CLOCK_MONOTONIC at which it became the owner"},
-    MemberRow<&RegionHeader::lambda>{"lambda", FieldWriter::maker,
-                                     "double, s³: of `smoothing` (spline region, as all below)"},
+    MemberRow<&RegionHeader::owner_since>{
+        "since", FieldWriter::owner, "ns by CLOCK_MONOTONIC: when this process became the owner"},
+    MemberRow<&RegionHeader::lambda>{
+        "lambda", FieldWriter::maker,
+        "double, s³, of `smoothing`\n"
+        "in a spline region only, as all fields up to the least entry length"},
     MemberRow<&RegionHeader::time_scale>{"time scale", FieldWriter::maker,
-                                         "double, s: of `rounded`"},
+                                         "double, s, of `rounded`"},
     MemberRow<&RegionHeader::force_lag>{"lag forced", FieldWriter::maker,
-                                        "1: a settle lag too short for λ is taken"},
+                                        "1: a settle lag that is too short for λ is accepted"},
     MemberRow<&RegionHeader::freeze_ahead>{"freeze-ahead", FieldWriter::maker,
-                                           "ns, of a live stream"},
-    MemberRow<&RegionHeader::history>{"history", FieldWriter::maker, "ns, of a live stream"},
+                                           "ns: a live stream settles this long ahead of now"},
+    MemberRow<&RegionHeader::history>{
+        "history", FieldWriter::maker,
+        "ns: a live stream keeps segments that ended less than this ago"},
     MemberRow<&RegionHeader::min_entry>{"least entry length", FieldWriter::maker,
-                                        "ns, of a live stream"},
+                                        "ns: length of the shortest entry of a live stream"},
     padding(4),
-    MemberRow<&RegionHeader::start_value>{"start value", FieldWriter::maker,
-                                          "a double per dimension: of the start condition"},
-    MemberRow<&RegionHeader::dimension_kind>{"dimension kind", FieldWriter::maker,
-                                             "a word per dimension: 0 linear, 1 periodic, 2 "
-                                             "quaternion as x y z w, 3 quaternion as w x y z; "
-                                             "all four dimensions of a quaternion have the same"},
+    MemberRow<&RegionHeader::start_value>{
+        "start value", FieldWriter::maker,
+        "a double per dimension: velocity or acceleration of the start condition"},
+    MemberRow<&RegionHeader::dimension_kind>{
+        "dimension kind", FieldWriter::maker,
+        "a word per dimension: 0 linear, 1 periodic, 2 quaternion as x y z w,\n"
+        "3 quaternion as w x y z; the four dimensions of a quaternion have the same"},
     MemberRow<&RegionHeader::period>{
         "period", FieldWriter::maker,
-        "a double per dimension: of a periodic one, in its unit, 1e-100 to 1e100; else 0"},
+        "a double per dimension: of a periodic one 1e-100 to 1e100, in its unit; else 0"},
     MemberRow<&RegionHeader::name>{"name", FieldWriter::maker,
-                                   "32 bytes per dimension, zero-terminated"},
+                                   "32 bytes per dimension: text, zero-terminated"},
     MemberRow<&RegionHeader::unit>{"unit", FieldWriter::maker,
-                                   "16 bytes per dimension, zero-terminated"},
-    MemberRow<&RegionHeader::max_velocity>{
-        "velocity limit", FieldWriter::maker,
-        "a double per dimension, 0 for none (spline region, as all below)"},
+                                   "16 bytes per dimension: text, zero-terminated"},
+    MemberRow<&RegionHeader::max_velocity>{"velocity limit", FieldWriter::maker,
+                                           "a double per dimension, 0: no limit\n"
+                                           "in a spline region only, as all fields below"},
     MemberRow<&RegionHeader::max_acceleration>{"acceleration limit", FieldWriter::maker,
-                                               "a double per dimension, 0 for none"},
+                                               "a double per dimension, 0: no limit"},
     MemberRow<&RegionHeader::max_jerk>{"jerk limit", FieldWriter::maker,
-                                       "a double per dimension, 0 for none"},
-    MemberRow<&RegionHeader::lower_bound>{"lower bound", FieldWriter::maker,
-                                          "a double per dimension: of the position, −∞ for none; 0 "
-                                          "with an upper bound of 0 says that "
-                                          "there are no bounds"},
-    MemberRow<&RegionHeader::upper_bound>{"upper bound", FieldWriter::maker,
-                                          "a double per dimension, +∞ for none"},
+                                       "a double per dimension, 0: no limit"},
+    MemberRow<&RegionHeader::lower_bound>{
+        "lower bound", FieldWriter::maker,
+        "a double per dimension: of the position, −∞: no lower bound\n"
+        "lower and upper bound both 0: no bounds"},
+    MemberRow<&RegionHeader::upper_bound>{
+        "upper bound", FieldWriter::maker,
+        "a double per dimension: of the position, +∞: no upper bound"},
     MemberRow<&RegionHeader::beyond>{
         "beyond the limits", FieldWriter::maker,
-        "what is done about such a segment: 0 report it, 1 refuse its waypoint"}};
+        "a waypoint with which the curve exceeds a limit is: 0 reported, 1 refused"}};
 inline constexpr auto kHeaderFields = place(kHeaderRows);
 inline constexpr std::size_t kHeaderWords = size_of(kHeaderFields).words;
 
@@ -153,13 +170,14 @@ inline constexpr std::size_t kHeaderWords = size_of(kHeaderFields).words;
 /// if the region is too short to hold one.
 [[nodiscard]] RegionHeader copy_header(std::span<const std::byte> region);
 
-/// The same, from at least kHeaderWords words that have already been copied.
+/// Decodes a header from words that have already been copied: at least kHeaderWords.
 [[nodiscard]] RegionHeader decode_header(std::span<const Word> words) noexcept;
 
 /// Writes a header into a region that has no name yet.
 void write_header(std::span<std::byte> region, const RegionHeader& header) noexcept;
 
-/// The kinds of a header's dimensions, one each; the header's numbers must be kinds.
+/// The dimensions of a header: the kind and period of each. Each number in `dimension_kind` must be
+/// a DimensionKind.
 [[nodiscard]] std::vector<Dimension> dimensions_of(const RegionHeader& header);
 
 /// A name or unit of a header, up to its first zero byte.

@@ -14,27 +14,32 @@ inline constexpr std::tuple kCellRows{
     FieldRow{"tag",
              {.words = 1},
              FieldWriter::owner,
-             "0 never written; else revision (bits 16–63; all ones: retired), the node that it "
-             "refers to (bit 0), the form of the segment that begins here (bits 1–4: 0 none, 1 "
-             "cubic, 2 cubic with acceleration 0 at the left end, 3 at the right end, 4 at both, 5 "
-             "quintic, 6 entry, 7 stop, 8 hold), the knot is a waypoint (bit 5), the acceleration "
-             "beside is that with which the segment that ends here arrives (bit 6), or the one "
-             "that begins here starts (bit 7), how many newer knots it had seen when it was solved "
-             "(bits 8–14), the row that it refers to (bit 15)"},
+             "0: never written; all bits 1: retired; else\n"
+             "bits 16–63: revision that wrote the cell\n"
+             "bit 0: the node that belongs to it\n"
+             "bits 1–4: form of the segment that begins here: 0 none, 1 cubic,\n"
+             "2 to 4 cubic with acceleration 0 at the left end, the right end, both ends,\n"
+             "5 quintic, 6 entry, 7 stop, 8 hold\n"
+             "bit 5: the knot is a waypoint\n"
+             "bit 6: the segment that ends here arrives with the acceleration beside the cell\n"
+             "bit 7: the segment that begins here starts with the acceleration beside the cell\n"
+             "bits 8–14: number of newer knots when the knot was last solved\n"
+             "bit 15: the row that belongs to it"},
     FieldRow{"velocity", {.per_dimension = 1}, FieldWriter::owner, "doubles"},
     FieldRow{"residual",
              {.per_dimension = 1},
              FieldWriter::owner,
-             "doubles, of `smoothing` only: waypoint less position"}};
+             "doubles, of `smoothing` only: waypoint minus position"}};
 inline constexpr auto kCellFields = place(kCellRows);
 inline constexpr std::size_t kCellTag = word_of(kCellFields, "tag");
 inline constexpr std::size_t kCellVelocity = word_of(kCellFields, "velocity");
 
-inline constexpr std::tuple kNodeRows{FieldRow{"time", {.words = 1}, FieldWriter::owner, "ns"},
-                                      FieldRow{"position",
-                                               {.per_dimension = 1},
-                                               FieldWriter::owner,
-                                               "doubles: of the waypoint, else of the curve"}};
+inline constexpr std::tuple kNodeRows{
+    FieldRow{"time", {.words = 1}, FieldWriter::owner, "ns"},
+    FieldRow{"position",
+             {.per_dimension = 1},
+             FieldWriter::owner,
+             "doubles: the waypoint; of a knot that is not a waypoint: position of the curve"}};
 inline constexpr auto kNodeFields = place(kNodeRows);
 inline constexpr std::size_t kNodeTime = word_of(kNodeFields, "time");
 inline constexpr std::size_t kNodePosition = word_of(kNodeFields, "position");
@@ -43,30 +48,33 @@ inline constexpr std::tuple kBesideRows{
     FieldRow{"item",
              {.words = 1},
              FieldWriter::owner,
-             "of an entry: number of the item of the run's first waypoint, plus 1; of the end of "
-             "one beyond the newest waypoint: number of waypoints of the run; of a waypoint that "
-             "is passed over: item of the run · 2²⁴ + its number in the run; else 0"},
+             "valid if bit 6 or 7 of the tag is set\n"
+             "where an entry begins: number of the first waypoint's item of the run, plus 1\n"
+             "where an entry beyond the newest waypoint ends: waypoints of the run that it knew\n"
+             "of a waypoint that is passed over: item of the run · 2²⁴ + its number in the run\n"
+             "else 0"},
     FieldRow{"acceleration",
              {.per_dimension = 1},
              FieldWriter::owner,
-             "doubles, where the tag says so"}};
+             "doubles; valid if bit 6 or 7 of the tag is set"}};
 inline constexpr auto kBesideFields = place(kBesideRows);
 inline constexpr std::size_t kBesideItem = word_of(kBesideFields, "item");
 inline constexpr std::size_t kBesideAcceleration = word_of(kBesideFields, "acceleration");
 
 inline constexpr std::tuple kRowRows{
-    FieldRow{"gamma", {.words = 1}, FieldWriter::owner, "double: γ of the knot's eliminated row"},
-    FieldRow{"g", {.per_dimension = 1}, FieldWriter::owner, "doubles: its right side"},
+    FieldRow{
+        "gamma", {.words = 1}, FieldWriter::owner, "double: γ of the eliminated row of the knot"},
+    FieldRow{"g", {.per_dimension = 1}, FieldWriter::owner, "doubles: right side of that row"},
     FieldRow{"factors",
              {.words = 3},
              FieldWriter::owner,
-             "doubles, of `smoothing` only: the row of LDLᵀ: D, L with the knot before, L with the "
-             "one before that"}};
+             "doubles, of `smoothing` only, the row of LDLᵀ:\n"
+             "D, L with the knot before, L with the knot before that one"}};
 inline constexpr auto kRowFields = place(kRowRows);
 inline constexpr std::size_t kRowGamma = word_of(kRowFields, "gamma");
 inline constexpr std::size_t kRowG = word_of(kRowFields, "g");
 
-/// The ring of refusals.
+/// Sizes of the rings of refusals and of excesses, and the bit positions in word 0 of an excess.
 inline constexpr std::size_t kRefusalsKept = 1024;
 inline constexpr std::size_t kExcessesKept = 128;
 inline constexpr std::size_t kExcessWords = 4;
@@ -76,23 +84,25 @@ inline constexpr std::tuple kBodyRows{
     FieldRow{"refusals",
              {.words = kRefusalsKept},
              FieldWriter::owner,
-             "the last 1,024: item number · 256 + reason"},
+             "the last 1,024; refusal i is word i mod 1,024: item number · 256 + reason"},
     FieldRow{"excesses",
              {.words = kExcessesKept * kExcessWords},
              FieldWriter::owner,
-             "the last 128 waypoints with which a limit was passed, 4 words each: 0 while it is "
-             "written, else item number · 1,024 + dimension · 16 + kind (0 velocity, 1 "
-             "acceleration, 2 jerk, 3 position) · 2 + 1 if it was refused; when, in ns; the value, "
-             "and the limit, as doubles"},
-    FieldRow{"times",
-             {},
-             FieldWriter::owner,
-             "a word per slot: ns at which the segment of the slot's knot begins, or, where none "
-             "begins, the one of the next knot at which one does: a hint"}};
+             "the last 128 waypoints with which the curve exceeds a limit, 4 words each:\n"
+             "word 0: 0 while it is written, else item number · 1,024 + dimension · 16\n"
+             "+ kind · 2 (0 velocity, 1 acceleration, 2 jerk, 3 position) + 1 if it was refused\n"
+             "word 1: time, ns; words 2 and 3: value and limit, doubles"},
+    FieldRow{
+        "times",
+        {},
+        FieldWriter::owner,
+        "a word per slot, ns: when the segment of the slot's knot begins; if none begins there,\n"
+        "when the next segment begins. A hint: the knots decide"}};
 inline constexpr auto kBodyFields = place(kBodyRows);
 
-/// Slots after those of the numbered knots: the waypoints that entries pass over, by their number
-/// in the run. Only a solver that takes over reads them.
+/// Number of slots after those of the numbered knots. They hold the waypoints that entries pass
+/// over and the last waypoints before these: waypoint i of a run is in slot i modulo this number.
+/// Only a solver that takes over reads them.
 inline constexpr std::size_t kPassedSlots = 80;
 inline constexpr unsigned kPassedItemShift = 24;
 
@@ -106,7 +116,7 @@ struct BoardLayout {
   std::size_t excesses;  ///< kExcessesKept records of kExcessWords words
   std::size_t times;     ///< packed times: capacity words
   std::size_t slots;     ///< capacity + kPassedSlots slots
-  std::size_t cell;      ///< bytes of a cell; cells begin a slot
+  std::size_t cell;      ///< bytes of a cell; the cells are at offset 0 of a slot
   std::size_t nodes;
   std::size_t node;  ///< bytes of a node
   std::size_t beside;
@@ -120,10 +130,11 @@ struct BoardLayout {
                                       std::size_t control, bool smooths) noexcept;
 };
 
-/// The largest capacity, so that every size and index computed from a header fits.
+/// The largest capacity: no size or index computed from a header overflows.
 inline constexpr std::size_t kMaxBoardCapacity = std::size_t{1} << 22;
 
-/// Greatest length of a stop segment: a stop and a return from it can be added to any time.
+/// Maximum length of a stop segment. The sum of any valid time, a stop segment and an entry that
+/// returns from it does not overflow.
 inline constexpr Time kLongestStop{std::int64_t{1} << 60};
 
 }  // namespace splinecast::ipc

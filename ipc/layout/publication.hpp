@@ -12,12 +12,12 @@
 ///
 /// A *slot* has two *cells* and two *nodes*. A node holds the inputs of a knot (time, position), a
 /// cell the results of each solve (velocity). Word 0 of a cell is its *tag*: the revision that
-/// wrote it, and bits that describe the knot, one of which names its node. Comparisons of tags with
-/// revisions use the revision only. The *newest* cell under revision r is the one with the greatest
-/// revision ≤ r; the other one is the *spare*. A revision writes the spare cell of each slot that
-/// it changes, and the node that the newest cell does not name if a new knot takes the slot; then
-/// it stores its number to the *commit word*, which makes all of it visible at once. The summary is
-/// a slot without nodes.
+/// wrote it, and bits that describe the knot, one of which names its node. A comparison of a tag
+/// with a revision uses only the tag's revision. The *newest* cell under revision r is the one with
+/// the greatest revision ≤ r; the other one is the *spare*. In each slot that it changes, a
+/// revision writes the spare cell; if a new knot takes the slot, it also writes the node that the
+/// newest cell does not name. Then it stores its number to the *commit word*, which makes all of it
+/// visible at once. The summary is a slot without nodes.
 ///
 /// Each "fails" below is an execution that a model has found: [s] the spin model of tests/model, by
 /// plain interleaving, so that it can happen on x86 too; [m] only a weaker memory model (RC11,
@@ -25,12 +25,12 @@
 ///
 /// Writer
 ///
-/// W0 What the writer loads of tags and words is relaxed: its own stores, or those of a dead writer
-///    whose lock the kernel gave it.
+/// W0 The writer loads tags and words relaxed: they are its own stores, or those of a dead writer
+///    whose lock the kernel released before this writer got it.
 /// W1 tag[c].store((r+1, node), release), first, before node and cell.
 ///    First, because a reader that copies a new word (R3) must not find the old tag at R4. The same
 ///    covers the node: it is overwritten only when no cell with a valid tag names it. The newest
-///    cell names the other one, and the spare's tag, which may name it, has been overwritten by W1.
+///    cell names the other node; the spare's tag may name this one, but W1 has overwritten it.
 ///    Fails: the tag after the cell [s]; the node before the tag [s], where a slot gets a new knot
 ///    twice in a row: revisions 1 and 3 use the same cell and node, and a reader under 1 takes the
 ///    time of knot 3 with the tag of knot 1.
@@ -44,11 +44,11 @@
 ///    cells, nodes and ring word [m].
 /// T1 Takeover: before its first other store, the successor overwrites every tag above the commit
 ///    word with kRetiredTag (release). A writer that discards its own revision does the same. Else
-///    a half-written cell becomes the newest when the commit word reaches its tag; seen where the
-///    successor leaves that slot alone [s]. Retiring with 0 fails [s]: 0 is not above the revision,
-///    and a reader whose newest cell is being overwritten takes the retired one as older history.
-///    Release for the same reason as W1: a reader that finds the retired tag takes the other cell,
-///    and must then see at R4 if that was overwritten before [m].
+///    a half-written cell becomes the newest when the commit word reaches its tag; this fails where
+///    the successor does not write that slot [s]. Retiring with 0 fails [s]: 0 is not above the
+///    revision, and a reader whose newest cell is being overwritten takes the retired one as older
+///    history. Release for the same reason as W1: a reader that finds the retired tag takes the
+///    other cell, and must then see at R4 whether that cell was overwritten before [m].
 ///    A retired tag names no node: the writer takes the node bit from the newest *committed* cell
 ///    only [s].
 ///
@@ -62,8 +62,8 @@
 ///    copy is rejected. Relaxed is enough: R3 has ordered it, and nothing after it depends on it.
 ///    One check covers cell and node.
 ///
-/// Two knots of one segment are copied one after the other under the same r. Each is exactly what r
-/// holds, so that the first need not be checked again after the second.
+/// The two knots of a segment are copied in sequence under the same r. Each copy is exactly the
+/// knot under r, so that the first need not be checked again after the second.
 ///
 /// Kept copies: a copy with tag T may be used under r' ≥ the revision that it was made under, iff
 ///
@@ -71,14 +71,15 @@
 /// K2 tag[c].load(relaxed), after K1, is still T.
 ///
 /// Let q be the first revision after the copy's, up to r', that wrote the slot. It wrote the other
-/// cell, and R1 has made that visible. K1 finds q: rejected. Or it finds a later tag, above r' or
-/// retired: a later revision q' claims the other cell only after one in between has claimed the
-/// copy's own cell, and that store precedes the tag of q', or the retirement of it, both release;
-/// K1 has acquired it, so K2 sees that the copy's cell was overwritten: rejected. K1 relaxed fails
-/// [m]. Not enough [s]: the own tag alone (q leaves it as it is); the own tag before the other one;
-/// both tags in the order of storage, compared as if loaded at one instant (two revisions pass
-/// between the two loads). When the tag has changed, cell and node are both copied again: the node
-/// bit does not identify a knot, after two new knots it is the same again [s].
+/// cell, and R1 has made that visible. Either K1 finds q: rejected. Or K1 finds a later tag, which
+/// is above r' or retired. A later revision q' claims the other cell only after a revision in
+/// between has claimed the copy's own cell. That claim precedes the store of the tag of q' and the
+/// store that retires this tag. Both are release, and K1 has acquired one of them, so K2 sees that
+/// the copy's cell was overwritten: rejected. K1 relaxed fails [m]. Not enough [s]: only the own
+/// tag (q does not change it); the own tag loaded before the other one; both tags loaded in the
+/// order of storage and compared as if loaded at one instant (two revisions pass between the two
+/// loads). When the tag has changed, cell and node are both copied again: the node bit does not
+/// identify a knot, because after two new knots it has the same value again [s].
 ///
 /// Ring of changes: word r mod N holds the time from which revision r changed the curve.
 ///
@@ -90,16 +91,16 @@
 ///    tag that is not retired. The words are valid iff there is such a tag and g ≤ seen + N − 1.
 ///    Otherwise everything counts as changed.
 ///
-/// Why: let a word loaded be of a later revision m ≥ seen + 1 + N. C2 acquires C1, hence the claim
-/// of the summary's tag for m, and the claim of m − 1 in the other cell, which was committed. So
-/// each tag that C3 loads is that one, a later one, or retired. If one of the two is not retired,
-/// g ≥ m − 1 ≥ seen + N: the words are not valid.
+/// Why: suppose that a loaded word is of a later revision m ≥ seen + 1 + N. C2 acquires C1, and so
+/// the claim of the summary's tag for m, and the claim of m − 1 in the other cell, which was
+/// committed. So each tag that C3 loads is the claim in its cell, a later one, or retired. If one
+/// of the two is not retired, g ≥ m − 1 ≥ seen + N: the words are not valid.
 /// - N − 1, not N: the writer may die after storing word m; its successor retires tag m, and g is
-///   m − 1 [s]. While no tag is ever retired, N holds too.
+///   m − 1 [s]. If no tag is ever retired, N is correct too.
 /// - If both tags are retired, the words must not count as valid [s]: writer 1 dies with m claimed,
 ///   its tag is retired, the reader loads that tag; the successor commits m, claims m+1 in the
 ///   other cell and dies; its successor retires that; the reader loads that tag. Both are retired
-///   although m is committed. Two discards by a living writer do the same.
+///   although m is committed. Two discards by a living writer have the same effect.
 /// - Tag before word: if word m is stored first, C2 knows only of the tags up to m − 1. A reader
 ///   then loads the tag m − 2 in the cell that m is about to claim, and, after m and m + 1, finds
 ///   m + 1 retired in the other: g = m − 2 [s].
@@ -125,11 +126,11 @@
 ///   revision.
 /// - S1 or S2 relaxed fails [m]: R1 may then load a revision older than the one to which s belongs.
 ///   (W3 and R1 are not needed for this pair alone: S1 carries the commit.)
-/// - A successor continues from the word that it finds and the committed revision. If it begins
-///   lower, it changes what its predecessor promised [s]. If the predecessor died between W3 and
-///   S1, the word is lower than it could be, which is safe.
-/// - A reader may use an s that it loaded earlier with a newer revision, never a newer s with an
-///   older one: each reload of the settled word is followed by R1 before s is used.
+/// - A successor continues from the settled word and the commit word that it finds. Starting from
+///   an earlier settled time fails [s]: the successor changes what its predecessor promised. If the
+///   predecessor died between W3 and S1, the word is lower than it could be, which is safe.
+/// - A reader may use an s that it loaded earlier with a newer revision, but never a newer s with
+///   an older revision: after each reload of the settled word, it does R1 before it uses s.
 ///
 /// There are no fences, no read-modify-writes, and readers store nothing.
 namespace splinecast::ipc {
@@ -137,7 +138,7 @@ namespace splinecast::ipc {
 /// The upper 48 bits of a tag are its revision; the lower bits describe the cell.
 inline constexpr unsigned kTagRevisionShift = 16;
 
-/// A tag that no revision reaches.
+/// The tag of a retired cell: above the tag of every revision.
 inline constexpr Word kRetiredTag = std::numeric_limits<Word>::max();
 
 /// One less than the last revision that a tag can hold: reached after 8.9 years at a million
@@ -150,20 +151,22 @@ inline constexpr Word kLastRevision = (kRetiredTag >> kTagRevisionShift) - 2;
 struct Tags {
   std::array<Word, 2> of;
 
-  /// The cell that is newest under revision r; may itself be newer than r: see holds_any.
+  /// The cell that is newest under revision r: 0 or 1. If both are newer than r, there is none, and
+  /// the result is 0: see holds_any.
   [[nodiscard]] std::size_t newest(Word r) const noexcept {
     const Word r0 = revision_of(of[0]);
     const Word r1 = revision_of(of[1]);
     return r1 <= r && (r0 > r || r1 > r0) ? 1 : 0;
   }
-  /// Whether either cell was written at or before revision r. Tag 0 is never written.
+  /// Whether a cell was written at or before revision r. Tag 0 means that the cell was never
+  /// written.
   [[nodiscard]] bool holds_any(Word r) const noexcept {
     const Word tag = of[newest(r)];
     return tag != 0 && revision_of(tag) <= r;
   }
 };
 
-/// A slot's cells: `cell_words` words each, one after the other, of which the first is the tag.
+/// The contiguous cells of a slot: `cell_words` words each, of which the first is the tag.
 template <typename WordType>
 struct SlotView {
   WordType* words;
@@ -176,7 +179,7 @@ struct SlotView {
   }
 };
 
-/// W2 for one word.
+/// Stores one word with release, as W2 requires.
 inline void put(Word& word, Word value) noexcept { store(word, value, std::memory_order_release); }
 
 /// K1 and K2: whether a copy of cell `c`, made with `tag`, is also what the slot holds under
@@ -189,7 +192,7 @@ inline void put(Word& word, Word value) noexcept { store(word, value, std::memor
   return load(slot.cell(c)[0], std::memory_order_relaxed) == tag;
 }
 
-/// T1 for one slot: retires the tags that no commit has made visible.
+/// T1 for one slot: retires each tag above the commit word.
 inline void retire_uncommitted(const SlotView<Word>& slot, Word committed) noexcept {
   for (std::size_t c = 0; c < 2; ++c) {
     Word& tag = slot.cell(c)[0];

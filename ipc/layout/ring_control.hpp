@@ -8,20 +8,24 @@
 
 namespace splinecast::ipc {
 
-/// The control block of a waypoints region.
 inline constexpr std::size_t kProducerRefusals = 16;
+
+/// The control block of a waypoints region.
 inline constexpr std::tuple kRingControlRows{
-    FieldRow{"written", {.words = 1}, FieldWriter::owner, "items appended"},
-    FieldRow{"retired", {.words = 1}, FieldWriter::owner, "not 0 once the region is of no use"},
+    FieldRow{"written",
+             {.words = 1},
+             FieldWriter::owner,
+             "number of items appended; the solver sleeps on it"},
+    FieldRow{"retired", {.words = 1}, FieldWriter::owner, "not 0: the region is no longer in use"},
     FieldRow{"claimed",
              {.words = 1},
              FieldWriter::owner,
-             "how far the last replacement writes, stored before its items"},
+             "what `written` is after the last replacement; stored before its items are written"},
     padding(kLineWords - 3),
     FieldRow{"refused",
              {.words = kProducerRefusals},
              FieldWriter::owner,
-             "items refused by the producer, a word per reason"}};
+             "word s: number of items that the producer refused with status s"}};
 inline constexpr auto kRingControlFields = place(kRingControlRows);
 inline constexpr std::size_t kRingControlWords = size_of(kRingControlFields).words;
 inline constexpr std::size_t kWritten = word_of(kRingControlFields, "written");

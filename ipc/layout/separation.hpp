@@ -6,13 +6,13 @@
 
 namespace splinecast::ipc {
 
-/// Distance in bytes between words that different processes write, or poll: two cache lines,
-/// because adjacent lines are fetched in pairs.
+/// Distance in bytes between words that different processes write or poll: two cache lines, because
+/// processors prefetch adjacent lines in pairs.
 inline constexpr std::size_t kSeparation = 128;
 inline constexpr std::size_t kCacheLine = 64;
 inline constexpr std::size_t kPage = 4096;
 
-/// Words from one polled word to the next, so that they do not share lines.
+/// The same distance in words.
 inline constexpr std::size_t kLineWords = kSeparation / sizeof(Word);
 
 /// The smallest multiple that is at least `value`.

@@ -18,7 +18,7 @@ inline constexpr std::size_t kRefusalReasons = 16;
 /// The state of the end of the published curve relative to the *target*, the spline through the
 /// waypoints of a run.
 enum class Course : std::uint8_t {
-  on_target = 0,  ///< the curve is the target
+  on_target = 0,  ///< the curve follows the target
   waiting = 1,    ///< it ends in a stop away from the target: no entry has been found
   entering = 2,   ///< an entry ends at a waypoint of the run, and the target follows
   beyond = 3,     ///< an entry ends beyond the newest waypoint, and a stop follows
@@ -35,14 +35,16 @@ struct Summary {
   bool finished = false;
   Word run = 1;        ///< first knot of the run
   Word run_knots = 0;  ///< waypoints of the run
-  Word run_item = 0;   ///< the ring's item of its first waypoint, plus 1; 0: none yet
+  Word run_item = 0;   ///< number of the ring item of its first waypoint, plus 1; 0: none yet
   Word course = 0;     ///< Course
-  Word met = 0;    ///< waypoints of the run before the piece of the target that ends at `newest`
-  Word unmet = 0;  ///< waypoints of the run before those that the open entry passes over
-  Time blend_until{};         ///< no entry of the run ends before this time
-  Word passed_over = 0;       ///< waypoints that entries pass over, of all runs
-  Word consumed = 0;          ///< ring items consumed
-  Word knots = 0;             ///< waypoints accepted, including replaced ones
+  /// The waypoints of the run, counted from 0, at which the last piece of the target begins (the
+  /// piece that ends at `newest`), and at which those begin that the open entry passes over.
+  Word met = 0;
+  Word unmet = 0;
+  Time blend_until = Time::min();  ///< no entry of the run ends before this time
+  Word passed_over = 0;            ///< waypoints that entries pass over, of all runs
+  Word consumed = 0;               ///< ring items consumed
+  Word knots = 0;                  ///< waypoints accepted, including replaced ones
   Time newest_time{};         ///< time of the newest waypoint, or of the state that a run begins in
   Time committed{};           ///< the solver's clock at the commit; of a recorded stream,
                               ///< approximate
@@ -58,7 +60,7 @@ struct Summary {
   Word controls = 0;             ///< replacements, start states and finishes carried out
   Word exceeding = 0;            ///< waypoints with which the curve exceeded a limit, or would have
   Word refused = 0;              ///< items refused
-  std::array<Word, kRefusalReasons> reasons{};  ///< of these, by Refusal
+  std::array<Word, kRefusalReasons> reasons{};  ///< items refused, by Refusal
   /// The curve before this time never changes. May be raised without a revision.
   Time settled_until = -kLatestTime;
   Time changed_from{};  ///< earliest time whose curve this revision changed
@@ -74,8 +76,8 @@ inline constexpr std::tuple kBoundsRows{
                                "oldest knot on the board; a segment begins there"},
     MemberRow<&Summary::newest>{"newest", FieldWriter::owner, "newest knot; 0: none"},
     MemberRow<&Summary::stop>{"stop", FieldWriter::owner,
-                              "ns: length of the stop, while it is the newest segment"},
-    MemberRow<&Summary::finished>{"finished", FieldWriter::owner, "1: nothing follows"}};
+                              "ns: length of the stop segment, if it is the newest segment"},
+    MemberRow<&Summary::finished>{"finished", FieldWriter::owner, "1: the stream is finished"}};
 inline constexpr std::size_t kBoundsWords = size_of(place(kBoundsRows)).words;
 static_assert(kBoundsWords <= kCacheLine / sizeof(Word));
 
@@ -83,45 +85,51 @@ static_assert(kBoundsWords <= kCacheLine / sizeof(Word));
 /// that differ from the cell's.
 inline constexpr std::tuple kFurtherRows{
     MemberRow<&Summary::run>{"run", FieldWriter::owner, "first knot of the run"},
-    MemberRow<&Summary::run_knots>{"knots of the run", FieldWriter::owner, "its waypoints"},
+    MemberRow<&Summary::run_knots>{"knots of the run", FieldWriter::owner,
+                                   "number of its waypoints"},
     MemberRow<&Summary::run_item>{"item of the run", FieldWriter::owner,
                                   "number of its first waypoint's item, plus 1; 0: none yet"},
     MemberRow<&Summary::course>{
         "course", FieldWriter::owner,
-        "0 on the target, 1 waiting, 2 entering at a waypoint, 3 beyond the "
-        "newest one"},
+        "0 on the target, 1 waiting for an entry,\n"
+        "2 an entry ends at a waypoint, 3 an entry ends beyond the newest waypoint"},
     MemberRow<&Summary::met>{"met", FieldWriter::owner,
-                             "waypoints of the run before the piece of the target that ends at the "
-                             "newest knot"},
-    MemberRow<&Summary::unmet>{"unmet", FieldWriter::owner,
-                               "waypoints of the run before those that the open entry passes over"},
+                             "number of waypoints of the run before the piece of the target\n"
+                             "that ends at the newest knot"},
+    MemberRow<&Summary::unmet>{
+        "unmet", FieldWriter::owner,
+        "number of waypoints of the run before those that the open entry passes over"},
     MemberRow<&Summary::blend_until>{"blend until", FieldWriter::owner,
-                                     "ns: no entry of the run ends before"},
+                                     "ns: no entry of the run ends before this time"},
     MemberRow<&Summary::passed_over>{"passed over", FieldWriter::owner,
-                                     "waypoints that entries pass over"},
-    MemberRow<&Summary::consumed>{"consumed", FieldWriter::owner, "items taken"},
-    MemberRow<&Summary::knots>{"knots", FieldWriter::owner, "waypoints taken"},
+                                     "number of waypoints that entries pass over"},
+    MemberRow<&Summary::consumed>{"consumed", FieldWriter::owner, "number of items consumed"},
+    MemberRow<&Summary::knots>{"knots", FieldWriter::owner,
+                               "number of waypoints accepted, replaced ones included"},
     MemberRow<&Summary::newest_time>{
         "newest time", FieldWriter::owner,
-        "time of the newest waypoint, or of the state that a run begins "
-        "in, ns"},
-    MemberRow<&Summary::committed>{"committed", FieldWriter::owner,
-                                   "the solver's clock at the commit, ns; of a recorded stream to "
-                                   "within some milliseconds"},
-    MemberRow<&Summary::run_frozen>{"frozen", FieldWriter::owner,
-                                    "waypoints of the run that were frozen when this revision was "
-                                    "made"},
-    MemberRow<&Summary::is_later_run>{"later run", FieldWriter::owner,
-                                      "1: the run is not the stream's first, or begins in a given "
-                                      "state"},
+        "ns: time of the newest waypoint, or of the state in which a run begins"},
+    MemberRow<&Summary::committed>{
+        "committed", FieldWriter::owner,
+        "ns: the solver's clock at the commit; of a recorded stream within some milliseconds"},
+    MemberRow<&Summary::run_frozen>{
+        "frozen", FieldWriter::owner,
+        "number of waypoints of the run that were frozen when this revision was made"},
+    MemberRow<&Summary::is_later_run>{
+        "later run", FieldWriter::owner,
+        "1: the run is not the first one of the stream, or begins in a given state"},
     MemberRow<&Summary::starved>{"starved", FieldWriter::owner,
                                  "1: the settled time of a live stream has passed its newest knot"},
-    MemberRow<&Summary::low_water>{"least depth", FieldWriter::owner, "so far, ns"},
-    MemberRow<&Summary::underruns>{"underruns", FieldWriter::owner, "times starved"},
-    MemberRow<&Summary::deadline_misses>{"deadline misses", FieldWriter::owner,
-                                         "revisions discarded as too late"},
-    MemberRow<&Summary::late_commits>{"late commits", FieldWriter::owner,
-                                      "revisions before this one that were committed too late"},
+    MemberRow<&Summary::low_water>{"least depth", FieldWriter::owner,
+                                   "ns: smallest depth so far; 2⁶³ − 1: none yet"},
+    MemberRow<&Summary::underruns>{"underruns", FieldWriter::owner,
+                                   "number of times that the stream starved"},
+    MemberRow<&Summary::deadline_misses>{
+        "deadline misses", FieldWriter::owner,
+        "number of revisions discarded because they were too late"},
+    MemberRow<&Summary::late_commits>{
+        "late commits", FieldWriter::owner,
+        "number of revisions before this one that were committed too late"},
     MemberRow<&Summary::withdrawn>{"withdrawn", FieldWriter::owner, "items withdrawn unread"},
     MemberRow<&Summary::controls>{"controls", FieldWriter::owner,
                                   "replacements, start states and finishes carried out"},
@@ -132,7 +140,8 @@ inline constexpr std::tuple kFurtherRows{
     MemberRow<&Summary::reasons>{"reasons", FieldWriter::owner, "items refused, by reason"},
     padding(4)};
 
-/// A cell of the summary's slot. Only a field's member of Summary and its row here define it.
+/// The words of a cell of the summary's slot. To add a field, add a member of Summary and a row
+/// above; the rest follows from the row.
 inline constexpr auto kSummaryRows = std::tuple_cat(kBoundsRows, kFurtherRows);
 inline constexpr auto kSummaryFields = place(kSummaryRows);
 inline constexpr std::size_t kSummaryWords = size_of(kSummaryFields).words;

@@ -1,6 +1,7 @@
 #include "ipc/layout/table.hpp"
 
 #include <array>
+#include <ostream>
 #include <sstream>
 
 #include "ipc/layout/areas.hpp"
@@ -20,24 +21,31 @@ constexpr std::array kParts{
     LayoutPart{"Header", "byte 0 of both regions", kHeaderFields},
     LayoutPart{"Control block of a waypoints region", "the control offset of the header",
                kRingControlFields},
-    LayoutPart{"Ring item",
-               "the body of a waypoints region: item i, counted from 0, in place i mod "
-               "capacity; places are rounded up to 64 bytes",
-               kItemFields},
+    LayoutPart{
+        "Ring item",
+        "the body of a waypoints region. Item i, counted from 0, is at place i mod capacity.\n"
+        "The size of a place is rounded up to a multiple of 64 bytes",
+        kItemFields},
     LayoutPart{"Control block of a spline region", "the control offset of the header",
                kBoardControlFields},
-    LayoutPart{"Cell of the summary", "two in the control block of a spline region",
+    LayoutPart{"Cell of the summary",
+               "`summary, cell 0` and `summary, cell 1` of the control block of a spline region",
                kSummaryFields},
     LayoutPart{"Body of a spline region",
-               "the body; slots follow the times, at the next multiple of "
-               "4096 bytes",
+               "the body of a spline region.\n"
+               "The slots follow the times, at the next multiple of 4096 bytes",
                kBodyFields},
-    LayoutPart{"Cell of a knot", "a slot, twice; as all parts of a slot rounded up to 64 bytes",
+    LayoutPart{"Cell of a knot",
+               "a slot (cell 0, then cell 1).\n"
+               "The size of each part of a slot is rounded up to a multiple of 64 bytes",
                kCellFields},
-    LayoutPart{"Node of a knot", "after the cells of a slot, twice", kNodeFields},
-    LayoutPart{"Beside a cell", "after the nodes of a slot, twice: of cell 0 and of cell 1",
+    LayoutPart{"Node of a knot", "the end of the cells of a slot (node 0, then node 1)",
+               kNodeFields},
+    LayoutPart{"Beside a cell",
+               "the end of the nodes of a slot (the part of cell 0, then that of cell 1)",
                kBesideFields},
-    LayoutPart{"Row of a knot", "after what is beside the cells, twice", kRowFields}};
+    LayoutPart{"Row of a knot", "the end of the parts beside the cells (row 0, then row 1)",
+               kRowFields}};
 
 class Fnv {
  public:
@@ -67,6 +75,22 @@ const char* writer_text(FieldWriter writer) noexcept {
   return writer == FieldWriter::maker ? "maker" : "owner";
 }
 
+/// Writes a field as a row of its table; each further line of its meaning is a row of its own.
+void write_rows(std::ostream& page, const Field& field) {
+  if (field.writer == FieldWriter::padding) return;
+  const bool is_open = field.size == Extent{};
+  page << "| " << bytes_text(field.offset) << " | " << (is_open ? "" : bytes_text(field.size))
+       << " | " << field.name << " | " << writer_text(field.writer) << " | ";
+  for (const char c : field.meaning) {
+    if (c == '\n') {
+      page << " |\n| | | | | ";
+    } else {
+      page << c;
+    }
+  }
+  page << " |\n";
+}
+
 }  // namespace
 
 std::span<const LayoutPart> layout_parts() noexcept { return kParts; }
@@ -94,26 +118,24 @@ std::uint64_t layout_hash() noexcept {
 
 std::string layout_page() {
   std::ostringstream page;
-  page << "# The bytes of a stream's regions, layout version " << kLayoutVersion
-       << "\n\nMade from the tables of `ipc/layout`, by which the code reads and writes them; a "
-          "test "
-          "compares. Layout hash: `"
-       << std::hex << layout_hash() << std::dec
-       << "`.\n\nOffsets and sizes are in bytes, from where the part begins; all numbers are "
-          "little-endian 64-bit words\nunless said otherwise, times signed nanoseconds, doubles "
-          "their IEEE 754 bits; D is the number of dimensions.\n*maker*: written before the region "
-          "gets its name, and never again. *owner*: written by the process that holds\nthe "
-          "region's lock.\n";
+  page
+      << "# Fields of the shared memory\n\nEvery field of both regions of a stream, layout version "
+      << kLayoutVersion
+      << ": place, size, writer and meaning.\nFor engineers who read a hex dump or write a reader "
+         "in another language;\n[The shared memory of a stream](layout.md) explains how the parts "
+         "work together.\n\nGenerated from the tables in [`ipc/layout`](../ipc/layout), which the "
+         "code uses; a test compares.\nLayout hash: `"
+      << std::hex << layout_hash() << std::dec
+      << "`.\n\n- Offsets and sizes are in bytes; offsets count from the beginning of the part.\n"
+         "- Numbers are little-endian 64-bit words unless stated otherwise; times are signed "
+         "nanoseconds;\n  doubles are their IEEE 754 bits.\n- D is the number of dimensions.\n"
+         "- *maker*: written by the process that creates the region, before the region gets its "
+         "name, and never again.\n- *owner*: written by the process that holds the lock of the "
+         "region.\n";
   for (const LayoutPart& part : kParts) {
     page << "\n## " << part.name << "\n\nBegins at: " << part.place
-         << ".\n\n| offset | bytes | field | written by | |\n|---|---|---|---|---|\n";
-    for (const Field& field : part.fields) {
-      if (field.writer == FieldWriter::padding) continue;
-      const bool is_open = field.size == Extent{};
-      page << "| " << bytes_text(field.offset) << " | " << (is_open ? "" : bytes_text(field.size))
-           << " | " << field.name << " | " << writer_text(field.writer) << " | " << field.meaning
-           << " |\n";
-    }
+         << ".\n\n| offset | bytes | field | written by | meaning |\n|---|---|---|---|---|\n";
+    for (const Field& field : part.fields) write_rows(page, field);
   }
   return page.str();
 }

@@ -45,10 +45,10 @@ struct Field {
   Extent offset;
   Extent size;
   FieldWriter writer{};
-  std::string_view meaning;
+  std::string_view meaning;  ///< text for the page; may have several lines
 };
 
-/// A row without an offset.
+/// A field whose offset has not been computed yet: the input of place().
 struct FieldRow {
   std::string_view name;
   Extent size;
@@ -110,7 +110,7 @@ template <typename... Rows>
       rows);
 }
 
-/// The field of that name; an unknown name does not compile.
+/// The field of that name. An unknown name is a compile-time error.
 [[nodiscard]] consteval Field field_of(std::span<const Field> fields, std::string_view name) {
   for (const Field& field : fields) {
     if (field.name == name) return field;
@@ -118,7 +118,7 @@ template <typename... Rows>
   throw "no field has this name";
 }
 
-/// The offset of a field, in words; it must not depend on D.
+/// The offset of a field, in words. An offset that depends on D is a compile-time error.
 [[nodiscard]] consteval std::size_t word_of(std::span<const Field> fields, std::string_view name) {
   const Extent offset = field_of(fields, name).offset;
   if (offset.per_dimension != 0) throw "this offset depends on the number of dimensions";
@@ -147,7 +147,7 @@ void encode_row(const FieldRow& row, const Struct& /*from*/, Word*& to) noexcept
   to += row.size.words;
 }
 
-/// If a word differs from the one held, replaces it and calls `changed(index, word)`.
+/// If `word` differs from `held[index]`, stores it there and calls `changed(index, word)`.
 inline void take_word(Word word, std::size_t index, Word* held, const auto& changed) noexcept {
   if (word == held[index]) return;
   held[index] = word;
@@ -192,13 +192,13 @@ void decode_row(const FieldRow& row, const Word*& from, Struct& /*to*/) noexcept
 
 }  // namespace detail
 
-/// Copies members to the words of their rows, or back. Words without a member do not change.
+/// Copies members to the words of their rows. Words without a member do not change.
 template <typename Rows, typename Struct>
 void encode(const Rows& rows, const Struct& from, Word* to) noexcept {
   std::apply([&](const auto&... row) { (detail::encode_row(row, from, to), ...); }, rows);
 }
-/// The same, but updates only those words of `held` that differ, and calls `changed(index, word)`
-/// for each of them.
+/// Like encode, but updates only those words of `held` that differ, and calls `changed(index,
+/// word)` for each of them.
 template <typename Rows, typename Struct>
 void encode_changes(const Rows& rows, const Struct& from, Word* held,
                     const auto& changed) noexcept {
@@ -207,6 +207,7 @@ void encode_changes(const Rows& rows, const Struct& from, Word* held,
       [&](const auto&... row) { (detail::encode_changed_row(row, from, held, at, changed), ...); },
       rows);
 }
+/// Copies the words of rows to their members.
 template <typename Rows, typename Struct>
 void decode(const Rows& rows, const Word* from, Struct& to) noexcept {
   std::apply([&](const auto&... row) { (detail::decode_row(row, from, to), ...); }, rows);
@@ -222,8 +223,8 @@ struct LayoutPart {
 /// Every part, in the order of the page.
 [[nodiscard]] std::span<const LayoutPart> layout_parts() noexcept;
 
-/// Identifies a layout: FNV-1a over the name of each part and the name, offset, size and writer of
-/// each field. Without an argument: of this build.
+/// A hash that identifies a layout: FNV-1a over the name of each part and the name, offset, size
+/// and writer of each field. The overload without parameters hashes the layout of this build.
 [[nodiscard]] std::uint64_t layout_hash(std::span<const LayoutPart> parts) noexcept;
 [[nodiscard]] std::uint64_t layout_hash() noexcept;
 

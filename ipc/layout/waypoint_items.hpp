@@ -12,17 +12,27 @@ inline constexpr std::tuple kItemRows{
     FieldRow{"kind",
              {.words = 1},
              FieldWriter::owner,
-             "kind (bits 0–7: 1 waypoint, 2 replace, 3 start state, 4 finish), velocity given (bit "
-             "8), acceleration given (bit 9), end condition of a finish (bits 16–23), waypoints "
-             "that follow a replace and belong to it (bits 32–63)"},
-    FieldRow{"time", {.words = 1}, FieldWriter::owner, "ns"},
+             "bits 0–7: 1 waypoint, 2 replace, 3 start state, 4 finish\n"
+             "bit 8: has a velocity; bit 9: has an acceleration\n"
+             "bits 16–23, of a finish: end condition, numbered as the start condition\n"
+             "bits 32–63, of a replace: number of waypoints that follow and belong to it"},
+    FieldRow{"time",
+             {.words = 1},
+             FieldWriter::owner,
+             "ns; of a finish: that of the last item before it"},
     FieldRow{"position",
              {.per_dimension = 1},
              FieldWriter::owner,
-             "doubles; of a replace with waypoints, in the first word: ns that the entry takes at "
-             "least"},
-    FieldRow{"velocity", {.per_dimension = 1}, FieldWriter::owner, "doubles, where given"},
-    FieldRow{"acceleration", {.per_dimension = 1}, FieldWriter::owner, "doubles, where given"}};
+             "doubles\n"
+             "of a replace with waypoints, in the first word: shortest length of its entry, ns"},
+    FieldRow{"velocity",
+             {.per_dimension = 1},
+             FieldWriter::owner,
+             "doubles, if bit 8 of the kind is set"},
+    FieldRow{"acceleration",
+             {.per_dimension = 1},
+             FieldWriter::owner,
+             "doubles, if bit 9 of the kind is set"}};
 inline constexpr auto kItemFields = place(kItemRows);
 inline constexpr std::size_t kItemKind = word_of(kItemFields, "kind");
 inline constexpr std::size_t kItemTime = word_of(kItemFields, "time");
@@ -41,7 +51,7 @@ struct RingLayout {
                                      std::size_t control) noexcept;
 };
 
-/// The largest capacity, so that every size and index computed from a header fits.
+/// The largest capacity: no size or index computed from a header overflows.
 inline constexpr std::size_t kMaxRingCapacity = std::size_t{1} << 24;
 
 }  // namespace splinecast::ipc

@@ -20,17 +20,18 @@ struct CheckedRegion {
   Layout layout;
 };
 
-/// Maps a stream's waypoint ring or its knot board; `writable` for its owner only. Populates its
-/// pages. Throws NoSuchStream if there is none; BadRegion, naming the file and the offending value,
-/// if it is not trusted or not such a region.
+/// Maps a stream's waypoint ring or its knot board, and populates its pages. `writable` is for the
+/// owner only. Throws NoSuchStream if there is none; BadRegion, naming the file and the offending
+/// value, if the region is not trusted or is not valid; StreamBusy if `writable` is set and another
+/// process holds the lock on the region itself.
 [[nodiscard]] CheckedRegion<RingLayout> open_ring(std::string_view stream, bool writable,
                                                   const Trust& trust);
 [[nodiscard]] CheckedRegion<BoardLayout> open_board(std::string_view stream, bool writable,
                                                     const Trust& trust);
 
-/// Writes this process into the header as the region's owner and increments the epoch. Relaxed,
-/// like copy_header: no other data depends on the three words, and a copy made meanwhile may mix
-/// those of two owners.
+/// Writes this process as the owner into the header: process id, time, and the epoch of `before`
+/// plus 1. The stores are relaxed, like the loads of copy_header: no other data depends on the
+/// three words, and a concurrent copy may mix the words of two owners.
 void enter_owner(std::span<std::byte> region, const RegionHeader& before) noexcept;
 
 }  // namespace splinecast::ipc

@@ -19,12 +19,12 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Tries for a lock whose holder has not locked a region: the holder may be an `rm`, which soon
-/// releases it.
+/// Maximum number of tries to take a lock that another process holds without a lock on the region:
+/// that process may be an `rm`, which soon releases it.
 constexpr int kLockTries = 10;
 constexpr std::chrono::milliseconds kLockPoll{5};
 
-/// Tries to open a lock file that other processes keep removing.
+/// Maximum number of tries to open a lock file that other processes remove repeatedly.
 constexpr int kOpenTries = 100;
 
 struct flock whole_file(short type) noexcept {
@@ -39,8 +39,9 @@ bool try_lock(int descriptor) noexcept {
   return fcntl(descriptor, F_OFD_SETLK, &lock) == 0;
 }
 
-/// Opens the lock file, or creates it: `made_file` says which. The first try is without O_CREAT,
-/// because kernels refuse that flag for other users' files in sticky folders.
+/// Opens the lock file or, if there is none, creates it; then `made_file` is true. The first try is
+/// without O_CREAT, because the kernel may refuse that flag for other users' files in sticky
+/// directories (fs.protected_regular).
 OwnedDescriptor open_lock_file(const std::string& path, bool& made_file) {
   constexpr int kFlags = O_RDWR | O_NOFOLLOW | O_NONBLOCK;
   for (int tries = 1;; ++tries) {
@@ -71,8 +72,8 @@ void require_own_file(int descriptor, const std::string& path) {
   }
 }
 
-/// Opens a file to query its locks; empty if this process may not open it. Throws OutOfResources if
-/// resources are short.
+/// Opens a file to query its locks. Returns nullopt if the file does not exist or this process may
+/// not open it. Throws OutOfResources if resources are short.
 std::optional<OwnedDescriptor> open_to_query(const std::string& path) {
   OwnedDescriptor opened = OwnedDescriptor::open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK);
   if (opened.get() >= 0) return opened;
@@ -80,14 +81,16 @@ std::optional<OwnedDescriptor> open_to_query(const std::string& path) {
   return std::nullopt;
 }
 
-/// Whether a file is one that OwnerLock accepts: of this user or, for root, of any user.
+/// Whether OwnerLock accepts this file: a regular file of this user or, if this process is root, of
+/// any user.
 bool is_lock_file(int descriptor) noexcept {
   struct stat status {};
   return fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode) &&
          (status.st_uid == geteuid() || geteuid() == 0);
 }
 
-/// Whether the owner's lock is held; empty if this process may not open its file.
+/// Whether the owner's lock is held; nullopt if the lock file does not exist, is not valid, or this
+/// process may not open it.
 std::optional<bool> is_lock_held(std::string_view stream, RegionKind kind) {
   const auto file = open_to_query(lock_path(stream, kind));
   if (!file || !is_lock_file(file->get())) return std::nullopt;
@@ -138,7 +141,7 @@ void OwnerLock::remove_file() noexcept {
   if (getpid() == holder_) unlink(path_.c_str());
 }
 
-void OwnerLock::remove_litter() noexcept {
+void OwnerLock::remove_unused_file() noexcept {
   if (made_file_ || !region_exists(stream_, kind_)) remove_file();
 }
 
@@ -158,13 +161,13 @@ bool RegionLock::hold() noexcept {
 }
 
 bool is_region_locked(int descriptor) noexcept {
-  // A read lock conflicts with the owner's write lock only, not with other readers' queries.
+  // The query for a read lock finds only write locks: other processes' read locks do not count.
   struct flock lock = whole_file(F_RDLCK);
   return fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
 }
 
 bool region_owner_lives(int descriptor) noexcept {
-  // A write lock would conflict with read and write locks.
+  // The query for a write lock finds both read and write locks.
   struct flock lock = whole_file(F_WRLCK);
   if (fcntl(descriptor, F_OFD_GETLK, &lock) != 0 || lock.l_type == F_UNLCK) return false;
   if (lock.l_type == F_WRLCK) return true;

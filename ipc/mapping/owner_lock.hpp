@@ -15,19 +15,21 @@ namespace splinecast::ipc {
 /// any reason: there are no stale locks, PID files or timeouts.
 class OwnerLock {
  public:
-  /// Takes the lock, or throws StreamBusy within 50 ms (an `rm` holds it briefly), naming the
-  /// owner's process if the region does; BadRegion if the lock file is not this user's.
+  /// Takes the lock. Throws StreamBusy if another process still holds it after 50 ms (an `rm` holds
+  /// it only briefly) or has locked the region; the message names that process if the region's
+  /// header can be read. Throws BadRegion if the lock file is not a private file of this user.
   OwnerLock(std::string_view stream, RegionKind kind);
 
   /// Unlinks the lock file while the lock is held. Does nothing in a forked child, which does not
   /// hold the lock.
   void remove_file() noexcept;
 
-  /// The same if the file is litter: if it has no region, or if this lock created the file and its
-  /// holder could not use the region, which another user created.
-  void remove_litter() noexcept;
+  /// Unlinks the lock file, like remove_file(), if it is of no use: if there is no region, or if
+  /// this lock created the file but its holder did not get the region, which another user created.
+  void remove_unused_file() noexcept;
 
-  /// Called when the holder has its region: the lock file then remains as long as the region.
+  /// Call this when the holder has its region: from then on the lock file remains as long as the
+  /// region.
   void keep_file() noexcept { made_file_ = false; }
 
  private:
@@ -43,22 +45,22 @@ class OwnerLock {
 /// calls. Throws OutOfResources if no file descriptor is left to find out.
 [[nodiscard]] bool is_owned(std::string_view stream, RegionKind kind);
 
-/// Whether the owner of a region of this kind lives. Queries the owner's lock if this process may
-/// open its file, so that locks of other processes on the region cannot hide an owner; else the
-/// region, see region_owner_lives(). System calls. Throws BadRequest for an invalid name,
-/// OutOfResources if no file descriptor is left to find out.
+/// Whether the owner of a region of this kind lives. Queries the owner's lock file if this process
+/// may open it, so that locks of other processes on the region cannot hide an owner. Otherwise
+/// queries the region, see region_owner_lives(). System calls. Throws BadRequest for an invalid
+/// name, OutOfResources if no file descriptor is left to find out.
 [[nodiscard]] bool owner_lives(std::string_view stream, RegionKind kind);
 
-/// The write lock that an owner puts on the region itself, best effort. Readers, which cannot open
+/// The write lock that an owner puts on the region itself, if it can. Readers, which cannot open
 /// the lock file, query it to find out whether the owner lives. A reader that already holds a read
-/// lock prevents it.
+/// lock on the region prevents this write lock.
 class RegionLock {
  public:
-  /// `descriptor` belongs to an open region, which keeps it.
+  /// `descriptor` is that of an open region, which owns it.
   explicit RegionLock(int descriptor) noexcept : descriptor_(descriptor) { (void)hold(); }
 
-  /// Tries to take the lock unless it is held. Returns whether it is held. One system call if it
-  /// was not.
+  /// Tries to take the lock if it is not held yet. Returns whether it is held now. One system call,
+  /// or none if it was held.
   bool hold() noexcept;
 
  private:
@@ -69,9 +71,9 @@ class RegionLock {
 /// Whether another open file description holds an owner's write lock on this file.
 [[nodiscard]] bool is_region_locked(int descriptor) noexcept;
 
-/// Whether the owner of an open region lives, by its write lock. If a read lock of another process
-/// prevents that lock, by the process that the header names: it must exist and have existed since
-/// it became the owner.
+/// Whether the owner of an open region lives, by its write lock on the region. If the region has
+/// only a read lock, by which another process prevents the write lock, decides by the process that
+/// the header names: it must live and have existed since it became the owner.
 [[nodiscard]] bool region_owner_lives(int descriptor) noexcept;
 
 }  // namespace splinecast::ipc

@@ -28,7 +28,8 @@ namespace bip = boost::interprocess;
 
 std::string error_text(int error) { return std::generic_category().message(error); }
 
-/// Lends a descriptor to boost::interprocess::mapped_region.
+/// Passes a descriptor to boost::interprocess::mapped_region, as Boost's concept MemoryMappable
+/// requires. Does not own it.
 class DescriptorMapping {
  public:
   explicit DescriptorMapping(int descriptor) : descriptor_(descriptor) {}
@@ -47,7 +48,8 @@ std::string free_bytes(int descriptor) {
   return std::to_string(status.f_bavail * status.f_frsize);
 }
 
-/// Calls `map` and names `what` in its errors: Boost's do not say what could not be mapped.
+/// Calls `map`. Converts Boost's exceptions, which do not say what could not be mapped, to errors
+/// that name `what`.
 template <typename Map>
 auto naming_what(const std::string& what, const Map& map) {
   try {
@@ -59,8 +61,8 @@ auto naming_what(const std::string& what, const Map& map) {
   }
 }
 
-/// Throws BadRegion if a file of this size is not allowed: the kernel would end the process with
-/// SIGXFSZ instead of an error.
+/// Throws BadRegion if the file size limit of this process is below `bytes`: otherwise the kernel
+/// would end the process with SIGXFSZ.
 void require_file_size(std::size_t bytes) {
   struct rlimit limit {};
   if (getrlimit(RLIMIT_FSIZE, &limit) != 0 || bytes <= limit.rlim_cur) return;
@@ -69,8 +71,8 @@ void require_file_size(std::size_t bytes) {
                   std::to_string(limit.rlim_cur) + " (RLIMIT_FSIZE)");
 }
 
-/// Reserves memory piece by piece, because a signal cancels the current piece. An interrupted piece
-/// is halved, so that this ends at any rate of signals.
+/// Reserves memory in pieces, because a signal cancels the reservation of the current piece. After
+/// each interruption the pieces are half as long, so that the loop ends at any rate of signals.
 void reserve_pages(int descriptor, std::size_t bytes) {
   constexpr int kTriesOfAPage = 1000;
   require_file_size(bytes);
@@ -122,9 +124,9 @@ void require_trusted(const struct stat& status, const std::string& path, const T
   }
 }
 
-/// Opens the file first and then checks the descriptor, because the name may refer to another file
-/// each time. Does not wait for the other end of a FIFO or for a lease, which any user can put
-/// under a name.
+/// Opens a region's file. Callers check the descriptor, not the name, because the name may refer to
+/// another file at each call. O_NONBLOCK: open does not wait for the other end of a FIFO or for a
+/// lease, which any user can put under the name.
 OwnedDescriptor open_region_file(std::string_view stream, RegionKind kind, bool writable) {
   const std::string path = region_path(stream, kind);
   const int access = writable ? O_RDWR : O_RDONLY;
@@ -136,7 +138,7 @@ OwnedDescriptor open_region_file(std::string_view stream, RegionKind kind, bool 
                          std::string(owner_role(kind)));
     case ELOOP:   // a symbolic link
     case ENXIO:   // a socket
-    case EISDIR:  // a folder, to be written
+    case EISDIR:  // a directory, opened for writing
       throw BadRegion(path + " is not a regular file");
     default:
       throw_failure("cannot open " + path, error);

@@ -43,11 +43,11 @@ class Region {
   /// The bytes of the region. Must not be written unless it was opened writable.
   [[nodiscard]] std::span<std::byte> bytes() const noexcept;
 
-  /// -1 after close_descriptor().
+  /// The descriptor of the region's file; −1 after close_descriptor().
   [[nodiscard]] int descriptor() const noexcept;
 
-  /// Closes the descriptor; the bytes stay mapped. For a process that maps many regions and does
-  /// not link this one, lock it or query its owner.
+  /// Closes the descriptor; the bytes stay mapped. For a process that maps many regions. After
+  /// that, this region can no longer be linked or locked, and its owner cannot be queried.
   void close_descriptor() noexcept;
 
   /// Whether its pages are locked into memory; best effort, see RLIMIT_MEMLOCK.
@@ -82,7 +82,7 @@ struct RegionFile {
 /// Unlinks a region's name; its mappings remain.
 void unlink_region(std::string_view stream, RegionKind kind) noexcept;
 
-/// Inode of the time namespace of this process: clocks of two namespaces differ.
+/// Inode of the time namespace of this process, 0 if unknown. Clocks of two namespaces differ.
 [[nodiscard]] std::uint64_t time_namespace() noexcept;
 
 /// A random number that is not 0.

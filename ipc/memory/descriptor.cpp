@@ -64,8 +64,8 @@ void OwnedDescriptor::close() noexcept {
   const std::scoped_lock guard(registry().mutex);
   // In a forked child the list is empty, and the number may belong to another file.
   if (std::erase(registry().descriptors, descriptor_) > 0) {
-    // Unlock explicitly: a child that was just forked may still have a copy open, which keeps the
-    // lock. Unlocking one copy unlocks all.
+    // Unlock explicitly: a child that was just forked may not have closed its duplicate of the
+    // descriptor yet, which would keep the lock. Unlocking one duplicate unlocks all.
     struct flock whole_file {};
     whole_file.l_type = F_UNLCK;
     fcntl(descriptor_, F_OFD_SETLK, &whole_file);

@@ -6,14 +6,14 @@
 
 namespace splinecast::ipc {
 
-/// A file descriptor that is closed on exec and in every child that this process forks: a lock held
-/// through it belongs to this process only and ends with it.
+/// A file descriptor that is closed on exec, and in every child that this process forks. So a lock
+/// held through it belongs to this process only, and the kernel releases it when this process ends.
 class OwnedDescriptor {
  public:
   OwnedDescriptor() = default;
 
-  /// open(2) with O_CLOEXEC. No fork can happen between opening and registration for closing in
-  /// children. get() is −1 if open(2) fails, with errno set.
+  /// Calls open(2) with O_CLOEXEC. If it fails, get() is −1 and errno is set. A concurrent fork
+  /// waits until the descriptor is registered for closing in children.
   [[nodiscard]] static OwnedDescriptor open(const std::string& path, int flags, mode_t mode = 0);
 
   OwnedDescriptor(OwnedDescriptor&& other) noexcept;

@@ -11,7 +11,8 @@
 namespace splinecast::ipc {
 namespace {
 
-/// File times on Linux have the resolution of the kernel's tick, at most 10 ms.
+/// A change within this time after another one may get the same modification time: file times on
+/// Linux have the resolution of the kernel's tick, which is at most 10 ms.
 constexpr Time kStampStep = std::chrono::milliseconds(20);
 
 Time to_time(const timespec& time) noexcept {
@@ -23,7 +24,7 @@ Time to_time(const timespec& time) noexcept {
 bool FolderWatch::has_changed() noexcept {
   static const std::string folder(kSharedMemoryFolder);
   timespec now{};
-  clock_gettime(CLOCK_REALTIME, &now);  // before stat: the next call sees any later change
+  clock_gettime(CLOCK_REALTIME, &now);  // before stat: a change after stat is never missed
   struct stat status {};
   if (stat(folder.c_str(), &status) != 0) return true;
   const Time modified = to_time(status.st_mtim);

@@ -4,17 +4,16 @@
 
 namespace splinecast::ipc {
 
-/// Detects whether files may have been created or removed in the folder of shared memory, by the
-/// folder's modification time: one system call, no descriptor, no directory to read while nothing
-/// changes.
+/// Detects by the modification time of the shared memory folder whether files may have been created
+/// or removed there. While nothing changes: one system call, no descriptor, no directory to read.
 class FolderWatch {
  public:
-  /// Whether this may have happened since the last call; true at the first call.
+  /// Whether files may have been created or removed since the last call; true at the first call.
   [[nodiscard]] bool has_changed() noexcept;
 
  private:
   Time modified_ = Time::min();
-  bool was_fresh_ = false;  ///< later changes may have the same modification time
+  bool was_fresh_ = false;  ///< a later change may get the same modification time
 };
 
 }  // namespace splinecast::ipc

@@ -23,8 +23,8 @@ timespec to_timespec(Time time) noexcept {
   return {.tv_sec = bounded / kSecond, .tv_nsec = bounded % kSecond};
 }
 
-/// The FUTEX_WAIT_BITSET bit of threads that wait for the successor of this revision. Distinguishes
-/// them from threads that wait for a later one.
+/// The FUTEX_WAIT_BITSET bit of threads that have seen `revision` and wait for a later one. It
+/// distinguishes them from threads that have seen only an earlier revision.
 std::uint32_t bit_of(Word revision) noexcept { return std::uint32_t{1} << revision % 32; }
 
 }  // namespace
@@ -39,7 +39,8 @@ bool wait_for_change(const Word& revision, Word seen, Time timeout) noexcept {
   const bool is_woken = syscall(SYS_futex, &revision, FUTEX_WAIT_BITSET,
                                 static_cast<std::uint32_t>(seen), &end, nullptr, bit_of(seen)) == 0;
   if (is_woken) {
-    // Excludes threads that already wait for the next revision: they would wake each other forever.
+    // Does not wake threads that have seen the current revision: woken threads would wake each
+    // other forever.
     const Word present = load(revision, std::memory_order_relaxed);
     syscall(SYS_futex, &revision, FUTEX_WAKE_BITSET, kWokenAtOnce, nullptr, nullptr,
             ~bit_of(present));
@@ -48,7 +49,7 @@ bool wait_for_change(const Word& revision, Word seen, Time timeout) noexcept {
 }
 
 int wake_some(const Word& revision) noexcept {
-  // All waiting threads wait for this revision or an earlier one, so that none must be excluded.
+  // No bit set is needed: all waiting threads wait for this revision or an earlier one.
   return static_cast<int>(
       syscall(SYS_futex, &revision, FUTEX_WAKE, kWokenAtOnce, nullptr, nullptr, 0));
 }

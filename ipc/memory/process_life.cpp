@@ -72,7 +72,8 @@ bool process_lives(std::uint64_t pid, Time since) noexcept {
   const auto stat = read_stat(pid);
   if (!stat) return true;
   if (stat->state == 'Z' || stat->state == 'X') return false;
-  // Compares ages, because only CLOCK_BOOTTIME runs while the machine is suspended.
+  // Compares ages, not times: the start time is by CLOCK_BOOTTIME, which also advances while the
+  // machine is suspended; CLOCK_MONOTONIC does not.
   const Time now = now_by(CLOCK_MONOTONIC);
   const Time owned = now - std::clamp(since, Time::zero(), now);
   return now_by(CLOCK_BOOTTIME) - stat->started >= owned;

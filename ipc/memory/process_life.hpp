@@ -6,8 +6,8 @@
 
 namespace splinecast::ipc {
 
-/// Whether process `pid` runs and is the one that had this id at `since`, on CLOCK_MONOTONIC. True
-/// if that cannot be determined. System calls.
+/// Whether process `pid` lives and is the process that had this id at time `since` of
+/// CLOCK_MONOTONIC. True if that cannot be determined. System calls.
 [[nodiscard]] bool process_lives(std::uint64_t pid, Time since) noexcept;
 
 }  // namespace splinecast::ipc

@@ -2,8 +2,9 @@
 
 #include <cstdint>
 
-/// A hook before every store to shared memory, by which a test can kill the process between any two
-/// stores: only in a build with SPLINECAST_HOOKS. In any other build it is empty and costs nothing.
+/// A hook that runs before every store to shared memory. In a build with SPLINECAST_HOOKS, a test
+/// can use it to kill the process between any two stores. In any other build it is empty and costs
+/// nothing.
 namespace splinecast::ipc {
 
 #ifdef SPLINECAST_HOOKS

@@ -8,7 +8,8 @@
 
 namespace splinecast::ipc {
 
-/// Whether an error means a shortage of resources, which ends when other processes free some.
+/// Whether errno value `error` means a shortage of resources: a retry may succeed when other
+/// processes have freed some.
 inline bool is_shortage(int error) noexcept {
   return error == ENOMEM || error == ENOSPC || error == EMFILE || error == ENFILE ||
          error == EDQUOT;

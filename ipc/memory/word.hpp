@@ -19,13 +19,13 @@ static_assert(std::atomic_ref<Word>::is_always_lock_free);
 static_assert(sizeof(double) == sizeof(Word));
 
 #ifdef SPLINECAST_PLAIN_WORD
-/// The one word that is plain memory in a test's own build of this library: ThreadSanitizer must
-/// report it.
+/// In a special build of this library for a test: the word that load() and store() access without
+/// an atomic. ThreadSanitizer must report it.
 inline const Word* plain_word = nullptr;
 #endif
 
-/// Loads a word, also from a read-only mapping: a lock-free 64-bit load stores nothing, but
-/// std::atomic_ref has no const form in C++20.
+/// Loads a word; the mapping may be read-only. The const_cast is necessary because C++20 has no
+/// std::atomic_ref<const T>, and safe because a lock-free 64-bit load stores nothing.
 [[nodiscard]] inline Word load(const Word& word, std::memory_order order) noexcept {
 #ifdef SPLINECAST_PLAIN_WORD
   if (&word == plain_word) return word;
@@ -118,7 +118,8 @@ inline void store_values(Word* to, std::span<const double> values) noexcept {
   });
 }
 
-/// The same, and adds their magnitudes to a sum: see core::magnitude_of.
+/// Stores values as store_values does, and adds their magnitudes to `sum`, for a check of all
+/// values at once: see core::magnitude_of.
 inline void store_summed(Word* to, std::span<const double> values, double& sum) noexcept {
   double own = sum;
   copy_each(to, values.data(), values.size(), [&own](Word& word, double value) {
@@ -135,8 +136,8 @@ inline void load_values(std::span<double> values, const Word* from) noexcept {
   });
 }
 
-/// Views part of a region as words. `offset` must be a multiple of 8, and all words must be inside
-/// the region: the caller has checked its layout.
+/// A view of a part of a region as words. `offset` must be a multiple of 8, and all words must be
+/// inside the region: the caller has checked the layout.
 [[nodiscard]] inline std::span<Word> words_at(std::span<std::byte> region, std::size_t offset,
                                               std::size_t count) noexcept {
   return {reinterpret_cast<Word*>(region.data() + offset), count};  // NOLINT(*-reinterpret-cast)

@@ -34,7 +34,8 @@ const Method& method_of(const SolverOptions& options) {
   return options.method == nullptr ? c2() : *options.method;
 }
 
-/// Limits that are given must be those of the board; a kind without given limits is not compared.
+/// Throws BadRequest if a given limit differs from that of the board. Does not compare kinds of
+/// limits that are not given.
 void require_same_limits(const std::string& stream, const RegionHeader& stands,
                          const SolverOptions& options) {
   const MotionLimits limits = limits_for(options, stands);
@@ -93,7 +94,7 @@ void require_parameters_of(const Method& method, const SolverOptions& options) {
     throw BadRequest("the time scale is for method rounded, not for " + std::string(method.name));
   }
   if (options.tail && method.has_own_tail()) {
-    throw BadRequest("method " + std::string(method.name) + " has a tail of its own, not '" +
+    throw BadRequest("the tail of method " + std::string(method.name) + " is fixed, not '" +
                      std::string(to_string(*options.tail)) + "'");
   }
 }
@@ -103,7 +104,7 @@ void require_parameters_of(const Method& method, const SolverOptions& options) {
 void require_options(const SolverOptions& options) {
   require_times(options);
   require_parameters_of(method_of(options), options);
-  // The number of dimensions and their kinds are not known yet.
+  // Checks with one dimension and without limits: the stream's dimensions are not known yet.
   SolverOptions curve = options;
   curve.limits.reset();
   curve.named_limits.clear();

@@ -9,8 +9,8 @@
 #include "splinecast/limits.hpp"
 #include "splinecast/options.hpp"
 
-/// The options of a curve, which its solver sets: checking, writing to a header, reading from one,
-/// comparing.
+/// The options of a curve, which its solver sets: functions that check them, write them to a
+/// header, read them from one, and compare them.
 namespace splinecast::ipc {
 
 /// Throws BadRequest, with the value, for invalid options.
@@ -31,7 +31,7 @@ void write_options(const SolverOptions& options, RegionHeader& header);
 [[nodiscard]] std::optional<LiveOptions> live_options(const RegionHeader& header) noexcept;
 
 /// Throws BadRequest, naming what differs, if a solver's options contradict the header of the board
-/// that it is to take over.
+/// that it takes over.
 void require_same_options(const std::string& stream, const RegionHeader& stands,
                           const SolverOptions& options);
 

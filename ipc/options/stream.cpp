@@ -17,10 +17,10 @@
 namespace splinecast::ipc {
 namespace {
 
-/// The longest beginning of at most `most` bytes that ends between characters of UTF-8.
+/// The longest prefix of at most `most` bytes that does not split a UTF-8 character.
 std::string cut(const std::string& text, std::size_t most) {
   std::size_t length = std::min(text.size(), most);
-  // The byte after the cut must not be one that continues a character.
+  // The byte after the prefix must not be a UTF-8 continuation byte.
   while (length > 0 && length < text.size() &&
          (static_cast<unsigned char>(text[length]) & 0xc0U) == 0x80U) {
     --length;

@@ -10,15 +10,15 @@
 #include "splinecast/dimension_kind.hpp"
 #include "splinecast/options.hpp"
 
-/// The options of a stream, which its producer sets: writing to a header, reading from one,
-/// comparing.
+/// The options of a stream, which its producer sets: functions that write them to a header, read
+/// them from one, and compare them.
 namespace splinecast::ipc {
 
 /// A header for a new region, except the fields that depend on its kind and capacity.
 [[nodiscard]] RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id);
 
-/// Throws BadRequest, which names the condition as `which`, unless its values fit the dimensions
-/// and a stream can meet it.
+/// Throws BadRequest, which calls the condition `which`, unless its values fit the dimensions and
+/// it is an online condition.
 void require_usable(const std::string& which, const Condition& condition, std::size_t dimensions);
 
 /// The stream's options in a header, as its producer set them.
@@ -34,15 +34,16 @@ void require_usable(const std::string& which, const Condition& condition, std::s
 
 [[nodiscard]] StreamClock stream_clock(const RegionHeader& header) noexcept;
 
-/// A dimension's name as a header stores it: cut to kNameBytes − 1 bytes, between characters.
+/// A dimension's name as a header stores it: truncated to at most kNameBytes − 1 bytes, without
+/// splitting a UTF-8 character.
 [[nodiscard]] std::string header_name(const std::string& name);
 
-/// Throws BadRegion, naming both namespaces, if a live stream's clock is that of another time
-/// namespace.
+/// Throws BadRegion, naming both time namespaces, if a live stream uses the clock of another time
+/// namespace than this process.
 void require_same_clock(const RegionHeader& header, const std::string& stream);
 
-/// Throws BadRegion, naming what differs, unless a board describes the stream of this ring as the
-/// ring does: stream id, dimensions, their kinds, clock and start.
+/// Throws BadRegion, naming what differs, unless the ring's and the board's header agree on the
+/// stream id, the dimensions, their kinds, the clock and the start condition.
 void require_same_stream(const RegionHeader& ring, const RegionHeader& board);
 
 /// Throws BadRequest, naming what differs, if a producer's options contradict the header of the

@@ -17,7 +17,7 @@ namespace splinecast::ipc {
 /// The kinds of ring items.
 enum class ItemKind : std::uint8_t {
   waypoint = 1,
-  replace = 2,      ///< withdraws everything from a time on; `count` waypoints follow
+  replace = 2,      ///< withdraws everything after a time; `count` waypoints follow
   start_state = 3,  ///< the state that a stream starts in
   finish = 4,       ///< the stream ends at its last waypoint, with a boundary condition there
 };
@@ -40,9 +40,10 @@ struct RingItem {
   [[nodiscard]] Waypoint waypoint() const noexcept;
 };
 
-/// By how much a waypoint of a live stream may be before the settled time and still become part of
-/// the target, to which an entry returns. The waypoint itself is passed over. By then the straight
-/// line after the waypoint before has ended.
+/// Maximum lateness of a waypoint of a live stream: the time by which it may be before the settled
+/// time. A late waypoint becomes part of the target, to which an entry returns, but is itself
+/// passed over. After this time, the straight line that extrapolates from the previous waypoint has
+/// ended.
 inline constexpr Time kMostLate = core::Extrapolation::kLine;
 static_assert(kMostLate == Time{250'000'000});  // as Refusal::past says
 

@@ -5,10 +5,10 @@
 #include "ipc/layout/waypoint_items.hpp"
 #include "ipc/memory/word.hpp"
 
-/// The bits of an item's word kItemKind, and the words that an item takes: see kItemRows.
+/// The bits of an item's word kItemKind, and the size of an item in words: see kItemRows.
 namespace splinecast::ipc {
 
-inline constexpr Word kKindMask = 0xff;  ///< ItemKind; ConditionKind after its shift
+inline constexpr Word kKindMask = 0xff;  ///< of ItemKind and, after its shift, of ConditionKind
 inline constexpr Word kHasVelocity = 1U << 8;
 inline constexpr Word kHasAcceleration = 1U << 9;
 inline constexpr unsigned kConditionShift = 16;  ///< of a finish

@@ -55,7 +55,7 @@ std::optional<Time> WaypointRingReader::observe_time(Word i) const noexcept {
   return is_kept(i) ? std::optional(at) : std::nullopt;
 }
 
-/// O2: whether what has been loaded of item i is valid.
+/// O2: whether the words of item i that were loaded are valid.
 bool WaypointRingReader::is_kept(Word i) const noexcept {
   const Word next = i + layout_.capacity;  // the item that will overwrite it
   return load(control_[kWritten], std::memory_order_relaxed) < next &&

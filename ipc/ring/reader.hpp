@@ -15,8 +15,8 @@
 
 namespace splinecast::ipc {
 
-/// The solver's side of a waypoint ring, also for passive observers: the orderings S1 to O2 of
-/// writer.hpp. No function blocks, allocates or stores.
+/// The reading side of a waypoint ring, for the solver and for passive observers. Uses the
+/// orderings S1, S2, O1 and O2 of writer.hpp. No function blocks, allocates or stores.
 class WaypointRingReader {
  public:
   /// `region` holds a ring of this layout and outlives the reader.
@@ -34,30 +34,33 @@ class WaypointRingReader {
     return load(control_[kRetired], std::memory_order_acquire) != 0;
   }
 
-  /// `written` and `retired`, in one cache line: all that must be polled of an idle ring.
+  /// `written` and `retired`, in one cache line: everything that must be polled while the ring is
+  /// idle.
   [[nodiscard]] std::span<const Word, 2> polled() const noexcept { return control_.first<2>(); }
 
-  /// Prefetches the cache lines of item i. Loads nothing.
+  /// Prefetches the first half of item i, which holds kind, time and position. Loads nothing.
   void prefetch(Word i) const noexcept {
     prefetch_lines(&items_[(i & (layout_.capacity - 1)) * (layout_.stride / sizeof(Word))],
                    layout_.stride / 2);
   }
 
-  /// Copies item i < written(), which the consumer must not have released: it has stored no
-  /// `consumed` above i.
+  /// Copies item i (S2). The item must have been appended, i < written(), and the consumer must not
+  /// have released it: every `consumed` that it has stored is at most i.
   void copy(Word i, RingItem& out) const noexcept;
 
-  /// Kind and time of item i, with the same precondition.
+  /// Kind of item i, with the same precondition.
   [[nodiscard]] ItemKind kind(Word i) const noexcept;
-  /// Whether item i is a stop: a replacement without waypoints.
+  /// Whether item i is a stop, a replacement without waypoints; with the same precondition.
   [[nodiscard]] bool is_stop(Word i) const noexcept;
+  /// Time of item i, with the same precondition.
   [[nodiscard]] Time time(Word i) const noexcept;
 
-  /// Copies item i for an observer, for which the producer does not wait. Returns false if the item
-  /// has been, or may have been, overwritten (O2); then `out` is not valid. Wait-free: O(D).
+  /// Copies item i < written() for an observer: the producer does not wait for observers before it
+  /// overwrites an item. Returns false if the item has been, or may have been, overwritten (O2);
+  /// then `out` is not valid. Wait-free: O(D).
   [[nodiscard]] bool observe(Word i, RingItem& out) const noexcept;
 
-  /// The time of item i, for such an observer; empty if the item has been, or may have been,
+  /// The time of item i, for an observer; empty if the item has been, or may have been,
   /// overwritten, or has not been appended.
   [[nodiscard]] std::optional<Time> observe_time(Word i) const noexcept;
 

@@ -11,7 +11,8 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Time of a stop while the producer knows no settled time: before any waypoint that can follow.
+/// Time of a stop if the producer does not know a settled time yet: before the time of any
+/// waypoint.
 constexpr Time kEarliestStop = -kLatestTime;
 
 bool fits(std::span<const double> values, std::size_t dimensions) noexcept {
@@ -27,8 +28,8 @@ WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLa
       control_(words_at(region, layout.control, kRingControlWords)),
       items_(words_at(region, layout.items, layout.capacity * words_per_item(layout))),
       written_(load(control_[kWritten], std::memory_order_relaxed)) {
-  // Search backwards for the newest item that bounds the time of the next one: a finish may come
-  // after the last waypoint.
+  // Search backwards for the newest item that bounds the time of the next one. The newest item may
+  // be a finish, which does not bound it.
   const WaypointRingReader past(region, layout);
   ends_with_stop_ = written_ > 0 && past.is_stop(written_ - 1);
   bool is_found = false;
@@ -71,7 +72,8 @@ AppendStatus WaypointRingWriter::check(const Waypoint& waypoint,
                                                                 : AppendStatus::full;
 }
 
-/// Whether a waypoint is too late to be part of the target. Reads the clock only if it is late.
+/// Whether a waypoint is too late to be part of the target. Reads the clock only if the time is
+/// before the settled time.
 bool WaypointRingWriter::is_past(Time time, const Solved& solved) const noexcept {
   if (time >= solved.settled_until) return false;
   if (!has_last_) return true;
@@ -79,7 +81,9 @@ bool WaypointRingWriter::is_past(Time time, const Solved& solved) const noexcept
   return time + kMostLate < std::max(now, solved.settled_until);
 }
 
-/// A live stream may continue after a pause of any length: its clock also runs at rest.
+/// Whether a waypoint that is more than max_interval after the newest item is valid because it
+/// follows the settled time or now closely enough. So a live stream may continue after a pause of
+/// any length: its clock also advances at rest.
 bool WaypointRingWriter::follows_pause(Time time, const Solved& solved) const noexcept {
   const auto follows = [&](Time since) {
     return since > last_time_ && time - since <= limits_.max_interval;
@@ -133,7 +137,8 @@ AppendStatus WaypointRingWriter::replace_from(Time t, std::span<const Waypoint> 
   return status;
 }
 
-/// A stop is never too late: if t has settled, it takes effect where the settled part ends.
+/// The time at which a stop takes effect. A stop is never too late: if t has settled, it takes
+/// effect at the end of the settled part.
 Time WaypointRingWriter::effect_of_stop(Time t, const Solved& solved) noexcept {
   return std::max({t, solved.settled_until, kEarliestStop});
 }
@@ -143,8 +148,8 @@ AppendStatus WaypointRingWriter::check_stop(Time t, const Solved& solved) const 
   const Time from = effect_of_stop(t, solved);
   if (!is_time_in_range(from)) return AppendStatus::too_far_apart;
   if (repeats_stop(from, solved)) return AppendStatus::accepted;
-  // A stop ahead leaves a place for a stop that takes effect at once; every stop leaves one for
-  // finish.
+  // A stop after the settled time leaves one place free for a stop that takes effect at once, and
+  // one for finish; a stop that takes effect at once leaves one for finish.
   const bool is_ahead = from > solved.settled_until;
   const std::size_t others = control_reserve(layout_.capacity) / 2;
   const bool has_place = has_room(1, solved, is_ahead ? others : std::min<std::size_t>(others, 1));
@@ -163,8 +168,8 @@ AppendStatus WaypointRingWriter::stop_from(Time t, const Solved& solved) noexcep
   return AppendStatus::accepted;
 }
 
-/// Whether a stop would change nothing: the newest item is a stop that still waits, at this time or
-/// earlier.
+/// Whether a stop would change nothing: the newest item is a stop at this time or earlier, and the
+/// solver has not consumed it yet.
 bool WaypointRingWriter::repeats_stop(Time from, const Solved& solved) const noexcept {
   return ends_with_stop_ && solved.consumed < written_ && from >= last_time_;
 }
@@ -202,8 +207,8 @@ AppendStatus WaypointRingWriter::finish(const Condition& end, const Solved& solv
   return AppendStatus::accepted;
 }
 
-/// P0: announces to observers how far several items will reach, before these are written. Never
-/// decreases: an earlier producer may have overwritten what it claimed.
+/// P0: stores for observers where the next `items` items end, before these are written. `claimed`
+/// never decreases: an earlier producer may have overwritten everything up to it.
 void WaypointRingWriter::claim(Word items) noexcept {
   Word& claimed = control_[kClaimed];
   store(claimed, std::max(load(claimed, std::memory_order_relaxed), written_ + items),
@@ -216,7 +221,8 @@ std::span<Word> WaypointRingWriter::item_words(Word index) const noexcept {
   return items_.subspan(((written_ + index) & (layout_.capacity - 1)) * stride, stride);
 }
 
-/// Writes item written_ + index: P1.
+/// Writes item written_ + index, each word with release (P1). Does not write values that are
+/// absent.
 void WaypointRingWriter::put_item(Word index, Word kind_and_flags,
                                   const Waypoint& values) noexcept {
   const auto words = item_words(index);

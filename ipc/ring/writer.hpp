@@ -23,31 +23,31 @@
 ///
 /// Orderings of the hand-over:
 ///
-/// P0 claimed.store(relaxed), before a replacement writes its items: the end of these items.
-/// `written`
-///    alone says that the next item may be partly written, but not that several may be. Relaxed is
-///    enough, because each P1 is a release: a process that sees a word of the replacement sees P0.
-/// P1 word.store(release), each. For the solver P2 is enough; for an observer it pairs with O1: if
-///    it sees a word of item i + capacity, it sees P0 and the P2 by which `written` reached
-///    i + capacity.
+/// P0 claimed.store(relaxed), before a replacement writes its items: the end of these items. An
+///    observer that sees only `written` knows that the next item may be partly written, but not
+///    that several may be. Relaxed is enough, because each P1 is a release: a process that sees a
+///    word of the replacement sees P0.
+/// P1 word.store(release), each. For the solver P2 is enough. For an observer, P1 pairs with O1: if
+///    the observer sees a word of item i + capacity, it sees P0 and the P2 by which `written`
+///    reached i + capacity.
 /// P2 written.store(seq_cst), which is also a release. Pairs with S1: a process that sees the count
-///    sees the words. It comes last: a producer that dies before it has appended nothing.
+///    sees the words. P2 comes last: a producer that dies before P2 has appended nothing.
 /// S1 written.load(acquire). Pairs with P2.
 /// S2 word.load(acquire), each. Relaxed would be enough, because S1 has ordered it and no process
-///    overwrites the item before S3; it is the same function as O1.
+///    overwrites the item before S3. It is acquire because S2 and O1 share one function.
 /// S3 consumed.store(release), when the items have been read. Pairs with P3: the loads of S2 come
 ///    before the stores of the P1 that overwrite them. With relaxed, S2 could see those stores.
 /// P3 consumed.load(acquire), before P1. Pairs with S3.
 /// O1 word.load(acquire), each: see P1. Keeps O2 after it.
 /// O2 written.load and claimed.load (relaxed), after the copy: item i may be kept iff
 ///    written < i + capacity and claimed ≤ i + capacity. At written = i + capacity the producer may
-///    already be writing the item that takes its place. Relaxed is enough: O1 has ordered both, and
-///    nothing after them depends on them. `claimed` never decreases, not even at a takeover: what a
-///    dead producer overwrote stays lost.
+///    already be overwriting item i. Relaxed is enough: O1 has ordered both, and nothing after them
+///    depends on them. `claimed` never decreases, not even at a takeover: the items that a dead
+///    producer overwrote remain lost.
 ///
 /// Orderings of sleep and wake. The solver stores `sleeping` and then loads `written`; the producer
 /// stores `written` and then loads `sleeping`. At least one of the two must see the other's store,
-/// else the solver sleeps although an item waits. All four are seq_cst: release and acquire let
+/// else the solver sleeps although there is an item. All four are seq_cst: release and acquire let
 /// each load pass the store before it, on x86 as well. The solver sleeps only if `written` still
 /// equals the number of items that it has consumed, and the kernel compares `written` once more.
 ///
@@ -55,8 +55,8 @@
 /// it. The counters of refusals are relaxed: each is independent.
 namespace splinecast::ipc {
 
-/// Places that waypoints leave free in a ring, for stops and a finish, which must not wait until
-/// the board has room for the items queued before them.
+/// Number of places in a ring that waypoints leave free. They are for stops and a finish, which
+/// must not wait until the board has room for the items queued before them.
 [[nodiscard]] constexpr std::size_t control_reserve(std::size_t capacity) noexcept {
   constexpr std::size_t kMost = 4;
   constexpr std::size_t kShare = 16;
@@ -66,39 +66,42 @@ namespace splinecast::ipc {
 /// The producer's side. One thread of one process uses it. No function blocks or allocates.
 class WaypointRingWriter {
  public:
-  /// `region` holds a ring of this layout and outlives the writer. Continues after the items in it;
-  /// throws BadRegion if the last item has a time that no producer writes.
+  /// `region` holds a ring of this layout and outlives the writer. Continues after the items that
+  /// are in the ring. Throws BadRegion if the last item's time is out of range: no producer writes
+  /// such a time.
   WaypointRingWriter(std::span<std::byte> region, const RingLayout& layout,
                      const IngestLimits& limits);
 
-  /// The state of the solver, as last published: items consumed, and the time before which it no
-  /// longer changes anything; min() on a recorded stream. At rest nothing is published: then the
-  /// clock of a live stream gives the length of the pause.
+  /// What the solver last published: the number of items consumed, and the settled time, before
+  /// which the solver changes nothing; min() on a recorded stream. While the curve is at rest, the
+  /// solver publishes nothing: then the clock of a live stream gives the length of the pause.
   struct Solved {
     Word consumed = 0;
     Time settled_until = Time::min();
     const Clock* clock = nullptr;  ///< of a live stream
   };
 
-  /// Appends a waypoint if it is valid and there is room in addition to control_reserve. O(D),
-  /// wait-free.
+  /// Appends a waypoint if it is valid and the ring has room for it and for control_reserve() more
+  /// items. O(D), wait-free.
   [[nodiscard]] AppendStatus append(const Waypoint& waypoint, const Solved& solved) noexcept;
 
   /// Replaces everything after t. `waypoints` may be empty; they must be later than t and must fit
-  /// into the ring together with the replacement itself and control_reserve. One store of `written`
-  /// makes all of it visible. O(D) per waypoint. The entry onto them takes at least `blend`:
-  /// negative means 0, more than max_interval is `too_far_apart`. Without waypoints it is a stop,
-  /// which may use the reserve. A t that has settled means the earliest time possible. A stop adds
-  /// no item if the newest item is a stop that still waits, at the same time or earlier.
+  /// into the ring together with the replacement itself and control_reserve(). One store of
+  /// `written` makes all of it visible. O(D) per waypoint. The entry onto the waypoints has at
+  /// least the length `blend`: a negative one means 0, one above max_interval gives
+  /// `too_far_apart`. A replacement without waypoints is a stop, which may use the reserve. A stop
+  /// at a time that has settled takes effect as early as possible. A stop adds no item if the
+  /// newest item is a stop at the same time or earlier that has not been consumed.
   [[nodiscard]] AppendStatus replace_from(Time t, std::span<const Waypoint> waypoints,
                                           const Solved& solved, Time blend = {}) noexcept;
 
-  /// What `replace_from` would return, also for a stop. Changes nothing.
+  /// Returns what `replace_from` would return, also for a stop. Changes nothing.
   [[nodiscard]] AppendStatus check_replacement(Time t, std::span<const Waypoint> waypoints,
                                                const Solved& solved,
                                                Time blend = {}) const noexcept;
 
-  /// Appends the state in which the stream starts: before its first waypoint, which must be later.
+  /// Appends the state in which the stream starts. It must come before the first waypoint, in the
+  /// ring and in time.
   [[nodiscard]] AppendStatus start_from(const Instant& state, const Solved& solved) noexcept;
 
   /// Appends the end of the stream. The condition's values must have been checked.
@@ -108,7 +111,7 @@ class WaypointRingWriter {
   [[nodiscard]] Word written() const noexcept { return written_; }
   [[nodiscard]] bool finished() const noexcept { return finished_; }
 
-  /// The time of the newest item, once there is one: the next waypoint must be later.
+  /// The time of the newest item, if there is one: the next waypoint must be later.
   [[nodiscard]] Time last_time() const noexcept { return last_time_; }
 
   /// The word that solvers wait on.

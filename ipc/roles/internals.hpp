@@ -14,8 +14,7 @@ class SolverWatch;
 /// Access to the internals of the public roles, for other parts of this project: its program, its
 /// sweep over many streams, its tests. Same thread rules as the role itself.
 struct Internals {
-  /// The sampler that `Reader::sample` uses: for code that works on streams in plain memory as
-  /// well.
+  /// The sampler that `Reader::sample` uses: for code that also samples boards without a Reader.
   [[nodiscard]] static Sampler& sampler(Reader& reader) noexcept;
   /// The header of the board.
   [[nodiscard]] static const RegionHeader& header(const Reader& reader) noexcept;
@@ -29,9 +28,9 @@ struct Internals {
   [[nodiscard]] static const RegionHeader& board(const Solver& solver) noexcept;
   /// What to poll before the next step.
   [[nodiscard]] static SolverWatch watch(const Solver& solver) noexcept;
-  /// Acquires the lock on the board that shows other users that its solver is alive, if another
-  /// user's lock has prevented this so far. wait(), and step() when it wakes readers, do the same.
-  /// Returns whether it is held. A system call if it was not.
+  /// Tries to acquire the lock on the board's region unless it is held: it shows other users that
+  /// the solver is alive, and another user's lock may have prevented it so far. wait(), and step()
+  /// when it wakes readers, do the same. Returns whether it is held. One system call if it was not.
   static bool hold_region(Solver& solver) noexcept;
 
   /// What `prefetch` fetches: the solver's object, the parts that it points to, or the stream's

@@ -33,6 +33,15 @@ Time end_of_motion(const RegionHeader& header, const KnotBoardReader& board) noe
   return Time::min();
 }
 
+Time end_of_motion(const std::string& stream, const Trust& trust) {
+  try {
+    const auto [region, header, layout] = open_board(stream, false, trust);
+    return end_of_motion(header, KnotBoardReader(region.bytes(), layout));
+  } catch (const StreamError&) {
+    return Time::min();
+  }
+}
+
 void require_near_end(const std::string& stream, Time end, Time now) {
   if (end <= now || end - now <= kLongestOldMotion) return;
   throw BadRegion(
@@ -50,7 +59,7 @@ Time end_of_old_motion(const std::string& stream, std::uint64_t stream_id, const
     if (header.stream_id == stream_id) return Time::min();
     return end_of_motion(header, KnotBoardReader(region.bytes(), layout));
   } catch (const StreamError&) {
-    return Time::min();  // removed meanwhile, or no solver of this user can use it either
+    return Time::min();  // removed meanwhile, or not usable by this user
   }
 }
 

@@ -18,8 +18,11 @@ inline constexpr Time kLongestOldMotion{3'600'000'000'000};
 /// none.
 [[nodiscard]] Time end_of_motion(const RegionHeader& header, const KnotBoardReader& board) noexcept;
 
-/// Throws BadRegion if a motion ends more than kLongestOldMotion after now: no board may keep its
-/// name for that long.
+/// The same for the board under a stream's name; min() if there is no usable board. System calls.
+[[nodiscard]] Time end_of_motion(const std::string& stream, const Trust& trust);
+
+/// Throws BadRegion if a motion ends more than kLongestOldMotion after now: a new stream does not
+/// wait longer for its name.
 void require_near_end(const std::string& stream, Time end, Time now);
 
 /// end_of_motion() of the board under the stream's name if it belongs to a stream with another id;

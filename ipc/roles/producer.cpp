@@ -30,7 +30,7 @@ namespace {
 constexpr Time kSlice = std::chrono::milliseconds(1);
 constexpr Time kPoll = std::chrono::milliseconds(2);
 
-/// The solver's region as the producer sees it: it holds the ring's consumed position.
+/// The solver's region as the producer maps it. It holds the ring's consumed position.
 struct SolverView {
   ipc::Region region;
   ipc::RegionHeader header;
@@ -81,7 +81,8 @@ OwnedRing make_ring(const std::string& stream, const ProducerOptions& options) {
   return ring;
 }
 
-/// Takes over the existing ring of that name if it can be continued; retires it if it is finished.
+/// Takes over the existing ring of that name if it can be continued. Retires a finished one, and
+/// removes its name. Returns nothing if there is no ring to continue.
 std::optional<OwnedRing> continue_ring(const std::string& stream, const ProducerOptions& options) {
   if (!ipc::region_exists(stream, ipc::RegionKind::waypoints)) return std::nullopt;
   auto [region, header, layout] = ipc::open_ring(stream, true, options.trust);
@@ -105,7 +106,7 @@ OwnedRing own_ring(const std::string& stream, const ProducerOptions& options,
     auto continued = continue_ring(stream, options);
     return continued ? std::move(*continued) : make_ring(stream, options);
   } catch (...) {
-    lock.remove_litter();
+    lock.remove_unused_file();
     throw;
   }
 }
@@ -136,8 +137,8 @@ struct Producer::Impl {
     if (solver) refused.skip(solver->board);
   }
 
-  /// Opens the solver's region of this stream, unless that is open already. Does nothing if there
-  /// is none.
+  /// Opens the solver's region of this stream, unless it is already open. Closes a retired one.
+  /// Leaves `solver` empty if there is no usable region.
   void look_for_solver() noexcept {
     if (solver && !solver->board.retired()) return;
     solver.reset();
@@ -150,7 +151,7 @@ struct Producer::Impl {
       solver.emplace(std::move(region), header, layout);
       refused.restart();
     } catch (const std::exception&) {
-      solver.reset();  // missing, or another user's: tried again later
+      solver.reset();  // missing, or not usable: retried later
     }
   }
 
@@ -158,7 +159,7 @@ struct Producer::Impl {
     return solver ? solver->board.consumed() : 0;
   }
 
-  /// The known state of the solver; looks for the solver until there is one.
+  /// What is known of the solver's state. If its region is not open, tries to open it.
   [[nodiscard]] ipc::WaypointRingWriter::Solved look_at_solver() noexcept {
     if (!solver) look_for_solver();
     ipc::WaypointRingWriter::Solved known{.consumed = consumed()};
@@ -183,7 +184,8 @@ struct Producer::Impl {
     return status;
   }
 
-  /// Waits until `done()` or the timeout. The futex word is the solver's revision.
+  /// Waits until `done()` is true or the timeout expires; returns done(). The futex word is the
+  /// solver's revision.
   template <typename Done>
   bool wait(Time timeout, const Done& done) {
     const Time end = deadline(clock, timeout);

@@ -33,7 +33,7 @@ bool is_of_current_stream(const std::string& stream, const ipc::RegionHeader& he
     const auto producers = ipc::peek_header(stream, ipc::RegionKind::waypoints, trust);
     return !producers || producers->stream_id == header.stream_id;
   } catch (const OutOfResources&) {
-    throw;  // nothing is known
+    throw;  // it cannot be checked now
   } catch (const StreamError&) {
     return true;  // a reader may lack the permission to read the producer's region
   }

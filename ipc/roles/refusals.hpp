@@ -16,13 +16,13 @@ namespace splinecast::ipc {
 /// Collects the refusals of a solver from its board. One thread uses it.
 class RefusalReader {
  public:
-  /// Leaves out items before `first`.
+  /// Never reports refusals of items before `first`.
   explicit RefusalReader(Word first = 0) : first_(first), copied_(kRefusalsKept) {}
 
-  /// Leaves out the refusals that the board has counted so far.
+  /// Skips the refusals that are on the board so far.
   void skip(const KnotBoardReader& board) noexcept;
 
-  /// Begins with the first refusal of another board of the same stream.
+  /// Starts again at the first refusal, for another board of the same stream.
   void restart() noexcept;
 
   /// Writes the refusals since the last call to `out`. `ring` is the ring of the board's stream.

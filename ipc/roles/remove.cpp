@@ -20,8 +20,8 @@ namespace {
 /// A file under a region's name that this process may remove.
 struct Removable {
   RegionKind kind;
-  std::optional<Region> region{};  ///< none: not usable as a region; no process waits on it
-  std::size_t control = 0;         ///< where its control lines are
+  std::optional<Region> region{};  ///< empty: not a valid region, so that no process waits on it
+  std::size_t control = 0;         ///< offset of its control lines
 };
 
 template <typename Layout>
@@ -76,8 +76,8 @@ void remove_stream(const std::string& stream, const Trust& trust) {
       if (ipc::region_exists(stream, kind)) files.push_back(ipc::removable(stream, kind, trust));
     }
   } catch (const StreamError&) {
-    if (solver_lock) solver_lock->remove_litter();
-    producer_lock.remove_litter();
+    if (solver_lock) solver_lock->remove_unused_file();
+    producer_lock.remove_unused_file();
     throw;
   }
   for (const ipc::Removable& file : files) {

@@ -51,7 +51,8 @@ ReplacementPlanner::ReplacementPlanner(const KnotBoardReader& board, core::Windo
       segment_(board.dimensions()),
       values_(3 * board.dimensions()) {}
 
-/// Reads the state at t and the motion shown before it.
+/// Reads the state at t and the shown motion before t. Returns false if the board has no state at t
+/// or the writer overtook every try.
 bool ReplacementPlanner::read_state(Time t) {
   if (!has_values(sampler_.preview(t, state_.ref()))) return false;
   Summary summary;
@@ -117,7 +118,7 @@ void ReplacementPlanner::take_entry(ReplacePreview& out) {
   const bool meets_last = end.state.time == window_.time(knots - 1);
   if (meets_last) out.waypoint = knots - 1;
   out.passed_over = knots - (meets_last ? 1 : 0);
-  take_stop(out, end.state);  // the straight line before it is not faster
+  take_stop(out, end.state);  // the straight line before the stop adds no peaks
 }
 
 /// Adds the target's segments after the entry, up to number `end`, before they leave the window.

@@ -84,7 +84,7 @@ OwnedBoard make_board(const std::string& stream, const ipc::RegionHeader& ring_h
   return board;
 }
 
-/// The board of an earlier stream keeps the name until then.
+/// The board of an earlier stream occupies the name until this time, when its motion ends.
 struct Occupied {
   Time until;
 };
@@ -153,16 +153,16 @@ struct Solver::Impl {
         options((ipc::require_options(how), how)),
         lock(stream, ipc::RegionKind::spline) {
     try {
-      // Reports now, not when a producer comes, that a board cannot be taken over.
+      // Throws now, not when a producer appears, if the existing board cannot be taken over.
       if (ipc::region_exists(stream, ipc::RegionKind::spline))
         (void)ipc::open_board(stream, true, options.trust);
     } catch (const StreamError&) {
-      lock.remove_litter();
+      lock.remove_unused_file();
       throw;
     }
   }
 
-  ~Impl() { lock.remove_litter(); }
+  ~Impl() { lock.remove_unused_file(); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 };

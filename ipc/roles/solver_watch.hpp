@@ -35,7 +35,7 @@ class SolverWatch {
     return true;
   }
 
-  /// Whether the producer has left work for a step: there are items, or the stream has been
+  /// Whether the producer has caused work for a step: there are new items, or the stream has been
   /// retired. Loads from one cache line.
   [[nodiscard]] bool calls() const noexcept {
     return has_items() || load(polled_[kRetired], std::memory_order_acquire) != 0;

@@ -10,8 +10,8 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Whether both curves hold the machine in the same position before their first segment, and no
-/// later time has been sampled.
+/// Whether the reader has sampled only the hold before the first segment, and both curves hold the
+/// same position there.
 bool is_ahead(const BoardSegment& first, const SeenCurve& seen, std::size_t dimensions) noexcept {
   const bool is_known = seen.own != nullptr && seen.own->number() == 1;
   if (!is_known || first.number() != 1) return false;
@@ -20,7 +20,7 @@ bool is_ahead(const BoardSegment& first, const SeenCurve& seen, std::size_t dime
          std::ranges::equal(position, first.coefficients().first(position.size()));
 }
 
-/// Whether the sampled part of a segment is the same as in the curve seen.
+/// Whether the sampled part of a segment is the same as in the curve that the reader saw.
 bool is_unchanged(const BoardSegment& segment, const SeenCurve& seen,
                   std::size_t dimensions) noexcept {
   if (segment.changed_by(seen.own) <= seen.summary.revision) return true;
@@ -34,8 +34,9 @@ bool is_unchanged(const BoardSegment& segment, const SeenCurve& seen,
          std::ranges::equal(segment.coefficients().first(values), own.coefficients().first(values));
 }
 
-/// Whether the curve still rests after `last`, which was the newest segment, until after the latest
-/// time sampled. Overwrites `last` with the segment after it.
+/// Compares the curve after `last`, the newest segment of the curve that the reader saw: `same` if
+/// a hold in the same position follows, until after the latest time sampled. Overwrites `last` with
+/// the segment after it.
 Compared compare_rest(const KnotBoardReader& board, const Summary& summary, Time sampled_until,
                       BoardSegment& last, std::span<double> rest) noexcept {
   const Time right = last.right();
@@ -57,7 +58,7 @@ Compared compare_curve(const KnotBoardReader& board, const Summary& summary, con
   Word number = 0;
   if (summary.newest == 0) return Compared::changed;
   if (!number_by_cells(board, summary, seen.summary.settled_until, number)) return Compared::torn;
-  if (number == 0 && summary.first == 1) number = 1;  // the machine is held before it
+  if (number == 0 && summary.first == 1) number = 1;  // a hold may precede the first segment
   number = std::min(number, seen.summary.newest);
   if (number < summary.first) return Compared::changed;
   for (int compared = 0; compared < kMostCompared; ++compared) {
@@ -72,7 +73,7 @@ Compared compare_curve(const KnotBoardReader& board, const Summary& summary, con
       return is_last ? Compared::same
                      : compare_rest(board, summary, seen.sampled_until, copy, rest);
     }
-    if (is_last) return Compared::changed;  // the stop has been dropped
+    if (is_last) return Compared::changed;  // the curve now ends before the segments seen
     number = copy.next();
   }
   return Compared::changed;

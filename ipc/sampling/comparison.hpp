@@ -23,11 +23,12 @@ struct SeenCurve {
 /// The result of a comparison with the curve seen before.
 enum class Compared : std::uint8_t { same, changed, torn };
 
-/// Compares the curve of a summary with the one seen, from the time settled then to the latest time
-/// sampled: by the tags of its segments, or by the bits of the reader's own copy; a rest may
-/// continue as a hold. Returns `changed` also for segments that cannot be compared, and if there
-/// are more than kMostCompared. `copy`, and `rest` with one value per dimension, are scratch. O(D)
-/// per segment, wait-free.
+/// Compares the curve of a summary with the one seen, from the settled_until of the revision seen
+/// to the latest time sampled. Compares the tags of the segments, or the bits of the reader's own
+/// copy. A hold in the same position that now follows the end of the curve seen is equal.
+/// Also returns `changed` if a segment cannot be compared, or if there are more than kMostCompared;
+/// `torn` if the writer overtook it. `copy`, and `rest` with one value per dimension, are scratch.
+/// O(D) per segment, wait-free.
 [[nodiscard]] Compared compare_curve(const KnotBoardReader& board, const Summary& summary,
                                      const SeenCurve& seen, BoardSegment& copy,
                                      std::span<double> rest) noexcept;

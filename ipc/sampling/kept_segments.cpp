@@ -16,7 +16,7 @@ bool KeptSegments::is_confirmed(const KnotBoardReader& board, const Summary& sum
   return stands;
 }
 
-/// Makes a copy that is part of the summary's revision the current one.
+/// Makes `copy` the current copy, and confirms it. It must be part of the summary's revision.
 void KeptSegments::confirm(Kept& copy, const Summary& summary) noexcept {
   current_ = &copy;
   confirm(summary);

@@ -21,9 +21,9 @@ class KeptSegments {
   /// Number of copies kept; there is one more to copy into.
   static constexpr std::size_t kMost = 16;
 
-  /// What most samples need of the current copy, as confirmed: the interval in which the curve
-  /// moves, and whether the curve is finished. The interval is empty for a stop or a hold.
-  struct AtHand {
+  /// The part of the confirmed current copy that most samples need: the time interval of its
+  /// segment, and whether the curve is finished. The interval is empty for a stop or a hold.
+  struct CurrentInterval {
     Time left{};
     Time right{};
     bool is_finished = false;
@@ -42,7 +42,7 @@ class KeptSegments {
   /// The newest revision that the current copy is known to be part of; 0: none.
   [[nodiscard]] Word confirmed_by() const noexcept { return confirmed_; }
 
-  [[nodiscard]] const AtHand& at_hand() const noexcept { return at_hand_; }
+  [[nodiscard]] const CurrentInterval& at_hand() const noexcept { return at_hand_; }
 
   /// settled_until of that revision, as last seen.
   [[nodiscard]] Time settled_until() const noexcept { return settled_until_; }
@@ -51,8 +51,8 @@ class KeptSegments {
   /// A copy that is not kept, to copy into.
   [[nodiscard]] BoardSegment& spare() noexcept { return copies_[spare_].segment; }
 
-  /// Whether the current copy is part of the summary's revision, without copying it again: then it
-  /// is confirmed.
+  /// Whether the current copy is part of the summary's revision. If it is, records that it is
+  /// confirmed by this revision. Copies nothing.
   [[nodiscard]] bool is_confirmed(const KnotBoardReader& board, const Summary& summary) noexcept;
 
   /// Makes the segment that begins at knot `number`, or at the knot before if none begins there,
@@ -72,13 +72,13 @@ class KeptSegments {
   void confirm(const Summary& summary) noexcept;
   void confirm(Kept& copy, const Summary& summary) noexcept;
 
-  Word confirmed_ = 0;    ///< current_->known_by
-  Time settled_until_{};  ///< of that revision
-  AtHand at_hand_;
+  Word confirmed_ = 0;    ///< a copy of current_->known_by; 0: none
+  Time settled_until_{};  ///< settled_until of that revision, as last seen
+  CurrentInterval at_hand_;
   std::vector<Kept> copies_;                  ///< kMost of them, and a spare one
-  std::array<std::uint8_t, kMost> places_{};  ///< which copy, by number mod kMost
-  std::size_t spare_ = kMost;
-  Kept* current_;  ///< the one used last
+  std::array<std::uint8_t, kMost> places_{};  ///< index into copies_, by segment number mod kMost
+  std::size_t spare_ = kMost;                 ///< index of the spare copy
+  Kept* current_;                             ///< the one used last
 };
 
 }  // namespace splinecast::ipc

@@ -6,7 +6,7 @@
 namespace splinecast::ipc {
 namespace {
 
-/// The segment of the summary that would contain t if knots were evenly spaced.
+/// The segment of the summary that contains t if the knots are evenly spaced.
 Word guess_by_pace(const KnotBoardReader& board, const Summary& summary, Time t) noexcept {
   const Time oldest = board.time_hint(summary.first);
   const double share =
@@ -17,8 +17,9 @@ Word guess_by_pace(const KnotBoardReader& board, const Summary& summary, Time t)
   return share < 1 ? summary.first + static_cast<Word>(share * intervals) : summary.newest;
 }
 
-/// The time at which the segment of knot `number` begins, or the next segment if none begins there;
-/// for the last knot of a finished curve, its end. Returns false if a knot was written meanwhile.
+/// Sets `begin` to the time at which the segment of knot `number` begins. If no segment begins
+/// there, sets `is_end`, and `begin` to the beginning of the next segment or, at the last knot of a
+/// finished curve, to the end of the curve. Returns false if a knot was written meanwhile.
 bool begin_of(const KnotBoardReader& board, const Summary& summary, Word number, Time& begin,
               bool& is_end) noexcept {
   core::SegmentForm form{};

@@ -9,17 +9,18 @@
 /// Finds the segment of a board that contains a time, under one summary: wait-free; stores nothing.
 namespace splinecast::ipc {
 
-/// The segment of t if it is the copied one or, judged by the length of that one, the next; else 0.
+/// A guess of the segment that contains t: the copied one; the next one if t is less than one
+/// length of the copied segment after its end; else 0.
 [[nodiscard]] Word number_near(const BoardSegment& copy, Time t) noexcept;
 
-/// The last knot whose time is at or before t and at which a segment begins, by the packed times; 0
-/// if t is before all. Exponential search from a guess that assumes even spacing, then bisection:
-/// one or two loads for even spacing, at most 2 log n.
+/// The number of the last segment that begins at or before t, by the packed times; 0 if all begin
+/// after t. A hint: a writer may change the times meanwhile. Exponential search from a guess that
+/// assumes even spacing, then bisection: one or two loads for even spacing, at most 2 log n.
 [[nodiscard]] Word number_by_hint(const KnotBoardReader& board, const Summary& summary,
                                   Time t) noexcept;
 
-/// The same by the knots, under the summary's revision: copies log n of them. Returns false if one
-/// was written meanwhile.
+/// Sets `number` to the same, exactly, by the knots of the summary's revision: copies the times of
+/// log n knots. Returns false if one of them was written meanwhile.
 [[nodiscard]] bool number_by_cells(const KnotBoardReader& board, const Summary& summary, Time t,
                                    Word& number) noexcept;
 

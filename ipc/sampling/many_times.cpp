@@ -67,14 +67,14 @@ bool Sampler::evaluate_many(std::span<const Time> times, const SampleBlock& out)
   return true;
 }
 
-/// Evaluates the times from `first` on, as long as they are in the moving part of the current copy
-/// and its polynomial is sufficient. Returns their number.
+/// Evaluates the times from `first` on that are in the current segment, if that is not a stop or a
+/// hold. Returns their number, at most 16. Returns 0 if a dimension needs normalisation.
 std::size_t Sampler::evaluate_moving(std::span<const Time> times, std::size_t first,
                                      std::size_t stride, const SampleBlock& out) noexcept {
   if (!all_linear_) return 0;
   const BoardSegment& own = kept_.current();
   const Time settled_until = kept_.at_hand().is_finished ? Time::max() : summary_.settled_until;
-  // Not initialised: that would take as long as the lookup.
+  // Not initialised, because that takes as long as the lookup.
   std::array<double, 16> u;  // NOLINT(*-member-init)
   std::size_t n = 0;
   while (n < u.size() && first + n < times.size()) {

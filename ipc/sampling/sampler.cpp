@@ -73,8 +73,8 @@ SampleStatus Sampler::sample(Time t, State& out) noexcept {
   return fits ? execute(t, out.ref()) : SampleStatus::wrong_dimension;
 }
 
-/// Makes the next segment of the same revision the current one if t may be in it. Returns whether t
-/// is in its moving part.
+/// If t is after the current segment, makes the next segment of the same revision the current one.
+/// Returns whether t is in that segment and it is not a stop or a hold.
 bool Sampler::goes_on(Time t) noexcept {
   const BoardSegment& own = kept_.current();
   if (kept_.confirmed_by() != summary_.revision || !own.is_there() || t < own.right()) return false;
@@ -94,7 +94,7 @@ bool Sampler::see(const Look& look) noexcept {
     revised_ = true;
     return true;
   }
-  // This reader has missed more revisions than the board keeps the changes of.
+  // This reader has missed more revisions than kChangesKept.
   if (sampled_until_ < before.settled_until) return true;
   const BoardSegment& own = kept_.current();
   const bool is_known = kept_.confirmed_by() == before.revision && own.is_there();
@@ -113,9 +113,9 @@ SampleStatus Sampler::preview(Time t, const StateRef& out) noexcept {
   return fits(out) ? find(t, out) : SampleStatus::wrong_dimension;
 }
 
-/// Makes summary_ the summary of the newest revision; t is the time that will be looked up in it.
-/// Returns `settled` if there is a curve, `busy` if the writer overtook it, else the reason for
-/// none.
+/// Makes summary_ the summary of the newest revision, and prefetches the knots around t, which the
+/// caller looks up next. Returns `settled` if there is a curve, `busy` if the writer overtook it,
+/// else the reason why there is no curve.
 SampleStatus Sampler::see_newest(Time t) noexcept {
   if (board_->retired()) return SampleStatus::retired;
   const Look look = board_->look();
@@ -156,7 +156,8 @@ Sampler::Found Sampler::locate(Time t) noexcept {
       if (spans(kept_.current(), t)) return Found::segment;
     }
   }
-  // Usually republished: it or its successor contains t. Tags are already prefetched.
+  // Usually the current segment was republished: it or its successor contains t. Tags are already
+  // prefetched.
   Word number = number_near(kept_.current(), t);
   if (number >= summary_.first && number <= summary_.newest) {
     if (!kept_.take(*board_, summary_, number)) return Found::torn;
@@ -168,20 +169,20 @@ Sampler::Found Sampler::locate(Time t) noexcept {
     if (!kept_.take(*board_, summary_, number)) return Found::torn;
     if (spans(kept_.current(), t)) return Found::segment;
   }
-  // The hint failed because a writer is active: the knots decide.
+  // The hint failed because a writer is active: searches the knots themselves.
   if (!number_by_cells(*board_, summary_, t, number)) return Found::torn;
   if (number == 0) return Found::before_first;
   if (!kept_.take(*board_, summary_, number)) return Found::torn;
   return spans(kept_.current(), t) ? Found::segment : Found::torn;
 }
 
-/// Whether a segment contains a time. A time on a knot belongs to the segment on its right, all
-/// times after the last segment to that segment.
+/// Whether a segment contains a time. A time on a knot belongs to the segment on its right. All
+/// times after the last segment belong to the last segment.
 bool Sampler::spans(const BoardSegment& segment, Time t) const noexcept {
   return t >= segment.left() && (t < segment.right() || segment.is_last(summary_));
 }
 
-/// Evaluates a segment u seconds after its left end, and normalises the values.
+/// Evaluates a segment u seconds after its left end, and applies DimensionKinds::normalise.
 void Sampler::read(const BoardSegment& segment, double u, const StateRef& out) const noexcept {
   core::evaluate(segment.order(), segment.coefficients(), u, out);
   if (!all_linear_) kinds_.normalise(out);
@@ -207,15 +208,15 @@ SampleStatus Sampler::hold_first(const StateRef& out) noexcept {
   const std::size_t dimensions = board_->dimensions();
   const auto velocity = kept_.current().coefficients().subspan(dimensions, dimensions);
   if (std::ranges::any_of(velocity, [](double v) { return v != 0; })) return SampleStatus::no_data;
-  // Not evaluated: other coefficients, which may still change, would decide the sign of a 0.
+  // Copies instead of evaluating: coefficients that may still change would affect the sign of a 0.
   std::ranges::copy(kept_.current().coefficients().first(dimensions), out.position.begin());
   come_to_rest(out);
   if (!all_linear_) kinds_.normalise(out);
   return SampleStatus::holding;
 }
 
-/// The sample when the writer has overtaken every try: the curve in the reader's own copy, before
-/// the settled_until copied with it, can no longer change.
+/// The sample after the writer has overtaken every try: from the reader's own copy, which can no
+/// longer change before the settled_until that was copied with it.
 SampleStatus Sampler::from_own_copy(Time t, const StateRef& out) noexcept {
   const BoardSegment& own = kept_.current();
   if (!own.is_there() || t < own.left() || t >= own.right() || t >= kept_.settled_until()) {

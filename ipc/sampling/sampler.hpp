@@ -24,7 +24,7 @@ namespace splinecast::ipc {
 ///
 /// Keeps its own copies of the segments it used last: the knots, with the tags of the revisions
 /// that wrote them, and the polynomials made from them. While those tags are unchanged, a sample of
-/// one of them copies nothing; when time passes the right knot of the newest one, it copies one
+/// a kept segment copies nothing. A sample of the segment after the newest kept one copies one
 /// knot. One thread uses a sampler; any number of samplers, in any processes, read one board. Never
 /// stores to shared memory. Allocates only when constructed: 16 D doubles, or 19 D of a curve that
 /// is smoothed, for each of kSegmentsKept + 1 segments.
@@ -60,13 +60,14 @@ class Sampler {
   /// curve. A reader that has missed more compares the curve itself. Revisions change nothing
   /// before the settled_until that the reader saw last; from there to the latest time sampled, it
   /// compares the segments with those of the revision that it saw last, by their tags or by the
-  /// bits of its own copy. A rest may continue as a hold. If the segments are equal, the sample is
-  /// not `revised`. If they differ, or cannot be compared because the board no longer keeps them or
-  /// there are more than kMostCompared, the sample is `revised`: a change is never missed.
+  /// bits of its own copy. A hold in the same position that now follows the end of that curve is
+  /// equal. If the segments are equal, the sample is not `revised`. If they differ, or cannot be
+  /// compared because the board no longer keeps them or there are more than kMostCompared, the
+  /// sample is `revised`: a change is never missed.
   [[nodiscard]] SampleStatus sample(Time t, const StateRef& out) noexcept;
   [[nodiscard]] SampleStatus sample(Time t, State& out) noexcept;
 
-  /// The same for a look ahead: the sample does not count as executed.
+  /// The same as sample(), but the sample does not count as executed: for times ahead.
   [[nodiscard]] SampleStatus preview(Time t, const StateRef& out) noexcept;
 
   /// Evaluates the curve at any number of times, in any order, all of *one* revision, for
@@ -77,7 +78,8 @@ class Sampler {
   /// `wrong_dimension` if the sizes of the block do not match the times and the curve.
   Word sample_many(std::span<const Time> times, const SampleBlock& out) noexcept;
 
-  /// The curve of the last sample never changes before this time, for any status of that sample.
+  /// The curve that the last sample saw never changes before this time. Valid for any status of
+  /// that sample.
   [[nodiscard]] Time settled_until() const noexcept { return summary_.settled_until; }
 
   /// Copies every segment that has a part between `from` and `to` (inclusive), all under one

@@ -14,7 +14,9 @@ void subtract(std::span<double> from, std::span<const double> values) noexcept {
   for (std::size_t d = 0; d < from.size(); ++d) from[d] -= values[d];
 }
 
-/// Replaces the acceleration at the left end of a snapshot's oldest segment by the step there.
+/// Computes the acceleration step at the left end of a snapshot's oldest segment. On entry
+/// `oldest.acceleration_step` is the acceleration after that knot. Returns false if the writer
+/// overtook it.
 bool finish_oldest_step(const SnapshotSource& source, SegmentCopy& oldest) {
   if (oldest.number == 1) {
     const bool is_held = source.is_live && oldest.has_waypoint;
@@ -37,12 +39,12 @@ bool finish_oldest_step(const SnapshotSource& source, SegmentCopy& oldest) {
 }  // namespace
 
 /// Copies the segments `oldest` to `newest` under the source's revision, with their acceleration
-/// steps.
+/// steps. Returns false if the writer overtook it.
 bool BoardSnapshot::copy_segments(const SnapshotSource& source, Word oldest, Word newest) {
   const KnotBoardReader& board = source.board;
   BoardSegment& copy = source.copy;
   std::size_t count = 0;
-  // The newest first: the writer will overwrite these first.
+  // Copies the newest segments first, because the writer changes them first.
   for (Word number = newest;;) {
     if (copy.take(board, source.summary, number) != BoardSegment::Taken::whole) return false;
     if (segments_.size() == count) segments_.emplace_back();

@@ -70,7 +70,7 @@ bool CurveCut::find(const Summary& summary, Time t) noexcept {
                         state_.ref().position.begin());
     }
   } else if (t == segment_.left()) {
-    // The segment before keeps the common knot, unless it has already been cut.
+    // The previous segment keeps the common knot as its right knot, unless it has already been cut.
     const auto before = segment_before(*published_, summary, cut_);
     if (!before || *before == 0 || !read(*before)) return false;
     keeps_right_ = *before + 1 == cut_;
@@ -99,11 +99,11 @@ void CurveCut::write() noexcept {
   if (is_held_) {
     write_rest(cut_ + 1, SegmentForm::hold, segment_.right(), position_at(segment_.right()));
   }
-  if (ends_) return;  // it ends at its natural end
+  if (ends_) return;  // the cut does not shorten the segment
   if (keeps_right_ && cut_ < summary_.newest) {
     board_->write_form(cut_ + 1, SegmentForm::none, time_);
   } else if (keeps_right_) {
-    // A stop: its right knot stores when the uncut stop would have ended.
+    // The newest segment is a stop: it gets a right knot, which stores where the uncut stop ends.
     const Time end = segment_.natural_right();
     write_rest(cut_ + 1, SegmentForm::none, end, position_at(end), time_);
   }

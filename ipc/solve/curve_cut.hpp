@@ -34,7 +34,8 @@ class CurveCut {
   [[nodiscard]] Instant state() const noexcept;
   [[nodiscard]] Word next() const noexcept { return next_; }
 
-  /// Writes the segment before the cut that was found, as the cut leaves it.
+  /// Writes the changes of the cut that was found to the segment before it, and the hold before the
+  /// cut if there is one.
   void write() noexcept;
 
   /// Writes a new knot at rest that is not a waypoint.
@@ -52,11 +53,12 @@ class CurveCut {
   BoardSegment segment_;  ///< the one that is cut, or the one before the cut
   State state_;
   Time time_{};
-  Word cut_ = 0;                  ///< segment before the cut; 0: none
-  Word next_ = 0;                 ///< number of the knot that begins the new curve
-  bool ends_ = false;             ///< segment cut_ ends at its natural end
-  bool is_held_ = false;          ///< a hold follows segment cut_
-  bool keeps_right_ = false;      ///< segment cut_ keeps its right knot; no segment begins there
+  Word cut_ = 0;          ///< segment before the cut; 0: none
+  Word next_ = 0;         ///< number of the knot that begins the new curve
+  bool ends_ = false;     ///< the cut is not before the end of the curve: segment cut_ is unchanged
+  bool is_held_ = false;  ///< the cut is after the end of the curve: a hold fills the time between
+  /// Knot cut_ + 1 remains as the right knot of segment cut_; no segment begins there any more.
+  bool keeps_right_ = false;
   std::vector<double> position_;  ///< scratch
 };
 

@@ -13,12 +13,11 @@ void PublishedCurve::restart_search() noexcept {
                   {behind_.end, beyond_.position(), beyond_.velocity(), beyond_.acceleration()});
 }
 
-/// Reads the shown motion back from the board when an entry is needed, if this solver has taken
-/// over.
+/// Reads the shown motion from the board, once, if this solver has taken over the stream.
 void PublishedCurve::find_shown() noexcept {
-  if (knows_shown_ || !entries_.is_live) return;
-  knows_shown_ = true;
-  if (course_ == Course::on_target) {  // the start: the window has all waypoints on the board
+  if (has_restored_shown_ || !entries_.is_live) return;
+  has_restored_shown_ = true;
+  if (course_ == Course::on_target) {  // at the start the window has all waypoints of the stream
     shown_.restore(window_, *published_, summary_, Time::min(), 0);
     return;
   }
@@ -39,8 +38,8 @@ bool PublishedCurve::is_start_open() const noexcept {
          window_.oldest_segment() == 0 && window_.frozen_knots() == 0;
 }
 
-/// Starts a stream by an entry from rest if its first interval does not keep the limits: the given
-/// ones, or those that the motion after it shows.
+/// Lets a stream start by an entry from rest if its first interval exceeds the limits: the given
+/// ones, or those that the later motion shows.
 void PublishedCurve::check_start() noexcept {
   const std::size_t knots = window_.knots();
   find_shown();
@@ -60,12 +59,12 @@ void PublishedCurve::check_start() noexcept {
   is_searching_ = true;
 }
 
-/// Finds the state at which an entry begins: that of the open entry if it has not settled, or that
-/// of the committed curve at `settled`.
+/// Finds the state at which an entry begins: the origin if that has not settled, else the state of
+/// the committed curve at `settled`. Returns false if the board is damaged.
 bool PublishedCurve::find_state(Time settled) noexcept {
   uses_cut_ = origin_.number == 0 || (!origin_.is_new && settled > origin_.time);
   if (!uses_cut_) return true;
-  // Knots that the curve has met are kept.
+  // The entry must begin after the last knot that the curve meets.
   const std::size_t met = is_on_line() ? window_.knots() : unmet_;
   const bool is_in_window = met > window_.oldest_segment();
   const Time t = is_in_window ? std::max(settled, window_.time(met - 1) + Time(1)) : settled;
@@ -73,7 +72,8 @@ bool PublishedCurve::find_state(Time settled) noexcept {
   return !is_damaged_;
 }
 
-/// Finds the state once per step; updates the shown motion after each waypoint.
+/// Prepares a search: updates the shown motion and, once per step, finds the state at which an
+/// entry begins. Returns false if the board is damaged.
 bool PublishedCurve::prepare(Time settled) noexcept {
   find_shown();
   if (entries_.is_live) shown_.look(window_.options().stop_time);
@@ -83,7 +83,7 @@ bool PublishedCurve::prepare(Time settled) noexcept {
 
 core::EntryRules PublishedCurve::entry_rules() const noexcept {
   const Time from = uses_cut_ ? cut_.state().time : origin_.time;
-  const bool blends = blend_until_ > from;  // of a run without a cut: long before `from`
+  const bool blends = blend_until_ > from;  // only in a run that began with a cut
   return {.limits = &window_.options().limits,
           .shown = entries_.is_live ? &shown_.limits() : nullptr,
           .least = blends ? std::max(entries_.min_entry, blend_until_ - from) : entries_.min_entry};
@@ -91,7 +91,8 @@ core::EntryRules PublishedCurve::entry_rules() const noexcept {
 
 void PublishedCurve::look_for_entry(Time settled, Time keep, bool is_last, int& tries) noexcept {
   if (is_damaged_ || is_ending_ || ends_there_ || window_.finished()) return;
-  // Once settle + 2 waypoints are known or, on a live stream, shortly before the start settles.
+  // Checks the start when settle + 2 waypoints are known or, on a live stream, shortly before the
+  // start settles.
   if (is_start_open() && (window_.knots() == window_.options().settle + 2 ||
                           (is_last && start_decision() <= settled))) {
     check_start();
@@ -113,7 +114,8 @@ void PublishedCurve::enter() noexcept {
   if (uses_cut_) {
     cut_.write();
     set_origin(cut_.next(), cut_.state());
-    // The cut rewrites the newest knot that was met, but not its row: see find_knot.
+    // The cut rewrites the newest met knot, but not its row. So the row must be in the passed
+    // slots: see find_knot.
     passed_written_ = passed_lowest_;
   }
   is_searching_ = is_prepared_ = false;
@@ -141,8 +143,9 @@ void PublishedCurve::enter() noexcept {
   note_change(origin_.time);
 }
 
-/// Enters the run at a waypoint before its last one, if an entry to one of them passes: no newer
-/// ones come. The initial state must have been found. Tries at most the knots of the window.
+/// Searches for an entry that ends at a waypoint before the last one, and makes it part of the
+/// curve. Used at the end of a stream, when no newer waypoints come. Requires prepare(). Tries at
+/// most as many candidates as the window has knots.
 void PublishedCurve::enter_before_end() noexcept {
   core::EntryRules rules = entry_rules();
   rules.newer = 1;

@@ -6,9 +6,9 @@
 /// Compares a published curve with the limits before a waypoint is taken.
 namespace splinecast::ipc {
 
-/// The first segment that an append may change and the curve may follow. Excludes the segments of a
-/// live stream in which its start from rest has not faded: if they need more than the motion after
-/// them, the stream starts by an entry.
+/// The first segment that an append may change and that the curve may follow. Excludes the first
+/// kStartFades segments of a live stream that starts at rest: check_start() compares them with the
+/// limits.
 std::size_t PublishedCurve::first_compared() const noexcept {
   const bool starts_at_rest = !window_.is_later_run() && window_.options().held_before_start &&
                               window_.options().start.kind == ConditionKind::halt;
@@ -17,7 +17,7 @@ std::size_t PublishedCurve::first_compared() const noexcept {
                    window_.oldest_segment(), starts_at_rest ? core::kStartFades : 0});
 }
 
-/// The knots from passed_first() on: those that another window needs to continue.
+/// The knots from passed_first() on: another window needs them to continue this one.
 std::span<const core::Knot> PublishedCurve::knots_to_go_on() noexcept {
   const std::size_t first = passed_first();
   for (std::size_t i = first; i < window_.knots(); ++i) knots_[i - first] = window_.knot(i);

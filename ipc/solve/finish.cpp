@@ -15,16 +15,16 @@ bool rests_at(const Instant& state, std::span<const double> position) noexcept {
 
 }  // namespace
 
-/// Ends the curve at the newest waypoint; the curve ends with a piece of the target.
+/// Ends the curve at the newest waypoint. Requires that it ends with a piece of the target.
 void PublishedCurve::finish_on_line(const Condition& end) noexcept {
   const std::size_t knots = window_.knots();
   window_.finish(end);
   has_changes_ = true;
-  // If the last segment comes to a full stop, it has another form.
+  // A full stop changes the form of the last segment: its left knot is written again.
   open_ = std::min(open_, knots - std::min<std::size_t>(knots, 2));
 }
 
-/// Notes that the curve ends at the newest waypoint without a segment of the target before it.
+/// Marks the newest waypoint as met by a curve that does not reach it on the target.
 void PublishedCurve::end_at_newest() noexcept {
   const std::size_t last = window_.knots() - 1;
   if (course_ == Course::on_target) unmet_ = last;
@@ -47,7 +47,7 @@ void PublishedCurve::enter_end(const Instant& from) noexcept {
 
 bool PublishedCurve::finish(const Condition& end, Time settled, Time keep, int& tries) noexcept {
   const std::size_t knots = window_.knots();
-  if (knots == 0) return true;  // it ends with its current stop
+  if (knots == 0) return true;  // the curve ends with its current stop
   if (is_start_open()) check_start();
   if (!is_on_line() && !seeks_end_ && has_room_to_enter(keep) && prepare(settled)) {
     enter_before_end();
@@ -68,7 +68,9 @@ bool PublishedCurve::finish(const Condition& end, Time settled, Time keep, int& 
   }
   if (!seeks_end_) search_.restart(0);
   seeks_end_ = true;
-  const auto outcome = search_.search_rest(rest, from, entry_rules(), tries);
+  core::EntryRules rules = entry_rules();
+  rules.must_reach = true;
+  const auto outcome = search_.search_rest(rest, from, rules, tries);
   if (outcome != core::EntrySearch::Outcome::found) return false;
   enter_end(from);
   return true;

@@ -6,7 +6,7 @@
 namespace splinecast::ipc {
 namespace {
 
-/// The reason for refusing a waypoint whose interval has this status.
+/// The reason to refuse a waypoint whose interval has this status.
 Refusal to_refusal(AppendStatus interval) noexcept {
   switch (interval) {
     case AppendStatus::duplicate:
@@ -134,8 +134,8 @@ void StreamSolver::take_replacement(Word number) noexcept {
   summary_.newest_time = t;
 }
 
-/// Refuses a replacement, and in the same revision its waypoints, so that no other solver treats
-/// them as appended ones.
+/// Refuses a replacement and, in the same revision, its waypoints. Otherwise a solver that takes
+/// over would take them as appended waypoints.
 void StreamSolver::refuse_replacement(Word number, Refusal reason) noexcept {
   refuse(number, reason);
   const Word end = summary_.consumed + std::min<Word>(item_.count, available_ - summary_.consumed);

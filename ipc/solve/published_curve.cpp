@@ -15,7 +15,7 @@ namespace {
 
 using core::SegmentForm;
 
-// If no waypoint has been met, a window is restored from these slots.
+// If the curve has met no waypoint of a run, its window is restored from the passed slots alone.
 static_assert(kPassedSlots >= core::kMaxSettle + core::kMaxReach + 3);
 
 }  // namespace
@@ -98,28 +98,31 @@ void PublishedCurve::freeze(Time t) noexcept {
   }
   if (course_ == Course::on_target && knots > 0) {
     window_.freeze(t);
-    // From here on readers execute the stop after the newest knot.
+    // The newest knot is frozen: readers follow the stop after it.
     if (t >= window_.time(knots - 1)) wait_for_entry();
   } else if (course_ == Course::waiting && !is_searching_ && knots > unmet_ && t < newest_time()) {
-    // The state advances along the stop: candidates that failed before may pass from there.
+    // The entry would now begin later in the stop, in another state: candidates that failed before
+    // may now keep the limits.
     search_.restart(unmet_);
     is_searching_ = true;
   }
   keep_settled();
 }
 
-/// The newest knot has been executed: an entry must lead to the next waypoint.
+/// Sets the course to `waiting`: the end of the curve is final, so that only an entry can lead to
+/// the next waypoint.
 void PublishedCurve::wait_for_entry() noexcept {
   course_ = Course::waiting;
   met_ = unmet_ = placed_ = window_.knots();
-  // The next waypoint changes the rows of the last met ones, and many entries in sequence may push
-  // these off the board: see write_passed.
+  // The next waypoint changes the rows of the last met knots, and many entries in sequence may push
+  // these knots off the board. So write_passed() writes them to the passed slots.
   passed_lowest_ = unmet_ - std::min(unmet_, kMetKept);
   passed_written_ = passed_committed_ = passed_lowest_;
   origin_ = {};
 }
 
-/// Call before anything is changed: all knots are on the board, and settled ones are final.
+/// Records which knots are final. Call it when all knots are on the board, before a revision
+/// changes any.
 void PublishedCurve::keep_settled() noexcept {
   kept_ = window_.settled_knots();
   // The next knot changes the segment that begins at the newest one.

@@ -98,11 +98,11 @@ class PublishedCurve {
   /// Whether there is a curve.
   [[nodiscard]] bool has_begun() const noexcept { return newest_ > 0 || has_changes_; }
 
-  /// The next waypoint must be after this time: that of the newest knot of the run, or of the state
-  /// that the run was entered from. There must be a run.
+  /// The time of the newest knot of the run, or of the state that the run was entered from. The
+  /// next waypoint must be after it. Requires a run.
   [[nodiscard]] Time newest_time() const noexcept;
 
-  /// No append changes the run before this time: that of its first knot that has not settled.
+  /// The time of the run's first knot that has not settled: no append changes the run before it.
   [[nodiscard]] Time settled_until() const noexcept;
 
   /// Whether the run is a stop from a given state, and no waypoint has come since.
@@ -110,7 +110,8 @@ class PublishedCurve {
     return course_ == Course::waiting && window_.knots() == 0;
   }
 
-  /// When a live stream's start must be decided, before it settles; max() if there is no decision.
+  /// A live stream's start is decided at the latest when settled_until reaches this time: `notice`
+  /// before the start. max() if no decision is open.
   [[nodiscard]] Time start_decision() const noexcept {
     return is_start_open() ? window_.time(0) - entries_.notice : Time::max();
   }
@@ -123,25 +124,26 @@ class PublishedCurve {
   void freeze(Time t) noexcept;
 
   /// Whether the board can take this many more knots without losing a segment that ends after
-  /// `keep`; the second function: if the committed curve is first cut at t.
+  /// `keep`. has_room_to_cut() answers this for the committed curve after a cut at t.
   [[nodiscard]] bool has_room(std::size_t knots, Time keep) const noexcept;
   [[nodiscard]] bool has_room_to_cut(Time t, std::size_t knots, Time keep) const noexcept;
 
   /// Begins the curve with a given state instead of a waypoint.
   void begin(const Instant& state) noexcept;
 
-  /// The first time at which the committed curve can be cut: its beginning; min() if a hold
-  /// precedes it, max() if there is no curve.
+  /// The earliest time at which the committed curve can be cut: the left end of its oldest segment;
+  /// min() if a hold precedes the curve, max() if there is no curve.
   [[nodiscard]] Time earliest_cut() const noexcept;
 
-  /// Cuts the committed curve at t, where it must have a segment, and begins a run that continues
-  /// from there, by an entry that does not end before t + `blend`. There must be no uncommitted
-  /// changes. Changes nothing if the board is damaged.
+  /// Cuts the committed curve at t and begins a run that continues from there. The entry of the run
+  /// does not end before t + `blend`. Requires a segment at t, and no uncommitted changes. Changes
+  /// nothing if the board is damaged.
   void begin_run(Time t, Time blend) noexcept;
 
-  /// The first segment that exceeds a limit with this waypoint and not without it, at its largest
-  /// excess. Compares the segments that the waypoint changes and that the curve may follow. O(1)
-  /// without limits, else O(K·D). Does not change the curve.
+  /// Finds the first segment that exceeds a limit with this waypoint, but not without it, and
+  /// returns its largest excess; nothing if there is no such segment. Checks only the segments that
+  /// the waypoint changes and that the curve may follow. O(1) without limits, else O(K·D). Does not
+  /// change the curve.
   [[nodiscard]] std::optional<LimitExcess> excess_with(const Waypoint& waypoint) noexcept {
     return has_limits_ && window_.knots() > 0 ? find_excess(waypoint) : std::nullopt;
   }
@@ -149,9 +151,10 @@ class PublishedCurve {
   /// Appends a waypoint to the run; `item` is its number in the ring.
   void append(const Waypoint& waypoint, Word item) noexcept;
 
-  /// Searches for an entry if one is needed, from `settled` on or from the beginning of the open
-  /// entry. Counts `tries` down: see kTriesPerStep. `is_last`: no waypoint waits in the ring, so
-  /// the known ones decide. Loses no segment that ends after `keep`.
+  /// Searches for an entry if one is needed. The entry begins at `settled`, or where the open entry
+  /// begins if that has not settled. Decrements `tries` for each candidate: see kTriesPerStep.
+  /// `is_last`: no further waypoint can be taken in this step, so the search uses the known ones.
+  /// Does not overwrite segments that end after `keep`.
   void plan(Time settled, Time keep, bool is_last, int& tries) noexcept {
     if (is_searching_ || window_.options().held_before_start) {
       look_for_entry(settled, keep, is_last, tries);
@@ -164,9 +167,9 @@ class PublishedCurve {
   }
 
   /// Ends the curve at its newest knot with a boundary condition. If the published curve does not
-  /// end there, an entry leads there from `settled` on, to the knot's time or as much later as
-  /// needed. Returns false if no such entry has been found yet: then call it again in the next
-  /// step. Loses no segment that ends after `keep`.
+  /// end there, an entry from `settled` on leads to the knot; it arrives at the knot's time, or
+  /// later if that is too early for an entry. Returns false if no such entry has been found yet:
+  /// then call finish() again in the next step. Does not overwrite segments that end after `keep`.
   [[nodiscard]] bool finish(const Condition& end, Time settled, Time keep, int& tries) noexcept;
 
   /// Writes the changes to the board. Returns the earliest time at which the curve changes; max()
@@ -182,7 +185,7 @@ class PublishedCurve {
  private:
   /// The state from which an entry, or the stop of a run without waypoints, begins.
   struct Origin {
-    Word number = 0;  ///< of its knot; 0: none at the end of the curve
+    Word number = 0;  ///< of its knot; 0: there is no such entry or stop
     Time time{};
     bool is_new = false;  ///< the board does not hold it yet
   };
@@ -257,8 +260,8 @@ class PublishedCurve {
     return window_.knots() - std::min(window_.knots(), window_.knots_to_restore());
   }
 
-  /// Knots before the passed-over ones that a window needs to continue: as far back as a row and a
-  /// slope reach.
+  /// Number of knots before the passed-over ones that a window needs to continue: as many as a row
+  /// and a slope depend on.
   static constexpr std::size_t kMetKept = core::kMaxReach + 3;
 
   /// Values of a knot that a window is restored from: waypoint, g, position, velocity, acceleration
@@ -272,17 +275,17 @@ class PublishedCurve {
   DimensionKinds kinds_;
   EntryOptions entries_;
   std::size_t look_ahead_;  ///< how many rows before the newest knot an append may change
-  bool has_plain_knots_;    ///< the method changes only the velocities of knots
+  bool has_plain_knots_;    ///< an append changes only the velocities of older knots
   bool has_limits_;
   Summary summary_;  ///< last committed
   CurveCut cut_;
   core::EntrySearch search_;
   ShownMotion shown_;
-  ShownMotion committed_shown_;  ///< before a cut that has not been committed
-  bool has_forgotten_ = false;   ///< there is such a cut
-  bool knows_shown_ = false;     ///< shown_ is up to date with the board
-  BoardSegment read_;            ///< scratch
-  KnotCopy knot_;                ///< scratch
+  ShownMotion committed_shown_;      ///< copy of shown_ from before a cut that is not committed yet
+  bool has_forgotten_ = false;       ///< whether there is such a cut
+  bool has_restored_shown_ = false;  ///< shown_ is up to date with the board
+  BoardSegment read_;                ///< scratch
+  KnotCopy knot_;                    ///< scratch
   std::vector<core::Knot> knots_;
   std::vector<double> knot_values_;
   std::vector<double> values_;  ///< scratch
@@ -294,36 +297,37 @@ class PublishedCurve {
   Time end_{};
   Time stop_{};  ///< length of the stop, if the newest segment is one
   Time changed_from_ = Time::max();
-  std::size_t kept_ = 0;  ///< leading knots of the run that are unchanged since the commit
-  std::size_t open_ = 0;  ///< leading knots of the run whose written values are final
+  std::size_t kept_ = 0;  ///< number of leading knots of the run unchanged since the commit
+  std::size_t open_ = 0;  ///< number of leading knots of the run that are written with final values
 
   Course course_ = Course::on_target;
   std::size_t met_ = 0;            ///< first knot of the run in the last piece of the target
   Word met_number_ = 1;            ///< its number
   std::size_t unmet_ = 0;          ///< first knot of the run that the open entry passes over
-  std::size_t passed_lowest_ = 0;  ///< first knot in the slots of passed ones: up to kMetKept
-                                   ///< before unmet_; 0 where a stream starts by an entry
-  /// Leading knots of the run that the numbered slots hold, if the curve ends on the target.
+  std::size_t passed_lowest_ = 0;  ///< first knot that is written to the passed slots: up to
+                                   ///< kMetKept before unmet_; 0 if a stream starts by an entry
+  /// Number of leading knots of the run in the numbered slots, if the curve ends on the target.
   std::size_t placed_ = 0;
-  /// Leading knots of the run that the slots of passed ones hold or held.
+  /// The knots of the run from passed_lowest_ to before this one have been written to the passed
+  /// slots; newer ones may have overwritten them.
   std::size_t passed_written_ = 0;
-  std::size_t passed_committed_ = 0;  ///< those of them that have been committed
+  std::size_t passed_committed_ = 0;  ///< the same, as of the last commit
   Word passed_before_ = 0;            ///< waypoints passed over by entries that have ended
   Origin origin_;
   State origin_state_;
   Time blend_until_ = Time::min();  ///< no entry of the run ends before this time
   Time entry_end_{};                ///< end of an entry that ends at a waypoint
-  State beyond_;                    ///< end of an entry beyond the newest waypoint
+  State beyond_;  ///< state at the end of the entry; only the acceleration if it ends at a waypoint
   BehindEntry behind_;
-  Word known_ = 0;              ///< entry beyond the newest waypoint: waypoints known to it
+  Word known_ = 0;              ///< number of waypoints that an entry beyond the newest one used
   bool ends_at_known_ = false;  ///< that entry ends at waypoint known_ - 1, not met yet
   bool is_entry_new_ = false;   ///< the entry has not been written
-  bool is_prepared_ = false;    ///< this step has found the state that a search begins with
-  bool uses_cut_ = false;       ///< that state is the one of cut_, else the origin
+  bool is_prepared_ = false;    ///< this step has found the state from which an entry may begin
+  bool uses_cut_ = false;       ///< that state is cut_.state(), else the origin
   bool is_searching_ = false;
   bool seeks_end_ = false;           ///< the search is for an entry that ends the curve
   bool is_ending_ = false;           ///< the curve ends by an entry to `beyond_`
-  std::size_t committed_knots_ = 0;  ///< waypoints of the run, as committed
+  std::size_t committed_knots_ = 0;  ///< number of knots of the run at the last commit
   bool ends_there_ = false;          ///< the curve rests at the last waypoint
   bool has_changes_ = false;
   bool is_damaged_ = false;

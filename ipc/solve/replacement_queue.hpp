@@ -22,11 +22,11 @@ class ReplacementQueue {
   /// Whether no replacement waits.
   [[nodiscard]] bool empty() const noexcept { return first_ == items_.size(); }
 
-  /// The replacement to carry out next, ahead of all items queued before it, on a curve that is
-  /// settled until `settled_until` and whose newest knot is at `newest`: the one with the earliest
-  /// effect, the last one of several. A replacement with waypoints takes effect at its time t,
-  /// which must not have settled; a stop, which has none, at max(t, settled_until). Returns nothing
-  /// while all of them are after the newest knot or too late. O(replacements).
+  /// The replacement to carry out next, before all items queued before it: the one that takes
+  /// effect first, and the newest one of several at the same time. The curve is settled until
+  /// `settled_until`, and its newest knot is at `newest`. A replacement with waypoints takes effect
+  /// at its time t, which must not have settled; a stop takes effect at max(t, settled_until).
+  /// Returns nothing if each one is too late or after the newest knot. O(replacements).
   [[nodiscard]] std::optional<Word> due(Time settled_until, Time newest) const noexcept;
 
  private:

@@ -45,7 +45,7 @@ bool describes_a_run(const Summary& summary) noexcept {
 void PublishedCurve::restore(const Summary& summary) noexcept {
   has_changes_ = false;
   is_entry_new_ = is_searching_ = is_ending_ = seeks_end_ = ends_there_ = is_prepared_ = false;
-  knows_shown_ = knows_shown_ || summary.revision == 0;
+  has_restored_shown_ = has_restored_shown_ || summary.revision == 0;
   changed_from_ = Time::max();
   blend_until_ = summary.blend_until;
   summary_ = summary;
@@ -79,8 +79,8 @@ bool PublishedCurve::read_knot(Word number) noexcept {
   return is_there;
 }
 
-/// The knot that was read, as the window had it; its spans are in `values`. Invalid data sets
-/// `is_damaged_`.
+/// Converts the knot that was read last to a knot of the window. Its spans point into `values`.
+/// Invalid data sets `is_damaged_`.
 core::Knot PublishedCurve::restore_knot(std::span<double> values) noexcept {
   const std::size_t dimensions = window_.dimensions();
   std::size_t used = 0;
@@ -111,11 +111,12 @@ core::Knot PublishedCurve::restore_knot(std::span<double> values) noexcept {
   return knot;
 }
 
-/// Reads knot i of the run: from the numbered slots, the last waypoint at or before `line` at which
-/// a segment begins, or from its own slot if the curve has passed over it. The knots after it have
-/// been read. A knot in both was passed over first and met later, or it is one of the last met
-/// ones, whose row has changed since. Then the record of the later revision counts; in the same
-/// revision the own slot, because a cut rewrites the form of a numbered knot.
+/// Reads knot i of the run. Call it from the newest knot backwards. Searches both places where the
+/// knot may be: the numbered slots, where it is the last waypoint at or before `line` at which a
+/// segment begins, and its passed slot. A knot is in both if it was passed over first and met
+/// later, or if it is one of the last met knots and its row has changed since. Then the record of
+/// the later revision is used. If both are of the same revision, the passed slot is used, because a
+/// cut rewrites the form of a numbered knot.
 bool PublishedCurve::find_knot(std::size_t i, Word& line) noexcept {
   const Word oldest = std::max(run_, first_);
   const auto find_on_line = [&] {
@@ -160,7 +161,8 @@ void PublishedCurve::restore_course() noexcept {
       !summary_.is_later_run && origin_.number == 1 ? 0 : unmet_ - std::min(unmet_, kMetKept);
 }
 
-/// Finds the knot of the state at which the open entry begins.
+/// Restores the origin: the state at which the open entry, or the stop of a run without waypoints,
+/// begins.
 void PublishedCurve::restore_origin() noexcept {
   if (newest_ == 0 || course_ == Course::on_target) return;
   Word number = newest_;
@@ -168,7 +170,7 @@ void PublishedCurve::restore_origin() noexcept {
     number = met_number_ - 1;
   } else {
     if (!read_knot(number)) return;
-    if (knot_.note.is_waypoint) return;  // the stop after the newest knot that was met
+    if (knot_.note.is_waypoint) return;  // the curve ends with the stop after the newest met knot
     if (course_ == Course::beyond && !restore_beyond(number)) return;
   }
   if (course_ == Course::entering && number < first_) {

@@ -20,8 +20,9 @@ struct CutSegment {
   std::span<const double> coefficients{};
 };
 
-/// Evaluates a segment at t, where a run is to begin: at rest from the segment's end on, and before
-/// its beginning, where the machine is held until then. O(D).
+/// Evaluates a segment at t, where a run begins. From the segment's right end on, and before its
+/// left end, the machine is at rest: the result is the position of that end, with zero velocity and
+/// acceleration. O(D).
 void evaluate_at_cut(const CutSegment& segment, Time t, State& out) noexcept;
 
 /// The times of the motion after an entry that ends beyond the newest waypoint: the remainder of

@@ -5,17 +5,18 @@
 
 namespace splinecast::ipc {
 
-/// Raises a live stream's settled word between two steps of its solver, when a step would do
-/// nothing else: S1 of publication.hpp. A step uses far more memory. The solver creates it after
-/// each step; it is valid until the next step, which reads the stored word back. Used by the
-/// solver's thread.
+/// Raises a live stream's settled word between two steps of its solver, in place of a step that
+/// would do nothing else: it touches far less memory than a step. The store is S1 of
+/// publication.hpp. The solver creates an object after each step; it is valid until the next step,
+/// which reads the stored word back. Used by the solver's thread.
 class SettledRaise {
  public:
   /// Raises nothing.
   SettledRaise() = default;
 
-  /// `stands` is the value of the word. Never raises it to `limit` or later, where the solver
-  /// itself has work to do: the stream starves, or comes to rest.
+  /// `stands` is the current value of the word. Never raises the word to `limit` or later: there
+  /// the solver itself has work to do, because the stream starves, comes to rest, or decides its
+  /// start.
   SettledRaise(Word& word, Time stands, Time freeze_ahead, Time limit) noexcept
       : word_(&word), stands_(stands), freeze_ahead_(freeze_ahead), limit_(limit) {}
 

@@ -14,7 +14,7 @@ namespace splinecast::ipc {
 /// The limits that a motion itself shows, for entries of a stream without given limits: per
 /// dimension three times the 95 % quantile of the velocities and accelerations of its waypoints
 /// over the last kSpan of motion. The acceleration is at least the one that a stop from that
-/// velocity takes. Velocities are chord slopes over about kStep and accelerations are their
+/// velocity needs. Velocities are chord slopes over about kStep and accelerations are their
 /// differences, because the differences of neighbouring waypoints would be mostly noise. A solver
 /// that takes over knows earlier runs only from the board, so it may find other limits.
 ///
@@ -37,12 +37,12 @@ class ShownMotion {
   void forget_after(Time t) noexcept;
 
   /// Drops everything, and takes the waypoints that the curve of a summary meets before `end`, as
-  /// far as the board holds them. Any process may call it: leaves out knots that a writer changes
-  /// meanwhile. O(kSpan/kStep·(log n + D)).
+  /// far as the board holds them. Any process may call it: it skips knots that a writer changes at
+  /// the same time. O(kSpan/kStep·(log n + D)).
   void restore(const KnotBoardReader& board, const Summary& summary, Time end) noexcept;
 
-  /// The same for the writer; then takes the waypoints of the run from number `first` on, from the
-  /// slots of passed-over ones and from the window. O((kSpan/kStep + kPassedSlots)·D).
+  /// The same for the writer; then also takes the waypoints of the run from number `first` on, from
+  /// the passed slots and from the window. O((kSpan/kStep + kPassedSlots)·D).
   void restore(const core::SlidingWindow& window, const KnotBoardReader& board,
                const Summary& summary, Time end, std::size_t first) noexcept;
 
@@ -67,8 +67,8 @@ class ShownMotion {
 
   std::size_t dimensions_;
   MotionLimits limits_;
-  std::size_t count_ = 0;  ///< waypoints taken so far
-  std::size_t first_ = 0;  ///< the oldest one of them that is kept, at most kMost before the newest
+  std::size_t count_ = 0;    ///< waypoints taken so far
+  std::size_t first_ = 0;    ///< number of the oldest waypoint that is kept: at most kMost are kept
   bool has_looked_ = false;  ///< the limits are up to date
   Time next_ = Time::min();  ///< the next waypoint is taken from this time on
   std::vector<Time> times_;

@@ -70,7 +70,7 @@ void StreamSolver::restore() {
   summary_ = {};
   const Look look = published_->look();
   lacks_summary_ =
-      look.revision > 0 && !published_->copy_summary(look, summary_);  // no other writer
+      look.revision > 0 && !published_->copy_summary(look, summary_);  // fails on damage only
   curve_.restore(summary_);
 }
 
@@ -103,7 +103,8 @@ StepResult StreamSolver::step(const Clock& clock) noexcept {
   if (is_timed_) started_ = clock.now();
   const Time now = live_ ? started_ : Time::min();
   if (live_ && !board_->is_checked()) check_commit(now);
-  // Each try takes half the items of the one before; the last try takes one item and refuses it.
+  // Each try takes half as many items as the one before. If a try with one item fails, the next try
+  // refuses that item.
   constexpr int kMostTries = 12;
   static_assert(kMaxBatch < 1U << (kMostTries - 2));
   for (int i = 0; i < kMostTries; ++i) {
@@ -115,7 +116,7 @@ StepResult StreamSolver::step(const Clock& clock) noexcept {
   return {};
 }
 
-/// Makes a revision of the next items and publishes it, unless it is unsound.
+/// Takes the next items and publishes the result as a revision, unless it is unsound.
 StepResult StreamSolver::make_revision(const Clock& clock, Time now) noexcept {
   freeze(now);
   const Word consumed = consume(now);
@@ -141,7 +142,8 @@ void StreamSolver::take_back(Word misses) noexcept {
   seen_ = summary_.consumed;
 }
 
-/// Discards an unsound revision, and takes fewer items next: finally the offending one alone.
+/// Discards an unsound revision, and halves the number of items of the next one. If the revision
+/// had only one item, marks that item to be refused.
 void StreamSolver::suspect_items() noexcept {
   suspected_ = std::max(suspected_, summary_.consumed);
   if (batch_ > 1) {
@@ -152,7 +154,7 @@ void StreamSolver::suspect_items() noexcept {
   take_back(summary_.deadline_misses);
 }
 
-/// Fixes the part of the curve that this step does not change.
+/// Sets settled_until_ for this step, freezes the curve before it, and counts starvation.
 void StreamSolver::freeze(Time now) noexcept {
   settled_until_ = summary_.settled_until;
   has_starved_ = false;
@@ -170,23 +172,24 @@ void StreamSolver::freeze(Time now) noexcept {
 
 /// Whether no part of the run may change any more, so that an entry must lead to the next waypoint.
 bool StreamSolver::is_starved() const noexcept {
-  // Uncommitted knots have not settled: the first waypoint may come in this step.
+  // Nothing has settled before the first commit.
   if (!live_ || summary_.newest == 0) return false;
   return curve_.window().knots() > 0 ? settled_until_ >= curve_.newest_time()
                                      : settled_until_ > curve_.newest_time();
 }
 
-/// The item before which this step can take items if the ring's written position is `summary`:
-/// never before the consumed position, and at most a ring's capacity after it.
-Word StreamSolver::reachable(Word summary) const noexcept {
-  const Word waiting = summary - summary_.consumed;
+/// The end of the items that this step may take, if the ring's written position is `written`. Never
+/// before the consumed position, and at most the ring's capacity after it, for any value in the
+/// ring.
+Word StreamSolver::reachable(Word written) const noexcept {
+  const Word waiting = written - summary_.consumed;
   const bool goes_back = waiting > std::numeric_limits<Word>::max() / 2;
   return summary_.consumed + (goes_back ? 0 : std::min<Word>(waiting, ring_->capacity()));
 }
 
 Word StreamSolver::consume(Time now) noexcept {
-  const Word summary = ring_->written();
-  available_ = reachable(summary);
+  const Word written = ring_->written();
+  available_ = reachable(written);
   const Word before = summary_.consumed;
   keep_ = live_ ? now - live_->history : Time::max();
   withdraw();
@@ -208,12 +211,12 @@ Word StreamSolver::consume(Time now) noexcept {
     // The next waypoint would push an untried candidate out of the window.
     if (curve_.is_planning() && tries_ <= 0) break;
   }
-  // No waypoint waits: the known ones decide.
+  // No further waypoint can be taken: searches with the known ones.
   if (is_blocked || summary_.consumed == available_) {
     curve_.plan(settled_until_, keep_, true, tries_);
   }
   const bool waits = is_blocked && !curve_.has_changes();
-  seen_ = waits || available_ == before ? summary : summary_.consumed;
+  seen_ = waits || available_ == before ? written : summary_.consumed;
   return summary_.consumed - before;
 }
 
@@ -227,9 +230,10 @@ bool StreamSolver::has_room(const RingItem& item) const noexcept {
          curve_.has_room_to_cut(item.time, kAddedByItem, keep_);
 }
 
-/// Searches the ring for a replacement that is due, and withdraws all items queued before it:
-/// replacements that are too late or not yet due, and waypoints for which the board may have no
-/// room. Withdraws nothing if the replacement itself must wait for room: it may come too late.
+/// Searches the ring for a replacement that is due, and withdraws all items queued before it. They
+/// may be replacements that are too late or not yet due, and waypoints for which the board has no
+/// room. Withdraws nothing if the replacement itself must wait for room, because it may be too late
+/// when there is room.
 void StreamSolver::withdraw() noexcept {
   if (!curve_.has_begun() || summary_.finished) return;
   replacements_.note(summary_.consumed, available_);
@@ -243,16 +247,16 @@ void StreamSolver::withdraw() noexcept {
   summary_.consumed = *replacement;
 }
 
-/// Notes whether the last commit was late: the process was stopped between reading the clock and
-/// the commit. Readers detect it by changed_from. Stored at once, because the next revision may be
-/// discarded, may never come, or may be another solver's.
+/// Records on the board whether the last commit was late, because the process was stopped between
+/// reading the clock and the commit. Readers detect it by changed_from. Stores it immediately,
+/// because the next revision may be discarded, may never come, or may be another solver's.
 void StreamSolver::check_commit(Time now) noexcept {
   const bool is_late = summary_.changed_from <= now && summary_.changed_from < Time::max();
   if (is_late && !board_->is_late()) ++summary_.late_commits;
   board_->store_checked(is_late);
 }
 
-/// The time before which the committed curve never changes.
+/// The time to store as settled_until after a commit: the committed curve never changes before it.
 Time StreamSolver::settled_by_commit() const noexcept {
   if (!live_) return curve_.settled_until();
   // A finished curve no longer changes: it has settled to its end.

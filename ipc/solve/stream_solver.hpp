@@ -36,14 +36,14 @@ struct LiveOptions {
 /// when the newest knot has been frozen, an entry leads from settled_until onto the waypoints; an
 /// entry also leads onto the waypoints of a replacement: see PublishedCurve. Directly before the
 /// commit the clock is read again: a revision that would change a part of the curve that may have
-/// been executed meanwhile is discarded, counted and made again.
+/// been executed meanwhile is discarded, counted and solved again.
 ///
 /// All published values are finite: a revision with a NaN, an infinity or a value out of the range
-/// that readers accept is discarded and made again with fewer items, until the offending item is
+/// that readers accept is discarded and solved again with fewer items, until the offending item is
 /// alone and is refused.
 ///
-/// On a stream with limits each waypoint is tried first: if the curve with it would exceed a limit,
-/// that is noted, and the waypoint is taken or refused, as `beyond` says.
+/// On a stream with limits, the solver first tries each waypoint. If the curve with it exceeds a
+/// limit, the solver records the excess, and takes or refuses the waypoint as `beyond` specifies.
 ///
 /// A stop is a replacement without waypoints. It takes effect at settled_until of the first step
 /// that finds it in the ring, or at its own time if that is later, regardless of the items queued
@@ -62,8 +62,8 @@ class StreamSolver {
                Beyond beyond = Beyond::report);
 
   /// Takes the items in the ring, up to a bounded batch, and publishes the result as one revision.
-  /// On a live stream also stores how far the curve is settled when that is due, without a
-  /// revision. O(batch·K·D). For any content of the ring, a step takes a bounded time and at most
+  /// On a live stream it also stores settled_until when that is due, without a new revision.
+  /// O(batch·K·D). For any content of the ring, a step takes a bounded time and at most
   /// as many items as the ring has; invalid items are refused. Data read back from the board are
   /// checked as well.
   StepResult step(const Clock& clock) noexcept;
@@ -71,8 +71,8 @@ class StreamSolver {
   /// The summary last committed.
   [[nodiscard]] const Summary& summary() const noexcept { return summary_; }
 
-  /// The ring's written position when the last step found nothing more that it could take. A step
-  /// has work to do once it has changed, or `due` has come.
+  /// The written position of the ring for which the last step left no work. A step has work to do
+  /// when the ring's written position differs from it, or when `due` has come.
   [[nodiscard]] Word seen() const noexcept { return seen_; }
 
   /// When the next step is due even if no item comes; max() for never.
@@ -96,7 +96,7 @@ class StreamSolver {
   void suspect_items() noexcept;
   [[nodiscard]] Word consume(Time now) noexcept;
   [[nodiscard]] bool is_damaged() const noexcept { return lacks_summary_ || curve_.is_damaged(); }
-  [[nodiscard]] Word reachable(Word summary) const noexcept;
+  [[nodiscard]] Word reachable(Word written) const noexcept;
   [[nodiscard]] bool has_room(const RingItem& item) const noexcept;
   void withdraw() noexcept;
   /// Whether an item is a stop: a replacement without waypoints.
@@ -130,13 +130,13 @@ class StreamSolver {
   std::size_t max_batch_;
   Summary summary_;
   bool lacks_summary_ =
-      false;  ///< the board lacks its revision's summary: another writer changed it
+      false;  ///< the board has no summary of its revision: another process has changed it
   Time settled_until_ = Time::min();  ///< this step changes nothing before this time
   Time keep_ = Time::max();           ///< this step overwrites no segment that ends after this time
   bool is_timed_ = false;             ///< this step is timed
   Time started_{};                    ///< the clock when it began, if it is timed
   Time settled_at_ = Time::min();     ///< the clock when settled_until was last stored
-  bool has_starved_ = false;          ///< in this step
+  bool has_starved_ = false;          ///< the stream has begun to starve in this step
   int tries_ = 0;                     ///< candidates of an entry that this step may still try
   bool is_finish_postponed_ = false;  ///< no entry to the last waypoint has been found yet
   RingItem item_;
@@ -145,7 +145,7 @@ class StreamSolver {
   Word seen_ = 0;
   Word batch_ = 0;        ///< items taken for this revision, one by one
   Word batch_limit_ = 0;  ///< maximum of batch_ for this revision
-  Word suspected_ = 0;    ///< items before this one were in a revision that was not finite
+  Word suspected_ = 0;    ///< items before this one were in a discarded unsound revision
   /// Current maximum of items per revision: max_batch_, or fewer after an unsound revision.
   Word most_items_ = 0;
   std::optional<Word> unsound_item_{};  ///< the item that alone makes a revision unsound

@@ -19,7 +19,7 @@ constexpr std::size_t kFirstKnots = 4;
 
 }  // namespace
 
-/// Writes the state at which an entry begins, or the stop of a run without an entry.
+/// Writes the knot of the origin: an entry begins there or, in a run without an entry, a stop.
 void PublishedCurve::write_origin() noexcept {
   const bool enters = course_ != Course::waiting || is_ending_;
   const auto zeros = std::span(kZeros).first(published_->smooths() ? window_.dimensions() : 0);
@@ -85,8 +85,8 @@ void PublishedCurve::write_ending() noexcept {
   end_ = behind_.end;
 }
 
-/// Adds the row of knot i to its record if it may have changed: an append changes rows as far back
-/// as its method looks, and all rows of a short run.
+/// Adds the row of knot i to its record if an append may have changed it: an append changes the
+/// last look_ahead_ rows, and all rows of a run of up to kFirstKnots.
 void PublishedCurve::give_row(std::size_t i, const core::Knot& knot,
                               KnotRecord& record) const noexcept {
   const std::size_t known = committed_knots_;
@@ -96,8 +96,9 @@ void PublishedCurve::give_row(std::size_t i, const core::Knot& knot,
   record.g = knot.g;
 }
 
-/// Writes waypoints that the curve passes over, for a solver that takes over. Also writes the last
-/// met ones again, because the next waypoint changes their rows.
+/// Writes knots `first` to `end` - 1 of the run to the passed slots, for a solver that takes over:
+/// waypoints that the curve passes over, and the last met ones, because the next waypoint changes
+/// their rows.
 void PublishedCurve::write_passed(std::size_t first, std::size_t end) noexcept {
   const auto zeros = std::span(kZeros).first(window_.dimensions());
   for (std::size_t i = first; i < end; ++i) {
@@ -117,8 +118,8 @@ void PublishedCurve::write_passed(std::size_t first, std::size_t end) noexcept {
   passed_written_ = std::max(passed_written_, end);
 }
 
-/// Writes the waypoints before `end` that the curve has not met, as far back as appends have
-/// changed them or their rows.
+/// Writes to the passed slots all knots before `end` that may have changed since the commit, or
+/// whose rows may have.
 void PublishedCurve::write_unmet(std::size_t end) noexcept {
   const std::size_t knots = window_.knots();
   const std::size_t solved = knots - std::min(knots, window_.options().settle);
@@ -127,7 +128,8 @@ void PublishedCurve::write_unmet(std::size_t end) noexcept {
   write_passed(std::max({first, passed_first(), passed_lowest_}), end);
 }
 
-/// An append changes only the velocity of the knots before this one.
+/// Appends since the commit have changed at most the velocities of the knots before this one. 0 if
+/// they may have changed more.
 std::size_t PublishedCurve::plain_knots() const noexcept {
   const bool is_plain = has_plain_knots_ && !window_.finished() && committed_knots_ > kFirstKnots &&
                         placed_ == committed_knots_;
@@ -137,7 +139,7 @@ std::size_t PublishedCurve::plain_knots() const noexcept {
 /// Writes knots `first` to `end` - 1 of the run as the window has them now.
 void PublishedCurve::write_knots(std::size_t first, std::size_t end) noexcept {
   const std::size_t plain_end = std::min(plain_knots(), end);
-  // More than the velocity of the first knot of a piece may have changed.
+  // Other values of the first knot of the piece of the target may have changed too.
   const std::size_t plain_first = std::max<std::size_t>(kept_, met_ + 1);
   std::size_t i = first;
   for (; i < std::min(plain_first, end); ++i) write_knot(i);
@@ -168,7 +170,8 @@ void PublishedCurve::write_knot(std::size_t i) noexcept {
                     .acceleration = ends_entry ? beyond_.acceleration() : knot.acceleration,
                     .residual = knot.residual};
   if (record.note.form == SegmentForm::stop) {
-    // If a segment ends here with a given acceleration, the stop starts with the same one.
+    // A knot stores one acceleration: if a segment arrives with a given one, the stop starts with
+    // it.
     stop_ = window_.write_stop(values_);
     end_ = knot.time + stop_;
     record.note.starts = true;
@@ -208,13 +211,13 @@ void PublishedCurve::write_on_line() noexcept {
   end_ = window_.time(knots - 1);
 }
 
-/// Drops the oldest knots, whose slots the newest ones have taken.
+/// Removes from the range of knots the oldest ones, which the newest ones have overwritten.
 void PublishedCurve::drop_oldest() noexcept {
-  // `first_` never decreases: a replacement drops knots, but those that they overwrote stay lost.
+  // A replacement may lower newest_, but overwritten knots stay lost: first_ never decreases.
   const Word kept = newest_ - std::min<Word>(newest_, board_->capacity()) + 1;
   if (kept <= first_) return;
   first_ = kept;
-  // A segment begins at the first knot: if none does, the segment before it has been lost.
+  // A segment must begin at first_. A knot without one is only the right end of a lost segment.
   if (first_ < newest_ && board_->form(first_) == SegmentForm::none) ++first_;
 }
 

@@ -25,7 +25,8 @@ void StreamSweep::look_around() {
   if (is_any_unheld_) hold_regions();
 }
 
-/// Lists the streams to attach to, and drops those that patterns found and that no longer exist.
+/// Lists the streams to attach to, and drops streams that were found by a pattern and no longer
+/// exist.
 void StreamSweep::look_for_names() {
   to_take_.clear();
   std::vector<std::string> standing = stream_names();
@@ -45,7 +46,7 @@ void StreamSweep::look_for_names() {
   for (auto& [stream, member] : members_) {
     const bool stands = std::ranges::binary_search(standing, stream);
     if (!stands && !member.is_named) continue;
-    // Other files have its names: it is another stream, and is reported as one.
+    // Its files have been replaced: it is a new stream, and is reported as one.
     if (member.state == State::given_up && files_of(stream) != member.files) {
       member.state = State::unowned;
     }
@@ -76,7 +77,7 @@ StreamSweep::Files StreamSweep::files_of(const std::string& stream) {
           lock.st_uid != geteuid() ? lock.st_ino : 0};
 }
 
-/// Retries streams whose earlier motion has ended: no other event reports that.
+/// Retries streams that waited for the end of an earlier motion: no event reports that end.
 void StreamSweep::note_ends_of_motion() {
   std::erase_if(moving_, [&](const std::string& stream) {
     const auto found = members_.find(stream);
@@ -88,7 +89,7 @@ void StreamSweep::note_ends_of_motion() {
   });
 }
 
-/// Checks whether streams of other processes have lost their solver, some in each call.
+/// Checks whether streams of other processes have lost their solver: at most kTries in one call.
 void StreamSweep::look_elsewhere() {
   if (elsewhere_.empty()) {
     for (const auto& [stream, member] : members_) {

@@ -39,7 +39,7 @@ StreamSweep::StreamSweep(const std::vector<std::string>& wanted, SolverOptions o
     members_[text].is_named = true;
   }
   Solver::require(options_);
-  // Owned at once; the sweeps attach to them one after the other.
+  // Locks all named streams now; the sweeps attach to them one after the other.
   for (auto& [stream, member] : members_) {
     if (own(stream, member)) become(stream, member, State::waiting, SweepNews::waiting);
   }

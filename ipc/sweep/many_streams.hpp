@@ -22,25 +22,26 @@ namespace splinecast::ipc {
 enum class SweepNews : std::uint8_t {
   waiting,         ///< there is no producer yet, or the stream has been removed
   solving,         ///< it is solved here now
-  finished,        ///< its end has been solved
+  finished,        ///< the solver has taken its finish
   elsewhere,       ///< another process solves it; taken over when that dies
-  no_descriptors,  ///< RLIMIT_NOFILE leaves none for it; tried again when streams have come or gone
+  no_descriptors,  ///< RLIMIT_NOFILE does not allow another one; retried when streams come or go
   refused,         ///< an item was refused, the first one for its reason
   beyond_limits,   ///< the curve exceeds a limit with a waypoint that was taken, the first one
   postponed,       ///< memory or descriptors are lacking; retried periodically
-  given_up,        ///< it cannot be solved; tried again when other files exist under its name
+  given_up,        ///< it cannot be solved; retried when its files have been replaced
   gone,            ///< a stream that was found by a pattern no longer exists
 };
 
 /// The solvers of many streams in one thread. The streams are named, or found by patterns as they
 /// come and go.
 ///
-/// A sweep polls one cache line of each stream and steps those that have work to do. It polls a
-/// stream that has been idle for a second only every 20 ms, the idle streams in turn, because such
-/// a poll misses the caches for that line and its page. The rest of its work, which takes system
-/// calls, is done every 50 ms, and only if files have come or gone in the folder of shared memory
-/// or another process solves a wanted stream. A sweep attaches to at most one stream, because that
-/// maps memory, and the others must not wait long. Allocates only when streams come and go.
+/// A sweep polls one cache line of each stream and steps the streams that have work to do. It polls
+/// a stream that has been idle for a second only every 20 ms, in turn with other idle streams,
+/// because such a poll misses the caches for that line and its page. Every 50 ms a sweep also looks
+/// for changes that need system calls: files that have come or gone in the folder of shared memory,
+/// and wanted streams whose solver in another process has died. A sweep attaches to at most one
+/// stream, because that maps memory, and the others must not wait long. Allocates only when streams
+/// come and go.
 class StreamSweep {
  public:
   /// Called when the state of a stream has changed, and for its first refusals, excess and finish.
@@ -50,9 +51,9 @@ class StreamSweep {
                                   std::string_view why)>;
 
   /// Each of `wanted` is a stream's name or a pattern, see is_pattern(). From now on no other
-  /// process can solve a named stream, even while it has no producer. All are solved with these
-  /// options. Throws BadRequest for invalid options or names; calls `tell` already here. `pause` is
-  /// the time between two sweeps.
+  /// process can solve a named stream, even while it has no producer. Solves all streams with these
+  /// options. Throws BadRequest for invalid options or names. The constructor may already call
+  /// `tell`. `pause` is the time between two sweeps.
   StreamSweep(const std::vector<std::string>& wanted, SolverOptions options, Tell tell,
               Time pause = std::chrono::milliseconds(1));
 
@@ -76,12 +77,12 @@ class StreamSweep {
 
  private:
   /// Maximum number of streams tried in one sweep, and of streams of other processes checked in one
-  /// call. When one of these has lost its solver, the count restarts: usually it solved the
-  /// others too.
+  /// call. When one of the latter has lost its solver, the count restarts, because the same process
+  /// usually solved the others too.
   static constexpr std::size_t kTries = 16;
 
-  /// Interval between retries of the streams that lack memory or descriptors, one per retry; once
-  /// one has succeeded, the next look retries another.
+  /// Interval between retries of postponed streams, one stream per retry. After a success, the next
+  /// look retries another one without this interval.
   static constexpr Time kRetry = std::chrono::milliseconds(100);
 
   enum class State : std::uint8_t {
@@ -94,14 +95,14 @@ class StreamSweep {
     given_up
   };
 
-  /// Inodes of the ring, of the board, and of a lock file that is another user's; 0 for none.
+  /// Inodes of the ring, of the board, and of its lock file if another user owns that; 0: none.
   using Files = std::array<std::uint64_t, 3>;
 
   struct Member {
     bool is_named = false;
     State state = State::unowned;
-    std::unique_ptr<Solver> waiting{};  ///< while there is no producer
-    Files files{};                      ///< given_up: those that existed then
+    std::unique_ptr<Solver> waiting{};  ///< holds the lock until the stream can be solved
+    Files files{};                      ///< its files when it was given up
   };
 
   struct Served {
@@ -156,16 +157,16 @@ class StreamSweep {
   std::map<std::string, Member> members_;
   FolderWatch folder_;
   Time next_look_ = Time::min();
-  bool looks_again_ = false;  ///< the last look for names was not finished
+  bool looks_again_ = false;  ///< the next look lists the names even if the folder is unchanged
   Time next_retry_ = Time::min();
   std::string last_retried_;            ///< the postponed stream that was retried last
   bool is_any_unheld_ = false;          ///< whether a board may lack its region lock
   std::vector<std::string> to_take_;    ///< streams to try next, in reverse order
-  std::vector<std::string> elsewhere_;  ///< streams that others solve, to check in reverse order
+  std::vector<std::string> elsewhere_;  ///< streams of other processes to check, in reverse order
   std::vector<std::string> moving_;     ///< streams that wait for the end of an earlier motion
   std::size_t most_owned_;              ///< the maximum that RLIMIT_NOFILE allows
   std::vector<Watch> watches_;          ///< all that a sweep reads of an idle stream
-  std::vector<Served> served_;          ///< the same streams, index by index
+  std::vector<Served> served_;          ///< the same streams, with the same indices
   std::vector<std::size_t> calling_;    ///< indices of the streams that this sweep steps
   std::vector<ItemRefusal> refused_;    ///< scratch
   Time now_{};                          ///< time of this sweep

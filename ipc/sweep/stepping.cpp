@@ -30,11 +30,12 @@ bool StreamSweep::sweep(const Clock& clock) {
 }
 
 void StreamSweep::take_up(const Clock& clock) {
-  // Not while attaching to streams: that creates files, and each would trigger another look.
+  // Does not look while there are streams to attach to: attaching creates files, and each of them
+  // would trigger another look.
   if (to_take_.empty() && now_ >= next_look_) {
     next_look_ = now_ + kLookAround;
     look_around();
-    // The looks take a bounded share of the time for any number of files that others create.
+    // Limits the share of the time that looks take, for any number of files in the folder.
     constexpr int kShare = 20;
     next_look_ = std::max(next_look_, clock.now() + kShare * (clock.now() - now_));
   }
@@ -61,7 +62,7 @@ void StreamSweep::collect_calling() {
 }
 
 /// Prefetches the memory for the steps after the i-th one while that one runs: with many streams
-/// nothing stays in the caches from one step to the next.
+/// the caches hold nothing of a stream from one sweep to the next.
 void StreamSweep::prefetch_behind(std::size_t i) const noexcept {
   const auto ask = [&](std::size_t ahead, Internals::Stage stage) {
     if (i + ahead >= calling_.size()) return;
@@ -117,7 +118,7 @@ void StreamSweep::release_detached() {
     watches_.erase(watches_.begin() + static_cast<std::ptrdiff_t>(i));
   }
   has_detached_ = false;
-  // Now, because a new stream may already have the name.
+  // Looks in the next sweep, because a new stream may already have the name.
   looks_again_ = true;
   next_look_ = now_;
 }

@@ -13,7 +13,7 @@ namespace splinecast::ipc {
 namespace {
 
 /// Whether a failed attempt may succeed later with the same files under the stream's name.
-bool is_passing(const std::exception& error) noexcept {
+bool is_transient(const std::exception& error) noexcept {
   return dynamic_cast<const OutOfResources*>(&error) != nullptr ||
          dynamic_cast<const StreamBusy*>(&error) != nullptr ||
          dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
@@ -32,7 +32,8 @@ void StreamSweep::take_next(const Clock& clock) {
   }
 }
 
-/// Becomes the stream's solver, unless another process is.
+/// Acquires the stream's solver lock if no other process holds it. Returns whether this process
+/// holds it now.
 bool StreamSweep::own(const std::string& stream, Member& member) {
   if (member.waiting) return true;
   if (owned() >= most_owned_) {
@@ -88,7 +89,8 @@ void StreamSweep::make_room() {
   calling_.reserve(room);
 }
 
-/// Acquires the region locks that another process held when this one took the boards over.
+/// Retries to acquire the region locks that another process still held when this one took over the
+/// boards.
 void StreamSweep::hold_regions() noexcept {
   is_any_unheld_ = false;
   for (const Served& served : served_) {
@@ -96,7 +98,8 @@ void StreamSweep::hold_regions() noexcept {
   }
 }
 
-/// A stream that has been retired waits for a producer again; one whose step failed is given up.
+/// Stops solving a stream. After a failed step it is given up or postponed; else it has been
+/// retired and waits for a new producer.
 void StreamSweep::release(Served& served) {
   const auto found = members_.find(served.solver->stream());
   auto& [stream, member] = *found;
@@ -116,7 +119,7 @@ void StreamSweep::release(Served& served) {
 /// Gives a stream up because of an error, or postpones it if the error may be temporary. A named
 /// stream that is postponed keeps its lock.
 void StreamSweep::drop(const std::string& stream, Member& member, const std::exception& error) {
-  if (is_passing(error)) {
+  if (is_transient(error)) {
     if (!member.is_named) member.waiting.reset();
     next_retry_ = now_ + kRetry;
     become(stream, member, State::postponed, SweepNews::postponed, nullptr, error.what());

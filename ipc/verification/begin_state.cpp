@@ -10,7 +10,8 @@
 namespace splinecast::ipc {
 namespace {
 
-/// Maximum number of times that a state may have been normalised, by runs that replaced each other.
+/// Maximum number of normalisations to try: each run that replaced another one at the same state
+/// has normalised it once more.
 constexpr int kNormalisations = 4;
 
 }  // namespace

@@ -12,19 +12,19 @@
 
 namespace splinecast::ipc {
 
-/// The state at which an entry, a stop or a hold of a record begins: that of the curve before it,
-/// as the solver had it. Segments are counted from 0. One thread uses it.
+/// Computes the state at which an entry, a stop or a hold of a record begins, from the segment
+/// before it, with the same bits as the solver. Segments are counted from 0. One thread uses it.
 class BeginState {
  public:
   /// The record outlives this.
   explicit BeginState(const StreamRecord& record)
       : record_(record), segments_(record.segments), state_(record.items.dimensions()) {}
 
-  /// Finds the state at which the entry, or the stop, of segment i begins. `natural_right`: where
-  /// the segment before would end without a cut. O(D).
+  /// Finds the state at which segment i, an entry or a stop, begins. `natural_right`: where the
+  /// segment before it ends without a cut. O(D).
   void find(std::size_t i, Time natural_right) noexcept;
 
-  /// Takes the state of segment i at a time, regardless of the segments after it. O(D).
+  /// Sets the state to that of segment i at t, as if the curve were cut there. O(D).
   void take_cut(std::size_t i, Time t) noexcept;
 
   [[nodiscard]] std::span<const double> position() const noexcept { return state_.position(); }
@@ -33,7 +33,8 @@ class BeginState {
     return state_.acceleration();
   }
 
-  /// The state at a time; a view, valid until the state changes.
+  /// The current state, with the time t attached: evaluates nothing. A view, valid until the next
+  /// find() or take_cut().
   [[nodiscard]] Instant at(Time t) const noexcept {
     return {
         .time = t, .position = position(), .velocity = velocity(), .acceleration = acceleration()};

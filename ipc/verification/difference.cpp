@@ -15,7 +15,7 @@ std::optional<Difference> differ(std::string what, std::string published, std::s
       .what = std::move(what), .published = std::move(published), .solved = std::move(solved)};
 }
 
-/// Whether a segment ends where it was solved to, or was cut there.
+/// Whether the published right end is that of the solved segment, or an allowed cut before it.
 bool may_end(const SegmentCopy& published, const core::Segment& solved, bool may_be_cut) noexcept {
   if (published.right == solved.right) return true;
   return may_be_cut && published.right > solved.left && published.right < solved.right;

@@ -21,24 +21,25 @@ class RecordedDecisions {
   /// Whether segment i is an entry onto a target.
   [[nodiscard]] bool is_entry(std::size_t i) const noexcept;
 
-  /// Whether segment i follows an entry beyond the newest waypoint: the line, or the stop.
+  /// Whether segment i is the straight line or the stop after an entry beyond the newest waypoint.
   [[nodiscard]] bool is_behind_entry(std::size_t i) const noexcept;
 
   /// Whether segment i is the entry by which a curve ends at its last waypoint.
   [[nodiscard]] bool is_ending(std::size_t i) const noexcept;
 
-  /// Whether a run begins with segment i, if the current one has begun with `run_item`.
+  /// Whether a run begins with segment i. `run_item` is the first item of the current run.
   [[nodiscard]] bool begins_run(std::size_t i, std::optional<Word> run_item) const noexcept;
 
-  /// The segment after those of the run that begins with segment i and `run_item`.
+  /// The index after the last segment of the run that begins with segment i and `run_item`.
   [[nodiscard]] std::size_t end_of_run(std::size_t i, std::optional<Word> run_item) const noexcept;
 
-  /// Whether the curve was cut where segment i begins, for the waypoints that follow; false: they
-  /// came later, after a stop.
+  /// Whether the replacement that brought the waypoints of this run cut the curve where segment i
+  /// begins. False if these waypoints came later, during or after a stop.
   [[nodiscard]] bool begins_at_cut(std::size_t i) const noexcept;
 
-  /// Whether the first run of the record does not begin with the stream's first waypoint: a state
-  /// was given, or the curve was replaced before it had begun to move.
+  /// Whether segment i, the first one of the record, begins at another state than the stream's
+  /// first waypoint: at a given start state, or at a replacement before the curve had begun to
+  /// move.
   [[nodiscard]] bool begins_elsewhere(std::size_t i) const noexcept;
 
   /// Whether the run that begins with `run_item` is the last one of a finished stream.

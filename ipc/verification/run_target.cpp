@@ -36,7 +36,7 @@ std::optional<std::size_t> RunTarget::index_of(Time time) const noexcept {
 
 void RunTarget::note_met(std::size_t index, std::size_t newer) {
   if (met_.empty() || met_.back().index < index) met_.push_back({index, 0});
-  // A knot between two segments is noted twice, a knot after a cut only once.
+  // The knot between two segments is recorded twice: as a right end and as a left end.
   if (met_.back().index == index) met_.back().newest = index + newer;
 }
 

@@ -21,8 +21,8 @@ class SentItems {
   /// Items so far; they are numbered from 0.
   [[nodiscard]] Word size() const noexcept { return items_.size(); }
 
-  /// Adds the next item, with a copy of its values: all three of a start state, only the time of a
-  /// replacement.
+  /// Adds the next item, with a copy of its values. A start state has position, velocity and
+  /// acceleration; a replacement has only a time.
   void add(ItemKind kind, const Waypoint& values);
 
   /// Notes that the solver refused an item. Ignores unknown items.

@@ -9,22 +9,23 @@
 
 namespace splinecast::ipc {
 
-/// Collects the settled segments of a stream while it runs: a passive reader of its board.
+/// Collects the settled segments of a stream while it runs. Only reads its board.
 ///
-/// Misses none if it looks again before the board has lost a settled segment; a missed one shows as
-/// a gap between a segment's `next` and the number of the segment after it. Keeps all of them:
-/// about (order + 2)·D doubles each. One thread uses it.
+/// Misses none if look() is called before the board has lost a settled segment. A missed segment
+/// shows as a gap between a segment's `next` and the number of the segment after it. Keeps them
+/// all: about (order + 2)·D doubles each. One thread uses it.
 class SettledSegments {
  public:
   /// Each look reads `board`, which outlives this. `is_held_before_start`: the stream is live, so
-  /// that it rests before its first waypoint.
+  /// its curve rests before the first waypoint.
   explicit SettledSegments(const KnotBoardReader& board, bool is_held_before_start = false);
 
-  /// Takes the segments that have settled since the last look; of a finished stream, all. O(D) per
-  /// segment. Allocates; never stores to shared memory. Two loads if nothing has settled since.
+  /// Takes the segments that have settled since the last look; all if the stream is finished. O(D)
+  /// per segment. Allocates; never stores to shared memory. Two loads if nothing has settled since.
   void look();
 
-  /// Oldest first, with waypoint and acceleration step, which is empty after a gap.
+  /// The segments, oldest first, with waypoint and acceleration step. The step is empty after a
+  /// gap.
   [[nodiscard]] std::span<const SegmentCopy> segments() const noexcept { return segments_; }
 
   /// The summary of the board at the last look.

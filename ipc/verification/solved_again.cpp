@@ -19,7 +19,7 @@ bool StreamReplay::solve_in_run(std::size_t s) {
   return segment.kind == SegmentKind::hold ? solve_hold_behind(s) : solve_state_stop(s);
 }
 
-/// A segment of the target, or the stop after its newest waypoint.
+/// Solves and compares a segment of the target, or the stop after its newest waypoint.
 bool StreamReplay::solve_on_target(std::size_t s) {
   const SegmentCopy& segment = segments_[s];
   const core::SlidingWindow& window = target_.window();
@@ -39,7 +39,7 @@ bool StreamReplay::solve_on_target(std::size_t s) {
                 first_in_words(window.knot(*index).waypoint));
 }
 
-/// The rest after the segment before, from its published end on.
+/// Solves and compares a hold within a run. It begins at the published end of the segment before.
 bool StreamReplay::solve_hold_behind(std::size_t s) {
   const SegmentCopy& segment = segments_[s];
   begin_.take_cut(s - 1, segment.left);
@@ -47,7 +47,8 @@ bool StreamReplay::solve_hold_behind(std::size_t s) {
   return compare_solved(s);
 }
 
-/// A rest that belongs to no run: it begins where the segment before ends as it was solved.
+/// Solves and compares a hold that belongs to no run. It must begin at the uncut end of the segment
+/// before.
 void StreamReplay::solve_hold(std::size_t i) {
   begin_.take_cut(i - 1, segments_[i].left);
   core::build_hold(segments_[i].left, segments_[i].right, begin_.position(), solved_);
@@ -58,7 +59,7 @@ void StreamReplay::solve_hold(std::size_t i) {
   }
 }
 
-/// The stop from the state at which a run begins.
+/// Solves and compares the stop from the state at which a run begins.
 bool StreamReplay::solve_state_stop(std::size_t s) {
   const core::WindowOptions& options = target_.window().options();
   const Time length = core::stop_time_within(options.limits, options.stop_time, begin_.velocity(),
@@ -95,7 +96,7 @@ bool StreamReplay::solve_entry(std::size_t s) {
   return compare_solved(s);
 }
 
-/// The straight line after an entry, or the stop.
+/// Solves and compares the straight line or the stop after an entry beyond the newest waypoint.
 bool StreamReplay::solve_behind_entry(std::size_t s) {
   const auto position = std::span(values_);
   const bool is_line = segments_[s].kind == SegmentKind::spline;
@@ -118,7 +119,7 @@ bool StreamReplay::begins_at_end(std::size_t i) const noexcept {
          run_item_ != segments_[i].origin.item;
 }
 
-/// The entry by which a curve ends at its last waypoint.
+/// Solves and compares the entry by which a curve ends at its last waypoint.
 void StreamReplay::solve_ending(std::size_t i) {
   if (begins_at_end(i) && !begin_run(i)) return;
   if (run_item_ && !append_until(record_.summary.run_knots)) return;

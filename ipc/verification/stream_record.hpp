@@ -16,9 +16,9 @@ struct StreamRecord {
   core::WindowOptions window;
   DimensionKinds kinds;
   const SentItems& items;
-  std::span<const SegmentCopy> segments;  ///< settled ones from number 1
+  std::span<const SegmentCopy> segments;  ///< the settled segments, from number 1 on
   Summary summary;                        ///< the last summary
-  Condition end;                          ///< with which the stream was finished
+  Condition end;                          ///< the condition that finished the stream
 };
 
 }  // namespace splinecast::ipc

@@ -67,7 +67,7 @@ bool StreamReplay::begin_run(std::size_t i) {
   const Word items = record_.items.size();
   begin_.find(i, natural_right_);
   const bool is_later = i > 0 || decisions_.begins_elsewhere(i);
-  // A run without waypoints remains the same run when it is cut again.
+  // A run that has no waypoints yet remains the same run when it is cut again.
   const Word first_items = segment.origin.item.value_or(items);
   const bool is_same_run =
       i > 0 && target_.window().knots() == 0 &&
@@ -85,8 +85,8 @@ bool StreamReplay::begin_run(std::size_t i) {
   return true;
 }
 
-/// Lists the waypoints that the segments of a run meet, with what was known when each was last
-/// solved.
+/// Lists the waypoints that the segments `begin` to `end` - 1 meet, with the number of newer ones
+/// that were known when each was last solved.
 bool StreamReplay::list_met(std::size_t begin, std::size_t end) {
   for (std::size_t s = begin; s < end; ++s) {
     const SegmentCopy& segment = segments_[s];
@@ -113,7 +113,7 @@ bool StreamReplay::append_until(std::size_t count) {
                 std::to_string(target_.window().knots()));
 }
 
-/// Whether no segment leads to the last run, because the curve already rests at its last waypoint.
+/// Whether the last run has no segments, because the curve already rests at its last waypoint.
 bool StreamReplay::rests_at_last_waypoint() {
   const Word run_item = record_.summary.run_item;
   if (segments_.empty() || run_item == 0 || run_item_ == run_item - 1) return false;

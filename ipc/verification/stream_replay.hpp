@@ -21,8 +21,8 @@
 
 namespace splinecast::ipc {
 
-/// Solves the record of one stream again, segment by segment, by the decisions that it holds, up to
-/// the first segment that differs. Used once, by one thread.
+/// Solves a recorded stream again, segment by segment, with the solver's decisions as its segments
+/// show them, up to the first segment that differs. Used once, by one thread.
 class StreamReplay {
  public:
   /// The record outlives this. Throws std::invalid_argument for window options out of range.
@@ -44,7 +44,7 @@ class StreamReplay {
   [[nodiscard]] bool is_last_run() const noexcept { return decisions_.is_last_run(run_item_); }
   [[nodiscard]] bool begins_at_end(std::size_t i) const noexcept;
 
-  // One segment: solved into solved_, and compared.
+  // Each solves one segment into solved_, and compares it with the published one.
   bool solve_in_run(std::size_t s);
   bool solve_on_target(std::size_t s);
   bool solve_entry(std::size_t s);
@@ -69,7 +69,7 @@ class StreamReplay {
   BehindEntry behind_;
   std::vector<double> values_;  ///< scratch
   std::optional<Word> run_item_{};
-  Time natural_right_{};  ///< end of the segment before, without a cut
+  Time natural_right_{};  ///< where the segment before ends without a cut
   std::size_t next_ = 0;  ///< segment to be compared next
   std::size_t equal_ = 0;
   std::optional<Difference> first_;

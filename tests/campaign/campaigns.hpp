@@ -22,8 +22,8 @@ struct CampaignOptions {
   std::uint64_t kills = 300;
   std::uint64_t seed = 1;
   double seconds = 2;      ///< stress: of each part; streams and returns: of the whole campaign
-  std::uint64_t runs = 0;  ///< number of simulated streams, 0: as many as fit into `seconds`; of
-                           ///< instants at which encoders end, 0: 200
+  std::uint64_t runs = 0;  ///< streams and returns: number of runs, 0: as many as fit into
+                           ///< `seconds`; stops: instants at which waypoints end, 0: 200
   std::string trace{};     ///< folder for traces of what readers see; empty: none
 };
 
@@ -90,6 +90,9 @@ struct CampaignOptions {
 
 /// Commit, compiler and flags of this build.
 [[nodiscard]] std::string this_build();
+
+/// The current date in UTC, as YYYY-MM-DD.
+[[nodiscard]] std::string today();
 
 /// A stream name that contains the id of this process.
 [[nodiscard]] std::string campaign_stream(const std::string& what);

@@ -16,7 +16,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from page import this_machine
+from page import this_machine, today
 
 CAMPAIGN = Path(__file__).resolve().parent
 PROJECT = CAMPAIGN.parent.parent
@@ -35,7 +35,7 @@ def run(command, **environment):
 
 def write(name, result):
     version = re.search(r"project\(splinecast VERSION (\S+)", (PROJECT / "CMakeLists.txt").read_text())
-    result |= {"machine": this_machine(), "command": "tests/campaign/concurrency.py",
+    result |= {"machine": this_machine(), "date": today(), "command": "tests/campaign/concurrency.py",
                "version": version.group(1)}
     path = CAMPAIGN / "results" / f"{name}.json"
     path.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
@@ -51,13 +51,13 @@ def attack_model():
         held.setdefault(model, []).append(int(states))
     write("model", {
         "promise": [1, 3, 5, 8],
-        "attack": "models of the publication of knots, the ring of changes, the settled word and the takeover of "
-                  "the waypoint ring, with writers that die at any store; all interleavings, with spin",
+        "attack": "models: all interleavings, with spin, of models of the publication of knots, the ring of changes, "
+                  "the settled word and the takeover of the waypoint ring, with writers that die at any store",
         "count": sum(map(sum, held.values())),
         "unit": "states",
-        "found": {"states in which a promise fails": 0, "mutants not caught": 0},
+        "found": {"states that break a promise": 0, "mutants not caught": 0},
         "measured": {"mutants caught": text.count(": caught after"),
-                     "searches that hold": sum(map(len, held.values())),
+                     "searches without a violation": sum(map(len, held.values())),
                      **{f"states of {model}": sum(states) for model, states in held.items()}},
         "seconds": round(seconds, 1)})
 
@@ -72,13 +72,13 @@ def attack_races(program):
         seconds += took
     write("tsan", {
         "promise": [1, 3, 8],
-        "attack": "threads on one mapping under ThreadSanitizer: a producer, a solver and the one that takes over, "
+        "attack": "ThreadSanitizer: threads on one mapping: a producer, a solver and the one that takes over, "
                   "three readers and an observer; then the same with each kind of word as plain memory",
         "count": samples,
         "unit": "samples",
         "found": {"races reported": text.count(RACE), "runs with torn payloads": 0 if good else 1,
-                  "plain words not reported": missed},
-        "measured": {"plain words reported": len(WORDS) - missed, "items": items, "revisions": revisions},
+                  "plain words without a reported race": missed},
+        "measured": {"plain words with a reported race": len(WORDS) - missed, "items": items, "revisions": revisions},
         "seconds": round(seconds, 1)})
 
 
@@ -99,20 +99,20 @@ def attack_real_time(program):
 
     write("realtime", {
         "promise": 3,
-        "attack": "sampling, appending and solving in a process that is killed at any system call; a SCHED_FIFO "
-                  "reader that preempts the writer on its core",
+        "attack": "real-time loops: sampling, appending and solving in a process that any system call kills; a "
+                  "SCHED_FIFO reader that preempts the writer on its core",
         "count": total("rounds") + int(preempted["samples"]),
         "unit": "rounds",
-        "found": {"killed at a system call": total("killed"), "allocations": total("allocations"),
+        "found": {"processes killed at a system call": total("killed"), "allocations": total("allocations"),
                   "page faults": total("minor_faults") + total("major_faults"),
-                  "samples without an answer above a preempted writer": int(preempted["unanswered"])},
+                  "samples without an answer while the writer is preempted": int(preempted["unanswered"])},
         "measured": {"rounds of sampling": int(loops["Sampling"]["rounds"]),
                      "waypoints appended": int(loops["Appending"]["answered"]),
                      "revisions solved": int(loops["Solving"]["answered"]),
-                     "samples above a preempted writer": int(preempted["samples"]),
+                     "samples while the writer is preempted": int(preempted["samples"]),
                      "preemptions": int(preempted["preemptions"]),
-                     "of these within a publication": int(preempted["midway"]),
-                     "cpu per sample of 64 dimensions there [ns]": int(preempted["cpu_ns_per_sample"])},
+                     "preemptions within a publication": int(preempted["midway"]),
+                     "CPU time per sample of 64 dimensions meanwhile [ns]": int(preempted["cpu_ns_per_sample"])},
         "seconds": round(seconds, 1)})
 
 

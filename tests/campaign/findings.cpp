@@ -54,25 +54,25 @@ std::uint64_t Findings::all_kills() const noexcept {
 nlohmann::json Findings::found() const {
   return {{"torn reads", torn},
           {"settled samples changed", changed},
-          {"steps", stepped},
+          {"joins with a step", stepped},
           {"curves that do not end at rest", restless},
-          {"segments of another curve", wrong},
+          {"settled segments that differ from their reference", wrong},
           {"waypoints lost", lost},
           {"hangs", hangs},
-          {"names left unusable", unusable},
-          {"manual clean-ups", clean_ups}};
+          {"starts blocked by files of a killed process", unusable},
+          {"files that must be removed by hand", clean_ups}};
 }
 
 nlohmann::json Findings::work() const {
-  return {{"streams ended and compared", lives},
+  return {{"streams finished and compared", lives},
           {"waypoints interpolated", waypoints},
           {"waypoints passed over", passed_over},
-          {"refused with a reason", refused},
-          {"withdrawn by a replacement", withdrawn},
+          {"items refused with a reason", refused},
+          {"waypoints withdrawn by a replacement", withdrawn},
           {"samples", samples},
           {"busy samples", busy},
           {"segments read", segments},
-          {"ends of unfinished curves read", ends},
+          {"newest segments of unfinished curves checked", ends},
           {"ring items observed", items}};
 }
 
@@ -83,8 +83,8 @@ nlohmann::json Findings::killing() const {
     all["kills of " + name] = kills[role];
     const nlohmann::json came_back = recovery[role].result();
     if (came_back["kills"] == 0) continue;
-    all[name + " to new data p50 [ms]"] = came_back["p50_ms"];
-    all[name + " to new data p99 [ms]"] = came_back["p99_ms"];
+    all["time from kill of " + name + " to new data, p50 [ms]"] = came_back["p50_ms"];
+    all["time from kill of " + name + " to new data, p99 [ms]"] = came_back["p99_ms"];
   }
   return all;
 }

@@ -12,25 +12,27 @@ import tempfile
 import time
 from pathlib import Path
 
+from page import this_machine, today
+
 CAMPAIGN = Path(__file__).resolve().parent
 BIN = CAMPAIGN.parent.parent / "build/release/bin"
 
 SUITES = {
     "ForbiddenFiles": {
         "promise": 6,
-        "attack": "files with a stream's names: truncated, enlarged, of another layout or byte order, writable by "
-                  "others, owned by another user, links, pipes, folders; the verbs solve, replay, sample, info, ls, "
-                  "rm as an unprivileged user",
+        "attack": "forbidden files: files with a stream's names that are truncated, enlarged, of another layout or "
+                  "byte order, writable by others, owned by another user, links, pipes or folders; the verbs solve, "
+                  "replay, sample, info, ls, rm as an unprivileged user",
     },
     "ForbiddenLimits": {
         "promise": 5,
-        "attack": "/dev/shm full, regions with holes, RLIMIT_MEMLOCK, _FSIZE, _NOFILE, _AS, another time "
-                  "namespace; the verbs solve, replay, sample, info, ls, rm, demo, doctor as an unprivileged user",
+        "attack": "exhausted limits: /dev/shm full, regions with holes, RLIMIT_MEMLOCK, _FSIZE, _NOFILE, _AS, another "
+                  "time namespace; the verbs solve, replay, sample, info, ls, rm, demo, doctor as an unprivileged user",
     },
     "ForbiddenSharing": {
         "promise": [6, 8],
-        "attack": "readers in and outside the group; a reader that locks all files that it can open while a solver "
-                  "is killed and replaced; a child that a dead owner has forked",
+        "attack": "shared access: readers in and outside the group; a reader that locks all files that it can open while "
+                  "a solver is killed and replaced; a child that a dead owner has forked",
     },
 }
 
@@ -58,7 +60,7 @@ def result_of(name, machine, version):
         "count": total("attacks"),
         "unit": "attacks",
         "found": {
-            "errors that were not clear": total("unclear"),
+            "unclear error messages": total("unclear"),
             "verbs killed": total("killed"),
             "files created, changed or destroyed": total("changed"),
             "tests failed": sum("failures" in test for test in tests),
@@ -69,13 +71,14 @@ def result_of(name, machine, version):
         },
         "machine": machine,
         "seconds": seconds,
+        "date": today(),
         "command": "tests/campaign/forbidden.py",
         "version": version,
     }
 
 
 def main():
-    machine = json.loads(output_of(sys.executable, CAMPAIGN / "page.py", "--machine"))
+    machine = this_machine()
     version = output_of(BIN / "splinecast", "--version").split()[-1]
     results = [result_of(name, machine, version) for name in SUITES]
     (CAMPAIGN / "results/forbidden.json").write_text(json.dumps(results, indent=2) + "\n")

@@ -22,7 +22,7 @@ import threading
 import time
 from pathlib import Path
 
-from page import this_machine
+from page import this_machine, today
 
 CAMPAIGN = Path(__file__).resolve().parent
 VICTIM, ATTACKER, TEAM = 12345, 23456, 54321
@@ -53,9 +53,9 @@ class Victim:
         self.folder = folder
         self.seconds = seconds
         self.lock = threading.Lock()
-        self.found = {name: 0 for name in ("sweeps ended", "streams unserved", "wrong samples", "hangs",
+        self.found = {name: 0 for name in ("solvers ended", "streams without progress", "wrong samples", "hangs",
                                            "verbs that failed")}
-        self.measured = {"samples": 0, "looks at streams": 0, "streams that came and went": 0}
+        self.measured = {"samples": 0, "checks of streams": 0, "streams created and removed": 0}
         self.longest_silence = 0.0
         self.ended = threading.Event()
 
@@ -122,8 +122,8 @@ class Victim:
                 settled, since, is_told = solver["settled_until_ns"], now, False
             if now - since > UNSERVED and not is_told:
                 is_told = True
-                self.find("streams unserved", f"{stream}: nothing settled for {now - since:.1f} s")
-            self.count("looks at streams")
+                self.find("streams without progress", f"{stream}: nothing settled for {now - since:.1f} s")
+            self.count("checks of streams")
             time.sleep(0.1)
 
     def look(self):
@@ -146,8 +146,8 @@ class Victim:
                 self.find("hangs", f"replay of guest.{number}")
                 continue
             if producer.returncode != 0:
-                self.find("streams unserved", f"guest.{number}: {said.decode()}")
-            self.count("streams that came and went")
+                self.find("streams without progress", f"guest.{number}: {said.decode()}")
+            self.count("streams created and removed")
 
 
 def attack(seconds, seed):
@@ -193,7 +193,7 @@ def run(victim, seconds, seed):
         for job in jobs:
             job.join()
     if solver.poll() is not None:
-        victim.find("sweeps ended", f"with code {solver.returncode}: {(victim.folder / 'solve.log').read_bytes()!r}")
+        victim.find("solvers ended", f"with code {solver.returncode}: {(victim.folder / 'solve.log').read_bytes()!r}")
     solver.send_signal(signal.SIGINT)
     try:
         solver.wait(HANG)
@@ -222,8 +222,8 @@ def inside(arguments):
     version = subprocess.run([program, "--version"], check=True, capture_output=True, text=True).stdout.split()[-1]
     result = {
         "promise": [5, 6],
-        "attack": "a hostile local user while `solve '*'`, producers and readers run: invalid names, files of all "
-                  "kinds that are exchanged, links, locks, leases, futex waiters, floods of files",
+        "attack": "hostile user: a hostile local user while `solve '*'`, producers and readers run: invalid names, files "
+                  "of all kinds that are exchanged, links, locks, leases, futex waiters, floods of files",
         "count": sum(kinds.values()),
         "unit": "attacks",
         "found": victim.found,
@@ -232,6 +232,7 @@ def inside(arguments):
                      "users": 2 if TWO_USERS else 1, "seed": arguments.seed},
         "machine": this_machine(),
         "seconds": round(seconds, 1),
+        "date": today(),
         "command": f"tests/campaign/hostile_user.py --seconds {arguments.seconds:g} --seed {arguments.seed}",
         "version": version,
     }

@@ -170,7 +170,7 @@ class Attacker:
         except BlockingIOError:
             pass  # another process has the file open
 
-    def locks_on_others_files(self):
+    def locks_on_files_of_others(self):
         for stream in self.streams:
             for end in ENDS:
                 try:
@@ -186,7 +186,7 @@ class Attacker:
                     except OSError:
                         pass
 
-    def attempts_on_others_files(self):
+    def attempts_on_files_of_others(self):
         if self.is_same_user:
             return  # they would succeed
         path = SHM + b"splinecast." + self.random.choice(self.streams) + self.random.choice(ENDS)
@@ -235,14 +235,15 @@ class Attacker:
 
     KINDS = [invalid_names, names_of_255_bytes, empty_files, copies_of_regions, truncated_regions, exchanged_fifos,
              exchanged_links, fifos, symbolic_links, hard_links, folders, sockets, held_locks, leases,
-             locks_on_others_files, attempts_on_others_files, floods_of_files, futex_waiters]
+             locks_on_files_of_others, attempts_on_files_of_others, floods_of_files, futex_waiters]
 
     def count(self, kind, number=1):
         self.counts[kind] = self.counts.get(kind, 0) + number
 
     def run(self, seconds):
         end = time.monotonic() + seconds
-        kinds = [kind for kind in self.KINDS if not (self.is_same_user and kind is Attacker.attempts_on_others_files)]
+        kinds = [kind for kind in self.KINDS
+                 if not (self.is_same_user and kind is Attacker.attempts_on_files_of_others)]
         self.counts = {kind.__name__.replace("_", " "): 0 for kind in kinds}
         while time.monotonic() < end:
             self.random.shuffle(kinds)

@@ -1,30 +1,31 @@
-#!/usr/bin/env python3
-"""Makes tests/README.md from the results of the campaigns.
+#!/usr/bin/env -S python3 -B
+"""Makes docs/verification.md and docs/verification-details.md from the results of the campaigns.
 
-    page.py            writes the page
-    page.py --check    exits with 1 if the page is not up to date with the results
+    page.py            writes the pages
+    page.py --check    exits with 1 if a page is not up to date with the results
     page.py --machine  prints the JSON object `machine` of a result, for this machine
 
 Each file tests/campaign/results/*.json holds one result or a list of results. A result is an object:
 
-    promise   number of the attacked promise, its row in the table "What it promises" of the README,
-              counted from 1; or a list of such numbers
-    attack    description of the attack, a phrase for a table
+    promise   number of the attacked promise in docs/concepts.md; or a list of such numbers
+    attack    short name of the attack, ": " and what it does: "random kills: SIGKILL at random instants"
     count     number of attacks, an integer from 1
     unit      unit of `count`, in the plural: "kills", "inputs", "samples"
     found     object of counters of violations: name ("torn reads") and integer; 0: the promise held
-    measured  object of other measurements: name with unit ("recovery p50 [ms]") and number or text;
-              may be empty
+    measured  object of other measurements: name with unit ("time to new data [ms]") and number or text; may be
+              empty. Several quantities of one run: name "run; variant" and text "quantity: value; quantity: value"
     machine   object of cpu (text), cores (number) and kernel (text), as printed by --machine
     seconds   duration of the attack, a number
+    date      day of the attack in UTC, YYYY-MM-DD
     command   command that repeats the attack, for the project's top folder
     version   version of splinecast
     build     commit, compiler and flags, a text; optional
 
 tests/campaign/bugs.json holds a list of the bugs that attacks have found. Each is an object of texts:
-what (the bug), found_by (the attack), mended (the correction).
+what (the bug), found_by (the attack), correction.
 """
 
+import datetime
 import json
 import os
 import platform
@@ -32,17 +33,29 @@ import re
 import sys
 from pathlib import Path
 
+import details
+from details import WIDTH, anchor_of, duration, heading_of, number_text, promises_of, slug, wrapped
+
 CAMPAIGN = Path(__file__).resolve().parent
-PROJECT = CAMPAIGN.parent.parent
-PAGE = CAMPAIGN.parent / "README.md"
+DOCS = CAMPAIGN.parent.parent / "docs"
+PROMISES = DOCS / "concepts.md"
+OVERVIEW = DOCS / "verification.md"
+DETAILS = DOCS / "verification-details.md"
 
-HEAD = """# The promises under attack
+HEAD = f"""# Verification
 
-For each promise of the [README](../README.md#what-it-promises): the attacks on it, their number and their findings.
-`./run campaign` runs the attacks, which write [`campaign/results`](campaign/results), and makes this page from them.
-[`campaign/page.py`](campaign/page.py) describes the schema of the results. `./run test` runs shorter attacks.
+This page says what tried to break each [promise](concepts.md#promises), how often, and what was found. It is for
+readers who want to know how far they can rely on a promise.
 
-The numbers under *found* count violations: 0 means that the promise held each time.
+- The column *violations* counts how often a promise was broken. 0 means that it held each time.
+- [Attacks in detail]({DETAILS.name}) has every counter, measurement, command, machine and build.
+- `./run campaign` repeats all attacks and writes this page. `./run test` runs shorter attacks.
+- [Concepts](concepts.md#promises) names the tests of each promise.
+- `./run defects` removes the correction of each [corrected defect](../tests/defects/README.md) and checks that its test
+  fails.
+- [Fuzzing](../tests/fuzz/README.md) describes the fuzzers and the flipped bytes.
+- The [results](../tests/campaign/results) are stored as JSON. [page.py](../tests/campaign/page.py) describes their
+  schema.
 """
 
 
@@ -76,13 +89,14 @@ def faults(result, promises):
     """The keys of a result that are missing, unknown or do not match the schema."""
     checks = {
         "promise": lambda v: is_promise(v, promises),
-        "attack": is_text,
+        "attack": lambda v: is_text(v) and re.match(r"[\w -]{1,24}: \S", v),
         "count": lambda v: is_count(v) and v > 0,
         "unit": is_text,
         "found": lambda v: v != {} and is_table_of(is_count, v),
         "measured": lambda v: is_table_of(lambda x: is_number(x) or is_text(x), v),
         "machine": is_machine,
         "seconds": lambda v: is_number(v) and v >= 0,
+        "date": lambda v: is_text(v) and re.fullmatch(r"\d{4}-\d\d-\d\d", v),
         "command": is_text,
         "version": is_text,
     }
@@ -95,11 +109,15 @@ def faults(result, promises):
 
 
 def read_promises():
-    """The sentences of the README's table of promises, in order."""
-    text = (PROJECT / "README.md").read_text(encoding="utf-8")
-    table = text.split("\n## What it promises\n", 1)[1].split("\n## ", 1)[0]
-    rows = [line for line in table.splitlines() if line.startswith("| ")]
-    return [re.split(r"(?<!\\)\|", row)[1].strip() for row in rows[1:]]
+    """(title, first paragraph) of each promise, in order: headings "### 1. Title" in the section "Promises"."""
+    text = PROMISES.read_text(encoding="utf-8")
+    section = re.search(r"^## Promises\n(.*?)(?=^## |\Z)", text, re.S | re.M)
+    parts = re.split(r"^### (\d+)\. (.*)\n", section[1] if section else "", flags=re.M)
+    if len(parts) == 1 or parts[1::3] != [str(number) for number in range(1, len(parts) // 3 + 1)]:
+        sys.exit(f"{PROMISES}: needs a section 'Promises' with headings '### 1. …', '### 2. …'")
+    paragraphs = [body.strip().split("\n\n")[0] for body in parts[3::3]]
+    return [(title, "" if text.startswith("- ") else " ".join(text.replace("](#", f"]({PROMISES.name}#").split()))
+            for title, text in zip(parts[2::3], paragraphs)]
 
 
 def read_results(promises):
@@ -111,81 +129,63 @@ def read_results(promises):
             if wrong:
                 sys.exit(f"{path}: {', '.join(wrong)}: does not match the schema in page.py")
             results.append(result)
-    return results
+    return sorted(results, key=heading_of)
 
 
 def read_bugs():
     path = CAMPAIGN / "bugs.json"
     bugs = json.loads(path.read_text(encoding="utf-8"))
     for bug in bugs:
-        if bug.keys() != {"what", "found_by", "mended"} or not all(map(is_text, bug.values())):
-            sys.exit(f"{path}: a bug needs the texts what, found_by and mended")
+        if bug.keys() != {"what", "found_by", "correction"} or not all(map(is_text, bug.values())):
+            sys.exit(f"{path}: a bug needs the texts what, found_by and correction")
     return bugs
 
 
-def to_text(value):
-    if isinstance(value, int):
-        return f"{value:,}"
-    if isinstance(value, float):
-        return f"{value:.3g}" if abs(value) < 1000 else f"{value:,.0f}"
-    return value
+def violations(result):
+    return sum(result["found"].values())
 
 
-def cell(text):
-    return text.replace("|", r"\|").replace("\n", " ")
+def promise_anchor(number, title):
+    return slug(f"{number}. {title}")
 
 
-def counters(table):
-    return ", ".join(f"{cell(name)} {cell(to_text(value))}" for name, value in table.items())
-
-
-def duration(seconds):
-    if seconds < 120:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.1f} h"
-
-
-def machine_text(machine):
-    return f"{machine['cpu']}, {machine['cores']} cores, {machine['kernel']}"
-
-
-def attack_rows(results, machines):
-    lines = ["| attack | count | found | measured | run |", "|---|---|---|---|---|"]
+def attack_rows(results):
+    lines = ["| attack | count | violations | run |", "|---|---|---|---|"]
     for result in results:
-        machine = machines.index(machine_text(result["machine"])) + 1
-        build = f", build {cell(result['build'])}" if "build" in result else ""
-        lines.append(
-            f"| {cell(result['attack'])} | {to_text(result['count'])} {cell(result['unit'])} "
-            f"| {counters(result['found'])} | {counters(result['measured'])} "
-            f"| `{cell(result['command'])}`: {duration(result['seconds'])} on machine {machine}, "
-            f"version {cell(result['version'])}{build} |")
+        lines.append(f"| [{heading_of(result)}]({DETAILS.name}#{anchor_of(result)}) "
+                     f"| {number_text(result['count'])} {result['unit']} "
+                     f"| {number_text(violations(result))} "
+                     f"| {duration(result['seconds'])}, {result['date']} |")
     return lines
 
 
-def bug_rows(bugs):
-    if not bugs:
-        return ["None so far."]
-    return ["| bug | found by | correction |", "|---|---|---|"] + [
-        f"| {cell(bug['what'])} | {cell(bug['found_by'])} | {cell(bug['mended'])} |" for bug in bugs]
+def overview(promises, results, bugs):
+    machines = sorted({details.machine_text(result["machine"]) for result in results})
+    lines = [HEAD, "## Summary", "",
+             f"- {len(results)} attacks",
+             f"- violations: {number_text(sum(map(violations, results)))}",
+             f"- [bugs found and corrected]({DETAILS.name}#{slug(details.BUGS)}): {len(bugs)}",
+             *(f"- machine: {machine}" for machine in machines), ""]
+    for number, (title, text) in enumerate(promises, 1):
+        attacks = [result for result in results if number in promises_of(result)]
+        more = f"[Meaning, exceptions, tests]({PROMISES.name}#{promise_anchor(number, title)})."
+        lines += [f"## {number}. {title}", "", wrapped(f"{text} {more}".strip()), ""]
+        lines += [*(attack_rows(attacks) if attacks else ["No campaign attacks this promise."]), ""]
+    return "\n".join(lines)
 
 
-def make_page():
+def make_pages():
+    """The text of each page by its path."""
     promises = read_promises()
-    results = read_results(len(promises))
-    machines = sorted({machine_text(result["machine"]) for result in results})
-    lines = [HEAD]
-    for number, promise in enumerate(promises, 1):
-        lines += [f"## Promise {number}", "", promise, ""]
-        attacks = [r for r in results
-                   if number in (r["promise"] if isinstance(r["promise"], list) else [r["promise"]])]
-        lines += attack_rows(attacks, machines) if attacks else [
-            "No campaign attacks this promise. The README names its tests."]
-        lines.append("")
-    if machines:
-        lines += ["## Machines", ""]
-        lines += [f"{i}. {machine}" for i, machine in enumerate(machines, 1)] + [""]
-    lines += ["## Bugs that the attacks found", ""] + bug_rows(read_bugs())
-    return "\n".join(lines) + "\n"
+    results, bugs = read_results(len(promises)), read_bugs()
+    pages = {OVERVIEW: overview(promises, results, bugs).rstrip("\n") + "\n",
+             DETAILS: details.page(results, bugs, OVERVIEW.name,
+                                   [promise_anchor(n, title) for n, (title, _) in enumerate(promises, 1)])}
+    for path, text in pages.items():
+        for number, line in enumerate(text.splitlines(), 1):
+            if len(line) > WIDTH:
+                sys.exit(f"{path}:{number}: would be longer than {WIDTH} characters: {line}")
+    return pages
 
 
 def this_machine():
@@ -195,14 +195,22 @@ def this_machine():
             "kernel": f"{platform.system()} {platform.release()}"}
 
 
+def today():
+    """The value `date` of a result that is made now."""
+    return datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d")
+
+
 def main(arguments):
     if arguments == ["--machine"]:
         print(json.dumps(this_machine()))
     elif arguments == ["--check"]:
-        if PAGE.read_text(encoding="utf-8") != make_page():
-            sys.exit(f"{PAGE} is not up to date with the results: run {Path(__file__).name}")
+        old = [path for path, text in make_pages().items()
+               if not path.exists() or path.read_text(encoding="utf-8") != text]
+        if old:
+            sys.exit(f"not up to date with the results: {', '.join(map(str, old))}: run {Path(__file__).name}")
     elif not arguments:
-        PAGE.write_text(make_page(), encoding="utf-8")
+        for path, text in make_pages().items():
+            path.write_text(text, encoding="utf-8")
     else:
         sys.exit(__doc__)
 

@@ -40,6 +40,12 @@ std::string this_build() {
   return commit + ", " SPLINECAST_BUILD;
 }
 
+std::string today() {
+  std::string date = output_of("date --utc +%Y-%m-%d");
+  while (!date.empty() && date.back() == '\n') date.pop_back();
+  return date;
+}
+
 std::string campaign_stream(const std::string& what) {
   return "campaign." + std::to_string(getpid()) + "." + what;
 }
@@ -57,6 +63,7 @@ Result make_result(const CampaignOptions& options, nlohmann::json promises,
                    {"measured", std::move(measured)},
                    {"machine", this_machine()},
                    {"seconds", seconds},
+                   {"date", today()},
                    {"command", options.command},
                    {"version", apps::kVersion},
                    {"build", this_build()}},

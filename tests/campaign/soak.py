@@ -9,7 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from page import this_machine
+from page import this_machine, today
 
 CAMPAIGN = Path(__file__).resolve().parent
 PROGRAM = CAMPAIGN.parent.parent / "build/release/bin/splinecast"
@@ -24,32 +24,34 @@ def result_of(report, version):
     def total(counter):
         return sum(reader[counter] for reader in reads)
 
-    def halves(role, what):
-        first, second = report[role][what]
-        return f"{first} in the first half, {second} in the second"
+    def halves(name, what):
+        """The use of each role in the first and in the second half of the run."""
+        return {f"{name} of {role}, {half} half": report[role][what][i]
+                for role in ROLES for i, half in enumerate(("first", "second"))}
 
     return {
         "promise": 5,
-        "attack": f"{report['streams']} live streams of 7 dimensions at {report['rate']:.0f} Hz in one solver, "
+        "attack": f"soak: {report['streams']} live streams of 7 dimensions at {report['rate']:.0f} Hz in one solver, "
                   f"{report['producers']['processes']} producer and {len(reads)} reader processes; a producer "
                   "process killed every two seconds and restarted",
         "count": report["producer_kills"],
         "unit": f"kills of {report['streams'] // report['producers']['processes']} producers each",
         "found": {"streams that lost an item": report["lossy_streams"],
                   "streams that did not finish": report["unfinished_streams"],
-                  "samples that read otherwise later": total("changed"),
+                  "settled samples that changed": total("changed"),
                   "streams with a step": total("unsound_streams"),
                   "roles whose memory or descriptors grew": sum(report[role]["grown"] for role in ROLES)},
         "measured": {"items": report["appended"],
-                     **{name.replace("_", " "): report["counters"][name] for name in COUNTERS},
+                     **{name: report["counters"][name] for name in COUNTERS},
                      "samples": total("samples"),
                      "joins": total("joins"),
                      "solver share of a core": round(report["solver_share"], 3),
-                     **{f"private bytes of {role}": halves(role, "private_bytes") for role in ROLES},
-                     **{f"mapped bytes of {role}": halves(role, "mapped_bytes") for role in ROLES},
-                     **{f"descriptors of {role}": halves(role, "descriptors") for role in ROLES}},
+                     **halves("private bytes", "private_bytes"),
+                     **halves("mapped bytes", "mapped_bytes"),
+                     **halves("descriptors", "descriptors")},
         "machine": this_machine(),
         "seconds": round(report["seconds"], 1),
+        "date": today(),
         "command": f"splinecast soak --seconds {report['seconds']:.0f}",
         "version": version}
 

@@ -26,6 +26,7 @@ import shutil
 import subprocess
 import sys
 import tarfile
+import textwrap
 import time
 from pathlib import Path
 
@@ -38,18 +39,22 @@ TARGETS = ["splinecast_program", "splinecast_tests", "splinecast_byteflip", "spl
 TEST_SECONDS = 180
 HANG = "did not end"
 
-HEAD = """# Defects: each correction, and the test that fails without it
+HEAD = """# Corrected defects
 
-`tests/defects/run.py` applies each patch in this folder, which removes one correction, builds, and runs the tests named
-here. In its last run, the tests of {failed} of {all} patches failed; it took {minutes} min.
+This page lists corrected defects, each with the tests that fail without its correction. It is for developers who change
+the corrected code or its tests.
 
-Some corrections were replaced by a new design and have no patch: no item is tried on the curve's own window any more,
-and the time of a stop is a formula. The tests of stops remain:
+Each patch in this folder removes one correction. `./run defects` applies the patches one at a time, builds, and checks
+that the named tests fail. In the last run, the tests of {failed} of {all} patches failed; the run took {minutes} min.
+[`results.json`](results.json) contains the message of each test.
+
+Some corrections have no patch, because a new design has replaced the code: an item is no longer tried on the curve's
+own window, and the length of a stop is computed with a formula. The tests of stops remain:
 `StopSegment.OfAnyStateTakesAFiniteTime` and `StopSegment.IsValidWhileOnePositionRepeatsUntilVelocitiesAreDenormal`.
 
-| number | defect | cause | correction | test | without the correction |
-|---|---|---|---|---|---|
+`tests/defects/run.py --page` writes this page.
 """
+WIDTH = 120
 
 
 def read_patch(path):
@@ -229,21 +234,29 @@ def read_results():
     return json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {"patches": {}}
 
 
-def cell(text):
-    return text.replace("|", r"\|").replace("\n", " ")
+def paragraph(text, indent=""):
+    return textwrap.fill(text, WIDTH, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False) + "\n"
+
+
+def section(name, path, fields, results):
+    """A section of the page: one defect, and whether its tests fail without the correction."""
+    lines = [f"\n## {name}\n\n", paragraph(fields["Defect"]), "\n"]
+    lines += [paragraph(f"- {what}: {fields[what]}", "  ") for what in ("Cause", "Correction")]
+    patch_file = path.relative_to(DEFECTS).as_posix()
+    lines.append(f"- Patch: [`{patch_file}`]({patch_file})\n- Tests without the correction:\n")
+    for test in fields["Test"].split():
+        state = {None: "not run", "passes": "passes"}.get(results.get(test), "fails")
+        lines.append(f"  - `{test}`: {state}\n")
+    return "".join(lines)
 
 
 def make_page():
-    patches = read_patches()
+    paths, patches = find_patches(), read_patches()
     results = read_results()
     failed = sum(all(why != "passes" for why in results["patches"][name].values())
                  for name in patches if name in results["patches"])
     lines = [HEAD.format(failed=failed, all=len(patches), minutes=results.get("minutes", "-"))]
-    for name, fields in patches.items():
-        tests = "<br>".join(f"`{test}`" for test in fields["Test"].split())
-        without = "<br>".join(cell(why) for why in results["patches"].get(name, {"": "not run"}).values())
-        lines.append(f"| {name} | {cell(fields['Defect'])} | {cell(fields['Cause'])} "
-                     f"| {cell(fields['Correction'])} | {tests} | {without} |\n")
+    lines += [section(name, paths[name], fields, results["patches"].get(name, {})) for name, fields in patches.items()]
     return "".join(lines)
 
 

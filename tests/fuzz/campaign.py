@@ -18,13 +18,13 @@ from pathlib import Path
 
 PROJECT = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(PROJECT / "tests" / "campaign"))
-from page import this_machine  # noqa: E402
+from page import this_machine, today  # noqa: E402
 
 BUILD = PROJECT / "build" / "fuzz"
 SEEDS = PROJECT / "tests" / "fuzz" / "seeds"
 REGIONS = ["reader", "writers", "roles"]
 TEXTS = ["waypoints", "times", "polynomials", "limits", "words", "arguments"]
-PROMISE = 9  # row in the README's table
+PROMISE = 9  # number in docs/concepts.md
 # Limits of an input: time in s, above which it hangs; size in bytes; memory in MiB.
 LIMITS = ["-timeout=10", "-max_len=65536", "-rss_limit_mb=2048"]
 # urdfdom does not free joints that form a cycle.
@@ -38,7 +38,7 @@ def version():
 
 def result(attack, report, seconds, command):
     return {"promise": PROMISE, "attack": attack, **report, "machine": this_machine(),
-            "seconds": round(seconds, 1), "command": command, "version": version()}
+            "seconds": round(seconds, 1), "date": today(), "command": command, "version": version()}
 
 
 def run_fuzzer(target, seconds):
@@ -79,14 +79,14 @@ def flip(seconds, command):
                            stdout=subprocess.PIPE, text=True, check=False)
     print(f"splinecast_byteflip: exit code {ended.returncode}", file=sys.stderr)
     report = json.loads(ended.stdout)
-    attack = "random bytes flipped in both regions under live processes, with AddressSanitizer"
+    attack = "flipped bytes: random bytes flipped in both regions under live processes, with AddressSanitizer"
     return (result(attack, report, time.monotonic() - begin, command), ended.returncode)
 
 
 def main(seconds, folder):
     command = f"./run fuzz {seconds}"
-    regions, first = fuzz("libFuzzer over whole regions", REGIONS, seconds, command)
-    texts, second = fuzz("libFuzzer over files and command lines", TEXTS, seconds, command)
+    regions, first = fuzz("fuzzed regions: libFuzzer over whole regions", REGIONS, seconds, command)
+    texts, second = fuzz("fuzzed text: libFuzzer over files and command lines", TEXTS, seconds, command)
     flips, third = flip(max(BYTE_FLIP_SECONDS, seconds / 2), command)
     if folder:
         Path(folder, "fuzz.json").write_text(json.dumps([regions, texts], indent=2) + "\n")

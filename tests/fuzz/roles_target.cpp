@@ -60,7 +60,7 @@ class Files {
   std::string name_;
 };
 
-/// Runs an action that may throw the documented exceptions of the roles.
+/// Runs an action. Ignores the exceptions that the roles document.
 void attempt(const auto& action) {
   try {
     action();

@@ -33,11 +33,10 @@ inline constexpr std::size_t kMaxWords = std::size_t{1} << 15U;
 /// The bytes that `decode` reads as this image.
 [[nodiscard]] std::vector<std::uint8_t> encode(const StreamImage& image);
 
-/// Changes random words of the regions or bytes of the script. The words are in the header, the
-/// control block, the summary, the ring of changes, the packed times, a knot's cells, nodes, rows
-/// and the words beside them, the items, or anywhere. The new values are likely to break these
-/// places; in tags, the revision, the form or other bits change. Deterministic for a given
-/// generator state.
+/// Changes random bytes of the script or random words of the regions. First chooses a part of a
+/// region: header, control block, summary, ring of changes, packed times, one part of a knot's
+/// slot, the body, or the whole region. The new values are likely to be invalid. A tag gets another
+/// revision, form or note. The same state of `random` gives the same changes.
 void mutate(StreamImage& image, std::mt19937_64& random);
 
 }  // namespace splinecast::fuzz

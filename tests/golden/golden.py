@@ -9,10 +9,10 @@
 coefficients (interpolation, continuity and boundary conditions), not by the tridiagonal rows that the code solves.
 `rounded` needs square roots, which are taken with 60 digits. hermite, quintic and smoothing come from SciPy.
 
-A file has its cases by name. A case has `method`, `start` and `end` ([kind, values or null]), `t_ns`, `x`
-([knot][dimension]) and, where the method needs them, `v`, `a` and `lambda`; `query_ns`; `expected.p`, `.v`, `.a`, `.j` ([query][dimension]) and
-`expected.segments` ([segment][dimension][coefficient, highest power first], seconds). A query at a knot belongs to the
-segment on its right.
+A file is an object of cases by name. A case has `method`, `start` and `end` ([kind, values or null]), `t_ns`, `x`
+([knot][dimension]) and, if the method needs them, `v`, `a` and `lambda`; `query_ns`; `expected.p`, `.v`, `.a`, `.j`
+([query][dimension]) and `expected.segments` ([segment][dimension][coefficient, highest power first], seconds). A query
+at a knot is evaluated in the segment on its right.
 """
 
 import argparse

@@ -34,7 +34,7 @@ ROOMS = {
     "core": "simd basics polynomial limits slopes forms solvers batch methods online",
     "ipc": "memory layout mapping ring board solve options sampling roles sweep verification",
     "apps": "process files output pages timing tables cli recordings limits streams advise fit check replay trials "
-            "demo machine latency soak",
+            "demo machine latency soak completion",
 }
 LAYERS = [f"{layer}/{room}" for layer, rooms in ROOMS.items() for room in rooms.split()]
 

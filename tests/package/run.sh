@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# Installs a build into an empty prefix, compiles each installed header alone, and builds the example
-# project against the package: through CMake with the shared library and the static one, and through
-# pkg-config. Then runs each controller on a live stream.
+# Installs a build into an empty prefix, compiles each installed header alone, and builds the examples
+# against the package: through CMake with the shared library and the static one, and through
+# pkg-config. Then runs all of them on live streams and checks what they print.
 #   run.sh SOURCE BUILD WORK
 set -euo pipefail
 source=$1
 build=$2
 work=$3
 stream=example.$$
+warnings="-Wall -Wextra -Werror"
 
 rm -rf "$work"
 cmake --install "$build" --prefix "$work/prefix" >/dev/null
@@ -22,28 +23,86 @@ for header in $headers; do
 done
 echo "$count installed headers, each compiled alone"
 
-cmake -S "$source/examples" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$work/prefix" >/dev/null
-cmake --build "$work/cmake" >/dev/null
+cmake -S "$source/examples" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$work/prefix" \
+  -DCMAKE_CXX_FLAGS="$warnings" >/dev/null
+cmake --build "$work/cmake" --parallel 2 >/dev/null
 
 pkg=$(find "$work/prefix" -name splinecast.pc -printf '%h')
 flags=$(PKG_CONFIG_PATH=$pkg pkg-config --cflags --libs splinecast)
 libraries=$(dirname "$(find "$work/prefix" -name 'libsplinecast.so')")
-# shellcheck disable=SC2086
-g++ -std=c++20 "$source/examples/controller.cpp" $flags "-Wl,-rpath,$libraries" -o "$work/pkg_config"
+mkdir "$work/shared" "$work/static" "$work/pkg_config" "$work/out"
+for example in "$source"/examples/[0-9]_*.cpp; do
+  name=$(basename "$example" .cpp)
+  target=${name#?_}
+  mv "$work/cmake/$target" "$work/shared/$name"
+  mv "$work/cmake/${target}_static" "$work/static/$name"
+  # shellcheck disable=SC2086
+  g++ -std=c++20 $warnings "$example" $flags "-Wl,-rpath,$libraries" -o "$work/pkg_config/$name"
+done
 
-for shared in "$work/cmake/controller" "$work/pkg_config"; do
-  objdump -p "$shared" | grep -q 'NEEDED *libsplinecast\.so\.0\.1$' ||
+for shared in "$work"/shared/* "$work"/pkg_config/*; do
+  objdump -p "$shared" | grep 'NEEDED *libsplinecast\.so\.0\.1$' >/dev/null ||
     { echo "$shared is not linked to libsplinecast.so.0.1"; exit 1; }
 done
 
-printf 't,x\n0,1.5\n0.1,1.5\n0.2,1.5\n' >"$work/line.csv"
 program=$work/prefix/bin/splinecast
-for controller in "$work/cmake/controller" "$work/cmake/controller_static" "$work/pkg_config"; do
-  "$controller" "$stream" >"$work/out" &
-  reading=$!
-  "$program" replay "$work/line.csv" --stream "$stream" --embedded 2>/dev/null
-  wait "$reading"
-  "$program" rm "$stream"
-  grep -qx 1.5 "$work/out" || { echo "$controller read nothing"; exit 1; }
-  echo "$controller read $(wc -l <"$work/out") samples"
+streams=$(printf "$stream.%s " {shared,static,pkg_config}.{motion,redirect,refusals})
+
+# Ends what still runs, and removes the streams that a failure has left.
+clean_up() {
+  jobs -p | xargs -r kill 2>/dev/null || true
+  wait
+  for name in $streams "$stream".{shared,static,pkg_config}_pose; do
+    "$program" rm "$name" 2>/dev/null || true
+  done
+}
+trap clean_up EXIT
+
+# Starts an example of the current build on a stream. Its output goes to a file of its number.
+start() {
+  "$work/$linked/$1" "$stream.$linked$2" >"$work/out/$1" 2>&1 &
+  started+=($!)
+}
+
+# Requires that an example has printed a line that matches.
+printed() {
+  grep -Eqx "$2" "$work/out/$1" && return
+  echo "$linked/$1 has not printed a line '$2', but:"
+  cat "$work/out/$1"
+  exit 1
+}
+
+"$program" solve "$stream.*.*" --quiet &
+solver=$!
+for linked in shared static pkg_config; do
+  started=()
+  start 2_controller .motion
+  start 6_horizon _pose
+  start 1_producer .motion
+  start 3_embedded_solver _pose
+  start 4_redirect .redirect
+  start 5_refusals .refusals
+  for example in "${started[@]}"; do
+    wait "$example" || { echo "an example with $linked has failed:"; cat "$work"/out/[13456]*; exit 1; }
+  done
+
+  printed 1_producer '[0-9]+ waypoints sent, [0-9]+ late, 0 refused'
+  printed 2_controller 0.3  # where the motion begins
+  [ "$(sort -u "$work/out/2_controller" | wc -l)" -gt 10 ] || { echo "2_controller saw no motion"; exit 1; }
+  printed 3_embedded_solver '([0-9]+) of \1 items consumed, 0 refused'
+  printed 4_redirect 'redirect accepted at x = .* m/s'
+  printed 4_redirect 'stop accepted at x = .* m/s'
+  printed 4_redirect 'at rest at x = .* m'
+  printed 5_refusals 'row 1234 again: duplicate'
+  for item in 500 1500 2500; do
+    printed 5_refusals "item $item refused: quaternion of length 0 \\(time ${item}0000000 ns\\)"
+  done
+  printed 6_horizon '[1-9][0-9]* horizons of 20 states, .*'
+  printed 6_horizon 'nearest to a limit: velocity of dimension .*'
+  echo "${#started[@]} examples, linked by $linked, have run"
 done
+kill "$solver"
+wait "$solver"
+# shellcheck disable=SC2086
+"$program" rm $streams
+! "$program" ls | grep -F "$stream" || { echo "streams are left"; exit 1; }

@@ -19,7 +19,7 @@ struct BSpline {
 /// Converts a curve to a B-spline, with all segments raised to the highest order k. The first and
 /// the last knot have multiplicity k. An interior break has multiplicity degree − continuity(): for
 /// cubics 1 at a C² break (2 at a step of the acceleration, 3 at one of the velocity, 4 at one of
-/// the position), for quintics 3 at a C² break. Below degree 3 the continuity is taken as at most
+/// the position), for quintics 3 at a C² break. Below degree 3, continuity() counts as at most
 /// degree − 1. Exact to rounding.
 ///
 /// Throws std::invalid_argument if the curve has no segment of positive length: the hold of a

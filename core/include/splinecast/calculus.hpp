@@ -7,7 +7,7 @@
 
 /// Operations on curves, and measures of curves.
 ///
-/// A function that returns a curve makes a new one in O(n·k·D). A hold is a valid argument. All
+/// A function that returns a curve returns a new one, in O(n·k·D). A hold is a valid argument. All
 /// functions throw std::invalid_argument with the offending values; measures also throw for an
 /// empty curve and for a dimension, derivative or time out of range.
 namespace [[gnu::visibility("default")]] splinecast {

@@ -34,7 +34,7 @@ struct FitOptions {
 /// minimum of n·Σ(x_i − f(t_i))²/(n − tr H)² over λ, with squares summed over dimensions and the
 /// matrix H that maps x to f(t_i). The trace is exact, from the band of the inverse (Hutchinson and
 /// de Hoog). The search ranges from no smoothing to a straight line. Returns 0 for fewer than three
-/// waypoints. O(n·D), about sixty times. Throws as `fit` does.
+/// waypoints. Costs about sixty solves of O(n·D). Throws as `fit` does.
 [[nodiscard]] double cross_validated_lambda(const Waypoints& waypoints);
 
 /// The score that cross_validated_lambda minimises, for a λ > 0: an estimate of the mean squared

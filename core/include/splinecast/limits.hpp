@@ -18,7 +18,7 @@ namespace [[gnu::visibility("default")]] splinecast {
 /// Limits of velocity, acceleration and jerk, and bounds of the position, in the units of the
 /// dimensions. A list has one value per dimension; an empty list means no limit of that kind.
 struct MotionLimits {
-  std::vector<double> velocity{};  ///< limit of the absolute value, as the next two; 0: none
+  std::vector<double> velocity{};  ///< limits of absolute values, as the next two; 0: none
   std::vector<double> acceleration{};
   std::vector<double> jerk{};
   std::vector<double> lower{};  ///< bounds of the position; −∞ and +∞: none
@@ -39,7 +39,7 @@ inline constexpr std::size_t kLimitKinds = 4;
 struct Excess {
   /// Value / limit. For a position: its distance from the middle of the bounds / half the distance
   /// between them; with only one finite bound b, 1 + the amount by which b is exceeded /
-  /// max(1,|b|). Negative: there is no limit; infinite: the value is NaN.
+  /// max(1,|b|). Negative if there is no limit, infinite if the value is NaN.
   double ratio = -1;
   LimitKind kind = LimitKind::velocity;
   std::size_t dimension = 0;  ///< for a quaternion its first

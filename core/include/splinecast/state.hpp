@@ -8,11 +8,11 @@
 
 namespace [[gnu::visibility("default")]] splinecast {
 
-/// Fewest and most dimensions of a stream.
+/// Minimum and maximum number of dimensions of a stream.
 inline constexpr std::size_t kMinDimensions = 1;
 inline constexpr std::size_t kMaxDimensions = 64;
 
-/// Where a sample is written: position [unit], velocity [unit/s], acceleration [unit/s²] and jerk
+/// The output of a sample: position [unit], velocity [unit/s], acceleration [unit/s²] and jerk
 /// [unit/s³], one value per dimension in each span. Does not own its memory.
 struct StateRef {
   std::span<double> position;

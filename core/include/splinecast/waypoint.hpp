@@ -8,8 +8,8 @@
 
 namespace [[gnu::visibility("default")]] splinecast {
 
-/// The largest magnitude of a position, velocity or acceleration. Far above any real value, and so
-/// far below the range of a double that no formula overflows.
+/// The largest magnitude of a position, velocity or acceleration. Far above any real value, and
+/// small enough that no formula overflows.
 inline constexpr double kLargestValue = 1e100;
 
 /// Whether a value is valid: not NaN and within ±kLargestValue.

@@ -10,8 +10,8 @@ namespace [[gnu::visibility("default")]] splinecast {
 
 /// The clock of a stream's times.
 enum class StreamClock : std::uint64_t {
-  recorded = 0,   ///< the recording's time stamps; no clock
-  monotonic = 1,  ///< CLOCK_MONOTONIC of this host: a live stream
+  recorded = 0,   ///< a recorded stream: times are time stamps of a recording
+  monotonic = 1,  ///< a live stream: times are those of this host's CLOCK_MONOTONIC
 };
 
 /// The source of the time. The solver takes it as an argument, so that tests can simulate a clock.
@@ -26,7 +26,7 @@ class Clock {
   /// block. Should be cheap: each step of a live stream calls it a few times.
   [[nodiscard]] virtual Time now() const noexcept = 0;
 
-  /// The same to within some milliseconds, never later than now(). Cheaper.
+  /// The current time, or up to some milliseconds earlier; never later than now(). Cheaper.
   [[nodiscard]] virtual Time about_now() const noexcept { return now(); }
 };
 

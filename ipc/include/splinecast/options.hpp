@@ -40,7 +40,7 @@ struct IngestLimits {
 struct ProducerOptions {
   std::size_t dimensions = 1;        ///< 1 to 64
   std::vector<std::string> names{};  ///< one per dimension, or none; each is cut to at most 31
-                                     ///< bytes, between characters of UTF-8
+                                     ///< bytes, at the end of a UTF-8 character
   std::vector<std::string> units{};  ///< the same, cut to 15 bytes
   std::vector<Dimension> kinds{};    ///< one per dimension, or none: all linear
   StreamClock clock = StreamClock::monotonic;
@@ -52,7 +52,8 @@ struct ProducerOptions {
 };
 
 /// The properties of a curve, which its solver sets. On a new board, unset members take their
-/// defaults. A solver that takes over a board takes its options too, and must not contradict them.
+/// defaults. A solver that takes over a board uses the board's options; members that are set must
+/// not contradict these.
 struct SolverOptions {
   const Method* method = nullptr;        ///< default c2; streams() must hold
   std::optional<double> lambda{};        ///< of smoothing, which needs it: λ, 0 to 1e100, in s³
@@ -67,8 +68,8 @@ struct SolverOptions {
                                          ///< acceleration or jerk, its least length. Above 0, at
                                          ///< most 2⁶⁰ ns; default 250 ms
   std::optional<MotionLimits> limits{};  ///< lists of one value per dimension, or one for all
-  std::vector<NamedLimits> named_limits{};  ///< limits of dimensions by name, where `limits` has
-                                            ///< none of the kind; unknown names have no effect
+  std::vector<NamedLimits> named_limits{};  ///< by dimension name, for the kinds of limit of which
+                                            ///< `limits` has no list; unknown names have no effect
   std::optional<Beyond> beyond{};           ///< default report
   std::optional<Time> freeze_ahead{};       ///< live: the curve settles this long ahead of now;
                                             ///< 1 ns to 1 min, default 5 ms

@@ -28,8 +28,8 @@ struct ItemRefusal {
 /// `item 17 refused: too late (time 123 ns)`; `beyond_limits` adds the excess.
 [[nodiscard]] std::string to_string(const ItemRefusal& refusal);
 
-/// `acceleration of dimension 2 (wrist) is 12.5 at 456 ns, limit
-/// 10`, with the dimension's name if `names` has one.
+/// Describes an excess, with the dimension's name if `names` has one:
+/// `acceleration of dimension 2 (wrist) is 12.5 at 456 ns, limit 10`.
 [[nodiscard]] std::string in_words(const LimitExcess& excess,
                                    std::span<const std::string> names = {});
 
@@ -37,7 +37,7 @@ struct ItemRefusal {
 struct Refusals {
   std::vector<ItemRefusal> items{};  ///< in the order of the ring; at most 1,024
   std::uint64_t missed = 0;    ///< older refusals since that call, which the board no longer has
-  std::uint64_t consumed = 0;  ///< items below this number are decided: all refusals are reported
+  std::uint64_t consumed = 0;  ///< all refusals of items below this number have been reported
 };
 
 /// Largest magnitudes along a motion, one value per dimension; for a quaternion, of the derivatives
@@ -54,7 +54,7 @@ struct ReplacePreview {
                           ///< members are not valid
   bool is_known = false;  ///< the curve exists and its state at t was read; else the members below
                           ///< are not valid
-  Time begin{};           ///< of the motion: t; of a stop whose t has settled, the settled time
+  Time begin{};           ///< of the motion: t; for a stop at a settled time, settled_until
   Time duration{};        ///< of the entry onto the waypoints, or of the stop
   bool enters = false;    ///< whether there is an entry; else the curve comes to rest from t on
   std::optional<std::size_t> waypoint{};  ///< where the entry ends; unset: it ends beyond the last
@@ -119,15 +119,15 @@ class Producer {
   /// curve continues from its state at t by an entry onto the waypoints, see ReplaceOptions;
   /// without waypoints it comes to rest. With waypoints, `t` must not be before earliest() nor, on
   /// a live stream, before now, else `too_late`; the waypoints must be later than `t` and must fit
-  /// into the ring, which reserves places for stops. On a stream without waypoints they start it,
-  /// as appended ones do. O(D) per waypoint; otherwise as append.
+  /// into the ring, which reserves places for stops. On a stream that has no waypoints yet, they
+  /// start it as appended ones do. O(D) per waypoint; otherwise as append.
   ///
-  /// Without waypoints it is a stop, which is never too late: a t that has settled means as soon as
-  /// possible. The solver's next step executes the stop at settled_until, or at t if that is later,
-  /// regardless of the items queued before it; that step comes after at most one sweep or one wake.
-  /// A stop at a t after the newest knot waits for its turn in the queue, at most until
-  /// settled_until reaches t. A ring of 16 or more items accepts stops and `finish` even when it is
-  /// full of waypoints.
+  /// Without waypoints it is a stop, which is never too late: if t has settled, the curve stops as
+  /// soon as possible. The solver's next step executes the stop at settled_until, or at t if that
+  /// is later, regardless of the items queued before it; that step comes after at most one wake of
+  /// the solver, or one sweep over all streams that it solves. A stop at a t after the newest knot
+  /// waits for its turn in the queue, at most until settled_until reaches t. A ring of 16 or more
+  /// items accepts stops and `finish` even when it is full of waypoints.
   [[nodiscard]] AppendStatus replace_from(Time t, std::span<const Waypoint> waypoints,
                                           const ReplaceOptions& options = {}) noexcept;
 
@@ -163,10 +163,11 @@ class Producer {
   /// Returns the items of this producer that the solver has refused since the last call: `accepted`
   /// means only that the ring has an item. The result for an item is final once
   /// `Refusals::consumed` is above its number. The board keeps the last 1,024 refusals; `missed`
-  /// counts those overwritten before, and is 0 as long as at most 1,024 items are consumed between
-  /// two calls. O(1) if nothing was published since the last call, else O(refusals); reads only the
-  /// board; no system call except the search for a solver, as in append. Allocates only in the
-  /// result; the second form reuses the memory of `out`. Producer's thread only.
+  /// counts those overwritten before they were returned, and is 0 as long as at most 1,024 items
+  /// are consumed between two calls. O(1) if nothing was published since the last call, else
+  /// O(refusals); reads only the board; no system call except the search for a solver, as in
+  /// append. Allocates only in the result; the second form reuses the memory of `out`. Producer's
+  /// thread only.
   [[nodiscard]] Refusals refusals();
   void refusals(Refusals& out);
 

@@ -26,7 +26,7 @@ namespace [[gnu::visibility("default")]] splinecast {
 
 /// Why `Reader::wait` returned.
 enum class WaitStatus : std::uint8_t {
-  advanced,  ///< there is a revision that this reader had not seen
+  advanced,  ///< there is a revision that this reader has not seen
   timed_out,
   retired,  ///< make a new Reader
 };
@@ -40,8 +40,8 @@ struct Alive {
 /// The progress of a stream's curve, under one revision.
 struct CurveProgress {
   std::uint64_t revision = 0;
-  Time newest{};                ///< time of the newest waypoint; if none has followed a start state
-                                ///< or a replacement, of that
+  Time newest{};                ///< time of the newest waypoint; of the start state or replacement
+                                ///< if no waypoint has followed it
   Time settled_until{};         ///< no later revision changes the curve before this time
   bool is_finished = false;     ///< the stream has been finished: no waypoint follows
   std::uint64_t waypoints = 0;  ///< accepted by the solver, over the stream's life
@@ -76,7 +76,7 @@ class Reader {
   [[nodiscard]] SampleStatus sample(Time t, const StateRef& out) noexcept;
   [[nodiscard]] SampleStatus sample(Time t, State& out) noexcept { return sample(t, out.ref()); }
 
-  /// The same for a time ahead of settled_until(): does not count as executed.
+  /// Like sample, for a time ahead of settled_until(), but does not count as executed.
   [[nodiscard]] SampleStatus preview(Time t, const StateRef& out) noexcept;
   [[nodiscard]] SampleStatus preview(Time t, State& out) noexcept { return preview(t, out.ref()); }
 
@@ -88,8 +88,8 @@ class Reader {
   /// `wrong_dimension` if the sizes of the block do not match the times and the curve.
   std::uint64_t sample_many(std::span<const Time> times, const SampleBlock& out) noexcept;
 
-  /// The time before which the curve that the last sample or look-ahead saw never changes; before
-  /// the first one, the least time that a curve can have.
+  /// The settled time of the curve that the last sample or look-ahead used: that curve never
+  /// changes before this time. Before the first sample, the earliest time that a curve can have.
   [[nodiscard]] Time settled_until() const noexcept;
 
   /// Copies every segment that overlaps the closed interval from `from` to `to`, all under one
@@ -99,8 +99,8 @@ class Reader {
   /// `from` > `to`, returns `settled` or `provisional` with no segments, or with the one that
   /// contains both. The segments are the curve as solved, before DimensionKinds::normalise; their
   /// acceleration steps are those of the normalised curve, which readers see. The step at the left
-  /// end of the oldest segment on the board is unknown (empty): begin one segment earlier.
-  /// Allocates if `out` must grow.
+  /// end of the oldest segment on the board is empty, because the segment before it is no longer
+  /// there. Allocates if `out` must grow.
   [[nodiscard]] SampleStatus snapshot(Time from, Time to, Snapshot& out);
 
   /// The stream's limits; empty if it has none. They never change.

@@ -27,9 +27,9 @@ struct SampleBlock {
 /// One segment of a snapshot: a polynomial in u = t − left seconds. A view into its snapshot.
 struct SnapshotSegment {
   Time left{};
-  Time right{};                          ///< where the next segment begins, or this one ends
+  Time right{};                          ///< right end; the next segment begins there
   int order = kCubicOrder;               ///< coefficients per dimension
-  SegmentKind kind{};                    ///< what the segment is for
+  SegmentKind kind{};                    ///< spline, entry, stop, …: see SegmentKind
   std::span<const double> coefficients;  ///< [power][dimension], lowest power first
   std::span<const double> waypoint;      ///< position of the waypoint at `left`; empty: none there
   std::span<const double> acceleration_step;  ///< a⁺ − a⁻ at `left`; empty if the board no longer

@@ -13,14 +13,14 @@ namespace [[gnu::visibility("default")]] splinecast {
 enum class AppendStatus : std::uint8_t {
   accepted,
   full,             ///< the ring has no room until the solver consumes; retry
-  past,             ///< the time has settled and is more than 250 ms before the settled time, or
-                    ///< before now if now is later; first waypoint or start state: the time has
-                    ///< settled. Live streams only
-  duplicate,        ///< the time equals that of the waypoint before
-  out_of_order,     ///< the time is earlier than that of the waypoint before
+  past,             ///< live streams only: the time is before the settled time, and by more than
+                    ///< 250 ms before the later of the settled time and now; for the first waypoint
+                    ///< or a start state: the time is before the settled time
+  duplicate,        ///< the time equals that of the previous waypoint
+  out_of_order,     ///< the time is earlier than that of the previous waypoint
   not_finite,       ///< a value is infinite, NaN, or outside ±kLargestValue
-  too_close,        ///< less than min_interval after the waypoint before
-  too_far_apart,    ///< more than max_interval after the waypoint before (live stream: and after
+  too_close,        ///< less than min_interval after the previous waypoint
+  too_far_apart,    ///< more than max_interval after the previous waypoint (live stream: and after
                     ///< the settled time and now); or a time, also that of a replacement, is
                     ///< outside ±2⁶² ns; or ReplaceOptions::blend is longer than max_interval
   wrong_dimension,  ///< a span does not have one value per dimension
@@ -54,12 +54,12 @@ inline constexpr std::uint8_t kRefusals = 15;
 
 /// The validity of a sample.
 enum class SampleStatus : std::uint8_t {
-  settled,          ///< final: every reader, now or later, gets these bits
+  settled,          ///< final: every reader gets the same bits at this time, now and later
   provisional,      ///< not settled yet: a newer waypoint or a replacement may still change it
   stopping,         ///< in the stop segment after the newest waypoint
   holding,          ///< at rest: after the end, or before the first waypoint of a live stream
-  revised,          ///< valid, but the curve has changed before a time that this reader had
-                    ///< sampled; reported once; live streams only
+  revised,          ///< valid, but the curve has changed at or before a time that this reader has
+                    ///< already sampled; reported once; live streams only
   before_history,   ///< before what the board keeps, or before the start of a recorded stream; no
                     ///< values
   no_data,          ///< no waypoint has been solved yet, or before the start of a live stream that
@@ -72,14 +72,15 @@ enum class SampleStatus : std::uint8_t {
 
 inline constexpr std::size_t kSampleStatuses = 10;
 
-/// Where a limit was exceeded: the place farthest beyond it, in the first segment that exceeds one.
+/// A place where the curve exceeds a limit: the place farthest beyond the limit, in the first
+/// segment that exceeds one.
 struct LimitExcess {
   std::uint64_t item = 0;   ///< number of the waypoint's item
   bool is_refused = false;  ///< the waypoint was refused; else accepted
   LimitKind kind{};
-  std::size_t dimension = 0;  ///< of a quaternion, its first
+  std::size_t dimension = 0;  ///< for a quaternion, its first dimension
   Time time{};
-  double value = 0;  ///< with its sign; of a quaternion, a bound of its magnitude
+  double value = 0;  ///< with its sign; for a quaternion, an upper bound of its magnitude
   double limit = 0;  ///< the limit, or the bound of a position
 };
 
@@ -87,10 +88,10 @@ struct LimitExcess {
 struct StepResult {
   std::uint64_t consumed = 0;  ///< ring items consumed
   bool published = false;      ///< whether a revision was committed
-  bool missed = false;         ///< whether a revision was discarded because it was too late: step
-                               ///< again
-  bool damaged = false;        ///< whether another process has written to the board: the step did
-                               ///< nothing
+  bool missed = false;         ///< whether a revision was discarded because it was too late; then
+                               ///< call step again
+  bool damaged = false;        ///< whether another process has written to the board; then the step
+                               ///< did nothing
 };
 
 /// Whether a sample of this status has values.

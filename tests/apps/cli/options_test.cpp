@@ -110,7 +110,7 @@ TEST(Options, OfSolveAndLatencyNameTheirRanges) {
       {{"latency", "--duration", "1e6"}, {"'1e6' is not a time from 1e-09 to 14400 s"}},
       {{"latency", "--warmup", "1e6"}, {"'1e6' is not a time from 0 to 14400 s"}},
       {{"latency", "--rate", "1", "--duration", "14400", "--readers", "64"},
-       {"bytes; the most is"}},
+       {"bytes; the maximum is"}},
       {{"latency", "--lead", "1e9"}, {"'1e9' is not a time from 0 to 60000 ms"}},
       {{"latency", "--deadline", "1e300"}, {"'1e300' is not a time from 1e-06 to"}},
       {{"latency", "compare", "a", "b", "--threshold", "nan"}, {"'nan' is not a number from 0"}},
@@ -131,7 +131,7 @@ TEST(Options, OfVerbsThatReadAFileNameTheirRanges) {
   const std::string curve = folder.write("p.csv", "duration,x^0\n1,0\n");
   expect_refused({
       {replay({"--loop", "1000", "--max-interval", "3e9"}),
-       {"--loop 1000 takes", "the most is 3162240000 s"}},
+       {"--loop 1000 takes", "the maximum is 3162240000 s"}},
       {replay({"--loop", "10000000000"}), {"is not an integer from 1 to 1000000000"}},
       {replay({"--capacity", kHuge, "--max-interval", "3e9"}), {kHuge}},
       {replay({"--capacity", "16777217", "--max-interval", "3e9"}),

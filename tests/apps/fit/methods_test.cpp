@@ -198,7 +198,7 @@ TEST(Fit, RefusesOptionsThatDoNotFitTheMethod) {
       {{"--start", "own"}, "'own'"},
       {{"--method", "akima", "--online", "--settle", "1"}, "must be 2 to 64, not 1"},
       {{"--method", "smoothing", "--online", "--tail", "clamped", "--lambda", "1"},
-       "tail of its own"},
+       "the tail of method smoothing is fixed"},
       {{"--method", "smoothing", "--online"}, "cross-validation needs all waypoints"},
       {{"--method", "smoothing", "--online", "--lambda", "auto"}, "all waypoints at once"},
       {{"--method", "smoothing", "--lambda", "-1"}, "'-1'"},
@@ -225,7 +225,8 @@ TEST(Solve, RefusesOptionsThatDoNotFitTheMethod) {
       {{"--lambda", "1"}, "lambda is for method smoothing, not for c2"},
       {{"--method", "pchip", "--force-lag"}, "only for method smoothing, not for pchip"},
       {{"--method", "akima", "--time-scale", "2"}, "for method rounded, not for akima"},
-      {{"--method", "smoothing", "--lambda", "1", "--tail", "clamped"}, "has a tail of its own"},
+      {{"--method", "smoothing", "--lambda", "1", "--tail", "clamped"},
+       "the tail of method smoothing is fixed"},
       {{"--method", "smoothing"}, "needs a lambda"},
   };
   const TestStream stream;

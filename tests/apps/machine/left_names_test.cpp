@@ -94,7 +94,7 @@ TEST_F(DoctorVerb, KeepsTheNamesOfOtherUsers) {
   const auto before = memory.listing();
   const auto ended = memory.run({"doctor", "--clean"}, {});
   EXPECT_EQ(ended.code, 0) << ended.out;
-  EXPECT_NE(ended.out.find("belongs to user 12345: left alone"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("belongs to user 12345: not changed"), std::string::npos) << ended.out;
   EXPECT_EQ(memory.listing(), before);
 }
 

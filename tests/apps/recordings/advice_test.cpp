@@ -100,7 +100,7 @@ TEST(Advice, AcceptsAnyTimesAndValuesThatAFileCanHave) {
         table_of({-last, -last + Time(1), Time(0), last}, [&](double t) { return t < 0 ? -x : x; }),
         milliseconds(5), std::nullopt, false);
     EXPECT_GT(found.lead, seconds(1));
-    EXPECT_GE(found.hiccups.back().dry, Time(0));
+    EXPECT_GE(found.silences.back().dry, Time(0));
     EXPECT_TRUE(std::isfinite(found.limits.acceleration.front()));
   }
 }
@@ -184,25 +184,25 @@ TEST(Advice, LimitsAreThreeTimesTheMotionAndTheStopKeepsThem) {
   EXPECT_EQ(advised_limits(std::span(motion).last(1)).stop_time, milliseconds(250));
 }
 
-class Hiccups : public ::testing::Test {
+class Silences : public ::testing::Test {
  protected:
-  [[nodiscard]] Hiccup foreseen(Time lead, Time silence) const {
+  [[nodiscard]] SilenceEffect foreseen(Time lead, Time silence) const {
     return foresee(lead, silence, milliseconds(10), milliseconds(5), motion_, limits_);
   }
   std::vector<DimensionMotion> motion_{{.velocity = 1, .peak_velocity = 1, .acceleration = 2}};
   AdvisedLimits limits_{.velocity = {3}, .acceleration = {6}, .stop_time = milliseconds(250)};
 };
 
-TEST_F(Hiccups, ThatTheDepthCoversHaveNoEffect) {
-  const Hiccup found = foreseen(milliseconds(200), milliseconds(100));
+TEST_F(Silences, ThatTheDepthCoversHaveNoEffect) {
+  const SilenceEffect found = foreseen(milliseconds(200), milliseconds(100));
   EXPECT_EQ(found.depth_left, milliseconds(90));
   EXPECT_EQ(found.dry, Time(0));
   EXPECT_FALSE(found.comes_to_rest);
   EXPECT_EQ(found.way_back, std::vector<std::optional<double>>{0.0});
 }
 
-TEST_F(Hiccups, LongerThanTheDepthStarveTheStreamWhichReturnsInMinimumTime) {
-  const Hiccup found = foreseen(milliseconds(60), milliseconds(300));
+TEST_F(Silences, LongerThanTheDepthStarveTheStreamWhichReturnsInMinimumTime) {
+  const SilenceEffect found = foreseen(milliseconds(60), milliseconds(300));
   EXPECT_EQ(found.dry, milliseconds(255));
   EXPECT_TRUE(found.comes_to_rest);
   // From rest, 0.255 − 0.125 away from a path of velocity 1: accelerates with 6 to a velocity of
@@ -212,7 +212,7 @@ TEST_F(Hiccups, LongerThanTheDepthStarveTheStreamWhichReturnsInMinimumTime) {
   EXPECT_FALSE(foreseen(milliseconds(60), milliseconds(100)).comes_to_rest);
 }
 
-TEST_F(Hiccups, AreFollowedByAReturnWithinTheVelocityLimit) {
+TEST_F(Silences, AreFollowedByAReturnWithinTheVelocityLimit) {
   limits_.velocity = {1.5};
   const double capped = *foreseen(milliseconds(60), milliseconds(300)).way_back.front();
   // 0.13 away: accelerates from 0 to 1.5, stays 0.5 faster than the path, decelerates to 1.

@@ -52,10 +52,10 @@ class Forbidden : public ::testing::Test {
   }
 
   /// Like `attack`, but the verb must leave all files unchanged.
-  testing::Ended attack_in_vain(const testing::PrivateSharedMemory& memory,
-                                const std::vector<std::string>& verb, int code,
-                                const std::vector<std::string>& said,
-                                const testing::Confinement& who = {}) {
+  testing::Ended attack_without_effect(const testing::PrivateSharedMemory& memory,
+                                       const std::vector<std::string>& verb, int code,
+                                       const std::vector<std::string>& said,
+                                       const testing::Confinement& who = {}) {
     const Listing before = memory.listing();
     const testing::Ended ended = attack(memory, verb, code, said, who);
     const Listing after = memory.listing();

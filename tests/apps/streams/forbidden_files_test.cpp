@@ -123,13 +123,13 @@ class ForbiddenFiles : public Forbidden {
       auto said = obstacle.said;
       said.emplace_back(kBoard);
       with_obstacle(kBoard, obstacle, [&](const PrivateSharedMemory& memory) {
-        attack_in_vain(memory, {"solve", "a"}, 1, said);
-        attack_in_vain(memory, replay(), 1, said);
-        attack_in_vain(memory, replay({"--embedded"}), 1, said);
-        attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 1, said);
-        attack_in_vain(memory, {"info", "a"}, 1, said);
-        attack_in_vain(memory, {"ls"}, 0, said);
-        if (!obstacle.is_own_litter) attack_in_vain(memory, {"rm", "a"}, 1, said);
+        attack_without_effect(memory, {"solve", "a"}, 1, said);
+        attack_without_effect(memory, replay(), 1, said);
+        attack_without_effect(memory, replay({"--embedded"}), 1, said);
+        attack_without_effect(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 1, said);
+        attack_without_effect(memory, {"info", "a"}, 1, said);
+        attack_without_effect(memory, {"ls"}, 0, said);
+        if (!obstacle.is_own_litter) attack_without_effect(memory, {"rm", "a"}, 1, said);
       });
     }
   }
@@ -140,14 +140,15 @@ class ForbiddenFiles : public Forbidden {
       auto said = obstacle.said;
       said.emplace_back(kRing);
       with_obstacle(kRing, obstacle, [&](const PrivateSharedMemory& memory) {
-        attack_in_vain(memory, {"solve", "a"}, 1, said);
-        attack_in_vain(memory, replay(), 4, {"no solver for stream 'a'"});
-        attack_in_vain(memory, replay({"--embedded"}), 1, said);
+        attack_without_effect(memory, {"solve", "a"}, 1, said);
+        attack_without_effect(memory, replay(), 4, {"no solver for stream 'a'"});
+        attack_without_effect(memory, replay({"--embedded"}), 1, said);
         // The curve remains readable: readers need no producer.
-        attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"});
-        attack_in_vain(memory, {"info", "a"}, 1, said);
-        attack_in_vain(memory, {"ls"}, 0, said);
-        if (!obstacle.is_own_litter) attack_in_vain(memory, {"rm", "a"}, 1, said);
+        attack_without_effect(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0,
+                              {"settled"});
+        attack_without_effect(memory, {"info", "a"}, 1, said);
+        attack_without_effect(memory, {"ls"}, 0, said);
+        if (!obstacle.is_own_litter) attack_without_effect(memory, {"rm", "a"}, 1, said);
       });
     }
   }
@@ -179,10 +180,10 @@ TEST_F(ForbiddenFiles, WithoutOtherFilesAreRefusedAndNoFileIsCreated) {
            {kRing, "splinecast.a.waypoints.lock", "splinecast.a.spline.lock"}) {
         std::filesystem::remove(memory.file(other));
       }
-      attack_in_vain(memory, {"solve", "a"}, 1, said);
-      attack_in_vain(memory, replay(), 1, said);
-      attack_in_vain(memory, replay({"--embedded"}), 1, said);
-      attack_in_vain(memory, {"rm", "a"}, 1, said);
+      attack_without_effect(memory, {"solve", "a"}, 1, said);
+      attack_without_effect(memory, replay(), 1, said);
+      attack_without_effect(memory, replay({"--embedded"}), 1, said);
+      attack_without_effect(memory, {"rm", "a"}, 1, said);
     });
   }
 }
@@ -211,11 +212,11 @@ TEST_F(ForbiddenFiles, OfAnotherUserAreRefusedWithTheOwnerAndUnchanged) {
       // A writer opens the file for writing, which the kernel refuses before the owner is checked.
       const std::vector<std::string> to_writers{file};
       with_obstacle(file, strangers, [&](const PrivateSharedMemory& memory) {
-        attack_in_vain(memory, {"solve", "a"}, 1, to_writers);
-        attack_in_vain(memory, replay({"--embedded"}), 1, to_writers);
-        attack_in_vain(memory, {"info", "a"}, 1, said);
-        attack_in_vain(memory, {"ls"}, 0, said);
-        attack_in_vain(memory, {"rm", "a"}, 1, said);
+        attack_without_effect(memory, {"solve", "a"}, 1, to_writers);
+        attack_without_effect(memory, replay({"--embedded"}), 1, to_writers);
+        attack_without_effect(memory, {"info", "a"}, 1, said);
+        attack_without_effect(memory, {"ls"}, 0, said);
+        attack_without_effect(memory, {"rm", "a"}, 1, said);
         // No partial removal: a failure at the board must not remove the ring.
         EXPECT_EQ(memory.listing().size(), 4U);
       });
@@ -232,11 +233,12 @@ TEST_F(ForbiddenFiles, InvalidAsALockStopWritersWithTheirPath) {
   for (const Obstacle& obstacle : locks) {
     const std::string lock = "splinecast.a.spline.lock";
     with_obstacle(lock.c_str(), obstacle, [&](const PrivateSharedMemory& memory) {
-      attack_in_vain(memory, {"solve", "a"}, 1, {lock});
-      attack_in_vain(memory, replay({"--embedded"}), 1, {lock});
-      attack_in_vain(memory, {"rm", "a"}, 1, {lock});
-      attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"});
-      attack_in_vain(memory, {"info", "a"}, 0, {"finished"});
+      attack_without_effect(memory, {"solve", "a"}, 1, {lock});
+      attack_without_effect(memory, replay({"--embedded"}), 1, {lock});
+      attack_without_effect(memory, {"rm", "a"}, 1, {lock});
+      attack_without_effect(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0,
+                            {"settled"});
+      attack_without_effect(memory, {"info", "a"}, 0, {"finished"});
     });
   }
 }
@@ -247,9 +249,9 @@ TEST_F(ForbiddenFiles, ALockOfAnotherUserStopsWritersWithItsPath) {
   const Obstacle strangers{
       .put = [](const Path& path) { ASSERT_EQ(chown(path.c_str(), kStranger, kStranger), 0); }};
   with_obstacle(lock.c_str(), strangers, [&](const PrivateSharedMemory& memory) {
-    attack_in_vain(memory, {"solve", "a"}, 1, {lock, "belongs to another user"});
-    attack_in_vain(memory, {"rm", "a"}, 1, {lock, "belongs to another user"});
-    attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"});
+    attack_without_effect(memory, {"solve", "a"}, 1, {lock, "belongs to another user"});
+    attack_without_effect(memory, {"rm", "a"}, 1, {lock, "belongs to another user"});
+    attack_without_effect(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"});
   });
 }
 
@@ -262,13 +264,13 @@ TEST_F(ForbiddenFiles, WithInvalidStreamNamesEndNoVerbAndAreNotPrinted) {
     ASSERT_GE(file, 0);
     close(file);
   }
-  attack_in_vain(memory, {"ls"}, 0, {"STREAM"});
-  attack_in_vain(memory, {"ls", "--json"}, 0, {"[]"});
-  const auto doctor = attack_in_vain(memory, {"doctor"}, before, {"ok"});
+  attack_without_effect(memory, {"ls"}, 0, {"STREAM"});
+  attack_without_effect(memory, {"ls", "--json"}, 0, {"[]"});
+  const auto doctor = attack_without_effect(memory, {"doctor"}, before, {"ok"});
   EXPECT_EQ(doctor.out.find('\033'), std::string::npos) << doctor.out;
-  attack_in_vain(memory, {"info", "a\033[2J"}, 2, {R"('a\x1b[2J' cannot name a stream)"});
-  attack_in_vain(memory, {"fit", "no\033[2J\nfile.csv", "--dt", "0.1"}, 2,
-                 {R"(no\x1b[2J\x0afile.csv: no such)"});
+  attack_without_effect(memory, {"info", "a\033[2J"}, 2, {R"('a\x1b[2J' cannot name a stream)"});
+  attack_without_effect(memory, {"fit", "no\033[2J\nfile.csv", "--dt", "0.1"}, 2,
+                        {R"(no\x1b[2J\x0afile.csv: no such)"});
 }
 
 }  // namespace

@@ -39,19 +39,21 @@ TEST_F(ForbiddenLimits, FullSharedMemoryIsRefusedWithNeededAndFreeBytes) {
   const PrivateSharedMemory memory("8m");
   fill(memory, 4096);
   const std::vector<std::string> ring{"cannot reserve 81920 bytes", "4096 are free"};
-  attack_in_vain(memory, replay(), 1, ring);
-  attack_in_vain(memory, replay({"--embedded"}), 1, ring);
-  attack_in_vain(memory, {"demo", "--seconds", "0.2"}, 1, {"cannot reserve", "4096 are free"});
-  attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2", "--wait", "0"}, 4,
-                 {"no stream 'a'"});
-  attack_in_vain(memory, {"info", "a"}, 4, {"no stream 'a'"});
-  attack_in_vain(memory, {"ls"}, 0, {"STREAM"});
+  attack_without_effect(memory, replay(), 1, ring);
+  attack_without_effect(memory, replay({"--embedded"}), 1, ring);
+  attack_without_effect(memory, {"demo", "--seconds", "0.2"}, 1,
+                        {"cannot reserve", "4096 are free"});
+  attack_without_effect(memory, {"sample", "a", "--rate", "10", "--count", "2", "--wait", "0"}, 4,
+                        {"no stream 'a'"});
+  attack_without_effect(memory, {"info", "a"}, 4, {"no stream 'a'"});
+  attack_without_effect(memory, {"ls"}, 0, {"STREAM"});
 }
 
 TEST_F(ForbiddenLimits, RoomForTheRingAloneLeavesNoRing) {
   const PrivateSharedMemory memory("8m");
   fill(memory, 256 << 10U);
-  attack_in_vain(memory, replay({"--embedded"}), 1, {"cannot reserve 2199552 bytes", "are free"});
+  attack_without_effect(memory, replay({"--embedded"}), 1,
+                        {"cannot reserve 2199552 bytes", "are free"});
   const auto before = memory.listing();
   Process solver = memory.start({"solve", "a"}, {});
   solver.await_message("waiting for a producer");
@@ -64,8 +66,8 @@ TEST_F(ForbiddenLimits, AStreamCanBeReadAndRemovedInFullSharedMemory) {
   const PrivateSharedMemory memory("8m");
   ASSERT_EQ(memory.run(replay({"--embedded"}), {}).code, 0);
   fill(memory, 0);
-  attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"});
-  attack_in_vain(memory, {"info", "a"}, 0, {"finished"});
+  attack_without_effect(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"});
+  attack_without_effect(memory, {"info", "a"}, 0, {"finished"});
   attack(memory, {"rm", "a"}, 0, {});
   EXPECT_EQ(memory.listing().size(), 1U);
 }
@@ -78,10 +80,10 @@ TEST_F(ForbiddenLimits, ARegionWithHolesIsRefusedIfNoMemoryIsFree) {
   close(board);
   fill(memory, 0);
   const std::vector<std::string> said{"cannot populate 2199552 bytes", "0 are free"};
-  attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 1, said);
-  attack_in_vain(memory, {"info", "a"}, 1, said);
-  attack_in_vain(memory, {"solve", "a"}, 1, said);
-  attack_in_vain(memory, {"rm", "a"}, 1, said);  // it could not notify the readers
+  attack_without_effect(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 1, said);
+  attack_without_effect(memory, {"info", "a"}, 1, said);
+  attack_without_effect(memory, {"solve", "a"}, 1, said);
+  attack_without_effect(memory, {"rm", "a"}, 1, said);  // it could not notify the readers
 }
 
 TEST_F(ForbiddenLimits, LittleLockableMemoryGivesOnlyAWarning) {
@@ -94,23 +96,26 @@ TEST_F(ForbiddenLimits, LittleLockableMemoryGivesOnlyAWarning) {
   solver.await_message("pages are not locked into memory (RLIMIT_MEMLOCK)");
   solver.signal(SIGTERM);  // a running solver would change its region when it sleeps
   EXPECT_EQ(solver.wait().code, 0);
-  attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"}, little);
+  attack_without_effect(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"},
+                        little);
 }
 
 TEST_F(ForbiddenLimits, AFileSizeLimitGivesAnErrorAndKillsNoProcess) {
   const Confinement little{.limits = {"--fsize=65536"}};
   const PrivateSharedMemory memory("8m");
   const std::string limit = "65536 (RLIMIT_FSIZE)";
-  attack_in_vain(memory, replay(), 1, {"cannot reserve 81920 bytes", limit}, little);
-  attack_in_vain(memory, replay({"--embedded"}), 1, {"cannot reserve 81920 bytes", limit}, little);
-  attack_in_vain(memory, {"demo", "--seconds", "0.2"}, 1, {limit}, little);
+  attack_without_effect(memory, replay(), 1, {"cannot reserve 81920 bytes", limit}, little);
+  attack_without_effect(memory, replay({"--embedded"}), 1, {"cannot reserve 81920 bytes", limit},
+                        little);
+  attack_without_effect(memory, {"demo", "--seconds", "0.2"}, 1, {limit}, little);
   ASSERT_EQ(memory.run(replay({"--embedded"}), {}).code, 0);
-  attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"}, little);
+  attack_without_effect(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"},
+                        little);
   // The limit also applies to output files; /tmp is not part of the namespace.
   const std::string out = folder_.write("out.csv", "");
   std::filesystem::permissions(out, std::filesystem::perms(0666));
-  attack_in_vain(memory, {"sample", "a", "--rate", "10000", "--count", "2000", "-o", out}, 1,
-                 {"out.csv", "File too large"}, little);
+  attack_without_effect(memory, {"sample", "a", "--rate", "10000", "--count", "2000", "-o", out}, 1,
+                        {"out.csv", "File too large"}, little);
 }
 
 TEST_F(ForbiddenLimits, ExhaustedDescriptorsGiveAClearError) {
@@ -135,9 +140,9 @@ TEST_F(ForbiddenLimits, ExhaustedDescriptorsGiveAClearError) {
   const Confinement four{.limits = {"--nofile=4"}};
   for (const std::vector<std::string>& verb : std::vector<std::vector<std::string>>{
            {"sample", "a", "--rate", "10", "--count", "2"}, {"solve", "a"}, {"rm", "a"}}) {
-    attack_in_vain(memory, verb, 1, {"Too many open files"}, four);
+    attack_without_effect(memory, verb, 1, {"Too many open files"}, four);
   }
-  attack_in_vain(memory, {"info", "a"}, 0, {"finished"}, four);  // opens one file at a time
+  attack_without_effect(memory, {"info", "a"}, 0, {"finished"}, four);  // opens one file at a time
 }
 
 TEST_F(ForbiddenLimits, ExhaustedAddressSpaceGivesAnErrorWithTheNeededBytes) {
@@ -164,15 +169,16 @@ TEST_F(ForbiddenLimits, AnotherTimeNamespacesClockIsRefusedForLiveStreams) {
                                       "--embedded", "--lead", "2000"};
   ASSERT_EQ(memory.run(live, here).code, 0);
   const std::vector<std::string> said{"stream 'a' runs on the clock of time namespace"};
-  attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 1, said, elsewhere);
-  attack_in_vain(memory, {"solve", "a"}, 1, said, elsewhere);
-  attack_in_vain(memory, {"doctor", "a"}, 1, said, elsewhere);
-  attack_in_vain(memory, {"info", "a"}, 0, {"finished"}, elsewhere);
+  attack_without_effect(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 1, said,
+                        elsewhere);
+  attack_without_effect(memory, {"solve", "a"}, 1, said, elsewhere);
+  attack_without_effect(memory, {"doctor", "a"}, 1, said, elsewhere);
+  attack_without_effect(memory, {"info", "a"}, 0, {"finished"}, elsewhere);
   // A recorded stream uses no clock.
   ASSERT_EQ(memory.run({"rm", "a"}, here).code, 0);
   ASSERT_EQ(memory.run(replay({"--embedded"}), here).code, 0);
-  attack_in_vain(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"},
-                 elsewhere);
+  attack_without_effect(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 0, {"settled"},
+                        elsewhere);
 }
 
 }  // namespace

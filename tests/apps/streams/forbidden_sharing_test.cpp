@@ -46,21 +46,23 @@ TEST_F(ForbiddenSharing, OnlyMembersOfTheGroupCanRead) {
            {"sample", "a", "--rate", "10", "--count", "2"}, {"info", "a"}}) {
     auto with_owner = verb;
     with_owner.insert(with_owner.end(), trusting.begin(), trusting.end());
-    attack_in_vain(memory, with_owner, 0, {verb.front() == "info" ? "finished" : "settled"},
-                   member_);
-    attack_in_vain(memory, verb, 1, {"belongs to user 12345, who is not trusted (--owner)"},
-                   member_);
-    attack_in_vain(memory, with_owner, 1, {"splinecast.a.", "Permission denied"}, stranger_);
+    attack_without_effect(memory, with_owner, 0, {verb.front() == "info" ? "finished" : "settled"},
+                          member_);
+    attack_without_effect(memory, verb, 1, {"belongs to user 12345, who is not trusted (--owner)"},
+                          member_);
+    attack_without_effect(memory, with_owner, 1, {"splinecast.a.", "Permission denied"}, stranger_);
   }
   for (const Confinement& other : {member_, stranger_}) {
-    attack_in_vain(memory, {"rm", "a", "--owner", "12345"}, 1, {"belongs to another user"}, other);
-    attack_in_vain(memory, {"solve", "a", "--owner", "12345"}, 1, {"belongs to another user"},
-                   other);
-    attack_in_vain(memory, {"doctor", "--clean"}, 0, {"belongs to user 12345", "left alone"},
-                   other);
+    attack_without_effect(memory, {"rm", "a", "--owner", "12345"}, 1, {"belongs to another user"},
+                          other);
+    attack_without_effect(memory, {"solve", "a", "--owner", "12345"}, 1,
+                          {"belongs to another user"}, other);
+    attack_without_effect(memory, {"doctor", "--clean"}, 0,
+                          {"belongs to user 12345", "not changed"}, other);
   }
   auto into_the_group = shared({"replay", file_, "--stream", "b", "--embedded"});
-  attack_in_vain(memory, into_the_group, 1, {"cannot give the region to group 54321"}, stranger_);
+  attack_without_effect(memory, into_the_group, 1, {"cannot give the region to group 54321"},
+                        stranger_);
 }
 
 /// Takes each kind of lock on each file that it can open for writing or reading.
@@ -102,7 +104,8 @@ TEST_F(ForbiddenSharing, AReaderThatLocksEveryFileItCanPreventsNoTakeover) {
   locker.await_message("locked 2");  // both regions, opened for reading; no lock file
   solver->signal(SIGKILL);
   solver->wait();
-  // The lock of the dead owner on the board is gone: the reader's lock now blocks its successor's.
+  // The kernel has released the dead owner's lock on the board. The reader now locks the board,
+  // which blocks the same lock of the next owner.
   locker.signal(SIGUSR1);
   locker.await_message("got one");
   Process next = memory.start(shared({"solve", "a"}), writer_);

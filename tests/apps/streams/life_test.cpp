@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -9,7 +11,10 @@
 #include "ipc/memory/names.hpp"
 #include "ipc/ring/writer.hpp"
 #include "ipc/roles/internals.hpp"
+#include "splinecast/clock.hpp"
+#include "splinecast/producer.hpp"
 #include "splinecast/reader.hpp"
+#include "splinecast/solver.hpp"
 #include "splinecast/streams.hpp"
 #include "tests/apps/streams/life.hpp"
 
@@ -335,6 +340,34 @@ TEST_F(Life, TheDemoEndsWithAReportAndLeavesNoStream) {
   for (const std::string& stream : stream_names()) {
     EXPECT_FALSE(stream.starts_with("demo.")) << stream;
   }
+}
+
+TEST_F(Life, RmWaitsUntilAMotionWhoseWritersHaveEndedIsAtRest) {
+  const MonotonicClock clock;
+  const Time begin = clock.now() + std::chrono::milliseconds(20);
+  const Time end = begin + std::chrono::milliseconds(990);
+  {
+    Producer producer(name(), {.dimensions = 1});
+    Solver solver(name(), {});
+    for (int i = 0; i < 100; ++i) {
+      const double position = i;
+      EXPECT_EQ(producer.append({.time = begin + std::chrono::milliseconds(10 * i),
+                                 .position = std::span(&position, 1)}),
+                AppendStatus::accepted);
+    }
+    ASSERT_TRUE(solver.attach());
+    while (solver.step(clock).consumed > 0) {
+    }
+  }
+  Reader reader(name());
+  State state(1);
+  Process removal({"rm", name()});
+  removal.await_message("waiting");
+  EXPECT_TRUE(has_values(reader.preview(end, state)));
+  const Ended ended = removal.wait();
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_GE(clock.now(), end);
+  EXPECT_EQ(reader.preview(end, state), SampleStatus::retired);
 }
 
 }  // namespace

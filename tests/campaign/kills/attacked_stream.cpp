@@ -230,7 +230,8 @@ void AttackedStream::end_life() {
 }
 
 /// Counts the items of a stream at its end: the ring holds exactly the accepted items, and each one
-/// was interpolated, passed over, refused with a reason, withdrawn, or carried out.
+/// is a waypoint that was interpolated, passed over, refused with a reason or withdrawn, or a
+/// control item that was executed.
 void AttackedStream::count_items() {
   findings_.waypoints += summary_.interpolated();
   findings_.passed_over += summary_.passed_over;

@@ -9,15 +9,16 @@
 
 namespace splinecast::campaign {
 
-/// The checks of one reader on a stream's curve. Counts violations in the reader's facts and prints
-/// them to standard error. For one thread; lives as long as its reader is attached.
+/// The checks of one reader on a stream's curve. Counts violations in `facts` and prints them to
+/// standard error. Not thread-safe. Lives as long as its reader is attached.
 class CurveCheck {
  public:
   /// All arguments outlive the check, which is the only user of `reader`.
   CurveCheck(const Plan& plan, Reader& reader, ReaderFacts& facts);
 
   /// Samples at t like a controller; t never decreases. Checks that the sample is not torn, that
-  /// settled samples keep their values, and that nothing steps between t and the tick before.
+  /// settled samples keep their values, and that since the previous tick position and velocity have
+  /// no step and the acceleration has no unpublished step.
   SampleStatus tick(Time t);
 
   /// Samples at any t. Checks that the sample is not torn.

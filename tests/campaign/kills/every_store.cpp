@@ -13,14 +13,14 @@ namespace {
 /// Number of waypoints of a recorded stream: a long one, and one that ends soon.
 constexpr ipc::Word kLongLife = 1400;
 constexpr ipc::Word kShortLife = 12;
-/// Steps of one kind differ in their number of stores. A step counts as having no store n after
-/// this many survivals.
+/// Two steps of one kind may do different numbers of stores. After this many steps that end before
+/// store n, the sweep concludes that no step of this kind has a store n.
 constexpr int kSurvivals = 8;
 
 std::string_view to_string(Step step) {
   switch (step) {
     case Step::make_ring:
-      return "making or continuing a ring";
+      return "creating or continuing a ring";
     case Step::append:
       return "an append";
     case Step::replace:
@@ -28,7 +28,7 @@ std::string_view to_string(Step step) {
     case Step::finish:
       return "a finish";
     case Step::make_board:
-      return "making or taking over a board";
+      return "creating or taking over a board";
     case Step::publish:
       return "the publication of a waypoint";
     case Step::publish_replacement:
@@ -111,16 +111,16 @@ Result run_every_store(const CampaignOptions& options) {
   };
   sweep("recorded", recorded_plan(campaign_stream("long"), kLongLife),
         {Step::make_ring, Step::append, Step::make_board, Step::publish, Step::sleep});
-  sweep("made anew", recorded_plan(campaign_stream("short"), kShortLife),
+  sweep("recreated", recorded_plan(campaign_stream("short"), kShortLife),
         {Step::make_ring, Step::finish, Step::make_board, Step::publish_finish, Step::remove});
   sweep("live", live_plan(campaign_stream("live")),
         {Step::make_ring, Step::append, Step::replace, Step::make_board, Step::publish,
          Step::publish_replacement, Step::sleep});
   measured.update(findings.killing());
-  return make_result(options, {1, 2, 4, 5, 8},
-                     "SIGKILL before every store of every step of producer, solver and rm",
-                     findings.all_kills(), "kills", findings, measured,
-                     to_seconds(clock.now() - begin));
+  return make_result(
+      options, {1, 2, 4, 5, 8},
+      "kill at every store: SIGKILL before every store of every step of producer, solver and rm",
+      findings.all_kills(), "kills", findings, measured, to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

@@ -27,7 +27,7 @@ enum class Step : std::uint64_t {
 
 inline constexpr std::size_t kMostReaders = 16;
 
-/// Counters of a reader over all its processes.
+/// Counters of a reader, summed over its processes: a killed reader is started again.
 struct ReaderFacts {
   std::atomic<std::uint64_t> turns;         ///< grows unless the reader hangs
   std::atomic<std::uint64_t> life_samples;  ///< samples with values of the current process
@@ -45,7 +45,7 @@ struct ReaderFacts {
 
 /// Memory that the processes of one stream share; it outlives each of them.
 struct Journal {
-  std::atomic<Step> armed;               ///< step in which to die; none once it was survived
+  std::atomic<Step> armed;               ///< step in which to die; `none` after it has survived
   std::atomic<std::uint64_t> store;      ///< number of the store to die before, from 1
   std::atomic<std::uint64_t> accepted;   ///< ring items whose append was accepted
   std::atomic<ipc::ItemKind> last_sent;  ///< kind of the item that the producer appended last

@@ -12,11 +12,12 @@ namespace splinecast::campaign {
 
 /// Self-checking waypoints: a torn copy of a waypoint, or of the curve through them, is detected.
 ///
-/// Waypoint n is at `origin + n·interval`, and its position is a function of n alone. A waypoint
-/// with the time of another one is therefore detected. Dimension d is dimension 0 times ± a power
-/// of two. The solve is linear, the same for each dimension, and such a factor causes no rounding.
-/// So each coefficient and each sample has the same factors, bit for bit, and a row of dimensions
-/// that mixes two versions is detected. A mixture of rows is detected where segments join.
+/// Waypoint n is at `origin + n·interval`, and its position is a function of n alone, so a position
+/// with the time of another waypoint is detected. Dimension d is dimension 0 times ± a power of
+/// two. The solve is linear and the same for each dimension, and multiplication by such a factor is
+/// exact. So the dimensions of each coefficient and of each sample have the same factors, bit for
+/// bit, and a row of dimensions that mixes two versions is detected. A mixture of rows is detected
+/// where segments join.
 class Payload {
  public:
   static constexpr std::size_t kDimensions = 4;

@@ -79,8 +79,8 @@ Result run_random_kills(const CampaignOptions& options) {
   for (Victim& victim : victims) findings.add(victim.finish());
   return make_result(
       options, {1, 2, 4, 5, 8},
-      "SIGKILL at random instants, also while starting, taking over and removing, of producers, "
-      "solvers, readers and rm of two live and two recorded streams",
+      "random kills: SIGKILL at random instants of producers, solvers, readers and rm of two live "
+      "and two recorded streams, also while they start, take over and remove",
       findings.all_kills(), "kills", findings, findings.killing(), to_seconds(clock.now() - begin));
 }
 

@@ -69,7 +69,7 @@ class ReaderRole {
   SampleStatus tick_recorded() {
     const auto oldest = reader_.first_time();
     if (!oldest || !ipc::Internals::summary(reader_, summary_) || summary_.newest == 0) {
-      return check_.peek(Time{});  // its status is the reason
+      return check_.peek(Time{});  // returns the status that names the reason
     }
     const Time first = *oldest;
     const Time back = static_cast<std::int64_t>(

@@ -18,16 +18,16 @@ Result run_stress(const CampaignOptions& options) {
     const Time end = clock.now() + Time(static_cast<std::int64_t>(options.seconds * 1e9));
     while (clock.now() < end && apps::sleep_until(clock.now() + kLook)) stream.tick();
     const Findings found = stream.finish();
-    measured["samples of " + number + " readers"] = found.samples;
-    measured["waypoints beside " + number + " readers"] = found.waypoints;
+    measured["samples with " + number + " readers"] = found.samples;
+    measured["waypoints with " + number + " readers"] = found.waypoints;
     findings.add(found);
   }
-  return make_result(options, {1, 3, 5},
-                     "1, 2, 4, 8 and 16 reader processes at full speed, while a producer and a "
-                     "solver process run at full speed over a ring of 16 items and a board of 32 "
-                     "segments",
-                     findings.samples, "samples", findings, measured,
-                     to_seconds(clock.now() - begin));
+  return make_result(
+      options, {1, 3, 5},
+      "stress: 1, 2, 4, 8 and 16 reader processes at full speed, while a producer and a "
+      "solver process run at full speed over a ring of 16 items and a board of 32 "
+      "segments",
+      findings.samples, "samples", findings, measured, to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

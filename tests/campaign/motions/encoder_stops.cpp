@@ -42,18 +42,19 @@ double quantile(const std::vector<double>& sorted, double share) {
 /// Text that docs/plots.py parses: "; " between quantities, ": " between name and value.
 std::string text_of(const StopMeasures& m) {
   const std::string read = fmt::format(
-      "in entries: {:.1f} %; path error as read: {:.3g} mrad; acceleration as read: "
-      "{:.3g} rad/s2",
+      "time in entries, not measured: {:.1f} %; largest path error of a 1 kHz reader: {:.3g} mrad; "
+      "largest acceleration of a 1 kHz reader: {:.3g} rad/s2",
       100 * static_cast<double>(m.in_entries) / static_cast<double>(m.in_entries + m.stops),
       1e3 * m.read_error, m.read_acceleration);
   if (m.stops == 0) return read;
   return fmt::format(
-      "velocity error at the newest knot p50: {:.3g} rad/s; velocity error p99: {:.3g} rad/s; "
-      "largest velocity error: {:.3g} rad/s; runs on beyond |v|T/2 p99: {:.3g} mrad; runs on at "
-      "most: {:.3g} mrad; acceleration of the stop: {:.3g} rad/s2; jerk of the stop: {:.3g} "
-      "rad/s3; acceleration of the last segment: {:.3g} rad/s2; path error of the last segment "
-      "p99: {:.3g} mrad; largest path error of it: {:.3g} mrad; overshoot of the last segment: "
-      "{:.3g} mrad; {}",
+      "velocity error at newest knot p50: {:.3g} rad/s; velocity error at newest knot p99: {:.3g} "
+      "rad/s; largest velocity error at newest knot: {:.3g} rad/s; distance of the "
+      "stop beyond |v|T/2 p99: {:.3g} mrad; largest distance of the stop beyond |v|T/2: {:.3g} "
+      "mrad; largest acceleration of the stop: {:.3g} rad/s2; largest jerk of the stop: {:.3g} "
+      "rad/s3; largest acceleration of the last segment: {:.3g} rad/s2; path error of the last "
+      "segment p99: {:.3g} mrad; largest path error of the last segment: {:.3g} mrad; largest "
+      "overshoot of the last segment: {:.3g} mrad; {}",
       quantile(m.velocity_errors, 0.5), quantile(m.velocity_errors, 0.99), m.velocity_errors.back(),
       1e3 * quantile(m.runs_on, 0.99), 1e3 * m.runs_on.back(), m.stop_acceleration, m.stop_jerk,
       m.last_acceleration, 1e3 * quantile(m.last_path_errors, 0.99),
@@ -87,14 +88,14 @@ Result run_stops(const CampaignOptions& options) {
       too_far += measures.too_far;
     }
   }
-  const nlohmann::json found{{"stops that speed up or turn round", not_monotone},
-                             {"stops further than half the stop time at their velocity", too_far},
-                             {"stops that readers go down otherwise than published", others}};
-  return make_result(options, 4,
-                     "the published stop of every tail when live waypoints, exact ones or those of "
-                     "encoders, end at any millisecond",
-                     stops, "stops of six joints", found, std::move(measured),
-                     to_seconds(clock.now() - begin));
+  const nlohmann::json found{{"stops that speed up or reverse", not_monotone},
+                             {"stops that move further than |v|T/2", too_far},
+                             {"stops that end elsewhere than published", others}};
+  return make_result(
+      options, 4,
+      "stops: the published stop of every tail when live waypoints, exact ones or those of "
+      "encoders, end at any millisecond",
+      stops, "stops of six joints", found, std::move(measured), to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

@@ -29,8 +29,8 @@ struct LiveFindings {
   std::uint64_t steps = 0;
   std::uint64_t late_rows = 0;
 
-  void judge(const Mishap& mishap, double limit, const LiveSeen& seen) {
-    const bool is_noisy = mishap.quantum > 0;
+  void judge(const Fault& fault, double limit, const LiveSeen& seen) {
+    const bool is_noisy = fault.quantum > 0;
     const Peaks own{Sines::kPeakVelocity, Sines::kPeakAcceleration};
     const double most =
         limit > 0 ? limit * (1 + 1e-9) : most_without_limits(own, seen.largest_error);
@@ -45,23 +45,25 @@ struct LiveFindings {
     late_rows += is_late ? 1U : 0U;
     if (is_late) return;
     freezes += seen.holding > kMostHolding ? 1U : 0U;
-    if (mishap.is_covered) passed_although_covered += seen.passed_over - seen.passed_at_start;
+    if (fault.is_covered) passed_although_covered += seen.passed_over - seen.passed_at_start;
   }
   [[nodiscard]] nlohmann::json json() const {
-    return {{"accelerations beyond their limit", limits_passed},
-            {"rows held for more than 1 % of the time", freezes},
-            {"waypoints refused that did not come too late", refusals},
-            {"waypoints passed over although the lead covered the hiccup", passed_although_covered},
-            {"jumps without limits", jumps},
-            {"steps of the position", steps}};
+    return {{"runs with an acceleration beyond its limit", limits_passed},
+            {"runs that hold for more than 1 % of the time", freezes},
+            {"waypoints refused for a reason other than lateness", refusals},
+            {"waypoints passed over although the lead covered the fault", passed_although_covered},
+            {"runs without limits with an excessive acceleration", jumps},
+            {"position steps", steps}};
   }
 };
 
 std::string text_of(const LiveSeen& seen) {
   return fmt::format(
-      "peaks {:.2f} rad/s, {:.2f} rad/s2; path error p99 {:.4f}, largest {:.4f} rad; passed over "
-      "{:.1f} %; holding {:.2f} %; samples {}; came late {}; kills {}; deadline_misses {}, "
-      "late_commits {}, samples revised {}; producer at most {:.1f} ms late, solver {:.1f} ms",
+      "peak velocity: {:.2f} rad/s; peak acceleration: {:.2f} rad/s2; path error p99: {:.4f} rad; "
+      "largest path error: {:.4f} rad; passed over: {:.1f} %; holding: {:.2f} %; samples: {}; "
+      "waypoints refused as late: {}; kills: {}; deadline_misses: {}; late_commits: {}; samples "
+      "revised: {}; largest delay of the producer: {:.1f} ms; largest delay of the solver: {:.1f} "
+      "ms",
       seen.peak_velocity, seen.peak_acceleration, seen.error_p99, seen.largest_error,
       seen.knots > 0 ? 100 * static_cast<double>(seen.passed_over) / static_cast<double>(seen.knots)
                      : 0,
@@ -79,12 +81,12 @@ Result run_live_motions(const CampaignOptions& options) {
   LiveFindings findings;
   nlohmann::json measured;
   std::uint64_t rows = 0;
-  const std::size_t all = mishaps().size() * kLimits.size();
+  const std::size_t all = faults().size() * kLimits.size();
   while (rows < all && !apps::stop_requested()) {
     const Time start = clock.now() + kStart;
     std::list<LiveRow> live;
     for (; rows < all && live.size() < kAtOnce; ++rows) {
-      live.emplace_back(motion, mishaps()[rows / kLimits.size()], kLimits[rows % kLimits.size()],
+      live.emplace_back(motion, faults()[rows / kLimits.size()], kLimits[rows % kLimits.size()],
                         start, campaign_stream("motion" + std::to_string(rows)));
     }
     const Time end = start + Time(static_cast<std::int64_t>(LiveRow::kSeconds * 1e9));
@@ -93,18 +95,18 @@ Result run_live_motions(const CampaignOptions& options) {
     }
     for (LiveRow& row : live) {
       const LiveSeen seen = row.finish();
-      findings.judge(row.mishap(), row.limit(), seen);
-      measured[fmt::format("{}, {}", row.mishap().name,
+      findings.judge(row.fault(), row.limit(), seen);
+      measured[fmt::format("{}; {}", row.fault().name,
                            row.limit() > 0 ? fmt::format("limit {} rad/s2", row.limit())
                                            : "no limit")] = text_of(seen);
     }
   }
-  measured["rows in which the machine held a process up for more than 20 ms"] = findings.late_rows;
-  return make_result(options, {2, 4, 5, 8},
-                     "the faults of the motions in real time: producers, solvers and readers at 1 "
-                     "kHz as processes, deaths by SIGKILL",
-                     rows, "runs of 10 s", findings.json(), std::move(measured),
-                     to_seconds(clock.now() - begin));
+  measured["runs in which the machine delayed a process by more than 20 ms"] = findings.late_rows;
+  return make_result(
+      options, {2, 4, 5, 8},
+      "real-time faults: the simulated faults in real time, with producers, solvers and "
+      "readers at 1 kHz as processes, and deaths by SIGKILL",
+      rows, "runs of 10 s", findings.json(), std::move(measured), to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

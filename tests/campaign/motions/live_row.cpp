@@ -110,14 +110,14 @@ class Samples {
 
 }  // namespace
 
-LiveRow::LiveRow(const Sines& motion, const Mishap& mishap, double limit, Time begin,
+LiveRow::LiveRow(const Sines& motion, const Fault& fault, double limit, Time begin,
                  std::string stream)
     : motion_(motion),
-      mishap_(mishap),
+      fault_(fault),
       limit_(limit),
       begin_(begin),
       stream_(std::move(stream)),
-      schedule_(mishap.make(motion, 1)),
+      schedule_(fault.make(motion, 1)),
       memory_(boost::interprocess::anonymous_shared_memory(sizeof(LiveFacts))),
       facts_(std::construct_at(static_cast<LiveFacts*>(memory_.get_address()))) {
   std::erase_if(schedule_.calls, [](const Call& call) { return call.at >= kSeconds; });
@@ -193,7 +193,7 @@ void LiveRow::send(Producer& producer, const Call& call) const {
   std::vector<Waypoint> waypoints;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     for (double& x : positions[i]) {
-      if (mishap_.quantum > 0) x = std::round(x / mishap_.quantum) * mishap_.quantum;
+      if (fault_.quantum > 0) x = std::round(x / fault_.quantum) * fault_.quantum;
     }
     waypoints.push_back({.time = stream_time(call.times[i]), .position = positions[i]});
   }

@@ -55,13 +55,13 @@ class LiveRow {
 
   /// Starts the processes. The motion begins at `begin` on CLOCK_MONOTONIC. `limit` is in rad/s²;
   /// 0: none. The arguments outlive the row.
-  LiveRow(const Sines& motion, const Mishap& mishap, double limit, Time begin, std::string stream);
+  LiveRow(const Sines& motion, const Fault& fault, double limit, Time begin, std::string stream);
   LiveRow(const LiveRow&) = delete;
   LiveRow& operator=(const LiveRow&) = delete;
   /// Kills the remaining processes and removes the stream.
   ~LiveRow();
 
-  [[nodiscard]] const Mishap& mishap() const noexcept { return mishap_; }
+  [[nodiscard]] const Fault& fault() const noexcept { return fault_; }
   [[nodiscard]] double limit() const noexcept { return limit_; }
 
   /// Kills and starts processes by the schedule. Call it every few ms until the end of the motion.
@@ -82,7 +82,7 @@ class LiveRow {
   [[nodiscard]] Time stream_time(double t) const;
 
   const Sines& motion_;
-  const Mishap& mishap_;
+  const Fault& fault_;
   double limit_;
   Time begin_;
   std::string stream_;

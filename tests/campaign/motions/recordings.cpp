@@ -55,8 +55,9 @@ Gaps long_gap(double seconds) {
   return {{from, from + 1.7}};
 }
 
-/// Limits of velocity and acceleration of each joint; a joint that does not move has none. For the
-/// two flights whose pieces do not join, the jumps set the limits, so they bind nothing else.
+/// Limits of velocity and acceleration of each joint; a joint that does not move has none. In two
+/// flights the pieces do not join: the jumps give peaks, and so limits, that the rest of the motion
+/// never reaches.
 core::WindowOptions window_within(const Recorded& motion, double factor) {
   core::WindowOptions window;
   for (std::size_t joint = 0; factor > 0 && joint < motion.joints(); ++joint) {
@@ -103,18 +104,20 @@ struct RecordingFindings {
     jumps += jumps_now ? 1U : 0U;
   }
   [[nodiscard]] nlohmann::json json() const {
-    return {{"velocities beyond their limit, of a dimension", velocities},
-            {"accelerations beyond their limit, of a dimension", accelerations},
-            {"rows held for more than 1 % of the time", freezes},
-            {"waypoints refused that did not come too late", refusals},
-            {"jumps without limits", jumps}};
+    return {{"dimensions with a velocity beyond its limit", velocities},
+            {"dimensions with an acceleration beyond its limit", accelerations},
+            {"runs that hold for more than 1 % of the time", freezes},
+            {"waypoints refused for a reason other than lateness", refusals},
+            {"runs without limits with an excessive acceleration", jumps}};
   }
 };
 
 std::string text_of(const Recorded& motion, const Seen& seen) {
   return fmt::format(
-      "peaks {:.3g} /s, {:.3g} /s2 (the spline's own {:.3g}, {:.3g}); path error p50 {:.2g}, p99 "
-      "{:.2g}, largest {:.2g}; passed over {:.1f} %; holding {:.2f} %; refused as past {}",
+      "peak velocity: {:.3g} /s; peak acceleration: {:.3g} /s2; peak velocity of the recording: "
+      "{:.3g} /s; peak acceleration of the recording: {:.3g} /s2; path error p50: {:.2g}; path "
+      "error p99: {:.2g}; largest path error: {:.2g}; passed over: {:.1f} %; holding: {:.2f} %; "
+      "refused as past: {}",
       seen.peak_velocity(), seen.peak_acceleration(), largest_peak(motion, 1),
       largest_peak(motion, 2), seen.error(0.5), seen.error(0.99), seen.error(1),
       100 * static_cast<double>(seen.passed_over) / static_cast<double>(seen.knots),
@@ -145,17 +148,17 @@ Result run_recordings(const CampaignOptions& options) {
         findings.judge(motion, window.limits, seen);
         const std::string limit =
             factor > 0 ? fmt::format("limits {:g} times the peaks", factor) : "no limit";
-        measured[fmt::format("{}, {}, {}", recording.name, gaps_name, limit)] =
+        measured[fmt::format("{}, {}; {}", recording.name, gaps_name, limit)] =
             text_of(motion, seen);
         ++rows;
       }
     }
   }
-  return make_result(options, {2, 4, 5},
-                     "recorded motions and flights with missing waypoints, with and without "
-                     "limits, in simulated time through the real ring, solver, board and sampler",
-                     rows, "runs", findings.json(), std::move(measured),
-                     to_seconds(clock.now() - begin));
+  return make_result(
+      options, {2, 4, 5},
+      "recordings: recorded motions and flights with missing waypoints, with and without "
+      "limits, in simulated time through the real ring, solver, board and sampler",
+      rows, "runs", findings.json(), std::move(measured), to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

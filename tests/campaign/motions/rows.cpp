@@ -32,18 +32,18 @@ struct MotionFindings {
   std::uint64_t jumps = 0;
 
   [[nodiscard]] nlohmann::json json() const {
-    return {{"accelerations beyond their limit", limits_passed},
-            {"rows held for more than 1 % of the time", freezes},
-            {"waypoints refused that did not come too late", refusals},
-            {"waypoints passed over although the lead covered the hiccup", passed_although_covered},
-            {"jumps without limits", jumps}};
+    return {{"runs with an acceleration beyond its limit", limits_passed},
+            {"runs that hold for more than 1 % of the time", freezes},
+            {"waypoints refused for a reason other than lateness", refusals},
+            {"waypoints passed over although the lead covered the fault", passed_although_covered},
+            {"runs without limits with an excessive acceleration", jumps}};
   }
 };
 
-void judge(const Mishap& mishap, double limit, bool has_noise, const Seen& seen,
+void judge(const Fault& fault, double limit, bool has_noise, const Seen& seen,
            MotionFindings& findings) {
   // The spline through noisy waypoints itself exceeds the limits.
-  const bool is_noisy = has_noise || mishap.quantum > 0;
+  const bool is_noisy = has_noise || fault.quantum > 0;
   const bool is_beyond = limit > 0 && !is_noisy && seen.peak_acceleration() > limit * (1 + 1e-9);
   findings.limits_passed += is_beyond ? 1U : 0U;
   const bool jumps =
@@ -53,40 +53,44 @@ void judge(const Mishap& mishap, double limit, bool has_noise, const Seen& seen,
   findings.jumps += jumps ? 1U : 0U;
   findings.freezes += seen.holding > kMostHolding ? 1U : 0U;
   findings.refusals += seen.refused;
-  if (mishap.is_covered) {
+  if (fault.is_covered) {
     findings.passed_although_covered += seen.passed_over - seen.passed_at_start;
   }
 }
 
-std::string row_name(const Mishap& mishap, double limit, bool is_noisy) {
-  return fmt::format("{}{}, {}", mishap.name, is_noisy ? ", noise of 0.1 mrad" : "",
+std::string row_name(const Fault& fault, double limit, bool is_noisy) {
+  return fmt::format("{}{}; {}", fault.name, is_noisy ? ", noise of 0.1 mrad" : "",
                      limit > 0 ? fmt::format("limit {} rad/s2", limit) : "no limit");
 }
 
-std::string row_text(const Mishap& mishap, std::size_t which_limit, bool is_noisy,
-                     const Seen& seen) {
+std::string row_text(const Fault& fault, std::size_t which_limit, bool is_noisy, const Seen& seen) {
   std::string text = fmt::format(
-      "peaks {:.2f} rad/s, {:.2f} rad/s2, in entries {:.2f} rad/s2; path error p50 {:.4f}, p99 "
-      "{:.4f}, largest {:.4f} rad; "
-      "passed over {:.1f} %; holding {:.2f} %",
+      "peak velocity: {:.2f} rad/s; peak acceleration: {:.2f} rad/s2; peak acceleration in "
+      "entries: {:.2f} rad/s2; path error p50: {:.4f} rad; path error p99: {:.4f} rad; largest "
+      "path error: {:.4f} rad; passed over: {:.1f} %; holding: {:.2f} %",
       seen.peak_velocity(), seen.peak_acceleration(), seen.entry_acceleration, seen.error(0.5),
       seen.error(0.99), seen.error(1),
       100 * static_cast<double>(seen.passed_over) / static_cast<double>(seen.knots),
       100 * seen.holding);
-  if (is_noisy || which_limit >= mishap.simulated.size()) return text;
-  const auto [p99, largest] = mishap.simulated[which_limit];
-  if (p99 > 0) text += fmt::format(" (design: p99 {}, largest {})", p99, largest);
+  if (is_noisy || which_limit >= fault.simulated.size()) return text;
+  const auto [p99, largest] = fault.simulated[which_limit];
+  if (p99 > 0) {
+    text += fmt::format(
+        "; path error p99 in an independent simulation: {} rad; largest path error in an "
+        "independent simulation: {} rad",
+        p99, largest);
+  }
   return text;
 }
 
 void trace(const Sines& motion, const CampaignOptions& options) {
   constexpr double kLimit = 10;  // rad/s²
   Traces traces(options.trace);
-  for (const Mishap& mishap : mishaps()) {
-    if (mishap.file.empty()) continue;
+  for (const Fault& fault : faults()) {
+    if (fault.file.empty()) continue;
     for (const double limit : {kLimit, 0.0}) {
-      traces.add(motion, mishap, limit,
-                 {.window = window_within(limit), .quantum = mishap.quantum, .seed = options.seed});
+      traces.add(motion, fault, limit,
+                 {.window = window_within(limit), .quantum = fault.quantum, .seed = options.seed});
     }
   }
   traces.finish();
@@ -96,7 +100,7 @@ void trace(const Sines& motion, const CampaignOptions& options) {
 
 std::string list_motions() {
   std::string text;
-  for (const Mishap& mishap : mishaps()) text += fmt::format("{}\t{}\n", mishap.file, mishap.name);
+  for (const Fault& fault : faults()) text += fmt::format("{}\t{}\n", fault.file, fault.name);
   return text;
 }
 
@@ -108,28 +112,28 @@ Result run_motions(const CampaignOptions& options) {
   std::uint64_t rows = 0;
   const Sines motion(options.seed);
   if (!options.trace.empty()) trace(motion, options);
-  for (const Mishap& mishap : mishaps()) {
-    const Schedule schedule = mishap.make(motion, options.seed);
+  for (const Fault& fault : faults()) {
+    const Schedule schedule = fault.make(motion, options.seed);
     for (const bool is_noisy : {false, true}) {
       for (std::size_t i = 0; i < kLimits.size(); ++i) {
         const Seen seen = Trial(motion, schedule,
                                 {.window = window_within(kLimits[i]),
                                  .noise = is_noisy ? kNoise : 0,
-                                 .quantum = mishap.quantum,
+                                 .quantum = fault.quantum,
                                  .seed = options.seed})
                               .run();
-        judge(mishap, kLimits[i], is_noisy, seen, findings);
-        measured[row_name(mishap, kLimits[i], is_noisy)] = row_text(mishap, i, is_noisy, seen);
+        judge(fault, kLimits[i], is_noisy, seen, findings);
+        measured[row_name(fault, kLimits[i], is_noisy)] = row_text(fault, i, is_noisy, seen);
         ++rows;
       }
     }
   }
-  return make_result(options, {2, 4, 5},
-                     "a motion of six joints whose producer is late, silent, dead or replans, with "
-                     "and without limits, in simulated time through the real ring, solver, board "
-                     "and sampler",
-                     rows, "runs of 20 s", findings.json(), std::move(measured),
-                     to_seconds(clock.now() - begin));
+  return make_result(
+      options, {2, 4, 5},
+      "simulated faults: a motion of six joints whose producer is late, silent, dead or "
+      "replans, with and without limits, in simulated time through the real ring, "
+      "solver, board and sampler",
+      rows, "runs of 20 s", findings.json(), std::move(measured), to_seconds(clock.now() - begin));
 }
 
 }  // namespace splinecast::campaign

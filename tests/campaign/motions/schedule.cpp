@@ -124,39 +124,39 @@ Schedule plans(const Sines& motion, std::uint64_t /*seed*/) {
   return schedule;
 }
 
-constexpr std::array kMishaps{
-    Mishap{"30 Hz, lead 60 ms, each 0 to 90 ms late",
-           "late",
-           late,
-           0,
-           false,
-           {{{0.004, 0.005}, {0.001, 0.002}, {0.0005, 0.0005}}}},
-    Mishap{"chunks of 8 waypoints by replace_from, 30 Hz, lead 60 ms", "chunks", chunks},
-    Mishap{"100 Hz, lead 200 ms, never late, start in motion",
-           "start",
-           never_late,
-           0,
-           true,
-           {{{0.0005, 0.0005}, {0.0005, 0.0005}, {0.0005, 0.0005}}}},
-    Mishap{"100 Hz, lead 200 ms, 300 ms of silence every 2 s",
-           "pauses_long_lead",
-           long_lead,
-           0,
-           false,
-           {{{0.14, 0.15}, {0.03, 0.05}, {0.017, 0.029}}}},
-    Mishap{"100 Hz, lead 60 ms, 300 ms of silence every 2 s",
-           "pauses_short_lead",
-           short_lead,
-           0,
-           false,
-           {{{0.33, 0.34}, {0.21, 0.22}, {0.16, 0.18}}}},
-    Mishap{"100 Hz, lead 400 ms, 300 ms of silence every 2 s", "", covered, 0, true},
-    Mishap{"100 Hz, lead 60 ms, one pause of 300 ms", "one_pause", one_pause},
-    Mishap{"100 Hz, lead 60 ms, deaths of producer and solver", "deaths", deaths},
-    Mishap{"100 Hz, lead 50 ms, a gap of 1.7 s in the recording", "gap", gap},
-    Mishap{"plans by replace_from that differ by 3 mrad, 60 ms ahead", "plans", plans},
-    Mishap{"1 kHz encoders of 0.1 mrad, lead 60 ms, one pause of 300 ms", "encoders", encoders,
-           1e-4},
+constexpr std::array kFaults{
+    Fault{"30 Hz, lead 60 ms, each 0 to 90 ms late",
+          "late",
+          late,
+          0,
+          false,
+          {{{0.004, 0.005}, {0.001, 0.002}, {0.0005, 0.0005}}}},
+    Fault{"chunks of 8 waypoints by replace_from, 30 Hz, lead 60 ms", "chunks", chunks},
+    Fault{"100 Hz, lead 200 ms, never late, start in motion",
+          "start",
+          never_late,
+          0,
+          true,
+          {{{0.0005, 0.0005}, {0.0005, 0.0005}, {0.0005, 0.0005}}}},
+    Fault{"100 Hz, lead 200 ms, 300 ms of silence every 2 s",
+          "pauses_long_lead",
+          long_lead,
+          0,
+          false,
+          {{{0.14, 0.15}, {0.03, 0.05}, {0.017, 0.029}}}},
+    Fault{"100 Hz, lead 60 ms, 300 ms of silence every 2 s",
+          "pauses_short_lead",
+          short_lead,
+          0,
+          false,
+          {{{0.33, 0.34}, {0.21, 0.22}, {0.16, 0.18}}}},
+    Fault{"100 Hz, lead 400 ms, 300 ms of silence every 2 s", "", covered, 0, true},
+    Fault{"100 Hz, lead 60 ms, one pause of 300 ms", "one_pause", one_pause},
+    Fault{"100 Hz, lead 60 ms, deaths of producer and solver", "deaths", deaths},
+    Fault{"100 Hz, lead 50 ms, a gap of 1.7 s in the recording", "gap", gap},
+    Fault{"plans by replace_from that differ by 3 mrad, 60 ms ahead", "plans", plans},
+    Fault{"1 kHz encoders of 0.1 mrad, lead 60 ms, one pause of 300 ms", "encoders", encoders,
+          1e-4},
 };
 
 }  // namespace
@@ -171,6 +171,6 @@ Schedule steady(const Motion& motion, double rate, double lead) {
   return schedule;
 }
 
-std::span<const Mishap> mishaps() { return kMishaps; }
+std::span<const Fault> faults() { return kFaults; }
 
 }  // namespace splinecast::campaign

@@ -40,7 +40,7 @@ struct Schedule {
 };
 
 /// A fault that keeps a motion from being delivered in time.
-struct Mishap {
+struct Fault {
   std::string_view name;
   std::string_view file;  ///< name of its plots; empty: no plot
   Schedule (*make)(const Sines& motion, std::uint64_t seed);
@@ -52,7 +52,7 @@ struct Mishap {
   std::array<std::pair<double, double>, 3> simulated{};
 };
 
-[[nodiscard]] std::span<const Mishap> mishaps();
+[[nodiscard]] std::span<const Fault> faults();
 
 /// Waypoints at a rate in Hz, each sent `lead` s before its time.
 [[nodiscard]] Schedule steady(const Motion& motion, double rate, double lead);

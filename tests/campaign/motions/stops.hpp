@@ -27,16 +27,16 @@ struct Curve {
 /// waypoint.
 struct StopMeasures {
   std::vector<double> velocity_errors;   ///< rad/s, at the newest knot; sorted
-  std::vector<double> runs_on;           ///< rad beyond |v|T/2 of the true velocity; sorted
+  std::vector<double> runs_on;           ///< rad beyond |v|T/2, v being the true velocity; sorted
   std::vector<double> last_path_errors;  ///< rad, largest of each last segment; sorted
   double overshoot = 0;          ///< rad of a last segment beyond the true motion's range there
   double last_acceleration = 0;  ///< rad/s², largest of the last segments
   double stop_acceleration = 0;  ///< rad/s², largest of the stops
-  double stop_jerk = 0;          ///< rad/s³
+  double stop_jerk = 0;          ///< rad/s³, largest of the stops
   std::uint64_t stops = 0;
   std::uint64_t not_monotone = 0;  ///< stops of a joint that speed up or reverse
-  std::uint64_t too_far = 0;       ///< stops of a joint further than |v|T/2 of their own velocity
-  std::uint64_t in_entries = 0;    ///< milliseconds without a stop after the spline, not measured
+  std::uint64_t too_far = 0;       ///< stops of a joint longer than |v|T/2, v as the stop begins
+  std::uint64_t in_entries = 0;    ///< milliseconds not measured: no stop after the spline
   double read_error = 0;           ///< rad, largest path error of a 1 kHz reader
   double read_acceleration = 0;    ///< rad/s², largest acceleration of a 1 kHz reader
 };

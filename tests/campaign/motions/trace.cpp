@@ -14,7 +14,7 @@ namespace {
 constexpr double kBefore = 0.3;               ///< s shown before the fault
 constexpr double kLongest = 4;                ///< s, longest time shown
 constexpr double kOnPath = 2e-4;              ///< rad: largest path error on the path
-constexpr double kCalm = 0.08;                ///< s on the path until the fault is over
+constexpr double kCalm = 0.08;                ///< s on the path after which a fault is over
 constexpr double kStarted = 1.9;              ///< s: faults are searched from here on
 constexpr double kEnd = Sines::kSeconds - 1;  ///< s: faults are searched up to here
 constexpr double kTick = 1e-3;                ///< s
@@ -38,8 +38,8 @@ bool is_at_rest(const Row& row) {
   return row.status == SampleStatus::stopping || row.status == SampleStatus::holding;
 }
 
-/// Time of the first fault: the stream starves, else its future is replaced, else the start.
-double mishap_of(const std::vector<Row>& rows, const Schedule& schedule) {
+/// The time of the first starvation; without one, of the first replacement; without both, 0.
+double fault_of(const std::vector<Row>& rows, const Schedule& schedule) {
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const bool is_measured = rows[i].t >= kStarted && rows[i].t < kEnd;
     if (is_measured && rows[i].starvations > rows[i - 1].starvations) return rows[i].t;
@@ -51,28 +51,28 @@ double mishap_of(const std::vector<Row>& rows, const Schedule& schedule) {
 }
 
 struct Window {
-  double mishap = 0;
+  double fault = 0;
   std::size_t first = 0;
   std::size_t end = 0;
   double back = 0;  ///< s from the fault until the path is reached; −1: not within the window
 };
 
 Window window_of(const std::vector<Row>& rows, const Schedule& schedule) {
-  Window window{.mishap = mishap_of(rows, schedule), .end = rows.size(), .back = -1};
+  Window window{.fault = fault_of(rows, schedule), .end = rows.size(), .back = -1};
   double calm_since = -1;
   bool has_left = false;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = rows[i];
-    if (row.t < window.mishap - kBefore) window.first = i + 1;
-    if (row.t < window.mishap) continue;
+    if (row.t < window.fault - kBefore) window.first = i + 1;
+    if (row.t < window.fault) continue;
     const bool is_off = row.is_entry || is_at_rest(row) || row.error > kOnPath;
     has_left = has_left || is_off;
     if (is_off) calm_since = -1;
     if (!is_off && calm_since < 0) calm_since = row.t;
     const bool is_calm = has_left && calm_since >= 0 && row.t >= calm_since + kCalm;
-    if (is_calm && window.back < 0) window.back = calm_since - window.mishap;
-    const bool is_whole = is_calm && schedule.deaths.empty();  // other kinds of death follow
-    if (is_whole || row.t >= window.mishap - kBefore + kLongest) {
+    if (is_calm && window.back < 0) window.back = calm_since - window.fault;
+    const bool is_whole = is_calm && schedule.deaths.empty();  // the window shows later deaths too
+    if (is_whole || row.t >= window.fault - kBefore + kLongest) {
       window.end = i;
       break;
     }
@@ -172,9 +172,9 @@ nlohmann::json seen_json(const Seen& seen) {
           {"waypoints", seen.knots},
           {"passed over", seen.passed_over},
           {"refused as past", seen.past},
-          {"refused otherwise", seen.refused},
-          {"ran dry", seen.starvations},
-          {"holding besides the pauses [%]", 100 * seen.holding}};
+          {"refused for other reasons", seen.refused},
+          {"starvations", seen.starvations},
+          {"holding outside the pauses [%]", 100 * seen.holding}};
 }
 
 }  // namespace
@@ -183,8 +183,8 @@ Traces::Traces(std::filesystem::path folder) : folder_(std::move(folder)) {
   std::filesystem::create_directories(folder_);
 }
 
-void Traces::add(const Sines& motion, const Mishap& mishap, double limit, TrialOptions options) {
-  const Schedule schedule = mishap.make(motion, options.seed);
+void Traces::add(const Sines& motion, const Fault& fault, double limit, TrialOptions options) {
+  const Schedule schedule = fault.make(motion, options.seed);
   std::vector<Row> rows;
   options.watch = [&](const Sight& sight) {
     Row row{.t = sight.t,
@@ -201,14 +201,14 @@ void Traces::add(const Sines& motion, const Mishap& mishap, double limit, TrialO
   const Window window = window_of(rows, schedule);
   const auto shown = std::span(rows).subspan(window.first, window.end - window.first);
   const std::size_t joint = worst_joint(shown, motion, schedule);
-  const std::string name = fmt::format("{}_{}", mishap.file, limit > 0 ? "limit" : "no_limit");
+  const std::string name = fmt::format("{}_{}", fault.file, limit > 0 ? "limit" : "no_limit");
   write_file(folder_ / (name + ".csv"), csv_of(shown, motion, schedule, joint));
   nlohmann::json row{{"file", name},
-                     {"mishap", mishap.name},
-                     {"section", mishap.file},
+                     {"fault", fault.name},
+                     {"section", fault.file},
                      {"limit [rad/s2]", limit},
                      {"joint", joint + 1},
-                     {"mishap at [s]", window.mishap},
+                     {"fault at [s]", window.fault},
                      {"silences [s]", within(schedule.pauses, shown)},
                      {"solver dead [s]", within(schedule.deaths, shown)},
                      {"replacements [s]", replacements_within(schedule, shown)},

@@ -18,7 +18,7 @@ class Traces {
   explicit Traces(std::filesystem::path folder);
 
   /// Runs a row and writes its file. `limit` is in rad/s²; 0: none.
-  void add(const Sines& motion, const Mishap& mishap, double limit, TrialOptions options);
+  void add(const Sines& motion, const Fault& fault, double limit, TrialOptions options);
 
   /// Writes `rows.json`.
   void finish() const;

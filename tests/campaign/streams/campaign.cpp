@@ -58,7 +58,7 @@ nlohmann::json found(const StreamFindings& findings, bool all_streams) {
   breaches["hangs"] = 0;  // a hang ends the program
   if (!all_streams) return breaches;
   const auto missing = findings.not_covered();
-  breaches["things never tried"] = missing.size();
+  breaches["required events that never happened"] = missing.size();
   for (const std::string& name : missing) apps::say(fmt::format("never happened: {}", name));
   return breaches;
 }
@@ -83,9 +83,9 @@ Result run_streams(const CampaignOptions& options) {
   measured["first seed"] = options.seed;
   return make_result(
       options, {1, 2, 3, 4, 5, 8},
-      "simulated live streams, one per seed: random producers, clocks, limits, kinds of dimensions "
-      "and methods, replacements, stops, deaths and delays, through the real ring, solver, board "
-      "and samplers in plain memory",
+      "simulated streams: live streams, one per seed, with random producers, clocks, limits, kinds "
+      "of dimensions and methods, replacements, stops, deaths and delays, through the real ring, "
+      "solver, board and samplers in plain memory",
       findings.streams(), "streams", breaches, std::move(measured), seconds);
 }
 

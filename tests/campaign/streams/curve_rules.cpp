@@ -16,7 +16,8 @@ double length_of(const ipc::SegmentCopy& segment) {
   return to_seconds(segment.right - segment.left);
 }
 
-/// Sums of the absolute terms of a segment's derivatives 0 to 2 in one dimension.
+/// For the derivatives 0 to 2 of a segment in one dimension, the sum of the absolute values of the
+/// polynomial's terms.
 std::array<double, 3> scales(const ipc::SegmentCopy& segment, std::size_t dimensions,
                              std::size_t d) {
   const double h = length_of(segment);

@@ -9,7 +9,7 @@
 namespace splinecast::campaign {
 
 /// Rules for the segments of one curve. The tolerance in each dimension is kRounding times the sum
-/// of the absolute terms of the evaluated polynomial.
+/// of the absolute values of the terms of the evaluated polynomial.
 class CurveRules {
  public:
   static constexpr double kRounding = 1e-10;

@@ -33,7 +33,7 @@ enum class Breach : std::uint8_t {
   board_refused,     ///< a solver found damage on a board that only solvers had written
   ring_torn,         ///< an item of the ring differs from the one that was sent
   not_verified,      ///< a repeated solve gives a curve with other bits
-  beyond_limits,     ///< an entry or a stop exceeds a limit, and its own value at its start
+  beyond_limits,     ///< an entry or a stop exceeds both a limit and its own initial value
   stop_turned,       ///< a stop speeds up, reverses or moves further than |v|·T/2
 };
 inline constexpr std::size_t kBreaches = 20;

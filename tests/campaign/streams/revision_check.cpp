@@ -122,8 +122,8 @@ void RevisionCheck::count_events(const Summary& before) {
   if (copy_.kind == SegmentKind::entry) findings_->count(Event::returns_after_finish);
 }
 
-/// A board that has overwritten the waypoints before an entry shapes it without them. The segments
-/// do not record this, so such a curve cannot be verified.
+/// If the board has overwritten the waypoints before an entry, the solver computes the entry
+/// without them. The segments do not record this, so such a curve cannot be verified.
 void RevisionCheck::check_verifiable() {
   constexpr Word kLookBack = 16;
   constexpr Word kKnotsThatShape = 3;
@@ -156,7 +156,7 @@ void RevisionCheck::take_items(const Summary& before) {
                                          summary_.withdrawn - before.withdrawn));
 }
 
-/// Forgets the waypoints from an item on: each of them may have been withdrawn before it was taken.
+/// Removes the pending waypoints from an item on, because each of them may have been withdrawn.
 void RevisionCheck::forget_from(Word item) {
   std::erase_if(pending_, [item](const Pending& waypoint) { return waypoint.item >= item; });
 }

@@ -58,7 +58,7 @@ class RevisionCheck {
   struct Stop {
     ipc::Word item = 0;
     Time time{};
-    int steps_due = 0;  ///< steps since its time that did not take it
+    int steps_due = 0;  ///< steps since its time that did not consume it
   };
 
   void check_counts(const ipc::Summary& before);

@@ -186,7 +186,7 @@ void SimulatedProducer::replace(Time now) {
   if (blend > Time(0)) findings_->count(Event::blends);
   const Time last = std::exchange(last_sent_, at);
   next_waypoint_ = (count == 0 ? t : at) + plan_->interval;
-  // Acts like a producer that considers the replacement refused.
+  // Continues the old plan, like a producer that considers the replacement refused.
   if (last > at && random_->chance(kSendsAgain)) next_waypoint_ = last;
   if (count == 0) check_->expect_stop(stream_->ring.writer.written() - 1, t);
 }

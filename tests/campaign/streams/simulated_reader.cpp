@@ -12,7 +12,7 @@ namespace splinecast::campaign {
 namespace {
 
 constexpr std::size_t kExecutedKept = 8;
-/// Share of the offered samples that a full memory takes.
+/// Probability that an offered sample replaces a random one of a full memory.
 constexpr double kShareKept = 0.1;
 
 bool same_bits(std::span<const double> a, std::span<const double> b) {
@@ -75,8 +75,8 @@ SampleStatus SimulatedReader::preview(Time t, SampleMemory& settled) {
   return status;
 }
 
-/// Whether t is before a start whose state still depends on later waypoints: its position if the
-/// method smooths, or its velocity if the start is not at rest.
+/// Whether t is before the start of the curve and the state at the start can still change: its
+/// position if the method smooths, its velocity if the start condition is not at rest.
 bool SimulatedReader::is_open_start(Time t) const {
   const bool is_fixed =
       is_at_rest(plan_->window.start.kind) && !plan_->window.interpolant.method->smooths();

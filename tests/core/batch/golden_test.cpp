@@ -16,7 +16,8 @@ namespace {
 
 using nlohmann::json;
 
-/// A case, and the file that has it: the project's own files have several, by name.
+/// A case and the file that contains it. A file of this project contains several cases by name, a
+/// shared file only one.
 struct Case {
   std::string name;
   std::filesystem::path path;
@@ -45,7 +46,7 @@ std::vector<Case> own_cases() {
   return cases;
 }
 
-/// The cases beside the project; "none" where there are none.
+/// The cases of the shared folder; if it has none, one case "none", which is skipped.
 std::vector<Case> shared_cases() {
   std::vector<Case> cases;
   for (const auto& path : json_files(testing::shared_file("golden"))) {
@@ -82,8 +83,9 @@ double largest(const json& array) {
   return most;
 }
 
-/// `shortest`: the shortest interval, s. The tolerance of accelerations and jerks is at least the
-/// rounding error of the velocities divided by it: the expected ones may be only rounding errors.
+/// `shortest` is the shortest interval in s. The tolerance is at least the rounding error of the
+/// velocities divided by `shortest` for accelerations, and by its square for jerks, because the
+/// expected values may be only rounding errors.
 void expect_samples(const PiecewisePolynomial& curve, const json& golden, double shortest) {
   const std::size_t dimensions = curve.dimensions();
   const json& expected = golden.at("expected");

@@ -24,7 +24,7 @@ TEST(EntrySearch, TakesTheFirstKnotThatTheLimitsAllow) {
     EntrySearch search(1, {});
     const Found found = look_for(search, target, from, {.limits = &limits, .goes_beyond = true});
     ASSERT_EQ(found.outcome, Outcome::found) << i;
-    // The newest knot counts as beyond.
+    // An entry without a knot ends after the newest knot; the newest knot itself is not checked.
     const std::size_t end = found.end.knot.value_or(target.knots() - 1);
     for (std::size_t k = 0; k < end; ++k) {
       EXPECT_FALSE(keeps_within(limits, nullptr, quintic_to(target, from, k))) << i << ' ' << k;

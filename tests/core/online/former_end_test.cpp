@@ -28,8 +28,9 @@ class FormerEnd : public ::testing::Test {
     build_entry(from_.instant(), {end, at.position(), at.velocity(), at.acceleration()}, quintic);
     return keeps_within(limits_, nullptr, quintic);
   }
-  /// A time between the last duration that exceeds the limits and the first one that keeps them.
-  /// `passing`: whether an entry that ends at this time keeps them.
+  /// A time between the end of the last candidate that exceeds the limits and the end of the first
+  /// one that keeps them. `passing` selects whether an entry that ends at this time keeps the
+  /// limits.
   [[nodiscard]] Time between(bool passing) {
     const Time found = look(std::nullopt).end.state.time;
     const auto before = Time(
@@ -67,8 +68,8 @@ TEST_F(FormerEnd, BeyondTheLimitsCostsOneTryAndDelaysTheEntryByAtMostOneGrowthSt
   const Found anew = look(std::nullopt);
   const Found found = look(between(false));
   ASSERT_EQ(found.outcome, Outcome::found);
-  // The next duration grows from the former end: the entry is at most one growth step longer than
-  // without it.
+  // After the former end the search continues with a duration that is one growth step longer, so
+  // the entry is at most one growth step longer than without a former end.
   EXPECT_GT(found.end.state.time, anew.end.state.time);
   EXPECT_LE(found.end.state.time - from_.time,
             (anew.end.state.time - from_.time) * EntrySearch::kGrowth);

@@ -43,7 +43,7 @@ std::vector<double> velocities(const Method& method, std::vector<double> positio
   for (std::size_t i = 0; i < kKnots; ++i) {
     times.emplace_back(static_cast<std::int64_t>(i) * 2'000'000);
   }
-  // For the methods that need derivatives; they do not matter here.
+  // Some methods need derivatives. Their values do not matter here.
   const std::vector<double> zeros(kKnots);
   const auto curve = fit({.dimensions = 1,
                           .times = times,

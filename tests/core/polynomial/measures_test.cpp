@@ -49,7 +49,8 @@ TEST(Measures, NoSampleIsBeyondAnExtremumAndEachExtremumIsAttainedAtItsTime) {
             RC_ASSERT(x <= greatest.value + rounding);
           }
         }
-        // Times are rounded to half a nanosecond, and the next derivative is 0 there or one-sided.
+        // The time of an extremum is rounded by up to 0.5 ns. Inside a segment the next derivative
+        // is 0 there, so the error of the value is of second order; at a break the time is exact.
         const double rounded = rounding + 1e-18 * largest(curve, r + 2);
         for (const Extremum& extremum : {least, greatest}) {
           const auto values = one_sided(curve, extremum.time, d, r);
@@ -153,7 +154,7 @@ TEST(Measures, InOneDimensionTheArcLengthIsTheTotalVariation) {
         before = value[0];
       }
     }
-    // Turns are rounded to the nanosecond.
+    // The times of the turning points are rounded to nanoseconds.
     const double rounding = 1e-12 * variation + 1e-16 * largest(curve, 2);
     RC_ASSERT(std::abs(arc_length(curve, curve.breaks().front(), curve.breaks().back()) -
                        variation) <= rounding);

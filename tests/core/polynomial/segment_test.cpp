@@ -128,7 +128,7 @@ TEST(Segment, EvaluateManyGivesTheBitsOfEvaluate) {
   }
 }
 
-TEST(Derivatives, AreASet) {
+TEST(Derivatives, CombineLikeASet) {
   constexpr Derivatives kBoth = Derivatives::position | Derivatives::jerk;
   EXPECT_EQ(count(kBoth), 2U);
   EXPECT_TRUE(contains(kBoth, Derivatives::jerk));

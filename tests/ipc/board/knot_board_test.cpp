@@ -119,8 +119,8 @@ TEST(KnotBoard, ASlotHoldsSuccessiveKnotsOverManyRounds) {
   MemoryBoard board(kDimensions, kCapacity);
   KnotCopy copy(kDimensions, false);
   for (Word n = 1; n <= 40; ++n) {
-    // Each append republishes the previous knot, as solvers do: three cells of a slot are written
-    // per round, so that cells and nodes alternate in different ways.
+    // Each append republishes the previous knot, as solvers do. So a slot is written twice per
+    // knot: both writes switch its cell, but only the first one switches its node.
     if (n > 1) write(board, n - 1);
     write(board, n, true);
     commit(board, n > kCapacity ? n - kCapacity + 1 : 1, n);
@@ -128,7 +128,8 @@ TEST(KnotBoard, ASlotHoldsSuccessiveKnotsOverManyRounds) {
       const Word last_written = back == 0 ? n : n - back + 1;
       EXPECT_EQ(revision_of_knot(board.reader, n - back, n, copy), last_written) << n;
     }
-    // Since then the slot was written once: in the previous revision its old knot is complete.
+    // Revision n has written the slot of knot n - kCapacity once, so that in the previous revision
+    // this old knot is still complete.
     if (n > kCapacity) {
       EXPECT_EQ(revision_of_knot(board.reader, n - kCapacity, n - 1, copy), n - kCapacity + 1);
     }

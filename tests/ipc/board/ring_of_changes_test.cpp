@@ -63,8 +63,9 @@ TEST(RingOfChanges, ReportsTheEarliestChangeOfTheMissedRevisions) {
   EXPECT_EQ(change_since(3), Time(40));
 }
 
-/// A writer that dies after it stored the word of the next revision leaves one valid word fewer.
-/// Its successor retires the tag, so that a reader cannot see whether that word was stored.
+/// A writer that dies between storing the word of the next revision and its commit has overwritten
+/// the oldest word. Its successor retires the tag, so that a reader cannot see whether that word
+/// was stored.
 TEST(RingOfChanges, TheWordOfAnUncommittedRevisionIsNotUsedAsTheOldestOne) {
   Changing board;
   board.publish_to(64);

@@ -9,11 +9,11 @@
 
 #include "ipc/layout/mark.hpp"
 
-/// `ipc/layout.md` is generated from the tables of the layout.
+/// `docs/layout-fields.md` is generated from the tables of the layout.
 namespace splinecast::ipc {
 namespace {
 
-constexpr const char* kPagePath = SPLINECAST_SOURCE "/ipc/layout.md";
+constexpr const char* kPagePath = SPLINECAST_SOURCE "/docs/layout-fields.md";
 
 /// If SPLINECAST_WRITE_LAYOUT is set, the test writes the page instead of comparing it.
 TEST(LayoutPage, MatchesTheTables) {

@@ -47,17 +47,18 @@ TEST(Layout, PartsOfARegionAreInOrderAlignedAndWithinIt) {
   }
 }
 
-TEST(Layout, RegionsOfSevenDimensionsHaveTheSizesStatedInTheReadme) {
-  const std::string said =
-      "| board of 4,096 knots, ring of 1,024 waypoints | 2,199,552 and 212,992 bytes of shared";
-  EXPECT_EQ(BoardLayout::of(7, 4096, kHeaderBytes, false).bytes, 2'199'552U);
+TEST(Layout, RegionsHaveTheSizesAndNumbersThatThePageStates) {
   EXPECT_EQ(RingLayout::of(7, 1024, kHeaderBytes).bytes, 212'992U);
-  std::ifstream file(SPLINECAST_SOURCE "/README.md");
-  std::ostringstream readme;
-  readme << file.rdbuf();
-  EXPECT_NE(readme.str().find(said), std::string::npos);
-  const std::string positions = std::to_string(kControlPositions);
-  EXPECT_NE(readme.str().find("at one of " + positions + " offsets"), std::string::npos);
+  EXPECT_EQ(BoardLayout::of(7, 4096, kHeaderBytes, false).bytes, 2'199'552U);
+  std::ifstream file(SPLINECAST_SOURCE "/docs/layout.md");
+  std::ostringstream page;
+  page << file.rdbuf();
+  for (const std::string& said : {std::string("| 1,024 items | 212,992 bytes |"),
+                                  std::string("| 4,096 knots | 2,199,552 bytes |"),
+                                  "at one of " + std::to_string(kControlPositions) + " offsets",
+                                  std::to_string(kPassedSlots) + " slots"}) {
+    EXPECT_NE(page.str().find(said), std::string::npos) << said;
+  }
 }
 
 TEST(Layout, EachPartOfASlotOfSevenDimensionsIsOneCacheLine) {

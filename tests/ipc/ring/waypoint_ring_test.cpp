@@ -126,7 +126,7 @@ TEST(WaypointRing, APassiveObserverKeepsNoItemThatAnUnfinishedReplacementOverwri
   const std::vector<Waypoint> replacing{{.time = Time(200'000), .position = x},
                                         {.time = Time(300'000), .position = x}};
   ASSERT_EQ(ring.writer.replace_from(Time(100'000), replacing, {8}), AppendStatus::accepted);
-  // Restores the region to its state before the one store that appended the whole replacement.
+  // Undoes the last store of the replacement, which appended all of its items.
   const auto control = words_at(ring.bytes.span(), ring.layout.control, kClaimed + 1);
   store(control[kWritten], 8, std::memory_order_relaxed);
   for (Word i = 0; i < 3; ++i) EXPECT_FALSE(ring.reader.observe(i, item)) << i;
@@ -182,8 +182,8 @@ TEST(WaypointRing, KeepsRoomForStopsAndAFinish) {
   const auto stop = [&](Time t) { return ring.writer.replace_from(t, {}, {0, 5 * kMillisecond}); };
   const auto replace = ring.writer.replace_from(9'000 * kMillisecond, {&waypoint, 1}, {});
   EXPECT_EQ(replace, AppendStatus::full);
-  // Each stop is earlier than the previous one, so that it needs an item. Stops in the future leave
-  // two items, for an immediate stop and a finish.
+  // Each stop is earlier than the previous one, so that it needs an item. Stops in the future must
+  // leave two items free: for an immediate stop and for a finish.
   EXPECT_EQ(stop(300 * kMillisecond), AppendStatus::accepted);
   EXPECT_EQ(stop(200 * kMillisecond), AppendStatus::accepted);
   EXPECT_EQ(stop(100 * kMillisecond), AppendStatus::full);

@@ -24,7 +24,7 @@ using testing::TrappedPage;
 constexpr std::size_t kDimensions = kMaxDimensions;
 constexpr Time kInterval{100};
 
-/// The knot between whose cells a page ends; no other knot has a cell on these two pages.
+/// The two cells of this knot are on different pages. No other knot has a cell on these pages.
 constexpr Word kKnot = 7;
 constexpr Word kFirst = kKnot - 2;
 constexpr Word kNewest = kKnot + 1;
@@ -120,7 +120,8 @@ TEST(KeptCopy, IsNotCurrentIfTwoRevisionsAreWrittenBetweenTheTagLoads) {
     const Word seen =
         at.run([&] { return at.board.reader.is_current(copy, copied + 1) ? copy.tag : 0; });
     EXPECT_EQ(seen, 0U);
-    // The other cell's tag is r, which suffices: the reader does not access the copy's own cell.
+    // The other cell's tag alone shows that the copy is not current: the reader does not access the
+    // copy's own cell.
     EXPECT_EQ(at.has_acted, trapped != copy.cell);
   });
 }

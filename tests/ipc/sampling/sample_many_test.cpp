@@ -230,7 +230,8 @@ TEST(SampleMany, IsBusyForAllTimesIfOneKnotCannotBeCopied) {
   MemoryStream stream(1);
   stream.send(mesh, 0, mesh.size());
   stream.drain();
-  // A state that exists only while a writer is active: both cells are newer than the revision.
+  // Makes both cells newer than the revision. A reader otherwise sees this only while a writer is
+  // active.
   const BoardLayout& layout = stream.board.layout;
   for (const std::size_t c : {0U, 1U}) {
     words_at(stream.board.bytes.span(), layout.slots + 10 * layout.stride + c * layout.cell, 1)[0] =

@@ -63,7 +63,7 @@ void expect_kept(const std::vector<SegmentCopy>& before, const std::vector<Segme
     EXPECT_EQ(after[i].coefficients, before[i].coefficients);
     EXPECT_EQ(after[i].has_waypoint, before[i].has_waypoint);
     EXPECT_EQ(after[i].waypoint, before[i].waypoint);
-    if (i > 0 || before[i].number == 1) {  // otherwise the previous segment may be lost
+    if (i > 0 || before[i].number == 1) {  // otherwise the board may have lost the previous segment
       EXPECT_EQ(after[i].acceleration_step, before[i].acceleration_step);
     }
     EXPECT_EQ(after[i].newer_knots, before[i].newer_knots);

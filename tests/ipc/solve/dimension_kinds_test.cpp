@@ -231,7 +231,7 @@ TEST(QuaternionStream, HoldsAndStopsAtUnitLength) {
 }
 
 /// A heading that turns at a constant rate, wrapped into [0, P) as a compass gives it.
-TEST(WrappingStream, AHeadingKeepsItsRateOverManyTurns) {
+TEST(PeriodicStream, AHeadingKeepsItsRateOverManyTurns) {
   EXPECT_TRUE(rc::check([] {
     const double period = *rc::gen::element(360.0, 6.283185307179586, 1.0);
     const double rate = period * (*rc::gen::inRange(-90, 91) / 10.0);  // turns per second

@@ -70,7 +70,8 @@ class Stream {
     EXPECT_TRUE(stream_.solver.summary().finished);
     EXPECT_EQ(stream_.solver.summary().refused, 0U);
     EXPECT_EQ(stream_.solver.summary().knots, kKnots);
-    // Revisions that change only counters have no deadline, so that not every item is discarded.
+    // Not every item has a discarded revision: a revision that changes only counters has no
+    // deadline.
     if (disturbance_ != Disturbance::none) {
       EXPECT_GT(discarded_, kKnots / 2);
     }
@@ -90,7 +91,8 @@ class Stream {
     stream_.clock.time += kTick;
   }
   void step() {
-    // `append` then advances the clock, so that the waypoints stay after the settled time.
+    // The clock does not advance here but in `append`, so that the next waypoint is always after
+    // the settled time.
     if (disturbance_ != Disturbance::none && misses_one(true)) {
       ++discarded_;
       if (disturbance_ == Disturbance::missed_and_taken_over) stream_.replace_solver();
@@ -275,8 +277,9 @@ void disturb_at_random(Curve& disturbed, const Trial& trial, const Trial& other,
 }
 
 /// Publishes the same waypoints on two curves, in revisions of one to three waypoints and in runs
-/// of one to five knots, and finishes. On one curve, revisions of other waypoints are also
-/// discarded. A solver that takes over knows less about the motion: this case needs limits.
+/// that begin with one to five waypoints, and finishes. On one curve, revisions of other waypoints
+/// are also discarded. A solver that takes over does not know the whole past motion, on which
+/// entries depend if there are no limits; so this case has limits.
 void expect_no_trace_of_others(core::WindowOptions how, std::uint64_t seed, bool takes_over) {
   if (takes_over) how.limits.acceleration.assign(kDimensions, 100);
   SCOPED_TRACE(::testing::Message() << "lag " << how.settle << ", seed " << seed);

@@ -71,7 +71,7 @@ TEST(Entry, EndsAtTheFirstWaypointThatItsLimitsAllow) {
   ASSERT_NE(entry, live.collected.segments().end());
   const double took = to_seconds(entry->right - entry->left);
   EXPECT_GE(took, least - 1e-6);
-  EXPECT_LE(took, least + 0.02 + 1e-6);  // at most the distance of two knots
+  EXPECT_LE(took, least + 0.02 + 1e-6);  // at most two knot intervals longer
   EXPECT_LE(live.peak(2), 8 * (1 + 1e-6));
 }
 
@@ -129,7 +129,8 @@ TEST(Entry, IsFoundByASearchOfAnyNumberOfSteps) {
   EXPECT_NEAR(live.position_at(at(4000)), 0.1, 1e-12);
 }
 
-/// A plan that is replaced for every new waypoint, and then ends later, would never end.
+/// If every new waypoint replaced the entry by one that ends later, the curve would never reach its
+/// waypoints.
 TEST(Entry, EndsWithinSecondsAlthoughAWaypointArrivesEveryTenMilliseconds) {
   for (const double limit : {3.0, 10.0}) {
     SCOPED_TRACE(limit);

@@ -123,8 +123,8 @@ TEST(FiniteValues, OnlyTheWaypointThatMakesTheCurveNotFiniteIsRefused) {
   stream.expect_finite_samples(Time(0), stream.sent.back().first);
 }
 
-/// For any number of waypoints in one step, the curve is the one of the waypoints that were not
-/// refused.
+/// The curve equals the curve of the waypoints that were not refused, for any number of waypoints
+/// per step.
 TEST(FiniteValues, ARefusedWaypointLeavesNoTrace) {
   Poisoned stream;
   FastStream other(smoothing(1e6));

@@ -11,7 +11,8 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-/// The time of the first waypoint is the settled time of the step that takes it and the next ones.
+/// One step consumes three waypoints. The first of them is exactly at the settled time of this
+/// step.
 TEST(FirstWaypoint, MayBeAtTheSettledTimeOfTheStepThatTakesIt) {
   const LiveOptions live;
   testing::MemoryStream stream(

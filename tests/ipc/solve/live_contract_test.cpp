@@ -25,7 +25,7 @@ void expect_trusted(const LiveWorld& world, std::uint64_t seed) {
   EXPECT_LE(report.acceleration, (world.pauses > 0 ? 15 : 10) * world.ideal_peak())
       << "seed " << seed;
   const Summary& summary = world.summary();
-  // No item is lost silently, for any kills.
+  // No item is lost silently, regardless of kills.
   EXPECT_EQ(summary.consumed,
             summary.knots + summary.refused + summary.withdrawn + summary.controls)
       << "seed " << seed;

@@ -48,7 +48,7 @@ TEST(LiveSolver, ALaggingReaderGetsRevisedIfItSampledPastTheSettledTime) {
   }
 }
 
-/// A reader samples once, and again after more revisions than the board keeps changes of.
+/// A reader that samples again after more revisions than the ring of changes holds.
 struct Gap {
   Live live;
 
@@ -65,7 +65,7 @@ struct Gap {
   SampleStatus sample(int ms) {
     return live.sampler.sample(Live::kNow + milliseconds(ms), live.state.ref());
   }
-  /// Appends 100 waypoints, which gives more revisions than the board keeps changes of.
+  /// Appends 100 waypoints, which gives more revisions than the ring of changes holds.
   void move_on(int from_ms) {
     const Word revision = live.board.reader.revision();
     for (int ms = from_ms; ms < from_ms + 1000; ms += 10) {

@@ -68,7 +68,8 @@ TEST(Stop, DoesNotWaitForRoomOnTheBoard) {
   expect_immediate_stop(live);
 }
 
-/// Waypoints are withdrawn in the revision that replaces them, also if it has to wait for room.
+/// A replacement withdraws waypoints only in the revision that publishes it. While this revision
+/// waits for room on the board, nothing is withdrawn.
 TEST(Stop, OrReplacementThatWaitsForRoomWithdrawsNothing) {
   Live live({.settle = 2}, 64, {.history = seconds(10)});
   live.put_all(50, 630);
@@ -181,8 +182,8 @@ TEST(Stop, FindsRoomInAFullRingAndTakesEffectInTheNextStep) {
   expect_immediate_stop(live);
 }
 
-/// The bound that replace_from states, with late replacements, replacements in the future,
-/// waypoints under back-pressure and a paused solver.
+/// Tests the bound that replace_from documents, with late replacements, replacements in the future,
+/// waypoints that wait because the ring is full, and a paused solver.
 TEST(Stop, TakesEffectAtTheNextSettledTimeForAnyQueuedItems) {
   for (std::uint64_t seed = 1; seed <= 60 && !HasFailure(); ++seed) {
     LiveWorld world({.seed = seed,

@@ -154,7 +154,7 @@ struct Watched : LiveStream {
   std::vector<Sent> sent;
   testing::ItemRecord items;
   SettledSegments collected;
-  bool takes_over_each_step;  ///< not during a search, which a new solver would restart
+  bool takes_over_each_step;  ///< except in a search, which a new solver would restart
   bool is_searching = false;
   Time takes_over_at = Time::max();  ///< one takeover at this time
 };

@@ -15,7 +15,7 @@
 #include "ipc/mapping/region.hpp"
 #include "tests/fixtures/processes/few_descriptors.hpp"
 #include "tests/fixtures/streams/board_words.hpp"
-#include "tests/ipc/sweep/told.hpp"
+#include "tests/ipc/sweep/recording_sweep.hpp"
 
 /// Errors of one stream of a sweep, and changes by other processes, do not affect other streams.
 namespace splinecast::ipc {
@@ -24,8 +24,8 @@ namespace {
 using testing::append_at;
 using testing::FewDescriptors;
 using testing::make_producer;
+using testing::RecordingSweep;
 using testing::TestStream;
-using testing::Told;
 
 /// A clock that advances between sweeps.
 struct SteppedClock final : Clock {
@@ -45,7 +45,7 @@ bool sweep_until(StreamSweep& sweep, const Condition& holds) {
   return holds();
 }
 
-bool await_news(Told& told, SweepNews news, const std::string& stream) {
+bool await_news(RecordingSweep& told, SweepNews news, const std::string& stream) {
   return sweep_until(told.sweep, [&] { return told.count(news, stream) > 0; });
 }
 
@@ -89,7 +89,7 @@ TEST(StreamSweepErrors, FilesWithInvalidStreamNamesDoNotEndASweep) {
   const ForeignFile with_escape(begin + "\033[2J\n.waypoints");
   const ForeignFile with_dot("splinecast.." + family.name() + ".spline");
   const ForeignFile too_long(begin + std::string(140, 'x') + ".waypoints.lock");
-  Told told({family.name() + "*", awaited.name()});
+  RecordingSweep told({family.name() + "*", awaited.name()});
   EXPECT_FALSE(await_news(told, SweepNews::given_up, family.name() + " bad"));
   Producer of_pattern = make_producer(stream);
   Producer named = make_producer(awaited.name());
@@ -106,7 +106,7 @@ TEST(StreamSweepErrors, AFailedStepGivesUpItsStreamAndTheOthersContinue) {
   const TestStream good;
   Producer of_bad = make_producer(bad.name());
   Producer of_good = make_producer(good.name());
-  Told told({bad.name(), good.name()});
+  RecordingSweep told({bad.name(), good.name()});
   for (int i = 0; i < 12; ++i) append_at(of_bad, Time(10'000'000) * i);
   ASSERT_TRUE(sweep_until(told.sweep, [&] { return of_bad.wait_until_consumed(Time(0)); }));
   damage(bad.name());
@@ -126,7 +126,7 @@ TEST(StreamSweepErrors, AnExceptionFromTheNewsCallbackLosesNoStream) {
   const std::string second = family.name() + ".2";
   Producer of_first = make_producer(first);
   Producer of_second = make_producer(second);
-  StreamSweep sweep({family.name() + ".*"}, Told::small(),
+  StreamSweep sweep({family.name() + ".*"}, RecordingSweep::small(),
                     [](auto&&...) { throw std::runtime_error("callback failed"); });
   EXPECT_TRUE(sweep_until(sweep, [&] { return sweep.solved() == 2; }));
   of_first.withdraw();
@@ -147,11 +147,11 @@ TEST(StreamSweepErrors, AGivenUpNamedStreamIsRetriedWhenItIsRecreated) {
     Solver solver(bad.name(), {.settle = 3, .capacity = 64});
     ASSERT_TRUE(solver.attach());
   }
-  Told told({bad.name(), other.name()}, {.settle = 4, .capacity = 64});
+  RecordingSweep told({bad.name(), other.name()}, {.settle = 4, .capacity = 64});
   ASSERT_TRUE(await_news(told, SweepNews::given_up, bad.name()));
   before.withdraw();
   unlink_region(bad.name(), RegionKind::spline);
-  // Between two scans, so that the sweep need not see that the name was free.
+  // The sweep does not scan in between, so it does not see that the name was free.
   Producer after = make_producer(bad.name());
   append_at(after, Time(0));
   EXPECT_TRUE(await_news(told, SweepNews::solving, bad.name()));
@@ -159,7 +159,7 @@ TEST(StreamSweepErrors, AGivenUpNamedStreamIsRetriedWhenItIsRecreated) {
 }
 
 /// Sweeps with too few descriptors for two streams, and then with enough.
-void expect_postponed(Told& told, rlim_t free, const std::vector<std::string>& streams) {
+void expect_postponed(RecordingSweep& told, rlim_t free, const std::vector<std::string>& streams) {
   const auto count = [&](SweepNews news) {
     return told.count(news, streams[0]) + told.count(news, streams[1]);
   };
@@ -180,7 +180,7 @@ void expect_postponed(Told& told, rlim_t free, const std::vector<std::string>& s
 TEST(StreamSweepErrors, ANamedStreamIsRetriedAfterDescriptorsRanOut) {
   const TestStream first;
   const TestStream second;
-  Told told({first.name(), second.name()});
+  RecordingSweep told({first.name(), second.name()});
   Producer of_first = make_producer(first.name());
   Producer of_second = make_producer(second.name());
   expect_postponed(told, 1, {first.name(), second.name()});  // the sweep already holds their locks
@@ -189,8 +189,8 @@ TEST(StreamSweepErrors, ANamedStreamIsRetriedAfterDescriptorsRanOut) {
 TEST(StreamSweepErrors, AStreamOfAPatternIsRetriedAfterDescriptorsRanOut) {
   const TestStream first;
   const TestStream second;
-  Told told({"[" + first.name().substr(0, 1) + "]" + first.name().substr(1),
-             "[" + second.name().substr(0, 1) + "]" + second.name().substr(1)});
+  RecordingSweep told({"[" + first.name().substr(0, 1) + "]" + first.name().substr(1),
+                       "[" + second.name().substr(0, 1) + "]" + second.name().substr(1)});
   Producer of_first = make_producer(first.name());
   Producer of_second = make_producer(second.name());
   expect_postponed(told, 2, {first.name(), second.name()});

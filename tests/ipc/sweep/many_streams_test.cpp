@@ -12,7 +12,7 @@
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/mapping/region.hpp"
 #include "splinecast/errors.hpp"
-#include "tests/ipc/sweep/told.hpp"
+#include "tests/ipc/sweep/recording_sweep.hpp"
 
 /// One thread solves many streams over real shared memory, in one process.
 namespace splinecast::ipc {
@@ -22,8 +22,8 @@ using testing::append_at;
 using testing::await;
 using testing::make_producer;
 using testing::News;
+using testing::RecordingSweep;
 using testing::TestStream;
-using testing::Told;
 
 /// A clock that the test sets. Counts its readings.
 class SetClock final : public Clock {
@@ -40,7 +40,7 @@ TEST(StreamSweep, APatternFindsNewStreamsAndForgetsRemovedOnes) {
   const TestStream family;
   const std::string stream = family.name() + ".x";
   const TestStream other;
-  Told told({family.name() + ".*"});
+  RecordingSweep told({family.name() + ".*"});
   told.sweep.sweep(told.clock);
   EXPECT_TRUE(told.news.empty());
   Producer unwanted = make_producer(other.name());
@@ -70,7 +70,7 @@ TEST(StreamSweep, APatternFindsNewStreamsAndForgetsRemovedOnes) {
 
 TEST(StreamSweep, ANamedStreamIsOwnedBeforeItsProducerStarts) {
   const TestStream stream;
-  Told told({stream.name()});
+  RecordingSweep told({stream.name()});
   EXPECT_EQ(told.count(SweepNews::waiting, stream.name()), 1);
   EXPECT_TRUE(is_owned(stream.name(), RegionKind::spline));
   EXPECT_THROW(Solver(stream.name(), {}), StreamBusy);
@@ -82,12 +82,12 @@ TEST(StreamSweep, ANamedStreamIsOwnedBeforeItsProducerStarts) {
 TEST(StreamSweep, AStreamOfAnotherSolverIsTakenOverOnlyWhenThatSolverDies) {
   const TestStream stream;
   Producer producer = make_producer(stream.name());
-  std::optional<Solver> other(std::in_place, stream.name(), Told::small());
+  std::optional<Solver> other(std::in_place, stream.name(), RecordingSweep::small());
   ASSERT_TRUE(other->attach());
   const MonotonicClock clock;
   append_at(producer, Time(0));
   EXPECT_EQ(other->step(clock).consumed, 1U);
-  Told told({stream.name()});
+  RecordingSweep told({stream.name()});
   for (int i = 0; i < 3; ++i) told.sweep.sweep(clock);
   EXPECT_EQ(told.news, (News{{SweepNews::elsewhere, stream.name()}}));
   other.reset();
@@ -103,7 +103,7 @@ TEST(StreamSweep, AStreamOfAnotherSolverIsTakenOverOnlyWhenThatSolverDies) {
 TEST(StreamSweep, AnIdleStreamCostsNoStep) {
   const TestStream stream;
   Producer producer = make_producer(stream.name());
-  Told told({stream.name()});
+  RecordingSweep told({stream.name()});
   ASSERT_TRUE(told.await_news(SweepNews::solving, stream.name()));
   SetClock clock;
   told.sweep.sweep(clock);
@@ -121,7 +121,7 @@ TEST(StreamSweep, AnIdleStreamIsPolledOnlyInSomeSweeps) {
   const TestStream busy;
   Producer first = make_producer(quiet.name());
   Producer second = make_producer(busy.name());
-  Told told({quiet.name(), busy.name()});
+  RecordingSweep told({quiet.name(), busy.name()});
   ASSERT_TRUE(told.await_news(SweepNews::solving, quiet.name()));
   ASSERT_TRUE(told.await_news(SweepNews::solving, busy.name()));
   SetClock clock;
@@ -147,7 +147,8 @@ TEST(StreamSweep, AnIdleStreamIsPolledOnlyInSomeSweeps) {
     EXPECT_EQ(sweeps_to_take(second), 1);  // after the long pause the sweep polls all streams
     EXPECT_EQ(told.sweep.next_pause(), kPause);
     EXPECT_EQ(sweeps_to_take(second), 1);
-    // The idle stream is polled in one of some sweeps; after that it is busy and polled in each.
+    // An idle stream is polled only in some sweeps. Once it has a waypoint, it is busy and is
+    // polled in every sweep.
     most_sweeps = std::max(most_sweeps, sweeps_to_take(first));
     EXPECT_EQ(sweeps_to_take(first), 1);
   }
@@ -159,7 +160,7 @@ TEST(StreamSweep, IdleStreamsKeepALongPauseAndASweepWithoutStreamsAShortOne) {
   const TestStream stream;
   Producer producer = make_producer(stream.name());
   StreamSweep sweep(
-      {stream.name()}, Told::small(), [](auto&&...) {}, std::chrono::milliseconds(30));
+      {stream.name()}, RecordingSweep::small(), [](auto&&...) {}, std::chrono::milliseconds(30));
   SetClock clock;
   EXPECT_TRUE(await([&] {
     sweep.sweep(clock);
@@ -172,7 +173,7 @@ TEST(StreamSweep, IdleStreamsKeepALongPauseAndASweepWithoutStreamsAShortOne) {
   sweep.sweep(clock);
   EXPECT_EQ(producer.consumed(), 1U);
 
-  Told none({"no_" + stream.name() + ".*"});
+  RecordingSweep none({"no_" + stream.name() + ".*"});
   none.sweep.sweep(clock);
   EXPECT_EQ(none.sweep.next_pause(), std::chrono::milliseconds(1));
 }
@@ -181,7 +182,7 @@ TEST(StreamSweep, ALiveStreamSettlesWithoutWaypointsUntilItRests) {
   const TestStream stream;
   SetClock clock;
   Producer producer = make_producer(stream.name(), StreamClock::monotonic);
-  Told told({stream.name()});
+  RecordingSweep told({stream.name()});
   ASSERT_TRUE(told.await_news(SweepNews::solving, stream.name()));
   ASSERT_TRUE(producer.wait_for_solver(Time(1)));
   append_at(producer, clock.time + std::chrono::milliseconds(50));
@@ -208,7 +209,7 @@ TEST(StreamSweep, AStreamWithMoreThanOneBatchIsSweptAgainWithoutAPause) {
   Producer producer(stream.name(),
                     {.dimensions = 1, .clock = StreamClock::recorded, .capacity = 512});
   for (int i = 0; i < 300; ++i) append_at(producer, Time(1'000'000) * i);
-  Told told({stream.name()});
+  RecordingSweep told({stream.name()});
   ASSERT_TRUE(told.await_news(SweepNews::solving, stream.name()));
   while (told.sweep.sweep(told.clock)) {
   }
@@ -217,7 +218,7 @@ TEST(StreamSweep, AStreamWithMoreThanOneBatchIsSweptAgainWithoutAPause) {
 
 TEST(StreamSweep, AFinishIsReportedOnceAndANewStreamOfThatNameIsSolved) {
   const TestStream stream;
-  Told told({stream.name()});
+  RecordingSweep told({stream.name()});
   {
     Producer producer = make_producer(stream.name());
     append_at(producer, Time(0));
@@ -243,7 +244,7 @@ TEST(StreamSweep, AnUnsolvableStreamIsGivenUpOnceAndTheOthersContinue) {
     Solver before(bad.name(), {.settle = 3, .capacity = 64});
     ASSERT_TRUE(before.attach());
   }
-  Told told({bad.name(), good.name()}, {.settle = 4, .capacity = 64});
+  RecordingSweep told({bad.name(), good.name()}, {.settle = 4, .capacity = 64});
   EXPECT_TRUE(told.await_news(SweepNews::given_up, bad.name()));
   EXPECT_NE(told.why.find("settle lag 3, not 4"), std::string::npos) << told.why;
   EXPECT_TRUE(told.await_news(SweepNews::solving, good.name()));
@@ -255,8 +256,8 @@ TEST(StreamSweep, AnUnsolvableStreamIsGivenUpOnceAndTheOthersContinue) {
 }
 
 TEST(StreamSweep, InvalidOptionsAreRefusedImmediately) {
-  EXPECT_THROW(Told({"unused.*"}, {.capacity = 1}), BadRequest);
-  EXPECT_THROW(Told({"no/name"}), BadRequest);
+  EXPECT_THROW(RecordingSweep({"unused.*"}, {.capacity = 1}), BadRequest);
+  EXPECT_THROW(RecordingSweep({"no/name"}), BadRequest);
 }
 
 TEST(StreamSweep, StreamsBeyondTheDescriptorLimitWaitUntilOthersEnd) {
@@ -273,7 +274,7 @@ TEST(StreamSweep, StreamsBeyondTheDescriptorLimitWaitUntilOthersEnd) {
                      .rlim_max = before.rlim_max};
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &tight), 0);
   {
-    Told told({family.name() + ".*"});
+    RecordingSweep told({family.name() + ".*"});
     EXPECT_TRUE(told.await_news(SweepNews::no_descriptors, names[2]));
     EXPECT_EQ(told.sweep.solved(), 2U);
     producers[0].withdraw();

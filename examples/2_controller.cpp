@@ -1,3 +1,11 @@
+// Samples a live stream at each revision of its curve and prints the position of its first
+// dimension.
+//
+//   2_controller [STREAM]    default: arm
+//
+// Needs a producer and a solver: 1_producer or `splinecast replay`, and splinecast solve STREAM.
+// Start it before or after them. It ends after 1000 samples, or if there is no revision for 1 s.
+
 #include <cstdio>
 
 #include <splinecast/clock.hpp>

@@ -15,14 +15,15 @@ namespace splinecast::testing {
 
 using News = std::vector<std::pair<ipc::SweepNews, std::string>>;
 
-/// A sweep that records the news it reports.
-struct Told {
+/// A sweep whose news are recorded.
+struct RecordingSweep {
   News news;
   std::string why;
   ipc::StreamSweep sweep;
   MonotonicClock clock;
 
-  explicit Told(const std::vector<std::string>& wanted, const SolverOptions& options = small())
+  explicit RecordingSweep(const std::vector<std::string>& wanted,
+                          const SolverOptions& options = small())
       : sweep(wanted, options,
               [this](ipc::SweepNews what, const std::string& stream, const Solver* /*solver*/,
                      std::string_view reason) {

@@ -1,0 +1,251 @@
+#!/usr/bin/env python3
+"""Checks the pages of the manual.
+
+    pages.py commands [--write] BIN PAGE...   runs each page's commands and compares their output; BIN has splinecast
+    pages.py links                            follows every link of every page
+    pages.py code                             every C++ block is part of an example
+    pages.py shape                            lines of the README, width of tables, pages that no page links to
+
+A page's commands are the lines of its `console` blocks that begin with `$ `, and comments `<!-- run: COMMAND -->`. They
+run from top to bottom in one shell, in an empty folder, with a private /dev/shm. The lines between two commands are the
+first one's output; without such lines its output is not compared. A line `...` matches any lines, `...` in a line
+any characters. Words after `console`: `varies`: numbers and the units of durations are not compared; `exit=N`: the exit
+code, 0 without it. Durations and numbers of streams are shortened. --write writes the output of commands into the page,
+except where the page has a `...`. Exits with 77 if a private /dev/shm is not allowed.
+"""
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import blocks
+
+BOUND = 30  # seconds, for each command
+README_LINES = 150
+TABLE_WIDTH = 120
+SHORTER = [(r"--duration \d+\b", "--duration 0.5"), (r"--seconds \d+", "--seconds 2"), (r"--streams \d+\b", "--streams 3")]
+# A machine under load delays the first rows by more than the lead that the file needs.
+LIVE_REPLAY = re.compile(r"splinecast replay moves\.csv --stream \S+")
+# Commands whose exit code depends on the machine, and the codes allowed in addition to the stated one.
+MACHINE = [("splinecast doctor", {0, 1}), ("splinecast latency compare", {0, 2, 3}), ("--mode spin", {0, 2})]
+NUMBER = re.compile(r"[-+]?\d+(?:[.,:]\d+)*(?:e[-+]?\d+)?(?: ?(?:ns|µs|us|ms|s)\b)?")
+
+
+def machine_of(program):
+    """MACHINE, and what the build of the program adds: ThreadSanitizer's memory grows, which `soak` reports."""
+    with open(program, "rb") as file:
+        return MACHINE + ([("splinecast soak", {1})] if b"__tsan_init" in file.read() else [])
+
+
+def shortened(text):
+    """The command with short durations and few streams."""
+    for pattern, shorter in SHORTER:
+        text = re.sub(pattern, shorter, text)
+    return text
+
+
+def script(found):
+    """A shell script that marks where each command's output begins and ends, and its exit code."""
+    text = "exec 2>&1\n"
+    for number, command in enumerate(found):
+        line = shortened(command.text)
+        if LIVE_REPLAY.fullmatch(line) and not command.output:
+            line += " --lead 2000"
+        if line.endswith("&"):
+            text += f"{line[:-1]} &\n" if ">" in line else f"{line[:-1]} >>.background 2>&1 &\n"
+        else:
+            text += f"printf '\\036BEGIN {number}\\n'\n{line}\nprintf '\\036END {number} %d\\n' $?\n"
+    return text
+
+
+def private(command):
+    """The arguments that run a shell command with an empty /dev/shm."""
+    as_root = [] if os.geteuid() == 0 else ["--map-root-user"]
+    mount = "mount -t tmpfs -o mode=1777,size=256m tmpfs /dev/shm"
+    return ["unshare", "--mount", *as_root, "bash", "-c", f"{mount} && {command}"]
+
+
+def is_allowed():
+    """Whether this user may have a private /dev/shm."""
+    return subprocess.run(private("true"), check=False, capture_output=True).returncode == 0
+
+
+def wait_while_it_continues(process, output):
+    """Waits until the process ends, or until no command has ended for BOUND seconds."""
+    ended, end = 0, time.monotonic() + BOUND
+    while process.poll() is None and time.monotonic() < end:
+        time.sleep(0.02)
+        now = Path(output).read_bytes().count(b"\036END ")
+        if now > ended:
+            ended, end = now, time.monotonic() + BOUND
+
+
+def run(found, programs):
+    """What the script of these commands prints."""
+    with tempfile.TemporaryDirectory() as folder:
+        environment = os.environ | {"PATH": programs + os.pathsep + os.environ["PATH"], "HOME": folder, "TERM": "dumb",
+                                    "LC_ALL": "C.UTF-8"}
+        Path(folder, ".script").write_text(script(found), encoding="utf-8")
+        with open(os.path.join(folder, ".out"), "wb") as out:
+            started = subprocess.Popen(private("exec bash .script"), cwd=folder, env=environment,
+                                       stdin=subprocess.DEVNULL, stdout=out, stderr=out, start_new_session=True)
+            wait_while_it_continues(started, out.name)
+            try:
+                os.killpg(started.pid, 9)  # commands that hang or still run in the background
+            except ProcessLookupError:
+                pass
+            started.wait()
+        return Path(folder, ".out").read_text(encoding="utf-8", errors="replace")
+
+
+def pattern_of(lines, varies):
+    """A regular expression for output as a page shows it."""
+    parts = []
+    for line in lines:
+        if line.strip() == "...":
+            parts.append(r"(?:.*\n)*?")
+            continue
+        text = " ".join(NUMBER.sub("0", line).split()) if varies else line.rstrip()
+        parts.append(re.escape(text).replace(r"\.\.\.", ".*") + r"\n")
+    return "".join(parts)
+
+
+def is_shown(printed, command):
+    """Whether the output that a page shows is the printed one."""
+    lines = [(" ".join(NUMBER.sub("0", line).split()) if command.varies else line.rstrip()) + "\n"
+             for line in printed.splitlines()]
+    return re.fullmatch(pattern_of(command.output, command.varies), "".join(lines)) is not None
+
+
+def judge(command, printed, code, machine):
+    """What is wrong with a command's run, or None."""
+    if code is None:
+        return "does not end"
+    allowed = {command.exit_code}.union(*(codes for text, codes in machine if text in command.text))
+    if code not in allowed:
+        return f"exit code {code}, expected {command.exit_code}"
+    if command.output and not is_shown(printed, command):
+        return "the page shows other output"
+    return None
+
+
+def write_output(page, ran):
+    """Writes what the commands have printed into the page."""
+    lines = page.read_text(encoding="utf-8").splitlines()
+    for command, printed in reversed(ran):
+        if command.output and "..." not in "\n".join(command.output):
+            begin = command.last - 1 - len(command.output)
+            lines[begin:command.last - 1] = [line.rstrip() for line in printed.splitlines()]
+    page.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def check_commands(page, programs, is_writing):
+    """Runs a page's commands; returns the number of those that fail."""
+    found = blocks.commands(page)
+    if not found:
+        return 0
+    said = run(found, programs)
+    machine = machine_of(os.path.join(programs, "splinecast"))
+    wrong, ran = 0, []
+    for number, command in enumerate(found):
+        if command.text.endswith("&"):
+            continue
+        match = re.search(rf"\036BEGIN {number}\n(.*?)\036END {number} (\d+)\n", said, re.S)
+        printed, code = (match.group(1), int(match.group(2))) if match else ("", None)
+        problem = judge(command, printed, code, machine)
+        if match and is_writing and problem == "the page shows other output":
+            problem = "the page shows other output, and has `...`" if "..." in "\n".join(command.output) else None
+        ran.append((command, printed if match else "\n".join(command.output)))
+        if problem:
+            wrong += 1
+            print(f"{page.relative_to(blocks.PROJECT)}:{command.line}: {problem}: {command.text}\n{printed}")
+    if is_writing:
+        write_output(page, ran)
+    print(f"{page.relative_to(blocks.PROJECT)}: {len(found)} commands, {wrong} failed")
+    return wrong
+
+
+def check_all_commands(arguments):
+    """Runs the commands of the pages that are named."""
+    is_writing = arguments[:1] == ["--write"]
+    programs, *named = arguments[is_writing:]
+    if not is_allowed():
+        print("needs a mount namespace of its own (root, or user namespaces)")
+        return 77
+    return 1 if sum(check_commands(Path(page).resolve(), os.path.abspath(programs), is_writing) for page in named) else 0
+
+
+def check_links(_):
+    """Every relative link leads to a file, and to a heading if it names one."""
+    wrong = 0
+    for page in blocks.pages():
+        for line, target in blocks.links(page):
+            name, _, anchor = target.partition("#")
+            file = (page.parent / name).resolve() if name else page
+            problem = None
+            if re.match(r"[a-z]+:", target):
+                problem = "leads out of the project, where no test can follow it"
+            elif not file.exists():
+                problem = "there is no such file"
+            elif anchor and (file.suffix != ".md" or anchor not in blocks.anchors(file)):
+                problem = "there is no such heading"
+            if problem:
+                wrong += 1
+                print(f"{page.relative_to(blocks.PROJECT)}:{line}: {target}: {problem}")
+    return 1 if wrong else 0
+
+
+def check_code(_):
+    """Every C++ block of a page is part of an example, which tests build and run."""
+    def dense(lines):
+        return "\n".join(line.strip() for line in lines).strip()
+    examples = [dense(file.read_text(encoding="utf-8").splitlines()) for file in (blocks.PROJECT / "examples").glob("*.cpp")]
+    wrong, count = 0, 0
+    for page in blocks.pages():
+        for block in blocks.blocks(page.read_text(encoding="utf-8").splitlines()):
+            if block.language not in ("cpp", "c++"):
+                continue
+            count += 1
+            if not any(dense(block.lines) in example for example in examples):
+                wrong += 1
+                print(f"{page.relative_to(blocks.PROJECT)}:{block.first}: no example contains this block")
+    print(f"{count} blocks")
+    return 1 if wrong or not count else 0
+
+
+def check_shape(_):
+    """The README's length, the width of tables, and that a reader can reach each page of docs."""
+    problems = []
+    length = len((blocks.PROJECT / "README.md").read_text(encoding="utf-8").splitlines())
+    if length > README_LINES:
+        problems.append(f"README.md has {length} lines, more than {README_LINES}")
+    reached = set()
+    for page in blocks.pages():
+        name = page.relative_to(blocks.PROJECT)
+        reached |= {(page.parent / target.partition("#")[0]).resolve() for _, target in blocks.links(page)}
+        for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):
+            width = len(re.sub(r"\]\([^()]*\)", "]", line))  # as shown: without the targets of links
+            if line.lstrip().startswith("|") and width > TABLE_WIDTH:
+                problems.append(f"{name}:{number}: a row of a table has {width} characters, more than {TABLE_WIDTH}")
+    for page in sorted((blocks.PROJECT / "docs").rglob("*.md")):
+        if page not in reached:
+            problems.append(f"{page.relative_to(blocks.PROJECT)}: no page links to it")
+    print("\n".join(problems))
+    return 1 if problems else 0
+
+
+def main():
+    """Runs one check."""
+    checks = {"commands": check_all_commands, "links": check_links, "code": check_code, "shape": check_shape}
+    if len(sys.argv) < 2 or sys.argv[1] not in checks:
+        print(__doc__)
+        return 2
+    return checks[sys.argv[1]](sys.argv[2:])
+
+
+if __name__ == "__main__":
+    sys.exit(main())
