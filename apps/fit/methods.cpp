@@ -97,7 +97,7 @@ std::vector<PiecewisePolynomial> stretches(const PolynomialFile& file, const std
     return stretch.breaks().back() - stretch.breaks().front() < period;
   };
   if (std::erase_if(all, is_too_short) > 0) {
-    say(fmt::format("{}: stretches shorter than --every are left out", name));
+    say(fmt::format("{}: parts shorter than --every are skipped", name));
   }
   return all;
 }
@@ -243,15 +243,17 @@ int run_methods(const MethodsOptions& options) {
 
 void add_methods(Command& verb, Action& action) {
   auto options = std::make_shared<MethodsOptions>();
-  verb.option("--against", options->files,
-              "Trajectories as polynomials (CSV: duration,x^0,x^1,...) to measure the methods "
-              "against: largest errors in position, velocity and acceleration and largest "
-              "acceleration step over all files, relative to the trajectory's largest position, "
-              "velocity and acceleration")
-      .type("FILE...");
+  Argument against = verb.option(
+      "--against", options->files,
+      "Trajectories as polynomials (CSV: duration,x^0,x^1,...) to measure the methods "
+      "against: largest errors in position, velocity and acceleration and largest "
+      "acceleration step over all files, relative to the trajectory's largest position, "
+      "velocity and acceleration");
+  against.type("FILE...");
   add_seconds(verb, "--every", options->period,
               "Time between waypoints in s, from 1e-6 (default 0.1)",
-              {std::chrono::microseconds(1), kLongestTime});
+              {std::chrono::microseconds(1), kLongestTime})
+      .needs(against);
   verb.flag("--json", options->json, "Print JSON");
   verb.callback([&action, options] { action = [options] { return run_methods(*options); }; });
 }

@@ -123,6 +123,9 @@ void require_consistent(const FitOptions& options) {
     refuse("--method", "several methods need --report as the only output");
   }
   if (!options.units.empty() && options.report.empty()) refuse("--unit", "goes with --report only");
+  if (!options.output.empty() && only_reports(options)) {
+    refuse("-o", "needs --at, --dt or --emit besides --report");
+  }
   if (options.emit == Emit::samples) {
     if (options.at.empty() && !options.dt && options.report.empty()) {
       refuse("fit", "needs --at or --dt to write samples, or --report");

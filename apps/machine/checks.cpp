@@ -111,18 +111,18 @@ Finding check_shared_memory(const MachineFacts& facts) {
   return {.check = check, .means = "is memory (tmpfs), and this user may create streams there"};
 }
 
-Finding check_room(const MachineFacts& facts, std::size_t needed) {
+Finding check_room(const MachineFacts& facts, std::size_t another) {
   const std::string check = "room in /dev/shm";
   if (!facts.room) return unknown(check, "the kernel does not report it (statvfs)");
   const Room room = *facts.room;
   const std::string means =
       fmt::format("{} in total, {} free", mebibytes(static_cast<double>(room.total)),
                   mebibytes(static_cast<double>(room.free)));
-  if (room.free < needed) {
+  if (room.free < another) {
     return {.check = check,
             .verdict = Verdict::problem,
             .means = means + fmt::format("; another stream needs about {}",
-                                         mebibytes(static_cast<double>(needed))),
+                                         mebibytes(static_cast<double>(another))),
             .mend =
                 "remove streams (splinecast rm), or mount -o remount,size=1g /dev/shm; in a "
                 "container: --shm-size=1g"};
@@ -136,15 +136,15 @@ Finding check_room(const MachineFacts& facts, std::size_t needed) {
   return {.check = check, .means = means};
 }
 
-Finding check_locked_memory(const MachineFacts& facts, std::size_t needed) {
+Finding check_locked_memory(const MachineFacts& facts, std::size_t mapped) {
   const std::string check = "locked memory";
   if (facts.lockable == RLIM_INFINITY || has_capability(facts, kCapabilityIpcLock)) {
     return {.check = check, .means = "no limit: no page of a stream is swapped out"};
   }
   const std::string means = fmt::format("RLIMIT_MEMLOCK is {}, the streams need {}",
                                         mebibytes(static_cast<double>(facts.lockable)),
-                                        mebibytes(static_cast<double>(needed)));
-  if (facts.lockable >= needed) return {.check = check, .means = means};
+                                        mebibytes(static_cast<double>(mapped)));
+  if (facts.lockable >= mapped) return {.check = check, .means = means};
   // CAP_IPC_LOCK would suffice.
   if (const auto why = unread(facts, {kStatus}); !why.empty()) {
     return unknown(check, means + "; " + why);
@@ -152,9 +152,9 @@ Finding check_locked_memory(const MachineFacts& facts, std::size_t needed) {
   return {.check = check,
           .verdict = Verdict::note,
           .means = means + ": everything works, but their pages may be swapped out",
-          .mend = fmt::format("`USER - memlock {}` in /etc/security/limits.d/splinecast.conf; for "
-                              "a service: LimitMEMLOCK=infinity",
-                              (needed >> 10U) + 1024)};
+          .mend =
+              "`USER - memlock unlimited` in /etc/security/limits.d/splinecast.conf; for a "
+              "service: LimitMEMLOCK=infinity"};
 }
 
 Finding check_priority(const MachineFacts& facts) {
@@ -243,12 +243,13 @@ Finding check_time_namespace(const MachineFacts& facts) {
           .mend = "run producer, solver and readers in one time namespace"};
 }
 
-std::vector<Finding> check_machine(const MachineFacts& facts, std::size_t needed) {
+std::vector<Finding> check_machine(const MachineFacts& facts, std::size_t another,
+                                   std::size_t mapped) {
   return {
-      check_shared_memory(facts),  check_room(facts, needed), check_locked_memory(facts, needed),
-      check_priority(facts),       check_remove_ipc(facts),   check_container(facts),
-      check_time_namespace(facts), check_clock(facts),        check_governor(facts),
-      check_isolated_cpus(facts),  check_preemption(facts),   check_throttling(facts),
+      check_shared_memory(facts),  check_room(facts, another), check_locked_memory(facts, mapped),
+      check_priority(facts),       check_remove_ipc(facts),    check_container(facts),
+      check_time_namespace(facts), check_clock(facts),         check_governor(facts),
+      check_isolated_cpus(facts),  check_preemption(facts),    check_throttling(facts),
       check_huge_pages(facts),     check_steal(facts)};
 }
 

@@ -9,10 +9,11 @@
 /// Each documented limit of a machine, judged from its facts alone.
 namespace splinecast::apps {
 
-/// `needed`: bytes that a process must lock to map all streams in question.
+/// `another`: bytes of one more stream. `mapped`: bytes that a process must lock to map all
+/// streams.
 [[nodiscard]] Finding check_shared_memory(const MachineFacts& facts);
-[[nodiscard]] Finding check_room(const MachineFacts& facts, std::size_t needed);
-[[nodiscard]] Finding check_locked_memory(const MachineFacts& facts, std::size_t needed);
+[[nodiscard]] Finding check_room(const MachineFacts& facts, std::size_t another);
+[[nodiscard]] Finding check_locked_memory(const MachineFacts& facts, std::size_t mapped);
 [[nodiscard]] Finding check_priority(const MachineFacts& facts);
 [[nodiscard]] Finding check_remove_ipc(const MachineFacts& facts);
 [[nodiscard]] Finding check_container(const MachineFacts& facts);
@@ -26,6 +27,7 @@ namespace splinecast::apps {
 [[nodiscard]] Finding check_steal(const MachineFacts& facts);
 
 /// All of them, in this order.
-[[nodiscard]] std::vector<Finding> check_machine(const MachineFacts& facts, std::size_t needed);
+[[nodiscard]] std::vector<Finding> check_machine(const MachineFacts& facts, std::size_t another,
+                                                 std::size_t mapped);
 
 }  // namespace splinecast::apps

@@ -173,7 +173,8 @@ std::vector<Finding> examine(const DoctorOptions& options) {
     mapped += name.bytes;
     if (auto clock = clock_finding(name.stream)) of_names.push_back(std::move(*clock));
   }
-  auto findings = check_machine(read_machine(), std::max(mapped, bytes_of_default_stream()));
+  auto findings = check_machine(read_machine(), bytes_of_default_stream(),
+                                std::max(mapped, bytes_of_default_stream()));
   findings.insert(findings.end(), of_names.begin(), of_names.end());
   return findings;
 }

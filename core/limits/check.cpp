@@ -73,12 +73,18 @@ double ratio_to_bounds(double value, double lower, double upper) noexcept {
 
 Finding position_finding(const Comparison& comparison, std::size_t d, double lower, double upper,
                          const SegmentRange& range) noexcept {
-  const auto excess_of = [&](const Extreme& extreme, double bound) {
-    const double ratio = ratio_to_bounds(extreme.value, lower, upper);
-    return Excess{ratio, LimitKind::position, d, extreme.value, bound, extreme.u};
+  const auto excess_of = [&](const Extreme& extreme) {
+    const bool is_nearer_to_lower =
+        upper == kInfinity || (lower > -kInfinity && extreme.value < (lower + upper) / 2);
+    return Excess{ratio_to_bounds(extreme.value, lower, upper),
+                  LimitKind::position,
+                  d,
+                  extreme.value,
+                  is_nearer_to_lower ? lower : upper,
+                  extreme.u};
   };
-  const Excess low = excess_of(range.least, lower);
-  const Excess high = excess_of(range.greatest, upper);
+  const Excess low = excess_of(range.least);
+  const Excess high = excess_of(range.greatest);
   const bool is_low = upper == kInfinity || (lower > -kInfinity && low.ratio > high.ratio);
   bool is_kept = range.least.value >= lower && range.greatest.value <= upper;
   if (!is_kept) {

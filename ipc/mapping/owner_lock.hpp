@@ -17,7 +17,8 @@ class OwnerLock {
  public:
   /// Takes the lock. Throws StreamBusy if another process still holds it after 50 ms (an `rm` holds
   /// it only briefly) or has locked the region; the message names that process if the region's
-  /// header can be read. Throws BadRegion if the lock file is not a private file of this user.
+  /// header can be read. Throws BadRegion if the lock file is not a private file of this
+  /// user; root accepts one of any user.
   OwnerLock(std::string_view stream, RegionKind kind);
 
   /// Unlinks the lock file while the lock is held. Does nothing in a forked child, which does not

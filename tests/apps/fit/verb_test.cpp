@@ -162,6 +162,8 @@ TEST(Fit, ReportsWrongUsageAndInputAndExitsWith2) {
   const auto outside = folder.write("at.csv", "t\n0.5\n2.5\n");
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
       {{"fit", good}, "needs --at or --dt"},
+      {{"fit", good, "--report", folder.path("a.html"), "-o", folder.path("a.csv")}, "-o: needs"},
+      {{"methods", "--every", "0.1"}, "--every requires --against"},
       {{"fit", good, "--dt", "0"}, "--dt"},
       {{"fit", good, "--dt", "x"}, "'x'"},
       {{"fit", bad_order, "--dt", "1"}, "order.csv:4: time 1000000000 ns is not after"},

@@ -51,7 +51,7 @@ MachineFacts good_machine() {
 constexpr std::size_t kNeeded = std::size_t{1} << 24U;
 
 TEST(Doctor, ReportsOnlyOkForAGoodMachine) {
-  for (const Finding& finding : check_machine(good_machine(), kNeeded)) {
+  for (const Finding& finding : check_machine(good_machine(), kNeeded, kNeeded)) {
     EXPECT_EQ(finding.verdict, Verdict::ok) << finding.check << ": " << finding.means;
     EXPECT_FALSE(finding.means.empty()) << finding.check;
     EXPECT_TRUE(finding.mend.empty()) << finding.check;
@@ -115,7 +115,7 @@ TEST(Doctor, FindsEachLimitIndependently) {
   for (const Case& one : kLimits) {
     MachineFacts machine = good_machine();
     one.change(machine);
-    for (const Finding& finding : check_machine(machine, kNeeded)) {
+    for (const Finding& finding : check_machine(machine, kNeeded, kNeeded)) {
       if (finding.check != one.check) {
         EXPECT_EQ(finding.verdict, Verdict::ok) << one.means << " changed " << finding.check;
         continue;
@@ -218,7 +218,7 @@ TEST(Doctor, ReportsUnknownWithTheReasonForUnreadableFacts) {
   for (const Case& one : kHidden) {
     MachineFacts machine = good_machine();
     one.change(machine);
-    for (const Finding& finding : check_machine(machine, kNeeded)) {
+    for (const Finding& finding : check_machine(machine, kNeeded, kNeeded)) {
       const bool is_it = finding.check == one.check;
       EXPECT_EQ(finding.verdict, is_it ? Verdict::unknown : Verdict::ok)
           << finding.check << ": " << finding.means;
@@ -259,6 +259,18 @@ TEST(Doctor, ReportsUnknownWithoutProcAndSys) {
   EXPECT_EQ(read_machine(root.path("")).unread.at("/proc/stat"), "Is a directory");
 }
 
+TEST(Doctor, ComparesTheRoomWithOneMoreStreamAndLockedMemoryWithAllStreams) {
+  MachineFacts machine = good_machine();
+  machine.room->free = 2 * kNeeded;
+  machine.lockable = 2 * kNeeded;
+  const auto verdict_of = [&](const std::string& check) {
+    const auto findings = check_machine(machine, kNeeded, 3 * kNeeded);
+    return std::ranges::find(findings, check, &Finding::check)->verdict;
+  };
+  EXPECT_EQ(verdict_of("room in /dev/shm"), Verdict::ok);
+  EXPECT_EQ(verdict_of("locked memory"), Verdict::note);
+}
+
 TEST(Doctor, PrivilegesAndMissingFeaturesAreNotReportedAsLimits) {
   const std::vector<std::function<void(MachineFacts&)>> changes{
       [](auto& m) {  // CAP_IPC_LOCK and CAP_SYS_NICE
@@ -283,7 +295,7 @@ TEST(Doctor, PrivilegesAndMissingFeaturesAreNotReportedAsLimits) {
   for (const auto& change : changes) {
     MachineFacts machine = good_machine();
     change(machine);
-    for (const Finding& finding : check_machine(machine, kNeeded)) {
+    for (const Finding& finding : check_machine(machine, kNeeded, kNeeded)) {
       EXPECT_EQ(finding.verdict, Verdict::ok) << finding.check << ": " << finding.means;
     }
   }

@@ -103,6 +103,14 @@ TEST(LimitCheck, PositionBoundsApplyToTheWholeSegment) {
   EXPECT_NEAR(worst_excess({.upper = {0.5}}, nullptr, hill).ratio, 1.5, 1e-12);
 }
 
+TEST(LimitCheck, AConstantBelowBothBoundsIsComparedWithTheLowerOne) {
+  const Segment constant = segment_of(1, Time(1'000'000'000), {-3});
+  const Excess worst = worst_excess({.lower = {-1}, .upper = {1}}, nullptr, constant);
+  EXPECT_EQ(worst.limit, -1);
+  EXPECT_EQ(worst.value, -3);
+  EXPECT_EQ(worst.ratio, 3);
+}
+
 TEST(LimitCheck, TheFirstViolationIsAtTheFirstTimeBeyondTheLimit) {
   const Segment move = move_over_a_second();
   // v = 30 s² (1 − s)² reaches 1 at s (1 − s) = 1/√30.
