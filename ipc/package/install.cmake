@@ -11,6 +11,7 @@ endif()
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/splinecast)
 install(EXPORT splinecast-targets NAMESPACE splinecast:: DESTINATION ${package_dir})
+include(ipc/package/eigen.cmake)
 configure_package_config_file(ipc/package/splinecast-config.cmake.in splinecast-config.cmake
                               INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(splinecast-config-version.cmake

@@ -27,6 +27,29 @@ cmake -S "$source/examples" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$work/prefix" 
   -DCMAKE_CXX_FLAGS="$warnings" >/dev/null
 cmake --build "$work/cmake" --parallel 2 >/dev/null
 
+# Requires that a project which finds the package with these words is configured, or that it fails
+# with a message that has this text.
+mkdir "$work/finder"
+finds() {
+  printf 'cmake_minimum_required(VERSION 3.25)\nproject(finder LANGUAGES CXX)\n%s\n' \
+    "find_package(splinecast 0.1 REQUIRED $1)" >"$work/finder/CMakeLists.txt"
+  cmake -S "$work/finder" -B "$work/finder/build" -DCMAKE_PREFIX_PATH="$work/prefix" --fresh \
+    "${@:3}" >"$work/finder/log" 2>&1 && found=yes || found=no
+  [ "$found" = yes ] && [ -z "$2" ] && return
+  [ "$found" = no ] && [ -n "$2" ] && tr -s ' \n' ' ' <"$work/finder/log" | grep -qF "$2" && return
+  echo "find_package(splinecast $1) ${*:3}: found: $found, expected: ${2:-yes}"
+  cat "$work/finder/log"
+  exit 1
+}
+without_eigen=-DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON
+finds "" ""
+finds "" "" $without_eigen
+finds "COMPONENTS eigen" ""
+finds "COMPONENTS eigen" "the component eigen needs Eigen3 3.4" $without_eigen
+finds "OPTIONAL_COMPONENTS eigen quaternions" "" $without_eigen
+finds "COMPONENTS eigen quaternions" "there is no component quaternions"
+echo "The package finds its components"
+
 pkg=$(find "$work/prefix" -name splinecast.pc -printf '%h')
 flags=$(PKG_CONFIG_PATH=$pkg pkg-config --cflags --libs splinecast)
 libraries=$(dirname "$(find "$work/prefix" -name 'libsplinecast.so')")
@@ -36,8 +59,10 @@ for example in "$source"/examples/[0-9]_*.cpp; do
   target=${name#?_}
   mv "$work/cmake/$target" "$work/shared/$name"
   mv "$work/cmake/${target}_static" "$work/static/$name"
+  eigen=
+  [ "$name" != 7_mpc_horizon ] || eigen=$(pkg-config --cflags eigen3)
   # shellcheck disable=SC2086
-  g++ -std=c++20 $warnings "$example" $flags "-Wl,-rpath,$libraries" -o "$work/pkg_config/$name"
+  g++ -std=c++20 $warnings "$example" $flags $eigen "-Wl,-rpath,$libraries" -o "$work/pkg_config/$name"
 done
 
 for shared in "$work"/shared/* "$work"/pkg_config/*; do
@@ -78,12 +103,13 @@ for linked in shared static pkg_config; do
   started=()
   start 2_controller .motion
   start 6_horizon _pose
+  start 7_mpc_horizon _pose
   start 1_producer .motion
   start 3_embedded_solver _pose
   start 4_redirect .redirect
   start 5_refusals .refusals
   for example in "${started[@]}"; do
-    wait "$example" || { echo "an example with $linked has failed:"; cat "$work"/out/[13456]*; exit 1; }
+    wait "$example" || { echo "an example with $linked has failed:"; cat "$work"/out/[134567]*; exit 1; }
   done
 
   printed 1_producer '[0-9]+ waypoints sent, [0-9]+ late, 0 refused'
@@ -99,6 +125,7 @@ for linked in shared static pkg_config; do
   done
   printed 6_horizon '[1-9][0-9]* horizons of 20 states, .*'
   printed 6_horizon 'nearest to a limit: velocity of dimension .*'
+  printed 7_mpc_horizon '[1-9][0-9]* horizons of 50 states, tracking error 0\.05.* m, at the end 0\.000.* m, .*'
   echo "${#started[@]} examples, linked by $linked, have run"
 done
 kill "$solver"
