@@ -94,6 +94,8 @@ void sample_many(benchmark::State& bench) {
 
 BENCHMARK(sample)->ArgName("dims")->Apply(all_dimensions);
 BENCHMARK(sample_many)->ArgNames({"dims", "times"})->Args({7, 50});
+/// For comparison with Python: bench/python/overhead.py.
+BENCHMARK(sample_many)->Name("horizon")->ArgNames({"dims", "times"})->Args({7, 1000});
 BENCHMARK(sample_random)->ArgName("dims")->Arg(7);
 /// For counting instructions: profile_paths.py divides by the iterations.
 BENCHMARK(sample)->Name("counted/sample")->Arg(7)->Iterations(10'000);

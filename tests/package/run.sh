@@ -83,9 +83,9 @@ clean_up() {
 }
 trap clean_up EXIT
 
-# Starts an example of the current build on a stream. Its output goes to a file of its number.
+# Starts an example of the current build on a stream, with further arguments. Its output goes to a file of its number.
 start() {
-  "$work/$linked/$1" "$stream.$linked$2" >"$work/out/$1" 2>&1 &
+  "$work/$linked/$1" "$stream.$linked$2" "${@:3}" >"$work/out/$1" 2>&1 &
   started+=($!)
 }
 
@@ -102,6 +102,7 @@ solver=$!
 for linked in shared static pkg_config; do
   started=()
   start 2_controller .motion
+  start 9_recorder .motion 1 "$work/out/recorded.csv"
   start 6_horizon _pose
   start 7_mpc_horizon _pose
   start 1_producer .motion
@@ -109,12 +110,13 @@ for linked in shared static pkg_config; do
   start 4_redirect .redirect
   start 5_refusals .refusals
   for example in "${started[@]}"; do
-    wait "$example" || { echo "an example with $linked has failed:"; cat "$work"/out/[134567]*; exit 1; }
+    wait "$example" || { echo "an example with $linked has failed:"; cat "$work"/out/[1345679]*; exit 1; }
   done
 
   printed 1_producer '[0-9]+ waypoints sent, [0-9]+ late, 0 refused'
   printed 2_controller 0.3  # where the motion begins
   [ "$(sort -u "$work/out/2_controller" | wc -l)" -gt 10 ] || { echo "2_controller saw no motion"; exit 1; }
+  [ "$(wc -l <"$work/out/recorded.csv")" -gt 500 ] || { echo "9_recorder has few rows"; exit 1; }
   printed 3_embedded_solver '([0-9]+) of \1 items consumed, 0 refused'
   printed 4_redirect 'redirect accepted at x = .* m/s'
   printed 4_redirect 'stop accepted at x = .* m/s'

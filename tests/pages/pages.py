@@ -3,7 +3,7 @@
 
     pages.py commands [--write] BIN PAGE...   runs each page's commands and compares their output; BIN has splinecast
     pages.py links                            follows every link of every page
-    pages.py code                             every C++ block is part of an example
+    pages.py code                             every C++ or Python block is part of an example
     pages.py shape                            lines of the README, width of tables, pages that no page links to
 
 A page's commands are the lines of its `console` blocks that begin with `$ `, and comments `<!-- run: COMMAND -->`. They
@@ -11,7 +11,8 @@ run from top to bottom in one shell, in an empty folder, with a private /dev/shm
 first one's output; without such lines its output is not compared. A line `...` matches any lines, `...` in a line
 any characters. Words after `console`: `varies`: numbers and the units of durations are not compared; `exit=N`: the exit
 code, 0 without it. Durations and numbers of streams are shortened. --write writes the output of commands into the page,
-except where the page has a `...`. Exits with 77 if a private /dev/shm is not allowed.
+except where the page has a `...`. Commands find this project's root in $SPLINECAST_SOURCE, the Python module beside
+BIN, and Debian's python3. Exits with 77 if a private /dev/shm is not allowed.
 """
 
 import os
@@ -32,6 +33,8 @@ SHORTER = [(r"--duration \d+\b", "--duration 0.5"), (r"--seconds \d+", "--second
 LIVE_REPLAY = re.compile(r"splinecast replay moves\.csv --stream \S+")
 # Commands whose exit code depends on the machine, and the codes allowed in addition to the stated one.
 MACHINE = [("splinecast doctor", {0, 1}), ("splinecast latency compare", {0, 2, 3}), ("--mode spin", {0, 2})]
+# The examples in which a block of this language must be.
+EXAMPLES = {"cpp": "*.cpp", "c++": "*.cpp", "python": "python/*.py"}
 NUMBER = re.compile(r"[-+]?\d+(?:[.,:]\d+)*(?:e[-+]?\d+)?(?: ?(?:ns|µs|us|ms|s)\b)?")
 
 
@@ -87,8 +90,9 @@ def wait_while_it_continues(process, output):
 def run(found, programs):
     """What the script of these commands prints."""
     with tempfile.TemporaryDirectory() as folder:
-        environment = os.environ | {"PATH": programs + os.pathsep + os.environ["PATH"], "HOME": folder, "TERM": "dumb",
-                                    "LC_ALL": "C.UTF-8"}
+        environment = os.environ | {"PATH": os.pathsep.join([programs, "/usr/bin", os.environ["PATH"]]), "HOME": folder,
+                                    "PYTHONPATH": os.path.join(os.path.dirname(programs), "python"),
+                                    "SPLINECAST_SOURCE": str(blocks.PROJECT), "TERM": "dumb", "LC_ALL": "C.UTF-8"}
         Path(folder, ".script").write_text(script(found), encoding="utf-8")
         with open(os.path.join(folder, ".out"), "wb") as out:
             started = subprocess.Popen(private("exec bash .script"), cwd=folder, env=environment,
@@ -200,17 +204,19 @@ def check_links(_):
 
 
 def check_code(_):
-    """Every C++ block of a page is part of an example, which tests build and run."""
+    """Every C++ or Python block of a page is part of an example, which tests build and run."""
     def dense(lines):
         return "\n".join(line.strip() for line in lines).strip()
-    examples = [dense(file.read_text(encoding="utf-8").splitlines()) for file in (blocks.PROJECT / "examples").glob("*.cpp")]
+    examples = {language: [dense(file.read_text(encoding="utf-8").splitlines())
+                           for file in (blocks.PROJECT / "examples").glob(pattern)]
+                for language, pattern in EXAMPLES.items()}
     wrong, count = 0, 0
     for page in blocks.pages():
         for block in blocks.blocks(page.read_text(encoding="utf-8").splitlines()):
-            if block.language not in ("cpp", "c++"):
+            if block.language not in examples:
                 continue
             count += 1
-            if not any(dense(block.lines) in example for example in examples):
+            if not any(dense(block.lines) in example for example in examples[block.language]):
                 wrong += 1
                 print(f"{page.relative_to(blocks.PROJECT)}:{block.first}: no example contains this block")
     print(f"{count} blocks")
