@@ -3,7 +3,7 @@
 
     overhead.py BENCH [--blocks N]      BENCH: build/release/bin/splinecast_bench
 
-Needs the module in PYTHONPATH. Runs N blocks (9). Each block measures every row once in C++ and once in Python, one
+Needs the module in PYTHONPATH. Runs N blocks (25). Each block measures every row once in C++ and once in Python, one
 directly after the other, because the speed of the machine changes more slowly than a block. Prints the medians of the
 times, and of the differences and ratios within a block:
 
@@ -175,7 +175,7 @@ def main():
     """Prints a table of medians."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("bench")
-    parser.add_argument("--blocks", type=int, default=9)
+    parser.add_argument("--blocks", type=int, default=25)
     options = parser.parse_args()
     found = measure(options.bench, options.blocks)
     print(f"medians of {options.blocks} blocks\n"
