@@ -22,7 +22,7 @@ from blocks import LINK  # noqa: E402  pylint: disable=wrong-import-position
 MOVED = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md",
          "tests/defects/README.md": "defects.md", "tests/fuzz/README.md": "fuzzers.md",
          "tests/data/README.md": "recordings.md", "LICENSE": "source/LICENSE.md"}
-LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".py": "python", ".sh": "bash", ".json": "json", ".cmake": "cmake"}
+LANGUAGES = {".c": "c", ".cpp": "cpp", ".hpp": "cpp", ".py": "python", ".sh": "bash", ".json": "json", ".cmake": "cmake"}
 
 
 class Pages:
@@ -41,6 +41,8 @@ class Pages:
             return name.removeprefix("docs/")
         if "/include/splinecast/" in name:
             return f"api/{path.stem.replace('_', '__')}_8hpp.html"
+        if name == "ipc/c/splinecast.h":
+            return "api/splinecast_8h.html"
         if path not in self.sources:
             self.sources.append(path)
         return f"source/{name}/index.md" if path.is_dir() else f"source/{name}.md"

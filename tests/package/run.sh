@@ -21,7 +21,13 @@ for header in $headers; do
   g++ -std=c++20 -Wall -Wextra -Wpedantic -Wconversion -Werror -fsyntax-only \
     -isystem /usr/include/eigen3 -I"$work/prefix/include" "$work/header.cpp"
 done
-echo "$count installed headers, each compiled alone"
+printf '#include <splinecast.h>\nint main(void) { return 0; }\n' >"$work/header.c"
+for language in "-x c -std=c11" "-x c++ -std=c++20"; do
+  # shellcheck disable=SC2086
+  g++ $language -Wall -Wextra -Wpedantic -Wconversion -Werror -fsyntax-only \
+    -I"$work/prefix/include" "$work/header.c"
+done
+echo "$count installed headers and the one of C, each compiled alone"
 
 cmake -S "$source/examples" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$work/prefix" \
   -DCMAKE_CXX_FLAGS="$warnings" >/dev/null
@@ -65,6 +71,13 @@ for example in "$source"/examples/[0-9]_*.cpp; do
   g++ -std=c++20 $warnings "$example" $flags $eigen "-Wl,-rpath,$libraries" -o "$work/pkg_config/$name"
 done
 
+# The example in C, as C11.
+mv "$work/cmake/c_producer" "$work/shared/8_producer"
+mv "$work/cmake/c_producer_static" "$work/static/8_producer"
+# shellcheck disable=SC2086
+gcc -std=c11 -Wall -Wextra -Wpedantic -Werror "$source/examples/8_producer.c" $flags -lm \
+  "-Wl,-rpath,$libraries" -o "$work/pkg_config/8_producer"
+
 for shared in "$work"/shared/* "$work"/pkg_config/*; do
   objdump -p "$shared" | grep 'NEEDED *libsplinecast\.so\.0\.1$' >/dev/null ||
     { echo "$shared is not linked to libsplinecast.so.0.1"; exit 1; }
@@ -77,7 +90,7 @@ streams=$(printf "$stream.%s " {shared,static,pkg_config}.{motion,redirect,refus
 clean_up() {
   jobs -p | xargs -r kill 2>/dev/null || true
   wait
-  for name in $streams "$stream".{shared,static,pkg_config}_pose; do
+  for name in $streams "$stream".{shared,static,pkg_config}_{pose,c}; do
     "$program" rm "$name" 2>/dev/null || true
   done
 }
@@ -109,8 +122,9 @@ for linked in shared static pkg_config; do
   start 3_embedded_solver _pose
   start 4_redirect .redirect
   start 5_refusals .refusals
+  start 8_producer _c
   for example in "${started[@]}"; do
-    wait "$example" || { echo "an example with $linked has failed:"; cat "$work"/out/[1345679]*; exit 1; }
+    wait "$example" || { echo "an example with $linked has failed:"; cat "$work"/out/[13456789]*; exit 1; }
   done
 
   printed 1_producer '[0-9]+ waypoints sent, [0-9]+ late, 0 refused'
@@ -128,10 +142,12 @@ for linked in shared static pkg_config; do
   printed 6_horizon '[1-9][0-9]* horizons of 20 states, .*'
   printed 6_horizon 'nearest to a limit: velocity of dimension .*'
   printed 7_mpc_horizon '[1-9][0-9]* horizons of 50 states, tracking error 0\.05.* m, at the end 0\.000.* m, .*'
+  printed 8_producer 'replacement accepted'
+  printed 8_producer 'the fit passes 0.106, 0.106 m'
   echo "${#started[@]} examples, linked by $linked, have run"
 done
 kill "$solver"
 wait "$solver"
 # shellcheck disable=SC2086
-"$program" rm $streams
+"$program" rm $streams "$stream".{shared,static,pkg_config}_c
 ! "$program" ls | grep -F "$stream" || { echo "streams are left"; exit 1; }

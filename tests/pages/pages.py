@@ -3,7 +3,7 @@
 
     pages.py commands [--write] BIN PAGE...   runs each page's commands and compares their output; BIN has splinecast
     pages.py links                            follows every link of every page
-    pages.py code                             every C++ or Python block is part of an example
+    pages.py code                             every C, C++ or Python block is part of an example
     pages.py shape                            lines of the README, width of tables, pages that no page links to
 
 A page's commands are the lines of its `console` blocks that begin with `$ `, and comments `<!-- run: COMMAND -->`. They
@@ -34,7 +34,7 @@ LIVE_REPLAY = re.compile(r"splinecast replay moves\.csv --stream \S+")
 # Commands whose exit code depends on the machine, and the codes allowed in addition to the stated one.
 MACHINE = [("splinecast doctor", {0, 1}), ("splinecast latency compare", {0, 2, 3}), ("--mode spin", {0, 2})]
 # The examples in which a block of this language must be.
-EXAMPLES = {"cpp": "*.cpp", "c++": "*.cpp", "python": "python/*.py"}
+EXAMPLES = {"c": "*.c", "cpp": "*.cpp", "c++": "*.cpp", "python": "python/*.py"}
 NUMBER = re.compile(r"[-+]?\d+(?:[.,:]\d+)*(?:e[-+]?\d+)?(?: ?(?:ns|µs|us|ms|s)\b)?")
 
 
@@ -204,7 +204,7 @@ def check_links(_):
 
 
 def check_code(_):
-    """Every C++ or Python block of a page is part of an example, which tests build and run."""
+    """Every C, C++ or Python block of a page is part of an example, which tests build and run."""
     def dense(lines):
         return "\n".join(line.strip() for line in lines).strip()
     examples = {language: [dense(file.read_text(encoding="utf-8").splitlines())
