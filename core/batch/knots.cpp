@@ -34,6 +34,12 @@ void require_waypoints(const Waypoints& waypoints) {
   }
   if (times.empty()) throw std::invalid_argument("a spline needs at least one waypoint");
   require_values_of(waypoints, waypoints.positions, "position");
+  for (const std::size_t i : {std::size_t{0}, times.size() - 1}) {
+    if (is_time_in_range(times[i])) continue;
+    throw std::invalid_argument("time of waypoint " + std::to_string(i) + ", " +
+                                std::to_string(times[i].count()) +
+                                " ns, is outside of ±(2^62 - 1) ns");
+  }
   for (std::size_t i = 1; i < times.size(); ++i) {
     if (times[i] > times[i - 1]) continue;
     throw std::invalid_argument("time of waypoint " + std::to_string(i) + ", " +

@@ -30,10 +30,10 @@ class Clock {
   [[nodiscard]] virtual Time about_now() const noexcept { return now(); }
 };
 
-/// The end of a timeout that begins now, at most Time::max().
+/// The end of a timeout that begins now, at most Time::max(); a negative timeout counts as 0.
 [[nodiscard]] inline Time deadline(const Clock& clock, Time timeout) noexcept {
   const Time now = clock.now();
-  return now + std::min(timeout, Time::max() - now);
+  return now + std::clamp(timeout, Time::zero(), Time::max() - now);
 }
 
 /// CLOCK_MONOTONIC. now() takes tens of nanoseconds, and no system call where the kernel's clock

@@ -278,6 +278,9 @@ TEST(C2Spline, ErrorsNameTheInvalidInput) {
     return std::string();
   };
   EXPECT_NE(message(times, positions, 1).find("waypoint 2, 10 ns"), std::string::npos);
+  const std::vector<Time> far{Time::min(), Time(10)};
+  EXPECT_NE(message(far, std::span(positions).first(2), 1).find("waypoint 0, -92233720368547758"),
+            std::string::npos);
   EXPECT_NE(message({}, {}, 1).find("at least one"), std::string::npos);
   EXPECT_NE(message(times, positions, 2).find("3 position values"), std::string::npos);
   EXPECT_NE(message(times, positions, 65).find("65"), std::string::npos);

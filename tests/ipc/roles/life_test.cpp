@@ -52,6 +52,7 @@ TEST(Roles, AWaypointTravelsFromProducerToReader) {
   EXPECT_EQ(solver.step(clock).consumed, 1U);
   EXPECT_EQ(reader.wait(kSecond), WaitStatus::advanced);
   EXPECT_EQ(reader.sample(Time(0), state), SampleStatus::stopping);
+  EXPECT_EQ(reader.wait(Time::min()), WaitStatus::timed_out);  // as 0: nothing is new
   EXPECT_EQ(state.position()[1], -2);
   EXPECT_EQ(producer.consumed(), 1U);
   ASSERT_EQ(producer.finish({}), AppendStatus::accepted);
