@@ -124,7 +124,7 @@ void require_consistent(const FitOptions& options) {
   }
   if (!options.units.empty() && options.report.empty()) refuse("--unit", "goes with --report only");
   if (!options.output.empty() && only_reports(options)) {
-    refuse("-o", "needs --at, --dt or --emit besides --report");
+    refuse("-o", "needs --at, --dt or --emit in addition to --report");
   }
   if (options.emit == Emit::samples) {
     if (options.at.empty() && !options.dt && options.report.empty()) {

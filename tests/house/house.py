@@ -32,7 +32,8 @@ MOST_FILES, MOST_FILES_OF_TESTS, MOST_LINES, MEDIAN_LINES, MOST_FUNCTION_LINES, 
 # The rooms from the lowest to the highest. A file includes only files of its own room and of lower ones.
 ROOMS = {
     "core": "simd basics polynomial limits slopes forms solvers batch methods online",
-    "ipc": "memory layout mapping ring board solve options sampling roles sweep verification arguments c",
+    "ipc": "memory layout mapping ring board solve options sampling roles sweep verification arguments c python/values "
+           "python",
     "apps": "process files output pages timing tables cli recordings limits streams advise fit check replay trials "
             "demo machine latency soak completion",
 }

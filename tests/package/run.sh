@@ -136,8 +136,8 @@ for linked in shared static pkg_config; do
   printed 4_redirect 'stop accepted at x = .* m/s'
   printed 4_redirect 'at rest at x = .* m'
   printed 5_refusals 'row 1234 again: duplicate'
-  for item in 500 1500 2500; do
-    printed 5_refusals "item $item refused: quaternion of length 0 \\(time ${item}0000000 ns\\)"
+  for item in 500 1500 2500; do  # without its time if the ring has overwritten the item
+    printed 5_refusals "item $item refused: quaternion of length 0( \\(time ${item}0000000 ns\\))?"
   done
   printed 6_horizon '[1-9][0-9]* horizons of 20 states, .*'
   printed 6_horizon 'nearest to a limit: velocity of dimension .*'

@@ -17,9 +17,9 @@ struct FitOptions {
 /// Fits a curve through all waypoints at once (`smoothing`: near them).
 ///
 /// Requires 1 to 64 dimensions, at least one waypoint, strictly increasing times in range
-/// (is_time_in_range) and usable values (is_usable). One waypoint gives a hold. `hermite` and `quintic` need velocities, `quintic` also
-/// accelerations; the other methods ignore them. Throws std::invalid_argument, with the reason,
-/// index and value, otherwise. O(n·D).
+/// (is_time_in_range) and usable values (is_usable). One waypoint gives a hold. `hermite` and
+/// `quintic` need velocities, `quintic` also accelerations; the other methods ignore them. Throws
+/// std::invalid_argument, with the reason, index and value, otherwise. O(n·D).
 ///
 /// Boundary conditions that a method accepts:
 ///

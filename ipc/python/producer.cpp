@@ -1,0 +1,367 @@
+#include "splinecast/producer.hpp"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+
+#include "ipc/python/docstrings.hpp"
+#include "ipc/python/module.hpp"
+#include "ipc/python/values/arrays.hpp"
+#include "ipc/python/values/options.hpp"
+#include "ipc/python/values/records.hpp"
+#include "ipc/python/values/times.hpp"
+#include "ipc/python/values/types.hpp"
+#include "ipc/python/waits.hpp"
+
+namespace splinecast::python {
+namespace {
+
+/// Seconds that __exit__ waits for room in a full ring.
+constexpr double kFinishPatience = 1;
+/// Waypoints that append_many appends before other threads have their turn.
+constexpr std::size_t kBatch = 256;
+
+using None = py::none;
+
+/// The Python class Producer.
+class HeldProducer {
+ public:
+  HeldProducer(const std::string& stream, const ProducerOptions& options)
+      : dimensions_(options.dimensions),
+        names_(options.names),
+        producer_("producer", stream, make_role<Producer>(stream, options)) {}
+
+  std::uint64_t append(py::handle t, py::handle x, py::handle velocity, py::handle acceleration,
+                       py::handle timeout) {
+    const Time time = instant(t);
+    const Row position(x, "position");
+    const Row given_velocity(velocity, "velocity");
+    const Row given_acceleration(acceleration, "acceleration");
+    const Waypoint waypoint{.time = time,
+                            .position = position.values(),
+                            .velocity = given_velocity.values(),
+                            .acceleration = given_acceleration.values()};
+    return accept({.what = "waypoint", .status = {}, .time = time, .position = waypoint.position},
+                  timeout, [&](Producer& producer) { return producer.append(waypoint); });
+  }
+
+  std::uint64_t append_many(py::handle times, py::handle positions, py::handle velocities,
+                            py::handle accelerations, py::handle timeout);
+
+  std::uint64_t replace_from(py::handle t, py::handle times, py::handle positions,
+                             py::handle velocities, py::handle accelerations, py::handle blend) {
+    const Time time = instant(t);
+    const Path path(*this, times, positions, velocities, accelerations);
+    const ReplaceOptions options{.blend = duration(blend, "blend")};
+    return accept(
+        {.what = "replacement", .status = {}, .time = time}, py::int_(0),
+        [&](Producer& producer) { return producer.replace_from(time, path.waypoints, options); });
+  }
+
+  py::object preview_replace(py::handle t, py::handle times, py::handle positions,
+                             py::handle velocities, py::handle accelerations, py::handle blend) {
+    const Time time = instant(t);
+    const Path path(*this, times, positions, velocities, accelerations);
+    const ReplaceOptions options{.blend = duration(blend, "blend")};
+    ReplacePreview preview;
+    producer_.require_own_process();
+    without_gil([&] {
+      producer_.use_without_gil([&](Producer& producer) {
+        producer.preview_replace(time, path.waypoints, options, preview);
+      });
+    });
+    return to_record(preview);
+  }
+
+  std::uint64_t start_from(py::handle t, py::handle position, py::handle velocity,
+                           py::handle acceleration) {
+    const Row x(position, "position");
+    const Row v(velocity, "velocity");
+    const Row a(acceleration, "acceleration");
+    const Instant state{.time = instant(t),
+                        .position = x.values(),
+                        .velocity = v.values(),
+                        .acceleration = a.values()};
+    return accept(
+        {.what = "start state", .status = {}, .time = state.time, .position = state.position},
+        py::int_(0), [&](Producer& producer) { return producer.start_from(state); });
+  }
+
+  std::uint64_t finish(py::handle end, py::handle timeout) {
+    const Condition how = condition(end);
+    const std::uint64_t item = accept({.what = "end of the stream", .status = {}}, timeout,
+                                      [&](Producer& producer) { return producer.finish(how); });
+    is_finished_ = true;
+    return item;
+  }
+
+  py::object refusals() {
+    Refusals found;
+    producer_.use([&](Producer& producer) { producer.refusals(found); });
+    return to_record(found, names_);
+  }
+
+  /// One of the waits of Producer.
+  template <bool (Producer::*Wait)(Time)>
+  bool wait(py::handle timeout) {
+    return wait_until(producer_, end_of(optional_duration(timeout, "timeout")),
+                      [](Producer& producer, Time time) { return (producer.*Wait)(time); });
+  }
+
+  /// What a const function of Producer returns.
+  template <auto Get>
+  auto get() const {
+    return producer_.use([](Producer& producer) { return (producer.*Get)(); });
+  }
+
+  void withdraw() {
+    producer_.use([](Producer& producer) { producer.withdraw(); });
+    close();
+  }
+
+  void close() { producer_.close(); }
+
+  void exit(const py::args& failure) {
+    if (!failure[0].is_none() || is_finished_ || producer_.is_closed()) return close();
+    try {
+      finish(py::str("halt"), py::float_(kFinishPatience));
+    } catch (...) {
+      close();
+      throw;
+    }
+    close();
+  }
+
+  [[nodiscard]] std::size_t dimensions() const { return dimensions_; }
+  [[nodiscard]] bool is_finished() const { return is_finished_; }
+  [[nodiscard]] bool is_closed() const { return producer_.is_closed(); }
+  [[nodiscard]] const std::string& stream() const { return producer_.stream(); }
+  [[nodiscard]] std::string text() const {
+    const std::string life = is_closed() ? ", closed" : is_finished_ ? ", finished" : "";
+    return "<splinecast.Producer '" + stream() + "' of " + std::to_string(dimensions_) +
+           " dimensions" + life + '>';
+  }
+
+ private:
+  /// Waypoints from arrays. Their spans point into the arrays, or into copies of what is not
+  /// contiguous.
+  struct Path {
+    Path(const HeldProducer& owner, py::handle times, py::handle positions, py::handle velocities,
+         py::handle accelerations)
+        : position(positions, "positions"),
+          velocity(velocities, "velocities"),
+          acceleration(accelerations, "accelerations") {
+      if (times.is_none()) {
+        position.require(0, 0, true);
+        return;
+      }
+      const Instants instants(times);
+      instants.require_line();
+      const auto ns = instants.times(scratch);
+      const std::size_t dimensions = owner.dimensions();
+      position.require(ns.size(), dimensions, ns.empty());
+      velocity.require(ns.size(), dimensions, true);
+      acceleration.require(ns.size(), dimensions, true);
+      const Waypoints all{.dimensions = dimensions,
+                          .times = ns,
+                          .positions = position.all(),
+                          .velocities = velocity.all(),
+                          .accelerations = acceleration.all()};
+      for (std::size_t i = 0; i < ns.size(); ++i) waypoints.push_back(all[i]);
+    }
+
+    Rows position;
+    Rows velocity;
+    Rows acceleration;
+    std::vector<Time> scratch;
+    std::vector<Waypoint> waypoints;
+  };
+
+  /// Appends an item, which may wait for room. Returns its number; raises Refused.
+  template <typename Append>
+  std::uint64_t accept(RefusedItem item, py::handle timeout, const Append& append) {
+    std::uint64_t number = 0;
+    const auto try_once = [&](Producer& producer) {
+      number = producer.appended();
+      return append(producer);
+    };
+    item.status = producer_.use(try_once);
+    if (item.status == AppendStatus::full) {
+      const Time end = end_of(optional_duration(timeout, "timeout"));
+      while (item.status == AppendStatus::full && wait_for_room(end)) {
+        item.status = producer_.use(try_once);
+      }
+    }
+    if (item.status != AppendStatus::accepted) throw_refused(item);
+    return number;
+  }
+
+  /// Returns false if `end` is over, or passes.
+  bool wait_for_room(Time end) {
+    if (MonotonicClock().now() >= end) return false;
+    return wait_until(producer_, end,
+                      [](Producer& producer, Time time) { return producer.wait_for_room(time); });
+  }
+
+  std::size_t dimensions_;
+  std::vector<std::string> names_;
+  bool is_finished_ = false;
+  Held<Producer> producer_;
+};
+
+/// Waypoints that are read where they are; a row that is not contiguous is copied.
+class GivenWaypoints {
+ public:
+  GivenWaypoints(py::handle times, py::handle positions, py::handle velocities,
+                 py::handle accelerations, std::size_t dimensions)
+      : instants_(times),
+        rows_{Rows(positions, "positions"), Rows(velocities, "velocities"),
+              Rows(accelerations, "accelerations")} {
+    instants_.require_line();
+    times_ = instants_.times(scratch_);
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      rows_[r].require(times_.size(), dimensions, r > 0);
+    }
+  }
+
+  [[nodiscard]] std::size_t size() const { return times_.size(); }
+
+  /// Valid until the next call.
+  [[nodiscard]] Waypoint operator[](std::size_t i) {
+    return {
+        .time = times_[i], .position = row(0, i), .velocity = row(1, i), .acceleration = row(2, i)};
+  }
+
+ private:
+  std::span<const double> row(std::size_t r, std::size_t i) {
+    if (rows_[r].empty()) return {};
+    return rows_[r].row(i, copies_[r]);
+  }
+
+  Instants instants_;
+  std::array<Rows, 3> rows_;
+  std::vector<Time> scratch_;
+  std::span<const Time> times_;
+  std::array<std::array<double, kMaxDimensions>, 3> copies_{};
+};
+
+std::uint64_t HeldProducer::append_many(py::handle times, py::handle positions,
+                                        py::handle velocities, py::handle accelerations,
+                                        py::handle timeout) {
+  GivenWaypoints waypoints(times, positions, velocities, accelerations, dimensions_);
+  const Time end = end_of(optional_duration(timeout, "timeout"));
+  std::size_t i = 0;
+  AppendStatus status = AppendStatus::accepted;
+  const auto append_batch = [&](Producer& producer) {
+    status = AppendStatus::accepted;
+    for (std::size_t n = 0; n < kBatch && i < waypoints.size(); ++n, ++i) {
+      status = producer.append(waypoints[i]);
+      if (status != AppendStatus::accepted) return;
+    }
+  };
+  const std::uint64_t first = producer_.use([](Producer& producer) { return producer.appended(); });
+  while (i < waypoints.size()) {
+    without_gil([&] { producer_.use_without_gil(append_batch); });
+    if (status == AppendStatus::accepted) {
+      check_signals();
+    } else if (status != AppendStatus::full || !wait_for_room(end)) {
+      const Waypoint refused = waypoints[i];
+      throw_refused({.what = "waypoint",
+                     .status = status,
+                     .time = refused.time,
+                     .position = refused.position,
+                     .index = i});
+    }
+  }
+  return first;
+}
+
+using Class = py::class_<HeldProducer>;
+
+void define_appends(Class& producer) {
+  const py::arg_v velocity = py::arg("velocity") = None();
+  const py::arg_v acceleration = py::arg("acceleration") = None();
+  const py::arg_v timeout = py::arg("timeout") = 0.0;
+  producer
+      .def("append", &HeldProducer::append, py::arg("t"), py::arg("x"), velocity, acceleration,
+           timeout, doc::Producer_append)
+      .def("append_many", &HeldProducer::append_many, py::arg("times"), py::arg("positions"),
+           py::arg("velocities") = None(), py::arg("accelerations") = None(), timeout,
+           doc::Producer_append_many)
+      .def("replace_from", &HeldProducer::replace_from, py::arg("t"), py::arg("times") = None(),
+           py::arg("positions") = None(), py::arg("velocities") = None(),
+           py::arg("accelerations") = None(), py::arg("blend") = 0.0, doc::Producer_replace_from)
+      .def("preview_replace", &HeldProducer::preview_replace, py::arg("t"),
+           py::arg("times") = None(), py::arg("positions") = None(), py::arg("velocities") = None(),
+           py::arg("accelerations") = None(), py::arg("blend") = 0.0, doc::Producer_preview_replace)
+      .def("start_from", &HeldProducer::start_from, py::arg("t"), py::arg("position"),
+           py::arg("velocity"), py::arg("acceleration"), doc::Producer_start_from)
+      .def("finish", &HeldProducer::finish, py::arg("end") = "halt", timeout, doc::Producer_finish);
+}
+
+void define_waits(Class& producer) {
+  const py::arg_v timeout = py::arg("timeout") = None();
+  producer.def("refusals", &HeldProducer::refusals, doc::Producer_refusals)
+      .def("wait_for_solver", &HeldProducer::wait<&Producer::wait_for_solver>, timeout,
+           doc::Producer_wait_for_solver)
+      .def("wait_for_room", &HeldProducer::wait<&Producer::wait_for_room>, timeout,
+           doc::Producer_wait_for_room)
+      .def("wait_until_consumed", &HeldProducer::wait<&Producer::wait_until_consumed>, timeout,
+           doc::Producer_wait_until_consumed)
+      .def("withdraw", &HeldProducer::withdraw, doc::Producer_withdraw)
+      .def("close", &HeldProducer::close, doc::Producer_close)
+      .def(
+          "__enter__", [](py::object self) { return self; }, doc::Producer_enter)
+      .def("__exit__", &HeldProducer::exit, doc::Producer_exit)
+      .def("__repr__", &HeldProducer::text);
+}
+
+void define_properties(Class& producer) {
+  producer.def_property_readonly("stream", &HeldProducer::stream, doc::Producer_stream)
+      .def_property_readonly("dimensions", &HeldProducer::dimensions, doc::Producer_dimensions)
+      .def_property_readonly(
+          "earliest",
+          [](HeldProducer& self) { return optional_ns(self.get<&Producer::earliest>()); },
+          doc::Producer_earliest)
+      .def_property_readonly(
+          "last_time", [](HeldProducer& self) { return self.get<&Producer::last_time>().count(); },
+          doc::Producer_last_time)
+      .def_property_readonly("appended", &HeldProducer::get<&Producer::appended>,
+                             doc::Producer_appended)
+      .def_property_readonly("consumed", &HeldProducer::get<&Producer::consumed>,
+                             doc::Producer_consumed)
+      .def_property_readonly("continues", &HeldProducer::get<&Producer::continues>,
+                             doc::Producer_continues)
+      .def_property_readonly("solver_alive", &HeldProducer::get<&Producer::solver_alive>,
+                             doc::Producer_solver_alive)
+      .def_property_readonly("is_finished", &HeldProducer::is_finished, doc::Producer_is_finished)
+      .def_property_readonly("is_closed", &HeldProducer::is_closed, doc::Producer_is_closed)
+      .def_property_readonly("is_memory_locked", &HeldProducer::get<&Producer::is_memory_locked>,
+                             doc::Producer_is_memory_locked)
+      .def_property_readonly("stream_id", &HeldProducer::get<&Producer::stream_id>,
+                             doc::Producer_stream_id);
+}
+
+/// The keywords of the constructor; those that have no value keep the default of ProducerOptions.
+std::unique_ptr<HeldProducer> make(const std::string& stream, const py::object& names,
+                                   const py::object& units, const py::kwargs& keywords) {
+  keywords["names"] = names;
+  keywords["units"] = units;
+  require_keywords(keywords, "Producer",
+                   {"names", "units", "dimensions", "kinds", "clock", "start", "min_interval",
+                    "max_interval", "capacity", "mode", "group", "owner"});
+  return std::make_unique<HeldProducer>(stream, producer_options(keywords));
+}
+
+}  // namespace
+
+void define_producer(py::module_& module) {
+  Class producer(module, "Producer", doc::Producer);
+  producer.def(py::init(&make), py::arg("stream"), py::arg("names") = None(),
+               py::arg("units") = None(), doc::Producer_init);
+  define_appends(producer);
+  define_waits(producer);
+  define_properties(producer);
+}
+
+}  // namespace splinecast::python

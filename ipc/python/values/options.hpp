@@ -1,0 +1,27 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <string>
+
+#include "splinecast/boundary_condition.hpp"
+#include "splinecast/method.hpp"
+#include "splinecast/options.hpp"
+
+/// Options of the roles and of fits from keyword arguments. Functions throw BadRequest or TypeError
+/// with the value. A keyword that is missing, or None, leaves the default.
+namespace splinecast::python {
+
+namespace py = pybind11;
+
+/// A boundary condition: its text, or a pair of its name and values. None: the method's own.
+[[nodiscard]] Condition condition(py::handle value);
+
+/// A method by its name.
+[[nodiscard]] const Method& method(const std::string& name);
+
+[[nodiscard]] ProducerOptions producer_options(const py::kwargs& keywords);
+[[nodiscard]] SolverOptions solver_options(const py::kwargs& keywords);
+[[nodiscard]] Trust trust(py::handle owner);
+
+}  // namespace splinecast::python
