@@ -1,0 +1,53 @@
+#include "tests/apps/mcap/recording.hpp"
+
+namespace splinecast::testing {
+
+namespace mcap = apps::mcap;
+
+SmallRecording::SmallRecording(mcap::Compression compression, bool is_finished) {
+  MemoryFileWriter out({.profile = "test", .compression = compression});
+  mcap::Writer& writer = out.writer;
+  messages_until[out.file.size()] = 0;
+  const auto schema = writer.add_schema("waypoint", "jsonschema", R"({"type":"object"})");
+  const auto plain = writer.add_channel(0, "/plain", "text");
+  const auto described = writer.add_channel(schema, "/described", "json", {{"unit", "rad"}});
+  for (std::uint32_t i = 0; i < 9; ++i) {
+    const bool is_plain = i % 2 == 0;
+    const KeptMessage message{is_plain ? "/plain" : "/described", i, 1000 + i, 500 + i,
+                              std::string(i * 7, static_cast<char>('a' + i))};
+    writer.write(is_plain ? plain : described, i, Time(message.log_time),
+                 Time(message.publish_time), bytes_of(message.data));
+    messages.push_back(message);
+    if (i % 3 != 2) continue;
+    writer.end_chunk();
+    messages_until[out.file.size()] = messages.size();
+    if (i == 5) writer.add_metadata("stream", {{"name", "arm"}, {"rate", "100"}});
+  }
+  if (is_finished) writer.finish();
+  file = out.file;
+}
+
+std::span<const std::byte> bytes_of(const std::string& file) {
+  return std::as_bytes(std::span(file));
+}
+
+std::vector<KeptMessage> messages_of(const std::string& file) {
+  mcap::Reader reader("file", bytes_of(file));
+  return rest_of(reader);
+}
+
+std::vector<KeptMessage> rest_of(mcap::Reader& reader) {
+  std::vector<KeptMessage> messages;
+  mcap::Message message;
+  while (reader.next(message)) {
+    KeptMessage& kept = messages.emplace_back();
+    kept.topic = message.channel->topic;
+    kept.sequence = message.sequence;
+    kept.log_time = message.log_time.count();
+    kept.publish_time = message.publish_time.count();
+    for (const std::byte byte : message.data) kept.data.push_back(static_cast<char>(byte));
+  }
+  return messages;
+}
+
+}  // namespace splinecast::testing

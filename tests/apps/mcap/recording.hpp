@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/mcap/input/reader.hpp"
+#include "apps/mcap/output/writer.hpp"
+
+namespace splinecast::testing {
+
+/// A message that was written or read.
+struct KeptMessage {
+  std::string topic;
+  std::uint32_t sequence = 0;
+  std::int64_t log_time = 0;
+  std::int64_t publish_time = 0;
+  std::string data;
+  bool operator==(const KeptMessage&) const = default;
+};
+
+/// Writes a file of MCAP into memory.
+class MemoryFileWriter {
+ public:
+  explicit MemoryFileWriter(const apps::mcap::WriterOptions& options)
+      : writer([this](std::span<const std::byte> bytes) { return take(bytes); }, options) {}
+
+  std::string file;
+  /// Size of the file after each call of Write.
+  std::vector<std::size_t> sizes;
+  apps::mcap::Writer writer;
+
+ private:
+  bool take(std::span<const std::byte> bytes) {
+    for (const std::byte byte : bytes) file.push_back(static_cast<char>(byte));
+    sizes.push_back(file.size());
+    return true;
+  }
+};
+
+/// A small file with two channels, three chunks and metadata.
+struct SmallRecording {
+  explicit SmallRecording(apps::mcap::Compression compression, bool is_finished = true);
+  std::string file;
+  std::vector<KeptMessage> messages;
+  /// Size of the file after each call of Write, and the number of messages in it.
+  std::map<std::size_t, std::size_t> messages_until;
+};
+
+std::span<const std::byte> bytes_of(const std::string& file);
+
+/// All messages of a file. Throws as apps::mcap::Reader does.
+std::vector<KeptMessage> messages_of(const std::string& file);
+std::vector<KeptMessage> rest_of(apps::mcap::Reader& reader);
+
+}  // namespace splinecast::testing
