@@ -13,7 +13,7 @@ FileWriter::FileWriter(Write write, std::string_view profile) : write_(std::move
 }
 
 void FileWriter::put(std::span<const std::byte> bytes) {
-  if (failed_) return;
+  if (failed_ || bytes.empty()) return;
   failed_ = !write_(bytes);
   if (failed_) return;
   bytes_ += bytes.size();

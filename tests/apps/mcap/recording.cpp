@@ -7,20 +7,18 @@ namespace mcap = apps::mcap;
 SmallRecording::SmallRecording(mcap::Compression compression, bool is_finished) {
   MemoryFileWriter out({.profile = "test", .compression = compression});
   mcap::Writer& writer = out.writer;
-  messages_until[out.file.size()] = 0;
   const auto schema = writer.add_schema("waypoint", "jsonschema", R"({"type":"object"})");
   const auto plain = writer.add_channel(0, "/plain", "text");
   const auto described = writer.add_channel(schema, "/described", "json", {{"unit", "rad"}});
   for (std::uint32_t i = 0; i < 9; ++i) {
     const bool is_plain = i % 2 == 0;
     const KeptMessage message{is_plain ? "/plain" : "/described", i, 1000 + i, 500 + i,
-                              std::string(i * 7, static_cast<char>('a' + i))};
+                              std::string(i * std::size_t{7}, static_cast<char>('a' + i))};
     writer.write(is_plain ? plain : described, i, Time(message.log_time),
                  Time(message.publish_time), bytes_of(message.data));
     messages.push_back(message);
     if (i % 3 != 2) continue;
     writer.end_chunk();
-    messages_until[out.file.size()] = messages.size();
     if (i == 5) writer.add_metadata("stream", {{"name", "arm"}, {"rate", "100"}});
   }
   if (is_finished) writer.finish();
@@ -48,6 +46,15 @@ std::vector<KeptMessage> rest_of(mcap::Reader& reader) {
     for (const std::byte byte : message.data) kept.data.push_back(static_cast<char>(byte));
   }
   return messages;
+}
+
+Recovered recover_text(const std::string& file) {
+  Recovered recovered;
+  recovered.report = mcap::recover("file", bytes_of(file), [&](std::span<const std::byte> bytes) {
+    for (const std::byte byte : bytes) recovered.file.push_back(static_cast<char>(byte));
+    return true;
+  });
+  return recovered;
 }
 
 }  // namespace splinecast::testing

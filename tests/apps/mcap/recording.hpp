@@ -2,12 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "apps/mcap/input/reader.hpp"
+#include "apps/mcap/input/recover.hpp"
 #include "apps/mcap/output/writer.hpp"
 
 namespace splinecast::testing {
@@ -29,14 +29,11 @@ class MemoryFileWriter {
       : writer([this](std::span<const std::byte> bytes) { return take(bytes); }, options) {}
 
   std::string file;
-  /// Size of the file after each call of Write.
-  std::vector<std::size_t> sizes;
   apps::mcap::Writer writer;
 
  private:
   bool take(std::span<const std::byte> bytes) {
     for (const std::byte byte : bytes) file.push_back(static_cast<char>(byte));
-    sizes.push_back(file.size());
     return true;
   }
 };
@@ -46,8 +43,6 @@ struct SmallRecording {
   explicit SmallRecording(apps::mcap::Compression compression, bool is_finished = true);
   std::string file;
   std::vector<KeptMessage> messages;
-  /// Size of the file after each call of Write, and the number of messages in it.
-  std::map<std::size_t, std::size_t> messages_until;
 };
 
 std::span<const std::byte> bytes_of(const std::string& file);
@@ -55,5 +50,12 @@ std::span<const std::byte> bytes_of(const std::string& file);
 /// All messages of a file. Throws as apps::mcap::Reader does.
 std::vector<KeptMessage> messages_of(const std::string& file);
 std::vector<KeptMessage> rest_of(apps::mcap::Reader& reader);
+
+/// A file that recover() has written, and its report.
+struct Recovered {
+  std::string file;
+  apps::mcap::Recovery report;
+};
+Recovered recover_text(const std::string& file);
 
 }  // namespace splinecast::testing
