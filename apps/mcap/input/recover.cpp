@@ -37,6 +37,7 @@ class Recoverer {
 
   Source file_;
   std::optional<FooterFields> footer_;
+  std::uint64_t end_of_data_ = 0;  ///< of a file with a footer
   FileEnd end_;
   RecoveredFile out_;
   Recovery recovery_;
@@ -89,25 +90,26 @@ void Recoverer::read_summary() {
   }
 }
 
-/// Compares the checksum of the data section, which is in the record before the summary.
+/// Finds the end of the data section before the summary or the footer, and compares the checksum.
 void Recoverer::check_data() {
   if (!footer_) return;
+  end_of_data_ = file_.bytes.size() - kFileEnd;
   constexpr std::uint64_t kDataEnd = kRecordHeader + sizeof(std::uint32_t);
-  const std::uint64_t footer = file_.bytes.size() - kFileEnd;
-  const std::uint64_t end = footer_->summary_start == 0 ? footer : footer_->summary_start;
-  if (end < kMagic.size() + kDataEnd || end > footer) return;
+  const std::uint64_t end = footer_->summary_start == 0 ? end_of_data_ : footer_->summary_start;
+  if (end < kMagic.size() + kDataEnd || end > end_of_data_) return;
   Record record;
   if (!Records(file_, end - kDataEnd).next(record) || record.opcode != Opcode::data_end ||
       record.size() != kDataEnd) {
     return;
   }
+  end_of_data_ = record.offset;
   const auto crc = load<std::uint32_t>(record.content.data());
   if (crc != 0) end_.is_data_right = crc == crc32_of(file_.bytes.first(record.offset));
 }
 
-/// Whether the file ends at an offset as it should, or is cut off in its last magic.
+/// Whether the data ends at an offset as it should, or the file is cut off in its last magic.
 bool Recoverer::is_end(std::uint64_t offset) const {
-  if (footer_) return offset >= file_.bytes.size() - kFileEnd;
+  if (footer_) return offset >= end_of_data_;
   const auto rest = file_.bytes.subspan(offset);
   return rest.empty() || is_mcap(rest);
 }

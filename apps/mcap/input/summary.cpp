@@ -37,14 +37,15 @@ void Reader::read_summary_record(const Source& summary, const Record& record) {
   if (record.opcode == Opcode::metadata_index) read_indexed_metadata(summary, record);
 }
 
+/// Reads the metadata record of an index. Ignores an index with a wrong offset, such as those that
+/// @mcap/core 2.2 writes into files without chunks: next() will meet the record.
 void Reader::read_indexed_metadata(const Source& summary, const Record& record) {
   const auto offset = FieldReader(summary, record).number<std::uint64_t>();
   Record metadata;
-  if (offset > summary.bytes.size() || !Records(summary, offset).next(metadata) ||
-      metadata.opcode != Opcode::metadata) {
-    summary.refuse(record.offset, fmt::format("there is no metadata record at byte {}", offset));
+  if (offset <= summary.bytes.size() && Records(summary, offset).next(metadata) &&
+      metadata.opcode == Opcode::metadata) {
+    add_metadata(metadata);
   }
-  add_metadata(metadata);
 }
 
 }  // namespace splinecast::apps::mcap

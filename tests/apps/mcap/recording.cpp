@@ -25,6 +25,15 @@ SmallRecording::SmallRecording(mcap::Compression compression, bool is_finished) 
   file = out.file;
 }
 
+std::vector<std::size_t> ends_of(const std::string& file, mcap::Opcode opcode) {
+  std::vector<std::size_t> ends;
+  mcap::Records records({"file", bytes_of(file)}, mcap::kMagic.size());
+  for (mcap::Record record; records.next(record);) {
+    if (record.opcode == opcode) ends.push_back(records.offset());
+  }
+  return ends;
+}
+
 std::span<const std::byte> bytes_of(const std::string& file) {
   return std::as_bytes(std::span(file));
 }

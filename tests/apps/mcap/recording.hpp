@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/mcap/format/record.hpp"
 #include "apps/mcap/input/reader.hpp"
 #include "apps/mcap/input/recover.hpp"
 #include "apps/mcap/output/writer.hpp"
@@ -44,6 +45,9 @@ struct SmallRecording {
   std::string file;
   std::vector<KeptMessage> messages;
 };
+
+/// Where the whole records of a kind end in a file, outside of chunks.
+std::vector<std::size_t> ends_of(const std::string& file, apps::mcap::Opcode opcode);
 
 std::span<const std::byte> bytes_of(const std::string& file);
 

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "apps/mcap/format/record.hpp"
-#include "apps/mcap/input/recover.hpp"
 #include "tests/apps/mcap/recording.hpp"
 
 namespace splinecast::testing {
@@ -14,16 +12,6 @@ class McapTruncation : public ::testing::TestWithParam<mcap::Compression> {};
 INSTANTIATE_TEST_SUITE_P(Compressions, McapTruncation,
                          ::testing::Values(mcap::Compression::none, mcap::Compression::lz4,
                                            mcap::Compression::zstd));
-
-/// Where the whole records of a kind end in a file.
-std::vector<std::size_t> ends_of(const std::string& file, mcap::Opcode opcode) {
-  std::vector<std::size_t> ends;
-  mcap::Records records({"file", bytes_of(file)}, mcap::kMagic.size());
-  for (mcap::Record record; records.next(record);) {
-    if (record.opcode == opcode) ends.push_back(records.offset());
-  }
-  return ends;
-}
 
 std::size_t count_until(const std::vector<std::size_t>& ends, std::size_t size) {
   return static_cast<std::size_t>(
