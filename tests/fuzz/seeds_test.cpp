@@ -13,6 +13,7 @@
 #include "ipc/layout/check.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/summary.hpp"
+#include "tests/fixtures/processes/built_with.hpp"
 #include "tests/fixtures/processes/process.hpp"
 #include "tests/fuzz/region_targets.hpp"
 #include "tests/fuzz/seed_streams.hpp"
@@ -101,6 +102,10 @@ TEST(FuzzSeeds, WaypointFilesAreReadOrRefused) { try_texts("waypoints", try_wayp
 TEST(FuzzSeeds, TimeFilesAreReadOrRefused) { try_texts("times", try_times); }
 TEST(FuzzSeeds, PolynomialFilesAreReadOrRefused) { try_texts("polynomials", try_polynomials); }
 TEST(FuzzSeeds, LimitFilesAreReadOrRefused) { try_texts("limits", try_limits); }
+TEST(FuzzSeeds, RecordingsAreReadRecoveredOrRefused) {
+  REQUIRE_MCAP();
+  try_texts("recordings", try_recordings);
+}
 TEST(FuzzSeeds, WordsAreReadOrRefused) { try_texts("words", try_words); }
 TEST(FuzzSeeds, CommandLinesAreReadOrRefused) { try_texts("arguments", try_arguments); }
 

@@ -20,6 +20,9 @@ void try_polynomials(std::string_view text);
 /// A file of limits: YAML or URDF.
 void try_limits(std::string_view text);
 
+/// An MCAP file: read, and recovered.
+void try_recordings(std::string_view text);
+
 /// Numbers, times, conditions, kinds and names, one on each line.
 void try_words(std::string_view text);
 

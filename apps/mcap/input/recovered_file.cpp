@@ -142,6 +142,7 @@ void RecoveredFile::end_loose_chunk() {
 
 void RecoveredFile::take_metadata(const Record& record) {
   const MetadataFields metadata = parse_metadata(file_, record);
+  memory_.take(file_, record, record.content.size(), metadata.values.size());
   end_loose_chunk();
   writer_.write_metadata(metadata.name, metadata.values);
 }

@@ -9,6 +9,7 @@
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/use.hpp"
 #include "tests/apps/mcap/recording.hpp"
+#include "tests/fixtures/processes/built_with.hpp"
 
 namespace splinecast::testing {
 namespace {
@@ -77,6 +78,7 @@ std::string try_damaged(const std::string& file, const std::vector<KeptMessage>&
 }
 
 TEST(McapFlips, AHundredThousandFlipsGiveNoWrongMessageAndNeedNoMoreMemory) {
+  REQUIRE_MCAP();
   constexpr unsigned kSeed = 20261;
   alarm(250);  // a hang ends the child
   EXPECT_EXIT(try_flips(kSeed, 100'000), ::testing::ExitedWithCode(0), "");

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/mcap/recording.hpp"
+#include "tests/fixtures/processes/built_with.hpp"
 #include "tests/fixtures/processes/process.hpp"
 
 namespace splinecast::testing {
@@ -21,6 +22,7 @@ using nlohmann::json;
 class McapPeers : public ::testing::Test {
  protected:
   void SetUp() override {
+    REQUIRE_MCAP();
     const std::string source = std::string(SPLINECAST_SOURCE) + "/tests/apps/mcap/peers/install.sh";
     const Ended ended = Process(source, {peers_}).wait();
     if (ended.code == 0) return;

@@ -3,13 +3,17 @@
 #include <random>
 
 #include "tests/apps/mcap/recording.hpp"
+#include "tests/fixtures/processes/built_with.hpp"
 
 namespace splinecast::testing {
 namespace {
 
 namespace mcap = apps::mcap;
 
-class McapRoundTrip : public ::testing::TestWithParam<mcap::Compression> {};
+class McapRoundTrip : public ::testing::TestWithParam<mcap::Compression> {
+ protected:
+  void SetUp() override { REQUIRE_MCAP(); }
+};
 
 INSTANTIATE_TEST_SUITE_P(Compressions, McapRoundTrip,
                          ::testing::Values(mcap::Compression::none, mcap::Compression::lz4,

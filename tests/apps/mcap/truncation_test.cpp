@@ -1,13 +1,17 @@
 #include <gtest/gtest.h>
 
 #include "tests/apps/mcap/recording.hpp"
+#include "tests/fixtures/processes/built_with.hpp"
 
 namespace splinecast::testing {
 namespace {
 
 namespace mcap = apps::mcap;
 
-class McapTruncation : public ::testing::TestWithParam<mcap::Compression> {};
+class McapTruncation : public ::testing::TestWithParam<mcap::Compression> {
+ protected:
+  void SetUp() override { REQUIRE_MCAP(); }
+};
 
 INSTANTIATE_TEST_SUITE_P(Compressions, McapTruncation,
                          ::testing::Values(mcap::Compression::none, mcap::Compression::lz4,
