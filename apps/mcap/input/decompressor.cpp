@@ -11,13 +11,7 @@
 namespace splinecast::apps::mcap {
 namespace {
 
-struct Free {
-  void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
-  void operator()(LZ4F_dctx* context) const { LZ4F_freeDecompressionContext(context); }
-  void operator()(std::byte* bytes) const { std::free(bytes); }  // NOLINT(*-no-malloc)
-};
-
-const char* const kTooLong = "the content is longer than the chunk says";
+constexpr const char* kTooLong = "the content is longer than the chunk says";
 
 /// The memory of a first attempt for a content that is said to have `size` bytes.
 std::size_t first_capacity(std::size_t compressed, std::size_t size) {
@@ -33,6 +27,12 @@ std::size_t next_capacity(std::size_t capacity, std::size_t size) {
 }  // namespace
 
 struct Decompressor::State {
+  struct Free {
+    void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
+    void operator()(LZ4F_dctx* context) const { LZ4F_freeDecompressionContext(context); }
+    void operator()(std::byte* bytes) const { std::free(bytes); }  // NOLINT(*-no-malloc)
+  };
+
   std::unique_ptr<ZSTD_DCtx, Free> zstd{};
   std::unique_ptr<LZ4F_dctx, Free> lz4{};
   std::unique_ptr<std::byte, Free> memory{};

@@ -15,15 +15,15 @@ namespace {
 constexpr int kZstdLevel = 1;
 constexpr LZ4F_preferences_t kLz4Default{};
 
-struct FreeContext {
-  void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
-};
-
 }  // namespace
 
 struct Compressor::State {
+  struct Free {
+    void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
+  };
+
   Compression compression;
-  std::unique_ptr<ZSTD_CCtx, FreeContext> zstd{};
+  std::unique_ptr<ZSTD_CCtx, Free> zstd{};
   std::vector<std::byte> compressed{};
 };
 
