@@ -51,7 +51,7 @@ TEST_F(McapRecover, ContinuesAtTheNextChunkAfterAWrongLength) {
     std::string file = recording_.file;
     const std::size_t end = ends_of(file, mcap::Opcode::chunk).at(number);
     for (const std::size_t length : {std::size_t{3}, file.size()}) {
-      file.at(end + 1) = static_cast<char>(length);  // of the message index behind the chunk
+      file.at(end + 1) = static_cast<char>(length);  // of the message index after the chunk
       file.at(end + 2) = static_cast<char>(length >> 8U);
       const Recovered recovered = recover_text(file);
       EXPECT_FALSE(recovered.report.is_whole());
