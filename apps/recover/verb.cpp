@@ -27,6 +27,11 @@ struct RecoverOptions {
   bool json = false;
 };
 
+/// `1 chunk`, `2 chunks`.
+std::string counted(std::uint64_t count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 /// `run.mcap` becomes `run.recovered.mcap`.
 std::string default_output(const std::string& file) {
   const std::filesystem::path path(file);
@@ -77,18 +82,20 @@ ordered_json to_json(const std::string& file, const std::string& output,
 void say_all(const std::string& file, const std::string& output, const mcap::Recovery& found) {
   for (const std::string& damage : found.damages) say(damage);
   if (found.further_damages > 0) {
-    say(fmt::format("{}: {} further damages", file, found.further_damages));
+    say(fmt::format("{}: and {}", file, counted(found.further_damages, "further damage")));
   }
   if (!found.was_complete) say(file + ": is cut off: it has no footer");
   if (found.is_whole()) say(file + ": is whole");
-  say(fmt::format("{}: kept {} messages of {} channels in {} chunks, {} metadata, {} attachments",
-                  output, found.kept.messages, found.kept.channels, found.kept.chunks,
-                  found.kept.metadata, found.kept.attachments));
+  say(fmt::format("{}: kept {} of {} in {}, {}, {}", output,
+                  counted(found.kept.messages, "message"), counted(found.kept.channels, "channel"),
+                  counted(found.kept.chunks, "chunk"),
+                  counted(found.kept.metadata, "metadata record"),
+                  counted(found.kept.attachments, "attachment")));
   if (found.is_whole()) return;
-  const std::string messages =
-      found.lost_messages ? fmt::format("{} messages", *found.lost_messages) : "messages unknown";
-  say(fmt::format("{}: lost {} chunks, {} bytes, {}", file, found.lost_chunks, found.lost_bytes,
-                  messages));
+  say(fmt::format("{}: lost {}, {}, {}", file, counted(found.lost_chunks, "damaged chunk"),
+                  counted(found.lost_bytes, "byte"),
+                  found.lost_messages ? counted(*found.lost_messages, "message")
+                                      : "an unknown number of messages"));
 }
 
 int run_recover(const RecoverOptions& options) {

@@ -136,6 +136,12 @@ KeptMessage peer_message(std::uint32_t i) {
   return message;
 }
 
+TEST_F(McapPeers, ReadWhatRecoveryMakesOfNothing) {
+  const json found = read(recover_text("").file);
+  EXPECT_EQ(found["indexed"]["messages"], json::array());
+  EXPECT_EQ(found["stream"]["done"], true);
+}
+
 TEST_F(McapPeers, WriteFilesThatWeReadAndRecover) {
   constexpr std::uint32_t kCount = 1000;
   std::vector<KeptMessage> written;

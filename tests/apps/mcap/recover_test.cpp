@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "tests/apps/mcap/recording.hpp"
 #include "tests/fixtures/processes/built_with.hpp"
@@ -14,23 +15,26 @@ using nlohmann::json;
 
 class McapRecover : public ::testing::Test {
  protected:
-  void SetUp() override { REQUIRE_MCAP(); }
+  void SetUp() override {
+    REQUIRE_MCAP();
+    recording_.emplace(mcap::Compression::zstd);
+  }
 
   /// A file with one changed byte in the content of its first, second or third chunk.
   [[nodiscard]] std::string with_damaged_chunk(std::size_t number) const {
-    std::string file = recording_.file;
+    std::string file = recording_->file;
     file.at(ends_of(file, mcap::Opcode::chunk).at(number) - 1) ^= 1;
     return file;
   }
 
   [[nodiscard]] std::vector<KeptMessage> without(std::size_t chunk) const {
-    std::vector<KeptMessage> messages = recording_.messages;
+    std::vector<KeptMessage> messages = recording_->messages;
     const auto begin = messages.begin() + static_cast<std::ptrdiff_t>(3 * chunk);
     messages.erase(begin, begin + 3);
     return messages;
   }
 
-  const SmallRecording recording_{mcap::Compression::zstd};
+  std::optional<SmallRecording> recording_;
   TestFolder folder_;
 };
 
@@ -48,7 +52,7 @@ TEST_F(McapRecover, LeavesOutADamagedChunkAndCountsIt) {
 
 TEST_F(McapRecover, ContinuesAtTheNextChunkAfterAWrongLength) {
   for (const std::size_t number : {0U, 1U}) {
-    std::string file = recording_.file;
+    std::string file = recording_->file;
     const std::size_t end = ends_of(file, mcap::Opcode::chunk).at(number);
     for (const std::size_t length : {std::size_t{3}, file.size()}) {
       file.at(end + 1) = static_cast<char>(length);  // of the message index after the chunk
@@ -56,7 +60,7 @@ TEST_F(McapRecover, ContinuesAtTheNextChunkAfterAWrongLength) {
       const Recovered recovered = recover_text(file);
       EXPECT_FALSE(recovered.report.is_whole());
       EXPECT_EQ(recovered.report.lost_messages, 0U) << length;
-      EXPECT_EQ(messages_of(recovered.file), recording_.messages) << length;
+      EXPECT_EQ(messages_of(recovered.file), recording_->messages) << length;
     }
   }
 }
@@ -76,7 +80,7 @@ TEST_F(McapRecover, LosesTheMessagesOfAChannelThatNothingDescribes) {
 
 TEST_F(McapRecover, TheVerbWritesAFileNextToTheDamagedOneAndReports) {
   const std::string path =
-      folder_.write("run.mcap", recording_.file.substr(0, recording_.file.size() - 1));
+      folder_.write("run.mcap", recording_->file.substr(0, recording_->file.size() - 1));
   const Ended ended = run({"recover", path});
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_EQ(ended.out, "");
@@ -84,7 +88,7 @@ TEST_F(McapRecover, TheVerbWritesAFileNextToTheDamagedOneAndReports) {
       << ended.err;
   EXPECT_NE(ended.err.find("kept 9 messages of 2 channels in 3 chunks"), std::string::npos)
       << ended.err;
-  EXPECT_EQ(read_file(folder_.path("run.recovered.mcap")), recording_.file);
+  EXPECT_EQ(read_file(folder_.path("run.recovered.mcap")), recording_->file);
 }
 
 TEST_F(McapRecover, TheVerbReportsAsJson) {
@@ -112,11 +116,11 @@ TEST_F(McapRecover, TheVerbRefusesOtherFilesAndItsInputAsOutputAndLeavesThemAsTh
   EXPECT_NE(ended.err.find("text.csv: byte 0: this is not an MCAP file"), std::string::npos)
       << ended.err;
   EXPECT_EQ(read_file(output), "old");
-  const std::string path = folder_.write("run.mcap", recording_.file);
+  const std::string path = folder_.write("run.mcap", recording_->file);
   ended = run({"recover", path, "-o", path});
   EXPECT_EQ(ended.code, 2);
   EXPECT_NE(ended.err.find("it would be overwritten"), std::string::npos) << ended.err;
-  EXPECT_EQ(read_file(path), recording_.file);
+  EXPECT_EQ(read_file(path), recording_->file);
   EXPECT_EQ(run({"recover", "-"}).code, 2);
   EXPECT_EQ(run({"recover", folder_.path("missing.mcap")}).code, 2);
   EXPECT_EQ(run({"recover", path, "-o", "/nonexistent/x.mcap"}).code, 1);
