@@ -46,8 +46,8 @@ struct Metadata {
 /// use the reader no more.
 class Reader {
  public:
-  /// `name` is for messages. Reads the summary, if there is one. Throws Failure if this program was
-  /// built without the libraries for MCAP.
+  /// `name` is for messages: it must be safe to print. Reads the summary, if there is one. Throws
+  /// Failure if this program was built without the libraries for MCAP.
   Reader(std::string name, std::span<const std::byte> file);
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;

@@ -28,7 +28,7 @@ class Recoverer {
   [[nodiscard]] std::string profile();
   void read_summary();
   [[nodiscard]] bool is_end(std::uint64_t offset) const;
-  [[nodiscard]] bool is_end_of_data(const Record& record) const;
+  [[nodiscard]] bool is_end_of_data(const Record& record);
   [[nodiscard]] bool is_record(std::uint64_t offset) const;
   [[nodiscard]] std::uint64_t take(const Record& record);
   [[nodiscard]] std::uint64_t next_chunk(std::uint64_t offset);
@@ -38,6 +38,7 @@ class Recoverer {
   Source file_;
   std::optional<FooterFields> footer_;
   std::uint64_t end_of_data_ = 0;  ///< of a file with a footer
+  std::uint64_t known_chunk_ = 0;  ///< where a chunk begins; 0: none is known
   FileEnd end_;
   RecoveredFile out_;
   Recovery recovery_;
@@ -115,9 +116,11 @@ bool Recoverer::is_end(std::uint64_t offset) const {
 }
 
 /// Whether a file without a footer has nothing to recover after a record.
-bool Recoverer::is_end_of_data(const Record& record) const {
-  return !footer_ && record.opcode == Opcode::data_end &&
-         !find_chunk(file_.bytes, record.offset, file_.bytes.size());
+bool Recoverer::is_end_of_data(const Record& record) {
+  if (footer_ || record.opcode != Opcode::data_end || record.offset < known_chunk_) return false;
+  const auto chunk = find_chunk(file_.bytes, record.offset, file_.bytes.size());
+  known_chunk_ = chunk.value_or(0);  // so that no byte is searched twice
+  return !chunk;
 }
 
 /// Whether a record begins at an offset, as far as its opcode and its length show, or the file

@@ -36,7 +36,8 @@ inline constexpr std::size_t kMostDamages = 20;
 /// records of applications (opcodes from 0x80), and leaves out other unknown records.
 ///
 /// Needs twice the memory of a Reader, and 16 bytes for each message of a chunk. Stops if Write
-/// returns false. Throws InputError if the file is not an MCAP file, Failure as Reader does.
+/// returns false. `name` is as for a Reader. Throws InputError if the file is not an MCAP file,
+/// Failure as Reader does.
 [[nodiscard]] Recovery recover(const std::string& name, std::span<const std::byte> file,
                                Write write);
 

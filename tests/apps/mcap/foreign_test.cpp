@@ -143,6 +143,14 @@ TEST_F(McapForeign, AChunkIsRefusedIfItSaysThatItIsHuge) {
   }
 }
 
+TEST_F(McapForeign, RecoverySearchesNoByteOftenAmongManyEndsOfData) {
+  constexpr int kEnds = 500'000;
+  std::string file = kMagicText + kHeader;
+  for (int i = 0; i < kEnds; ++i) file += record(0x0F, u32(0));
+  file += chunk(channel(1, 0, "/a") + message(1, 1, "last"));
+  EXPECT_EQ(data_of(recover_text(file).file), "last ");
+}
+
 TEST_F(McapForeign, RecoveryPutsMessagesOutsideOfChunksIntoChunks) {
   const std::string loose = kSchema + channel(9, 1, "/a") + message(9, 5, "one") +
                             message(9, 2, "two") + record(static_cast<char>(0x90), "private") +
