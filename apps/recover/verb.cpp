@@ -13,7 +13,6 @@
 #include "apps/output/stream.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
-#include "apps/process/signals.hpp"
 #include "ipc/memory/names.hpp"
 
 namespace splinecast::apps {
@@ -48,7 +47,6 @@ mcap::Recovery recover_to(const std::string& path, const TextFile& file) {
     output.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     written += bytes.size();
     progress.show(fmt::format("{}: {} MB written", ipc::printable(path), written / 1'000'000));
-    if (stop_requested()) throw Interrupted("recover: interrupted");
     return true;
   };
   mcap::Recovery recovery =
