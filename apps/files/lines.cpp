@@ -5,12 +5,24 @@
 namespace splinecast::apps {
 namespace {
 
-/// The end of the first field of a CSV line: a comma that is not within double quotes.
+/// The end of the first field of a line: a separator that is not within double quotes.
+template <char kSeparator>
 std::size_t end_of_field(std::string_view line) noexcept {
-  const std::size_t first = line.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos || line[first] != '"') return line.find(',');
-  const std::size_t closing = line.find('"', line.find('"') + 1);
-  return closing == std::string_view::npos ? line.find(',') : line.find(',', closing);
+  const std::size_t first = line.find_first_not_of(kSeparator == '\t' ? " \r" : " \t\r");
+  if (first == std::string_view::npos || line[first] != '"') return line.find(kSeparator);
+  const std::size_t closing = line.find('"', first + 1);
+  return closing == std::string_view::npos ? line.find(kSeparator) : line.find(kSeparator, closing);
+}
+
+template <char kSeparator>
+void split_at(std::string_view line, std::vector<std::string_view>& fields) {
+  fields.clear();
+  for (;;) {
+    const std::size_t end = end_of_field<kSeparator>(line);
+    fields.push_back(line.substr(0, end));
+    if (end == std::string_view::npos) return;
+    line.remove_prefix(end + 1);
+  }
 }
 
 }  // namespace
@@ -39,13 +51,15 @@ bool Lines::next_data(Line& line) {
 }
 
 void split_at_commas(std::string_view line, std::vector<std::string_view>& fields) {
-  fields.clear();
-  for (;;) {
-    const std::size_t comma = end_of_field(line);
-    fields.push_back(line.substr(0, comma));
-    if (comma == std::string_view::npos) return;
-    line.remove_prefix(comma + 1);
-  }
+  split_at<','>(line, fields);
+}
+
+void split_at_semicolons(std::string_view line, std::vector<std::string_view>& fields) {
+  split_at<';'>(line, fields);
+}
+
+void split_at_tabs(std::string_view line, std::vector<std::string_view>& fields) {
+  split_at<'\t'>(line, fields);
 }
 
 void split_at_blanks(std::string_view line, std::vector<std::string_view>& fields) {

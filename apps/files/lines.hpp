@@ -29,8 +29,11 @@ class Lines {
 /// Splits a line into its fields, which are views into the line.
 using Split = void (*)(std::string_view line, std::vector<std::string_view>& fields);
 
-/// Split at runs of blanks, and at commas that are not within double quotes.
+/// Split at runs of blanks.
 void split_at_blanks(std::string_view line, std::vector<std::string_view>& fields);
+/// Split at separators that are not within double quotes.
 void split_at_commas(std::string_view line, std::vector<std::string_view>& fields);
+void split_at_semicolons(std::string_view line, std::vector<std::string_view>& fields);
+void split_at_tabs(std::string_view line, std::vector<std::string_view>& fields);
 
 }  // namespace splinecast::apps

@@ -98,8 +98,9 @@ int run_fit(const FitOptions& options) {
         {.name = std::string(method->name), .curve = fit_table(table, *method, options.curve)});
   }
   const PiecewisePolynomial curve = curves.front().curve;
-  const auto at =
-      options.at.empty() ? std::vector<Time>{} : read_times(options.at, options.table.time_unit);
+  const auto at = options.at.empty()
+                      ? std::vector<Time>{}
+                      : read_times(options.at, {.time_unit = options.table.time_unit});
   require_inside(at, curve, options.at);
   if (options.dt) require_samples(curve, *options.dt);
   if (!options.report.empty()) write_report_of(table, std::move(curves), options);

@@ -29,6 +29,17 @@ void Progress::show(std::string_view text) {
   std::fflush(stderr);
 }
 
+std::string shown(std::string_view text) {
+  constexpr std::size_t kMost = 60;
+  if (text.size() <= kMost) return ipc::printable(text);
+  std::size_t end = kMost;
+  const auto continues = [&](std::size_t i) {
+    return (static_cast<unsigned char>(text[i]) & 0xc0U) == 0x80U;
+  };
+  while (end > kMost - 4 && continues(end)) --end;  // keeps characters of UTF-8 whole
+  return ipc::printable(text.substr(0, end)) + "…";
+}
+
 void say(std::string_view text) {
   std::string lines = "splinecast: ";
   for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "splinecast/time.hpp"
@@ -22,6 +23,10 @@ class Progress {
   bool shown_ = false;
   Time next_{};
 };
+
+/// A text from a file, for a message: control characters, escape sequences and invalid UTF-8 are
+/// escaped as in ipc::printable(), and a text of more than 60 bytes is cut and ends with `…`.
+[[nodiscard]] std::string shown(std::string_view text);
 
 /// Prints a message on stderr: `splinecast: …`. Passes each line through ipc::printable(), because
 /// it may contain names and texts of other users.

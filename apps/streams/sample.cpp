@@ -187,7 +187,8 @@ void require_span(const SampleOptions& options) {
 int run_sample(const SampleOptions& options) {
   require_separate(std::array{options.output}, std::array{options.at});
   // Read the times before the output is opened: here a signal still ends the process at once.
-  auto times = options.at.empty() ? std::vector<Time>{} : read_times(options.at, options.time_unit);
+  auto times = options.at.empty() ? std::vector<Time>{}
+                                  : read_times(options.at, {.time_unit = options.time_unit});
   catch_stop_signals();
   return Sampling(options, std::move(times)).run();
 }

@@ -63,33 +63,43 @@ bool is_ambiguous(std::string_view name) {
 
 }  // namespace
 
-ColumnRoles::ColumnRoles(std::string file, const TableFormat& format, std::optional<TimeUnit> unit)
-    : file_(std::move(file)), format_(format) {
-  std::optional<std::size_t> time;
+ColumnRoles::ColumnRoles(std::string file, const TextFormat& format, const TableOptions& options)
+    : file_(std::move(file)), format_(format), is_time_requested_(!options.time_column.empty()) {
   for (std::size_t c = 0; c < format_.names.size(); ++c) {
     const std::string& name = format_.names[c];
     if (!index_.emplace(name, c).second && !name.empty()) {
-      throw InputError(fmt::format("{}: two columns are named '{}'", file_, name));
+      throw InputError(fmt::format("{}: two columns are named '{}'", file_, shown(name)));
     }
     if (c < format_.aliases.size()) aliases_.emplace(format_.aliases[c], c);
-    const auto named = unit_of_time_column(name);
-    if (!named || time) continue;
-    time = c;
-    roles_.unit = unit.value_or(*named);
   }
-  if (!time) {
-    throw InputError(fmt::format(
-        "{}: there is no time column (t_ns, timestamp_us, timestamp [ns], t, time, timestamp) "
-        "among {}{}",
-        file_, all_names(), format_.names.size() == 1 ? " (fields are separated by commas)" : ""));
-  }
-  roles_.time = *time;
+  roles_.time = time_column(options);
+  const auto named = unit_of_time_column(format_.names[roles_.time]);
+  roles_.unit = options.time_unit.value_or(named.value_or(TimeUnit::seconds));
 }
 
-void ColumnRoles::find_values(const std::vector<std::string>& selected, Lines rest) {
-  const Columns all = position_columns(!selected.empty(), rest);
-  for (const std::string& wanted : selected) add_position(selected_column(wanted));
-  if (selected.empty()) {
+std::size_t ColumnRoles::time_column(const TableOptions& options) const {
+  if (is_time_requested_) return known_column(options.time_column);
+  for (std::size_t c = 0; c < format_.names.size(); ++c) {
+    if (unit_of_time_column(format_.names[c])) return c;
+  }
+  std::string hint = "--time-column NAME selects one";
+  if (format_.names.size() == 1) {
+    hint = "fields are separated by commas, semicolons or tabs, and this line has none of these";
+  } else if (format_.split != split_at_commas) {
+    hint += fmt::format("; this file has {} between its fields", format_.separator);
+  }
+  throw InputError(fmt::format(
+      "{}: there is no time column (t_ns, timestamp_us, timestamp [ns], t, time, stamp, secs, "
+      "%time) among {} ({})",
+      file_, all_names(), hint));
+}
+
+void ColumnRoles::find_values(const TableOptions& options, LineReader& lines,
+                              const LineReader::Place& first_row) {
+  lines.go_to(first_row);
+  const Columns all = position_columns(options, numeric_columns(lines));
+  for (const std::string& wanted : options.columns) add_position(selected_column(wanted));
+  if (options.columns.empty()) {
     for (const std::size_t c : all) add_position(c);
   }
   if (roles_.positions.empty()) {
@@ -97,9 +107,9 @@ void ColumnRoles::find_values(const std::vector<std::string>& selected, Lines re
   }
   roles_.velocities = derivative_columns("v", all);
   roles_.accelerations = derivative_columns("a", all);
-  if (!selected.empty()) return;
+  if (!options.columns.empty()) return;
   require_no_unused_derivative();
-  tell_roles();
+  if (!options.quiet) tell_roles();
 }
 
 void ColumnRoles::add_position(std::size_t c) {
@@ -107,7 +117,7 @@ void ColumnRoles::add_position(std::size_t c) {
     throw InputError(fmt::format(
         "{}: column {}, '{}', would be the position of dimension {}; the maximum is {}: select "
         "positions with --columns",
-        file_, c + 1, format_.names[c], kMaxDimensions + 1, kMaxDimensions));
+        file_, c + 1, shown(format_.names[c]), kMaxDimensions + 1, kMaxDimensions));
   }
   roles_.positions.push_back(c);
 }
@@ -118,34 +128,38 @@ std::optional<std::size_t> ColumnRoles::find(const std::string& name) const {
 }
 
 /// A column by name, or by its alias from a comment.
+std::size_t ColumnRoles::known_column(const std::string& wanted) const {
+  if (const auto c = find(wanted)) return *c;
+  if (const auto alias = aliases_.find(wanted); alias != aliases_.end()) return alias->second;
+  throw InputError(
+      fmt::format("{}: there is no column '{}' among {}", file_, shown(wanted), all_names()));
+}
+
+/// A column that is selected as a position.
 std::size_t ColumnRoles::selected_column(const std::string& wanted) const {
-  auto c = find(wanted);
-  if (const auto alias = aliases_.find(wanted); !c && alias != aliases_.end()) c = alias->second;
-  if (!c) {
-    throw InputError(
-        fmt::format("{}: there is no column '{}' among {}", file_, wanted, all_names()));
-  }
-  const bool is_again = std::ranges::find(roles_.positions, *c) != roles_.positions.end();
-  if (*c == roles_.time || is_again) {
-    throw InputError(fmt::format("{}: column '{}' is {}", file_, wanted,
+  const std::size_t c = known_column(wanted);
+  const bool is_again = std::ranges::find(roles_.positions, c) != roles_.positions.end();
+  if (c == roles_.time || is_again) {
+    throw InputError(fmt::format("{}: column '{}' is {}", file_, shown(wanted),
                                  is_again ? "selected twice" : "the time"));
   }
-  return *c;
+  return c;
 }
 
 /// The columns that hold positions if none are selected: numeric ones without another role. Without
 /// a selection, stops at the first column above kMaxDimensions.
-ColumnRoles::Columns ColumnRoles::position_columns(bool is_selected, const Lines& rest) const {
-  const std::vector<bool> is_numeric = numeric_columns(rest);
+ColumnRoles::Columns ColumnRoles::position_columns(const TableOptions& options,
+                                                   const std::vector<bool>& is_numeric) {
+  const bool is_selected = !options.columns.empty();
   Columns columns;
   for (std::size_t c = 0; c < format_.names.size(); ++c) {
     const std::string& name = format_.names[c];
     if (c == roles_.time || index_of(name, "v") || index_of(name, "a") || is_sampled(name)) {
       continue;
     }
-    if (!is_numeric[c]) {
-      if (name.empty() || is_selected) continue;
-      say(fmt::format("{}: column '{}' is not numeric and is left out", file_, name));
+    const bool is_other_time = is_time_requested_ && unit_of_time_column(name);
+    if (!is_numeric[c] || (is_other_time && !is_selected)) {
+      if (!is_selected) leave_out(c, is_numeric[c] ? "another time" : "not numeric");
       continue;
     }
     if (!is_selected) require_usable(c);
@@ -155,22 +169,32 @@ ColumnRoles::Columns ColumnRoles::position_columns(bool is_selected, const Lines
   return columns;
 }
 
+/// Notes a column for the message about roles.
+void ColumnRoles::leave_out(std::size_t c, std::string_view why) {
+  constexpr std::size_t kMost = 1000;  // bytes of the list
+  if (format_.names[c].empty() || left_out_.size() > kMost) return;
+  left_out_ +=
+      fmt::format("{}{} ({})", left_out_.empty() ? "" : ", ", shown(format_.names[c]), why);
+}
+
 /// For each column, whether at least one of its cells is a number. (One invalid cell must not
 /// remove a dimension.)
-std::vector<bool> ColumnRoles::numeric_columns(Lines rest) const {
-  std::vector<bool> is_numeric(format_.names.size(), format_.first_row.number == 0);
+std::vector<bool> ColumnRoles::numeric_columns(LineReader& lines) const {
+  std::vector<bool> is_numeric(format_.names.size(), false);
   Columns open;
   for (std::size_t c = 0; c < is_numeric.size(); ++c) open.push_back(c);
   std::vector<std::string_view> fields;
-  Line line = format_.first_row;
-  if (line.number == 0) return is_numeric;
-  do {
+  Line line;
+  bool has_rows = false;
+  while (!open.empty() && lines.next_data(line)) {
+    has_rows = true;
     format_.split(line.text, fields);
     std::erase_if(open, [&](std::size_t c) {
       if (c < fields.size() && parse_number(fields[c])) is_numeric[c] = true;
       return is_numeric[c];
     });
-  } while (!open.empty() && rest.next_data(line));
+  }
+  if (!has_rows) is_numeric.assign(is_numeric.size(), true);
   return is_numeric;
 }
 
@@ -181,13 +205,13 @@ void ColumnRoles::require_usable(std::size_t c) const {
     throw InputError(fmt::format(
         "{}: column {}, '{}', is a second time column after '{}': select the positions with "
         "--columns",
-        file_, c + 1, name, format_.names[roles_.time]));
+        file_, c + 1, shown(name), shown(format_.names[roles_.time])));
   }
   for (const std::string_view letter : {"v", "a"}) {
     if (!has_bad_index(name, letter)) continue;
     throw InputError(fmt::format(
         "{}: column {}, '{}', is not a valid {}: {}[i] has an index i from 0 to {}", file_, c + 1,
-        name, letter == "v" ? "velocity" : "acceleration", letter, kMaxDimensions - 1));
+        shown(name), letter == "v" ? "velocity" : "acceleration", letter, kMaxDimensions - 1));
   }
 }
 
@@ -231,27 +255,30 @@ void ColumnRoles::require_no_unused_derivative() const {
       if (c == roles_.time || !index_of(name, letter)) continue;
       if (std::ranges::find(*used, c) != used->end()) continue;
       throw InputError(fmt::format("{}: column {}, '{}', belongs to none of the {} positions ({})",
-                                   file_, c + 1, name, roles_.positions.size(),
+                                   file_, c + 1, shown(name), roles_.positions.size(),
                                    names_of(roles_.positions)));
     }
   }
 }
 
 void ColumnRoles::tell_roles() const {
-  const bool is_clear = std::ranges::none_of(
-      roles_.positions, [&](std::size_t c) { return is_ambiguous(format_.names[c]); });
+  const bool is_clear =
+      left_out_.empty() && std::ranges::none_of(roles_.positions, [&](std::size_t c) {
+        return is_ambiguous(format_.names[c]);
+      });
   if (is_clear) return;
   say(
-      fmt::format("{}: time: {}; positions: {}; velocities: {}; accelerations: {} (--columns "
+      fmt::format("{}: time: {}; positions: {}; velocities: {}; accelerations: {}{}{} (--columns "
                   "selects other positions)",
-                  file_, format_.names[roles_.time], names_of(roles_.positions),
-                  names_of(roles_.velocities), names_of(roles_.accelerations)));
+                  file_, shown(format_.names[roles_.time]), names_of(roles_.positions),
+                  names_of(roles_.velocities), names_of(roles_.accelerations),
+                  left_out_.empty() ? "" : "; left out: ", left_out_));
 }
 
 std::string ColumnRoles::names_of(const Columns& columns) const {
   std::string text;
   for (const std::size_t c : columns) {
-    text += (text.empty() ? "" : ", ") + format_.names[c];
+    text += (text.empty() ? "" : ", ") + shown(format_.names[c]);
   }
   return text.empty() ? "none" : text;
 }

@@ -7,8 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "apps/files/line_reader.hpp"
 #include "apps/files/numbers.hpp"
-#include "apps/tables/format.hpp"
+#include "apps/tables/text_rows.hpp"
 
 namespace splinecast::apps {
 
@@ -25,16 +26,17 @@ struct Roles {
 /// read of each field until every column has had a number.
 class ColumnRoles {
  public:
-  /// Finds the time column. `file` is for messages. Throws InputError if there is none, or if two
-  /// columns have the same name.
-  ColumnRoles(std::string file, const TableFormat& format, std::optional<TimeUnit> unit);
+  /// Finds the time column: the requested one, else the first with the name of a time. `file` is
+  /// for messages. Throws InputError if there is none, or if two columns have the same name.
+  ColumnRoles(std::string file, const TextFormat& format, const TableOptions& options);
 
-  /// Finds the columns of positions and given derivatives. `selected` names the positions in order.
-  /// If it is empty, all numeric columns without another role are positions, and a message lists
-  /// the roles if a name is ambiguous. `rest` begins after the first row. Throws InputError with
-  /// the column for one that looks like a time or a derivative but cannot be used, and for more
-  /// than 64 positions.
-  void find_values(const std::vector<std::string>& selected, Lines rest);
+  /// Finds the columns of positions and given derivatives. `options.columns` names the positions in
+  /// order. If it is empty, all numeric columns without another role are positions, and a message
+  /// lists the roles, unless `quiet`, if a name is ambiguous. The rows begin at `first_row`; reads
+  /// them until each column has had a number. Throws InputError with the column for one that looks
+  /// like a time or a derivative but cannot be used, and for more than 64 positions.
+  void find_values(const TableOptions& options, LineReader& lines,
+                   const LineReader::Place& first_row);
 
   [[nodiscard]] const Roles& roles() const { return roles_; }
 
@@ -42,11 +44,15 @@ class ColumnRoles {
   using Columns = std::vector<std::size_t>;
 
   [[nodiscard]] std::optional<std::size_t> find(const std::string& name) const;
+  [[nodiscard]] std::size_t known_column(const std::string& wanted) const;
   [[nodiscard]] std::size_t selected_column(const std::string& wanted) const;
-  [[nodiscard]] Columns position_columns(bool is_selected, const Lines& rest) const;
-  [[nodiscard]] std::vector<bool> numeric_columns(Lines rest) const;
+  [[nodiscard]] std::size_t time_column(const TableOptions& options) const;
+  [[nodiscard]] Columns position_columns(const TableOptions& options,
+                                         const std::vector<bool>& is_numeric);
+  [[nodiscard]] std::vector<bool> numeric_columns(LineReader& lines) const;
   [[nodiscard]] bool is_sampled(const std::string& name) const;
   [[nodiscard]] Columns derivative_columns(std::string_view letter, const Columns& all) const;
+  void leave_out(std::size_t c, std::string_view why);
   void require_usable(std::size_t c) const;
   void require_no_unused_derivative() const;
   void add_position(std::size_t c);
@@ -55,10 +61,12 @@ class ColumnRoles {
   [[nodiscard]] std::string all_names() const;
 
   std::string file_;
-  const TableFormat& format_;
+  const TextFormat& format_;
   std::map<std::string, std::size_t> index_;    ///< by name
   std::map<std::string, std::size_t> aliases_;  ///< by the name in a comment
   Roles roles_;
+  bool is_time_requested_ = false;
+  std::string left_out_;  ///< columns without a role, for the message
 };
 
 }  // namespace splinecast::apps

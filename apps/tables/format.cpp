@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <array>
+#include <utility>
 
-#include "apps/files/numbers.hpp"
 #include "apps/process/exit_codes.hpp"
+#include "apps/tables/text_rows.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -13,41 +14,35 @@ namespace {
 /// The first format of the list. Constant-initialised: valid before any format is constructed.
 constinit const InputFormat* first_format = nullptr;
 
-TableBeginning beginning_of(const TextFile& file, Lines& lines) {
-  TableBeginning beginning{.file = file, .comments = {}, .first = {}};
-  while (lines.next(beginning.first)) {
-    const std::string_view text = without_blanks(beginning.first.text);
-    if (text.empty()) continue;
-    if (text.front() != '#') return beginning;
-    beginning.comments.push_back(without_blanks(text.substr(1)));
-  }
-  throw InputError(fmt::format("{}: there are no rows", file.name()));
-}
-
 }  // namespace
 
-InputFormat::InputFormat(int place, Fits fits, Read read) noexcept
-    : place_(place), fits_(fits), read_(read), next_(first_format) {
+InputFormat::InputFormat(int place, Fits fits, Open opens) noexcept
+    : place_(place), fits_(fits), open_(opens), next_(first_format) {
   first_format = this;
 }
 
-TableFormat InputFormat::read_beginning(const TextFile& file, Lines& lines) {
-  const TableBeginning beginning = beginning_of(file, lines);
+std::unique_ptr<RowReader> InputFormat::open(InputFile file, const TableOptions& options) {
+  std::array<char, 4096> bytes{};
+  const std::string_view read(bytes.data(), file.read(0, bytes));
+  FileBeginning beginning{.name = file.name(), .bytes = read};
+  beginning.is_text = read.find('\0') == std::string_view::npos;
+  if (beginning.is_text) {
+    LineReader lines(file);
+    read_beginning(lines, beginning);
+  }
   const InputFormat* found = nullptr;
   for (const InputFormat* format = first_format; format != nullptr; format = format->next_) {
     const bool is_before = found == nullptr || format->place_ < found->place_;
     if (is_before && format->fits_(beginning)) found = format;
   }
-  return found->read_(beginning, lines);  // never null: CSV accepts every file
+  if (found == nullptr) {
+    throw InputError(fmt::format("{}: is neither a text nor of another known format", file.name()));
+  }
+  return found->open_(std::move(file), options);
 }
 
-std::vector<std::string> column_names(std::string_view line, Split split) {
-  std::vector<std::string_view> fields;
-  split(line, fields);
-  std::vector<std::string> names;
-  names.reserve(fields.size());
-  for (const auto field : fields) names.emplace_back(trimmed(field));
-  return names;
+std::unique_ptr<RowReader> open_rows(const std::string& path, const TableOptions& options) {
+  return InputFormat::open(InputFile(path), options);
 }
 
 }  // namespace splinecast::apps

@@ -1,57 +1,51 @@
 #pragma once
 
+#include <cstddef>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "apps/files/lines.hpp"
-#include "apps/files/text_file.hpp"
+#include "apps/files/input_file.hpp"
+#include "apps/tables/options.hpp"
+#include "apps/tables/rows.hpp"
 
-/// The file formats of tables of waypoints and times.
+/// The file formats of rows.
 namespace splinecast::apps {
 
-/// The format of the rows, from the beginning of a file.
-struct TableFormat {
-  Split split = split_at_commas;     ///< how a row is split into fields
-  std::vector<std::string> names;    ///< of the columns
-  std::vector<std::string> aliases;  ///< other names of the same columns, or none
-  Line first_row;                    ///< number 0: there is no row
+/// What the beginning of a file shows.
+struct FileBeginning {
+  const std::string& name;  ///< of the file, for messages
+  std::string_view bytes;   ///< the first ones, at most 4 KiB
+  bool is_text = false;     ///< whether `bytes` has no NUL; else the other members are empty
+  std::vector<std::string> comments{};  ///< before the first line, in order, without `#`; the last
+                                        ///< 1,000
+  std::string first{};           ///< first line that is neither blank nor a comment, or empty
+  std::size_t first_number = 0;  ///< its number, from 1; 0: there is none
 };
 
-/// A file up to its first line that is neither blank nor a comment.
-struct TableBeginning {
-  const TextFile& file;
-  std::vector<std::string_view> comments;  ///< without `#`, in order
-  Line first;                              ///< that line
-};
-
-/// A table format. A constant of this type registers itself in the program's list before `main`
+/// A file format. A constant of this type registers itself in the program's list before `main`
 /// starts, so that a format is one source file, which no other file mentions. It must exist as long
 /// as the program runs.
 class InputFormat {
  public:
   /// Whether a file with this beginning has this format.
-  using Fits = bool (*)(const TableBeginning& beginning);
-  /// Determines the format of the rows. `lines` is after the first line, and on return after the
-  /// first row. Throws InputError with file and line.
-  using Read = TableFormat (*)(const TableBeginning& beginning, Lines& lines);
+  using Fits = bool (*)(const FileBeginning& beginning);
+  /// Opens a file of this format. Throws InputError if its rows cannot be read.
+  using Open = std::unique_ptr<RowReader> (*)(InputFile file, const TableOptions& options);
 
   /// Formats are tried in the order of their places. Each has a unique place below kLastPlace.
-  InputFormat(int place, Fits fits, Read read) noexcept;
-  static constexpr int kLastPlace = 100;  ///< of CSV, which accepts every file
+  InputFormat(int place, Fits fits, Open opens) noexcept;
+  static constexpr int kLastPlace = 100;  ///< of CSV, which accepts every text
 
-  /// Reads the beginning of a table in the first format that fits. Throws InputError if there are
-  /// no rows, and as `Read` does.
-  [[nodiscard]] static TableFormat read_beginning(const TextFile& file, Lines& lines);
+  /// Opens a file in the first format that fits. Throws InputError if none does, and as `Open`.
+  [[nodiscard]] static std::unique_ptr<RowReader> open(InputFile file, const TableOptions& options);
 
  private:
   int place_;
   Fits fits_;
-  Read read_;
+  Open open_;
   const InputFormat* next_;  ///< in the list
 };
-
-/// The names in a line, without surrounding blanks and quotes.
-[[nodiscard]] std::vector<std::string> column_names(std::string_view line, Split split);
 
 }  // namespace splinecast::apps

@@ -63,7 +63,7 @@ bool is_quaternion(DimensionKind kind) {
 /// Collects the requested kinds, one per dimension.
 class KindList {
  public:
-  KindList(const std::string& file, const ColumnNames& columns)
+  KindList(const std::string& file, const RowColumns& columns)
       : file_(file), columns_(columns), kinds_(columns.names.size()) {}
 
   void ask(const KindOption& option) {
@@ -86,6 +86,9 @@ class KindList {
 
   /// The requested kinds; of the other dimensions, the kinds by the columns' names.
   [[nodiscard]] std::vector<Dimension> filled() {
+    for (std::size_t d = 0; d < columns_.kinds.size(); ++d) {
+      if (!kinds_[d]) kinds_[d] = columns_.kinds[d];
+    }
     for (std::size_t d = 0; d + kQuaternionSize <= kinds_.size(); ++d) {
       const auto four = std::span(kinds_).subspan(d, kQuaternionSize);
       if (std::ranges::any_of(four, [](const auto& kind) { return kind.has_value(); })) continue;
@@ -124,7 +127,7 @@ class KindList {
   }
 
   const std::string& file_;
-  ColumnNames columns_;
+  const RowColumns& columns_;
   std::vector<std::optional<Dimension>> kinds_;
 };
 
@@ -140,7 +143,7 @@ std::optional<KindOption> parse_kind_option(const std::string& text) {
   return std::nullopt;
 }
 
-std::vector<Dimension> resolve_kinds(const std::string& file, const ColumnNames& columns,
+std::vector<Dimension> resolve_kinds(const std::string& file, const RowColumns& columns,
                                      const std::vector<KindOption>& asked) {
   KindList list(file, columns);
   for (const KindOption& option : asked) list.ask(option);

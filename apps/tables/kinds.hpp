@@ -12,19 +12,13 @@ namespace splinecast::apps {
 /// Reads `I:K`: a dimension's index from 0, or name, and a kind. Nothing for any other text.
 [[nodiscard]] std::optional<KindOption> parse_kind_option(const std::string& text);
 
-/// The position columns of a file: their names and, if a comment gives them, other names.
-struct ColumnNames {
-  const std::vector<std::string>& names;
-  const std::vector<std::string>& aliases;
-};
-
-/// The kind of each column: the requested one, else `quaternion` for four consecutive columns with
-/// such names (`qx qy qz qw`, `q_RS_w … q_RS_z`), else `linear`. The position of w in a quaternion
-/// follows from the last letters of its columns' names; with other names w is last. Throws
-/// InputError with the file and the option for an unknown dimension, two kinds for one dimension,
-/// or a quaternion of fewer than four dimensions.
+/// The kind of each column: the requested one, else what the format defines, else `quaternion` for
+/// four consecutive columns with such names (`qx qy qz qw`, `q_RS_w … q_RS_z`), else `linear`. The
+/// position of w in a quaternion follows from the last letters of its columns' names; with other
+/// names w is last. Throws InputError with the file and the option for an unknown dimension, two
+/// kinds for one dimension, or a quaternion of fewer than four dimensions.
 [[nodiscard]] std::vector<Dimension> resolve_kinds(const std::string& file,
-                                                   const ColumnNames& columns,
+                                                   const RowColumns& columns,
                                                    const std::vector<KindOption>& asked);
 
 /// The first quaternion of row i that is not a rotation, with its columns, for a message; nothing

@@ -11,7 +11,9 @@ std::optional<TimeUnit> unit_of_time_column(std::string_view name) {
   std::ranges::transform(lower, lower.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   std::string_view rest = lower;
-  for (const std::string_view base : {"timestamp", "time", "t"}) {
+  if (rest == "%time") return TimeUnit::nanoseconds;  // `rostopic echo -p`
+  for (const std::string_view base :
+       {"timestamp", "time", "__time", "stamp", "seconds", "secs", "sec", "t"}) {
     if (!rest.starts_with(base)) continue;
     rest.remove_prefix(base.size());
     if (rest.empty()) return TimeUnit::seconds;

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "apps/files/numbers.hpp"
 #include "apps/process/exit_codes.hpp"
-#include "apps/tables/format.hpp"
+#include "apps/tables/text_rows.hpp"
+#include "apps/tables/time_column.hpp"
 
 /// TUM text: `t x y z qx qy qz qw` in each row. If the last comment before the first row has eight
 /// words, they are aliases of the columns.
@@ -13,26 +15,37 @@ namespace {
 
 constexpr std::array<std::string_view, 8> kColumns{"t", "x", "y", "z", "qx", "qy", "qz", "qw"};
 
-/// Whether the first line has fields separated by blanks, a number in the first one, and no comma.
-bool is_tum(const TableBeginning& beginning) {
-  const std::string_view text = without_blanks(beginning.first.text);
-  return text.find(',') == std::string_view::npos &&
-         text.find_first_of(" \t") != std::string_view::npos &&
-         parse_number(column_names(text, split_at_blanks)[0]).has_value();
+/// Whether a comment is the header of fields separated by tabs: CSV.
+bool is_header_with_tabs(const std::string& comment) {
+  return comment.find('\t') != std::string::npos &&
+         std::ranges::any_of(column_names(comment, split_at_tabs), [](const std::string& name) {
+           return unit_of_time_column(name).has_value();
+         });
 }
 
-TableFormat read_tum(const TableBeginning& beginning, Lines& /*lines*/) {
-  const Line& first = beginning.first;
-  const std::size_t fields = column_names(first.text, split_at_blanks).size();
+/// Whether the first line has fields separated by blanks, a number in the first one, and no comma
+/// or semicolon.
+bool is_tum(const FileBeginning& beginning) {
+  const std::string_view text = beginning.first;
+  return text.find_first_of(",;") == std::string_view::npos &&
+         text.find_first_of(" \t") != std::string_view::npos &&
+         parse_number(column_names(text, split_at_blanks)[0]).has_value() &&
+         std::ranges::none_of(beginning.comments, is_header_with_tabs);
+}
+
+TextFormat read_tum(const FileBeginning& beginning) {
+  const std::size_t fields = column_names(beginning.first, split_at_blanks).size();
   if (fields != kColumns.size()) {
     throw InputError(fmt::format(
-        "{}:{}: neither CSV (no comma, no header) nor TUM text (8 fields; this line has {})",
-        beginning.file.name(), first.number, fields));
+        "{}:{}: neither CSV (no comma, semicolon or header) nor TUM text (8 fields separated by "
+        "blanks; this line has {})",
+        beginning.name, beginning.first_number, fields));
   }
-  TableFormat format{.split = split_at_blanks,
-                     .names = {kColumns.begin(), kColumns.end()},
-                     .aliases = {},
-                     .first_row = first};
+  TextFormat format{.split = split_at_blanks,
+                    .separator = "blanks",
+                    .names = {kColumns.begin(), kColumns.end()},
+                    .aliases = {},
+                    .is_first_a_row = true};
   if (!beginning.comments.empty()) {
     format.aliases = column_names(beginning.comments.back(), split_at_blanks);
   }
@@ -40,7 +53,11 @@ TableFormat read_tum(const TableBeginning& beginning, Lines& /*lines*/) {
   return format;
 }
 
-const InputFormat tum_format(10, is_tum, read_tum);
+std::unique_ptr<RowReader> open_tum(InputFile file, const TableOptions& options) {
+  return open_text(std::move(file), read_tum, options);
+}
+
+const InputFormat tum_format(10, is_tum, open_tum);
 
 }  // namespace
 }  // namespace splinecast::apps

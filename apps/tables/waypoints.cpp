@@ -6,142 +6,108 @@
 #include <string_view>
 #include <utility>
 
-#include "apps/files/text_file.hpp"
-#include "apps/tables/column_roles.hpp"
-#include "apps/tables/format.hpp"
+#include "apps/process/messages.hpp"
 #include "apps/tables/kinds.hpp"
 
 namespace splinecast::apps {
 namespace {
 
-/// Reads the rows of a waypoint file.
+/// Collects the rows of a reader.
 class TableReader {
  public:
-  TableReader(const std::string& path, std::optional<TimeUnit> time_unit)
-      : file_(path),
-        lines_(file_.text()),
-        format_(InputFormat::read_beginning(file_, lines_)),
-        columns_(file_.name(), format_, time_unit) {}
-  TableReader(const TableReader&) = delete;
-  TableReader& operator=(const TableReader&) = delete;
-  ~TableReader() = default;
-
-  [[nodiscard]] const std::string& name() const { return file_.name(); }
-  [[nodiscard]] const Roles& roles() const { return columns_.roles(); }
-  [[nodiscard]] std::vector<std::string> position_names() const {
-    std::vector<std::string> names;
-    for (const std::size_t field : roles().positions) names.push_back(format_.names[field]);
-    return names;
+  TableReader(std::shared_ptr<RowReader> rows, const TableOptions& options)
+      : rows_(std::move(rows)), options_(options) {
+    table_.file = rows_->name();
+    table_.names = rows_->columns().names;
+    table_.source = rows_;
   }
 
-  /// The kinds of the position columns.
-  [[nodiscard]] std::vector<Dimension> kinds(const std::vector<KindOption>& asked) const {
-    std::vector<std::string> aliases;
-    for (const std::size_t field : roles().positions) {
-      if (!format_.aliases.empty()) aliases.push_back(format_.aliases[field]);
+  WaypointTable read() {
+    table_.kinds = kinds_of(*rows_, options_.kinds);
+    while (next()) {
+      add();
+      if (table_.size() == kFirstRows) reserve();
+      if (table_.size() % kShownRows == 0) show_progress();
     }
-    return resolve_kinds(name(), {.names = position_names(), .aliases = aliases}, asked);
-  }
-
-  /// Finds the columns of positions and given derivatives.
-  void find_values(const std::vector<std::string>& selected) {
-    columns_.find_values(selected, lines_);
-  }
-
-  /// Reads the fields of the next row. Returns false at the end.
-  bool next(std::vector<std::string_view>& fields) {
-    if (!started_) {
-      started_ = true;
-      line_ = format_.first_row;
-      if (line_.number == 0) return false;
-    } else if (!lines_.next_data(line_)) {
-      return false;
+    require_complete(table_.velocities, has_velocities_, "velocities");
+    require_complete(table_.accelerations, has_accelerations_, "accelerations");
+    if (table_.size() == 0) {
+      throw InputError(fmt::format("{}: there are no waypoints", table_.file));
     }
-    format_.split(line_.text, fields);
-    return true;
-  }
-  void require_width(const std::vector<std::string_view>& fields) const {
-    if (fields.size() == format_.names.size()) return;
-    throw InputError(fmt::format("{}:{}:1: {} fields, but there are {} columns", name(),
-                                 line_.number, fields.size(), format_.names.size()));
+    return std::move(table_);
   }
 
-  [[nodiscard]] std::size_t line() const { return line_.number; }
-
-  /// Estimated number of rows, if all are as long as the first one, plus a sixteenth.
-  [[nodiscard]] std::size_t rows_expected() const {
-    if (format_.first_row.number == 0) return 0;
-    const std::size_t length = std::max(format_.first_row.text.size(), 2 * format_.names.size());
-    return file_.text().size() / (length + 1) + file_.text().size() / 16 / (length + 1) + 1;
-  }
-
-  [[nodiscard]] Time time(const std::vector<std::string_view>& fields) const {
-    const auto time = parse_time(fields[roles().time], roles().unit);
-    if (!time) fail(fields[roles().time], roles().time, "is not a time");
-    if (!is_time_in_range(*time)) {
-      fail(fields[roles().time], roles().time, "is not within ±(2^62 − 1) ns, about 146 years");
-    }
-    return *time;
-  }
-  [[nodiscard]] double number(const std::vector<std::string_view>& fields,
-                              std::size_t column) const {
-    const auto value = parse_number(fields[column]);
-    if (!value) fail(fields[column], column, "is not a number");
-    return *value;
+  std::vector<Time> read_times() {
+    while (next()) table_.times.push_back(row_.time);
+    return std::move(table_.times);
   }
 
  private:
-  [[noreturn]] void fail(std::string_view field, std::size_t column_at, const char* what) const {
-    throw InputError(fmt::format("{}:{}:{}: column '{}': '{}' {}", name(), line_.number,
-                                 field.data() - line_.text.data() + 1, format_.names[column_at],
-                                 trimmed(field), what));
+  static constexpr std::size_t kFirstRows = 1024;
+  static constexpr std::size_t kShownRows = 65'536;
+
+  /// Reads the next row that can be read.
+  bool next() {
+    if (!options_.on_bad_row) return rows_->next(row_);
+    for (;;) {
+      try {
+        return rows_->next(row_);
+      } catch (const InputError& error) {
+        options_.on_bad_row(row_.number, error);
+      }
+    }
   }
 
-  TextFile file_;
-  Lines lines_;
-  TableFormat format_;
-  ColumnRoles columns_;
-  Line line_;
-  bool started_ = false;
+  void add() {
+    table_.times.push_back(row_.time);
+    table_.lines.push_back(row_.number);
+    append(row_.position, table_.positions);
+    append(row_.velocity, table_.velocities);
+    append(row_.acceleration, table_.accelerations);
+    if (!row_.velocity.empty()) ++has_velocities_;
+    if (!row_.acceleration.empty()) ++has_accelerations_;
+  }
+  static void append(std::span<const double> values, std::vector<double>& all) {
+    all.insert(all.end(), values.begin(), values.end());
+  }
+
+  /// Reserves memory for the number of rows that the first ones let expect, up to a size from which
+  /// reallocation is cheap in comparison with reading.
+  void reserve() {
+    constexpr std::size_t kMostRows = std::size_t{1} << 18U;
+    const double expected =
+        1.07 * static_cast<double>(kFirstRows) / std::max(rows_->fraction_read(), 1e-9);
+    const std::size_t rows =
+        static_cast<std::size_t>(std::min(expected, static_cast<double>(kMostRows)));
+    table_.times.reserve(rows);
+    table_.lines.reserve(rows);
+    table_.positions.reserve(rows * table_.dimensions());
+    for (auto* values : {&table_.velocities, &table_.accelerations}) {
+      if (!values->empty()) values->reserve(rows * table_.dimensions());
+    }
+  }
+
+  void show_progress() {
+    progress_.show(fmt::format("{}: {:.0f} % read", table_.file, 100 * rows_->fraction_read()));
+  }
+
+  /// Drops a derivative that not all rows have.
+  void require_complete(std::vector<double>& values, std::size_t rows, std::string_view what) {
+    if (rows == table_.size() || rows == 0) return;
+    values.clear();
+    if (options_.quiet) return;
+    say(fmt::format("{}: {} of {} rows have {}: they are left out", table_.file, rows,
+                    table_.size(), what));
+  }
+
+  std::shared_ptr<RowReader> rows_;
+  const TableOptions& options_;
+  WaypointTable table_{};
+  Row row_{};
+  std::size_t has_velocities_ = 0;
+  std::size_t has_accelerations_ = 0;
+  Progress progress_;
 };
-
-/// Appends the numbers of a row in the given columns.
-void append_numbers(const TableReader& reader, const std::vector<std::string_view>& fields,
-                    const std::vector<std::size_t>& columns, std::vector<double>& values) {
-  for (const std::size_t column : columns) values.push_back(reader.number(fields, column));
-}
-
-void append_row(const TableReader& reader, const std::vector<std::string_view>& fields,
-                WaypointTable& table) {
-  reader.require_width(fields);
-  const Time time = reader.time(fields);
-  const Roles& roles = reader.roles();
-  append_numbers(reader, fields, roles.positions, table.positions);
-  append_numbers(reader, fields, roles.velocities, table.velocities);
-  append_numbers(reader, fields, roles.accelerations, table.accelerations);
-  table.times.push_back(time);
-  table.lines.push_back(reader.line());
-}
-
-/// Removes the values of an incomplete row.
-void drop_unfinished_row(const Roles& roles, WaypointTable& table) {
-  table.positions.resize(table.size() * roles.positions.size());
-  table.velocities.resize(table.size() * roles.velocities.size());
-  table.accelerations.resize(table.size() * roles.accelerations.size());
-}
-
-/// Reserves memory for the expected number of rows, up to a size from which reallocation is cheap
-/// in comparison with reading.
-void reserve(const TableReader& reader, WaypointTable& table) {
-  constexpr std::size_t kMostRows = std::size_t{1} << 18U;
-  const std::size_t rows = std::min(reader.rows_expected(), kMostRows);
-  const Roles& roles = reader.roles();
-  table.times.reserve(rows);
-  table.lines.reserve(rows);
-  table.positions.reserve(rows * roles.positions.size());
-  table.velocities.reserve(rows * roles.velocities.size());
-  table.accelerations.reserve(rows * roles.accelerations.size());
-}
 
 std::span<const double> row_of(const std::vector<double>& values, std::size_t i,
                                std::size_t dimensions) noexcept {
@@ -180,40 +146,20 @@ void WaypointTable::keep_rows(const std::function<bool(std::size_t i)>& keeps) {
 }
 
 std::string WaypointTable::where(std::size_t i) const {
-  return fmt::format("{}:{}", file, lines[i]);
+  return source ? source->where(lines[i]) : fmt::format("{}:{}", file, lines[i]);
+}
+
+std::vector<Dimension> kinds_of(const RowReader& rows, const std::vector<KindOption>& asked) {
+  return resolve_kinds(rows.name(), rows.columns(), asked);
 }
 
 WaypointTable read_waypoints(const std::string& path, const TableOptions& options) {
-  TableReader reader(path, options.time_unit);
-  reader.find_values(options.columns);
-  WaypointTable table;
-  table.file = reader.name();
-  table.names = reader.position_names();
-  table.kinds = reader.kinds(options.kinds);
-  reserve(reader, table);
-  std::vector<std::string_view> fields;
-  while (reader.next(fields)) {
-    try {
-      append_row(reader, fields, table);
-    } catch (const InputError& error) {
-      if (!options.on_bad_row) throw;
-      drop_unfinished_row(reader.roles(), table);
-      options.on_bad_row(reader.line(), error);
-    }
-  }
-  if (table.size() == 0) throw InputError(fmt::format("{}: there are no waypoints", table.file));
-  return table;
+  return TableReader(open_rows(path, options), options).read();
 }
 
-std::vector<Time> read_times(const std::string& path, std::optional<TimeUnit> time_unit) {
-  TableReader reader(path, time_unit);
-  std::vector<Time> times;
-  std::vector<std::string_view> fields;
-  while (reader.next(fields)) {
-    reader.require_width(fields);
-    times.push_back(reader.time(fields));
-  }
-  return times;
+std::vector<Time> read_times(const std::string& path, TableOptions options) {
+  options.only_times = true;
+  return TableReader(open_rows(path, options), options).read_times();
 }
 
 void require_spline_input(const WaypointTable& table) {

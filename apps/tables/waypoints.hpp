@@ -2,34 +2,18 @@
 
 #include <cstddef>
 #include <functional>
-#include <optional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "apps/files/numbers.hpp"
-#include "apps/process/exit_codes.hpp"
+#include "apps/tables/options.hpp"
+#include "apps/tables/rows.hpp"
 #include "splinecast/dimension_kind.hpp"
 #include "splinecast/time.hpp"
 #include "splinecast/waypoint.hpp"
 
 namespace splinecast::apps {
-
-/// A requested kind. The dimension is a name or an index from 0; of a quaternion, the first one.
-struct KindOption {
-  std::string dimension;
-  Dimension kind{};
-};
-
-/// Options for reading a waypoint file.
-struct TableOptions {
-  std::vector<std::string> columns{};   ///< position columns, in this order; none: all numeric
-  std::vector<KindOption> kinds{};      ///< of dimensions; others by the columns' names
-  std::optional<TimeUnit> time_unit{};  ///< overrides the unit in the time column's name
-  /// Called with the line of each row that cannot be read; the row is left out. Unset: the first
-  /// such row throws.
-  std::function<void(std::size_t line, const InputError&)> on_bad_row{};
-};
 
 /// The waypoints of a file.
 class WaypointTable {
@@ -38,7 +22,7 @@ class WaypointTable {
   std::vector<std::string> names;  ///< of the position columns
   std::vector<Dimension> kinds;    ///< of these; none: all linear
   std::vector<Time> times;
-  std::vector<std::size_t> lines;     ///< line of each waypoint in the file, from 1
+  std::vector<std::size_t> lines;     ///< number of each row in the file: see Row::number
   std::vector<double> positions;      ///< [waypoint][dimension]
   std::vector<double> velocities;     ///< [waypoint][dimension], or empty if the file has none
   std::vector<double> accelerations;  ///< [waypoint][dimension], or empty if the file has none
@@ -60,18 +44,19 @@ class WaypointTable {
   /// row i. If it throws, the table is unusable.
   void keep_rows(const std::function<bool(std::size_t i)>& keeps);
 
-  /// `file:line`, for messages.
+  /// The place of row i, for messages: as RowReader::where, or `file:line`.
   [[nodiscard]] std::string where(std::size_t i) const;
+  std::shared_ptr<const RowReader> source{};  ///< for where(); null: a text with this name
 };
 
-/// Reads a waypoint file: CSV with a header, which may be a `#` comment, or TUM text. Throws
-/// InputError with file, line and column for a field that cannot be read. Accepts values that are
-/// not finite and times that do not increase: the callers check these.
+/// Reads a file of any format whole, see open_rows(). A derivative that only some of the rows have
+/// is left out, with a message on standard error. Throws InputError with the row, the column and
+/// the value if a field cannot be read. Accepts values that are not finite and times that do not
+/// increase: the callers check these.
 [[nodiscard]] WaypointTable read_waypoints(const std::string& path, const TableOptions& options);
 
-/// Reads only the time column of such a file. Throws as read_waypoints() does.
-[[nodiscard]] std::vector<Time> read_times(const std::string& path,
-                                           std::optional<TimeUnit> time_unit);
+/// Reads only the times of such a file. Throws as read_waypoints() does.
+[[nodiscard]] std::vector<Time> read_times(const std::string& path, TableOptions options);
 
 /// Throws InputError with the line of the first waypoint that a spline cannot contain: not finite,
 /// or not after the previous one.

@@ -10,13 +10,13 @@
 
 #include "apps/cli/command.hpp"
 #include "apps/cli/verb.hpp"
+#include "apps/files/lines.hpp"
 #include "apps/files/numbers.hpp"
 #include "apps/files/polynomial_file.hpp"
 #include "apps/limits/file.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "apps/recordings/advice.hpp"
 #include "apps/recordings/selection.hpp"
-#include "apps/tables/format.hpp"
 #include "apps/tables/kinds.hpp"
 #include "apps/tables/time_column.hpp"
 #include "ipc/memory/names.hpp"
@@ -132,7 +132,7 @@ void try_times(std::string_view text) {
   const apps::TableOptions options = options_of(take_line(text));
   const MemoryFile file(text);
   try {
-    for (const Time t : apps::read_times(file.path(), options.time_unit)) {
+    for (const Time t : apps::read_times(file.path(), {.time_unit = options.time_unit})) {
       require(is_time_in_range(t), "times are in range");
     }
   } catch (const apps::InputError&) {

@@ -21,7 +21,7 @@ RECIPES = Path(__file__).resolve().parent
 PROJECT = RECIPES.parent.parent
 PROGRAMS = {"PROGRAM": "bin/splinecast", "TESTS": "bin/splinecast_tests"}
 # The tests that the commands of the patches run.
-TEST_FILES = "core/methods/|apps/streams/count|apps/tables/semicolons|ipc/layout/page|ipc/board/"
+TEST_FILES = "core/methods/|apps/streams/count|apps/tables/bars|ipc/layout/page|ipc/board/"
 
 
 def copy_sources(tree):

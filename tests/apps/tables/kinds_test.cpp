@@ -37,7 +37,7 @@ std::string kinds_of(const Names& names, const Names& asked = {}, const Names& a
   for (const std::string& text : asked) options.push_back(parse_kind_option(text).value());
   std::string text;
   try {
-    for (const Dimension& kind : resolve_kinds("f.csv", {names, aliases}, options)) {
+    for (const Dimension& kind : resolve_kinds("f.csv", {names, aliases, {}}, options)) {
       if (!text.empty()) text += " ";
       text += to_string(kind);
     }
