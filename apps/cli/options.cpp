@@ -103,7 +103,12 @@ void add_table_options(Command& verb, TableOptions& options) {
           "(default: quaternion for columns named qx qy qz qw or q_..._w to q_..._z, else linear)")
       .separated_by_commas()
       .type("I:K,...");
+  verb.option("--time-column", options.time_column,
+              "Time column, by name (default: the first one with a name such as t, time, stamp or "
+              "timestamp_us)")
+      .type("NAME");
   add_time_unit(verb, options.time_unit);
+  verb.flag("--quiet", options.quiet, "Print no messages about what the columns are read as");
 }
 
 void add_time_unit(Command& verb, std::optional<TimeUnit>& unit) {

@@ -15,7 +15,7 @@
 
 namespace splinecast::apps {
 
-/// Adds `--columns`, `--kind` and `--time-unit`.
+/// Adds `--columns`, `--kind`, `--time-column`, `--time-unit` and `--quiet`.
 void add_table_options(Command& verb, TableOptions& options);
 void add_time_unit(Command& verb, std::optional<TimeUnit>& unit);
 

@@ -36,8 +36,7 @@ struct RowColumns {
   [[nodiscard]] std::size_t dimensions() const noexcept { return names.size(); }
 };
 
-/// Reads the rows of a file in their order. Needs memory for one row, however long the file is. One
-/// thread uses it.
+/// Reads the rows of a file in their order, with memory for one row. One thread uses it.
 class RowReader {
  public:
   RowReader() = default;
@@ -65,9 +64,9 @@ class RowReader {
   [[nodiscard]] virtual double fraction_read() const = 0;
 };
 
-/// Opens a file, `-` for standard input, in the first format that fits. Tells on standard error
-/// which columns are read as what if their names alone do not say it. Throws InputError if the file
-/// cannot be read.
+/// Opens a file, `-` for standard input, in the first format that fits. Reports on standard error
+/// which columns are read as what, if this is not clear from their names. Throws InputError if the
+/// file cannot be read.
 [[nodiscard]] std::unique_ptr<RowReader> open_rows(const std::string& path,
                                                    const TableOptions& options);
 
