@@ -10,7 +10,7 @@
 #include "apps/output/stream.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "apps/recordings/advice.hpp"
-#include "apps/recordings/selection.hpp"
+#include "apps/recordings/recording.hpp"
 #include "apps/streams/report.hpp"
 #include "apps/streams/rows.hpp"
 #include "apps/tables/kinds.hpp"
@@ -43,7 +43,8 @@ Rows rows_of_file(const AdviseOptions& options) {
   constexpr IngestLimits kAnyInterval{.min_interval = Time(1), .max_interval = Time::max()};
   Rows rows{.table = read_waypoints(options.source, options.table), .source = {}};
   rows.source.name = rows.table.file;
-  const LateRows late = drop_unfit_rows(rows.table, kAnyInterval, LatePolicy::pass, nullptr);
+  const LateRows late =
+      prepare(rows.table, {.limits = kAnyInterval, .late = LatePolicy::pass}, nullptr);
   rows.source.duplicates = late.duplicate;
   rows.source.out_of_order = late.out_of_order;
   return rows;

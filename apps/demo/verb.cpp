@@ -20,6 +20,7 @@
 #include "apps/streams/remover.hpp"
 #include "apps/streams/report.hpp"
 #include "apps/streams/solve.hpp"
+#include "apps/tables/table_rows.hpp"
 #include "apps/trials/judgement.hpp"
 
 namespace splinecast::apps {
@@ -130,7 +131,8 @@ int run_demo(const DemoOptions& options) {
   ReplayOptions replay{.stream = stream};
   if (!options.file.empty()) replay.duration = options.seconds;
   RefusedRows refused;
-  prepare_replay(table, replay, refused);
+  Recording recording(std::make_unique<TableRows>(table), table.kinds, preparation_of(replay),
+                      nullptr);
 
   catch_stop_signals();
   const StreamRemover remover({stream});
@@ -139,7 +141,7 @@ int run_demo(const DemoOptions& options) {
   for (std::size_t r = 0; r < kReaders; ++r) {
     readers.emplace_back([&] { return run_demo_reader(stream); });
   }
-  Child producer([&] { return replay_json(replay_table(table, replay, refused)); });
+  Child producer([&] { return replay_json(replay_recording(recording, replay, refused)); });
 
   const json sent = producer.result();
   std::vector<json> seen;

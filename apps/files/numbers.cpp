@@ -138,6 +138,22 @@ std::optional<double> parse_number(std::string_view text) noexcept {
   return value;
 }
 
+bool take_number(std::string_view& text, double& value) noexcept {
+  const auto [end, error] = fast_float::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{}) return false;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return true;
+}
+
+bool take_time(std::string_view& text, TimeUnit unit, Time& value) noexcept {
+  std::string_view rest = text;
+  const auto whole = parse_whole_time(take_digits(rest), unit);
+  if (!whole) return false;
+  value = *whole;
+  text = rest;
+  return true;
+}
+
 std::optional<std::uint64_t> parse_count(std::string_view text) noexcept {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -140,12 +140,16 @@ void measure_dimension(const WaypointTable& table, const std::vector<ChordPair>&
 Intervals measure_intervals(std::span<const Time> times) {
   std::vector<Time> all;
   for (std::size_t i = 1; i < times.size(); ++i) all.push_back(times[i] - times[i - 1]);
-  Intervals found{.median = core::quantile(std::span(all), 0.5),
-                  .p5 = core::quantile(std::span(all), 0.05),
-                  .p95 = core::quantile(std::span(all), 0.95),
-                  .largest = std::ranges::max(all)};
+  return measure_intervals(all, std::ranges::max(all));
+}
+
+Intervals measure_intervals(std::vector<Time>& intervals, Time largest) {
+  Intervals found{.median = core::quantile(std::span(intervals), 0.5),
+                  .p5 = core::quantile(std::span(intervals), 0.05),
+                  .p95 = core::quantile(std::span(intervals), 0.95),
+                  .largest = largest};
   std::vector<Time> deviations;
-  for (const Time interval : all) {
+  for (const Time interval : intervals) {
     if (interval > found.gap_from()) ++found.gaps;
     deviations.push_back(std::chrono::abs(interval - found.median));
   }

@@ -33,6 +33,10 @@ struct Intervals {
 /// Measures the intervals between at least two increasing times.
 [[nodiscard]] Intervals measure_intervals(std::span<const Time> times);
 
+/// Measures at least one interval. `largest` may be that of a longer recording, of which these are
+/// a part. Changes their order.
+[[nodiscard]] Intervals measure_intervals(std::vector<Time>& intervals, Time largest);
+
 /// The motion of one dimension, in its unit and seconds.
 struct DimensionMotion {
   double noise = 0;          ///< standard deviation of noise and rounding of the positions

@@ -24,10 +24,13 @@ enum class RefusedBy : std::uint8_t {
 };
 inline constexpr std::size_t kRefusedBy = 3;
 
+/// The reason of a row that cannot be read.
+inline constexpr std::string_view kUnreadable = "unreadable";
+
 /// A row of a recording that is not interpolated.
 struct RefusedRow {
   RefusedBy by{};
-  std::string_view reason;              ///< `unreadable`, or from to_string()
+  std::string_view reason;              ///< kUnreadable, or from to_string()
   std::optional<std::size_t> line{};    ///< in the file, from 1; unset: not a row of the file
   std::optional<ipc::Word> item{};      ///< number in the ring; if the solver refused it
   std::optional<std::size_t> loop{};    ///< from 1; if the row was played

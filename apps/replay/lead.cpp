@@ -25,13 +25,13 @@ void judge_lead(Time lead, Time needed, Time interval, const SolvedHow& how,
 
 }  // namespace
 
-Time choose_lead(const WaypointTable& table, const ReplayOptions& options,
+Time choose_lead(const Survey& survey, const ReplayOptions& options,
                  const ipc::RegionHeader& board) {
   const auto live = ipc::live_options(board);
-  if (!live || !options.rate || table.size() < 2) return options.lead.value_or(kLeastLead);
+  if (!live || !options.rate || survey.rows < 2) return options.lead.value_or(kLeastLead);
   const SolvedHow how{.settle = board.settle, .freeze_ahead = live->freeze_ahead};
-  const Intervals intervals = measure_intervals(table.times);
-  const Time length = options.loops > 1 ? Time::max() : table.times.back() - table.times.front();
+  const Intervals& intervals = survey.intervals;
+  const Time length = options.loops > 1 ? Time::max() : survey.last - survey.first;
   if (options.lead) {
     const Time needed = depth_needed(intervals.median, length, how);
     if (!options.quiet) {

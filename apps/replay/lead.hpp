@@ -5,10 +5,10 @@
 
 namespace splinecast::apps {
 
-/// The lead of a live replay of a prepared table, on a board with this header: options.lead if it
+/// The lead of a live replay of a recording, on a board with this header: options.lead if it
 /// is set, else the result of advised_lead(). Unless `quiet`, reports on standard error why an
 /// advised lead differs from the default, or that the settle lag needs more than the given lead.
-[[nodiscard]] Time choose_lead(const WaypointTable& table, const ReplayOptions& options,
+[[nodiscard]] Time choose_lead(const Survey& survey, const ReplayOptions& options,
                                const ipc::RegionHeader& board);
 
 }  // namespace splinecast::apps

@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <optional>
 
+#include "apps/files/unit_of_name.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
-#include "apps/recordings/selection.hpp"
 #include "apps/replay/embedded_solver.hpp"
 #include "apps/replay/lead.hpp"
+#include "apps/replay/row_sender.hpp"
 #include "apps/replay/sent_rows.hpp"
 #include "apps/replay/solver_wait.hpp"
 #include "apps/streams/own_board.hpp"
 #include "ipc/options/curve.hpp"
-#include "ipc/solve/stream_solver.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/producer.hpp"
 
@@ -25,12 +25,13 @@ namespace {
 /// A running replay: the producer, and the embedded solver if there is one.
 class Replay {
  public:
-  Replay(const WaypointTable& table, const ReplayOptions& options, RefusedRows& refused)
-      : table_(table),
+  Replay(Recording& recording, const ReplayOptions& options, RefusedRows& refused)
+      : recording_(recording),
         options_(options),
-        solver_(options, [this] { look_for_refusals(); }),
+        solver_(options, [this] { rows_.look_if_begun(); }),
         producer_(options.stream, producer_options()),
-        rows_(table, options, producer_, refused) {}
+        rows_(recording, options, producer_, refused),
+        sender_(options, solver_, producer_, rows_) {}
 
   ReplayReport run() {
     try {
@@ -44,9 +45,9 @@ class Replay {
     }
     const Time base = first_time();
     require_continuation(base);
-    const bool played = play(base);
+    const bool played = play_to_end(base);
     finish();
-    return report((played || rows_.stopped()) && await_consumption());
+    return report((played || rows_.stopped()) && sender_.await_consumption());
   }
 
  private:
@@ -57,43 +58,77 @@ class Replay {
       withdraw_if_new();
       return false;
     }
-    if (!await_consumption()) return false;
+    if (!sender_.await_consumption()) return false;
     board_.emplace(options_.stream, producer_.stream_id(), options_.trust);
     before_ = board_->summary();
-    lead_ = choose_lead(table_, options_, board_->header());
-    freeze_ahead_ = ipc::live_options(board_->header()).value_or(ipc::LiveOptions{}).freeze_ahead;
-    rows_.begin();
+    const auto live = ipc::live_options(board_->header()).value_or(ipc::LiveOptions{});
+    sender_.set_lead(choose_lead(recording_.survey(), options_, board_->header()),
+                     live.freeze_ahead);
+    rows_.begin([this] { (void)board_->summary(); });
     return true;
   }
 
-  [[nodiscard]] std::size_t planned() const { return table_.size() * options_.loops; }
+  [[nodiscard]] std::size_t planned() const { return recording_.survey().rows * options_.loops; }
+
+  /// Plays all loops. Ends the stream if the recording can no longer be read.
+  bool play_to_end(Time base) {
+    try {
+      return play(base);
+    } catch (const InputError&) {
+      finish();
+      throw;
+    }
+  }
 
   /// Sends all loops; false if a stop is requested or a refused row stops it.
   bool play(Time base) {
-    const Time shift =
-        saturated_sum(table_.times.back() - table_.times.front(), median_interval(table_));
+    const Survey& survey = recording_.survey();
+    const Time shift = saturated_sum(survey.last - survey.first, survey.median);
     Progress progress;
     rows_.begin_rows();
     for (std::size_t loop = 0; loop < options_.loops; ++loop) {
-      const Time offset = saturated_sum(base - table_.times.front(),
+      const Time offset = saturated_sum(base - survey.first,
                                         saturated_product(shift, static_cast<std::int64_t>(loop)));
-      for (std::size_t i = 0; i < table_.size(); ++i) {
-        if (!send({.row = i, .loop = loop}, offset, progress)) return false;
+      recording_.rewind();
+      for (PreparedRow row; recording_.next(row);) {
+        Waypoint waypoint = row.waypoint();
+        waypoint.time = saturated_sum(waypoint.time, offset);
+        if (!sender_.send({.number = row.number, .loop = loop}, waypoint, row.follows_gap)) {
+          return false;
+        }
+        show(progress);
+        if (rows_.stopped()) return false;
       }
     }
     return true;
   }
 
+  void show(Progress& progress) const {
+    if (rows_.sent() % 256 != 0 && !options_.rate) return;
+    progress.show(fmt::format("{}: {} of {} waypoints", options_.stream, rows_.sent(), planned()));
+  }
+
   [[nodiscard]] ProducerOptions producer_options() const {
-    return {.dimensions = table_.dimensions(),
-            .names = table_.names,
-            .kinds = table_.kinds,
-            .clock = options_.clock,
-            .start = options_.start.value_or(unasked()),
-            .limits = options_.limits,
-            .capacity = options_.capacity,
-            .access = options_.access,
-            .trust = options_.trust};
+    ProducerOptions made{.dimensions = recording_.columns().dimensions(),
+                         .names = {},
+                         .units = {},
+                         .kinds = recording_.kinds(),
+                         .clock = options_.clock,
+                         .start = options_.start.value_or(unasked()),
+                         .limits = options_.limits,
+                         .capacity = options_.capacity,
+                         .access = options_.access,
+                         .trust = options_.trust};
+    for (const std::string& column : recording_.columns().names) {
+      auto [name, unit] = name_and_unit(column);
+      made.names.push_back(std::move(name));
+      made.units.push_back(std::move(unit));
+    }
+    // The ring must accept the first waypoint after a gap.
+    if (options_.gap.policy == GapPolicy::split) {
+      made.limits.max_interval = std::max(made.limits.max_interval, recording_.survey().longest);
+    }
+    return made;
   }
 
   [[nodiscard]] Condition end() const { return options_.end.value_or(unasked()); }
@@ -122,7 +157,8 @@ class Replay {
 
   /// Time of the first waypoint on the stream's clock.
   [[nodiscard]] Time first_time() const {
-    return options_.clock == StreamClock::monotonic ? clock_.now() + lead_ : table_.times.front();
+    return options_.clock == StreamClock::monotonic ? clock_.now() + sender_.lead()
+                                                    : recording_.survey().first;
   }
 
   void require_continuation(Time first) const {
@@ -133,123 +169,11 @@ class Replay {
         options_.stream, producer_.last_time().count(), first.count(), options_.stream));
   }
 
-  /// Sends a row at its time. Returns false if a stop is requested or a refused row stops it.
-  bool send(const PlayedRow& next, Time offset, Progress& progress) {
-    Waypoint waypoint = table_.waypoint(next.row);
-    waypoint.time = saturated_sum(waypoint.time, saturated_sum(offset, late_.shifted));
-    if (stop_requested() || (options_.rate && !pace(waypoint.time))) return false;
-    const AppendStatus status = append_when_there_is_room(waypoint);
-    if (status == AppendStatus::full) return false;
-    if (status == AppendStatus::accepted) {
-      rows_.note_sent(next, waypoint);
-    } else {
-      rows_.note_refusal(next, waypoint.time, status);
-    }
-    if (options_.rate || solver_.is_due()) {
-      solver_.solve();
-      rows_.look();
-    }
-    if (next.row % 256 == 0 || options_.rate) {
-      progress.show(
-          fmt::format("{}: {} of {} waypoints", options_.stream, rows_.sent(), planned()));
-    }
-    return !rows_.stopped();
-  }
-
-  /// Appends a waypoint, with `--late shift` moved if it is late. Returns `full` if a stop is
-  /// requested while it waits for room.
-  AppendStatus append_when_there_is_room(Waypoint& waypoint) {
-    const Time intended = waypoint.time;
-    Time lateness = shift_if_late(waypoint);
-    AppendStatus status = append(waypoint);
-    while (status == AppendStatus::full) {
-      if (stop_requested() || !await_room()) return status;
-      lateness = std::max(lateness, shift_if_late(waypoint));
-      status = append(waypoint);
-    }
-    note_lateness(lateness, waypoint.time - intended);
-    return status;
-  }
-
-  /// Returns the lateness of a waypoint that is sent now: the time from the waypoint to the settled
-  /// time, 0 if the waypoint is later. With `--late shift`, moves a late waypoint to `lead` after
-  /// now.
-  Time shift_if_late(Waypoint& waypoint) {
-    if (options_.clock != StreamClock::monotonic) return {};
-    const Time now = clock_.now();
-    const Time settled = std::max(producer_.earliest(), now + freeze_ahead_);
-    const Time lateness = std::max(settled - waypoint.time, Time::zero());
-    if (lateness > Time::zero() && options_.late == LatePolicy::shift) {
-      waypoint.time = std::max(waypoint.time, now + lead_);
-    }
-    return lateness;
-  }
-
-  /// Counts a late waypoint. If it was moved, moves all later ones by the same time.
-  void note_lateness(Time lateness, Time moved_by) {
-    if (lateness == Time::zero()) return;
-    late_.count(&LateRows::past, lateness);
-    if (moved_by > Time::zero()) late_.shift(moved_by);
-  }
-
-  /// Appends a waypoint. Returns `full` while kRefusalsKept earlier items are undecided, because
-  /// the board could overwrite a refusal before it is read. A ring of more than kRefusalsKept items
-  /// is not throttled.
-  AppendStatus append(const Waypoint& waypoint) {
-    rows_.look();
-    const bool is_behind =
-        rows_.undecided() >= ipc::kRefusalsKept && options_.capacity <= ipc::kRefusalsKept;
-    if (!is_behind) return producer_.append(waypoint);
-    (void)board_->summary();  // throws if there is no summary: no refusal can be read
-    return AppendStatus::full;
-  }
-
-  /// Waits until it is time to send: on a live stream `lead` before the waypoint's time, on a
-  /// recorded stream at the recorded time after the first waypoint.
-  bool pace(Time waypoint_time) {
-    if (options_.clock == StreamClock::monotonic) {
-      return solver_.wait_until(waypoint_time - lead_);
-    }
-    if (rows_.sent() == 0) recorded_start_ = clock_.now() - waypoint_time;
-    return solver_.wait_until(recorded_start_ + waypoint_time);
-  }
-
-  /// Waits while the solver has work to do; false if a stop is requested. Waits for a live solver
-  /// without limit, for a new one at most --wait.
-  template <typename Wait>
-  bool await(const Wait& wait) {
-    Time end = deadline(clock_, options_.wait);
-    for (;;) {
-      solver_.solve();
-      look_for_refusals();
-      if (wait()) return true;
-      if (stop_requested()) return false;
-      if (producer_.solver_alive()) {
-        end = deadline(clock_, options_.wait);
-      } else if (clock_.now() >= end) {
-        throw TimeOut(
-            fmt::format("the solver of stream '{}' has ended and no other attached within {} s",
-                        options_.stream, to_seconds(options_.wait)));
-      }
-    }
-  }
-  bool await_room() {
-    return await([this] { return producer_.wait_for_room(solver_.slice()); });
-  }
-  bool await_consumption() {
-    return await([this] { return producer_.wait_until_consumed(solver_.slice()); });
-  }
-
   void finish() {
     while (producer_.finish(end()) == AppendStatus::full) {
-      if (!await_room()) return;
+      if (!sender_.await_room()) return;
     }
     solver_.solve();
-  }
-
-  /// Reads new refusals. Before there is a board, there are none.
-  void look_for_refusals() {
-    if (board_) rows_.look();
   }
 
   [[nodiscard]] ReplayReport report(bool complete) {
@@ -270,7 +194,8 @@ class Replay {
                         .interpolated = taken - passed_over,
                         .passed_over = passed_over,
                         .refused = now.refused - before_.refused,
-                        .late = late_,
+                        .late = sender_.late(),
+                        .gaps = recording_.survey().gaps,
                         .stopped = stopped,
                         .interrupted = !complete};
     for (std::size_t i = 0; i < report.refused_by_reason.size(); ++i) {
@@ -280,30 +205,27 @@ class Replay {
     return report;
   }
 
-  const WaypointTable& table_;
+  Recording& recording_;
   const ReplayOptions& options_;
   MonotonicClock clock_;
   EmbeddedSolver solver_;  ///< first: throws if there is another one, before a ring is created
   Producer producer_;
   SentRows rows_;
-  Time recorded_start_{};
-  Time lead_{};
-  Time freeze_ahead_{};
-  LateRows late_;
+  RowSender sender_;
   std::optional<OwnBoard> board_;  ///< set once there is a board
   ipc::Summary before_;            ///< the summary when this replay began
 };
 
 }  // namespace
 
-ReplayReport replay_table(const WaypointTable& table, const ReplayOptions& options,
-                          RefusedRows& refused) {
+ReplayReport replay_recording(Recording& recording, const ReplayOptions& options,
+                              RefusedRows& refused) {
   if (!options.embedded && !await_solver_of_finished(options)) {
-    return {.unsent = table.size() * options.loops, .interrupted = true};
+    return {.unsent = recording.survey().rows * options.loops, .interrupted = true};
   }
   const bool had_board = ipc::region_exists(options.stream, ipc::RegionKind::spline);
   try {
-    return Replay(table, options, refused).run();
+    return Replay(recording, options, refused).run();
   } catch (...) {
     if (options.embedded && !had_board) remove_board_without_ring(options.stream, options.trust);
     throw;

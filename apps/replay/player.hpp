@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "apps/recordings/late_rows.hpp"
+#include "apps/recordings/recording.hpp"
 #include "apps/recordings/refused_rows.hpp"
-#include "apps/tables/waypoints.hpp"
+#include "apps/tables/options.hpp"
 #include "ipc/verification/verify.hpp"
 #include "splinecast/options.hpp"
 #include "splinecast/solver.hpp"
@@ -27,6 +27,7 @@ struct ReplayOptions {
   std::optional<Condition> start{};
   std::optional<Condition> end{};
   LatePolicy late = LatePolicy::refuse;
+  GapOptions gap{};
   bool skip_bad = false;
   Time wait{10'000'000'000};
   bool embedded = false;
@@ -48,7 +49,8 @@ struct ReplayReport {
   ipc::Word passed_over = 0;   ///< sent waypoints that entries passed over: not on the curve
   ipc::Word refused = 0;       ///< sent waypoints that the solver refused, with a reason
   std::array<ipc::Word, kRefusals> refused_by_reason{};
-  LateRows late{};                     ///< rows that were late when they could be sent
+  LateRows late{};  ///< rows that were late when they could be sent
+  Gaps gaps{};
   std::optional<RefusedBy> stopped{};  ///< who refused the row that stopped it (--on-error stop)
   bool interrupted = false;
   std::optional<ipc::Verification> verification{};  ///< with `verify`
@@ -58,15 +60,22 @@ struct ReplayReport {
 /// refused the row that stopped it, else kInterrupted if a signal stopped it.
 [[nodiscard]] int exit_code(const ReplayReport& report);
 
-/// Prepares a file's table for sending: selects the rows and applies the rate. Adds rows that
-/// cannot be sent to `refused`; without `skip_bad`, throws InputError for the first one. Returns
-/// the rows that are late in the file itself.
-LateRows prepare_replay(WaypointTable& table, const ReplayOptions& options, RefusedRows& refused);
+/// How the rows of a replay are prepared.
+[[nodiscard]] Preparation preparation_of(const ReplayOptions& options);
 
-/// Sends a prepared table's waypoints to a solver and waits until all are consumed. Notes in
+/// Opens the file of the options and makes the first pass. Adds rows that cannot be sent to
+/// `refused`; without `skip_bad`, throws InputError for the first one.
+[[nodiscard]] Recording open_recording(const ReplayOptions& options, RefusedRows& refused);
+
+/// Throws InputError for options that do not fit the recording: conditions of other dimensions or
+/// that a stream cannot meet, and loops that take too long.
+void require_playable(const Recording& recording, const ReplayOptions& options);
+
+/// Sends the waypoints of a recording to a solver and waits until all are consumed. Notes in
 /// `refused` each row that the producer's append or the solver refused; without `skip_bad` the
-/// first one ends the stream after the rows sent so far. Throws TimeOut if no solver attaches.
-ReplayReport replay_table(const WaypointTable& table, const ReplayOptions& options,
-                          RefusedRows& refused);
+/// first one ends the stream after the rows sent so far. Throws TimeOut if no solver attaches, and
+/// InputError, after it has ended the stream, if the file can no longer be read or has changed.
+ReplayReport replay_recording(Recording& recording, const ReplayOptions& options,
+                              RefusedRows& refused);
 
 }  // namespace splinecast::apps

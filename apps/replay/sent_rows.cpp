@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "splinecast/errors.hpp"
 
 namespace splinecast::apps {
 
-void SentRows::begin() {
+void SentRows::begin(std::function<void()> require_readable) {
+  require_readable_ = std::move(require_readable);
+  has_begun_ = true;
   producer_.refusals(found_);
   if (options_.verify) begin_log();
 }
@@ -28,13 +32,18 @@ void SentRows::note_sent(const PlayedRow& row, const Waypoint& waypoint) {
   if (log_) log_->sent(waypoint);
 }
 
+void SentRows::note_replacement(Time t) {
+  in_ring_.push_back({.number = 0, .loop = 0});
+  if (log_) log_->sent_replacement(t);
+}
+
 void SentRows::note_refusal(const PlayedRow& row, Time time, AppendStatus status) {
   ++refused_by_producer_;
   note({.by = RefusedBy::producer,
         .reason = to_string(status),
-        .line = table_.lines[row.row],
+        .line = row.number,
         .loop = row.loop + 1},
-       fmt::format("{}: waypoint refused: {} (time {} ns)", table_.where(row.row),
+       fmt::format("{}: waypoint refused: {} (time {} ns)", recording_.where(row.number),
                    to_string(status), time.count()));
 }
 
@@ -62,16 +71,18 @@ void SentRows::note_refusal(const ItemRefusal& refused) {
       .by = RefusedBy::solver, .reason = to_string(refused.reason), .item = refused.item};
   std::string where = "the end";
   const ipc::Word i = refused.item - next_item_;
-  if (i < in_ring_.size()) {
-    row.line = table_.lines[in_ring_[i].row];
+  if (i < in_ring_.size() && in_ring_[i].number == 0) {
+    where = "the stop at a gap";
+  } else if (i < in_ring_.size()) {
+    row.line = in_ring_[i].number;
     row.loop = in_ring_[i].loop + 1;
-    where = table_.where(in_ring_[i].row);
+    where = recording_.where(in_ring_[i].number);
   }
   std::string message = fmt::format("{}: waypoint refused by the solver: {} (item {})", where,
                                     row.reason, refused.item);
   if (refused.excess) {
     row.excess = refused.excess;
-    message += ": " + in_words(*refused.excess, table_.names);
+    message += ": " + in_words(*refused.excess, recording_.columns().names);
   }
   note(row, message);
 }

@@ -12,7 +12,6 @@
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
-#include "apps/recordings/selection.hpp"
 #include "apps/streams/log.hpp"
 #include "apps/streams/report.hpp"
 
@@ -20,8 +19,6 @@ namespace splinecast::apps {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr std::string_view kUnreadable = "unreadable";
 
 /// The number of rows that were not sent, by reason.
 ordered_json skipped_by_reason(const RefusedRows& refused) {
@@ -70,24 +67,20 @@ std::string in_words(const ReplayReport& report, const ReplayOptions& options,
   if (report.refused > named) {
     text += fmt::format("; {} refusals came too fast to be named", report.refused - named);
   }
+  if (report.gaps.count > 0) text += "; " + apps::in_words(report.gaps, options.gap.policy);
   if (report.interrupted) text += "; interrupted";
   if (report.unsent > 0) text += fmt::format("; {} not sent", report.unsent);
   if (report.verification) text.append("; ").append(apps::in_words(*report.verification));
   return text;
 }
 
-int run_replay(ReplayOptions options) {
+int run_replay(const ReplayOptions& options) {
   RefusedRows refused;
-  if (options.skip_bad) {
-    options.table.on_bad_row = [&refused](std::size_t line, const InputError& error) {
-      refused.add({.by = RefusedBy::file, .reason = kUnreadable, .line = line}, error.what());
-    };
-  }
-  WaypointTable table = read_waypoints(options.file, options.table);
-  const LateRows late_in_file = prepare_replay(table, options, refused);
+  Recording recording = open_recording(options, refused);
+  require_playable(recording, options);
   catch_stop_signals();  // before this there is no stream to end
-  ReplayReport report = replay_table(table, options, refused);
-  report.late += late_in_file;
+  ReplayReport report = replay_recording(recording, options, refused);
+  report.late += recording.survey().late;
   const ipc::Word skipped = refused.count(RefusedBy::file) + refused.count(RefusedBy::producer);
   if (options.json) {
     ordered_json json{{"stream", options.stream},
@@ -99,6 +92,7 @@ int run_replay(ReplayOptions options) {
                       {"skipped", skipped},
                       {"skipped_by_reason", skipped_by_reason(refused)},
                       {"late", to_json(report.late, options.late)},
+                      {"gaps", to_json(report.gaps, options.gap.policy)},
                       {"unsent", report.unsent},
                       {"interrupted", report.interrupted},
                       {"rows", refused.to_json()},
@@ -176,27 +170,41 @@ void add_interval(Command& verb, const std::string& name, Time& value, const std
 }
 
 /// Throws InputError if all loops together take longer than a time can represent.
-void require_loops(const WaypointTable& table, std::size_t loops) {
+void require_loops(const Recording& recording, std::size_t loops) {
   if (loops == 1) return;
-  const Time once = table.times.back() - table.times.front() + median_interval(table);
+  const Survey& survey = recording.survey();
+  const Time once = survey.last - survey.first + survey.median;
   const double seconds = static_cast<double>(loops) * to_seconds(once);
   if (seconds <= to_seconds(kLongestTime)) return;
-  throw InputError(fmt::format("{}: --loop {} takes {} s; the maximum is {} s", table.file, loops,
-                               seconds, to_seconds(kLongestTime)));
+  throw InputError(fmt::format("{}: --loop {} takes {} s; the maximum is {} s", recording.name(),
+                               loops, seconds, to_seconds(kLongestTime)));
 }
 
 }  // namespace
 
-LateRows prepare_replay(WaypointTable& table, const ReplayOptions& options, RefusedRows& refused) {
-  select_rows(table, options.from, options.duration);
-  change_rate(table, options.rate.value_or(1.0));
-  const LateRows late =
-      drop_unfit_rows(table, options.limits, options.late, options.skip_bad ? &refused : nullptr);
-  require_loops(table, options.loops);
+Preparation preparation_of(const ReplayOptions& options) {
+  return {.from = options.from,
+          .duration = options.duration,
+          .rate = options.rate.value_or(1.0),
+          .limits = options.limits,
+          .late = options.late,
+          .gap = options.gap};
+}
+
+Recording open_recording(const ReplayOptions& options, RefusedRows& refused) {
+  std::unique_ptr<RowReader> rows = open_rows(options.file, options.table);
+  std::vector<Dimension> kinds = kinds_of(*rows, options.table.kinds);
+  return Recording(std::move(rows), std::move(kinds), preparation_of(options),
+                   options.skip_bad ? &refused : nullptr);
+}
+
+void require_playable(const Recording& recording, const ReplayOptions& options) {
+  require_loops(recording, options.loops);
   const Condition none;
-  require_values(options.start.value_or(none), table.dimensions());
-  require_values(options.end.value_or(none), table.dimensions());
-  DimensionKinds(table.kinds).require_end(options.end.value_or(none));
+  const std::size_t dimensions = recording.columns().dimensions();
+  require_values(options.start.value_or(none), dimensions);
+  require_values(options.end.value_or(none), dimensions);
+  DimensionKinds(recording.kinds()).require_end(options.end.value_or(none));
   for (const auto& condition : {options.start, options.end}) {
     if (condition && !is_online(condition->kind)) {
       throw InputError(
@@ -205,7 +213,6 @@ LateRows prepare_replay(WaypointTable& table, const ReplayOptions& options, Refu
                       to_string(*condition)));
     }
   }
-  return late;
 }
 
 int exit_code(const ReplayReport& report) {
@@ -234,6 +241,25 @@ void add_row_policies(Command& verb, ReplayOptions& options) {
           "shift: move it and all later rows. On a row whose time has settled when it can be "
           "sent: shift moves them too, refuse and pass send it as it is")
       .type("pass|shift|refuse");
+}
+
+void add_gap(Command& verb, GapOptions& gap) {
+  verb.option(
+          "--gap",
+          [&gap](const std::string& text) {
+            const auto read = parse_gap(text);
+            if (!read) {
+              throw UsageError("--gap",
+                               fmt::format("'{}' is not a time above 0 in s, one of split, "
+                                           "bridge, refuse, or both as S:POLICY",
+                                           text));
+            }
+            gap = *read;
+          },
+          "A gap is a pause of the source longer than S seconds (default: ten median intervals, at "
+          "least 0.5). split (default): stop there, and start again for the next row; bridge: one "
+          "segment; refuse: refuse the file")
+      .type("[S:]split|bridge|refuse");
 }
 
 void add_ring_options(Command& verb, ReplayOptions& options) {
@@ -269,6 +295,7 @@ void add_replay(Command& verb, Action& action) {
   verb.option("--stream", options->stream, "Stream to produce").type("STREAM").required();
   add_playback_options(verb, *options);
   add_row_policies(verb, *options);
+  add_gap(verb, options->gap);
   add_ring_options(verb, *options);
   verb.flag("--embedded", options->embedded, "Solve in this process");
   verb.flag("--verify", options->verify,
@@ -281,6 +308,7 @@ void add_replay(Command& verb, Action& action) {
   add_trust(verb, options->trust);
   verb.callback([&action, options] {
     require_agreeing(*options);
+    options->quiet = options->table.quiet;
     options->solver.access = options->access;
     options->solver.trust = options->trust;
     action = [options] { return run_replay(*options); };

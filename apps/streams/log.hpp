@@ -24,6 +24,9 @@ class StreamLog {
   /// Records a waypoint that the ring has accepted.
   void sent(const Waypoint& waypoint) { items_.add(ipc::ItemKind::waypoint, waypoint); }
 
+  /// Records the item of a replacement. Its waypoints follow as sent() ones.
+  void sent_replacement(Time t) { items_.add(ipc::ItemKind::replace, {.time = t}); }
+
   /// Records an item that the solver has refused.
   void refused(ipc::Word item) noexcept { items_.refuse(item); }
 

@@ -17,9 +17,11 @@ namespace {
 struct Separator {
   Split split;
   std::string_view name;
+  char character;
 };
-constexpr std::array<Separator, 3> kSeparators{
-    {{split_at_commas, "commas"}, {split_at_semicolons, "semicolons"}, {split_at_tabs, "tabs"}}};
+constexpr std::array<Separator, 3> kSeparators{{{split_at_commas, "commas", ','},
+                                                {split_at_semicolons, "semicolons", ';'},
+                                                {split_at_tabs, "tabs", '\t'}}};
 
 bool names_a_time_column(std::string_view line, Split split) {
   return std::ranges::any_of(column_names(line, split), [](const std::string& name) {
@@ -49,6 +51,7 @@ TextFormat read_csv(const FileBeginning& beginning) {
   const Separator& first = separator_of(beginning.first);
   TextFormat format{.split = first.split,
                     .separator = first.name,
+                    .separating = first.character,
                     .names = column_names(beginning.first, first.split)};
   if (!parse_number(format.names[0])) return format;
   const auto header = std::ranges::find_if(

@@ -41,6 +41,17 @@ std::unique_ptr<RowReader> InputFormat::open(InputFile file, const TableOptions&
   return found->open_(std::move(file), options);
 }
 
+void RowReader::skip(std::size_t rows) {
+  Row row;
+  for (; rows > 0; --rows) {
+    try {
+      if (!next(row)) return;
+    } catch (const InputError&) {
+      if (row.number == 0) throw;
+    }
+  }
+}
+
 std::unique_ptr<RowReader> open_rows(const std::string& path, const TableOptions& options) {
   return InputFormat::open(InputFile(path), options);
 }

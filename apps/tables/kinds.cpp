@@ -150,17 +150,17 @@ std::vector<Dimension> resolve_kinds(const std::string& file, const RowColumns& 
   return list.filled();
 }
 
-std::optional<std::string> zero_quaternion(const WaypointTable& table, const DimensionKinds& kinds,
-                                           std::size_t i) {
-  const auto position = table.waypoint(i).position;
+std::optional<std::string> zero_quaternion(std::span<const double> position,
+                                           const std::vector<std::string>& names,
+                                           const DimensionKinds& kinds) {
   if (kinds.takes(position)) return std::nullopt;
   for (const QuaternionDimensions& quaternion : kinds.quaternions()) {
     if (DimensionKinds::takes(position, quaternion)) continue;
     const std::size_t first = quaternion.first;
     const auto four = position.subspan(first, kQuaternionSize);
     const bool is_zero = std::ranges::all_of(four, [](double value) { return value == 0; });
-    return fmt::format("columns '{}' to '{}': a quaternion of length {}", table.names[first],
-                       table.names[first + kQuaternionSize - 1],
+    return fmt::format("columns '{}' to '{}': a quaternion of length {}", names[first],
+                       names[first + kQuaternionSize - 1],
                        is_zero ? "0" : "outside 1e-100 to 1e100");
   }
   return std::nullopt;
@@ -176,7 +176,7 @@ void continue_waypoints(WaypointTable& table) {
   };
   std::span<const double> previous;
   for (std::size_t i = 0; i < table.size(); ++i) {
-    if (const auto bad = zero_quaternion(table, kinds, i)) {
+    if (const auto bad = zero_quaternion(table.waypoint(i).position, table.names, kinds)) {
       throw InputError(fmt::format("{}: {}", table.where(i), *bad));
     }
     const WaypointValues values{.position = row(table.positions, i),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,11 +22,11 @@ namespace splinecast::apps {
                                                    const RowColumns& columns,
                                                    const std::vector<KindOption>& asked);
 
-/// The first quaternion of row i that is not a rotation, with its columns, for a message; nothing
-/// if all are rotations.
-[[nodiscard]] std::optional<std::string> zero_quaternion(const WaypointTable& table,
-                                                         const DimensionKinds& kinds,
-                                                         std::size_t i);
+/// The first quaternion of a position that is not a rotation, with its columns, for a message;
+/// nothing if all are rotations.
+[[nodiscard]] std::optional<std::string> zero_quaternion(std::span<const double> position,
+                                                         const std::vector<std::string>& names,
+                                                         const DimensionKinds& kinds);
 
 /// Changes each waypoint to the representative nearest to the previous one, as a solver does: see
 /// DimensionKinds::continue_from. Values must be usable. Throws InputError with the line of a

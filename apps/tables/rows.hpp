@@ -48,14 +48,18 @@ class RowReader {
   [[nodiscard]] virtual const std::string& name() const = 0;
   [[nodiscard]] virtual const RowColumns& columns() const = 0;
 
-  /// Reads the next row. Returns false at the end. Sets `row.number` first and then throws
-  /// InputError, with file, line or message, column and value, for a row that cannot be read; the
-  /// next call reads the row after it. Values may be not finite, and times need not increase.
+  /// Reads the next row. Returns false at the end. Throws InputError, with file, line or message,
+  /// column and value, for a row that cannot be read; `row.number` is set, and the next call reads
+  /// the row after it. If the rest of the file cannot be read, throws InputError with `row.number`
+  /// 0. Values may be not finite, and times need not increase.
   virtual bool next(Row& row) = 0;
 
   /// Goes back to the first row. From then on next() throws InputError if the file has changed
   /// since it was opened.
   virtual void rewind() = 0;
+
+  /// Passes over rows, also those that cannot be read. A format may do this faster than next().
+  virtual void skip(std::size_t rows);
 
   /// The place of a row, for messages: `file:12`, or `file.mcap: message 12 of /joint_states`.
   [[nodiscard]] virtual std::string where(std::size_t number) const = 0;

@@ -24,12 +24,13 @@ FileBeginning beginning_of(const InputFile& file, LineReader& lines) {
 /// The rows of a text.
 class TextRows final : public RowReader {
  public:
-  TextRows(InputFile file, ReadTextFormat read, const TableOptions& options)
+  TextRows(InputFile file, ReadTextFormat read_format, const TableOptions& options)
       : file_(std::move(file)),
         lines_(file_),
-        format_(read(beginning_of(file_, lines_))),
+        format_(read_format(beginning_of(file_, lines_))),
         first_row_(format_.is_first_a_row ? lines_.before_last() : lines_.place()),
         roles_(find_roles(options)),
+        targets_(find_targets()),
         values_(values_of(roles_)) {
     for (const std::size_t c : roles_.positions) {
       columns_.names.push_back(format_.names[c]);
@@ -42,15 +43,10 @@ class TextRows final : public RowReader {
   [[nodiscard]] const RowColumns& columns() const override { return columns_; }
 
   bool next(Row& row) override {
+    row.number = 0;
     if (!lines_.next_data(line_)) return false;
     row.number = line_.number;
-    format_.split(line_.text, fields_);
-    require_width();
-    row.time = time();
-    std::size_t count = 0;
-    for (const auto* columns : {&roles_.positions, &roles_.velocities, &roles_.accelerations}) {
-      for (const std::size_t c : *columns) values_[count++] = number(c);
-    }
+    if (!read_plain(row)) read(row);
     row.position = part(0, roles_.positions);
     row.velocity = part(roles_.positions.size(), roles_.velocities);
     row.acceleration =
@@ -61,6 +57,10 @@ class TextRows final : public RowReader {
   void rewind() override {
     file_.require_same();
     lines_.go_to(first_row_);
+  }
+
+  void skip(std::size_t rows) override {
+    while (rows > 0 && lines_.next_data(line_)) --rows;
   }
 
   [[nodiscard]] std::string where(std::size_t number) const override {
@@ -82,6 +82,53 @@ class TextRows final : public RowReader {
   static std::vector<double> values_of(const Roles& roles) {
     return std::vector<double>(roles.positions.size() + roles.velocities.size() +
                                roles.accelerations.size());
+  }
+
+  /// Reads the fields of a line, in any form, or finds what is wrong with it.
+  void read(Row& row) {
+    format_.split(line_.text, fields_);
+    require_width();
+    row.time = time();
+    std::size_t count = 0;
+    for (const auto* columns : {&roles_.positions, &roles_.velocities, &roles_.accelerations}) {
+      for (const std::size_t c : *columns) values_[count++] = number(c);
+    }
+  }
+
+  /// Reads a line whose fields are plain numbers, without splitting it first. Returns false for any
+  /// other line.
+  bool read_plain(Row& row) {
+    if (format_.separating == '\0') return false;
+    std::string_view text = line_.text;
+    for (std::size_t c = 0; c < targets_.size(); ++c) {
+      if (c > 0) {
+        if (text.empty() || text.front() != format_.separating) return false;
+        text.remove_prefix(1);
+      }
+      if (targets_[c] == kUnused) {
+        const std::string_view field = text.substr(0, text.find(format_.separating));
+        if (field.find('"') != std::string_view::npos) return false;
+        text.remove_prefix(field.size());
+      } else if (targets_[c] == kTime) {
+        if (!take_time(text, roles_.unit, row.time)) return false;
+      } else if (!take_number(text, values_[targets_[c]])) {
+        return false;
+      }
+    }
+    return text.empty() && is_time_in_range(row.time);
+  }
+
+  /// Where each field goes: an index of `values_`, or one of these.
+  static constexpr std::size_t kTime = ~std::size_t{0};
+  static constexpr std::size_t kUnused = kTime - 1;
+  [[nodiscard]] std::vector<std::size_t> find_targets() const {
+    std::vector<std::size_t> targets(format_.names.size(), kUnused);
+    targets[roles_.time] = kTime;
+    std::size_t count = 0;
+    for (const auto* columns : {&roles_.positions, &roles_.velocities, &roles_.accelerations}) {
+      for (const std::size_t c : *columns) targets[c] = count++;
+    }
+    return targets;
   }
 
   [[nodiscard]] std::span<const double> part(std::size_t begin,
@@ -119,6 +166,7 @@ class TextRows final : public RowReader {
   TextFormat format_;
   LineReader::Place first_row_;
   Roles roles_;
+  std::vector<std::size_t> targets_;
   std::vector<double> values_;  ///< of the last row: positions, velocities, accelerations
   RowColumns columns_;
   Line line_;

@@ -17,9 +17,10 @@ namespace splinecast::apps {
 struct TextFormat {
   Split split = split_at_commas;          ///< how a line is split into fields
   std::string_view separator = "commas";  ///< what separates them, for messages
-  std::vector<std::string> names{};       ///< of the columns
-  std::vector<std::string> aliases{};     ///< other names of the same columns, or none
-  bool is_first_a_row = false;            ///< whether the first line is a row, and not the header
+  char separating = '\0';  ///< the character at which `split` splits outside of quotes; 0: several
+  std::vector<std::string> names{};    ///< of the columns
+  std::vector<std::string> aliases{};  ///< other names of the same columns, or none
+  bool is_first_a_row = false;         ///< whether the first line is a row, and not the header
 };
 
 /// Reads the comments and the first line of a text.

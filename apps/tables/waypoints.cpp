@@ -53,6 +53,7 @@ class TableReader {
       try {
         return rows_->next(row_);
       } catch (const InputError& error) {
+        if (row_.number == 0) throw;
         options_.on_bad_row(row_.number, error);
       }
     }
@@ -122,27 +123,6 @@ Waypoint WaypointTable::waypoint(std::size_t i) const noexcept {
           .position = row_of(positions, i, dimensions()),
           .velocity = row_of(velocities, i, dimensions()),
           .acceleration = row_of(accelerations, i, dimensions())};
-}
-
-void WaypointTable::keep_rows(const std::function<bool(std::size_t i)>& keeps) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < size(); ++i) {
-    if (!keeps(i)) continue;
-    if (kept != i) {
-      times[kept] = times[i];
-      lines[kept] = lines[i];
-      for (auto* values : {&positions, &velocities, &accelerations}) {
-        std::ranges::copy(row_of(*values, i, dimensions()),
-                          values->begin() + static_cast<std::ptrdiff_t>(kept * dimensions()));
-      }
-    }
-    ++kept;
-  }
-  times.resize(kept);
-  lines.resize(kept);
-  for (auto* values : {&positions, &velocities, &accelerations}) {
-    if (!values->empty()) values->resize(kept * dimensions());
-  }
 }
 
 std::string WaypointTable::where(std::size_t i) const {

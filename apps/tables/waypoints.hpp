@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -39,10 +38,6 @@ class WaypointTable {
             .velocities = velocities,
             .accelerations = accelerations};
   }
-
-  /// Keeps the rows for which `keeps(i)` returns true. Calls it once per row, in order; it may read
-  /// row i. If it throws, the table is unusable.
-  void keep_rows(const std::function<bool(std::size_t i)>& keeps);
 
   /// The place of row i, for messages: as RowReader::where, or `file:line`.
   [[nodiscard]] std::string where(std::size_t i) const;

@@ -31,10 +31,9 @@ void replay(benchmark::State& bench) {
                               .embedded = true,
                               .quiet = true};
   for (auto _ : bench) {
-    apps::WaypointTable table = apps::read_waypoints(options.file, options.table);
     apps::RefusedRows refused;
-    apps::prepare_replay(table, options, refused);
-    const apps::ReplayReport report = apps::replay_table(table, options, refused);
+    apps::Recording recording = apps::open_recording(options, refused);
+    const apps::ReplayReport report = apps::replay_recording(recording, options, refused);
     if (report.interpolated != CsvRecording::kRows) bench.SkipWithError("waypoints were lost");
   }
   count(bench, csv_recording().bytes());

@@ -30,10 +30,9 @@ nlohmann::json replay_until_stopped(const std::string& stream) {
                               .clock = StreamClock::recorded,
                               .embedded = true,
                               .quiet = true};
-  apps::WaypointTable table = apps::read_waypoints(options.file, options.table);
   apps::RefusedRows refused;
-  apps::prepare_replay(table, options, refused);
-  (void)apps::replay_table(table, options, refused);
+  apps::Recording recording = apps::open_recording(options, refused);
+  (void)apps::replay_recording(recording, options, refused);
   return nullptr;
 }
 

@@ -16,7 +16,7 @@
 #include "apps/limits/file.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "apps/recordings/advice.hpp"
-#include "apps/recordings/selection.hpp"
+#include "apps/recordings/recording.hpp"
 #include "apps/tables/kinds.hpp"
 #include "apps/tables/time_column.hpp"
 #include "ipc/memory/names.hpp"
@@ -95,11 +95,9 @@ void require_whole(const apps::WaypointTable& table) {
 /// Prepares a table like `replay` and `advise`.
 void prepare(apps::WaypointTable& table) {
   apps::WaypointTable shifted = table;
-  apps::drop_unfit_rows(shifted, {}, apps::LatePolicy::shift, nullptr);
+  apps::prepare(shifted, {.late = apps::LatePolicy::shift, .gap = {}}, nullptr);
   require_whole(shifted);
-  apps::drop_unfit_rows(table, {}, apps::LatePolicy::refuse, nullptr);
-  apps::change_rate(table, 2.0);
-  (void)apps::median_interval(table);
+  apps::prepare(table, {.rate = 2}, nullptr);
   apps::continue_waypoints(table);
   (void)apps::advise(table, apps::SolvedHow{}.freeze_ahead, std::nullopt, false);
 }

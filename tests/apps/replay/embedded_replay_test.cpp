@@ -4,12 +4,14 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "apps/replay/player.hpp"
+#include "apps/tables/table_rows.hpp"
 #include "ipc/roles/internals.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/reader.hpp"
@@ -28,9 +30,18 @@ WaypointTable sparse_table() {
   table.file = "sparse";
   table.names = {"x"};
   table.times = {Time(0), seconds(1), seconds(2)};
+  table.kinds = {Dimension{}};
   table.lines = {2, 3, 4};
   table.positions = {0, 1, 3};
   return table;
+}
+
+/// Plays a table.
+ReplayReport play(const WaypointTable& table, const ReplayOptions& options) {
+  RefusedRows refused;
+  Recording recording(std::make_unique<TableRows>(table), table.kinds, preparation_of(options),
+                      nullptr);
+  return replay_recording(recording, options, refused);
 }
 
 TEST(EmbeddedReplay, SettlesTheCurveBetweenWaypointsThatAreFarApart) {
@@ -43,9 +54,8 @@ TEST(EmbeddedReplay, SettlesTheCurveBetweenWaypointsThatAreFarApart) {
       .quiet = true,
       .solver = {.freeze_ahead = milliseconds(400), .min_entry = milliseconds(5)}};
   const WaypointTable table = sparse_table();
-  RefusedRows refused;
   ReplayReport report;
-  std::thread replaying([&] { report = replay_table(table, options, refused); });
+  std::thread replaying([&] { report = play(table, options); });
   Reader reader(stream.name(), testing::kPatience);
   State state(reader.dimensions());
   const MonotonicClock clock;
@@ -131,10 +141,9 @@ TEST(EmbeddedReplay, OntoAMovingStreamWaitsForTheEndOfItsMotion) {
       .stream = stream.name(), .lead = milliseconds(700), .embedded = true, .quiet = true};
   WaypointTable table = sparse_table();
   table.times = {Time(0), milliseconds(300), milliseconds(600)};
-  RefusedRows refused;
   std::thread replaying([&] {
-    (void)replay_table(table, options, refused);
-    (void)replay_table(table, options, refused);
+    (void)play(table, options);
+    (void)play(table, options);
   });
   Reader reader(stream.name(), testing::kPatience);
   State state(reader.dimensions());

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <vector>
 
 #include "tests/fixtures/processes/process.hpp"
 
@@ -13,15 +14,12 @@ namespace {
 using std::chrono::milliseconds;
 using testing::Ended;
 
-WaypointTable steady_table(milliseconds interval, std::size_t rows) {
-  WaypointTable table;
-  table.names = {"x"};
-  for (std::size_t i = 0; i < rows; ++i) {
-    table.times.push_back(static_cast<int>(i) * interval);
-    table.lines.push_back(i + 2);
-    table.positions.push_back(0);
-  }
-  return table;
+/// Of a recording with equal intervals.
+Survey steady_survey(milliseconds interval, std::size_t rows) {
+  std::vector<Time> intervals(rows - 1, interval);
+  Survey survey{.rows = rows, .last = static_cast<int>(rows - 1) * interval};
+  if (rows > 1) survey.intervals = measure_intervals(intervals, interval);
+  return survey;
 }
 
 class ReplayLead : public ::testing::Test {
@@ -33,9 +31,9 @@ class ReplayLead : public ::testing::Test {
     board_.stop_time = 250'000'000;
   }
   /// Chooses the lead, and stores the message about it in `said_`.
-  Time lead(const WaypointTable& table, const ReplayOptions& options) {
+  Time lead(const Survey& survey, const ReplayOptions& options) {
     ::testing::internal::CaptureStderr();
-    const Time lead = choose_lead(table, options, board_);
+    const Time lead = choose_lead(survey, options, board_);
     said_ = ::testing::internal::GetCapturedStderr();
     return lead;
   }
@@ -45,37 +43,37 @@ class ReplayLead : public ::testing::Test {
 };
 
 TEST_F(ReplayLead, Is200MillisecondsIfThatSuffices) {
-  EXPECT_EQ(lead(steady_table(milliseconds(10), 500), {.stream = "arm"}), milliseconds(200));
+  EXPECT_EQ(lead(steady_survey(milliseconds(10), 500), {.stream = "arm"}), milliseconds(200));
   EXPECT_EQ(said_, "");
 }
 
 TEST_F(ReplayLead, IsTheDepthThatKNeedsForASlowRecordingAndReportsWhy) {
-  EXPECT_EQ(lead(steady_table(milliseconds(40), 500), {.stream = "arm"}), milliseconds(365));
+  EXPECT_EQ(lead(steady_survey(milliseconds(40), 500), {.stream = "arm"}), milliseconds(365));
   EXPECT_EQ(said_,
             "splinecast: 'arm': lead 365 ms: freeze-ahead 5 ms + 9 intervals of 40 ms = 365 ms, "
             "and jitter of 0 ms\n");
-  EXPECT_EQ(lead(steady_table(milliseconds(40), 6), {.stream = "arm"}), milliseconds(205));
-  EXPECT_EQ(lead(steady_table(milliseconds(40), 6), {.stream = "arm", .loops = 2}),
+  EXPECT_EQ(lead(steady_survey(milliseconds(40), 6), {.stream = "arm"}), milliseconds(205));
+  EXPECT_EQ(lead(steady_survey(milliseconds(40), 6), {.stream = "arm", .loops = 2}),
             milliseconds(365));
 }
 
 TEST_F(ReplayLead, IsUsedWithAWarningIfItIsTooShort) {
-  const WaypointTable table = steady_table(milliseconds(10), 500);
-  EXPECT_EQ(lead(table, {.stream = "arm", .lead = milliseconds(60)}), milliseconds(60));
+  const Survey survey = steady_survey(milliseconds(10), 500);
+  EXPECT_EQ(lead(survey, {.stream = "arm", .lead = milliseconds(60)}), milliseconds(60));
   EXPECT_EQ(said_,
             "splinecast: 'arm': the lead of 60 ms is less than the 95 ms that K = 8 needs; a "
             "silence of 100 ms: starves for 55 ms and does not come to rest\n");
-  EXPECT_EQ(lead(table, {.stream = "arm", .lead = milliseconds(95)}), milliseconds(95));
+  EXPECT_EQ(lead(survey, {.stream = "arm", .lead = milliseconds(95)}), milliseconds(95));
   EXPECT_EQ(said_, "");
-  EXPECT_EQ(lead(table, {.stream = "arm", .lead = milliseconds(60), .quiet = true}),
+  EXPECT_EQ(lead(survey, {.stream = "arm", .lead = milliseconds(60), .quiet = true}),
             milliseconds(60));
   EXPECT_EQ(said_, "");
 }
 
 TEST_F(ReplayLead, GivesNoMessageIfItDoesNotMatter) {
-  const WaypointTable slow = steady_table(milliseconds(400), 500);
+  const Survey slow = steady_survey(milliseconds(400), 500);
   EXPECT_EQ(lead(slow, {.stream = "arm", .rate = std::nullopt}), milliseconds(200));
-  EXPECT_EQ(lead(steady_table(milliseconds(400), 1), {.stream = "arm"}), milliseconds(200));
+  EXPECT_EQ(lead(steady_survey(milliseconds(400), 1), {.stream = "arm"}), milliseconds(200));
   board_.clock = static_cast<std::uint64_t>(StreamClock::recorded);
   EXPECT_EQ(lead(slow, {.stream = "arm"}), milliseconds(200));
   EXPECT_EQ(said_, "");

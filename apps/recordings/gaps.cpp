@@ -1,0 +1,88 @@
+#include "apps/recordings/gaps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "apps/files/numbers.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+constexpr std::array kPolicies{GapPolicy::split, GapPolicy::bridge, GapPolicy::refuse};
+
+std::optional<GapPolicy> parse_policy(std::string_view text) {
+  const auto* const found =
+      std::ranges::find_if(kPolicies, [&](GapPolicy policy) { return to_string(policy) == text; });
+  return found == kPolicies.end() ? std::nullopt : std::optional(*found);
+}
+
+std::string_view past_tense(GapPolicy policy) {
+  return policy == GapPolicy::split ? "split" : "bridged";
+}
+
+}  // namespace
+
+std::string_view to_string(GapPolicy policy) noexcept {
+  switch (policy) {
+    case GapPolicy::split:
+      return "split";
+    case GapPolicy::bridge:
+      return "bridge";
+    case GapPolicy::refuse:
+      return "refuse";
+  }
+  return "unknown";
+}
+
+std::optional<GapOptions> parse_gap(std::string_view text) {
+  if (const auto policy = parse_policy(text)) return GapOptions{.policy = *policy};
+  const std::size_t colon = text.find(':');
+  GapOptions options;
+  options.longer_than = parse_time(text.substr(0, colon), TimeUnit::seconds);
+  if (!options.longer_than || *options.longer_than <= Time::zero()) return std::nullopt;
+  if (colon == std::string_view::npos) return options;
+  const auto policy = parse_policy(text.substr(colon + 1));
+  if (!policy) return std::nullopt;
+  options.policy = *policy;
+  return options;
+}
+
+Time gap_length(const GapOptions& options, Time median) noexcept {
+  constexpr std::int64_t kMedians = 10;
+  constexpr Time kLeast = std::chrono::milliseconds(500);
+  return options.longer_than.value_or(std::max(saturated_product(median, kMedians), kLeast));
+}
+
+void Gaps::add(const Gap& gap) noexcept {
+  ++count;
+  if (listed < kListed) {
+    largest[listed++] = gap;
+  } else if (gap.length > largest.back().length) {
+    largest.back() = gap;
+  }
+  for (std::size_t i = listed - 1; i > 0 && largest[i].length > largest[i - 1].length; --i) {
+    std::swap(largest[i], largest[i - 1]);
+  }
+}
+
+nlohmann::ordered_json to_json(const Gaps& gaps, GapPolicy policy) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < gaps.listed; ++i) {
+    const Gaps::Gap& gap = gaps.largest[i];
+    list.push_back({{"s", to_seconds(gap.length)}, {"after", gap.after}, {"before", gap.before}});
+  }
+  return {{"policy", to_string(policy)}, {"count", gaps.count}, {"longest", std::move(list)}};
+}
+
+std::string in_words(const Gaps& gaps, GapPolicy policy) {
+  if (gaps.count == 0) return {};
+  const Gaps::Gap& longest = gaps.largest.front();
+  return fmt::format("{} gap{} {}, the longest {:.6g} s from line {} to line {}", gaps.count,
+                     gaps.count == 1 ? "" : "s", past_tense(policy), to_seconds(longest.length),
+                     longest.after, longest.before);
+}
+
+}  // namespace splinecast::apps
