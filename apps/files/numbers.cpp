@@ -2,6 +2,7 @@
 
 #include <fast_float/fast_float.h>
 
+#include <array>
 #include <charconv>
 #include <cstdint>
 
@@ -106,6 +107,39 @@ std::optional<Decimal> take_apart(std::string_view text) noexcept {
   return decimal;
 }
 
+/// Fast path for the usual number: at most 15 digits and no exponent. The digits and the power of
+/// ten are exact as doubles, so their quotient is the correctly rounded value.
+bool take_short_number(std::string_view& text, double& value) noexcept {
+  constexpr std::size_t kMostDigits = 15;
+  constexpr std::array kPowers{1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                               1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  const bool negative = at != end && *at == '-';
+  if (negative) ++at;
+  std::uint64_t digits = 0;
+  const auto take = [&] {
+    const char* const begin = at;
+    for (; at != end && is_digit(*at); ++at) {
+      digits = 10 * digits + static_cast<std::uint64_t>(*at - '0');
+    }
+    return static_cast<std::size_t>(at - begin);
+  };
+  const std::size_t whole = take();
+  std::size_t fraction = 0;
+  if (at != end && *at == '.') {
+    ++at;
+    fraction = take();
+  }
+  const std::size_t count = whole + fraction;
+  const bool goes_on = at != end && (*at == 'e' || *at == 'E');
+  if (whole == 0 || count > kMostDigits || goes_on) return false;
+  value = static_cast<double>(digits) / kPowers[fraction];
+  if (negative) value = -value;
+  text.remove_prefix(static_cast<std::size_t>(at - text.data()));
+  return true;
+}
+
 }  // namespace
 
 std::optional<TimeUnit> parse_time_unit(std::string_view text) noexcept {
@@ -139,6 +173,7 @@ std::optional<double> parse_number(std::string_view text) noexcept {
 }
 
 bool take_number(std::string_view& text, double& value) noexcept {
+  if (take_short_number(text, value)) return true;
   const auto [end, error] = fast_float::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{}) return false;
   text.remove_prefix(static_cast<std::size_t>(end - text.data()));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "apps/fit/pieces.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
 #include "core/solvers/smoothing_rows.hpp"
@@ -91,9 +92,8 @@ PiecewisePolynomial fit_online(const WaypointTable& table, const core::WindowOpt
   return curve;
 }
 
-}  // namespace
-
-PiecewisePolynomial fit_table(const WaypointTable& table, const Method& method,
+/// Fits a table without gaps.
+PiecewisePolynomial fit_piece(const WaypointTable& table, const Method& method,
                               const CurveOptions& options) {
   require_derivatives(table, method);
   DimensionKinds(table.kinds).require_end(or_own(options.end));
@@ -114,6 +114,45 @@ PiecewisePolynomial fit_table(const WaypointTable& table, const Method& method,
                              .start = or_own(options.start),
                              .force_lag = options.force_lag};
   return fit_online(table, window, or_own(options.end));
+}
+
+/// Throws InputError if a method or a condition does not allow a halt at a gap.
+void require_halts(const WaypointTable& table, const Method& method, const CurveOptions& options) {
+  const auto is_periodic = [](const std::optional<Condition>& condition) {
+    return condition && condition->kind == ConditionKind::periodic;
+  };
+  const bool is_normalized = method.name == "normalized";
+  if (!is_normalized && !is_periodic(options.start) && !is_periodic(options.end)) return;
+  throw InputError(fmt::format("{}: has gaps, and {} cannot halt at them: use --gap bridge",
+                               table.file,
+                               is_normalized ? "method normalized" : "a periodic curve"));
+}
+
+/// Fits each piece between gaps, at rest where it meets a gap, and joins them.
+PiecewisePolynomial fit_pieces(const WaypointTable& table, const Method& method,
+                               CurveOptions options, const std::vector<std::size_t>& starts) {
+  require_halts(table, method, options);
+  if (method.smooths()) options.lambda = chosen_lambda(table.waypoints(), options);
+  const Condition halt{.kind = ConditionKind::halt, .value = {}};
+  std::vector<PiecewisePolynomial> curves;
+  for (std::size_t k = 0; k <= starts.size(); ++k) {
+    const std::size_t begin = k == 0 ? 0 : starts[k - 1];
+    const std::size_t end = k == starts.size() ? table.size() : starts[k];
+    CurveOptions piece = options;
+    if (k > 0) piece.start = halt;
+    if (k < starts.size()) piece.end = halt;
+    curves.push_back(fit_piece(part_of(table, begin, end - begin), method, piece));
+  }
+  return join(curves);
+}
+
+}  // namespace
+
+PiecewisePolynomial fit_table(const WaypointTable& table, const Method& method,
+                              const CurveOptions& options) {
+  const std::vector<std::size_t> starts = find_gaps(table, options.gap).starts;
+  return starts.empty() ? fit_piece(table, method, options)
+                        : fit_pieces(table, method, options, starts);
 }
 
 }  // namespace splinecast::apps

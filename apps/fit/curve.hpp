@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "apps/recordings/gaps.hpp"
 #include "apps/tables/waypoints.hpp"
 #include "core/online/sliding_window.hpp"
 #include "splinecast/boundary_condition.hpp"
@@ -21,11 +22,13 @@ struct CurveOptions {
   std::optional<std::size_t> settle{};
   std::optional<Tail> tail{};
   bool force_lag = false;
+  GapOptions gap{};
 };
 
-/// Fits one method to a table, in batch or online as the solver does. Prints a λ chosen by
-/// cross-validation on standard error. Throws InputError with the line of a waypoint that the
-/// method does not accept, and std::invalid_argument for options that it does not support.
+/// Fits one method to a table, in batch or online as the solver does. With GapPolicy::split the
+/// curve halts at each gap, and an order-6 segment from rest to rest leads over it. Prints a λ
+/// chosen by cross-validation on standard error. Throws InputError with the line of a waypoint that
+/// the method does not accept, and std::invalid_argument for options that it does not support.
 [[nodiscard]] PiecewisePolynomial fit_table(const WaypointTable& table, const Method& method,
                                             const CurveOptions& options);
 

@@ -21,6 +21,7 @@ void add_curve(Command& verb, CurveOptions& options) {
   add_settle(verb, options.settle);
   add_tail(verb, options.tail);
   add_force_lag(verb, options.force_lag);
+  add_gap(verb, options.gap);
 }
 
 void require_consistent(const CurveOptions& curve, std::span<const Method* const> methods) {

@@ -8,7 +8,7 @@
 namespace splinecast::apps {
 
 /// Adds the options of a curve that is fitted to a file: `--lambda`, `--time-scale`, `--start`,
-/// `--end`, `--online`, `--settle`, `--tail`, `--force-lag`.
+/// `--end`, `--online`, `--settle`, `--tail`, `--force-lag`, `--gap`.
 void add_curve(Command& verb, CurveOptions& options);
 
 /// Throws UsageError for options that exclude one another or that the methods do not support.

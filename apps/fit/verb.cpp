@@ -11,10 +11,12 @@
 #include "apps/files/unit_of_name.hpp"
 #include "apps/fit/curve.hpp"
 #include "apps/fit/options.hpp"
+#include "apps/fit/pieces.hpp"
 #include "apps/fit/report_page.hpp"
 #include "apps/output/emit.hpp"
 #include "apps/output/stream.hpp"
 #include "apps/process/exit_codes.hpp"
+#include "apps/process/messages.hpp"
 #include "apps/tables/kinds.hpp"
 #include "splinecast/fit.hpp"
 
@@ -92,6 +94,10 @@ int run_fit(const FitOptions& options) {
   WaypointTable table = read_waypoints(options.file, options.table);
   require_spline_input(table);
   continue_waypoints(table);
+  const Gaps gaps = find_gaps(table, options.curve.gap).gaps;
+  if (gaps.count > 0 && !options.table.quiet) {
+    say(fmt::format("{}: {}", table.file, in_words(gaps, options.curve.gap.policy)));
+  }
   std::vector<ReportCurve> curves;
   for (const Method* method : options.methods) {
     curves.push_back(

@@ -6,7 +6,9 @@
 #include <chrono>
 #include <utility>
 
+#include "apps/cli/options.hpp"
 #include "apps/files/numbers.hpp"
+#include "apps/process/exit_codes.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -54,6 +56,30 @@ Time gap_length(const GapOptions& options, Time median) noexcept {
   constexpr std::int64_t kMedians = 10;
   constexpr Time kLeast = std::chrono::milliseconds(500);
   return options.longer_than.value_or(std::max(saturated_product(median, kMedians), kLeast));
+}
+
+void add_gap(Command& verb, GapOptions& gap) {
+  verb.option(
+          "--gap",
+          [&gap](const std::string& text) {
+            const auto read = parse_gap(text);
+            if (!read) {
+              throw UsageError("--gap",
+                               fmt::format("'{}' is not a time above 0 in s, one of split, "
+                                           "bridge, refuse, or both as S:POLICY",
+                                           text));
+            }
+            gap = *read;
+          },
+          "A gap is a pause of the source longer than S seconds (default: ten median intervals, at "
+          "least 0.5). split (default): stop there, and start again for the next row; bridge: one "
+          "segment; refuse: refuse the file")
+      .type("[S:]split|bridge|refuse");
+}
+
+std::string gap_refusal(const std::string& place, Time length, const std::string& before) {
+  return fmt::format("{}: a gap of {} s after {}; --gap split or --gap bridge accepts it", place,
+                     to_seconds(length), before);
 }
 
 void Gaps::add(const Gap& gap) noexcept {

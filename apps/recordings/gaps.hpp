@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "apps/cli/command.hpp"
 #include "splinecast/time.hpp"
 
 namespace splinecast::apps {
@@ -36,6 +37,13 @@ struct GapOptions {
 /// The length from which an interval is a gap: what the options say, else ten median intervals, at
 /// least 0.5 s.
 [[nodiscard]] Time gap_length(const GapOptions& options, Time median) noexcept;
+
+/// Adds `--gap`.
+void add_gap(Command& verb, GapOptions& gap);
+
+/// The message about a gap that is refused, between two places of a file.
+[[nodiscard]] std::string gap_refusal(const std::string& place, Time length,
+                                      const std::string& before);
 
 /// The gaps of a recording.
 struct Gaps {

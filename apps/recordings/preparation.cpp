@@ -141,10 +141,7 @@ bool PreparedRows::note_gap(const Row& row, Time recorded) {
   const Time length = recorded - state_.last_recorded;
   if (!state_.has_last || length <= gap_ || row.time <= state_.last) return false;
   if (how_.gap.policy == GapPolicy::refuse) {
-    throw InputError(
-        fmt::format("{}: a gap of {} s after {}: --gap split or --gap bridge accepts "
-                    "it",
-                    rows_.where(row.number), to_seconds(length), rows_.where(state_.last_number)));
+    throw InputError(gap_refusal(rows_.where(row.number), length, rows_.where(state_.last_number)));
   }
   state_.gaps.add({.length = length, .after = state_.last_number, .before = row.number});
   return how_.gap.policy == GapPolicy::split;

@@ -243,25 +243,6 @@ void add_row_policies(Command& verb, ReplayOptions& options) {
       .type("pass|shift|refuse");
 }
 
-void add_gap(Command& verb, GapOptions& gap) {
-  verb.option(
-          "--gap",
-          [&gap](const std::string& text) {
-            const auto read = parse_gap(text);
-            if (!read) {
-              throw UsageError("--gap",
-                               fmt::format("'{}' is not a time above 0 in s, one of split, "
-                                           "bridge, refuse, or both as S:POLICY",
-                                           text));
-            }
-            gap = *read;
-          },
-          "A gap is a pause of the source longer than S seconds (default: ten median intervals, at "
-          "least 0.5). split (default): stop there, and start again for the next row; bridge: one "
-          "segment; refuse: refuse the file")
-      .type("[S:]split|bridge|refuse");
-}
-
 void add_ring_options(Command& verb, ReplayOptions& options) {
   add_count(verb, "--capacity", options.capacity,
             "Capacity of the ring in waypoints, 2 to 16777216, rounded up to a power of two "

@@ -58,10 +58,11 @@ TEST_P(MethodsOfTheProgram, GoThroughThreeProcessesBitForBit) {
   const TestFolder folder;
   const auto file = recording(folder, 2000);
   const auto curve = Arguments{"--method", std::string(method.name)} + parameters(method);
-  const Ended batch = run(Arguments{"fit", file, "--dt", "0.003"} + curve);
+  const Ended batch = run(Arguments{"fit", file, "--dt", "0.003", "--gap", "bridge"} + curve);
   ASSERT_EQ(batch.code, 0) << batch.err;
   const auto at = folder.write("at.csv", batch.out);
-  const Ended fitted = run(Arguments{"fit", file, "--at", at, "--online"} + curve);
+  const Ended fitted =
+      run(Arguments{"fit", file, "--at", at, "--online", "--gap", "bridge"} + curve);
   if (!method.streams()) {
     EXPECT_EQ(fitted.code, 2);
     EXPECT_NE(fitted.err.find("all waypoints at once"), std::string::npos) << fitted.err;
@@ -73,8 +74,8 @@ TEST_P(MethodsOfTheProgram, GoThroughThreeProcessesBitForBit) {
   ASSERT_EQ(fitted.code, 0) << fitted.err;
   const TestStream stream;
   Process solver(Arguments{"solve", stream.name()} + curve);
-  const Ended sent =
-      run({"replay", file, "--stream", stream.name(), "--rate", "max", "--clock", "recorded"});
+  const Ended sent = run({"replay", file, "--stream", stream.name(), "--rate", "max", "--clock",
+                          "recorded", "--gap", "bridge"});
   ASSERT_EQ(sent.code, 0) << sent.err;
   const Ended sampled = run({"sample", stream.name(), "--at", at});
   ASSERT_EQ(sampled.code, 0) << sampled.err;

@@ -38,7 +38,7 @@ TEST_F(ReplayVerify, FindsARecordedStreamEqual) {
   Process solver({"solve", stream_.name()});
   solver.await_message("waiting");
   expect_equal(run({"replay", recording(6000), "--stream", stream_.name(), "--rate", "max",
-                    "--clock", "recorded", "--verify", "--json"}),
+                    "--clock", "recorded", "--gap", "bridge", "--verify", "--json"}),
                5999);
 }
 
@@ -56,7 +56,7 @@ TEST_F(ReplayVerify, FindsALiveStreamEqual) {
 TEST_F(ReplayVerify, FindsAnEmbeddedSolversStreamEqual) {
   expect_equal(
       run({"replay", recording(500), "--stream", stream_.name(), "--rate", "max", "--clock",
-           "recorded", "--embedded", "--method", "akima", "--verify", "--json"}),
+           "recorded", "--embedded", "--method", "akima", "--gap", "bridge", "--verify", "--json"}),
       499);
 }
 
