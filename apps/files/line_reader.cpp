@@ -12,7 +12,6 @@ namespace splinecast::apps {
 namespace {
 
 constexpr std::size_t kBlock = std::size_t{256} << 10U;
-constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 }  // namespace
 

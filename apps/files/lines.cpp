@@ -28,7 +28,6 @@ void split_at(std::string_view line, std::vector<std::string_view>& fields) {
 }  // namespace
 
 Lines::Lines(std::string_view text) : rest_(text) {
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
 }
 

@@ -6,6 +6,9 @@
 
 namespace splinecast::apps {
 
+/// The first bytes of some texts, which are not part of the first line.
+inline constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+
 /// One line of a file.
 struct Line {
   std::size_t number = 0;  ///< from 1; 0: there is no line

@@ -115,7 +115,7 @@ int run_fit(const FitOptions& options) {
   if (options.emit == Emit::samples) {
     emit_samples(curve, DimensionKinds(table.kinds), at, options.dt, output);
   } else {
-    emit_json(curve, options.emit, output);
+    emit_json(curve, table.names, options.emit, output);
   }
   output.close();
   return kOk;

@@ -2,7 +2,9 @@
 
 #include <nlohmann/json.hpp>
 #include <span>
+#include <utility>
 
+#include "apps/files/unit_of_name.hpp"
 #include "apps/output/samples.hpp"
 #include "splinecast/b_spline.hpp"
 #include "splinecast/bezier.hpp"
@@ -100,7 +102,8 @@ void emit_samples(const PiecewisePolynomial& curve, const DimensionKinds& kinds,
   for (write(t); last - t >= *dt; write(t)) t += *dt;
 }
 
-void emit_json(const PiecewisePolynomial& curve, Emit what, Output& output) {
+void emit_json(const PiecewisePolynomial& curve, const std::vector<std::string>& columns, Emit what,
+               Output& output) {
   const auto even = raised(curve, curve.order());
   const auto json = [&] {
     switch (what) {
@@ -112,7 +115,15 @@ void emit_json(const PiecewisePolynomial& curve, Emit what, Output& output) {
         return pp_json(even);
     }
   };
-  output.write(json().dump());
+  ordered_json all = json();
+  all["names"] = ordered_json::array();
+  all["units"] = ordered_json::array();
+  for (const std::string& column : columns) {
+    auto [name, unit] = name_and_unit(column);
+    all["names"].push_back(std::move(name));
+    all["units"].push_back(std::move(unit));
+  }
+  output.write(all.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
   output.write("\n");
 }
 

@@ -34,6 +34,9 @@ void emit_samples(const PiecewisePolynomial& curve, const DimensionKinds& kinds,
 /// - `bezier`: `breaks_ns`, `segments[segment][0…order−1][dimension]`.
 /// - `bspline`: `degree`, `origin_ns`, `knots` in seconds from the origin,
 ///   `control_points[i][dimension]`.
-void emit_json(const PiecewisePolynomial& curve, Emit what, Output& output);
+///
+/// Each has `names` and `units`, which the titles of the columns give; a unit may be empty.
+void emit_json(const PiecewisePolynomial& curve, const std::vector<std::string>& columns, Emit what,
+               Output& output);
 
 }  // namespace splinecast::apps

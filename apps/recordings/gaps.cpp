@@ -13,12 +13,12 @@
 namespace splinecast::apps {
 namespace {
 
-constexpr std::array kPolicies{GapPolicy::split, GapPolicy::bridge, GapPolicy::refuse};
+constexpr std::array kGapPolicies{GapPolicy::split, GapPolicy::bridge, GapPolicy::refuse};
 
-std::optional<GapPolicy> parse_policy(std::string_view text) {
-  const auto* const found =
-      std::ranges::find_if(kPolicies, [&](GapPolicy policy) { return to_string(policy) == text; });
-  return found == kPolicies.end() ? std::nullopt : std::optional(*found);
+std::optional<GapPolicy> parse_gap_policy(std::string_view text) {
+  const auto* const found = std::ranges::find_if(
+      kGapPolicies, [&](GapPolicy policy) { return to_string(policy) == text; });
+  return found == kGapPolicies.end() ? std::nullopt : std::optional(*found);
 }
 
 std::string_view past_tense(GapPolicy policy) {
@@ -40,13 +40,13 @@ std::string_view to_string(GapPolicy policy) noexcept {
 }
 
 std::optional<GapOptions> parse_gap(std::string_view text) {
-  if (const auto policy = parse_policy(text)) return GapOptions{.policy = *policy};
+  if (const auto policy = parse_gap_policy(text)) return GapOptions{.policy = *policy};
   const std::size_t colon = text.find(':');
   GapOptions options;
   options.longer_than = parse_time(text.substr(0, colon), TimeUnit::seconds);
   if (!options.longer_than || *options.longer_than <= Time::zero()) return std::nullopt;
   if (colon == std::string_view::npos) return options;
-  const auto policy = parse_policy(text.substr(colon + 1));
+  const auto policy = parse_gap_policy(text.substr(colon + 1));
   if (!policy) return std::nullopt;
   options.policy = *policy;
   return options;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apps/process/messages.hpp"
+#include "apps/tables/format.hpp"
 #include "apps/tables/kept_rows.hpp"
 #include "apps/tables/table_rows.hpp"
 #include "apps/tables/waypoints.hpp"
@@ -24,7 +25,7 @@ namespace {
 
 using testing::TestFolder;
 
-std::string error_of(const std::string& path, const TableOptions& options = {}) {
+std::string refusal_of(const std::string& path, const TableOptions& options = {}) {
   try {
     (void)read_waypoints(path, options);
   } catch (const InputError& error) {
@@ -62,18 +63,18 @@ TEST(TextRows, FieldsAreSeparatedByCommasSemicolonsOrTabs) {
     EXPECT_EQ(table.positions, (std::vector<double>{1, 2, 3, 4})) << text;
   }
   const auto quoted = folder.write("a.csv", "t;\"a;b\"\n0;1\n1;1,5\n");
-  EXPECT_NE(error_of(quoted).find("a.csv:3:3: column 'a;b': '1,5' is not a number"),
+  EXPECT_NE(refusal_of(quoted).find("a.csv:3:3: column 'a;b': '1,5' is not a number"),
             std::string::npos)
-      << error_of(quoted);
+      << refusal_of(quoted);
 }
 
 TEST(TextRows, AMissingTimeColumnIsReportedWithTheSeparatorsThatWereTried) {
   const TestFolder folder;
-  EXPECT_NE(error_of(folder.write("a.csv", "a;b\n0;1\n")).find("this file has semicolons"),
+  EXPECT_NE(refusal_of(folder.write("a.csv", "a;b\n0;1\n")).find("this file has semicolons"),
             std::string::npos);
-  EXPECT_NE(error_of(folder.write("a.csv", "a\tb\n0\t1\n")).find("this file has tabs"),
+  EXPECT_NE(refusal_of(folder.write("a.csv", "a\tb\n0\t1\n")).find("this file has tabs"),
             std::string::npos);
-  EXPECT_NE(error_of(folder.write("a.csv", "t:x\n0:1\n"))
+  EXPECT_NE(refusal_of(folder.write("a.csv", "t:x\n0:1\n"))
                 .find("fields are separated by commas, semicolons or tabs, and this line has none"),
             std::string::npos);
 }
@@ -81,7 +82,7 @@ TEST(TextRows, AMissingTimeColumnIsReportedWithTheSeparatorsThatWereTried) {
 TEST(TextRows, TheTimeColumnCanBeNamed) {
   const TestFolder folder;
   const auto path = folder.write("a.csv", "t,x,stamp_ms,clock\n7,1,2000,5\n8,3,2500,6\n");
-  EXPECT_NE(error_of(path).find("column 3, 'stamp_ms', is a second time column after 't'"),
+  EXPECT_NE(refusal_of(path).find("column 3, 'stamp_ms', is a second time column after 't'"),
             std::string::npos);
   const auto stamped = read_waypoints(path, {.time_column = "stamp_ms", .quiet = true});
   EXPECT_EQ(stamped.times, (std::vector<Time>{Time(2'000'000'000), Time(2'500'000'000)}));
@@ -90,7 +91,7 @@ TEST(TextRows, TheTimeColumnCanBeNamed) {
       path, {.time_unit = TimeUnit::milliseconds, .time_column = "clock", .quiet = true});
   EXPECT_EQ(other.times, (std::vector<Time>{Time(5'000'000), Time(6'000'000)}));
   EXPECT_EQ(other.names, std::vector<std::string>{"x"});
-  EXPECT_NE(error_of(path, {.time_column = "when"}).find("there is no column 'when' among t, x"),
+  EXPECT_NE(refusal_of(path, {.time_column = "when"}).find("there is no column 'when' among t, x"),
             std::string::npos);
 }
 
@@ -111,7 +112,7 @@ TEST(TextRows, TimeColumnsOfRosAndOthersAreKnown) {
 TEST(TextRows, LongFieldsAreCutAndEscapeCodesAreVisibleInMessages) {
   const TestFolder folder;
   const std::string message =
-      error_of(folder.write("a.csv", "t,\x1b[31mred\n0,1\n1," + std::string(5000, 'z') + "\n"));
+      refusal_of(folder.write("a.csv", "t,\x1b[31mred\n0,1\n1," + std::string(5000, 'z') + "\n"));
   EXPECT_EQ(message.find('\x1b'), std::string::npos);
   EXPECT_NE(message.find("column '\\x1b[31mred': 'zzzzzzzz"), std::string::npos) << message;
   EXPECT_LT(message.size(), 400U);
@@ -123,7 +124,7 @@ TEST(TextRows, LongFieldsAreCutAndEscapeCodesAreVisibleInMessages) {
 TEST(TextRows, ABinaryFileIsNeitherReadNorPrinted) {
   const TestFolder folder;
   const auto path = folder.write("a.bin", std::string("\0\x01\x02PK\n\0\0", 8));
-  EXPECT_NE(error_of(path).find("a.bin: is neither a text nor of another known format"),
+  EXPECT_NE(refusal_of(path).find("a.bin: is neither a text nor of another known format"),
             std::string::npos);
 }
 
@@ -197,6 +198,57 @@ TEST(TextRows, PlainAndQuotedNumbersHaveTheSameValues) {
     EXPECT_EQ(plain.positions, quoted.positions) << number;
     EXPECT_EQ(std::signbit(plain.positions[0]), std::signbit(quoted.positions[0])) << number;
     EXPECT_EQ(plain.positions[0], std::strtod(number.c_str(), nullptr)) << number;
+  }
+}
+
+/// Rows of which only some have a velocity, from a format that only this test knows.
+class PartlyMoving final : public RowReader {
+ public:
+  [[nodiscard]] const std::string& name() const override { return name_; }
+  [[nodiscard]] const RowColumns& columns() const override { return columns_; }
+  bool next(Row& row) override {
+    if (next_ == 4) return false;
+    const std::span<const double> velocity = next_ % 2 == 0 ? value_ : std::span<const double>{};
+    row = {.number = next_ + 1, .time = Time(next_), .position = value_, .velocity = velocity};
+    ++next_;
+    return true;
+  }
+  void rewind() override { next_ = 0; }
+  [[nodiscard]] std::string where(std::size_t number) const override {
+    return fmt::format("message {}", number);
+  }
+  [[nodiscard]] double fraction_read() const override { return next_ / 4.0; }
+
+ private:
+  std::string name_ = "partly";
+  RowColumns columns_{.names = {"x"}};
+  double one_ = 1;
+  std::span<const double> value_{&one_, 1};
+  unsigned next_ = 0;
+};
+
+bool is_partly_moving(const FileBeginning& beginning) {
+  return beginning.first == "partly moving, for a test";
+}
+std::unique_ptr<RowReader> open_partly_moving(InputFile /*file*/, const TableOptions& /*options*/) {
+  return std::make_unique<PartlyMoving>();
+}
+const InputFormat partly_moving(90, is_partly_moving, open_partly_moving);
+
+TEST(RowReader, ATableHasOnlyDerivativesThatEachRowHasAndAPassKeepsThoseOfEachRow) {
+  const TestFolder folder;
+  const auto path = folder.write("a.txt", "partly moving, for a test\n");
+  ::testing::internal::CaptureStderr();
+  const WaypointTable table = read_waypoints(path, {});
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(),
+            "splinecast: partly: 2 of 4 rows have velocities: they are left out\n");
+  EXPECT_EQ(table.size(), 4U);
+  EXPECT_TRUE(table.velocities.empty());
+  EXPECT_EQ(table.where(3), "message 4");
+  KeptRows rows(open_rows(path, {}));
+  for (int pass = 0; pass < 2; ++pass) {
+    EXPECT_EQ(rest_of(rows), "1: 0 | 1 | 1 |\n2: 1 | 1 | |\n3: 2 | 1 | 1 |\n4: 3 | 1 | |\n");
+    rows.rewind();
   }
 }
 
