@@ -107,7 +107,7 @@ class PreparedRows {
   DimensionKinds dimension_kinds_;
   Preparation how_;
   Time step_{};                                  ///< from the row before to a row that is shifted
-  Time gap_{};                                   ///< longest interval that is no gap
+  Time gap_{};                                   ///< longest interval that is not a gap
   std::array<std::vector<double>, 3> last_{};    ///< values of the last row, with LatePolicy::shift
   std::array<std::vector<double>, 2> scaled_{};  ///< velocities and accelerations after the rate
   State state_{};
