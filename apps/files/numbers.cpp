@@ -181,10 +181,23 @@ bool take_number(std::string_view& text, double& value) noexcept {
 }
 
 bool take_time(std::string_view& text, TimeUnit unit, Time& value) noexcept {
+  constexpr std::size_t kSafeDigits = 18;
   std::string_view rest = text;
-  const auto whole = parse_whole_time(take_digits(rest), unit);
-  if (!whole) return false;
-  value = *whole;
+  const std::string_view whole = take_digits(rest);
+  std::string_view fraction;
+  if (rest.starts_with('.')) {
+    rest.remove_prefix(1);
+    fraction = take_digits(rest);
+  }
+  int power = static_cast<int>(unit) - static_cast<int>(fraction.size());
+  if (whole.empty() || whole.size() + fraction.size() > kSafeDigits || power < 0) return false;
+  std::int64_t digits = 0;
+  for (const char c : whole) digits = 10 * digits + (c - '0');
+  for (const char c : fraction) digits = 10 * digits + (c - '0');
+  for (; power > 0; --power) {
+    if (!push_digit(digits, 0)) return false;
+  }
+  value = Time(digits);
   text = rest;
   return true;
 }

@@ -23,8 +23,8 @@ enum class TimeUnit : int { nanoseconds = 0, microseconds = 3, milliseconds = 6,
 /// Values outside the range of double become 0 or infinity.
 [[nodiscard]] std::optional<double> parse_number(std::string_view text) noexcept;
 
-/// Reads a number, or a time of digits only, at the beginning of a text, and removes it from the
-/// text. Fast; returns false for blanks, quotes and a plus at the beginning, and for some rare
+/// Reads a number, or a time that is not negative, at the beginning of a text, and removes it from
+/// the text. Fast; returns false for blanks, quotes and a plus at the beginning, and for some rare
 /// forms that parse_number() or parse_time() accept.
 [[nodiscard]] bool take_number(std::string_view& text, double& value) noexcept;
 [[nodiscard]] bool take_time(std::string_view& text, TimeUnit unit, Time& value) noexcept;

@@ -31,7 +31,7 @@ class Replay {
         solver_(options, [this] { rows_.look_if_begun(); }),
         producer_(options.stream, producer_options()),
         rows_(recording, options, producer_, refused),
-        sender_(options, solver_, producer_, rows_) {}
+        sender_(options, solver_, producer_, rows_, recording.survey().gaps.count > 0) {}
 
   ReplayReport run() {
     try {

@@ -20,7 +20,7 @@ bool RowSender::send(const PlayedRow& row, Waypoint waypoint, bool follows_gap) 
   const AppendStatus status = append_when_there_is_room(waypoint);
   if (status == AppendStatus::full) return false;
   if (status == AppendStatus::accepted) {
-    note_last(waypoint);
+    if (has_gaps_) note_last(waypoint);
     rows_.note_sent(row, waypoint);
   } else {
     rows_.note_refusal(row, waypoint.time, status);
@@ -54,7 +54,12 @@ bool RowSender::stop_at_gap(const Waypoint& next) {
     }
     if (status == AppendStatus::accepted) rows_.note_replacement(*last_time_);
   }
-  entry_begin_ = entry_begin(next);
+  const Time begin = entry_begin(next);
+  // On a live stream the solver must get the replacement before its time settles. Otherwise an
+  // entry leads from rest to the waypoint as soon as it arrives.
+  constexpr Time kMargin = std::chrono::milliseconds(100);
+  const Time settles = std::max(producer_.earliest(), clock_.now() + freeze_ahead_);
+  if (!is_live || begin > settles + kMargin) entry_begin_ = begin;
   return true;
 }
 

@@ -19,8 +19,8 @@ namespace splinecast::apps {
 class RowSender {
  public:
   RowSender(const ReplayOptions& options, EmbeddedSolver& solver, Producer& producer,
-            SentRows& rows)
-      : options_(options), solver_(solver), producer_(producer), rows_(rows) {}
+            SentRows& rows, bool has_gaps)
+      : options_(options), solver_(solver), producer_(producer), rows_(rows), has_gaps_(has_gaps) {}
 
   /// Sets the lead and the freeze-ahead of a live stream. Call it before send().
   void set_lead(Time lead, Time freeze_ahead) noexcept {
@@ -58,6 +58,7 @@ class RowSender {
   EmbeddedSolver& solver_;
   Producer& producer_;
   SentRows& rows_;
+  const bool has_gaps_;  ///< else nothing is noted about the motion so far
   MonotonicClock clock_;
   Time recorded_start_{};
   Time lead_{};

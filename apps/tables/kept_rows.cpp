@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "apps/process/exit_codes.hpp"
+#include "splinecast/waypoint.hpp"
 
 namespace splinecast::apps {
 
@@ -48,6 +49,7 @@ bool KeptRows::read_on(Row& row) {
 
 void KeptRows::rewind() {
   next_ = block_ = word_ = 0;
+  form_ = {};
   if (read_ == kept_) return;
   rows_->rewind();
   read_ = 0;
@@ -60,22 +62,35 @@ std::vector<double>& KeptRows::block_with_room(std::size_t words) {
   return blocks_.back();
 }
 
+void KeptRows::put(std::vector<double>& block, std::uint64_t word) {
+  block.emplace_back();
+  std::memcpy(&block.back(), &word, sizeof(word));
+}
+
+std::uint64_t KeptRows::take_word() {
+  std::uint64_t word = 0;
+  std::memcpy(&word, &blocks_[block_][word_++], sizeof(word));
+  return word;
+}
+
 void KeptRows::keep(const Row& row) {
+  const Form form{row.number, !row.velocity.empty(), !row.acceleration.empty()};
+  const bool is_usual = form == form_.next();
   const std::size_t words =
-      kHeaderWords + row.position.size() + row.velocity.size() + row.acceleration.size();
+      (is_usual ? 1 : 2) + row.position.size() + row.velocity.size() + row.acceleration.size();
   std::vector<double>& block = block_with_room(words);
-  is_full_ = blocks_.size() * kBlockWords * sizeof(double) > kMostBytes;
+  is_full_ =
+      blocks_.size() * kBlockWords * sizeof(double) > kMostBytes || !is_time_in_range(row.time);
   if (is_full_) return;
-  const Header header{.time = row.time.count(),
-                      .number = row.number & (~std::uint64_t{0} >> 2U),
-                      .has_velocity = !row.velocity.empty(),
-                      .has_acceleration = !row.acceleration.empty()};
-  const std::size_t at = block.size();
-  block.resize(at + kHeaderWords);
-  std::memcpy(block.data() + at, &header, sizeof(header));
+  put(block, static_cast<std::uint64_t>(row.time.count()) << 1U | (is_usual ? 0U : 1U));
+  if (!is_usual) {
+    put(block, std::uint64_t{form.number} << 2U | (form.has_velocity ? 1U : 0U) |
+                   (form.has_acceleration ? 2U : 0U));
+  }
   for (const auto values : {row.position, row.velocity, row.acceleration}) {
     block.insert(block.end(), values.begin(), values.end());
   }
+  form_ = form;
   ++kept_;
 }
 
@@ -85,20 +100,23 @@ void KeptRows::take(Row& row) {
     ++block_;
     word_ = 0;
   }
-  const auto words = std::span<const double>(blocks_[block_]);
-  Header header{};
-  std::memcpy(&header, words.data() + word_, sizeof(header));
-  word_ += kHeaderWords;
+  const std::uint64_t time = take_word();
+  form_ = form_.next();
+  if ((time & 1U) != 0) {
+    const std::uint64_t form = take_word();
+    form_ = {form >> 2U, (form & 1U) != 0, (form & 2U) != 0};
+  }
   const auto part = [&](bool is_there) {
-    const auto values = words.subspan(word_, is_there ? columns().dimensions() : 0);
+    const auto values = std::span<const double>(blocks_[block_])
+                            .subspan(word_, is_there ? columns().dimensions() : 0);
     word_ += values.size();
     return values;
   };
-  row.number = header.number;
-  row.time = Time(header.time);
+  row.number = form_.number;
+  row.time = Time(static_cast<std::int64_t>(time) >> 1U);
   row.position = part(true);
-  row.velocity = part(header.has_velocity != 0);
-  row.acceleration = part(header.has_acceleration != 0);
+  row.velocity = part(form_.has_velocity);
+  row.acceleration = part(form_.has_acceleration);
 }
 
 }  // namespace splinecast::apps

@@ -16,7 +16,7 @@ namespace splinecast::apps {
 class KeptRows final : public RowReader {
  public:
   /// Memory for the rows that stay.
-  static constexpr std::size_t kMostBytes = std::size_t{48} << 20U;
+  static constexpr std::size_t kMostBytes = std::size_t{52} << 20U;
 
   explicit KeptRows(std::unique_ptr<RowReader> rows) : rows_(std::move(rows)) {}
   [[nodiscard]] const std::string& name() const override { return rows_->name(); }
@@ -29,24 +29,33 @@ class KeptRows final : public RowReader {
   [[nodiscard]] double fraction_read() const override { return rows_->fraction_read(); }
 
  private:
-  /// A row in memory: a header and then its values, in words of 8 bytes.
-  struct Header {
-    std::int64_t time;
-    std::uint64_t number : 62;
-    std::uint64_t has_velocity : 1;
-    std::uint64_t has_acceleration : 1;
+  /// What a row in memory has besides its time and its position.
+  struct Form {
+    std::size_t number = 0;
+    bool has_velocity = false;
+    bool has_acceleration = false;
+
+    /// Of the row after this one, unless the file says otherwise.
+    [[nodiscard]] Form next() const noexcept {
+      return {number + 1, has_velocity, has_acceleration};
+    }
+    friend bool operator==(const Form&, const Form&) = default;
   };
-  static constexpr std::size_t kHeaderWords = sizeof(Header) / sizeof(double);
   static constexpr std::size_t kBlockWords = std::size_t{1} << 16U;
   static constexpr std::size_t kMostErrors = 1000;
 
   bool read_on(Row& row);
   void keep(const Row& row);
   void take(Row& row);
+  void put(std::vector<double>& block, std::uint64_t word);
+  [[nodiscard]] std::uint64_t take_word();
   [[nodiscard]] std::vector<double>& block_with_room(std::size_t words);
 
   std::unique_ptr<RowReader> rows_;
-  std::vector<std::vector<double>> blocks_;  ///< each reserved once
+  /// Words of 8 bytes, each block reserved once. A row has a word with its time and a bit, a word
+  /// with its form if the bit is set, and its values.
+  std::vector<std::vector<double>> blocks_;
+  Form form_{};  ///< of the last row that was put into memory, or taken from it
   std::map<std::size_t, std::pair<std::size_t, std::string>>
       errors_;             ///< by index: number and message of a row that cannot be read
   std::size_t kept_ = 0;   ///< rows in memory, with those that cannot be read

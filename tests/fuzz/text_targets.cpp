@@ -4,8 +4,11 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <bit>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/cli/command.hpp"
@@ -17,6 +20,7 @@
 #include "apps/process/exit_codes.hpp"
 #include "apps/recordings/advice.hpp"
 #include "apps/recordings/recording.hpp"
+#include "apps/tables/kept_rows.hpp"
 #include "apps/tables/kinds.hpp"
 #include "apps/tables/time_column.hpp"
 #include "ipc/memory/names.hpp"
@@ -74,7 +78,9 @@ apps::TableOptions options_of(const std::string& line) {
     const auto unit = apps::parse_time_unit(word);
     if (kind) options.kinds.push_back(*kind);
     if (unit) options.time_unit = unit;
-    if (!kind && !unit) options.columns.emplace_back(word);
+    const bool is_time = word.starts_with('@');
+    if (is_time) options.time_column = word.substr(1);
+    if (!kind && !unit && !is_time) options.columns.emplace_back(word);
   }
   return options;
 }
@@ -90,6 +96,37 @@ void require_whole(const apps::WaypointTable& table) {
   }
   require(table.positions.size() == table.size() * dimensions, "each row has each position");
   for (const Time t : table.times) require(is_time_in_range(t), "times are in range");
+}
+
+/// The rows of a pass, as their number and a value that depends on each of them.
+std::pair<std::size_t, std::uint64_t> pass_over(apps::RowReader& rows) {
+  std::pair<std::size_t, std::uint64_t> found{0, 0};
+  const auto mix = [&found](std::uint64_t value) { found.second = found.second * 31 + value; };
+  for (apps::Row row;; ++found.first) {
+    try {
+      if (!rows.next(row)) return found;
+      mix(static_cast<std::uint64_t>(row.time.count()));
+      for (const auto values : {row.position, row.velocity, row.acceleration}) {
+        for (const double value : values) mix(std::bit_cast<std::uint64_t>(value));
+      }
+    } catch (const apps::InputError&) {
+      if (row.number == 0) throw;
+    }
+    mix(row.number);
+  }
+}
+
+/// Reads a file in several passes like `replay`.
+void require_equal_passes(const std::string& path, const apps::TableOptions& options) {
+  const auto reader = apps::open_rows(path, options);
+  const auto first = pass_over(*reader);
+  reader->rewind();
+  require(pass_over(*reader) == first, "each pass reads the same rows");
+  apps::KeptRows kept(apps::open_rows(path, options));
+  for (int pass = 0; pass < 2; ++pass) {
+    require(pass_over(kept) == first, "rows in memory are those of the file");
+    kept.rewind();
+  }
 }
 
 /// Prepares a table like `replay` and `advise`.
@@ -111,6 +148,7 @@ void try_waypoints(std::string_view text) {
   try {
     apps::WaypointTable table = apps::read_waypoints(file.path(), options);
     require_whole(table);
+    require_equal_passes(file.path(), options);
     prepare(table);
   } catch (const apps::InputError&) {
     ++bad_rows;
@@ -173,6 +211,9 @@ void try_words(std::string_view text) {
     }
     (void)apps::parse_number(line);
     (void)apps::parse_count(line);
+    if (const auto gap = apps::parse_gap(line); gap && gap->longer_than) {
+      require(*gap->longer_than > Time::zero(), "a gap has a length");
+    }
     (void)apps::unit_of_time_column(line);
     if (const auto kind = parse_dimension(line)) {
       require(parse_dimension(to_string(*kind)) == kind, "a printed kind parses to the same kind");

@@ -16,6 +16,45 @@
 namespace splinecast::apps {
 namespace {
 
+TEST(Numbers, AreTakenFromTheBeginningOfATextWithTheSameValue) {
+  std::mt19937_64 random(7);
+  for (int i = 0; i < 20'000; ++i) {
+    std::string text = std::to_string(random() >> (random() % 64));
+    if (random() % 3 > 0) text.insert(random() % (text.size() + 1), ".");
+    if (random() % 5 == 0) text += "e-" + std::to_string(random() % 30);
+    if (random() % 2 == 0) text.insert(0, "-");
+    std::string_view rest = text;
+    double value = 0;
+    if (take_number(rest, value)) {
+      const std::string taken = text.substr(0, text.size() - rest.size());
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(value),
+                std::bit_cast<std::uint64_t>(parse_number(taken).value()))
+          << text;
+    }
+    rest = text;
+    Time time{};
+    for (const TimeUnit unit : {TimeUnit::nanoseconds, TimeUnit::milliseconds, TimeUnit::seconds}) {
+      rest = text;
+      if (!take_time(rest, unit, time)) continue;
+      ASSERT_EQ(time, parse_time(text.substr(0, text.size() - rest.size()), unit)) << text;
+    }
+  }
+  std::string_view fields = "0.5,12.25;x";
+  Time time{};
+  double value = 0;
+  ASSERT_TRUE(take_time(fields, TimeUnit::seconds, time));
+  EXPECT_EQ(time, Time(500'000'000));
+  EXPECT_EQ(fields, ",12.25;x");
+  fields.remove_prefix(1);
+  ASSERT_TRUE(take_number(fields, value));
+  EXPECT_EQ(value, 12.25);
+  EXPECT_EQ(fields, ";x");
+  for (std::string_view text : {"", ",1", " 1", "\"1\"", "x"}) {
+    EXPECT_FALSE(take_number(text, value)) << text;
+    EXPECT_FALSE(take_time(text, TimeUnit::seconds, time)) << text;
+  }
+}
+
 TEST(Numbers, TimesAreReadExactlyInEveryUnit) {
   const std::vector<std::tuple<const char*, TimeUnit, std::int64_t>> cases{
       {"1403636579.763555584", TimeUnit::seconds, 1403636579763555584},

@@ -14,10 +14,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kRows = 120'000;
+constexpr int kRows = 150'000;
 constexpr int kDimensions = 64;
 
-/// Writes a file whose values need 61 MB in memory.
+/// Writes a file whose values need 77 MB in memory.
 std::string write_long(const std::string& path) {
   std::ofstream file(path);
   file << "t_ns";
@@ -58,10 +58,10 @@ TEST_F(LongRecording, IsReplayedWithoutBeingHeldInMemory) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "a sanitizer needs more data than the limit";
 #endif
-  // The limit counts heap and other private memory in KiB; the program keeps at most 48 MiB of
+  // The limit counts heap and other private memory in KiB; the program keeps at most 52 MiB of
   // rows.
   expect_replayed(in_shell(
-      "ulimit -d 64000; exec \"$0\" replay \"$1\" --stream \"$2\" --clock recorded --rate max "
+      "ulimit -d 70000; exec \"$0\" replay \"$1\" --stream \"$2\" --clock recorded --rate max "
       "--embedded --json",
       {write_long(folder_.path("long.csv")), stream_.name()}));
 }
