@@ -79,9 +79,10 @@ void PreparedRows::apply_rate(Row& row) {
   constexpr double kMost = 9.2e18;  // range of llround; later than any valid time
   const auto elapsed = static_cast<double>((row.time - *state_.selected).count()) / how_.rate;
   if (elapsed > static_cast<double>(kLongestTime.count())) {
-    throw InputError(fmt::format("{}: at --rate {} it takes {} s to this row; the maximum is {} s",
-                                 rows_.where(row.number), how_.rate, elapsed * 1e-9,
-                                 to_seconds(kLongestTime)));
+    throw InputError(
+        fmt::format("{}: at --rate {} this row comes {} s after the first one; the maximum is {} s",
+                    rows_.where(row.number), how_.rate,
+                    to_seconds(row.time - *state_.selected) / how_.rate, to_seconds(kLongestTime)));
   }
   row.time = saturated_sum(*state_.selected, Time(std::llround(std::max(elapsed, -kMost))));
   double factor = how_.rate;

@@ -94,10 +94,13 @@ TEST(Emit, RaisesMixedOrdersToTheHighestAndAddsBreaksToTheControlPoints) {
 TEST(Emit, OneWaypointHasATimeAndEmptyLists) {
   const TestFolder folder;
   const auto file = folder.write("one.csv", "t_ns,x\n5,7\n");
-  EXPECT_EQ(run({"fit", file, "--emit", "pp"}).out, "{\"breaks_ns\":[5],\"coefficients\":[]}\n");
-  EXPECT_EQ(run({"fit", file, "--emit", "bezier"}).out, "{\"breaks_ns\":[5],\"segments\":[]}\n");
+  EXPECT_EQ(run({"fit", file, "--emit", "pp"}).out,
+            "{\"breaks_ns\":[5],\"coefficients\":[],\"names\":[\"x\"],\"units\":[\"\"]}\n");
+  EXPECT_EQ(run({"fit", file, "--emit", "bezier"}).out,
+            "{\"breaks_ns\":[5],\"segments\":[],\"names\":[\"x\"],\"units\":[\"\"]}\n");
   EXPECT_EQ(run({"fit", file, "--emit", "bspline"}).out,
-            "{\"degree\":3,\"origin_ns\":5,\"knots\":[],\"control_points\":[]}\n");
+            "{\"degree\":3,\"origin_ns\":5,\"knots\":[],\"control_points\":[],\"names\":[\"x\"],"
+            "\"units\":[\"\"]}\n");
 }
 
 TEST(Emit, RefusesUnknownFormatsAndTimesForFormatsWithoutSamples) {

@@ -135,7 +135,7 @@ TEST(Fit, OneWaypointGivesAConstantAndTwoGiveALine) {
   EXPECT_EQ(run({"fit", one, "--online", "--dt", "1"}).out,
             "t_ns,p[0],v[0],a[0],j[0]\n5,7,0,0,0\n");
   EXPECT_EQ(json::parse(run({"fit", one, "--emit", "pp"}).out),
-            json::parse(R"({"breaks_ns":[5],"coefficients":[]})"));
+            json::parse(R"({"breaks_ns":[5],"coefficients":[],"names":["x"],"units":[""]})"));
   const auto two = folder.write("two.csv", "t,x\n0,0\n2,4\n");
   EXPECT_EQ(run({"fit", two, "--dt", "1"}).out,
             "t_ns,p[0],v[0],a[0],j[0]\n0,0,2,0,0\n1000000000,2,2,0,0\n2000000000,4,2,0,0\n");

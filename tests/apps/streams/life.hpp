@@ -23,7 +23,7 @@ using testing::TestStream;
 class Life : public ::testing::Test {
  protected:
   Life() {
-    const auto mesh = testing::random_mesh(4, 2000, 2, 4);
+    const auto mesh = testing::random_mesh(4, 2000, 2, 1);
     file_ = folder_.write("a.csv", testing::to_csv(mesh));
     at_ = folder_.write("at.csv", testing::times_csv(mesh, 2));
     wanted_ = testing::run({"fit", file_, "--online", "--at", at_}).out;

@@ -45,12 +45,12 @@ void expect_same_bits(const std::string& file, const std::vector<std::string>& c
   const TestStream stream;
   Process solver({"solve", stream.name(), "--settle", shape.settle, "--tail", shape.tail,
                   "--capacity", "8192"});
-  std::vector<std::string> replay{"replay",  file,        "--stream", stream.name(),
-                                  "--rate",  "max",       "--clock",  "recorded",
-                                  "--start", shape.start, "--end",    shape.end};
-  std::vector<std::string> fit{"fit",     file,       "--online", "--settle",  shape.settle,
-                               "--tail",  shape.tail, "--start",  shape.start, "--end",
-                               shape.end, "--at",     at};
+  std::vector<std::string> replay{"replay", file,      "--stream", stream.name(), "--rate",
+                                  "max",    "--clock", "recorded", "--start",     shape.start,
+                                  "--end",  shape.end, "--gap",    "bridge"};
+  std::vector<std::string> fit{"fit",       file,         "--gap",   "bridge",   "--online",
+                               "--settle",  shape.settle, "--tail",  shape.tail, "--start",
+                               shape.start, "--end",      shape.end, "--at",     at};
   replay.insert(replay.end(), columns.begin(), columns.end());
   fit.insert(fit.end(), columns.begin(), columns.end());
   const Ended sent = run(replay);
@@ -121,11 +121,11 @@ TEST(Pipeline, AnEmbeddedSolverGivesTheSameBits) {
   const auto file = folder.write("a.csv", testing::to_csv(mesh));
   const auto at = folder.write("at.csv", testing::times_csv(mesh, 2));
   const Ended sent = run({"replay", file, "--stream", stream.name(), "--rate", "max", "--clock",
-                          "recorded", "--embedded", "--settle", "5"});
+                          "recorded", "--embedded", "--settle", "5", "--gap", "bridge"});
   ASSERT_EQ(sent.code, 0) << sent.err;
-  EXPECT_TRUE(
-      testing::same_text(testing::without_status(run({"sample", stream.name(), "--at", at}).out),
-                         run({"fit", file, "--online", "--settle", "5", "--at", at}).out));
+  EXPECT_TRUE(testing::same_text(
+      testing::without_status(run({"sample", stream.name(), "--at", at}).out),
+      run({"fit", file, "--online", "--settle", "5", "--gap", "bridge", "--at", at}).out));
 }
 
 TEST(Pipeline, ASolverKilledInTheMiddleIsTakenOverBitForBit) {
