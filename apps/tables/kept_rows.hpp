@@ -29,7 +29,7 @@ class KeptRows final : public RowReader {
   [[nodiscard]] double fraction_read() const override { return rows_->fraction_read(); }
 
  private:
-  /// What a row in memory has besides its time and its position.
+  /// What a row in memory has in addition to its time and its position.
   struct Form {
     std::size_t number = 0;
     bool has_velocity = false;
