@@ -78,6 +78,44 @@ std::optional<unsigned> parse_unsigned(const std::string& text, int base) {
 
 }  // namespace
 
+namespace {
+
+/// Options for files with topics: MCAP and ULog.
+void add_topic_options(Command& verb, TableOptions& options) {
+  verb.option("--topic", options.topic,
+              "Topic of an MCAP file or a ULog; of a ULog also TOPIC:INSTANCE; of a recording also "
+              "the name of a stream (default: the only one that gives waypoints)")
+      .type("TOPIC");
+  verb.option("--joints", options.joints,
+              "Joints of a topic, by name, in this order (default: those of the first message)")
+      .separated_by_commas()
+      .type("NAME,...");
+  verb.option(
+          "--field", options.fields,
+          "Numbers in the messages of a topic, in this order: paths such as pose.position.x or "
+          "q[0] (default: all numbers of the first JSON message; all floating-point fields of a "
+          "ULog)")
+      .separated_by_commas()
+      .type("PATH,...");
+  verb.option(
+          "--time",
+          [&options](const std::string& text) {
+            if (text != "header" && text != "log" && text != "publish") {
+              throw UsageError("--time",
+                               fmt::format("'{}' is not one of header, log, publish", text));
+            }
+            options.which_time = text == "header" ? WhichTime::header
+                                 : text == "log"  ? WhichTime::log
+                                                  : WhichTime::publish;
+          },
+          "Time of a message: the stamp in its header, or the time when it was recorded or "
+          "published "
+          "(default: header)")
+      .type("header|log|publish");
+}
+
+}  // namespace
+
 void add_table_options(Command& verb, TableOptions& options) {
   verb.option("--columns", options.columns,
               "Position columns, by name, in this order (default: all numeric columns)")
@@ -108,6 +146,7 @@ void add_table_options(Command& verb, TableOptions& options) {
               "timestamp_us)")
       .type("NAME");
   add_time_unit(verb, options.time_unit);
+  add_topic_options(verb, options);
   verb.flag("--quiet", options.quiet, "Print no messages about what the columns are read as");
 }
 

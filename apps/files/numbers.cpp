@@ -52,13 +52,15 @@ std::optional<std::int64_t> rounded(const Decimal& decimal) noexcept {
 /// Fast path for the usual time, digits only: one pass. Nothing for any other text, which may still
 /// be a time.
 std::optional<Time> parse_whole_time(std::string_view text, TimeUnit unit) noexcept {
-  constexpr std::size_t kSafeDigits = 18;
+  constexpr std::size_t kSafeDigits = 19;  // of an unsigned number of 64 bits
   if (text.empty() || text.size() > kSafeDigits) return std::nullopt;
-  std::int64_t value = 0;
+  std::uint64_t digits = 0;
   for (const char c : text) {
     if (!is_digit(c)) return std::nullopt;
-    value = 10 * value + (c - '0');
+    digits = 10 * digits + static_cast<std::uint64_t>(c - '0');
   }
+  if (digits > std::uint64_t{INT64_MAX}) return std::nullopt;
+  auto value = static_cast<std::int64_t>(digits);
   for (int power = static_cast<int>(unit); power > 0; --power) {
     if (!push_digit(value, 0)) return std::nullopt;
   }

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 
 #include "apps/cli/options.hpp"
 #include "apps/cli/verb.hpp"
+#include "apps/contents/contents.hpp"
 #include "apps/output/stream.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "apps/streams/report.hpp"
@@ -42,6 +44,30 @@ std::string age_of(const ipc::StreamInfo& info) {
   return fmt::format("{:<26}  {:.3f} s ago\n", "last published", age);
 }
 
+/// Whether the argument is a file: it is `-` (standard input), contains a slash, or is the name of
+/// a file and of no stream.
+bool is_file(const std::string& name) {
+  if (name.find('/') != std::string::npos || name == "-") return true;
+  const auto has_region = [&](ipc::RegionKind kind) {
+    return std::filesystem::exists(ipc::region_path(name, kind));
+  };
+  return !has_region(ipc::RegionKind::waypoints) && !has_region(ipc::RegionKind::spline) &&
+         std::filesystem::is_regular_file(name);
+}
+
+void show_stream(const std::string& stream, const Trust& trust, bool as_json) {
+  const ipc::StreamInfo info = ipc::inspect(stream, trust);
+  ordered_json json = to_json(info);
+  const std::string warning = depth_warning(info, trust);
+  if (!warning.empty()) json["depth_warning"] = warning;
+  print_report(as_json ? pretty(json) : table_of(json, 0) + age_of(info));
+}
+
+void show_file(const std::string& path, bool as_json) {
+  const FileContents contents = contents_of(path);
+  print_report(as_json ? pretty(to_json(contents)) : to_text(contents));
+}
+
 void add_info(Command& verb, Action& action) {
   struct Options {
     std::string stream;
@@ -49,26 +75,26 @@ void add_info(Command& verb, Action& action) {
     Trust trust;
   };
   auto options = std::make_shared<Options>();
-  verb.option("STREAM", options->stream, "Name of the stream to show").required();
+  verb.option("STREAM|FILE", options->stream,
+              "Name of the stream to show, or path of a file of waypoints, an MCAP file or a ULog")
+      .required();
   verb.flag("--json", options->json, "Print JSON");
   add_trust(verb, options->trust);
   verb.callback([&action, options] {
     action = [options] {
-      const ipc::StreamInfo info = ipc::inspect(options->stream, options->trust);
-      ordered_json json = to_json(info);
-      const std::string warning = depth_warning(info, options->trust);
-      if (!warning.empty()) json["depth_warning"] = warning;
-      if (options->json) {
-        print_report(pretty(json));
+      if (is_file(options->stream)) {
+        show_file(options->stream, options->json);
       } else {
-        print_report(table_of(json, 0) + age_of(info));
+        show_stream(options->stream, options->trust, options->json);
       }
       return kOk;
     };
   });
 }
 
-const Verb info_verb("info", 110, "Show the state and the options of one stream", add_info);
+const Verb info_verb("info", 110,
+                     "Show the state and the options of a stream, or what a file contains",
+                     add_info);
 
 }  // namespace
 

@@ -195,6 +195,13 @@ void read_beginning(LineReader& lines, FileBeginning& beginning) {
 
 std::unique_ptr<RowReader> open_text(InputFile file, ReadTextFormat read,
                                      const TableOptions& options) {
+  const bool is_for_topics = !options.topic.empty() || !options.fields.empty() ||
+                             !options.joints.empty() || options.which_time != WhichTime::header;
+  if (is_for_topics) {
+    throw InputError(fmt::format(
+        "{}: is a text: --topic, --joints, --field and --time are for MCAP files and ULogs",
+        file.name()));
+  }
   return std::make_unique<TextRows>(std::move(file), read, options);
 }
 

@@ -23,7 +23,7 @@ from page import this_machine, today  # noqa: E402
 BUILD = PROJECT / "build" / "fuzz"
 SEEDS = PROJECT / "tests" / "fuzz" / "seeds"
 REGIONS = ["reader", "writers", "roles"]
-TEXTS = ["waypoints", "times", "polynomials", "limits", "recordings", "words", "arguments"]
+TEXTS = ["waypoints", "topics", "times", "polynomials", "limits", "recordings", "words", "arguments"]
 PROMISE = 9  # number in docs/concepts.md
 # Limits of an input: time in s, above which it hangs; size in bytes; memory in MiB.
 LIMITS = ["-timeout=10", "-max_len=65536", "-rss_limit_mb=2048"]

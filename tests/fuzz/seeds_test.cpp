@@ -99,6 +99,7 @@ TEST(FuzzSeeds, AnEncodedImageDecodesToTheSameImage) {
 }
 
 TEST(FuzzSeeds, WaypointFilesAreReadOrRefused) { try_texts("waypoints", try_waypoints); }
+TEST(FuzzSeeds, MessagesOfTopicsAreReadOrRefused) { try_texts("topics", try_topics); }
 TEST(FuzzSeeds, TimeFilesAreReadOrRefused) { try_texts("times", try_times); }
 TEST(FuzzSeeds, PolynomialFilesAreReadOrRefused) { try_texts("polynomials", try_polynomials); }
 TEST(FuzzSeeds, LimitFilesAreReadOrRefused) { try_texts("limits", try_limits); }

@@ -11,6 +11,11 @@ namespace splinecast::fuzz {
 /// kinds for `--kind` and a unit for `--time-unit`, separated by spaces.
 void try_waypoints(std::string_view text);
 
+/// Messages of a topic, or a ULog. The first line is `ENCODING TYPE` and options: `field=PATH`,
+/// `joint=NAME`, `time=PATH`, `log`. The second line is the schema. Each message has its length in
+/// two bytes before it.
+void try_topics(std::string_view text);
+
 /// A file of times for `--at`, after a first line with a unit for `--time-unit`.
 void try_times(std::string_view text);
 

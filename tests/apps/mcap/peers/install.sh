@@ -5,7 +5,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 mkdir -p "$1"
 exec 9>"$1/lock"
 flock 9
-cp "$here/package.json" "$here/peer.mjs" "$1"
+cp "$here/package.json" "$here"/*.mjs "$1"
 cmp -s "$here/package-lock.json" "$1/node_modules/installed.json" && exit 0
 cp "$here/package-lock.json" "$1"
 cd "$1"

@@ -1,0 +1,142 @@
+#include "apps/contents/contents.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "apps/files/input_file.hpp"
+#include "apps/files/numbers.hpp"
+#include "apps/mcap/input/reader.hpp"
+#include "apps/messages/bytes.hpp"
+#include "apps/messages/json_fields.hpp"
+#include "apps/messages/message_error.hpp"
+#include "apps/messages/ulog.hpp"
+#include "apps/process/exit_codes.hpp"
+#include "apps/tables/format.hpp"
+#include "apps/tables/ulog/topics.hpp"
+
+namespace splinecast::apps {
+namespace {
+
+/// Counts the events of the streams that this program recorded.
+class EventCounts {
+ public:
+  explicit EventCounts(FileContents& contents) : contents_(contents) {}
+
+  void take(const mcap::Message& message) {
+    if (message.channel->schema_name != "splinecast.Event" || !can_read_json()) return;
+    if (!fields_) fields_.emplace(std::vector<JsonPath>{{"event"}, {"reason"}, {"count"}});
+    try {
+      fields_->read(text_of(message.data));
+    } catch (const MessageError&) {
+      return;
+    }
+    const std::string_view event = trimmed(fields_->text(0));
+    if (contents_.events.size() < kMostNames) ++contents_.events[std::string(event)];
+    const bool is_loss = event == "lost" && trimmed(fields_->text(1)) != "late commit";
+    if (is_loss) contents_.lost += parse_count(fields_->text(2)).value_or(0);
+  }
+
+ private:
+  static constexpr std::size_t kMostNames = 100;
+
+  FileContents& contents_;
+  std::optional<JsonFields> fields_{};
+};
+
+FileContents of_mcap(InputFile& file) {
+  FileContents contents{.file = file.name(), .format = "MCAP"};
+  mcap::Reader reader(file.name(), bytes_of(file.mapped()));
+  std::map<const mcap::Channel*, TimeSpans> times;
+  EventCounts events(contents);
+  mcap::Message message;
+  try {
+    while (reader.next(message)) {
+      times[message.channel].add(message.log_time);
+      events.take(message);
+    }
+  } catch (const InputError& damage) {
+    contents.damage = damage.what();
+  }
+  contents.is_complete = !reader.ended_early() && contents.damage.empty();
+  contents.written_by = reader.library();
+  for (const mcap::Channel& channel : reader.channels()) {
+    contents.topics.push_back({.name = channel.topic,
+                               .type = std::string(channel.schema_name),
+                               .encoding = channel.message_encoding,
+                               .times = times[&channel]});
+  }
+  for (const mcap::Metadata& metadata : reader.metadata()) {
+    contents.metadata.emplace_back(metadata.name, metadata.values);
+  }
+  return contents;
+}
+
+FileContents of_ulog(InputFile& file) {
+  FileContents contents{.file = file.name(), .format = "ULog"};
+  ulog::Reader reader(bytes_of(file.mapped()));
+  std::vector<TimeSpans> times;
+  ulog::Sample sample;
+  for (bool is_at_end = false; !is_at_end;) {
+    try {
+      is_at_end = !reader.next(sample);
+      if (is_at_end) break;
+      times.resize(std::max(times.size(), sample.topic + 1));
+      constexpr std::uint64_t kMost = std::uint64_t{1} << 52U;  // fits as nanoseconds
+      times[sample.topic].add(std::chrono::microseconds(std::min(sample.microseconds, kMost)));
+    } catch (const MessageError& bad) {
+      if (contents.damage.empty()) contents.damage = bad.what();
+    }
+  }
+  times.resize(reader.topics().size());
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    contents.topics.push_back({.name = name_of(reader.topics()[i]), .times = times[i]});
+  }
+  contents.is_complete = !reader.ended_early() && contents.damage.empty();
+  contents.dropouts = reader.dropouts().count;
+  contents.dropped = std::chrono::milliseconds(reader.dropouts().milliseconds);
+  std::map<std::string, std::string> information;
+  for (const auto& [key, text] : reader.information()) information.emplace(key, text);
+  if (!information.empty()) contents.metadata.emplace_back("information", information);
+  return contents;
+}
+
+FileContents of_table(InputFile file) {
+  const auto rows = InputFormat::open(std::move(file), {.quiet = true});
+  FileContents contents{.file = rows->name(), .format = "table"};
+  contents.columns = rows->columns().names;
+  contents.bad_rows = 0;
+  TopicContents table{.name = "rows"};
+  Row row;
+  for (bool is_at_end = false; !is_at_end;) {
+    try {
+      is_at_end = !rows->next(row);
+      if (!is_at_end) table.times.add(row.time);
+    } catch (const InputError& bad) {
+      if (contents.damage.empty()) contents.damage = bad.what();
+      ++*contents.bad_rows;
+      is_at_end = row.number == 0;
+    }
+  }
+  contents.topics.push_back(std::move(table));
+  return contents;
+}
+
+}  // namespace
+
+FileContents contents_of(const std::string& path) {
+  InputFile file(path);
+  std::array<char, 16> beginning{};
+  const std::string_view begin(beginning.data(), file.read(0, beginning));
+  if (!begin.empty() && mcap::is_mcap(bytes_of(begin))) return of_mcap(file);
+  if (ulog::is_ulog(bytes_of(begin))) {
+    try {
+      return of_ulog(file);
+    } catch (const MessageError& bad) {
+      throw InputError(file.name() + ": " + bad.what());
+    }
+  }
+  return of_table(std::move(file));
+}
+
+}  // namespace splinecast::apps
