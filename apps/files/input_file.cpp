@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <system_error>
+#include <utility>
 
 #include "apps/process/exit_codes.hpp"
 #include "ipc/memory/descriptor.hpp"
@@ -109,25 +110,33 @@ void InputFile::copy_pipe(int descriptor) {
   Storage& storage = *storage_;
   std::array<char, 65536> block{};
   ipc::OwnedDescriptor unnamed;
+  bool is_small = true;
   for (ssize_t bytes = 0; (bytes = read_fully(descriptor, block)) != 0;) {
     if (bytes < 0) refuse(errno);
     const std::string_view part(block.data(), static_cast<std::size_t>(bytes));
     size_ += part.size();
-    if (unnamed.get() < 0 && storage.copy.size() + part.size() > kMostInMemory) {
+    if (is_small && storage.copy.size() + part.size() > kMostInMemory) {
+      is_small = false;
       unnamed = open_unnamed();
-      if (unnamed.get() < 0 || !write_fully(unnamed.get(), storage.copy)) refuse(errno);
-      storage.copy = {};
+      if (unnamed.get() >= 0) append_to(unnamed.get(), std::exchange(storage.copy, {}));
     }
-    if (unnamed.get() < 0) {
+    if (unnamed.get() >= 0) {
+      append_to(unnamed.get(), part);
+    } else {
       storage.copy += part;
-    } else if (!write_fully(unnamed.get(), part)) {
-      refuse(errno);
     }
   }
   storage.is_copied = unnamed.get() < 0;
   if (storage.is_copied) return;
   if (fstat(unnamed.get(), &storage.opened) != 0) refuse(errno);
   storage.file = std::move(unnamed);
+}
+
+/// Appends to the copy of a pipe. Throws InputError if the disk is full.
+void InputFile::append_to(int descriptor, std::string_view part) const {
+  if (write_fully(descriptor, part)) return;
+  throw InputError(fmt::format("{}: cannot be copied to a temporary file: {}", name_,
+                               std::generic_category().message(errno)));
 }
 
 std::size_t InputFile::read(std::uint64_t offset, std::span<char> out) {

@@ -11,7 +11,8 @@ namespace splinecast::apps {
 
 /// A file that is read by offset, in parts, so that its size does not matter. A pipe, or standard
 /// input (`-`), is copied when it is opened: up to 16 MiB into memory, more into an unnamed
-/// temporary file in $TMPDIR or /tmp. One thread uses it.
+/// temporary file in $TMPDIR or /tmp, or into memory if there can be no such file. One thread uses
+/// it.
 class InputFile {
  public:
   /// Throws InputError if the file cannot be read.
@@ -45,6 +46,7 @@ class InputFile {
   struct Storage;
   [[noreturn]] void refuse(int error) const;
   void copy_pipe(int descriptor);
+  void append_to(int descriptor, std::string_view part) const;
   void require_unchanged() const;
 
   std::string name_;

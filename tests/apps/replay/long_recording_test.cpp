@@ -72,7 +72,8 @@ TEST_F(LongRecording, ComesThroughAPipe) {
       {write_long(folder_.path("long.csv")), stream_.name()}));
   testing::TestStream piped;
   const testing::Ended ended = in_shell(
-      "cat \"$1\" | \"$0\" replay - --stream \"$2\" --clock recorded --rate max --embedded --json",
+      "cat \"$1\" | TMPDIR=/nonexistent \"$0\" replay - --stream \"$2\" --clock recorded --rate "
+      "max --embedded --json",
       {folder_.path("long.csv"), piped.name()});
   ASSERT_EQ(ended.code, 0) << ended.err;
   EXPECT_EQ(json::parse(ended.out)["interpolated"], kRows);
