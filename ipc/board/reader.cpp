@@ -130,4 +130,12 @@ core::Prefix KnotBoardReader::copy_row(const KnotCopy& knot, std::span<double> g
   return prefix;
 }
 
+bool KnotBoardReader::observe_row(const KnotCopy& knot, Word r, std::span<double> g,
+                                  core::Prefix& prefix) const noexcept {
+  prefix = copy_row(knot, g);
+  // Keeps the loads of the row before those of the tags: a writer stores a new tag before the row.
+  std::atomic_thread_fence(std::memory_order_acquire);
+  return is_current(knot, r);
+}
+
 }  // namespace splinecast::ipc

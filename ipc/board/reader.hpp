@@ -140,6 +140,12 @@ class KnotBoardReader {
   /// Only the writer calls it, so that no other process writes concurrently.
   [[nodiscard]] core::Prefix copy_row(const KnotCopy& knot, std::span<double> g) const noexcept;
 
+  /// Copies the row of a knot that was copied under revision r, for an observer. Returns false if
+  /// the row has been, or may have been, overwritten. Only the row of a knot that has settled and
+  /// has a newer knot is final. O(D).
+  [[nodiscard]] bool observe_row(const KnotCopy& knot, Word r, std::span<double> g,
+                                 core::Prefix& prefix) const noexcept;
+
  private:
   [[nodiscard]] std::size_t index_of(Word number) const noexcept {
     return number & (layout_.capacity - 1);

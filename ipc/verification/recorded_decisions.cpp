@@ -6,20 +6,31 @@
 #include "splinecast/waypoint.hpp"
 
 namespace splinecast::ipc {
+namespace {
 
-bool RecordedDecisions::is_entry(std::size_t i) const noexcept {
-  return segments_[i].kind == SegmentKind::entry && segments_[i].origin.item &&
-         (segments_[i].origin.ends_at_waypoint || segments_[i].origin.known > 0);
+bool is_behind(const SegmentCopy& before, const SegmentCopy& segment) noexcept {
+  if (segment.has_waypoint || segment.number != before.number + 1) return false;
+  const bool follows_line = before.kind == SegmentKind::spline && !before.has_waypoint;
+  const bool follows_entry = before.kind == SegmentKind::entry && before.origin.known > 0;
+  return (follows_entry && segment.kind != SegmentKind::entry) ||
+         (follows_line && segment.kind == SegmentKind::stop);
+}
+
+}  // namespace
+
+bool is_entry(const SegmentCopy& segment) noexcept {
+  return segment.kind == SegmentKind::entry && segment.origin.item &&
+         (segment.origin.ends_at_waypoint || segment.origin.known > 0);
+}
+
+bool begins_run(const SegmentCopy& before, const SegmentCopy& segment,
+                std::optional<Word> run_item) noexcept {
+  if (is_entry(segment)) return !run_item || *run_item != *segment.origin.item;
+  return segment.kind == SegmentKind::stop && !segment.has_waypoint && !is_behind(before, segment);
 }
 
 bool RecordedDecisions::is_behind_entry(std::size_t i) const noexcept {
-  if (i == 0 || segments_[i].has_waypoint || segments_[i].number != before(i).number + 1) {
-    return false;
-  }
-  const bool follows_line = before(i).kind == SegmentKind::spline && !before(i).has_waypoint;
-  const bool follows_entry = before(i).kind == SegmentKind::entry && before(i).origin.known > 0;
-  return (follows_entry && segments_[i].kind != SegmentKind::entry) ||
-         (follows_line && segments_[i].kind == SegmentKind::stop);
+  return i > 0 && is_behind(before(i), segments_[i]);
 }
 
 bool RecordedDecisions::is_ending(std::size_t i) const noexcept {
@@ -28,10 +39,7 @@ bool RecordedDecisions::is_ending(std::size_t i) const noexcept {
 }
 
 bool RecordedDecisions::begins_run(std::size_t i, std::optional<Word> run_item) const noexcept {
-  const SegmentCopy& segment = segments_[i];
-  if (i == 0) return true;
-  if (is_entry(i)) return !run_item || *run_item != *segment.origin.item;
-  return segment.kind == SegmentKind::stop && !segment.has_waypoint && !is_behind_entry(i);
+  return i == 0 || ipc::begins_run(before(i), segments_[i], run_item);
 }
 
 std::size_t RecordedDecisions::end_of_run(std::size_t i,
@@ -43,9 +51,10 @@ std::size_t RecordedDecisions::end_of_run(std::size_t i,
 
 bool RecordedDecisions::begins_at_cut(std::size_t i) const noexcept {
   if (!segments_[i].origin.item) return true;
-  Word item = *segments_[i].origin.item;
-  while (item > 0 && !record_.items.is_taken(item - 1, ItemKind::replace)) --item;
-  return item > 0 && record_.items.waypoint(item - 1).time == segments_[i].left;
+  Word item = std::min(*segments_[i].origin.item, record_.items.size());
+  const Word first = record_.items.first();
+  while (item > first && !record_.items.is_taken(item - 1, ItemKind::replace)) --item;
+  return item > first && record_.items.waypoint(item - 1).time == segments_[i].left;
 }
 
 bool RecordedDecisions::begins_elsewhere(std::size_t i) const noexcept {
@@ -61,6 +70,27 @@ bool RecordedDecisions::begins_elsewhere(std::size_t i) const noexcept {
 
 bool RecordedDecisions::is_last_run(std::optional<Word> run_item) const noexcept {
   return record_.summary.finished && run_item && *run_item + 1 == record_.summary.run_item;
+}
+
+bool RunStarts::take(const SegmentCopy* before, const SegmentCopy& segment) noexcept {
+  if (before == nullptr) {
+    const bool is_first = segment.number == 1;
+    run_item_ = is_first && is_entry(segment) ? segment.origin.item : std::nullopt;
+    has_waypoints_ = is_first && (run_item_ || segment.has_waypoint);
+    return false;
+  }
+  if (!begins_run(*before, segment, run_item_)) return false;
+  // The first run may have begun without an entry: then its first item is unknown here, but an
+  // entry onto it has the item of that run's first waypoint.
+  const bool is_new = is_entry(segment) && has_waypoints_ && run_item_;
+  run_item_ = is_entry(segment) ? segment.origin.item : std::nullopt;
+  has_waypoints_ = run_item_.has_value();
+  return is_new;
+}
+
+void RunStarts::continue_run(Word run_item) noexcept {
+  run_item_ = run_item;
+  has_waypoints_ = true;
 }
 
 }  // namespace splinecast::ipc

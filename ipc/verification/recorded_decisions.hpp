@@ -10,6 +10,14 @@
 
 namespace splinecast::ipc {
 
+/// Whether a segment is an entry onto a target.
+[[nodiscard]] bool is_entry(const SegmentCopy& segment) noexcept;
+
+/// Whether a run begins with a segment that is not the first one of the stream. `run_item`: the
+/// first item of the run of the segment before it.
+[[nodiscard]] bool begins_run(const SegmentCopy& before, const SegmentCopy& segment,
+                              std::optional<Word> run_item) noexcept;
+
 /// The solver's decisions, derived from the segments of a record: which are entries, where a run
 /// begins and ends. Segments are counted from 0. Changes nothing; safe from any thread.
 class RecordedDecisions {
@@ -19,7 +27,7 @@ class RecordedDecisions {
       : record_(record), segments_(record.segments) {}
 
   /// Whether segment i is an entry onto a target.
-  [[nodiscard]] bool is_entry(std::size_t i) const noexcept;
+  [[nodiscard]] bool is_entry(std::size_t i) const noexcept { return ipc::is_entry(segments_[i]); }
 
   /// Whether segment i is the straight line or the stop after an entry beyond the newest waypoint.
   [[nodiscard]] bool is_behind_entry(std::size_t i) const noexcept;
@@ -50,6 +58,22 @@ class RecordedDecisions {
 
   const StreamRecord& record_;
   std::span<const SegmentCopy> segments_;
+};
+
+/// Follows the runs of a stream by its settled segments, to find those with which a part of a
+/// record can begin without a restart: see StreamRecord. One thread uses it.
+class RunStarts {
+ public:
+  /// Takes the next segment. `before`: the segment before it; null if that is unknown, and for
+  /// segment 1. Returns whether a part can begin with the two.
+  bool take(const SegmentCopy* before, const SegmentCopy& segment) noexcept;
+
+  /// The next segment continues the run with this first item.
+  void continue_run(Word run_item) noexcept;
+
+ private:
+  bool has_waypoints_ = false;      ///< whether the current run is known to have waypoints
+  std::optional<Word> run_item_{};  ///< its first item, if it began with an entry
 };
 
 }  // namespace splinecast::ipc

@@ -8,30 +8,56 @@
 namespace splinecast::ipc {
 
 void RunTarget::forget_waypoints() noexcept {
-  items_.clear();
+  waypoints_.clear();
+  first_ = 0;
   met_.clear();
   frozen_met_ = 0;
 }
 
 void RunTarget::list_waypoints(Word first) {
+  waypoints_.clear();
+  first_ = 0;
+  list_after(first, std::nullopt);
+}
+
+/// Lists the waypoints from item `first` on that are later than `after`, up to the next replacement
+/// or to a waypoint that is not later than the one before it.
+void RunTarget::list_after(Word first, std::optional<Time> after) {
   const Word items = record_.items.size();
   const Word replaced = record_.items.find(ItemKind::replace, first, items).value_or(items);
-  items_.clear();
   for (Word item = first;;) {
     const auto next = record_.items.find(ItemKind::waypoint, item, replaced);
     if (!next) return;
-    const Time time = record_.items.waypoint(*next).time;
-    if (!items_.empty() && time <= record_.items.waypoint(items_.back()).time) return;
-    items_.push_back(*next);
     item = *next + 1;
+    const Time time = record_.items.waypoint(*next).time;
+    if (after && time <= *after) continue;
+    after.reset();
+    if (!waypoints_.empty() && time <= waypoints_.back().time) return;
+    if (!window_.takes(record_.items.waypoint(*next))) return;
+    waypoints_.push_back({.time = time, .item = *next});
   }
 }
 
+void RunTarget::restart(const RunRestart& restart) {
+  std::vector<core::Knot> knots;
+  for (const RestartKnot& knot : restart.knots) knots.push_back(knot.view());
+  if (restart.is_later_run) {
+    window_.restore_run(restart.first, knots);
+  } else {
+    window_.restore(restart.first, knots);
+  }
+  window_.freeze_knots(restart.end());
+  forget_waypoints();
+  first_ = restart.end() - 1;
+  waypoints_.push_back({.time = restart.knots.back().time, .item = restart.run_item});
+  list_after(restart.run_item, restart.knots.back().time);
+  used_ = waypoints_.size() > 1 ? waypoints_[1].item : record_.items.size();
+}
+
 std::optional<std::size_t> RunTarget::index_of(Time time) const noexcept {
-  const auto time_of = [this](Word item) { return record_.items.waypoint(item).time; };
-  const auto at = std::ranges::lower_bound(items_, time, {}, time_of);
-  if (at == items_.end() || time_of(*at) != time) return std::nullopt;
-  return static_cast<std::size_t>(at - items_.begin());
+  const auto at = std::ranges::lower_bound(waypoints_, time, {}, &RunWaypoint::time);
+  if (at == waypoints_.end() || at->time != time) return std::nullopt;
+  return first_ + static_cast<std::size_t>(at - waypoints_.begin());
 }
 
 void RunTarget::note_met(std::size_t index, std::size_t newer) {
@@ -49,12 +75,13 @@ std::optional<std::size_t> RunTarget::newest_of(std::size_t index) const noexcep
 bool RunTarget::append_until(std::size_t count) {
   while (window_.knots() < count) {
     const std::size_t k = window_.knots();
-    if (k >= items_.size()) return false;
+    if (k < first_ || k - first_ >= waypoints_.size()) return false;
     for (; frozen_met_ < met_.size() && met_[frozen_met_].newest < k; ++frozen_met_) {
       window_.freeze_knots(met_[frozen_met_].index + 1);
     }
-    append(items_[k]);
-    used_ = items_[k] + 1;
+    const Word item = waypoints_[k - first_].item;
+    append(item);
+    used_ = item + 1;
   }
   return true;
 }

@@ -43,6 +43,13 @@ class RunTarget {
   /// the rest. Allocates.
   void list_waypoints(Word first);
 
+  /// Continues a run after knots that are not solved again, and lists its waypoints after these.
+  /// Allocates.
+  void restart(const RunRestart& restart);
+
+  /// Regards the waypoints before an item as used.
+  void skip_to(Word item) noexcept { used_ = item; }
+
   /// The index of the run's waypoint at a time; nothing if there is none. O(log n).
   [[nodiscard]] std::optional<std::size_t> index_of(Time time) const noexcept;
 
@@ -70,12 +77,17 @@ class RunTarget {
   [[nodiscard]] Word used() const noexcept { return used_; }
 
  private:
+  struct RunWaypoint {
+    Time time;
+    Word item;
+  };
   /// A knot of a run that the curve meets, and the knot that was newest when it was last solved.
   struct MetKnot {
     std::size_t index;
     std::size_t newest;
   };
 
+  void list_after(Word first, std::optional<Time> after);
   void append(Word item) noexcept;
   [[nodiscard]] std::span<const double> newest_position() const noexcept;
 
@@ -83,7 +95,8 @@ class RunTarget {
   core::SlidingWindow window_;
   std::vector<double> values_;          ///< scratch
   std::vector<double> begin_position_;  ///< where the current run begins
-  std::vector<Word> items_;             ///< item numbers of the current run's waypoints
+  std::vector<RunWaypoint> waypoints_;  ///< of the current run
+  std::size_t first_ = 0;               ///< number of the first of them in the run
   std::vector<MetKnot> met_;            ///< knots of the current run that the curve meets
   std::size_t frozen_met_ = 0;          ///< number of leading elements of met_ that are frozen
   Word used_ = 0;

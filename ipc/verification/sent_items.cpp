@@ -16,28 +16,28 @@ void SentItems::add(ItemKind kind, const Waypoint& values) {
 }
 
 void SentItems::refuse(Word item) noexcept {
-  if (item < items_.size()) items_[item].is_refused = true;
+  if (has(item)) items_[item - first_].is_refused = true;
 }
 
 std::optional<Word> SentItems::find(ItemKind kind, Word from, Word end) const noexcept {
-  for (Word item = from; item < std::min<Word>(end, size()); ++item) {
+  for (Word item = std::max(from, first_); item < std::min<Word>(end, size()); ++item) {
     if (is_taken(item, kind)) return item;
   }
   return std::nullopt;
 }
 
 Waypoint SentItems::waypoint(Word item) const noexcept {
-  const Item& at = items_[item];
-  auto rest = std::span(values_).subspan(at.values);
+  const Item& found = at(item);
+  auto rest = std::span(values_).subspan(found.values);
   const auto take = [&](bool is_given) {
     const auto part = rest.first(is_given ? dimensions_ : 0);
     rest = rest.subspan(part.size());
     return part;
   };
-  Waypoint waypoint{.time = at.time};
-  waypoint.position = take(at.kind != ItemKind::replace && at.kind != ItemKind::finish);
-  waypoint.velocity = take(at.has_velocity);
-  waypoint.acceleration = take(at.has_acceleration);
+  Waypoint waypoint{.time = found.time};
+  waypoint.position = take(found.kind != ItemKind::replace && found.kind != ItemKind::finish);
+  waypoint.velocity = take(found.has_velocity);
+  waypoint.acceleration = take(found.has_acceleration);
   return waypoint;
 }
 

@@ -10,16 +10,21 @@
 
 namespace splinecast::ipc {
 
-/// The items that were sent to a stream, from its first one, and which of them the solver took.
-/// Allocates as it grows. One thread uses it.
+/// Consecutive items that were sent to a stream, and which of them the solver took. Allocates as it
+/// grows. One thread uses it.
 class SentItems {
  public:
-  explicit SentItems(std::size_t dimensions) : dimensions_(dimensions) {}
+  /// `first`: the number of the first item; 0 for all items of the stream.
+  explicit SentItems(std::size_t dimensions, Word first = 0)
+      : dimensions_(dimensions), first_(first) {}
 
   [[nodiscard]] std::size_t dimensions() const noexcept { return dimensions_; }
 
-  /// Items so far; they are numbered from 0.
-  [[nodiscard]] Word size() const noexcept { return items_.size(); }
+  /// The number of the first item.
+  [[nodiscard]] Word first() const noexcept { return first_; }
+  /// The number after that of the last item.
+  [[nodiscard]] Word size() const noexcept { return first_ + items_.size(); }
+  [[nodiscard]] bool has(Word item) const noexcept { return item >= first_ && item < size(); }
 
   /// Adds the next item, with a copy of its values. A start state has position, velocity and
   /// acceleration; a replacement has only a time.
@@ -28,11 +33,11 @@ class SentItems {
   /// Notes that the solver refused an item. Ignores unknown items.
   void refuse(Word item) noexcept;
 
-  [[nodiscard]] ItemKind kind(Word item) const noexcept { return items_[item].kind; }
+  [[nodiscard]] ItemKind kind(Word item) const noexcept { return items_[item - first_].kind; }
 
-  /// Whether an item is of this kind and was not refused. O(1).
+  /// Whether an item is known, of this kind, and was not refused. O(1).
   [[nodiscard]] bool is_taken(Word item, ItemKind kind) const noexcept {
-    return items_[item].kind == kind && !items_[item].is_refused;
+    return has(item) && at(item).kind == kind && !at(item).is_refused;
   }
 
   /// The first item from `from` on and before `end` that is of this kind and was not refused;
@@ -51,7 +56,10 @@ class SentItems {
     Time time{};
     std::size_t values = 0;  ///< index of its first value
   };
+  [[nodiscard]] const Item& at(Word item) const noexcept { return items_[item - first_]; }
+
   std::size_t dimensions_;
+  Word first_;
   std::vector<Item> items_;
   std::vector<double> values_;
 };

@@ -31,7 +31,7 @@ void SettledSegments::look() {
 bool SettledSegments::take(const Look& look) {
   if (!board_->copy_summary(look, summary_)) return false;
   if (summary_.newest == 0) return true;
-  Word number = std::max(segments_.empty() ? 1 : segments_.back().next, summary_.first);
+  Word number = std::max(next_, summary_.first);
   while (number <= summary_.newest) {
     const BoardSegment::Taken taken = copy_.take(*board_, summary_, number);
     if (taken == BoardSegment::Taken::torn) return false;
@@ -49,7 +49,7 @@ void SettledSegments::keep() {
   SegmentCopy segment;
   copy_.copy_to(segment);
   copy_.write_accelerations(start_, end_);
-  if (!segments_.empty() && segments_.back().next == segment.number) {
+  if (next_ == segment.number && segment.number > 1) {
     segment.acceleration_step.resize(start_.size());
     for (std::size_t d = 0; d < start_.size(); ++d) {
       segment.acceleration_step[d] = start_[d] - arrival_[d];
@@ -59,6 +59,7 @@ void SettledSegments::keep() {
     segment.acceleration_step = is_held ? start_ : std::vector<double>(start_.size());
   }
   arrival_ = end_;
+  next_ = segment.next;
   segments_.push_back(std::move(segment));
 }
 

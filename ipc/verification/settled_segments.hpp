@@ -13,7 +13,7 @@ namespace splinecast::ipc {
 ///
 /// Misses none if look() is called before the board has lost a settled segment. A missed segment
 /// shows as a gap between a segment's `next` and the number of the segment after it. Keeps them
-/// all: about (order + 2)·D doubles each. One thread uses it.
+/// until they are dropped: about (order + 2)·D doubles each. One thread uses it.
 class SettledSegments {
  public:
   /// Each look reads `board`, which outlives this. `is_held_before_start`: the stream is live, so
@@ -27,6 +27,13 @@ class SettledSegments {
   /// The segments, oldest first, with waypoint and acceleration step. The step is empty after a
   /// gap.
   [[nodiscard]] std::span<const SegmentCopy> segments() const noexcept { return segments_; }
+
+  /// Drops the segments that have been collected. The next look continues after them.
+  void drop() noexcept { segments_.clear(); }
+
+  /// Number of the segment that will be collected next: that at the end of the last one, 1 before
+  /// the first one.
+  [[nodiscard]] Word next() const noexcept { return next_; }
 
   /// The summary of the board at the last look.
   [[nodiscard]] const Summary& summary() const noexcept { return summary_; }
@@ -44,6 +51,7 @@ class SettledSegments {
   std::vector<double> end_;      ///< scratch
   std::vector<double> arrival_;  ///< acceleration at the end of the segment kept last
   std::vector<SegmentCopy> segments_;
+  Word next_ = 1;
 };
 
 }  // namespace splinecast::ipc

@@ -22,11 +22,29 @@ StreamReplay::StreamReplay(const StreamRecord& record)
       values_(record.items.dimensions()) {}
 
 Verification StreamReplay::run() {
+  if (record_.is_part && !segments_.empty()) begin_part();
   while (!first_ && next_ < segments_.size()) solve_part();
   if (!first_ && record_.summary.finished && !rests_at_last_waypoint()) {
     (void)expect_all_used(record_.items.size());
   }
   return {.equal = equal_, .first = std::move(first_)};
+}
+
+/// Begins with the second segment: see StreamRecord.
+void StreamReplay::begin_part() {
+  next_ = 1;
+  natural_right_ = segments_[0].natural_right;
+  if (segments_.size() < 2 || !follows(1)) return;
+  if (record_.restart == nullptr) {
+    const bool is_entry = decisions_.is_entry(1);
+    target_.skip_to(is_entry ? *segments_[1].origin.item : record_.items.size());
+    if (!is_entry) (void)differ(1, "kind", in_words(segments_[1].kind), "entry");
+    return;
+  }
+  target_.restart(*record_.restart);
+  run_item_ = record_.restart->run_item;
+  if (decisions_.is_ending(1) || decisions_.begins_run(1, run_item_)) return;
+  if (segments_[1].kind != SegmentKind::hold || segments_[1].has_waypoint) solve_rest_of_run(1);
 }
 
 void StreamReplay::solve_part() {
@@ -52,7 +70,11 @@ bool StreamReplay::follows(std::size_t i) {
 
 /// Solves the segments of one run: those on its target, and the entries that lead there.
 void StreamReplay::solve_run(std::size_t i) {
-  if (!begin_run(i)) return;
+  if (begin_run(i)) solve_rest_of_run(i);
+}
+
+/// Solves the segments of the current run from segment i on.
+void StreamReplay::solve_rest_of_run(std::size_t i) {
   const std::size_t end = decisions_.end_of_run(i, run_item_);
   if (!list_met(i, end)) return;
   for (std::size_t s = i; s < end; ++s) {
@@ -66,11 +88,12 @@ bool StreamReplay::begin_run(std::size_t i) {
   const SegmentCopy& segment = segments_[i];
   const Word items = record_.items.size();
   begin_.find(i, natural_right_);
+  const bool is_first_of_part = record_.is_part && i == 1 && record_.restart == nullptr;
   const bool is_later = i > 0 || decisions_.begins_elsewhere(i);
   // A run that has no waypoints yet remains the same run when it is cut again.
   const Word first_items = segment.origin.item.value_or(items);
   const bool is_same_run =
-      i > 0 && target_.window().knots() == 0 &&
+      i > 0 && !is_first_of_part && target_.window().knots() == 0 &&
       (target_.window().is_later_run() || !record_.items.find(ItemKind::replace, 0, first_items));
   if (is_later && !is_same_run) target_.begin_run();
   if (!is_same_run || decisions_.begins_at_cut(i)) target_.begin_at(begin_.position());

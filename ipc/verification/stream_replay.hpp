@@ -34,7 +34,9 @@ class StreamReplay {
   // Parts of a curve, and the transitions between them.
   void solve_part();
   bool follows(std::size_t i);
+  void begin_part();
   void solve_run(std::size_t i);
+  void solve_rest_of_run(std::size_t i);
   bool begin_run(std::size_t i);
   bool list_met(std::size_t begin, std::size_t end);
   bool note_met(std::size_t s, Time time, std::size_t newer);
