@@ -12,6 +12,7 @@
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
+#include "apps/record/verification/verify_file.hpp"
 #include "apps/streams/log.hpp"
 #include "apps/streams/report.hpp"
 
@@ -74,7 +75,19 @@ std::string in_words(const ReplayReport& report, const ReplayOptions& options,
   return text;
 }
 
+/// Solves the streams of a recording again. Sends nothing.
+int verify_recording(const ReplayOptions& options) {
+  const auto found = record::verify_file(options.file, options.stream);
+  if (options.json) {
+    print_report(record::to_json(found).dump(2) + "\n");
+  } else {
+    for (const std::string& line : record::to_lines(found)) say(line);
+  }
+  return record::exit_code(found);
+}
+
 int run_replay(const ReplayOptions& options) {
+  if (options.verify && record::is_recording(options.file)) return verify_recording(options);
   RefusedRows refused;
   Recording recording = open_recording(options, refused);
   require_playable(recording, options);
@@ -271,9 +284,15 @@ void require_agreeing(const ReplayOptions& options) {
 
 void add_replay(Command& verb, Action& action) {
   auto options = std::make_shared<ReplayOptions>();
-  verb.option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
+  verb.option(
+          "FILE", options->file,
+          "Waypoint file, CSV or TUM text; - for standard input. With --verify also a recording "
+          "of 'record': its streams are solved again, in memory only")
       .required();
-  verb.option("--stream", options->stream, "Stream to produce").type("STREAM").required();
+  const auto stream =
+      verb.option("--stream", options->stream,
+                  "Stream to produce; of a recording, the only stream to verify (default: all)")
+          .type("STREAM");
   add_playback_options(verb, *options);
   add_row_policies(verb, *options);
   add_gap(verb, options->gap);
@@ -281,13 +300,16 @@ void add_replay(Command& verb, Action& action) {
   verb.flag("--embedded", options->embedded, "Solve in this process");
   verb.flag("--verify", options->verify,
             "Solve the sent waypoints again, with the decisions that the stream records, and "
-            "compare every segment bit by bit; exit code 3 if one differs");
+            "compare every segment bit by bit; exit code 3 if one differs. Of a recording: compare "
+            "with its segments");
   add_solver_curve(verb, options->solver);
   verb.flag("--json", options->json, "Print JSON");
   add_table_options(verb, options->table);
   add_access(verb, options->access);
   add_trust(verb, options->trust);
-  verb.callback([&action, options] {
+  verb.callback([&action, options, stream] {
+    const bool is_recording = options->verify && record::is_recording(options->file);
+    if (!stream.is_given() && !is_recording) throw UsageError("--stream", "is required");
     require_agreeing(*options);
     options->quiet = options->table.quiet;
     options->solver.access = options->access;

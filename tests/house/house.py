@@ -35,7 +35,8 @@ ROOMS = {
     "ipc": "memory layout mapping ring board solve options sampling roles sweep verification arguments c python/values "
            "python",
     "apps": "process files mcap/format mcap/output mcap/input messages output pages timing tables tables/topics "
-            "tables/ulog cli recover contents recordings limits streams advise fit check replay trials demo machine latency soak completion",
+            "tables/ulog cli recover contents recordings limits streams record/format record/watch record/output "
+            "record/verification record advise fit check replay trials demo machine latency soak completion",
 }
 # The installed C header, which may be included as an installed header of C++ is.
 C_HEADER = "ipc/c/splinecast.h"

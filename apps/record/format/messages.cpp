@@ -1,0 +1,203 @@
+#include "apps/record/format/messages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+namespace splinecast::apps::record {
+namespace {
+
+constexpr std::uint8_t kHasVelocity = 1;
+constexpr std::uint8_t kHasAcceleration = 2;
+
+Bytes begin(RecordKind kind, std::size_t size) {
+  Bytes bytes;
+  bytes.reserve(size + 1);
+  bytes.push_back(static_cast<std::byte>(kind));
+  return bytes;
+}
+
+/// Throws BadMessage unless an enumerator's number is within its range.
+template <typename Enum>
+Enum checked(std::uint8_t number, Enum least, Enum most, std::string_view what) {
+  if (number < static_cast<std::uint8_t>(least) || number > static_cast<std::uint8_t>(most)) {
+    throw BadMessage(fmt::format("it has {} {}", what, number));
+  }
+  return static_cast<Enum>(number);
+}
+
+bool has_position(const ipc::RingItem& item) noexcept {
+  return item.kind == ipc::ItemKind::waypoint || item.kind == ipc::ItemKind::start_state ||
+         (item.kind == ipc::ItemKind::finish && (item.condition == ConditionKind::velocity ||
+                                                 item.condition == ConditionKind::acceleration));
+}
+
+/// The members of a summary, in the order of the message.
+constexpr std::array kSummaryWords{
+    &ipc::Summary::revision,     &ipc::Summary::first,     &ipc::Summary::newest,
+    &ipc::Summary::run_item,     &ipc::Summary::run_knots, &ipc::Summary::run_frozen,
+    &ipc::Summary::consumed,     &ipc::Summary::knots,     &ipc::Summary::passed_over,
+    &ipc::Summary::withdrawn,    &ipc::Summary::controls,  &ipc::Summary::refused,
+    &ipc::Summary::exceeding,    &ipc::Summary::underruns, &ipc::Summary::deadline_misses,
+    &ipc::Summary::late_commits,
+};
+
+}  // namespace
+
+RecordKind kind_of(std::span<const std::byte> message) {
+  if (message.empty()) throw BadMessage("it is empty");
+  return checked(std::to_integer<std::uint8_t>(message[0]), RecordKind::options, RecordKind::loss,
+                 "kind");
+}
+
+Waypoint values_of(const ipc::RingItem& item) noexcept {
+  Waypoint waypoint = item.waypoint();
+  if (!has_position(item)) waypoint.position = {};
+  return waypoint;
+}
+
+Condition condition_of(const ipc::RingItem& item) {
+  Condition condition{.kind = item.condition, .value = {}};
+  const auto values = values_of(item).position;
+  condition.value.assign(values.begin(), values.end());
+  return condition;
+}
+
+Bytes encode(ipc::Word number, const ipc::RingItem& item) {
+  Bytes bytes = begin(RecordKind::item, 36 + item.values.size() * sizeof(double));
+  const Waypoint values = values_of(item);
+  const auto flags =
+      static_cast<std::uint8_t>((values.velocity.empty() ? 0 : kHasVelocity) |
+                                (values.acceleration.empty() ? 0 : kHasAcceleration));
+  ByteWriter(bytes)
+      .put(number)
+      .put(static_cast<std::uint8_t>(item.kind))
+      .put(flags)
+      .put(static_cast<std::uint8_t>(item.condition))
+      .put(std::uint8_t{0})
+      .put(item.count)
+      .put(item.time)
+      .put(item.blend)
+      .put(values.position)
+      .put(values.velocity)
+      .put(values.acceleration);
+  return bytes;
+}
+
+NumberedItem decode_item(std::span<const std::byte> bytes, std::size_t dimensions) {
+  ByteReader in(bytes);
+  NumberedItem found{.number = in.take<ipc::Word>(), .item = ipc::RingItem(dimensions)};
+  ipc::RingItem& item = found.item;
+  item.kind =
+      checked(in.take<std::uint8_t>(), ipc::ItemKind::waypoint, ipc::ItemKind::finish, "item kind");
+  const auto flags = in.take<std::uint8_t>();
+  item.has_velocity = (flags & kHasVelocity) != 0;
+  item.has_acceleration = (flags & kHasAcceleration) != 0;
+  item.condition =
+      checked(in.take<std::uint8_t>(), ConditionKind::natural, ConditionKind::own, "condition");
+  (void)in.take<std::uint8_t>();
+  item.count = in.take<std::uint32_t>();
+  item.time = in.take_time();
+  item.blend = in.take_time();
+  const auto place = [&](bool is_given, std::size_t part) {
+    if (!is_given) return;
+    const auto values = in.take_doubles(dimensions);
+    std::ranges::copy(values, std::span(item.values).subspan(part * dimensions).begin());
+  };
+  place(has_position(item), 0);
+  place(item.has_velocity, 1);
+  place(item.has_acceleration, 2);
+  in.require_end();
+  return found;
+}
+
+Bytes encode(const ipc::RefusedItem& refused) {
+  Bytes bytes = begin(RecordKind::refusal, 9);
+  ByteWriter(bytes).put(refused.item).put(static_cast<std::uint8_t>(refused.reason));
+  return bytes;
+}
+
+ipc::RefusedItem decode_refusal(std::span<const std::byte> bytes) {
+  ByteReader in(bytes);
+  ipc::RefusedItem refused{.item = in.take<ipc::Word>()};
+  refused.reason = checked(in.take<std::uint8_t>(), Refusal::past,
+                           static_cast<Refusal>(kRefusals - 1), "reason");
+  in.require_end();
+  return refused;
+}
+
+Bytes encode(const ipc::Summary& summary) {
+  Bytes bytes = begin(RecordKind::summary, 17 + kSummaryWords.size() * sizeof(ipc::Word));
+  ByteWriter out(bytes);
+  out.put(static_cast<std::uint8_t>(summary.finished ? 1 : 0))
+      .put(summary.settled_until)
+      .put(summary.newest_time);
+  for (const auto member : kSummaryWords) out.put(summary.*member);
+  return bytes;
+}
+
+ipc::Summary decode_summary(std::span<const std::byte> bytes) {
+  ByteReader in(bytes);
+  ipc::Summary summary;
+  summary.finished = in.take<std::uint8_t>() != 0;
+  summary.settled_until = in.take_time();
+  summary.newest_time = in.take_time();
+  for (const auto member : kSummaryWords) summary.*member = in.take<ipc::Word>();
+  in.require_end();
+  return summary;
+}
+
+Loss& Loss::operator+=(const Loss& other) noexcept {
+  items += other.items;
+  segments += other.segments;
+  refusals += other.refusals;
+  others += other.others;
+  return *this;
+}
+
+void Loss::count(RecordKind kind) noexcept {
+  if (kind == RecordKind::item) {
+    ++items;
+  } else if (kind == RecordKind::segment) {
+    ++segments;
+  } else if (kind == RecordKind::refusal) {
+    ++refusals;
+  } else {
+    ++others;
+  }
+}
+
+Bytes encode(const Loss& loss) {
+  Bytes bytes = begin(RecordKind::loss, 33);
+  ByteWriter(bytes)
+      .put(static_cast<std::uint8_t>(loss.cause))
+      .put(loss.items)
+      .put(loss.segments)
+      .put(loss.refusals)
+      .put(loss.others);
+  return bytes;
+}
+
+Loss decode_loss(std::span<const std::byte> bytes) {
+  ByteReader in(bytes);
+  Loss loss;
+  loss.cause = checked(in.take<std::uint8_t>(), LossCause::overwritten,
+                       static_cast<LossCause>(kLossCauses - 1), "cause");
+  loss.items = in.take<ipc::Word>();
+  loss.segments = in.take<ipc::Word>();
+  loss.refusals = in.take<ipc::Word>();
+  loss.others = in.take<ipc::Word>();
+  in.require_end();
+  return loss;
+}
+
+std::string_view to_string(LossCause cause) noexcept {
+  constexpr std::array<std::string_view, kLossCauses> kNames{"overwritten", "queue full",
+                                                             "file not writable", "late commit"};
+  return kNames.at(static_cast<std::size_t>(cause));
+}
+
+}  // namespace splinecast::apps::record

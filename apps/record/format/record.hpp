@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+
+#include "apps/record/format/bytes.hpp"
+#include "ipc/memory/word.hpp"
+#include "splinecast/time.hpp"
+
+namespace splinecast::apps::record {
+
+/// The kinds of messages of the exact channel; `event` is only in a recorder's memory.
+enum class RecordKind : std::uint8_t {
+  options = 1,
+  item = 2,
+  refusal = 3,
+  segment = 4,
+  restart = 5,
+  summary = 6,
+  loss = 7,
+  event = 100,  ///< JSON text of the channel of events
+};
+
+/// What a recorder has read from a stream, on its way to a file.
+struct Record {
+  std::uint32_t stream = 0;  ///< number of the stream in the recorder
+  RecordKind kind{};
+  ipc::Word number = 0;  ///< of an item, of a refused item, of a segment; of a restart the first
+                         ///< item that it needs; of options the id of the stream
+  Time log_time{};       ///< stream time on the host's wall clock: see docs/file-formats.md
+  Time seen{};           ///< wall clock when it was read
+  Bytes bytes{};         ///< the message, with its kind in the first byte; of an event its text
+};
+
+}  // namespace splinecast::apps::record

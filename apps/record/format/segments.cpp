@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+
+#include "apps/record/format/messages.hpp"
+
+/// The messages of segments and restarts.
+namespace splinecast::apps::record {
+namespace {
+
+constexpr std::uint8_t kHasWaypoint = 1;
+constexpr std::uint8_t kEndsAtWaypoint = 2;
+constexpr std::uint8_t kHasItem = 4;
+constexpr std::uint8_t kHasStep = 8;
+constexpr std::uint8_t kHasKnots = 1;
+constexpr std::uint8_t kIsLaterRun = 2;
+constexpr std::uint8_t kHasAccelerations = 1;
+constexpr std::uint8_t kHasResiduals = 2;
+
+void put(ByteWriter& out, const ipc::SegmentCopy& segment) {
+  const ipc::SegmentOrigin& origin = segment.origin;
+  const auto flags = static_cast<std::uint8_t>(
+      (segment.has_waypoint ? kHasWaypoint : 0) | (origin.ends_at_waypoint ? kEndsAtWaypoint : 0) |
+      (origin.item ? kHasItem : 0) | (segment.acceleration_step.empty() ? 0 : kHasStep));
+  out.put(segment.number)
+      .put(segment.next)
+      .put(segment.left)
+      .put(segment.right)
+      .put(segment.natural_right)
+      .put(static_cast<std::uint8_t>(segment.order))
+      .put(static_cast<std::uint8_t>(segment.kind))
+      .put(flags)
+      .put(std::uint8_t{0})
+      .put(segment.newer_knots)
+      .put(origin.right_newer_knots)
+      .put(origin.item.value_or(0))
+      .put(origin.known)
+      .put(segment.coefficients)
+      .put(segment.waypoint)
+      .put(segment.acceleration_step);
+}
+
+void require_order(int order) {
+  if (order < 1 || order > kMaxOrder) throw BadMessage(fmt::format("it has order {}", order));
+}
+
+ipc::SegmentCopy take_segment(ByteReader& in, std::size_t dimensions) {
+  ipc::SegmentCopy segment{.number = in.take<ipc::Word>(), .next = in.take<ipc::Word>()};
+  segment.left = in.take_time();
+  segment.right = in.take_time();
+  segment.natural_right = in.take_time();
+  segment.order = in.take<std::uint8_t>();
+  require_order(segment.order);
+  const auto kind = in.take<std::uint8_t>();
+  if (kind > static_cast<std::uint8_t>(SegmentKind::hold)) {
+    throw BadMessage(fmt::format("it has segment kind {}", kind));
+  }
+  segment.kind = static_cast<SegmentKind>(kind);
+  const auto flags = in.take<std::uint8_t>();
+  (void)in.take<std::uint8_t>();
+  segment.newer_knots = in.take<std::uint32_t>();
+  segment.origin.right_newer_knots = in.take<std::uint32_t>();
+  const auto item = in.take<ipc::Word>();
+  if ((flags & kHasItem) != 0) segment.origin.item = item;
+  segment.origin.known = in.take<ipc::Word>();
+  segment.origin.ends_at_waypoint = (flags & kEndsAtWaypoint) != 0;
+  segment.has_waypoint = (flags & kHasWaypoint) != 0;
+  const bool is_in_range = is_time_in_range(segment.left / 2) &&
+                           is_time_in_range(segment.right / 2) &&
+                           is_time_in_range(segment.natural_right / 2) &&
+                           segment.left <= segment.right && segment.right <= segment.natural_right;
+  if (!is_in_range) throw BadMessage("its times are not in order");
+  segment.coefficients = in.take_doubles(static_cast<std::size_t>(segment.order) * dimensions);
+  segment.waypoint = in.take_doubles(segment.has_waypoint ? dimensions : 0);
+  segment.acceleration_step = in.take_doubles((flags & kHasStep) != 0 ? dimensions : 0);
+  return segment;
+}
+
+void put(ByteWriter& out, const ipc::RunRestart& restart) {
+  const ipc::RestartKnot& any = restart.knots.front();
+  const auto flags = static_cast<std::uint8_t>((any.acceleration.empty() ? 0 : kHasAccelerations) |
+                                               (any.residual.empty() ? 0 : kHasResiduals));
+  out.put(restart.run_item)
+      .put(std::uint64_t{restart.first})
+      .put(static_cast<std::uint32_t>(restart.knots.size()))
+      .put(flags);
+  for (const ipc::RestartKnot& knot : restart.knots) {
+    out.put(knot.time)
+        .put(knot.prefix.gamma)
+        .put(knot.prefix.smoothing.pivot)
+        .put(knot.prefix.smoothing.lower1)
+        .put(knot.prefix.smoothing.lower2)
+        .put(knot.waypoint)
+        .put(knot.g)
+        .put(knot.position)
+        .put(knot.velocity)
+        .put(knot.acceleration)
+        .put(knot.residual);
+  }
+}
+
+ipc::RestartKnot take_knot(ByteReader& in, std::size_t dimensions, std::uint8_t flags) {
+  ipc::RestartKnot knot{.time = in.take_time()};
+  knot.prefix.gamma = in.take<double>();
+  knot.prefix.smoothing.pivot = in.take<double>();
+  knot.prefix.smoothing.lower1 = in.take<double>();
+  knot.prefix.smoothing.lower2 = in.take<double>();
+  knot.waypoint = in.take_doubles(dimensions);
+  knot.g = in.take_doubles(dimensions);
+  knot.position = in.take_doubles(dimensions);
+  knot.velocity = in.take_doubles(dimensions);
+  knot.acceleration = in.take_doubles((flags & kHasAccelerations) != 0 ? dimensions : 0);
+  knot.residual = in.take_doubles((flags & kHasResiduals) != 0 ? dimensions : 0);
+  return knot;
+}
+
+}  // namespace
+
+Bytes encode(const ipc::SegmentCopy& segment) {
+  constexpr std::size_t kFixed = 72;
+  Bytes bytes;
+  bytes.reserve(kFixed + (segment.coefficients.size() + segment.waypoint.size() +
+                          segment.acceleration_step.size()) *
+                             sizeof(double));
+  bytes.push_back(static_cast<std::byte>(RecordKind::segment));
+  ByteWriter out(bytes);
+  put(out, segment);
+  return bytes;
+}
+
+ipc::SegmentCopy decode_segment(std::span<const std::byte> bytes, std::size_t dimensions) {
+  ByteReader in(bytes);
+  ipc::SegmentCopy segment = take_segment(in, dimensions);
+  in.require_end();
+  return segment;
+}
+
+Bytes encode(const Restart& restart) {
+  Bytes bytes;
+  bytes.push_back(static_cast<std::byte>(RecordKind::restart));
+  ByteWriter out(bytes);
+  const bool is_later = restart.knots && restart.knots->is_later_run;
+  out.put(static_cast<std::uint8_t>((restart.knots ? kHasKnots : 0) | (is_later ? kIsLaterRun : 0)))
+      .put(restart.first_item);
+  put(out, restart.before);
+  if (restart.knots) put(out, *restart.knots);
+  return bytes;
+}
+
+Restart decode_restart(std::span<const std::byte> bytes, std::size_t dimensions) {
+  ByteReader in(bytes);
+  const auto flags = in.take<std::uint8_t>();
+  Restart restart{.first_item = in.take<ipc::Word>()};
+  restart.before = take_segment(in, dimensions);
+  if ((flags & kHasKnots) != 0) {
+    ipc::RunRestart& knots = restart.knots.emplace();
+    knots.is_later_run = (flags & kIsLaterRun) != 0;
+    knots.run_item = in.take<ipc::Word>();
+    knots.first = in.take<std::uint64_t>();
+    const auto count = in.take<std::uint32_t>();
+    const auto kinds = in.take<std::uint8_t>();
+    for (std::uint32_t k = 0; k < count; ++k) {  // a message that is too short ends it
+      knots.knots.push_back(take_knot(in, dimensions, kinds));
+    }
+  }
+  in.require_end();
+  return restart;
+}
+
+}  // namespace splinecast::apps::record

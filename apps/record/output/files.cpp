@@ -1,0 +1,218 @@
+#include "apps/record/output/files.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "apps/process/exit_codes.hpp"
+#include "apps/process/messages.hpp"
+#include "apps/record/watch/events.hpp"
+
+namespace splinecast::apps::record {
+namespace {
+
+/// A chunk ends after this time at the latest, so that a recorder that is killed loses less than a
+/// second, together with the time that records wait in the queue.
+constexpr Time kChunk = std::chrono::milliseconds(500);
+constexpr Time kCheck = std::chrono::seconds(1);
+constexpr Time kTryAgain = std::chrono::seconds(1);
+/// Shortest life of a file before it is ended because of its size.
+constexpr Time kShortest = std::chrono::seconds(1);
+
+}  // namespace
+
+Files::Files(const OutputOptions& options)
+    : options_(options), names_(options.path), memory_(options.last.value_or(Time::zero())) {
+  if (options_.last) {
+    names_.require_folder();
+    return;
+  }
+  wants_file_ = true;
+  const bool is_numbered = options_.max_bytes || options_.max_files;
+  const std::string path = is_numbered ? names_.next("", 1) : names_.path();
+  file_ = std::make_unique<RecordingFile>(path, options_.file);
+  own_.push_back(path);
+  report_.files.push_back(path);
+}
+
+Files::~Files() = default;
+
+void Files::take(Batch&& batch) {
+  for (Record& record : batch.records) take(std::move(record));
+  if (!options_.last) return;
+  for (const EventNote& event : batch.events) {
+    if (options_.on.contains(event.kind)) dump(to_string(event.kind), batch.now);
+  }
+}
+
+void Files::take(Record record) {
+  ++report_.records[record.kind];
+  if (file_) {
+    file_->write(record);
+    if (!has_chunk_) {
+      has_chunk_ = true;
+      chunk_since_ = record.seen;
+    }
+  }
+  const Time now = record.seen;
+  memory_.add(std::move(record), [this](const Record& forgotten, std::uint64_t sequence) {
+    count_lost(forgotten, sequence);
+  });
+  if (file_ && file_->failed()) fail(file_->why(), now);
+}
+
+/// Counts a record that is forgotten and in no file, if it should be in one.
+void Files::count_lost(const Record& record, std::uint64_t sequence) {
+  if (!wants_file_ || file_ || sequence < whole_until_) return;
+  Loss& loss = lost_[record.stream];
+  loss.cause = LossCause::file;
+  loss.count(record.kind);
+  ++report_.lost;
+}
+
+void Files::note_whole_chunks() noexcept {
+  if (!file_ || file_->failed()) return;
+  whole_until_ = memory_.added();
+  has_chunk_ = false;
+}
+
+void Files::dump(std::string_view why, Time now) {
+  if (!options_.last) return rotate(now);
+  dump_until_ = now + options_.after;
+  if (wants_file_) return;
+  wants_file_ = true;
+  wanted_ = why;
+  next_try_ = now;
+  tick(now);
+}
+
+/// Begins a file with what is in memory. Returns whether its first chunk has been written.
+bool Files::open(const std::string& path, Time now) {
+  try {
+    file_ = std::make_unique<RecordingFile>(path, options_.file);
+  } catch (const Failure& error) {
+    names_.forget_last(wanted_);
+    fail(error.what(), now);
+    return false;
+  }
+  memory_.give([&](const Record& record) {
+    file_->write(record);
+    if (record.kind == RecordKind::options) write_loss(record.stream, now);
+  });
+  file_->end_chunk();
+  if (file_->failed()) {
+    fail(file_->why(), now);
+    unlink(path.c_str());  // it has no whole chunk of its own
+    names_.forget_last(wanted_);
+    return false;
+  }
+  note_whole_chunks();
+  memory_.hold(false);
+  opened_ = now;
+  lost_.clear();
+  own_.push_back(path);
+  report_.files.push_back(path);
+  remove_oldest();
+  return true;
+}
+
+/// Writes what was lost of a stream before this file: before its other records, with which a new
+/// part begins.
+void Files::write_loss(std::uint32_t stream, Time now) {
+  const auto found = lost_.find(stream);
+  if (found == lost_.end()) return;
+  const Loss& loss = found->second;
+  Batch batch{.now = now};
+  batch.add({.stream = stream, .kind = RecordKind::loss, .log_time = now, .bytes = encode(loss)});
+  add_event(batch, {.stream = stream, .kind = EventKind::lost}, now, now, members_of(loss));
+  for (const Record& record : batch.records) file_->write(record);
+}
+
+void Files::fail(const std::string& why, Time now) {
+  if (!is_failing_) {
+    const std::string what = file_ ? fmt::format("{}: {}", file_->path(), why) : why;
+    say(fmt::format("{}; recording continues as soon as a file can be written", what));
+    ++report_.failures;
+  }
+  is_failing_ = true;
+  memory_.hold(true);
+  if (file_) report_.bytes += file_->written();
+  file_.reset();
+  has_chunk_ = false;
+  next_try_ = now + kTryAgain;
+}
+
+void Files::close_file() {
+  file_->finish();
+  report_.bytes += file_->written();
+  if (!file_->why().empty()) {
+    say(fmt::format("{}: {}", file_->path(), file_->why()));
+    ++report_.failures;
+  }
+  note_whole_chunks();
+  file_.reset();
+  has_chunk_ = false;
+}
+
+void Files::rotate(Time now) {
+  if (!file_) return;
+  close_file();
+  next_try_ = now;
+  tick(now);
+}
+
+void Files::remove_oldest() {
+  while (options_.max_files && own_.size() > *options_.max_files) {
+    unlink(own_.front().c_str());
+    own_.pop_front();
+  }
+}
+
+void Files::tick(Time now) {
+  if (wants_file_ && !file_ && now >= next_try_) {
+    const bool is_first = own_.empty() || options_.last;
+    if (open(names_.next(wanted_, is_first ? 1 : 2), now) && std::exchange(is_failing_, false)) {
+      say(fmt::format("recording continues in {}", file_->path()));
+    }
+  }
+  if (!file_) return;
+  if (has_chunk_ && now - chunk_since_ >= kChunk) {
+    file_->end_chunk();
+    if (file_->failed()) return fail(file_->why(), now);
+    note_whole_chunks();
+  }
+  if (now >= next_check_) {
+    next_check_ = now + kCheck;
+    if (!file_->is_in_place()) {
+      file_->finish();
+      note_whole_chunks();
+      return fail("it was moved or removed", now);
+    }
+  }
+  if (options_.last && now >= dump_until_) {
+    close_file();
+    wants_file_ = false;
+  } else if (options_.max_bytes && file_->bytes() >= *options_.max_bytes &&
+             now - opened_ >= kShortest) {
+    rotate(now);
+  }
+}
+
+void Files::finish(Time now) {
+  if (options_.last && !wants_file_ && memory_.added() > whole_until_) dump("end", now);
+  if (wants_file_ && !file_) {
+    next_try_ = now;
+    tick(now);
+  }
+  if (file_) {
+    close_file();
+  } else if (wants_file_) {
+    memory_.clear(
+        [this](const Record& record, std::uint64_t sequence) { count_lost(record, sequence); });
+  }
+}
+
+}  // namespace splinecast::apps::record

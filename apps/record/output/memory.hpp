@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+
+#include "apps/record/format/messages.hpp"
+#include "apps/record/format/record.hpp"
+#include "splinecast/time.hpp"
+
+namespace splinecast::apps::record {
+
+/// Keeps the newest records of each stream, from which a new file begins: those of the last
+/// `window`, and before them what verification needs. One thread uses it.
+class RecordMemory {
+ public:
+  /// Keeps the records of this time. 0: only from the last place at which verification can begin.
+  explicit RecordMemory(Time window) : window_(window) {}
+
+  /// Called for each record that is no longer kept. `sequence`: how many were added before it.
+  using Forget = std::function<void(const Record& record, std::uint64_t sequence)>;
+
+  /// Adds a record, and forgets those that are no longer needed.
+  void add(Record record, const Forget& forget);
+
+  /// While `holds` is set, forgets nothing until the records take kMostHeld: no file can be
+  /// written.
+  void hold(bool holds) noexcept { holds_ = holds; }
+  static constexpr std::size_t kMostHeld = std::size_t{64} << 20U;
+
+  /// Gives all kept records: for each stream its options, items, and the others.
+  void give(const std::function<void(const Record& record)>& take) const;
+
+  /// Forgets all records.
+  void clear(const Forget& forget);
+
+  /// Number of records added so far.
+  [[nodiscard]] std::uint64_t added() const noexcept { return added_; }
+  [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
+
+ private:
+  struct Kept {
+    std::uint64_t sequence;
+    Record record;
+  };
+  /// A place at which verification can begin.
+  struct Start {
+    std::uint64_t sequence;
+    ipc::Word first_item;
+    Time seen;
+  };
+  struct Stream {
+    std::optional<Record> options{};
+    Time newest{};             ///< when its newest record was read
+    std::deque<Kept> items{};  ///< items and refusals
+    std::deque<Kept> others{};
+    std::deque<Start> starts{};
+    std::size_t bytes = 0;
+  };
+
+  Stream& stream_of(const Record& record, const Forget& forget);
+  void drop_old(std::uint32_t stream, Time oldest, const Forget& forget);
+  void trim(Stream& stream, Time now, const Forget& forget);
+  void pop(Stream& stream, std::deque<Kept>& from, const Forget& forget);
+
+  Time window_;
+  /// By number; several if a stream was recreated.
+  std::multimap<std::uint32_t, Stream> streams_;
+  bool holds_ = false;
+  std::uint64_t added_ = 0;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace splinecast::apps::record

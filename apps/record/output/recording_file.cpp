@@ -1,0 +1,166 @@
+#include "apps/record/output/recording_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "apps/process/exit_codes.hpp"
+#include "apps/record/format/options.hpp"
+#include "ipc/memory/names.hpp"
+
+namespace splinecast::apps::record {
+namespace {
+
+constexpr std::string_view kJson = "json";
+constexpr std::string_view kJsonSchema = "jsonschema";
+constexpr mode_t kMode = 0644;
+
+int create(const std::string& path) {
+  const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
+  if (descriptor >= 0) return descriptor;
+  throw Failure(fmt::format("cannot create {}: {}", ipc::printable(path), std::strerror(errno)));
+}
+
+std::string_view text_of(std::span<const std::byte> bytes) noexcept {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};  // NOLINT(*-reinterpret-cast)
+}
+
+/// The metadata of a stream: the members of its options, each as JSON text.
+std::map<std::string, std::string> metadata_of(std::string_view options) {
+  std::map<std::string, std::string> values;
+  const auto object = nlohmann::json::parse(options);
+  for (const auto& [name, value] : object.items()) {
+    values[name] = value.is_string() ? value.get<std::string>() : value.dump();
+  }
+  return values;
+}
+
+}  // namespace
+
+RecordingFile::Stream::Stream(const StreamOptions& options, double states_hz)
+    : dimensions(options.waypoints.dimensions),
+      json(options.waypoints),
+      wall_offset(options.wall_offset) {
+  if (states_hz > 0) sampled.emplace(options.waypoints, states_hz);
+}
+
+RecordingFile::RecordingFile(std::string path, const FileOptions& options)
+    : path_(std::move(path)), options_(options), descriptor_(create(path_)) {
+  const auto write = [this](std::span<const std::byte> bytes) { return write_bytes(bytes); };
+  writer_ = std::make_unique<mcap::Writer>(
+      write, mcap::WriterOptions{.profile = "", .compression = options_.compression});
+}
+
+RecordingFile::~RecordingFile() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+bool RecordingFile::write_bytes(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) {
+      why_ = std::strerror(count < 0 ? errno : ENOSPC);
+      cut_to_whole_chunks();
+      return false;
+    }
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+  }
+  return true;
+}
+
+/// Removes the part of a chunk that was written.
+void RecordingFile::cut_to_whole_chunks() noexcept {
+  const auto whole = writer_ ? static_cast<off_t>(writer_->bytes()) : 0;
+  if (ftruncate(descriptor_, whole) != 0) return;  // a reader stops at the last whole chunk
+}
+
+std::uint16_t RecordingFile::add_channel(const std::string& topic, std::string_view schema,
+                                         const std::string& text) {
+  const std::string key = topic + '\n' + text;
+  if (const auto found = channels_.find(key); found != channels_.end()) return found->second;
+  const bool is_json = !text.empty();
+  const std::uint16_t id = is_json ? writer_->add_schema(schema, kJsonSchema, text) : 0;
+  const std::uint16_t channel = writer_->add_channel(id, topic, is_json ? kJson : "splinecast", {});
+  channels_.emplace(key, channel);
+  return channel;
+}
+
+void RecordingFile::begin_stream(const Record& record) {
+  const std::string_view text = text_of(std::span(record.bytes).subspan(1));
+  const StreamOptions options = parse_options(text);
+  Stream stream(options, options_.states_hz);
+  const std::string topic = "/" + options.stream;
+  stream.waypoints =
+      add_channel(topic + "/waypoints", "splinecast.Waypoint", stream.json.waypoint_schema());
+  stream.events = add_channel(topic + "/events", "splinecast.Event", JsonMessages::event_schema());
+  if (stream.sampled) {
+    stream.states = add_channel(topic + "/states", "splinecast.State", stream.json.state_schema());
+  }
+  stream.exact = add_channel(topic + "/splinecast", "", "");
+  if (const auto known = streams_.find(record.stream); known != streams_.end()) {
+    stream.sequence = std::move(known->second.sequence);
+  }
+  writer_->add_metadata("splinecast:" + options.stream, metadata_of(text));
+  streams_.insert_or_assign(record.stream, std::move(stream));
+}
+
+void RecordingFile::write(const Record& record) {
+  if (record.kind == RecordKind::options) begin_stream(record);
+  const auto found = streams_.find(record.stream);
+  if (found == streams_.end()) throw BadMessage("its stream has no options");
+  Stream& stream = found->second;
+  if (record.kind == RecordKind::event) {
+    return put(stream, stream.events, record.log_time, record.seen, record.bytes);
+  }
+  put(stream, stream.exact, record.log_time, record.seen, record.bytes);
+  const auto body = std::span<const std::byte>(record.bytes).subspan(1);
+  if (record.kind == RecordKind::item) {
+    const NumberedItem item = decode_item(body, stream.dimensions);
+    put(stream, stream.waypoints, record.log_time, record.seen,
+        stream.json.waypoint(item.number, item.item));
+  } else if (record.kind == RecordKind::segment && stream.sampled) {
+    put_states(stream, record);
+  }
+}
+
+void RecordingFile::put_states(Stream& stream, const Record& record) {
+  const auto segment =
+      decode_segment(std::span<const std::byte>(record.bytes).subspan(1), stream.dimensions);
+  stream.sampled->sample(segment, [&](Time time, const State& state) {
+    put(stream, stream.states, saturated_sum(time, stream.wall_offset), record.seen,
+        stream.json.state(time, state.position(), state.velocity(), state.acceleration()));
+  });
+}
+
+void RecordingFile::put(Stream& stream, std::uint16_t channel, Time log_time, Time seen,
+                        std::span<const std::byte> data) {
+  writer_->write(channel, stream.sequence[channel]++, log_time, seen, data);
+}
+
+void RecordingFile::put(Stream& stream, std::uint16_t channel, Time log_time, Time seen,
+                        std::string_view text) {
+  put(stream, channel, log_time, seen, std::as_bytes(std::span(text)));
+}
+
+void RecordingFile::end_chunk() { writer_->end_chunk(); }
+
+void RecordingFile::finish() {
+  writer_->finish();
+  if (close(std::exchange(descriptor_, -1)) != 0 && why_.empty()) why_ = std::strerror(errno);
+}
+
+bool RecordingFile::is_in_place() const noexcept {
+  struct stat open_file {};
+  struct stat named {};
+  return fstat(descriptor_, &open_file) == 0 && stat(path_.c_str(), &named) == 0 &&
+         open_file.st_ino == named.st_ino && open_file.st_dev == named.st_dev;
+}
+
+}  // namespace splinecast::apps::record

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "apps/mcap/output/writer.hpp"
+#include "apps/record/format/json.hpp"
+#include "apps/record/format/messages.hpp"
+#include "apps/record/format/options.hpp"
+#include "apps/record/format/record.hpp"
+#include "apps/record/output/states.hpp"
+#include "splinecast/time.hpp"
+
+namespace splinecast::apps::record {
+
+struct FileOptions {
+  mcap::Compression compression = mcap::Compression::zstd;
+  double states_hz = 0;  ///< rate of the channel of states; 0: none
+};
+
+/// One file of a recorder: for each stream its channels and metadata. One thread uses it.
+class RecordingFile {
+ public:
+  /// Creates the file, which must not exist. Throws Failure, with the system's reason.
+  RecordingFile(std::string path, const FileOptions& options);
+  RecordingFile(const RecordingFile&) = delete;
+  RecordingFile& operator=(const RecordingFile&) = delete;
+  /// Closes the file. Without finish() it has no summary.
+  ~RecordingFile();
+
+  /// Adds a record to the open chunk. A stream's first record has its options. Throws BadMessage
+  /// for a record that the recorder did not make.
+  void write(const Record& record);
+
+  /// Writes the open chunk.
+  void end_chunk();
+  /// Writes the open chunk and the end of the file, and closes it.
+  void finish();
+
+  /// Whether a write has failed. Then the file ends with its last whole chunk.
+  [[nodiscard]] bool failed() const noexcept { return writer_->failed(); }
+  /// The reason, if it has.
+  [[nodiscard]] const std::string& why() const noexcept { return why_; }
+  /// Whether the path still refers to this file. A system call.
+  [[nodiscard]] bool is_in_place() const noexcept;
+  /// Bytes of the file, and those of the open chunk before compression.
+  [[nodiscard]] std::uint64_t bytes() const noexcept {
+    return writer_->bytes() + writer_->open_bytes();
+  }
+  [[nodiscard]] std::uint64_t written() const noexcept { return writer_->bytes(); }
+  [[nodiscard]] bool has_open_chunk() const noexcept { return writer_->open_bytes() > 0; }
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+
+ private:
+  /// The channels of a stream, and what its messages are made with.
+  struct Stream {
+    Stream(const StreamOptions& options, double states_hz);
+
+    std::uint16_t exact = 0, waypoints = 0, events = 0, states = 0;
+    std::size_t dimensions;
+    JsonMessages json;
+    std::optional<States> sampled;
+    Time wall_offset;
+    std::map<std::uint16_t, std::uint32_t> sequence{};
+  };
+
+  bool write_bytes(std::span<const std::byte> bytes);
+  void cut_to_whole_chunks() noexcept;
+  void begin_stream(const Record& record);
+  std::uint16_t add_channel(const std::string& topic, std::string_view schema,
+                            const std::string& text);
+  void put(Stream& stream, std::uint16_t channel, Time log_time, Time seen,
+           std::span<const std::byte> data);
+  void put(Stream& stream, std::uint16_t channel, Time log_time, Time seen, std::string_view text);
+  void put_states(Stream& stream, const Record& record);
+
+  std::string path_;
+  FileOptions options_;
+  int descriptor_;
+  std::string why_;
+  std::unique_ptr<mcap::Writer> writer_;
+  std::map<std::uint32_t, Stream> streams_;
+  std::map<std::string, std::uint16_t> channels_;  ///< by topic and schema
+};
+
+}  // namespace splinecast::apps::record

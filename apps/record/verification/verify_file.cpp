@@ -1,0 +1,132 @@
+#include "apps/record/verification/verify_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+#include "apps/files/text_file.hpp"
+#include "apps/mcap/input/reader.hpp"
+#include "apps/process/exit_codes.hpp"
+#include "apps/streams/log.hpp"
+#include "ipc/memory/names.hpp"
+
+namespace splinecast::apps::record {
+namespace {
+
+constexpr std::string_view kExactEncoding = "splinecast";
+
+/// The name of the stream of an exact channel: `/NAME/splinecast`; empty for other channels.
+std::string_view stream_of(const mcap::Channel& channel) noexcept {
+  constexpr std::string_view kEnd = "/splinecast";
+  std::string_view topic = channel.topic;
+  if (channel.message_encoding != kExactEncoding || !topic.starts_with('/') ||
+      !topic.ends_with(kEnd) || topic.size() <= kEnd.size() + 1) {
+    return {};
+  }
+  topic.remove_prefix(1);
+  topic.remove_suffix(kEnd.size());
+  return topic;
+}
+
+ipc::Verification result_of(const StreamVerification& stream) {
+  return {.equal = stream.equal, .first = stream.first};
+}
+
+[[noreturn]] void refuse(const std::string& file, const mcap::Message& message,
+                         const BadMessage& error) {
+  throw InputError(fmt::format("{}: message {} of {}: {}", ipc::printable(file), message.number,
+                               ipc::printable(message.channel->topic), error.what()));
+}
+
+}  // namespace
+
+bool is_recording(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe can be read only once
+  try {
+    const TextFile file(path);
+    return mcap::is_mcap(std::as_bytes(std::span(file.text())));
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+FileVerification verify_file(const std::string& path, const std::string& stream) {
+  const TextFile file(path);
+  mcap::Reader reader(file.name(), std::as_bytes(std::span(file.text())));
+  std::map<std::string, RecordedStream, std::less<>> streams;
+  mcap::Message message;
+  while (reader.next(message)) {
+    const std::string_view name = stream_of(*message.channel);
+    if (name.empty() || (!stream.empty() && name != stream)) continue;
+    auto found = streams.find(name);
+    if (found == streams.end()) found = streams.try_emplace(std::string(name)).first;
+    try {
+      found->second.take(message.data);
+    } catch (const BadMessage& error) {
+      refuse(path, message, error);
+    }
+  }
+  FileVerification found{.file = file.name(), .ended_early = reader.ended_early()};
+  for (auto& [name, recorded] : streams) {
+    recorded.finish();
+    found.streams.emplace(name, recorded.found());
+  }
+  if (found.streams.empty()) {
+    throw InputError(stream.empty() ? fmt::format("{}: it has no stream that 'record' wrote",
+                                                  ipc::printable(path))
+                                    : fmt::format("{}: it has no recorded stream '{}'",
+                                                  ipc::printable(path), ipc::printable(stream)));
+  }
+  return found;
+}
+
+int exit_code(const FileVerification& found) {
+  const bool falls_short = std::ranges::any_of(found.streams, [](const auto& entry) {
+    const StreamVerification& stream = entry.second;
+    return stream.first || (stream.segments > 0 && stream.equal == 0);
+  });
+  return falls_short ? kFellShort : kOk;
+}
+
+std::vector<std::string> to_lines(const FileVerification& found) {
+  std::vector<std::string> lines;
+  if (found.ended_early) {
+    lines.push_back(fmt::format("{}: it is cut off; its whole part is verified", found.file));
+  }
+  for (const auto& [name, stream] : found.streams) {
+    std::string line = fmt::format("'{}': {}", name, in_words(result_of(stream)));
+    const std::uint64_t rest = stream.unverified();
+    if (rest > 0 && !stream.first) {
+      line += fmt::format("; {} not verified: what they depend on is not in the file", rest);
+    }
+    if (stream.lost.all() > 0) {
+      line += fmt::format("; lost while recording: {} items, {} segments, {} refusals",
+                          stream.lost.items, stream.lost.segments, stream.lost.refusals);
+    }
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+nlohmann::ordered_json to_json(const FileVerification& found) {
+  nlohmann::ordered_json streams = nlohmann::ordered_json::object();
+  for (const auto& [name, stream] : found.streams) {
+    nlohmann::ordered_json json = apps::to_json(result_of(stream));
+    json["segments"] = stream.segments;
+    json["unverified"] = stream.unverified();
+    json["parts"] = stream.parts;
+    json["late_commits"] = stream.late_commits;
+    json["lost"] = {{"items", stream.lost.items},
+                    {"segments", stream.lost.segments},
+                    {"refusals", stream.lost.refusals},
+                    {"others", stream.lost.others}};
+    streams[name] = std::move(json);
+  }
+  return {{"file", found.file}, {"ended_early", found.ended_early}, {"streams", streams}};
+}
+
+}  // namespace splinecast::apps::record

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/record/format/record.hpp"
+#include "splinecast/time.hpp"
+
+namespace splinecast::apps::record {
+
+/// The kinds of events.
+enum class EventKind : std::uint8_t {
+  attached,
+  underrun,
+  deadline,
+  late,
+  refusal,
+  takeover,
+  limit,
+  finished,
+  retired,
+  lost,
+};
+inline constexpr std::uint8_t kEventKinds = 10;
+
+/// An event that a batch has.
+struct EventNote {
+  std::uint32_t stream = 0;
+  EventKind kind{};
+};
+
+/// Records on their way from the observer to the file, in the order in which they were read.
+struct Batch {
+  std::vector<Record> records{};
+  std::vector<EventNote> events{};  ///< those of `records`
+  std::size_t bytes = 0;            ///< of the records, about
+  Time now{};                       ///< wall clock
+
+  void add(Record record) {
+    constexpr std::size_t kOverhead = sizeof(Record) + 16;
+    bytes += record.bytes.size() + kOverhead;
+    record.seen = now;
+    records.push_back(std::move(record));
+  }
+};
+
+}  // namespace splinecast::apps::record

@@ -1,0 +1,192 @@
+#include "apps/record/watch/board_watch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "apps/record/format/json.hpp"
+#include "apps/record/watch/events.hpp"
+#include "ipc/options/curve.hpp"
+#include "ipc/options/stream.hpp"
+
+namespace splinecast::apps::record {
+namespace {
+
+/// Time between two places from which the rest of the record can be verified.
+constexpr Time kStartInterval = std::chrono::seconds(1);
+/// Time between two summaries of a stream that runs.
+constexpr Time kSummaryInterval = std::chrono::seconds(1);
+
+bool is_same(const ipc::Look& a, const ipc::Look& b) noexcept {
+  return a.revision == b.revision && a.settled_until == b.settled_until;
+}
+
+}  // namespace
+
+BoardWatch::BoardWatch(std::uint32_t number, ipc::CheckedRegion<ipc::BoardLayout> board,
+                       RingWatch& ring, Time wall_offset)
+    : number_(number),
+      board_(std::move(board)),
+      reader_(board_.region.bytes(), board_.layout),
+      ring_(ring),
+      is_live_(ipc::stream_clock(board_.header) == StreamClock::monotonic),
+      wall_offset_(is_live_ ? wall_offset : Time::zero()),
+      options_(ipc::window_options(board_.header)),
+      settled_(reader_, is_live_),
+      refused_(ipc::kRefusalsKept) {
+  board_.region.close_descriptor();
+}
+
+bool BoardWatch::calls() const noexcept {
+  return !is_same(reader_.look(), looked_) || reader_.retired();
+}
+
+Record BoardWatch::record(RecordKind kind, ipc::Word number, Time time, Bytes bytes) const {
+  return {.stream = number_,
+          .kind = kind,
+          .number = number,
+          .log_time = saturated_sum(time, wall_offset_),
+          .bytes = std::move(bytes)};
+}
+
+Time BoardWatch::event_time(const Batch& batch) const noexcept {
+  return is_live_ ? batch.now - wall_offset_ : summary_.newest_time;
+}
+
+void BoardWatch::look(Batch& batch) {
+  looked_ = reader_.look();
+  settled_.look();
+  // Items after the board: the record then has every item that the segments depend on.
+  if (const ipc::Word lost = ring_.look(batch); lost > 0) {
+    needs_start_ = true;
+    put_loss(batch, {.cause = LossCause::overwritten, .items = lost});
+  }
+  put_refusals(batch);
+  put_counts(batch);
+  put_excesses(batch);
+  const bool was_finished = is_finished_;
+  summary_ = settled_.summary();
+  put_segments(batch);
+  is_finished_ = summary_.finished && settled_.next() >= summary_.newest;
+  if (is_finished_ && !was_finished) {
+    put_summary(batch);
+    put_event(batch, EventKind::finished, fmt::format(R"("count":{})", summary_.interpolated()));
+  } else if (batch.now - kSummaryInterval >= last_summary_) {
+    put_summary(batch);
+  }
+}
+
+void BoardWatch::put_summary(Batch& batch) {
+  last_summary_ = batch.now;
+  if (summary_.revision == 0) return;
+  batch.add(record(RecordKind::summary, summary_.revision, event_time(batch), encode(summary_)));
+}
+
+void BoardWatch::put_event(Batch& batch, EventKind kind, const std::string& members) const {
+  const Time time = event_time(batch);
+  add_event(batch, {.stream = number_, .kind = kind}, time, saturated_sum(time, wall_offset_),
+            members);
+}
+
+void BoardWatch::put_loss(Batch& batch, const Loss& loss) const {
+  batch.add(record(RecordKind::loss, 0, event_time(batch), encode(loss)));
+  if (loss.all() > 0) put_event(batch, EventKind::lost, members_of(loss));
+}
+
+void BoardWatch::put_refusals(Batch& batch) {
+  const ipc::Summary& now = settled_.summary();
+  if (now.refused == summary_.refused) return;
+  const std::size_t count = reader_.copy_refusals(now, summary_.refused, refused_);
+  const ipc::Word missed = now.refused - summary_.refused - count;
+  if (missed > 0) {
+    // Which items were refused before the oldest one of these is unknown.
+    ring_.set_incomplete_before(count > 0 ? refused_[0].item + 1 : now.consumed);
+    needs_start_ = true;
+    put_loss(batch, {.cause = LossCause::overwritten, .refusals = missed});
+  }
+  for (const ipc::RefusedItem& refused : std::span(refused_).first(count)) {
+    batch.add(record(RecordKind::refusal, refused.item, event_time(batch), encode(refused)));
+    put_event(batch, EventKind::refusal,
+              fmt::format(R"("item":{},"reason":"{}")", refused.item, to_string(refused.reason)));
+  }
+}
+
+/// Writes an event for each counter of the summary that has risen.
+void BoardWatch::put_counts(Batch& batch) {
+  const ipc::Summary& now = settled_.summary();
+  const auto look_at = [&](EventKind kind, ipc::Word ipc::Summary::*counter) {
+    if (now.*counter <= summary_.*counter) return;
+    put_event(batch, kind, fmt::format(R"("count":{})", now.*counter));
+  };
+  look_at(EventKind::underrun, &ipc::Summary::underruns);
+  look_at(EventKind::deadline, &ipc::Summary::deadline_misses);
+  look_at(EventKind::late, &ipc::Summary::late_commits);
+  if (now.late_commits <= summary_.late_commits) return;
+  // Segments that have been read may have been changed.
+  needs_start_ = true;
+  batch.add(record(RecordKind::loss, 0, event_time(batch),
+                   encode(Loss{.cause = LossCause::late_commit})));
+}
+
+void BoardWatch::put_excesses(Batch& batch) {
+  const ipc::Summary& now = settled_.summary();
+  const ipc::Word kept = std::min<ipc::Word>(now.exceeding, ipc::kExcessesKept);
+  const auto names = ipc::dimension_names(board_.header);
+  for (ipc::Word i = std::max(summary_.exceeding, now.exceeding - kept); i < now.exceeding; ++i) {
+    const auto excess = reader_.excess(now, i);
+    if (excess) put_event(batch, EventKind::limit, members_of(*excess, names));
+  }
+}
+
+bool BoardWatch::wants_start(const Batch& batch) const noexcept {
+  return needs_start_ || batch.now - kStartInterval >= last_start_;
+}
+
+void BoardWatch::put_segments(Batch& batch) {
+  const auto segments = settled_.segments();
+  if (segments.empty()) return;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const ipc::SegmentCopy& segment = segments[i];
+    const ipc::SegmentCopy* before = i > 0 ? &segments[i - 1] : has_last_ ? &last_ : nullptr;
+    const ipc::Word expected = before != nullptr ? before->next : 1;
+    if (segment.number != expected) {
+      needs_start_ = true;
+      if (before != nullptr) {
+        put_loss(batch, {.cause = LossCause::overwritten, .segments = segment.number - expected});
+      }
+      before = nullptr;
+    }
+    if (before == nullptr && segment.number == 1 && ring_.complete_from() > 0) needs_start_ = true;
+    // At the first look, and after a loss, the board may still have the knots before this segment.
+    if (needs_start_ && before != nullptr) try_restart(batch, *before);
+    const bool is_start = starts_.take(before, segment);
+    if (is_start && wants_start(batch) && ring_.complete_from() <= *segment.origin.item) {
+      put_restart(batch, {.before = *before, .first_item = *segment.origin.item});
+    }
+    batch.add(record(RecordKind::segment, segment.number, segment.left, encode(segment)));
+  }
+  last_ = segments.back();
+  has_last_ = true;
+  if (wants_start(batch)) try_restart(batch, last_);
+  settled_.drop();
+}
+
+void BoardWatch::put_restart(Batch& batch, Restart restart) {
+  needs_start_ = false;
+  last_start_ = batch.now;
+  batch.add(record(RecordKind::restart, restart.first_item, restart.before.right, encode(restart)));
+}
+
+/// Writes the knots up to the end of a settled segment, if the board has them.
+void BoardWatch::try_restart(Batch& batch, const ipc::SegmentCopy& before) {
+  auto knots = ipc::copy_restart(reader_, summary_, options_, before.next);
+  if (!knots) return;
+  const auto first = ring_.first_after(knots->run_item, knots->knots.back().time);
+  if (!first) return;
+  starts_.continue_run(knots->run_item);
+  put_restart(batch, {.before = before, .first_item = *first, .knots = std::move(knots)});
+}
+
+}  // namespace splinecast::apps::record

@@ -1,0 +1,70 @@
+#include "apps/record/watch/events.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "apps/record/format/json.hpp"
+
+namespace splinecast::apps::record {
+namespace {
+
+constexpr std::array<std::string_view, kEventKinds> kNames{
+    "attached", "underrun", "deadline", "late",    "refusal",
+    "takeover", "limit",    "finished", "retired", "lost"};
+constexpr std::array kTriggers{EventKind::underrun, EventKind::deadline, EventKind::late,
+                               EventKind::refusal,  EventKind::takeover, EventKind::limit};
+
+}  // namespace
+
+std::string_view to_string(EventKind kind) noexcept {
+  return kNames.at(static_cast<std::size_t>(kind));
+}
+
+std::optional<EventKind> parse_trigger(std::string_view name) noexcept {
+  const auto found =
+      std::ranges::find(kTriggers, name, [](EventKind kind) { return to_string(kind); });
+  return found != kTriggers.end() ? std::optional(*found) : std::nullopt;
+}
+
+std::string trigger_names() {
+  std::string names;
+  for (const EventKind kind : kTriggers) {
+    names.append(names.empty() ? "" : ",").append(to_string(kind));
+  }
+  return names;
+}
+
+void add_event(Batch& batch, const EventNote& event, Time time, Time log_time,
+               const std::string& members) {
+  const std::string text = fmt::format(R"({{"time_ns":{},"event":"{}"{}{}}})", time.count(),
+                                       to_string(event.kind), members.empty() ? "" : ",", members);
+  const auto bytes = std::as_bytes(std::span(text));
+  batch.events.push_back(event);
+  batch.add({.stream = event.stream,
+             .kind = RecordKind::event,
+             .log_time = log_time,
+             .bytes = Bytes(bytes.begin(), bytes.end())});
+}
+
+std::string members_of(const Loss& loss) {
+  return fmt::format(
+      R"("reason":"{}","count":{},"items":{},"segments":{},"refusals":{},"others":{})",
+      to_string(loss.cause), loss.all(), loss.items, loss.segments, loss.refusals, loss.others);
+}
+
+std::string members_of(const LimitExcess& excess, const std::vector<std::string>& names) {
+  const bool is_named = excess.dimension < names.size() && !names[excess.dimension].empty();
+  std::string text =
+      fmt::format(R"("item":{},"refused":{},"limit_kind":"{}","dimension":{},"at_ns":{},"value":)",
+                  excess.item, excess.is_refused, splinecast::to_string(excess.kind),
+                  json_text(is_named ? names[excess.dimension] : std::to_string(excess.dimension)),
+                  excess.time.count());
+  append_number(text, excess.value);
+  text += R"(,"limit":)";
+  append_number(text, excess.limit);
+  return text;
+}
+
+}  // namespace splinecast::apps::record

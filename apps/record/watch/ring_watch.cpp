@@ -1,0 +1,81 @@
+#include "apps/record/watch/ring_watch.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+#include "ipc/layout/table.hpp"
+#include "ipc/options/stream.hpp"
+
+namespace splinecast::apps::record {
+namespace {
+
+/// The oldest item that a ring may still have.
+ipc::Word oldest_of(const ipc::WaypointRingReader& ring) noexcept {
+  const ipc::Word written = ring.written();
+  return written - std::min<ipc::Word>(written, ring.capacity());
+}
+
+}  // namespace
+
+std::pair<ipc::Word, ipc::Word> owner_of(std::span<const std::byte> region) noexcept {
+  const auto words = ipc::words_at(region, 0, ipc::kHeaderWords);
+  const auto at = [&](std::size_t i) { return ipc::load(words[i], std::memory_order_relaxed); };
+  return {at(ipc::word_of(ipc::kHeaderFields, "epoch")),
+          at(ipc::word_of(ipc::kHeaderFields, "process id"))};
+}
+
+RingWatch::RingWatch(std::uint32_t number, ipc::CheckedRegion<ipc::RingLayout> ring,
+                     Time wall_offset)
+    : number_(number),
+      ring_(std::move(ring)),
+      reader_(ring_.region.bytes(), ring_.layout),
+      wall_offset_(ipc::stream_clock(ring_.header) == StreamClock::monotonic ? wall_offset
+                                                                             : Time::zero()),
+      item_(ring_.layout.dimensions),
+      next_(oldest_of(reader_)),
+      complete_from_(next_) {
+  ring_.region.close_descriptor();
+}
+
+ipc::Word RingWatch::look(Batch& batch) {
+  ipc::Word lost = 0;
+  const ipc::Word written = reader_.written();
+  while (next_ < written) {
+    if (!reader_.observe(next_, item_)) {
+      const ipc::Word oldest = std::clamp(oldest_of(reader_), next_ + 1, written);
+      if (has_any_) lost += oldest - next_;
+      next_ = oldest;
+      set_incomplete_before(next_);
+      continue;
+    }
+    has_any_ = true;
+    if (item_.kind == ipc::ItemKind::waypoint) open_.push_back({next_, item_.time});
+    batch.add({.stream = number_,
+               .kind = RecordKind::item,
+               .number = next_,
+               .log_time = saturated_sum(item_.time, wall_offset_),
+               .bytes = encode(next_, item_)});
+    ++next_;
+  }
+  return lost;
+}
+
+void RingWatch::set_incomplete_before(ipc::Word item) noexcept {
+  complete_from_ = std::max(complete_from_, item);
+}
+
+std::optional<ipc::Word> RingWatch::first_after(ipc::Word run_item, Time time) {
+  while (!open_.empty() && (open_.front().number < run_item || open_.front().time <= time)) {
+    open_.pop_front();
+  }
+  const ipc::Word first = open_.empty() ? next_ : open_.front().number;
+  const bool is_known = complete_from_ <= run_item || first > complete_from_;
+  return is_known ? std::optional(first) : std::nullopt;
+}
+
+std::pair<ipc::Word, ipc::Word> RingWatch::owner() const noexcept {
+  return owner_of(ring_.region.bytes());
+}
+
+}  // namespace splinecast::apps::record

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "apps/record/format/messages.hpp"
+#include "apps/record/watch/batch.hpp"
+#include "ipc/layout/header.hpp"
+#include "ipc/mapping/checked_region.hpp"
+#include "ipc/memory/word.hpp"
+#include "ipc/ring/reader.hpp"
+#include "splinecast/time.hpp"
+
+namespace splinecast::apps::record {
+
+/// Reads the items of a ring, as a passive observer. One thread uses it.
+class RingWatch {
+ public:
+  /// Begins with the oldest item that the ring still has. `wall_offset` is added to the times of a
+  /// live stream.
+  RingWatch(std::uint32_t number, ipc::CheckedRegion<ipc::RingLayout> ring, Time wall_offset);
+
+  [[nodiscard]] const ipc::RegionHeader& header() const noexcept { return ring_.header; }
+  [[nodiscard]] bool calls() const noexcept {
+    return reader_.written() != next_ || reader_.retired();
+  }
+  [[nodiscard]] bool is_retired() const noexcept { return reader_.retired(); }
+
+  /// Reads the new items into the batch. Returns how many were overwritten before that.
+  [[nodiscard]] ipc::Word look(Batch& batch);
+
+  /// All items from this number on are in the record, up to the newest one.
+  [[nodiscard]] ipc::Word complete_from() const noexcept { return complete_from_; }
+  /// The record lacks something about the items before this number.
+  void set_incomplete_before(ipc::Word item) noexcept;
+
+  /// The first waypoint of the run that begins with `run_item` which is later than `time`, or the
+  /// number after the last item if there is none yet. Empty if the record may lack it. Do not call
+  /// it with a lower run or an earlier time than before.
+  [[nodiscard]] std::optional<ipc::Word> first_after(ipc::Word run_item, Time time);
+
+  /// The epoch and the process id of the present owner, from the region.
+  [[nodiscard]] std::pair<ipc::Word, ipc::Word> owner() const noexcept;
+
+ private:
+  struct OpenItem {
+    ipc::Word number;
+    Time time;
+  };
+
+  std::uint32_t number_;
+  ipc::CheckedRegion<ipc::RingLayout> ring_;
+  ipc::WaypointRingReader reader_;
+  Time wall_offset_;
+  ipc::RingItem item_;
+  ipc::Word next_ = 0;
+  ipc::Word complete_from_ = 0;
+  bool has_any_ = false;       ///< whether an item has been read
+  std::deque<OpenItem> open_;  ///< waypoints that may not have settled
+};
+
+/// The epoch and the process id of a region's present owner.
+[[nodiscard]] std::pair<ipc::Word, ipc::Word> owner_of(std::span<const std::byte> region) noexcept;
+
+}  // namespace splinecast::apps::record

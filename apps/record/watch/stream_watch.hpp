@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "apps/record/format/messages.hpp"
+#include "apps/record/format/options.hpp"
+#include "apps/record/format/record.hpp"
+#include "apps/record/watch/batch.hpp"
+#include "apps/record/watch/board_watch.hpp"
+#include "apps/record/watch/ring_watch.hpp"
+#include "splinecast/options.hpp"
+#include "splinecast/time.hpp"
+
+namespace splinecast::apps::record {
+
+/// Watches one stream: attaches to its ring and its board, read-only, and writes what happens there
+/// into a batch of records. Only loads from shared memory; takes no lock. One thread uses it.
+class StreamWatch {
+ public:
+  /// `number`: of the stream in the recorder.
+  StreamWatch(std::uint32_t number, std::string stream, const Trust& trust, Time wall_offset);
+
+  [[nodiscard]] const std::string& stream() const noexcept { return stream_; }
+  [[nodiscard]] bool is_attached() const noexcept { return ring_ != nullptr; }
+  /// Whether both ring and board are attached.
+  [[nodiscard]] bool is_complete() const noexcept { return ring_ && board_; }
+  /// Whether the stream is finished, and all of it has been read.
+  [[nodiscard]] bool is_finished() const noexcept { return board_ && board_->is_finished(); }
+
+  /// Attaches to what exists: the ring first, then the board of the same stream. System calls.
+  /// Writes the options into the batch. Returns whether anything is attached that was not before.
+  /// Throws BadRegion if a region cannot be used.
+  bool attach(Batch& batch);
+
+  /// Whether look() has anything to do: some loads.
+  [[nodiscard]] bool calls() const noexcept;
+
+  /// Reads what is new. Detaches from a stream that has been retired.
+  void look(Batch& batch);
+
+  /// Writes the last summary.
+  void put_summary(Batch& batch) {
+    if (board_) board_->put_summary(batch);
+  }
+
+  /// Looks whether a process has taken over a region: some loads.
+  void look_at_owners(Batch& batch);
+
+  /// Notes that records of this stream in a batch were dropped: verification has to begin again.
+  void note_dropped(const Loss& dropped) noexcept;
+
+ private:
+  void attach_ring(Batch& batch);
+  void attach_board(Batch& batch);
+  void put_options(Batch& batch) const;
+  void detach(Batch& batch, const char* role);
+
+  std::uint32_t number_;
+  std::string stream_;
+  Trust trust_;
+  Time wall_offset_;
+  struct Owners {
+    std::pair<ipc::Word, ipc::Word> ring{};  ///< epoch and process id
+    std::pair<ipc::Word, ipc::Word> board{};
+  };
+  Owners owners_;
+  std::unique_ptr<RingWatch> ring_;
+  std::unique_ptr<BoardWatch> board_;
+  Loss dropped_{};
+};
+
+}  // namespace splinecast::apps::record

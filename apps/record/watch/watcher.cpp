@@ -1,0 +1,145 @@
+#include "apps/record/watch/watcher.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <span>
+#include <utility>
+
+#include "ipc/memory/names.hpp"
+#include "splinecast/errors.hpp"
+#include "splinecast/streams.hpp"
+
+namespace splinecast::apps::record {
+namespace {
+
+constexpr Time kPause = std::chrono::milliseconds(1);
+constexpr Time kQuietPause = std::chrono::milliseconds(20);
+constexpr Time kQuietAfter = std::chrono::seconds(1);
+constexpr std::size_t kQuietSweeps = kQuietPause / kPause;
+/// Interval of looks for files that come or go, and for processes that take over.
+constexpr Time kLookAround = std::chrono::milliseconds(20);
+constexpr Time kLookAtOwners = std::chrono::milliseconds(100);
+/// A sweep that reads more records of one stream than this is followed by another one at once.
+constexpr std::size_t kMany = 128;
+
+}  // namespace
+
+Watcher::Watcher(const std::vector<std::string>& wanted, const Trust& trust, Tell tell)
+    : trust_(trust), tell_(std::move(tell)) {
+  for (const std::string& text : wanted) {
+    if (ipc::is_pattern(text)) {
+      patterns_.push_back(text);
+    } else {
+      ipc::require_stream_name(text);
+      add(text, true);
+    }
+  }
+}
+
+Watcher::Member& Watcher::add(const std::string& stream, bool is_named) {
+  const auto number = static_cast<std::uint32_t>(members_.size());
+  members_.push_back(std::make_unique<Member>(
+      Member{.watch = StreamWatch(number, stream, trust_, clock_.offset()), .is_named = is_named}));
+  by_name_.emplace(stream, members_.back().get());
+  return *members_.back();
+}
+
+void Watcher::sweep(Batch& batch) {
+  batch.now = clock_.now();
+  if (batch.now >= next_look_) {
+    next_look_ = batch.now + kLookAround;
+    look_around(batch);
+  }
+  const bool looks_at_owners = batch.now >= next_owners_;
+  if (looks_at_owners) next_owners_ = batch.now + kLookAtOwners;
+  const bool looks_at_all = all_quiet_;
+  ++sweeps_;
+  all_quiet_ = true;
+  is_behind_ = false;
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    Member& member = *members_[i];
+    const bool is_quiet = member.active + kQuietAfter <= batch.now;
+    all_quiet_ = all_quiet_ && is_quiet;
+    if (is_quiet && !looks_at_all && (sweeps_ + i) % kQuietSweeps != 0) continue;
+    if (looks_at_owners) member.watch.look_at_owners(batch);
+    if (!member.watch.calls()) continue;
+    const std::size_t before = batch.records.size();
+    member.watch.look(batch);
+    // The next stream of this name may exist already.
+    has_detached_ = has_detached_ || !member.watch.is_complete();
+    member.active = batch.now;
+    is_behind_ = is_behind_ || batch.records.size() - before > kMany;
+    all_quiet_ = false;
+  }
+}
+
+Time Watcher::next_pause() const noexcept {
+  if (is_behind_) return Time::zero();
+  return all_quiet_ ? kQuietPause : kPause;
+}
+
+void Watcher::look_around(Batch& batch) {
+  // A ring or a board can appear only with a new file.
+  if (!folder_.has_changed() && !has_detached_) return;
+  has_detached_ = false;
+  find_streams();
+  for (const auto& member : members_) {
+    attach(batch, *member);
+  }
+}
+
+void Watcher::find_streams() {
+  if (patterns_.empty()) return;
+  for (const std::string& stream : stream_names()) {
+    if (by_name_.contains(stream)) continue;
+    const bool is_wanted = std::ranges::any_of(
+        patterns_, [&](const std::string& pattern) { return ipc::matches(pattern, stream); });
+    if (is_wanted) add(stream, false);
+  }
+}
+
+void Watcher::attach(Batch& batch, Member& member) {
+  try {
+    const bool was_attached = member.watch.is_attached();
+    if (member.watch.attach(batch)) member.active = batch.now;
+    if (!was_attached && member.watch.is_attached()) {
+      tell_(member.watch.stream(), "recording", false);
+    }
+    member.is_refused = false;
+  } catch (const StreamError& error) {
+    if (!member.is_refused) tell_(member.watch.stream(), error.what(), true);
+    member.is_refused = true;
+  }
+  has_seen_any_ = has_seen_any_ || member.watch.is_attached();
+}
+
+void Watcher::finish(Batch& batch) {
+  batch.now = clock_.now();
+  for (const auto& member : members_) {
+    member->watch.look(batch);
+    member->watch.put_summary(batch);
+  }
+}
+
+void Watcher::note_dropped(const Batch& batch) {
+  for (const Record& record : batch.records) {
+    Loss one{.cause = LossCause::queue};
+    one.count(record.kind);
+    // What a dropped message has counted would be lost with it.
+    if (record.kind == RecordKind::loss) one += decode_loss(std::span(record.bytes).subspan(1));
+    members_[record.stream]->watch.note_dropped(one);
+  }
+}
+
+std::size_t Watcher::attached() const noexcept {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      members_, [](const auto& member) { return member->watch.is_attached(); }));
+}
+
+bool Watcher::are_all_finished() const noexcept {
+  return patterns_.empty() && std::ranges::all_of(members_, [](const auto& member) {
+           return member->watch.is_finished();
+         });
+}
+
+}  // namespace splinecast::apps::record

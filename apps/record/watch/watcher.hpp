@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/record/watch/batch.hpp"
+#include "apps/record/watch/clocks.hpp"
+#include "apps/record/watch/stream_watch.hpp"
+#include "ipc/memory/folder_watch.hpp"
+#include "splinecast/options.hpp"
+
+namespace splinecast::apps::record {
+
+/// Watches many streams in one thread: those that are named, and those that match a pattern as they
+/// come and go. Polls the streams; a stream without changes for a second is polled every 20 ms
+/// only.
+class Watcher {
+ public:
+  /// Called when a stream is recorded from now on, and with the reason when one cannot be recorded,
+  /// once until it has been replaced.
+  using Tell = std::function<void(std::string_view stream, std::string_view why, bool is_lost)>;
+
+  /// Each of `wanted` is a name or a pattern, see ipc::is_pattern(). Throws BadRequest for an
+  /// invalid name.
+  Watcher(const std::vector<std::string>& wanted, const Trust& trust, Tell tell);
+
+  /// Looks at every stream that is due. Writes what is new into the batch, and sets its time.
+  void sweep(Batch& batch);
+
+  /// Time to wait before the next sweep: 0 while some stream has much to read.
+  [[nodiscard]] Time next_pause() const noexcept;
+
+  /// Reads what is left, and the last summaries.
+  void finish(Batch& batch);
+
+  /// The records of a batch were dropped. Counts them by stream.
+  void note_dropped(const Batch& batch);
+
+  /// Number of streams that are attached.
+  [[nodiscard]] std::size_t attached() const noexcept;
+  /// Whether every named stream is finished and has been read, and there are no patterns.
+  [[nodiscard]] bool are_all_finished() const noexcept;
+  /// Whether a stream has been attached so far.
+  [[nodiscard]] bool has_seen_any() const noexcept { return has_seen_any_; }
+  [[nodiscard]] const WallClock& clock() const noexcept { return clock_; }
+
+ private:
+  struct Member {
+    StreamWatch watch;
+    bool is_named = false;
+    bool is_refused = false;  ///< it cannot be recorded; tried again when files come or go
+    Time active{};            ///< when it last had something to read
+  };
+
+  void look_around(Batch& batch);
+  void find_streams();
+  void attach(Batch& batch, Member& member);
+  Member& add(const std::string& stream, bool is_named);
+
+  std::vector<std::string> patterns_;
+  Trust trust_;
+  Tell tell_;
+  WallClock clock_;
+  ipc::FolderWatch folder_;
+  std::vector<std::unique_ptr<Member>> members_;
+  std::map<std::string, Member*, std::less<>> by_name_;
+  Time next_look_ = Time::min();
+  Time next_owners_ = Time::min();
+  std::size_t sweeps_ = 0;
+  bool all_quiet_ = true;
+  bool is_behind_ = false;
+  bool has_detached_ = false;
+  bool has_seen_any_ = false;
+};
+
+}  // namespace splinecast::apps::record
