@@ -20,7 +20,7 @@ namespace splinecast::apps::record {
 class WriterThread {
  public:
   /// Maximum size of the records in the queue.
-  static constexpr std::size_t kMostQueued = std::size_t{32} << 20U;
+  static constexpr std::size_t kMostQueued = std::size_t{64} << 20U;
 
   /// Opens the first file. Throws Failure.
   WriterThread(const OutputOptions& options, const WallClock& clock);

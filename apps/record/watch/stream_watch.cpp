@@ -68,7 +68,8 @@ void StreamWatch::put_options(Batch& batch) const {
 }
 
 bool StreamWatch::calls() const noexcept {
-  return (board_ && board_->calls()) || (ring_ && ring_->calls());
+  const bool has_loss = board_ && dropped_.all() > 0;  // to be written
+  return has_loss || (board_ && board_->calls()) || (ring_ && ring_->calls());
 }
 
 void StreamWatch::look(Batch& batch) {

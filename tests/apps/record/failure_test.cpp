@@ -90,7 +90,7 @@ TEST_F(RecordFailure, AVanishedFolderIsReportedAndRecordingContinuesWhenItIsBack
 TEST_F(RecordFailure, ASlowDiskCostsRecordsWhichAreCountedButNoTimeOfTheStream) {
   const TestFolder folder;
   const TestStream stream;
-  constexpr std::size_t kMany = std::size_t{1} << 17U;  // its records exceed the queue
+  constexpr std::size_t kMany = std::size_t{1} << 18U;  // its records exceed the queue
   SteppedStream source(stream.name(), {.capacity = kMany}, kMany);
   const std::string block = folder.write("block", "");
   const std::string path = folder.path("run.mcap");
