@@ -33,6 +33,11 @@ class EventCounts {
     }
     const std::string_view event = trimmed(fields_->text(0));
     if (contents_.events.size() < kMostNames) ++contents_.events[std::string(event)];
+    if (contents_.event_list.size() < kEventsListed) {
+      contents_.event_list.push_back({.log_time = message.log_time,
+                                      .topic = message.channel->topic,
+                                      .text = std::string(text_of(message.data))});
+    }
     const bool is_loss = event == "lost" && trimmed(fields_->text(1)) != "late commit";
     if (is_loss) contents_.lost += parse_count(fields_->text(2)).value_or(0);
   }

@@ -51,6 +51,13 @@ struct TopicContents {
   TimeSpans times{};
 };
 
+/// An event of a recording.
+struct RecordedEvent {
+  Time log_time{};
+  std::string topic;
+  std::string text;  ///< the message, in JSON
+};
+
 struct FileContents {
   std::string file;
   std::string format;  ///< `MCAP`, `ULog` or `table`
@@ -62,10 +69,14 @@ struct FileContents {
   std::optional<std::uint64_t> bad_rows{};        ///< of a table
   std::optional<std::uint64_t> dropouts{};        ///< of a ULog
   std::map<std::string, std::uint64_t> events{};  ///< of a recording, by name: how often
+  std::vector<RecordedEvent> event_list{};        ///< of a recording: at most kEventsListed
   std::uint64_t lost = 0;                         ///< of a recording: records it could not keep
   Time dropped{};                                 ///< duration of these
   std::vector<std::pair<std::string, std::map<std::string, std::string>>> metadata{};
 };
+
+/// Number of events that are listed; all are counted.
+inline constexpr std::size_t kEventsListed = 10'000;
 
 /// Reads a file to its end. Throws InputError if it cannot be read at all.
 [[nodiscard]] FileContents contents_of(const std::string& path);
@@ -73,5 +84,8 @@ struct FileContents {
 [[nodiscard]] nlohmann::ordered_json to_json(const FileContents& contents);
 /// The same for people.
 [[nodiscard]] std::string to_text(const FileContents& contents);
+
+/// The events of a recording, one in a line: wall clock, topic, message.
+[[nodiscard]] std::string events_text(const FileContents& contents);
 
 }  // namespace splinecast::apps

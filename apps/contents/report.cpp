@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <ctime>
+#include <numeric>
 
 #include "apps/contents/contents.hpp"
 #include "apps/process/messages.hpp"
+#include "ipc/memory/names.hpp"
 
 namespace splinecast::apps {
 namespace {
@@ -133,6 +135,12 @@ std::string topics_text(const FileContents& contents) {
   return text + "\n";
 }
 
+/// A message in JSON; its text if it is not valid.
+ordered_json message_of(const std::string& text) {
+  ordered_json message = ordered_json::parse(text, nullptr, false);
+  return message.is_discarded() ? ordered_json(text) : message;
+}
+
 }  // namespace
 
 ordered_json to_json(const FileContents& contents) {
@@ -157,6 +165,12 @@ ordered_json to_json(const FileContents& contents) {
   }
   if (!contents.events.empty()) {
     json["events"] = contents.events;
+    json["event_list"] = ordered_json::array();
+    for (const RecordedEvent& event : contents.event_list) {
+      json["event_list"].push_back({{"log_time_ns", event.log_time.count()},
+                                    {"topic", event.topic},
+                                    {"message", message_of(event.text)}});
+    }
     json["lost"] = contents.lost;
   }
   json["metadata"] = ordered_json::array();
@@ -164,6 +178,22 @@ ordered_json to_json(const FileContents& contents) {
     json["metadata"].push_back({{"name", name}, {"values", values}});
   }
   return json;
+}
+
+std::string events_text(const FileContents& contents) {
+  std::string text;
+  for (const RecordedEvent& event : contents.event_list) {
+    const auto microseconds = std::chrono::floor<std::chrono::microseconds>(event.log_time);
+    const auto seconds = std::chrono::floor<std::chrono::seconds>(microseconds);
+    text += fmt::format(
+        "{:%FT%T}.{:06}Z  {}  {}\n", fmt::gmtime(static_cast<std::time_t>(seconds.count())),
+        (microseconds - seconds).count(), ipc::printable(event.topic), ipc::printable(event.text));
+  }
+  const std::uint64_t all =
+      std::accumulate(contents.events.begin(), contents.events.end(), std::uint64_t{0},
+                      [](std::uint64_t sum, const auto& entry) { return sum + entry.second; });
+  const std::uint64_t more = all - std::min<std::uint64_t>(all, contents.event_list.size());
+  return more == 0 ? text : text + fmt::format("and {} more\n", more);
 }
 
 std::string to_text(const FileContents& contents) {

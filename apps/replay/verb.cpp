@@ -75,6 +75,13 @@ std::string in_words(const ReplayReport& report, const ReplayOptions& options,
   return text;
 }
 
+/// Whether the file's own streams are to be solved again. A log of others is sent as any file is.
+bool verifies_recording(const ReplayOptions& options) {
+  if (!options.verify) return false;
+  return options.stream.empty() ? record::is_mcap_file(options.file)
+                                : record::is_recording(options.file);
+}
+
 /// Solves the streams of a recording again. Sends nothing.
 int verify_recording(const ReplayOptions& options) {
   const auto found = record::verify_file(options.file, options.stream);
@@ -87,7 +94,7 @@ int verify_recording(const ReplayOptions& options) {
 }
 
 int run_replay(const ReplayOptions& options) {
-  if (options.verify && record::is_recording(options.file)) return verify_recording(options);
+  if (verifies_recording(options)) return verify_recording(options);
   RefusedRows refused;
   Recording recording = open_recording(options, refused);
   require_playable(recording, options);
@@ -308,8 +315,9 @@ void add_replay(Command& verb, Action& action) {
   add_access(verb, options->access);
   add_trust(verb, options->trust);
   verb.callback([&action, options, stream] {
-    const bool is_recording = options->verify && record::is_recording(options->file);
-    if (!stream.is_given() && !is_recording) throw UsageError("--stream", "is required");
+    if (!stream.is_given() && !verifies_recording(*options)) {
+      throw UsageError("--stream", "is required");
+    }
     require_agreeing(*options);
     options->quiet = options->table.quiet;
     options->solver.access = options->access;

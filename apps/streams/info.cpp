@@ -63,14 +63,17 @@ void show_stream(const std::string& stream, const Trust& trust, bool as_json) {
   print_report(as_json ? pretty(json) : table_of(json, 0) + age_of(info));
 }
 
-void show_file(const std::string& path, bool as_json) {
+void show_file(const std::string& path, bool only_events, bool as_json) {
   const FileContents contents = contents_of(path);
-  print_report(as_json ? pretty(to_json(contents)) : to_text(contents));
+  print_report(as_json       ? pretty(to_json(contents))
+               : only_events ? events_text(contents)
+                             : to_text(contents));
 }
 
 void add_info(Command& verb, Action& action) {
   struct Options {
     std::string stream;
+    bool events = false;
     bool json = false;
     Trust trust;
   };
@@ -78,12 +81,14 @@ void add_info(Command& verb, Action& action) {
   verb.option("STREAM|FILE", options->stream,
               "Name of the stream to show, or path of a file of waypoints, an MCAP file or a ULog")
       .required();
+  verb.flag("--events", options->events,
+            "Of a recording: list the events instead, each with its wall clock");
   verb.flag("--json", options->json, "Print JSON");
   add_trust(verb, options->trust);
   verb.callback([&action, options] {
     action = [options] {
       if (is_file(options->stream)) {
-        show_file(options->stream, options->json);
+        show_file(options->stream, options->events, options->json);
       } else {
         show_stream(options->stream, options->trust, options->json);
       }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string_view>
 
@@ -41,17 +42,36 @@ ipc::Verification result_of(const StreamVerification& stream) {
                                ipc::printable(message.channel->topic), error.what()));
 }
 
-}  // namespace
-
-bool is_recording(const std::string& path) {
+/// Whether a path is a regular MCAP file for which `look` returns true. False if it cannot be read.
+bool looks(const std::string& path, const std::function<bool(mcap::Reader& reader)>& look) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return false;  // a pipe can be read only once
   try {
     const TextFile file(path);
-    return mcap::is_mcap(std::as_bytes(std::span(file.text())));
+    const auto bytes = std::as_bytes(std::span(file.text()));
+    if (!mcap::is_mcap(bytes)) return false;
+    mcap::Reader reader(file.name(), bytes);
+    return look(reader);
   } catch (const InputError&) {
     return false;
   }
+}
+
+}  // namespace
+
+bool is_mcap_file(const std::string& path) {
+  return looks(path, [](mcap::Reader& /*reader*/) { return true; });
+}
+
+bool is_recording(const std::string& path) {
+  return looks(path, [](mcap::Reader& reader) {
+    constexpr int kMostLooked = 1000;
+    mcap::Message message;
+    for (int i = 0; i < kMostLooked && reader.next(message); ++i) {
+      if (message.channel->message_encoding == kExactEncoding) return true;
+    }
+    return false;
+  });
 }
 
 FileVerification verify_file(const std::string& path, const std::string& stream) {

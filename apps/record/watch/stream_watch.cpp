@@ -6,6 +6,7 @@
 
 #include "apps/record/watch/events.hpp"
 #include "ipc/mapping/region.hpp"
+#include "ipc/options/stream.hpp"
 #include "splinecast/errors.hpp"
 
 namespace splinecast::apps::record {
@@ -32,7 +33,9 @@ void StreamWatch::attach_ring(Batch& batch) {
   ring_ = std::move(ring);
   owners_.ring = ring_->owner();
   put_options(batch);
-  add_event(batch, {.stream = number_, .kind = EventKind::attached}, batch.now, batch.now,
+  const bool is_live = ipc::stream_clock(ring_->header()) != StreamClock::recorded;
+  const Time now = is_live ? batch.now - wall_offset_ : Time::zero();
+  add_event(batch, {.stream = number_, .kind = EventKind::attached}, now, batch.now,
             fmt::format(R"("role":"producer","pid":{},"epoch":{})", owners_.ring.second,
                         owners_.ring.first));
 }
