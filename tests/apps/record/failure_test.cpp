@@ -73,6 +73,10 @@ TEST_F(RecordFailure, AVanishedFolderIsReportedAndRecordingContinuesWhenItIsBack
   Process recorder = start_recorder({stream.name(), "-o", folder.path("here/run.mcap")});
   recorder.await_message("'" + stream.name() + "': recording");
   source.append_until(100);
+  EXPECT_TRUE(await([&] {  // a chunk has been written
+    const auto found = verify(folder.path("here/run.mcap")).stream(stream.name());
+    return !found.is_null() && found["equal"] > 0;
+  }));
   std::filesystem::rename(folder.path("here"), folder.path("gone"));
   recorder.await_message("moved or removed");
   source.append_until(200);
