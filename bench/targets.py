@@ -83,6 +83,8 @@ BOUNDS = [
       for limits in (0, 1)
       for key, most, what in (("p50_ns", 20, "a step of the return, p50"), ("worst_ns", 1000, "the same, worst"))),
     Bound("replay/dims:7", "items_per_second", "waypoints/s", least=1_000_000),
+    Bound("replay/mcap:recorded_stream/dims:7", "items_per_second", "waypoints/s", least=500_000),
+    Bound("replay/mcap:joint_states/dims:7", "items_per_second", "waypoints/s", least=500_000),
     Bound("parse/dims:7", "bytes_per_second", "MB/s", size=1e6, least=150),
     Bound("streams:1000/idle", "core_percent", "% of a core", most=1),
     Bound("streams:1000/busy:100Hz", "core_percent", "% of a core", most=10, needs=("waypoints_per_s", 95_000)),

@@ -44,6 +44,8 @@ HEADLINES = [
     Headline("attach and first sample, p50", "attach/dims:7/knots:4096", "p50_ns", "ms", 1e6),
     Headline("CSV text to a table", "parse/dims:7", "bytes_per_second", "MB/s", 1e6),
     Headline("CSV text to settled segments", "replay/dims:7", "items_per_second", "waypoints/s"),
+    Headline("MCAP recording (zstd) to settled segments", "replay/mcap:recorded_stream/dims:7", "items_per_second",
+             "waypoints/s"),
     Headline("1,000 live streams at 100 Hz, one solver", "streams:1000/busy:100Hz", "core_percent", "% of a core"),
     Headline("1,000 idle streams, one solver", "streams:1000/idle", "core_percent", "% of a core"),
     Headline("shared memory of a board of 4,096 knots", "board/dims:7/knots:4096", "region_bytes", "MB", 1e6),
@@ -129,9 +131,12 @@ TOPICS = [
         "`board`: bytes of the region that the solver writes",
     ], trips=["attach/"], values=[("board/dims:7/knots:4096", "region_bytes", "MB", 1e6)]),
     Topic("Files", [
-        "`replay`: CSV text to settled segments in shared memory, one thread",
+        "`replay`: CSV text, or an MCAP file with zstd of 10⁶ waypoints (`mcap`: of `record`, or JointState of rosbag2), "
+        "to settled segments in shared memory, one thread",
         "`parse`: CSV text to a table",
     ], values=[("replay/dims:7", "items_per_second", "waypoints/s", 1),
+               ("replay/mcap:recorded_stream/dims:7", "items_per_second", "waypoints/s", 1),
+               ("replay/mcap:joint_states/dims:7", "items_per_second", "waypoints/s", 1),
                ("parse/dims:7", "bytes_per_second", "MB/s", 1e6)]),
     Topic("Many streams", [
         "`streams:1000/busy:100Hz`: share of a core that one process uses to solve a thousand streams of seven "

@@ -41,8 +41,9 @@ TEST(VerificationOfParts, IsBitForBitFromEveryRestartAndEntry) {
       const Verification whole = world.verify();
       for (const auto& start : world.starts()) {
         const Verification found = world.verify_from(start);
-        ASSERT_EQ(difference_of(found), "") << name << ", seed " << seed << ", from " << start.segment
-                                   << (start.restart ? ", restart" : ", entry");
+        ASSERT_EQ(difference_of(found), "")
+            << name << ", seed " << seed << ", from " << start.segment
+            << (start.restart ? ", restart" : ", entry");
         EXPECT_EQ(found.equal + start.segment + 1, whole.equal);
         ++(start.restart ? restarts : entries);
       }
