@@ -119,7 +119,7 @@ core::Prefix KnotBoardReader::copy_row(const KnotCopy& knot, std::span<double> g
   const Word* const row =
       slot_at(knot.slot) + (layout_.rows + row_of(knot.tag) * layout_.row) / sizeof(Word);
   const auto value = [row](std::size_t i) {
-    return to_double(load(row[i], std::memory_order_relaxed));
+    return to_double(load(row[i], std::memory_order_acquire));  // for observers: as R3
   };
   for (std::size_t d = 0; d < g.size(); ++d) g[d] = value(kRowG + d);
   core::Prefix prefix{.gamma = value(kRowGamma)};
@@ -133,8 +133,7 @@ core::Prefix KnotBoardReader::copy_row(const KnotCopy& knot, std::span<double> g
 bool KnotBoardReader::observe_row(const KnotCopy& knot, Word r, std::span<double> g,
                                   core::Prefix& prefix) const noexcept {
   prefix = copy_row(knot, g);
-  // Keeps the loads of the row before those of the tags: a writer stores a new tag before the row.
-  std::atomic_thread_fence(std::memory_order_acquire);
+  // A writer stores a new tag before the row: the loads of the row are before those of the tags.
   return is_current(knot, r);
 }
 
