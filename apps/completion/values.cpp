@@ -19,7 +19,7 @@ void add(std::string_view part, ValueCompletion& out) {
   if (part == "FILE" || part == "FILE..." || part == "OUT" || part == "OUT.html" ||
       part == "PREFIX" || part == "A" || part == "B") {
     out.files = true;
-  } else if (part == "STREAM") {
+  } else if (part == "STREAM" || part == "LAW") {
     out.streams = true;
   } else if (part == "USER") {
     out.users = true;

@@ -21,7 +21,7 @@
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
 #include "ipc/options/stream.hpp"
-#include "ipc/roles/old_motion.hpp"
+#include "ipc/owned/old_motion.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/options.hpp"

@@ -114,6 +114,7 @@ class Replay {
                          .units = {},
                          .kinds = recording_.kinds(),
                          .clock = options_.clock,
+                         .law = options_.law,
                          .start = options_.start.value_or(unasked()),
                          .limits = options_.limits,
                          .capacity = options_.capacity,
@@ -135,7 +136,7 @@ class Replay {
 
   /// The default boundary condition: full stop on a live stream, else the method's own condition.
   [[nodiscard]] Condition unasked() const {
-    const bool live = options_.clock == StreamClock::monotonic;
+    const bool live = is_live(options_.clock);
     return {.kind = live ? ConditionKind::halt : ConditionKind::own, .value = {}};
   }
 
@@ -156,9 +157,8 @@ class Replay {
   }
 
   /// Time of the first waypoint on the stream's clock.
-  [[nodiscard]] Time first_time() const {
-    return options_.clock == StreamClock::monotonic ? clock_.now() + sender_.lead()
-                                                    : recording_.survey().first;
+  [[nodiscard]] Time first_time() {
+    return is_live(options_.clock) ? producer_.now() + sender_.lead() : recording_.survey().first;
   }
 
   void require_continuation(Time first) const {
@@ -220,7 +220,7 @@ class Replay {
 
 ReplayReport replay_recording(Recording& recording, const ReplayOptions& options,
                               RefusedRows& refused) {
-  if (!options.embedded && !await_solver_of_finished(options)) {
+  if (!await_law(options) || (!options.embedded && !await_solver_of_finished(options))) {
     return {.unsent = recording.survey().rows * options.loops, .interrupted = true};
   }
   const bool had_board = ipc::region_exists(options.stream, ipc::RegionKind::spline);

@@ -23,6 +23,7 @@ struct ReplayOptions {
   std::optional<Time> from{};
   std::optional<Time> duration{};
   StreamClock clock = StreamClock::monotonic;
+  std::string law{};           ///< with clock law: the time law that the stream follows
   std::optional<Time> lead{};  ///< unset: what the recording and the settle lag need
   std::optional<Condition> start{};
   std::optional<Condition> end{};

@@ -38,15 +38,26 @@ bool RowSender::pace(Time waypoint_time) {
   if (options_.clock == StreamClock::monotonic) {
     return solver_.wait_until(waypoint_time - lead_);
   }
+  if (options_.clock == StreamClock::law) return wait_for_stream_time(waypoint_time - lead_);
   if (rows_.sent() == 0) recorded_start_ = clock_.now() - waypoint_time;
   return solver_.wait_until(recorded_start_ + waypoint_time);
+}
+
+/// Waits until the law of the stream reaches a stream time; false if a stop is requested. Looks at
+/// the law again after a short time, because its rate may change.
+bool RowSender::wait_for_stream_time(Time instant) {
+  constexpr Time kLooks = std::chrono::milliseconds(5);
+  for (Time now = producer_.now(); now < instant; now = producer_.now()) {
+    if (!solver_.wait_until(clock_.now() + std::min(instant - now, kLooks))) return false;
+  }
+  return !stop_requested();
 }
 
 /// Lets the motion stop at the last waypoint, and plans its beginning before the next one. A live
 /// stream that has starved has stopped already. Returns false if a stop is requested.
 bool RowSender::stop_at_gap(const Waypoint& next) {
-  const bool is_live = options_.clock == StreamClock::monotonic;
-  if (!is_live || producer_.earliest() <= *last_time_) {
+  const bool moves = is_live(options_.clock);
+  if (!moves || producer_.earliest() <= *last_time_) {
     AppendStatus status = replace(*last_time_, {});
     while (status == AppendStatus::full) {
       if (stop_requested() || !await_room()) return false;
@@ -58,8 +69,8 @@ bool RowSender::stop_at_gap(const Waypoint& next) {
   // On a live stream the solver must get the replacement before its time settles. Otherwise an
   // entry leads from rest to the waypoint as soon as it arrives.
   constexpr Time kMargin = std::chrono::milliseconds(100);
-  const Time settles = std::max(producer_.earliest(), clock_.now() + freeze_ahead_);
-  if (!is_live || begin > settles + kMargin) entry_begin_ = begin;
+  const Time settles = std::max(producer_.earliest(), producer_.now() + freeze_ahead_);
+  if (!moves || begin > settles + kMargin) entry_begin_ = begin;
   return true;
 }
 
@@ -108,8 +119,8 @@ AppendStatus RowSender::append_when_there_is_room(Waypoint& waypoint) {
 /// time, 0 if the waypoint is later. With `--late shift`, moves a late waypoint to `lead` after
 /// now.
 Time RowSender::shift_if_late(Waypoint& waypoint) {
-  if (options_.clock != StreamClock::monotonic) return {};
-  const Time now = clock_.now();
+  if (!is_live(options_.clock)) return {};
+  const Time now = producer_.now();
   const Time settled = std::max(producer_.earliest(), now + freeze_ahead_);
   const Time lateness = std::max(settled - waypoint.time, Time::zero());
   if (lateness > Time::zero() && options_.late == LatePolicy::shift) {

@@ -43,6 +43,7 @@ class RowSender {
 
  private:
   bool pace(Time waypoint_time);
+  bool wait_for_stream_time(Time instant);
   bool stop_at_gap(const Waypoint& next);
   [[nodiscard]] Time entry_begin(const Waypoint& next) const;
   void note_last(const Waypoint& waypoint);

@@ -6,13 +6,28 @@
 
 #include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
+#include "ipc/law/follower.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/owner_lock.hpp"
-#include "ipc/roles/old_motion.hpp"
+#include "ipc/memory/names.hpp"
+#include "ipc/owned/old_motion.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
 
 namespace splinecast::apps {
+namespace {
+
+/// Whether a solver has begun a time law.
+bool has_begun(const std::string& law, const Trust& trust) {
+  try {
+    ipc::LawPoint point;
+    return has_values(ipc::LawFollower(law, trust).at(MonotonicClock().now(), point));
+  } catch (const NoSuchStream&) {
+    return false;
+  }
+}
+
+}  // namespace
 
 void throw_no_solver(const ReplayOptions& options) {
   if (ipc::region_exists(options.stream, ipc::RegionKind::spline)) {
@@ -28,6 +43,23 @@ bool await_solver_of_finished(const ReplayOptions& options) {
   const Time end = deadline(clock, options.wait);
   while (!ipc::is_owned(options.stream, ipc::RegionKind::spline)) {
     if (clock.now() >= end) throw_no_solver(options);
+    if (!sleep_until(clock.now() + std::chrono::milliseconds(2))) return false;
+  }
+  return true;
+}
+
+bool await_law(const ReplayOptions& options) {
+  if (options.law.empty()) return true;
+  ipc::require_stream_name(options.law);
+  const MonotonicClock clock;
+  const Time end = deadline(clock, options.wait);
+  while (!has_begun(options.law, options.trust)) {
+    if (clock.now() >= end) {
+      throw TimeOut(
+          fmt::format("time law '{0}' has not begun within {1} s: run 'splinecast solve "
+                      "{0}' and 'splinecast rate {0} 1'",
+                      options.law, to_seconds(options.wait)));
+    }
     if (!sleep_until(clock.now() + std::chrono::milliseconds(2))) return false;
   }
   return true;

@@ -14,6 +14,11 @@ namespace splinecast::apps {
 /// Throws as throw_no_solver does.
 [[nodiscard]] bool await_solver_of_finished(const ReplayOptions& options);
 
+/// Waits until the time law that the stream is to follow, if any, has begun. Returns false if a
+/// stop is requested. Throws TimeOut after --wait; BadRegion if the stream of that name is not a
+/// law.
+[[nodiscard]] bool await_law(const ReplayOptions& options);
+
 /// How long the old motion of a recreated stream with this id still lasts. No solver attaches to
 /// the stream before this motion has ended. Unless `quiet`, reports the time on standard error.
 [[nodiscard]] Time rest_of_old_motion(const ReplayOptions& options, std::uint64_t stream_id);

@@ -154,6 +154,13 @@ void add_clock(Command& verb, ReplayOptions& options) {
       "time stamps");
 }
 
+void add_law(Command& verb, ReplayOptions& options) {
+  verb.option("--law", options.law,
+              "Time law that the stream follows: the times of its waypoints are the law's stream "
+              "time")
+      .type("LAW");
+}
+
 void add_playback_options(Command& verb, ReplayOptions& options) {
   add_rate(verb, options);
   add_count(verb, "--loop", options.loops,
@@ -163,6 +170,7 @@ void add_playback_options(Command& verb, ReplayOptions& options) {
   add_seconds(verb, "--duration", options.duration,
               "Length in s of the part of the recording to play, from 0 (default: to the end)");
   add_clock(verb, options);
+  add_law(verb, options);
   verb.option(
           "--lead",
           [&options](const std::string& text) {
@@ -283,8 +291,10 @@ void require_agreeing(const ReplayOptions& options) {
     throw UsageError("--method, --lambda, --time-scale, --settle, --tail, --force-lag",
                      "go with --embedded only; without it they are options of 'solve'");
   }
-  const bool is_live = options.clock == StreamClock::monotonic;
-  if (is_live && options.end && !is_at_rest(options.end->kind)) {
+  if (!options.law.empty() && !is_live(options.clock)) {
+    throw UsageError("--law", "goes with --clock live only");
+  }
+  if (is_live(options.clock) && options.end && !is_at_rest(options.end->kind)) {
     throw UsageError("--end", "a live stream ends at rest: clamped or halt");
   }
 }
@@ -320,6 +330,7 @@ void add_replay(Command& verb, Action& action) {
     }
     require_agreeing(*options);
     options->quiet = options->table.quiet;
+    if (!options->law.empty()) options->clock = StreamClock::law;
     options->solver.access = options->access;
     options->solver.trust = options->trust;
     action = [options] { return run_replay(*options); };

@@ -12,7 +12,7 @@ using nlohmann::ordered_json;
 
 StreamLog::StreamLog(const std::string& stream, std::uint64_t stream_id, const Trust& trust)
     : board_(stream, stream_id, trust),
-      settled_(board_.reader(), ipc::stream_clock(board_.header()) == StreamClock::monotonic),
+      settled_(board_.reader(), is_live(ipc::stream_clock(board_.header()))),
       items_(board_.reader().dimensions()) {}
 
 ipc::Verification StreamLog::verify(const Condition& end) {

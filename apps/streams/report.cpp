@@ -23,6 +23,7 @@ namespace {
 using nlohmann::ordered_json;
 
 std::string clock_name(const ipc::RegionHeader& header) {
+  if (ipc::stream_clock(header) == StreamClock::law) return "law";
   return ipc::stream_clock(header) == StreamClock::monotonic ? "live" : "recorded";
 }
 
@@ -36,7 +37,7 @@ ordered_json kinds_json(const ipc::RegionHeader& header) {
 
 /// The fields that both headers have; from the producer's header if it exists.
 ordered_json stream_json(const ipc::RegionHeader& header) {
-  return {
+  ordered_json json = {
       {"stream_id", std::to_string(header.stream_id)},  // 64 bits do not fit into a JSON number
       {"dimensions", header.dimensions},
       {"names", ipc::dimension_names(header)},
@@ -46,6 +47,14 @@ ordered_json stream_json(const ipc::RegionHeader& header) {
       {"min_interval_ns", header.min_interval},
       {"max_interval_ns", header.max_interval},
   };
+  if (header.is_law != 0) {
+    json["time_law"] = {{"origin_ns", header.law_origin}, {"largest_rate", header.largest_rate}};
+  }
+  if (header.law_id != 0) {
+    json["law"] = ipc::text_of(header.law);
+    json["law_id"] = std::to_string(header.law_id);
+  }
+  return json;
 }
 
 ordered_json producer_json(const ipc::StreamInfo& info) {

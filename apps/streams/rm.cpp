@@ -10,7 +10,7 @@
 #include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
 #include "ipc/mapping/owner_lock.hpp"
-#include "ipc/roles/old_motion.hpp"
+#include "ipc/owned/old_motion.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/streams.hpp"
 

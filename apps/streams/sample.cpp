@@ -61,7 +61,7 @@ class Sampling {
     if (!options_.at.empty()) {
       return std::ranges::all_of(times_, [this](Time t) { return write(t); });
     }
-    return reader_.clock() == StreamClock::monotonic ? follow_live() : step_through_recording();
+    return is_live(reader_.clock()) ? follow_live() : step_through_recording();
   }
 
   static void fill_with_nan(State& state) {
@@ -143,7 +143,7 @@ class Sampling {
   }
 
   [[nodiscard]] bool is_final(SampleStatus status) const {
-    if (reader_.clock() == StreamClock::monotonic) return true;
+    if (is_live(reader_.clock())) return true;
     if (status == SampleStatus::settled || status == SampleStatus::before_history) {
       return true;
     }

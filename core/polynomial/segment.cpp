@@ -12,11 +12,13 @@ namespace splinecast::core {
 namespace {
 
 /// Horner's rule for a polynomial and its first three derivatives at once. `Order` is an int, or an
-/// integral_constant, for which the loop over powers is unrolled.
-template <typename Order>
+/// integral_constant, for which the loop over powers is unrolled. `finish(velocity, acceleration,
+/// jerk)` changes the lanes before they are stored.
+template <typename Order, typename Finish>
 [[gnu::always_inline]] inline void evaluate_order(Order order, std::size_t dimensions,
                                                   const double* coefficients, double u,
-                                                  const StateRef& out) noexcept {
+                                                  const StateRef& out,
+                                                  const Finish& finish) noexcept {
   const int top = order - 1;
   double* const position_out = out.position.data();
   double* const velocity_out = out.velocity.data();
@@ -39,11 +41,27 @@ template <typename Order>
       if (power >= 2) acceleration = acceleration * u + factor(power * (power - 1)) * c;
       if (power >= 3) jerk = jerk * u + factor(power * (power - 1) * (power - 2)) * c;
     }
+    finish(velocity, acceleration, jerk);
     store_lane(position_out + first, position);
     store_lane(velocity_out + first, velocity);
     store_lane(acceleration_out + first, acceleration);
     store_lane(jerk_out + first, jerk);
   });
+}
+
+template <typename Finish>
+[[gnu::always_inline]] inline void evaluate_any(int order, const double* coefficients, double u,
+                                                const StateRef& out,
+                                                const Finish& finish) noexcept {
+  const std::size_t dimensions = out.position.size();
+  const double* const c = coefficients;
+  if (order == kCubicOrder) {
+    evaluate_order(std::integral_constant<int, kCubicOrder>{}, dimensions, c, u, out, finish);
+  } else if (order == kMaxOrder) {
+    evaluate_order(std::integral_constant<int, kMaxOrder>{}, dimensions, c, u, out, finish);
+  } else {
+    evaluate_order(order, dimensions, c, u, out, finish);
+  }
 }
 
 /// The row of coefficients of one power.
@@ -95,15 +113,18 @@ void write_quintic(const Interval& i, Segment& out) noexcept {
 SPLINECAST_VECTOR_CLONES
 void evaluate(int order, std::span<const double> coefficients, double u,
               const StateRef& out) noexcept {
-  const std::size_t dimensions = out.position.size();
-  const double* const c = coefficients.data();
-  if (order == kCubicOrder) {
-    evaluate_order(std::integral_constant<int, kCubicOrder>{}, dimensions, c, u, out);
-  } else if (order == kMaxOrder) {
-    evaluate_order(std::integral_constant<int, kMaxOrder>{}, dimensions, c, u, out);
-  } else {
-    evaluate_order(order, dimensions, c, u, out);
-  }
+  evaluate_any(order, coefficients.data(), u, out, [](auto&, auto&, auto&) {});
+}
+
+SPLINECAST_VECTOR_CLONES
+void evaluate(int order, std::span<const double> coefficients, double u, const LawRates& law,
+              const StateRef& out) noexcept {
+  const ChainRule rule(law);
+  evaluate_any(
+      order, coefficients.data(), u,
+      out, [&](auto& velocity, auto& acceleration, auto& jerk) __attribute__((always_inline)) {
+        rule.apply(velocity, acceleration, jerk);
+      });
 }
 
 void evaluate_derivative(int order, std::span<const double> coefficients, double u, int derivative,

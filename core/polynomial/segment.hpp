@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "core/polynomial/chain_rule.hpp"
 #include "splinecast/piecewise_polynomial.hpp"
 #include "splinecast/state.hpp"
 #include "splinecast/time.hpp"
@@ -37,6 +39,36 @@ struct Segment {
 /// arguments only. O(order·D). Never throws or allocates; safe from any thread.
 void evaluate(int order, std::span<const double> coefficients, double u,
               const StateRef& out) noexcept;
+
+/// The same by host time, at the instant at which a time law has these rates: `evaluate`, then
+/// ChainRule. Bits as if these were called one after the other.
+void evaluate(int order, std::span<const double> coefficients, double u, const LawRates& law,
+              const StateRef& out) noexcept;
+
+/// Value and first three derivatives of a polynomial of order kMaxOrder of one dimension, with the
+/// operations, and so the bits, of `evaluate`.
+[[nodiscard]] inline std::array<double, 4> evaluate_one(const double* coefficients,
+                                                        double u) noexcept {
+  const double* const c = coefficients;
+  double position = c[5];
+  double velocity = 5 * c[5];
+  double acceleration = 20 * c[5];
+  double jerk = 60 * c[5];
+  position = position * u + c[4];
+  velocity = velocity * u + 4 * c[4];
+  acceleration = acceleration * u + 12 * c[4];
+  jerk = jerk * u + 24 * c[4];
+  position = position * u + c[3];
+  velocity = velocity * u + 3 * c[3];
+  acceleration = acceleration * u + 6 * c[3];
+  jerk = jerk * u + 6 * c[3];
+  position = position * u + c[2];
+  velocity = velocity * u + 2 * c[2];
+  acceleration = acceleration * u + 2 * c[2];
+  position = position * u + c[1];
+  velocity = velocity * u + c[1];
+  return {position * u + c[0], velocity, acceleration, jerk};
+}
 
 /// Evaluates the derivative-th derivative (≥ 0; 0 is the position) at u seconds after the left
 /// knot, with the operations, and so the bits, of `evaluate`. `out` takes D values. O(order·D).

@@ -14,6 +14,7 @@ namespace splinecast::ipc {
 
 inline constexpr int kConditionKinds = SPLINECAST_OWN + 1;
 inline constexpr int kTails = SPLINECAST_TAIL_CLAMPED + 1;
+inline constexpr int kClocks = SPLINECAST_CLOCK_LAW + 1;
 inline constexpr int kWaitStatuses = SPLINECAST_WAIT_RETIRED + 1;
 
 static_assert(SPLINECAST_APPEND_FINISHED + 1 == kAppendStatuses);
@@ -72,6 +73,7 @@ static_assert(SPLINECAST_TAIL_NATURAL == static_cast<int>(Tail::natural));
 static_assert(SPLINECAST_TAIL_CLAMPED == static_cast<int>(Tail::clamped));
 
 static_assert(SPLINECAST_CLOCK_RECORDED == static_cast<int>(StreamClock::recorded));
+static_assert(SPLINECAST_CLOCK_LAW == static_cast<int>(StreamClock::law));
 static_assert(SPLINECAST_CLOCK_MONOTONIC == static_cast<int>(StreamClock::monotonic));
 
 static_assert(SPLINECAST_QUATERNION_WXYZ + 1 == kDimensionKinds);

@@ -1,6 +1,7 @@
 #include "ipc/arguments/options.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <vector>
@@ -48,14 +49,6 @@ std::optional<std::uint32_t> identity(std::int64_t number, const char* name) {
     refuse(name, "is " + std::to_string(number) + ", not -1 or a number of a user or group");
   }
   return static_cast<std::uint32_t>(number);
-}
-
-RegionAccess access(std::uint32_t mode, std::int64_t group) {
-  constexpr std::uint32_t kPermissions = 0777;
-  if (mode > kPermissions) {
-    refuse("options->mode", "is " + std::to_string(mode) + " (decimal), more than 0777");
-  }
-  return {.mode = mode, .group = identity(group, "options->group")};
 }
 
 const Method* method(const char* name) {
@@ -137,6 +130,14 @@ std::vector<NamedLimits> named_limits(const splinecast_solver_options& given) {
 
 }  // namespace
 
+RegionAccess access_of(std::uint32_t mode, std::int64_t group) {
+  constexpr std::uint32_t kPermissions = 0777;
+  if (mode > kPermissions) {
+    refuse("options->mode", "is " + std::to_string(mode) + " (decimal), more than 0777");
+  }
+  return {.mode = mode, .group = identity(group, "options->group")};
+}
+
 Trust trust_of(std::int64_t owner, const char* name) { return {.owner = identity(owner, name)}; }
 
 Condition condition(const splinecast_condition& given, std::size_t dimensions, const char* name) {
@@ -148,26 +149,29 @@ Condition condition(const splinecast_condition& given, std::size_t dimensions, c
 }
 
 ProducerOptions producer_options(const splinecast_producer_options* given) {
-  const auto all = read_optional(given, SPLINECAST_PRODUCER_OPTIONS_INIT, "options");
+  const auto all = read_optional(given, SPLINECAST_PRODUCER_OPTIONS_INIT, "options",
+                                 offsetof(splinecast_producer_options, law));
   if (all.dimensions < kMinDimensions || all.dimensions > kMaxDimensions) {
     refuse("options->dimensions", "is " + std::to_string(all.dimensions) + ", not 1 to 64");
   }
-  const int clock = require_choice(all.clock, 2, "options->clock");
+  const int clock = require_choice(all.clock, kClocks, "options->clock");
   return {
       .dimensions = all.dimensions,
       .names = texts(all.names, all.name_count, all.dimensions, "options->names"),
       .units = texts(all.units, all.unit_count, all.dimensions, "options->units"),
       .kinds = kinds(all),
       .clock = static_cast<StreamClock>(clock),
+      .law = all.law == nullptr ? "" : std::string(require_text(all.law, "options->law")),
       .start = condition(all.start, all.dimensions, "options->start"),
       .limits = {.min_interval = Time(all.min_interval), .max_interval = Time(all.max_interval)},
       .capacity = all.capacity,
-      .access = access(all.mode, all.group),
+      .access = access_of(all.mode, all.group),
       .trust = trust_of(all.owner, "options->owner")};
 }
 
 SolverOptions solver_options(const splinecast_solver_options* given) {
-  const auto all = read_optional(given, SPLINECAST_SOLVER_OPTIONS_INIT, "options");
+  const auto all = read_optional(given, SPLINECAST_SOLVER_OPTIONS_INIT, "options",
+                                 offsetof(splinecast_solver_options, largest_rate));
   if (all.reserved != 0) refuse("options->reserved", "is not 0");
   return {.method = method(all.method),
           .lambda = number(all.lambda, "options->lambda"),
@@ -182,9 +186,10 @@ SolverOptions solver_options(const splinecast_solver_options* given) {
           .freeze_ahead = time(all.freeze_ahead, "options->freeze_ahead"),
           .history = time(all.history, "options->history"),
           .min_entry = time(all.min_entry, "options->min_entry"),
+          .largest_rate = number(all.largest_rate, "options->largest_rate"),
           .capacity = size(all.capacity, "options->capacity"),
           .wake = require_flag(all.wake, "options->wake"),
-          .access = access(all.mode, all.group),
+          .access = access_of(all.mode, all.group),
           .trust = trust_of(all.owner, "options->owner")};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "ipc/c/splinecast.h"
 #include "splinecast/boundary_condition.hpp"
@@ -16,6 +17,9 @@ namespace splinecast::ipc {
 [[nodiscard]] FitOptions fit_options(const splinecast_fit_options* given, std::size_t dimensions);
 [[nodiscard]] Condition condition(const splinecast_condition& given, std::size_t dimensions,
                                   const char* name);
+
+/// Permission bits up to 0777, and −1 or the number of a group.
+[[nodiscard]] RegionAccess access_of(std::uint32_t mode, std::int64_t group);
 
 /// −1 or the number of a user: regions of that user are used too.
 [[nodiscard]] Trust trust_of(std::int64_t owner, const char* name);

@@ -46,8 +46,8 @@ template <typename Struct>
 /// The same; null: the defaults.
 template <typename Struct>
 [[nodiscard]] Struct read_optional(const Struct* given, const Struct& defaults,
-                                   std::string_view name) {
-  return given == nullptr ? defaults : read_struct(given, defaults, name);
+                                   std::string_view name, std::size_t first = sizeof(Struct)) {
+  return given == nullptr ? defaults : read_struct(given, defaults, name, first);
 }
 
 /// Writes the members that the program's version of the struct has; `size` stays as it is.

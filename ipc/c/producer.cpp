@@ -130,6 +130,13 @@ int splinecast_producer_earliest(splinecast_producer* producer, int64_t* time) {
   });
 }
 
+int splinecast_producer_now(splinecast_producer* producer, int64_t* time) {
+  return with(producer, [&](splinecast_producer& own) {
+    *require_pointer(time, "time") = own.producer.now().count();
+    return 0;
+  });
+}
+
 int splinecast_producer_last_time(splinecast_producer* producer, int64_t* time) {
   return with(producer, [&](splinecast_producer& own) {
     *require_pointer(time, "time") = own.producer.last_time().count();

@@ -106,6 +106,15 @@ int splinecast_reader_preview(splinecast_reader* reader, int64_t t, const spline
   return sample_at(reader, t, out, &Reader::preview);
 }
 
+int splinecast_reader_rate(splinecast_reader* reader, splinecast_law_rate* out) {
+  return with(reader, [&](splinecast_reader& own) {
+    const LawRate rate = own.reader.rate();
+    *require_pointer(out, "out") = {
+        .stream_time = rate.stream_time.count(), .rate = rate.rate, .slope = rate.slope};
+    return 0;
+  });
+}
+
 int splinecast_reader_settled_until(splinecast_reader* reader, int64_t* time) {
   return with(reader, [&](splinecast_reader& own) {
     *require_pointer(time, "time") = own.reader.settled_until().count();

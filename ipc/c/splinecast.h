@@ -32,8 +32,9 @@
 /// so. An array must have exactly the number of values that the function needs. Every violation
 /// is SPLINECAST_ERROR_ARGUMENT. Texts end with a zero byte and have at most 4,095 bytes before it.
 ///
-/// Times are int64_t nanoseconds: of CLOCK_MONOTONIC on a live stream. A time-out of 0 or less does
-/// not wait.
+/// Times are int64_t nanoseconds: of CLOCK_MONOTONIC on a live stream. On a stream that follows a
+/// time law they are its stream time, except those of splinecast_reader_sample, preview and
+/// sample_many. A time-out of 0 or less does not wait.
 ///
 /// Structs whose first member is `size` may grow in later versions. Initialize one with its macro
 /// SPLINECAST_…_INIT, which sets `size` and the defaults. The library sets what an older, smaller
@@ -247,8 +248,9 @@ typedef enum splinecast_tail {
 
 /// The clock of a stream's times.
 typedef enum splinecast_clock {
-  SPLINECAST_CLOCK_RECORDED,  ///< time stamps of a recording
-  SPLINECAST_CLOCK_MONOTONIC  ///< a live stream: CLOCK_MONOTONIC of this host
+  SPLINECAST_CLOCK_RECORDED,   ///< time stamps of a recording
+  SPLINECAST_CLOCK_MONOTONIC,  ///< a live stream: CLOCK_MONOTONIC of this host
+  SPLINECAST_CLOCK_LAW  ///< a live stream: the stream time of its law; readers give host time
 } splinecast_clock;
 
 /// What the values of a dimension are.
@@ -405,13 +407,14 @@ typedef struct splinecast_producer_options {
   uint32_t mode;         ///< permission bits of the regions, up to 0777
   int64_t group;         ///< group of the regions; −1: this process's
   int64_t owner;         ///< also trust regions of this user; −1: own user and root only
+  const char* law;       ///< time law that the stream follows, with SPLINECAST_CLOCK_LAW; or NULL
 } splinecast_producer_options;
 /// One dimension, a live stream from a full stop, intervals of 1 µs to 1 h, 1,024 items.
 #define SPLINECAST_PRODUCER_OPTIONS_INIT                                             \
   {                                                                                  \
     sizeof(splinecast_producer_options), 1, NULL, 0, NULL, 0, NULL, 0,               \
         {SPLINECAST_HALT, SPLINECAST_NO_VECTOR}, 1000, INT64_C(3600000000000), 1024, \
-        SPLINECAST_CLOCK_MONOTONIC, 0600, -1, -1                                     \
+        SPLINECAST_CLOCK_MONOTONIC, 0600, -1, -1, NULL                               \
   }
 
 /// What a replacement would do. The caller sets the six outputs: largest magnitudes of velocity
@@ -509,6 +512,10 @@ SPLINECAST_API int splinecast_producer_solver_alive(splinecast_producer* produce
 /// live stream last published; else INT64_MIN.
 SPLINECAST_API int splinecast_producer_earliest(splinecast_producer* producer, int64_t* time);
 
+/// The time of the stream's clock: CLOCK_MONOTONIC; the stream time of the law that the stream
+/// follows; 0 of a recorded stream.
+SPLINECAST_API int splinecast_producer_now(splinecast_producer* producer, int64_t* time);
+
 /// Time of the newest item, of this or an earlier producer; 0 if there is none.
 SPLINECAST_API int splinecast_producer_last_time(splinecast_producer* producer, int64_t* time);
 
@@ -558,12 +565,13 @@ typedef struct splinecast_solver_options {
   int64_t group;  ///< group of the regions; −1: this process's
   int64_t owner;  ///< also trust regions of this user; −1: own user and root only
   uint32_t mode;  ///< permission bits of the regions, up to 0777; default 0600
-  uint32_t reserved;  ///< 0
+  uint32_t reserved;    ///< 0
+  double largest_rate;  ///< of a time law: above 0, at most 100; default 1
 } splinecast_solver_options;
 #define SPLINECAST_SOLVER_OPTIONS_INIT                                                          \
   {                                                                                             \
     sizeof(splinecast_solver_options), NULL, -1, -1, -1, -1, -1, -1, -1, -1, NULL, NULL, 0, -1, \
-        -1, 0, 1, -1, -1, 0600, 0                                                               \
+        -1, 0, 1, -1, -1, 0600, 0, -1                                                           \
   }
 
 /// What one step did.
@@ -651,6 +659,13 @@ typedef struct splinecast_progress {
 #define SPLINECAST_PROGRESS_INIT \
   { sizeof(splinecast_progress), 0, 0, 0, 0, 0, 0, 0 }
 
+/// The time law of a stream at one instant of host time.
+typedef struct splinecast_law_rate {
+  int64_t stream_time;  ///< rounded down
+  double rate;          ///< stream time per host time
+  double slope;         ///< change of the rate [1/s]
+} splinecast_law_rate;
+
 /// One segment: a polynomial in u = t − left seconds. A view into the object that it comes from.
 typedef struct splinecast_segment {
   size_t size;
@@ -683,7 +698,8 @@ SPLINECAST_API int splinecast_reader_dimensions(splinecast_reader* reader);
 /// Evaluates the curve at `t` into `out`. Returns a splinecast_sample_status; one without values
 /// leaves `out` unchanged. Wait-free: no system call, no allocation. O(D) when time advances,
 /// O(log n + D) after a jump. On a live stream a sample counts as executed: see
-/// SPLINECAST_SAMPLE_REVISED. preview, for a time ahead, does not.
+/// SPLINECAST_SAMPLE_REVISED. preview, for a time ahead, does not. On a stream that follows a time
+/// law, `t` is host time, and the derivatives are those by host time; also in sample_many.
 SPLINECAST_API int splinecast_reader_sample(splinecast_reader* reader, int64_t t,
                                             const splinecast_state* out);
 SPLINECAST_API int splinecast_reader_preview(splinecast_reader* reader, int64_t t,
@@ -699,6 +715,10 @@ SPLINECAST_API int splinecast_reader_sample_many(splinecast_reader* reader,
                                                  const splinecast_output_matrix* values,
                                                  uint8_t* statuses, size_t status_count,
                                                  uint64_t* revision);
+
+/// The rate of the law that the stream follows, and its stream time, as the last sample or preview
+/// saw them. Of a stream without a law: rate 1, stream time 0.
+SPLINECAST_API int splinecast_reader_rate(splinecast_reader* reader, splinecast_law_rate* out);
 
 /// The settled time of the curve that the last sample used; before the first one, the earliest time
 /// that a curve can have.
@@ -764,6 +784,52 @@ SPLINECAST_API int splinecast_snapshot_settled_until(splinecast_snapshot* snapsh
 /// Segment i, oldest first. Valid until the snapshot is written again or destroyed. O(1).
 SPLINECAST_API int splinecast_snapshot_segment(splinecast_snapshot* snapshot, size_t i,
                                                splinecast_segment* out);
+
+// -------------------------------------------------------------------------------- rate commander
+
+/// Requests the rate of a time law. A law maps host time to the stream time of all streams that
+/// follow it; its rate is stream time per host time, the least that its commanders request. Its
+/// solver creates the law when the first commander appears. When a commander ends, its last request
+/// remains in force until a commander of the same name makes another one, or until its dead man
+/// expires.
+typedef struct splinecast_rate_commander splinecast_rate_commander;
+
+/// Access to the commander's files.
+typedef struct splinecast_rate_commander_options {
+  size_t size;
+  int64_t group;      ///< group of the regions; −1: this process's
+  int64_t owner;      ///< also trust regions of this user; −1: own user and root only
+  uint32_t mode;      ///< permission bits of the regions, up to 0777
+  uint32_t reserved;  ///< 0
+} splinecast_rate_commander_options;
+#define SPLINECAST_RATE_COMMANDER_OPTIONS_INIT \
+  { sizeof(splinecast_rate_commander_options), -1, -1, 0600, 0 }
+
+/// Becomes the commander of this name; it requests nothing until its first call, unless an earlier
+/// commander of that name did. BUSY if the law has a living commander of that name. `options` NULL:
+/// the defaults. Writes the handle to `out`; NULL after an error. System calls; allocates.
+SPLINECAST_API int splinecast_rate_commander_create(
+    const char* law, const char* commander, const splinecast_rate_commander_options* options,
+    splinecast_rate_commander** out);
+
+/// Destroys a handle; its last request remains in force. NULL has no effect. System calls.
+SPLINECAST_API int splinecast_rate_commander_destroy(splinecast_rate_commander* commander);
+
+/// Requests a rate of 0 to 100, reached by a ramp of this length: 1 ms to 1 h. A request above the
+/// law's largest rate counts as the largest. hold requests rate 0. release withdraws the request:
+/// the law has the least of the others, or 1 if there is none. One system call.
+SPLINECAST_API int splinecast_rate_commander_set_rate(splinecast_rate_commander* commander,
+                                                      double rate, int64_t ramp);
+SPLINECAST_API int splinecast_rate_commander_hold(splinecast_rate_commander* commander,
+                                                  int64_t ramp);
+SPLINECAST_API int splinecast_rate_commander_release(splinecast_rate_commander* commander,
+                                                     int64_t ramp);
+
+/// From the next request on, the law holds if this commander does not repeat its request within
+/// `timeout`: 1 ms to 1 h, or 0: never. renew repeats the last request; one system call.
+SPLINECAST_API int splinecast_rate_commander_set_dead_man(splinecast_rate_commander* commander,
+                                                          int64_t timeout);
+SPLINECAST_API int splinecast_rate_commander_renew(splinecast_rate_commander* commander);
 
 // ------------------------------------------------------------------------------------- batch fit
 

@@ -14,6 +14,7 @@
 #include "ipc/layout/separation.hpp"
 #include "ipc/memory/names.hpp"
 #include "splinecast/boundary_condition.hpp"
+#include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/method.hpp"
 
@@ -67,6 +68,18 @@ void require_this_layout(const RegionHeader& header) {
                   "and remove its regions with `splinecast rm`");
 }
 
+/// Checks the name of the law that a stream follows.
+void require_law(const RegionHeader& header) {
+  require_range("time law", header.is_law, 0, 1);
+  if (header.is_law != 0 && !(header.largest_rate > 0 && header.largest_rate <= kLargestRate)) {
+    throw BadRegion("region has largest rate " + std::to_string(header.largest_rate));
+  }
+  const bool follows = header.clock == static_cast<std::uint64_t>(StreamClock::law);
+  if (follows == (header.law_id != 0) && follows == is_stream_name(text_of(header.law))) return;
+  throw BadRegion("region has clock " + std::to_string(header.clock) + ", but a law named '" +
+                  printable(text_of(header.law)) + "' with id " + std::to_string(header.law_id));
+}
+
 /// Checks the values that both kinds of region have.
 void require_common(const RegionHeader& header, RegionKind kind, std::size_t real_bytes,
                     std::size_t max_capacity) {
@@ -86,7 +99,8 @@ void require_common(const RegionHeader& header, RegionKind kind, std::size_t rea
                 kHeaderBytes + (kControlPositions - 1) * kSeparation);
   require(header.control % kSeparation == 0, "control offset", header.control,
           round_up(header.control, kSeparation));
-  require_range("clock", header.clock, 0, 1);
+  require_range("clock", header.clock, 0, static_cast<std::uint64_t>(StreamClock::law));
+  require_law(header);
   require_range("start condition", header.start_kind, 0,
                 static_cast<std::uint64_t>(ConditionKind::own));
   if (!is_online(static_cast<ConditionKind>(header.start_kind))) {

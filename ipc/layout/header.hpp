@@ -17,6 +17,10 @@ namespace splinecast::ipc {
 
 inline constexpr std::size_t kNameBytes = 32;
 inline constexpr std::size_t kUnitBytes = 16;
+inline constexpr std::size_t kLawNameBytes = 136;
+
+/// Upper bound of the largest rate of a time law.
+inline constexpr double kLargestRate = 100;
 
 /// The first words of both regions, as kHeaderRows places them.
 struct RegionHeader {
@@ -48,11 +52,16 @@ struct RegionHeader {
   std::int64_t freeze_ahead = 0;  ///< ns that a live stream settles ahead of now
   std::int64_t history = 0;       ///< ns before now that a live stream keeps
   std::int64_t min_entry = 0;     ///< ns: least length of an entry
+  std::uint64_t is_law = 0;       ///< 1: the stream is a time law
+  std::int64_t law_origin = 0;    ///< of a law: stream time in ns at its value 0
+  double largest_rate = 0;        ///< of a law: it never exceeds this rate
+  std::uint64_t law_id = 0;       ///< stream id of the law that the stream follows; 0: none
   std::array<double, kMaxDimensions> start_value{};
   std::array<std::uint64_t, kMaxDimensions> dimension_kind{};  ///< DimensionKind
   std::array<double, kMaxDimensions> period{};                 ///< of `periodic`; else 0
   std::array<std::array<char, kNameBytes>, kMaxDimensions> name{};
   std::array<std::array<char, kUnitBytes>, kMaxDimensions> unit{};
+  std::array<char, kLawNameBytes> law{};              ///< name of the law that the stream follows
   std::array<double, kMaxDimensions> max_velocity{};  ///< 0: no limit, as in the next two
   std::array<double, kMaxDimensions> max_acceleration{};
   std::array<double, kMaxDimensions> max_jerk{};
@@ -64,7 +73,7 @@ struct RegionHeader {
 inline constexpr std::tuple kHeaderRows{
     MemberRow<&RegionHeader::magic>{"magic", FieldWriter::maker, "the characters `SPLNCAST`"},
     MemberRow<&RegionHeader::mark>{"layout version, byte order", FieldWriter::maker,
-                                   "32 bits each: 5 and `0x01020304`"},
+                                   "32 bits each: 6 and `0x01020304`"},
     MemberRow<&RegionHeader::layout_hash>{
         "layout hash", FieldWriter::maker,
         "64-bit FNV-1a of all names, offsets, sizes and writers on this page"},
@@ -79,7 +88,8 @@ inline constexpr std::tuple kHeaderRows{
         "capacity", FieldWriter::maker,
         "number of ring items, or of slots of numbered knots; a power of two"},
     MemberRow<&RegionHeader::clock>{"clock", FieldWriter::maker,
-                                    "0 recorded stream, 1 live stream (CLOCK_MONOTONIC)"},
+                                    "0 recorded stream, 1 live stream (CLOCK_MONOTONIC),\n"
+                                    "2 live stream that follows a time law"},
     MemberRow<&RegionHeader::time_namespace>{"time namespace", FieldWriter::maker,
                                              "of a live stream: inode of `/proc/self/ns/time`"},
     MemberRow<&RegionHeader::control>{"control offset", FieldWriter::maker,
@@ -126,7 +136,15 @@ inline constexpr std::tuple kHeaderRows{
         "ns: a live stream keeps segments that ended less than this ago"},
     MemberRow<&RegionHeader::min_entry>{"least entry length", FieldWriter::maker,
                                         "ns: length of the shortest entry of a live stream"},
-    padding(4),
+    MemberRow<&RegionHeader::is_law>{"time law", FieldWriter::maker,
+                                     "1: the stream is a time law: its value is stream time in s\n"
+                                     "in both regions, as all fields up to the law's name"},
+    MemberRow<&RegionHeader::law_origin>{"law's origin", FieldWriter::maker,
+                                         "of a time law: stream time in ns at its value 0"},
+    MemberRow<&RegionHeader::largest_rate>{"largest rate", FieldWriter::maker,
+                                           "double, of a time law, which never exceeds it"},
+    MemberRow<&RegionHeader::law_id>{"law's id", FieldWriter::maker,
+                                     "stream id of the law that the stream follows; 0: none"},
     MemberRow<&RegionHeader::start_value>{
         "start value", FieldWriter::maker,
         "a double per dimension: velocity or acceleration of the start condition"},
@@ -141,6 +159,8 @@ inline constexpr std::tuple kHeaderRows{
                                    "32 bytes per dimension: text, zero-terminated"},
     MemberRow<&RegionHeader::unit>{"unit", FieldWriter::maker,
                                    "16 bytes per dimension: text, zero-terminated"},
+    MemberRow<&RegionHeader::law>{"law", FieldWriter::maker,
+                                  "136 bytes: name of the law that the stream follows"},
     MemberRow<&RegionHeader::max_velocity>{"velocity limit", FieldWriter::maker,
                                            "a double per dimension, 0: no limit\n"
                                            "in a spline region only, as all fields below"},

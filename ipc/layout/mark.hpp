@@ -9,7 +9,7 @@
 namespace splinecast::ipc {
 
 inline constexpr std::uint64_t kMagic = 0x54534143'4e4c5053;  // "SPLNCAST" in memory order
-inline constexpr std::uint32_t kLayoutVersion = 5;
+inline constexpr std::uint32_t kLayoutVersion = 6;
 inline constexpr std::uint32_t kByteOrder = 0x01020304;
 
 /// The two numbers of the header's second word. All layout versions have them at this place, so

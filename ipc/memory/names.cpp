@@ -18,6 +18,7 @@ namespace {
 constexpr std::string_view kPrefix = "splinecast.";
 constexpr std::string_view kLockSuffix = ".lock";
 constexpr std::size_t kMaxNameLength = 128;
+constexpr char kOfCommander = '@';
 
 constexpr std::array kKinds{RegionKind::waypoints, RegionKind::spline};
 
@@ -30,22 +31,29 @@ bool is_name_character(char c) noexcept {
          c == '_' || c == '-';
 }
 
-bool is_stream_name(std::string_view text) noexcept {
-  return !text.empty() && text.size() <= kMaxNameLength && text.front() != '.' &&
-         std::ranges::all_of(text, is_name_character);
-}
-
-/// The stream that a file belongs to, or an empty view.
-std::string_view stream_of(std::string_view file) noexcept {
+/// The name in the name of a region's file or of its lock file; an empty view for other files.
+std::string_view name_in(std::string_view file) noexcept {
   if (!file.starts_with(kPrefix)) return {};
   file.remove_prefix(kPrefix.size());
   if (file.ends_with(kLockSuffix)) file.remove_suffix(kLockSuffix.size());
   for (const RegionKind kind : kKinds) {
     if (!file.ends_with(suffix(kind))) continue;
     file.remove_suffix(suffix(kind).size());
-    return is_stream_name(file) ? file : std::string_view();
+    return file;
   }
   return {};
+}
+
+/// Calls `take` with the name in each file of the folder of shared memory.
+template <typename Take>
+void for_each_name(const Take& take) {
+  std::error_code error;
+  std::filesystem::directory_iterator entry(kSharedMemoryFolder, error);
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    const std::string file = entry->path().filename();
+    take(name_in(file));
+  }
+  if (error) throw_failure("cannot read " + std::string(kSharedMemoryFolder), error.value());
 }
 
 /// Bytes of the UTF-8 character at the start of a text, if it can be printed unchanged; 0 for a
@@ -72,6 +80,11 @@ std::size_t printable_bytes(std::string_view text) noexcept {
 }
 
 }  // namespace
+
+bool is_stream_name(std::string_view text) noexcept {
+  return !text.empty() && text.size() <= kMaxNameLength && text.front() != '.' &&
+         std::ranges::all_of(text, is_name_character);
+}
 
 std::string_view owner_role(RegionKind kind) noexcept {
   return kind == RegionKind::waypoints ? "producer" : "solver";
@@ -100,8 +113,38 @@ std::string printable(std::string_view text) {
   return out;
 }
 
+std::string commander_stream(std::string_view law, std::string_view commander) {
+  require_stream_name(law);
+  require_stream_name(commander);
+  return std::string(law).append(1, kOfCommander).append(commander);
+}
+
+std::vector<std::string> commanded_laws() {
+  std::set<std::string> names;
+  for_each_name([&](std::string_view name) {
+    const std::size_t at = name.find(kOfCommander);
+    if (at == std::string_view::npos || !is_stream_name(name.substr(at + 1))) return;
+    if (is_stream_name(name.substr(0, at))) names.emplace(name.substr(0, at));
+  });
+  return {names.begin(), names.end()};
+}
+
+std::vector<std::string> commander_names(std::string_view law) {
+  const std::string prefix = std::string(law).append(1, kOfCommander);
+  require_stream_name(law);
+  std::set<std::string> names;
+  for_each_name([&](std::string_view name) {
+    if (!name.starts_with(prefix)) return;
+    name.remove_prefix(prefix.size());
+    if (is_stream_name(name)) names.emplace(name);
+  });
+  return {names.begin(), names.end()};
+}
+
 std::string region_name(std::string_view stream, RegionKind kind) {
-  require_stream_name(stream);
+  const std::size_t at = stream.find(kOfCommander);
+  require_stream_name(stream.substr(0, at));
+  if (at != std::string_view::npos) require_stream_name(stream.substr(at + 1));
   return std::string(kPrefix).append(stream).append(suffix(kind));
 }
 
@@ -127,15 +170,9 @@ namespace splinecast {
 
 std::vector<std::string> stream_names() {
   std::set<std::string> names;
-  std::error_code error;
-  std::filesystem::directory_iterator entry(ipc::kSharedMemoryFolder, error);
-  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
-    const std::string file = entry->path().filename();
-    const std::string_view stream = ipc::stream_of(file);
-    if (!stream.empty()) names.emplace(stream);
-  }
-  if (error)
-    ipc::throw_failure("cannot read " + std::string(ipc::kSharedMemoryFolder), error.value());
+  ipc::for_each_name([&](std::string_view name) {
+    if (ipc::is_stream_name(name)) names.emplace(name);
+  });
   return {names.begin(), names.end()};
 }
 

@@ -19,6 +19,9 @@ enum class RegionKind : std::uint64_t {
 /// `producer` or `solver`: the role that writes a region of this kind.
 [[nodiscard]] std::string_view owner_role(RegionKind kind) noexcept;
 
+/// Whether a text can name a stream: see require_stream_name().
+[[nodiscard]] bool is_stream_name(std::string_view text) noexcept;
+
 /// Throws BadRequest unless the name has 1 to 128 characters of A–Z a–z 0–9 . _ - and does not
 /// begin with a dot.
 void require_stream_name(std::string_view stream);
@@ -27,7 +30,20 @@ void require_stream_name(std::string_view stream);
 /// characters, line ends, escape sequences and invalid UTF-8 becomes `\xNN`.
 [[nodiscard]] std::string printable(std::string_view text);
 
-/// Name of a region as shared memory, `splinecast.<stream>.waypoints` or `….spline`.
+/// The name under which the ring of a commander of a time law is kept: `LAW@COMMANDER`, which no
+/// stream can have. Throws BadRequest unless both can name a stream.
+[[nodiscard]] std::string commander_stream(std::string_view law, std::string_view commander);
+
+/// The time laws for which a commander has a ring, in alphabetical order. Reads the folder of
+/// shared memory. Throws OutOfResources if it cannot be read.
+[[nodiscard]] std::vector<std::string> commanded_laws();
+
+/// The commanders of a time law that have a ring, in alphabetical order. Reads the folder of shared
+/// memory. Throws BadRequest for an invalid name, OutOfResources if the folder cannot be read.
+[[nodiscard]] std::vector<std::string> commander_names(std::string_view law);
+
+/// Name of a region as shared memory, `splinecast.<stream>.waypoints` or `….spline`. `stream` is a
+/// stream's name or the result of commander_stream().
 [[nodiscard]] std::string region_name(std::string_view stream, RegionKind kind);
 
 /// Path of a region, and of its owner's lock file.

@@ -78,6 +78,11 @@ void require_times(const SolverOptions& options) {
   require_time("shortest entry", options.min_entry, Time(1), kLongestFreeze);
 }
 
+void require_rate(const std::optional<double>& rate) {
+  if (!rate || (*rate > 0 && *rate <= kLargestRate)) return;
+  throw BadRequest("largest rate must be above 0 and at most 100, not " + std::to_string(*rate));
+}
+
 /// Checks the options that only some methods have.
 void require_parameters_of(const Method& method, const SolverOptions& options) {
   if (method.smooths() && !options.lambda) {
@@ -103,6 +108,7 @@ void require_parameters_of(const Method& method, const SolverOptions& options) {
 
 void require_options(const SolverOptions& options) {
   require_times(options);
+  require_rate(options.largest_rate);
   require_parameters_of(method_of(options), options);
   // Checks with one dimension and without limits: the stream's dimensions are not known yet.
   SolverOptions curve = options;
@@ -146,10 +152,11 @@ void write_options(const SolverOptions& options, RegionHeader& header) {
 }
 
 std::optional<LiveOptions> live_options(const RegionHeader& header) noexcept {
-  if (stream_clock(header) != StreamClock::monotonic) return std::nullopt;
+  if (!is_live(stream_clock(header))) return std::nullopt;
   return LiveOptions{.freeze_ahead = Time(header.freeze_ahead),
                      .history = Time(header.history),
-                     .min_entry = Time(header.min_entry)};
+                     .min_entry = Time(header.min_entry),
+                     .follows_law = stream_clock(header) == StreamClock::law};
 }
 
 core::WindowOptions window_options(const RegionHeader& header) {
@@ -161,7 +168,7 @@ core::WindowOptions window_options(const RegionHeader& header) {
           .start = start_condition(header),
           .stop_time = Time(header.stop_time),
           .limits = motion_limits(header),
-          .held_before_start = stream_clock(header) == StreamClock::monotonic,
+          .held_before_start = is_live(stream_clock(header)),
           .force_lag = header.force_lag != 0};
 }
 

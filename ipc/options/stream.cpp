@@ -91,6 +91,10 @@ RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id
                      " ns are not a range of positive times");
   }
   require_usable("start", options.start, options.dimensions);
+  if ((options.clock == StreamClock::law) == options.law.empty()) {
+    throw BadRequest(options.law.empty() ? "a stream with clock law needs the name of a law"
+                                         : "a stream that follows a law has clock law");
+  }
   RegionHeader header{};
   header.magic = kMagic;
   header.mark = {};
@@ -98,12 +102,13 @@ RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id
   header.stream_id = stream_id;
   header.dimensions = options.dimensions;
   header.clock = static_cast<std::uint64_t>(options.clock);
-  header.time_namespace = options.clock == StreamClock::monotonic ? time_namespace() : 0;
+  header.time_namespace = is_live(options.clock) ? time_namespace() : 0;
   header.control = kHeaderBytes + stream_id % kControlPositions * kSeparation;
   header.min_interval = options.limits.min_interval.count();
   header.max_interval = options.limits.max_interval.count();
   header.start_kind = static_cast<std::uint64_t>(options.start.kind);
   std::ranges::copy(options.start.value, header.start_value.begin());
+  std::ranges::copy(options.law.substr(0, kLawNameBytes - 1), header.law.begin());
   put_kinds(options, header);
   put_texts(options.names, options.dimensions, "names", header.name);
   put_texts(options.units, options.dimensions, "units", header.unit);
@@ -142,7 +147,7 @@ StreamClock stream_clock(const RegionHeader& header) noexcept {
 std::string header_name(const std::string& name) { return cut(name, kNameBytes - 1); }
 
 void require_same_clock(const RegionHeader& header, const std::string& stream) {
-  if (stream_clock(header) != StreamClock::monotonic || header.time_namespace == time_namespace()) {
+  if (!is_live(stream_clock(header)) || header.time_namespace == time_namespace()) {
     return;
   }
   throw BadRegion("stream '" + stream + "' runs on the clock of time namespace " +
@@ -158,6 +163,9 @@ void require_same_stream(const RegionHeader& ring, const RegionHeader& board) {
   require(ring.dimensions == board.dimensions, "the number of dimensions");
   require(dimensions_of(ring) == dimensions_of(board), "dimension kinds");
   require(ring.clock == board.clock && ring.time_namespace == board.time_namespace, "their clock");
+  require(ring.is_law == board.is_law && ring.law_origin == board.law_origin &&
+              ring.law_id == board.law_id && ring.law == board.law,
+          "their time law");
   require(start_condition(ring) == start_condition(board), "the start condition");
 }
 
@@ -174,6 +182,7 @@ void require_same_options(const std::string& stream, const RegionHeader& stands,
                std::to_string(wanted.dimensions));
   }
   if (wanted.clock != stands.clock) contradict("another clock");
+  if (wanted.law != stands.law) contradict("time law '" + text_of(stands.law) + "'");
   if (start_condition(wanted) != start_condition(stands)) {
     contradict("start condition " + to_string(start_condition(stands)) + ", not " +
                to_string(options.start));

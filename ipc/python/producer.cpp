@@ -302,6 +302,9 @@ void define_appends(Class& producer) {
 void define_waits(Class& producer) {
   const py::arg_v timeout = py::arg("timeout") = None();
   producer.def("refusals", &HeldProducer::refusals, doc::Producer_refusals)
+      .def(
+          "now", [](HeldProducer& self) { return self.get<&Producer::now>().count(); },
+          doc::Producer_now)
       .def("wait_for_solver", &HeldProducer::wait<&Producer::wait_for_solver>, timeout,
            doc::Producer_wait_for_solver)
       .def("wait_for_room", &HeldProducer::wait<&Producer::wait_for_room>, timeout,
@@ -348,8 +351,8 @@ std::unique_ptr<HeldProducer> make(const std::string& stream, const py::object& 
   keywords["names"] = names;
   keywords["units"] = units;
   require_keywords(keywords, "Producer",
-                   {"names", "units", "dimensions", "kinds", "clock", "start", "min_interval",
-                    "max_interval", "capacity", "mode", "group", "owner"});
+                   {"names", "units", "dimensions", "kinds", "clock", "law", "start",
+                    "min_interval", "max_interval", "capacity", "mode", "group", "owner"});
   return std::make_unique<HeldProducer>(stream, producer_options(keywords));
 }
 

@@ -37,6 +37,17 @@ std::unique_ptr<Reader> open(const std::string& stream, Time end, const Trust& t
   }
 }
 
+const char* text_of(StreamClock clock) {
+  switch (clock) {
+    case StreamClock::recorded:
+      return "recorded";
+    case StreamClock::law:
+      return "law";
+    default:
+      return "monotonic";
+  }
+}
+
 /// The Python class Reader.
 class HeldReader {
  public:
@@ -165,6 +176,9 @@ void define_sampling(Class& reader) {
           [](const HeldReader& self) { return to_record(self.get<&Reader::progress>()); },
           doc::Reader_progress)
       .def("alive", &HeldReader::alive, doc::Reader_alive)
+      .def(
+          "rate", [](const HeldReader& self) { return to_record(self.get<&Reader::rate>()); },
+          doc::Reader_rate)
       .def("close", &HeldReader::close, doc::Reader_close)
       .def(
           "__enter__", [](py::object self) { return self; }, doc::Reader_enter)
@@ -179,10 +193,7 @@ void define_properties(Class& reader) {
       .def_property_readonly("units", &HeldReader::get<&Reader::units>, doc::Reader_units)
       .def_property_readonly("kinds", &HeldReader::kinds, doc::Reader_kinds)
       .def_property_readonly(
-          "clock",
-          [](const HeldReader& self) {
-            return self.get<&Reader::clock>() == StreamClock::recorded ? "recorded" : "monotonic";
-          },
+          "clock", [](const HeldReader& self) { return text_of(self.get<&Reader::clock>()); },
           doc::Reader_clock)
       .def_property_readonly(
           "limits", [](const HeldReader& self) { return to_record(self.get<&Reader::limits>()); },

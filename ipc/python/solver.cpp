@@ -206,7 +206,7 @@ std::unique_ptr<HeldSolver> make(const std::string& stream, const py::object& me
   require_keywords(keywords, "Solver",
                    {"method", "lam", "time_scale", "settle", "tail", "force_lag", "stop_time",
                     "limits", "named_limits", "beyond", "freeze_ahead", "history", "min_entry",
-                    "capacity", "wake", "mode", "group", "owner"});
+                    "largest_rate", "capacity", "wake", "mode", "group", "owner"});
   return std::make_unique<HeldSolver>(stream, solver_options(keywords));
 }
 

@@ -1,12 +1,12 @@
 #include "splinecast/producer.hpp"
 
-#include <bit>
 #include <chrono>
 #include <optional>
 #include <thread>
 #include <utility>
 
 #include "ipc/board/reader.hpp"
+#include "ipc/law/follower.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/waypoint_items.hpp"
@@ -15,6 +15,7 @@
 #include "ipc/memory/futex.hpp"
 #include "ipc/options/curve.hpp"
 #include "ipc/options/stream.hpp"
+#include "ipc/owned/ring.hpp"
 #include "ipc/ring/reader.hpp"
 #include "ipc/ring/writer.hpp"
 #include "ipc/roles/refusals.hpp"
@@ -43,98 +44,58 @@ struct SolverView {
   }
 };
 
-/// A ring region, created or taken over, and its writer.
-struct OwnedRing {
-  ipc::Region region;
-  ipc::RegionLock lock;
-  ipc::RegionHeader header;
-  ipc::RingLayout layout;
-  ipc::WaypointRingWriter writer;
-
-  OwnedRing(ipc::Region mapped, const ipc::RegionHeader& described, const ipc::RingLayout& of_it)
-      : region(std::move(mapped)),
-        lock(region.descriptor()),
-        header(described),
-        layout(of_it),
-        writer(region.bytes(), of_it, ipc::ingest_limits(described)) {}
-};
-
-OwnedRing make_ring(const std::string& stream, const ProducerOptions& options) {
-  if (options.capacity < 2 || options.capacity > ipc::kMaxRingCapacity) {
-    throw BadRequest("a ring has 2 to " + std::to_string(ipc::kMaxRingCapacity) + " items, not " +
-                     std::to_string(options.capacity));
-  }
-  ipc::RegionHeader header = ipc::make_header(options, ipc::random_id());
-  header.kind = static_cast<std::uint64_t>(ipc::RegionKind::waypoints);
-  header.capacity = std::bit_ceil(options.capacity);
-  const auto layout = ipc::RingLayout::of(header.dimensions, header.capacity, header.control);
-  header.stride = layout.stride;
-  header.region_bytes = layout.bytes;
-  ipc::Region region = ipc::Region::create(layout.bytes, options.access);
-  ipc::write_header(region.bytes(), header);
-  ipc::enter_owner(region.bytes(), header);
-  OwnedRing ring(std::move(region), header, layout);
-  if (!ring.region.link(stream, ipc::RegionKind::waypoints)) {
-    throw BadRegion(ipc::region_path(stream, ipc::RegionKind::waypoints) +
-                    " was created by another process at the same time");
-  }
-  return ring;
-}
-
-/// Takes over the existing ring of that name if it can be continued. Retires a finished one, and
-/// removes its name. Returns nothing if there is no ring to continue.
-std::optional<OwnedRing> continue_ring(const std::string& stream, const ProducerOptions& options) {
-  if (!ipc::region_exists(stream, ipc::RegionKind::waypoints)) return std::nullopt;
-  auto [region, header, layout] = ipc::open_ring(stream, true, options.trust);
-  OwnedRing ring(std::move(region), header, layout);
-  const ipc::WaypointRingReader past(ring.region.bytes(), layout);
-  if (past.retired() || ring.writer.finished()) {
-    ring.writer.retire();
-    ipc::wake_all(ring.writer.written_word());
-    ipc::unlink_region(stream, ipc::RegionKind::waypoints);
-    return std::nullopt;
-  }
-  ipc::require_same_clock(header, stream);
-  ipc::require_same_options(stream, header, options);
-  ipc::enter_owner(ring.region.bytes(), header);
-  return ring;
-}
-
-OwnedRing own_ring(const std::string& stream, const ProducerOptions& options,
-                   ipc::OwnerLock& lock) {
-  try {
-    auto continued = continue_ring(stream, options);
-    return continued ? std::move(*continued) : make_ring(stream, options);
-  } catch (...) {
-    lock.remove_unused_file();
-    throw;
-  }
-}
-
 }  // namespace
 
 struct Producer::Impl {
   std::string stream;
   ProducerOptions options;
   ipc::OwnerLock lock;
-  OwnedRing ring;
+  std::uint64_t law_id;  ///< of the law that the stream follows; 0: none
+  ipc::OwnedRing ring;
   bool continues;
   std::optional<SolverView> solver;
   ipc::WaypointRingReader sent;
   ipc::RefusalReader refused;
   Time settled_until = Time::min();
   MonotonicClock clock;
+  std::unique_ptr<ipc::LawFollower> law;
+  std::unique_ptr<ipc::LawClock> law_clock;
 
   Impl(std::string name, ProducerOptions how)
       : stream(std::move(name)),
         options(std::move(how)),
-        lock(stream, ipc::RegionKind::waypoints),
-        ring(own_ring(stream, options, lock)),
+        lock((ipc::require_stream_name(stream), stream), ipc::RegionKind::waypoints),
+        law_id(id_of_law()),
+        ring(ipc::own_ring(stream, options, lock,
+                           [this](ipc::RegionHeader& header) { header.law_id = law_id; })),
         continues(ring.writer.written() > 0),
         sent(ring.region.bytes(), ring.layout),
         refused(ring.writer.written()) {
+    if (ring.header.law_id != 0) {
+      law = std::make_unique<ipc::LawFollower>(ring.header, options.trust);
+      law_clock = std::make_unique<ipc::LawClock>(*law, clock);
+    }
     if (continues) look_for_solver();
     if (solver) refused.skip(solver->board);
+  }
+
+  /// The stream id of the law that the options name; 0 if they name none.
+  [[nodiscard]] std::uint64_t id_of_law() {
+    // own_ring refuses a law without this clock.
+    if (options.law.empty() || options.clock != StreamClock::law) return 0;
+    try {
+      const auto header = ipc::peek_header(options.law, ipc::RegionKind::spline, options.trust);
+      if (header && header->is_law != 0) return header->stream_id;
+      throw NoSuchStream("there is no time law '" + options.law + "' with a solver");
+    } catch (...) {
+      lock.remove_unused_file();
+      throw;
+    }
+  }
+
+  /// The clock of a live stream's times.
+  [[nodiscard]] const Clock& stream_clock() const noexcept {
+    return law_clock ? static_cast<const Clock&>(*law_clock) : clock;
   }
 
   /// Opens the solver's region of this stream, unless it is already open. Closes a retired one.
@@ -164,7 +125,7 @@ struct Producer::Impl {
     if (!solver) look_for_solver();
     ipc::WaypointRingWriter::Solved known{.consumed = consumed()};
     if (ipc::stream_clock(ring.header) == StreamClock::recorded) return known;
-    known.clock = &clock;
+    known.clock = &stream_clock();
     if (!solver) return known;
     const ipc::Look look = solver->board.look();
     const bool is_time = is_time_in_range(look.settled_until);
@@ -248,6 +209,11 @@ AppendStatus Producer::start_from(const Instant& state) noexcept {
   return impl_->wake_solver_for(impl_->ring.writer.start_from(state, impl_->look_at_solver()));
 }
 
+Time Producer::now() noexcept {
+  const bool is_recorded = ipc::stream_clock(impl_->ring.header) == StreamClock::recorded;
+  return is_recorded ? Time::zero() : impl_->stream_clock().now();
+}
+
 Time Producer::earliest() noexcept { return impl_->look_at_solver().settled_until; }
 
 AppendStatus Producer::finish(const Condition& end) {
@@ -257,7 +223,7 @@ AppendStatus Producer::finish(const Condition& end) {
   } catch (const std::invalid_argument& error) {
     throw BadRequest(error.what());
   }
-  if (ipc::stream_clock(impl_->ring.header) == StreamClock::monotonic && !is_at_rest(end.kind)) {
+  if (is_live(ipc::stream_clock(impl_->ring.header)) && !is_at_rest(end.kind)) {
     throw BadRequest("end condition '" + to_string(end) +
                      "' is not at rest: a live stream ends with clamped or halt");
   }

@@ -5,8 +5,10 @@
 #include <thread>
 #include <utility>
 
+#include "core/laws/motion.hpp"
 #include "core/limits/check.hpp"
 #include "ipc/board/reader.hpp"
+#include "ipc/law/follower.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/limits.hpp"
 #include "ipc/mapping/checked_region.hpp"
@@ -47,8 +49,18 @@ struct Reader::Impl {
   ipc::RegionHeader header;
   ipc::KnotBoardReader board;
   ipc::Sampler sampler;
+  std::unique_ptr<ipc::LawFollower> law;
   MotionLimits limits;
+  State state;  ///< scratch
   ipc::Word seen = 0;
+  Time passed = Time::min();  ///< a host time that has passed
+
+  /// Whether a host time has passed. By the deadline rule no revision of a law changes it before
+  /// its commit: the past needs no living solver.
+  [[nodiscard]] bool has_passed(Time host) noexcept {
+    if (host > passed) passed = MonotonicClock().now();
+    return host <= passed;
+  }
 
   Impl(std::string name, ipc::Region mapped, const ipc::RegionHeader& described,
        const ipc::BoardLayout& layout)
@@ -57,7 +69,8 @@ struct Reader::Impl {
         header(described),
         board(region.bytes(), layout),
         sampler(board, ipc::stream_clock(described), ipc::dimension_kinds(described)),
-        limits(ipc::motion_limits(described)) {}
+        limits(ipc::motion_limits(described)),
+        state(board.dimensions()) {}
 
   /// Maps the stream's board; returns null if there is none now.
   static std::unique_ptr<Impl> open(const std::string& stream, const Trust& trust) {
@@ -67,6 +80,7 @@ struct Reader::Impl {
       if (!is_of_current_stream(stream, header, trust)) return nullptr;
       ipc::require_same_clock(header, stream);
       auto impl = std::make_unique<Impl>(stream, std::move(region), header, layout);
+      if (header.law_id != 0) impl->law = std::make_unique<ipc::LawFollower>(header, trust);
       return impl->board.retired() ? nullptr : std::move(impl);
     } catch (const NoSuchStream&) {
       return nullptr;  // removed between the check and the opening
@@ -89,21 +103,80 @@ struct Reader::Impl {
 Reader::Reader(const std::string& stream, Time wait, const Trust& trust)
     : impl_((ipc::require_stream_name(stream), Impl::await(stream, wait, trust))),
       sampler_(&impl_->sampler),
+      follows_law_(impl_->law != nullptr),
       dimensions_(impl_->board.dimensions()) {}
 Reader::Reader(Reader&&) noexcept = default;
 Reader& Reader::operator=(Reader&&) noexcept = default;
 Reader::~Reader() = default;
 
 SampleStatus Reader::sample(Time t, const StateRef& out) noexcept {
-  return sampler_->sample(t, out);
+  return follows_law_ ? follow(t, out, true) : sampler_->sample(t, out);
 }
 
 SampleStatus Reader::preview(Time t, const StateRef& out) noexcept {
-  return sampler_->preview(t, out);
+  return follows_law_ ? follow(t, out, false) : sampler_->preview(t, out);
+}
+
+/// Samples the curve at the stream time of a host time, with the derivatives by host time. The
+/// sample has settled if both the law and the curve have.
+SampleStatus Reader::follow(Time host, const StateRef& out, bool is_executed) noexcept {
+  ipc::LawFollower& law = *impl_->law;
+  ipc::LawPoint point;
+  const SampleStatus seen = law.look_up(host, is_executed, point);
+  if (!has_values(seen)) return seen;
+  const SampleStatus status = sample_point(point, out, is_executed);
+  if (!has_values(status)) return status;
+  rate_ = {.stream_time = point.stream, .rate = point.rates.rate, .slope = point.rates.slope};
+  if (seen == SampleStatus::revised) return seen;
+  if (seen == SampleStatus::settled || status != SampleStatus::settled) return status;
+  return impl_->has_passed(host) ? status : SampleStatus::provisional;
+}
+
+SampleStatus Reader::sample_point(const ipc::LawPoint& point, const StateRef& out,
+                                  bool is_executed) noexcept {
+  ipc::Sampler::Place place;
+  if (sampler_->all_linear() && sampler_->fits(out) &&
+      sampler_->find_at_hand(point.stream, is_executed, place)) {
+    core::evaluate(place.order, place.coefficients, place.u + point.fraction, point.rates, out);
+    return place.status;
+  }
+  const SampleStatus status = is_executed ? sampler_->sample(point.stream, point.fraction, out)
+                                          : sampler_->preview(point.stream, point.fraction, out);
+  if (has_values(status)) core::follow(point.rates, out);
+  return status;
 }
 
 std::uint64_t Reader::sample_many(std::span<const Time> times, const SampleBlock& out) noexcept {
-  return sampler_->sample_many(times, out);
+  return follows_law_ ? follow_many(times, out) : sampler_->sample_many(times, out);
+}
+
+/// Samples the curve at many host times, all under one revision of the curve and of the law.
+std::uint64_t Reader::follow_many(std::span<const Time> times, const SampleBlock& out) noexcept {
+  const std::size_t values = count(out.derivatives) * dimensions_;
+  if (out.status.size() != times.size() || out.values.size() != times.size() * values) {
+    std::ranges::fill(out.status, SampleStatus::wrong_dimension);
+    return 0;
+  }
+  State& state = impl_->state;
+  constexpr int kTries = 16;
+  for (int attempt = 0; attempt < kTries; ++attempt) {
+    std::uint64_t revision = 0;
+    std::uint64_t law_revision = 0;
+    bool is_one = true;
+    for (std::size_t i = 0; i < times.size() && is_one; ++i) {
+      out.status[i] = follow(times[i], state.ref(), false);
+      if (i == 0) revision = sampler_->revision_seen();
+      if (i == 0) law_revision = impl_->law->revision_seen();
+      is_one = revision == sampler_->revision_seen() &&
+               law_revision == impl_->law->revision_seen() && out.status[i] != SampleStatus::busy;
+      if (is_one && has_values(out.status[i])) {
+        ipc::copy_derivatives(state, out.derivatives, out.values.subspan(i * values, values));
+      }
+    }
+    if (is_one) return revision;
+  }
+  std::ranges::fill(out.status, SampleStatus::busy);
+  return 0;
 }
 
 Time Reader::settled_until() const noexcept { return sampler_->settled_until(); }

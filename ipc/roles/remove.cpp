@@ -56,36 +56,54 @@ void retire(const Removable& file) noexcept {
   wake_all(words[0]);  // written position or revision: the word that its readers wait on
 }
 
-}  // namespace
-}  // namespace ipc
-
-void remove_stream(const std::string& stream, const Trust& trust) {
-  constexpr std::array kKinds{ipc::RegionKind::waypoints, ipc::RegionKind::spline};
-  const bool stands = std::ranges::any_of(kKinds, [&](ipc::RegionKind kind) {
-    return ipc::region_exists(stream, kind) ||
-           std::filesystem::exists(ipc::lock_path(stream, kind));
+/// Removes the regions under a stream's name, or under that of a law's commander.
+void remove_regions(const std::string& stream, const Trust& trust) {
+  constexpr std::array kKinds{RegionKind::waypoints, RegionKind::spline};
+  const bool stands = std::ranges::any_of(kKinds, [&](RegionKind kind) {
+    return region_exists(stream, kind) || std::filesystem::exists(lock_path(stream, kind));
   });
   if (!stands) throw NoSuchStream("there is no stream '" + stream + "'");
-  ipc::OwnerLock producer_lock(stream, ipc::RegionKind::waypoints);
-  std::optional<ipc::OwnerLock> solver_lock;
-  std::vector<ipc::Removable> files;
+  OwnerLock producer_lock(stream, RegionKind::waypoints);
+  std::optional<OwnerLock> solver_lock;
+  std::vector<Removable> files;
   try {
-    solver_lock.emplace(stream, ipc::RegionKind::spline);
+    solver_lock.emplace(stream, RegionKind::spline);
     // Checks all files before it changes any.
-    for (const ipc::RegionKind kind : kKinds) {
-      if (ipc::region_exists(stream, kind)) files.push_back(ipc::removable(stream, kind, trust));
+    for (const RegionKind kind : kKinds) {
+      if (region_exists(stream, kind)) files.push_back(removable(stream, kind, trust));
     }
   } catch (const StreamError&) {
     if (solver_lock) solver_lock->remove_unused_file();
     producer_lock.remove_unused_file();
     throw;
   }
-  for (const ipc::Removable& file : files) {
-    ipc::retire(file);
-    ipc::unlink_region(stream, file.kind);
+  for (const Removable& file : files) {
+    retire(file);
+    unlink_region(stream, file.kind);
   }
   producer_lock.remove_file();
   solver_lock->remove_file();
+}
+
+}  // namespace
+}  // namespace ipc
+
+void remove_stream(const std::string& stream, const Trust& trust) {
+  const std::vector<std::string> commanders = ipc::commander_names(stream);
+  for (const std::string& commander : commanders) {
+    if (!ipc::is_owned(ipc::commander_stream(stream, commander), ipc::RegionKind::waypoints))
+      continue;
+    throw StreamBusy("time law '" + stream + "' has a living commander '" + commander + "'");
+  }
+  // A law that has not begun has only the rings of its commanders.
+  try {
+    ipc::remove_regions(stream, trust);
+  } catch (const NoSuchStream&) {
+    if (commanders.empty()) throw;
+  }
+  for (const std::string& commander : commanders) {
+    ipc::remove_regions(ipc::commander_stream(stream, commander), trust);
+  }
 }
 
 }  // namespace splinecast

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "ipc/board/writer.hpp"
+#include "ipc/law/follower.hpp"
 #include "ipc/layout/limits.hpp"
 #include "ipc/layout/waypoint_items.hpp"
 #include "ipc/mapping/checked_region.hpp"
@@ -16,8 +17,9 @@
 #include "ipc/memory/futex.hpp"
 #include "ipc/options/curve.hpp"
 #include "ipc/options/stream.hpp"
+#include "ipc/owned/board.hpp"
 #include "ipc/roles/internals.hpp"
-#include "ipc/roles/old_motion.hpp"
+#include "ipc/roles/law_server.hpp"
 #include "ipc/roles/refusals.hpp"
 #include "ipc/roles/solver_watch.hpp"
 #include "ipc/solve/stream_solver.hpp"
@@ -44,81 +46,16 @@ struct RingView {
   }
 };
 
-/// The solver's own region, created or taken over.
-struct OwnedBoard {
-  ipc::Region region;
-  ipc::RegionLock lock;
-  ipc::RegionHeader header;
-  bool taken_over;
-  ipc::KnotBoardWriter writer;
-  ipc::KnotBoardReader reader;
-
-  OwnedBoard(ipc::Region mapped, const ipc::RegionHeader& described, const ipc::BoardLayout& layout,
-             bool old)
-      : region(std::move(mapped)),
-        lock(region.descriptor()),
-        header(described),
-        taken_over(old),
-        writer(region.bytes(), layout),
-        reader(region.bytes(), layout) {}
-};
-
-OwnedBoard make_board(const std::string& stream, const ipc::RegionHeader& ring_header,
-                      const SolverOptions& options) {
-  ipc::RegionHeader header = ring_header;
-  header.kind = static_cast<std::uint64_t>(ipc::RegionKind::spline);
-  ipc::write_options(options, header);
-  const auto layout = ipc::BoardLayout::of(header.dimensions, header.capacity, header.control,
-                                           ipc::smooths(header));
-  header.stride = layout.stride;
-  header.region_bytes = layout.bytes;
-  header.epoch = 0;
-  ipc::Region region = ipc::Region::create(layout.bytes, options.access);
-  ipc::write_header(region.bytes(), header);
-  ipc::enter_owner(region.bytes(), header);
-  OwnedBoard board(std::move(region), header, layout, false);
-  if (!board.region.link(stream, ipc::RegionKind::spline)) {
-    throw BadRegion(ipc::region_path(stream, ipc::RegionKind::spline) +
-                    " was created by another process at the same time");
-  }
-  return board;
-}
-
-/// The board of an earlier stream occupies the name until this time, when its motion ends.
-struct Occupied {
-  Time until;
-};
-
-std::variant<OwnedBoard, Occupied> own_board(const std::string& stream,
-                                             const ipc::RegionHeader& ring_header,
-                                             const SolverOptions& options, const Clock& clock) {
-  if (!ipc::region_exists(stream, ipc::RegionKind::spline))
-    return make_board(stream, ring_header, options);
-  auto [region, header, layout] = ipc::open_board(stream, true, options.trust);
-  OwnedBoard board(std::move(region), header, layout, true);
-  if (header.stream_id != ring_header.stream_id || board.reader.retired()) {
-    // Readers follow the old curve to its end: they must not find another one during the motion.
-    const Time end = ipc::end_of_motion(header, board.reader);
-    const Time now = clock.now();
-    ipc::require_near_end(stream, end, now);
-    if (now < end) return Occupied{end};
-    board.writer.retire();
-    ipc::wake_all(board.writer.revision_word());
-    ipc::unlink_region(stream, ipc::RegionKind::spline);
-    return make_board(stream, ring_header, options);
-  }
-  ipc::require_same_stream(ring_header, header);
-  ipc::require_same_options(stream, header, options);
-  ipc::enter_owner(board.region.bytes(), header);
-  board.writer.store_sleeping(false);
-  return board;
-}
+/// How often the solver of a stream whose law holds looks at the law.
+constexpr Time kHeldPoll = std::chrono::milliseconds(5);
 
 /// What a solver owns while it is attached.
 struct Attachment {
   RingView ring;
-  OwnedBoard board;
+  ipc::OwnedBoard board;
   ipc::StreamSolver solver;
+  std::unique_ptr<ipc::LawFollower> law;  ///< of a stream that follows one
+  Time held_until = Time::min();          ///< host time before which a held law needs no step
   ipc::RefusalReader refusals;
   Refusals refused;
   ipc::Word refusals_seen;
@@ -126,7 +63,7 @@ struct Attachment {
   bool is_excess_told = false;
   std::array<bool, ipc::kRefusalReasons> told{};  ///< by Refusal
 
-  Attachment(RingView producer, OwnedBoard own)
+  Attachment(RingView producer, ipc::OwnedBoard own)
       : ring(std::move(producer)),
         board(std::move(own)),
         solver(ring.ring, board.writer, board.reader, ipc::window_options(board.header),
@@ -137,6 +74,18 @@ struct Attachment {
     refusals.skip(board.reader);
     refused.items.reserve(ipc::kRefusalsKept);
   }
+
+  /// `clock` is the host's.
+  StepResult step(const Clock& clock) {
+    if (!law) return solver.step(clock);
+    const ipc::LawClock stream_clock(*law, clock);
+    const StepResult result = solver.step(stream_clock);
+    held_until = stream_clock.is_held() ? clock.now() + kHeldPoll : Time::min();
+    return result;
+  }
+
+  /// Host time at which a step is due.
+  [[nodiscard]] Time due() const noexcept { return std::max(solver.due(), held_until); }
 };
 
 }  // namespace
@@ -145,12 +94,13 @@ struct Solver::Impl {
   std::string stream;
   SolverOptions options;
   ipc::OwnerLock lock;
+  std::unique_ptr<ipc::LawServer> server;  ///< if the stream is a law
   std::unique_ptr<Attachment> attachment;
   Time next_attach = Time::min();
 
   Impl(std::string name, const SolverOptions& how)
       : stream(std::move(name)),
-        options((ipc::require_options(how), how)),
+        options((ipc::require_stream_name(stream), ipc::require_options(how), how)),
         lock(stream, ipc::RegionKind::spline) {
     try {
       // Throws now, not when a producer appears, if the existing board cannot be taken over.
@@ -163,6 +113,55 @@ struct Solver::Impl {
   }
 
   ~Impl() { lock.remove_unused_file(); }
+
+  /// Becomes the producer of the stream if it is a law. Returns whether the stream has a ring.
+  bool serve_law() {
+    if (server) return true;
+    const bool has_ring = ipc::region_exists(stream, ipc::RegionKind::waypoints);
+    if (has_ring) {
+      const auto peeked = ipc::peek_header(stream, ipc::RegionKind::waypoints, options.trust);
+      if (!peeked || peeked->is_law == 0) return true;
+    }
+    if (!ipc::LawServer::is_wanted(stream)) return has_ring;
+    server = std::make_unique<ipc::LawServer>(stream, options);
+    return true;
+  }
+
+  /// Opens the law that a stream follows. Returns false if there is none, or if it has not begun.
+  bool find_law(const ipc::RegionHeader& header, const Clock& clock,
+                std::unique_ptr<ipc::LawFollower>& law) const {
+    try {
+      law = std::make_unique<ipc::LawFollower>(header, options.trust);
+    } catch (const NoSuchStream&) {
+      return false;
+    }
+    ipc::LawPoint point;
+    return has_values(law->at(clock.now(), point));
+  }
+
+  bool attach(const Clock& clock) {
+    auto [region, header, layout] = ipc::open_ring(stream, false, options.trust);
+    ipc::require_same_clock(header, stream);
+    RingView ring(std::move(region), header, layout);
+    if (ring.ring.retired()) return false;
+    std::unique_ptr<ipc::LawFollower> law;
+    if (header.law_id != 0 && !find_law(header, clock, law)) {
+      next_attach = clock.now() + kPoll;
+      return false;
+    }
+    const SolverOptions how = server ? ipc::LawServer::solver_options(options) : options;
+    auto board = ipc::own_board(stream, header, how, clock);
+    if (const auto* const occupied = std::get_if<ipc::Occupied>(&board)) {
+      next_attach = occupied->until;
+      return false;
+    }
+    attachment =
+        std::make_unique<Attachment>(std::move(ring), std::get<ipc::OwnedBoard>(std::move(board)));
+    attachment->law = std::move(law);
+    if (server) server->attach(attachment->board.reader, attachment->board.header);
+    lock.keep_file();
+    return true;
+  }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 };
@@ -181,24 +180,11 @@ bool Solver::attach(const Clock& clock) {
   if (attached()) return true;
   if (impl_->next_attach > Time::min() && clock.now() < impl_->next_attach) return false;
   impl_->next_attach = Time::min();
-  if (!ipc::region_exists(impl_->stream, ipc::RegionKind::waypoints)) return false;
   try {
-    auto [region, header, layout] = ipc::open_ring(impl_->stream, false, impl_->options.trust);
-    ipc::require_same_clock(header, impl_->stream);
-    RingView ring(std::move(region), header, layout);
-    if (ring.ring.retired()) return false;
-    auto board = own_board(impl_->stream, header, impl_->options, clock);
-    if (const auto* const occupied = std::get_if<Occupied>(&board)) {
-      impl_->next_attach = occupied->until;
-      return false;
-    }
-    impl_->attachment =
-        std::make_unique<Attachment>(std::move(ring), std::get<OwnedBoard>(std::move(board)));
-    impl_->lock.keep_file();
+    return impl_->serve_law() && impl_->attach(clock);
   } catch (const NoSuchStream&) {
     return false;  // removed between the check and the opening
   }
-  return true;
 }
 
 bool Solver::attached() const noexcept { return impl_->attachment != nullptr; }
@@ -206,7 +192,8 @@ bool Solver::attached() const noexcept { return impl_->attachment != nullptr; }
 StepResult Solver::step(const Clock& clock) {
   if (!attached()) return {};
   Attachment& at = *impl_->attachment;
-  const StepResult result = at.solver.step(clock);
+  if (impl_->server) impl_->server->step(clock);
+  const StepResult result = at.step(clock);
   if (result.damaged) {
     throw BadRegion(ipc::region_path(impl_->stream, ipc::RegionKind::spline) +
                     " holds data that its solver did not write");
@@ -215,12 +202,18 @@ StepResult Solver::step(const Clock& clock) {
     ipc::wake_some(at.board.writer.revision_word());
     (void)at.board.lock.hold();
   }
-  if (result.consumed == 0 && !result.missed && at.ring.ring.retired()) impl_->attachment.reset();
+  if (result.consumed == 0 && !result.missed && at.ring.ring.retired()) {
+    impl_->attachment.reset();
+    impl_->server.reset();
+  }
   return result;
 }
 
 Time Solver::due() const noexcept {
-  if (attached()) return impl_->attachment->solver.due();
+  if (attached()) {
+    const Time due = impl_->attachment->due();
+    return impl_->server ? std::min(due, impl_->server->due()) : due;
+  }
   return impl_->next_attach > Time::min() ? impl_->next_attach : Time::max();
 }
 
@@ -237,11 +230,15 @@ void Solver::wait(Time timeout) noexcept {
   // must be woken.
   at.board.writer.store_sleeping(true);
   const ipc::Word written = at.ring.ring.written(std::memory_order_seq_cst);
-  const Time due = at.solver.due();
+  const Time due = this->due();
   const Time now = due < Time::max() ? MonotonicClock().now() : Time::zero();
   if (written == at.solver.seen() && due > now && !at.ring.ring.retired()) {
-    ipc::wait_while_equal(at.ring.ring.written_word(), written,
-                          std::min({timeout, kSlice, due - now}));
+    const Time most = std::min({timeout, kSlice, due - now});
+    if (!impl_->server) {
+      ipc::wait_while_equal(at.ring.ring.written_word(), written, most);
+    } else {
+      impl_->server->commanders().wait(most);
+    }
   }
   at.board.writer.store_sleeping(false);
 }
@@ -315,7 +312,13 @@ void ipc::Internals::prefetch(const Solver& solver, Stage stage) noexcept {
 
 ipc::SolverWatch ipc::Internals::watch(const Solver& solver) noexcept {
   const Attachment& at = *solver.impl_->attachment;
-  return {at.ring.ring.polled(), at.solver.seen(), at.solver.due(), at.solver.settled_raise()};
+  const ipc::LawServer* const server = solver.impl_->server.get();
+  if (server == nullptr) {
+    return {at.ring.ring.polled(), at.solver.seen(), solver.due(), at.solver.settled_raise(),
+            nullptr};
+  }
+  // A step of a law also looks for commanders: raising the settled time does not replace it.
+  return {at.ring.ring.polled(), at.solver.seen(), solver.due(), {}, &server->commanders()};
 }
 
 }  // namespace ipc

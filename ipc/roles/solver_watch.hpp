@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "ipc/law/commands.hpp"
 #include "ipc/layout/common_control.hpp"
 #include "ipc/layout/ring_control.hpp"
 #include "ipc/memory/word.hpp"
@@ -14,9 +15,10 @@ namespace splinecast::ipc {
 /// invalid once its solver has detached.
 class SolverWatch {
  public:
-  SolverWatch(std::span<const Word, 2> polled, Word seen, Time due,
-              const SettledRaise& raise) noexcept
-      : polled_(polled), seen_(seen), due_(due), raise_(raise) {}
+  /// `commanders` are those of a law; null for other streams.
+  SolverWatch(std::span<const Word, 2> polled, Word seen, Time due, const SettledRaise& raise,
+              const Commanders* commanders) noexcept
+      : polled_(polled), seen_(seen), due_(due), raise_(raise), commanders_(commanders) {}
 
   /// Whether the ring has items that the last step did not see. One load of a word that only the
   /// producer writes.
@@ -36,9 +38,10 @@ class SolverWatch {
   }
 
   /// Whether the producer has caused work for a step: there are new items, or the stream has been
-  /// retired. Loads from one cache line.
+  /// retired. Loads from one cache line, of a law also from one per commander.
   [[nodiscard]] bool calls() const noexcept {
-    return has_items() || load(polled_[kRetired], std::memory_order_acquire) != 0;
+    return has_items() || load(polled_[kRetired], std::memory_order_acquire) != 0 ||
+           (commanders_ != nullptr && commanders_->calls());
   }
 
   /// When the next step is due without items; max() for never.
@@ -49,6 +52,7 @@ class SolverWatch {
   Word seen_;
   Time due_;
   SettledRaise raise_;
+  const Commanders* commanders_;
 };
 
 }  // namespace splinecast::ipc

@@ -8,10 +8,8 @@
 #include "ipc/sampling/seconds.hpp"
 
 namespace splinecast::ipc {
-namespace {
 
-/// Copies the requested derivatives, in sequence.
-void copy_asked(const State& state, Derivatives asked, std::span<double> out) noexcept {
+void copy_derivatives(const State& state, Derivatives asked, std::span<double> out) noexcept {
   const std::array<std::pair<Derivatives, std::span<const double>>, 4> parts{
       {{Derivatives::position, state.position()},
        {Derivatives::velocity, state.velocity()},
@@ -23,8 +21,6 @@ void copy_asked(const State& state, Derivatives asked, std::span<double> out) no
     out = out.subspan(values.size());
   }
 }
-
-}  // namespace
 
 Word Sampler::sample_many(std::span<const Time> times, const SampleBlock& out) noexcept {
   const std::size_t values = count(out.derivatives) * board_->dimensions();
@@ -52,7 +48,7 @@ bool Sampler::evaluate_many(std::span<const Time> times, const SampleBlock& out)
       i += evaluated;
       if (evaluated > 0) continue;
       out.status[i] = evaluate(kept_.current(), times[i], state_.ref());
-    } else if (clock_ != StreamClock::monotonic || summary_.first != 1) {
+    } else if (!is_live(clock_) || summary_.first != 1) {
       out.status[i] = SampleStatus::before_history;
     } else if (kept_.take(*board_, summary_, summary_.first)) {
       out.status[i] = hold_first(state_.ref());
@@ -60,7 +56,7 @@ bool Sampler::evaluate_many(std::span<const Time> times, const SampleBlock& out)
       return false;
     }
     if (has_values(out.status[i])) {
-      copy_asked(state_, out.derivatives, out.values.subspan(i * stride, stride));
+      copy_derivatives(state_, out.derivatives, out.values.subspan(i * stride, stride));
     }
     ++i;
   }

@@ -30,17 +30,10 @@ Sampler::Sampler(const KnotBoardReader& board, StreamClock clock, DimensionKinds
       start_acceleration_(board.dimensions()),
       end_acceleration_(board.dimensions()) {}
 
-/// Whether each span has one value per dimension.
-inline bool Sampler::fits(const StateRef& out) const noexcept {
-  const std::size_t wanted = board_->dimensions();
-  return ((out.position.size() ^ wanted) | (out.velocity.size() ^ wanted) |
-          (out.acceleration.size() ^ wanted) | (out.jerk.size() ^ wanted)) == 0;
-}
-
 /// The sample at t. Usually nothing has been published since the last one, and t is in the segment
 /// used last: then no lookup is needed.
 inline SampleStatus Sampler::find(Time t, const StateRef& out) noexcept {
-  if (board_->retired()) return SampleStatus::retired;
+  if (is_gone()) return SampleStatus::retired;
   const Look look = board_->look();
   const bool is_at_hand = look.revision == kept_.confirmed_by() && t >= kept_.at_hand().left &&
                           t < kept_.at_hand().right;
@@ -48,7 +41,8 @@ inline SampleStatus Sampler::find(Time t, const StateRef& out) noexcept {
   summary_.settled_until = look.settled_until;
   kept_.see_settled(look.settled_until);
   const BoardSegment& own = kept_.current();
-  core::evaluate(own.order(), own.coefficients(), seconds_after(kept_.at_hand().left, t), out);
+  core::evaluate(own.order(), own.coefficients(),
+                 seconds_after(kept_.at_hand().left, t) + fraction_, out);
   if (!all_linear_) kinds_.normalise(out);
   if (kept_.at_hand().is_finished) return SampleStatus::settled;
   return t < look.settled_until ? SampleStatus::settled : SampleStatus::provisional;
@@ -113,11 +107,25 @@ SampleStatus Sampler::preview(Time t, const StateRef& out) noexcept {
   return fits(out) ? find(t, out) : SampleStatus::wrong_dimension;
 }
 
+SampleStatus Sampler::sample(Time t, double fraction, const StateRef& out) noexcept {
+  fraction_ = fraction;
+  const SampleStatus status = sample(t, out);
+  fraction_ = 0;
+  return status;
+}
+
+SampleStatus Sampler::preview(Time t, double fraction, const StateRef& out) noexcept {
+  fraction_ = fraction;
+  const SampleStatus status = preview(t, out);
+  fraction_ = 0;
+  return status;
+}
+
 /// Makes summary_ the summary of the newest revision, and prefetches the knots around t, which the
 /// caller looks up next. Returns `settled` if there is a curve, `busy` if the writer overtook it,
 /// else the reason why there is no curve.
 SampleStatus Sampler::see_newest(Time t) noexcept {
-  if (board_->retired()) return SampleStatus::retired;
+  if (is_gone()) return SampleStatus::retired;
   const Look look = board_->look();
   if (look.revision == 0) return SampleStatus::no_data;
   if (look.revision == summary_.revision) {
@@ -138,7 +146,7 @@ SampleStatus Sampler::look_up(Time t, const StateRef& out) noexcept {
     const Found found = locate(t);
     if (found == Found::segment) return evaluate(kept_.current(), t, out);
     if (found == Found::before_first) {
-      const bool holds = clock_ == StreamClock::monotonic && summary_.first == 1;
+      const bool holds = is_live(clock_) && summary_.first == 1;
       if (!holds) return SampleStatus::before_history;
       if (kept_.take(*board_, summary_, summary_.first)) return hold_first(out);
     }
@@ -194,7 +202,7 @@ SampleStatus Sampler::evaluate(const BoardSegment& segment, Time t,
   const bool past_end = t > right || segment.kind() == SegmentKind::hold ||
                         (t == right && segment.kind() == SegmentKind::stop);
   const Time at = past_end ? right : t;
-  read(segment, seconds_after(segment.left(), at), out);
+  read(segment, seconds_after(segment.left(), at) + (past_end ? 0.0 : fraction_), out);
   if (past_end) come_to_rest(out);
   if (summary_.finished && t <= right) return SampleStatus::settled;
   if (past_end) return SampleStatus::holding;
@@ -222,7 +230,7 @@ SampleStatus Sampler::from_own_copy(Time t, const StateRef& out) noexcept {
   if (!own.is_there() || t < own.left() || t >= own.right() || t >= kept_.settled_until()) {
     return SampleStatus::busy;
   }
-  read(own, seconds_after(own.left(), t), out);
+  read(own, seconds_after(own.left(), t) + fraction_, out);
   return SampleStatus::settled;
 }
 

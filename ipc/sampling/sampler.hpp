@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "ipc/memory/word.hpp"
 #include "ipc/sampling/comparison.hpp"
 #include "ipc/sampling/kept_segments.hpp"
+#include "ipc/sampling/seconds.hpp"
 #include "ipc/sampling/snapshot.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/dimension_kind.hpp"
@@ -70,6 +72,36 @@ class Sampler {
   /// The same as sample(), but the sample does not count as executed: for times ahead.
   [[nodiscard]] SampleStatus preview(Time t, const StateRef& out) noexcept;
 
+  /// The same two, at `fraction` seconds after t, 0 to 1e-9: for a time that follows from a law.
+  [[nodiscard]] SampleStatus sample(Time t, double fraction, const StateRef& out) noexcept;
+  [[nodiscard]] SampleStatus preview(Time t, double fraction, const StateRef& out) noexcept;
+
+  /// The polynomial of a time, and the time within it.
+  struct Place {
+    int order = 0;
+    std::span<const double> coefficients;
+    double u = 0;  ///< seconds after the polynomial's left end
+    SampleStatus status{};
+  };
+
+  /// Finds the polynomial that sample() or preview() at t would evaluate, if it is the one used
+  /// last and nothing has been published since. Returns false if it is not known so easily: then
+  /// sample. O(1), without a call.
+  [[nodiscard]] bool find_at_hand(Time t, bool is_executed, Place& out) noexcept;
+
+  /// Whether each span has one value per dimension.
+  [[nodiscard]] bool fits(const StateRef& out) const noexcept {
+    const std::size_t wanted = board_->dimensions();
+    return ((out.position.size() ^ wanted) | (out.velocity.size() ^ wanted) |
+            (out.acceleration.size() ^ wanted) | (out.jerk.size() ^ wanted)) == 0;
+  }
+
+  /// Whether samples are the values of the polynomials: no dimension is periodic or a quaternion.
+  [[nodiscard]] bool all_linear() const noexcept { return all_linear_; }
+
+  /// From now on a retired board is sampled like any other.
+  void follow_retired() noexcept { follows_retired_ = true; }
+
   /// Evaluates the curve at any number of times, in any order, all of *one* revision, for
   /// controllers that look ahead. Returns that revision, or 0 if none could be read: then every
   /// status gives the reason, and none has values. Does not count as executed. Wait-free, like
@@ -104,6 +136,7 @@ class Sampler {
   /// Result of looking a time up under one revision.
   enum class Found { segment, before_first, torn };
 
+  [[nodiscard]] bool is_gone() const noexcept { return board_->retired() && !follows_retired_; }
   [[nodiscard]] bool goes_on(Time t) noexcept;
   [[nodiscard]] Found locate(Time t) noexcept;
   [[nodiscard]] bool spans(const BoardSegment& segment, Time t) const noexcept;
@@ -115,7 +148,6 @@ class Sampler {
   [[nodiscard]] SampleStatus look_up(Time t, const StateRef& out) noexcept;
   [[nodiscard]] SampleStatus hold_first(const StateRef& out) noexcept;
   [[nodiscard]] bool see(const Look& look) noexcept;
-  [[nodiscard]] bool fits(const StateRef& out) const noexcept;
   [[nodiscard]] SampleStatus from_own_copy(Time t, const StateRef& out) noexcept;
   [[nodiscard]] SampleStatus see_newest(Time t) noexcept;
   [[nodiscard]] bool evaluate_many(std::span<const Time> times, const SampleBlock& out) noexcept;
@@ -126,6 +158,8 @@ class Sampler {
   StreamClock clock_;
   DimensionKinds kinds_;
   bool all_linear_;
+  bool follows_retired_ = false;
+  double fraction_ = 0;               ///< s, of the time that is sampled
   Summary summary_;                   ///< bounds of the last revision that was copied completely
   Time sampled_until_ = Time::min();  ///< latest time sampled as executed
   bool revised_ = false;              ///< the curve before that time has changed: not yet reported
@@ -134,5 +168,26 @@ class Sampler {
   std::vector<double> start_acceleration_;  ///< scratch
   std::vector<double> end_acceleration_;    ///< scratch
 };
+
+inline bool Sampler::find_at_hand(Time t, bool is_executed, Place& out) noexcept {
+  const Look look = board_->look();
+  const KeptSegments::CurrentInterval& interval = kept_.at_hand();
+  const bool is_known = look.revision == kept_.confirmed_by() && t >= interval.left &&
+                        t < interval.right && !revised_ && !is_gone();
+  if (!is_known) return false;
+  summary_.settled_until = look.settled_until;
+  kept_.see_settled(look.settled_until);
+  if (is_executed) sampled_until_ = std::max(sampled_until_, t);
+  const BoardSegment& own = kept_.current();
+  const bool is_settled = interval.is_finished || t < look.settled_until;
+  out = {.order = own.order(),
+         .coefficients = own.coefficients(),
+         .u = seconds_after(interval.left, t),
+         .status = is_settled ? SampleStatus::settled : SampleStatus::provisional};
+  return true;
+}
+
+/// Copies the requested derivatives of a state, in sequence: count(asked)·D values.
+void copy_derivatives(const State& state, Derivatives asked, std::span<double> out) noexcept;
 
 }  // namespace splinecast::ipc

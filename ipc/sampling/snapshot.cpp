@@ -76,7 +76,7 @@ SampleStatus Sampler::snapshot(Time from, Time to, BoardSnapshot& out) {
   const SnapshotSource source{.board = *board_,
                               .summary = summary_,
                               .kinds = kinds_,
-                              .is_live = clock_ == StreamClock::monotonic,
+                              .is_live = is_live(clock_),
                               .copy = kept_.spare(),
                               .start_acceleration = start_acceleration_,
                               .end_acceleration = end_acceleration_};

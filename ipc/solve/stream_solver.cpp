@@ -88,7 +88,8 @@ void StreamSolver::prefetch() const noexcept {
 }
 
 SettledRaise StreamSolver::settled_raise() const noexcept {
-  const bool settles = live_ && !summary_.finished && !summary_.starved && summary_.newest > 0;
+  const bool settles = live_ && !live_->follows_law && !summary_.finished && !summary_.starved &&
+                       summary_.newest > 0;
   const bool is_busy = curve_.is_planning() || curve_.course() == Course::waiting;
   if (!settles || is_busy || seen_ != summary_.consumed) return {};
   const Time limit =
@@ -100,8 +101,9 @@ StepResult StreamSolver::step(const Clock& clock) noexcept {
   if (is_damaged()) return {.damaged = true};
   if (live_) summary_.settled_until = std::max(summary_.settled_until, board_->take_up_settled());
   is_timed_ = live_ || board_->revision() % kTimedEvery == 0;
-  if (is_timed_) started_ = clock.now();
-  const Time now = live_ ? started_ : Time::min();
+  const Time began = is_timed_ ? clock.now() : Time::min();
+  if (is_timed_) started_ = clock.host_time(began);
+  const Time now = live_ ? began : Time::min();
   if (live_ && !board_->is_checked()) check_commit(now);
   // Each try takes half as many items as the one before. If a try with one item fails, the next try
   // refuses that item.
@@ -118,12 +120,12 @@ StepResult StreamSolver::step(const Clock& clock) noexcept {
 
 /// Takes the next items and publishes the result as a revision, unless it is unsound.
 StepResult StreamSolver::make_revision(const Clock& clock, Time now) noexcept {
-  freeze(now);
+  freeze(clock, now);
   const Word consumed = consume(now);
   if (is_damaged()) return {.damaged = true};
   if (consumed > 0 || has_starved_ || curve_.has_changes()) return publish(clock, consumed);
-  if (!live_ || now < due()) return {};
-  settled_at_ = now;
+  if (!live_ || started_ < due()) return {};
+  settled_at_ = started_;
   // Only the settled time has changed: stores that word, and readers keep their copies.
   if (summary_.newest > 0) store_settled(settled_until_);
   return {};
@@ -155,11 +157,11 @@ void StreamSolver::suspect_items() noexcept {
 }
 
 /// Sets settled_until_ for this step, freezes the curve before it, and counts starvation.
-void StreamSolver::freeze(Time now) noexcept {
+void StreamSolver::freeze(const Clock& clock, Time now) noexcept {
   settled_until_ = summary_.settled_until;
   has_starved_ = false;
   if (!live_) return;
-  settled_until_ = std::max(settled_until_, now + live_->freeze_ahead);
+  settled_until_ = std::max(settled_until_, clock.latest(now, live_->freeze_ahead));
   if (!curve_.has_begun() || summary_.finished) return;
   curve_.freeze(settled_until_);
   summary_.low_water =
@@ -278,7 +280,7 @@ StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   settled_at_ = started_;
   if (summary_.newest > 0) store_settled(settled_by_commit());
   board_->store_consumed(summary_.consumed);
-  if (is_timed_) board_->count_step(summary_.committed - started_);
+  if (is_timed_) board_->count_step(clock.host_time(summary_.committed) - started_);
   curve_.committed(summary_);
   most_items_ = std::min<Word>(2 * most_items_, max_batch_);
   const bool changes = summary_.changed_from < Time::max();

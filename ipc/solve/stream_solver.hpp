@@ -24,6 +24,7 @@ struct LiveOptions {
   Time freeze_ahead{5'000'000};  ///< the curve before now + this never changes
   Time history{1'000'000'000};   ///< segments that end after now − this are not overwritten
   Time min_entry{5'000'000};     ///< length of the shortest entry
+  bool follows_law = false;      ///< stream time passes by a time law
 };
 
 /// The solver without its regions: takes items from a ring, solves the window, and publishes knots
@@ -75,7 +76,7 @@ class StreamSolver {
   /// when the ring's written position differs from it, or when `due` has come.
   [[nodiscard]] Word seen() const noexcept { return seen_; }
 
-  /// When the next step is due even if no item comes; max() for never.
+  /// Host time at which the next step is due even if no item comes; max() for never.
   [[nodiscard]] Time due() const noexcept;
 
   /// Prefetches the memory outside this object that the next step touches if it takes one waypoint.
@@ -90,7 +91,7 @@ class StreamSolver {
 
  private:
   void restore();
-  void freeze(Time now) noexcept;
+  void freeze(const Clock& clock, Time now) noexcept;
   [[nodiscard]] StepResult make_revision(const Clock& clock, Time now) noexcept;
   void take_back(Word misses) noexcept;
   void suspect_items() noexcept;
@@ -134,8 +135,8 @@ class StreamSolver {
   Time settled_until_ = Time::min();  ///< this step changes nothing before this time
   Time keep_ = Time::max();           ///< this step overwrites no segment that ends after this time
   bool is_timed_ = false;             ///< this step is timed
-  Time started_{};                    ///< the clock when it began, if it is timed
-  Time settled_at_ = Time::min();     ///< the clock when settled_until was last stored
+  Time started_{};                    ///< host time when it began, if it is timed
+  Time settled_at_ = Time::min();     ///< host time when settled_until was last stored
   bool has_starved_ = false;          ///< the stream has begun to starve in this step
   int tries_ = 0;                     ///< candidates of an entry that this step may still try
   bool is_finish_postponed_ = false;  ///< no entry to the last waypoint has been found yet

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "ipc/mapping/owner_lock.hpp"
@@ -33,6 +34,10 @@ void StreamSweep::look_for_names() {
   std::erase_if(standing, [](const std::string& stream) {
     return !region_exists(stream, RegionKind::waypoints);
   });
+  // The ring of a law is made by its solver, once there is a commander.
+  std::ranges::copy(commanded_laws(), std::back_inserter(standing));
+  std::ranges::sort(standing);
+  standing.erase(std::unique(standing.begin(), standing.end()), standing.end());
   for (const std::string& stream : standing) {
     if (is_wanted(stream)) members_.try_emplace(stream);
   }

@@ -6,6 +6,7 @@
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/roles/internals.hpp"
+#include "ipc/roles/law_server.hpp"
 #include "ipc/sweep/many_streams.hpp"
 #include "splinecast/errors.hpp"
 
@@ -43,7 +44,10 @@ bool StreamSweep::own(const std::string& stream, Member& member) {
   try {
     // Checks before it locks, because the lock creates a file and there may be many streams that
     // cannot be solved.
-    if (!member.is_named) (void)look_at_region(stream, RegionKind::waypoints, options_.trust);
+    const bool is_new_law = LawServer::is_wanted(stream);
+    if (!member.is_named && !is_new_law) {
+      (void)look_at_region(stream, RegionKind::waypoints, options_.trust);
+    }
     if (is_owned(stream, RegionKind::spline)) throw StreamBusy(stream);
     member.waiting = std::make_unique<Solver>(stream, options_);
     return true;

@@ -27,6 +27,7 @@ LINES = [
     ("splinecast check --limits joint_lim", "joint_limits.yaml"),
     ("splinecast fit waypoi", "waypoints.csv"),
     ("splinecast info ar", "arm_of_test"),
+    ("splinecast rate ar", "arm_of_test"),
     ("splinecast latency comp", "compare"),
     ("splinecast latency compare --thresh", "--threshold"),
     ("splinecast completion z", "zsh"),

@@ -8,7 +8,7 @@
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/summary.hpp"
 #include "ipc/options/stream.hpp"
-#include "ipc/roles/old_motion.hpp"
+#include "ipc/owned/old_motion.hpp"
 #include "ipc/verification/settled_segments.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/options.hpp"
@@ -99,7 +99,7 @@ void try_reader(const StreamImage& image) {
     ipc::Sampler sampler(board, ipc::stream_clock(header), ipc::dimension_kinds(header));
     Sampling sampling(board, sampler);
     look_around(board);
-    (void)ipc::end_of_motion(header, board);
+    (void)ipc::end_of_motion(header, board, {});
     sampling.tour();
     Script script(image.script);
     play(script, bytes, board, sampling);

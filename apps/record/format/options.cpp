@@ -28,6 +28,8 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr std::array kBeyond{"report", "refuse"};
+/// By StreamClock.
+constexpr std::array<std::string_view, 3> kClocks{"recorded", "live", "law"};
 
 /// A limit or a bound; null: none.
 ordered_json limit_to_json(double value) {
@@ -149,8 +151,16 @@ RegionHeader parse_common(const Fields& fields, bool has_curve) {
     put_dimension(Fields(dimensions[d]), has_curve, d, header);
   }
   const auto clock = fields.take<std::string>("clock");
-  if (clock != "live" && clock != "recorded") throw fields.bad("clock");
-  header.clock = clock == "live" ? 1 : 0;
+  const auto* const known = std::ranges::find(kClocks, clock);
+  if (known == kClocks.end()) throw fields.bad("clock");
+  header.clock = static_cast<std::uint64_t>(known - kClocks.begin());
+  if (header.clock == static_cast<std::uint64_t>(StreamClock::law)) {
+    const Fields law(fields.at("law"));
+    const auto name = law.take<std::string>("name");
+    if (name.size() >= header.law.size()) throw law.bad("name");
+    std::ranges::copy(name, header.law.begin());
+    header.law_id = law.take<std::uint64_t>("id");
+  }
   const auto start = fields.take<std::string>("start");
   const auto condition = start == to_string(Condition{.kind = ConditionKind::own, .value = {}})
                              ? Condition{.kind = ConditionKind::own, .value = {}}
@@ -237,7 +247,7 @@ ordered_json to_json(const StreamOptions& options) {
   ordered_json json{{"format", kFormat},
                     {"stream", options.stream},
                     {"stream_id", ring.stream_id},
-                    {"clock", ring.clock == 1 ? "live" : "recorded"},
+                    {"clock", kClocks[ring.clock]},
                     {"wall_offset_ns", options.wall_offset.count()},
                     {"dimensions", dimensions_to_json(options)},
                     {"start", to_string(ipc::start_condition(ring))},
@@ -247,6 +257,10 @@ ordered_json to_json(const StreamOptions& options) {
                     {"epoch", ring.epoch},
                     {"pid", ring.owner_pid},
                     {"solver", nullptr}};
+  if (ring.law_id != 0) json["law"] = {{"name", ipc::text_of(ring.law)}, {"id", ring.law_id}};
+  if (ring.is_law != 0) {
+    json["time_law"] = {{"origin_ns", ring.law_origin}, {"largest_rate", ring.largest_rate}};
+  }
   if (options.spline) json["solver"] = curve_to_json(*options.spline);
   return json;
 }

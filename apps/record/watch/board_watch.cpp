@@ -31,7 +31,7 @@ BoardWatch::BoardWatch(std::uint32_t number, ipc::CheckedRegion<ipc::BoardLayout
       board_(std::move(board)),
       reader_(board_.region.bytes(), board_.layout),
       ring_(ring),
-      is_live_(ipc::stream_clock(board_.header) == StreamClock::monotonic),
+      is_live_(is_live(ipc::stream_clock(board_.header))),
       wall_offset_(is_live_ ? wall_offset : Time::zero()),
       options_(ipc::window_options(board_.header)),
       settled_(reader_, is_live_),

@@ -30,8 +30,7 @@ RingWatch::RingWatch(std::uint32_t number, ipc::CheckedRegion<ipc::RingLayout> r
     : number_(number),
       ring_(std::move(ring)),
       reader_(ring_.region.bytes(), ring_.layout),
-      wall_offset_(ipc::stream_clock(ring_.header) == StreamClock::monotonic ? wall_offset
-                                                                             : Time::zero()),
+      wall_offset_(is_live(ipc::stream_clock(ring_.header)) ? wall_offset : Time::zero()),
       item_(ring_.layout.dimensions),
       next_(oldest_of(reader_)),
       complete_from_(next_) {

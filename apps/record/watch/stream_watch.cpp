@@ -33,8 +33,8 @@ void StreamWatch::attach_ring(Batch& batch) {
   ring_ = std::move(ring);
   owners_.ring = ring_->owner();
   put_options(batch);
-  const bool is_live = ipc::stream_clock(ring_->header()) != StreamClock::recorded;
-  const Time now = is_live ? batch.now - wall_offset_ : Time::zero();
+  const bool moves = is_live(ipc::stream_clock(ring_->header()));
+  const Time now = moves ? batch.now - wall_offset_ : Time::zero();
   add_event(batch, {.stream = number_, .kind = EventKind::attached}, now, batch.now,
             fmt::format(R"("role":"producer","pid":{},"epoch":{})", owners_.ring.second,
                         owners_.ring.first));
@@ -55,8 +55,8 @@ void StreamWatch::attach_board(Batch& batch) {
 
 void StreamWatch::put_options(Batch& batch) const {
   StreamOptions options{.stream = stream_, .waypoints = ring_->header()};
-  const bool is_live = options.waypoints.clock == 1;
-  options.wall_offset = is_live ? wall_offset_ : Time::zero();
+  const bool moves = is_live(ipc::stream_clock(options.waypoints));
+  options.wall_offset = moves ? wall_offset_ : Time::zero();
   if (board_) options.spline = board_->header();
   const std::string text =
       to_json(options).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);

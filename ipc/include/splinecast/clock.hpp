@@ -12,7 +12,14 @@ namespace [[gnu::visibility("default")]] splinecast {
 enum class StreamClock : std::uint64_t {
   recorded = 0,   ///< a recorded stream: times are time stamps of a recording
   monotonic = 1,  ///< a live stream: times are those of this host's CLOCK_MONOTONIC
+  law = 2,        ///< a live stream that follows a time law: its times are the law's stream time,
+                  ///< readers give host time
 };
+
+/// Whether a stream of this clock moves with the host's time.
+[[nodiscard]] constexpr bool is_live(StreamClock clock) noexcept {
+  return clock != StreamClock::recorded;
+}
 
 /// The source of the time. The solver takes it as an argument, so that tests can simulate a clock.
 class Clock {
@@ -28,6 +35,13 @@ class Clock {
 
   /// The current time, or up to some milliseconds earlier; never later than now(). Cheaper.
   [[nodiscard]] virtual Time about_now() const noexcept { return now(); }
+
+  /// The time of the host's clock at which the last now() returned `now`.
+  [[nodiscard]] virtual Time host_time(Time now) const noexcept { return now; }
+
+  /// The latest time that this clock can show when the host's clock has advanced by `ahead` since
+  /// `now`, the result of the last now().
+  [[nodiscard]] virtual Time latest(Time now, Time ahead) const noexcept { return now + ahead; }
 };
 
 /// The end of a timeout that begins now, at most Time::max(); a negative timeout counts as 0.

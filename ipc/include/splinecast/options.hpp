@@ -44,6 +44,8 @@ struct ProducerOptions {
   std::vector<std::string> units{};  ///< the same, cut to 15 bytes
   std::vector<Dimension> kinds{};    ///< one per dimension, or none: all linear
   StreamClock clock = StreamClock::monotonic;
+  std::string law{};  ///< time law that the stream follows, with `clock` law: times of waypoints
+                      ///< are then its stream time
   Condition start{.kind = ConditionKind::halt, .value = {}};  ///< one for which is_online() holds
   IngestLimits limits{};
   std::size_t capacity = 1024;  ///< ring items, 2 to 2²⁴; rounded up to a power of two
@@ -77,6 +79,7 @@ struct SolverOptions {
                                             ///< kept; 0 to 24 h, default 1 s
   std::optional<Time> min_entry{};          ///< live: least length of an entry; 1 ns to 1 min,
                                             ///< default freeze_ahead
+  std::optional<double> largest_rate{};     ///< of a time law: above 0, at most 100; default 1
   std::optional<std::size_t> capacity{};    ///< segments of history, 2(K + 6) + 2 to 2²²; rounded
                                             ///< up to a power of two, default 4,096
   bool wake = true;  ///< wake waiting readers: one system call per revision, which wakes at most

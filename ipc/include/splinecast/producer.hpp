@@ -152,6 +152,10 @@ class Producer {
   /// O(1); until a solver has attached, looks for one, as append does.
   [[nodiscard]] Time earliest() noexcept;
 
+  /// The time of the stream's clock: of a live stream CLOCK_MONOTONIC, of a stream that follows a
+  /// law the law's stream time; 0 for a recorded stream.
+  [[nodiscard]] Time now() noexcept;
+
   /// Ends the stream at its last waypoint, with this boundary condition; a live stream ends at
   /// rest. The last waypoint is the last one that the solver does not refuse: see refusals(). If
   /// that knot is already frozen, the stop segment runs and an entry returns to the knot. Throws

@@ -20,6 +20,7 @@
 namespace splinecast::ipc {
 class Sampler;
 struct Internals;
+struct LawPoint;
 }  // namespace splinecast::ipc
 
 namespace [[gnu::visibility("default")]] splinecast {
@@ -35,6 +36,13 @@ enum class WaitStatus : std::uint8_t {
 struct Alive {
   bool producer = false;
   bool solver = false;
+};
+
+/// The time law of a stream at one instant of host time.
+struct LawRate {
+  Time stream_time{};  ///< rounded down to nanoseconds
+  double rate = 1;     ///< stream time per host time
+  double slope = 0;    ///< change of the rate [1/s]
 };
 
 /// The progress of a stream's curve, under one revision.
@@ -88,6 +96,10 @@ class Reader {
   /// `wrong_dimension` if the sizes of the block do not match the times and the curve.
   std::uint64_t sample_many(std::span<const Time> times, const SampleBlock& out) noexcept;
 
+  /// The rate of the law that the stream follows, as the last sample or preview saw it, and its
+  /// stream time. Of a stream without a law: rate 1 and stream time 0.
+  [[nodiscard]] LawRate rate() const noexcept { return rate_; }
+
   /// The settled time of the curve that the last sample or look-ahead used: that curve never
   /// changes before this time. Before the first sample, the earliest time that a curve can have.
   [[nodiscard]] Time settled_until() const noexcept;
@@ -137,9 +149,16 @@ class Reader {
 
  private:
   friend struct ipc::Internals;
+  [[nodiscard]] SampleStatus follow(Time host, const StateRef& out, bool is_executed) noexcept;
+  [[nodiscard]] SampleStatus sample_point(const ipc::LawPoint& point, const StateRef& out,
+                                          bool is_executed) noexcept;
+  [[nodiscard]] std::uint64_t follow_many(std::span<const Time> times,
+                                          const SampleBlock& out) noexcept;
   struct Impl;
   std::unique_ptr<Impl> impl_;
   ipc::Sampler* sampler_;  ///< inside impl_
+  bool follows_law_;
+  LawRate rate_{};
   std::size_t dimensions_;
 };
 

@@ -29,6 +29,7 @@ from ._splinecast import (
     Block,
     Curve,
     Producer,
+    RateCommander,
     Reader,
     Snapshot,
     Solver,
@@ -45,6 +46,7 @@ from .records import (
     Alive,
     Excess,
     ItemRefusal,
+    LawRate,
     LimitExcess,
     Limits,
     MotionPeaks,
@@ -58,8 +60,8 @@ from .statuses import AppendStatus, Refusal, SampleStatus, SegmentKind
 
 __all__ = [
     "Alive", "AppendStatus", "BadRegion", "BadRequest", "Block", "Curve", "Error", "Excess", "Full", "ItemRefusal",
-    "LimitExcess", "Limits", "MotionPeaks", "NoSuchStream", "OutOfResources", "Producer", "Progress", "Reader",
-    "Refusal", "Refusals", "Refused", "ReplacePreview", "SampleStatus", "Segment", "SegmentKind", "Snapshot",
-    "Solver", "State", "StepResult", "StreamBusy", "__version__", "cross_validated_lambda", "fit", "methods",
-    "remove", "streams",
+    "LawRate", "LimitExcess", "Limits", "MotionPeaks", "NoSuchStream", "OutOfResources", "Producer", "Progress",
+    "RateCommander", "Reader", "Refusal", "Refusals", "Refused", "ReplacePreview", "SampleStatus", "Segment",
+    "SegmentKind", "Snapshot", "Solver", "State", "StepResult", "StreamBusy", "__version__", "cross_validated_lambda",
+    "fit", "methods", "remove", "streams",
 ]

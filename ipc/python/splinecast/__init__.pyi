@@ -16,6 +16,7 @@ from .errors import StreamBusy as StreamBusy
 from .records import Alive as Alive
 from .records import Excess as Excess
 from .records import ItemRefusal as ItemRefusal
+from .records import LawRate as LawRate
 from .records import LimitExcess as LimitExcess
 from .records import Limits as Limits
 from .records import MotionPeaks as MotionPeaks
@@ -60,8 +61,11 @@ class Producer:
     kinds : str or sequence of str, optional
         The kind of all dimensions, or one per dimension: 'linear' (the default), 'periodic:PERIOD',
         and for each of four consecutive dimensions 'quaternion' (x y z w) or 'quaternion-wxyz'.
-    clock : {'monotonic', 'recorded'}
-        A live stream, whose times are those of CLOCK_MONOTONIC, or a recorded stream.
+    clock : {'monotonic', 'recorded', 'law'}, optional
+        A live stream, whose times are those of CLOCK_MONOTONIC, a recorded stream, or a live stream
+        that follows a time law. Default: 'law' if `law` is given, else 'monotonic'.
+    law : str, optional
+        The time law that the stream follows: times of waypoints are its stream time, see `now`.
     start : str or (str, array-like)
         The boundary condition at the first waypoint: 'halt' (full stop), 'clamped', 'natural',
         'velocity=1,2' or ('velocity', values), 'acceleration=…'.
@@ -94,7 +98,8 @@ class Producer:
         *,
         dimensions: Optional[int] = None,
         kinds: Union[str, Sequence[str], None] = None,
-        clock: str = "monotonic",
+        clock: Optional[str] = None,
+        law: Optional[str] = None,
         start: Condition = "halt",
         min_interval: Seconds = 1e-6,
         max_interval: Seconds = 3600.0,
@@ -254,6 +259,11 @@ class Producer:
         Refused
             The stream is already finished, or the ring is full.
         """
+    def now(self) -> int:
+        """Return the time of the stream's clock [ns]: stream time if the stream follows a law.
+
+        CLOCK_MONOTONIC for another live stream, 0 for a recorded one.
+        """
     def refusals(self) -> Refusals:
         """Return what the solver has refused since the last call.
 
@@ -352,6 +362,8 @@ class Solver:
     freeze_ahead, history, min_entry : float, optional
         Live streams: the curve settles this long ahead of now; segments that ended less than this
         ago are kept; least length of an entry [s].
+    largest_rate : float, optional
+        Of a time law: above 0, at most 100. Default 1.
     capacity : int, optional
         Segments of history; rounded up to a power of two.
     wake : bool
@@ -390,6 +402,7 @@ class Solver:
         freeze_ahead: Optional[Seconds] = None,
         history: Optional[Seconds] = None,
         min_entry: Optional[Seconds] = None,
+        largest_rate: Optional[Seconds] = None,
         capacity: Optional[int] = None,
         wake: bool = True,
         mode: int = 0o600,
@@ -584,7 +597,8 @@ class Reader:
         Parameters
         ----------
         t : int or float
-            A time of the stream's clock [int ns or float s].
+            A time of the stream's clock [int ns or float s]; of a stream that follows a time law,
+            host time. Derivatives are by host time.
         out : State, optional
             Written and returned instead of a new state; nothing is allocated. Without values its
             memory stays as it is.
@@ -636,6 +650,14 @@ class Reader:
         """Return the progress of the curve; None if there is none yet, or the writer overtook."""
     def alive(self) -> Alive:
         """Return which writers live. System calls: not for a control loop."""
+    def rate(self) -> LawRate:
+        """Return the rate of the law that the stream follows, as the last sample or preview saw it.
+
+        Returns
+        -------
+        LawRate
+            stream_time, rate, slope. Of a stream without a law: rate 1, stream time 0.
+        """
     def close(self) -> None:
         """Unmap the stream. Closing again does nothing."""
     def __enter__(self: _Self) -> _Self:
@@ -664,7 +686,7 @@ class Reader:
         """One kind per dimension, as `Producer` takes them."""
     @property
     def clock(self) -> str:
-        """'monotonic' for a live stream, 'recorded' for a recorded one."""
+        """'monotonic' for a live stream, 'recorded' for a recorded one, 'law' if it follows a law."""
     @property
     def limits(self) -> Limits:
         """The stream's limits by kind; empty if it has none."""
@@ -680,6 +702,89 @@ class Reader:
     @property
     def is_memory_locked(self) -> bool:
         """Whether the region's pages are locked into memory (RLIMIT_MEMLOCK)."""
+
+class RateCommander:
+    """Requests the rate of a time law: a panel, a feed hold, an emergency stop.
+
+    A law maps host time to the stream time of all streams that follow it; its rate is stream time
+    per host time, the least that its commanders request. Its solver creates the law when the first
+    commander appears. When a commander ends, its last request remains in force until a commander of
+    the same name makes another one, or until its dead man expires.
+
+    Parameters
+    ----------
+    law : str
+        The law's name.
+    commander : str
+        The commander's name, such as 'operator' or 'estop'.
+    mode : int
+        Permission bits of the region.
+    group : int, optional
+        Group of the region.
+    owner : int, optional
+        A further user whose regions are trusted.
+
+    Raises
+    ------
+    StreamBusy
+        The law has a living commander of this name.
+    BadRequest
+        An invalid name.
+    BadRegion
+        Shared memory is full, or the files of that name cannot be used.
+    """
+
+    def __init__(
+        self,
+        law: str,
+        commander: str,
+        *,
+        mode: int = 0o600,
+        group: Optional[int] = None,
+        owner: Optional[int] = None,
+    ) -> None: ...
+    def set_rate(self, rate: Seconds, ramp: Seconds) -> None:
+        """Request a rate, reached by a ramp.
+
+        Parameters
+        ----------
+        rate : float
+            0 to 100; above the law's largest rate it counts as the largest.
+        ramp : float
+            Length of the ramp [s], 0.001 to 3600. A ramp that interrupts another one lasts up to a
+            quarter longer.
+        """
+    def hold(self, ramp: Seconds) -> None:
+        """Request rate 0, reached by a ramp of this length [s]."""
+    def release(self, ramp: Seconds) -> None:
+        """Withdraw the request: the law has the least rate of the others, or 1 if there is none."""
+    def set_dead_man(self, timeout: Seconds) -> None:
+        """Hold the law unless a request is repeated within this time [s], 0.001 to 3600; 0: never.
+
+        In force from the next request on.
+        """
+    def renew(self) -> None:
+        """Repeat the last request, for `set_dead_man`."""
+    def close(self) -> None:
+        """Give the name up. The last request remains in force. Closing again does nothing."""
+    def __enter__(self: _Self) -> _Self:
+        """Return the commander."""
+    def __exit__(
+        self,
+        kind: Optional[Type[BaseException]],
+        value: Optional[BaseException],
+        traceback: Optional[TracebackType],
+    ) -> None:
+        """Close."""
+    @property
+    def law(self) -> str:
+        """The law's name."""
+    @property
+    def commander(self) -> str:
+        """The commander's name."""
+    @property
+    def is_closed(self) -> bool:
+        """Whether the commander is closed."""
 
 class Curve:
     """A piecewise polynomial of D dimensions, made by `fit` or `Snapshot.curve`."""

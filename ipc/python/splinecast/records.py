@@ -28,6 +28,14 @@ class Progress(NamedTuple):
     refused: int  #: items that the solver refused
 
 
+class LawRate(NamedTuple):
+    """The time law of a stream at one instant of host time."""
+
+    stream_time: int  #: rounded down [ns]
+    rate: float  #: stream time per host time
+    slope: float  #: change of the rate [1/s]
+
+
 class Excess(NamedTuple):
     """The place of a motion that is nearest to a limit, or farthest beyond one."""
 

@@ -43,14 +43,6 @@ std::size_t count(const py::object& value, const char* name) {
   return static_cast<std::size_t>(number);
 }
 
-void read_access(const py::kwargs& keywords, RegionAccess& access, Trust& trusted) {
-  with(keywords, "mode",
-       [&](const py::object& v) { access.mode = static_cast<mode_t>(count(v, "mode")); });
-  with(keywords, "group",
-       [&](const py::object& v) { access.group = static_cast<gid_t>(count(v, "group")); });
-  with(keywords, "owner", [&](const py::object& v) { trusted = trust(v); });
-}
-
 /// Texts: one for all of `dimensions`, or a sequence.
 std::vector<std::string> texts(const py::object& value, std::size_t dimensions, const char* name) {
   if (!py::isinstance<py::str>(value)) return as<std::vector<std::string>>(value, name);
@@ -81,7 +73,8 @@ std::size_t dimensions(const py::kwargs& keywords) {
 StreamClock clock(const std::string& text) {
   if (text == "monotonic") return StreamClock::monotonic;
   if (text == "recorded") return StreamClock::recorded;
-  throw BadRequest("clock: '" + text + "' is not monotonic or recorded");
+  if (text == "law") return StreamClock::law;
+  throw BadRequest("clock: '" + text + "' is not monotonic, recorded or law");
 }
 
 double number(const py::object& value, const char* name) {
@@ -207,6 +200,16 @@ Trust trust(py::handle owner) {
   return {.owner = static_cast<uid_t>(count(py::reinterpret_borrow<py::object>(owner), "owner"))};
 }
 
+RegionAccess access(const py::kwargs& keywords, Trust& trusted) {
+  RegionAccess access;
+  with(keywords, "mode",
+       [&](const py::object& v) { access.mode = static_cast<mode_t>(count(v, "mode")); });
+  with(keywords, "group",
+       [&](const py::object& v) { access.group = static_cast<gid_t>(count(v, "group")); });
+  with(keywords, "owner", [&](const py::object& v) { trusted = trust(v); });
+  return access;
+}
+
 ProducerOptions producer_options(const py::kwargs& keywords) {
   ProducerOptions options;
   options.dimensions = dimensions(keywords);
@@ -219,6 +222,10 @@ ProducerOptions producer_options(const py::kwargs& keywords) {
       options.kinds.push_back(kind(text));
     }
   });
+  with(keywords, "law", [&](const py::object& v) {
+    options.law = as<std::string>(v, "law");
+    options.clock = StreamClock::law;
+  });
   with(keywords, "clock",
        [&](const py::object& v) { options.clock = clock(as<std::string>(v, "clock")); });
   with(keywords, "start", [&](const py::object& v) { options.start = condition(v); });
@@ -227,7 +234,7 @@ ProducerOptions producer_options(const py::kwargs& keywords) {
   with(keywords, "max_interval",
        [&](const py::object& v) { options.limits.max_interval = duration(v, "max_interval"); });
   with(keywords, "capacity", [&](const py::object& v) { options.capacity = count(v, "capacity"); });
-  read_access(keywords, options.access, options.trust);
+  options.access = access(keywords, options.trust);
   return options;
 }
 
@@ -238,6 +245,8 @@ SolverOptions solver_options(const py::kwargs& keywords) {
   with(keywords, "lam", [&](const py::object& v) { options.lambda = number(v, "lam"); });
   with(keywords, "time_scale",
        [&](const py::object& v) { options.time_scale = number(v, "time_scale"); });
+  with(keywords, "largest_rate",
+       [&](const py::object& v) { options.largest_rate = number(v, "largest_rate"); });
   with(keywords, "settle", [&](const py::object& v) { options.settle = count(v, "settle"); });
   with(keywords, "tail",
        [&](const py::object& v) { options.tail = tail(as<std::string>(v, "tail")); });
@@ -247,7 +256,7 @@ SolverOptions solver_options(const py::kwargs& keywords) {
   with(keywords, "capacity", [&](const py::object& v) { options.capacity = count(v, "capacity"); });
   read_times(keywords, options);
   read_limits(keywords, options);
-  read_access(keywords, options.access, options.trust);
+  options.access = access(keywords, options.trust);
   return options;
 }
 

@@ -24,4 +24,7 @@ namespace py = pybind11;
 [[nodiscard]] SolverOptions solver_options(const py::kwargs& keywords);
 [[nodiscard]] Trust trust(py::handle owner);
 
+/// The keywords mode and group; writes the keyword owner to `trusted`.
+[[nodiscard]] RegionAccess access(const py::kwargs& keywords, Trust& trusted);
+
 }  // namespace splinecast::python

@@ -58,6 +58,10 @@ py::object to_record(const ReplacePreview& preview) {
       preview.passed_over, peaks(preview.entry), peaks(preview.motion), to_record(preview.worst));
 }
 
+py::object to_record(const LawRate& rate) {
+  return type("LawRate")(rate.stream_time.count(), rate.rate, rate.slope);
+}
+
 py::object to_record(const StepResult& result) {
   return type("StepResult")(result.consumed, result.published, result.missed);
 }

@@ -23,6 +23,7 @@ namespace py = pybind11;
 [[nodiscard]] py::object to_record(const ItemRefusal& refusal, std::span<const std::string> names);
 [[nodiscard]] py::object to_record(const Refusals& refusals, std::span<const std::string> names);
 [[nodiscard]] py::object to_record(const ReplacePreview& preview);
+[[nodiscard]] py::object to_record(const LawRate& rate);
 [[nodiscard]] py::object to_record(const StepResult& result);
 [[nodiscard]] py::object to_record(const std::optional<CurveProgress>& progress);
 [[nodiscard]] py::object to_record(const SnapshotSegment& segment, std::size_t dimensions);

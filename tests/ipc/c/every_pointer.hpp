@@ -17,6 +17,8 @@ class CPointers : public ::testing::Test {
     EXPECT_EQ(splinecast_snapshot_create(2, &snapshot_), 0);
     EXPECT_EQ(splinecast_reader_snapshot(c_.reader, 0, CStream::kStep, snapshot_), 0);
     EXPECT_EQ(splinecast_fit(&path_, nullptr, &curve_), 0) << splinecast_last_error();
+    EXPECT_EQ(splinecast_rate_commander_create(law_.name().c_str(), "a", nullptr, &commander_), 0)
+        << splinecast_last_error();
     add_general();
     add_producer();
     add_replacement();
@@ -29,10 +31,12 @@ class CPointers : public ::testing::Test {
     add_snapshot();
     add_curve();
     add_fit();
+    add_rate_commander();
   }
   ~CPointers() override {
     EXPECT_EQ(splinecast_snapshot_destroy(snapshot_), 0);
     EXPECT_EQ(splinecast_curve_destroy(curve_), 0);
+    EXPECT_EQ(splinecast_rate_commander_destroy(commander_), 0);
   }
 
   template <typename Call>
@@ -60,10 +64,13 @@ class CPointers : public ::testing::Test {
   void add_snapshot();
   void add_curve();
   void add_fit();
+  void add_rate_commander();
 
+  TestStream law_;
   CStream c_;
   splinecast_snapshot* snapshot_ = nullptr;
   splinecast_curve* curve_ = nullptr;
+  splinecast_rate_commander* commander_ = nullptr;
   WrongPointers wrong_;
   std::array<double, 2> values_{};
   std::array<std::int64_t, 1> times_{};
@@ -89,6 +96,7 @@ class CPointers : public ::testing::Test {
   splinecast_times at_ = {times_.data(), 1, 1};
   splinecast_output_matrix matrix_ = {block_.data(), 1, 8, 0, 0};
   splinecast_segment segment_ = SPLINECAST_SEGMENT_INIT;
+  splinecast_law_rate rate_ = {};
   splinecast_output output_ = {values_.data(), 2, 1};
 };
 

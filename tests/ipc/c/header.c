@@ -13,4 +13,5 @@ const splinecast_step_result kStepResult = SPLINECAST_STEP_RESULT_INIT;
 const splinecast_reader_options kReaderOptions = SPLINECAST_READER_OPTIONS_INIT;
 const splinecast_progress kProgress = SPLINECAST_PROGRESS_INIT;
 const splinecast_segment kSegment = SPLINECAST_SEGMENT_INIT;
+const splinecast_rate_commander_options kCommanderOptions = SPLINECAST_RATE_COMMANDER_OPTIONS_INIT;
 const splinecast_fit_options kFitOptions = SPLINECAST_FIT_OPTIONS_INIT;

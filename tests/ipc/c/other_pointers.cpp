@@ -83,6 +83,7 @@ void CPointers::add_reader() {
 void CPointers::add_reader_outputs() {
   HANDLE_AND_OUTPUT(reader, std::int64_t, splinecast_reader_settled_until, "time", c_.reader,
                     time_);
+  HANDLE_AND_OUTPUT(reader, splinecast_law_rate, splinecast_reader_rate, "out", c_.reader, rate_);
   HANDLE_AND_OUTPUT(reader, std::int64_t, splinecast_reader_first_time, "time", c_.reader, time_);
   wrong_.pointer<splinecast_limits>("splinecast_reader_limits", "out", [this](auto* p) {
     return splinecast_reader_limits(c_.reader, p);
@@ -207,6 +208,36 @@ void CPointers::add_fit() {
       [this](auto* p) { return splinecast_cross_validated_lambda(p, values_.data()); });
   wrong_.pointer<double>("splinecast_cross_validated_lambda", "lambda",
                          [this](auto* p) { return splinecast_cross_validated_lambda(&path_, p); });
+}
+
+void CPointers::add_rate_commander() {
+  const char* create = "splinecast_rate_commander_create";
+  const char* law = law_.name().c_str();
+  const auto make = [](const char* named, const char* name,
+                       const splinecast_rate_commander_options* options) {
+    splinecast_rate_commander* out = nullptr;
+    return splinecast_rate_commander_create(named, name, options, &out);
+  };
+  wrong_.text(create, "law", [make](auto* p) { return make(p, "b", nullptr); });
+  wrong_.text(create, "commander", [make, law](auto* p) { return make(law, p, nullptr); });
+  wrong_.pointer<const splinecast_rate_commander_options>(
+      create, "options", [make, law](auto* p) { return make(law, "b", p); },
+      WrongPointers::Null::allowed);
+  wrong_.pointer<splinecast_rate_commander*>(create, "out", [law](auto* p) {
+    return splinecast_rate_commander_create(law, "b", nullptr, p);
+  });
+  wrong_.handle<splinecast_rate_commander>(
+      "splinecast_rate_commander_destroy", "commander",
+      [](auto* p) { return splinecast_rate_commander_destroy(p); }, c_.producer,
+      WrongPointers::Null::allowed);
+  const auto commander = [this](const char* function, const auto& call) {
+    wrong_.handle<splinecast_rate_commander>(function, "commander", call, c_.producer);
+  };
+  HANDLE_ONLY(commander, splinecast_rate_commander_set_rate, , 1, 1'000'000);
+  HANDLE_ONLY(commander, splinecast_rate_commander_hold, , 1'000'000);
+  HANDLE_ONLY(commander, splinecast_rate_commander_release, , 1'000'000);
+  HANDLE_ONLY(commander, splinecast_rate_commander_set_dead_man, , 0);
+  HANDLE_ONLY(commander, splinecast_rate_commander_renew);
 }
 
 }  // namespace splinecast::testing

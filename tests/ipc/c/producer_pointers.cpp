@@ -110,6 +110,7 @@ void CPointers::add_producer_state() {
   HANDLE_ONLY(producer, splinecast_producer_withdraw);
   HANDLE_AND_OUTPUT(producer, std::int64_t, splinecast_producer_earliest, "time", c_.producer,
                     time_);
+  HANDLE_AND_OUTPUT(producer, std::int64_t, splinecast_producer_now, "time", c_.producer, time_);
   HANDLE_AND_OUTPUT(producer, std::int64_t, splinecast_producer_last_time, "time", c_.producer,
                     time_);
   HANDLE_AND_OUTPUT(producer, uint64_t, splinecast_producer_appended, "items", c_.producer,

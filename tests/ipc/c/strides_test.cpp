@@ -217,12 +217,14 @@ TEST(CStructs, EndWithoutPaddingThatALaterMemberCouldFill) {
   ENDS_WITH(splinecast_limits, upper);
   ENDS_WITH(splinecast_refusal, excess);
   ENDS_WITH(splinecast_refusals, consumed);
-  ENDS_WITH(splinecast_producer_options, owner);
+  ENDS_WITH(splinecast_producer_options, law);
   ENDS_WITH(splinecast_preview, motion_jerk);
-  ENDS_WITH(splinecast_solver_options, reserved);
+  ENDS_WITH(splinecast_solver_options, largest_rate);
   ENDS_WITH(splinecast_step_result, reserved);
   ENDS_WITH(splinecast_reader_options, owner);
   ENDS_WITH(splinecast_progress, reserved);
+  ENDS_WITH(splinecast_law_rate, slope);
+  ENDS_WITH(splinecast_rate_commander_options, reserved);
   ENDS_WITH(splinecast_segment, acceleration_step);
   ENDS_WITH(splinecast_fit_options, end);
 #undef ENDS_WITH

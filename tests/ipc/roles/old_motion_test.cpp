@@ -1,4 +1,4 @@
-#include "ipc/roles/old_motion.hpp"
+#include "ipc/owned/old_motion.hpp"
 
 #include <gtest/gtest.h>
 

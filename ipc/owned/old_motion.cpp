@@ -1,7 +1,11 @@
-#include "ipc/roles/old_motion.hpp"
+#include "ipc/owned/old_motion.hpp"
+
+#include <algorithm>
+#include <exception>
 
 #include "ipc/board/reader.hpp"
 #include "ipc/board/segment.hpp"
+#include "ipc/law/follower.hpp"
 #include "ipc/layout/summary.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/options/stream.hpp"
@@ -13,9 +17,27 @@ namespace {
 
 constexpr int kSummaryTries = 16;
 
+/// The earliest host time at which the law of a stream can reach a stream time; `stream` if the
+/// stream follows none.
+Time host_time_of(Time stream, const RegionHeader& header, const Trust& trust) noexcept {
+  if (header.law_id == 0) return stream;
+  try {
+    LawFollower law(header, trust);
+    const MonotonicClock host;
+    LawPoint point;
+    if (!has_values(law.at(host.now(), point))) return Time::min();
+    const Time now = point.stream;
+    const double left = to_seconds(std::max(stream - now, Time::zero())) / law.largest_rate();
+    return saturated_sum(host.now(), from_seconds(left));
+  } catch (const std::exception&) {
+    return Time::min();
+  }
+}
+
 }  // namespace
 
-Time end_of_motion(const RegionHeader& header, const KnotBoardReader& board) noexcept {
+Time end_of_motion(const RegionHeader& header, const KnotBoardReader& board,
+                   const Trust& trust) noexcept {
   if (stream_clock(header) == StreamClock::recorded || header.time_namespace != time_namespace() ||
       board.retired()) {
     return Time::min();
@@ -28,7 +50,7 @@ Time end_of_motion(const RegionHeader& header, const KnotBoardReader& board) noe
     if (look.revision == 0) break;
     if (!board.copy_summary(look, summary)) continue;
     if (summary.newest == 0) break;
-    if (last.take_last(board, summary)) return last.right();
+    if (last.take_last(board, summary)) return host_time_of(last.right(), header, trust);
   }
   return Time::min();
 }
@@ -36,7 +58,7 @@ Time end_of_motion(const RegionHeader& header, const KnotBoardReader& board) noe
 Time end_of_motion(const std::string& stream, const Trust& trust) {
   try {
     const auto [region, header, layout] = open_board(stream, false, trust);
-    return end_of_motion(header, KnotBoardReader(region.bytes(), layout));
+    return end_of_motion(header, KnotBoardReader(region.bytes(), layout), trust);
   } catch (const StreamError&) {
     return Time::min();
   }
@@ -57,7 +79,7 @@ Time end_of_old_motion(const std::string& stream, std::uint64_t stream_id, const
     if (!peeked || peeked->stream_id == stream_id) return Time::min();
     const auto [region, header, layout] = open_board(stream, false, trust);
     if (header.stream_id == stream_id) return Time::min();
-    return end_of_motion(header, KnotBoardReader(region.bytes(), layout));
+    return end_of_motion(header, KnotBoardReader(region.bytes(), layout), trust);
   } catch (const StreamError&) {
     return Time::min();  // removed meanwhile, or not usable by this user
   }

@@ -15,8 +15,10 @@ inline constexpr Time kLongestOldMotion{3'600'000'000'000};
 
 /// The time on CLOCK_MONOTONIC at which the published curve of a live board comes to rest; min() if
 /// no reader follows the curve: it is recorded, of another time namespace, retired, or there is
-/// none.
-[[nodiscard]] Time end_of_motion(const RegionHeader& header, const KnotBoardReader& board) noexcept;
+/// none. If the stream follows a time law, the earliest time at which that can be: ask again then.
+/// If its law has been removed, min().
+[[nodiscard]] Time end_of_motion(const RegionHeader& header, const KnotBoardReader& board,
+                                 const Trust& trust) noexcept;
 
 /// The same for the board under a stream's name; min() if there is no usable board. System calls.
 [[nodiscard]] Time end_of_motion(const std::string& stream, const Trust& trust);

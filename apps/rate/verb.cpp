@@ -1,0 +1,219 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/cli/options.hpp"
+#include "apps/cli/verb.hpp"
+#include "apps/output/stream.hpp"
+#include "apps/process/exit_codes.hpp"
+#include "apps/process/messages.hpp"
+#include "apps/process/signals.hpp"
+#include "apps/rate/report.hpp"
+#include "apps/streams/report.hpp"
+#include "core/laws/ramp.hpp"
+#include "ipc/law/follower.hpp"
+#include "ipc/memory/names.hpp"
+#include "splinecast/clock.hpp"
+#include "splinecast/errors.hpp"
+#include "splinecast/rate_commander.hpp"
+
+/// `rate`: shows or changes the rate of a time law.
+namespace splinecast::apps {
+namespace {
+
+/// Published motion that is looked at for the effect of a ramp.
+constexpr Time kLooksAhead = std::chrono::seconds(10);
+constexpr TimeRange kRamps{ipc::kShortestRamp, ipc::kLongestRamp};
+
+struct RateOptions {
+  std::string law;
+  std::optional<double> rate;
+  Time ramp = std::chrono::milliseconds(500);
+  std::string commander = "operator";
+  bool release = false;
+  bool force = false;
+  std::optional<Time> dead_man;
+  bool json = false;
+  Trust trust;
+
+  /// Whether this is the commander of that name.
+  [[nodiscard]] bool is_own(const ipc::CommanderState& state) const {
+    return state.name == commander;
+  }
+};
+
+/// The law as published, if a solver has begun it.
+std::unique_ptr<ipc::LawFollower> open_law(const RateOptions& options) {
+  try {
+    auto law = std::make_unique<ipc::LawFollower>(options.law, options.trust);
+    ipc::LawPoint point;
+    return has_values(law->at(MonotonicClock().now(), point)) ? std::move(law) : nullptr;
+  } catch (const NoSuchStream&) {
+    return nullptr;
+  }
+}
+
+std::vector<ipc::CommanderState> commanders_of(const RateOptions& options) {
+  ipc::Commanders commanders(options.law, options.trust);
+  commanders.look_around();
+  (void)commanders.read(MonotonicClock().now(), ipc::kLargestRate);
+  return commanders.states();
+}
+
+int show(const RateOptions& options) {
+  LawState state;
+  state.law = options.law;
+  state.commanders = commanders_of(options);
+  const auto law = open_law(options);
+  if (law) {
+    const ipc::LawPoint& point = law->last();
+    state.is_solved = true;
+    state.rate = point.rates.rate;
+    state.slope = point.rates.slope;
+    state.lag = law->last_host() - point.stream;
+    state.largest_rate = law->largest_rate();
+    state.followers = ipc::followers_of(law->header().stream_id, options.trust);
+  } else if (state.commanders.empty()) {
+    throw NoSuchStream("there is no time law '" + options.law + "'");
+  }
+  print_report(options.json ? pretty(to_json(state)) : in_words(state));
+  return kOk;
+}
+
+/// The rate that the law will have with the requested change.
+double rate_after(const RateOptions& options, double largest) {
+  std::optional<double> least;
+  const auto ask = [&](double rate) { least = std::min(least.value_or(rate), rate); };
+  for (const ipc::CommanderState& other : commanders_of(options)) {
+    if (options.is_own(other) || other.command.rate < 0) continue;
+    ask(other.is_dead ? 0 : other.command.rate);
+  }
+  if (!options.release) ask(*options.rate);
+  return std::min(least.value_or(1.0), largest);
+}
+
+/// The effects of a ramp of this length on all streams that follow the law.
+std::vector<ipc::RampEffect> effects_of(ipc::LawFollower& law, double rate, Time length,
+                                        const Trust& trust) {
+  std::vector<ipc::RampEffect> effects;
+  const auto from = law.state_at(MonotonicClock().now() + 2 * Time(law.header().freeze_ahead));
+  if (!from) return effects;
+  const core::Ramp ramp = core::plan_ramp(*from, rate, length, law.largest_rate());
+  for (const std::string& stream : ipc::followers_of(law.header().stream_id, trust)) {
+    effects.push_back(ipc::effect_of(stream, *from, ramp, Time(law.header().law_origin),
+                                     length + kLooksAhead, trust));
+  }
+  return effects;
+}
+
+/// The first effect beyond a limit of its stream.
+const ipc::RampEffect* beyond_limits(const std::vector<ipc::RampEffect>& effects) {
+  constexpr double kRounding = 1e-9;
+  const auto found = std::ranges::find_if(
+      effects, [](const ipc::RampEffect& effect) { return effect.worst.ratio > 1 + kRounding; });
+  return found == effects.end() ? nullptr : &*found;
+}
+
+/// The shortest ramp, to about 10 %, that keeps the limits; nothing if none up to a minute does.
+std::optional<Time> sufficient_ramp(ipc::LawFollower& law, double rate, Time shorter,
+                                    const Trust& trust) {
+  constexpr Time kLongest = std::chrono::minutes(1);
+  constexpr double kGrowth = 1.1;
+  for (double seconds = to_seconds(shorter); seconds < to_seconds(kLongest); seconds *= kGrowth) {
+    const Time length = from_seconds(kGrowth * seconds);
+    if (beyond_limits(effects_of(law, rate, length, trust)) == nullptr) return length;
+  }
+  return std::nullopt;
+}
+
+/// Reports the effect of the requested ramp. Returns false if it must not be requested.
+bool report_effect(const RateOptions& options) {
+  const auto law = open_law(options);
+  if (!law) {
+    say(fmt::format("'{}': waiting for a solver", options.law));
+    return true;
+  }
+  const double rate = rate_after(options, law->largest_rate());
+  const auto effects = effects_of(*law, rate, options.ramp, options.trust);
+  if (options.json) {
+    nlohmann::ordered_json json{{"law", options.law}, {"rate", rate}};
+    json["effects"] = nlohmann::ordered_json::array();
+    for (const ipc::RampEffect& effect : effects) json["effects"].push_back(to_json(effect));
+    print_report(pretty(json));
+  } else {
+    std::string text =
+        fmt::format("'{}': rate {:g} in {:g} s\n", options.law, rate, to_seconds(options.ramp));
+    for (const ipc::RampEffect& effect : effects) text += in_words(effect);
+    print_report(text);
+  }
+  const ipc::RampEffect* const beyond = beyond_limits(effects);
+  if (beyond == nullptr || options.force) return true;
+  const auto enough = sufficient_ramp(*law, rate, options.ramp, options.trust);
+  say(fmt::format("refused: {}; {}; --force requests it all the same", excess_in_words(*beyond),
+                  enough ? fmt::format("a ramp of {:.3g} s would do", to_seconds(*enough))
+                         : "no ramp up to a minute would do"));
+  return false;
+}
+
+/// Repeats a request until a stop is requested, so that the law holds if this process dies.
+int keep_alive(RateCommander& commander, Time dead_man) {
+  while (sleep_until(MonotonicClock().now() + dead_man / 4)) commander.renew();
+  return kOk;
+}
+
+int command(const RateOptions& options) {
+  if (!report_effect(options)) return kFellShort;
+  RateCommander commander(options.law, options.commander, {}, options.trust);
+  commander.set_dead_man(options.dead_man.value_or(Time::zero()));
+  if (options.release) {
+    commander.release(options.ramp);
+  } else {
+    commander.set_rate(*options.rate, options.ramp);
+  }
+  return options.dead_man ? keep_alive(commander, *options.dead_man) : kOk;
+}
+
+void add_rate(Command& verb, Action& action) {
+  auto options = std::make_shared<RateOptions>();
+  verb.option("LAW", options->law, "Time law").required();
+  verb.option(
+          "R",
+          [options](const std::string& text) {
+            options->rate = number_within("R", text, {0, ipc::kLargestRate});
+          },
+          "Rate to request, stream time per host time, 0 (hold) to 100; without it, shows the law "
+          "and its commanders")
+      .type("R");
+  add_seconds(verb, "--ramp", options->ramp, "Length of the ramp in s, 0.001 to 3600 (default 0.5)",
+              kRamps);
+  verb.option("--as", options->commander, "Name of the commander (default operator)")
+      .type("COMMANDER");
+  verb.flag("--release", options->release, "Withdraw the commander's request");
+  add_seconds(verb, "--dead-man", options->dead_man,
+              "Run until SIGINT or SIGTERM and repeat the request: the law holds if this process "
+              "does not for this time in s, 0.001 to 3600",
+              kRamps);
+  verb.flag("--force", options->force, "Request it even if a stream would exceed its limits");
+  verb.flag("--json", options->json, "Print JSON");
+  add_trust(verb, options->trust);
+  verb.callback([&action, options] {
+    if (options->rate && options->release) throw UsageError("--release", "excludes a rate");
+    action = [options] {
+      ipc::require_stream_name(options->law);
+      ipc::require_stream_name(options->commander);
+      if (!options->rate && !options->release) return show(*options);
+      catch_stop_signals();
+      return command(*options);
+    };
+  });
+}
+
+const Verb rate_verb("rate", 95, "Show or change the rate of a time law", add_rate);
+
+}  // namespace
+}  // namespace splinecast::apps

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "splinecast/options.hpp"
+#include "splinecast/time.hpp"
+
+namespace [[gnu::visibility("default")]] splinecast {
+
+/// Requests the rate of a time law, for operators' panels, feed hold and emergency stop. A law maps
+/// host time to the stream time of all streams that follow it; its rate is stream time per host
+/// time. A law may have any number of commanders, each with a name; the law has the least of the
+/// rates that they request. Its solver (`splinecast solve`) creates the law when the first
+/// commander appears.
+///
+/// When a commander ends, its last request remains in force until a commander of the same name
+/// makes another one, or until its dead man expires. One thread uses a commander.
+class RateCommander {
+ public:
+  /// Becomes the commander `commander` of the law. It requests nothing until its first call, unless
+  /// an earlier commander of that name did. Throws BadRequest for an invalid name, StreamBusy if
+  /// the law has a living commander of that name, BadRegion if the files of that name cannot be
+  /// used or shared memory is full.
+  RateCommander(const std::string& law, const std::string& commander,
+                const RegionAccess& access = {}, const Trust& trust = {});
+  RateCommander(RateCommander&&) noexcept;
+  RateCommander& operator=(RateCommander&&) noexcept;
+  ~RateCommander();
+
+  /// Requests a rate of at least 0, reached by a ramp of this length, 1 ms to 1 h. The ramp begins
+  /// about one freeze-ahead of the law's solver later. A ramp that interrupts another one is up to
+  /// a quarter longer. A request above the law's largest rate counts as the largest. Throws
+  /// BadRequest for values out of range. One system call.
+  void set_rate(double rate, Time ramp);
+
+  /// Requests rate 0: a feed hold.
+  void hold(Time ramp) { set_rate(0, ramp); }
+
+  /// Withdraws the request. If it was the least one, the rate rises to that of the next commander,
+  /// or to 1 if there is none, by a ramp of this length.
+  void release(Time ramp);
+
+  /// From the next request on, the law holds if this commander does not repeat its request within
+  /// `timeout`, 1 ms to 1 h; 0: never.
+  void set_dead_man(Time timeout);
+
+  /// Repeats the last request, for set_dead_man().
+  void renew();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace splinecast

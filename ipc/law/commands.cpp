@@ -1,0 +1,133 @@
+#include "ipc/law/commands.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "ipc/mapping/checked_region.hpp"
+#include "ipc/memory/futex.hpp"
+#include "ipc/memory/names.hpp"
+#include "splinecast/errors.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+/// A command from an item. Another process may have stored any finite values: they are clamped.
+RateCommand command_of(const RingItem& item) {
+  const std::span<const double> values = item.waypoint().position;
+  const auto time = [](double seconds, Time least, Time most) {
+    return seconds > 0 ? std::clamp(from_seconds(seconds), least, most) : least;
+  };
+  return {.time = item.time,
+          .rate = values[0],
+          .ramp = time(values[1], kShortestRamp, kLongestRamp),
+          .dead_man = time(values[2], Time::zero(), kLongestRamp)};
+}
+
+/// When a command expires; max() if it does not.
+Time expiry_of(const RateCommand& command) noexcept {
+  const bool expires = command.rate > 0 && command.dead_man > Time::zero();
+  return expires ? saturated_sum(command.time, command.dead_man) : Time::max();
+}
+
+}  // namespace
+
+ProducerOptions command_ring_options(const RegionAccess& access, const Trust& trust) {
+  return {.dimensions = kCommandValues,
+          .names = {"rate", "ramp", "dead man"},
+          .units = {"", "s", "s"},
+          .start = {.kind = ConditionKind::own, .value = {}},
+          .limits = {.min_interval = Time(1), .max_interval = kLatestTime / 2},
+          .capacity = 256,
+          .access = access,
+          .trust = trust};
+}
+
+bool Commanders::has(const std::string& name) const noexcept {
+  return std::ranges::any_of(rings_, [&](const auto& ring) { return ring->name == name; });
+}
+
+void Commanders::look_around() {
+  std::erase_if(rings_, [](const auto& ring) { return ring->ring.retired(); });
+  for (const std::string& name : commander_names(law_)) {
+    if (has(name)) continue;
+    try {
+      auto [region, header, layout] = open_ring(commander_stream(law_, name), false, trust_);
+      if (header.dimensions != kCommandValues) continue;
+      region.close_descriptor();
+      rings_.push_back(std::make_unique<Ring>(name, std::move(region), layout));
+    } catch (const StreamError&) {
+      continue;  // it was just removed, or belongs to another user
+    }
+  }
+}
+
+bool Commanders::calls() const noexcept {
+  return std::ranges::any_of(rings_, [](const auto& ring) {
+    return ring->ring.written(std::memory_order_seq_cst) != ring->seen;
+  });
+}
+
+void Commanders::read_newest(Ring& ring) {
+  // Another try reads a command that came meanwhile; the ring is far longer than that.
+  constexpr int kTries = 4;
+  for (int i = 0; i < kTries; ++i) {
+    const Word written = ring.ring.written();
+    if (written == ring.seen || written == 0) return;
+    if (!ring.ring.observe(written - 1, item_)) continue;
+    ring.seen = written;
+    if (item_.kind == ItemKind::waypoint && is_finite(item_.waypoint().position)) {
+      ring.command = command_of(item_);
+    }
+  }
+}
+
+Demand Commanders::read(Time now, double largest) {
+  Demand demand{.rate = std::min(1.0, largest), .ramp = kShortestRamp};
+  bool is_any = false;
+  Time newest = Time::min();
+  for (const auto& ring : rings_) {
+    read_newest(*ring);
+    const RateCommand& command = ring->command;
+    const Time expiry = expiry_of(command);
+    ring->is_dead = expiry <= now;
+    const Time changed = ring->is_dead ? expiry : command.time;
+    if (changed >= newest && ring->seen > 0) {
+      newest = changed;
+      demand.ramp = command.ramp;
+    }
+    if (command.rate < 0) continue;
+    const double rate = ring->is_dead ? 0 : std::min(command.rate, largest);
+    demand.rate = is_any ? std::min(demand.rate, rate) : rate;
+    is_any = true;
+  }
+  return demand;
+}
+
+void Commanders::wait(Time timeout) const noexcept {
+  // There is one futex per ring, and a thread can wait on one only.
+  constexpr Time kSlice = std::chrono::milliseconds(1);
+  if (calls()) return;
+  if (rings_.size() == 1) {
+    wait_while_equal(rings_.front()->ring.written_word(), rings_.front()->seen, timeout);
+  } else {
+    std::this_thread::sleep_for(std::min(timeout, kSlice));
+  }
+}
+
+Time Commanders::next_expiry() const noexcept {
+  Time next = Time::max();
+  for (const auto& ring : rings_) {
+    if (!ring->is_dead) next = std::min(next, expiry_of(ring->command));
+  }
+  return next;
+}
+
+std::vector<CommanderState> Commanders::states() const {
+  std::vector<CommanderState> out;
+  for (const auto& ring : rings_) out.push_back({ring->name, ring->command, ring->is_dead});
+  return out;
+}
+
+}  // namespace splinecast::ipc

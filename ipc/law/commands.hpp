@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ipc/layout/waypoint_items.hpp"
+#include "ipc/mapping/region.hpp"
+#include "ipc/memory/word.hpp"
+#include "ipc/ring/item.hpp"
+#include "ipc/ring/reader.hpp"
+#include "splinecast/options.hpp"
+#include "splinecast/time.hpp"
+
+/// Rate commands. Each commander of a time law has a ring of its own, under the name
+/// commander_stream(), whose items are its commands. The law's solver observes these rings: it
+/// stores nothing in them, and only the newest command of each counts.
+namespace splinecast::ipc {
+
+/// A rate command.
+struct RateCommand {
+  Time time{};      ///< host time at which it was given
+  double rate = 1;  ///< requested rate, at least 0; below 0: the commander requests none
+  Time ramp{};      ///< length of the ramp to it
+  Time dead_man{};  ///< after this time without a newer command, the rate is 0; 0: never
+};
+
+/// Values of a command as an item: rate, ramp [s], dead man [s].
+inline constexpr std::size_t kCommandValues = 3;
+
+/// Shortest and longest ramp.
+inline constexpr Time kShortestRamp{1'000'000};
+inline constexpr Time kLongestRamp{3'600'000'000'000};
+
+/// The options of a commander's ring.
+[[nodiscard]] ProducerOptions command_ring_options(const RegionAccess& access, const Trust& trust);
+
+/// The rate that a law is to have, and the ramp to it.
+struct Demand {
+  double rate = 1;
+  Time ramp{};
+};
+
+/// What one commander requests.
+struct CommanderState {
+  std::string name;
+  RateCommand command;
+  bool is_dead = false;  ///< its dead man has expired: it requests rate 0
+};
+
+/// The commanders of one law, as the law's solver observes them. One thread uses it.
+class Commanders {
+ public:
+  Commanders(std::string law, const Trust& trust) : law_(std::move(law)), trust_(trust) {}
+
+  /// Looks for commanders that have come. System calls; allocates for new ones. A ring that cannot
+  /// be used is ignored, and tried again in the next call.
+  void look_around();
+
+  [[nodiscard]] bool empty() const noexcept { return rings_.empty(); }
+
+  /// Whether a commander has given a command since the last read(). One load per commander.
+  [[nodiscard]] bool calls() const noexcept;
+
+  /// Reads the newest commands and returns the least rate that is requested at `now`, at most
+  /// `largest`, with the ramp of the change that came last; rate 1 if none is requested.
+  [[nodiscard]] Demand read(Time now, double largest);
+
+  /// When the next dead man expires; max() for never.
+  [[nodiscard]] Time next_expiry() const noexcept;
+
+  /// What each commander requested at the last read().
+  [[nodiscard]] std::vector<CommanderState> states() const;
+
+  /// Sleeps until a commander gives a command that read() has not read, at most `timeout`; with
+  /// several commanders at most 1 ms. May return early.
+  void wait(Time timeout) const noexcept;
+
+ private:
+  struct Ring {
+    std::string name;
+    Region region;
+    WaypointRingReader ring;
+    Word seen = 0;  ///< `written` at the last read
+    RateCommand command{.time = Time::min(), .rate = -1};
+    bool is_dead = false;
+
+    Ring(std::string of, Region mapped, const RingLayout& layout)
+        : name(std::move(of)), region(std::move(mapped)), ring(region.bytes(), layout) {}
+  };
+  [[nodiscard]] bool has(const std::string& name) const noexcept;
+  void read_newest(Ring& ring);
+
+  std::string law_;
+  Trust trust_;
+  std::vector<std::unique_ptr<Ring>> rings_;
+  RingItem item_{kCommandValues};
+};
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,71 @@
+#include "ipc/owned/board.hpp"
+
+#include <utility>
+
+#include "ipc/mapping/checked_region.hpp"
+#include "ipc/memory/futex.hpp"
+#include "ipc/options/curve.hpp"
+#include "ipc/options/stream.hpp"
+#include "ipc/owned/old_motion.hpp"
+#include "splinecast/errors.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+OwnedBoard make_board(const std::string& stream, const RegionHeader& ring_header,
+                      const SolverOptions& options) {
+  RegionHeader header = ring_header;
+  header.kind = static_cast<std::uint64_t>(RegionKind::spline);
+  write_options(options, header);
+  const auto layout =
+      BoardLayout::of(header.dimensions, header.capacity, header.control, smooths(header));
+  header.stride = layout.stride;
+  header.region_bytes = layout.bytes;
+  header.epoch = 0;
+  Region region = Region::create(layout.bytes, options.access);
+  write_header(region.bytes(), header);
+  enter_owner(region.bytes(), header);
+  OwnedBoard board(std::move(region), header, layout, false);
+  if (!board.region.link(stream, RegionKind::spline)) {
+    throw BadRegion(region_path(stream, RegionKind::spline) +
+                    " was created by another process at the same time");
+  }
+  return board;
+}
+
+}  // namespace
+
+OwnedBoard::OwnedBoard(Region mapped, const RegionHeader& described, const BoardLayout& layout,
+                       bool old)
+    : region(std::move(mapped)),
+      lock(region.descriptor()),
+      header(described),
+      taken_over(old),
+      writer(region.bytes(), layout),
+      reader(region.bytes(), layout) {}
+
+std::variant<OwnedBoard, Occupied> own_board(const std::string& stream,
+                                             const RegionHeader& ring_header,
+                                             const SolverOptions& options, const Clock& clock) {
+  if (!region_exists(stream, RegionKind::spline)) return make_board(stream, ring_header, options);
+  auto [region, header, layout] = open_board(stream, true, options.trust);
+  OwnedBoard board(std::move(region), header, layout, true);
+  if (header.stream_id != ring_header.stream_id || board.reader.retired()) {
+    // Readers follow the old curve to its end: they must not find another one during the motion.
+    const Time end = end_of_motion(header, board.reader, options.trust);
+    const Time now = clock.now();
+    require_near_end(stream, end, now);
+    if (now < end) return Occupied{end};
+    board.writer.retire();
+    wake_all(board.writer.revision_word());
+    unlink_region(stream, RegionKind::spline);
+    return make_board(stream, ring_header, options);
+  }
+  require_same_stream(ring_header, header);
+  require_same_options(stream, header, options);
+  enter_owner(board.region.bytes(), header);
+  board.writer.store_sleeping(false);
+  return board;
+}
+
+}  // namespace splinecast::ipc

@@ -1,0 +1,87 @@
+#include "splinecast/rate_commander.hpp"
+
+#include <string>
+
+#include "ipc/python/docstrings.hpp"
+#include "ipc/python/held.hpp"
+#include "ipc/python/module.hpp"
+#include "ipc/python/values/options.hpp"
+#include "ipc/python/values/times.hpp"
+
+namespace splinecast::python {
+namespace {
+
+/// The Python class RateCommander.
+class HeldCommander {
+ public:
+  HeldCommander(const std::string& law, std::string name, const RegionAccess& access,
+                const Trust& trusted)
+      : name_(std::move(name)),
+        commander_("rate commander", law, make_role<RateCommander>(law, name_, access, trusted)) {}
+
+  void set_rate(double rate, py::handle ramp) {
+    const Time time = duration(ramp, "ramp");
+    commander_.use([&](RateCommander& own) { own.set_rate(rate, time); });
+  }
+  void hold(py::handle ramp) {
+    const Time time = duration(ramp, "ramp");
+    commander_.use([&](RateCommander& own) { own.hold(time); });
+  }
+  void release(py::handle ramp) {
+    const Time time = duration(ramp, "ramp");
+    commander_.use([&](RateCommander& own) { own.release(time); });
+  }
+  void set_dead_man(py::handle timeout) {
+    const Time time = duration(timeout, "timeout");
+    commander_.use([&](RateCommander& own) { own.set_dead_man(time); });
+  }
+  void renew() {
+    commander_.use([](RateCommander& own) { own.renew(); });
+  }
+
+  void close() { commander_.close(); }
+  void exit(const py::args& /*failure*/) { close(); }
+  [[nodiscard]] bool is_closed() const { return commander_.is_closed(); }
+  [[nodiscard]] const std::string& law() const { return commander_.stream(); }
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] std::string text() const {
+    return "<splinecast.RateCommander '" + name_ + "' of '" + law() +
+           (is_closed() ? "', closed>" : "'>");
+  }
+
+ private:
+  std::string name_;
+  Held<RateCommander> commander_;
+};
+
+std::unique_ptr<HeldCommander> make(const std::string& law, const std::string& commander,
+                                    const py::kwargs& keywords) {
+  require_keywords(keywords, "RateCommander", {"mode", "group", "owner"});
+  Trust trusted;
+  const RegionAccess allowed = access(keywords, trusted);
+  return std::make_unique<HeldCommander>(law, commander, allowed, trusted);
+}
+
+}  // namespace
+
+void define_rate_commander(py::module_& module) {
+  py::class_<HeldCommander>(module, "RateCommander", doc::RateCommander)
+      .def(py::init(&make), py::arg("law"), py::arg("commander"), doc::RateCommander_init)
+      .def("set_rate", &HeldCommander::set_rate, py::arg("rate"), py::arg("ramp"),
+           doc::RateCommander_set_rate)
+      .def("hold", &HeldCommander::hold, py::arg("ramp"), doc::RateCommander_hold)
+      .def("release", &HeldCommander::release, py::arg("ramp"), doc::RateCommander_release)
+      .def("set_dead_man", &HeldCommander::set_dead_man, py::arg("timeout"),
+           doc::RateCommander_set_dead_man)
+      .def("renew", &HeldCommander::renew, doc::RateCommander_renew)
+      .def("close", &HeldCommander::close, doc::RateCommander_close)
+      .def(
+          "__enter__", [](py::object self) { return self; }, doc::RateCommander_enter)
+      .def("__exit__", &HeldCommander::exit, doc::RateCommander_exit)
+      .def("__repr__", &HeldCommander::text)
+      .def_property_readonly("law", &HeldCommander::law, doc::RateCommander_law)
+      .def_property_readonly("commander", &HeldCommander::name, doc::RateCommander_commander)
+      .def_property_readonly("is_closed", &HeldCommander::is_closed, doc::RateCommander_is_closed);
+}
+
+}  // namespace splinecast::python

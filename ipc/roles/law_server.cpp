@@ -1,0 +1,156 @@
+#include "ipc/roles/law_server.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <span>
+
+#include "ipc/law/follower.hpp"
+#include "ipc/mapping/region.hpp"
+#include "ipc/memory/names.hpp"
+#include "ipc/options/curve.hpp"
+#include "splinecast/method.hpp"
+#include "splinecast/status.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+constexpr Time kLookEvery = std::chrono::milliseconds(20);
+
+/// A law begins this long after its ring has been made: its solver must publish it before.
+constexpr Time kNotice = std::chrono::milliseconds(20);
+
+/// Length of the straight line after the last ramp: about 36 years.
+constexpr Time kLine{std::int64_t{1} << 60};
+
+/// Accelerations beyond any ramp. With this limit an entry is not compared with the motion that the
+/// law has shown, and ends at the first waypoint after it.
+constexpr double kBeyondAnyRamp = 1e12;
+
+constexpr std::array<double, 1> kZero{0};
+
+void describe_law(RegionHeader& header) {
+  header.is_law = 1;
+  header.law_origin = MonotonicClock().now().count();
+}
+
+ProducerOptions ring_options(const SolverOptions& options) {
+  return {.names = {"stream time"},
+          .units = {"s"},
+          .start = {.kind = ConditionKind::own, .value = {}},
+          .limits = {.min_interval = Time(1), .max_interval = kLatestTime / 2},
+          .access = options.access,
+          .trust = options.trust};
+}
+
+}  // namespace
+
+bool LawServer::is_wanted(const std::string& law) {
+  return !commander_names(law).empty() && !is_owned(law, RegionKind::waypoints);
+}
+
+SolverOptions LawServer::solver_options(const SolverOptions& options) {
+  return {.method = find_method("quintic"),
+          .limits = MotionLimits{.acceleration = {kBeyondAnyRamp}},
+          .freeze_ahead = options.freeze_ahead,
+          .history = options.history,
+          .min_entry = Time(1),
+          .wake = options.wake,
+          .access = options.access,
+          .trust = options.trust};
+}
+
+LawServer::LawServer(const std::string& law, const SolverOptions& options)
+    : lock_(law, RegionKind::waypoints),
+      ring_(own_ring(law, ring_options(options), lock_,
+                     [&](RegionHeader& header) {
+                       describe_law(header);
+                       header.largest_rate = options.largest_rate.value_or(1.0);
+                     })),
+      items_(ring_.region.bytes(), ring_.layout),
+      commanders_(law, options.trust) {
+  lock_.keep_file();
+  commanders_.look_around();
+}
+
+void LawServer::attach(const KnotBoardReader& board, const RegionHeader& header) {
+  board_ = &board;
+  sampler_.emplace(board, StreamClock::monotonic);
+  freeze_ahead_ = Time(header.freeze_ahead);
+}
+
+WaypointRingWriter::Solved LawServer::solved() const noexcept {
+  return {.consumed = board_->consumed(), .settled_until = board_->look().settled_until};
+}
+
+/// Begins the law at the requested rate.
+void LawServer::begin(Time now) {
+  const double rate = commanders_.read(now, ring_.header.largest_rate).rate;
+  const Time start = now + std::max(kNotice, 2 * freeze_ahead_);
+  const double s = to_seconds(start - Time(ring_.header.law_origin));
+  const std::array<double, 1> velocity{rate};
+  const std::array<double, 1> first{s};
+  const std::array<double, 1> last{s + rate * to_seconds(kLine)};
+  const auto append = [&](Time time, const std::array<double, 1>& position) {
+    (void)ring_.writer.append(
+        {.time = time, .position = position, .velocity = velocity, .acceleration = kZero},
+        solved());
+  };
+  append(start, first);
+  append(start + kLine, last);
+}
+
+std::optional<core::LawState> LawServer::state_at(Time time) noexcept {
+  return law_state_at(*sampler_, time, ring_.header.largest_rate, state_);
+}
+
+void LawServer::change(const Demand& demand, Time now) {
+  // The solver's step follows at once; a little later than settled, so that it is not too late.
+  const Time margin = std::max<Time>(freeze_ahead_ / 16, std::chrono::microseconds(200));
+  const Time from = std::max(board_->look().settled_until, now + freeze_ahead_) + margin;
+  const double largest = ring_.header.largest_rate;
+  auto begin = state_at(from);
+  if (!begin) return;
+  const Time first = core::first_part(*begin, demand.ramp, largest);
+  if (first > Time::zero() && first < core::kShortestPart) {
+    // The present ramp ends before this time.
+    begin = state_at(from + 2 * core::kShortestPart);
+    if (!begin) return;
+  }
+  const core::Ramp ramp = core::plan_ramp(*begin, demand.rate, demand.ramp, largest);
+  constexpr std::size_t kMost = 3;
+  std::array<std::array<double, 2>, kMost> values{};  // position and rate
+  std::array<Waypoint, kMost> waypoints{};
+  std::size_t count = 0;
+  const auto add = [&](Time time, double position, double rate) {
+    values[count] = {position, rate};
+    const auto both = std::span(values[count]);
+    waypoints[count] = {.time = time,
+                        .position = both.first(1),
+                        .velocity = both.subspan(1, 1),
+                        .acceleration = kZero};
+    ++count;
+  };
+  for (const core::LawState& end : ramp.ends()) add(end.time, end.position, end.rate);
+  const core::LawState& last = ramp.ends().back();
+  add(last.time + kLine, last.position + last.rate * to_seconds(kLine), last.rate);
+  (void)ring_.writer.replace_from(begin->time, std::span(waypoints).first(count), solved());
+}
+
+void LawServer::step(const Clock& clock) {
+  const Time now = clock.now();
+  if (now >= next_look_) {
+    commanders_.look_around();
+    next_look_ = now + kLookEvery;
+  }
+  if (board_ == nullptr || board_->consumed() != ring_.writer.written()) return;
+  if (ring_.writer.written() == 0) return begin(now);
+  const Demand demand = commanders_.read(now, ring_.header.largest_rate);
+  // The newest item is the end of the straight line after the last ramp.
+  items_.copy(ring_.writer.written() - 1, item_);
+  if (item_.waypoint().velocity[0] != demand.rate) change(demand, now);
+}
+
+Time LawServer::due() const noexcept { return std::min(next_look_, commanders_.next_expiry()); }
+
+}  // namespace splinecast::ipc
