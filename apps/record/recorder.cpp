@@ -80,7 +80,7 @@ class Recorder {
     next_trigger_ = now + std::chrono::milliseconds(10);
     if (!socket_.take() && !has_signal) return;
     put(now);
-    writer_.dump("trigger");
+    writer_.trigger();
   }
 
   const RecordOptions& options_;
@@ -94,11 +94,26 @@ class Recorder {
   std::uint64_t dropped_ = 0;
 };
 
+std::uint64_t count_of(const OutputReport& report, RecordKind kind) {
+  const auto found = report.records.find(kind);
+  return found != report.records.end() ? found->second : 0;
+}
+
+std::string in_words(const OutputReport& report, std::uint64_t dropped) {
+  const auto s = [](std::uint64_t count) { return count == 1 ? "" : "s"; };
+  std::string text = fmt::format(
+      "{} items and {} segments recorded in {} file{}, {} bytes; {} records dropped, {} lost",
+      count_of(report, RecordKind::item), count_of(report, RecordKind::segment),
+      report.files.size(), s(report.files.size()), report.bytes, dropped, report.lost);
+  if (report.further_events > 0) {
+    text += fmt::format("; {} further event{} in these dumps", report.further_events,
+                        s(report.further_events));
+  }
+  return text;
+}
+
 nlohmann::ordered_json to_json(const OutputReport& report, std::uint64_t dropped) {
-  const auto count = [&](RecordKind kind) {
-    const auto found = report.records.find(kind);
-    return found != report.records.end() ? found->second : 0;
-  };
+  const auto count = [&](RecordKind kind) { return count_of(report, kind); };
   return {{"files", report.files},
           {"bytes", report.bytes},
           {"items", count(RecordKind::item)},
@@ -107,7 +122,8 @@ nlohmann::ordered_json to_json(const OutputReport& report, std::uint64_t dropped
           {"events", count(RecordKind::event)},
           {"dropped", dropped},
           {"lost", report.lost},
-          {"failures", report.failures}};
+          {"failures", report.failures},
+          {"further_events", report.further_events}};
 }
 
 }  // namespace
@@ -128,12 +144,7 @@ int run_record(const RecordOptions& options) {
   if (options.json) {
     print_report(json.dump(2) + "\n");
   } else if (!options.quiet) {
-    say(
-        fmt::format("{} items and {} segments recorded in {} file{}, {} bytes; {} records dropped, "
-                    "{} lost",
-                    json["items"].get<std::uint64_t>(), json["segments"].get<std::uint64_t>(),
-                    report.files.size(), report.files.size() == 1 ? "" : "s", report.bytes,
-                    recorder.dropped(), report.lost));
+    say(in_words(report, recorder.dropped()));
   }
   return report.lost + recorder.dropped() > 0 ? kFailed : kOk;
 }

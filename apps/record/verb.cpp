@@ -60,8 +60,7 @@ void add_memory(Command& verb, RecordOptions& options) {
                 }
               }),
               "With --last: events that write the memory, separated by commas: underrun, deadline, "
-              "late, "
-              "refusal, takeover, limit")
+              "late, refusal, takeover, limit. Events that follow soon are in the same file")
       .type("EVENT,…")
       .separated_by_commas()
       .needs(last);

@@ -19,14 +19,18 @@ namespace {
 constexpr Time kChunk = std::chrono::milliseconds(500);
 constexpr Time kCheck = std::chrono::seconds(1);
 constexpr Time kTryAgain = std::chrono::seconds(1);
+constexpr Time kTidy = std::chrono::seconds(1);
 /// Shortest life of a file before it is ended because of its size.
 constexpr Time kShortest = std::chrono::seconds(1);
 
 }  // namespace
 
 Files::Files(const OutputOptions& options)
-    : options_(options), names_(options.path), memory_(options.last.value_or(Time::zero())) {
-  if (options_.last) {
+    : options_(options),
+      names_(options.path),
+      memory_(options.last.value_or(Time::zero())),
+      dumps_(options.last.value_or(Time::zero()), options.after) {
+  if (keeps_memory()) {
     names_.require_folder();
     return;
   }
@@ -42,10 +46,17 @@ Files::~Files() = default;
 
 void Files::take(Batch&& batch) {
   for (Record& record : batch.records) take(std::move(record));
-  if (!options_.last) return;
+  take_events(batch);
+}
+
+void Files::take_events(const Batch& batch) {
   for (const EventNote& event : batch.events) {
-    if (options_.on.contains(event.kind)) dump(to_string(event.kind), batch.now);
+    if (event.kind == EventKind::retired) memory_.end(event.stream);
+    if (!keeps_memory() || event.is_old || !options_.on.contains(event.kind)) continue;
+    const std::string_view why = to_string(event.kind);
+    if (dumps_.take_event(why, batch.now)) begin_dump(why, batch.now);
   }
+  report_.further_events = dumps_.further_events();
 }
 
 void Files::take(Record record) {
@@ -79,14 +90,26 @@ void Files::note_whole_chunks() noexcept {
   has_chunk_ = false;
 }
 
-void Files::dump(std::string_view why, Time now) {
-  if (!options_.last) return rotate(now);
-  dump_until_ = now + options_.after;
-  if (wants_file_) return;
+void Files::trigger(Time now) {
+  if (!keeps_memory()) return rotate(now);
+  if (file_) close_file();
+  dumps_.take_trigger(now);
+  begin_dump("trigger", now);
+}
+
+/// Begins a file with what is in memory, and `why` in its name.
+void Files::begin_dump(std::string_view why, Time now) {
   wants_file_ = true;
   wanted_ = why;
+  is_part_ = false;
   next_try_ = now;
   tick(now);
+}
+
+void Files::end_dump(Time now) {
+  close_file();
+  wants_file_ = false;
+  if (const auto next = dumps_.close(now)) begin_dump(*next, now);
 }
 
 /// Begins a file with what is in memory. Returns whether its first chunk has been written.
@@ -98,15 +121,13 @@ bool Files::open(const std::string& path, Time now) {
     fail(error.what(), now);
     return false;
   }
-  memory_.give([&](const Record& record) {
-    file_->write(record);
-    if (record.kind == RecordKind::options) write_loss(record.stream, now);
-  });
-  file_->end_chunk();
+  write_memory(now);
   if (file_->failed()) {
-    fail(file_->why(), now);
-    unlink(path.c_str());  // it has no whole chunk of its own
+    const std::string why = fmt::format("{}: {}", path, file_->why());
+    file_.reset();
+    unlink(path.c_str());  // the next file has all of it
     names_.forget_last(wanted_);
+    fail(why, now);
     return false;
   }
   note_whole_chunks();
@@ -117,6 +138,18 @@ bool Files::open(const std::string& path, Time now) {
   report_.files.push_back(path);
   remove_oldest();
   return true;
+}
+
+/// Begins the file with what is in memory. A part of a dump does not repeat all of it: else each
+/// part could be as large as `max_bytes` at once.
+void Files::write_memory(Time now) {
+  const bool is_short = is_part_ && !is_failing_;
+  memory_.give(is_short ? RecordMemory::Extent::newest_start : RecordMemory::Extent::all,
+               [&](const Record& record) {
+                 file_->write(record);
+                 if (record.kind == RecordKind::options) write_loss(record.stream, now);
+               });
+  file_->end_chunk();
 }
 
 /// Writes what was lost of a stream before this file: before its other records, with which a new
@@ -160,6 +193,7 @@ void Files::close_file() {
 void Files::rotate(Time now) {
   if (!file_) return;
   close_file();
+  is_part_ = true;
   next_try_ = now;
   tick(now);
 }
@@ -172,40 +206,54 @@ void Files::remove_oldest() {
 }
 
 void Files::tick(Time now) {
-  if (wants_file_ && !file_ && now >= next_try_) {
-    const bool is_first = own_.empty() || options_.last;
-    if (open(names_.next(wanted_, is_first ? 1 : 2), now) && std::exchange(is_failing_, false)) {
-      say(fmt::format("recording continues in {}", file_->path()));
-    }
+  if (now >= next_tidy_) {
+    next_tidy_ = now + kTidy;
+    memory_.tidy(now, [this](const Record& record, std::uint64_t n) { count_lost(record, n); });
   }
+  try_again(now);
+  end_chunk_if_due(now);
+  check_file(now);
   if (!file_) return;
-  if (has_chunk_ && now - chunk_since_ >= kChunk) {
-    file_->end_chunk();
-    if (file_->failed()) return fail(file_->why(), now);
-    note_whole_chunks();
-  }
-  if (now >= next_check_) {
-    next_check_ = now + kCheck;
-    if (!file_->is_in_place()) {
-      file_->finish();
-      note_whole_chunks();
-      return fail("it was moved or removed", now);
-    }
-  }
-  if (options_.last && now >= dump_until_) {
-    close_file();
-    wants_file_ = false;
+  if (dumps_.is_due(now)) {
+    end_dump(now);
   } else if (options_.max_bytes && file_->bytes() >= *options_.max_bytes &&
              now - opened_ >= kShortest) {
     rotate(now);
   }
 }
 
+/// Opens a file if one should be open.
+void Files::try_again(Time now) {
+  if (!wants_file_ || file_ || now < next_try_) return;
+  const std::size_t least = keeps_memory() ? 1 : 2;  // the first of other files has no number, or 1
+  if (open(names_.next(wanted_, least), now) && std::exchange(is_failing_, false)) {
+    say(fmt::format("recording continues in {}", file_->path()));
+  }
+}
+
+void Files::end_chunk_if_due(Time now) {
+  if (!file_ || !has_chunk_ || now - chunk_since_ < kChunk) return;
+  file_->end_chunk();
+  if (file_->failed()) return fail(file_->why(), now);
+  note_whole_chunks();
+}
+
+/// Checks whether the file is still in its place.
+void Files::check_file(Time now) {
+  if (!file_ || now < next_check_) return;
+  next_check_ = now + kCheck;
+  if (file_->is_in_place()) return;
+  file_->finish();
+  note_whole_chunks();
+  own_.pop_back();  // another file may have its name
+  fail("it was moved or removed", now);
+}
+
 void Files::finish(Time now) {
-  if (options_.last && !wants_file_ && memory_.added() > whole_until_) dump("end", now);
+  if (keeps_memory() && !wants_file_ && memory_.added() > whole_until_) begin_dump("end", now);
   if (wants_file_ && !file_) {
     next_try_ = now;
-    tick(now);
+    try_again(now);
   }
   if (file_) {
     close_file();

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "apps/record/output/dump_schedule.hpp"
 #include "apps/record/output/file_names.hpp"
 #include "apps/record/output/memory.hpp"
 #include "apps/record/output/recording_file.hpp"
@@ -36,6 +37,7 @@ struct OutputReport {
   std::map<RecordKind, std::uint64_t> records{};  ///< read from the streams, by kind
   std::uint64_t lost = 0;                         ///< records that no file has
   std::size_t failures = 0;                       ///< files that could not be written to their end
+  std::uint64_t further_events = 0;  ///< events of `on` that began no dump, because one was open
 };
 
 /// The files of a recorder: one after the other, or with `last` one for each event. If a file
@@ -49,13 +51,12 @@ class Files {
   Files(const Files&) = delete;
   Files& operator=(const Files&) = delete;
 
-  /// Writes the records of a batch, then dumps if one of its events is a trigger.
+  /// Writes the records of a batch, then begins a dump if one of its events is of `on`: see
+  /// DumpSchedule.
   void take(Batch&& batch);
 
-  /// Writes what is in memory to a file of its own with `why` in its name, and continues for
-  /// `after`. If it still writes such a file, only the time begins again. Without `last`: ends the
-  /// file and begins another one.
-  void dump(std::string_view why, Time now);
+  /// Begins a dump. Without `last`: ends the file and begins another one.
+  void trigger(Time now);
 
   /// What is due at a time: ends chunks and files, checks the folder, tries again after a failure.
   /// Call it several times per second.
@@ -68,8 +69,16 @@ class Files {
 
  private:
   void take(Record record);
+  void take_events(const Batch& batch);
+  void begin_dump(std::string_view why, Time now);
+  void end_dump(Time now);
+  [[nodiscard]] bool keeps_memory() const noexcept { return options_.last.has_value(); }
   bool open(const std::string& path, Time now);
+  void write_memory(Time now);
   void close_file();
+  void check_file(Time now);
+  void end_chunk_if_due(Time now);
+  void try_again(Time now);
   void fail(const std::string& why, Time now);
   void note_whole_chunks() noexcept;
   void rotate(Time now);
@@ -85,11 +94,13 @@ class Files {
   std::string wanted_;       ///< kind of the file that could not be created; of a dump its event
   bool wants_file_ = false;  ///< whether a file should be open
   bool is_failing_ = false;  ///< whether the last one failed, which has been said
-  Time dump_until_{};        ///< of an open dump
+  bool is_part_ = false;     ///< whether the next file continues one that has what is older
+  DumpSchedule dumps_;
   Time opened_{};
   Time chunk_since_{};  ///< when the oldest record of the open chunk was written
   bool has_chunk_ = false;
   Time next_check_{};
+  Time next_tidy_{};
   Time next_try_{};
   std::uint64_t whole_until_ = 0;  ///< records before this number are in whole chunks, or dumped
   std::map<std::uint32_t, Loss> lost_;

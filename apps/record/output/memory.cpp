@@ -23,6 +23,7 @@ void RecordMemory::add(Record record, const Forget& forget) {
   const std::uint64_t sequence = added_++;
   const Time now = record.seen;
   stream.newest = now;
+  stream.has_ended = false;
   if (record.kind == RecordKind::options) {
     stream.options = std::move(record);
     return;
@@ -58,8 +59,31 @@ void RecordMemory::drop_old(std::uint32_t number, Time oldest, const Forget& for
       ++at;
       continue;
     }
-    while (!stream.items.empty()) pop(stream, stream.items, forget);
-    while (!stream.others.empty()) pop(stream, stream.others, forget);
+    empty(stream, forget);
+    at = streams_.erase(at);
+  }
+}
+
+void RecordMemory::empty(Stream& stream, const Forget& forget) {
+  while (!stream.items.empty()) pop(stream, stream.items, forget);
+  while (!stream.others.empty()) pop(stream, stream.others, forget);
+}
+
+void RecordMemory::end(std::uint32_t stream) noexcept {
+  const auto [first, last] = streams_.equal_range(stream);
+  if (first != last) std::prev(last)->second.has_ended = true;
+}
+
+void RecordMemory::tidy(Time now, const Forget& forget) {
+  for (auto at = streams_.begin(); at != streams_.end();) {
+    Stream& stream = at->second;
+    trim(stream, now, forget);
+    const bool is_held = holds_ && bytes_ <= kMostHeld;
+    if (is_held || !stream.has_ended || stream.newest > now - window_) {
+      ++at;
+      continue;
+    }
+    empty(stream, forget);
     at = streams_.erase(at);
   }
 }
@@ -98,12 +122,19 @@ void RecordMemory::clear(const Forget& forget) {
   while (!streams_.empty()) drop_old(streams_.begin()->first, Time::max(), forget);
 }
 
-void RecordMemory::give(const std::function<void(const Record& record)>& take) const {
+void RecordMemory::give(Extent extent,
+                        const std::function<void(const Record& record)>& take) const {
   for (const auto& [number, stream] : streams_) {
     if (!stream.options) continue;
+    const bool is_short = extent == Extent::newest_start && !stream.starts.empty();
+    const Start from = is_short ? stream.starts.back() : Start{};
     take(*stream.options);
-    for (const Kept& kept : stream.items) take(kept.record);
-    for (const Kept& kept : stream.others) take(kept.record);
+    for (const Kept& kept : stream.items) {
+      if (kept.record.number >= from.first_item) take(kept.record);
+    }
+    for (const Kept& kept : stream.others) {
+      if (kept.sequence >= from.sequence) take(kept.record);
+    }
   }
 }
 

@@ -31,8 +31,17 @@ class RecordMemory {
   void hold(bool holds) noexcept { holds_ = holds; }
   static constexpr std::size_t kMostHeld = std::size_t{64} << 20U;
 
-  /// Gives all kept records: for each stream its options, items, and the others.
-  void give(const std::function<void(const Record& record)>& take) const;
+  /// Which records give() gives: all, or of each stream those from the newest place on at which
+  /// verification can begin.
+  enum class Extent : std::uint8_t { all, newest_start };
+  /// Gives kept records: for each stream its options, items, and the others.
+  void give(Extent extent, const std::function<void(const Record& record)>& take) const;
+
+  /// The stream has ended: its records are only kept for the window, unless it continues.
+  void end(std::uint32_t stream) noexcept;
+
+  /// Forgets old records of streams to which nothing has been added.
+  void tidy(Time now, const Forget& forget);
 
   /// Forgets all records.
   void clear(const Forget& forget);
@@ -54,7 +63,8 @@ class RecordMemory {
   };
   struct Stream {
     std::optional<Record> options{};
-    Time newest{};             ///< when its newest record was read
+    Time newest{};  ///< when its newest record was read
+    bool has_ended = false;
     std::deque<Kept> items{};  ///< items and refusals
     std::deque<Kept> others{};
     std::deque<Start> starts{};
@@ -63,6 +73,7 @@ class RecordMemory {
 
   Stream& stream_of(const Record& record, const Forget& forget);
   void drop_old(std::uint32_t stream, Time oldest, const Forget& forget);
+  void empty(Stream& stream, const Forget& forget);
   void trim(Stream& stream, Time now, const Forget& forget);
   void pop(Stream& stream, std::deque<Kept>& from, const Forget& forget);
 

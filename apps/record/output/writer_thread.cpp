@@ -44,7 +44,7 @@ bool WriterThread::put(Batch& batch) {
   return true;
 }
 
-void WriterThread::dump(const std::string& why) { push(DumpRequest{why}, 0); }
+void WriterThread::trigger() { push(Trigger{}, 0); }
 
 void WriterThread::push(Job job, std::size_t bytes) {
   {
@@ -87,23 +87,34 @@ void WriterThread::work() {
     if (jobs_.empty() && is_ending_) break;
     std::deque<Job> jobs = std::exchange(jobs_, {});
     lock.unlock();
-    std::size_t done = 0;
-    for (Job& job : jobs) {
-      if (auto* const batch = std::get_if<Batch>(&job)) {
-        const std::size_t bytes = batch->bytes;
-        files_.take(std::move(*batch));
-        done += bytes;
-      } else {
-        files_.dump(std::get<DumpRequest>(job).why, clock_.now());
-      }
-      files_.tick(clock_.now());
-    }
-    files_.tick(clock_.now());
+    const std::size_t done = do_all(std::move(jobs));
     lock.lock();
     queued_ -= done;
+    if (!jobs_.empty()) continue;
+    // Time passes for the files with the records, and with the clock if there are none: a dump must
+    // not end before the records of its time, which a slow disk delays.
+    lock.unlock();
+    files_.tick(clock_.now());
+    lock.lock();
   }
   lock.unlock();
   files_.finish(clock_.now());
+}
+
+/// Returns the size of the batches.
+std::size_t WriterThread::do_all(std::deque<Job> jobs) {
+  std::size_t done = 0;
+  for (Job& job : jobs) {
+    if (auto* const batch = std::get_if<Batch>(&job)) {
+      const Time now = batch->now;
+      done += batch->bytes;
+      files_.take(std::move(*batch));
+      files_.tick(now);
+    } else {
+      files_.trigger(clock_.now());
+    }
+  }
+  return done;
 }
 
 }  // namespace splinecast::apps::record

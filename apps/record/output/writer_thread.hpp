@@ -5,7 +5,6 @@
 #include <deque>
 #include <exception>
 #include <mutex>
-#include <string>
 #include <thread>
 #include <variant>
 
@@ -32,20 +31,19 @@ class WriterThread {
   /// is full: the caller counts what it drops. Rethrows an exception of the thread.
   [[nodiscard]] bool put(Batch& batch);
 
-  /// Puts a request to dump, or to begin a new file, into the queue.
-  void dump(const std::string& why);
+  /// Puts a trigger into the queue: a request to dump, or to begin a new file.
+  void trigger();
 
   /// Writes all of the queue, ends the last file and the thread. Rethrows an exception of it.
   OutputReport finish();
 
  private:
-  struct DumpRequest {
-    std::string why;
-  };
-  using Job = std::variant<Batch, DumpRequest>;
+  struct Trigger {};
+  using Job = std::variant<Batch, Trigger>;
 
   void run() noexcept;
   void work();
+  std::size_t do_all(std::deque<Job> jobs);
   void push(Job job, std::size_t bytes);
   void rethrow();
 

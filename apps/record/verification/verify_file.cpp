@@ -32,8 +32,29 @@ std::string_view stream_of(const mcap::Channel& channel) noexcept {
   return topic;
 }
 
+/// Whether anything could be verified.
+bool has_equal(const FileVerification& found) {
+  return std::ranges::any_of(found.streams,
+                             [](const auto& entry) { return entry.second.equal > 0; });
+}
+
 ipc::Verification result_of(const StreamVerification& stream) {
   return {.equal = stream.equal, .first = stream.first};
+}
+
+std::string line_of(const StreamVerification& stream) {
+  const std::uint64_t rest = stream.unverified();
+  std::string line = stream.segments == 0 ? "nothing to verify: no segment in the file"
+                     : stream.equal == 0 && !stream.first ? "nothing could be verified"
+                                                          : in_words(result_of(stream));
+  if (rest > 0 && !stream.first) {
+    line += fmt::format("; {} not verified: what they depend on is not in the file", rest);
+  }
+  if (stream.lost.all() > 0) {
+    line += fmt::format("; lost while recording: {} items, {} segments, {} refusals",
+                        stream.lost.items, stream.lost.segments, stream.lost.refusals);
+  }
+  return line;
 }
 
 [[noreturn]] void refuse(const std::string& file, const mcap::Message& message,
@@ -109,7 +130,7 @@ int exit_code(const FileVerification& found) {
     const StreamVerification& stream = entry.second;
     return stream.first || (stream.segments > 0 && stream.equal == 0);
   });
-  return falls_short ? kFellShort : kOk;
+  return falls_short || !has_equal(found) ? kFellShort : kOk;
 }
 
 std::vector<std::string> to_lines(const FileVerification& found) {
@@ -118,16 +139,7 @@ std::vector<std::string> to_lines(const FileVerification& found) {
     lines.push_back(fmt::format("{}: it is cut off; its whole part is verified", found.file));
   }
   for (const auto& [name, stream] : found.streams) {
-    std::string line = fmt::format("'{}': {}", name, in_words(result_of(stream)));
-    const std::uint64_t rest = stream.unverified();
-    if (rest > 0 && !stream.first) {
-      line += fmt::format("; {} not verified: what they depend on is not in the file", rest);
-    }
-    if (stream.lost.all() > 0) {
-      line += fmt::format("; lost while recording: {} items, {} segments, {} refusals",
-                          stream.lost.items, stream.lost.segments, stream.lost.refusals);
-    }
-    lines.push_back(std::move(line));
+    lines.push_back(fmt::format("'{}': {}", name, line_of(stream)));
   }
   return lines;
 }

@@ -29,6 +29,7 @@ inline constexpr std::uint8_t kEventKinds = 10;
 struct EventNote {
   std::uint32_t stream = 0;
   EventKind kind{};
+  bool is_old = false;  ///< it occurred before the recorder came: begins no dump
 };
 
 /// Records on their way from the observer to the file, in the order in which they were read.

@@ -78,6 +78,12 @@ void BoardWatch::look(Batch& batch) {
   }
 }
 
+void BoardWatch::look_back(Batch& batch) {
+  looks_back_ = true;
+  look(batch);
+  looks_back_ = false;
+}
+
 void BoardWatch::put_summary(Batch& batch) {
   last_summary_ = batch.now;
   if (summary_.revision == 0) return;
@@ -86,8 +92,8 @@ void BoardWatch::put_summary(Batch& batch) {
 
 void BoardWatch::put_event(Batch& batch, EventKind kind, const std::string& members) const {
   const Time time = event_time(batch);
-  add_event(batch, {.stream = number_, .kind = kind}, time, saturated_sum(time, wall_offset_),
-            members);
+  add_event(batch, {.stream = number_, .kind = kind, .is_old = looks_back_}, time,
+            saturated_sum(time, wall_offset_), members);
 }
 
 void BoardWatch::put_loss(Batch& batch, const Loss& loss) const {
@@ -134,10 +140,15 @@ void BoardWatch::put_excesses(Batch& batch) {
   const ipc::Summary& now = settled_.summary();
   const ipc::Word kept = std::min<ipc::Word>(now.exceeding, ipc::kExcessesKept);
   const auto names = ipc::dimension_names(board_.header);
-  for (ipc::Word i = std::max(summary_.exceeding, now.exceeding - kept); i < now.exceeding; ++i) {
+  const ipc::Word first = std::max(summary_.exceeding, now.exceeding - kept);
+  ipc::Word missed = first - std::min(first, summary_.exceeding);
+  for (ipc::Word i = first; i < now.exceeding; ++i) {
     const auto excess = reader_.excess(now, i);
     if (excess) put_event(batch, EventKind::limit, members_of(*excess, names));
+    if (!excess) ++missed;
   }
+  // The board keeps the newest ones only.
+  if (missed > 0) put_event(batch, EventKind::limit, fmt::format(R"("missed":{})", missed));
 }
 
 bool BoardWatch::wants_start(const Batch& batch) const noexcept {

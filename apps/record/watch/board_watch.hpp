@@ -38,6 +38,9 @@ class BoardWatch {
   /// Reads the ring and what has settled since the last call.
   void look(Batch& batch);
 
+  /// The first look at a board that is older than the recorder: what it finds has occurred before.
+  void look_back(Batch& batch);
+
   /// Writes the summary of the last look.
   void put_summary(Batch& batch);
 
@@ -73,6 +76,7 @@ class BoardWatch {
   ipc::Summary summary_;   ///< of the last look
   ipc::SegmentCopy last_;  ///< the newest segment that has been read
   std::vector<ipc::RefusedItem> refused_;
+  bool looks_back_ = false;  ///< in look_back()
   bool has_last_ = false;
   bool needs_start_ = false;
   bool is_finished_ = false;

@@ -15,12 +15,12 @@ StreamWatch::StreamWatch(std::uint32_t number, std::string stream, const Trust& 
                          Time wall_offset)
     : number_(number), stream_(std::move(stream)), trust_(trust), wall_offset_(wall_offset) {}
 
-bool StreamWatch::attach(Batch& batch) {
+bool StreamWatch::attach(Batch& batch, bool was_there) {
   const bool had_ring = is_attached();
   const bool had_board = board_ != nullptr;
   try {
     if (!had_ring) attach_ring(batch);
-    if (is_attached() && !had_board) attach_board(batch);
+    if (is_attached() && !had_board) attach_board(batch, was_there);
   } catch (const NoSuchStream&) {  // it does not exist yet, or was just removed
   }
   return is_attached() != had_ring || (board_ != nullptr) != had_board;
@@ -31,6 +31,7 @@ void StreamWatch::attach_ring(Batch& batch) {
       std::make_unique<RingWatch>(number_, ipc::open_ring(stream_, false, trust_), wall_offset_);
   if (ring->is_retired()) return;  // its name will be removed
   ring_ = std::move(ring);
+  was_finished_ = false;
   owners_.ring = ring_->owner();
   put_options(batch);
   const bool moves = is_live(ipc::stream_clock(ring_->header()));
@@ -40,7 +41,7 @@ void StreamWatch::attach_ring(Batch& batch) {
                         owners_.ring.first));
 }
 
-void StreamWatch::attach_board(Batch& batch) {
+void StreamWatch::attach_board(Batch& batch, bool was_there) {
   if (!ipc::region_exists(stream_, ipc::RegionKind::spline)) return;
   auto board = ipc::open_board(stream_, false, trust_);
   if (board.header.stream_id != ring_->header().stream_id) return;  // of an earlier stream
@@ -51,6 +52,7 @@ void StreamWatch::attach_board(Batch& batch) {
   board_->put_event(batch, EventKind::attached,
                     fmt::format(R"("role":"solver","pid":{},"epoch":{})", owners_.board.second,
                                 owners_.board.first));
+  if (was_there) board_->look_back(batch);
 }
 
 void StreamWatch::put_options(Batch& batch) const {
@@ -111,6 +113,7 @@ void StreamWatch::detach(Batch& batch, const char* role) {
   if (board_) board_->put_summary(batch);
   add_event(batch, {.stream = number_, .kind = EventKind::retired}, batch.now, batch.now,
             fmt::format(R"("role":"{}")", role));
+  was_finished_ = is_finished();
   board_.reset();
   ring_.reset();
 }

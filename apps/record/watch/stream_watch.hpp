@@ -28,12 +28,15 @@ class StreamWatch {
   /// Whether both ring and board are attached.
   [[nodiscard]] bool is_complete() const noexcept { return ring_ && board_; }
   /// Whether the stream is finished, and all of it has been read.
-  [[nodiscard]] bool is_finished() const noexcept { return board_ && board_->is_finished(); }
+  [[nodiscard]] bool is_finished() const noexcept {
+    return board_ ? board_->is_finished() : was_finished_;
+  }
 
   /// Attaches to what exists: the ring first, then the board of the same stream. System calls.
   /// Writes the options into the batch. Returns whether anything is attached that was not before.
-  /// Throws BadRegion if a region cannot be used.
-  bool attach(Batch& batch);
+  /// `was_there`: what exists is older than the recorder. Throws BadRegion if a region cannot be
+  /// used.
+  bool attach(Batch& batch, bool was_there);
 
   /// Whether look() has anything to do: some loads.
   [[nodiscard]] bool calls() const noexcept;
@@ -54,7 +57,7 @@ class StreamWatch {
 
  private:
   void attach_ring(Batch& batch);
-  void attach_board(Batch& batch);
+  void attach_board(Batch& batch, bool was_there);
   void put_options(Batch& batch) const;
   void detach(Batch& batch, const char* role);
 
@@ -69,6 +72,7 @@ class StreamWatch {
   Owners owners_;
   std::unique_ptr<RingWatch> ring_;
   std::unique_ptr<BoardWatch> board_;
+  bool was_finished_ = false;  ///< of the stream from which it has detached
   Loss dropped_{};
 };
 

@@ -50,8 +50,6 @@ void Watcher::sweep(Batch& batch) {
     next_look_ = batch.now + kLookAround;
     look_around(batch);
   }
-  const bool looks_at_owners = batch.now >= next_owners_;
-  if (looks_at_owners) next_owners_ = batch.now + kLookAtOwners;
   const bool looks_at_all = all_quiet_;
   ++sweeps_;
   all_quiet_ = true;
@@ -61,7 +59,10 @@ void Watcher::sweep(Batch& batch) {
     const bool is_quiet = member.active + kQuietAfter <= batch.now;
     all_quiet_ = all_quiet_ && is_quiet;
     if (is_quiet && !looks_at_all && (sweeps_ + i) % kQuietSweeps != 0) continue;
-    if (looks_at_owners) member.watch.look_at_owners(batch);
+    if (batch.now >= member.next_owners) {
+      member.next_owners = batch.now + kLookAtOwners;
+      member.watch.look_at_owners(batch);
+    }
     if (!member.watch.calls()) continue;
     const std::size_t before = batch.records.size();
     member.watch.look(batch);
@@ -83,8 +84,9 @@ void Watcher::look_around(Batch& batch) {
   if (!folder_.has_changed() && !has_detached_) return;
   has_detached_ = false;
   find_streams();
+  const bool were_there = !std::exchange(has_looked_around_, true);
   for (const auto& member : members_) {
-    attach(batch, *member);
+    attach(batch, *member, were_there);
   }
 }
 
@@ -98,10 +100,10 @@ void Watcher::find_streams() {
   }
 }
 
-void Watcher::attach(Batch& batch, Member& member) {
+void Watcher::attach(Batch& batch, Member& member, bool was_there) {
   try {
     const bool was_attached = member.watch.is_attached();
-    if (member.watch.attach(batch)) member.active = batch.now;
+    if (member.watch.attach(batch, was_there)) member.active = batch.now;
     if (!was_attached && member.watch.is_attached()) {
       tell_(member.watch.stream(), "recording", false);
     }

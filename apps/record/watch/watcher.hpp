@@ -55,11 +55,12 @@ class Watcher {
     bool is_named = false;
     bool is_refused = false;  ///< it cannot be recorded; tried again when files come or go
     Time active{};            ///< when it last had something to read
+    Time next_owners = Time::min();
   };
 
   void look_around(Batch& batch);
   void find_streams();
-  void attach(Batch& batch, Member& member);
+  void attach(Batch& batch, Member& member, bool was_there);
   Member& add(const std::string& stream, bool is_named);
 
   std::vector<std::string> patterns_;
@@ -70,8 +71,8 @@ class Watcher {
   std::vector<std::unique_ptr<Member>> members_;
   std::map<std::string, Member*, std::less<>> by_name_;
   Time next_look_ = Time::min();
-  Time next_owners_ = Time::min();
   std::size_t sweeps_ = 0;
+  bool has_looked_around_ = false;
   bool all_quiet_ = true;
   bool is_behind_ = false;
   bool has_detached_ = false;
