@@ -27,14 +27,6 @@ namespace {
 
 class RecordFailure : public RecorderTest {};
 
-std::vector<std::string> recordings_in(const std::string& folder) {
-  std::vector<std::string> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() == ".mcap") paths.push_back(entry.path().string());
-  }
-  return paths;
-}
-
 TEST_F(RecordFailure, AFileThatCannotGrowEndsWithAWholeChunkAndAnotherOneFollows) {
   const TestFolder folder;
   const TestStream stream;

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
@@ -122,6 +123,24 @@ TEST_F(Record, PatternsFindLateStreamsAndARecreatedStream) {
   EXPECT_EQ(recorder.wait().code, 0);
   expect_verified(path, stream.name());
   EXPECT_EQ(verify(path).stream(stream.name())["parts"], 2);
+}
+
+TEST_F(Record, EndsWithAStreamThatIsRemovedAsSoonAsItIsFinished) {
+  const TestFolder folder;
+  const TestStream stream;
+  const std::string path = folder.path("run.mcap");
+  auto source = std::make_unique<SteppedStream>(stream.name());
+  Process recorder = start_recorder({stream.name(), "-o", path, "--until-finished"});
+  recorder.await_message("'" + stream.name() + "': recording");
+  source->append_until(50);
+  recorder.signal(SIGSTOP);
+  source->finish();
+  source.reset();
+  remove_stream(stream.name());
+  recorder.signal(SIGCONT);
+  EXPECT_EQ(recorder.wait().code, 0);
+  expect_verified(path, stream.name());
+  EXPECT_EQ(verify(path).stream(stream.name())["segments"], 49);
 }
 
 TEST_F(Record, TakesNoLockAndMapsReadOnly) {

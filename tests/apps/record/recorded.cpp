@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <span>
@@ -64,6 +65,15 @@ bool await_file(const std::string& path, std::uintmax_t size) {
     const auto found = std::filesystem::file_size(path, error);
     return !error && found >= size;
   });
+}
+
+std::vector<std::string> recordings_in(const std::string& folder) {
+  std::vector<std::string> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".mcap") paths.push_back(entry.path().string());
+  }
+  std::ranges::sort(paths);
+  return paths;
 }
 
 Verified verify(const std::string& path) {

@@ -51,6 +51,9 @@ class SteppedStream {
 /// Whether a recorder has read what a stream has: waits until its file is `size` bytes or more.
 [[nodiscard]] bool await_file(const std::string& path, std::uintmax_t size = 1);
 
+/// The paths of the files *.mcap in a folder, sorted.
+[[nodiscard]] std::vector<std::string> recordings_in(const std::string& folder);
+
 /// `replay --verify --json` of a recording.
 struct Verified {
   int code = 0;
