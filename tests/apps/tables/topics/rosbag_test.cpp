@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "apps/messages/ros.hpp"
 #include "tests/fixtures/messages/cdr_writer.hpp"
 #include "tests/fixtures/messages/rows_of.hpp"
+#include "tests/fixtures/messages/sampled_rows.hpp"
 #include "tests/fixtures/processes/built_with.hpp"
 #include "tests/fixtures/processes/process.hpp"
 
@@ -133,20 +133,16 @@ TEST_F(Rosbag, ATopicIsReplayedToTheValuesThatWerePutIn) {
                                        "--rate", "max", "--embedded", "--verify"});
   ASSERT_EQ(replayed.code, 0) << replayed.err;
   std::string times = "t_ns\n";
-  for (int i = 0; i < kRows; ++i) times += fmt::format("{}\n", (kBagStart + i * 10ms).count());
+  std::vector<CopiedRow> rows;
+  for (int i = 0; i < kRows; ++i) {
+    rows.push_back({.time = kBagStart + i * 10ms, .position = {at(i, 1), at(i, 0)}});
+    times += fmt::format("{}\n", rows.back().time.count());
+  }
   const testing::TestFolder folder;
   const Ended samples =
       testing::run({"sample", stream.name(), "--at", folder.write("times.csv", times)});
   ASSERT_EQ(samples.code, 0) << samples.err;
-  std::istringstream rows(samples.out);
-  std::string line;
-  std::getline(rows, line);
-  for (int i = 0; i < kRows - 1; ++i) {  // a segment has the exact values at its start
-    ASSERT_TRUE(std::getline(rows, line));
-    const std::string expected =
-        fmt::format("{},{},{},", (kBagStart + i * 10ms).count(), at(i, 1), at(i, 0));
-    EXPECT_TRUE(line.starts_with(expected)) << line;
-  }
+  testing::expect_sampled(samples.out, rows);
 }
 
 TEST_F(Rosbag, ATrajectoryGivesItsPoints) {
