@@ -96,7 +96,8 @@ int run_fit(const FitOptions& options) {
   continue_waypoints(table);
   const Gaps gaps = find_gaps(table, options.curve.gap).gaps;
   if (gaps.count > 0 && !options.table.quiet) {
-    say(fmt::format("{}: {}", table.file, in_words(gaps, options.curve.gap.policy)));
+    say(fmt::format("{}: {}", table.file,
+                    in_words(gaps, options.curve.gap.policy, table.row_name())));
   }
   std::vector<ReportCurve> curves;
   for (const Method* method : options.methods) {

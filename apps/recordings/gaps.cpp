@@ -103,12 +103,12 @@ nlohmann::ordered_json to_json(const Gaps& gaps, GapPolicy policy) {
   return {{"policy", to_string(policy)}, {"count", gaps.count}, {"longest", std::move(list)}};
 }
 
-std::string in_words(const Gaps& gaps, GapPolicy policy) {
+std::string in_words(const Gaps& gaps, GapPolicy policy, std::string_view row_name) {
   if (gaps.count == 0) return {};
   const Gaps::Gap& longest = gaps.largest.front();
-  return fmt::format("{} gap{} {}, the longest {:.6g} s from line {} to line {}", gaps.count,
+  return fmt::format("{0} gap{1} {2}, the longest {3:.6g} s from {4} {5} to {4} {6}", gaps.count,
                      gaps.count == 1 ? "" : "s", past_tense(policy), to_seconds(longest.length),
-                     longest.after, longest.before);
+                     row_name, longest.after, longest.before);
 }
 
 }  // namespace splinecast::apps

@@ -63,8 +63,8 @@ struct Gaps {
 };
 
 /// The gaps as JSON, and as text: `2 gaps split, the longest 12 s from line 3 to line 4`, empty if
-/// there is none. Rows are called `line`.
+/// there is none. `row_name`: see RowReader::row_name().
 [[nodiscard]] nlohmann::ordered_json to_json(const Gaps& gaps, GapPolicy policy);
-[[nodiscard]] std::string in_words(const Gaps& gaps, GapPolicy policy);
+[[nodiscard]] std::string in_words(const Gaps& gaps, GapPolicy policy, std::string_view row_name);
 
 }  // namespace splinecast::apps

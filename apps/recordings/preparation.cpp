@@ -53,7 +53,7 @@ bool PreparedRows::next(PreparedRow& row, RefusedRows* refused, bool is_repeated
     } catch (const InputError& error) {
       if (refused == nullptr || row.number == 0) throw;
       if (is_repeated) continue;
-      refused->add({.by = RefusedBy::file, .reason = kUnreadable, .line = row.number},
+      refused->add({.by = RefusedBy::file, .reason = kUnreadable, .number = row.number},
                    error.what());
       continue;
     }
@@ -208,7 +208,7 @@ bool PreparedRows::refuse(const Row& row, const Objection& objection, RefusedRow
                           bool is_repeated) {
   if (refused == nullptr) throw InputError(objection.message);
   if (!is_repeated) {
-    refused->add({.by = RefusedBy::file, .reason = objection.reason, .line = row.number},
+    refused->add({.by = RefusedBy::file, .reason = objection.reason, .number = row.number},
                  objection.message);
   }
   return false;

@@ -41,6 +41,7 @@ class Recording {
   [[nodiscard]] const RowColumns& columns() const { return rows_->columns(); }
   [[nodiscard]] const std::vector<Dimension>& kinds() const { return prepared_.kinds(); }
   [[nodiscard]] std::string where(std::size_t number) const { return rows_->where(number); }
+  [[nodiscard]] std::string_view row_name() const noexcept { return rows_->row_name(); }
   [[nodiscard]] const Survey& survey() const noexcept { return survey_; }
 
   /// Reads the next row of a later pass, without messages. Throws InputError if the file has

@@ -58,12 +58,12 @@ ipc::Word RefusedRows::count(RefusedBy by, std::string_view reason) const noexce
   return 0;
 }
 
-nlohmann::ordered_json RefusedRows::to_json() const {
+nlohmann::ordered_json RefusedRows::to_json(std::string_view row_name) const {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const RefusedRow& row : rows_) {
     nlohmann::ordered_json json{
-        {"line", nullptr}, {"by", to_string(row.by)}, {"reason", row.reason}};
-    if (row.line) json["line"] = *row.line;
+        {row_name, nullptr}, {"by", to_string(row.by)}, {"reason", row.reason}};
+    if (row.number) json[std::string(row_name)] = *row.number;
     if (row.item) json["item"] = *row.item;
     if (row.loop) json["loop"] = *row.loop;
     if (row.excess) json["beyond"] = apps::to_json(*row.excess);

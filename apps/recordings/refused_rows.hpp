@@ -31,7 +31,7 @@ inline constexpr std::string_view kUnreadable = "unreadable";
 struct RefusedRow {
   RefusedBy by{};
   std::string_view reason;              ///< kUnreadable, or from to_string()
-  std::optional<std::size_t> line{};    ///< in the file, from 1; unset: not a row of the file
+  std::optional<std::size_t> number{};  ///< see Row::number; unset: not a row of the file
   std::optional<ipc::Word> item{};      ///< number in the ring; if the solver refused it
   std::optional<std::size_t> loop{};    ///< from 1; if the row was played
   std::optional<LimitExcess> excess{};  ///< if the row exceeds limits
@@ -56,9 +56,9 @@ class RefusedRows {
   /// Refusals that are counted but not listed.
   [[nodiscard]] ipc::Word unlisted() const noexcept { return unlisted_; }
 
-  /// The listed rows in the order of add(): `line` (may be null), `by`, `reason`, and, if set,
-  /// `item`, `loop` and `beyond`.
-  [[nodiscard]] nlohmann::ordered_json to_json() const;
+  /// The listed rows in the order of add(): their number (may be null) under `row_name`, see
+  /// RowReader::row_name(), `by`, `reason`, and, if set, `item`, `loop` and `beyond`.
+  [[nodiscard]] nlohmann::ordered_json to_json(std::string_view row_name) const;
 
  private:
   struct Count {

@@ -41,7 +41,7 @@ void SentRows::note_refusal(const PlayedRow& row, Time time, AppendStatus status
   ++refused_by_producer_;
   note({.by = RefusedBy::producer,
         .reason = to_string(status),
-        .line = row.number,
+        .number = row.number,
         .loop = row.loop + 1},
        fmt::format("{}: waypoint refused: {} (time {} ns)", recording_.where(row.number),
                    to_string(status), time.count()));
@@ -74,7 +74,7 @@ void SentRows::note_refusal(const ItemRefusal& refused) {
   if (i < in_ring_.size() && in_ring_[i].number == 0) {
     where = "the stop at a gap";
   } else if (i < in_ring_.size()) {
-    row.line = in_ring_[i].number;
+    row.number = in_ring_[i].number;
     row.loop = in_ring_[i].loop + 1;
     where = recording_.where(in_ring_[i].number);
   }

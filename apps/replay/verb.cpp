@@ -59,7 +59,7 @@ std::string in_words(const ordered_json& by_reason) {
 
 /// Differences of a replay from its plan, as text.
 std::string in_words(const ReplayReport& report, const ReplayOptions& options,
-                     const RefusedRows& refused) {
+                     const RefusedRows& refused, std::string_view row_name) {
   std::string text;
   if (options.late != LatePolicy::refuse && report.late != LateRows{}) {
     text.append("; ").append(apps::in_words(report.late));
@@ -68,7 +68,8 @@ std::string in_words(const ReplayReport& report, const ReplayOptions& options,
   if (report.refused > named) {
     text += fmt::format("; {} refusals came too fast to be named", report.refused - named);
   }
-  if (report.gaps.count > 0) text += "; " + apps::in_words(report.gaps, options.gap.policy);
+  if (report.gaps.count > 0)
+    text += "; " + apps::in_words(report.gaps, options.gap.policy, row_name);
   if (report.interrupted) text += "; interrupted";
   if (report.unsent > 0) text += fmt::format("; {} not sent", report.unsent);
   if (report.verification) text.append("; ").append(apps::in_words(*report.verification));
@@ -115,7 +116,7 @@ int run_replay(const ReplayOptions& options) {
                       {"gaps", to_json(report.gaps, options.gap.policy)},
                       {"unsent", report.unsent},
                       {"interrupted", report.interrupted},
-                      {"rows", refused.to_json()},
+                      {"rows", refused.to_json(recording.row_name())},
                       {"rows_not_listed", refused.unlisted()}};
     if (report.verification) json["verification"] = to_json(*report.verification);
     print_report(json.dump(2) + "\n");
@@ -124,7 +125,8 @@ int run_replay(const ReplayOptions& options) {
                     options.stream, report.sent, report.interpolated,
                     passed_over_in_words(report.passed_over), report.refused,
                     in_words(refused_by_reason(report)), skipped,
-                    in_words(skipped_by_reason(refused)), in_words(report, options, refused)));
+                    in_words(skipped_by_reason(refused)),
+                    in_words(report, options, refused, recording.row_name())));
   }
   return exit_code(report);
 }

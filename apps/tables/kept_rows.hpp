@@ -26,6 +26,7 @@ class KeptRows final : public RowReader {
   [[nodiscard]] std::string where(std::size_t number) const override {
     return rows_->where(number);
   }
+  [[nodiscard]] std::string_view row_name() const noexcept override { return rows_->row_name(); }
   [[nodiscard]] double fraction_read() const override { return rows_->fraction_read(); }
 
  private:

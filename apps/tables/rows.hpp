@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/tables/options.hpp"
@@ -26,6 +27,9 @@ struct Row {
     return {.time = time, .position = position, .velocity = velocity, .acceleration = acceleration};
   }
 };
+
+/// What the rows of a text are called: see RowReader::row_name().
+inline constexpr std::string_view kLineName = "line";
 
 /// The position columns of a file.
 struct RowColumns {
@@ -63,6 +67,9 @@ class RowReader {
 
   /// The place of a row, for messages: `file:12`, or `file.mcap: message 12 of /joint_states`.
   [[nodiscard]] virtual std::string where(std::size_t number) const = 0;
+
+  /// What a row's number counts, for messages: `line` or `message`. A string literal.
+  [[nodiscard]] virtual std::string_view row_name() const noexcept = 0;
 
   /// The part of the file that has been read, 0 to 1.
   [[nodiscard]] virtual double fraction_read() const = 0;

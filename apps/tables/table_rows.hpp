@@ -15,6 +15,7 @@ class TableRows final : public RowReader {
   bool next(Row& row) override;
   void rewind() override { next_ = 0; }
   [[nodiscard]] std::string where(std::size_t number) const override;
+  [[nodiscard]] std::string_view row_name() const noexcept override { return table_.row_name(); }
   [[nodiscard]] double fraction_read() const override;
 
  private:

@@ -67,6 +67,8 @@ class TextRows final : public RowReader {
     return fmt::format("{}:{}", name(), number);
   }
 
+  [[nodiscard]] std::string_view row_name() const noexcept override { return kLineName; }
+
   [[nodiscard]] double fraction_read() const override {
     return file_.size() == 0
                ? 1

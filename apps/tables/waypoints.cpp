@@ -129,6 +129,10 @@ std::string WaypointTable::where(std::size_t i) const {
   return source ? source->where(lines[i]) : fmt::format("{}:{}", file, lines[i]);
 }
 
+std::string_view WaypointTable::row_name() const noexcept {
+  return source ? source->row_name() : kLineName;
+}
+
 std::vector<Dimension> kinds_of(const RowReader& rows, const std::vector<KindOption>& asked) {
   return resolve_kinds(rows.name(), rows.columns(), asked);
 }
@@ -152,9 +156,9 @@ void require_spline_input(const WaypointTable& table) {
                                    table.where(i), table.names[d], value));
     }
     if (i == 0 || table.times[i] > table.times[i - 1]) continue;
-    throw InputError(fmt::format("{}: time {} ns is not after {} ns on line {}", table.where(i),
-                                 table.times[i].count(), table.times[i - 1].count(),
-                                 table.lines[i - 1]));
+    throw InputError(fmt::format("{}: time {} ns is not after {} ns, the time of {} {}",
+                                 table.where(i), table.times[i].count(), table.times[i - 1].count(),
+                                 table.row_name(), table.lines[i - 1]));
   }
 }
 

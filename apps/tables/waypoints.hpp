@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/tables/options.hpp"
@@ -41,7 +42,9 @@ class WaypointTable {
 
   /// The place of row i, for messages: as RowReader::where, or `file:line`.
   [[nodiscard]] std::string where(std::size_t i) const;
-  std::shared_ptr<const RowReader> source{};  ///< for where(); null: a text with this name
+  /// What a row's number counts, as RowReader::row_name.
+  [[nodiscard]] std::string_view row_name() const noexcept;
+  std::shared_ptr<const RowReader> source{};  ///< for these; null: a text with this name
 };
 
 /// Reads a file of any format whole, see open_rows(). A derivative that only some of the rows have
@@ -53,7 +56,7 @@ class WaypointTable {
 /// Reads only the times of such a file. Throws as read_waypoints() does.
 [[nodiscard]] std::vector<Time> read_times(const std::string& path, TableOptions options);
 
-/// Throws InputError with the line of the first waypoint that a spline cannot contain: not finite,
+/// Throws InputError with the place of the first waypoint that a spline cannot contain: not finite,
 /// or not after the previous one.
 void require_spline_input(const WaypointTable& table);
 

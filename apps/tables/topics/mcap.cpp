@@ -77,6 +77,8 @@ class McapRows final : public RowReader {
     return fmt::format("{}: message {} of {}", file_.name(), number, shown(topic_.name));
   }
 
+  [[nodiscard]] std::string_view row_name() const noexcept override { return "message"; }
+
   [[nodiscard]] double fraction_read() const override {
     return topic_.messages == 0
                ? 1

@@ -72,6 +72,7 @@ class UlogRows final : public RowReader {
   [[nodiscard]] std::string where(std::size_t number) const override {
     return fmt::format("{}: message {} of {}", file_.name(), number, shown(topic_.name));
   }
+  [[nodiscard]] std::string_view row_name() const noexcept override { return "message"; }
   [[nodiscard]] double fraction_read() const override {
     return topic_.messages == 0
                ? 1

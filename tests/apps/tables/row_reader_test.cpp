@@ -217,6 +217,7 @@ class PartlyMoving final : public RowReader {
   [[nodiscard]] std::string where(std::size_t number) const override {
     return fmt::format("message {}", number);
   }
+  [[nodiscard]] std::string_view row_name() const noexcept override { return "message"; }
   [[nodiscard]] double fraction_read() const override { return next_ / 4.0; }
 
  private:

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <string>
 #include <vector>
@@ -106,6 +107,39 @@ TEST_F(McapTopics, AMessageWithoutAJointOrAPositionIsABadRow) {
   EXPECT_EQ(read.errors[2], where +
                                 "4 of /joint_states: byte 4: the message ends before a number of 4 "
                                 "bytes; bytes left: 0");
+}
+
+TEST_F(McapTopics, AGapAndABadRowAreNamedByTheirMessages) {
+  McapFile file(path());
+  const auto topic = file.channel("/joint_states", kJointState);
+  for (const auto t : {0ms, 100ms, 200ms, 5200ms, 5300ms, 5300ms, 5400ms}) {
+    file.write(topic, kStart + t, joint_state(kStart + t, {"a"}, {to_seconds(t)}, {}));
+  }
+  file.finish();
+  const testing::TestStream stream;
+  const std::vector<std::string> replay{
+      "replay", path(),     "--stream", stream.name(), "--clock",    "recorded",   "--rate",
+      "max",    "--settle", "1",        "--json",      "--embedded", "--on-error", "skip"};
+  const testing::Ended told = testing::run(replay);
+  ASSERT_EQ(told.code, 0) << told.err;
+  EXPECT_NE(told.err.find(path() + ": message 6 of /joint_states: waypoint refused: duplicate"),
+            std::string::npos)
+      << told.err;
+  const auto report = nlohmann::json::parse(told.out);
+  EXPECT_EQ(report["gaps"]["longest"][0]["after"], 3);
+  ASSERT_EQ(report["rows"].size(), 1U);
+  EXPECT_EQ(report["rows"][0]["message"], 6);
+  EXPECT_FALSE(report["rows"][0].contains("line"));
+  const testing::Ended twice = testing::run({"fit", path(), "--dt", "1"});
+  EXPECT_EQ(twice.code, 2);
+  EXPECT_NE(twice.err.find("ns, the time of message 5"), std::string::npos) << twice.err;
+  const testing::TestStream another;
+  const testing::Ended text =
+      testing::run({"replay", path(), "--stream", another.name(), "--clock", "recorded", "--rate",
+                    "max", "--settle", "1", "--embedded", "--late", "pass"});
+  EXPECT_NE(text.err.find("1 gap split, the longest 5 s from message 3 to message 4"),
+            std::string::npos)
+      << text.err;
 }
 
 TEST_F(McapTopics, TheTopicIsChosenIfTwoAreInterleaved) {
