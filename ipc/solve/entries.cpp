@@ -143,8 +143,12 @@ void PublishedCurve::enter() noexcept {
   note_change(origin_.time);
 }
 
+void PublishedCurve::enter_before_cut(Time settled, Time keep) noexcept {
+  if (!is_damaged_ && has_room_to_enter(keep) && prepare(settled)) enter_before_end();
+}
+
 /// Searches for an entry that ends at a waypoint before the last one, and makes it part of the
-/// curve. Used at the end of a stream, when no newer waypoints come. Requires prepare(). Tries at
+/// curve. Used at the end of a run, when no newer waypoints come. Requires prepare(). Tries at
 /// most as many candidates as the window has knots.
 void PublishedCurve::enter_before_end() noexcept {
   core::EntryRules rules = entry_rules();

@@ -166,6 +166,18 @@ class PublishedCurve {
     return is_searching_ && !is_ending_ && !ends_there_ && !window_.finished();
   }
 
+  /// Whether the curve waits for newer waypoints to enter, although the next item is a replacement
+  /// after all waypoints of the run, from time t on: no other one follows. Not on a live stream,
+  /// which enters without waiting.
+  [[nodiscard]] bool may_enter_before(Time t) const noexcept {
+    return needs_entry() && is_planning() && !entries_.is_live && window_.knots() > unmet_ &&
+           t >= newest_time();
+  }
+
+  /// Searches for an entry onto the waypoints that are known, and makes it part of the curve.
+  /// Requires may_enter_before(). So also a few waypoints between two stops are met.
+  void enter_before_cut(Time settled, Time keep) noexcept;
+
   /// Ends the curve at its newest knot with a boundary condition. If the published curve does not
   /// end there, an entry from `settled` on leads to the knot; it arrives at the knot's time, or
   /// later if that is too early for an entry. Returns false if no such entry has been found yet:

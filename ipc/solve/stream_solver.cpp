@@ -111,8 +111,9 @@ StepResult StreamSolver::step(const Clock& clock) noexcept {
   static_assert(kMaxBatch < 1U << (kMostTries - 2));
   for (int i = 0; i < kMostTries; ++i) {
     const StepResult result = make_revision(clock, now);
-    if (board_->is_sound()) return result;
-    suspect_items();
+    const bool is_sound = board_->is_sound();
+    if (is_sound && !has_entry_only_) return result;
+    if (!is_sound) suspect_items();
     if (is_damaged()) return {.damaged = true};
   }
   return {};
@@ -145,10 +146,13 @@ void StreamSolver::take_back(Word misses) noexcept {
 }
 
 /// Discards an unsound revision, and halves the number of items of the next one. If the revision
-/// had only one item, marks that item to be refused.
+/// had only one item, marks that item to be refused. If it had only the entry before a replacement,
+/// the replacement is taken without it.
 void StreamSolver::suspect_items() noexcept {
   suspected_ = std::max(suspected_, summary_.consumed);
-  if (batch_ > 1) {
+  if (has_entry_only_) {
+    unsound_entry_ = summary_.consumed;
+  } else if (batch_ > 1) {
     most_items_ = std::min<Word>(batch_, max_batch_) / 2;
   } else {
     unsound_item_ = summary_.consumed - 1;
@@ -197,11 +201,12 @@ Word StreamSolver::consume(Time now) noexcept {
   withdraw();
   bool is_blocked = false;
   is_finish_postponed_ = false;
+  has_entry_only_ = false;
   tries_ = PublishedCurve::kTriesPerStep;
   batch_limit_ = most_items_;
   for (batch_ = 0; summary_.consumed < available_ && batch_ < batch_limit_ && !is_damaged();) {
     ring_->copy(summary_.consumed, item_);
-    is_blocked = !has_room(item_);
+    is_blocked = enters_before(item_) || !has_room(item_);
     if (is_blocked) break;
     take(summary_.consumed++);
     if (is_finish_postponed_) {
@@ -217,9 +222,21 @@ Word StreamSolver::consume(Time now) noexcept {
   if (is_blocked || summary_.consumed == available_) {
     curve_.plan(settled_until_, keep_, true, tries_);
   }
-  const bool waits = is_blocked && !curve_.has_changes();
+  const bool waits = is_blocked && summary_.consumed == before && !curve_.has_changes();
   seen_ = waits || available_ == before ? written : summary_.consumed;
   return summary_.consumed - before;
+}
+
+/// Whether the curve enters onto the waypoints before a replacement, which is taken in the next
+/// revision then. The entry is a revision of its own, so that it does not depend on when the
+/// waypoints were taken.
+bool StreamSolver::enters_before(const RingItem& item) noexcept {
+  if (item.kind != ItemKind::replace || summary_.consumed == unsound_entry_) return false;
+  if (!curve_.may_enter_before(item.time)) return false;
+  if (batch_ > 0) return true;
+  curve_.enter_before_cut(settled_until_, keep_);
+  has_entry_only_ = curve_.has_changes();
+  return has_entry_only_;
 }
 
 /// Whether an item can be taken in this revision without losing the history that must be kept. A
