@@ -54,7 +54,7 @@ TEST_F(RecordDisk, AFullFileIsFollowedByAnotherOneAndEachVerifies) {
 }
 
 /// The first part of a dump has what was in memory, and the others do not repeat it.
-TEST_F(RecordDisk, ADumpThatGoesOnHasPartsOfABoundedSize) {
+TEST_F(RecordDisk, ALongDumpHasPartsOfABoundedSize) {
   const TestFolder folder;
   const TestStream stream;
   SteppedStream source(stream.name());

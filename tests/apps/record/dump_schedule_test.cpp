@@ -80,7 +80,7 @@ TEST(DumpSchedule, EachEventIsInADumpWithWhatIsBeforeAndAfterIt) {
   }
 }
 
-TEST(DumpSchedule, EventsThatGoOnAreInDumpsOfABoundedLength) {
+TEST(DumpSchedule, RepeatedEventsAreInDumpsOfABoundedLength) {
   constexpr Time kLast = milliseconds(1000);
   constexpr Time kAfter = milliseconds(300);
   Dumps dumps(kLast, kAfter);

@@ -24,9 +24,9 @@ class RecordEvent : public RecorderTest {};
 
 /// A clock whose reading number `look`, counted from 0, comes 80 ms later: a process that is
 /// stopped at this place of a step.
-class StoppedClock final : public Clock {
+class DelayedClock final : public Clock {
  public:
-  explicit StoppedClock(int look) : look_(look) {}
+  explicit DelayedClock(int look) : look_(look) {}
   [[nodiscard]] Time now() const noexcept override {
     if (looks_++ == look_) usleep(80'000);
     return clock_.now();
@@ -39,9 +39,9 @@ class StoppedClock final : public Clock {
 };
 
 /// A live stream of one dimension at 100 Hz, produced and solved in this process.
-class LiveSource {
+class SteadySource {
  public:
-  explicit LiveSource(const std::string& name, SolverOptions options = {})
+  explicit SteadySource(const std::string& name, SolverOptions options = {})
       : producer(name, {.dimensions = 1}), solver(name, options) {
     EXPECT_TRUE(solver.attach());
     next_ = clock_.now() + kLead;
@@ -74,7 +74,7 @@ class LiveSource {
 };
 
 /// Runs a source until a condition holds.
-void run_until(LiveSource& source, const std::function<bool()>& condition) {
+void run_until(SteadySource& source, const std::function<bool()>& condition) {
   EXPECT_TRUE(await([&] {
     source.run();
     return condition();
@@ -115,7 +115,7 @@ struct EventRecorder {
 };
 
 /// Runs a source for a time, so that something has settled.
-void settle(LiveSource& source) {
+void settle(SteadySource& source) {
   const MonotonicClock clock;
   const Time end = clock.now() + milliseconds(400);
   run_until(source, [&] { return clock.now() >= end; });
@@ -123,7 +123,7 @@ void settle(LiveSource& source) {
 
 TEST_F(RecordEvent, AnUnderrunBeginsADump) {
   const TestStream stream;
-  LiveSource source(stream.name());
+  SteadySource source(stream.name());
   EventRecorder recorder(stream.name(), "underrun");
   settle(source);
   const MonotonicClock clock;
@@ -136,13 +136,13 @@ TEST_F(RecordEvent, AnUnderrunBeginsADump) {
 
 TEST_F(RecordEvent, ADeadlineMissBeginsADump) {
   const TestStream stream;
-  LiveSource source(stream.name());
+  SteadySource source(stream.name());
   EventRecorder recorder(stream.name(), "deadline");
   settle(source);
   // The solver is stopped before the commit of a revision, which is then too late.
   run_until(source, [&] {
     source.append();
-    source.step(StoppedClock(1));
+    source.step(DelayedClock(1));
     return recorder.has_dump();
   });
   recorder.expect_dump();
@@ -150,13 +150,13 @@ TEST_F(RecordEvent, ADeadlineMissBeginsADump) {
 
 TEST_F(RecordEvent, ALateCommitBeginsADump) {
   const TestStream stream;
-  LiveSource source(stream.name());
+  SteadySource source(stream.name());
   EventRecorder recorder(stream.name(), "late");
   settle(source);
   // The solver is stopped between the reading of the clock and the commit.
   run_until(source, [&] {
     source.append();
-    source.step(StoppedClock(2));
+    source.step(DelayedClock(2));
     return recorder.has_dump();
   });
   recorder.expect_dump();
@@ -165,8 +165,8 @@ TEST_F(RecordEvent, ALateCommitBeginsADump) {
 TEST_F(RecordEvent, ARefusalBeginsADump) {
   const TestStream stream;
   const double bound = 10;
-  LiveSource source(stream.name(),
-                    {.limits = MotionLimits{.upper = {bound}}, .beyond = Beyond::refuse});
+  SteadySource source(stream.name(),
+                      {.limits = MotionLimits{.upper = {bound}}, .beyond = Beyond::refuse});
   EventRecorder recorder(stream.name(), "refusal");
   settle(source);
   const MonotonicClock clock;
@@ -183,7 +183,7 @@ TEST_F(RecordEvent, ARefusalBeginsADump) {
 
 TEST_F(RecordEvent, AnExcessOfALimitBeginsADump) {
   const TestStream stream;
-  LiveSource source(stream.name(), {.limits = MotionLimits{.velocity = {0.1}}});
+  SteadySource source(stream.name(), {.limits = MotionLimits{.velocity = {0.1}}});
   EventRecorder recorder(stream.name(), "limit");
   run_until(source, [&] { return recorder.has_dump(); });
   recorder.process.signal(SIGINT);
@@ -208,7 +208,7 @@ TEST_F(RecordEvent, ATakeoverBeginsADump) {
   (void)solver.wait();
 }
 
-/// What occurred before the recorder came is recorded, but is no reason for a dump.
+/// What occurred before the recorder came is recorded, but begins no dump.
 TEST_F(RecordEvent, AnEventOfBeforeBeginsNoDump) {
   const TestStream stream;
   SteppedStream source(stream.name(), {.limits = MotionLimits{.velocity = {1e-3}}});
