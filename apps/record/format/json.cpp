@@ -65,8 +65,7 @@ std::string_view JsonMessages::waypoint(ipc::Word number, const ipc::RingItem& i
          number);
   const Waypoint given = values_of(item);
   if (item.kind == ipc::ItemKind::finish) {
-    append(text_, R"(,"condition":"{}")",
-           to_string(Condition{.kind = item.condition, .value = {}}));
+    append(text_, R"(,"condition":"{}")", to_string(condition_of(item)));
   } else {
     values("position", given.position);
     values("velocity", given.velocity);

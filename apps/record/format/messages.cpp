@@ -29,6 +29,8 @@ Enum checked(std::uint8_t number, Enum least, Enum most, std::string_view what) 
   return static_cast<Enum>(number);
 }
 
+/// Whether the message of an item has D values in the place of a position. That of a finish with a
+/// value has them without a meaning: its value is in the place of the velocity or acceleration.
 bool has_position(const ipc::RingItem& item) noexcept {
   return item.kind == ipc::ItemKind::waypoint || item.kind == ipc::ItemKind::start_state ||
          (item.kind == ipc::ItemKind::finish && (item.condition == ConditionKind::velocity ||
@@ -60,10 +62,10 @@ Waypoint values_of(const ipc::RingItem& item) noexcept {
 }
 
 Condition condition_of(const ipc::RingItem& item) {
-  Condition condition{.kind = item.condition, .value = {}};
-  const auto values = values_of(item).position;
-  condition.value.assign(values.begin(), values.end());
-  return condition;
+  const Waypoint values = item.waypoint();
+  const auto value =
+      item.condition == ConditionKind::velocity ? values.velocity : values.acceleration;
+  return {.kind = item.condition, .value = {value.begin(), value.end()}};
 }
 
 Bytes encode(ipc::Word number, const ipc::RingItem& item) {
