@@ -1,0 +1,36 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/apps/record/recorded.hpp"
+#include "tests/fixtures/processes/shared_files.hpp"
+
+/// The recordings of tests/data/recordings, which a former version of the program has made.
+namespace splinecast::testing {
+namespace {
+
+class KeptRecordings : public RecorderTest {};
+
+TEST_F(KeptRecordings, VerifyAsTheyDidWhenTheyWereMade) {
+  const std::string folder = own_file("recordings");
+  const auto expected = nlohmann::json::parse(read_file(folder + "/expected.json"));
+  std::vector<std::string> paths;
+  for (const auto& [name, streams] : expected.items()) {
+    const std::string& path = paths.emplace_back(folder + "/" + name + ".mcap");
+    const Verified found = verify(path);
+    EXPECT_EQ(found.code, 0) << path << ": " << found.err;
+    ASSERT_TRUE(found.json.is_object()) << path << ": " << found.err;
+    EXPECT_EQ(found.json["streams"].size(), streams.size()) << path;
+    for (const auto& [stream, segments] : streams.items()) {
+      EXPECT_EQ(found.stream(stream)["segments"], segments) << path;
+      EXPECT_EQ(found.stream(stream)["equal"], segments) << path;
+    }
+  }
+  EXPECT_EQ(recordings_in(folder), paths);
+}
+
+}  // namespace
+}  // namespace splinecast::testing
