@@ -6,7 +6,7 @@
 set -euo pipefail
 source=$1
 build=$2
-stream=bits.$$
+stream=test.$$.bits
 
 configure() {  # name, compiler, flags
   cmake -S "$source" -B "$build/$1" -G Ninja -DCMAKE_CXX_COMPILER="$2" -DCMAKE_CXX_FLAGS="$3" \

@@ -47,7 +47,7 @@ std::string today() {
 }
 
 std::string campaign_stream(const std::string& what) {
-  return "campaign." + std::to_string(getpid()) + "." + what;
+  return "test." + std::to_string(getpid()) + "." + what;
 }
 
 Result make_result(const CampaignOptions& options, nlohmann::json promises,

@@ -17,6 +17,7 @@ import tempfile
 import time
 from pathlib import Path
 
+STREAM = f"test.{os.getpid()}.arm"
 # A line, and a word that its completion must offer, or complete it to.
 LINES = [
     ("splinecast rep", "replay"),
@@ -26,8 +27,8 @@ LINES = [
     ("splinecast replay --clock rec", "recorded"),
     ("splinecast check --limits joint_lim", "joint_limits.yaml"),
     ("splinecast fit waypoi", "waypoints.csv"),
-    ("splinecast info ar", "arm_of_test"),
-    ("splinecast rate ar", "arm_of_test"),
+    (f"splinecast info {STREAM[:-1]}", STREAM),
+    (f"splinecast rate {STREAM[:-1]}", STREAM),
     ("splinecast latency comp", "compare"),
     ("splinecast latency compare --thresh", "--threshold"),
     ("splinecast completion z", "zsh"),
@@ -40,7 +41,7 @@ def in_bash(script, line, environment, folder):
     command = (f"source {script}; COMP_WORDS=({' '.join(words)}); COMP_CWORD={len(words) - 1}; _splinecast; "
                "printf '%s\\n' \"${COMPREPLY[@]}\"")
     ended = subprocess.run(["bash", "--norc", "-c", command], cwd=folder, env=environment, check=True,
-                           capture_output=True, text=True, timeout=30)
+                           capture_output=True, text=True)
     return ended.stdout.split("\n")
 
 
@@ -60,7 +61,7 @@ class Zsh:
         """Types text."""
         os.write(self.terminal, text.encode())
 
-    def read_until(self, word, seconds=30):
+    def read_until(self, word, seconds=600):
         """Reads until the shell has written the word, for this long at most; returns what it has written."""
         text, end = "", time.monotonic() + seconds
         while word not in text and time.monotonic() < end:
@@ -88,7 +89,7 @@ def main():
                                                           check=True, capture_output=True).stdout)
         Path(folder, "waypoints.csv").write_text("t,x\n0,0\n0.1,1\n0.2,0\n", encoding="utf-8")
         Path(folder, "joint_limits.yaml").touch()
-        subprocess.run(["splinecast", "replay", "waypoints.csv", "--stream", "arm_of_test", "--clock", "recorded",
+        subprocess.run(["splinecast", "replay", "waypoints.csv", "--stream", STREAM, "--clock", "recorded",
                         "--rate", "max", "--embedded"], cwd=folder, env=environment, check=True, capture_output=True)
         try:
             zsh = Zsh(folder, environment)
@@ -103,7 +104,7 @@ def main():
                     print(f"zsh: {line}<tab>: {written!r}, not {word}")
             os.close(zsh.terminal)
         finally:
-            subprocess.run(["splinecast", "rm", "arm_of_test"], env=environment, check=False)
+            subprocess.run(["splinecast", "rm", STREAM], env=environment, check=False)
     print(f"{len(LINES)} lines, {wrong} failed")
     return 1 if wrong else 0
 

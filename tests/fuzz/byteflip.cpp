@@ -20,6 +20,7 @@
 #include "ipc/layout/areas.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
+#include "tests/fixtures/processes/patience.hpp"
 #include "tests/fuzz/byteflip_roles.hpp"
 
 /// Flips random bytes in both regions of live streams, while the processes of a producer, a solver
@@ -33,7 +34,7 @@ using std::chrono::steady_clock;
 
 constexpr std::array kKinds{ipc::RegionKind::waypoints, ipc::RegionKind::spline};
 /// Timeout of a process for its end after `stop`, on a busy machine.
-constexpr auto kPatience = 30s;
+using testing::kPatience;
 
 /// A writable mapping of a region's file that never changes its length.
 class Victim {
@@ -78,7 +79,9 @@ FlipCounters& shared_counters() {
 class Campaign {
  public:
   explicit Campaign(std::uint64_t seed)
-      : random_(seed), counters_(shared_counters()), name_("byteflip" + std::to_string(getpid())) {}
+      : random_(seed),
+        counters_(shared_counters()),
+        name_("test." + std::to_string(getpid()) + ".byteflip") {}
 
   void run_for(steady_clock::duration time) {
     const auto end = steady_clock::now() + time;

@@ -27,7 +27,7 @@ constexpr ipc::RegionKind kSpline = ipc::RegionKind::spline;
 /// Files with the regions of an image, under a name of this process, until the end of the scope.
 class Files {
  public:
-  explicit Files(const StreamImage& image) : name_("fuzz" + std::to_string(getpid())) {
+  explicit Files(const StreamImage& image) : name_("test." + std::to_string(getpid()) + ".fuzz") {
     write(kWaypoints, image.ring);
     write(kSpline, image.board);
   }

@@ -56,7 +56,7 @@ std::vector<Word> words_of(const std::string& stream, RegionKind kind) {
 class Recorder {
  public:
   Recorder(ProducerOptions options, const SolverOptions& how)
-      : name_("fuzzseed" + std::to_string(getpid())),
+      : name_("test." + std::to_string(getpid()) + ".seed"),
         dimensions_(options.dimensions),
         producer_(name_, std::move(options)),
         solver_(name_, how) {

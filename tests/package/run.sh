@@ -7,7 +7,7 @@ set -euo pipefail
 source=$1
 build=$2
 work=$3
-stream=example.$$
+stream=test.$$.example
 warnings="-Wall -Wextra -Werror"
 
 rm -rf "$work"

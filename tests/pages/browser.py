@@ -7,7 +7,7 @@ import subprocess
 import tempfile
 import time
 
-BOUND = 60  # seconds, for each wait
+BOUND = 600  # seconds, for each wait: too long for any busy machine
 
 
 class Browser:

@@ -67,7 +67,7 @@ class RealTime : public ::testing::Test {
 class RandomSampling {
  public:
   RandomSampling(const std::string& stream, ConfinedPage& page)
-      : page_(page), reader_(stream, 60s), values_(kHorizon * state_.values().size()) {}
+      : page_(page), reader_(stream, kPatience), values_(kHorizon * state_.values().size()) {}
 
   void round() {
     const Time now = clock_.now();
@@ -132,7 +132,7 @@ TEST_F(RealTime, AppendingMakesNoSystemCallNoAllocationAndNoPageFault) {
   const ConfinedEnd end = run_confined(
       [&](Confined& process) {
         Sending sending(stream.name(), kDimensions);
-        if (!sending.producer().wait_for_solver(60s)) _exit(1);
+        if (!sending.producer().wait_for_solver(kPatience)) _exit(1);
         const auto send = [&](std::uint64_t waypoints) {
           for (std::uint64_t sent = 0; sent < waypoints;) {
             if (sending.send()) ++sent;

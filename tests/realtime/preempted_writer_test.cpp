@@ -116,7 +116,7 @@ std::int64_t cpu_time() {
 }
 
 void read_above(const std::string& stream, Confined& process) {
-  Reader reader(stream, 60s);
+  Reader reader(stream, kPatience);
   PublicationWatch watch(stream);
   const MonotonicClock clock;
   State state(kDimensions);

@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cstdlib>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "tests/apps/mcap/npm_peers.hpp"
 #include "tests/apps/mcap/recording.hpp"
-#include "tests/fixtures/processes/built_with.hpp"
-#include "tests/fixtures/processes/process.hpp"
 
 namespace splinecast::testing {
 namespace {
@@ -17,34 +14,16 @@ namespace {
 namespace mcap = apps::mcap;
 using nlohmann::json;
 
-/// Installs @mcap/core below the build folder. Skips the test without npm or its registry, unless
-/// in CI.
-class McapPeers : public ::testing::Test {
+/// The peer is @mcap/core.
+class McapPeers : public NpmPeersTest {
  protected:
-  void SetUp() override {
-    REQUIRE_MCAP();
-    const std::string source = std::string(SPLINECAST_SOURCE) + "/tests/apps/mcap/peers/install.sh";
-    const Ended ended = Process(source, {peers_}).wait();
-    if (ended.code == 0) return;
-    const char* const ci = std::getenv("CI");
-    if (ci != nullptr && std::string(ci) == "true") FAIL() << ended.err;
-    GTEST_SKIP() << "npm cannot install the peers of MCAP: " << ended.err;
-  }
-
-  [[nodiscard]] Ended peer(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), peers_ + "/peer.mjs");
-    return Process("/usr/bin/node", arguments).wait();
-  }
-
   /// What the peer reads of a file.
   [[nodiscard]] json read(const std::string& file) const {
-    const Ended ended = peer({"read", folder_.write("read.mcap", file)});
+    const Ended ended = peer("peer.mjs", {"read", folder_.write("read.mcap", file)});
     EXPECT_EQ(ended.code, 0) << ended.err;
     return ended.code == 0 ? json::parse(ended.out) : json();
   }
 
-  std::string peers_ =
-      std::filesystem::path(SPLINECAST_PROGRAM).parent_path().parent_path() / "mcap_peers";
   TestFolder folder_;
 };
 
@@ -148,7 +127,7 @@ TEST_F(McapPeers, WriteFilesThatWeReadAndRecover) {
   for (std::uint32_t i = 0; i < kCount; ++i) written.push_back(peer_message(i));
   for (const std::string kind : {"none", "lz4", "zstd", "unchunked"}) {
     const std::string path = folder_.path(kind + ".mcap");
-    const Ended ended = peer({"write", path, kind, std::to_string(kCount)});
+    const Ended ended = peer("peer.mjs", {"write", path, kind, std::to_string(kCount)});
     ASSERT_EQ(ended.code, 0) << ended.err;
     const std::string file = read_file(path);
     mcap::Reader reader(kind, bytes_of(file));

@@ -62,7 +62,7 @@ class Soak : public ::testing::Test {
 /// Duration of the streams in seconds; SPLINECAST_SOAK_SECONDS overrides it.
 std::string soak_seconds() {
   const char* const asked = std::getenv("SPLINECAST_SOAK_SECONDS");
-  return asked == nullptr ? "20" : asked;
+  return asked == nullptr ? "9" : asked;
 }
 
 TEST_F(Soak, AHundredStreamsLoseNothingAndNothingGrowsWhileProducersAreKilled) {

@@ -10,11 +10,12 @@
 #include "splinecast/options.hpp"
 #include "tests/campaign/kills/journal.hpp"
 #include "tests/campaign/kills/payload.hpp"
+#include "tests/fixtures/processes/patience.hpp"
 
 namespace splinecast::campaign {
 
-/// Timeout of each expected event, for a busy machine; afterwards it counts as a hang.
-inline constexpr Time kPatience{30'000'000'000};
+/// Timeout of each expected event; afterwards it counts as a hang.
+using testing::kPatience;
 
 /// A stream to attack; all of its processes know it.
 struct Plan {

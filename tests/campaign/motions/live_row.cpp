@@ -14,6 +14,7 @@
 #include "splinecast/errors.hpp"
 #include "splinecast/solver.hpp"
 #include "splinecast/streams.hpp"
+#include "tests/fixtures/processes/patience.hpp"
 
 namespace splinecast::campaign {
 namespace {
@@ -21,7 +22,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr Time kTick = milliseconds(1);
-constexpr Time kPatience = std::chrono::seconds(5);
+using testing::kPatience;
 constexpr double kSettling = 2;                   // s: errors are measured from here on
 constexpr double kEnd = LiveRow::kSeconds - 0.1;  // s: the stream starves after it
 

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <array>
@@ -13,8 +14,9 @@
 namespace splinecast::campaign {
 namespace {
 
-/// Time limit of one stream in s. A stream that exceeds it hangs, and SIGALRM ends the program.
-constexpr unsigned kHangsAfter = 120;
+/// Limit of the CPU time of one stream in s. A stream that exceeds it hangs, and SIGPROF ends the
+/// program.
+constexpr time_t kHangsAfter = 120;
 
 volatile std::sig_atomic_t is_running = 0;
 std::array<char, 96> hang_text{};
@@ -35,14 +37,20 @@ class HangGuard {
                   "splinecast_campaign: seed %llu: hangs: unbounded step\n",
                   static_cast<unsigned long long>(seed));
     is_running = 1;
-    (void)std::signal(SIGALRM, tell_hang);
-    alarm(kHangsAfter);
+    (void)std::signal(SIGPROF, tell_hang);
+    limit(kHangsAfter);
   }
   HangGuard(const HangGuard&) = delete;
   HangGuard& operator=(const HangGuard&) = delete;
   ~HangGuard() {
     is_running = 0;
-    alarm(0);
+    limit(0);
+  }
+
+ private:
+  static void limit(time_t seconds) {
+    const itimerval once{.it_interval = {}, .it_value = {.tv_sec = seconds, .tv_usec = 0}};
+    setitimer(ITIMER_PROF, &once, nullptr);
   }
 };
 

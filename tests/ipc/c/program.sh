@@ -2,7 +2,7 @@
 # Runs the program in C and checks what it prints.
 #   program.sh PROGRAM SPLINECAST
 set -euo pipefail
-stream=c_program.$$
+stream=test.$$.c_program
 trap '"$2" rm "$stream" >/dev/null 2>&1 || true' EXIT
 output=$("$1" "$stream")
 echo "$output"

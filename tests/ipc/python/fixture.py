@@ -12,7 +12,7 @@ import numpy as np
 import splinecast
 
 #: Timeout of a wait for an event that must happen, long enough for a busy machine [s].
-PATIENCE = 60.0
+PATIENCE = 600.0
 
 MS = 1_000_000
 _count = 0
@@ -24,7 +24,7 @@ class StreamTest(unittest.TestCase):
     def setUp(self):
         global _count
         _count += 1
-        self.name = f"python-test-{os.getpid()}-{_count}"
+        self.name = f"test.{os.getpid()}.python-{_count}"
         self.addCleanup(self.remove)
 
     def remove(self):

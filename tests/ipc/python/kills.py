@@ -28,7 +28,7 @@ INTERVAL = 10 * MS
 LEAD = 300 * MS
 DIMENSIONS = 3
 ROUNDING = 1e-9
-PATIENCE = 60.0
+PATIENCE = 600.0
 
 
 def position(t):
@@ -254,7 +254,7 @@ def main():
     parser.add_argument("--seed", type=int, default=random.randrange(2**32))
     options = parser.parse_args()
     print(f"seed {options.seed}")
-    stream = f"python-kills-{os.getpid()}"
+    stream = f"test.{os.getpid()}.kills"
     try:
         facts, failures = attack(stream, options.kills, options.seed)
     finally:

@@ -159,14 +159,14 @@ TEST(HostileNeighbour, AFifoThatReplacesARegionDuringItsOpeningBlocksNoProcess) 
   std::atomic<int> looks = 0;
   std::atomic<bool> hung = false;
   std::thread watchdog([&] {
-    for (int before = -1; !done && !hung; before = looks) {
-      std::this_thread::sleep_for(std::chrono::seconds(2));
-      hung = !done && looks == before;
+    for (int before = -1, asleep = 0; !done && !hung; before = looks) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      asleep = looks == before && testing::sleeps(getpid()) ? asleep + 1 : 0;
+      hung = !done && asleep >= 20;
     }
     while (!done) free_openers({other, path});
   });
-  int regular = 0;
-  int refused = 0;
+  int regular = 0, refused = 0;
   for (; !hung && looks < 1'000'000 && (looks < 20'000 || regular == 0 || refused == 0); ++looks) {
     try {
       (void)peek_header(stream.name(), RegionKind::spline, {});

@@ -6,8 +6,6 @@
 #include <atomic>
 #include <chrono>
 #include <climits>
-#include <fstream>
-#include <string>
 #include <thread>
 #include <vector>
 
@@ -20,17 +18,6 @@
 
 namespace splinecast::ipc {
 namespace {
-
-using std::chrono::minutes;
-
-/// Whether a thread of this process sleeps; in these tests it then waits on a futex.
-bool sleeps(pid_t thread) {
-  std::ifstream stat("/proc/self/task/" + std::to_string(thread) + "/stat");
-  std::string text;
-  std::getline(stat, text);
-  const auto name_end = text.rfind(") ");
-  return name_end != std::string::npos && text[name_end + 2] == 'S';
-}
 
 /// Threads that only wait, once.
 class Waiters {
@@ -45,7 +32,7 @@ class Waiters {
       });
     }
     for (const auto& id : ids) {
-      while (id == 0 || !sleeps(id)) std::this_thread::yield();
+      while (id == 0 || !testing::sleeps(id)) std::this_thread::yield();
     }
   }
   Waiters(const Waiters&) = delete;
@@ -59,7 +46,7 @@ class Waiters {
 };
 
 /// Waits without waking other threads. The timeout prevents a hang if the test fails.
-void park(const Word& word, Word seen) { wait_while_equal(word, seen, minutes(1)); }
+void park(const Word& word, Word seen) { wait_while_equal(word, seen, testing::kPatience); }
 
 /// Wakes all parked threads. Returns their number.
 int wake_rest(const Word& word) {
@@ -81,7 +68,7 @@ TEST(Wake, ReachesEveryThreadThatWaitsForAChange) {
   std::atomic<std::size_t> woken{0};
   {
     const Waiters waiters(kWaiting, [&] {
-      if (wait_for_change(word, 7, std::chrono::seconds(20))) ++woken;
+      if (wait_for_change(word, 7, testing::kPatience)) ++woken;
     });
     store(word, 8, std::memory_order_release);
     EXPECT_EQ(wake_some(word), kWokenAtOnce);
@@ -94,7 +81,7 @@ TEST(Wake, IsNotForwardedByThreadsThatHaveSeenTheRevision) {
   alignas(8) Word word = 8;
   std::atomic<std::size_t> woken{0};
   const Waiters waiters(kWaiting, [&] {
-    if (wait_for_change(word, 8, minutes(1))) ++woken;
+    if (wait_for_change(word, 8, testing::kPatience)) ++woken;
   });
   EXPECT_EQ(wake_some(word), kWokenAtOnce);
   while (woken < kWokenAtOnce) std::this_thread::yield();

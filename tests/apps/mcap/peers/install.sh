@@ -1,5 +1,6 @@
 #!/bin/sh
 # Installs the peers with npm into a folder, unless they are there: install.sh FOLDER
+# A failure is remembered for ten minutes, so that a run of the tests waits for a missing registry once.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 mkdir -p "$1"
@@ -9,5 +10,12 @@ cp "$here/package.json" "$here"/*.mjs "$1"
 cmp -s "$here/package-lock.json" "$1/node_modules/installed.json" && exit 0
 cp "$here/package-lock.json" "$1"
 cd "$1"
-npm ci --ignore-scripts --no-audit --no-fund >&2
-cp package-lock.json node_modules/installed.json
+if [ -z "$(find . -maxdepth 1 -name failed -mmin -10)" ]; then
+  if npm ci --ignore-scripts --no-audit --no-fund --fetch-retries=1 >failed 2>&1; then
+    cp package-lock.json node_modules/installed.json
+    rm failed
+    exit 0
+  fi
+fi
+cat failed >&2
+exit 1

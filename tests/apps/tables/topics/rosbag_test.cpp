@@ -2,19 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "apps/messages/bytes.hpp"
 #include "apps/messages/ros.hpp"
+#include "tests/apps/mcap/npm_peers.hpp"
 #include "tests/fixtures/messages/cdr_writer.hpp"
 #include "tests/fixtures/messages/rows_of.hpp"
 #include "tests/fixtures/messages/sampled_rows.hpp"
-#include "tests/fixtures/processes/built_with.hpp"
-#include "tests/fixtures/processes/process.hpp"
 
 /// Files that @mcap/core writes, with messages in CDR and JSON as rosbag2 and Foxglove have them.
 namespace splinecast::apps {
@@ -26,7 +23,6 @@ using testing::CopiedRows;
 using testing::Ended;
 using testing::joint_state;
 using testing::joint_trajectory;
-using testing::Process;
 using testing::rows_of;
 
 constexpr Time kBagStart = 1'700'000'000s;
@@ -40,17 +36,11 @@ std::string hex(std::span<const std::byte> bytes) {
   return text;
 }
 
-class Rosbag : public ::testing::Test {
+class Rosbag : public testing::NpmPeersTest {
  protected:
   void SetUp() override {
-    REQUIRE_MCAP();
     if (!ros::can_decode()) GTEST_SKIP() << "built without libfastcdr";
-    const std::string source = std::string(SPLINECAST_SOURCE) + "/tests/apps/mcap/peers/install.sh";
-    const Ended ended = Process(source, {peers_}).wait();
-    if (ended.code == 0) return;
-    const char* const ci = std::getenv("CI");
-    if (ci != nullptr && std::string(ci) == "true") FAIL() << ended.err;
-    GTEST_SKIP() << "npm cannot install the peers of MCAP: " << ended.err;
+    NpmPeersTest::SetUp();
   }
 
   [[nodiscard]] std::string path() const { return folder_.path("rosbag.mcap"); }
@@ -62,8 +52,7 @@ class Rosbag : public ::testing::Test {
 
   void write(const std::string& compression) const {
     const std::string list = folder_.write("messages.json", messages_.dump());
-    const Ended ended =
-        Process("/usr/bin/node", {peers_ + "/rosbag.mjs", path(), compression, list}).wait();
+    const Ended ended = peer("rosbag.mjs", {path(), compression, list});
     ASSERT_EQ(ended.code, 0) << ended.err;
   }
 
@@ -90,8 +79,6 @@ class Rosbag : public ::testing::Test {
   }
 
  private:
-  std::string peers_ =
-      std::filesystem::path(SPLINECAST_PROGRAM).parent_path().parent_path() / "mcap_peers";
   testing::TestFolder folder_;
   nlohmann::json messages_ = nlohmann::json::array();
 };
