@@ -144,7 +144,10 @@ class Soak {
     const std::size_t group = kills_++ % groups_.size();
     std::optional<Child>& producer = producers_.processes[group];
     producer.reset();  // SIGKILL
-    producer.emplace([this, group] { return produce(group); });
+    producer.emplace([this, group] {
+      summaries_.clear();  // their descriptors, inherited by this process, are not its own
+      return produce(group);
+    });
   }
 
   /// The sums of the counters in all streams' summaries.

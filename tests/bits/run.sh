@@ -11,7 +11,7 @@ stream=test.$$.bits
 configure() {  # name, compiler, flags
   cmake -S "$source" -B "$build/$1" -G Ninja -DCMAKE_CXX_COMPILER="$2" -DCMAKE_CXX_FLAGS="$3" \
     -DSPLINECAST_BUILD_APPS=OFF -DSPLINECAST_BUILD_TESTS=OFF -DSPLINECAST_BUILD_BENCH=OFF \
-    -DSPLINECAST_BUILD_BITS=ON >/dev/null
+    -DSPLINECAST_BUILD_BITS=ON -DSPLINECAST_UNITY=ON >/dev/null
   cmake --build "$build/$1" --target splinecast_bits >"$build/$1.log" 2>&1 ||
     { cat "$build/$1.log"; exit 1; }
 }

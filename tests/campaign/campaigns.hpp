@@ -21,11 +21,15 @@ struct CampaignOptions {
   std::string command;  ///< repeats the campaign
   std::uint64_t kills = 300;
   std::uint64_t seed = 1;
-  double seconds = 2;      ///< stress: of each part; streams and returns: of the whole campaign
+  double seconds = 2;      ///< stress: of each part; streams and returns: CPU time of the campaign
   std::uint64_t runs = 0;  ///< streams and returns: number of runs, 0: as many as fit into
                            ///< `seconds`; stops: instants at which waypoints end, 0: 200
   std::string trace{};     ///< folder for traces of what readers see; empty: none
 };
+
+/// The CPU time that this process has used. A campaign of simulated streams ends by it, so that it
+/// covers as much on a busy machine.
+[[nodiscard]] double cpu_seconds() noexcept;
 
 /// Kills processes of two live and two recorded streams, each with two readers, at random instants,
 /// until `kills` is reached. `seed` fixes the victims and the instants; the scheduler stays random.

@@ -65,7 +65,7 @@ void add_stress(CLI::App& program, Asked& asked) {
 
 void add_streams(CLI::App& program, Asked& asked) {
   auto* verb = program.add_subcommand("streams", "Simulated live streams, one per seed");
-  verb->add_option("--seconds", asked.options.seconds, "Duration")
+  verb->add_option("--seconds", asked.options.seconds, "Duration, in CPU time")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   verb->add_option("--seed", asked.options.seed,
@@ -92,7 +92,7 @@ void add_motions(CLI::App& program, Asked& asked) {
 void add_returns(CLI::App& program, Asked& asked) {
   auto* verb =
       program.add_subcommand("returns", "Returns to the waypoints after faults, one per seed");
-  verb->add_option("--seconds", asked.options.seconds, "Duration")
+  verb->add_option("--seconds", asked.options.seconds, "Duration, in CPU time")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   verb->add_option("--seed", asked.options.seed, "Seed of the first run")->capture_default_str();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <ctime>
 #include <memory>
 #include <utility>
 
@@ -45,6 +46,8 @@ std::string today() {
   while (!date.empty() && date.back() == '\n') date.pop_back();
   return date;
 }
+
+double cpu_seconds() noexcept { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 std::string campaign_stream(const std::string& what) {
   return "test." + std::to_string(getpid()) + "." + what;

@@ -4,6 +4,7 @@
     run.py [NAME ...]     for all patches, or those named, for example 07: applies, builds, runs its tests, reports
     run.py --page         writes the page from the patches and the results of the last run
     run.py --check        exits with 1 if a patch does not apply, or the page is not up to date
+    run.py --keep         for all patches, without writing results and page
     run.py --tree FOLDER  folder for the copy of the sources and its build (build/defects)
 
 Each file NAME.patch removes one correction; patch -p1 applies it. The files are in tests/defects/core, ipc or apps,
@@ -14,7 +15,9 @@ by the corrected layer. Above its diff are the lines
     Correction:  the change that corrected it
     Test:        names of the tests that fail without the correction: of GoogleTest, or ctest:NAME
 
-A run writes its results to tests/defects/results.json. It uses the sources of the last commit.
+A run writes its results to tests/defects/results.json. It uses the sources of the last commit. Their build has one
+object per file, without precompiled headers, so it also shows what a file does not include. Where overlays may be
+mounted, two processes take patches in turn, each with a layer of its own over this build.
 """
 
 import argparse
@@ -22,6 +25,7 @@ import io
 import json
 import os
 import re
+import selectors
 import shutil
 import subprocess
 import sys
@@ -36,7 +40,9 @@ PAGE = DEFECTS / "README.md"
 RESULTS = DEFECTS / "results.json"
 FIELDS = ["Defect", "Cause", "Correction", "Test"]
 TARGETS = ["splinecast_program", "splinecast_tests", "splinecast_byteflip", "splinecast_campaign"]
-TEST_SECONDS = 180
+WORKERS = 2
+TEST_SECONDS = 180  # a test that would take longer does not pass with all corrections either, which is tested first
+PATIENCE = {"SPLINECAST_PATIENCE": "20"}  # so does a wait that takes longer
 HANG = "did not end"
 
 HEAD = """# Corrected defects
@@ -117,10 +123,11 @@ def copy_sources(tree):
 
 def build(tree):
     """Builds program and tests without optimisation. Returns None, or the output of a failed build."""
-    launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+    tools = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+    tools += ["-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld"] if shutil.which("ld.lld") else []
     ended = subprocess.run(
         ["cmake", "-G", "Ninja", "-S", ".", "-B", "build", "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O0 -g0",
-         "-DSPLINECAST_UNITY=OFF", "-DSPLINECAST_BUILD_BENCH=OFF", "-DSPLINECAST_WERROR=ON", *launcher],
+         "-DSPLINECAST_UNITY=OFF", "-DSPLINECAST_BUILD_BENCH=OFF", "-DSPLINECAST_WERROR=ON", *tools],
         cwd=tree, text=True, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     if ended.returncode == 0:
         ended = subprocess.run(["ninja", "-C", "build", *TARGETS], cwd=tree, text=True, check=False,
@@ -142,7 +149,8 @@ def run_test(tree, test):
         command = ["build/bin/splinecast_tests", f"--gtest_filter={test}"]
     try:
         ended = subprocess.run(command, cwd=tree, text=True, check=False, errors="replace", timeout=TEST_SECONDS,
-                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                               env={**os.environ, **PATIENCE})
     except subprocess.TimeoutExpired:
         return False, HANG
     if "SKIPPED" in ended.stdout or "***Skipped" in ended.stdout:
@@ -202,7 +210,48 @@ def outcome(tree, name, tests, unusable):
     return {test: "passes" if passed or test in unusable else why for test, (passed, why) in without.items()}
 
 
-def run(tree, names):
+def work(tree, names, unusable):
+    """Takes out the corrections one after the other, and prints a line of JSON for each."""
+    for name in names:
+        print(json.dumps([name, outcome(tree, name, read_patch(find_patches()[name])["Test"].split(), unusable)]), flush=True)
+
+
+def start_worker(tree, number, names, unusable):
+    """Starts this program as a worker with a layer of its own over the tree. Returns None if none can be mounted."""
+    upper, scratch = (tree.parent / f"{tree.name}.{what}{number}" for what in ("layer", "scratch"))
+    for folder in (upper, scratch):
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+    mount = f"mount -t overlay overlay -o lowerdir={tree},upperdir={upper},workdir={scratch} {tree}"
+    if subprocess.run(["unshare", "--mount", "sh", "-c", mount], check=False, capture_output=True).returncode != 0:
+        return None
+    command = [sys.executable, str(Path(__file__).resolve()), "--work", json.dumps(sorted(unusable)), "--tree", str(tree), *names]
+    return subprocess.Popen(["unshare", "--mount", "sh", "-c", f'{mount} && exec "$@"', "sh", *command], text=True,
+                            stdout=subprocess.PIPE)
+
+
+def outcomes(tree, names, unusable):
+    """Pairs of name and outcome, as they are found."""
+    shares = [names[i::WORKERS] for i in range(WORKERS)]
+    workers = [start_worker(tree, i, share, unusable) for i, share in enumerate(shares) if share]
+    if None in workers:
+        command = [sys.executable, str(Path(__file__).resolve()), "--work", json.dumps(sorted(unusable)), "--tree", str(tree)]
+        workers = [subprocess.Popen([*command, *names], text=True, stdout=subprocess.PIPE)]
+    with selectors.DefaultSelector() as ready:
+        for worker in workers:
+            ready.register(worker.stdout, selectors.EVENT_READ, worker)
+        while ready.get_map():
+            for key, _ in ready.select():
+                line = key.fileobj.readline()
+                if line:
+                    yield json.loads(line)
+                    continue
+                ready.unregister(key.fileobj)
+                if key.data.wait() != 0:
+                    sys.exit(f"a worker ended with exit code {key.data.returncode}")
+
+
+def run(tree, names, is_kept):
     patches = read_patches()
     tests = {name: patches[name]["Test"].split() for name in names or patches}
     tree.mkdir(parents=True, exist_ok=True)
@@ -211,22 +260,26 @@ def run(tree, names):
     output = build(tree)
     if output is not None:
         sys.exit(output[-4000:])
+    print(f"built in {(time.monotonic() - begin) / 60:.1f} min", flush=True)
     unusable = fails_as_it_is(tree, sorted(set(sum(tests.values(), []))))
+    print(f"tests tried at {(time.monotonic() - begin) / 60:.1f} min", flush=True)
     results = read_results()
     results["patches"] = {name: results["patches"][name] for name in patches if name in results["patches"]}
     all_fail = True
-    for name in tests:
-        found = outcome(tree, name, tests[name], unusable)
+    for name, found in outcomes(tree, list(tests), unusable):
         fails = "passes" not in found.values()
         all_fail = all_fail and fails
         print(f"{name}: {'fails' if fails else 'PASSES'} without the correction", flush=True)
         for test, why in found.items():
             print(f"    {test}: {why}", flush=True)
         results["patches"][name] = found
+    print(f"{len(tests)} corrections taken out in {(time.monotonic() - begin) / 60:.1f} min")
+    if not is_kept:
+        results["patches"] = dict(sorted(results["patches"].items()))
         if not names:
             results["minutes"] = round((time.monotonic() - begin) / 60, 1)
         RESULTS.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
-    PAGE.write_text(make_page(), encoding="utf-8")
+        PAGE.write_text(make_page(), encoding="utf-8")
     sys.exit(0 if all_fail else 1)
 
 
@@ -274,14 +327,18 @@ def main():
     parser.add_argument("names", nargs="*")
     parser.add_argument("--page", action="store_true")
     parser.add_argument("--check", action="store_true")
+    parser.add_argument("--keep", action="store_true")
+    parser.add_argument("--work", help=argparse.SUPPRESS)  # the tests that cannot show a defect
     parser.add_argument("--tree", type=Path, default=PROJECT / "build" / "defects")
     arguments = parser.parse_args()
     if arguments.check:
         check()
     elif arguments.page:
         PAGE.write_text(make_page(), encoding="utf-8")
+    elif arguments.work:
+        work(arguments.tree, arguments.names, json.loads(arguments.work))
     else:
-        run(arguments.tree.resolve(), arguments.names)
+        run(arguments.tree.resolve(), arguments.names, arguments.keep)
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 
 import blocks
-from pages import is_allowed, private
+from pages import beside_a_beat, delay_of, is_allowed, private, until_not_delayed
 
 HIDDEN = re.compile(r"<!-- sh: (.*) -->")
 CAMPAIGN = "build/release/bin/splinecast_campaign"
@@ -52,12 +52,12 @@ def short_form(line):
 
 
 def run(path):
-    """Runs the `sh` blocks of a page. Returns 1 if they fail, or if there are none."""
+    """Runs the `sh` blocks of a page. Returns 1 if they fail, or if there are none, and the longest delay."""
     page = path.read_text(encoding="utf-8").splitlines()
     found = [(block.first, line) for block in blocks.blocks(page) if block.language == "sh" for line in block.lines]
     if not found:
         print(f"{path} has no block of sh")
-        return 1
+        return 1, 0.0
     found += [(number, match.group(1)) for number, line in enumerate(page, 1) if (match := HIDDEN.fullmatch(line))]
     found.sort(key=lambda place: place[0])
     lines = [short_form(line) for _, line in found if line and not line.startswith("#")]
@@ -67,16 +67,18 @@ def run(path):
         with open(script, "w", encoding="utf-8") as file:
             file.write("set -e\nset -x\n" + "\n".join(lines) + "\nkill $(jobs -p) 2>/dev/null || true\nwait\n")
         with open(os.path.join(folder, "out"), "w+", encoding="utf-8") as out:
-            started = subprocess.Popen(private(f"exec bash {script}"), cwd=blocks.PROJECT, stdin=subprocess.DEVNULL,
-                                       stdout=out, stderr=out, start_new_session=True,
+            report = Path(folder, "delay")
+            started = subprocess.Popen(beside_a_beat(report, private(f"exec bash {script}")), cwd=blocks.PROJECT,
+                                       stdin=subprocess.DEVNULL, stdout=out, stderr=out, start_new_session=True,
                                        env=os.environ | {"HOME": folder, "PATH": path_of_programs})
             code = started.wait()
+            delay = delay_of(report)
             out.seek(0)
             said = out.read()
     print(f"{path.relative_to(blocks.PROJECT)}: {len(lines)} commands for a checkout, exit code {code}")
     if code != 0:
         print(said[-4000:])
-    return 1 if code else 0
+    return (1 if code else 0), delay
 
 
 def main():
@@ -84,7 +86,7 @@ def main():
     if not is_allowed():
         print("needs a mount namespace of its own (root, or user namespaces)")
         return 77
-    return run(Path(sys.argv[1]).resolve())
+    return until_not_delayed(lambda: run(Path(sys.argv[1]).resolve()))
 
 
 if __name__ == "__main__":

@@ -25,14 +25,14 @@ HERE = Path(__file__).resolve().parent
 STALL = 600  # seconds
 LOOK = 5  # seconds
 AT_ONCE = "4"  # most tests wait for processes that wait
-BACKSTOP = "7200"  # seconds, for a test that spins for ever
+BACKSTOP = "7200"  # seconds, for a test that never ends
 TICKS = os.sysconf("SC_CLK_TCK")
 
 
 def enter_own_shared_memory():
     """Runs this program again with an empty /dev/shm, as the same user, if the kernel allows it."""
     if os.environ.get("SPLINECAST_SHARED_MEMORY") in ("own", "shared"):
-        return  # it is already another one, or asked for
+        return  # this program has been run again, or the caller wants it
     mount = 'mount -t tmpfs -o mode=1777,nosuid,nodev tmpfs /dev/shm && exec "$@"'
     command = ["unshare", "--mount", "sh", "-c", mount, "sh"]
     if os.geteuid() != 0:

@@ -153,9 +153,9 @@ TEST_F(RecordFailure, WhatAKilledRecorderHasWrittenVerifies) {
 TEST_F(RecordFailure, StarvationReplacementsAndTakeoversVerifyBitForBit) {
   const TestFolder folder;
   const std::string path = folder.path("run.mcap");
-  Process recorder = start_recorder({"demo.*", "-o", path, "--json"});
   Process demo({"demo", "--chaos", "--seconds", "8", "--json"});
   const std::string stream = fmt::format("demo.{}", demo.pid());
+  Process recorder = start_recorder({stream, "-o", path, "--json"});
   const Ended ended = demo.wait();
   EXPECT_EQ(ended.code, 0) << ended.out;
   recorder.signal(SIGINT);
@@ -224,8 +224,9 @@ std::vector<apps::record::Bytes> exact_messages(const std::string& path) {
 TEST_F(RecordFailure, AnyChangedMessagesAreVerifiedOrRefused) {
   const TestFolder folder;
   const std::string path = folder.path("run.mcap");
-  Process recorder = start_recorder({"demo.*", "-o", path});
-  EXPECT_EQ(run({"demo", "--chaos", "--seconds", "3", "--json"}).code, 0);
+  Process demo({"demo", "--chaos", "--seconds", "3", "--json"});
+  Process recorder = start_recorder({fmt::format("demo.{}", demo.pid()), "-o", path});
+  EXPECT_EQ(demo.wait().code, 0);
   recorder.signal(SIGINT);
   EXPECT_EQ(recorder.wait().code, 0);
   const auto messages = exact_messages(path);

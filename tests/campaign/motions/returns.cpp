@@ -286,10 +286,9 @@ double quantile(std::vector<double>& sorted, double share) {
 Result run_returns(const CampaignOptions& options) {
   const MonotonicClock clock;
   const Time begin = clock.now();
-  const Time end = begin + to_time(options.seconds);
   ReturnCounts counts;
   const auto goes_on = [&] {
-    return options.runs > 0 ? counts.runs < options.runs : clock.now() < end;
+    return options.runs > 0 ? counts.runs < options.runs : cpu_seconds() < options.seconds;
   };
   for (std::uint64_t seed = options.seed; goes_on() && !apps::stop_requested(); ++seed) {
     ReturnRun(seed, counts).run();

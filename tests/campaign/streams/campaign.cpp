@@ -76,10 +76,9 @@ nlohmann::json found(const StreamFindings& findings, bool all_streams) {
 Result run_streams(const CampaignOptions& options) {
   const MonotonicClock clock;
   const Time begin = clock.now();
-  const Time end = begin + Time(static_cast<std::int64_t>(options.seconds * 1e9));
   StreamFindings findings;
   const auto goes_on = [&] {
-    return options.runs > 0 ? findings.streams() < options.runs : clock.now() < end;
+    return options.runs > 0 ? findings.streams() < options.runs : cpu_seconds() < options.seconds;
   };
   for (std::uint64_t seed = options.seed; goes_on() && !apps::stop_requested(); ++seed) {
     run_stream(seed, findings);
