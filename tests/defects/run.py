@@ -55,8 +55,9 @@ that the named tests fail. In the last run, the tests of {failed} of {all} patch
 [`results.json`](results.json) contains the message of each test.
 
 Some corrections have no patch, because a new design has replaced the code: an item is no longer tried on the curve's
-own window, and the length of a stop is computed with a formula. The tests of stops remain:
-`StopSegment.OfAnyStateTakesAFiniteTime` and `StopSegment.IsValidWhileOnePositionRepeatsUntilVelocitiesAreDenormal`.
+own window, the length of a stop is computed with a formula, and an entry is searched before a stop. Their tests remain:
+`StopSegment.OfAnyStateTakesAFiniteTime`, `StopSegment.IsValidWhileOnePositionRepeatsUntilVelocitiesAreDenormal` and
+`FirstWaypoint.MayBeAtTheSettledTimeOfTheStepThatTakesIt`.
 
 `tests/defects/run.py --page` writes this page.
 """
