@@ -13,6 +13,7 @@ Each file NAME.patch in this folder follows one recipe. Above its diff are the l
 import json
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -51,8 +52,8 @@ def lacks_an_include(tree, name):
     layer = {"core": "core", "ipc": "ipc", "apps": "apps"}.get(name.partition("/")[0], "tests")
     compiled = json.loads((tree / "build" / "compile_commands.json").read_text(encoding="utf-8"))
     command = next(entry["command"] for entry in compiled if f"/{layer}/CMakeFiles/" in entry["file"])
-    words = [word for word in command.split(" -o ")[0].split() if "cmake_pch" not in word and word != "-include"]
-    ended = subprocess.run([*words, "-fsyntax-only", str(tree / "source" / name)], check=False)
+    words = [word for word in shlex.split(command.split(" -o ")[0]) if "cmake_pch" not in word and word != "-include"]
+    ended = subprocess.run([*words, "-w", "-fsyntax-only", str(tree / "source" / name)], check=False)
     return ended.returncode != 0
 
 
