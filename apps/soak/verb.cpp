@@ -145,7 +145,7 @@ class Soak {
     std::optional<Child>& producer = producers_.processes[group];
     producer.reset();  // SIGKILL
     producer.emplace([this, group] {
-      summaries_.clear();  // their descriptors, inherited by this process, are not its own
+      summaries_.clear();  // closes the descriptors that this process has inherited
       return produce(group);
     });
   }

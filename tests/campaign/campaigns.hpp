@@ -27,8 +27,8 @@ struct CampaignOptions {
   std::string trace{};     ///< folder for traces of what readers see; empty: none
 };
 
-/// The CPU time that this process has used. A campaign of simulated streams ends by it, so that it
-/// covers as much on a busy machine.
+/// The CPU time that this process has used [s]. It limits campaigns of simulated streams: they then
+/// cover the same on a busy machine.
 [[nodiscard]] double cpu_seconds() noexcept;
 
 /// Kills processes of two live and two recorded streams, each with two readers, at random instants,

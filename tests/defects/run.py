@@ -230,29 +230,31 @@ def work(tree, names, unusable):
         print(json.dumps([name, outcome(tree, name, read_patch(find_patches()[name])["Test"].split(), unusable)]), flush=True)
 
 
-def start_worker(tree, number, names, unusable):
-    """Starts this program as a worker with a layer of its own over the tree. Returns None if none can be mounted."""
+def in_layer(tree, number, command):
+    """The arguments that run a command with an empty layer of its own over the tree."""
     upper, scratch = (tree.parent / f"{tree.name}.{what}{number}" for what in ("layer", "scratch"))
     for folder in (upper, scratch):
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
     mount = f"mount -t overlay overlay -o lowerdir={tree},upperdir={upper},workdir={scratch} {tree}"
-    if subprocess.run(["unshare", "--mount", "sh", "-c", mount], check=False, capture_output=True).returncode != 0:
-        return None
-    command = [sys.executable, str(Path(__file__).resolve()), "--work", json.dumps(sorted(unusable)), "--tree", str(tree), *names]
-    return subprocess.Popen(["unshare", "--mount", "sh", "-c", f'{mount} && exec "$@"', "sh", *command], text=True,
-                            stdout=subprocess.PIPE)
+    return ["unshare", "--mount", "sh", "-c", f'{mount} && exec "$@"', "sh", *command]
+
+
+def start_workers(tree, names, unusable):
+    """Starts this program as workers that share the names: one, if no layer can be mounted."""
+    work_on = [sys.executable, str(Path(__file__).resolve()), "--work", json.dumps(sorted(unusable)), "--tree", str(tree)]
+    if subprocess.run(in_layer(tree, 0, ["true"]), check=False, capture_output=True).returncode != 0:
+        commands = [[*work_on, *names]]
+    else:
+        shares = [names[i::WORKERS] for i in range(WORKERS)]
+        commands = [in_layer(tree, i, [*work_on, *share]) for i, share in enumerate(shares) if share]
+    return [subprocess.Popen(command, text=True, stdout=subprocess.PIPE) for command in commands]
 
 
 def outcomes(tree, names, unusable):
     """Pairs of name and outcome, as they are found."""
-    shares = [names[i::WORKERS] for i in range(WORKERS)]
-    workers = [start_worker(tree, i, share, unusable) for i, share in enumerate(shares) if share]
-    if None in workers:
-        command = [sys.executable, str(Path(__file__).resolve()), "--work", json.dumps(sorted(unusable)), "--tree", str(tree)]
-        workers = [subprocess.Popen([*command, *names], text=True, stdout=subprocess.PIPE)]
     with selectors.DefaultSelector() as ready:
-        for worker in workers:
+        for worker in start_workers(tree, names, unusable):
             ready.register(worker.stdout, selectors.EVENT_READ, worker)
         while ready.get_map():
             for key, _ in ready.select():
@@ -265,7 +267,7 @@ def outcomes(tree, names, unusable):
                     sys.exit(f"a worker ended with exit code {key.data.returncode}")
 
 
-def run(tree, names, is_kept):
+def run(tree, names, writes_results):
     patches = read_patches()
     tests = {name: patches[name]["Test"].split() for name in names or patches}
     tree.mkdir(parents=True, exist_ok=True)
@@ -288,7 +290,7 @@ def run(tree, names, is_kept):
             print(f"    {test}: {why}", flush=True)
         results["patches"][name] = found
     print(f"{len(tests)} corrections taken out in {(time.monotonic() - begin) / 60:.1f} min")
-    if not is_kept:
+    if writes_results:
         results["patches"] = dict(sorted(results["patches"].items()))
         if not names:
             results["minutes"] = round((time.monotonic() - begin) / 60, 1)
@@ -352,7 +354,7 @@ def main():
     elif arguments.work:
         work(arguments.tree, arguments.names, json.loads(arguments.work))
     else:
-        run(arguments.tree.resolve(), arguments.names, arguments.keep)
+        run(arguments.tree.resolve(), arguments.names, not arguments.keep)
 
 
 if __name__ == "__main__":

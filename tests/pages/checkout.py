@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 
 import blocks
-from pages import beside_a_beat, delay_of, is_allowed, private, until_not_delayed
+from pages import beside_a_beat, delay_of, shared_memory, until_not_delayed
 
 HIDDEN = re.compile(r"<!-- sh: (.*) -->")
 CAMPAIGN = "build/release/bin/splinecast_campaign"
@@ -68,7 +68,7 @@ def run(path):
             file.write("set -e\nset -x\n" + "\n".join(lines) + "\nkill $(jobs -p) 2>/dev/null || true\nwait\n")
         with open(os.path.join(folder, "out"), "w+", encoding="utf-8") as out:
             report = Path(folder, "delay")
-            started = subprocess.Popen(beside_a_beat(report, private(f"exec bash {script}")), cwd=blocks.PROJECT,
+            started = subprocess.Popen(beside_a_beat(report, shared_memory.in_own(["bash", script])), cwd=blocks.PROJECT,
                                        stdin=subprocess.DEVNULL, stdout=out, stderr=out, start_new_session=True,
                                        env=os.environ | {"HOME": folder, "PATH": path_of_programs})
             code = started.wait()
@@ -83,7 +83,7 @@ def run(path):
 
 def main():
     """Runs the blocks of a page."""
-    if not is_allowed():
+    if not shared_memory.is_allowed():
         print("needs a mount namespace of its own (root, or user namespaces)")
         return 77
     return until_not_delayed(lambda: run(Path(sys.argv[1]).resolve()))

@@ -5,6 +5,7 @@
     pages.py links                            follows every link of every page
     pages.py code                             every C, C++ or Python block is part of an example
     pages.py shape                            lines of the README, width of tables, pages that no page links to
+    pages.py beat FILE COMMAND...             runs a command, and writes the longest delay of a process beside it to FILE
 
 A page's commands are the lines of its `console` blocks that begin with `$ `, and comments `<!-- run: COMMAND -->`. They
 run from top to bottom in one shell, in an empty folder, with a private /dev/shm. The lines between two commands are the
@@ -12,7 +13,8 @@ first one's output; without such lines its output is not compared. A line `...` 
 any characters. Words after `console`: `varies`: numbers and the units of durations are not compared; `exit=N`: the exit
 code, 0 without it. Durations and numbers of streams are shortened. --write writes the output of commands into the page,
 except where the page has a `...`. Commands find this project's root in $SPLINECAST_SOURCE, the Python module beside
-BIN, and Debian's python3. Exits with 77 if a private /dev/shm is not allowed.
+BIN, and Debian's python3. A page with a failure is run again, up to TRIES times, if meanwhile the machine delayed a
+sleeping process by more than DELAY. Exits with 77 if a private /dev/shm is not allowed.
 """
 
 import os
@@ -25,8 +27,11 @@ from pathlib import Path
 
 import blocks
 
+sys.path.insert(0, str(blocks.PROJECT / "tests" / "runner"))
+import shared_memory  # pylint: disable=wrong-import-position
+
 BOUND = 600  # seconds, for each command: too long for any busy machine
-DELAY = 0.1  # seconds: live commands of a page are not judged if the machine has delayed a process by more
+DELAY = 0.1  # seconds
 TRIES = 20
 README_LINES = 150
 TABLE_WIDTH = 120
@@ -67,15 +72,8 @@ def script(found):
     return text
 
 
-def private(command):
-    """The arguments that run a shell command with an empty /dev/shm."""
-    as_root = [] if os.geteuid() == 0 else ["--map-root-user"]
-    mount = "mount -t tmpfs -o mode=1777,size=256m tmpfs /dev/shm"
-    return ["unshare", "--mount", *as_root, "bash", "-c", f"{mount} && {command}"]
-
-
 def beat(report, command):
-    """Runs a command, and writes to a file by how much a process that sleeps beside it was woken too late at most."""
+    """Runs a command. Writes the longest delay [s] of this process, which sleeps for 10 ms at a time, to a file."""
     most, before = 0.0, time.monotonic()
     with subprocess.Popen(command) as running:
         while running.poll() is None:
@@ -94,17 +92,12 @@ def beside_a_beat(report, command):
 
 
 def until_not_delayed(check):
-    """Repeats a check, which returns what is wrong and the delay, while something is wrong and the machine delays it."""
+    """Repeats a check that fails on a delayed machine. The check returns its failures and the longest delay [s]."""
     for attempt in range(1, TRIES + 1):
         wrong, delay = check()
         if not wrong or delay <= DELAY or attempt == TRIES:
             return wrong
         print(f"again: a process was delayed by {delay:.3f} s", flush=True)
-
-
-def is_allowed():
-    """Whether this user may have a private /dev/shm."""
-    return subprocess.run(private("true"), check=False, capture_output=True).returncode == 0
 
 
 def wait_while_it_continues(process, output):
@@ -125,7 +118,7 @@ def run(found, programs):
                                     "SPLINECAST_SOURCE": str(blocks.PROJECT), "TERM": "dumb", "LC_ALL": "C.UTF-8"}
         Path(folder, ".script").write_text(script(found), encoding="utf-8")
         with open(os.path.join(folder, ".out"), "wb") as out:
-            started = subprocess.Popen(beside_a_beat(os.path.join(folder, ".delay"), private("exec bash .script")),
+            started = subprocess.Popen(beside_a_beat(os.path.join(folder, ".delay"), shared_memory.in_own(["bash", ".script"])),
                                        cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=out, stderr=out,
                                        start_new_session=True)
             wait_while_it_continues(started, out.name)
@@ -141,6 +134,13 @@ def delay_of(report):
     return float(report.read_text(encoding="utf-8") or 0) if report.exists() else 0.0
 
 
+def comparable(line, varies):
+    """A line of output as it is compared: if it varies, lists of numbers become one number, with or without signs."""
+    if not varies:
+        return line.rstrip()
+    return re.sub(r"0(?:,0)+", "0", " ".join(NUMBER.sub("0", line).split()))
+
+
 def pattern_of(lines, varies):
     """A regular expression for output as a page shows it."""
     parts = []
@@ -148,15 +148,13 @@ def pattern_of(lines, varies):
         if line.strip() == "...":
             parts.append(r"(?:.*\n)*?")
             continue
-        text = " ".join(NUMBER.sub("0", line).split()) if varies else line.rstrip()
-        parts.append(re.escape(text).replace(r"\.\.\.", ".*") + r"\n")
+        parts.append(re.escape(comparable(line, varies)).replace(r"\.\.\.", ".*") + r"\n")
     return "".join(parts)
 
 
 def is_shown(printed, command):
     """Whether the output that a page shows is the printed one."""
-    lines = [(" ".join(NUMBER.sub("0", line).split()) if command.varies else line.rstrip()) + "\n"
-             for line in printed.splitlines()]
+    lines = [comparable(line, command.varies) + "\n" for line in printed.splitlines()]
     return re.fullmatch(pattern_of(command.output, command.varies), "".join(lines)) is not None
 
 
@@ -212,7 +210,7 @@ def check_all_commands(arguments):
     """Runs the commands of the pages that are named."""
     is_writing = arguments[:1] == ["--write"]
     programs, *named = arguments[is_writing:]
-    if not is_allowed():
+    if not shared_memory.is_allowed():
         print("needs a mount namespace of its own (root, or user namespaces)")
         return 77
     programs = os.path.abspath(programs)

@@ -4,10 +4,9 @@
     run.py BUILD [PATTERN]       the tests whose names match PATTERN; else all but those that build the project again
     run.py BUILD --rebuilds      the tests that build the project again, and the long forms of campaigns
 
-Runs in a /dev/shm of its own where the kernel allows it, unless SPLINECAST_SHARED_MEMORY is `shared`. Lists failed and
-skipped tests at the end; the last line is `N passed, N failed, N skipped`. A name that a test has left in shared memory
-is a failed test, and so is one that makes no progress: no process of it has used CPU time for ten minutes. It is killed.
-No test has a limit of time that a slow machine can reach.
+Runs in its own /dev/shm where the kernel allows it, unless SPLINECAST_SHARED_MEMORY is `shared`. Lists failed and
+skipped tests at the end; the last line is `N passed, N failed, N skipped`. A name that is left in shared memory counts
+as a failed test. A test is killed, and fails, if its processes use no CPU time for ten minutes.
 """
 
 import os
@@ -20,6 +19,7 @@ from pathlib import Path
 
 import left
 import report
+import shared_memory
 
 HERE = Path(__file__).resolve().parent
 STALL = 600  # seconds
@@ -32,16 +32,11 @@ TICKS = os.sysconf("SC_CLK_TCK")
 def enter_own_shared_memory():
     """Runs this program again with an empty /dev/shm, as the same user, if the kernel allows it."""
     if os.environ.get("SPLINECAST_SHARED_MEMORY") in ("own", "shared"):
-        return  # this program has been run again, or the caller wants it
-    mount = 'mount -t tmpfs -o mode=1777,nosuid,nodev tmpfs /dev/shm && exec "$@"'
-    command = ["unshare", "--mount", "sh", "-c", mount, "sh"]
-    if os.geteuid() != 0:
-        command.insert(1, "--map-root-user")
-        command += ["unshare", f"--map-user={os.geteuid()}", f"--map-group={os.getegid()}"]
-    allowed = subprocess.run([*command, "true"], check=False, capture_output=True).returncode == 0
-    os.environ["SPLINECAST_SHARED_MEMORY"] = "own" if allowed else "shared"
-    if allowed:
-        os.execvp(command[0], [*command, sys.executable, *sys.argv])
+        return
+    os.environ["SPLINECAST_SHARED_MEMORY"] = "own" if shared_memory.is_allowed() else "shared"
+    if os.environ["SPLINECAST_SHARED_MEMORY"] == "own":
+        command = shared_memory.in_own([sys.executable, *sys.argv])
+        os.execvp(command[0], command)
     print("these tests share /dev/shm with other programs: no mount namespace is allowed", file=sys.stderr)
 
 
@@ -55,7 +50,7 @@ def processes():
             fields = Path("/proc", entry, "stat").read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()
         except OSError:
             continue
-        # Of the children that have been waited for too: their time does not vanish with them.
+        # With the time of children that have ended: it must not vanish with them.
         found[int(entry)] = int(fields[1]), sum(map(int, fields[11:15])) / TICKS
     return found
 

@@ -8,7 +8,9 @@ import os
 import struct
 import subprocess
 import tempfile
+import threading
 import unittest
+from unittest import mock
 
 import left
 import report
@@ -124,6 +126,20 @@ class Watch(unittest.TestCase):
             self.assertGreater(run.used(run.processes(), shell.pid), 0)
             run.kill_tree(run.processes(), shell.pid)
         self.assertLess(shell.returncode, 0)
+
+    @mock.patch.multiple(run, STALL=0.3, LOOK=0.05)
+    def test_kills_a_test_whose_processes_use_no_cpu_time(self):
+        """Each child of ctest is a test; here it never ends, so that ctest ends only if it is killed."""
+        with subprocess.Popen(["sh", "-c", "sh -c 'sleep inf; true'; echo $?"], stdout=subprocess.PIPE, text=True) as ctest:
+            ended, said = threading.Event(), io.StringIO()
+            with contextlib.redirect_stdout(said):
+                watcher = threading.Thread(target=run.watch, args=(ctest.pid, ended))
+                watcher.start()
+                code = ctest.stdout.read().strip()
+                ended.set()
+                watcher.join()
+        self.assertEqual(code, "137")
+        self.assertIn("sleep inf", said.getvalue())
 
 
 if __name__ == "__main__":

@@ -29,8 +29,8 @@ Enum checked(std::uint8_t number, Enum least, Enum most, std::string_view what) 
   return static_cast<Enum>(number);
 }
 
-/// Whether the message of an item has D values in the place of a position. That of a finish with a
-/// value has them without a meaning: its value is in the place of the velocity or acceleration.
+/// Whether the message of an item has D values in the place of a position. A finish with a velocity
+/// or an acceleration has them too, but they mean nothing.
 bool has_position(const ipc::RingItem& item) noexcept {
   return item.kind == ipc::ItemKind::waypoint || item.kind == ipc::ItemKind::start_state ||
          (item.kind == ipc::ItemKind::finish && (item.condition == ConditionKind::velocity ||
