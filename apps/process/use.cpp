@@ -13,8 +13,9 @@
 namespace splinecast::apps {
 namespace {
 
-constexpr double kWarmUp = 0.25;
-constexpr double kSecondHalf = (1 + kWarmUp) / 2;
+/// Of `count` values, the first after the warm-up, and the first of the second half of the rest.
+constexpr std::size_t warm_up(std::size_t count) { return count / 4; }
+constexpr std::size_t second_half(std::size_t count) { return (warm_up(count) + count) / 2; }
 
 }  // namespace
 
@@ -43,10 +44,18 @@ Time cpu_time(pid_t pid) noexcept {
   return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
 }
 
-void Flatness::add(double share, std::size_t value) noexcept {
-  if (share < kWarmUp) return;
-  std::size_t& most = share < kSecondHalf ? first_ : second_;
-  most = std::max(most, value);
+std::size_t Flatness::first() const noexcept {
+  return most(warm_up(values_.size()), second_half(values_.size()));
+}
+
+std::size_t Flatness::second() const noexcept {
+  return most(second_half(values_.size()), values_.size());
+}
+
+std::size_t Flatness::most(std::size_t begin, std::size_t end) const noexcept {
+  std::size_t found = 0;
+  for (std::size_t i = begin; i < end; ++i) found = std::max(found, values_[i]);
+  return found;
 }
 
 }  // namespace splinecast::apps

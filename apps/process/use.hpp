@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "splinecast/time.hpp"
 
@@ -24,24 +25,27 @@ struct ProcessUse {
 /// CPU time that all threads of a process have used so far; 0 if there is no such process.
 [[nodiscard]] Time cpu_time(pid_t pid) noexcept;
 
-/// Detects growth of a value over a run: skips the first quarter as warm-up, then compares the
-/// largest value in the second half of the rest with the largest in its first half.
+/// Detects growth of a value over a run: skips the first quarter of the values as warm-up, then
+/// compares the largest value in the second half of the rest with the largest in its first half.
+/// Judges by the number of values, not by their times: a process that the machine has stopped for a
+/// while has seen neither half of that time.
 class Flatness {
  public:
   /// An increase of the largest value by more than `tolerance` is growth.
   explicit Flatness(std::size_t tolerance) : tolerance_(tolerance) {}
 
-  /// Adds a value at `share` of the run, 0 to 1.
-  void add(double share, std::size_t value) noexcept;
+  void add(std::size_t value) { values_.push_back(value); }
 
-  [[nodiscard]] std::size_t first() const noexcept { return first_; }
-  [[nodiscard]] std::size_t second() const noexcept { return second_; }
-  [[nodiscard]] bool has_grown() const noexcept { return second_ > first_ + tolerance_; }
+  /// The largest values of the two halves; 0 of a half without values.
+  [[nodiscard]] std::size_t first() const noexcept;
+  [[nodiscard]] std::size_t second() const noexcept;
+  [[nodiscard]] bool has_grown() const noexcept { return second() > first() + tolerance_; }
 
  private:
+  [[nodiscard]] std::size_t most(std::size_t begin, std::size_t end) const noexcept;
+
   std::size_t tolerance_;
-  std::size_t first_ = 0;
-  std::size_t second_ = 0;
+  std::vector<std::size_t> values_;
 };
 
 }  // namespace splinecast::apps

@@ -1,11 +1,13 @@
 #include "apps/soak/roles.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cerrno>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -41,6 +43,7 @@ constexpr double kMostRate = 1000;
 constexpr Time kBetweenKills = seconds(2);
 constexpr Time kPatience = seconds(60);
 constexpr double kMegabyte = 1e6;
+constexpr std::size_t kLeastLooks = 16;  ///< for a judgement of growth
 /// Memory that an allocator may still request after the warm-up, and files that are open briefly.
 constexpr std::size_t kMemoryTolerance = 512UL * 1024;
 constexpr std::size_t kDescriptorTolerance = 4;
@@ -54,8 +57,8 @@ struct Role {
   Flatness descriptors{kDescriptorTolerance};
   ProcessUse now{};
 
-  /// Measures all of them at this share of the run.
-  void look(double share) {
+  /// Measures all of them.
+  void look() {
     now = {};
     for (const auto& child : processes) {
       const auto use = process_use(child->pid());
@@ -64,9 +67,9 @@ struct Role {
       now.mapped_bytes = std::max(now.mapped_bytes, use->mapped_bytes);
       now.descriptors = std::max(now.descriptors, use->descriptors);
     }
-    memory.add(share, now.private_bytes);
-    mappings.add(share, now.mapped_bytes);
-    descriptors.add(share, now.descriptors);
+    memory.add(now.private_bytes);
+    mappings.add(now.mapped_bytes);
+    descriptors.add(now.descriptors);
   }
   [[nodiscard]] bool has_grown() const {
     return memory.has_grown() || mappings.has_grown() || descriptors.has_grown();
@@ -99,6 +102,9 @@ class Soak {
     }
     for (const std::string& stream : streams_)
       summaries_.push_back(attach_reader(stream, kPatience));
+    // A restarted producer has some memory of this process, and files of its own: from here on all
+    // have them, so that a restart is no growth.
+    for (std::size_t g = 0; g < groups_.size(); ++g) restart_producer(g);
   }
 
   json run() {
@@ -109,17 +115,19 @@ class Soak {
     const Time line = std::max<Time>(seconds(1), options_.seconds / 240);
     Time next_kill = begin + kBetweenKills;
     Time next_line = begin;
-    for (Time due = begin; due < end && sleep_until(due); due += look) {
+    std::size_t looks = 0;
+    for (Time due = begin; sleep_until(due);) {
       const Time now = clock_.now();
-      const double share = to_seconds(now - begin) / to_seconds(options_.seconds);
-      for (Role* role : roles()) role->look(share);
+      for (Role* role : roles()) role->look();
       if (!options_.json && now >= next_line) {
         print_line(now - begin);
         next_line += line;
       }
-      if (now < next_kill) continue;
-      kill_a_producer();
-      next_kill = now + kBetweenKills;
+      for (; next_kill <= std::min(now, end - Time(1)); next_kill += kBetweenKills) {
+        restart_producer(kills_++ % groups_.size());
+      }
+      if (++looks >= kLeastLooks && now >= end) break;
+      due = now < end ? std::min(now + look, end) : now + look;
     }
     const double took = to_seconds(std::max(clock_.now() - begin, Time(1)));
     return finish(took, to_seconds(cpu_time(solver_.processes.front()->pid())) / took);
@@ -139,15 +147,23 @@ class Soak {
     return run_soak_producers(groups_[group], options_.rate, start_);
   }
 
-  /// Kills one producer at a time, in turn, by SIGKILL; a new one resumes its streams.
-  void kill_a_producer() {
-    const std::size_t group = kills_++ % groups_.size();
+  /// Kills a producer by SIGKILL; a new one resumes its streams. Waits until the new one has closed
+  /// the files that it inherits, so that they are not counted as its own.
+  void restart_producer(std::size_t group) {
     std::optional<Child>& producer = producers_.processes[group];
-    producer.reset();  // SIGKILL
-    producer.emplace([this, group] {
-      summaries_.clear();  // closes the descriptors that this process has inherited
+    producer.reset();
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) throw Failure("cannot create a pipe for a producer");
+    producer.emplace([&, this] {
+      summaries_.clear();
+      for (const int end : ends) close(end);
       return produce(group);
     });
+    close(ends[1]);
+    char none = 0;
+    while (read(ends[0], &none, 1) < 0 && errno == EINTR) {
+    }
+    close(ends[0]);
   }
 
   /// The sums of the counters in all streams' summaries.

@@ -41,6 +41,8 @@ TEST_F(ForbiddenSharing, OnlyMembersOfTheGroupCanRead) {
   Process solver = memory.start(shared({"solve", "a"}), writer_);
   solver.await_message("waiting for a producer");
   attack(memory, replay(kShared, "60"), 0, {"4 interpolated"}, writer_);
+  solver.signal(SIGTERM);  // a running solver would change its region when it sleeps
+  EXPECT_EQ(solver.wait().code, 0);
   const std::vector<std::string> trusting{"--owner", "12345"};
   for (const std::vector<std::string>& verb : std::vector<std::vector<std::string>>{
            {"sample", "a", "--rate", "10", "--count", "2"}, {"info", "a"}}) {

@@ -137,15 +137,22 @@ TEST_F(Life, AProducerOfSoakContinuesAfterAnUnderrun) {
 
 TEST(Flatness, ReportsGrowthOfTheSecondHalfBeyondTheToleranceButNotTheWarmUp) {
   Flatness flat(10);
-  flat.add(0.1, 1000);  // warming up
-  flat.add(0.3, 100);
-  flat.add(0.6, 90);
-  flat.add(0.7, 110);
+  for (const std::size_t value : {1000U, 1000U, 100U, 90U, 80U, 110U, 70U}) flat.add(value);
   EXPECT_FALSE(flat.has_grown());
+  EXPECT_EQ(flat.first(), 1000U);  // of 7 values, only the first is warm-up
+  flat.add(100);
   EXPECT_EQ(flat.first(), 100U);
-  flat.add(0.9, 111);
-  EXPECT_TRUE(flat.has_grown());
+  EXPECT_EQ(flat.second(), 110U);
+  EXPECT_FALSE(flat.has_grown());
+  flat.add(111);
   EXPECT_EQ(flat.second(), 111U);
+  EXPECT_TRUE(flat.has_grown());
+}
+
+TEST(Flatness, OfNoValuesHasNotGrown) {
+  const Flatness flat(0);
+  EXPECT_EQ(flat.second(), 0U);
+  EXPECT_FALSE(flat.has_grown());
 }
 
 TEST(ProcessUse, CountsNewDescriptorsAndMemory) {
