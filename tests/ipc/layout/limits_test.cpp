@@ -22,7 +22,7 @@
 namespace splinecast::ipc {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 RegionHeader header_of(std::size_t dimensions) {
   return make_header({.dimensions = dimensions,
@@ -43,8 +43,8 @@ TEST(HeaderLimits, AreReadAsTheyWereWritten) {
   const MotionLimits limits{.velocity = {1, 0, 2},
                             .acceleration = {},
                             .jerk = {0, 0, 5},
-                            .lower = {-1, -kInfinity, 0},
-                            .upper = {kInfinity, kInfinity, 3}};
+                            .lower = {-1, -kUnbounded, 0},
+                            .upper = {kUnbounded, kUnbounded, 3}};
   RegionHeader header = header_of(3);
   put_limits(limits, header);
   EXPECT_EQ(motion_limits(header), limits);
@@ -78,7 +78,7 @@ TEST(HeaderLimits, ABoardWithInvalidLimitsIsRefused) {
   ASSERT_NO_THROW((void)checked_board_layout(board_header(2), board_header(2).region_bytes));
   const std::vector<std::pair<std::string, std::function<void(RegionHeader&)>>> cases{
       {"velocity limit", [](RegionHeader& h) { h.max_velocity[1] = -1; }},
-      {"jerk limit", [](RegionHeader& h) { h.max_jerk[0] = kInfinity; }},
+      {"jerk limit", [](RegionHeader& h) { h.max_jerk[0] = kUnbounded; }},
       {"lower bound", [](RegionHeader& h) { h.lower_bound[0] = 1; }},
       {"upper bound", [](RegionHeader& h) { h.upper_bound[0] = std::nan(""); }},
       {"no bounds",
