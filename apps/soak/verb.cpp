@@ -102,8 +102,8 @@ class Soak {
     }
     for (const std::string& stream : streams_)
       summaries_.push_back(attach_reader(stream, kPatience));
-    // A restarted producer has some memory of this process, and files of its own: from here on all
-    // have them, so that a restart is no growth.
+    // A restarted producer has some memory of this process. It must not look like growth, so all
+    // producers have it from here on.
     for (std::size_t g = 0; g < groups_.size(); ++g) restart_producer(g);
   }
 
