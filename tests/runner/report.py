@@ -43,6 +43,14 @@ def read(junit):
             for case, outcome in cases]
 
 
+def judge_end(code, cases):
+    """A failed case if ctest has not run to its end: it was killed, or found no test. Else nothing."""
+    tests_failed = 8
+    if code in (0, tests_failed) and cases:
+        return []
+    return [Case("Runner.RunsToItsEnd", "failed", f"ctest ended with exit code {code} after {len(cases)} reported tests")]
+
+
 def read_list(path):
     """The lines of a list of tests that may be skipped, as (pattern, message, reason)."""
     lines = []

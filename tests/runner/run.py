@@ -96,9 +96,10 @@ def run_ctest(build, selection, junit):
         ended = threading.Event()
         watcher = threading.Thread(target=watch, args=(ctest.pid, ended))
         watcher.start()
-        ctest.wait()
+        code = ctest.wait()
         ended.set()
         watcher.join()
+    return code
 
 
 def main():
@@ -113,8 +114,9 @@ def main():
     before = left.names()
     with tempfile.TemporaryDirectory() as folder:
         junit = os.path.join(folder, "tests.xml")
-        run_ctest(Path(build).resolve(), selection, junit)
+        code = run_ctest(Path(build).resolve(), selection, junit)
         cases = report.read(junit)
+    cases += report.judge_end(code, cases)
     names = left.wait_for_removal(before, is_own=os.environ["SPLINECAST_SHARED_MEMORY"] == "own")
     cases.append(report.Case("SharedMemory.NoTestLeavesANameBehind", "failed" if names else "passed",
                              " ".join(names)))

@@ -71,6 +71,14 @@ class Report(unittest.TestCase):
         """A filter that selects no test is an error."""
         self.assertEqual(self.report([], "")[0], 1)
 
+    def test_fails_if_ctest_did_not_run_to_its_end(self):
+        """A ctest that was killed writes no file. Its exit code is negative."""
+        case = report.Case("A.Passes", "passed", "")
+        self.assertEqual(report.judge_end(0, [case]), [])
+        self.assertEqual(report.judge_end(8, [case]), [])
+        for code, cases in ((-9, []), (-9, [case]), (0, []), (1, [case])):
+            self.assertEqual([found.outcome for found in report.judge_end(code, cases)], ["failed"])
+
 
 class Left(unittest.TestCase):
     """Tests of left.py."""
