@@ -67,7 +67,6 @@ LawServer::LawServer(const std::string& law, const SolverOptions& options)
                        describe_law(header);
                        header.largest_rate = options.largest_rate.value_or(1.0);
                      })),
-      items_(ring_.region.bytes(), ring_.layout),
       commanders_(law, options.trust) {
   lock_.keep_file();
   commanders_.look_around();
@@ -83,21 +82,21 @@ WaypointRingWriter::Solved LawServer::solved() const noexcept {
   return {.consumed = board_->consumed(), .settled_until = board_->look().settled_until};
 }
 
-/// Begins the law at the requested rate.
-void LawServer::begin(Time now) {
-  const double rate = commanders_.read(now, ring_.header.largest_rate).rate;
-  const Time start = now + std::max(kNotice, 2 * freeze_ahead_);
+/// Begins the law at the requested rate. One replacement, so that a curve with one of its two
+/// waypoints is never published, also if this process dies or is delayed.
+void LawServer::begin(const Clock& clock) {
+  const double rate = commanders_.read(clock.now(), ring_.header.largest_rate).rate;
+  const Time start = clock.now() + std::max(kNotice, 2 * freeze_ahead_);
   const double s = to_seconds(start - Time(ring_.header.law_origin));
   const std::array<double, 1> velocity{rate};
   const std::array<double, 1> first{s};
   const std::array<double, 1> last{s + rate * to_seconds(kLine)};
-  const auto append = [&](Time time, const std::array<double, 1>& position) {
-    (void)ring_.writer.append(
-        {.time = time, .position = position, .velocity = velocity, .acceleration = kZero},
-        solved());
+  const auto waypoint = [&](Time time, const std::array<double, 1>& position) {
+    return Waypoint{
+        .time = time, .position = position, .velocity = velocity, .acceleration = kZero};
   };
-  append(start, first);
-  append(start + kLine, last);
+  const std::array waypoints{waypoint(start, first), waypoint(start + kLine, last)};
+  (void)ring_.writer.replace_from(start - Time(1), waypoints, solved());
 }
 
 std::optional<core::LawState> LawServer::state_at(Time time) noexcept {
@@ -137,18 +136,24 @@ void LawServer::change(const Demand& demand, Time now) {
   (void)ring_.writer.replace_from(begin->time, std::span(waypoints).first(count), solved());
 }
 
+std::optional<double> LawServer::rate_in_force() noexcept {
+  Summary summary;
+  const bool is_known = board_->copy_newest_summary(summary) && summary.newest > 0 &&
+                        board_->copy_knot(summary.newest, summary.revision, newest_);
+  return is_known ? std::optional(newest_.velocity()[0]) : std::nullopt;
+}
+
 void LawServer::step(const Clock& clock) {
-  const Time now = clock.now();
-  if (now >= next_look_) {
+  if (clock.now() >= next_look_) {
     commanders_.look_around();
-    next_look_ = now + kLookEvery;
+    next_look_ = clock.now() + kLookEvery;
   }
   if (board_ == nullptr || board_->consumed() != ring_.writer.written()) return;
-  if (ring_.writer.written() == 0) return begin(now);
+  const std::optional<double> rate = rate_in_force();
+  if (!rate) return begin(clock);
+  const Time now = clock.now();  // after all system calls of unknown length
   const Demand demand = commanders_.read(now, ring_.header.largest_rate);
-  // The newest item is the end of the straight line after the last ramp.
-  items_.copy(ring_.writer.written() - 1, item_);
-  if (item_.waypoint().velocity[0] != demand.rate) change(demand, now);
+  if (*rate != demand.rate) change(demand, now);
 }
 
 Time LawServer::due() const noexcept { return std::min(next_look_, commanders_.next_expiry()); }

@@ -4,13 +4,12 @@
 #include <string>
 
 #include "core/laws/ramp.hpp"
+#include "ipc/board/knot.hpp"
 #include "ipc/board/reader.hpp"
 #include "ipc/law/commands.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/owned/ring.hpp"
-#include "ipc/ring/item.hpp"
-#include "ipc/ring/reader.hpp"
 #include "ipc/sampling/sampler.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/options.hpp"
@@ -24,7 +23,8 @@ namespace splinecast::ipc {
 /// A law is a live stream of one dimension, stream time in seconds since the law's origin, solved
 /// with the method `quintic`. A change of the rate replaces what is not settled by a ramp, one or
 /// two waypoints, and by a waypoint decades later at the same rate: the segment to it is the
-/// straight line on which the law continues without any process. One thread uses it.
+/// straight line on which the law continues without any process. A change that the solver refuses,
+/// because it was delayed, is repeated in the next step. One thread uses it.
 class LawServer {
  public:
   /// Whether there is a law of this name to be produced: a commander has a ring, and no other
@@ -52,20 +52,22 @@ class LawServer {
 
  private:
   [[nodiscard]] WaypointRingWriter::Solved solved() const noexcept;
-  void begin(Time now);
+  void begin(const Clock& clock);
+  /// The rate at which the published law ends; nothing if it has not begun. What is compared with
+  /// the commands is what was committed: the solver may have refused the items in the ring.
+  [[nodiscard]] std::optional<double> rate_in_force() noexcept;
   [[nodiscard]] std::optional<core::LawState> state_at(Time time) noexcept;
   void change(const Demand& demand, Time now);
 
   OwnerLock lock_;
   OwnedRing ring_;
-  WaypointRingReader items_;  ///< of ring_
   Commanders commanders_;
   const KnotBoardReader* board_ = nullptr;
   std::optional<Sampler> sampler_;
   Time freeze_ahead_{};
   Time next_look_ = Time::min();
   State state_{1};
-  RingItem item_{1};
+  KnotCopy newest_{1, false};  ///< scratch
 };
 
 }  // namespace splinecast::ipc

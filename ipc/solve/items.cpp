@@ -121,6 +121,11 @@ void StreamSolver::take_replacement(Word number) noexcept {
   if (has_begun && (t < settled_until_ || !is_time_in_range(t) || t < curve_.earliest_cut())) {
     return refuse_replacement(number, Refusal::too_late);
   }
+  // Waypoints that begin a curve together are taken together, too.
+  const bool is_begin = !has_begun && live_ && item_.count > 0 && number + 1 < available_;
+  if (is_begin && ring_->time(number + 1) < settled_until_) {
+    return refuse_replacement(number, Refusal::past);
+  }
   ++summary_.controls;
   // The replacement and its waypoints are one revision, as far as the board has room.
   const bool may_follow = number >= suspected_;

@@ -31,11 +31,21 @@ constexpr Time kInterval = milliseconds(20);
 /// A host's clock that the test advances.
 class HostClock final : public Clock {
  public:
-  [[nodiscard]] Time now() const noexcept override { return now_; }
+  [[nodiscard]] Time now() const noexcept override {
+    if (readings_ > 0 && --readings_ == 0) now_ += pause_;
+    return now_;
+  }
   void advance(Time by) { now_ += by; }
+  /// Delays the process that reads this clock directly before one of its next readings, from 1 on.
+  void pause_before(int reading, Time pause) {
+    readings_ = reading;
+    pause_ = pause;
+  }
 
  private:
-  Time now_ = MonotonicClock().now();
+  mutable Time now_ = MonotonicClock().now();
+  mutable int readings_ = 0;
+  Time pause_{};
 };
 
 /// A law and a stream of one dimension that follows it: a sine of stream time.
@@ -124,6 +134,42 @@ TEST_F(TimeLaw, MovesTheStreamAtTheRateThatIsRequested) {
   const double s = to_seconds(reader_->rate().stream_time - origin_);
   EXPECT_NEAR(state.position()[0], std::sin(2 * s), 1e-4);
   EXPECT_NEAR(state.velocity()[0], 0.25 * 2 * std::cos(2 * s), 1e-3);
+}
+
+TEST_F(TimeLaw, TakesAHoldBeforeWhicheverReadingOfTheClockItsSolverIsDelayed) {
+  State state(1);
+  for (int reading = 1; reading <= 30; ++reading) {
+    operator_.set_rate(1, milliseconds(1));
+    pass(milliseconds(100));
+    ASSERT_TRUE(has_values(reader_->sample(clock_.now(), state)));
+    ASSERT_EQ(reader_->rate().rate, 1) << reading;
+    operator_.hold(milliseconds(1));
+    clock_.pause_before(reading, milliseconds(30));
+    pass(milliseconds(100));
+    ASSERT_TRUE(has_values(reader_->sample(clock_.now(), state)));
+    ASSERT_EQ(reader_->rate().rate, 0) << reading;
+  }
+}
+
+TEST(ALaw, BeginsBeforeWhicheverReadingOfTheClockItsSolverIsDelayed) {
+  for (int reading = 1; reading <= 30; ++reading) {
+    const TestStream law;
+    HostClock clock;
+    RateCommander commander(law.name(), "operator");
+    commander.set_rate(1, milliseconds(1));
+    Solver solver(law.name(), {});
+    ASSERT_TRUE(solver.attach(clock));
+    clock.pause_before(reading, milliseconds(100));
+    for (int i = 0; i < 300; ++i) {
+      clock.advance(milliseconds(1));
+      (void)solver.step(clock);
+    }
+    Reader reader(law.name());
+    State state(1);
+    const SampleStatus status = reader.preview(clock.now(), state);
+    ASSERT_TRUE(has_values(status)) << to_string(status) << ", delayed before reading " << reading;
+    ASSERT_NEAR(state.velocity()[0], 1, 1e-9) << reading;
+  }
 }
 
 TEST_F(TimeLaw, GivesTheDerivativesByHostTimeThroughRampsThatInterruptRamps) {
