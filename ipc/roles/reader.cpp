@@ -53,13 +53,14 @@ struct Reader::Impl {
   MotionLimits limits;
   State state;  ///< scratch
   ipc::Word seen = 0;
-  Time passed = Time::min();  ///< a host time that has passed
+  Time passed = Time::min();  ///< a host time that had passed before the law was read
 
-  /// Whether a host time has passed. By the deadline rule no revision of a law changes it before
-  /// its commit: the past needs no living solver.
-  [[nodiscard]] bool has_passed(Time host) noexcept {
-    if (host > passed) passed = MonotonicClock().now();
-    return host <= passed;
+  /// Reads the clock if that may decide whether the law has settled at a host time. Call it before
+  /// the law is read: by the deadline rule no revision of a law changes it before its commit, so a
+  /// law that is read after a time has passed is final there, and needs no living solver. In the
+  /// other order, this process may be delayed in between, and the law may have changed.
+  void see_passed(Time host) noexcept {
+    if (host > passed && host >= law->settled_until()) passed = MonotonicClock().now();
   }
 
   Impl(std::string name, ipc::Region mapped, const ipc::RegionHeader& described,
@@ -117,9 +118,14 @@ SampleStatus Reader::preview(Time t, const StateRef& out) noexcept {
   return follows_law_ ? follow(t, out, false) : sampler_->preview(t, out);
 }
 
-/// Samples the curve at the stream time of a host time, with the derivatives by host time. The
-/// sample has settled if both the law and the curve have.
 SampleStatus Reader::follow(Time host, const StateRef& out, bool is_executed) noexcept {
+  impl_->see_passed(host);
+  return follow_seen(host, out, is_executed);
+}
+
+/// Samples the curve at the stream time of a host time, with the derivatives by host time. The
+/// sample has settled if both the law and the curve have. Requires see_passed() before.
+SampleStatus Reader::follow_seen(Time host, const StateRef& out, bool is_executed) noexcept {
   ipc::LawFollower& law = *impl_->law;
   ipc::LawPoint point;
   const SampleStatus seen = law.look_up(host, is_executed, point);
@@ -129,7 +135,7 @@ SampleStatus Reader::follow(Time host, const StateRef& out, bool is_executed) no
   rate_ = {.stream_time = point.stream, .rate = point.rates.rate, .slope = point.rates.slope};
   if (seen == SampleStatus::revised) return seen;
   if (seen == SampleStatus::settled || status != SampleStatus::settled) return status;
-  return impl_->has_passed(host) ? status : SampleStatus::provisional;
+  return host <= impl_->passed ? status : SampleStatus::provisional;
 }
 
 SampleStatus Reader::sample_point(const ipc::LawPoint& point, const StateRef& out,
@@ -158,13 +164,14 @@ std::uint64_t Reader::follow_many(std::span<const Time> times, const SampleBlock
     return 0;
   }
   State& state = impl_->state;
+  impl_->passed = MonotonicClock().now();  // as see_passed(), once for all times
   constexpr int kTries = 16;
   for (int attempt = 0; attempt < kTries; ++attempt) {
     std::uint64_t revision = 0;
     std::uint64_t law_revision = 0;
     bool is_one = true;
     for (std::size_t i = 0; i < times.size() && is_one; ++i) {
-      out.status[i] = follow(times[i], state.ref(), false);
+      out.status[i] = follow_seen(times[i], state.ref(), false);
       if (i == 0) revision = sampler_->revision_seen();
       if (i == 0) law_revision = impl_->law->revision_seen();
       is_one = revision == sampler_->revision_seen() &&

@@ -150,6 +150,7 @@ class Reader {
  private:
   friend struct ipc::Internals;
   [[nodiscard]] SampleStatus follow(Time host, const StateRef& out, bool is_executed) noexcept;
+  [[nodiscard]] SampleStatus follow_seen(Time host, const StateRef& out, bool is_executed) noexcept;
   [[nodiscard]] SampleStatus sample_point(const ipc::LawPoint& point, const StateRef& out,
                                           bool is_executed) noexcept;
   [[nodiscard]] std::uint64_t follow_many(std::span<const Time> times,
