@@ -72,13 +72,12 @@ TEST(Stop, DoesNotWaitForRoomOnTheBoard) {
 /// waits for room on the board, nothing is withdrawn.
 TEST(Stop, OrReplacementThatWaitsForRoomWithdrawsNothing) {
   Live live({.settle = 2}, 64, {.history = seconds(10)});
-  live.put_all(50, 630);
-  live.clock.time = Live::kNow + seconds(1);
-  live.drain();
-  ASSERT_EQ(live.put(Live::kNow + milliseconds(1500)), AppendStatus::accepted);
-  ASSERT_EQ(live.put(Live::kNow + milliseconds(1600)), AppendStatus::accepted);
-  ASSERT_EQ(live.replace(Live::kNow + milliseconds(1400), {Live::kNow + milliseconds(1700)}),
-            AppendStatus::accepted);
+  live.put_all(50, 630);  // leaves no room for a cut at the newest knot
+  const Time newest = live.solver.summary().newest_time;
+  ASSERT_EQ(newest, Live::kNow + milliseconds(630));
+  ASSERT_EQ(live.put(newest + milliseconds(10)), AppendStatus::accepted);
+  ASSERT_EQ(live.put(newest + milliseconds(20)), AppendStatus::accepted);
+  ASSERT_EQ(live.replace(newest, {newest + milliseconds(100)}), AppendStatus::accepted);
   live.clock.time += milliseconds(3);
   live.solver.step(live.clock);
   EXPECT_EQ(live.solver.summary().withdrawn, 0U);
