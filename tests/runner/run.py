@@ -62,13 +62,14 @@ def used(all_processes, root):
 
 
 def kill_tree(all_processes, root):
-    for child, (parent, _) in all_processes.items():
-        if parent == root:
-            kill_tree(all_processes, child)
+    """Kills a process, then its descendants: in the other order it could go on and end well."""
     try:
         os.kill(root, signal.SIGKILL)
     except ProcessLookupError:
         pass
+    for child, (parent, _) in all_processes.items():
+        if parent == root:
+            kill_tree(all_processes, child)
 
 
 def watch(ctest, ended):
