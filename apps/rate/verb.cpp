@@ -15,7 +15,7 @@
 #include "apps/process/signals.hpp"
 #include "apps/rate/report.hpp"
 #include "apps/streams/report.hpp"
-#include "core/laws/ramp.hpp"
+#include "core/laws/rate_plan.hpp"
 #include "ipc/law/follower.hpp"
 #include "ipc/memory/names.hpp"
 #include "splinecast/clock.hpp"
@@ -61,7 +61,7 @@ std::unique_ptr<ipc::LawFollower> open_law(const RateOptions& options) {
 std::vector<ipc::CommanderState> commanders_of(const RateOptions& options) {
   ipc::Commanders commanders(options.law, options.trust);
   commanders.look_around();
-  (void)commanders.read(MonotonicClock().now(), ipc::kLargestRate);
+  commanders.read(MonotonicClock().now());
   return commanders.states();
 }
 
@@ -97,16 +97,36 @@ double rate_after(const RateOptions& options, double largest) {
   return std::min(least.value_or(1.0), largest);
 }
 
-/// The effects of a ramp of this length on all streams that follow the law.
-std::vector<ipc::RampEffect> effects_of(ipc::LawFollower& law, double rate, Time length,
+/// A law, and its state where a ramp that is requested now begins.
+struct Present {
+  std::unique_ptr<ipc::LawFollower> law;
+  core::LawState from;
+};
+
+/// Nothing if no solver has begun the law.
+std::optional<Present> look_at_law(const RateOptions& options) {
+  auto law = open_law(options);
+  if (!law) return std::nullopt;
+  const auto from = law->state_at(MonotonicClock().now() + 2 * Time(law->header().freeze_ahead));
+  return from ? std::optional<Present>({std::move(law), *from}) : std::nullopt;
+}
+
+/// The effects of a ramp of this length on all streams that follow the law. A stream that cannot be
+/// read is reported and left out.
+std::vector<ipc::RampEffect> effects_of(const Present& present, double rate, Time length,
                                         const Trust& trust) {
   std::vector<ipc::RampEffect> effects;
-  const auto from = law.state_at(MonotonicClock().now() + 2 * Time(law.header().freeze_ahead));
-  if (!from) return effects;
-  const core::Ramp ramp = core::plan_ramp(*from, rate, length, law.largest_rate());
-  for (const std::string& stream : ipc::followers_of(law.header().stream_id, trust)) {
-    effects.push_back(ipc::effect_of(stream, *from, ramp, Time(law.header().law_origin),
-                                     length + kLooksAhead, trust));
+  const core::LawState& from = present.from;
+  const core::RateCurve ramp = core::ramp_alone(from.time, {.rate = from.rate, .slope = from.slope},
+                                                {.rate = rate, .ramp = length});
+  const ipc::RegionHeader& law = present.law->header();
+  for (const std::string& stream : ipc::followers_of(law.stream_id, trust)) {
+    try {
+      effects.push_back(
+          ipc::effect_of(stream, from, ramp, Time(law.law_origin), length + kLooksAhead, trust));
+    } catch (const StreamError& error) {
+      say(fmt::format("'{}': the effect on it is not known: {}", stream, error.what()));
+    }
   }
   return effects;
 }
@@ -120,26 +140,21 @@ const ipc::RampEffect* beyond_limits(const std::vector<ipc::RampEffect>& effects
 }
 
 /// The shortest ramp, to about 10 %, that keeps the limits; nothing if none up to a minute does.
-std::optional<Time> sufficient_ramp(ipc::LawFollower& law, double rate, Time shorter,
+std::optional<Time> sufficient_ramp(const Present& present, double rate, Time shorter,
                                     const Trust& trust) {
   constexpr Time kLongest = std::chrono::minutes(1);
   constexpr double kGrowth = 1.1;
   for (double seconds = to_seconds(shorter); seconds < to_seconds(kLongest); seconds *= kGrowth) {
     const Time length = from_seconds(kGrowth * seconds);
-    if (beyond_limits(effects_of(law, rate, length, trust)) == nullptr) return length;
+    if (beyond_limits(effects_of(present, rate, length, trust)) == nullptr) return length;
   }
   return std::nullopt;
 }
 
-/// Reports the effect of the requested ramp. Returns false if it must not be requested.
-bool report_effect(const RateOptions& options) {
-  const auto law = open_law(options);
-  if (!law) {
-    say(fmt::format("'{}': waiting for a solver", options.law));
-    return true;
-  }
-  const double rate = rate_after(options, law->largest_rate());
-  const auto effects = effects_of(*law, rate, options.ramp, options.trust);
+/// Reports the effect of the requested ramp. Returns false if it exceeds a limit.
+bool report_effect(const RateOptions& options, const Present& present, bool is_requested) {
+  const double rate = rate_after(options, present.law->largest_rate());
+  const auto effects = effects_of(present, rate, options.ramp, options.trust);
   if (options.json) {
     nlohmann::ordered_json json{{"law", options.law}, {"rate", rate}};
     json["effects"] = nlohmann::ordered_json::array();
@@ -153,10 +168,11 @@ bool report_effect(const RateOptions& options) {
   }
   const ipc::RampEffect* const beyond = beyond_limits(effects);
   if (beyond == nullptr || options.force) return true;
-  const auto enough = sufficient_ramp(*law, rate, options.ramp, options.trust);
-  say(fmt::format("refused: {}; {}; --force requests it all the same", excess_in_words(*beyond),
+  const auto enough = sufficient_ramp(present, rate, options.ramp, options.trust);
+  say(fmt::format("{}: {}; {}{}", is_requested ? "requested" : "refused", excess_in_words(*beyond),
                   enough ? fmt::format("a ramp of {:.3g} s would do", to_seconds(*enough))
-                         : "no ramp up to a minute would do"));
+                         : "no ramp up to a minute would do",
+                  is_requested ? "" : "; --force requests it all the same"));
   return false;
 }
 
@@ -166,14 +182,44 @@ int keep_alive(RateCommander& commander, Time dead_man) {
   return kOk;
 }
 
-int command(const RateOptions& options) {
-  if (!report_effect(options)) return kFellShort;
-  RateCommander commander(options.law, options.commander, {}, options.trust);
+void request(const RateOptions& options, RateCommander& commander) {
   commander.set_dead_man(options.dead_man.value_or(Time::zero()));
   if (options.release) {
     commander.release(options.ramp);
   } else {
     commander.set_rate(*options.rate, options.ramp);
+  }
+}
+
+/// Requests a lower rate. Such a request is never refused, because the machine would run on: what
+/// it does to the followers is reported afterwards.
+void lower(const RateOptions& options, RateCommander& commander,
+           const std::optional<Present>& present) {
+  request(options, commander);
+  try {
+    if (present) (void)report_effect(options, *present, true);
+  } catch (const StreamError& error) {
+    say(fmt::format("requested; its effect is not known: {}", error.what()));
+  }
+}
+
+int command(const RateOptions& options) {
+  const bool holds = !options.release && *options.rate == 0;
+  std::optional<Present> present;
+  try {
+    present = look_at_law(options);
+    if (!present) say(fmt::format("'{}': waiting for a solver", options.law));
+  } catch (const StreamError& error) {
+    if (!holds) throw;
+    say(error.what());
+  }
+  const bool lowers = holds || (!options.release && present && *options.rate <= present->from.rate);
+  if (!lowers && present && !report_effect(options, *present, false)) return kFellShort;
+  RateCommander commander(options.law, options.commander, {}, options.trust);
+  if (lowers) {
+    lower(options, commander, present);
+  } else {
+    request(options, commander);
   }
   return options.dead_man ? keep_alive(commander, *options.dead_man) : kOk;
 }

@@ -45,11 +45,13 @@ ProducerOptions command_ring_options(const RegionAccess& access, const Trust& tr
 }
 
 bool Commanders::has(const std::string& name) const noexcept {
-  return std::ranges::any_of(rings_, [&](const auto& ring) { return ring->name == name; });
+  return std::ranges::any_of(rings_, [&](const auto& ring) { return ring->state.name == name; });
 }
 
 void Commanders::look_around() {
   std::erase_if(rings_, [](const auto& ring) { return ring->ring.retired(); });
+  if (!folder_.has_changed() && !tries_again_) return;
+  tries_again_ = false;
   for (const std::string& name : commander_names(law_)) {
     if (has(name)) continue;
     try {
@@ -58,7 +60,7 @@ void Commanders::look_around() {
       region.close_descriptor();
       rings_.push_back(std::make_unique<Ring>(name, std::move(region), layout));
     } catch (const StreamError&) {
-      continue;  // it was just removed, or belongs to another user
+      tries_again_ = true;  // it was just removed, or belongs to another user
     }
   }
 }
@@ -78,31 +80,21 @@ void Commanders::read_newest(Ring& ring) {
     if (!ring.ring.observe(written - 1, item_)) continue;
     ring.seen = written;
     if (item_.kind == ItemKind::waypoint && is_finite(item_.waypoint().position)) {
-      ring.command = command_of(item_);
+      ring.state.command = command_of(item_);
     }
   }
 }
 
-Demand Commanders::read(Time now, double largest) {
-  Demand demand{.rate = std::min(1.0, largest), .ramp = kShortestRamp};
-  bool is_any = false;
-  Time newest = Time::min();
+void Commanders::read(Time now) {
   for (const auto& ring : rings_) {
     read_newest(*ring);
-    const RateCommand& command = ring->command;
-    const Time expiry = expiry_of(command);
-    ring->is_dead = expiry <= now;
-    const Time changed = ring->is_dead ? expiry : command.time;
-    if (changed >= newest && ring->seen > 0) {
-      newest = changed;
-      demand.ramp = command.ramp;
-    }
-    if (command.rate < 0) continue;
-    const double rate = ring->is_dead ? 0 : std::min(command.rate, largest);
-    demand.rate = is_any ? std::min(demand.rate, rate) : rate;
-    is_any = true;
+    ring->state.is_dead = expiry_of(ring->state.command) <= now;
   }
-  return demand;
+}
+
+core::RateRequest CommanderState::request(double largest) const noexcept {
+  if (is_dead) return {.rate = 0, .ramp = kDeadManRamp};
+  return {.rate = requests() ? std::min(command.rate, largest) : largest, .ramp = command.ramp};
 }
 
 void Commanders::wait(Time timeout) const noexcept {
@@ -119,14 +111,14 @@ void Commanders::wait(Time timeout) const noexcept {
 Time Commanders::next_expiry() const noexcept {
   Time next = Time::max();
   for (const auto& ring : rings_) {
-    if (!ring->is_dead) next = std::min(next, expiry_of(ring->command));
+    if (!ring->state.is_dead) next = std::min(next, expiry_of(ring->state.command));
   }
   return next;
 }
 
 std::vector<CommanderState> Commanders::states() const {
   std::vector<CommanderState> out;
-  for (const auto& ring : rings_) out.push_back({ring->name, ring->command, ring->is_dead});
+  for (const auto& ring : rings_) out.push_back(ring->state);
   return out;
 }
 

@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "core/laws/rate_plan.hpp"
 #include "ipc/layout/waypoint_items.hpp"
 #include "ipc/mapping/region.hpp"
+#include "ipc/memory/folder_watch.hpp"
 #include "ipc/memory/word.hpp"
 #include "ipc/ring/item.hpp"
 #include "ipc/ring/reader.hpp"
@@ -37,17 +39,19 @@ inline constexpr Time kLongestRamp{3'600'000'000'000};
 /// The options of a commander's ring.
 [[nodiscard]] ProducerOptions command_ring_options(const RegionAccess& access, const Trust& trust);
 
-/// The rate that a law is to have, and the ramp to it.
-struct Demand {
-  double rate = 1;
-  Time ramp{};
-};
+/// Length of the ramp to rate 0 after a dead man has expired.
+inline constexpr Time kDeadManRamp{500'000'000};
 
 /// What one commander requests.
 struct CommanderState {
   std::string name;
   RateCommand command;
   bool is_dead = false;  ///< its dead man has expired: it requests rate 0
+
+  /// Whether it requests a rate.
+  [[nodiscard]] bool requests() const noexcept { return command.rate >= 0; }
+  /// What it asks of a law with this largest rate. Without a request that is the largest rate.
+  [[nodiscard]] core::RateRequest request(double largest) const noexcept;
 };
 
 /// The commanders of one law, as the law's solver observes them. One thread uses it.
@@ -55,7 +59,8 @@ class Commanders {
  public:
   Commanders(std::string law, const Trust& trust) : law_(std::move(law)), trust_(trust) {}
 
-  /// Looks for commanders that have come. System calls; allocates for new ones. A ring that cannot
+  /// Looks for commanders that have come. One system call if no file of shared memory has come or
+  /// gone since the last call, else it reads the folder; allocates for new ones. A ring that cannot
   /// be used is ignored, and tried again in the next call.
   void look_around();
 
@@ -64,15 +69,18 @@ class Commanders {
   /// Whether a commander has given a command since the last read(). One load per commander.
   [[nodiscard]] bool calls() const noexcept;
 
-  /// Reads the newest commands and returns the least rate that is requested at `now`, at most
-  /// `largest`, with the ramp of the change that came last; rate 1 if none is requested.
-  [[nodiscard]] Demand read(Time now, double largest);
+  /// Reads the newest commands. `now` decides which dead men have expired.
+  void read(Time now);
 
   /// When the next dead man expires; max() for never.
   [[nodiscard]] Time next_expiry() const noexcept;
 
   /// What each commander requested at the last read().
   [[nodiscard]] std::vector<CommanderState> states() const;
+  [[nodiscard]] std::size_t size() const noexcept { return rings_.size(); }
+  [[nodiscard]] const CommanderState& state(std::size_t i) const noexcept {
+    return rings_[i]->state;
+  }
 
   /// Sleeps until a commander gives a command that read() has not read, at most `timeout`; with
   /// several commanders at most 1 ms. May return early.
@@ -80,21 +88,24 @@ class Commanders {
 
  private:
   struct Ring {
-    std::string name;
     Region region;
     WaypointRingReader ring;
     Word seen = 0;  ///< `written` at the last read
-    RateCommand command{.time = Time::min(), .rate = -1};
-    bool is_dead = false;
+    CommanderState state;
 
-    Ring(std::string of, Region mapped, const RingLayout& layout)
-        : name(std::move(of)), region(std::move(mapped)), ring(region.bytes(), layout) {}
+    Ring(std::string name, Region mapped, const RingLayout& layout)
+        : region(std::move(mapped)),
+          ring(region.bytes(), layout),
+          state{.name = std::move(name),
+                .command = {.time = Time::min(), .rate = -1, .ramp = kShortestRamp}} {}
   };
   [[nodiscard]] bool has(const std::string& name) const noexcept;
   void read_newest(Ring& ring);
 
   std::string law_;
   Trust trust_;
+  FolderWatch folder_;
+  bool tries_again_ = false;  ///< a ring could not be used
   std::vector<std::unique_ptr<Ring>> rings_;
   RingItem item_{kCommandValues};
 };

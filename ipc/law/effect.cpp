@@ -6,6 +6,7 @@
 
 #include "core/forms/entry.hpp"
 #include "core/laws/motion.hpp"
+#include "core/laws/rate_curve.hpp"
 #include "core/limits/check.hpp"
 #include "core/polynomial/segment.hpp"
 #include "ipc/board/reader.hpp"
@@ -28,19 +29,19 @@ Instant instant(const core::LawState& state) noexcept {
           .acceleration = {&state.slope, 1}};
 }
 
-/// A law that takes a ramp and then continues at its last rate.
+/// A law that has a rate from a state on.
 class PlannedLaw {
  public:
-  PlannedLaw(const core::LawState& from, const core::Ramp& ramp, Time origin)
-      : last_(ramp.ends().back()), origin_(origin) {
-    core::LawState begin = from;
-    for (const core::LawState& end : ramp.ends()) {
-      core::build_entry(instant(begin), instant(end), parts_.emplace_back(1));
-      begin = end;
+  PlannedLaw(const core::LawState& from, const core::RateCurve& rate, Time origin)
+      : last_(from), origin_(origin) {
+    for (const core::RatePiece& piece : rate.pieces()) {
+      const core::LawState end = core::end_of_piece(last_, piece.end_rate, piece.length);
+      core::build_entry(instant(last_), instant(end), parts_.emplace_back(1));
+      last_ = end;
     }
   }
 
-  /// The law at a time that is not before the ramp.
+  /// The law at a time that is not before that state.
   [[nodiscard]] LawPoint at(Time host) noexcept {
     const auto part = std::ranges::find_if(
         parts_, [host](const core::Segment& segment) { return host < segment.right; });
@@ -83,15 +84,15 @@ std::vector<std::string> followers_of(std::uint64_t law_id, const Trust& trust) 
   return found;
 }
 
-RampEffect effect_of(const std::string& stream, const core::LawState& from, const core::Ramp& ramp,
-                     Time origin, Time longest, const Trust& trust) {
+RampEffect effect_of(const std::string& stream, const core::LawState& from,
+                     const core::RateCurve& rate, Time origin, Time longest, const Trust& trust) {
   constexpr Time kStep = std::chrono::milliseconds(1);
   const auto [region, header, layout] = open_board(stream, false, trust);
   const KnotBoardReader board(region.bytes(), layout);
   const DimensionKinds kinds = dimension_kinds(header);
   const MotionLimits limits = motion_limits(header);
   Sampler sampler(board, StreamClock::monotonic, kinds);
-  PlannedLaw law(from, ramp, origin);
+  PlannedLaw law(from, rate, origin);
   State state(header.dimensions);
   RampEffect effect{.stream = stream,
                     .names = dimension_names(header),
@@ -110,7 +111,7 @@ RampEffect effect_of(const std::string& stream, const core::LawState& from, cons
     const Excess excess = core::worst_excess(limits, &kinds, state);
     if (excess.ratio > effect.worst.ratio) effect.worst = excess;
     const bool is_over = status == SampleStatus::holding || point.rates.rate == 0;
-    if (is_over && t > ramp.ends().back().time) break;
+    if (is_over && t > rate.end()) break;
   }
   return effect;
 }

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/laws/ramp.hpp"
+#include "core/laws/rate_curve.hpp"
 #include "ipc/layout/header.hpp"
 #include "splinecast/limits.hpp"
 #include "splinecast/options.hpp"
@@ -27,11 +27,11 @@ struct RampEffect {
 /// read are left out. System calls; allocates.
 [[nodiscard]] std::vector<std::string> followers_of(std::uint64_t law_id, const Trust& trust);
 
-/// Follows a ramp that begins in the state `from`, with the given length, and the straight line
-/// after it, over what the stream has published, for at most `longest` of host time; samples every
-/// millisecond. `origin` is that of the law. Throws as Reader does.
+/// Follows a rate from the state `from` on, over what the stream has published, for at most
+/// `longest` of host time; samples every millisecond. `origin` is that of the law. Throws as Reader
+/// does.
 [[nodiscard]] RampEffect effect_of(const std::string& stream, const core::LawState& from,
-                                   const core::Ramp& ramp, Time origin, Time longest,
+                                   const core::RateCurve& rate, Time origin, Time longest,
                                    const Trust& trust);
 
 }  // namespace splinecast::ipc

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/laws/motion.hpp"
-#include "core/laws/ramp.hpp"
+#include "core/laws/rate_curve.hpp"
 #include "core/polynomial/segment.hpp"
 #include "ipc/board/reader.hpp"
 #include "ipc/layout/header.hpp"

@@ -67,7 +67,8 @@ LawServer::LawServer(const std::string& law, const SolverOptions& options)
                        describe_law(header);
                        header.largest_rate = options.largest_rate.value_or(1.0);
                      })),
-      commanders_(law, options.trust) {
+      commanders_(law, options.trust),
+      rate_(ring_.header.largest_rate) {
   lock_.keep_file();
   commanders_.look_around();
 }
@@ -85,7 +86,8 @@ WaypointRingWriter::Solved LawServer::solved() const noexcept {
 /// Begins the law at the requested rate. One replacement, so that a curve with one of its two
 /// waypoints is never published, also if this process dies or is delayed.
 void LawServer::begin(const Clock& clock) {
-  const double rate = commanders_.read(clock.now(), ring_.header.largest_rate).rate;
+  commanders_.read(clock.now());
+  const double rate = rate_.least_of(commanders_);
   const Time start = clock.now() + std::max(kNotice, 2 * freeze_ahead_);
   const double s = to_seconds(start - Time(ring_.header.law_origin));
   const std::array<double, 1> velocity{rate};
@@ -103,44 +105,55 @@ std::optional<core::LawState> LawServer::state_at(Time time) noexcept {
   return law_state_at(*sampler_, time, ring_.header.largest_rate, state_);
 }
 
-void LawServer::change(const Demand& demand, Time now) {
-  // The solver's step follows at once; a little later than settled, so that it is not too late.
-  const Time margin = std::max<Time>(freeze_ahead_ / 16, std::chrono::microseconds(200));
-  const Time from = std::max(board_->look().settled_until, now + freeze_ahead_) + margin;
-  const double largest = ring_.header.largest_rate;
-  auto begin = state_at(from);
-  if (!begin) return;
-  const Time first = core::first_part(*begin, demand.ramp, largest);
-  if (first > Time::zero() && first < core::kShortestPart) {
-    // The present ramp ends before this time.
-    begin = state_at(from + 2 * core::kShortestPart);
-    if (!begin) return;
+bool LawServer::read_newest() noexcept {
+  return board_->copy_newest_summary(summary_) && summary_.newest > 0 &&
+         board_->copy_knot(summary_.newest, summary_.revision, newest_);
+}
+
+/// The rate that the board has from a state on, for a solver that did not plan it: the knots after
+/// it are the ends of the pieces.
+core::RateCurve LawServer::published(const core::LawState& from) noexcept {
+  core::RateCurve curve(from.time, {.rate = from.rate, .slope = from.slope});
+  Word first = summary_.newest;
+  while (first > summary_.first && board_->time_hint(first - 1) > from.time) --first;
+  const bool is_plan = summary_.newest - first <= core::RateCurve::kMostPieces;
+  for (Word number = first; is_plan && number < summary_.newest; ++number) {
+    if (!board_->copy_knot(number, summary_.revision, knot_)) break;
+    if (knot_.time > curve.end()) curve.add(knot_.velocity()[0], knot_.time - curve.end());
   }
-  const core::Ramp ramp = core::plan_ramp(*begin, demand.rate, demand.ramp, largest);
-  constexpr std::size_t kMost = 3;
+  return curve;
+}
+
+/// Whether the plan that was sent last is in force: only what was committed is.
+void LawServer::judge_sent() noexcept {
+  if (sent_ && newest_.time == *sent_) rate_.commit();
+  sent_.reset();
+}
+
+void LawServer::send(const core::RateCurve& curve, const core::LawState& from) {
+  constexpr std::size_t kMost = core::RateCurve::kMostPieces + 1;
   std::array<std::array<double, 2>, kMost> values{};  // position and rate
   std::array<Waypoint, kMost> waypoints{};
   std::size_t count = 0;
-  const auto add = [&](Time time, double position, double rate) {
-    values[count] = {position, rate};
+  const auto add = [&](const core::LawState& end) {
+    values[count] = {end.position, end.rate};
     const auto both = std::span(values[count]);
-    waypoints[count] = {.time = time,
+    waypoints[count] = {.time = end.time,
                         .position = both.first(1),
                         .velocity = both.subspan(1, 1),
                         .acceleration = kZero};
     ++count;
   };
-  for (const core::LawState& end : ramp.ends()) add(end.time, end.position, end.rate);
-  const core::LawState& last = ramp.ends().back();
-  add(last.time + kLine, last.position + last.rate * to_seconds(kLine), last.rate);
-  (void)ring_.writer.replace_from(begin->time, std::span(waypoints).first(count), solved());
-}
-
-std::optional<double> LawServer::rate_in_force() noexcept {
-  Summary summary;
-  const bool is_known = board_->copy_newest_summary(summary) && summary.newest > 0 &&
-                        board_->copy_knot(summary.newest, summary.revision, newest_);
-  return is_known ? std::optional(newest_.velocity()[0]) : std::nullopt;
+  core::LawState end = from;
+  for (const core::RatePiece& piece : curve.pieces()) {
+    end = core::end_of_piece(end, piece.end_rate, piece.length);
+    add(end);
+  }
+  add(core::end_of_piece({.time = end.time, .position = end.position, .rate = end.rate}, end.rate,
+                         kLine));
+  const auto sent = std::span(waypoints).first(count);
+  const AppendStatus status = ring_.writer.replace_from(from.time, sent, solved());
+  if (status == AppendStatus::accepted) sent_ = sent.back().time;
 }
 
 void LawServer::step(const Clock& clock) {
@@ -149,11 +162,18 @@ void LawServer::step(const Clock& clock) {
     next_look_ = clock.now() + kLookEvery;
   }
   if (board_ == nullptr || board_->consumed() != ring_.writer.written()) return;
-  const std::optional<double> rate = rate_in_force();
-  if (!rate) return begin(clock);
+  if (!read_newest()) return begin(clock);
+  if (is_rate_known_) judge_sent();
   const Time now = clock.now();  // after all system calls of unknown length
-  const Demand demand = commanders_.read(now, ring_.header.largest_rate);
-  if (*rate != demand.rate) change(demand, now);
+  // The solver's step follows at once; a little later than settled, so that it is not too late.
+  const Time margin = std::max<Time>(freeze_ahead_ / 16, std::chrono::microseconds(200));
+  const Time from = std::max(board_->look().settled_until, now + freeze_ahead_) + margin;
+  const auto state = state_at(from);
+  if (!state) return;
+  commanders_.read(now);
+  if (!is_rate_known_) rate_.begin(published(*state), commanders_, from);
+  is_rate_known_ = true;
+  if (const auto curve = rate_.plan(commanders_, from)) send(*curve, *state);
 }
 
 Time LawServer::due() const noexcept { return std::min(next_look_, commanders_.next_expiry()); }

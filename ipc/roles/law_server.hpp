@@ -3,11 +3,13 @@
 #include <optional>
 #include <string>
 
-#include "core/laws/ramp.hpp"
+#include "core/laws/rate_curve.hpp"
 #include "ipc/board/knot.hpp"
 #include "ipc/board/reader.hpp"
+#include "ipc/law/commanded_rate.hpp"
 #include "ipc/law/commands.hpp"
 #include "ipc/layout/header.hpp"
+#include "ipc/layout/summary.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/owned/ring.hpp"
 #include "ipc/sampling/sampler.hpp"
@@ -21,10 +23,11 @@ namespace splinecast::ipc {
 /// ring. The process that solves the law runs it.
 ///
 /// A law is a live stream of one dimension, stream time in seconds since the law's origin, solved
-/// with the method `quintic`. A change of the rate replaces what is not settled by a ramp, one or
-/// two waypoints, and by a waypoint decades later at the same rate: the segment to it is the
-/// straight line on which the law continues without any process. A change that the solver refuses,
-/// because it was delayed, is repeated in the next step. One thread uses it.
+/// with the method `quintic`. A change of the rate replaces what is not settled by up to three
+/// waypoints, the ends of the pieces of the new rate, and by a waypoint decades later at the same
+/// rate: the segment to it is the straight line on which the law continues without any process. A
+/// change that the solver refuses, because it was delayed, is planned again in the next step. One
+/// thread uses it.
 class LawServer {
  public:
   /// Whether there is a law of this name to be produced: a commander has a ring, and no other
@@ -53,11 +56,13 @@ class LawServer {
  private:
   [[nodiscard]] WaypointRingWriter::Solved solved() const noexcept;
   void begin(const Clock& clock);
-  /// The rate at which the published law ends; nothing if it has not begun. What is compared with
-  /// the commands is what was committed: the solver may have refused the items in the ring.
-  [[nodiscard]] std::optional<double> rate_in_force() noexcept;
+  /// Copies the newest knot of the published law: the end of its straight line. Returns false if
+  /// the law has not begun.
+  [[nodiscard]] bool read_newest() noexcept;
+  [[nodiscard]] core::RateCurve published(const core::LawState& from) noexcept;
   [[nodiscard]] std::optional<core::LawState> state_at(Time time) noexcept;
-  void change(const Demand& demand, Time now);
+  void judge_sent() noexcept;
+  void send(const core::RateCurve& curve, const core::LawState& from);
 
   OwnerLock lock_;
   OwnedRing ring_;
@@ -67,7 +72,12 @@ class LawServer {
   Time freeze_ahead_{};
   Time next_look_ = Time::min();
   State state_{1};
-  KnotCopy newest_{1, false};  ///< scratch
+  CommandedRate rate_;
+  bool is_rate_known_ = false;  ///< rate_ has begun
+  std::optional<Time> sent_;    ///< end of the line of a plan that was sent and not judged yet
+  Summary summary_;             ///< scratch, with the next two
+  KnotCopy newest_{1, false};
+  KnotCopy knot_{1, false};
 };
 
 }  // namespace splinecast::ipc

@@ -62,7 +62,7 @@ def used(all_processes, root):
 
 
 def kill_tree(all_processes, root):
-    """Kills a process, then its descendants: in the other order it could go on and end well."""
+    """Kills a process, then its descendants: in the other order it could continue and succeed."""
     try:
         os.kill(root, signal.SIGKILL)
     except ProcessLookupError:

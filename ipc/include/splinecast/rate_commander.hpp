@@ -29,9 +29,10 @@ class RateCommander {
   ~RateCommander();
 
   /// Requests a rate of at least 0, reached by a ramp of this length, 1 ms to 1 h. The ramp begins
-  /// about one freeze-ahead of the law's solver later. A ramp that interrupts another one is up to
-  /// a quarter longer. A request above the law's largest rate counts as the largest. Throws
-  /// BadRequest for values out of range. One system call.
+  /// about one freeze-ahead of the law's solver later; a rise that it interrupts is first
+  /// flattened, within a quarter of it. The rate never exceeds what this commander alone would make
+  /// it, regardless of the others. A request above the law's largest rate counts as the largest.
+  /// Throws BadRequest for values out of range. One system call.
   void set_rate(double rate, Time ramp);
 
   /// Requests rate 0: a feed hold.
@@ -42,7 +43,7 @@ class RateCommander {
   void release(Time ramp);
 
   /// From the next request on, the law holds if this commander does not repeat its request within
-  /// `timeout`, 1 ms to 1 h; 0: never.
+  /// `timeout`, 1 ms to 1 h; 0: never. That hold has a ramp of 0.5 s.
   void set_dead_man(Time timeout);
 
   /// Repeats the last request, for set_dead_man().

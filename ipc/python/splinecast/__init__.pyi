@@ -751,8 +751,8 @@ class RateCommander:
         rate : float
             0 to 100; above the law's largest rate it counts as the largest.
         ramp : float
-            Length of the ramp [s], 0.001 to 3600. A ramp that interrupts another one lasts up to a
-            quarter longer.
+            Length of the ramp [s], 0.001 to 3600. A rise that it interrupts is first flattened,
+            within a quarter of it.
         """
     def hold(self, ramp: Seconds) -> None:
         """Request rate 0, reached by a ramp of this length [s]."""
@@ -761,7 +761,7 @@ class RateCommander:
     def set_dead_man(self, timeout: Seconds) -> None:
         """Hold the law unless a request is repeated within this time [s], 0.001 to 3600; 0: never.
 
-        In force from the next request on.
+        In force from the next request on. The hold has a ramp of 0.5 s.
         """
     def renew(self) -> None:
         """Repeat the last request, for `set_dead_man`."""

@@ -1,7 +1,9 @@
 #include <chrono>
+#include <filesystem>
 #include <regex>
 #include <string>
 
+#include "ipc/memory/names.hpp"
 #include "tests/apps/rate/rate.hpp"
 
 /// `rate` on a law that a stream follows: what a ramp does to it, and how the other verbs show it.
@@ -33,29 +35,58 @@ class MovingFollower : public Rate {
   Process replay_;
 };
 
-TEST_F(MovingFollower, ARampBeyondALimitIsRefusedWithTheOneThatWouldDo) {
-  // The largest acceleration of a ramp from 1 to 0 in T is 1.5/T.
-  const Ended refused = rate({"0", "--ramp", "0.1"});
-  EXPECT_EQ(refused.code, 3);
-  EXPECT_NE(
-      refused.err.find("acceleration of '" + arm() + "' in dimension x would be -15, limit 10"),
-      std::string::npos)
-      << refused.err;
+/// The ramp that a message names.
+double named_ramp(const std::string& message) {
   std::smatch found;
-  ASSERT_TRUE(std::regex_search(refused.err, found, std::regex("a ramp of ([0-9.]+) s would do")))
-      << refused.err;
-  const std::string enough = found[1];
-  EXPECT_GE(std::stod(enough), 0.15);
-  EXPECT_LE(std::stod(enough), 0.15 * 1.12);
-  EXPECT_NEAR(law_rate(), 1, kRounding);
-  EXPECT_EQ(commander("operator")["rate"], 1);
-  const Ended accepted = rate({"0", "--ramp", enough});
-  EXPECT_EQ(accepted.code, 0) << accepted.err;
+  const bool is_there =
+      std::regex_search(message, found, std::regex("a ramp of ([0-9.]+) s would do"));
+  return is_there ? std::stod(found[1]) : 0;
+}
+
+TEST_F(MovingFollower, ALowerRateBeyondALimitIsRequestedAndTheSufficientRampIsReported) {
+  // The largest acceleration of a ramp from 1 to 0 in T is 1.5/T.
+  const Ended held = rate({"0", "--ramp", "0.1"});
+  EXPECT_EQ(held.code, 0);
+  EXPECT_NE(held.err.find("requested: acceleration of '" + arm() +
+                          "' in dimension x would be -15, limit 10"),
+            std::string::npos)
+      << held.err;
+  EXPECT_GE(named_ramp(held.err), 0.15);
+  EXPECT_LE(named_ramp(held.err), 0.15 * 1.12);
   EXPECT_TRUE(await_rate(0));
 }
 
-TEST_F(MovingFollower, ForceRequestsARampBeyondALimit) {
-  EXPECT_EQ(rate({"0", "--ramp", "0.1", "--force"}).code, 0);
+TEST_F(MovingFollower, AHigherRateBeyondALimitIsRefusedUnlessItIsForced) {
+  ASSERT_EQ(rate({"0", "--ramp", "0.1"}).code, 0);
+  ASSERT_TRUE(await_rate(0));
+  const Ended refused = rate({"1", "--ramp", "0.1"});
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_NE(refused.err.find("refused: acceleration of '" + arm() +
+                             "' in dimension x would be 15, limit 10"),
+            std::string::npos)
+      << refused.err;
+  const double enough = named_ramp(refused.err);
+  EXPECT_GE(enough, 0.15);
+  EXPECT_LE(enough, 0.15 * 1.12);
+  EXPECT_NEAR(law_rate(), 0, kRounding);
+  EXPECT_EQ(commander("operator")["rate"], 0);
+  const Ended accepted = rate({"0.5", "--ramp", std::to_string(enough)});
+  EXPECT_EQ(accepted.code, 0) << accepted.err;
+  EXPECT_TRUE(await_rate(0.5));
+  EXPECT_EQ(rate({"1", "--ramp", "0.01", "--force"}).code, 0);
+  EXPECT_TRUE(await_rate(1));
+}
+
+TEST_F(MovingFollower, AHoldIsRequestedAlsoIfAFileOfAFollowerIsDamaged) {
+  const testing::TestStream damaged;
+  const std::string path = ipc::region_path(damaged.name(), ipc::RegionKind::spline);
+  std::filesystem::copy_file(ipc::region_path(arm(), ipc::RegionKind::spline), path);
+  std::filesystem::resize_file(path, 8192);
+  const Ended held = rate({"0", "--ramp", "0.5"});
+  EXPECT_EQ(held.code, 0);
+  EXPECT_NE(held.err.find("'" + damaged.name() + "': the effect on it is not known: "),
+            std::string::npos)
+      << held.err;
   EXPECT_TRUE(await_rate(0));
 }
 

@@ -1,4 +1,5 @@
 #include "ipc/law/commands.hpp"
+#include "ipc/law/commanded_rate.hpp"
 
 #include <gtest/gtest.h>
 
@@ -58,75 +59,74 @@ class AnyCommander {
 /// The commanders of a law that no process solves, at times that the test chooses.
 class LawCommanders : public ::testing::Test {
  protected:
-  Demand read(Time now, double largest = 1) {
+  /// The least rate that is requested.
+  double read(Time now, double largest = 1) {
     commanders_.look_around();
-    return commanders_.read(now, largest);
+    commanders_.read(now);
+    return CommandedRate(largest).least_of(commanders_);
   }
+  /// What the first commander asks of a law.
+  core::RateRequest request() { return commanders_.state(0).request(1); }
   TestStream law_;
   Commanders commanders_{law_.name(), {}};
 };
 
 TEST_F(LawCommanders, WithoutARequestTheRateIsOne) {
-  EXPECT_EQ(read(seconds(1)).rate, 1);
+  EXPECT_EQ(read(seconds(1)), 1);
   EXPECT_TRUE(commanders_.empty());
   AnyCommander one(law_.name(), "one");
-  EXPECT_EQ(read(seconds(1)).rate, 1);
+  EXPECT_EQ(read(seconds(1)), 1);
   EXPECT_FALSE(commanders_.empty());
-  EXPECT_EQ(read(seconds(1), 0.5).rate, 0.5) << "at most the largest rate";
+  EXPECT_EQ(read(seconds(1), 0.5), 0.5) << "at most the largest rate";
 }
 
-TEST_F(LawCommanders, TheLeastRequestWinsWithTheRampOfTheLastChange) {
+TEST_F(LawCommanders, TheLeastRequestWins) {
   AnyCommander one(law_.name(), "one");
   AnyCommander two(law_.name(), "two");
   one.give(seconds(1), {0.5, 0.1, 0});
   two.give(seconds(2), {0.25, 0.2, 0});
-  Demand demand = read(seconds(3));
-  EXPECT_EQ(demand.rate, 0.25);
-  EXPECT_EQ(demand.ramp, milliseconds(200));
+  EXPECT_EQ(read(seconds(3)), 0.25);
   EXPECT_FALSE(commanders_.calls());
   two.give(seconds(4), {-1, 0.4, 0});
   EXPECT_TRUE(commanders_.calls());
-  demand = read(seconds(5));
-  EXPECT_EQ(demand.rate, 0.5);
-  EXPECT_EQ(demand.ramp, milliseconds(400));
+  EXPECT_EQ(read(seconds(5)), 0.5);
 }
 
 TEST_F(LawCommanders, OnlyTheNewestCommandOfACommanderCounts) {
   AnyCommander one(law_.name(), "one");
   // More than the ring holds.
   for (int i = 1; i <= 1000; ++i) one.give(seconds(i), {1.0 / i, 0.1, 0});
-  EXPECT_EQ(read(seconds(2000)).rate, 1.0 / 1000);
+  EXPECT_EQ(read(seconds(2000)), 1.0 / 1000);
 }
 
 TEST_F(LawCommanders, ADeadManExpiresUnlessACommandFollows) {
   AnyCommander one(law_.name(), "one");
   EXPECT_EQ(commanders_.next_expiry(), Time::max());
   one.give(seconds(1), {0.5, 0.1, 2});
-  EXPECT_EQ(read(seconds(3) - Time(1)).rate, 0.5);
+  EXPECT_EQ(read(seconds(3) - Time(1)), 0.5);
   EXPECT_EQ(commanders_.next_expiry(), seconds(3));
-  EXPECT_EQ(read(seconds(3)).rate, 0);
+  EXPECT_EQ(read(seconds(3)), 0);
   EXPECT_TRUE(commanders_.states()[0].is_dead);
+  EXPECT_EQ(request().ramp, kDeadManRamp);
   EXPECT_EQ(commanders_.next_expiry(), Time::max());
   one.give(seconds(4), {0.5, 0.1, 2});
-  EXPECT_EQ(read(seconds(4)).rate, 0.5);
+  EXPECT_EQ(read(seconds(4)), 0.5);
   one.give(seconds(5), {-1, 0.1, 2});
-  EXPECT_EQ(read(seconds(100)).rate, 1) << "a withdrawn request does not expire";
+  EXPECT_EQ(read(seconds(100)), 1) << "a withdrawn request does not expire";
 }
 
 TEST_F(LawCommanders, ValuesOutOfRangeAreClamped) {
   AnyCommander one(law_.name(), "one");
   one.give(seconds(1), {1e9, 1e9, 0});
-  Demand demand = read(seconds(1));
-  EXPECT_EQ(demand.rate, 1);
-  EXPECT_EQ(demand.ramp, kLongestRamp);
+  EXPECT_EQ(read(seconds(1)), 1);
+  EXPECT_EQ(request().ramp, kLongestRamp);
   one.give(seconds(2), {0.5, -1, -1});
-  demand = read(seconds(3));
-  EXPECT_EQ(demand.rate, 0.5);
-  EXPECT_EQ(demand.ramp, kShortestRamp);
+  EXPECT_EQ(read(seconds(3)), 0.5);
+  EXPECT_EQ(request().ramp, kShortestRamp);
   EXPECT_FALSE(commanders_.states()[0].is_dead);
   one.give(seconds(4), {0.5, 1e-9, 1e9});
-  demand = read(seconds(4));
-  EXPECT_EQ(demand.ramp, kShortestRamp);
+  (void)read(seconds(4));
+  EXPECT_EQ(request().ramp, kShortestRamp);
   EXPECT_EQ(commanders_.next_expiry(), seconds(4) + kLongestRamp);
 }
 
@@ -137,12 +137,11 @@ TEST_F(LawCommanders, ACommandThatIsNotFiniteIsIgnored) {
   for (const double value : {kInfinity, -kInfinity, std::numeric_limits<double>::quiet_NaN()}) {
     for (std::size_t i = 0; i < kCommandValues; ++i) {
       one.give(next(), {0.5, 0.1, 0});
-      EXPECT_EQ(read(now).rate, 0.5);
+      EXPECT_EQ(read(now), 0.5);
       one.give(next(), {0.25, 0.2, 0});
       one.overwrite(i, value);
-      const Demand demand = read(now);
-      EXPECT_EQ(demand.rate, 0.5) << value << " as value " << i;
-      EXPECT_EQ(demand.ramp, milliseconds(100));
+      EXPECT_EQ(read(now), 0.5) << value << " as value " << i;
+      EXPECT_EQ(request().ramp, milliseconds(100));
     }
   }
 }
@@ -152,12 +151,12 @@ TEST_F(LawCommanders, ACommanderThatEndedIsRemembered) {
     RateCommander panel(law_.name(), "panel");
     panel.set_rate(0.25, milliseconds(50));
   }
-  EXPECT_EQ(read(seconds(1)).rate, 0.25);
+  EXPECT_EQ(read(seconds(1)), 0.25);
   // Its successor requests nothing of its own yet.
   RateCommander panel(law_.name(), "panel");
-  EXPECT_EQ(read(seconds(1)).rate, 0.25);
+  EXPECT_EQ(read(seconds(1)), 0.25);
   panel.release(milliseconds(50));
-  EXPECT_EQ(read(seconds(1)).rate, 1);
+  EXPECT_EQ(read(seconds(1)), 1);
 }
 
 }  // namespace

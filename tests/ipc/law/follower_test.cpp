@@ -180,13 +180,15 @@ TEST_F(SolvedLaw, TheEffectOfARampOnAUniformMotionIsThatOfTheRamp) {
   ASSERT_TRUE(from);
   for (const double rate : {0.0, 0.25, 0.75}) {
     const Time length = milliseconds(100);
-    const core::Ramp ramp = core::plan_ramp(*from, rate, length, law.largest_rate());
+    const core::RateCurve ramp =
+        core::ramp_alone(from->time, {.rate = 1, .slope = 0}, {.rate = rate, .ramp = length});
     const RampEffect effect = effect_of(arm.name(), *from, ramp, Time(law.header().law_origin),
                                         length + milliseconds(200), {});
-    const core::RampPeaks peaks = core::peaks_of_ramp(1, rate, length);
+    const double slope = 1.5 * (1 - rate) / to_seconds(length);
+    const double curvature = 4 * slope / to_seconds(length);
     EXPECT_NEAR(effect.velocity[0], kSpeed, 1e-3);
-    EXPECT_NEAR(effect.acceleration[0], kSpeed * peaks.slope, 1e-2 * kSpeed * peaks.slope);
-    EXPECT_NEAR(effect.jerk[0], kSpeed * peaks.curvature, 1e-2 * kSpeed * peaks.curvature);
+    EXPECT_NEAR(effect.acceleration[0], kSpeed * slope, 1e-2 * kSpeed * slope);
+    EXPECT_NEAR(effect.jerk[0], kSpeed * curvature, 1e-2 * kSpeed * curvature);
     EXPECT_LT(effect.worst.ratio, 0) << "there are no limits";
   }
 }
