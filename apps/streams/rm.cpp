@@ -9,9 +9,12 @@
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
+#include "ipc/law/effect.hpp"
+#include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/owned/old_motion.hpp"
 #include "splinecast/clock.hpp"
+#include "splinecast/errors.hpp"
 #include "splinecast/streams.hpp"
 
 namespace splinecast::apps {
@@ -32,6 +35,22 @@ bool wait_for_rest(const std::string& stream, const Trust& trust) {
   return sleep_until(end);
 }
 
+/// Throws StreamBusy if other streams follow the stream, a time law: no process could attach to
+/// them any more.
+void require_without_followers(const std::string& stream, const Trust& trust) {
+  std::vector<std::string> followers;
+  try {
+    const auto header = ipc::peek_header(stream, ipc::RegionKind::spline, trust);
+    if (header && header->is_law != 0) followers = ipc::followers_of(header->stream_id, trust);
+  } catch (const StreamError&) {
+    return;  // remove_stream() judges the file
+  }
+  if (followers.empty()) return;
+  throw StreamBusy(fmt::format(
+      "time law '{}' is followed by '{}': remove that first; --now removes the law all the same",
+      stream, fmt::join(followers, "', '")));
+}
+
 void add_rm(Command& verb, Action& action) {
   struct Options {
     std::vector<std::string> streams;
@@ -41,7 +60,8 @@ void add_rm(Command& verb, Action& action) {
   auto options = std::make_shared<Options>();
   verb.option("STREAM", options->streams, "Names of the streams to remove").required();
   verb.flag("--now", options->now,
-            "Do not wait for the end of a motion: readers lose the curve while it moves");
+            "Do not wait for the end of a motion: readers lose the curve while it moves; also "
+            "remove a time law that streams follow");
   add_trust(verb, options->trust);
   verb.callback([&action, options] {
     action = [options] {
@@ -49,8 +69,9 @@ void add_rm(Command& verb, Action& action) {
       for (const std::string& stream : options->streams) {
         // Continues after a failure.
         code = std::max(code, run_guarded([&] {
-                          if (!options->now && !wait_for_rest(stream, options->trust)) {
-                            return kInterrupted;
+                          if (!options->now) {
+                            require_without_followers(stream, options->trust);
+                            if (!wait_for_rest(stream, options->trust)) return kInterrupted;
                           }
                           remove_stream(stream, options->trust);
                           return kOk;

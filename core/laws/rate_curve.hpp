@@ -74,7 +74,7 @@ class RateCurve {
   /// Largest magnitude of the slope.
   [[nodiscard]] double steepest() const noexcept;
 
-  /// The part at a time: a piece, or a constant rate until `end`, max() for ever.
+  /// The part at a time: a piece, or a constant rate until `end`, max() without end.
   struct Part {
     const RatePiece* piece = nullptr;
     double rate = 1;

@@ -8,7 +8,7 @@
 namespace splinecast::core {
 namespace {
 
-/// Rounding of a comparison. A curve that has exceeded a bound by rounding may go on to do so.
+/// Rounding of a comparison. A curve that has exceeded a bound by rounding may continue to do so.
 constexpr double kRounding = 1e-12;
 
 constexpr Time kLongestRise = std::chrono::hours(2);
@@ -127,7 +127,7 @@ class RatePlanner {
     return std::nullopt;
   }
 
-  /// A curve that goes on from the end of a flattening to the target.
+  /// A curve that continues from the end of a flattening to the target.
   [[nodiscard]] std::optional<RateCurve> continued(const RateCurve& flat) const noexcept {
     if (flat.last_rate() > target_) return fall(flat);
     if (flat.last_rate() < target_) {

@@ -9,7 +9,7 @@
 /// Bounds and plans of a time law's rate. Nothing allocates or throws. Source: math 32.
 ///
 /// Each commander has a *bound*: the rate that the law would have if this commander were its only
-/// one. The law's rate exceeds no bound, whatever is requested when, and goes to the least of the
+/// one. The law's rate exceeds no bound, and goes to the least of the
 /// requested rates.
 namespace splinecast::core {
 

@@ -46,6 +46,21 @@ void expect_undisturbed(const ConfinedEnd& end) {
   ::testing::Test::RecordProperty("major_faults", std::to_string(end.major_faults));
 }
 
+/// Runs a loop as run_confined() does, and expects that nothing disturbed it. Runs it again if a
+/// page fault occurred: on a busy machine the kernel moves pages, which causes one. A page fault of
+/// the loop itself occurs in each run.
+ConfinedEnd run_undisturbed(const std::function<void(Confined&)>& loop,
+                            const std::function<void()>& meanwhile) {
+  constexpr int kTries = 5;
+  ConfinedEnd end;
+  for (int i = 0; i < kTries; ++i) {
+    end = run_confined(loop, meanwhile);
+    if (end.minor_faults == 0) break;
+  }
+  expect_undisturbed(end);
+  return end;
+}
+
 /// The live loops read CLOCK_MONOTONIC. The tests are skipped if this is a system call because the
 /// kernel has no vDSO clock for this machine's clock source.
 class RealTime : public ::testing::Test {
@@ -110,7 +125,7 @@ TEST_F(RealTime, SamplingMakesNoSystemCallNoAllocationAndNoPageFault) {
     solver.step(clock);
   };
   for (int i = 0; i < 200; ++i) work();
-  const ConfinedEnd end = run_confined(
+  const ConfinedEnd end = run_undisturbed(
       [&](Confined& process) {
         RandomSampling sampling(stream.name(), process.page());
         for (const Time warm = clock.now() + kWarmUpTime; clock.now() < warm;) sampling.round();
@@ -120,7 +135,6 @@ TEST_F(RealTime, SamplingMakesNoSystemCallNoAllocationAndNoPageFault) {
         process.finish();
       },
       work);
-  expect_undisturbed(end);
   EXPECT_EQ(end.rounds, 10 * kRounds);
   EXPECT_GT(end.answered, end.rounds / 2);
 }
@@ -129,7 +143,7 @@ TEST_F(RealTime, AppendingMakesNoSystemCallNoAllocationAndNoPageFault) {
   const TestStream stream;
   Solver solver(stream.name(), kSolving);
   const MonotonicClock clock;
-  const ConfinedEnd end = run_confined(
+  const ConfinedEnd end = run_undisturbed(
       [&](Confined& process) {
         Sending sending(stream.name(), kDimensions);
         if (!sending.producer().wait_for_solver(kPatience)) _exit(1);
@@ -150,7 +164,6 @@ TEST_F(RealTime, AppendingMakesNoSystemCallNoAllocationAndNoPageFault) {
         solver.attach();
         solver.step(clock);
       });
-  expect_undisturbed(end);
   EXPECT_EQ(end.answered, kRounds);
 }
 
@@ -158,7 +171,7 @@ TEST_F(RealTime, SolvingMakesNoSystemCallNoAllocationAndNoPageFault) {
   const TestStream stream;
   Sending sending(stream.name(), kDimensions);
   const MonotonicClock clock;
-  const ConfinedEnd end = run_confined(
+  const ConfinedEnd end = run_undisturbed(
       [&](Confined& process) {
         Solver solver(stream.name(), kSolving);
         if (!solver.attach()) _exit(1);
@@ -176,7 +189,6 @@ TEST_F(RealTime, SolvingMakesNoSystemCallNoAllocationAndNoPageFault) {
         process.finish();
       },
       [&] { sending.send(); });
-  expect_undisturbed(end);
   EXPECT_GT(end.answered, 0U);
 }
 

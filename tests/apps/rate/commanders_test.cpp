@@ -108,6 +108,18 @@ TEST_F(Rate, ALawIsRemovedWithItsCommandersWhenNoneLives) {
   EXPECT_EQ(rate().code, 4);
 }
 
+TEST_F(Rate, ARateAboveTheLargestIsWrongUsage) {
+  Process solver({"solve", law()});
+  ASSERT_EQ(rate({"1", "--ramp", "0.01"}).code, 0);
+  ASSERT_TRUE(await_rate(1));
+  const Ended refused = rate({"1.5"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("is above the largest rate of '" + law() + "', 1: 1.5"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_EQ(commander("operator")["rate"], 1);
+}
+
 TEST_F(Rate, RefusesWhatCannotBeRequested) {
   EXPECT_EQ(rate().code, 4);
   EXPECT_EQ(rate({"101"}).code, 2);

@@ -1,4 +1,5 @@
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <regex>
 #include <string>
@@ -154,6 +155,20 @@ TEST_F(MovingFollower, AHeldLawHoldsTheStreamAndItsReplay) {
   ASSERT_EQ(rate({"1", "--ramp", "0.3"}).code, 0);
   EXPECT_TRUE(testing::await([&] { return newest() > held; }));
   EXPECT_EQ(testing::info(arm())["solver"]["underruns"], 0);
+}
+
+TEST_F(MovingFollower, ALawThatIsFollowedIsRemovedWithNowOnly) {
+  replay_.signal(SIGINT);
+  (void)replay_.wait();
+  solver_.signal(SIGINT);
+  (void)solver_.wait();
+  const Ended refused = testing::run({"rm", law()});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.err.find("time law '" + law() + "' is followed by '" + arm() + "'"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_EQ(testing::run({"rm", "--now", law()}).code, 0);
+  EXPECT_EQ(testing::run({"rm", "--now", arm()}).code, 0);
 }
 
 TEST_F(Rate, AReplayUnderALawIsVerifiedToTheBit) {
