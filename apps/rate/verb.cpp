@@ -214,8 +214,8 @@ int command(const RateOptions& options) {
     say(error.what());
   }
   if (present && !options.release && *options.rate > present->law->largest_rate()) {
-    throw UsageError("R", fmt::format("is above the largest rate of '{}', {:g}: {:g}", options.law,
-                                      present->law->largest_rate(), *options.rate));
+    throw BadRequest(fmt::format("R is above the largest rate of '{}', {:g}: {:g}", options.law,
+                                 present->law->largest_rate(), *options.rate));
   }
   const bool lowers = holds || (!options.release && present && *options.rate <= present->from.rate);
   if (!lowers && present && !report_effect(options, *present, false)) return kFellShort;
