@@ -13,18 +13,6 @@
 namespace splinecast::ipc {
 namespace {
 
-/// A command from an item. Another process may have stored any finite values: they are clamped.
-RateCommand command_of(const RingItem& item) {
-  const std::span<const double> values = item.waypoint().position;
-  const auto time = [](double seconds, Time least, Time most) {
-    return seconds > 0 ? std::clamp(from_seconds(seconds), least, most) : least;
-  };
-  return {.time = item.time,
-          .rate = values[0],
-          .ramp = time(values[1], kShortestRamp, kLongestRamp),
-          .dead_man = time(values[2], Time::zero(), kLongestRamp)};
-}
-
 /// When a command expires; max() if it does not.
 Time expiry_of(const RateCommand& command) noexcept {
   const bool expires = command.rate > 0 && command.dead_man > Time::zero();
@@ -32,6 +20,18 @@ Time expiry_of(const RateCommand& command) noexcept {
 }
 
 }  // namespace
+
+std::optional<RateCommand> command_of(const RingItem& item) noexcept {
+  const std::span<const double> values = item.waypoint().position;
+  if (item.kind != ItemKind::waypoint || !is_finite(values)) return std::nullopt;
+  const auto time = [](double seconds, Time least, Time most) {
+    return seconds > 0 ? std::clamp(from_seconds(seconds), least, most) : least;
+  };
+  return RateCommand{.time = item.time,
+                     .rate = values[0],
+                     .ramp = time(values[1], kShortestRamp, kLongestRamp),
+                     .dead_man = time(values[2], Time::zero(), kLongestRamp)};
+}
 
 ProducerOptions command_ring_options(const RegionAccess& access, const Trust& trust) {
   return {.dimensions = kCommandValues,
@@ -79,9 +79,7 @@ void Commanders::read_newest(Ring& ring) {
     if (written == ring.seen || written == 0) return;
     if (!ring.ring.observe(written - 1, item_)) continue;
     ring.seen = written;
-    if (item_.kind == ItemKind::waypoint && is_finite(item_.waypoint().position)) {
-      ring.state.command = command_of(item_);
-    }
+    if (const auto command = command_of(item_)) ring.state.command = *command;
   }
 }
 

@@ -32,6 +32,10 @@ struct RateCommand {
 /// Values of a command as an item: rate, ramp [s], dead man [s].
 inline constexpr std::size_t kCommandValues = 3;
 
+/// A command from an item; nothing if it is none, or not finite. Another process may have stored
+/// any finite values: they are clamped.
+[[nodiscard]] std::optional<RateCommand> command_of(const RingItem& item) noexcept;
+
 /// Shortest and longest ramp.
 inline constexpr Time kShortestRamp{1'000'000};
 inline constexpr Time kLongestRamp{3'600'000'000'000};

@@ -124,9 +124,14 @@ core::RateCurve LawServer::published(const core::LawState& from) noexcept {
   return curve;
 }
 
-/// Whether the plan that was sent last is in force: only what was committed is.
+/// Whether the plan that was sent last is in force: only what was committed is. If the law is
+/// neither that plan nor the one before, its rate is read from the board again.
 void LawServer::judge_sent() noexcept {
-  if (sent_ && newest_.time == *sent_) rate_.commit();
+  if (sent_ && newest_.time == *sent_) {
+    rate_.commit();
+    line_end_ = *sent_;
+  }
+  is_rate_known_ = newest_.time == line_end_;
   sent_.reset();
 }
 
@@ -171,8 +176,11 @@ void LawServer::step(const Clock& clock) {
   const auto state = state_at(from);
   if (!state) return;
   commanders_.read(now);
-  if (!is_rate_known_) rate_.begin(published(*state), commanders_, from);
-  is_rate_known_ = true;
+  if (!is_rate_known_) {
+    rate_.begin(published(*state), commanders_, from);
+    line_end_ = newest_.time;
+    is_rate_known_ = true;
+  }
   if (const auto curve = rate_.plan(commanders_, from)) send(*curve, *state);
 }
 

@@ -73,9 +73,10 @@ class LawServer {
   Time next_look_ = Time::min();
   State state_{1};
   CommandedRate rate_;
-  bool is_rate_known_ = false;  ///< rate_ has begun
-  std::optional<Time> sent_;    ///< end of the line of a plan that was sent and not judged yet
-  Summary summary_;             ///< scratch, with the next two
+  bool is_rate_known_ = false;  ///< rate_ has begun, with the line that ends there:
+  Time line_end_{};
+  std::optional<Time> sent_;  ///< end of the line of a plan that was sent and not judged yet
+  Summary summary_;           ///< scratch, with the next two
   KnotCopy newest_{1, false};
   KnotCopy knot_{1, false};
 };

@@ -11,6 +11,8 @@
 #include "ipc/memory/futex.hpp"
 #include "ipc/memory/names.hpp"
 #include "ipc/owned/ring.hpp"
+#include "ipc/ring/item.hpp"
+#include "ipc/ring/reader.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
 
@@ -34,6 +36,15 @@ struct RateCommander::Impl {
   Impl(const std::string& stream, const ProducerOptions& options)
       : lock(stream, ipc::RegionKind::waypoints), ring(ipc::own_ring(stream, options, lock)) {
     lock.keep_file();
+    continue_request();
+  }
+
+  /// Makes the last request of an earlier process of this name the one that renew() repeats.
+  void continue_request() {
+    if (ring.writer.written() == 0) return;
+    ipc::RingItem item(ipc::kCommandValues);
+    ipc::WaypointRingReader(ring.region.bytes(), ring.layout).copy(ring.writer.written() - 1, item);
+    command = ipc::command_of(item).value_or(command);
   }
 
   void give() {

@@ -46,7 +46,8 @@ class RateCommander {
   /// `timeout`, 1 ms to 1 h; 0: never. That hold has a ramp of 0.5 s.
   void set_dead_man(Time timeout);
 
-  /// Repeats the last request, for set_dead_man().
+  /// Repeats the last request, for set_dead_man(): that of an earlier commander of this name, if
+  /// this one has made none.
   void renew();
 
  private:

@@ -1,4 +1,5 @@
 #include "ipc/law/follower.hpp"
+#include "core/laws/rate_plan.hpp"
 
 #include <gtest/gtest.h>
 

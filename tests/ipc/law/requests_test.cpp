@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <optional>
 
 #include "splinecast/rate_commander.hpp"
 #include "splinecast/reader.hpp"
@@ -85,6 +86,19 @@ TEST_F(TimeLaw, AHoldHasItsOwnRampAlsoAfterATakeoverAndBesideOtherRequests) {
   law_solver_.emplace(law_.name(), SolverOptions{});
   ASSERT_TRUE(law_solver_->attach(clock_));
   pass(milliseconds(200));
+  State state(1);
+  ASSERT_TRUE(has_values(reader_->sample(clock_.now(), state)));
+  EXPECT_EQ(reader_->rate().rate, 0);
+}
+
+TEST_F(TimeLaw, ARenewalByANewProcessRenewsTheHoldOfItsPredecessor) {
+  std::optional<RateCommander> estop(std::in_place, law_.name(), "estop");
+  estop->hold(milliseconds(10));
+  pass(milliseconds(100));
+  estop.reset();
+  estop.emplace(law_.name(), "estop");
+  estop->renew();
+  pass(milliseconds(100));
   State state(1);
   ASSERT_TRUE(has_values(reader_->sample(clock_.now(), state)));
   EXPECT_EQ(reader_->rate().rate, 0);
