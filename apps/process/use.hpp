@@ -27,8 +27,7 @@ struct ProcessUse {
 
 /// Detects growth of a value over a run: skips the first quarter of the values as warm-up, then
 /// compares the largest value in the second half of the rest with the largest in its first half.
-/// Judges by the number of values, not by their times: a process that the machine has stopped for a
-/// while has seen neither half of that time.
+/// It counts values, not time: while the machine stops this process, nothing is measured.
 class Flatness {
  public:
   /// An increase of the largest value by more than `tolerance` is growth.

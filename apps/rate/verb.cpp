@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -62,7 +63,9 @@ std::vector<ipc::CommanderState> commanders_of(const RateOptions& options) {
   ipc::Commanders commanders(options.law, options.trust);
   commanders.look_around();
   commanders.read(MonotonicClock().now());
-  return commanders.states();
+  std::vector<ipc::CommanderState> states;
+  std::ranges::copy(commanders.states(), std::back_inserter(states));
+  return states;
 }
 
 int show(const RateOptions& options) {
@@ -87,14 +90,12 @@ int show(const RateOptions& options) {
 
 /// The rate that the law will have with the requested change.
 double rate_after(const RateOptions& options, double largest) {
-  std::optional<double> least;
-  const auto ask = [&](double rate) { least = std::min(least.value_or(rate), rate); };
-  for (const ipc::CommanderState& other : commanders_of(options)) {
-    if (options.is_own(other) || other.command.rate < 0) continue;
-    ask(other.is_dead ? 0 : other.command.rate);
+  auto states = commanders_of(options);
+  std::erase_if(states, [&](const auto& state) { return options.is_own(state); });
+  if (!options.release) {
+    states.push_back({.name = options.commander, .command = {.rate = *options.rate}});
   }
-  if (!options.release) ask(*options.rate);
-  return std::min(least.value_or(1.0), largest);
+  return ipc::least_rate(states, largest);
 }
 
 /// A law, and its state where a ramp that is requested now begins.
@@ -103,31 +104,32 @@ struct Present {
   core::LawState from;
 };
 
-/// Nothing if no solver has begun the law.
-std::optional<Present> look_at_law(const RateOptions& options) {
+/// Returns nothing if no solver has begun the law.
+std::optional<Present> present_law(const RateOptions& options) {
   auto law = open_law(options);
   if (!law) return std::nullopt;
   const auto from = law->state_at(MonotonicClock().now() + 2 * Time(law->header().freeze_ahead));
   return from ? std::optional<Present>({std::move(law), *from}) : std::nullopt;
 }
 
-/// The effects of a ramp of this length on all streams that follow the law. A stream that cannot be
-/// read is reported and left out.
-std::vector<ipc::RampEffect> effects_of(const Present& present, double rate, Time length,
-                                        const Trust& trust) {
+/// The effects of a ramp of this length on streams that follow the law. A stream that cannot be
+/// read is reported, and removed from `streams`.
+std::vector<ipc::RampEffect> effects_of(const Present& present, std::vector<std::string>& streams,
+                                        double rate, Time length, const Trust& trust) {
   std::vector<ipc::RampEffect> effects;
   const core::LawState& from = present.from;
   const core::RateCurve ramp = core::ramp_alone(from.time, {.rate = from.rate, .slope = from.slope},
                                                 {.rate = rate, .ramp = length});
-  const ipc::RegionHeader& law = present.law->header();
-  for (const std::string& stream : ipc::followers_of(law.stream_id, trust)) {
+  const Time origin(present.law->header().law_origin);
+  std::erase_if(streams, [&](const std::string& stream) {
     try {
-      effects.push_back(
-          ipc::effect_of(stream, from, ramp, Time(law.law_origin), length + kLooksAhead, trust));
+      effects.push_back(ipc::effect_of(stream, from, ramp, origin, length + kLooksAhead, trust));
+      return false;
     } catch (const StreamError& error) {
       say(fmt::format("'{}': the effect on it is not known: {}", stream, error.what()));
+      return true;
     }
-  }
+  });
   return effects;
 }
 
@@ -140,21 +142,23 @@ const ipc::RampEffect* beyond_limits(const std::vector<ipc::RampEffect>& effects
 }
 
 /// The shortest ramp, to about 10 %, that keeps the limits; nothing if none up to a minute does.
-std::optional<Time> sufficient_ramp(const Present& present, double rate, Time shorter,
-                                    const Trust& trust) {
+std::optional<Time> sufficient_ramp(const Present& present, std::vector<std::string>& streams,
+                                    double rate, Time shorter, const Trust& trust) {
   constexpr Time kLongest = std::chrono::minutes(1);
   constexpr double kGrowth = 1.1;
   for (double seconds = to_seconds(shorter); seconds < to_seconds(kLongest); seconds *= kGrowth) {
     const Time length = from_seconds(kGrowth * seconds);
-    if (beyond_limits(effects_of(present, rate, length, trust)) == nullptr) return length;
+    if (beyond_limits(effects_of(present, streams, rate, length, trust)) == nullptr) return length;
   }
   return std::nullopt;
 }
 
-/// Reports the effect of the requested ramp. Returns false if it exceeds a limit.
+/// Reports the effect of a ramp that is to be requested, or has been. Returns false if it exceeds a
+/// limit and is not forced.
 bool report_effect(const RateOptions& options, const Present& present, bool is_requested) {
   const double rate = rate_after(options, present.law->largest_rate());
-  const auto effects = effects_of(present, rate, options.ramp, options.trust);
+  auto streams = ipc::followers_of(present.law->header().stream_id, options.trust);
+  const auto effects = effects_of(present, streams, rate, options.ramp, options.trust);
   if (options.json) {
     nlohmann::ordered_json json{{"law", options.law}, {"rate", rate}};
     json["effects"] = nlohmann::ordered_json::array();
@@ -168,7 +172,7 @@ bool report_effect(const RateOptions& options, const Present& present, bool is_r
   }
   const ipc::RampEffect* const beyond = beyond_limits(effects);
   if (beyond == nullptr || options.force) return true;
-  const auto enough = sufficient_ramp(present, rate, options.ramp, options.trust);
+  const auto enough = sufficient_ramp(present, streams, rate, options.ramp, options.trust);
   say(fmt::format("{}: {}; {}{}", is_requested ? "requested" : "refused", excess_in_words(*beyond),
                   enough ? fmt::format("a ramp of {:.3g} s would do", to_seconds(*enough))
                          : "no ramp up to a minute would do",
@@ -207,7 +211,7 @@ int command(const RateOptions& options) {
   const bool holds = !options.release && *options.rate == 0;
   std::optional<Present> present;
   try {
-    present = look_at_law(options);
+    present = present_law(options);
     if (!present) say(fmt::format("'{}': waiting for a solver", options.law));
   } catch (const StreamError& error) {
     if (!holds) throw;

@@ -11,24 +11,13 @@ bool are_equal(const core::RateRequest& a, const core::RateRequest& b) noexcept 
 
 }  // namespace
 
-double CommandedRate::least_of(const Commanders& commanders) const noexcept {
-  std::optional<double> least;
-  for (std::size_t i = 0; i < commanders.size(); ++i) {
-    const CommanderState& state = commanders.state(i);
-    if (!state.requests()) continue;
-    const double rate = state.request(largest_).rate;
-    least = std::min(least.value_or(rate), rate);
-  }
-  return least.value_or(std::min(1.0, largest_));
-}
-
 void CommandedRate::begin(const core::RateCurve& curve, const Commanders& commanders, Time t) {
   in_force_ = {.commanders = {}, .curve = curve};
-  for (std::size_t i = 0; i < commanders.size(); ++i) {
-    const core::RateRequest request = commanders.state(i).request(largest_);
+  for (const CommanderState& state : commanders.states()) {
+    const core::RateRequest request = state.request(largest_);
     const bool is_above = request.rate >= curve.at(t).rate;
     in_force_.commanders.push_back(
-        {.name = commanders.state(i).name,
+        {.name = state.name,
          .request = request,
          .bound = is_above ? core::RateCurve(request.rate) : core::bound_after(curve, t, request)});
   }
@@ -38,8 +27,7 @@ void CommandedRate::begin(const core::RateCurve& curve, const Commanders& comman
 void CommandedRate::take_requests(const Commanders& commanders, Time t) {
   for (Commander& commander : planned_.commanders) commander.is_there = false;
   Time newest = Time::min();
-  for (std::size_t i = 0; i < commanders.size(); ++i) {
-    const CommanderState& state = commanders.state(i);
+  for (const CommanderState& state : commanders.states()) {
     auto known = std::ranges::find(planned_.commanders, state.name, &Commander::name);
     if (known == planned_.commanders.end()) {
       planned_.commanders.push_back({.name = state.name,
@@ -71,8 +59,8 @@ std::optional<core::RateCurve> CommandedRate::plan(const Commanders& commanders,
   take_requests(commanders, t);
   bounds_.clear();
   for (const Commander& commander : planned_.commanders) bounds_.push_back(commander.bound);
-  const auto curve =
-      core::plan_rate(in_force_.curve, t, bounds_, least_of(commanders), planned_.ramp);
+  const auto curve = core::plan_rate(in_force_.curve, t, bounds_,
+                                     least_rate(commanders.states(), largest_), planned_.ramp);
   if (!curve) {
     commit();  // the bounds alone need no commit
     return std::nullopt;

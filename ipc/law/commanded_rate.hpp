@@ -32,9 +32,6 @@ class CommandedRate {
   /// The last plan has been committed.
   void commit() { in_force_ = planned_; }
 
-  /// The least rate that is requested; 1 without a request, or the largest if that is less.
-  [[nodiscard]] double least_of(const Commanders& commanders) const noexcept;
-
  private:
   struct Commander {
     std::string name;

@@ -114,10 +114,4 @@ Time Commanders::next_expiry() const noexcept {
   return next;
 }
 
-std::vector<CommanderState> Commanders::states() const {
-  std::vector<CommanderState> out;
-  for (const auto& ring : rings_) out.push_back(ring->state);
-  return out;
-}
-
 }  // namespace splinecast::ipc

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <ranges>
 #include <string>
 #include <vector>
 
@@ -32,8 +34,8 @@ struct RateCommand {
 /// Values of a command as an item: rate, ramp [s], dead man [s].
 inline constexpr std::size_t kCommandValues = 3;
 
-/// A command from an item; nothing if it is none, or not finite. Another process may have stored
-/// any finite values: they are clamped.
+/// The command in an item. Returns nothing if the item is not a waypoint, or if a value is NaN or
+/// infinite. Clamps other values to their ranges, because any process may have stored them.
 [[nodiscard]] std::optional<RateCommand> command_of(const RingItem& item) noexcept;
 
 /// Shortest and longest ramp.
@@ -58,6 +60,19 @@ struct CommanderState {
   [[nodiscard]] core::RateRequest request(double largest) const noexcept;
 };
 
+/// The least rate that commanders request, at most `largest`; 1, or `largest` if that is less, if
+/// none requests one. `states` is a range of CommanderState.
+template <typename States>
+[[nodiscard]] double least_rate(const States& states, double largest) noexcept {
+  std::optional<double> least;
+  for (const CommanderState& state : states) {
+    if (!state.requests()) continue;
+    const double rate = state.request(largest).rate;
+    least = std::min(least.value_or(rate), rate);
+  }
+  return std::min(least.value_or(1.0), largest);
+}
+
 /// The commanders of one law, as the law's solver observes them. One thread uses it.
 class Commanders {
  public:
@@ -79,11 +94,10 @@ class Commanders {
   /// When the next dead man expires; max() for never.
   [[nodiscard]] Time next_expiry() const noexcept;
 
-  /// What each commander requested at the last read().
-  [[nodiscard]] std::vector<CommanderState> states() const;
-  [[nodiscard]] std::size_t size() const noexcept { return rings_.size(); }
-  [[nodiscard]] const CommanderState& state(std::size_t i) const noexcept {
-    return rings_[i]->state;
+  /// What each commander requested at the last read(): a range of CommanderState.
+  [[nodiscard]] auto states() const noexcept {
+    return rings_ | std::views::transform(
+                        [](const auto& ring) -> const CommanderState& { return ring->state; });
   }
 
   /// Sleeps until a commander gives a command that read() has not read, at most `timeout`; with

@@ -29,6 +29,39 @@ constexpr double kBeyondAnyRamp = 1e12;
 
 constexpr std::array<double, 1> kZero{0};
 
+/// Waypoints of a law's curve, in arrays of their own.
+class LawWaypoints {
+ public:
+  LawWaypoints() = default;
+  LawWaypoints(const LawWaypoints&) = delete;
+  LawWaypoints& operator=(const LawWaypoints&) = delete;
+  ~LawWaypoints() = default;
+
+  /// Adds a state with slope 0.
+  void add(const core::LawState& state) noexcept {
+    values_[count_] = {state.position, state.rate};
+    const auto both = std::span<const double>(values_[count_]);
+    waypoints_[count_] = {.time = state.time,
+                          .position = both.first(1),
+                          .velocity = both.subspan(1, 1),
+                          .acceleration = kZero};
+    ++count_;
+  }
+  /// Adds the end of the straight line that begins in such a state.
+  void add_line(const core::LawState& from) noexcept {
+    add(core::end_of_piece(from, from.rate, kLine));
+  }
+  [[nodiscard]] std::span<const Waypoint> all() const noexcept {
+    return std::span(waypoints_).first(count_);
+  }
+
+ private:
+  static constexpr std::size_t kMost = core::RateCurve::kMostPieces + 1;
+  std::array<std::array<double, 2>, kMost> values_{};  ///< position and rate
+  std::array<Waypoint, kMost> waypoints_{};
+  std::size_t count_ = 0;
+};
+
 void describe_law(RegionHeader& header) {
   header.is_law = 1;
   header.law_origin = MonotonicClock().now().count();
@@ -87,18 +120,16 @@ WaypointRingWriter::Solved LawServer::solved() const noexcept {
 /// waypoints is never published, also if this process dies or is delayed.
 void LawServer::begin(const Clock& clock) {
   commanders_.read(clock.now());
-  const double rate = rate_.least_of(commanders_);
+  const double rate = least_rate(commanders_.states(), ring_.header.largest_rate);
   const Time start = clock.now() + std::max(kNotice, 2 * freeze_ahead_);
-  const double s = to_seconds(start - Time(ring_.header.law_origin));
-  const std::array<double, 1> velocity{rate};
-  const std::array<double, 1> first{s};
-  const std::array<double, 1> last{s + rate * to_seconds(kLine)};
-  const auto waypoint = [&](Time time, const std::array<double, 1>& position) {
-    return Waypoint{
-        .time = time, .position = position, .velocity = velocity, .acceleration = kZero};
-  };
-  const std::array waypoints{waypoint(start, first), waypoint(start + kLine, last)};
-  (void)ring_.writer.replace_from(start - Time(1), waypoints, solved());
+  const core::LawState first{.time = start,
+                             .position = to_seconds(start - Time(ring_.header.law_origin)),
+                             .rate = rate,
+                             .slope = 0};
+  LawWaypoints waypoints;
+  waypoints.add(first);
+  waypoints.add_line(first);
+  (void)ring_.writer.replace_from(start - Time(1), waypoints.all(), solved());
 }
 
 std::optional<core::LawState> LawServer::state_at(Time time) noexcept {
@@ -136,29 +167,15 @@ void LawServer::judge_sent() noexcept {
 }
 
 void LawServer::send(const core::RateCurve& curve, const core::LawState& from) {
-  constexpr std::size_t kMost = core::RateCurve::kMostPieces + 1;
-  std::array<std::array<double, 2>, kMost> values{};  // position and rate
-  std::array<Waypoint, kMost> waypoints{};
-  std::size_t count = 0;
-  const auto add = [&](const core::LawState& end) {
-    values[count] = {end.position, end.rate};
-    const auto both = std::span(values[count]);
-    waypoints[count] = {.time = end.time,
-                        .position = both.first(1),
-                        .velocity = both.subspan(1, 1),
-                        .acceleration = kZero};
-    ++count;
-  };
+  LawWaypoints waypoints;
   core::LawState end = from;
   for (const core::RatePiece& piece : curve.pieces()) {
     end = core::end_of_piece(end, piece.end_rate, piece.length);
-    add(end);
+    waypoints.add(end);
   }
-  add(core::end_of_piece({.time = end.time, .position = end.position, .rate = end.rate}, end.rate,
-                         kLine));
-  const auto sent = std::span(waypoints).first(count);
-  const AppendStatus status = ring_.writer.replace_from(from.time, sent, solved());
-  if (status == AppendStatus::accepted) sent_ = sent.back().time;
+  waypoints.add_line(end);
+  const AppendStatus status = ring_.writer.replace_from(from.time, waypoints.all(), solved());
+  if (status == AppendStatus::accepted) sent_ = waypoints.all().back().time;
 }
 
 void LawServer::step(const Clock& clock) {

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <tuple>
-#include <utility>
 #include <vector>
 
 #include "apps/latency/run.hpp"
@@ -230,25 +227,16 @@ TEST(Latency, AStopSignalEndsItEarlyWithPartialResults) {
   EXPECT_GT(find_series(result, "append", "intended")->at("count").get<int>(), 10);
 }
 
-/// Interrupts a measurement when its streams have been removed. Returns how it ended and after
-/// which time.
-std::pair<Ended, std::chrono::nanoseconds> interrupted_in_its_last_part() {
-  testing::Process measuring({"latency", "--duration", "3", "--warmup", "0", "--json"});
-  const std::string name = "latency." + std::to_string(measuring.pid());
-  EXPECT_TRUE(testing::await([&] { return testing::info(name).is_object(); }));
-  EXPECT_TRUE(testing::await([&] { return !testing::info(name).is_object(); }));
-  const auto begin = std::chrono::steady_clock::now();
-  measuring.signal(SIGINT);
-  Ended ended = measuring.wait();
-  return {std::move(ended), std::chrono::steady_clock::now() - begin};
-}
-
 TEST(Latency, AStopSignalInItsLastPartAlsoInterruptsIt) {
-  // A process that a busy machine does not let end within 3 s is killed, and its result is lost.
-  auto [ended, took] = interrupted_in_its_last_part();
-  for (int i = 0; i < 20 && took > std::chrono::seconds(3); ++i) {
-    std::tie(ended, took) = interrupted_in_its_last_part();
-  }
+  const Ended ended = testing::interrupt_in_time(
+      [] {
+        testing::Process measuring({"latency", "--duration", "3", "--warmup", "0", "--json"});
+        const std::string name = "latency." + std::to_string(measuring.pid());
+        EXPECT_TRUE(testing::await([&] { return testing::info(name).is_object(); }));
+        EXPECT_TRUE(testing::await([&] { return !testing::info(name).is_object(); }));
+        return measuring;
+      },
+      [](const testing::Process& measuring) { return measuring.pid(); });
   const json result = json::parse(ended.out, nullptr, false);
   ASSERT_TRUE(result.is_object()) << ended.out << ended.err;
   if (ended.code == 0 && result.at("not_measured").contains("iceoryx")) {

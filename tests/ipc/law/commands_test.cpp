@@ -1,5 +1,4 @@
 #include "ipc/law/commands.hpp"
-#include "ipc/law/commanded_rate.hpp"
 
 #include <gtest/gtest.h>
 
@@ -63,10 +62,10 @@ class LawCommanders : public ::testing::Test {
   double read(Time now, double largest = 1) {
     commanders_.look_around();
     commanders_.read(now);
-    return CommandedRate(largest).least_of(commanders_);
+    return least_rate(commanders_.states(), largest);
   }
   /// What the first commander asks of a law.
-  core::RateRequest request() { return commanders_.state(0).request(1); }
+  core::RateRequest request() { return (*commanders_.states().begin()).request(1); }
   TestStream law_;
   Commanders commanders_{law_.name(), {}};
 };
@@ -106,7 +105,7 @@ TEST_F(LawCommanders, ADeadManExpiresUnlessACommandFollows) {
   EXPECT_EQ(read(seconds(3) - Time(1)), 0.5);
   EXPECT_EQ(commanders_.next_expiry(), seconds(3));
   EXPECT_EQ(read(seconds(3)), 0);
-  EXPECT_TRUE(commanders_.states()[0].is_dead);
+  EXPECT_TRUE((*commanders_.states().begin()).is_dead);
   EXPECT_EQ(request().ramp, kDeadManRamp);
   EXPECT_EQ(commanders_.next_expiry(), Time::max());
   one.give(seconds(4), {0.5, 0.1, 2});
@@ -123,7 +122,7 @@ TEST_F(LawCommanders, ValuesOutOfRangeAreClamped) {
   one.give(seconds(2), {0.5, -1, -1});
   EXPECT_EQ(read(seconds(3)), 0.5);
   EXPECT_EQ(request().ramp, kShortestRamp);
-  EXPECT_FALSE(commanders_.states()[0].is_dead);
+  EXPECT_FALSE((*commanders_.states().begin()).is_dead);
   one.give(seconds(4), {0.5, 1e-9, 1e9});
   (void)read(seconds(4));
   EXPECT_EQ(request().ramp, kShortestRamp);

@@ -91,6 +91,27 @@ TEST_F(TimeLaw, AHoldHasItsOwnRampAlsoAfterATakeoverAndBesideOtherRequests) {
   EXPECT_EQ(reader_->rate().rate, 0);
 }
 
+TEST_F(TimeLaw, ATakeoverInARampContinuesItAndTakesAHold) {
+  operator_.set_rate(0.2, milliseconds(500));
+  pass(milliseconds(200));
+  State state(1);
+  ASSERT_TRUE(has_values(reader_->sample(clock_.now(), state)));
+  const double rate = reader_->rate().rate;
+  ASSERT_GT(rate, 0.3);
+  ASSERT_LT(rate, 0.9);
+  law_solver_.reset();
+  law_solver_.emplace(law_.name(), SolverOptions{});
+  ASSERT_TRUE(law_solver_->attach(clock_));
+  RateCommander estop(law_.name(), "estop");
+  estop.hold(milliseconds(50));
+  double before = rate;
+  watch(milliseconds(150), [&](const State&, SampleStatus) {
+    ASSERT_LE(reader_->rate().rate, before + 1e-9);
+    before = reader_->rate().rate;
+  });
+  EXPECT_EQ(before, 0);
+}
+
 TEST_F(TimeLaw, ARenewalByANewProcessRenewsTheHoldOfItsPredecessor) {
   std::optional<RateCommander> estop(std::in_place, law_.name(), "estop");
   estop->hold(milliseconds(10));

@@ -112,5 +112,17 @@ TEST(LiveSolver, AReplacementOnAStreamWithoutWaypointsStartsIt) {
   }
 }
 
+TEST(LiveSolver, AReplacementOnAStreamWithoutWaypointsWhoseFirstWaypointIsPastIsRefusedAsAWhole) {
+  Live live;
+  const Time first = Live::kNow + milliseconds(50);
+  ASSERT_EQ(live.replace(first - milliseconds(10), {first, first + milliseconds(30)}),
+            AppendStatus::accepted);
+  live.clock.time = first;
+  live.drain();
+  EXPECT_EQ(live.reason(Refusal::past), 3U);
+  EXPECT_EQ(live.solver.summary().knots, 0U);
+  EXPECT_EQ(live.solver.summary().controls, 0U);
+}
+
 }  // namespace
 }  // namespace splinecast::ipc
