@@ -138,25 +138,26 @@ class RatePlanner {
 
   [[nodiscard]] std::optional<RateCurve> flatten_a_rise() const noexcept {
     const Time rest = law_.part_at(t_).piece->end() - t_;
-    const Time longest = std::max(std::min(scaled(ramp_, 1.0 / 4), rest), Time(1));
-    for (Time length = longest;; length = scaled(length, 1.0 / 2)) {
+    const Time longest = std::min(scaled(ramp_, 1.0 / 4), rest);
+    for (Time length = longest; length >= kShortestPiece; length = scaled(length, 1.0 / 2)) {
       RateCurve flat = start();
       flat.add(flattened(from_, length), length);
       if (auto found = continued(flat)) return found;
-      if (length < kShortestPiece) return std::nullopt;
     }
+    return std::nullopt;
   }
 
   [[nodiscard]] std::optional<RateCurve> flatten_a_fall() const noexcept {
     constexpr double kLonger = 1.5;
     const Time longest = longest_fall(from_.rate, from_.slope);
-    for (Time length = std::min(scaled(ramp_, 1.0 / 4), longest);;
+    for (Time length = std::min(scaled(ramp_, 1.0 / 4), longest); length >= kShortestPiece;
          length = std::min(scaled(length, kLonger), longest)) {
       RateCurve flat = start();
-      flat.add(flattened(from_, std::max(length, Time(1))), std::max(length, Time(1)));
+      flat.add(flattened(from_, length), length);
       if (auto found = continued(flat)) return found;
-      if (length >= longest) return std::nullopt;
+      if (length == longest) break;
     }
+    return std::nullopt;
   }
 
   const RateCurve& law_;
@@ -197,12 +198,17 @@ RateCurve bound_after(const RateCurve& bound, Time t, const RateRequest& request
   return after;
 }
 
+Time plan_begin(const RateCurve& law, Time t) noexcept {
+  const RateCurve::Part part = law.part_at(t);
+  return part.piece != nullptr && part.end - t < kShortestPiece ? part.end : t;
+}
+
 RateCurve ramp_alone(Time t, const RateState& from, const RateRequest& request) noexcept {
   RateCurve before(t, from);
   if (from.slope != 0) {
     const Time flatten =
         std::min(scaled(request.ramp, 1.0 / 4), longest_fall(from.rate, from.slope));
-    before.add(flattened(from, flatten), std::max(flatten, Time(1)));
+    before.add(flattened(from, flatten), std::max(flatten, kShortestPiece));
   }
   const RateCurve bound = bound_after(before, t, request);
   const auto planned = plan_rate(before, t, std::span(&bound, 1), request.rate, request.ramp);

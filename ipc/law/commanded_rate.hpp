@@ -24,10 +24,16 @@ class CommandedRate {
   /// requests less, as if it made its request at `t`.
   void begin(const core::RateCurve& curve, const Commanders& commanders, Time t);
 
-  /// Plans the rate from `t` on, after `commanders` has been read. A request counts as a new one if
-  /// its rate or its ramp is another; a renewal does not. A commander without a region any more
-  /// counts as released. Nothing if the curve needs no change now.
+  /// Plans the rate from `t` on, which is of plan_begin(), after `commanders` has been read. A
+  /// request counts as a new one if its rate or its ramp is another; a renewal does not. A
+  /// commander without a region any more counts as released. Nothing if the curve needs no change
+  /// now.
   [[nodiscard]] std::optional<core::RateCurve> plan(const Commanders& commanders, Time t);
+
+  /// When a plan can begin that would begin at `t`: see core::plan_begin().
+  [[nodiscard]] Time plan_begin(Time t) const noexcept {
+    return core::plan_begin(in_force_.curve, t);
+  }
 
   /// The last plan has been committed.
   void commit() { in_force_ = planned_; }

@@ -190,15 +190,18 @@ void LawServer::step(const Clock& clock) {
   // The solver's step follows at once; a little later than settled, so that it is not too late.
   const Time margin = std::max<Time>(freeze_ahead_ / 16, std::chrono::microseconds(200));
   const Time from = std::max(board_->look().settled_until, now + freeze_ahead_) + margin;
-  const auto state = state_at(from);
-  if (!state) return;
   commanders_.read(now);
   if (!is_rate_known_) {
+    const auto state = state_at(from);
+    if (!state) return;  // the law has not begun
     rate_.begin(published(*state), commanders_, from);
     line_end_ = newest_.time;
     is_rate_known_ = true;
   }
-  if (const auto curve = rate_.plan(commanders_, from)) send(*curve, *state);
+  const Time begin = rate_.plan_begin(from);
+  const auto state = state_at(begin);
+  if (!state) return;
+  if (const auto curve = rate_.plan(commanders_, begin)) send(*curve, *state);
 }
 
 Time LawServer::due() const noexcept { return std::min(next_look_, commanders_.next_expiry()); }

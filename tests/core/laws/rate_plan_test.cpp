@@ -29,14 +29,18 @@ class Law {
     curve_ = RateCurve(target());
   }
 
-  void request(std::size_t commander, Time t, const RateRequest& request) {
+  /// Takes a request at `t`, or when a plan can begin. Returns that time.
+  Time request(std::size_t commander, Time t, const RateRequest& request) {
+    t = plan_begin(curve_, t);
     bounds_[commander] = bound_after(bounds_[commander], t, request);
     requests_[commander] = request;
     newest_ = request.ramp;
     step(t);
+    return t;
   }
   void step(Time t) {
-    if (const auto planned = plan_rate(curve_, t, bounds_, target(), newest_)) curve_ = *planned;
+    const auto planned = plan_rate(curve_, plan_begin(curve_, t), bounds_, target(), newest_);
+    if (planned) curve_ = *planned;
   }
 
   [[nodiscard]] double target() const {
@@ -190,9 +194,10 @@ class RandomRequests {
     double asked = 0;
     for (int i = 0; i < 12; ++i) {
       t += log_uniform(1e-4, unit_(random_) < 0.7 ? 0.3 : 30);
-      const RateState before = law.curve().at(t);
+      const RateCurve present = law.curve();
       const std::size_t who = random_() % commanders;
-      law.request(who, t, any_request());
+      t = law.request(who, t, any_request());
+      const RateState before = present.at(t);
       asked = std::max(asked, law.bounds()[who].steepest());
       if (asked > 0) ratios_.push_back(law.curve().steepest() / asked);
       // A plan begins in the state that the law has.
@@ -200,6 +205,9 @@ class RandomRequests {
       ASSERT_NEAR(after.rate, before.rate, 1e-12);
       ASSERT_NEAR(after.slope, before.slope, 1e-9 * (1 + std::abs(before.slope)));
       most_ = std::max(most_, law.excess(t));
+      for (const RatePiece& piece : law.curve().pieces()) {
+        ASSERT_GE(piece.length, kShortestPiece);
+      }
     }
     settle(law, t);
   }
