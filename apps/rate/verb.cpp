@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -63,9 +62,7 @@ std::vector<ipc::CommanderState> commanders_of(const RateOptions& options) {
   ipc::Commanders commanders(options.law, options.trust);
   commanders.look_around();
   commanders.read(MonotonicClock().now());
-  std::vector<ipc::CommanderState> states;
-  std::ranges::copy(commanders.states(), std::back_inserter(states));
-  return states;
+  return commanders.states();
 }
 
 int show(const RateOptions& options) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <thread>
 #include <utility>
 
@@ -45,11 +46,15 @@ ProducerOptions command_ring_options(const RegionAccess& access, const Trust& tr
 }
 
 bool Commanders::has(const std::string& name) const noexcept {
-  return std::ranges::any_of(rings_, [&](const auto& ring) { return ring->state.name == name; });
+  return std::ranges::find(states_, name, &CommanderState::name) != states_.end();
 }
 
 void Commanders::look_around() {
-  std::erase_if(rings_, [](const auto& ring) { return ring->ring.retired(); });
+  for (std::size_t i = rings_.size(); i-- > 0;) {
+    if (!rings_[i]->ring.retired()) continue;
+    rings_.erase(rings_.begin() + std::ptrdiff_t(i));
+    states_.erase(states_.begin() + std::ptrdiff_t(i));
+  }
   if (!folder_.has_changed() && !tries_again_) return;
   tries_again_ = false;
   for (const std::string& name : commander_names(law_)) {
@@ -58,7 +63,9 @@ void Commanders::look_around() {
       auto [region, header, layout] = open_ring(commander_stream(law_, name), false, trust_);
       if (header.dimensions != kCommandValues) continue;
       region.close_descriptor();
-      rings_.push_back(std::make_unique<Ring>(name, std::move(region), layout));
+      rings_.push_back(std::make_unique<Ring>(std::move(region), layout));
+      states_.push_back(
+          {.name = name, .command = {.time = Time::min(), .rate = -1, .ramp = kShortestRamp}});
     } catch (const StreamError&) {
       tries_again_ = true;  // it was just removed, or belongs to another user
     }
@@ -71,7 +78,7 @@ bool Commanders::calls() const noexcept {
   });
 }
 
-void Commanders::read_newest(Ring& ring) {
+void Commanders::read_newest(Ring& ring, RateCommand& command) {
   // Another try reads a command that came meanwhile; the ring is far longer than that.
   constexpr int kTries = 4;
   for (int i = 0; i < kTries; ++i) {
@@ -79,20 +86,30 @@ void Commanders::read_newest(Ring& ring) {
     if (written == ring.seen || written == 0) return;
     if (!ring.ring.observe(written - 1, item_)) continue;
     ring.seen = written;
-    if (const auto command = command_of(item_)) ring.state.command = *command;
+    command = command_of(item_).value_or(command);
   }
 }
 
 void Commanders::read(Time now) {
-  for (const auto& ring : rings_) {
-    read_newest(*ring);
-    ring->state.is_dead = expiry_of(ring->state.command) <= now;
+  for (std::size_t i = 0; i < rings_.size(); ++i) {
+    read_newest(*rings_[i], states_[i].command);
+    states_[i].is_dead = expiry_of(states_[i].command) <= now;
   }
 }
 
 core::RateRequest CommanderState::request(double largest) const noexcept {
   if (is_dead) return {.rate = 0, .ramp = kDeadManRamp};
   return {.rate = requests() ? std::min(command.rate, largest) : largest, .ramp = command.ramp};
+}
+
+double least_rate(std::span<const CommanderState> states, double largest) noexcept {
+  std::optional<double> least;
+  for (const CommanderState& state : states) {
+    if (!state.requests()) continue;
+    const double rate = state.request(largest).rate;
+    least = std::min(least.value_or(rate), rate);
+  }
+  return std::min(least.value_or(1.0), largest);
 }
 
 void Commanders::wait(Time timeout) const noexcept {
@@ -108,8 +125,8 @@ void Commanders::wait(Time timeout) const noexcept {
 
 Time Commanders::next_expiry() const noexcept {
   Time next = Time::max();
-  for (const auto& ring : rings_) {
-    if (!ring->state.is_dead) next = std::min(next, expiry_of(ring->state.command));
+  for (const CommanderState& state : states_) {
+    if (!state.is_dead) next = std::min(next, expiry_of(state.command));
   }
   return next;
 }

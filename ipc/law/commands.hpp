@@ -1,10 +1,9 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <optional>
-#include <ranges>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -61,17 +60,8 @@ struct CommanderState {
 };
 
 /// The least rate that commanders request, at most `largest`; 1, or `largest` if that is less, if
-/// none requests one. `states` is a range of CommanderState.
-template <typename States>
-[[nodiscard]] double least_rate(const States& states, double largest) noexcept {
-  std::optional<double> least;
-  for (const CommanderState& state : states) {
-    if (!state.requests()) continue;
-    const double rate = state.request(largest).rate;
-    least = std::min(least.value_or(rate), rate);
-  }
-  return std::min(least.value_or(1.0), largest);
-}
+/// none requests one.
+[[nodiscard]] double least_rate(std::span<const CommanderState> states, double largest) noexcept;
 
 /// The commanders of one law, as the law's solver observes them. One thread uses it.
 class Commanders {
@@ -94,11 +84,8 @@ class Commanders {
   /// When the next dead man expires; max() for never.
   [[nodiscard]] Time next_expiry() const noexcept;
 
-  /// What each commander requested at the last read(): a range of CommanderState.
-  [[nodiscard]] auto states() const noexcept {
-    return rings_ | std::views::transform(
-                        [](const auto& ring) -> const CommanderState& { return ring->state; });
-  }
+  /// What each commander requested at the last read().
+  [[nodiscard]] const std::vector<CommanderState>& states() const noexcept { return states_; }
 
   /// Sleeps until a commander gives a command that read() has not read, at most `timeout`; with
   /// several commanders at most 1 ms. May return early.
@@ -109,22 +96,19 @@ class Commanders {
     Region region;
     WaypointRingReader ring;
     Word seen = 0;  ///< `written` at the last read
-    CommanderState state;
 
-    Ring(std::string name, Region mapped, const RingLayout& layout)
-        : region(std::move(mapped)),
-          ring(region.bytes(), layout),
-          state{.name = std::move(name),
-                .command = {.time = Time::min(), .rate = -1, .ramp = kShortestRamp}} {}
+    Ring(Region mapped, const RingLayout& layout)
+        : region(std::move(mapped)), ring(region.bytes(), layout) {}
   };
   [[nodiscard]] bool has(const std::string& name) const noexcept;
-  void read_newest(Ring& ring);
+  void read_newest(Ring& ring, RateCommand& command);
 
   std::string law_;
   Trust trust_;
   FolderWatch folder_;
   bool tries_again_ = false;  ///< a ring could not be used
   std::vector<std::unique_ptr<Ring>> rings_;
+  std::vector<CommanderState> states_;  ///< of each ring
   RingItem item_{kCommandValues};
 };
 

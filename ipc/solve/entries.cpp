@@ -46,8 +46,8 @@ void PublishedCurve::check_start() noexcept {
   if (entries_.is_live) shown_.look(window_.options().stop_time);
   if (search_.keeps_start(window_, entry_rules())) return;
   const core::Knot first = window_.knot(0);
-  constexpr std::array<double, kMaxDimensions> kZeros{};
-  const auto zeros = std::span(kZeros).first(window_.dimensions());
+  constexpr std::array<double, kMaxDimensions> kRest{};
+  const auto zeros = std::span(kRest).first(window_.dimensions());
   const Instant rest{first.time, first.position, zeros, zeros};
   course_ = Course::waiting;
   met_ = placed_ = knots;

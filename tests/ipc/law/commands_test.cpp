@@ -65,7 +65,7 @@ class LawCommanders : public ::testing::Test {
     return least_rate(commanders_.states(), largest);
   }
   /// What the first commander asks of a law.
-  core::RateRequest request() { return (*commanders_.states().begin()).request(1); }
+  core::RateRequest request() { return commanders_.states().front().request(1); }
   TestStream law_;
   Commanders commanders_{law_.name(), {}};
 };
@@ -105,7 +105,7 @@ TEST_F(LawCommanders, ADeadManExpiresUnlessACommandFollows) {
   EXPECT_EQ(read(seconds(3) - Time(1)), 0.5);
   EXPECT_EQ(commanders_.next_expiry(), seconds(3));
   EXPECT_EQ(read(seconds(3)), 0);
-  EXPECT_TRUE((*commanders_.states().begin()).is_dead);
+  EXPECT_TRUE(commanders_.states().front().is_dead);
   EXPECT_EQ(request().ramp, kDeadManRamp);
   EXPECT_EQ(commanders_.next_expiry(), Time::max());
   one.give(seconds(4), {0.5, 0.1, 2});
@@ -122,7 +122,7 @@ TEST_F(LawCommanders, ValuesOutOfRangeAreClamped) {
   one.give(seconds(2), {0.5, -1, -1});
   EXPECT_EQ(read(seconds(3)), 0.5);
   EXPECT_EQ(request().ramp, kShortestRamp);
-  EXPECT_FALSE((*commanders_.states().begin()).is_dead);
+  EXPECT_FALSE(commanders_.states().front().is_dead);
   one.give(seconds(4), {0.5, 1e-9, 1e9});
   (void)read(seconds(4));
   EXPECT_EQ(request().ramp, kShortestRamp);
