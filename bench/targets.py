@@ -78,7 +78,7 @@ TARGETS = [
 BOUNDS = [
     Bound("attach/dims:7/knots:4096", "p50_ns", "ms", size=1e6, most=1, what="p50"),
     Bound("attach/dims:7/knots:4096", "p99_ns", "ms", size=1e6, most=1, what="p99"),
-    Bound("board/dims:7/knots:4096", "region_bytes", "MB", size=1e6, most=2.2, what="size of the region"),
+    Bound("board/dims:7/knots:4096", "region_bytes", "MB", size=1e6, most=2.25, what="size of the region"),
     *(Bound(f"plan/dims:7/limits:{limits}", key, "µs", size=1e3, most=most, what=what)
       for limits in (0, 1)
       for key, most, what in (("p50_ns", 20, "a step of the return, p50"), ("worst_ns", 1000, "the same, worst"))),

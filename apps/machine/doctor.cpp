@@ -16,7 +16,6 @@
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/knot_slots.hpp"
-#include "ipc/layout/mark.hpp"
 #include "ipc/layout/waypoint_items.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"

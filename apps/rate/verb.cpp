@@ -38,6 +38,7 @@ struct RateOptions {
   bool release = false;
   bool force = false;
   std::optional<Time> dead_man;
+  Time dead_man_ramp = ipc::kDeadManRamp;
   bool json = false;
   Trust trust;
 
@@ -177,14 +178,14 @@ bool report_effect(const RateOptions& options, const Present& present, bool is_r
   return false;
 }
 
-/// Repeats a request until a stop is requested, so that the law holds if this process dies.
+/// Renews a request until a stop is requested, so that the law holds if this process dies.
 int keep_alive(RateCommander& commander, Time dead_man) {
   while (sleep_until(MonotonicClock().now() + dead_man / 4)) commander.renew();
   return kOk;
 }
 
 void request(const RateOptions& options, RateCommander& commander) {
-  commander.set_dead_man(options.dead_man.value_or(Time::zero()));
+  commander.set_dead_man(options.dead_man.value_or(Time::zero()), options.dead_man_ramp);
   if (options.release) {
     commander.release(options.ramp);
   } else {
@@ -246,9 +247,11 @@ void add_rate(Command& verb, Action& action) {
       .type("COMMANDER");
   verb.flag("--release", options->release, "Withdraw the commander's request");
   add_seconds(verb, "--dead-man", options->dead_man,
-              "Run until SIGINT or SIGTERM and repeat the request: the law holds if this process "
+              "Run until SIGINT or SIGTERM and renew the request: the law holds if this process "
               "does not for this time in s, 0.001 to 3600",
               kRamps);
+  add_seconds(verb, "--dead-man-ramp", options->dead_man_ramp,
+              "Length of the ramp of that hold in s, 0.001 to 3600 (default 0.5)", kRamps);
   verb.flag("--force", options->force, "Request it even if a stream would exceed its limits");
   verb.flag("--json", options->json, "Print JSON");
   add_trust(verb, options->trust);

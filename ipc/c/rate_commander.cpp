@@ -63,8 +63,9 @@ int splinecast_rate_commander_release(splinecast_rate_commander* commander, int6
   return with(commander, [&](RateCommander& own) { own.release(Time(ramp)); });
 }
 
-int splinecast_rate_commander_set_dead_man(splinecast_rate_commander* commander, int64_t timeout) {
-  return with(commander, [&](RateCommander& own) { own.set_dead_man(Time(timeout)); });
+int splinecast_rate_commander_set_dead_man(splinecast_rate_commander* commander, int64_t timeout,
+                                           int64_t ramp) {
+  return with(commander, [&](RateCommander& own) { own.set_dead_man(Time(timeout), Time(ramp)); });
 }
 
 int splinecast_rate_commander_renew(splinecast_rate_commander* commander) {

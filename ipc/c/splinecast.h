@@ -817,7 +817,7 @@ SPLINECAST_API int splinecast_rate_commander_destroy(splinecast_rate_commander* 
 
 /// Requests a rate of 0 to 100, reached by a ramp of this length: 1 ms to 1 h. A request above the
 /// law's largest rate counts as the largest. hold requests rate 0. release withdraws the request:
-/// the law has the least of the others, or 1 if there is none. One system call.
+/// the law has the least of the others, or 1 if there is none. Three system calls.
 SPLINECAST_API int splinecast_rate_commander_set_rate(splinecast_rate_commander* commander,
                                                       double rate, int64_t ramp);
 SPLINECAST_API int splinecast_rate_commander_hold(splinecast_rate_commander* commander,
@@ -825,10 +825,11 @@ SPLINECAST_API int splinecast_rate_commander_hold(splinecast_rate_commander* com
 SPLINECAST_API int splinecast_rate_commander_release(splinecast_rate_commander* commander,
                                                      int64_t ramp);
 
-/// From the next request on, the law holds if this commander does not repeat its request within
-/// `timeout`: 1 ms to 1 h, or 0: never. renew repeats the last request; one system call.
+/// From the next request on, the law holds if this commander does not renew its request within
+/// `timeout`, 1 ms to 1 h, or 0: never; `ramp`, 1 ms to 1 h, is the length of the ramp of that
+/// hold, which lasts until the next request. renew renews the last request; three system calls.
 SPLINECAST_API int splinecast_rate_commander_set_dead_man(splinecast_rate_commander* commander,
-                                                          int64_t timeout);
+                                                          int64_t timeout, int64_t ramp);
 SPLINECAST_API int splinecast_rate_commander_renew(splinecast_rate_commander* commander);
 
 // ------------------------------------------------------------------------------------- batch fit

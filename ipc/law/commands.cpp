@@ -6,9 +6,12 @@
 #include <thread>
 #include <utility>
 
+#include "ipc/layout/commander_control.hpp"
+#include "ipc/layout/common_control.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/memory/futex.hpp"
 #include "ipc/memory/names.hpp"
+#include "ipc/options/stream.hpp"
 #include "splinecast/errors.hpp"
 
 namespace splinecast::ipc {
@@ -22,37 +25,14 @@ Time expiry_of(const RateCommand& command) noexcept {
 
 }  // namespace
 
-std::optional<RateCommand> command_of(const RingItem& item) noexcept {
-  const std::span<const double> values = item.waypoint().position;
-  if (item.kind != ItemKind::waypoint || !is_finite(values)) return std::nullopt;
-  const auto time = [](double seconds, Time least, Time most) {
-    return seconds > 0 ? std::clamp(from_seconds(seconds), least, most) : least;
-  };
-  return RateCommand{.time = item.time,
-                     .rate = values[0],
-                     .ramp = time(values[1], kShortestRamp, kLongestRamp),
-                     .dead_man = time(values[2], Time::zero(), kLongestRamp)};
-}
-
-ProducerOptions command_ring_options(const RegionAccess& access, const Trust& trust) {
-  return {.dimensions = kCommandValues,
-          .names = {"rate", "ramp", "dead man"},
-          .units = {"", "s", "s"},
-          .start = {.kind = ConditionKind::own, .value = {}},
-          .limits = {.min_interval = Time(1), .max_interval = kLatestTime / 2},
-          .capacity = 256,
-          .access = access,
-          .trust = trust};
-}
-
 bool Commanders::has(const std::string& name) const noexcept {
   return std::ranges::find(states_, name, &CommanderState::name) != states_.end();
 }
 
 void Commanders::look_around() {
-  for (std::size_t i = rings_.size(); i-- > 0;) {
-    if (!rings_[i]->ring.retired()) continue;
-    rings_.erase(rings_.begin() + std::ptrdiff_t(i));
+  for (std::size_t i = sources_.size(); i-- > 0;) {
+    if (load(sources_[i].control[kRetired], std::memory_order_acquire) == 0) continue;
+    sources_.erase(sources_.begin() + std::ptrdiff_t(i));
     states_.erase(states_.begin() + std::ptrdiff_t(i));
   }
   if (!folder_.has_changed() && !tries_again_) return;
@@ -60,12 +40,13 @@ void Commanders::look_around() {
   for (const std::string& name : commander_names(law_)) {
     if (has(name)) continue;
     try {
-      auto [region, header, layout] = open_ring(commander_stream(law_, name), false, trust_);
-      if (header.dimensions != kCommandValues) continue;
+      const std::string stream = commander_stream(law_, name);
+      auto [region, header, layout] = open_commander(stream, false, trust_);
+      require_same_clock(header, stream);
       region.close_descriptor();
-      rings_.push_back(std::make_unique<Ring>(std::move(region), layout));
-      states_.push_back(
-          {.name = name, .command = {.time = Time::min(), .rate = -1, .ramp = kShortestRamp}});
+      const auto control = words_at(region.bytes(), layout.control, kCommanderControlWords);
+      sources_.push_back({.region = std::move(region), .control = control});
+      states_.push_back({.name = name});
     } catch (const StreamError&) {
       tries_again_ = true;  // it was just removed, or belongs to another user
     }
@@ -73,39 +54,42 @@ void Commanders::look_around() {
 }
 
 bool Commanders::calls() const noexcept {
-  return std::ranges::any_of(rings_, [](const auto& ring) {
-    return ring->ring.written(std::memory_order_seq_cst) != ring->seen;
+  return std::ranges::any_of(sources_, [](const Source& source) {
+    return load(source.control[kCommanderSequence], std::memory_order_seq_cst) != source.seen;
   });
 }
 
-void Commanders::read_newest(Ring& ring, RateCommand& command) {
-  // Another try reads a command that came meanwhile; the ring is far longer than that.
-  constexpr int kTries = 4;
-  for (int i = 0; i < kTries; ++i) {
-    const Word written = ring.ring.written();
-    if (written == ring.seen || written == 0) return;
-    if (!ring.ring.observe(written - 1, item_)) continue;
-    ring.seen = written;
-    command = command_of(item_).value_or(command);
+void Commanders::read_newest(Source& source, CommanderState& state, Time now) noexcept {
+  // A commander may read its clock after this process has.
+  constexpr Time kMostAhead = std::chrono::seconds(1);
+  const CommandCopy copy = copy_command(source.control);
+  source.seen = copy.sequence;
+  const bool is_first = copy.is_whole && copy.sequence == 0;  // nothing requested yet
+  const auto command = copy.is_whole ? command_of(copy.words) : std::nullopt;
+  if (command && command->time <= saturated_sum(now, kMostAhead)) {
+    if (command->number != state.command.number) state.is_dead = false;
+    state.command = *command;
+    source.damaged_since = Time::max();
+  } else if (!is_first) {
+    source.damaged_since = std::min(source.damaged_since, now);
   }
+  state.is_damaged = now - kMostDamaged >= source.damaged_since;
+  state.is_dead = state.is_dead || expiry_of(state.command) <= now;
 }
 
 void Commanders::read(Time now) {
-  for (std::size_t i = 0; i < rings_.size(); ++i) {
-    read_newest(*rings_[i], states_[i].command);
-    states_[i].is_dead = expiry_of(states_[i].command) <= now;
-  }
+  for (std::size_t i = 0; i < sources_.size(); ++i) read_newest(sources_[i], states_[i], now);
 }
 
 core::RateRequest CommanderState::request(double largest) const noexcept {
-  if (is_dead) return {.rate = 0, .ramp = kDeadManRamp};
+  if (is_dead || is_damaged) return {.rate = 0, .ramp = command.dead_man_ramp};
   return {.rate = requests() ? std::min(command.rate, largest) : largest, .ramp = command.ramp};
 }
 
 double least_rate(std::span<const CommanderState> states, double largest) noexcept {
   std::optional<double> least;
   for (const CommanderState& state : states) {
-    if (!state.requests()) continue;
+    if (!state.requests() && !state.is_damaged) continue;
     const double rate = state.request(largest).rate;
     least = std::min(least.value_or(rate), rate);
   }
@@ -113,11 +97,12 @@ double least_rate(std::span<const CommanderState> states, double largest) noexce
 }
 
 void Commanders::wait(Time timeout) const noexcept {
-  // There is one futex per ring, and a thread can wait on one only.
+  // There is one futex per region, and a thread can wait on one only.
   constexpr Time kSlice = std::chrono::milliseconds(1);
   if (calls()) return;
-  if (rings_.size() == 1) {
-    wait_while_equal(rings_.front()->ring.written_word(), rings_.front()->seen, timeout);
+  if (sources_.size() == 1) {
+    const Source& only = sources_.front();
+    wait_while_equal(only.control[kCommanderSequence], only.seen, timeout);
   } else {
     std::this_thread::sleep_for(std::min(timeout, kSlice));
   }
@@ -125,8 +110,10 @@ void Commanders::wait(Time timeout) const noexcept {
 
 Time Commanders::next_expiry() const noexcept {
   Time next = Time::max();
-  for (const CommanderState& state : states_) {
-    if (!state.is_dead) next = std::min(next, expiry_of(state.command));
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    if (!states_[i].is_dead) next = std::min(next, expiry_of(states_[i].command));
+    if (states_[i].is_damaged || sources_[i].damaged_since == Time::max()) continue;
+    next = std::min(next, saturated_sum(sources_[i].damaged_since, kMostDamaged));
   }
   return next;
 }

@@ -1,57 +1,28 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/laws/rate_plan.hpp"
-#include "ipc/layout/waypoint_items.hpp"
+#include "ipc/law/commander_record.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/folder_watch.hpp"
 #include "ipc/memory/word.hpp"
-#include "ipc/ring/item.hpp"
-#include "ipc/ring/reader.hpp"
 #include "splinecast/options.hpp"
 #include "splinecast/time.hpp"
 
-/// Rate commands. Each commander of a time law has a ring of its own, under the name
-/// commander_stream(), whose items are its commands. The law's solver observes these rings: it
-/// stores nothing in them, and only the newest command of each counts.
+/// The commanders of a time law. Each has a region of its own, under the name commander_stream(),
+/// with its latest state. The law's solver observes these regions: it stores nothing in them.
 namespace splinecast::ipc {
-
-/// A rate command.
-struct RateCommand {
-  Time time{};      ///< host time at which it was given
-  double rate = 1;  ///< requested rate, at least 0; below 0: the commander requests none
-  Time ramp{};      ///< length of the ramp to it
-  Time dead_man{};  ///< after this time without a newer command, the rate is 0; 0: never
-};
-
-/// Values of a command as an item: rate, ramp [s], dead man [s].
-inline constexpr std::size_t kCommandValues = 3;
-
-/// The command in an item. Returns nothing if the item is not a waypoint, or if a value is NaN or
-/// infinite. Clamps other values to their ranges, because any process may have stored them.
-[[nodiscard]] std::optional<RateCommand> command_of(const RingItem& item) noexcept;
-
-/// Shortest and longest ramp.
-inline constexpr Time kShortestRamp{1'000'000};
-inline constexpr Time kLongestRamp{3'600'000'000'000};
-
-/// The options of a commander's ring.
-[[nodiscard]] ProducerOptions command_ring_options(const RegionAccess& access, const Trust& trust);
-
-/// Length of the ramp to rate 0 after a dead man has expired.
-inline constexpr Time kDeadManRamp{500'000'000};
 
 /// What one commander requests.
 struct CommanderState {
   std::string name;
-  RateCommand command;
-  bool is_dead = false;  ///< its dead man has expired: it requests rate 0
+  RateCommand command{};
+  bool is_dead = false;     ///< its dead man has expired: it requests rate 0 until a new request
+  bool is_damaged = false;  ///< its region holds no whole request any more: it requests rate 0
 
   /// Whether it requests a rate.
   [[nodiscard]] bool requests() const noexcept { return command.rate >= 0; }
@@ -69,19 +40,22 @@ class Commanders {
   Commanders(std::string law, const Trust& trust) : law_(std::move(law)), trust_(trust) {}
 
   /// Looks for commanders that have come. One system call if no file of shared memory has come or
-  /// gone since the last call, else it reads the folder; allocates for new ones. A ring that cannot
-  /// be used is ignored, and tried again in the next call.
+  /// gone since the last call, else it reads the folder; allocates for new ones. A region that
+  /// cannot be used, or that has the clock of another time namespace, is ignored, and tried again
+  /// in the next call.
   void look_around();
 
-  [[nodiscard]] bool empty() const noexcept { return rings_.empty(); }
+  [[nodiscard]] bool empty() const noexcept { return sources_.empty(); }
 
   /// Whether a commander has given a command since the last read(). One load per commander.
   [[nodiscard]] bool calls() const noexcept;
 
-  /// Reads the newest commands. `now` decides which dead men have expired.
+  /// Reads what each commander requests. `now` decides which dead men have expired. A record that
+  /// is torn or not valid leaves the last good one; after kMostDamaged the commander requests rate
+  /// 0, with its last ramp of a dead man. Bounded, for any content of the regions.
   void read(Time now);
 
-  /// When the next dead man expires; max() for never.
+  /// When the next dead man expires, or the patience with a damaged record ends; max() for never.
   [[nodiscard]] Time next_expiry() const noexcept;
 
   /// What each commander requested at the last read().
@@ -92,24 +66,24 @@ class Commanders {
   void wait(Time timeout) const noexcept;
 
  private:
-  struct Ring {
-    Region region;
-    WaypointRingReader ring;
-    Word seen = 0;  ///< `written` at the last read
+  static constexpr Time kMostDamaged{20'000'000};
 
-    Ring(Region mapped, const RingLayout& layout)
-        : region(std::move(mapped)), ring(region.bytes(), layout) {}
+  /// The region of a commander.
+  struct Source {
+    Region region;
+    std::span<const Word> control;
+    Word seen = 0;                     ///< sequence of the record at the last read
+    Time damaged_since = Time::max();  ///< when a record was first found damaged
   };
   [[nodiscard]] bool has(const std::string& name) const noexcept;
-  void read_newest(Ring& ring, RateCommand& command);
+  static void read_newest(Source& source, CommanderState& state, Time now) noexcept;
 
   std::string law_;
   Trust trust_;
   FolderWatch folder_;
-  bool tries_again_ = false;  ///< a ring could not be used
-  std::vector<std::unique_ptr<Ring>> rings_;
-  std::vector<CommanderState> states_;  ///< of each ring
-  RingItem item_{kCommandValues};
+  bool tries_again_ = false;  ///< a region could not be used
+  std::vector<Source> sources_;
+  std::vector<CommanderState> states_;  ///< of each source
 };
 
 }  // namespace splinecast::ipc

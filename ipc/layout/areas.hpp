@@ -19,12 +19,12 @@ inline constexpr std::tuple kRegionRows{
     FieldRow{"control area",
              {.words = 2 * kPage / sizeof(Word)},
              FieldWriter::owner,
-             "contains the control block, at offset 8192 + 128 · (stream id mod 49),\n"
+             "contains the control block, at offset 8192 + 128 · (stream id mod 46),\n"
              "so that the blocks of many streams are spread over the cache sets"},
     FieldRow{"body",
              {},
              FieldWriter::owner,
-             "ring items; or refusals, excesses, times and slots of a board"}};
+             "ring items; or refusals, excesses, outcomes, stoppers, times and slots of a board"}};
 inline constexpr auto kRegionFields = place(kRegionRows);
 inline constexpr std::size_t kHeaderBytes = word_of(kRegionFields, "control area") * sizeof(Word);
 inline constexpr std::size_t kBodyOffset = word_of(kRegionFields, "body") * sizeof(Word);

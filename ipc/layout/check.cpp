@@ -9,8 +9,8 @@
 #include "core/online/sliding_window.hpp"
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/common_control.hpp"
+#include "ipc/layout/header.hpp"
 #include "ipc/layout/limits.hpp"
-#include "ipc/layout/mark.hpp"
 #include "ipc/layout/separation.hpp"
 #include "ipc/memory/names.hpp"
 #include "splinecast/boundary_condition.hpp"
@@ -80,9 +80,8 @@ void require_law(const RegionHeader& header) {
                   printable(text_of(header.law)) + "' with id " + std::to_string(header.law_id));
 }
 
-/// Checks the values that both kinds of region have.
-void require_common(const RegionHeader& header, RegionKind kind, std::size_t real_bytes,
-                    std::size_t max_capacity) {
+/// Checks the values that every region has.
+void require_region(const RegionHeader& header, RegionKind kind, std::size_t real_bytes) {
   const std::uint32_t order = header.mark.byte_order;
   require(order != kOtherByteOrder, "byte order", order, kByteOrder);
   require(header.magic == kMagic, "magic number", header.magic, kMagic);
@@ -90,16 +89,21 @@ void require_common(const RegionHeader& header, RegionKind kind, std::size_t rea
   require_this_layout(header);
   require(header.kind == static_cast<std::uint64_t>(kind), "kind", header.kind,
           static_cast<std::uint64_t>(kind));
-  require_range("dimensions", header.dimensions, kMinDimensions, kMaxDimensions);
-  require_dimension_kinds(header);
-  require_range("capacity", header.capacity, 2, max_capacity);
-  require(std::has_single_bit(header.capacity), "capacity", header.capacity,
-          std::bit_ceil(header.capacity));
   require_range("control offset", header.control, kHeaderBytes,
                 kHeaderBytes + (kControlPositions - 1) * kSeparation);
   require(header.control % kSeparation == 0, "control offset", header.control,
           round_up(header.control, kSeparation));
   require_range("clock", header.clock, 0, static_cast<std::uint64_t>(StreamClock::law));
+  require(header.region_bytes == real_bytes, "size", real_bytes, header.region_bytes);
+}
+
+/// Checks the values that both regions of a stream have.
+void require_stream(const RegionHeader& header, std::size_t max_capacity) {
+  require_range("dimensions", header.dimensions, kMinDimensions, kMaxDimensions);
+  require_dimension_kinds(header);
+  require_range("capacity", header.capacity, 2, max_capacity);
+  require(std::has_single_bit(header.capacity), "capacity", header.capacity,
+          std::bit_ceil(header.capacity));
   require_law(header);
   require_range("start condition", header.start_kind, 0,
                 static_cast<std::uint64_t>(ConditionKind::own));
@@ -115,7 +119,6 @@ void require_common(const RegionHeader& header, RegionKind kind, std::size_t rea
                 kLongestNanoseconds);
   require_range("most interval", static_cast<std::uint64_t>(header.max_interval), 1,
                 kLongestNanoseconds);
-  require(header.region_bytes == real_bytes, "size", real_bytes, header.region_bytes);
 }
 
 /// Checks the values that define the curve. SlidingWindow refuses invalid ones too, but does not
@@ -147,7 +150,8 @@ void require_motion_limits(const RegionHeader& header) {
 }  // namespace
 
 RingLayout checked_ring_layout(const RegionHeader& header, std::size_t real_bytes) {
-  require_common(header, RegionKind::waypoints, real_bytes, kMaxRingCapacity);
+  require_region(header, RegionKind::waypoints, real_bytes);
+  require_stream(header, kMaxRingCapacity);
   const auto layout = RingLayout::of(header.dimensions, header.capacity, header.control);
   require(header.stride == layout.stride, "item size", header.stride, layout.stride);
   require(real_bytes == layout.bytes, "size", real_bytes, layout.bytes);
@@ -155,7 +159,8 @@ RingLayout checked_ring_layout(const RegionHeader& header, std::size_t real_byte
 }
 
 BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_bytes) {
-  require_common(header, RegionKind::spline, real_bytes, kMaxBoardCapacity);
+  require_region(header, RegionKind::spline, real_bytes);
+  require_stream(header, kMaxBoardCapacity);
   require_curve(header);
   const auto layout =
       BoardLayout::of(header.dimensions, header.capacity, header.control, smooths(header));
@@ -171,6 +176,13 @@ BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_by
   require_range("stop time", static_cast<std::uint64_t>(header.stop_time), 1,
                 static_cast<std::uint64_t>(kLongestStop.count()));
   require(header.stride == layout.stride, "slot size", header.stride, layout.stride);
+  require(real_bytes == layout.bytes, "size", real_bytes, layout.bytes);
+  return layout;
+}
+
+CommanderLayout checked_commander_layout(const RegionHeader& header, std::size_t real_bytes) {
+  require_region(header, RegionKind::commander, real_bytes);
+  const CommanderLayout layout{.control = header.control};
   require(real_bytes == layout.bytes, "size", real_bytes, layout.bytes);
   return layout;
 }

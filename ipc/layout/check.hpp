@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/waypoint_items.hpp"
@@ -13,5 +14,6 @@ namespace splinecast::ipc {
 /// `real_bytes` of the file.
 RingLayout checked_ring_layout(const RegionHeader& header, std::size_t real_bytes);
 BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_bytes);
+CommanderLayout checked_commander_layout(const RegionHeader& header, std::size_t real_bytes);
 
 }  // namespace splinecast::ipc

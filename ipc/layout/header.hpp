@@ -8,12 +8,25 @@
 #include <tuple>
 #include <vector>
 
-#include "ipc/layout/mark.hpp"
 #include "ipc/layout/table.hpp"
 #include "ipc/memory/word.hpp"
 #include "splinecast/dimension_kind.hpp"
 
 namespace splinecast::ipc {
+
+/// The numbers that identify a stream's region and its layout. The tables of this folder define the
+/// place of every word of the regions; docs/layout-fields.md is generated from them. A release that
+/// changes a row adds 1 to kLayoutVersion. Between releases the layout hash distinguishes layouts.
+inline constexpr std::uint64_t kMagic = 0x54534143'4e4c5053;  // "SPLNCAST" in memory order
+inline constexpr std::uint32_t kLayoutVersion = 7;
+inline constexpr std::uint32_t kByteOrder = 0x01020304;
+
+/// The two numbers of the header's second word. All layout versions have them at this place, so
+/// that each version recognises a region of another version.
+struct LayoutMark {
+  std::uint32_t version = kLayoutVersion;
+  std::uint32_t byte_order = kByteOrder;
+};
 
 inline constexpr std::size_t kNameBytes = 32;
 inline constexpr std::size_t kUnitBytes = 16;
@@ -22,7 +35,8 @@ inline constexpr std::size_t kLawNameBytes = 136;
 /// Upper bound of the largest rate of a time law.
 inline constexpr double kLargestRate = 100;
 
-/// The first words of both regions, as kHeaderRows places them.
+/// The first words of each region, as kHeaderRows places them. A commander region has only those
+/// that every region needs: the others are 0.
 struct RegionHeader {
   std::uint64_t magic = 0;
   LayoutMark mark;
@@ -73,16 +87,16 @@ struct RegionHeader {
 inline constexpr std::tuple kHeaderRows{
     MemberRow<&RegionHeader::magic>{"magic", FieldWriter::maker, "the characters `SPLNCAST`"},
     MemberRow<&RegionHeader::mark>{"layout version, byte order", FieldWriter::maker,
-                                   "32 bits each: 6 and `0x01020304`"},
+                                   "32 bits each: 7 and `0x01020304`"},
     MemberRow<&RegionHeader::layout_hash>{
         "layout hash", FieldWriter::maker,
         "64-bit FNV-1a of all names, offsets, sizes and writers on this page"},
     MemberRow<&RegionHeader::kind>{"kind", FieldWriter::maker,
-                                   "1 waypoints region, 2 spline region"},
+                                   "1 waypoints region, 2 spline region, 3 commander region"},
     MemberRow<&RegionHeader::region_bytes>{"region bytes", FieldWriter::maker,
                                            "size of the file, in bytes"},
     MemberRow<&RegionHeader::stream_id>{"stream id", FieldWriter::maker,
-                                        "random, not 0; the same in both regions"},
+                                        "random, not 0; the same in both regions of a stream"},
     MemberRow<&RegionHeader::dimensions>{"dimensions", FieldWriter::maker, "D, 1 to 64"},
     MemberRow<&RegionHeader::capacity>{
         "capacity", FieldWriter::maker,
@@ -177,7 +191,9 @@ inline constexpr std::tuple kHeaderRows{
         "a double per dimension: of the position, +∞: no upper bound"},
     MemberRow<&RegionHeader::beyond>{
         "beyond the limits", FieldWriter::maker,
-        "a waypoint with which the curve exceeds a limit is: 0 reported, 1 refused"}};
+        "a waypoint with which the curve exceeds a limit is: 0 reported, 1 refused\n"
+        "2 and 3 are reserved"},
+    FieldRow{"rules", {.words = 1}, FieldWriter::maker, "reserved for rules of stops and ends: 0"}};
 inline constexpr auto kHeaderFields = place(kHeaderRows);
 inline constexpr std::size_t kHeaderWords = size_of(kHeaderFields).words;
 

@@ -15,16 +15,17 @@ inline constexpr std::tuple kCellRows{
              {.words = 1},
              FieldWriter::owner,
              "0: never written; all bits 1: retired; else\n"
-             "bits 16–63: revision that wrote the cell\n"
+             "bits 17–63: revision that wrote the cell\n"
              "bit 0: the node that belongs to it\n"
              "bits 1–4: form of the segment that begins here: 0 none, 1 cubic,\n"
              "2 to 4 cubic with acceleration 0 at the left end, the right end, both ends,\n"
-             "5 quintic, 6 entry, 7 stop, 8 hold\n"
+             "5 quintic, 6 entry, 7 stop, 8 hold; 9 is reserved\n"
              "bit 5: the knot is a waypoint\n"
              "bit 6: the segment that ends here arrives with the acceleration beside the cell\n"
              "bit 7: the segment that begins here starts with the acceleration beside the cell\n"
              "bits 8–14: number of newer knots when the knot was last solved\n"
-             "bit 15: the row that belongs to it"},
+             "bit 15: the row that belongs to it\n"
+             "bit 16: reserved for a corner: 0"},
     FieldRow{"velocity", {.per_dimension = 1}, FieldWriter::owner, "doubles"},
     FieldRow{"residual",
              {.per_dimension = 1},
@@ -80,6 +81,10 @@ inline constexpr std::size_t kExcessesKept = 128;
 inline constexpr std::size_t kExcessWords = 4;
 inline constexpr unsigned kExcessItemShift = 10;
 inline constexpr unsigned kExcessDimensionShift = 4;
+inline constexpr std::size_t kOutcomesKept = 256;
+inline constexpr std::size_t kOutcomeWords = 2;
+inline constexpr std::size_t kMostStoppers = 16;
+inline constexpr std::size_t kStopperWords = 8;
 inline constexpr std::tuple kBodyRows{
     FieldRow{"refusals",
              {.words = kRefusalsKept},
@@ -92,6 +97,14 @@ inline constexpr std::tuple kBodyRows{
              "word 0: 0 while it is written, else item number · 1,024 + dimension · 16\n"
              "+ kind · 2 (0 velocity, 1 acceleration, 2 jerk, 3 position) + 1 if it was refused\n"
              "word 1: time, ns; words 2 and 3: value and limit, doubles"},
+    FieldRow{"outcomes",
+             {.words = kOutcomesKept * kOutcomeWords},
+             FieldWriter::owner,
+             "reserved for what became of the last 256 replacements, 2 words each: 0"},
+    FieldRow{"stoppers",
+             {.words = 2 * kMostStoppers * kStopperWords},
+             FieldWriter::owner,
+             "reserved for 16 processes that may stop the stream, 8 words each, in two cells: 0"},
     FieldRow{
         "times",
         {},

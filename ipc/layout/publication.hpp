@@ -135,13 +135,13 @@
 /// There are no fences, no read-modify-writes, and readers store nothing.
 namespace splinecast::ipc {
 
-/// The upper 48 bits of a tag are its revision; the lower bits describe the cell.
-inline constexpr unsigned kTagRevisionShift = 16;
+/// The upper 47 bits of a tag are its revision; the lower bits describe the cell.
+inline constexpr unsigned kTagRevisionShift = 17;
 
 /// The tag of a retired cell: above the tag of every revision.
 inline constexpr Word kRetiredTag = std::numeric_limits<Word>::max();
 
-/// One less than the last revision that a tag can hold: reached after 8.9 years at a million
+/// One less than the last revision that a tag can hold: reached after 4.4 years at a million
 /// revisions per second.
 inline constexpr Word kLastRevision = (kRetiredTag >> kTagRevisionShift) - 2;
 

@@ -13,7 +13,7 @@
 
 namespace splinecast::ipc {
 
-inline constexpr std::size_t kRefusalReasons = 16;
+inline constexpr std::size_t kRefusalReasons = 32;
 
 /// The state of the end of the published curve relative to the *target*, the spline through the
 /// waypoints of a run.
@@ -71,7 +71,7 @@ struct Summary {
 
 /// The values that lookups need, in one cache line: the first rows of the summary's cell.
 inline constexpr std::tuple kBoundsRows{
-    FieldRow{"tag", {.words = 1}, FieldWriter::owner, "revision · 65,536"},
+    FieldRow{"tag", {.words = 1}, FieldWriter::owner, "revision · 131,072"},
     MemberRow<&Summary::first>{"first", FieldWriter::owner,
                                "oldest knot on the board; a segment begins there"},
     MemberRow<&Summary::newest>{"newest", FieldWriter::owner, "newest knot; 0: none"},
@@ -138,7 +138,19 @@ inline constexpr std::tuple kFurtherRows{
         "waypoints that brought the curve, or would have, beyond a limit"},
     MemberRow<&Summary::refused>{"refused", FieldWriter::owner, "items refused"},
     MemberRow<&Summary::reasons>{"reasons", FieldWriter::owner, "items refused, by reason"},
-    padding(4)};
+    FieldRow{"holders of a stop",
+             {.words = 2},
+             FieldWriter::owner,
+             "reserved for their number, and the slot of one of them: 0"},
+    FieldRow{"longest pause",
+             {.words = 1},
+             FieldWriter::owner,
+             "reserved for the longest time between two steps of the last second: 0"},
+    FieldRow{"end",
+             {.words = 3},
+             FieldWriter::owner,
+             "reserved for kind, item and lateness of the end: 0"},
+    padding(6)};
 
 /// The words of a cell of the summary's slot. To add a field, add a member of Summary and a row
 /// above; the rest follows from the row.

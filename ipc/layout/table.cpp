@@ -6,9 +6,9 @@
 
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/board_control.hpp"
+#include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/knot_slots.hpp"
-#include "ipc/layout/mark.hpp"
 #include "ipc/layout/ring_control.hpp"
 #include "ipc/layout/summary.hpp"
 #include "ipc/layout/waypoint_items.hpp"
@@ -17,8 +17,8 @@ namespace splinecast::ipc {
 namespace {
 
 constexpr std::array kParts{
-    LayoutPart{"Region", "byte 0 of both regions", kRegionFields},
-    LayoutPart{"Header", "byte 0 of both regions", kHeaderFields},
+    LayoutPart{"Region", "byte 0 of each region", kRegionFields},
+    LayoutPart{"Header", "byte 0 of each region", kHeaderFields},
     LayoutPart{"Control block of a waypoints region", "the control offset of the header",
                kRingControlFields},
     LayoutPart{
@@ -45,7 +45,9 @@ constexpr std::array kParts{
                "the end of the nodes of a slot (the part of cell 0, then that of cell 1)",
                kBesideFields},
     LayoutPart{"Row of a knot", "the end of the parts beside the cells (row 0, then row 1)",
-               kRowFields}};
+               kRowFields},
+    LayoutPart{"Control block of a commander region", "the control offset of the header",
+               kCommanderControlFields}};
 
 class Fnv {
  public:
@@ -118,20 +120,21 @@ std::uint64_t layout_hash() noexcept {
 
 std::string layout_page() {
   std::ostringstream page;
-  page
-      << "# Fields of the shared memory\n\nEvery field of both regions of a stream, layout version "
-      << kLayoutVersion
-      << ": place, size, writer and meaning.\nFor engineers who read a hex dump or write a reader "
-         "in another language;\n[The shared memory of a stream](layout.md) explains how the parts "
-         "work together.\n\nGenerated from the tables in [`ipc/layout`](../ipc/layout), which the "
-         "code uses; a test compares.\nLayout hash: `"
-      << std::hex << layout_hash() << std::dec
-      << "`.\n\n- Offsets and sizes are in bytes; offsets count from the beginning of the part.\n"
-         "- Numbers are little-endian 64-bit words unless stated otherwise; times are signed "
-         "nanoseconds;\n  doubles are their IEEE 754 bits.\n- D is the number of dimensions.\n"
-         "- *maker*: written by the process that creates the region, before the region gets its "
-         "name, and never again.\n- *owner*: written by the process that holds the lock of the "
-         "region.\n";
+  page << "# Fields of the shared memory\n\nEvery field of both regions of a stream, and of a "
+          "commander of a time law, "
+          "layout version "
+       << kLayoutVersion
+       << ": place, size, writer and meaning.\nFor engineers who read a hex dump or write a reader "
+          "in another language;\n[The shared memory of a stream](layout.md) explains how the parts "
+          "work together.\n\nGenerated from the tables in [`ipc/layout`](../ipc/layout), which the "
+          "code uses; a test compares.\nLayout hash: `"
+       << std::hex << layout_hash() << std::dec
+       << "`.\n\n- Offsets and sizes are in bytes; offsets count from the beginning of the part.\n"
+          "- Numbers are little-endian 64-bit words unless stated otherwise; times are signed "
+          "nanoseconds;\n  doubles are their IEEE 754 bits.\n- D is the number of dimensions.\n"
+          "- *maker*: written by the process that creates the region, before the region gets its "
+          "name, and never again.\n- *owner*: written by the process that holds the lock of the "
+          "region.\n";
   for (const LayoutPart& part : kParts) {
     page << "\n## " << part.name << "\n\nBegins at: " << part.place
          << ".\n\n| offset | bytes | field | written by | meaning |\n|---|---|---|---|---|\n";

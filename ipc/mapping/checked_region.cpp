@@ -45,6 +45,11 @@ CheckedRegion<BoardLayout> open_board(std::string_view stream, bool writable, co
   return open_checked(stream, RegionKind::spline, writable, trust, checked_board_layout);
 }
 
+CheckedRegion<CommanderLayout> open_commander(std::string_view stream, bool writable,
+                                              const Trust& trust) {
+  return open_checked(stream, RegionKind::commander, writable, trust, checked_commander_layout);
+}
+
 void enter_owner(std::span<std::byte> region, const RegionHeader& before) noexcept {
   store_header_word(region, word_of(kHeaderFields, "process id"), static_cast<Word>(getpid()));
   store_header_word(region, word_of(kHeaderFields, "since"), to_word(MonotonicClock().now()));

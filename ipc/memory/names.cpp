@@ -20,10 +20,18 @@ constexpr std::string_view kLockSuffix = ".lock";
 constexpr std::size_t kMaxNameLength = 128;
 constexpr char kOfCommander = '@';
 
-constexpr std::array kKinds{RegionKind::waypoints, RegionKind::spline};
+constexpr std::array kKinds{RegionKind::waypoints, RegionKind::spline, RegionKind::commander};
 
 std::string_view suffix(RegionKind kind) noexcept {
-  return kind == RegionKind::waypoints ? ".waypoints" : ".spline";
+  switch (kind) {
+    case RegionKind::waypoints:
+      return ".waypoints";
+    case RegionKind::spline:
+      return ".spline";
+    case RegionKind::commander:
+      break;
+  }
+  return ".commander";
 }
 
 bool is_name_character(char c) noexcept {
@@ -87,7 +95,15 @@ bool is_stream_name(std::string_view text) noexcept {
 }
 
 std::string_view owner_role(RegionKind kind) noexcept {
-  return kind == RegionKind::waypoints ? "producer" : "solver";
+  switch (kind) {
+    case RegionKind::waypoints:
+      return "producer";
+    case RegionKind::spline:
+      return "solver";
+    case RegionKind::commander:
+      break;
+  }
+  return "commander";
 }
 
 void require_stream_name(std::string_view stream) {

@@ -10,13 +10,14 @@ namespace splinecast::ipc {
 /// The folder in which Linux keeps POSIX shared memory.
 inline constexpr std::string_view kSharedMemoryFolder = "/dev/shm/";
 
-/// The two regions of a stream, each written by one process.
+/// The regions, each written by one process. A stream has the first two.
 enum class RegionKind : std::uint64_t {
   waypoints = 1,  ///< written by the producer
   spline = 2,     ///< written by the solver
+  commander = 3,  ///< the latest request of a commander of a time law, written by it
 };
 
-/// `producer` or `solver`: the role that writes a region of this kind.
+/// `producer`, `solver` or `commander`: the role that writes a region of this kind.
 [[nodiscard]] std::string_view owner_role(RegionKind kind) noexcept;
 
 /// Whether a text can name a stream: see require_stream_name().
@@ -30,20 +31,21 @@ void require_stream_name(std::string_view stream);
 /// characters, line ends, escape sequences and invalid UTF-8 becomes `\xNN`.
 [[nodiscard]] std::string printable(std::string_view text);
 
-/// The name under which the ring of a commander of a time law is kept: `LAW@COMMANDER`, which no
+/// The name under which the region of a commander of a time law is kept: `LAW@COMMANDER`, which no
 /// stream can have. Throws BadRequest unless both can name a stream.
 [[nodiscard]] std::string commander_stream(std::string_view law, std::string_view commander);
 
-/// The time laws for which a commander has a ring, in alphabetical order. Reads the folder of
+/// The time laws for which a commander has a region, in alphabetical order. Reads the folder of
 /// shared memory. Throws OutOfResources if it cannot be read.
 [[nodiscard]] std::vector<std::string> commanded_laws();
 
-/// The commanders of a time law that have a ring, in alphabetical order. Reads the folder of shared
-/// memory. Throws BadRequest for an invalid name, OutOfResources if the folder cannot be read.
+/// The commanders of a time law that have a region, in alphabetical order. Reads the folder of
+/// shared memory. Throws BadRequest for an invalid name, OutOfResources if the folder cannot be
+/// read.
 [[nodiscard]] std::vector<std::string> commander_names(std::string_view law);
 
-/// Name of a region as shared memory, `splinecast.<stream>.waypoints` or `….spline`. `stream` is a
-/// stream's name or the result of commander_stream().
+/// Name of a region as shared memory: `splinecast.<stream>.waypoints`, `….spline` or, of the result
+/// of commander_stream(), `….commander`.
 [[nodiscard]] std::string region_name(std::string_view stream, RegionKind kind);
 
 /// Path of a region, and of its owner's lock file.

@@ -7,7 +7,7 @@
 
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/common_control.hpp"
-#include "ipc/layout/mark.hpp"
+#include "ipc/layout/header.hpp"
 #include "ipc/layout/separation.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/process_life.hpp"
@@ -79,6 +79,17 @@ void require_usable(const std::string& which, const Condition& condition, std::s
   }
 }
 
+RegionHeader blank_header(std::uint64_t id, bool is_live) noexcept {
+  RegionHeader header{};
+  header.magic = kMagic;
+  header.mark = {};
+  header.layout_hash = layout_hash();
+  header.stream_id = id;
+  header.time_namespace = is_live ? time_namespace() : 0;
+  header.control = kHeaderBytes + id % kControlPositions * kSeparation;
+  return header;
+}
+
 RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id) {
   if (options.dimensions < kMinDimensions || options.dimensions > kMaxDimensions) {
     throw BadRequest("a stream has 1 to 64 dimensions, not " + std::to_string(options.dimensions));
@@ -95,15 +106,9 @@ RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id
     throw BadRequest(options.law.empty() ? "a stream with clock law needs the name of a law"
                                          : "a stream that follows a law has clock law");
   }
-  RegionHeader header{};
-  header.magic = kMagic;
-  header.mark = {};
-  header.layout_hash = layout_hash();
-  header.stream_id = stream_id;
+  RegionHeader header = blank_header(stream_id, is_live(options.clock));
   header.dimensions = options.dimensions;
   header.clock = static_cast<std::uint64_t>(options.clock);
-  header.time_namespace = is_live(options.clock) ? time_namespace() : 0;
-  header.control = kHeaderBytes + stream_id % kControlPositions * kSeparation;
   header.min_interval = options.limits.min_interval.count();
   header.max_interval = options.limits.max_interval.count();
   header.start_kind = static_cast<std::uint64_t>(options.start.kind);

@@ -17,6 +17,10 @@ namespace splinecast::ipc {
 /// A header for a new region, except the fields that depend on its kind and capacity.
 [[nodiscard]] RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id);
 
+/// The fields of a header for a new region that do not depend on the stream; `is_live`: its times
+/// are those of this process's clock.
+[[nodiscard]] RegionHeader blank_header(std::uint64_t id, bool is_live) noexcept;
+
 /// Throws BadRequest, which calls the condition `which`, unless its values fit the dimensions and
 /// it is an online condition.
 void require_usable(const std::string& which, const Condition& condition, std::size_t dimensions);

@@ -31,9 +31,10 @@ class HeldCommander {
     const Time time = duration(ramp, "ramp");
     commander_.use([&](RateCommander& own) { own.release(time); });
   }
-  void set_dead_man(py::handle timeout) {
+  void set_dead_man(py::handle timeout, py::handle ramp) {
     const Time time = duration(timeout, "timeout");
-    commander_.use([&](RateCommander& own) { own.set_dead_man(time); });
+    const Time length = duration(ramp, "ramp");
+    commander_.use([&](RateCommander& own) { own.set_dead_man(time, length); });
   }
   void renew() {
     commander_.use([](RateCommander& own) { own.renew(); });
@@ -71,7 +72,7 @@ void define_rate_commander(py::module_& module) {
            doc::RateCommander_set_rate)
       .def("hold", &HeldCommander::hold, py::arg("ramp"), doc::RateCommander_hold)
       .def("release", &HeldCommander::release, py::arg("ramp"), doc::RateCommander_release)
-      .def("set_dead_man", &HeldCommander::set_dead_man, py::arg("timeout"),
+      .def("set_dead_man", &HeldCommander::set_dead_man, py::arg("timeout"), py::arg("ramp") = 0.5,
            doc::RateCommander_set_dead_man)
       .def("renew", &HeldCommander::renew, doc::RateCommander_renew)
       .def("close", &HeldCommander::close, doc::RateCommander_close)

@@ -1,18 +1,13 @@
 #include "splinecast/rate_commander.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <utility>
 
-#include "ipc/law/commands.hpp"
+#include "ipc/law/commander_record.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/memory/futex.hpp"
 #include "ipc/memory/names.hpp"
-#include "ipc/owned/ring.hpp"
-#include "ipc/ring/item.hpp"
-#include "ipc/ring/reader.hpp"
+#include "ipc/owned/commander.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
 
@@ -28,43 +23,50 @@ void require_length(const char* what, Time time) {
 }  // namespace
 
 struct RateCommander::Impl {
+  std::string name;
   ipc::OwnerLock lock;
-  ipc::OwnedRing ring;
-  ipc::RateCommand command{.time = Time::min(), .rate = -1, .ramp = ipc::kShortestRamp};
-  MonotonicClock clock;
+  ipc::OwnedCommander own;
+  ipc::RateCommand command;  ///< the last one
+  bool may_renew = false;    ///< it was made completely, by this process or an earlier one
+  Time dead_man{};           ///< of the next request
+  Time dead_man_ramp = ipc::kDeadManRamp;
 
-  Impl(const std::string& stream, const ProducerOptions& options)
-      : lock(stream, ipc::RegionKind::waypoints), ring(ipc::own_ring(stream, options, lock)) {
+  Impl(std::string region, const RegionAccess& access, const Trust& trust)
+      : name(std::move(region)),
+        lock(name, ipc::RegionKind::commander),
+        own(ipc::own_commander(name, access, trust, lock)) {
     lock.keep_file();
-    continue_request();
+    const ipc::CommandCopy left = ipc::copy_command(own.control);
+    const auto last = left.is_whole ? ipc::command_of(left.words) : std::nullopt;
+    may_renew = last.has_value();
+    command = last.value_or(command);
+    command.number = left.words[0];  // also of a request that was not completed
   }
 
-  /// Makes the last request of an earlier process of this name the one that renew() repeats.
-  void continue_request() {
-    if (ring.writer.written() == 0) return;
-    ipc::RingItem item(ipc::kCommandValues);
-    ipc::WaypointRingReader(ring.region.bytes(), ring.layout).copy(ring.writer.written() - 1, item);
-    command = ipc::command_of(item).value_or(command);
+  void request(double rate, Time ramp) {
+    ++command.number;
+    command.rate = rate;
+    command.ramp = ramp;
+    command.dead_man = dead_man;
+    command.dead_man_ramp = dead_man_ramp;
+    may_renew = true;
+    write();
   }
 
-  void give() {
-    const std::array values{command.rate, to_seconds(command.ramp), to_seconds(command.dead_man)};
-    const ipc::Word written = ring.writer.written();
-    // Two commands have different times. The law's solver only observes: there is always room.
-    command.time = std::max(clock.now(), written > 0 ? ring.writer.last_time() + Time(1) : Time());
-    const AppendStatus status =
-        ring.writer.append({.time = command.time, .position = values}, {.consumed = written});
-    if (status != AppendStatus::accepted) {
-      throw BadRegion("the command was not accepted: " + std::string(to_string(status)));
-    }
-    ipc::wake_all(ring.writer.written_word());
+  /// Writes the command, and throws afterwards if no process can find it.
+  void write() {
+    command.time = MonotonicClock().now();
+    ipc::write_command(own.control, command);
+    ipc::wake_all(own.control[ipc::kCommanderSequence]);
+    if (own.region.is_linked(name, ipc::RegionKind::commander)) return;
+    throw BadRegion(ipc::region_path(name, ipc::RegionKind::commander) +
+                    " has been removed: no solver can find the request");
   }
 };
 
 RateCommander::RateCommander(const std::string& law, const std::string& commander,
                              const RegionAccess& access, const Trust& trust)
-    : impl_(std::make_unique<Impl>(ipc::commander_stream(law, commander),
-                                   ipc::command_ring_options(access, trust))) {}
+    : impl_(std::make_unique<Impl>(ipc::commander_stream(law, commander), access, trust)) {}
 RateCommander::RateCommander(RateCommander&&) noexcept = default;
 RateCommander& RateCommander::operator=(RateCommander&&) noexcept = default;
 RateCommander::~RateCommander() = default;
@@ -74,23 +76,23 @@ void RateCommander::set_rate(double rate, Time ramp) {
     throw BadRequest("a rate must be 0 to 100, not " + std::to_string(rate));
   }
   require_length("a ramp", ramp);
-  impl_->command.rate = rate;
-  impl_->command.ramp = ramp;
-  impl_->give();
+  impl_->request(rate, ramp);
 }
 
 void RateCommander::release(Time ramp) {
   require_length("a ramp", ramp);
-  impl_->command.rate = -1;
-  impl_->command.ramp = ramp;
-  impl_->give();
+  impl_->request(-1, ramp);
 }
 
-void RateCommander::set_dead_man(Time timeout) {
+void RateCommander::set_dead_man(Time timeout, Time ramp) {
   if (timeout != Time::zero()) require_length("a dead man", timeout);
-  impl_->command.dead_man = timeout;
+  require_length("a ramp", ramp);
+  impl_->dead_man = timeout;
+  impl_->dead_man_ramp = ramp;
 }
 
-void RateCommander::renew() { impl_->give(); }
+void RateCommander::renew() {
+  if (impl_->may_renew) impl_->write();
+}
 
 }  // namespace splinecast

@@ -2,6 +2,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -35,6 +36,7 @@ bool describes_region(const RegionFile& file, RegionKind kind) {
   try {
     if (kind == RegionKind::waypoints) checked_ring_layout(*file.header, file.bytes);
     if (kind == RegionKind::spline) checked_board_layout(*file.header, file.bytes);
+    if (kind == RegionKind::commander) checked_commander_layout(*file.header, file.bytes);
     return true;
   } catch (const BadRegion&) {
     return false;
@@ -44,8 +46,15 @@ bool describes_region(const RegionFile& file, RegionKind kind) {
 Removable removable(const std::string& stream, RegionKind kind, const Trust& trust) {
   const RegionFile file = look_at_region(stream, kind, trust);
   if (file.is_own && !describes_region(file, kind)) return {.kind = kind};
-  return kind == RegionKind::waypoints ? as_removable(kind, open_ring(stream, true, trust))
-                                       : as_removable(kind, open_board(stream, true, trust));
+  switch (kind) {
+    case RegionKind::waypoints:
+      return as_removable(kind, open_ring(stream, true, trust));
+    case RegionKind::spline:
+      return as_removable(kind, open_board(stream, true, trust));
+    case RegionKind::commander:
+      break;
+  }
+  return as_removable(kind, open_commander(stream, true, trust));
 }
 
 /// Marks a region as retired, and wakes the processes that wait on it.
@@ -53,36 +62,33 @@ void retire(const Removable& file) noexcept {
   if (!file.region) return;
   const auto words = words_at(file.region->bytes(), file.control, kRetired + 1);
   store(words[kRetired], 1, std::memory_order_release);
-  wake_all(words[0]);  // written position or revision: the word that its readers wait on
+  wake_all(words[0]);  // the word that its readers wait on
 }
 
-/// Removes the regions under a stream's name, or under that of a law's commander.
-void remove_regions(const std::string& stream, const Trust& trust) {
-  constexpr std::array kKinds{RegionKind::waypoints, RegionKind::spline};
-  const bool stands = std::ranges::any_of(kKinds, [&](RegionKind kind) {
+/// Removes the regions of these kinds under a stream's name, or under that of a law's commander.
+void remove_regions(const std::string& stream, std::span<const RegionKind> kinds,
+                    const Trust& trust) {
+  const bool stands = std::ranges::any_of(kinds, [&](RegionKind kind) {
     return region_exists(stream, kind) || std::filesystem::exists(lock_path(stream, kind));
   });
   if (!stands) throw NoSuchStream("there is no stream '" + stream + "'");
-  OwnerLock producer_lock(stream, RegionKind::waypoints);
-  std::optional<OwnerLock> solver_lock;
+  std::vector<OwnerLock> locks;
   std::vector<Removable> files;
   try {
-    solver_lock.emplace(stream, RegionKind::spline);
+    for (const RegionKind kind : kinds) locks.emplace_back(stream, kind);
     // Checks all files before it changes any.
-    for (const RegionKind kind : kKinds) {
+    for (const RegionKind kind : kinds) {
       if (region_exists(stream, kind)) files.push_back(removable(stream, kind, trust));
     }
   } catch (const StreamError&) {
-    if (solver_lock) solver_lock->remove_unused_file();
-    producer_lock.remove_unused_file();
+    for (OwnerLock& lock : locks) lock.remove_unused_file();
     throw;
   }
   for (const Removable& file : files) {
     retire(file);
     unlink_region(stream, file.kind);
   }
-  producer_lock.remove_file();
-  solver_lock->remove_file();
+  for (OwnerLock& lock : locks) lock.remove_file();
 }
 
 }  // namespace
@@ -91,18 +97,21 @@ void remove_regions(const std::string& stream, const Trust& trust) {
 void remove_stream(const std::string& stream, const Trust& trust) {
   const std::vector<std::string> commanders = ipc::commander_names(stream);
   for (const std::string& commander : commanders) {
-    if (!ipc::is_owned(ipc::commander_stream(stream, commander), ipc::RegionKind::waypoints))
+    if (!ipc::is_owned(ipc::commander_stream(stream, commander), ipc::RegionKind::commander))
       continue;
     throw StreamBusy("time law '" + stream + "' has a living commander '" + commander + "'");
   }
-  // A law that has not begun has only the rings of its commanders.
+  constexpr std::array kOfStream{ipc::RegionKind::waypoints, ipc::RegionKind::spline};
+  // Layout version 6 had a waypoints region for a commander.
+  constexpr std::array kOfCommander{ipc::RegionKind::commander, ipc::RegionKind::waypoints};
+  // A law that has not begun has only the regions of its commanders.
   try {
-    ipc::remove_regions(stream, trust);
+    ipc::remove_regions(stream, kOfStream, trust);
   } catch (const NoSuchStream&) {
     if (commanders.empty()) throw;
   }
   for (const std::string& commander : commanders) {
-    ipc::remove_regions(ipc::commander_stream(stream, commander), trust);
+    ipc::remove_regions(ipc::commander_stream(stream, commander), kOfCommander, trust);
   }
 }
 

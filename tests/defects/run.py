@@ -41,6 +41,7 @@ RESULTS = DEFECTS / "results.json"
 FIELDS = ["Defect", "Cause", "Correction", "Test"]
 TARGETS = ["splinecast_program", "splinecast_tests", "splinecast_byteflip", "splinecast_campaign"]
 WORKERS = 2
+TRIES = 3
 TEST_SECONDS = 180  # a test that would take longer does not pass with all corrections either, which is tested first
 PATIENCE = {"SPLINECAST_PATIENCE": "20"}  # so does a wait that takes longer
 HANG = "did not end"
@@ -173,6 +174,18 @@ def run_test(tree, test):
     return ended.returncode == 0, why_failed(ended.stdout, ended.returncode)
 
 
+def run_until(tree, test, passes):
+    """The result of the first of some runs of a test that passes, or fails, as expected; else that of the last one.
+
+    On a machine with other work a test of several processes may fail once, and a race may not occur in each run.
+    """
+    for _ in range(TRIES):
+        result = run_test(tree, test)
+        if result[0] == passes:
+            break
+    return result
+
+
 def why_failed(output, code):
     """The first failure that a test reports, in one line."""
     if code < 0:
@@ -195,7 +208,7 @@ def take_out(tree, name, tests):
         output = build(tree, files, ["splinecast_tests"] if files else TARGETS)
         if output is not None:
             raise Unusable(f"does not build without the correction:\n{output[-4000:]}")
-        return {test: run_test(tree, test) for test in tests}
+        return {test: run_until(tree, test, False) for test in tests}
     finally:
         patch(tree, path, "-R")
 
@@ -205,7 +218,7 @@ def fails_as_it_is(tree, tests):
     found = set()
     for test in tests:
         try:
-            passed, why = run_test(tree, test)
+            passed, why = run_until(tree, test, True)
         except Unusable as error:
             passed, why = False, error
         if not passed:
@@ -281,10 +294,10 @@ def run(tree, names, writes_results):
     print(f"tests tried at {(time.monotonic() - begin) / 60:.1f} min", flush=True)
     results = read_results()
     results["patches"] = {name: results["patches"][name] for name in patches if name in results["patches"]}
-    all_fail = True
+    passed = []
     for name, found in outcomes(tree, list(tests), unusable):
         fails = "passes" not in found.values()
-        all_fail = all_fail and fails
+        passed += [] if fails else [name]
         print(f"{name}: {'fails' if fails else 'PASSES'} without the correction", flush=True)
         for test, why in found.items():
             print(f"    {test}: {why}", flush=True)
@@ -296,7 +309,7 @@ def run(tree, names, writes_results):
             results["minutes"] = round((time.monotonic() - begin) / 60, 1)
         RESULTS.write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
         PAGE.write_text(make_page(), encoding="utf-8")
-    sys.exit(0 if all_fail else 1)
+    sys.exit(f"passed without the correction: {', '.join(passed)}" if passed else 0)
 
 
 def read_results():

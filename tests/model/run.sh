@@ -67,3 +67,7 @@ holds waypoint_ring "$@"
 for mutant in HEAD_FIRST TAIL_FIRST OBSERVER_LE NO_CLAIM NO_SECOND_LOOK NO_WAKE; do
   fails waypoint_ring "$mutant" "$@"
 done
+holds commander_record "$@"
+for mutant in BEFORE_ONLY AFTER_ONLY TAKE_ODD ODD_OF_DEAD NO_SECOND_LOAD; do
+  fails commander_record "$mutant" "$@"
+done

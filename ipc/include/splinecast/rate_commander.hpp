@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <string>
 
@@ -32,7 +33,8 @@ class RateCommander {
   /// about one freeze-ahead of the law's solver later; a rise that it interrupts is first
   /// flattened, within a quarter of it. The rate never exceeds what this commander alone would make
   /// it, regardless of the others. A request above the law's largest rate counts as the largest.
-  /// Throws BadRequest for values out of range. One system call.
+  /// Throws BadRequest for values out of range; BadRegion if the region of this commander has been
+  /// removed, so that no solver can find the request. Three system calls.
   void set_rate(double rate, Time ramp);
 
   /// Requests rate 0: a feed hold.
@@ -42,12 +44,14 @@ class RateCommander {
   /// or to 1 if there is none, by a ramp of this length.
   void release(Time ramp);
 
-  /// From the next request on, the law holds if this commander does not repeat its request within
-  /// `timeout`, 1 ms to 1 h; 0: never. That hold has a ramp of 0.5 s.
-  void set_dead_man(Time timeout);
+  /// From the next request on, the law holds if this commander does not renew its request within
+  /// `timeout`, 1 ms to 1 h; 0: never. That hold has a ramp of this length, 1 ms to 1 h, and lasts
+  /// until the next request: renew() does not end it.
+  void set_dead_man(Time timeout, Time ramp = std::chrono::milliseconds(500));
 
-  /// Repeats the last request, for set_dead_man(): that of an earlier commander of this name, if
-  /// this one has made none.
+  /// Renews the last request, for set_dead_man(): that of an earlier commander of this name, if
+  /// this one has made none. Without one, or if the earlier one died while it made it, does
+  /// nothing. Three system calls.
   void renew();
 
  private:

@@ -758,13 +758,14 @@ class RateCommander:
         """Request rate 0, reached by a ramp of this length [s]."""
     def release(self, ramp: Seconds) -> None:
         """Withdraw the request: the law has the least rate of the others, or 1 if there is none."""
-    def set_dead_man(self, timeout: Seconds) -> None:
-        """Hold the law unless a request is repeated within this time [s], 0.001 to 3600; 0: never.
+    def set_dead_man(self, timeout: Seconds, ramp: Seconds = 0.5) -> None:
+        """Hold the law unless a request is renewed within this time [s], 0.001 to 3600; 0: never.
 
-        In force from the next request on. The hold has a ramp of 0.5 s.
+        In force from the next request on. The hold has a ramp of this length [s], 0.001 to 3600, and lasts until the
+        next request: a renewal that comes too late does not end it.
         """
     def renew(self) -> None:
-        """Repeat the last request, for `set_dead_man`."""
+        """Renew the last request, for `set_dead_man`."""
     def close(self) -> None:
         """Give the name up. The last request remains in force. Closing again does nothing."""
     def __enter__(self: _Self) -> _Self:

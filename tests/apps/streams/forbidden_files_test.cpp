@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "ipc/layout/header.hpp"
-#include "ipc/layout/mark.hpp"
 #include "tests/apps/streams/forbidden.hpp"
 
 /// Invalid or untrusted files at the paths of a stream.

@@ -53,12 +53,12 @@ TEST_F(ForbiddenLimits, RoomForTheRingAloneLeavesNoRing) {
   const PrivateSharedMemory memory("8m");
   fill(memory, 256 << 10U);
   attack_without_effect(memory, replay({"--embedded"}), 1,
-                        {"cannot reserve 2199552 bytes", "are free"});
+                        {"cannot reserve 2207744 bytes", "are free"});
   const auto before = memory.listing();
   Process solver = memory.start({"solve", "a"}, {});
   solver.await_message("waiting for a producer");
   attack(memory, replay({}, "5"), 4, {"no solver for stream 'a'"});
-  judge(solver.wait(), "solve", 1, {"cannot reserve 2199552 bytes", "are free"});
+  judge(solver.wait(), "solve", 1, {"cannot reserve 2207744 bytes", "are free"});
   EXPECT_EQ(memory.listing(), before);
 }
 
@@ -79,7 +79,7 @@ TEST_F(ForbiddenLimits, ARegionWithHolesIsRefusedIfNoMemoryIsFree) {
   ASSERT_EQ(fallocate(board, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 1 << 20U, 64 << 10U), 0);
   close(board);
   fill(memory, 0);
-  const std::vector<std::string> said{"cannot populate 2199552 bytes", "0 are free"};
+  const std::vector<std::string> said{"cannot populate 2207744 bytes", "0 are free"};
   attack_without_effect(memory, {"sample", "a", "--rate", "10", "--count", "2"}, 1, said);
   attack_without_effect(memory, {"info", "a"}, 1, said);
   attack_without_effect(memory, {"solve", "a"}, 1, said);

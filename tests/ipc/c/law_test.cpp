@@ -114,7 +114,7 @@ TEST_F(CLaw, HasTheRateThatIsRequested) {
 
 TEST_F(CLaw, HoldsWhenTheDeadManOfACommanderExpires) {
   begin();
-  ASSERT_EQ(splinecast_rate_commander_set_dead_man(commander_, 20 * kMs), 0);
+  ASSERT_EQ(splinecast_rate_commander_set_dead_man(commander_, 20 * kMs, 20 * kMs), 0);
   ASSERT_EQ(splinecast_rate_commander_set_rate(commander_, 0.5, 5 * kMs), 0);
   reach(0);
 }
@@ -130,8 +130,10 @@ TEST_F(CLaw, RefusesRequestsThatAreOutOfRange) {
     expect_refused("a ramp", "", splinecast_rate_commander_set_rate(commander_, 1, ramp));
     expect_refused("a ramp", "", splinecast_rate_commander_hold(commander_, ramp));
     expect_refused("a ramp", "", splinecast_rate_commander_release(commander_, ramp));
+    expect_refused("a ramp", "", splinecast_rate_commander_set_dead_man(commander_, kMs, ramp));
     if (ramp == 0) continue;
-    expect_refused("a dead man", "", splinecast_rate_commander_set_dead_man(commander_, ramp));
+    expect_refused("a dead man", "",
+                   splinecast_rate_commander_set_dead_man(commander_, ramp, 20 * kMs));
   }
 }
 

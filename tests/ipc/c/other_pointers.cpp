@@ -236,7 +236,7 @@ void CPointers::add_rate_commander() {
   HANDLE_ONLY(commander, splinecast_rate_commander_set_rate, , 1, 1'000'000);
   HANDLE_ONLY(commander, splinecast_rate_commander_hold, , 1'000'000);
   HANDLE_ONLY(commander, splinecast_rate_commander_release, , 1'000'000);
-  HANDLE_ONLY(commander, splinecast_rate_commander_set_dead_man, , 0);
+  HANDLE_ONLY(commander, splinecast_rate_commander_set_dead_man, , 0, 1'000'000);
   HANDLE_ONLY(commander, splinecast_rate_commander_renew);
 }
 

@@ -11,7 +11,6 @@
 
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/check.hpp"
-#include "ipc/layout/mark.hpp"
 #include "ipc/layout/separation.hpp"
 #include "ipc/layout/waypoint_items.hpp"
 #include "ipc/memory/names.hpp"

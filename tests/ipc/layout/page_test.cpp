@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-#include "ipc/layout/mark.hpp"
+#include "ipc/layout/header.hpp"
 
 /// `docs/layout-fields.md` is generated from the tables of the layout.
 namespace splinecast::ipc {

@@ -70,8 +70,11 @@ class Law(StreamTest):
 
     def test_a_commander_that_does_not_renew_holds_the_law(self):
         _, reader = self.follow()
-        self.operator.set_dead_man(0.02)
+        self.operator.set_dead_man(0.02, ramp=0.01)
+        self.operator.set_rate(1, 0.005)
+        self.reach(reader, 0)
         self.operator.renew()
+        time.sleep(0.05)
         self.reach(reader, 0)
         self.operator.set_dead_man(0)
         self.operator.set_rate(1, 0.005)
@@ -99,7 +102,8 @@ class Law(StreamTest):
                                (lambda: self.operator.set_rate(100.5, 1), "100.5"),
                                (lambda: self.operator.hold(1e-6), "1000 ns"),
                                (lambda: self.operator.release(-1.0), "-1"),
-                               (lambda: self.operator.set_dead_man(4000), "4000000000000 ns")]:
+                               (lambda: self.operator.set_dead_man(4000), "4000000000000 ns"),
+                               (lambda: self.operator.set_dead_man(1, ramp=0), "a ramp")]:
             with self.subTest(value), self.assertRaisesRegex(splinecast.BadRequest, value):
                 request()
         with self.assertRaises(TypeError):
