@@ -20,9 +20,8 @@ struct RateRequest {
 
 /// A commander's bound after its new request takes effect at `t`. It continues from the value and
 /// the slope that it has there:
-///  - downwards by one cubic over the ramp; if it falls already, over at most 3 Δ / |slope|, so
-///  that
-///    it stays monotone;
+///  - downwards by one cubic over the ramp; if it falls already, at most 3 Δ / |slope| long, to
+///    stay monotone;
 ///  - upwards from slope 0;
 ///  - a rise is first flattened, within a quarter of the new ramp and the rest of the rise.
 [[nodiscard]] RateCurve bound_after(const RateCurve& bound, Time t,

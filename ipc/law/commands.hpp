@@ -55,7 +55,8 @@ class Commanders {
   /// 0, with its last ramp of a dead man. Bounded, for any content of the regions.
   void read(Time now);
 
-  /// When the next dead man expires, or the patience with a damaged record ends; max() for never.
+  /// When the next dead man expires, or a damaged record begins to count as rate 0; max() for
+  /// never.
   [[nodiscard]] Time next_expiry() const noexcept;
 
   /// What each commander requested at the last read().

@@ -30,7 +30,7 @@ namespace splinecast::ipc {
 /// thread uses it.
 class LawServer {
  public:
-  /// Whether there is a law of this name to be produced: a commander has a ring, and no other
+  /// Whether there is a law of this name to be produced: a commander has a region, and no other
   /// process is the law's producer. System calls.
   [[nodiscard]] static bool is_wanted(const std::string& law);
 

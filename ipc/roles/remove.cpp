@@ -102,7 +102,7 @@ void remove_stream(const std::string& stream, const Trust& trust) {
     throw StreamBusy("time law '" + stream + "' has a living commander '" + commander + "'");
   }
   constexpr std::array kOfStream{ipc::RegionKind::waypoints, ipc::RegionKind::spline};
-  // Layout version 6 had a waypoints region for a commander.
+  // With layout version 6 a commander had a waypoints region.
   constexpr std::array kOfCommander{ipc::RegionKind::commander, ipc::RegionKind::waypoints};
   // A law that has not begun has only the regions of its commanders.
   try {

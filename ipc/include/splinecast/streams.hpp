@@ -15,7 +15,7 @@ namespace [[gnu::visibility("default")]] splinecast {
 [[nodiscard]] std::vector<std::string> stream_names();
 
 /// Removes a stream: takes both locks, retires the regions, wakes readers, unlinks regions and lock
-/// files; of a time law also the rings of its commanders. Throws, without changing anything:
+/// files; of a time law also the regions of its commanders. Throws, without changing anything:
 /// BadRequest for an invalid name, NoSuchStream, StreamBusy if a writer of the stream or a
 /// commander of the law lives, or BadRegion if one of its files is not trusted.
 void remove_stream(const std::string& stream, const Trust& trust = {});
