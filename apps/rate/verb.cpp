@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,6 +29,8 @@ namespace {
 
 /// Published motion that is looked at for the effect of a ramp.
 constexpr Time kLooksAhead = std::chrono::seconds(10);
+/// How often a wait looks for a signal.
+constexpr Time kSignals = std::chrono::milliseconds(50);
 constexpr TimeRange kRamps{ipc::kShortestRamp, ipc::kLongestRamp};
 
 struct RateOptions {
@@ -39,6 +42,7 @@ struct RateOptions {
   bool force = false;
   std::optional<Time> dead_man;
   Time dead_man_ramp = ipc::kDeadManRamp;
+  Time wait = std::chrono::seconds(1);  ///< until the request is in force
   bool json = false;
   Trust trust;
 
@@ -178,31 +182,54 @@ bool report_effect(const RateOptions& options, const Present& present, bool is_r
   return false;
 }
 
-/// Renews a request until a stop is requested, so that the law holds if this process dies.
-int keep_alive(RateCommander& commander, Time dead_man) {
-  while (sleep_until(MonotonicClock().now() + dead_man / 4)) commander.renew();
+/// Renews a request until a stop is requested, so that the law holds if this process dies. Returns
+/// the exit code.
+int keep_alive(const RateOptions& options, RateCommander& commander) {
+  while (sleep_until(MonotonicClock().now() + *options.dead_man / 4)) {
+    if (commander.renew()) continue;
+    say(
+        fmt::format("'{}': the dead man of '{}' has fired: the law holds until '{}' makes another "
+                    "request",
+                    options.law, options.commander, options.commander));
+    return kFailed;
+  }
   return kOk;
 }
 
-void request(const RateOptions& options, RateCommander& commander) {
+/// Returns the number of the request.
+std::uint64_t request(const RateOptions& options, RateCommander& commander) {
   commander.set_dead_man(options.dead_man.value_or(Time::zero()), options.dead_man_ramp);
-  if (options.release) {
-    commander.release(options.ramp);
-  } else {
-    commander.set_rate(*options.rate, options.ramp);
+  return options.release ? commander.release(options.ramp)
+                         : commander.set_rate(*options.rate, options.ramp);
+}
+
+/// Waits until a request is in force, and renews it meanwhile. Returns whether it is.
+bool wait_in_force(const RateOptions& options, RateCommander& commander, std::uint64_t number) {
+  if (options.wait == Time::zero()) return true;
+  const Time slice = options.dead_man ? *options.dead_man / 4 : options.wait;
+  const Time end = MonotonicClock().now() + options.wait;
+  for (;;) {
+    const Time rest = std::max(end - MonotonicClock().now(), Time::zero());
+    if (commander.wait_in_force(number, std::min({rest, slice, kSignals}))) return true;
+    if (rest == Time::zero() || stop_requested()) break;
+    if (options.dead_man) (void)commander.renew();
   }
+  say(fmt::format("'{}': request {} of '{}' is not in force after {:g} s; it remains", options.law,
+                  number, options.commander, to_seconds(options.wait)));
+  return false;
 }
 
 /// Requests a lower rate. Such a request is never refused, because the machine would run on: what
-/// it does to the followers is reported afterwards.
-void lower(const RateOptions& options, RateCommander& commander,
-           const std::optional<Present>& present) {
-  request(options, commander);
+/// it does to the followers is reported afterwards. Returns the number of the request.
+std::uint64_t lower(const RateOptions& options, RateCommander& commander,
+                    const std::optional<Present>& present) {
+  const std::uint64_t number = request(options, commander);
   try {
     if (present) (void)report_effect(options, *present, true);
   } catch (const StreamError& error) {
     say(fmt::format("requested; its effect is not known: {}", error.what()));
   }
+  return number;
 }
 
 int command(const RateOptions& options) {
@@ -222,12 +249,14 @@ int command(const RateOptions& options) {
   const bool lowers = holds || (!options.release && present && *options.rate <= present->from.rate);
   if (!lowers && present && !report_effect(options, *present, false)) return kFellShort;
   RateCommander commander(options.law, options.commander, {}, options.trust);
-  if (lowers) {
-    lower(options, commander, present);
-  } else {
-    request(options, commander);
+  const std::uint64_t number =
+      lowers ? lower(options, commander, present) : request(options, commander);
+  const bool is_in_force = wait_in_force(options, commander, number);
+  if (options.dead_man && !stop_requested()) {
+    const int code = keep_alive(options, commander);
+    if (code != kOk) return code;
   }
-  return options.dead_man ? keep_alive(commander, *options.dead_man) : kOk;
+  return is_in_force ? kOk : kNoStreamOrTimeOut;
 }
 
 void add_rate(Command& verb, Action& action) {
@@ -252,6 +281,10 @@ void add_rate(Command& verb, Action& action) {
               kRamps);
   add_seconds(verb, "--dead-man-ramp", options->dead_man_ramp,
               "Length of the ramp of that hold in s, 0.001 to 3600 (default 0.5)", kRamps);
+  add_seconds(verb, "--wait", options->wait,
+              "Wait until the law's solver has put the request in force, for this time in s, 0 to "
+              "3600 (default 1); 0 sends it only",
+              {Time::zero(), ipc::kLongestRamp});
   verb.flag("--force", options->force, "Request it even if a stream would exceed its limits");
   verb.flag("--json", options->json, "Print JSON");
   add_trust(verb, options->trust);

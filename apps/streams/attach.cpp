@@ -20,6 +20,8 @@ Reader attach_reader(const std::string& stream, Time wait, const Trust& trust) {
     const Time left = std::max(end - clock.now(), Time::zero());
     try {
       return Reader(stream, std::min(kSlice, left), trust);
+    } catch (const LawLost&) {
+      throw;
     } catch (const NoSuchStream&) {
       if (stop_requested()) {
         throw Interrupted(fmt::format("interrupted before stream '{}' existed", stream));

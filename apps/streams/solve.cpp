@@ -50,7 +50,7 @@ class Announcer {
     const bool is_lost = news == no_descriptors || news == postponed || news == given_up;
     if (is_lost) lost_.insert(stream);
     if (news == solving) lost_.erase(stream);
-    if (quiet_ && !is_lost) return;
+    if (quiet_ && !is_lost && news != commander) return;
     say(fmt::format("'{}': {}", stream, text(news, solver, why)));
     if (news == solving && limits_->any()) tell_limits(stream, *solver);
     if (news == solving && !many_ && !solver->is_memory_locked()) {
@@ -85,6 +85,8 @@ class Announcer {
         return fmt::format("{}; further ones for this reason are only counted", why);
       case ipc::SweepNews::beyond_limits:
         return fmt::format("limit exceeded, {}; further ones are only counted", why);
+      case ipc::SweepNews::commander:
+        return std::string(why);
       case ipc::SweepNews::postponed:
         return fmt::format("postponed, will be retried: {}", why);
       case ipc::SweepNews::given_up:
@@ -123,6 +125,7 @@ int solve_one(const SolveOptions& options) {
   bool was_attached = false;
   bool was_finished = false;
   std::vector<ItemRefusal> refused;
+  std::vector<std::string> faults;
   while (!stop_requested()) {
     if (!solver.attached()) {
       if (was_attached) tell(ipc::SweepNews::waiting);
@@ -138,6 +141,9 @@ int solve_one(const SolveOptions& options) {
     if (const auto excess = solver.take_first_excess()) {
       tell(ipc::SweepNews::beyond_limits, solver.in_words(*excess));
     }
+    faults.clear();
+    solver.take_commander_faults(faults);
+    for (const std::string& fault : faults) tell(ipc::SweepNews::commander, fault);
     if (solver.attached() && ipc::Internals::summary(solver).finished && !was_finished) {
       was_finished = true;
       tell(ipc::SweepNews::finished);
@@ -188,6 +194,13 @@ void add_live_options(Command& verb, SolverOptions& options) {
   add_seconds(verb, "--history", options.history,
               "Length of the past curve that is kept, in s, 0 to 86400 (default 1); no waypoint is "
               "consumed that would overwrite it");
+  verb.option(
+          "--largest-rate",
+          [&options](const std::string& text) {
+            options.largest_rate = number_within("--largest-rate", text, {0, ipc::kLargestRate});
+          },
+          "Largest rate of the time laws that are made here, above 0, at most 100 (default 1)")
+      .type("R");
 }
 
 /// Adds the option of a process that solves several streams.
@@ -236,7 +249,8 @@ void add_solve(Command& verb, Action& action) {
              "Do not wake waiting readers: for hosts where every reader polls");
   add_sweep(verb, *options);
   verb.flag("--quiet", options->quiet,
-            "Print no messages about streams, except those that cannot be solved");
+            "Print no messages about streams, except those that cannot be solved, and commanders "
+            "of time laws that are not heard or hold one unasked");
   add_access(verb, options->solver.access);
   add_trust(verb, options->solver.trust);
   verb.callback([&action, options] {

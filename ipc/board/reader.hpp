@@ -10,6 +10,7 @@
 #include "ipc/board/knot.hpp"
 #include "ipc/board/refused_item.hpp"
 #include "ipc/layout/board_control.hpp"
+#include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/common_control.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/publication.hpp"
@@ -87,6 +88,11 @@ class KnotBoardReader {
   /// Copies the summary of the newest revision, in a bounded number of tries. Returns false,
   /// without changing `out`, if there is no revision or if the writer overtook every try.
   [[nodiscard]] bool copy_newest_summary(Summary& out) const noexcept;
+
+  /// Copies the table of a law's commanders of the newest revision, in a bounded number of tries.
+  /// Returns false if there is no revision, if the writer overtook every try, or on the board of
+  /// another stream; then `out` is not valid.
+  [[nodiscard]] bool copy_commanders(std::span<Word, kCommanderTableWords> out) const noexcept;
 
   /// Copies knot `number`, which must be on the board under r. On failure `out.tag` is 0 and the
   /// rest is not valid. O(D).
@@ -170,6 +176,7 @@ class KnotBoardReader {
   std::span<const Word> refusals_;
   std::span<const Word> excesses_;
   std::span<const Word> times_;
+  std::span<const Word> tables_;  ///< of a law: both tables of commanders
   std::span<const Word> slots_;
 };
 

@@ -9,6 +9,9 @@ KnotBoardWriter::KnotBoardWriter(std::span<std::byte> region, const BoardLayout&
       refusals_(words_at(region, layout.refusals, kRefusalsKept)),
       excesses_(words_at(region, layout.excesses, kExcessesKept * kExcessWords)),
       times_(words_at(region, layout.times, layout.capacity)),
+      tables_(layout.commanders > 0 ? words_at(region, layout.commanders, 2 * kCommanderTableWords)
+                                    : std::span<Word>{}),
+      table_(tables_.size() / 2),
       revision_(load(control_[kRevision], std::memory_order_relaxed)),
       settled_(load(control_[kSettledUntil], std::memory_order_relaxed)),
       late_(load(control_[kLate], std::memory_order_relaxed)),
@@ -41,10 +44,19 @@ void KnotBoardWriter::read_state() noexcept {
     }
   }
   summary_cell_ = summary_cells().tags(std::memory_order_relaxed).newest(revision_);
+  read_commanders();
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const Tags tags = cells_at(i).tags(std::memory_order_relaxed);
     const std::size_t c = tags.newest(revision_);
     states_[i] = static_cast<SlotState>(tags.of[c] & kTagPartsMask) | (c == 0 ? 0 : kCellBit);
+  }
+}
+
+/// Loads the committed table of a law's commanders.
+void KnotBoardWriter::read_commanders() noexcept {
+  const auto words = tables_.subspan(summary_cell_ * table_.size(), table_.size());
+  for (std::size_t i = 0; i < table_.size(); ++i) {
+    table_[i] = load(words[i], std::memory_order_relaxed);
   }
 }
 

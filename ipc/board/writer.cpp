@@ -165,6 +165,19 @@ core::SegmentForm KnotBoardWriter::form(Word number) const noexcept {
   return note_of(load(cells(number).cell(c)[kCellTag], std::memory_order_relaxed)).form;
 }
 
+void KnotBoardWriter::set_commanders(std::span<const Word> table) noexcept {
+  if (table.empty()) return read_commanders();
+  std::ranges::copy(table.first(table_.size()), table_.begin());
+}
+
+/// Stores those words of the table that differ from the cell's.
+void KnotBoardWriter::write_commanders(std::size_t cell) noexcept {
+  const auto words = tables_.subspan(cell * table_.size(), table_.size());
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (load(words[i], std::memory_order_relaxed) != table_[i]) put(words[i], table_[i]);
+  }
+}
+
 void KnotBoardWriter::commit(Summary& summary) noexcept {
   const Word r = revision_ + 1;
   summary.revision = r;
@@ -178,6 +191,7 @@ void KnotBoardWriter::commit(Summary& summary) noexcept {
   // over, stored them before this revision's tag, and a reader that acquires that tag sees them.
   encode_changes(kSummaryRows, summary, held.data(),
                  [cell](std::size_t i, Word word) { put(cell[i], word); });
+  if (!table_.empty()) write_commanders(spare);
   store(control_[kRevision], r, std::memory_order_release);  // W3
   revision_ = r;
   summary_cell_ = spare;

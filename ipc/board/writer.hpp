@@ -13,6 +13,7 @@
 #include "ipc/board/knot.hpp"
 #include "ipc/board/refused_item.hpp"
 #include "ipc/layout/board_control.hpp"
+#include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/common_control.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/publication.hpp"
@@ -38,6 +39,7 @@
 /// - `late` and `checked`: stored after the commit, when it is known whether the commit was too
 ///   late: first `late`, if it was, then `checked`. If a writer dies before `checked`, its
 ///   successor decides about that revision. Others load them relaxed: each is independent.
+/// - The table of a law's commanders: a part of the summary's cell, as W2 and R3.
 /// - Packed times: relaxed. They are a hint, which a reader confirms by the knot.
 /// - Step times: relaxed. Each is independent.
 /// - Refusals: one word each, which is never torn, stored before W3 of the summary that counts it
@@ -114,6 +116,10 @@ class KnotBoardWriter {
   /// Writes the place where a limit was exceeded: the `index`-th excess of the stream, counted from
   /// 0.
   void write_excess(Word index, const LimitExcess& excess) noexcept;
+
+  /// Sets the table of a law's commanders for the next revision: kCommanderTableWords words, or
+  /// none to leave it as it is. Only for the board of a law.
+  void set_commanders(std::span<const Word> table) noexcept;
 
   /// Makes everything written visible, as the next revision: W3. Sets summary.revision.
   void commit(Summary& summary) noexcept;
@@ -233,6 +239,8 @@ class KnotBoardWriter {
     return std::span(written_).first(at_.written_count);
   }
   void note_time(Word number, Time time) noexcept;
+  void read_commanders() noexcept;
+  void write_commanders(std::size_t cell) noexcept;
   void read_state() noexcept;
   void restore_times() noexcept;
   void forget_written() noexcept {
@@ -247,6 +255,8 @@ class KnotBoardWriter {
   std::span<Word> refusals_;
   std::span<Word> excesses_;
   std::span<Word> times_;
+  std::span<Word> tables_;   ///< of a law: both tables of commanders
+  std::vector<Word> table_;  ///< of a law: the committed table, and until a commit the next one
   Word revision_;
   Word settled_;
   Word late_;

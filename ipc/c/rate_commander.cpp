@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "ipc/arguments/arrays.hpp"
 #include "ipc/arguments/handles.hpp"
 #include "ipc/arguments/options.hpp"
 #include "ipc/arguments/structs.hpp"
@@ -13,6 +14,7 @@ using namespace splinecast::ipc;
 struct splinecast_rate_commander {
   Mark<0x5350'4c52'4154'4506> mark;
   RateCommander commander;
+  uint64_t number = 0;  ///< of the last request
 
   splinecast_rate_commander(const std::string& law, const std::string& name,
                             const RegionAccess& access, const Trust& trust)
@@ -25,7 +27,7 @@ namespace {
 template <typename Body>
 int with(splinecast_rate_commander* commander, const Body& body) noexcept {
   return guarded([&] {
-    body(require_handle(commander, "commander").commander);
+    body(require_handle(commander, "commander"));
     return 0;
   });
 }
@@ -52,24 +54,36 @@ int splinecast_rate_commander_destroy(splinecast_rate_commander* commander) {
 
 int splinecast_rate_commander_set_rate(splinecast_rate_commander* commander, double rate,
                                        int64_t ramp) {
-  return with(commander, [&](RateCommander& own) { own.set_rate(rate, Time(ramp)); });
+  return with(commander, [&](auto& own) { own.number = own.commander.set_rate(rate, Time(ramp)); });
 }
 
 int splinecast_rate_commander_hold(splinecast_rate_commander* commander, int64_t ramp) {
-  return with(commander, [&](RateCommander& own) { own.hold(Time(ramp)); });
+  return with(commander, [&](auto& own) { own.number = own.commander.hold(Time(ramp)); });
 }
 
 int splinecast_rate_commander_release(splinecast_rate_commander* commander, int64_t ramp) {
-  return with(commander, [&](RateCommander& own) { own.release(Time(ramp)); });
+  return with(commander, [&](auto& own) { own.number = own.commander.release(Time(ramp)); });
 }
 
 int splinecast_rate_commander_set_dead_man(splinecast_rate_commander* commander, int64_t timeout,
                                            int64_t ramp) {
-  return with(commander, [&](RateCommander& own) { own.set_dead_man(Time(timeout), Time(ramp)); });
+  return with(commander, [&](auto& own) { own.commander.set_dead_man(Time(timeout), Time(ramp)); });
 }
 
 int splinecast_rate_commander_renew(splinecast_rate_commander* commander) {
-  return with(commander, [](RateCommander& own) { own.renew(); });
+  return guarded([&] { return require_handle(commander, "commander").commander.renew() ? 0 : 1; });
+}
+
+int splinecast_rate_commander_number(splinecast_rate_commander* commander, uint64_t* number) {
+  return with(commander, [&](auto& own) { *require_pointer(number, "number") = own.number; });
+}
+
+int splinecast_rate_commander_wait_in_force(splinecast_rate_commander* commander, uint64_t number,
+                                            int64_t timeout) {
+  return guarded([&] {
+    auto& own = require_handle(commander, "commander").commander;
+    return own.wait_in_force(number, timeout_of(timeout)) ? 1 : 0;
+  });
 }
 
 }  // extern "C"

@@ -815,9 +815,10 @@ SPLINECAST_API int splinecast_rate_commander_create(
 /// Destroys a handle; its last request remains in force. NULL has no effect. System calls.
 SPLINECAST_API int splinecast_rate_commander_destroy(splinecast_rate_commander* commander);
 
-/// Requests a rate of 0 to 100, reached by a ramp of this length: 1 ms to 1 h. A request above the
-/// law's largest rate counts as the largest. hold requests rate 0. release withdraws the request:
-/// the law has the least of the others, or 1 if there is none. Three system calls.
+/// Requests a rate of 0 to 100, reached by a ramp of this length: 1 ms to 1 h. A rate above the
+/// law's largest gives ARGUMENT; it counts as the largest while no solver has begun the law. hold
+/// requests rate 0. release withdraws the request: the law has the least of the others, or 1 if
+/// there is none. Does not wait for the solver. Three system calls.
 SPLINECAST_API int splinecast_rate_commander_set_rate(splinecast_rate_commander* commander,
                                                       double rate, int64_t ramp);
 SPLINECAST_API int splinecast_rate_commander_hold(splinecast_rate_commander* commander,
@@ -827,10 +828,20 @@ SPLINECAST_API int splinecast_rate_commander_release(splinecast_rate_commander* 
 
 /// From the next request on, the law holds if this commander does not renew its request within
 /// `timeout`, 1 ms to 1 h, or 0: never; `ramp`, 1 ms to 1 h, is the length of the ramp of that
-/// hold, which lasts until the next request. renew renews the last request; three system calls.
+/// hold, which lasts until the next request. renew renews the last request; returns 1, and does
+/// nothing, if its dead man has fired. Three system calls.
 SPLINECAST_API int splinecast_rate_commander_set_dead_man(splinecast_rate_commander* commander,
                                                           int64_t timeout, int64_t ramp);
 SPLINECAST_API int splinecast_rate_commander_renew(splinecast_rate_commander* commander);
+
+/// The number of the last request that this handle made; 0: none yet. wait_in_force waits until the
+/// law's solver has committed the request of this number, or a later one; its ramp then begins
+/// within the solver's freeze-ahead. Returns 1, or 0 if it has not after `timeout`: the request
+/// remains.
+SPLINECAST_API int splinecast_rate_commander_number(splinecast_rate_commander* commander,
+                                                    uint64_t* number);
+SPLINECAST_API int splinecast_rate_commander_wait_in_force(splinecast_rate_commander* commander,
+                                                           uint64_t number, int64_t timeout);
 
 // ------------------------------------------------------------------------------------- batch fit
 

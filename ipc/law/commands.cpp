@@ -9,6 +9,7 @@
 #include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/common_control.hpp"
 #include "ipc/mapping/checked_region.hpp"
+#include "ipc/mapping/owner_lock.hpp"
 #include "ipc/memory/futex.hpp"
 #include "ipc/memory/names.hpp"
 #include "ipc/options/stream.hpp"
@@ -35,8 +36,9 @@ void Commanders::look_around() {
     sources_.erase(sources_.begin() + std::ptrdiff_t(i));
     states_.erase(states_.begin() + std::ptrdiff_t(i));
   }
-  if (!folder_.has_changed() && !tries_again_) return;
-  tries_again_ = false;
+  look_for_life();
+  if (!folder_.has_changed() && unusable_.empty()) return;
+  unusable_.clear();
   for (const std::string& name : commander_names(law_)) {
     if (has(name)) continue;
     try {
@@ -46,10 +48,22 @@ void Commanders::look_around() {
       region.close_descriptor();
       const auto control = words_at(region.bytes(), layout.control, kCommanderControlWords);
       sources_.push_back({.region = std::move(region), .control = control});
-      states_.push_back({.name = name});
-    } catch (const StreamError&) {
-      tries_again_ = true;  // it was just removed, or belongs to another user
+      states_.push_back({.name = name, .id = header.stream_id});
+    } catch (const NoSuchStream&) {
+      continue;  // it was just removed
+    } catch (const StreamError& error) {
+      unusable_.push_back({.name = name, .why = error.what()});
     }
+  }
+}
+
+/// Looks which of those that request nothing live.
+void Commanders::look_for_life() {
+  constexpr int kEvery = 50;
+  if (looks_++ % kEvery != 0) return;
+  for (CommanderState& state : states_) {
+    if (state.requests()) continue;
+    state.is_alive = owner_lives(commander_stream(law_, state.name), RegionKind::commander);
   }
 }
 
@@ -81,8 +95,8 @@ void Commanders::read(Time now) {
   for (std::size_t i = 0; i < sources_.size(); ++i) read_newest(sources_[i], states_[i], now);
 }
 
-core::RateRequest CommanderState::request(double largest) const noexcept {
-  if (is_dead || is_damaged) return {.rate = 0, .ramp = command.dead_man_ramp};
+core::RateRequest CommanderState::request(double largest, bool has_died) const noexcept {
+  if (has_died || is_damaged) return {.rate = 0, .ramp = command.dead_man_ramp};
   return {.rate = requests() ? std::min(command.rate, largest) : largest, .ramp = command.ramp};
 }
 

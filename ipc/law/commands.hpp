@@ -20,14 +20,28 @@ namespace splinecast::ipc {
 /// What one commander requests.
 struct CommanderState {
   std::string name;
+  Word id = 0;  ///< of its region, not 0
   RateCommand command{};
   bool is_dead = false;     ///< its dead man has expired: it requests rate 0 until a new request
   bool is_damaged = false;  ///< its region holds no whole request any more: it requests rate 0
+  bool is_alive = true;     ///< its process lived when it was last looked at
 
   /// Whether it requests a rate.
   [[nodiscard]] bool requests() const noexcept { return command.rate >= 0; }
-  /// What it asks of a law with this largest rate. Without a request that is the largest rate.
-  [[nodiscard]] core::RateRequest request(double largest) const noexcept;
+  /// Whether the law must know it: it requests a rate, or may do so.
+  [[nodiscard]] bool is_used() const noexcept { return requests() || is_damaged || is_alive; }
+  /// What it asks of a law with this largest rate: without a request the largest rate, with a dead
+  /// man that has fired rate 0.
+  [[nodiscard]] core::RateRequest request(double largest, bool has_died) const noexcept;
+  [[nodiscard]] core::RateRequest request(double largest) const noexcept {
+    return request(largest, is_dead);
+  }
+};
+
+/// A commander whose region cannot be used, and why.
+struct UnusableCommander {
+  std::string name;
+  std::string why;
 };
 
 /// The least rate that commanders request, at most `largest`; 1, or `largest` if that is less, if
@@ -40,12 +54,18 @@ class Commanders {
   Commanders(std::string law, const Trust& trust) : law_(std::move(law)), trust_(trust) {}
 
   /// Looks for commanders that have come. One system call if no file of shared memory has come or
-  /// gone since the last call, else it reads the folder; allocates for new ones. A region that
-  /// cannot be used, or that has the clock of another time namespace, is ignored, and tried again
-  /// in the next call.
+  /// gone since the last call, else it reads the folder; allocates for new ones. In one of 50 calls
+  /// some more for each commander that requests nothing, to see whether its process lives. A region
+  /// that cannot be used, or that has the clock of another time namespace, is ignored, and tried
+  /// again in the next call.
   void look_around();
 
   [[nodiscard]] bool empty() const noexcept { return sources_.empty(); }
+
+  /// The commanders that the last look_around() found and could not use.
+  [[nodiscard]] const std::vector<UnusableCommander>& unusable() const noexcept {
+    return unusable_;
+  }
 
   /// Whether a commander has given a command since the last read(). One load per commander.
   [[nodiscard]] bool calls() const noexcept;
@@ -77,12 +97,14 @@ class Commanders {
     Time damaged_since = Time::max();  ///< when a record was first found damaged
   };
   [[nodiscard]] bool has(const std::string& name) const noexcept;
+  void look_for_life();
   static void read_newest(Source& source, CommanderState& state, Time now) noexcept;
 
   std::string law_;
   Trust trust_;
   FolderWatch folder_;
-  bool tries_again_ = false;  ///< a region could not be used
+  std::vector<UnusableCommander> unusable_;  ///< tried again in the next look_around()
+  int looks_ = 0;                            ///< calls of look_around()
   std::vector<Source> sources_;
   std::vector<CommanderState> states_;  ///< of each source
 };

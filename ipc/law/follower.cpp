@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ipc/mapping/region.hpp"
 #include "ipc/memory/word.hpp"
 #include "ipc/options/stream.hpp"
 #include "splinecast/errors.hpp"
@@ -19,12 +20,18 @@ CheckedRegion<BoardLayout> open_law(const std::string& law, const Trust& trust) 
   return opened;
 }
 
-/// The board of the law that a stream's header names.
+/// The board of the law that a stream's header names. Before a law has a board, it has a ring.
 CheckedRegion<BoardLayout> open_law(const RegionHeader& stream, const Trust& trust) {
   const std::string law = text_of(stream.law);
-  auto opened = open_law(law, trust);
-  if (opened.header.stream_id == stream.law_id) return opened;
-  throw NoSuchStream("law '" + law + "' is lost: another law has its name now");
+  try {
+    auto opened = open_law(law, trust);
+    if (opened.header.stream_id == stream.law_id) return opened;
+  } catch (const NoSuchStream&) {
+    const auto ring = peek_header(law, RegionKind::waypoints, trust);
+    if (ring && ring->stream_id == stream.law_id) throw;
+    throw LawLost("law lost: the time law '" + law + "' has been removed");
+  }
+  throw LawLost("law lost: another stream has the name of the time law '" + law + "' now");
 }
 
 }  // namespace

@@ -60,9 +60,9 @@ struct LawPoint {
 /// thread uses it.
 class LawFollower {
  public:
-  /// Follows the law that a stream's header names. Throws NoSuchStream if the law has no board, or
-  /// if its name now belongs to another law (the law is lost); BadRegion if the board cannot be
-  /// used or is not that of a law.
+  /// Follows the law that a stream's header names. Throws NoSuchStream if the law has no board yet;
+  /// LawLost if it has been removed, also if another stream has its name now; BadRegion if the
+  /// board cannot be used or is not that of a law.
   LawFollower(const RegionHeader& stream, const Trust& trust);
   /// Follows the law of this name, with any id. Throws as above.
   LawFollower(const std::string& law, const Trust& trust);

@@ -24,7 +24,8 @@ inline constexpr std::tuple kRegionRows{
     FieldRow{"body",
              {},
              FieldWriter::owner,
-             "ring items; or refusals, excesses, outcomes, stoppers, times and slots of a board"}};
+             "ring items; or refusals, excesses, outcomes, stoppers, times and slots of a board,\n"
+             "on the board of a time law also the tables of its commanders"}};
 inline constexpr auto kRegionFields = place(kRegionRows);
 inline constexpr std::size_t kHeaderBytes = word_of(kRegionFields, "control area") * sizeof(Word);
 inline constexpr std::size_t kBodyOffset = word_of(kRegionFields, "body") * sizeof(Word);

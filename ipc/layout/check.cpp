@@ -162,8 +162,8 @@ BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_by
   require_region(header, RegionKind::spline, real_bytes);
   require_stream(header, kMaxBoardCapacity);
   require_curve(header);
-  const auto layout =
-      BoardLayout::of(header.dimensions, header.capacity, header.control, smooths(header));
+  const auto layout = BoardLayout::of(header.dimensions, header.capacity, header.control,
+                                      smooths(header), header.is_law != 0);
   require_range("tail", header.tail, 0, static_cast<std::uint64_t>(Tail::clamped));
   require_range("freeze-ahead", static_cast<std::uint64_t>(header.freeze_ahead), 1,
                 kLongestNanoseconds);

@@ -44,6 +44,46 @@ inline constexpr std::size_t kCommanderNumber = word_of(kCommanderControlFields,
 /// Number of words of a commander's record, from kCommanderNumber on.
 inline constexpr std::size_t kCommanderRecordWords = 6;
 
+/// A commander in the table of its law, on the law's board.
+inline constexpr std::size_t kCommanderNameBytes = 32;
+inline constexpr std::tuple kCommanderRows{
+    FieldRow{
+        "id", {.words = 1}, FieldWriter::owner, "stream id of its region; 0: the slot is free"},
+    FieldRow{"name",
+             {.words = kCommanderNameBytes / sizeof(Word)},
+             FieldWriter::owner,
+             "the first 32 bytes of its name; the rest is 0"},
+    FieldRow{"number",
+             {.words = 1},
+             FieldWriter::owner,
+             "number of its request that is in force; 0: none yet"},
+    FieldRow{"state",
+             {.words = 1},
+             FieldWriter::owner,
+             "bit 0: it requests a rate\n"
+             "bit 1: the dead man of that request has fired\n"
+             "bit 2: its region holds no whole request any more"},
+    FieldRow{"renewed",
+             {.words = 1},
+             FieldWriter::owner,
+             "ns by CLOCK_MONOTONIC: its last request or renewal, when this row last changed"},
+    FieldRow{"ramp", {.words = 1}, FieldWriter::owner, "ns: length of the ramp that it requests"},
+    FieldRow{"bound begin",
+             {.words = 1},
+             FieldWriter::owner,
+             "ns: when the pieces of its bound begin; 0: the bound is constant"},
+    FieldRow{"bound rate", {.words = 1}, FieldWriter::owner, "double: the bound there"},
+    FieldRow{"bound slope", {.words = 1}, FieldWriter::owner, "double, 1/s: its slope there"},
+    FieldRow{"bound ends", {.words = 2}, FieldWriter::owner, "ns: ends of its pieces; 0: none"},
+    FieldRow{"end rates", {.words = 2}, FieldWriter::owner, "doubles: the bound there"}};
+inline constexpr auto kCommanderFields = place(kCommanderRows);
+inline constexpr std::size_t kCommanderWords = size_of(kCommanderFields).words;
+
+/// Maximum number of commanders of a law, and the words of the table that has a row for each.
+inline constexpr std::size_t kMostCommanders = 16;
+inline constexpr std::size_t kCommanderTableWords = kMostCommanders * kCommanderWords;
+static_assert(kCommanderWords == 16);
+
 /// Offsets of a commander region in bytes: it has no body.
 struct CommanderLayout {
   std::size_t control;

@@ -3,13 +3,14 @@
 #include <span>
 
 #include "ipc/layout/areas.hpp"
+#include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/separation.hpp"
 #include "ipc/memory/word.hpp"
 
 namespace splinecast::ipc {
 
 BoardLayout BoardLayout::of(std::size_t dimensions, std::size_t capacity, std::size_t control,
-                            bool smooths) noexcept {
+                            bool smooths, bool is_law) noexcept {
   // Only `smoothing` has the last field of a cell and of a row.
   const auto lines = [&](std::span<const Field> fields) {
     const Extent size = smooths ? size_of(fields) : fields.back().offset;
@@ -32,6 +33,7 @@ BoardLayout BoardLayout::of(std::size_t dimensions, std::size_t capacity, std::s
       .rows = 0,
       .row = lines(kRowFields),
       .stride = 0,
+      .commanders = 0,
       .bytes = 0};
   layout.slots = round_up(layout.times + capacity * sizeof(Word), kPage);
   layout.nodes = 2 * layout.cell;
@@ -39,6 +41,9 @@ BoardLayout BoardLayout::of(std::size_t dimensions, std::size_t capacity, std::s
   layout.rows = layout.beside + 2 * layout.beside_bytes;
   layout.stride = layout.rows + 2 * layout.row;
   layout.bytes = round_up(layout.slots + (capacity + kPassedSlots) * layout.stride, kPage);
+  if (!is_law) return layout;
+  layout.commanders = layout.bytes;
+  layout.bytes = round_up(layout.bytes + 2 * kCommanderTableWords * sizeof(Word), kPage);
   return layout;
 }
 

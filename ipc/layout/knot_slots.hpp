@@ -135,12 +135,14 @@ struct BoardLayout {
   std::size_t beside;
   std::size_t beside_bytes;
   std::size_t rows;
-  std::size_t row;     ///< bytes of a row
-  std::size_t stride;  ///< bytes of a slot
+  std::size_t row;         ///< bytes of a row
+  std::size_t stride;      ///< bytes of a slot
+  std::size_t commanders;  ///< of a time law: two tables of kCommanderTableWords words; else 0
   std::size_t bytes;
 
   [[nodiscard]] static BoardLayout of(std::size_t dimensions, std::size_t capacity,
-                                      std::size_t control, bool smooths) noexcept;
+                                      std::size_t control, bool smooths,
+                                      bool is_law = false) noexcept;
 };
 
 /// The largest capacity: no size or index computed from a header overflows.

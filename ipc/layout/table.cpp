@@ -47,7 +47,11 @@ constexpr std::array kParts{
     LayoutPart{"Row of a knot", "the end of the parts beside the cells (row 0, then row 1)",
                kRowFields},
     LayoutPart{"Control block of a commander region", "the control offset of the header",
-               kCommanderControlFields}};
+               kCommanderControlFields},
+    LayoutPart{"Commander of a time law",
+               "the end of the slots of a law's board, at the next multiple of 4096 bytes.\n"
+               "A table has 16 of them; there are two, one for each cell of the summary",
+               kCommanderFields}};
 
 class Fnv {
  public:
@@ -121,8 +125,7 @@ std::uint64_t layout_hash() noexcept {
 std::string layout_page() {
   std::ostringstream page;
   page << "# Fields of the shared memory\n\nEvery field of both regions of a stream, and of a "
-          "commander of a time law, "
-          "layout version "
+          "commander of a time law,\nlayout version "
        << kLayoutVersion
        << ": place, size, writer and meaning.\nFor engineers who read a hex dump or write a reader "
           "in another language;\n[The shared memory of a stream](layout.md) explains how the parts "

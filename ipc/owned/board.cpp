@@ -17,8 +17,8 @@ OwnedBoard make_board(const std::string& stream, const RegionHeader& ring_header
   RegionHeader header = ring_header;
   header.kind = static_cast<std::uint64_t>(RegionKind::spline);
   write_options(options, header);
-  const auto layout =
-      BoardLayout::of(header.dimensions, header.capacity, header.control, smooths(header));
+  const auto layout = BoardLayout::of(header.dimensions, header.capacity, header.control,
+                                      smooths(header), header.is_law != 0);
   header.stride = layout.stride;
   header.region_bytes = layout.bytes;
   header.epoch = 0;

@@ -20,7 +20,7 @@ OwnedCommander make_commander(const std::string& name, const RegionAccess& acces
   Region region = Region::create(header.region_bytes, access);
   write_header(region.bytes(), header);
   enter_owner(region.bytes(), header);
-  OwnedCommander commander(std::move(region), header.control);
+  OwnedCommander commander(std::move(region), header);
   if (!commander.region.link(name, RegionKind::commander)) {
     throw BadRegion(region_path(name, RegionKind::commander) +
                     " was created by another process at the same time");
@@ -30,7 +30,7 @@ OwnedCommander make_commander(const std::string& name, const RegionAccess& acces
 
 OwnedCommander continue_commander(const std::string& name, const Trust& trust) {
   auto [region, header, layout] = open_commander(name, true, trust);
-  OwnedCommander commander(std::move(region), layout.control);
+  OwnedCommander commander(std::move(region), header);
   require_same_clock(header, name);
   enter_owner(commander.region.bytes(), header);
   return commander;
@@ -38,10 +38,11 @@ OwnedCommander continue_commander(const std::string& name, const Trust& trust) {
 
 }  // namespace
 
-OwnedCommander::OwnedCommander(Region mapped, std::size_t control_offset)
+OwnedCommander::OwnedCommander(Region mapped, const RegionHeader& header)
     : region(std::move(mapped)),
       lock(region.descriptor()),
-      control(words_at(region.bytes(), control_offset, kCommanderControlWords)) {}
+      id(header.stream_id),
+      control(words_at(region.bytes(), header.control, kCommanderControlWords)) {}
 
 OwnedCommander own_commander(const std::string& name, const RegionAccess& access,
                              const Trust& trust, OwnerLock& lock) {

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "ipc/layout/header.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/word.hpp"
@@ -14,9 +15,10 @@ namespace splinecast::ipc {
 struct OwnedCommander {
   Region region;
   RegionLock lock;
+  Word id;                  ///< stream id of the region
   std::span<Word> control;  ///< of the region
 
-  OwnedCommander(Region mapped, std::size_t control_offset);
+  OwnedCommander(Region mapped, const RegionHeader& header);
 };
 
 /// Takes over the region of that name, the result of commander_stream(), or creates one. `lock` is

@@ -1,5 +1,6 @@
 #include "splinecast/rate_commander.hpp"
 
+#include <cstdint>
 #include <string>
 
 #include "ipc/python/docstrings.hpp"
@@ -7,6 +8,7 @@
 #include "ipc/python/module.hpp"
 #include "ipc/python/values/options.hpp"
 #include "ipc/python/values/times.hpp"
+#include "ipc/python/waits.hpp"
 
 namespace splinecast::python {
 namespace {
@@ -19,25 +21,27 @@ class HeldCommander {
       : name_(std::move(name)),
         commander_("rate commander", law, make_role<RateCommander>(law, name_, access, trusted)) {}
 
-  void set_rate(double rate, py::handle ramp) {
+  std::uint64_t set_rate(double rate, py::handle ramp, py::handle wait) {
     const Time time = duration(ramp, "ramp");
-    commander_.use([&](RateCommander& own) { own.set_rate(rate, time); });
+    return request(wait, [&](RateCommander& own) { return own.set_rate(rate, time); });
   }
-  void hold(py::handle ramp) {
+  std::uint64_t hold(py::handle ramp, py::handle wait) {
     const Time time = duration(ramp, "ramp");
-    commander_.use([&](RateCommander& own) { own.hold(time); });
+    return request(wait, [&](RateCommander& own) { return own.hold(time); });
   }
-  void release(py::handle ramp) {
+  std::uint64_t release(py::handle ramp, py::handle wait) {
     const Time time = duration(ramp, "ramp");
-    commander_.use([&](RateCommander& own) { own.release(time); });
+    return request(wait, [&](RateCommander& own) { return own.release(time); });
   }
   void set_dead_man(py::handle timeout, py::handle ramp) {
     const Time time = duration(timeout, "timeout");
     const Time length = duration(ramp, "ramp");
     commander_.use([&](RateCommander& own) { own.set_dead_man(time, length); });
   }
-  void renew() {
-    commander_.use([](RateCommander& own) { own.renew(); });
+  bool renew() {
+    bool is_renewed = false;
+    commander_.use([&](RateCommander& own) { is_renewed = own.renew(); });
+    return is_renewed;
   }
 
   void close() { commander_.close(); }
@@ -51,6 +55,23 @@ class HeldCommander {
   }
 
  private:
+  /// Makes a request; with `wait`, returns when it is in force, or raises TimeoutError.
+  template <typename Make>
+  std::uint64_t request(py::handle wait, const Make& make) {
+    const auto timeout = optional_duration(wait, "wait");
+    const std::uint64_t number = commander_.use(make);
+    if (!timeout) return number;
+    const bool is_in_force = wait_until(
+        commander_, end_of(timeout),
+        [number](RateCommander& own, Time time) { return own.wait_in_force(number, time); });
+    if (is_in_force) return number;
+    const std::string text = "request " + std::to_string(number) + " of '" + name_ + "' to '" +
+                             law() + "' is not in force after " +
+                             std::to_string(to_seconds(*timeout)) + " s; it remains";
+    PyErr_SetString(PyExc_TimeoutError, text.c_str());
+    throw py::error_already_set();
+  }
+
   std::string name_;
   Held<RateCommander> commander_;
 };
@@ -68,10 +89,12 @@ std::unique_ptr<HeldCommander> make(const std::string& law, const std::string& c
 void define_rate_commander(py::module_& module) {
   py::class_<HeldCommander>(module, "RateCommander", doc::RateCommander)
       .def(py::init(&make), py::arg("law"), py::arg("commander"), doc::RateCommander_init)
-      .def("set_rate", &HeldCommander::set_rate, py::arg("rate"), py::arg("ramp"),
-           doc::RateCommander_set_rate)
-      .def("hold", &HeldCommander::hold, py::arg("ramp"), doc::RateCommander_hold)
-      .def("release", &HeldCommander::release, py::arg("ramp"), doc::RateCommander_release)
+      .def("set_rate", &HeldCommander::set_rate, py::arg("rate"), py::arg("ramp"), py::kw_only(),
+           py::arg("wait") = py::none(), doc::RateCommander_set_rate)
+      .def("hold", &HeldCommander::hold, py::arg("ramp"), py::kw_only(),
+           py::arg("wait") = py::none(), doc::RateCommander_hold)
+      .def("release", &HeldCommander::release, py::arg("ramp"), py::kw_only(),
+           py::arg("wait") = py::none(), doc::RateCommander_release)
       .def("set_dead_man", &HeldCommander::set_dead_man, py::arg("timeout"), py::arg("ramp") = 0.5,
            doc::RateCommander_set_dead_man)
       .def("renew", &HeldCommander::renew, doc::RateCommander_renew)

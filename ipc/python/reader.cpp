@@ -30,6 +30,8 @@ std::unique_ptr<Reader> open(const std::string& stream, Time end, const Trust& t
     const Time left = std::max(end - clock.now(), Time::zero());
     try {
       return make_role<Reader>(stream, std::min(left, kSignalSlice), trusted);
+    } catch (const LawLost&) {
+      throw;
     } catch (const NoSuchStream&) {
       check_signals();
       if (clock.now() >= end) throw;

@@ -1,8 +1,10 @@
 #include "ipc/ring/item.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/basics/magnitude.hpp"
+#include "ipc/layout/header.hpp"
 
 namespace splinecast::ipc {
 
@@ -24,6 +26,16 @@ Waypoint RingItem::waypoint() const noexcept {
   if (has_velocity) waypoint.velocity = all.subspan(dimensions, dimensions);
   if (has_acceleration) waypoint.acceleration = all.last(dimensions);
   return waypoint;
+}
+
+std::optional<RateItem> piece_of(const Waypoint& values) noexcept {
+  constexpr double kLongest = 1e6;  // beyond any plan [s]
+  if (values.position.size() != 1 || values.velocity.size() != 1) return std::nullopt;
+  const double rate = values.position[0];
+  const double length = values.velocity[0];
+  if (!(rate >= 0 && rate <= kLargestRate)) return std::nullopt;
+  if (!(length >= 1e-9 && length <= kLongest)) return std::nullopt;
+  return RateItem{.end_rate = rate, .length = Time(std::llround(length * 1e9))};
 }
 
 }  // namespace splinecast::ipc

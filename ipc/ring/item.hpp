@@ -1,7 +1,9 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,6 +22,14 @@ enum class ItemKind : std::uint8_t {
   replace = 2,      ///< withdraws everything after a time; `count` waypoints follow
   start_state = 3,  ///< the state that a stream starts in
   finish = 4,       ///< the stream ends at its last waypoint, with a boundary condition there
+  rate = 5,         ///< a piece of a time law's rate; `count` further pieces of its plan follow
+};
+
+/// A piece of a time law's rate, as its item has it: the cubic from the state at the item's time to
+/// this rate with slope 0.
+struct RateItem {
+  double end_rate = 0;
+  Time length{};
 };
 
 /// A copy of a ring item. Allocates only in its constructor.
@@ -29,15 +39,23 @@ struct RingItem {
   ItemKind kind = ItemKind::waypoint;
   bool has_velocity = false;
   bool has_acceleration = false;
-  ConditionKind condition{};  ///< of a finish
-  std::uint32_t count = 0;    ///< of a replacement: waypoints that belong to it
-  Time blend{};               ///< of a replacement with waypoints: least duration of its entry
+  ConditionKind condition{};   ///< of a finish
+  std::uint8_t commander = 0;  ///< of a piece: slot of the commander whose request it follows
+  std::uint8_t place = 0;      ///< of a piece: its number in the plan, from 0
+  std::uint32_t count = 0;  ///< of a replacement: waypoints that belong to it; of a piece: pieces
+                            ///< of the plan after it
+  Time blend{};             ///< of a replacement with waypoints: least duration of its entry
   Time time{};
   std::vector<double> values;  ///< positions, velocities, accelerations; only those that the item
                                ///< has are set
 
   /// The item's waypoint or state, a view of `values`.
   [[nodiscard]] Waypoint waypoint() const noexcept;
+
+  /// Of a piece: the number of the commander's request.
+  [[nodiscard]] std::uint64_t request() const noexcept {
+    return std::bit_cast<std::uint64_t>(values[2]);
+  }
 };
 
 /// Maximum lateness of a waypoint of a live stream: the time by which it may be before the settled
@@ -57,6 +75,9 @@ static_assert(kMostLate == Time{250'000'000});  // as Refusal::past says
   if (interval > limits.max_interval) return AppendStatus::too_far_apart;
   return AppendStatus::accepted;
 }
+
+/// A piece of a law from the values of its item; nothing if no planner writes such values.
+[[nodiscard]] std::optional<RateItem> piece_of(const Waypoint& values) noexcept;
 
 /// Whether all values are finite and within ±kLargestValue.
 [[nodiscard]] bool is_finite(std::span<const double> values) noexcept;

@@ -18,6 +18,8 @@ void WaypointRingReader::copy(Word i, RingItem& out) const noexcept {
   out.has_velocity = (kind & kHasVelocity) != 0;
   out.has_acceleration = (kind & kHasAcceleration) != 0;
   out.condition = static_cast<ConditionKind>((kind >> kConditionShift) & kKindMask);
+  out.commander = static_cast<std::uint8_t>((kind >> kCommanderShift) & kKindMask);
+  out.place = static_cast<std::uint8_t>((kind >> kPlaceShift) & kKindMask);
   out.count = static_cast<std::uint32_t>(kind >> kCountShift);
   out.time = to_time(load(words[kItemTime], std::memory_order_acquire));
   out.blend = out.kind == ItemKind::replace && out.count > 0

@@ -1,6 +1,7 @@
 #include "ipc/ring/writer.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <string>
 
 #include "ipc/layout/common_control.hpp"
@@ -188,6 +189,27 @@ AppendStatus WaypointRingWriter::start_from(const Instant& state, const Solved& 
   put_item(0, static_cast<Word>(ItemKind::start_state), values);
   publish(1, state.time);
   return status;
+}
+
+AppendStatus WaypointRingWriter::append_plan(std::span<const core::RatePiece> pieces,
+                                             std::uint8_t commander, Word request,
+                                             const Solved& solved) noexcept {
+  if (!has_room(pieces.size(), solved, 0)) return counted(AppendStatus::full);
+  claim(pieces.size());
+  const double number = std::bit_cast<double>(request);
+  for (Word i = 0; i < pieces.size(); ++i) {
+    const core::RatePiece& piece = pieces[i];
+    const Word kind = static_cast<Word>(ItemKind::rate) | Word{commander} << kCommanderShift |
+                      i << kPlaceShift | (pieces.size() - 1 - i) << kCountShift;
+    const double length = to_seconds(piece.length);
+    put_item(i, kind,
+             {.time = piece.begin,
+              .position = std::span(&piece.end_rate, 1),
+              .velocity = std::span(&length, 1),
+              .acceleration = std::span(&number, 1)});
+  }
+  publish(pieces.size(), pieces.back().begin);
+  return AppendStatus::accepted;
 }
 
 AppendStatus WaypointRingWriter::finish(const Condition& end, const Solved& solved) noexcept {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
+#include "core/laws/rate_curve.hpp"
 #include "ipc/layout/ring_control.hpp"
 #include "ipc/layout/waypoint_items.hpp"
 #include "ipc/memory/word.hpp"
@@ -103,6 +105,12 @@ class WaypointRingWriter {
   /// Appends the state in which the stream starts. It must come before the first waypoint, in the
   /// ring and in time.
   [[nodiscard]] AppendStatus start_from(const Instant& state, const Solved& solved) noexcept;
+
+  /// Appends the pieces of a time law's plan, each to its end rate; `commander` and `request` say
+  /// whose request they follow. One store of `written` makes all of them visible.
+  [[nodiscard]] AppendStatus append_plan(std::span<const core::RatePiece> pieces,
+                                         std::uint8_t commander, Word request,
+                                         const Solved& solved) noexcept;
 
   /// Appends the end of the stream. The condition's values must have been checked.
   [[nodiscard]] AppendStatus finish(const Condition& end, const Solved& solved) noexcept;

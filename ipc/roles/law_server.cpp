@@ -1,10 +1,10 @@
 #include "ipc/roles/law_server.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <span>
 
+#include "core/laws/law_path.hpp"
 #include "ipc/law/follower.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
@@ -20,47 +20,9 @@ constexpr Time kLookEvery = std::chrono::milliseconds(20);
 /// A law begins this long after its ring has been made: its solver must publish it before.
 constexpr Time kNotice = std::chrono::milliseconds(20);
 
-/// Length of the straight line after the last ramp: about 36 years.
-constexpr Time kLine{std::int64_t{1} << 60};
-
 /// Accelerations beyond any ramp. With this limit an entry is not compared with the motion that the
 /// law has shown, and ends at the first waypoint after it.
 constexpr double kBeyondAnyRamp = 1e12;
-
-constexpr std::array<double, 1> kZero{0};
-
-/// Waypoints of a law's curve, in arrays of their own.
-class LawWaypoints {
- public:
-  LawWaypoints() = default;
-  LawWaypoints(const LawWaypoints&) = delete;
-  LawWaypoints& operator=(const LawWaypoints&) = delete;
-  ~LawWaypoints() = default;
-
-  /// Adds a state with slope 0.
-  void add(const core::LawState& state) noexcept {
-    values_[count_] = {state.position, state.rate};
-    const auto both = std::span<const double>(values_[count_]);
-    waypoints_[count_] = {.time = state.time,
-                          .position = both.first(1),
-                          .velocity = both.subspan(1, 1),
-                          .acceleration = kZero};
-    ++count_;
-  }
-  /// Adds the end of the straight line that begins in such a state.
-  void add_line(const core::LawState& from) noexcept {
-    add(core::end_of_piece(from, from.rate, kLine));
-  }
-  [[nodiscard]] std::span<const Waypoint> all() const noexcept {
-    return std::span(waypoints_).first(count_);
-  }
-
- private:
-  static constexpr std::size_t kMost = core::RateCurve::kMostPieces + 1;
-  std::array<std::array<double, 2>, kMost> values_{};  ///< position and rate
-  std::array<Waypoint, kMost> waypoints_{};
-  std::size_t count_ = 0;
-};
 
 void describe_law(RegionHeader& header) {
   header.is_law = 1;
@@ -116,20 +78,23 @@ WaypointRingWriter::Solved LawServer::solved() const noexcept {
   return {.consumed = board_->consumed(), .settled_until = board_->look().settled_until};
 }
 
-/// Begins the law at the requested rate. One replacement, so that a curve with one of its two
-/// waypoints is never published, also if this process dies or is delayed.
-void LawServer::begin(const Clock& clock) {
-  commanders_.read(clock.now());
-  const double rate = least_rate(commanders_.states(), ring_.header.largest_rate);
-  const Time start = clock.now() + std::max(kNotice, 2 * freeze_ahead_);
-  const core::LawState first{.time = start,
-                             .position = to_seconds(start - Time(ring_.header.law_origin)),
-                             .rate = rate,
-                             .slope = 0};
-  LawWaypoints waypoints;
-  waypoints.add(first);
-  waypoints.add_line(first);
-  (void)ring_.writer.replace_from(start - Time(1), waypoints.all(), solved());
+/// Begins the law at the requested rate: one replacement with two waypoints, which the solver takes
+/// in the same revision.
+LawPlan LawServer::begin(Time now, Time settled) noexcept {
+  const double rate = rate_.plan_beginning(commanders_);
+  const Time start = std::max(now + std::max(kNotice, 2 * freeze_ahead_), settled + Time(1));
+  core::LawPath path({.time = start,
+                      .position = to_seconds(start - Time(ring_.header.law_origin)),
+                      .rate = rate,
+                      .slope = 0});
+  path.add_begin();
+  path.add_line();
+  const AppendStatus status =
+      ring_.writer.replace_from(start - Time(1), path.waypoints(), solved());
+  if (status != AppendStatus::accepted) return {};
+  planned_at_ = board_->revision();
+  sent_ = path.waypoints().back().time;
+  return {.table = rate_.table(), .must_commit = true};
 }
 
 std::optional<core::LawState> LawServer::state_at(Time time) noexcept {
@@ -155,53 +120,56 @@ core::RateCurve LawServer::published(const core::LawState& from) noexcept {
   return curve;
 }
 
-/// Whether the plan that was sent last is in force: only what was committed is. If the law is
-/// neither that plan nor the one before, its rate is read from the board again.
+/// Whether the last plan is in force: only what was committed is. If the law is neither that plan
+/// nor the one before, it is read from the board again.
 void LawServer::judge_sent() noexcept {
-  if (sent_ && newest_.time == *sent_) {
+  const bool is_committed = planned_at_ && summary_.revision == *planned_at_ + 1;
+  const bool follows = is_committed || (planned_at_ && summary_.revision == *planned_at_);
+  if (is_committed) {
     rate_.commit();
-    line_end_ = *sent_;
+    line_end_ = sent_.value_or(line_end_);
   }
-  is_rate_known_ = newest_.time == line_end_;
+  is_rate_known_ = follows && newest_.time == line_end_;
+  planned_at_ = summary_.revision;
   sent_.reset();
 }
 
-void LawServer::send(const core::RateCurve& curve, const core::LawState& from) {
-  LawWaypoints waypoints;
-  core::LawState end = from;
-  for (const core::RatePiece& piece : curve.pieces()) {
-    end = core::end_of_piece(end, piece.end_rate, piece.length);
-    waypoints.add(end);
-  }
-  waypoints.add_line(end);
-  const AppendStatus status = ring_.writer.replace_from(from.time, waypoints.all(), solved());
-  if (status == AppendStatus::accepted) sent_ = waypoints.all().back().time;
+void LawServer::look_around(const Clock& clock) {
+  const Time now = clock.now();
+  if (now < next_look_) return;
+  commanders_.look_around();
+  if (is_rate_known_) faults_.look(commanders_, rate_, ring_.header.largest_rate);
+  next_look_ = now + kLookEvery;
 }
 
-void LawServer::step(const Clock& clock) {
-  if (clock.now() >= next_look_) {
-    commanders_.look_around();
-    next_look_ = clock.now() + kLookEvery;
-  }
-  if (board_ == nullptr || board_->consumed() != ring_.writer.written()) return;
-  if (!read_newest()) return begin(clock);
-  if (is_rate_known_) judge_sent();
-  const Time now = clock.now();  // after all system calls of unknown length
-  // The solver's step follows at once; a little later than settled, so that it is not too late.
-  const Time margin = std::max<Time>(freeze_ahead_ / 16, std::chrono::microseconds(200));
-  const Time from = std::max(board_->look().settled_until, now + freeze_ahead_) + margin;
+LawPlan LawServer::plan(Time now, Time settled) noexcept {
   commanders_.read(now);
-  if (!is_rate_known_) {
-    const auto state = state_at(from);
-    if (!state) return;  // the law has not begun
-    rate_.begin(published(*state), commanders_, from);
-    line_end_ = newest_.time;
-    is_rate_known_ = true;
+  if (!read_newest()) return begin(now, settled);
+  judge_sent();
+  const auto state = state_at(settled);
+  if (!state) return {};  // the law has not begun
+  if (!is_rate_known_) take_over(*state);
+  const Time begin = rate_.plan_begin(settled);
+  const auto curve = rate_.plan(commanders_, begin);
+  if (curve) {
+    const AppendStatus status =
+        ring_.writer.append_plan(curve->pieces(), rate_.slot(), rate_.request(), solved());
+    if (status != AppendStatus::accepted) {
+      planned_at_.reset();
+      return {};
+    }
+    sent_ = curve->end() + core::kLawLine;
   }
-  const Time begin = rate_.plan_begin(from);
-  const auto state = state_at(begin);
-  if (!state) return;
-  if (const auto curve = rate_.plan(commanders_, begin)) send(*curve, *state);
+  return {.table = rate_.table(), .must_commit = rate_.has_changes()};
+}
+
+/// Continues a law that this process has not planned, or whose plan was not taken.
+void LawServer::take_over(const core::LawState& state) noexcept {
+  CommanderTable table{};
+  (void)board_->copy_commanders(table);
+  rate_.take_over(published(state), table);
+  line_end_ = newest_.time;
+  is_rate_known_ = true;
 }
 
 Time LawServer::due() const noexcept { return std::min(next_look_, commanders_.next_expiry()); }

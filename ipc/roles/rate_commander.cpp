@@ -1,8 +1,14 @@
 #include "splinecast/rate_commander.hpp"
 
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <thread>
 #include <utility>
 
+#include "core/basics/number_text.hpp"
 #include "ipc/law/commander_record.hpp"
+#include "ipc/law/law_board.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/memory/futex.hpp"
@@ -23,18 +29,22 @@ void require_length(const char* what, Time time) {
 }  // namespace
 
 struct RateCommander::Impl {
+  std::string law;
   std::string name;
   ipc::OwnerLock lock;
+  ipc::LawBoard board;
   ipc::OwnedCommander own;
   ipc::RateCommand command;  ///< the last one
   bool may_renew = false;    ///< it was made completely, by this process or an earlier one
   Time dead_man{};           ///< of the next request
   Time dead_man_ramp = ipc::kDeadManRamp;
 
-  Impl(std::string region, const RegionAccess& access, const Trust& trust)
-      : name(std::move(region)),
+  Impl(std::string of_law, std::string region, const RegionAccess& access, const Trust& trust)
+      : law(std::move(of_law)),
+        name(std::move(region)),
         lock(name, ipc::RegionKind::commander),
-        own(ipc::own_commander(name, access, trust, lock)) {
+        board(law, trust),
+        own(ipc::own_commander((require_slot(trust), name), access, trust, lock)) {
     lock.keep_file();
     const ipc::CommandCopy left = ipc::copy_command(own.control);
     const auto last = left.is_whole ? ipc::command_of(left.words) : std::nullopt;
@@ -43,7 +53,26 @@ struct RateCommander::Impl {
     command.number = left.words[0];  // also of a request that was not completed
   }
 
-  void request(double rate, Time ramp) {
+  /// Throws OutOfResources if the law knows as many commanders as it can, and not this one.
+  void require_slot(const Trust& trust) {
+    if (!board.is_there()) return;
+    const auto known = board.commanders();
+    if (known.size() < ipc::kMostCommanders) return;
+    const auto header = ipc::peek_header(name, ipc::RegionKind::commander, trust);
+    const ipc::Word id = header ? header->stream_id : 0;
+    if (std::ranges::find(known, id, &ipc::CommanderEntry::id) != known.end()) return;
+    std::string names;
+    for (const ipc::CommanderEntry& entry : known) {
+      names.append(names.empty() ? "" : ", ").append(ipc::name_of(entry));
+    }
+    lock.remove_unused_file();
+    throw OutOfResources("'" + law + "' has " + std::to_string(known.size()) +
+                         " commanders, as many as a law can have; release one of them whose "
+                         "process has ended: " +
+                         names);
+  }
+
+  [[nodiscard]] std::uint64_t request(double rate, Time ramp) {
     ++command.number;
     command.rate = rate;
     command.ramp = ramp;
@@ -51,6 +80,14 @@ struct RateCommander::Impl {
     command.dead_man_ramp = dead_man_ramp;
     may_renew = true;
     write();
+    return command.number;
+  }
+
+  /// Whether the dead man of the last request has fired, as far as the law's board shows.
+  [[nodiscard]] bool has_died() noexcept {
+    if (command.dead_man == Time::zero() || !board.is_there()) return false;
+    const auto entry = board.commander(own.id);
+    return entry && entry->is_dead && entry->number == command.number;
   }
 
   /// Writes the command, and throws afterwards if no process can find it.
@@ -66,22 +103,45 @@ struct RateCommander::Impl {
 
 RateCommander::RateCommander(const std::string& law, const std::string& commander,
                              const RegionAccess& access, const Trust& trust)
-    : impl_(std::make_unique<Impl>(ipc::commander_stream(law, commander), access, trust)) {}
+    : impl_(std::make_unique<Impl>(law, ipc::commander_stream(law, commander), access, trust)) {}
 RateCommander::RateCommander(RateCommander&&) noexcept = default;
 RateCommander& RateCommander::operator=(RateCommander&&) noexcept = default;
 RateCommander::~RateCommander() = default;
 
-void RateCommander::set_rate(double rate, Time ramp) {
+std::uint64_t RateCommander::set_rate(double rate, Time ramp) {
   if (!(rate >= 0 && rate <= ipc::kLargestRate)) {
     throw BadRequest("a rate must be 0 to 100, not " + std::to_string(rate));
   }
   require_length("a ramp", ramp);
-  impl_->request(rate, ramp);
+  if (rate > 0 && impl_->board.is_there() && rate > impl_->board.largest_rate()) {
+    throw BadRequest("the largest rate of '" + impl_->law + "' is " +
+                     core::number_text(impl_->board.largest_rate()) + ", not " +
+                     core::number_text(rate));
+  }
+  return impl_->request(rate, ramp);
 }
 
-void RateCommander::release(Time ramp) {
+std::uint64_t RateCommander::release(Time ramp) {
   require_length("a ramp", ramp);
-  impl_->request(-1, ramp);
+  return impl_->request(-1, ramp);
+}
+
+bool RateCommander::wait_in_force(std::uint64_t number, Time timeout) {
+  constexpr Time kSlice = std::chrono::milliseconds(1);
+  const MonotonicClock clock;
+  const Time end = saturated_sum(clock.now(), timeout);
+  for (;;) {
+    const bool is_there = impl_->board.is_there();
+    const auto entry = is_there ? impl_->board.commander(impl_->own.id) : std::nullopt;
+    if (entry && entry->number >= number) return true;
+    const Time rest = std::min(end - clock.now(), kSlice);
+    if (rest <= Time::zero()) return false;
+    if (is_there) {
+      impl_->board.wait(rest);
+    } else {
+      std::this_thread::sleep_for(rest);
+    }
+  }
 }
 
 void RateCommander::set_dead_man(Time timeout, Time ramp) {
@@ -91,8 +151,11 @@ void RateCommander::set_dead_man(Time timeout, Time ramp) {
   impl_->dead_man_ramp = ramp;
 }
 
-void RateCommander::renew() {
-  if (impl_->may_renew) impl_->write();
+bool RateCommander::renew() {
+  if (!impl_->may_renew) return true;
+  if (impl_->has_died()) return false;
+  impl_->write();
+  return true;
 }
 
 }  // namespace splinecast

@@ -83,6 +83,8 @@ struct Reader::Impl {
       auto impl = std::make_unique<Impl>(stream, std::move(region), header, layout);
       if (header.law_id != 0) impl->law = std::make_unique<ipc::LawFollower>(header, trust);
       return impl->board.retired() ? nullptr : std::move(impl);
+    } catch (const LawLost&) {
+      throw;
     } catch (const NoSuchStream&) {
       return nullptr;  // removed between the check and the opening
     }

@@ -132,6 +132,8 @@ struct Solver::Impl {
                 std::unique_ptr<ipc::LawFollower>& law) const {
     try {
       law = std::make_unique<ipc::LawFollower>(header, options.trust);
+    } catch (const LawLost&) {
+      throw;
     } catch (const NoSuchStream&) {
       return false;
     }
@@ -158,7 +160,10 @@ struct Solver::Impl {
     attachment =
         std::make_unique<Attachment>(std::move(ring), std::get<ipc::OwnedBoard>(std::move(board)));
     attachment->law = std::move(law);
-    if (server) server->attach(attachment->board.reader, attachment->board.header);
+    if (server) {
+      server->attach(attachment->board.reader, attachment->board.header);
+      attachment->solver.plan_with(*server);
+    }
     lock.keep_file();
     return true;
   }
@@ -182,6 +187,8 @@ bool Solver::attach(const Clock& clock) {
   impl_->next_attach = Time::min();
   try {
     return impl_->serve_law() && impl_->attach(clock);
+  } catch (const LawLost&) {
+    throw;
   } catch (const NoSuchStream&) {
     return false;  // removed between the check and the opening
   }
@@ -192,7 +199,7 @@ bool Solver::attached() const noexcept { return impl_->attachment != nullptr; }
 StepResult Solver::step(const Clock& clock) {
   if (!attached()) return {};
   Attachment& at = *impl_->attachment;
-  if (impl_->server) impl_->server->step(clock);
+  if (impl_->server) impl_->server->look_around(clock);
   const StepResult result = at.step(clock);
   if (result.damaged) {
     throw BadRegion(ipc::region_path(impl_->stream, ipc::RegionKind::spline) +
@@ -267,6 +274,10 @@ std::optional<LimitExcess> Solver::take_first_excess() noexcept {
     if (at.is_excess_told) return excess;
   }
   return std::nullopt;
+}
+
+void Solver::take_commander_faults(std::vector<std::string>& out) {
+  if (impl_->server) impl_->server->take_faults(out);
 }
 
 std::string Solver::in_words(const LimitExcess& excess) const {

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "core/laws/law_path.hpp"
 #include "ipc/solve/stream_solver.hpp"
 
 /// Takes or refuses the items of a ring.
@@ -37,6 +38,8 @@ void StreamSolver::take(Word number) noexcept {
       return take_start_state(number);
     case ItemKind::finish:
       return take_finish(number);
+    case ItemKind::rate:
+      return take_plan(number);
   }
   refuse(number, Refusal::unknown_kind);
 }
@@ -147,6 +150,57 @@ void StreamSolver::refuse_replacement(Word number, Refusal reason) noexcept {
   while (summary_.consumed < end) refuse(summary_.consumed++, reason);
 }
 
+/// Takes the pieces of a law's plan, which the planner has appended in this step. The state at the
+/// cut determines the curve through them.
+void StreamSolver::take_plan(Word number) noexcept {
+  const Time t = item_.time;
+  const Word pieces = Word{1} + item_.count;
+  core::RateCurve plan(t, {});
+  if (const auto reason = read_plan(number, plan)) {
+    refuse(number, *reason);
+    // What follows in the ring of a law are the other pieces.
+    while (planner_ != nullptr && summary_.consumed < available_) {
+      refuse(summary_.consumed++, *reason);
+    }
+    return;
+  }
+  summary_.consumed = number + pieces;
+  summary_.controls += pieces;
+  curve_.begin_run(t, Time::zero());
+  if (curve_.is_damaged()) return;
+  const Instant cut = curve_.origin_state();
+  core::LawPath path({.time = t,
+                      .position = cut.position[0],
+                      .rate = cut.velocity[0],
+                      .slope = cut.acceleration[0]});
+  for (const core::RatePiece& piece : plan.pieces()) path.add_piece(piece.end_rate, piece.length);
+  path.add_line();
+  for (const Waypoint& waypoint : path.waypoints()) curve_.append(waypoint, number);
+  summary_.starved = false;
+  summary_.newest_time = path.waypoints().back().time;
+}
+
+/// Reads the rates and lengths of a plan whose first piece has been copied; or why it is refused.
+std::optional<Refusal> StreamSolver::read_plan(Word number, core::RateCurve& plan) noexcept {
+  const Time t = item_.time;
+  const Word pieces = Word{1} + item_.count;
+  const bool is_plan = planner_ != nullptr && item_.place == 0 && curve_.has_begun() &&
+                       pieces <= core::RateCurve::kMostPieces && number + pieces <= available_;
+  if (!is_plan) return Refusal::unknown_kind;
+  if (t < settled_until_ || !is_time_in_range(t) || t < curve_.earliest_cut()) {
+    return Refusal::too_late;
+  }
+  for (Word i = 0; i < pieces; ++i) {
+    if (i > 0) ring_->copy(number + i, item_);
+    if (item_.kind != ItemKind::rate || item_.place != i) return Refusal::unknown_kind;
+    const auto piece = piece_of(item_.waypoint());
+    if (!piece) return Refusal::not_finite;
+    plan.add(piece->end_rate, piece->length);
+  }
+  const bool is_in_range = is_time_in_range(plan.end() + core::kLawLine);
+  return is_in_range ? std::nullopt : std::optional(Refusal::too_far_apart);
+}
+
 void StreamSolver::take_start_state(Word number) noexcept {
   const Waypoint state = item_.waypoint();
   if (curve_.has_begun()) return refuse(number, Refusal::already_started);
@@ -188,6 +242,7 @@ void StreamSolver::take_finish(Word number) noexcept {
 void StreamSolver::refuse(Word number, Refusal reason) noexcept {
   board_->write_refusal(summary_.refused++, {.item = number, .reason = reason});
   ++summary_.reasons[static_cast<std::size_t>(reason)];
+  has_refused_ = true;
 }
 
 }  // namespace splinecast::ipc

@@ -148,6 +148,10 @@ class PublishedCurve {
     return has_limits_ && window_.knots() > 0 ? find_excess(waypoint) : std::nullopt;
   }
 
+  /// The state in which the run begins. Requires that it was entered from a state, and has no entry
+  /// that has ended.
+  [[nodiscard]] Instant origin_state() const noexcept;
+
   /// Appends a waypoint to the run; `item` is its number in the ring.
   void append(const Waypoint& waypoint, Word item) noexcept;
 
@@ -214,7 +218,6 @@ class PublishedCurve {
   // Room, origins and changes: published_curve.cpp.
   [[nodiscard]] bool has_room_behind(Word number, std::size_t knots, Time keep) const noexcept;
   [[nodiscard]] bool has_room_to_enter(Time keep) const noexcept;
-  [[nodiscard]] Instant origin_state() const noexcept;
   void set_origin(Word number, const Instant& state) noexcept;
   void wait_for_entry() noexcept;
   void note_change(Time from) noexcept;

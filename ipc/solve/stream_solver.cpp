@@ -124,7 +124,9 @@ StepResult StreamSolver::make_revision(const Clock& clock, Time now) noexcept {
   freeze(clock, now);
   const Word consumed = consume(now);
   if (is_damaged()) return {.damaged = true};
-  if (consumed > 0 || has_starved_ || curve_.has_changes()) return publish(clock, consumed);
+  if (consumed > 0 || has_starved_ || curve_.has_changes() || plan_.must_commit) {
+    return publish(clock, consumed);
+  }
   if (!live_ || started_ < due()) return {};
   settled_at_ = started_;
   // Only the settled time has changed: stores that word, and readers keep their copies.
@@ -194,9 +196,10 @@ Word StreamSolver::reachable(Word written) const noexcept {
 }
 
 Word StreamSolver::consume(Time now) noexcept {
+  const Word before = summary_.consumed;
+  if (planner_ != nullptr) plan_law(now);
   const Word written = ring_->written();
   available_ = reachable(written);
-  const Word before = summary_.consumed;
   keep_ = live_ ? now - live_->history : Time::max();
   withdraw();
   bool is_blocked = false;
@@ -227,6 +230,16 @@ Word StreamSolver::consume(Time now) noexcept {
   return summary_.consumed - before;
 }
 
+/// Withdraws what an earlier step or solver has left in the ring, and plans from the settled time
+/// on.
+void StreamSolver::plan_law(Time now) noexcept {
+  const Word left = reachable(ring_->written()) - summary_.consumed;
+  summary_.withdrawn += left;
+  summary_.consumed += left;
+  has_refused_ = false;
+  plan_ = planner_->plan(now, settled_until_);
+}
+
 /// Whether the curve enters onto the waypoints before a replacement, which is taken in the next
 /// revision then. The entry is a revision of its own, so that it does not depend on when the
 /// waypoints were taken.
@@ -240,8 +253,10 @@ bool StreamSolver::enters_before(const RingItem& item) noexcept {
 }
 
 /// Whether an item can be taken in this revision without losing the history that must be kept. A
-/// replacement cuts the committed curve only, so it must be the first change of a revision.
+/// replacement cuts the committed curve only, so it must be the first change of a revision. A law
+/// does not wait for room: its history is shorter if more than a board of plans comes.
 bool StreamSolver::has_room(const RingItem& item) const noexcept {
+  if (item.kind == ItemKind::rate) return !curve_.has_changes();
   if (item.kind != ItemKind::replace) return curve_.has_room(kAddedByItem, keep_);
   if (curve_.has_changes()) return false;
   // A stop costs at most one segment of the history: it does not wait for room.
@@ -293,6 +308,9 @@ StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
     take_back(summary_.deadline_misses + 1);
     return {.missed = true};
   }
+  // A table without the plan that belongs to it would show what is not in force.
+  if (planner_ != nullptr)
+    board_->set_commanders(has_refused_ ? std::span<const Word>{} : plan_.table);
   board_->commit(summary_);
   settled_at_ = started_;
   if (summary_.newest > 0) store_settled(settled_by_commit());

@@ -4,12 +4,14 @@
 #include <optional>
 #include <vector>
 
+#include "core/laws/rate_curve.hpp"
 #include "core/online/sliding_window.hpp"
 #include "ipc/board/reader.hpp"
 #include "ipc/board/writer.hpp"
 #include "ipc/layout/summary.hpp"
 #include "ipc/ring/item.hpp"
 #include "ipc/ring/reader.hpp"
+#include "ipc/solve/law_planner.hpp"
 #include "ipc/solve/published_curve.hpp"
 #include "ipc/solve/replacement_queue.hpp"
 #include "ipc/solve/settled_raise.hpp"
@@ -49,6 +51,10 @@ struct LiveOptions {
 /// A stop is a replacement without waypoints. It takes effect at settled_until of the first step
 /// that finds it in the ring, or at its own time if that is later, regardless of the items queued
 /// before it and of the room that the board has for them.
+///
+/// The solver of a time law plans the law itself, in each step: see plan_with(). Items that an
+/// earlier step or solver has left in the ring are withdrawn first, because they were planned for a
+/// time that has passed.
 class StreamSolver {
  public:
   /// `board` and `published` are the writing and the reading side of one board; with `ring` they
@@ -61,6 +67,9 @@ class StreamSolver {
                const IngestLimits& limits, DimensionKinds kinds = {},
                const std::optional<LiveOptions>& live = std::nullopt,
                Beyond beyond = Beyond::report);
+
+  /// The stream is a time law, of which this is the planner; it outlives the solver.
+  void plan_with(LawPlanner& planner) noexcept { planner_ = &planner; }
 
   /// Takes the items in the ring, up to a bounded batch, and publishes the result as one revision.
   /// On a live stream it also stores settled_until when that is due, without a new revision.
@@ -96,6 +105,7 @@ class StreamSolver {
   void take_back(Word misses) noexcept;
   void suspect_items() noexcept;
   [[nodiscard]] Word consume(Time now) noexcept;
+  void plan_law(Time now) noexcept;
   [[nodiscard]] bool is_damaged() const noexcept { return lacks_summary_ || curve_.is_damaged(); }
   [[nodiscard]] Word reachable(Word written) const noexcept;
   [[nodiscard]] bool enters_before(const RingItem& item) noexcept;
@@ -111,6 +121,8 @@ class StreamSolver {
   [[nodiscard]] bool note_excess(const Waypoint& waypoint, Word number) noexcept;
   void take_replacement(Word number) noexcept;
   void refuse_replacement(Word number, Refusal reason) noexcept;
+  void take_plan(Word number) noexcept;
+  [[nodiscard]] std::optional<Refusal> read_plan(Word number, core::RateCurve& plan) noexcept;
   void take_start_state(Word number) noexcept;
   void take_finish(Word number) noexcept;
   [[nodiscard]] bool is_starved() const noexcept;
@@ -155,6 +167,9 @@ class StreamSolver {
   std::optional<Word> unsound_entry_{};  ///< the replacement before which an entry is unsound
   Word available_ = 0;                   ///< this step takes items before this one
   ReplacementQueue replacements_;
+  LawPlanner* planner_ = nullptr;  ///< of a time law
+  LawPlan plan_;                   ///< of this revision
+  bool has_refused_ = false;       ///< the revision has refused an item
 };
 
 }  // namespace splinecast::ipc

@@ -27,6 +27,7 @@ enum class SweepNews : std::uint8_t {
   no_descriptors,  ///< RLIMIT_NOFILE does not allow another one; retried when streams come or go
   refused,         ///< an item was refused, the first one for its reason
   beyond_limits,   ///< the curve exceeds a limit with a waypoint that was taken, the first one
+  commander,       ///< of a time law: a commander is not heard, or holds it unasked
   postponed,       ///< memory or descriptors are lacking; retried periodically
   given_up,        ///< it cannot be solved; retried when its files have been replaced
   gone,            ///< a stream that was found by a pattern no longer exists
@@ -46,7 +47,7 @@ class StreamSweep {
  public:
   /// Called when the state of a stream has changed, and for its first refusals, excess and finish.
   /// `solver` is not null if the stream is solved here; `why` is set for `postponed`, `given_up`,
-  /// `refused` and `beyond_limits`. Exceptions that it throws are ignored.
+  /// `refused`, `beyond_limits` and `commander`. Exceptions that it throws are ignored.
   using Tell = std::function<void(SweepNews news, const std::string& stream, const Solver* solver,
                                   std::string_view why)>;
 
@@ -169,6 +170,7 @@ class StreamSweep {
   std::vector<Served> served_;          ///< the same streams, with the same indices
   std::vector<std::size_t> calling_;    ///< indices of the streams that this sweep steps
   std::vector<ItemRefusal> refused_;    ///< scratch
+  std::vector<std::string> faults_;     ///< scratch
   Time now_{};                          ///< time of this sweep
   Time pause_;
   std::size_t quiet_sweeps_;  ///< one sweep out of this many polls an idle stream

@@ -105,6 +105,11 @@ void StreamSweep::tell_first_refusals(Solver& solver) noexcept {
     if (const auto excess = solver.take_first_excess()) {
       tell_(SweepNews::beyond_limits, solver.stream(), &solver, solver.in_words(*excess));
     }
+    faults_.clear();
+    solver.take_commander_faults(faults_);
+    for (const std::string& fault : faults_) {
+      tell_(SweepNews::commander, solver.stream(), &solver, fault);
+    }
   } catch (...) {
     return;  // an exception of the callback is ignored
   }

@@ -53,6 +53,8 @@ bool StreamSweep::own(const std::string& stream, Member& member) {
     return true;
   } catch (const StreamBusy&) {
     become(stream, member, State::elsewhere, SweepNews::elsewhere);
+  } catch (const LawLost& error) {
+    drop(stream, member, error);
   } catch (const NoSuchStream&) {
     looks_again_ = true;  // it was just removed
   } catch (const std::exception& error) {

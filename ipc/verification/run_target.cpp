@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/laws/law_path.hpp"
 #include "ipc/ring/item.hpp"
 #include "splinecast/waypoint.hpp"
 
@@ -17,7 +18,45 @@ void RunTarget::forget_waypoints() noexcept {
 void RunTarget::list_waypoints(Word first) {
   waypoints_.clear();
   first_ = 0;
-  list_after(first, std::nullopt);
+  if (!record_.items.is_taken(first, ItemKind::rate)) return list_after(first, std::nullopt);
+  list_plan(first,
+            {.time = begin_time_,
+             .position = begin_.position()[0],
+             .rate = begin_.velocity()[0],
+             .slope = begin_.acceleration()[0]},
+            0);
+}
+
+void RunTarget::begin_at(const Instant& state) noexcept {
+  begin_time_ = state.time;
+  std::ranges::copy(state.position, begin_.ref().position.begin());
+  std::ranges::copy(state.velocity, begin_.ref().velocity.begin());
+  std::ranges::copy(state.acceleration, begin_.ref().acceleration.begin());
+}
+
+/// Lists the waypoints of the plan of a law whose pieces begin with item `first`, from its waypoint
+/// `done` on. `from`: the state before that one.
+void RunTarget::list_plan(Word first, const core::LawState& from, std::size_t done) {
+  const SentItems& items = record_.items;
+  const std::size_t pieces =
+      std::min<std::size_t>(std::size_t{1} + items.count(first), core::RateCurve::kMostPieces);
+  core::LawPath path(from);
+  for (std::size_t k = done; k <= pieces; ++k) {
+    const Word item = first + std::min(k, pieces - 1);
+    if (!items.is_taken(item, ItemKind::rate)) return;
+    const auto piece = piece_of(items.waypoint(item));
+    if (!piece) return;
+    if (k < pieces) {
+      path.add_piece(piece->end_rate, piece->length);
+    } else {
+      path.add_line();
+    }
+    const Waypoint& waypoint = path.waypoints().back();
+    waypoints_.push_back(
+        {.time = waypoint.time,
+         .item = item,
+         .of_plan = {waypoint.position[0], waypoint.velocity[0], waypoint.acceleration[0]}});
+  }
 }
 
 /// Lists the waypoints from item `first` on that are later than `after`, up to the next replacement
@@ -50,7 +89,15 @@ void RunTarget::restart(const RunRestart& restart) {
   forget_waypoints();
   first_ = restart.end() - 1;
   waypoints_.push_back({.time = restart.knots.back().time, .item = restart.run_item});
-  list_after(restart.run_item, restart.knots.back().time);
+  if (record_.items.is_taken(restart.run_item, ItemKind::rate)) {
+    const RestartKnot& last = restart.knots.back();
+    list_plan(
+        restart.run_item,
+        {.time = last.time, .position = last.waypoint[0], .rate = last.velocity[0], .slope = 0},
+        restart.end());
+  } else {
+    list_after(restart.run_item, restart.knots.back().time);
+  }
   used_ = waypoints_.size() > 1 ? waypoints_[1].item : record_.items.size();
 }
 
@@ -79,9 +126,8 @@ bool RunTarget::append_until(std::size_t count) {
     for (; frozen_met_ < met_.size() && met_[frozen_met_].newest < k; ++frozen_met_) {
       window_.freeze_knots(met_[frozen_met_].index + 1);
     }
-    const Word item = waypoints_[k - first_].item;
-    append(item);
-    used_ = item + 1;
+    append(waypoints_[k - first_]);
+    used_ = waypoints_[k - first_].item + 1;
   }
   return true;
 }
@@ -92,8 +138,20 @@ void RunTarget::finish_last_run() noexcept {
   if (window_.frozen_knots() < window_.knots()) window_.finish(record_.end);
 }
 
-void RunTarget::append(Word item) noexcept {
-  const Waypoint sent = record_.items.waypoint(item);
+/// A waypoint of the run as it was sent, or as the plan of a law determines it.
+Waypoint RunTarget::sent(const RunWaypoint& waypoint) const noexcept {
+  if (!record_.items.is_taken(waypoint.item, ItemKind::rate)) {
+    return record_.items.waypoint(waypoint.item);
+  }
+  const auto values = std::span<const double>(waypoint.of_plan);
+  return {.time = waypoint.time,
+          .position = values.first(1),
+          .velocity = values.subspan(1, 1),
+          .acceleration = values.last(1)};
+}
+
+void RunTarget::append(const RunWaypoint& waypoint) noexcept {
+  const Waypoint sent = this->sent(waypoint);
   const std::size_t dimensions = window_.dimensions();
   const auto copy = [&](std::size_t part, std::span<const double> from) {
     const auto to = std::span(values_).subspan(part * dimensions, from.size());
@@ -112,8 +170,7 @@ void RunTarget::append(Word item) noexcept {
 
 std::span<const double> RunTarget::newest_position() const noexcept {
   if (window_.knots() > 0) return window_.knot(window_.knots() - 1).waypoint;
-  return window_.is_later_run() ? std::span<const double>(begin_position_)
-                                : std::span<const double>{};
+  return window_.is_later_run() ? begin_.position() : std::span<const double>{};
 }
 
 }  // namespace splinecast::ipc

@@ -1,14 +1,18 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "core/laws/rate_curve.hpp"
 #include "core/online/sliding_window.hpp"
 #include "ipc/memory/word.hpp"
 #include "ipc/verification/stream_record.hpp"
+#include "splinecast/state.hpp"
 #include "splinecast/time.hpp"
+#include "splinecast/waypoint.hpp"
 
 namespace splinecast::ipc {
 
@@ -21,7 +25,8 @@ class RunTarget {
   explicit RunTarget(const StreamRecord& record)
       : record_(record),
         window_(record.items.dimensions(), record.window),
-        values_(3 * record.items.dimensions()) {}
+        values_(3 * record.items.dimensions()),
+        begin_(record.items.dimensions()) {}
 
   /// The spline through the waypoints appended so far.
   [[nodiscard]] const core::SlidingWindow& window() const noexcept { return window_; }
@@ -29,18 +34,16 @@ class RunTarget {
   /// Begins a new run, which continues from a given state: see begin_at().
   void begin_run() { window_.begin_run(); }
 
-  /// Sets the position at which the current run begins. The first waypoint is unwrapped to it.
-  /// Allocates.
-  void begin_at(std::span<const double> position) {
-    begin_position_.assign(position.begin(), position.end());
-  }
+  /// Sets the state in which the current run begins. The first waypoint is unwrapped to it, and
+  /// the pieces of a law continue it.
+  void begin_at(const Instant& state) noexcept;
 
   /// Clears the lists of a run: its waypoints, and those that the curve meets.
   void forget_waypoints() noexcept;
 
   /// Lists the waypoints of the run that begins with item `first`, up to the next replacement.
   /// Stops at a waypoint that is not later than the one before it: the solver has withdrawn it and
-  /// the rest. Allocates.
+  /// the rest. If the item is a piece of a law, lists the waypoints of its plan. Allocates.
   void list_waypoints(Word first);
 
   /// Continues a run after knots that are not solved again, and lists its waypoints after these.
@@ -80,6 +83,7 @@ class RunTarget {
   struct RunWaypoint {
     Time time;
     Word item;
+    std::array<double, 3> of_plan{};  ///< of a law's plan: position, velocity, acceleration
   };
   /// A knot of a run that the curve meets, and the knot that was newest when it was last solved.
   struct MetKnot {
@@ -88,13 +92,16 @@ class RunTarget {
   };
 
   void list_after(Word first, std::optional<Time> after);
-  void append(Word item) noexcept;
+  void list_plan(Word first, const core::LawState& from, std::size_t done);
+  [[nodiscard]] Waypoint sent(const RunWaypoint& waypoint) const noexcept;
+  void append(const RunWaypoint& waypoint) noexcept;
   [[nodiscard]] std::span<const double> newest_position() const noexcept;
 
   const StreamRecord& record_;
   core::SlidingWindow window_;
-  std::vector<double> values_;          ///< scratch
-  std::vector<double> begin_position_;  ///< where the current run begins
+  std::vector<double> values_;  ///< scratch
+  State begin_;                 ///< in which the current run begins
+  Time begin_time_{};
   std::vector<RunWaypoint> waypoints_;  ///< of the current run
   std::size_t first_ = 0;               ///< number of the first of them in the run
   std::vector<MetKnot> met_;            ///< knots of the current run that the curve meets

@@ -4,10 +4,11 @@
 
 namespace splinecast::ipc {
 
-void SentItems::add(ItemKind kind, const Waypoint& values) {
+void SentItems::add(ItemKind kind, const Waypoint& values, std::uint32_t count) {
   items_.push_back({.kind = kind,
                     .has_velocity = !values.velocity.empty(),
                     .has_acceleration = !values.acceleration.empty(),
+                    .count = count,
                     .time = values.time,
                     .values = values_.size()});
   for (const auto part : {values.position, values.velocity, values.acceleration}) {

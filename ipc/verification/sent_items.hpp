@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -27,8 +28,9 @@ class SentItems {
   [[nodiscard]] bool has(Word item) const noexcept { return item >= first_ && item < size(); }
 
   /// Adds the next item, with a copy of its values. A start state has position, velocity and
-  /// acceleration; a replacement has only a time.
-  void add(ItemKind kind, const Waypoint& values);
+  /// acceleration; a replacement has only a time; a piece of a law has its end rate, length and
+  /// request in these places, and `count` pieces after it.
+  void add(ItemKind kind, const Waypoint& values, std::uint32_t count = 0);
 
   /// Notes that the solver refused an item. Ignores unknown items.
   void refuse(Word item) noexcept;
@@ -44,6 +46,9 @@ class SentItems {
   /// nothing if there is none.
   [[nodiscard]] std::optional<Word> find(ItemKind kind, Word from, Word end) const noexcept;
 
+  /// Of a piece of a law: the number of pieces of its plan after it.
+  [[nodiscard]] std::uint32_t count(Word item) const noexcept { return at(item).count; }
+
   /// An item's values: a view, valid until the next `add`.
   [[nodiscard]] Waypoint waypoint(Word item) const noexcept;
 
@@ -53,6 +58,7 @@ class SentItems {
     bool is_refused = false;
     bool has_velocity = false;
     bool has_acceleration = false;
+    std::uint32_t count = 0;
     Time time{};
     std::size_t values = 0;  ///< index of its first value
   };

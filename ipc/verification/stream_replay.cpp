@@ -96,7 +96,7 @@ bool StreamReplay::begin_run(std::size_t i) {
       i > 0 && !is_first_of_part && target_.window().knots() == 0 &&
       (target_.window().is_later_run() || !record_.items.find(ItemKind::replace, 0, first_items));
   if (is_later && !is_same_run) target_.begin_run();
-  if (!is_same_run || decisions_.begins_at_cut(i)) target_.begin_at(begin_.position());
+  if (!is_same_run || decisions_.begins_at_cut(i)) target_.begin_at(begin_.at(segment.left));
   target_.forget_waypoints();
   run_item_ = segment.origin.item;
   if (!run_item_ && segment.has_waypoint) {
@@ -142,7 +142,7 @@ bool StreamReplay::rests_at_last_waypoint() {
   if (segments_.empty() || run_item == 0 || run_item_ == run_item - 1) return false;
   if (!expect_all_used(run_item - 1)) return false;
   begin_.take_cut(segments_.size() - 1, segments_.back().right);
-  target_.begin_at(begin_.position());
+  target_.begin_at(begin_.at(segments_.back().right));
   target_.begin_run();
   target_.forget_waypoints();
   target_.list_waypoints(run_item - 1);

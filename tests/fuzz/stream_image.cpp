@@ -140,7 +140,7 @@ ipc::BoardLayout layout_of(std::span<const Word> region) {
                         header.capacity >= 1 && header.capacity <= kMaxWords;
   if (!has_size) return {};
   const auto layout = ipc::BoardLayout::of(header.dimensions, header.capacity, header.control,
-                                           ipc::smooths(header));
+                                           ipc::smooths(header), header.is_law != 0);
   return layout.bytes > region.size_bytes() ? ipc::BoardLayout{} : layout;
 }
 

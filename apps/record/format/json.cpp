@@ -17,8 +17,8 @@ constexpr std::string_view kTimeProperty =
     R"("time_ns":{"type":"integer","description":"time of the stream, ns"})";
 
 std::string_view name_of(ipc::ItemKind kind) noexcept {
-  constexpr std::array<std::string_view, 5> kNames{"unknown", "waypoint", "replace", "start_state",
-                                                   "finish"};
+  constexpr std::array<std::string_view, 6> kNames{"unknown",     "waypoint", "replace",
+                                                   "start_state", "finish",   "rate"};
   const auto i = static_cast<std::size_t>(kind);
   return i < kNames.size() ? kNames.at(i) : kNames.front();
 }
@@ -66,6 +66,10 @@ std::string_view JsonMessages::waypoint(ipc::Word number, const ipc::RingItem& i
   const Waypoint given = values_of(item);
   if (item.kind == ipc::ItemKind::finish) {
     append(text_, R"(,"condition":"{}")", to_string(condition_of(item)));
+  } else if (item.kind == ipc::ItemKind::rate) {
+    const auto piece = ipc::piece_of(given).value_or(ipc::RateItem{});
+    append(text_, R"(,"rate":{},"length_ns":{},"commander":{},"request":{},"count":{})",
+           piece.end_rate, piece.length.count(), item.commander, item.request(), item.count);
   } else {
     values("position", given.position);
     values("velocity", given.velocity);
@@ -109,7 +113,9 @@ std::string JsonMessages::waypoint_schema() const {
   return schema("splinecast.Waypoint",
                 R"(,"kind":{"type":"string"},"item":{"type":"integer"},)"
                 R"("condition":{"type":"string"},"count":{"type":"integer"},)"
-                R"("blend_ns":{"type":"integer"})");
+                R"("blend_ns":{"type":"integer"},"rate":{"type":"number"},)"
+                R"("length_ns":{"type":"integer"},"commander":{"type":"integer"},)"
+                R"("request":{"type":"integer"})");
 }
 
 std::string JsonMessages::state_schema() const { return schema("splinecast.State", ""); }

@@ -30,9 +30,10 @@ Enum checked(std::uint8_t number, Enum least, Enum most, std::string_view what) 
 }
 
 /// Whether the message of an item has D values in the place of a position. A finish with a velocity
-/// or an acceleration has them too, but they mean nothing.
+/// or an acceleration has them too, but they mean nothing. A piece of a law has its end rate there.
 bool has_position(const ipc::RingItem& item) noexcept {
   return item.kind == ipc::ItemKind::waypoint || item.kind == ipc::ItemKind::start_state ||
+         item.kind == ipc::ItemKind::rate ||
          (item.kind == ipc::ItemKind::finish && (item.condition == ConditionKind::velocity ||
                                                  item.condition == ConditionKind::acceleration));
 }
@@ -78,8 +79,9 @@ Bytes encode(ipc::Word number, const ipc::RingItem& item) {
       .put(number)
       .put(static_cast<std::uint8_t>(item.kind))
       .put(flags)
-      .put(static_cast<std::uint8_t>(item.condition))
-      .put(std::uint8_t{0})
+      .put(item.kind == ipc::ItemKind::rate ? item.commander
+                                            : static_cast<std::uint8_t>(item.condition))
+      .put(item.place)
       .put(item.count)
       .put(item.time)
       .put(item.blend)
@@ -94,13 +96,17 @@ NumberedItem decode_item(std::span<const std::byte> bytes, std::size_t dimension
   NumberedItem found{.number = in.take<ipc::Word>(), .item = ipc::RingItem(dimensions)};
   ipc::RingItem& item = found.item;
   item.kind =
-      checked(in.take<std::uint8_t>(), ipc::ItemKind::waypoint, ipc::ItemKind::finish, "item kind");
+      checked(in.take<std::uint8_t>(), ipc::ItemKind::waypoint, ipc::ItemKind::rate, "item kind");
   const auto flags = in.take<std::uint8_t>();
   item.has_velocity = (flags & kHasVelocity) != 0;
   item.has_acceleration = (flags & kHasAcceleration) != 0;
-  item.condition =
-      checked(in.take<std::uint8_t>(), ConditionKind::natural, ConditionKind::own, "condition");
-  (void)in.take<std::uint8_t>();
+  if (item.kind == ipc::ItemKind::rate) {
+    item.commander = in.take<std::uint8_t>();
+  } else {
+    item.condition =
+        checked(in.take<std::uint8_t>(), ConditionKind::natural, ConditionKind::own, "condition");
+  }
+  item.place = in.take<std::uint8_t>();
   item.count = in.take<std::uint32_t>();
   item.time = in.take_time();
   item.blend = in.take_time();

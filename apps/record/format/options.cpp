@@ -210,7 +210,7 @@ void check_ring(RegionHeader& header) {
 void check_board(RegionHeader& header) {
   const auto layout =
       ipc::BoardLayout::of(header.dimensions, std::min(header.capacity, ipc::kMaxBoardCapacity),
-                           header.control, ipc::smooths(header));
+                           header.control, ipc::smooths(header), header.is_law != 0);
   header.stride = layout.stride;
   header.region_bytes = layout.bytes;
   (void)ipc::checked_board_layout(header, layout.bytes);

@@ -126,7 +126,7 @@ ipc::SentItems RecordedStream::sent_items() const {
   const ipc::Word first = items_.empty() ? items_end_ : items_.begin()->first;
   ipc::SentItems sent(options_->waypoints.dimensions, first);
   for (const auto& [number, item] : items_) {
-    sent.add(item.item.kind, values_of(item.item));
+    sent.add(item.item.kind, values_of(item.item), item.item.count);
     if (item.is_refused) sent.refuse(number);
   }
   return sent;

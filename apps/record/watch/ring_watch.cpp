@@ -50,6 +50,9 @@ ipc::Word RingWatch::look(Batch& batch) {
     }
     has_any_ = true;
     if (item_.kind == ipc::ItemKind::waypoint) open_.push_back({next_, item_.time});
+    // The pieces of a plan are needed together, as long as its run lasts.
+    const bool is_plan = item_.kind == ipc::ItemKind::rate && item_.place == 0;
+    if (is_plan) open_.push_back({next_, Time::max()});
     batch.add({.stream = number_,
                .kind = RecordKind::item,
                .number = next_,

@@ -18,6 +18,13 @@ class NoSuchStream : public StreamError {
   using StreamError::StreamError;
 };
 
+/// The time law that a stream follows has been removed: those that follow it already continue, and
+/// no other reader or solver can.
+class LawLost : public NoSuchStream {
+ public:
+  using NoSuchStream::NoSuchStream;
+};
+
 /// Another living process owns the region to be written or removed.
 class StreamBusy : public StreamError {
  public:

@@ -87,6 +87,11 @@ class Solver {
   /// call.
   [[nodiscard]] std::optional<LimitExcess> take_first_excess() noexcept;
 
+  /// Of a time law: adds what a person must know of its commanders to `out`, one sentence each:
+  /// those that are not heard, and those that hold the law because their dead man has fired or
+  /// their request is damaged. Each once, as long as it lasts. Looks every 20 ms. Allocates.
+  void take_commander_faults(std::vector<std::string>& out);
+
   /// `item 17, acceleration of dimension 2 (wrist) is …`; attached() only.
   [[nodiscard]] std::string in_words(const LimitExcess& excess) const;
 

@@ -743,29 +743,50 @@ class RateCommander:
         group: Optional[int] = None,
         owner: Optional[int] = None,
     ) -> None: ...
-    def set_rate(self, rate: Seconds, ramp: Seconds) -> None:
+    def set_rate(self, rate: Seconds, ramp: Seconds, *, wait: Optional[Seconds] = None) -> int:
         """Request a rate, reached by a ramp.
 
         Parameters
         ----------
         rate : float
-            0 to 100; above the law's largest rate it counts as the largest.
+            0 to the law's largest rate; while no solver has begun the law, 0 to 100.
         ramp : float
             Length of the ramp [s], 0.001 to 3600. A rise that it interrupts is first flattened,
             within a quarter of it.
+        wait : float, optional
+            Return when the request is in force: when the law's solver has committed it. For at most this time [s].
+            Without it, do not wait.
+
+        Returns
+        -------
+        int
+            The number of the request.
+
+        Raises
+        ------
+        BadRequest
+            A value out of range.
+        TimeoutError
+            The request is not in force after `wait`. It remains.
         """
-    def hold(self, ramp: Seconds) -> None:
-        """Request rate 0, reached by a ramp of this length [s]."""
-    def release(self, ramp: Seconds) -> None:
-        """Withdraw the request: the law has the least rate of the others, or 1 if there is none."""
+    def hold(self, ramp: Seconds, *, wait: Optional[Seconds] = None) -> int:
+        """Request rate 0, reached by a ramp of this length [s]. `wait` and the result are those of `set_rate`."""
+    def release(self, ramp: Seconds, *, wait: Optional[Seconds] = None) -> int:
+        """Withdraw the request: the law has the least rate of the others, or 1 if there is none.
+
+        `wait` and the result are those of `set_rate`.
+        """
     def set_dead_man(self, timeout: Seconds, ramp: Seconds = 0.5) -> None:
         """Hold the law unless a request is renewed within this time [s], 0.001 to 3600; 0: never.
 
         In force from the next request on. The hold has a ramp of this length [s], 0.001 to 3600, and lasts until the
         next request: a renewal that comes too late does not end it.
         """
-    def renew(self) -> None:
-        """Renew the last request, for `set_dead_man`."""
+    def renew(self) -> bool:
+        """Renew the last request, for `set_dead_man`.
+
+        Returns False, and does nothing, if the dead man of that request has fired: make another request.
+        """
     def close(self) -> None:
         """Give the name up. The last request remains in force. Closing again does nothing."""
     def __enter__(self: _Self) -> _Self:

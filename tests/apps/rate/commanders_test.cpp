@@ -45,12 +45,39 @@ TEST_F(Rate, ShowsTheRateAndWhoRequestsIt) {
 }
 
 TEST_F(Rate, ARequestBeforeThereIsASolverIsTheRateAtWhichTheLawBegins) {
-  const Ended early = rate({"0.25"});
+  const Ended early = rate({"0.25", "--wait", "0"});
   EXPECT_EQ(early.code, 0);
   EXPECT_NE(early.err.find("waiting for a solver"), std::string::npos) << early.err;
   EXPECT_EQ(shown()["solved"], false);
   Process solver({"solve", law()});
   ASSERT_TRUE(await_rate(0.25));
+}
+
+TEST_F(Rate, ARequestThatNoSolverTakesEndsWithACodeOfItsOwn) {
+  const Ended early = rate({"0.25", "--wait", "0.02"});
+  EXPECT_EQ(early.code, 4);
+  EXPECT_NE(early.err.find("request 1 of 'operator' is not in force after 0.02 s; it remains"),
+            std::string::npos)
+      << early.err;
+  Process solver({"solve", law()});
+  ASSERT_TRUE(await_rate(0.25));
+  EXPECT_EQ(rate({"0.5", "--ramp", "0.01"}).code, 0);
+}
+
+TEST_F(Rate, ASeventeenthCommanderIsRefusedWithTheNamesOfTheOthers) {
+  Process solver({"solve", law()});
+  for (int i = 0; i < 16; ++i) {
+    ASSERT_EQ(rate({"1", "--as", "c" + std::to_string(i)}).code, 0) << i;
+  }
+  const Ended more = rate({"0", "--as", "more"});
+  EXPECT_EQ(more.code, 1);
+  EXPECT_NE(more.err.find("16 commanders"), std::string::npos) << more.err;
+  EXPECT_NE(more.err.find("c0, c1, c2"), std::string::npos) << more.err;
+  ASSERT_EQ(rate({"--release", "--as", "c7"}).code, 0);
+  ASSERT_TRUE(testing::await([&] {
+    return rate({"0", "--as", "more", "--ramp", "0.01"}).code == 0;
+  }));
+  EXPECT_TRUE(await_rate(0));
 }
 
 TEST_F(Rate, TheLeastRequestOfLivingAndKilledProcessesWins) {

@@ -18,7 +18,7 @@ using testing::Process;
 class MovingFollower : public Rate {
  protected:
   MovingFollower()
-      : request_(rate({"1", "--ramp", "0.01"})),
+      : request_(rate({"1", "--ramp", "0.01", "--wait", "0"})),
         solver_({"solve", law(), arm(), "--max-acceleration", "10"}),
         replay_({"replay", line_file(4000), "--stream", arm(), "--law", law(), "--lead", "1500"}) {
     EXPECT_EQ(request_.code, 0) << request_.err;
@@ -168,6 +168,15 @@ TEST_F(MovingFollower, ALawThatIsFollowedIsRemovedWithNowOnly) {
             std::string::npos)
       << refused.err;
   EXPECT_EQ(testing::run({"rm", "--now", law()}).code, 0);
+  for (const std::vector<std::string>& later :
+       {std::vector<std::string>{"sample", arm(), "--rate", "10", "--count", "1"},
+        std::vector<std::string>{"solve", arm()}}) {
+    const Ended lost = testing::run(later);
+    EXPECT_EQ(lost.code, 4) << later[0];
+    EXPECT_NE(lost.err.find("law lost: the time law '" + law() + "' has been removed"),
+              std::string::npos)
+        << lost.err;
+  }
   EXPECT_EQ(testing::run({"rm", "--now", arm()}).code, 0);
 }
 

@@ -20,15 +20,13 @@ namespace splinecast::apps {
 /// A time law, commanded by real processes, and a stream that may follow it.
 class Rate : public ::testing::Test {
  protected:
-  /// `rate LAW` with these arguments, to its end.
-  [[nodiscard]] testing::Ended rate(std::vector<std::string> arguments = {}) const {
-    arguments.insert(arguments.begin(), {"rate", law()});
-    return testing::run(arguments);
+  /// `rate LAW` with these arguments, to its end. A request is waited for as long as it takes.
+  [[nodiscard]] testing::Ended rate(const std::vector<std::string>& arguments = {}) const {
+    return testing::run(command(arguments));
   }
   /// The same as a process that runs on.
-  [[nodiscard]] testing::Process start_rate(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), {"rate", law()});
-    return testing::Process(arguments);
+  [[nodiscard]] testing::Process start_rate(const std::vector<std::string>& arguments) const {
+    return testing::Process(command(arguments));
   }
   /// `rate LAW --json`; null if there is no law.
   [[nodiscard]] nlohmann::json shown() const {
@@ -43,6 +41,14 @@ class Rate : public ::testing::Test {
       if (each["name"] == name) return each;
     }
     return {};
+  }
+
+  [[nodiscard]] std::vector<std::string> command(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> all{"rate", law()};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const bool has_wait = std::ranges::find(arguments, "--wait") != arguments.end();
+    if (!has_wait) all.insert(all.end(), {"--wait", "600"});
+    return all;
   }
 
   /// The straight line after a ramp is curved by rounding.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <random>
@@ -55,6 +57,13 @@ std::vector<Example> examples() {
   item.kind = ipc::ItemKind::start_state;
   item.has_velocity = item.has_acceleration = true;
   item.values = {1, -0.0, 3, std::numeric_limits<double>::denorm_min(), 5, 6, 7, 8, 9};
+  ipc::RingItem piece(1);
+  piece.kind = ipc::ItemKind::rate;
+  piece.has_velocity = piece.has_acceleration = true;
+  piece.commander = 15;
+  piece.place = 2;
+  piece.count = 1;
+  piece.values = {0.3, 0.5, std::bit_cast<double>(std::uint64_t{7})};
   ipc::Summary summary;
   summary.finished = true;
   summary.run_item = 3;
@@ -63,6 +72,14 @@ std::vector<Example> examples() {
       {encode(12, item),
        [=](auto m) {
          const NumberedItem found = decode_item(body(m), kDimensions);
+         return encode(found.number, found.item);
+       }},
+      {encode(13, piece),
+       [=](auto m) {
+         const NumberedItem found = decode_item(body(m), 1);
+         EXPECT_EQ(found.item.commander, 15);
+         EXPECT_EQ(found.item.place, 2);
+         EXPECT_EQ(found.item.request(), 7U);
          return encode(found.number, found.item);
        }},
       {encode(ipc::RefusedItem{.item = 3, .reason = Refusal::past}),

@@ -103,8 +103,16 @@ TEST_F(CLaw, HasTheRateThatIsRequested) {
   begin();
   ASSERT_EQ(splinecast_rate_commander_set_rate(commander_, 1.75, 5 * kMs), 0);
   reach(1.75);
-  ASSERT_EQ(splinecast_rate_commander_set_rate(commander_, 50, 5 * kMs), 0);
+  expect_refused("the largest rate", "",
+                 splinecast_rate_commander_set_rate(commander_, 50, 5 * kMs));
+  ASSERT_EQ(splinecast_rate_commander_set_rate(commander_, 2, 5 * kMs), 0);
+  std::uint64_t number = 0;
+  ASSERT_EQ(splinecast_rate_commander_number(commander_, &number), 0);
+  EXPECT_EQ(number, 3U);
+  EXPECT_EQ(splinecast_rate_commander_wait_in_force(commander_, number, kMs), 0);
   reach(2);
+  EXPECT_EQ(splinecast_rate_commander_wait_in_force(commander_, number, 0), 1);
+  EXPECT_EQ(splinecast_rate_commander_wait_in_force(commander_, number + 1, kMs), 0);
   ASSERT_EQ(splinecast_rate_commander_hold(commander_, 5 * kMs), 0);
   reach(0);
   ASSERT_EQ(splinecast_rate_commander_renew(commander_), 0);
@@ -117,6 +125,7 @@ TEST_F(CLaw, HoldsWhenTheDeadManOfACommanderExpires) {
   ASSERT_EQ(splinecast_rate_commander_set_dead_man(commander_, 20 * kMs, 20 * kMs), 0);
   ASSERT_EQ(splinecast_rate_commander_set_rate(commander_, 0.5, 5 * kMs), 0);
   reach(0);
+  EXPECT_EQ(splinecast_rate_commander_renew(commander_), 1);
 }
 
 TEST_F(CLaw, RefusesRequestsThatAreOutOfRange) {

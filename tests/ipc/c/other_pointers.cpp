@@ -238,6 +238,9 @@ void CPointers::add_rate_commander() {
   HANDLE_ONLY(commander, splinecast_rate_commander_release, , 1'000'000);
   HANDLE_ONLY(commander, splinecast_rate_commander_set_dead_man, , 0, 1'000'000);
   HANDLE_ONLY(commander, splinecast_rate_commander_renew);
+  HANDLE_AND_OUTPUT(commander, uint64_t, splinecast_rate_commander_number, "number", commander_,
+                    number_);
+  HANDLE_ONLY(commander, splinecast_rate_commander_wait_in_force, , 1, 1);
 }
 
 }  // namespace splinecast::testing

@@ -52,7 +52,10 @@ class Law(StreamTest):
             stop.hold(0.005)
             held = self.reach(reader, 0)
             self.assertEqual(producer.now(), held.stream_time)
-            self.operator.set_rate(50, 0.005)
+            with self.assertRaisesRegex(splinecast.BadRequest, "largest rate"):
+                self.operator.set_rate(50, 0.005)
+            number = self.operator.set_rate(2, 0.005, wait=PATIENCE)
+            self.assertEqual(self.operator.set_rate(2, 0.005), number + 1)
             self.assertEqual(self.reach(reader, 0).stream_time, held.stream_time)
             stop.release(0.005)
             self.reach(reader, 2)
@@ -73,12 +76,18 @@ class Law(StreamTest):
         self.operator.set_dead_man(0.02, ramp=0.01)
         self.operator.set_rate(1, 0.005)
         self.reach(reader, 0)
-        self.operator.renew()
+        self.assertFalse(self.operator.renew())
         time.sleep(0.05)
         self.reach(reader, 0)
         self.operator.set_dead_man(0)
-        self.operator.set_rate(1, 0.005)
+        self.operator.set_rate(1, 0.005, wait=PATIENCE)
+        self.assertTrue(self.operator.renew())
         self.reach(reader, 1)
+
+    def test_a_request_without_a_solver_is_not_in_force(self):
+        with self.assertRaisesRegex(TimeoutError, "request 2 of 'operator' .* it remains"):
+            self.operator.hold(0.005, wait=0.01)
+        self.assertEqual(self.operator.release(0.005), 3)
 
     def test_a_commander_has_a_name_of_its_own(self):
         with self.assertRaisesRegex(splinecast.StreamBusy, "operator"):
