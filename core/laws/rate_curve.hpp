@@ -58,6 +58,8 @@ class RateCurve {
   /// Appends a piece, from the end of the last one to this rate. Requires room for it.
   void add(double end_rate, Time length) noexcept;
 
+  /// Where it begins; min() for a constant rate.
+  [[nodiscard]] Time begin() const noexcept { return begin_; }
   [[nodiscard]] std::span<const RatePiece> pieces() const noexcept {
     return std::span(pieces_).first(count_);
   }

@@ -40,8 +40,8 @@ void write_entry(const CommanderEntry& entry, std::span<Word, kCommanderWords> t
   to[kRamp] = to_word(entry.ramp);
   const auto pieces = entry.bound.pieces();
   to[kRate] = to_word(pieces.empty() ? entry.bound.last_rate() : pieces[0].from.rate);
+  to[kBegin] = to_word(std::max(entry.bound.begin(), Time::zero()));
   if (pieces.empty()) return;
-  to[kBegin] = to_word(pieces[0].begin);
   to[kSlope] = to_word(pieces[0].from.slope);
   for (std::size_t i = 0; i < std::min(pieces.size(), kPieces); ++i) {
     to[kEnds + i] = to_word(pieces[i].end());
@@ -63,14 +63,18 @@ std::optional<CommanderEntry> entry_of(std::span<const Word, kCommanderWords> wo
   const bool has_ramp = entry.ramp >= kShortestRamp && entry.ramp <= kLongestRamp;
   const double rate = to_double(words[kRate]);
   if (!has_ramp || !is_rate(rate)) return std::nullopt;
-  entry.bound = core::RateCurve(rate);
-  if (words[kEnds] == 0) return entry;
+  const Time begin = to_time(words[kBegin]);
+  if (begin < Time::zero() || begin > kLatestTime) return std::nullopt;
+  if (words[kEnds] == 0) {
+    const bool has_begin = begin > Time::zero();
+    entry.bound =
+        has_begin ? core::RateCurve(begin, {.rate = rate, .slope = 0}) : core::RateCurve(rate);
+    return entry;
+  }
   // The slope of a bound is at most that of its shortest pieces.
   constexpr double kSteepest = 1e12;
   const double slope = to_double(words[kSlope]);
   if (!(slope >= -kSteepest && slope <= kSteepest)) return std::nullopt;
-  const Time begin = to_time(words[kBegin]);
-  if (begin < Time::zero() || begin > kLatestTime) return std::nullopt;
   entry.bound = core::RateCurve(begin, {.rate = rate, .slope = slope});
   for (std::size_t i = 0; i < kPieces && words[kEnds + i] != 0; ++i) {
     const Time end = to_time(words[kEnds + i]);

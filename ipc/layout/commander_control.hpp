@@ -71,7 +71,7 @@ inline constexpr std::tuple kCommanderRows{
     FieldRow{"bound begin",
              {.words = 1},
              FieldWriter::owner,
-             "ns: when the pieces of its bound begin; 0: the bound is constant"},
+             "ns: when its bound begins; 0: it is constant since the law began"},
     FieldRow{"bound rate", {.words = 1}, FieldWriter::owner, "double: the bound there"},
     FieldRow{"bound slope", {.words = 1}, FieldWriter::owner, "double, 1/s: its slope there"},
     FieldRow{"bound ends", {.words = 2}, FieldWriter::owner, "ns: ends of its pieces; 0: none"},

@@ -175,7 +175,11 @@ void StreamSolver::take_plan(Word number) noexcept {
                       .slope = cut.acceleration[0]});
   for (const core::RatePiece& piece : plan.pieces()) path.add_piece(piece.end_rate, piece.length);
   path.add_line();
-  for (const Waypoint& waypoint : path.waypoints()) curve_.append(waypoint, number);
+  // Looks for the entry onto the first waypoint before the newer ones push it out of the window.
+  for (const Waypoint& waypoint : path.waypoints()) {
+    curve_.append(waypoint, number);
+    curve_.plan(settled_until_, keep_, false, tries_);
+  }
   summary_.starved = false;
   summary_.newest_time = path.waypoints().back().time;
 }

@@ -74,6 +74,16 @@ struct CampaignOptions {
 /// are not findings.
 [[nodiscard]] Result run_live_motions(const CampaignOptions& options);
 
+/// Random requests of a time law by 16 commander processes, with its solver killed and stopped and
+/// commanders killed, beside a busy loop on every CPU and 5,000 other files in the folder of shared
+/// memory. Checks that each request is in force and has its effect, and that the rate never exceeds
+/// a bound. `seconds` is its duration.
+[[nodiscard]] Result run_requests(const CampaignOptions& options);
+
+/// The same in simulated time, in one process: `runs` requests, with a clock that advances within
+/// each step, and takeovers. Also checks that the law comes to rest at the least requested rate.
+[[nodiscard]] Result run_simulated_requests(const CampaignOptions& options);
+
 /// The faults of the motions, one per line: the name of their plots (may be empty), a tab and a
 /// description.
 [[nodiscard]] std::string list_motions();

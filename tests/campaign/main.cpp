@@ -99,6 +99,16 @@ void add_returns(CLI::App& program, Asked& asked) {
   verb->add_option("--runs", asked.options.runs, "Number of runs instead of a duration");
 }
 
+void add_requests(CLI::App& program, Asked& asked) {
+  auto* verb = program.add_subcommand("requests", "Requests of a rate by many commanders");
+  verb->add_option("--seconds", asked.options.seconds, "Duration")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--seed", asked.options.seed, "Seed of the disturbances")->capture_default_str();
+  verb->add_option("--runs", asked.options.runs,
+                   "Simulate this number of requests in one process instead");
+}
+
 /// The campaign of the given verb and flags.
 Run run_of(const CLI::App& program, const Asked& asked) {
   if (asked.has_encoders) return run_stops;
@@ -108,6 +118,9 @@ Run run_of(const CLI::App& program, const Asked& asked) {
   if (program.got_subcommand("returns")) return run_returns;
   if (program.got_subcommand("streams")) return run_streams;
   if (program.got_subcommand("stress")) return run_stress;
+  if (program.got_subcommand("requests")) {
+    return asked.options.runs > 0 ? run_simulated_requests : run_requests;
+  }
   return asked.every_store ? run_every_store : run_random_kills;
 }
 
@@ -115,7 +128,8 @@ int run_program(int argc, char** argv) {
   CLI::App program("Creates streams, attacks them and counts violations", "splinecast_campaign");
   program.require_subcommand(1);
   Asked asked{.options = {.command = joined(argc, argv)}};
-  for (const auto& add : {add_kill, add_stress, add_streams, add_motions, add_returns}) {
+  for (const auto& add :
+       {add_kill, add_stress, add_streams, add_motions, add_returns, add_requests}) {
     add(program, asked);
   }
   for (CLI::App* verb : program.get_subcommands({})) {

@@ -181,7 +181,7 @@ TEST_F(MovingFollower, ALawThatIsFollowedIsRemovedWithNowOnly) {
 }
 
 TEST_F(Rate, AReplayUnderALawIsVerifiedToTheBit) {
-  ASSERT_EQ(rate({"1", "--ramp", "0.05"}).code, 0);
+  ASSERT_EQ(rate({"1", "--ramp", "0.05", "--wait", "0"}).code, 0);
   Process solver({"solve", law(), arm()});
   Process replay({"replay", line_file(40), "--stream", arm(), "--law", law(), "--verify"});
   ASSERT_TRUE(testing::await([&] { return !testing::info(arm()).is_null(); }));

@@ -118,6 +118,19 @@ TEST_F(Law, TakesAPlanInTheStepThatMakesIt) {
   EXPECT_EQ(copy.time, begin);
 }
 
+TEST_F(Law, FollowsEachPieceOfAPlan) {
+  const Time begin = milliseconds(205);
+  core::RateCurve expected(begin, {.rate = 1, .slope = 0});
+  expected.add(0.9, milliseconds(20));
+  expected.add(0.5, milliseconds(40));
+  expected.add(0.2, milliseconds(30));
+  plan_next({{0.9, milliseconds(20)}, {0.5, milliseconds(40)}, {0.2, milliseconds(30)}});
+  EXPECT_EQ(step(milliseconds(200)).consumed, 3U);
+  for (Time t = begin; t < expected.end() + milliseconds(5); t += milliseconds(1)) {
+    EXPECT_NEAR(rate_at(t), expected.at(t).rate, 1e-11) << t.count();
+  }
+}
+
 TEST_F(Law, WithdrawsWhatAnEarlierSolverHasLeft) {
   append(milliseconds(300), {{0, milliseconds(100)}});
   stream_.replace_solver();
