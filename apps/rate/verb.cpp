@@ -37,6 +37,7 @@ struct RateOptions {
   std::string law;
   std::optional<double> rate;
   Time ramp = std::chrono::milliseconds(500);
+  std::optional<Time> gentle;  ///< the ramp may be lengthened to this
   std::string commander = "operator";
   bool release = false;
   bool force = false;
@@ -143,13 +144,16 @@ const ipc::RampEffect* beyond_limits(const std::vector<ipc::RampEffect>& effects
   return found == effects.end() ? nullptr : &*found;
 }
 
-/// The shortest ramp, to about 10 %, that keeps the limits; nothing if none up to a minute does.
+/// The shortest ramp, to about 10 %, that keeps the limits; nothing if none up to `longest` does,
+/// or if `deadline` comes first.
 std::optional<Time> sufficient_ramp(const Present& present, std::vector<std::string>& streams,
-                                    double rate, Time shorter, const Trust& trust) {
-  constexpr Time kLongest = std::chrono::minutes(1);
+                                    double rate, Time shorter, const Trust& trust,
+                                    Time longest = std::chrono::minutes(1),
+                                    Time deadline = Time::max()) {
   constexpr double kGrowth = 1.1;
-  for (double seconds = to_seconds(shorter); seconds < to_seconds(kLongest); seconds *= kGrowth) {
-    const Time length = from_seconds(kGrowth * seconds);
+  for (double seconds = to_seconds(shorter); seconds < to_seconds(longest); seconds *= kGrowth) {
+    if (MonotonicClock().now() >= deadline) return std::nullopt;
+    const Time length = std::min(from_seconds(kGrowth * seconds), longest);
     if (beyond_limits(effects_of(present, streams, rate, length, trust)) == nullptr) return length;
   }
   return std::nullopt;
@@ -180,6 +184,20 @@ bool report_effect(const RateOptions& options, const Present& present, bool is_r
                          : "no ramp up to a minute would do",
                   is_requested ? "" : "; --force requests it all the same"));
   return false;
+}
+
+/// The ramp, or a longer one if the limits of a stream need it: the longest that may be taken, if
+/// no shorter one has been found soon enough not to delay a hold.
+Time gentle_ramp(const RateOptions& options, const Present& present) {
+  constexpr Time kMostDelay = std::chrono::milliseconds(20);
+  const Time end = MonotonicClock().now() + kMostDelay;
+  const double rate = rate_after(options, present.law->largest_rate());
+  auto streams = ipc::followers_of(present.law->header().stream_id, options.trust);
+  if (!beyond_limits(effects_of(present, streams, rate, options.ramp, options.trust))) {
+    return options.ramp;
+  }
+  return sufficient_ramp(present, streams, rate, options.ramp, options.trust, *options.gentle, end)
+      .value_or(*options.gentle);
 }
 
 /// Renews a request until a stop is requested, so that the law holds if this process dies. Returns
@@ -232,7 +250,7 @@ std::uint64_t lower(const RateOptions& options, RateCommander& commander,
   return number;
 }
 
-int command(const RateOptions& options) {
+int command(RateOptions options) {
   const bool holds = !options.release && *options.rate == 0;
   std::optional<Present> present;
   try {
@@ -246,6 +264,7 @@ int command(const RateOptions& options) {
     throw BadRequest(fmt::format("R is above the largest rate of '{}', {:g}: {:g}", options.law,
                                  present->law->largest_rate(), *options.rate));
   }
+  if (present && options.gentle) options.ramp = gentle_ramp(options, *present);
   const bool lowers = holds || (!options.release && present && *options.rate <= present->from.rate);
   if (!lowers && present && !report_effect(options, *present, false)) return kFellShort;
   RateCommander commander(options.law, options.commander, {}, options.trust);
@@ -259,6 +278,24 @@ int command(const RateOptions& options) {
   return is_in_force ? kOk : kNoStreamOrTimeOut;
 }
 
+void add_ramps(Command& verb, RateOptions& options) {
+  add_seconds(verb, "--ramp", options.ramp, "Length of the ramp in s, 0.001 to 3600 (default 0.5)",
+              kRamps);
+  add_seconds(verb, "--gentle", options.gentle,
+              "Lengthen the ramp to at most this time in s if the limits of a stream need it, from "
+              "the ramp to 3600",
+              kRamps);
+}
+
+void add_dead_man(Command& verb, RateOptions& options) {
+  add_seconds(verb, "--dead-man", options.dead_man,
+              "Run until SIGINT or SIGTERM and renew the request: the law holds if this process "
+              "does not for this time in s, 0.001 to 3600",
+              kRamps);
+  add_seconds(verb, "--dead-man-ramp", options.dead_man_ramp,
+              "Length of the ramp of that hold in s, 0.001 to 3600 (default 0.5)", kRamps);
+}
+
 void add_rate(Command& verb, Action& action) {
   auto options = std::make_shared<RateOptions>();
   verb.option("LAW", options->law, "Time law").required();
@@ -270,17 +307,11 @@ void add_rate(Command& verb, Action& action) {
           "Rate to request, stream time per host time, 0 (hold) to 100; without it, shows the law "
           "and its commanders")
       .type("R");
-  add_seconds(verb, "--ramp", options->ramp, "Length of the ramp in s, 0.001 to 3600 (default 0.5)",
-              kRamps);
+  add_ramps(verb, *options);
   verb.option("--as", options->commander, "Name of the commander (default operator)")
       .type("COMMANDER");
   verb.flag("--release", options->release, "Withdraw the commander's request");
-  add_seconds(verb, "--dead-man", options->dead_man,
-              "Run until SIGINT or SIGTERM and renew the request: the law holds if this process "
-              "does not for this time in s, 0.001 to 3600",
-              kRamps);
-  add_seconds(verb, "--dead-man-ramp", options->dead_man_ramp,
-              "Length of the ramp of that hold in s, 0.001 to 3600 (default 0.5)", kRamps);
+  add_dead_man(verb, *options);
   add_seconds(verb, "--wait", options->wait,
               "Wait until the law's solver has put the request in force, for this time in s, 0 to "
               "3600 (default 1); 0 sends it only",
@@ -290,6 +321,9 @@ void add_rate(Command& verb, Action& action) {
   add_trust(verb, options->trust);
   verb.callback([&action, options] {
     if (options->rate && options->release) throw UsageError("--release", "excludes a rate");
+    if (options->gentle && *options->gentle < options->ramp) {
+      throw UsageError("--gentle", "is shorter than the ramp");
+    }
     action = [options] {
       ipc::require_stream_name(options->law);
       ipc::require_stream_name(options->commander);

@@ -12,8 +12,13 @@ using nlohmann::ordered_json;
 
 StreamLog::StreamLog(const std::string& stream, std::uint64_t stream_id, const Trust& trust)
     : board_(stream, stream_id, trust),
+      law_(ipc::law_of(board_.header(), trust)),
       settled_(board_.reader(), is_live(ipc::stream_clock(board_.header()))),
       items_(board_.reader().dimensions()) {}
+
+void StreamLog::look() {
+  settled_.look(law_ ? law_->final_until(MonotonicClock().now()) : Time::max());
+}
 
 ipc::Verification StreamLog::verify(const Condition& end) {
   look();

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "apps/streams/own_board.hpp"
+#include "ipc/law/follower.hpp"
 #include "ipc/ring/item.hpp"
 #include "ipc/verification/sent_items.hpp"
 #include "ipc/verification/settled_segments.hpp"
@@ -32,7 +34,7 @@ class StreamLog {
 
   /// Copies the segments that have settled. Call it before the board overwrites them. See
   /// ipc::SettledSegments.
-  void look() { settled_.look(); }
+  void look();
 
   /// Solves the recorded items again and compares the segments. `end` is the condition with which
   /// the stream was finished. See ipc::verify.
@@ -40,6 +42,7 @@ class StreamLog {
 
  private:
   OwnBoard board_;
+  std::unique_ptr<ipc::LawFollower> law_;  ///< that the stream follows, if it is there
   ipc::SettledSegments settled_;
   ipc::SentItems items_;
 };

@@ -33,7 +33,9 @@ inline void put_segment(const SnapshotSegment& segment, std::size_t dimensions,
                                                    static_cast<std::size_t>(segment.order),
                                                    dimensions, width, 1},
                                   .waypoint = vector_of(segment.waypoint),
-                                  .acceleration_step = vector_of(segment.acceleration_step)},
+                                  .acceleration_step = vector_of(segment.acceleration_step),
+                                  .is_corner = segment.is_corner ? 1 : 0,
+                                  .reserved = 0},
                out);
 }
 

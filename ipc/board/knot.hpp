@@ -20,6 +20,7 @@ struct KnotNote {
   bool arrives = false;         ///< has the acceleration at which the segment before it ends
   bool starts = false;          ///< has the acceleration at which its own segment begins
   std::uint32_t newer_knots{};  ///< number of newer knots when it was last solved: 0 … 127
+  bool is_corner = false;       ///< its segment begins at rest, although the one before it moves
 };
 
 /// A knot as a revision writes it. Spans hold one value per dimension.

@@ -32,6 +32,7 @@ struct SegmentCopy {
   std::uint32_t newer_knots = 0;  ///< newer knots when its left knot was last solved
   SegmentOrigin origin{};
   bool has_waypoint = false;                ///< whether its left end is a waypoint
+  bool is_corner = false;                   ///< see KnotNote
   std::vector<double> coefficients{};       ///< [power][dimension], `order` powers
   std::vector<double> waypoint{};           ///< position of that waypoint; empty if there is none
   std::vector<double> acceleration_step{};  ///< a⁺ − a⁻ at the left end; empty if the board no

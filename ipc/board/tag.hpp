@@ -13,17 +13,18 @@ inline constexpr unsigned kTagStartsBit = 7;
 inline constexpr unsigned kTagNewerShift = 8;
 inline constexpr Word kTagNewerMask = 127;
 inline constexpr unsigned kTagRowBit = 15;
+inline constexpr unsigned kTagCornerBit = 16;
 inline constexpr Word kTagNodeMask = 1;
 inline constexpr Word kTagRowMask = Word{1} << kTagRowBit;
 inline constexpr Word kTagPartsMask = kTagNodeMask | kTagRowMask;
-inline constexpr Word kTagNoteMask = ((Word{1} << kTagRowBit) - 1) & ~Word{1};
 
 [[nodiscard]] inline Word pack_note(const KnotNote& note) noexcept {
   return static_cast<Word>(note.form) << kTagFormShift |
          static_cast<Word>(note.is_waypoint) << kTagWaypointBit |
          static_cast<Word>(note.arrives) << kTagArrivesBit |
          static_cast<Word>(note.starts) << kTagStartsBit |
-         (note.newer_knots & kTagNewerMask) << kTagNewerShift;
+         (note.newer_knots & kTagNewerMask) << kTagNewerShift |
+         static_cast<Word>(note.is_corner) << kTagCornerBit;
 }
 
 [[nodiscard]] inline bool has_bit(Word tag, unsigned bit) noexcept { return (tag >> bit & 1) != 0; }
@@ -33,7 +34,8 @@ inline constexpr Word kTagNoteMask = ((Word{1} << kTagRowBit) - 1) & ~Word{1};
           .is_waypoint = has_bit(tag, kTagWaypointBit),
           .arrives = has_bit(tag, kTagArrivesBit),
           .starts = has_bit(tag, kTagStartsBit),
-          .newer_knots = static_cast<std::uint32_t>(tag >> kTagNewerShift & kTagNewerMask)};
+          .newer_knots = static_cast<std::uint32_t>(tag >> kTagNewerShift & kTagNewerMask),
+          .is_corner = has_bit(tag, kTagCornerBit)};
 }
 
 [[nodiscard]] inline std::size_t node_of(Word tag) noexcept { return tag & 1; }

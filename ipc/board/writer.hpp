@@ -133,6 +133,13 @@ class KnotBoardWriter {
     store(control_[kSettledUntil], word, std::memory_order_release);
   }
 
+  /// Takes back a promise that no process can have used: see StreamSolver. The next load of this
+  /// thread comes after the store.
+  void lower_settled(Time t) noexcept {
+    settled_ = to_word(t);
+    store(control_[kSettledUntil], settled_, std::memory_order_seq_cst);
+  }
+
   /// The settled word itself, for SettledRaise.
   [[nodiscard]] Word& settled_word() noexcept { return control_[kSettledUntil]; }
 

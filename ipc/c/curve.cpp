@@ -83,7 +83,8 @@ int splinecast_curve_segment(const splinecast_curve* curve, size_t i, splinecast
                  .kind = own.is_hold() ? SegmentKind::hold : SegmentKind::spline,
                  .coefficients = own.coefficients(i),
                  .waypoint = {},
-                 .acceleration_step = {}},
+                 .acceleration_step = {},
+                 .is_corner = false},
                 own.dimensions(), out);
     return 0;
   });

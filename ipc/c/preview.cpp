@@ -36,6 +36,7 @@ void fill(const ReplacePreview& found, splinecast_preview& out) {
   out.waypoint = found.waypoint ? static_cast<int64_t>(*found.waypoint) : -1;
   out.passed_over = found.passed_over;
   out.enters = found.enters ? 1 : 0;
+  out.from_rest = found.from_rest ? 1 : 0;
   out.worst = excess_of(found.worst);
 }
 

@@ -123,6 +123,19 @@ int splinecast_producer_solver_alive(splinecast_producer* producer) {
               [](splinecast_producer& own) -> int { return own.producer.solver_alive(); });
 }
 
+int splinecast_producer_replacement_begin(splinecast_producer* producer, int64_t* begin,
+                                          int* from_rest) {
+  return with(producer, [&](splinecast_producer& own) {
+    require_pointer(begin, "begin");
+    require_pointer(from_rest, "from_rest");
+    const std::optional<ReplacementBegin> found = own.producer.replacement_begin();
+    if (!found) return 0;
+    *begin = found->begin.count();
+    *from_rest = found->from_rest ? 1 : 0;
+    return 1;
+  });
+}
+
 int splinecast_producer_earliest(splinecast_producer* producer, int64_t* time) {
   return with(producer, [&](splinecast_producer& own) {
     *require_pointer(time, "time") = own.producer.earliest().count();

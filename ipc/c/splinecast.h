@@ -428,7 +428,7 @@ typedef struct splinecast_preview {
   int64_t waypoint;         ///< where the entry ends; −1: beyond the last waypoint
   size_t passed_over;       ///< waypoints before the end of the entry
   int enters;               ///< 1: there is an entry; 0: the curve comes to rest
-  int reserved;             ///< 0
+  int from_rest;            ///< 1: it begins at rest where the stream's time law holds it
   splinecast_excess worst;  ///< nearest to a limit, or farthest beyond one
   splinecast_output entry_velocity;  ///< of the entry; of the stop if there is no entry
   splinecast_output entry_acceleration;
@@ -511,6 +511,12 @@ SPLINECAST_API int splinecast_producer_solver_alive(splinecast_producer* produce
 /// The earliest time at which the curve may still change: the settled time that the solver of a
 /// live stream last published; else INT64_MIN.
 SPLINECAST_API int splinecast_producer_earliest(splinecast_producer* producer, int64_t* time);
+
+/// Where the motion of this producer's last replacement begins, and whether it begins at rest,
+/// where the stream's time law held it (1 or 0). Returns 1; 0 while the solver has not taken it, if
+/// it was refused, and if the board no longer keeps it.
+SPLINECAST_API int splinecast_producer_replacement_begin(splinecast_producer* producer,
+                                                         int64_t* begin, int* from_rest);
 
 /// The time of the stream's clock: CLOCK_MONOTONIC; the stream time of the law that the stream
 /// follows; 0 of a recorded stream.
@@ -676,11 +682,14 @@ typedef struct splinecast_segment {
   splinecast_matrix coefficients;  ///< [power][dimension], contiguous, lowest power first
   splinecast_vector waypoint;      ///< position of the waypoint at `left`; not given: none there
   splinecast_vector acceleration_step;  ///< a⁺ − a⁻ at `left`; not given: not known
+  int is_corner;  ///< 1: the curve was cut at `left` while its time law held it, and begins
+                  ///< at rest: the velocity may step there
+  int reserved;   ///< 0
 } splinecast_segment;
 #define SPLINECAST_SEGMENT_INIT                                                       \
   {                                                                                   \
     sizeof(splinecast_segment), 0, 0, 0, 0, {NULL, 0, 0, 0, 0}, SPLINECAST_NO_VECTOR, \
-        SPLINECAST_NO_VECTOR                                                          \
+        SPLINECAST_NO_VECTOR, 0, 0                                                    \
   }
 
 /// Maps the stream's knot board; waits for it up to `timeout`. `options` NULL: the defaults. Writes

@@ -53,6 +53,15 @@ LawFollower::LawFollower(CheckedRegion<BoardLayout> law, std::string name)
   region_.close_descriptor();
 }
 
+std::unique_ptr<LawFollower> law_of(const RegionHeader& stream, const Trust& trust) {
+  if (stream.law_id == 0) return nullptr;
+  try {
+    return std::make_unique<LawFollower>(stream, trust);
+  } catch (const NoSuchStream&) {  // or LawLost
+    return nullptr;
+  }
+}
+
 SampleStatus LawFollower::convert(SampleStatus status, LawPoint& out) const noexcept {
   if (!has_values(status)) return status;
   out = point_of(state_.position()[0], {.rate = state_.velocity()[0],
@@ -90,6 +99,15 @@ SampleStatus LawFollower::at(Time host, LawPoint& out) noexcept {
   return status;
 }
 
+Time LawFollower::final_until(Time host) noexcept {
+  LawPoint point;
+  SampleStatus status = ahead(host, point);
+  // Never changes before settled_until: the last time that has settled.
+  const Time settled = settled_until() - Time(1);
+  if (has_values(status) && settled > host) status = ahead(settled, point);
+  return has_values(status) ? saturated_sum(point.stream, Time(1)) : Time::min();
+}
+
 Time LawClock::now() const noexcept {
   host_now_ = host_->now();
   LawPoint point;
@@ -107,6 +125,17 @@ Time LawClock::latest(Time now, Time ahead) const noexcept {
   const Time rest = end - (is_known ? settled : host_now_);
   // One nanosecond more, because `stream` is rounded down.
   return from + from_seconds(law_->largest_rate() * to_seconds(rest)) + Time(1);
+}
+
+std::optional<Time> LawClock::held() const noexcept {
+  const Time settled = law_->settled_until();
+  LawPoint then;
+  const bool is_known = is_held() && host_now_ == law_->last_host() && host_now_ < settled &&
+                        has_values(law_->ahead(settled - Time(1), then));
+  if (!is_known) return std::nullopt;
+  const LawPoint& now = law_->last();
+  const bool is_same = then.stream == now.stream && then.fraction == now.fraction;
+  return is_same ? std::optional(now.stream) : std::nullopt;
 }
 
 }  // namespace splinecast::ipc

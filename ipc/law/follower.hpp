@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -94,6 +95,12 @@ class LawFollower {
   /// The law never changes before this host time, as the last call saw it.
   [[nodiscard]] Time settled_until() const noexcept { return sampler_.settled_until(); }
 
+  /// The stream time before which no stream of the law changes any more: 1 ns after the time that
+  /// the law's settled part has reached, or that it has at `host`, a host time that has passed. A
+  /// stream's settled word may be later: while the law holds, that word can go back to this time.
+  /// Read this before the word. min() if the law cannot be read.
+  [[nodiscard]] Time final_until(Time host) noexcept;
+
   /// The revision that the last call saw.
   [[nodiscard]] Word revision_seen() const noexcept { return sampler_.revision_seen(); }
 
@@ -132,6 +139,10 @@ class LawFollower {
   Time last_host_{};
 };
 
+/// The law that a stream's header names; null if it names none, or if the law has been removed:
+/// then nothing is held any more.
+[[nodiscard]] std::unique_ptr<LawFollower> law_of(const RegionHeader& stream, const Trust& trust);
+
 /// A clock that shows the stream time of a law. Each now() reads the host's clock before it looks
 /// at the law, so that the law is settled up to the host time that it read. One thread uses it.
 class LawClock final : public Clock {
@@ -147,6 +158,10 @@ class LawClock final : public Clock {
   /// An upper bound of the stream time when `ahead` of host time has passed since the last now():
   /// follows the law as far as it has settled, and from there its largest rate.
   [[nodiscard]] Time latest(Time now, Time ahead) const noexcept override;
+
+  /// The stream time of the last now(), if the law has it at all times from there until it is no
+  /// longer settled: then no reader has had a later one as executed or settled.
+  [[nodiscard]] std::optional<Time> held() const noexcept override;
 
   /// Whether the law held at the last now(): stream time does not pass until the law changes.
   [[nodiscard]] bool is_held() const noexcept {

@@ -25,7 +25,8 @@ inline constexpr std::tuple kCellRows{
              "bit 7: the segment that begins here starts with the acceleration beside the cell\n"
              "bits 8–14: number of newer knots when the knot was last solved\n"
              "bit 15: the row that belongs to it\n"
-             "bit 16: reserved for a corner: 0"},
+             "bit 16: a corner: a run begins here at rest, although the segment before it arrives\n"
+             "in motion: the curve was cut while its time law held it"},
     FieldRow{"velocity", {.per_dimension = 1}, FieldWriter::owner, "doubles"},
     FieldRow{"residual",
              {.per_dimension = 1},

@@ -327,6 +327,10 @@ void define_properties(Class& producer) {
           [](HeldProducer& self) { return optional_ns(self.get<&Producer::earliest>()); },
           doc::Producer_earliest)
       .def_property_readonly(
+          "replacement_begin",
+          [](HeldProducer& self) { return to_record(self.get<&Producer::replacement_begin>()); },
+          doc::Producer_replacement_begin)
+      .def_property_readonly(
           "last_time", [](HeldProducer& self) { return self.get<&Producer::last_time>().count(); },
           doc::Producer_last_time)
       .def_property_readonly("appended", &HeldProducer::get<&Producer::appended>,

@@ -20,6 +20,7 @@
 #include "ipc/ring/writer.hpp"
 #include "ipc/roles/refusals.hpp"
 #include "ipc/roles/replace_preview.hpp"
+#include "ipc/solve/run_edges.hpp"
 #include "splinecast/errors.hpp"
 
 namespace splinecast {
@@ -57,6 +58,7 @@ struct Producer::Impl {
   ipc::WaypointRingReader sent;
   ipc::RefusalReader refused;
   Time settled_until = Time::min();
+  std::optional<ipc::Word> replacement;  ///< the item of the last one
   MonotonicClock clock;
   std::unique_ptr<ipc::LawFollower> law;
   std::unique_ptr<ipc::LawClock> law_clock;
@@ -178,8 +180,12 @@ AppendStatus Producer::append(const Waypoint& waypoint) noexcept {
 
 AppendStatus Producer::replace_from(Time t, std::span<const Waypoint> waypoints,
                                     const ReplaceOptions& options) noexcept {
-  return impl_->wake_solver_for(
-      impl_->ring.writer.replace_from(t, waypoints, impl_->look_at_solver(), options.blend));
+  const ipc::Word item = impl_->ring.writer.written();
+  const AppendStatus status =
+      impl_->ring.writer.replace_from(t, waypoints, impl_->look_at_solver(), options.blend);
+  // A stop that repeats one in the ring adds no item.
+  if (impl_->ring.writer.written() != item) impl_->replacement = item;
+  return impl_->wake_solver_for(status);
 }
 
 ReplacePreview Producer::preview_replace(Time t, std::span<const Waypoint> waypoints,
@@ -201,8 +207,23 @@ void Producer::preview_replace(Time t, std::span<const Waypoint> waypoints,
         solver.board, ipc::window_options(solver.header), ipc::dimension_kinds(solver.header),
         ipc::live_options(solver.header));
   }
-  const Time from = waypoints.empty() ? std::max(t, known.settled_until) : t;
-  solver.planner->plan(from, waypoints, options.blend, out);
+  out.begin = waypoints.empty() ? std::max(t, known.settled_until) : t;
+  out.from_rest = false;
+  if (known.clock != nullptr) (void)known.clock->now();
+  if (const auto held = known.clock != nullptr ? known.clock->held() : std::nullopt) {
+    const Time rest = *held + Time(1);
+    const Time latest =
+        ipc::latest_from_rest(rest, known.settled_until, Time(solver.header.freeze_ahead));
+    out.from_rest = rest <= known.settled_until && t <= latest && (waypoints.empty() || t >= rest);
+    if (out.from_rest) out.begin = rest;
+  }
+  solver.planner->plan(waypoints, options.blend, out);
+}
+
+std::optional<ReplacementBegin> Producer::replacement_begin() {
+  impl_->look_for_solver();
+  if (!impl_->replacement || impl_->consumed() <= *impl_->replacement) return std::nullopt;
+  return ipc::begin_of_run(impl_->solver->board, *impl_->replacement);
 }
 
 AppendStatus Producer::start_from(const Instant& state) noexcept {

@@ -55,6 +55,11 @@ struct Reader::Impl {
   ipc::Word seen = 0;
   Time passed = Time::min();  ///< a host time that had passed before the law was read
 
+  /// See ipc::LawFollower::final_until(); max() without a law.
+  Time final_until() noexcept {
+    return law ? law->final_until(MonotonicClock().now()) : Time::max();
+  }
+
   /// Reads the clock if that may decide whether the law has settled at a host time. Call it before
   /// the law is read: by the deadline rule no revision of a law changes it before its commit, so a
   /// law that is read after a time has passed is final there, and needs no living solver. In the
@@ -188,18 +193,29 @@ std::uint64_t Reader::follow_many(std::span<const Time> times, const SampleBlock
   return 0;
 }
 
-Time Reader::settled_until() const noexcept { return sampler_->settled_until(); }
+Time Reader::settled_until() const noexcept {
+  if (!follows_law_) return sampler_->settled_until();
+  const Time final_until = impl_->final_until();
+  return std::min(final_until, impl_->board.look().settled_until);
+}
 
 SampleStatus Reader::snapshot(Time from, Time to, Snapshot& out) {
-  return sampler_->snapshot(from, to, *out.board_);
+  const Time final_until = impl_->final_until();
+  const SampleStatus status = sampler_->snapshot(from, to, *out.board_);
+  out.board_->settle_at_most(final_until);
+  const bool may_change = status == SampleStatus::settled && !out.board_->has_settled(to);
+  return may_change ? SampleStatus::provisional : status;
 }
 
 std::optional<CurveProgress> Reader::progress() const noexcept {
   ipc::Summary summary;
+  const Time final_until = impl_->final_until();
   if (!ipc::Internals::summary(*this, summary)) return std::nullopt;
+  const Time settled =
+      summary.finished ? summary.settled_until : std::min(summary.settled_until, final_until);
   return CurveProgress{.revision = summary.revision,
                        .newest = summary.newest_time,
-                       .settled_until = summary.settled_until,
+                       .settled_until = settled,
                        .is_finished = summary.finished,
                        .waypoints = summary.knots,
                        .refused = summary.refused};

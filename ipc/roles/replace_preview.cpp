@@ -163,10 +163,13 @@ bool ReplacementPlanner::find_entry(const Instant& from, std::span<const Waypoin
   return is_found;
 }
 
-void ReplacementPlanner::plan(Time t, std::span<const Waypoint> waypoints, Time blend,
+void ReplacementPlanner::plan(std::span<const Waypoint> waypoints, Time blend,
                               ReplacePreview& out) {
-  out.is_known = read_state(t);
-  out.begin = t;
+  out.is_known = read_state(out.begin);
+  if (out.from_rest) {
+    std::ranges::fill(state_.ref().velocity, 0.0);
+    std::ranges::fill(state_.ref().acceleration, 0.0);
+  }
   out.duration = {};
   out.enters = false;
   out.waypoint.reset();
@@ -175,10 +178,26 @@ void ReplacementPlanner::plan(Time t, std::span<const Waypoint> waypoints, Time 
   clear(out.entry, window_.dimensions());
   clear(out.motion, window_.dimensions());
   if (!out.is_known) return;
-  const Instant from{t, state_.position(), state_.velocity(), state_.acceleration()};
+  const Instant from{out.begin, state_.position(), state_.velocity(), state_.acceleration()};
   if (find_entry(from, waypoints, blend, out)) return;
   out.passed_over = waypoints.size();
   take_stop(out, from);
+}
+
+std::optional<ReplacementBegin> begin_of_run(const KnotBoardReader& board, Word item) {
+  Summary summary;
+  if (!board.copy_newest_summary(summary) || summary.consumed <= item || summary.newest == 0) {
+    return std::nullopt;
+  }
+  std::array<RefusedItem, kRefusalsKept> refused;  // NOLINT(*-member-init)
+  const Word kept = std::min<Word>(summary.refused, kRefusalsKept);
+  const std::size_t count = board.copy_refusals(summary, summary.refused - kept, refused);
+  const auto known = std::span(refused).first(count);
+  const bool is_refused = std::ranges::find(known, item, &RefusedItem::item) != known.end();
+  if (is_refused) return std::nullopt;
+  KnotCopy knot(board.dimensions(), board.smooths());
+  if (!board.copy_knot(summary.run, summary.revision, knot)) return std::nullopt;
+  return ReplacementBegin{.begin = knot.time, .from_rest = knot.note.is_corner};
 }
 
 }  // namespace splinecast::ipc

@@ -30,9 +30,10 @@ class ReplacementPlanner {
   ReplacementPlanner(const KnotBoardReader& board, core::WindowOptions options,
                      DimensionKinds kinds, const std::optional<LiveOptions>& live);
 
-  /// Plans the replacement of everything after t by these waypoints, which the ring would accept.
-  /// O(n·K·D) and at most 170 candidates of an entry. Sets all members except `status`.
-  void plan(Time t, std::span<const Waypoint> waypoints, Time blend, ReplacePreview& out);
+  /// Plans the replacement of everything after out.begin by these waypoints, which the ring would
+  /// accept; with out.from_rest it begins at rest there. O(n·K·D) and at most 170 candidates of an
+  /// entry. Sets all other members except `status`.
+  void plan(std::span<const Waypoint> waypoints, Time blend, ReplacePreview& out);
 
  private:
   [[nodiscard]] bool read_state(Time t);
@@ -58,5 +59,9 @@ class ReplacementPlanner {
   core::Segment segment_;
   std::vector<double> values_;  ///< of a waypoint: position, velocity, acceleration
 };
+
+/// Where the newest run on a board begins, if the solver took the replacement of this item, and the
+/// board still has that knot.
+[[nodiscard]] std::optional<ReplacementBegin> begin_of_run(const KnotBoardReader& board, Word item);
 
 }  // namespace splinecast::ipc

@@ -22,7 +22,8 @@ SnapshotSegment Snapshot::operator[](std::size_t i) const noexcept {
           .kind = copy.kind,
           .coefficients = copy.coefficients,
           .waypoint = copy.waypoint,
-          .acceleration_step = copy.acceleration_step};
+          .acceleration_step = copy.acceleration_step,
+          .is_corner = copy.is_corner};
 }
 
 std::uint64_t Snapshot::revision() const noexcept { return board_->summary().revision; }

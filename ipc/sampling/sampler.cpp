@@ -224,10 +224,12 @@ SampleStatus Sampler::hold_first(const StateRef& out) noexcept {
 }
 
 /// The sample after the writer has overtaken every try: from the reader's own copy, which can no
-/// longer change before the settled_until that was copied with it.
+/// longer change before the settled_until that was copied with it. Not on a stream that follows a
+/// law: while that holds, settled_until may go back.
 SampleStatus Sampler::from_own_copy(Time t, const StateRef& out) noexcept {
   const BoardSegment& own = kept_.current();
-  if (!own.is_there() || t < own.left() || t >= own.right() || t >= kept_.settled_until()) {
+  if (clock_ == StreamClock::law || !own.is_there() || t < own.left() || t >= own.right() ||
+      t >= kept_.settled_until()) {
     return SampleStatus::busy;
   }
   read(own, seconds_after(own.left(), t) + fraction_, out);

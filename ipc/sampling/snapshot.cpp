@@ -97,8 +97,7 @@ SampleStatus Sampler::snapshot(Time from, Time to, BoardSnapshot& out) {
     if (!number_by_cells(*board_, summary_, to, newest)) continue;
     if (oldest == 0) return SampleStatus::before_history;
     if (newest >= oldest && !out.copy_segments(source, oldest, newest)) continue;
-    return summary_.finished || to < summary_.settled_until ? SampleStatus::settled
-                                                            : SampleStatus::provisional;
+    return out.has_settled(to) ? SampleStatus::settled : SampleStatus::provisional;
   }
   return SampleStatus::busy;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -31,6 +32,16 @@ class BoardSnapshot {
 
   [[nodiscard]] std::size_t dimensions() const noexcept { return dimensions_; }
   [[nodiscard]] const Summary& summary() const noexcept { return summary_; }
+
+  /// Lowers the settled time to `t`, unless the stream is finished: of a stream that follows a law,
+  /// to what LawFollower::final_until() returned before the segments were copied.
+  void settle_at_most(Time t) noexcept {
+    if (!summary_.finished) summary_.settled_until = std::min(summary_.settled_until, t);
+  }
+  /// Whether the curve has settled at `t`.
+  [[nodiscard]] bool has_settled(Time t) const noexcept {
+    return summary_.finished || t < summary_.settled_until;
+  }
 
   /// The segments, oldest first.
   [[nodiscard]] std::span<const SegmentCopy> segments() const noexcept {

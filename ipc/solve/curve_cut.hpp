@@ -30,6 +30,9 @@ class CurveCut {
   /// Returns false if the board holds data that no solver wrote.
   [[nodiscard]] bool find(const Summary& summary, Time t) noexcept;
 
+  /// Lets the new curve begin at rest at the cut that was found.
+  void come_to_rest() noexcept;
+
   /// The state at the cut that was found, and the number of the knot that begins the new curve.
   [[nodiscard]] Instant state() const noexcept;
   [[nodiscard]] Word next() const noexcept { return next_; }

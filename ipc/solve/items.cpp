@@ -118,10 +118,12 @@ bool StreamSolver::note_excess(const Waypoint& waypoint, Word number) noexcept {
 void StreamSolver::take_replacement(Word number) noexcept {
   // A stop is never too late: it takes effect as soon as possible, in a revision of its own, which
   // is committed sooner than a full batch.
-  const Time t =
-      is_stop(item_) ? std::max({item_.time, settled_until_, curve_.earliest_cut()}) : item_.time;
+  const Time earliest = std::max(settled_until_, curve_.earliest_cut());
+  const bool rests = can_rest(item_.time) && (is_stop(item_) || item_.time >= *rest_);
+  const Time t = rests ? *rest_ : is_stop(item_) ? std::max(item_.time, earliest) : item_.time;
   const bool has_begun = curve_.has_begun();  // else there is nothing to replace
-  if (has_begun && (t < settled_until_ || !is_time_in_range(t) || t < curve_.earliest_cut())) {
+  if (has_begun && !rests &&
+      (t < settled_until_ || !is_time_in_range(t) || t < curve_.earliest_cut())) {
     return refuse_replacement(number, Refusal::too_late);
   }
   // Waypoints that begin a curve together are taken together, too.
@@ -137,7 +139,9 @@ void StreamSolver::take_replacement(Word number) noexcept {
   if (!has_begun) return;
   // A stop after another one changes nothing.
   if (is_stop(item_) && curve_.is_stop() && t >= curve_.newest_time()) return;
-  curve_.begin_run(t, std::clamp(item_.blend, Time::zero(), limits_.max_interval));
+  const Time blend = std::clamp(item_.blend, Time::zero(), limits_.max_interval);
+  if (rests) return begin_at_rest(blend);
+  curve_.begin_run(t, blend);
   summary_.starved = false;
   summary_.newest_time = t;
 }

@@ -177,9 +177,10 @@ void PublishedCurve::begin(const Instant& state) noexcept {
   note_change(state.time);
 }
 
-void PublishedCurve::begin_run(Time t, Time blend) noexcept {
+void PublishedCurve::begin_run(Time t, Time blend, bool is_from_rest) noexcept {
   is_damaged_ = is_damaged_ || !cut_.find(summary_, t);
   if (is_damaged_) return;
+  if (is_from_rest) cut_.come_to_rest();
   cut_.write();
   run_ = cut_.next();
   run_item_ = 0;
@@ -188,6 +189,7 @@ void PublishedCurve::begin_run(Time t, Time blend) noexcept {
   committed_knots_ = 0;
   wait_for_entry();
   set_origin(cut_.next(), cut_.state());
+  origin_.is_corner = is_from_rest;
   blend_until_ = t + blend;
   is_searching_ = is_entry_new_ = is_prepared_ = false;
   committed_shown_ = shown_;

@@ -110,6 +110,12 @@ class PublishedCurve {
     return course_ == Course::waiting && window_.knots() == 0;
   }
 
+  /// Whether the run is a stop that moves after t, and begins at `latest` or earlier.
+  [[nodiscard]] bool is_stopping(Time t, Time latest) const noexcept {
+    return is_stop() && origin_.number > 1 && !origin_.is_corner && origin_.time <= latest &&
+           t < end_;
+  }
+
   /// A live stream's start is decided at the latest when settled_until reaches this time: `notice`
   /// before the start. max() if no decision is open.
   [[nodiscard]] Time start_decision() const noexcept {
@@ -135,10 +141,10 @@ class PublishedCurve {
   /// min() if a hold precedes the curve, max() if there is no curve.
   [[nodiscard]] Time earliest_cut() const noexcept;
 
-  /// Cuts the committed curve at t and begins a run that continues from there. The entry of the run
-  /// does not end before t + `blend`. Requires a segment at t, and no uncommitted changes. Changes
-  /// nothing if the board is damaged.
-  void begin_run(Time t, Time blend) noexcept;
+  /// Cuts the committed curve at t and begins a run that continues from there, or from rest there.
+  /// The entry of the run does not end before t + `blend`. Requires a segment at t, and no
+  /// uncommitted changes. Changes nothing if the board is damaged.
+  void begin_run(Time t, Time blend, bool is_from_rest = false) noexcept;
 
   /// Finds the first segment that exceeds a limit with this waypoint, but not without it, and
   /// returns its largest excess; nothing if there is no such segment. Checks only the segments that
@@ -203,7 +209,8 @@ class PublishedCurve {
   struct Origin {
     Word number = 0;  ///< of its knot; 0: there is no such entry or stop
     Time time{};
-    bool is_new = false;  ///< the board does not hold it yet
+    bool is_new = false;     ///< the board does not hold it yet
+    bool is_corner = false;  ///< the run began from rest there
   };
 
   /// Number of knot i ≥ met_ of the run.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 
@@ -24,6 +25,13 @@ struct CutSegment {
 /// left end, the machine is at rest: the result is the position of that end, with zero velocity and
 /// acceleration. O(D).
 void evaluate_at_cut(const CutSegment& segment, Time t, State& out) noexcept;
+
+/// The latest time of a change that begins at rest where a time law holds the stream, at `rest`:
+/// what has settled, and what a producer that wants a change as soon as possible adds as its
+/// margin.
+[[nodiscard]] inline Time latest_from_rest(Time rest, Time settled, Time freeze_ahead) noexcept {
+  return std::max(settled, rest + 10 * freeze_ahead);
+}
 
 /// The times of the motion after an entry that ends beyond the newest waypoint: the remainder of
 /// the straight line, unless the entry ends after the line, and the stop.

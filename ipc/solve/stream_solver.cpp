@@ -168,6 +168,9 @@ void StreamSolver::freeze(const Clock& clock, Time now) noexcept {
   has_starved_ = false;
   if (!live_) return;
   settled_until_ = std::max(settled_until_, clock.latest(now, live_->freeze_ahead));
+  rests_ = false;
+  rest_.reset();
+  if (const auto held = clock.held()) rest_ = *held + Time(1);
   if (!curve_.has_begun() || summary_.finished) return;
   curve_.freeze(settled_until_);
   summary_.low_water =
@@ -201,6 +204,7 @@ Word StreamSolver::consume(Time now) noexcept {
   const Word written = ring_->written();
   available_ = reachable(written);
   keep_ = live_ ? now - live_->history : Time::max();
+  rest_where_held();
   withdraw();
   bool is_blocked = false;
   is_finish_postponed_ = false;
@@ -228,6 +232,29 @@ Word StreamSolver::consume(Time now) noexcept {
   const bool waits = is_blocked && summary_.consumed == before && !curve_.has_changes();
   seen_ = waits || available_ == before ? written : summary_.consumed;
   return summary_.consumed - before;
+}
+
+/// Whether a change at t begins at rest where the law holds.
+bool StreamSolver::can_rest(Time t) const noexcept {
+  return rest_ && curve_.has_begun() && *rest_ <= settled_until_ &&
+         *rest_ >= curve_.earliest_cut() &&
+         t <= latest_from_rest(*rest_, settled_until_, live_->freeze_ahead);
+}
+
+/// Begins a run at rest where the law holds, instead of what has settled after it.
+void StreamSolver::begin_at_rest(Time blend) noexcept {
+  settled_until_ = *rest_;
+  curve_.begin_run(*rest_, blend, true);
+  summary_.starved = false;
+  summary_.newest_time = *rest_;
+  rests_ = true;
+}
+
+/// Ends a stop that is executed when the law holds the machine.
+void StreamSolver::rest_where_held() noexcept {
+  if (!can_rest(Time::min()) || summary_.finished) return;
+  const Time latest = latest_from_rest(*rest_, settled_until_, live_->freeze_ahead);
+  if (curve_.is_stopping(*rest_, latest)) begin_at_rest(Time::zero());
 }
 
 /// Withdraws what an earlier step or solver has left in the ring, and plans from the settled time
@@ -298,13 +325,26 @@ Time StreamSolver::settled_by_commit() const noexcept {
                            : settled_until_;
 }
 
+/// Lowers the settled word to where a run begins at rest, and reads the law again. If it does not
+/// hold there any more, the word becomes what it was.
+bool StreamSolver::still_rests(const Clock& clock) noexcept {
+  const Time settled = std::exchange(summary_.settled_until, *rest_);
+  board_->lower_settled(*rest_);
+  (void)clock.now();
+  const auto held = clock.held();
+  if (held && *held + Time(1) == *rest_) return true;
+  board_->store_settled(settled);
+  return false;
+}
+
 StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   summary_.changed_from = curve_.write();
   if (!board_->is_sound()) return {};
   put_summary(curve_.summary(), summary_);
   // The commit time of a recorded stream is not compared with anything.
+  const bool is_free = !rests_ || still_rests(clock);
   summary_.committed = is_timed_ ? clock.now() : std::max(summary_.committed, clock.about_now());
-  if (live_ && summary_.changed_from <= summary_.committed) {
+  if (!is_free || (live_ && summary_.changed_from <= summary_.committed)) {
     take_back(summary_.deadline_misses + 1);
     return {.missed = true};
   }

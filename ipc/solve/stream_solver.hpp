@@ -52,6 +52,18 @@ struct LiveOptions {
 /// that finds it in the ring, or at its own time if that is later, regardless of the items queued
 /// before it and of the room that the board has for them.
 ///
+/// While the time law of a stream holds it, its curve can be changed from the held time on, plus 1
+/// ns, although more had settled: no process has executed more, or had more as a settled sample.
+/// There a stop, or a replacement as soon as possible (latest_from_rest()), cuts the curve, and
+/// what follows begins at rest: a machine that rests stays where it is. A stop that is executed
+/// when the law holds is cut there in the same way. For that the settled word goes back, in this
+/// order: store the word, read the law again, commit. If the law no longer holds, the revision is
+/// discarded and the word is stored again as it was. A reader, a recorder or a snapshot that takes
+/// more than the held time as settled has read a later law than this solver, and reads the word
+/// after the law: so it finds the lower word. (In C++ terms that needs fences on the reader's side
+/// too. Every processor on which a store becomes visible to all others at once, as x86 and ARMv8
+/// do, orders it without.) The time of the commit is compared with the clock as for each revision.
+///
 /// The solver of a time law plans the law itself, in each step: see plan_with(). Items that an
 /// earlier step or solver has left in the ring are withdrawn first, because they were planned for a
 /// time that has passed.
@@ -106,6 +118,9 @@ class StreamSolver {
   void suspect_items() noexcept;
   [[nodiscard]] Word consume(Time now) noexcept;
   void plan_law(Time now) noexcept;
+  [[nodiscard]] bool can_rest(Time t) const noexcept;
+  void rest_where_held() noexcept;
+  void begin_at_rest(Time blend) noexcept;
   [[nodiscard]] bool is_damaged() const noexcept { return lacks_summary_ || curve_.is_damaged(); }
   [[nodiscard]] Word reachable(Word written) const noexcept;
   [[nodiscard]] bool enters_before(const RingItem& item) noexcept;
@@ -132,6 +147,7 @@ class StreamSolver {
   void check_commit(Time now) noexcept;
   void store_settled(Time t) noexcept;
   [[nodiscard]] Time settled_by_commit() const noexcept;
+  [[nodiscard]] bool still_rests(const Clock& clock) noexcept;
   StepResult publish(const Clock& clock, Word consumed) noexcept;
 
   const WaypointRingReader* ring_;
@@ -150,6 +166,8 @@ class StreamSolver {
   bool is_timed_ = false;             ///< this step is timed
   Time started_{};                    ///< host time when it began, if it is timed
   Time settled_at_ = Time::min();     ///< host time when settled_until was last stored
+  std::optional<Time> rest_{};        ///< the earliest time at which a held law allows a change
+  bool rests_ = false;                ///< a run begins at rest there in this revision
   bool has_starved_ = false;          ///< the stream has begun to starve in this step
   int tries_ = 0;                     ///< candidates of an entry that this step may still try
   bool is_finish_postponed_ = false;  ///< no entry to the last waypoint has been found yet

@@ -50,7 +50,7 @@ std::size_t RecordedDecisions::end_of_run(std::size_t i,
 }
 
 bool RecordedDecisions::begins_at_cut(std::size_t i) const noexcept {
-  if (!segments_[i].origin.item) return true;
+  if (!segments_[i].origin.item || segments_[i].is_corner) return true;
   Word item = std::min(*segments_[i].origin.item, record_.items.size());
   const Word first = record_.items.first();
   while (item > first && !record_.items.is_taken(item - 1, ItemKind::replace)) --item;

@@ -17,19 +17,22 @@ SettledSegments::SettledSegments(const KnotBoardReader& board, bool is_held_befo
       start_(board.dimensions()),
       end_(board.dimensions()) {}
 
-void SettledSegments::look() {
+void SettledSegments::look(Time final_until) {
   for (int attempt = 0; attempt < kTries; ++attempt) {
     const Look look = board_->look();
-    if (look.revision == seen_.revision && look.settled_until == seen_.settled_until) return;
-    if (!take(look)) continue;
+    const bool is_seen =
+        look.revision == seen_.revision && look.settled_until == seen_.settled_until;
+    if (is_seen && !waits_) return;
+    if (!take(look, final_until)) continue;
     seen_ = look;
     return;
   }
 }
 
 /// Takes the segments that have settled under a revision; false if the writer overtook it.
-bool SettledSegments::take(const Look& look) {
+bool SettledSegments::take(const Look& look, Time final_until) {
   if (!board_->copy_summary(look, summary_)) return false;
+  waits_ = false;
   if (summary_.newest == 0) return true;
   Word number = std::max(next_, summary_.first);
   while (number <= summary_.newest) {
@@ -37,6 +40,8 @@ bool SettledSegments::take(const Look& look) {
     if (taken == BoardSegment::Taken::torn) return false;
     if (taken == BoardSegment::Taken::none) break;  // the end of a finished curve
     if (!summary_.finished && copy_.right() > summary_.settled_until) break;
+    waits_ = !summary_.finished && copy_.right() > final_until;
+    if (waits_) break;
     keep();
     if (copy_.is_last(summary_)) break;
     number = copy_.next();

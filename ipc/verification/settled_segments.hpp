@@ -22,7 +22,10 @@ class SettledSegments {
 
   /// Takes the segments that have settled since the last look; all if the stream is finished. O(D)
   /// per segment. Allocates; never stores to shared memory. Two loads if nothing has settled since.
-  void look();
+  ///
+  /// `final_until`: of a stream that follows a time law what LawFollower::final_until() returned
+  /// before this call: no segment is taken that ends after it.
+  void look(Time final_until = Time::max());
 
   /// The segments, oldest first, with waypoint and acceleration step. The step is empty after a
   /// gap.
@@ -35,11 +38,14 @@ class SettledSegments {
   /// the first one.
   [[nodiscard]] Word next() const noexcept { return next_; }
 
+  /// Whether the last look left settled segments because of `final_until`.
+  [[nodiscard]] bool waits() const noexcept { return waits_; }
+
   /// The summary of the board at the last look.
   [[nodiscard]] const Summary& summary() const noexcept { return summary_; }
 
  private:
-  [[nodiscard]] bool take(const Look& look);
+  [[nodiscard]] bool take(const Look& look, Time final_until);
   void keep();
 
   const KnotBoardReader* board_;
@@ -52,6 +58,7 @@ class SettledSegments {
   std::vector<double> arrival_;  ///< acceleration at the end of the segment kept last
   std::vector<SegmentCopy> segments_;
   Word next_ = 1;
+  bool waits_ = false;
 };
 
 }  // namespace splinecast::ipc

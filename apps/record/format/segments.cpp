@@ -10,6 +10,7 @@ constexpr std::uint8_t kHasWaypoint = 1;
 constexpr std::uint8_t kEndsAtWaypoint = 2;
 constexpr std::uint8_t kHasItem = 4;
 constexpr std::uint8_t kHasStep = 8;
+constexpr std::uint8_t kIsCorner = 16;
 constexpr std::uint8_t kHasKnots = 1;
 constexpr std::uint8_t kIsLaterRun = 2;
 constexpr std::uint8_t kHasAccelerations = 1;
@@ -19,7 +20,8 @@ void put(ByteWriter& out, const ipc::SegmentCopy& segment) {
   const ipc::SegmentOrigin& origin = segment.origin;
   const auto flags = static_cast<std::uint8_t>(
       (segment.has_waypoint ? kHasWaypoint : 0) | (origin.ends_at_waypoint ? kEndsAtWaypoint : 0) |
-      (origin.item ? kHasItem : 0) | (segment.acceleration_step.empty() ? 0 : kHasStep));
+      (origin.item ? kHasItem : 0) | (segment.acceleration_step.empty() ? 0 : kHasStep) |
+      (segment.is_corner ? kIsCorner : 0));
   out.put(segment.number)
       .put(segment.next)
       .put(segment.left)
@@ -63,6 +65,7 @@ ipc::SegmentCopy take_segment(ByteReader& in, std::size_t dimensions) {
   segment.origin.known = in.take<ipc::Word>();
   segment.origin.ends_at_waypoint = (flags & kEndsAtWaypoint) != 0;
   segment.has_waypoint = (flags & kHasWaypoint) != 0;
+  segment.is_corner = (flags & kIsCorner) != 0;
   const bool is_in_range = is_time_in_range(segment.left / 2) &&
                            is_time_in_range(segment.right / 2) &&
                            is_time_in_range(segment.natural_right / 2) &&

@@ -26,7 +26,7 @@ bool is_same(const ipc::Look& a, const ipc::Look& b) noexcept {
 }  // namespace
 
 BoardWatch::BoardWatch(std::uint32_t number, ipc::CheckedRegion<ipc::BoardLayout> board,
-                       RingWatch& ring, Time wall_offset)
+                       RingWatch& ring, Time wall_offset, std::unique_ptr<ipc::LawFollower> law)
     : number_(number),
       board_(std::move(board)),
       reader_(board_.region.bytes(), board_.layout),
@@ -34,13 +34,14 @@ BoardWatch::BoardWatch(std::uint32_t number, ipc::CheckedRegion<ipc::BoardLayout
       is_live_(is_live(ipc::stream_clock(board_.header))),
       wall_offset_(is_live_ ? wall_offset : Time::zero()),
       options_(ipc::window_options(board_.header)),
+      law_(std::move(law)),
       settled_(reader_, is_live_),
       refused_(ipc::kRefusalsKept) {
   board_.region.close_descriptor();
 }
 
 bool BoardWatch::calls() const noexcept {
-  return !is_same(reader_.look(), looked_) || reader_.retired();
+  return !is_same(reader_.look(), looked_) || settled_.waits() || reader_.retired();
 }
 
 Record BoardWatch::record(RecordKind kind, ipc::Word number, Time time, Bytes bytes) const {
@@ -56,8 +57,9 @@ Time BoardWatch::event_time(const Batch& batch) const noexcept {
 }
 
 void BoardWatch::look(Batch& batch) {
+  const Time final_until = law_ ? law_->final_until(MonotonicClock().now()) : Time::max();
   looked_ = reader_.look();
-  settled_.look();
+  settled_.look(final_until);
   // Items after the board: the record then has every item that the segments depend on.
   if (const ipc::Word lost = ring_.look(batch); lost > 0) {
     needs_start_ = true;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "apps/record/watch/ring_watch.hpp"
 #include "core/online/sliding_window.hpp"
 #include "ipc/board/reader.hpp"
+#include "ipc/law/follower.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/verification/recorded_decisions.hpp"
@@ -21,9 +23,9 @@ namespace splinecast::apps::record {
 /// thread uses it.
 class BoardWatch {
  public:
-  /// `ring`: of the same stream; outlives this.
+  /// `ring`: of the same stream; outlives this. `law`: that the stream follows, or null.
   BoardWatch(std::uint32_t number, ipc::CheckedRegion<ipc::BoardLayout> board, RingWatch& ring,
-             Time wall_offset);
+             Time wall_offset, std::unique_ptr<ipc::LawFollower> law);
   BoardWatch(const BoardWatch&) = delete;
   BoardWatch& operator=(const BoardWatch&) = delete;
 
@@ -70,6 +72,7 @@ class BoardWatch {
   bool is_live_;
   Time wall_offset_;
   core::WindowOptions options_;
+  std::unique_ptr<ipc::LawFollower> law_;  ///< that the stream follows, if it is there
   ipc::SettledSegments settled_;
   ipc::RunStarts starts_;
   ipc::Look looked_{};

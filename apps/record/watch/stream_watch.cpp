@@ -46,7 +46,9 @@ void StreamWatch::attach_board(Batch& batch, bool was_there) {
   auto board = ipc::open_board(stream_, false, trust_);
   if (board.header.stream_id != ring_->header().stream_id) return;  // of an earlier stream
   if (ipc::KnotBoardReader(board.region.bytes(), board.layout).retired()) return;
-  board_ = std::make_unique<BoardWatch>(number_, std::move(board), *ring_, wall_offset_);
+  auto law = ipc::law_of(board.header, trust_);
+  board_ =
+      std::make_unique<BoardWatch>(number_, std::move(board), *ring_, wall_offset_, std::move(law));
   owners_.board = board_->owner();
   put_options(batch);
   board_->put_event(batch, EventKind::attached,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <ctime>
+#include <optional>
 
 #include "splinecast/time.hpp"
 
@@ -42,6 +43,10 @@ class Clock {
   /// The latest time that this clock can show when the host's clock has advanced by `ahead` since
   /// `now`, the result of the last now().
   [[nodiscard]] virtual Time latest(Time now, Time ahead) const noexcept { return now + ahead; }
+
+  /// The time that this clock shows if it is certain, as of the last now(), that it does not
+  /// advance as far as it is known ahead: of a stream whose time law is held.
+  [[nodiscard]] virtual std::optional<Time> held() const noexcept { return std::nullopt; }
 };
 
 /// The end of a timeout that begins now, at most Time::max(); a negative timeout counts as 0.

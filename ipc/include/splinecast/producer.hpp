@@ -50,13 +50,15 @@ struct MotionPeaks {
 
 /// The effect that a replacement would have on the curve.
 struct ReplacePreview {
-  AppendStatus status{};  ///< what `replace_from` would return now; unless `accepted`, the other
-                          ///< members are not valid
-  bool is_known = false;  ///< the curve exists and its state at t was read; else the members below
-                          ///< are not valid
-  Time begin{};           ///< of the motion: t; for a stop at a settled time, settled_until
-  Time duration{};        ///< of the entry onto the waypoints, or of the stop
-  bool enters = false;    ///< whether there is an entry; else the curve comes to rest from t on
+  AppendStatus status{};   ///< what `replace_from` would return now; unless `accepted`, the other
+                           ///< members are not valid
+  bool is_known = false;   ///< the curve exists and its state at t was read; else the members below
+                           ///< are not valid
+  Time begin{};            ///< of the motion: t; for a stop at a settled time, settled_until
+  Time duration{};         ///< of the entry onto the waypoints, or of the stop
+  bool from_rest = false;  ///< whether the motion begins at rest where the stream's time law holds
+                           ///< it: see Producer::replace_from
+  bool enters = false;     ///< whether there is an entry; else the curve comes to rest from t on
   std::optional<std::size_t> waypoint{};  ///< where the entry ends; unset: it ends beyond the last
                                           ///< waypoint
   std::size_t passed_over = 0;            ///< waypoints before the end of the entry
@@ -65,6 +67,12 @@ struct ReplacePreview {
   Excess worst{};  ///< the place in `motion` nearest to a limit, or farthest beyond one. `u` has no
                    ///< meaning here: it counts from the left end of a segment that is not given.
                    ///< Ratio below 0: there are no limits
+};
+
+/// Where the motion of a replacement begins.
+struct ReplacementBegin {
+  Time begin{};
+  bool from_rest = false;  ///< it begins at rest, where the stream's time law held it
 };
 
 /// The transition from the old motion to the new one.
@@ -128,6 +136,14 @@ class Producer {
   /// the solver, or one sweep over all streams that it solves. A stop at a t after the newest knot
   /// waits for its turn in the queue, at most until settled_until reaches t. A ring of 16 or more
   /// items accepts stops and `finish` even when it is full of waypoints.
+  ///
+  /// While the time law of the stream holds it, a stop or a replacement at a t that has settled, or
+  /// is at most 10 freeze-aheads after the held time, takes effect where the law holds it, 1 ns
+  /// later: what follows begins at rest there,
+  /// and the machine stays where it is until the new waypoints move it. So does a stop that is
+  /// executed when the law comes to rest. That is certain only if the law has settled at rate 0 at
+  /// the solver's step; else the stop or entry is as without a hold. replacement_begin() says
+  /// which.
   [[nodiscard]] AppendStatus replace_from(Time t, std::span<const Waypoint> waypoints,
                                           const ReplaceOptions& options = {}) noexcept;
 
@@ -151,6 +167,12 @@ class Producer {
   /// its solver last published; min() of a recorded stream, and before a solver has published.
   /// O(1); until a solver has attached, looks for one, as append does.
   [[nodiscard]] Time earliest() noexcept;
+
+  /// Where the motion of this producer's last replacement begins, once the solver has taken it, as
+  /// long as the board keeps it; else nothing, also if it was refused. O(1) and at most O(refusals
+  /// kept); reads the board; no system call except the search for a solver, as in append.
+  /// Allocates. Producer's thread only. Throws std::bad_alloc only.
+  [[nodiscard]] std::optional<ReplacementBegin> replacement_begin();
 
   /// The time of the stream's clock: of a live stream CLOCK_MONOTONIC, of a stream that follows a
   /// law the law's stream time; 0 for a recorded stream.

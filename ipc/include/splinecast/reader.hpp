@@ -101,7 +101,8 @@ class Reader {
   [[nodiscard]] LawRate rate() const noexcept { return rate_; }
 
   /// The settled time of the curve that the last sample or look-ahead used: that curve never
-  /// changes before this time. Before the first sample, the earliest time that a curve can have.
+  /// changes before this time. Before the first sample, the earliest time that a curve can have. On
+  /// a stream that follows a law, of the newest curve, in stream time.
   [[nodiscard]] Time settled_until() const noexcept;
 
   /// Copies every segment that overlaps the closed interval from `from` to `to`, all under one

@@ -34,6 +34,8 @@ struct SnapshotSegment {
   std::span<const double> waypoint;      ///< position of the waypoint at `left`; empty: none there
   std::span<const double> acceleration_step;  ///< a⁺ − a⁻ at `left`; empty if the board no longer
                                               ///< has the segment before it
+  bool is_corner = false;  ///< the curve was cut at `left` while its time law held it, and begins
+                           ///< at rest: the velocity may step there
 };
 
 /// Consecutive segments of one revision: a consistent part of the curve, complete or empty. Made by

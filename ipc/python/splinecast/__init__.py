@@ -52,6 +52,7 @@ from .records import (
     MotionPeaks,
     Progress,
     Refusals,
+    ReplacementBegin,
     ReplacePreview,
     Segment,
     StepResult,
@@ -61,7 +62,8 @@ from .statuses import AppendStatus, Refusal, SampleStatus, SegmentKind
 __all__ = [
     "Alive", "AppendStatus", "BadRegion", "BadRequest", "Block", "Curve", "Error", "Excess", "Full", "ItemRefusal",
     "LawRate", "LimitExcess", "Limits", "MotionPeaks", "NoSuchStream", "OutOfResources", "Producer", "Progress",
-    "RateCommander", "Reader", "Refusal", "Refusals", "Refused", "ReplacePreview", "SampleStatus", "Segment",
+    "RateCommander", "Reader", "Refusal", "Refusals", "Refused", "ReplacementBegin",
+    "ReplacePreview", "SampleStatus", "Segment",
     "SegmentKind", "Snapshot", "Solver", "State", "StepResult", "StreamBusy", "__version__", "cross_validated_lambda",
     "fit", "methods", "remove", "streams",
 ]

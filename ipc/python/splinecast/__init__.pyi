@@ -22,6 +22,7 @@ from .records import Limits as Limits
 from .records import MotionPeaks as MotionPeaks
 from .records import Progress as Progress
 from .records import Refusals as Refusals
+from .records import ReplacementBegin as ReplacementBegin
 from .records import ReplacePreview as ReplacePreview
 from .records import Segment as Segment
 from .records import StepResult as StepResult
@@ -300,6 +301,13 @@ class Producer:
     @property
     def earliest(self) -> Optional[int]:
         """The earliest time at which the curve may still change [ns]; None: any time."""
+    @property
+    def replacement_begin(self) -> Optional[ReplacementBegin]:
+        """Where the motion of the last replacement begins, and whether at rest in a hold.
+
+        None while the solver has not taken it, if it was refused, and if the board no longer
+        keeps it.
+        """
     @property
     def last_time(self) -> int:
         """Time of the newest item, of this or an earlier producer [ns]; 0 if there is none."""

@@ -98,6 +98,13 @@ class MotionPeaks(NamedTuple):
     jerk: Array
 
 
+class ReplacementBegin(NamedTuple):
+    """Where the motion of a replacement begins."""
+
+    begin: int  #: [ns]
+    from_rest: bool  #: whether it begins at rest, where the stream's time law held it
+
+
 class ReplacePreview(NamedTuple):
     """The effect that a replacement would have on the curve."""
 
@@ -105,6 +112,7 @@ class ReplacePreview(NamedTuple):
     is_known: bool  #: whether the curve's state at t is known; else the rest is not valid
     begin: int  #: of the motion [ns]: t; for a stop at a settled time, settled_until
     duration: float  #: of the entry onto the waypoints, or of the stop [s]
+    from_rest: bool  #: whether it begins at rest where the stream's time law holds it
     enters: bool  #: whether there is an entry; else the curve comes to rest
     waypoint: Optional[int]  #: where the entry ends; None: beyond the last waypoint
     passed_over: int  #: waypoints before the end of the entry
@@ -130,6 +138,7 @@ class Segment(NamedTuple):
     coefficients: Array  #: (order, D), the lowest power first
     waypoint: Optional[Array]  #: position of the waypoint at `left`; None: none there
     acceleration_step: Optional[Array]  #: at `left`; None if the board no longer has it
+    is_corner: bool  #: cut at `left` while its time law held it: the velocity may step there
 
 
 #: Limits by kind (velocity, acceleration, jerk, lower, upper), each of shape (D,).

@@ -49,13 +49,19 @@ py::object to_record(const Refusals& refusals, std::span<const std::string> name
   return type("Refusals")(items, refusals.missed, refusals.consumed);
 }
 
+py::object to_record(const std::optional<ReplacementBegin>& found) {
+  if (!found) return py::none();
+  return type("ReplacementBegin")(found->begin.count(), found->from_rest);
+}
+
 py::object to_record(const ReplacePreview& preview) {
   py::object waypoint = py::none();
   if (preview.waypoint) waypoint = py::int_(*preview.waypoint);
-  return type("ReplacePreview")(
-      member("AppendStatus", static_cast<std::uint8_t>(preview.status)), preview.is_known,
-      preview.begin.count(), to_seconds(preview.duration), preview.enters, waypoint,
-      preview.passed_over, peaks(preview.entry), peaks(preview.motion), to_record(preview.worst));
+  return type("ReplacePreview")(member("AppendStatus", static_cast<std::uint8_t>(preview.status)),
+                                preview.is_known, preview.begin.count(),
+                                to_seconds(preview.duration), preview.from_rest, preview.enters,
+                                waypoint, preview.passed_over, peaks(preview.entry),
+                                peaks(preview.motion), to_record(preview.worst));
 }
 
 py::object to_record(const LawRate& rate) {
@@ -78,7 +84,8 @@ py::object to_record(const SnapshotSegment& segment, std::size_t dimensions) {
   return type("Segment")(segment.left.count(), segment.right.count(),
                          member("SegmentKind", static_cast<std::uint8_t>(segment.kind)),
                          coefficients.attr("reshape")(segment.order, dimensions),
-                         array_or_none(segment.waypoint), array_or_none(segment.acceleration_step));
+                         array_or_none(segment.waypoint), array_or_none(segment.acceleration_step),
+                         segment.is_corner);
 }
 
 py::dict to_record(const MotionLimits& limits) {

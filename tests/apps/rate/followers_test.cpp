@@ -57,6 +57,26 @@ TEST_F(MovingFollower, ALowerRateBeyondALimitIsRequestedAndTheSufficientRampIsRe
   EXPECT_TRUE(await_rate(0));
 }
 
+TEST_F(MovingFollower, AGentleRampIsLengthenedAsFarAsItMayBe) {
+  // The largest acceleration of a ramp from 1 to 0 in T is 1.5/T, and the limit is 10.
+  const Ended gentle = rate({"0", "--ramp", "0.1", "--gentle", "0.2", "--json"});
+  EXPECT_EQ(gentle.code, 0);
+  EXPECT_EQ(gentle.err, "");
+  const double worst = nlohmann::json::parse(gentle.out)["effects"][0]["limit_ratio"];
+  EXPECT_GT(worst, 0.7);
+  EXPECT_LE(worst, 1 + 1e-9);
+  ASSERT_TRUE(await_rate(0));
+  EXPECT_EQ(rate({"0.5", "--ramp", "0.5"}).code, 0);
+  ASSERT_TRUE(await_rate(0.5));
+  // Not as long as it would have to be.
+  const Ended short_one = rate({"0", "--ramp", "0.03", "--gentle", "0.05"});
+  EXPECT_EQ(short_one.code, 0);
+  EXPECT_NE(short_one.out.find("rate 0 in 0.05 s"), std::string::npos) << short_one.out;
+  EXPECT_NE(short_one.err.find("requested: acceleration"), std::string::npos) << short_one.err;
+  EXPECT_TRUE(await_rate(0));
+  EXPECT_EQ(rate({"0", "--ramp", "0.2", "--gentle", "0.1"}).code, 2);
+}
+
 TEST_F(MovingFollower, AHigherRateBeyondALimitIsRefusedUnlessItIsForced) {
   ASSERT_EQ(rate({"0", "--ramp", "0.1"}).code, 0);
   ASSERT_TRUE(await_rate(0));

@@ -120,6 +120,24 @@ TEST_F(CLaw, HasTheRateThatIsRequested) {
   reach(1);
 }
 
+TEST_F(CLaw, SaysWhereAReplacementBegins) {
+  begin();
+  ASSERT_EQ(splinecast_rate_commander_hold(commander_, 5 * kMs), 0);
+  reach(0);
+  std::int64_t held = 0, begin = 0;
+  int from_rest = -1;
+  ASSERT_EQ(splinecast_producer_now(producer_, &held), 0);
+  EXPECT_EQ(splinecast_producer_replacement_begin(producer_, &begin, &from_rest), 0);
+  ASSERT_EQ(splinecast_producer_replace_from(producer_, 0, nullptr, 0), SPLINECAST_APPEND_ACCEPTED)
+      << splinecast_last_error();
+  while (splinecast_producer_replacement_begin(producer_, &begin, &from_rest) == 0) step();
+  // The law may have settled only a part of the way that this looks ahead.
+  EXPECT_GT(begin, held);
+  if (from_rest == 1) {
+    EXPECT_EQ(begin, held + 1);
+  }
+}
+
 TEST_F(CLaw, HoldsWhenTheDeadManOfACommanderExpires) {
   begin();
   ASSERT_EQ(splinecast_rate_commander_set_dead_man(commander_, 20 * kMs, 20 * kMs), 0);

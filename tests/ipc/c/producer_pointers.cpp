@@ -110,6 +110,17 @@ void CPointers::add_producer_state() {
   HANDLE_ONLY(producer, splinecast_producer_withdraw);
   HANDLE_AND_OUTPUT(producer, std::int64_t, splinecast_producer_earliest, "time", c_.producer,
                     time_);
+  producer("splinecast_producer_replacement_begin", [this](auto* p) {
+    int from_rest = 0;
+    return splinecast_producer_replacement_begin(p, &time_, &from_rest);
+  });
+  wrong_.pointer<std::int64_t>("splinecast_producer_replacement_begin", "begin", [this](auto* p) {
+    int from_rest = 0;
+    return splinecast_producer_replacement_begin(c_.producer, p, &from_rest);
+  });
+  wrong_.pointer<int>("splinecast_producer_replacement_begin", "from_rest", [this](auto* p) {
+    return splinecast_producer_replacement_begin(c_.producer, &time_, p);
+  });
   HANDLE_AND_OUTPUT(producer, std::int64_t, splinecast_producer_now, "time", c_.producer, time_);
   HANDLE_AND_OUTPUT(producer, std::int64_t, splinecast_producer_last_time, "time", c_.producer,
                     time_);

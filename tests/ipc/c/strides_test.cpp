@@ -225,7 +225,7 @@ TEST(CStructs, EndWithoutPaddingThatALaterMemberCouldFill) {
   ENDS_WITH(splinecast_progress, reserved);
   ENDS_WITH(splinecast_law_rate, slope);
   ENDS_WITH(splinecast_rate_commander_options, reserved);
-  ENDS_WITH(splinecast_segment, acceleration_step);
+  ENDS_WITH(splinecast_segment, reserved);
   ENDS_WITH(splinecast_fit_options, end);
 #undef ENDS_WITH
 }

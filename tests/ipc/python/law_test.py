@@ -43,6 +43,16 @@ class Law(StreamTest):
             return reader.rate() if reader.rate().rate == rate else None
         return wait_for(found)
 
+    def test_a_stop_in_a_hold_begins_where_the_machine_rests(self):
+        producer, reader = self.follow()
+        self.operator.hold(0.005)
+        held = self.reach(reader, 0).stream_time
+        self.assertIsNone(producer.replacement_begin)
+        producer.replace_from(0)
+        begin = wait_for(lambda: producer.replacement_begin)
+        self.assertGreater(begin.begin, held)
+        self.assertIn(begin.from_rest, (False, True))
+
     def test_the_rate_is_the_least_that_is_requested(self):
         producer, reader = self.follow(largest_rate=2)
         self.assertEqual(reader.clock, "law")

@@ -54,7 +54,8 @@ struct Replaced : LiveStream {
   ReplacePreview preview(Time blend) {
     ReplacementPlanner planner(board.reader, window, kinds, live);
     ReplacePreview out;
-    planner.plan(time_at(1100), plan, blend, out);
+    out.begin = time_at(1100);
+    planner.plan(plan, blend, out);
     return out;
   }
   /// Replaces the future and returns its entry. With `takes_over`, a new solver makes each step.
@@ -227,7 +228,8 @@ TEST(ReplacementPreview, IsUnknownForAStreamWithoutACurve) {
   LiveStream live;
   ReplacementPlanner planner(live.board.reader, live.window, live.kinds, live.live);
   ReplacePreview told;
-  planner.plan(time_at(100), {}, {}, told);
+  told.begin = time_at(100);
+  planner.plan({}, {}, told);
   EXPECT_FALSE(told.is_known);
 }
 
