@@ -30,13 +30,13 @@ bool Commanders::has(const std::string& name) const noexcept {
   return std::ranges::find(states_, name, &CommanderState::name) != states_.end();
 }
 
-void Commanders::look_around() {
+void Commanders::look_around(bool needs_room) {
   for (std::size_t i = sources_.size(); i-- > 0;) {
     if (load(sources_[i].control[kRetired], std::memory_order_acquire) == 0) continue;
     sources_.erase(sources_.begin() + std::ptrdiff_t(i));
     states_.erase(states_.begin() + std::ptrdiff_t(i));
   }
-  look_for_life();
+  look_for_life(needs_room);
   if (!folder_.has_changed() && unusable_.empty()) return;
   unusable_.clear();
   for (const std::string& name : commander_names(law_)) {
@@ -58,9 +58,9 @@ void Commanders::look_around() {
 }
 
 /// Looks which of those that request nothing live.
-void Commanders::look_for_life() {
+void Commanders::look_for_life(bool needs_room) {
   constexpr int kEvery = 50;
-  if (looks_++ % kEvery != 0) return;
+  if (looks_++ % kEvery != 0 && !needs_room) return;
   for (CommanderState& state : states_) {
     if (state.requests()) continue;
     state.is_alive = owner_lives(commander_stream(law_, state.name), RegionKind::commander);

@@ -54,11 +54,11 @@ class Commanders {
   Commanders(std::string law, const Trust& trust) : law_(std::move(law)), trust_(trust) {}
 
   /// Looks for commanders that have come. One system call if no file of shared memory has come or
-  /// gone since the last call, else it reads the folder; allocates for new ones. In one of 50 calls
-  /// some more for each commander that requests nothing, to see whether its process lives. A region
-  /// that cannot be used, or that has the clock of another time namespace, is ignored, and tried
-  /// again in the next call.
-  void look_around();
+  /// gone since the last call, else it reads the folder; allocates for new ones. In one of 50
+  /// calls, and if `needs_room`, some more for each commander that requests nothing, to see whether
+  /// its process lives. A region that cannot be used, or that has the clock of another time
+  /// namespace, is ignored, and tried again in the next call.
+  void look_around(bool needs_room = false);
 
   [[nodiscard]] bool empty() const noexcept { return sources_.empty(); }
 
@@ -97,7 +97,7 @@ class Commanders {
     Time damaged_since = Time::max();  ///< when a record was first found damaged
   };
   [[nodiscard]] bool has(const std::string& name) const noexcept;
-  void look_for_life();
+  void look_for_life(bool needs_room);
   static void read_newest(Source& source, CommanderState& state, Time now) noexcept;
 
   std::string law_;

@@ -104,7 +104,7 @@ Time LawFollower::final_until(Time host) noexcept {
   SampleStatus status = ahead(host, point);
   // Never changes before settled_until: the last time that has settled.
   const Time settled = settled_until() - Time(1);
-  if (has_values(status) && settled > host) status = ahead(settled, point);
+  if (!has_values(status) || settled > host) status = ahead(settled, point);
   return has_values(status) ? saturated_sum(point.stream, Time(1)) : Time::min();
 }
 

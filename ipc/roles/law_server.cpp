@@ -137,7 +137,12 @@ void LawServer::judge_sent() noexcept {
 void LawServer::look_around(const Clock& clock) {
   const Time now = clock.now();
   if (now < next_look_) return;
-  commanders_.look_around();
+  // The table may be full of commanders whose processes have just ended.
+  const bool needs_room =
+      is_rate_known_ && std::ranges::any_of(commanders_.states(), [&](const auto& state) {
+        return state.is_used() && !rate_.knows(state.id);
+      });
+  commanders_.look_around(needs_room);
   if (is_rate_known_) faults_.look(commanders_, rate_, ring_.header.largest_rate);
   next_look_ = now + kLookEvery;
 }

@@ -39,7 +39,7 @@ class RecordedArm {
   }
 
   /// Begins the path at a stream time.
-  void begin(Time stream_time) { next_ = stream_time; }
+  void begin(Time stream_time) { next_ = origin_ = stream_time; }
 
   /// A new solver continues the stream.
   void take_over() {
@@ -117,7 +117,7 @@ class RecordedArm {
     reader_.emplace(stream_.name());
   }
   [[nodiscard]] double position(Time stream_time) const {
-    return std::sin(4 * to_seconds(stream_time % std::chrono::hours(1)) + phase_);
+    return std::sin(4 * to_seconds(stream_time - origin_) + phase_);
   }
   void produce(Time until) {
     for (; next_ < until; next_ += kInterval) {
@@ -154,6 +154,7 @@ class RecordedArm {
   const Clock& clock_;
   double phase_;
   bool is_stopped_ = false;
+  Time origin_{};
   Time next_{};
   std::optional<Producer> producer_;
   std::optional<Solver> solver_;

@@ -41,8 +41,12 @@ TEST_F(HeldStreams, StayWhereTheyRestAfterAStop) {
   }
   EXPECT_GT(std::abs(arm(1).x() - other), 0.1);
   arm().resume(stream_now() + milliseconds(300));
-  pass(milliseconds(1000));
-  EXPECT_GT(std::abs(arm().x() - held), 0.01);
+  double farthest = 0;
+  for (int i = 0; i < 1000; ++i) {
+    pass(milliseconds(1));
+    farthest = std::max(farthest, std::abs(arm().x() - held));
+  }
+  EXPECT_GT(farthest, 0.1);
   for (const std::size_t i : {0U, 1U}) {
     const auto found = arm(i).verify();
     EXPECT_FALSE(found.first) << found.first->what;

@@ -50,6 +50,18 @@ class InForce : public TimeLaw {
   }
 };
 
+TEST_F(InForce, ANewCommanderIsHeardWhenTheTableIsFullOfOnesThatHaveJustEnded) {
+  for (int i = 0; i < 40; ++i) {
+    RateCommander brief(law_.name(), "brief" + std::to_string(i));
+    brief.hold(milliseconds(1));
+    pass(milliseconds(100));
+    ASSERT_EQ(rate(), 0) << i;
+    brief.release(milliseconds(1));
+    pass(milliseconds(10));
+    ASSERT_EQ(rate(), 1) << i;
+  }
+}
+
 TEST_F(InForce, ARequestIsWhenItsRevisionIsCommitted) {
   const std::uint64_t number = operator_.hold(milliseconds(100));
   EXPECT_EQ(number, 2U);
