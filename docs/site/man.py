@@ -30,9 +30,13 @@ def main():
     out.mkdir(parents=True, exist_ok=True)
     for page in sorted(VERBS.glob("*.md")):
         name, text = prepared(page)
-        subprocess.run(["pandoc", "-s", "-f", "gfm", "-t", "man", "-M", f"title={name.upper()}", "-M", "section=1",
-                        "-M", f"footer=splinecast {version}", "-M", "header=splinecast", "-o", str(out / f"{name}.1")],
-                       input=text, text=True, check=True)
+        made = subprocess.run(["pandoc", "-s", "-f", "gfm", "-t", "man", "-M", f"title={name.upper()}", "-M", "section=1",
+                               "-M", f"footer=splinecast {version}", "-M", "header=splinecast"],
+                              input=text, text=True, check=True, stdout=subprocess.PIPE).stdout
+        # Another process may read the page of an earlier build.
+        partial = out / f".{name}.1"
+        partial.write_text(made, encoding="utf-8")
+        partial.rename(out / f"{name}.1")
     return 0
 
 

@@ -5,6 +5,7 @@ import textwrap
 
 WIDTH = 120  # of a line
 BUGS = "Bugs that the attacks found"
+CHANGES = "Requests of a rate, before and after"
 
 HEAD = """# Attacks in detail
 
@@ -154,8 +155,10 @@ def bug_lines(bugs):
     return lines or ["None so far."]
 
 
-def page(results, bugs, overview, promise_anchors):
+def page(results, bugs, changes, overview, promise_anchors):
     lines = [HEAD.format(overview=overview)]
     for result in results:
         lines += section(result, overview, promise_anchors)
-    return "\n".join([*lines, f"## {BUGS}", "", *bug_lines(bugs)]) + "\n"
+    rows = [(change["fault"], change["before"], change["after"]) for change in changes]
+    lines += [f"## {BUGS}", "", *bug_lines(bugs), "", f"## {CHANGES}", "", *table(["fault", "before", "after"], rows)]
+    return "\n".join(lines).rstrip("\n") + "\n"

@@ -23,6 +23,9 @@ Each file tests/campaign/results/*.json holds one result or a list of results. A
 
 tests/campaign/bugs.json holds a list of the bugs that attacks have found. Each is an object of texts:
 what (the bug), found_by (the attack), correction.
+
+tests/campaign/before_after.json holds a list of faults with measurements before and after their correction. Each is an
+object of texts: fault, before, after.
 """
 
 import datetime
@@ -141,6 +144,15 @@ def read_bugs():
     return bugs
 
 
+def read_changes():
+    path = CAMPAIGN / "before_after.json"
+    changes = json.loads(path.read_text(encoding="utf-8"))
+    for change in changes:
+        if change.keys() != {"fault", "before", "after"} or not all(map(is_text, change.values())):
+            sys.exit(f"{path}: a fault needs the texts fault, before and after")
+    return changes
+
+
 def violations(result):
     return sum(result["found"].values())
 
@@ -165,6 +177,7 @@ def overview(promises, results, bugs):
              f"- {len(results)} attacks",
              f"- violations: {number_text(sum(map(violations, results)))}",
              f"- [bugs found and corrected]({DETAILS.name}#{slug(details.BUGS)}): {len(bugs)}",
+             f"- [{details.CHANGES}]({DETAILS.name}#{slug(details.CHANGES)})",
              *(f"- machine: {machine}" for machine in machines), ""]
     for number, (title, text) in enumerate(promises, 1):
         attacks = [result for result in results if number in promises_of(result)]
@@ -179,7 +192,7 @@ def make_pages():
     promises = read_promises()
     results, bugs = read_results(len(promises)), read_bugs()
     pages = {OVERVIEW: overview(promises, results, bugs).rstrip("\n") + "\n",
-             DETAILS: details.page(results, bugs, OVERVIEW.name,
+             DETAILS: details.page(results, bugs, read_changes(), OVERVIEW.name,
                                    [promise_anchor(n, title) for n, (title, _) in enumerate(promises, 1)])}
     for path, text in pages.items():
         for number, line in enumerate(text.splitlines(), 1):
