@@ -114,7 +114,7 @@
 ///
 /// S1 settled.store(s, release), after the commit (W3) of the revision to which s belongs. It may
 ///    be raised later without a revision; every later revision then begins at or after it. It never
-///    decreases, but for a stream that a time law holds: see StreamSolver, and what its readers do.
+///    decreases, except on a stream that a time law holds: see StreamSolver.
 /// S2 settled.load(acquire), before R1 (acquire). Pairs with S1: a reader that sees s sees, at R1,
 ///    the revision to which s belongs or a later one. No revision after that changes anything
 ///    before s, so the curve before s under r is final.

@@ -193,7 +193,7 @@ class RandomHolds : public HeldStreams {
     pass(way, std::max<Time>(milliseconds(1), length / 500));
     return rests;
   }
-  /// Releases the hold. What has stopped stays where it is.
+  /// Releases the hold. A stopped stream does not move.
   void end_hold(RecordedArm& moved, bool is_stopped) {
     const bool stays = is_stopped && rate() == 0;
     const double rest = moved.x();

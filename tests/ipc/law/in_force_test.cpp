@@ -50,7 +50,7 @@ class InForce : public TimeLaw {
   }
 };
 
-TEST_F(InForce, ANewCommanderIsHeardWhenTheTableIsFullOfOnesThatHaveJustEnded) {
+TEST_F(InForce, ANewCommanderIsHeardAlthoughEndedOnesFillTheTable) {
   for (int i = 0; i < 40; ++i) {
     RateCommander brief(law_.name(), "brief" + std::to_string(i));
     brief.hold(milliseconds(1));
