@@ -18,7 +18,7 @@ bool LawBoard::is_there() noexcept {
     if (header.is_law == 0) return false;
     KnotBoardReader reader(region.bytes(), layout);
     region.close_descriptor();
-    board_.emplace(std::move(region), header, reader);
+    board_ = Board{std::move(region), header, std::move(reader)};
     return board_->reader.revision() > 0;
   } catch (const StreamError&) {
     return false;

@@ -4,12 +4,14 @@
 #include <utility>
 
 #include "ipc/board/reader.hpp"
+#include "ipc/law/follower.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/options/curve.hpp"
 #include "ipc/ring/reader.hpp"
 #include "ipc/solve/shown_motion.hpp"
+#include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
 
 namespace splinecast::ipc {
@@ -29,7 +31,10 @@ void inspect_spline(StreamInfo& info, const Trust& trust) {
   const auto [region, header, layout] = open_board(info.stream, false, trust);
   info.spline = header;
   const KnotBoardReader board(region.bytes(), layout);
+  const auto law = law_of(header, trust);
+  const Time final_until = law ? law->final_until(MonotonicClock().now()) : Time::max();
   (void)board.copy_newest_summary(info.summary);
+  info.summary.settled_until = std::min(info.summary.settled_until, final_until);
   info.step_times = board.step_times();
   if (live_options(header)) {
     ShownMotion shown(board);

@@ -33,8 +33,9 @@ struct StreamInfo {
   std::vector<LimitExcess> excesses;  ///< the last excesses, oldest first: at most kExcessesKept
 };
 
-/// Inspects a stream. Throws NoSuchStream if it has no region, BadRegion if a region cannot be
-/// used.
+/// Inspects a stream. The settled time of the summary is that of Reader::settled_until(), which
+/// reads the law of a stream that follows one. Throws NoSuchStream if it has no region, BadRegion
+/// if a region cannot be used.
 [[nodiscard]] StreamInfo inspect(const std::string& stream, const Trust& trust = {});
 
 }  // namespace splinecast::ipc

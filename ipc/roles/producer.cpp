@@ -212,9 +212,8 @@ void Producer::preview_replace(Time t, std::span<const Waypoint> waypoints,
   if (known.clock != nullptr) (void)known.clock->now();
   if (const auto held = known.clock != nullptr ? known.clock->held() : std::nullopt) {
     const Time rest = *held + Time(1);
-    const Time latest =
-        ipc::latest_from_rest(rest, known.settled_until, Time(solver.header.freeze_ahead));
-    out.from_rest = rest <= known.settled_until && t <= latest && (waypoints.empty() || t >= rest);
+    out.from_rest = ipc::begins_at_rest(t, waypoints.empty(), rest, known.settled_until,
+                                        Time(solver.header.freeze_ahead));
     if (out.from_rest) out.begin = rest;
   }
   solver.planner->plan(waypoints, options.blend, out);

@@ -166,10 +166,7 @@ bool ReplacementPlanner::find_entry(const Instant& from, std::span<const Waypoin
 void ReplacementPlanner::plan(std::span<const Waypoint> waypoints, Time blend,
                               ReplacePreview& out) {
   out.is_known = read_state(out.begin);
-  if (out.from_rest) {
-    std::ranges::fill(state_.ref().velocity, 0.0);
-    std::ranges::fill(state_.ref().acceleration, 0.0);
-  }
+  if (out.from_rest) come_to_rest(state_);
   out.duration = {};
   out.enters = false;
   out.waypoint.reset();

@@ -47,11 +47,6 @@ Instant CurveCut::state() const noexcept {
           .acceleration = state_.acceleration()};
 }
 
-void CurveCut::come_to_rest() noexcept {
-  std::ranges::fill(state_.ref().velocity, 0.0);
-  std::ranges::fill(state_.ref().acceleration, 0.0);
-}
-
 bool CurveCut::read(Word number) noexcept {
   return segment_.take(*published_, summary_, number) == BoardSegment::Taken::whole &&
          is_time_in_range(segment_.left());

@@ -31,7 +31,7 @@ class CurveCut {
   [[nodiscard]] bool find(const Summary& summary, Time t) noexcept;
 
   /// Lets the new curve begin at rest at the cut that was found.
-  void come_to_rest() noexcept;
+  void come_to_rest() noexcept { ipc::come_to_rest(state_); }
 
   /// The state at the cut that was found, and the number of the knot that begins the new curve.
   [[nodiscard]] Instant state() const noexcept;

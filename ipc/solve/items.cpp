@@ -119,7 +119,8 @@ void StreamSolver::take_replacement(Word number) noexcept {
   // A stop is never too late: it takes effect as soon as possible, in a revision of its own, which
   // is committed sooner than a full batch.
   const Time earliest = std::max(settled_until_, curve_.earliest_cut());
-  const bool rests = can_rest(item_.time) && (is_stop(item_) || item_.time >= *rest_);
+  const bool rests = can_rest() && begins_at_rest(item_.time, is_stop(item_), *rest_,
+                                                  settled_until_, live_->freeze_ahead);
   const Time t = rests ? *rest_ : is_stop(item_) ? std::max(item_.time, earliest) : item_.time;
   const bool has_begun = curve_.has_begun();  // else there is nothing to replace
   if (has_begun && !rests &&

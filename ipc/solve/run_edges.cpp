@@ -10,8 +10,12 @@ void evaluate_at_cut(const CutSegment& segment, Time t, State& out) noexcept {
   const Time at = std::clamp(t, segment.left, segment.right);
   core::evaluate(segment.order, segment.coefficients, to_seconds(at - segment.left), out.ref());
   if (t >= segment.left && t < segment.right) return;
-  std::ranges::fill(out.ref().velocity, 0.0);
-  std::ranges::fill(out.ref().acceleration, 0.0);
+  come_to_rest(out);
+}
+
+void come_to_rest(State& state) noexcept {
+  std::ranges::fill(state.ref().velocity, 0.0);
+  std::ranges::fill(state.ref().acceleration, 0.0);
 }
 
 Time BehindEntry::stop_length() const noexcept {

@@ -26,11 +26,22 @@ struct CutSegment {
 /// acceleration. O(D).
 void evaluate_at_cut(const CutSegment& segment, Time t, State& out) noexcept;
 
+/// Sets velocity and acceleration to zero.
+void come_to_rest(State& state) noexcept;
+
 /// The latest time of a change that begins at rest where a time law holds the stream, at `rest`:
 /// what has settled, and what a producer that wants a change as soon as possible adds as its
 /// margin.
 [[nodiscard]] inline Time latest_from_rest(Time rest, Time settled, Time freeze_ahead) noexcept {
   return std::max(settled, rest + 10 * freeze_ahead);
+}
+
+/// Whether a stop, or a replacement, at t begins at rest where a time law holds the stream, at
+/// `rest`. A stop needs no exact time, so it may also be earlier.
+[[nodiscard]] inline bool begins_at_rest(Time t, bool is_stop, Time rest, Time settled,
+                                         Time freeze_ahead) noexcept {
+  return rest <= settled && t <= latest_from_rest(rest, settled, freeze_ahead) &&
+         (is_stop || t >= rest);
 }
 
 /// The times of the motion after an entry that ends beyond the newest waypoint: the remainder of

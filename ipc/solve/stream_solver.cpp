@@ -234,11 +234,9 @@ Word StreamSolver::consume(Time now) noexcept {
   return summary_.consumed - before;
 }
 
-/// Whether a change at t begins at rest where the law holds.
-bool StreamSolver::can_rest(Time t) const noexcept {
-  return rest_ && curve_.has_begun() && *rest_ <= settled_until_ &&
-         *rest_ >= curve_.earliest_cut() &&
-         t <= latest_from_rest(*rest_, settled_until_, live_->freeze_ahead);
+/// Whether the law holds the stream where the curve can be cut.
+bool StreamSolver::can_rest() const noexcept {
+  return rest_ && curve_.has_begun() && *rest_ >= curve_.earliest_cut();
 }
 
 /// Begins a run at rest where the law holds, instead of what has settled after it.
@@ -252,7 +250,7 @@ void StreamSolver::begin_at_rest(Time blend) noexcept {
 
 /// Ends a stop that is executed when the law holds the machine.
 void StreamSolver::rest_where_held() noexcept {
-  if (!can_rest(Time::min()) || summary_.finished) return;
+  if (!can_rest() || *rest_ > settled_until_ || summary_.finished) return;
   const Time latest = latest_from_rest(*rest_, settled_until_, live_->freeze_ahead);
   if (curve_.is_stopping(*rest_, latest)) begin_at_rest(Time::zero());
 }

@@ -60,9 +60,10 @@ struct LiveOptions {
 /// order: store the word, read the law again, commit. If the law no longer holds, the revision is
 /// discarded and the word is stored again as it was. A reader, a recorder or a snapshot that takes
 /// more than the held time as settled has read a later law than this solver, and reads the word
-/// after the law: so it finds the lower word. (In C++ terms that needs fences on the reader's side
-/// too. Every processor on which a store becomes visible to all others at once, as x86 and ARMv8
-/// do, orders it without.) The time of the commit is compared with the clock as for each revision.
+/// after the law: so it finds the lower word (tests/model/lowered_settled.pml). (In C++ terms that
+/// needs fences on the reader's side too. Every processor on which a store becomes visible to all
+/// others at once, as x86 and ARMv8 do, orders it without.) The time of the commit is compared with
+/// the clock as for each revision.
 ///
 /// The solver of a time law plans the law itself, in each step: see plan_with(). Items that an
 /// earlier step or solver has left in the ring are withdrawn first, because they were planned for a
@@ -118,7 +119,7 @@ class StreamSolver {
   void suspect_items() noexcept;
   [[nodiscard]] Word consume(Time now) noexcept;
   void plan_law(Time now) noexcept;
-  [[nodiscard]] bool can_rest(Time t) const noexcept;
+  [[nodiscard]] bool can_rest() const noexcept;
   void rest_where_held() noexcept;
   void begin_at_rest(Time blend) noexcept;
   [[nodiscard]] bool is_damaged() const noexcept { return lacks_summary_ || curve_.is_damaged(); }

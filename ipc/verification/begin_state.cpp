@@ -30,18 +30,13 @@ void BeginState::find(std::size_t i, Time natural_right) noexcept {
   CutSegment cut = cut_of(segments_[i - 1]);
   cut.right = natural_right;
   evaluate_at_cut(cut, segment.left, state_);
-  if (segment.is_corner) come_to_rest();
+  if (segment.is_corner) come_to_rest(state_);
   normalise();
   for (int n = 1; n < kNormalisations && !is_state_of(segment); ++n) normalise();
 }
 
 void BeginState::take_cut(std::size_t i, Time t) noexcept {
   evaluate_at_cut(cut_of(segments_[i]), t, state_);
-}
-
-void BeginState::come_to_rest() noexcept {
-  std::ranges::fill(state_.ref().velocity, 0.0);
-  std::ranges::fill(state_.ref().acceleration, 0.0);
 }
 
 void BeginState::normalise() noexcept {

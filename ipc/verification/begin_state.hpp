@@ -44,7 +44,6 @@ class BeginState {
   [[nodiscard]] static CutSegment cut_of(const SegmentCopy& segment) noexcept {
     return {segment.left, segment.right, segment.order, segment.coefficients};
   }
-  void come_to_rest() noexcept;
   void normalise() noexcept;
   void take_item(Word item) noexcept;
   void take_state_of(const SegmentCopy& segment) noexcept;

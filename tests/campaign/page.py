@@ -135,22 +135,14 @@ def read_results(promises):
     return sorted(results, key=heading_of)
 
 
-def read_bugs():
-    path = CAMPAIGN / "bugs.json"
-    bugs = json.loads(path.read_text(encoding="utf-8"))
-    for bug in bugs:
-        if bug.keys() != {"what", "found_by", "correction"} or not all(map(is_text, bug.values())):
-            sys.exit(f"{path}: a bug needs the texts what, found_by and correction")
-    return bugs
-
-
-def read_changes():
-    path = CAMPAIGN / "before_after.json"
-    changes = json.loads(path.read_text(encoding="utf-8"))
-    for change in changes:
-        if change.keys() != {"fault", "before", "after"} or not all(map(is_text, change.values())):
-            sys.exit(f"{path}: a fault needs the texts fault, before and after")
-    return changes
+def read_texts(name, keys):
+    """The entries of a file; each has these texts and no other."""
+    path = CAMPAIGN / name
+    entries = json.loads(path.read_text(encoding="utf-8"))
+    for i, entry in enumerate(entries):
+        if entry.keys() != set(keys) or not all(map(is_text, entry.values())):
+            sys.exit(f"{path}: entry {i} needs the texts {', '.join(keys)}")
+    return entries
 
 
 def violations(result):
@@ -190,9 +182,11 @@ def overview(promises, results, bugs):
 def make_pages():
     """The text of each page by its path."""
     promises = read_promises()
-    results, bugs = read_results(len(promises)), read_bugs()
+    results = read_results(len(promises))
+    bugs = read_texts("bugs.json", ("what", "found_by", "correction"))
+    changes = read_texts("before_after.json", ("fault", "before", "after"))
     pages = {OVERVIEW: overview(promises, results, bugs).rstrip("\n") + "\n",
-             DETAILS: details.page(results, bugs, read_changes(), OVERVIEW.name,
+             DETAILS: details.page(results, bugs, changes, OVERVIEW.name,
                                    [promise_anchor(n, title) for n, (title, _) in enumerate(promises, 1)])}
     for path, text in pages.items():
         for number, line in enumerate(text.splitlines(), 1):

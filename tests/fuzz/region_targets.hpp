@@ -18,7 +18,8 @@ void try_reader(const StreamImage& image);
 /// Lets a solver and a producer take over both regions, and reads what they publish.
 void try_writers(const StreamImage& image);
 
-/// Runs the real roles on files in shared memory: reader, `info`, solver, producer.
+/// Runs the real roles on files in shared memory: reader, `info`, solver, producer; of a time law
+/// also its commander, and the roles of a stream that follows it.
 void try_roles(const StreamImage& image);
 
 /// Runs all three targets.

@@ -7,11 +7,16 @@
 #include <functional>
 #include <stdexcept>
 
+#include "ipc/law/commander_record.hpp"
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/board_control.hpp"
+#include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/separation.hpp"
+#include "ipc/mapping/owner_lock.hpp"
 #include "ipc/mapping/region.hpp"
+#include "ipc/memory/names.hpp"
+#include "ipc/owned/commander.hpp"
 #include "splinecast/producer.hpp"
 #include "splinecast/solver.hpp"
 #include "splinecast/streams.hpp"
@@ -24,6 +29,7 @@ using ipc::RegionKind;
 using ipc::Word;
 
 constexpr Time kTick{10'000'000};
+constexpr Word kStream = 7;  ///< stream id of each region
 constexpr Time kBegin{1'000'000'000};
 
 /// The words of a region in shared memory, made independent of the time and the machine: stream id,
@@ -32,14 +38,14 @@ std::vector<Word> words_of(const std::string& stream, RegionKind kind) {
   const auto region = ipc::Region::open(stream, kind, false);
   const auto from = ipc::words_at(region.bytes(), 0, region.bytes().size() / sizeof(Word));
   std::vector<Word> words(from.begin(), from.end());
-  constexpr Word kStream = 7;
   constexpr std::size_t kControl = ipc::kHeaderBytes + kStream * ipc::kSeparation;
   constexpr std::size_t kControlOffset = ipc::word_of(ipc::kHeaderFields, "control offset");
   const auto area = std::span(words)
                         .first(ipc::kBodyOffset / sizeof(Word))
                         .subspan(ipc::kHeaderBytes / sizeof(Word));
-  const auto block =
-      std::span(words).subspan(words[kControlOffset] / sizeof(Word), ipc::kBoardControlWords);
+  const std::size_t control_words =
+      kind == RegionKind::commander ? ipc::kCommanderControlWords : ipc::kBoardControlWords;
+  const auto block = std::span(words).subspan(words[kControlOffset] / sizeof(Word), control_words);
   const std::vector<Word> control(block.begin(), block.end());
   std::ranges::fill(area, 0);
   std::ranges::copy(control, words.begin() + kControl / sizeof(Word));
@@ -50,6 +56,40 @@ std::vector<Word> words_of(const std::string& stream, RegionKind kind) {
   const bool is_live = words[ipc::word_of(ipc::kHeaderFields, "clock")] != 0;
   words[ipc::word_of(ipc::kHeaderFields, "time namespace")] = is_live ? kHere : 0;
   return words;
+}
+
+/// A time law between a commander's region and a real solver, in simulated time: its rate rises,
+/// and it is held. The rows of its commander have the id of an image.
+StreamImage law_image(std::vector<std::uint8_t> script) {
+  const std::string name = "test." + std::to_string(getpid()) + ".seed";
+  const std::string commander = ipc::commander_stream(name, "c");
+  StreamImage image;
+  {
+    ipc::OwnerLock lock(commander, RegionKind::commander);
+    ipc::OwnedCommander own = ipc::own_commander(commander, {}, {}, lock);
+    testing::FixedClock clock;
+    clock.time = kBegin;
+    Solver solver(name, SolverOptions{});
+    ipc::RateCommand command;
+    for (const double rate : {0.25, 0.75, 0.0}) {
+      ++command.number;
+      command.time = clock.time;
+      command.rate = rate;
+      command.ramp = 5 * kTick;
+      ipc::write_command(own.control, command);
+      for (int i = 0; i < 4 && solver.attach(clock); ++i) {
+        clock.time += kTick;
+        (void)solver.step(clock);
+      }
+    }
+    image = {.ring = words_of(name, RegionKind::waypoints),
+             .board = words_of(name, RegionKind::spline),
+             .commander = words_of(commander, RegionKind::commander),
+             .script = std::move(script)};
+    std::ranges::replace(image.board, own.id, kStream);
+  }
+  remove_stream(name);
+  return image;
 }
 
 /// A stream between a real producer and a real solver, in simulated time.
@@ -102,6 +142,7 @@ class Recorder {
   [[nodiscard]] StreamImage image(std::vector<std::uint8_t> script) const {
     return {.ring = words_of(name_, RegionKind::waypoints),
             .board = words_of(name_, RegionKind::spline),
+            .commander = {},
             .script = std::move(script)};
   }
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -287,6 +328,7 @@ std::vector<Seed> make_seeds() {
     }
     remove_stream(name);
   }
+  seeds.push_back({.name = "law", .image = law_image(script_of(seeds.size()))});
   return seeds;
 }
 

@@ -10,9 +10,13 @@
 #include "ipc/board/knot.hpp"
 #include "ipc/board/reader.hpp"
 #include "ipc/board/segment.hpp"
+#include "ipc/layout/areas.hpp"
+#include "ipc/layout/board_control.hpp"
 #include "ipc/layout/check.hpp"
 #include "ipc/layout/header.hpp"
+#include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/summary.hpp"
+#include "ipc/layout/table.hpp"
 #include "tests/fixtures/processes/built_with.hpp"
 #include "tests/fixtures/processes/process.hpp"
 #include "tests/fuzz/region_targets.hpp"
@@ -89,11 +93,43 @@ TEST(FuzzSeeds, HaveUndamagedSegmentsOfEveryForm) {
   EXPECT_EQ(forms.size(), static_cast<std::size_t>(core::kSegmentForms));
 }
 
+/// How many of the fields whose meaning begins with `reserved` have other words than 0, in the
+/// words of a region from `begin` on.
+std::size_t used_reserves(std::span<const ipc::Field> fields, std::span<const ipc::Word> region,
+                          std::size_t begin, std::size_t& reserved) {
+  std::size_t used = 0;
+  for (const ipc::Field& field : fields) {
+    if (!field.meaning.starts_with("reserved")) continue;
+    const auto words = region.subspan(begin + field.offset.words, field.size.words);
+    ++reserved;
+    if (std::ranges::any_of(words, [](ipc::Word word) { return word != 0; })) ++used;
+  }
+  return used;
+}
+
+TEST(FuzzSeeds, HaveZerosInReservedFields) {
+  constexpr std::size_t kBody = ipc::kBodyOffset / sizeof(ipc::Word);
+  for (const Seed& seed : make_seeds()) {
+    const auto& board = seed.image.board;
+    const std::size_t control = ipc::decode_header(board).control / sizeof(ipc::Word);
+    std::size_t reserved = 0;
+    EXPECT_EQ(used_reserves(ipc::kHeaderFields, board, 0, reserved), 0) << seed.name;
+    EXPECT_EQ(used_reserves(ipc::kHeaderFields, seed.image.ring, 0, reserved), 0) << seed.name;
+    EXPECT_EQ(used_reserves(ipc::kBodyFields, board, kBody, reserved), 0) << seed.name;
+    for (std::size_t cell = 0; cell < 2; ++cell) {
+      const std::size_t summary = control + ipc::kSummarySlot + cell * ipc::kSummaryWords;
+      EXPECT_EQ(used_reserves(ipc::kSummaryFields, board, summary, reserved), 0) << seed.name;
+    }
+    EXPECT_EQ(reserved, 10) << "rules, outcomes and stoppers; holders, pause and end of both cells";
+  }
+}
+
 TEST(FuzzSeeds, AnEncodedImageDecodesToTheSameImage) {
   for (const Seed& seed : make_seeds()) {
     const StreamImage again = decode(encode(seed.image));
     EXPECT_EQ(again.ring, seed.image.ring);
     EXPECT_EQ(again.board, seed.image.board);
+    EXPECT_EQ(again.commander, seed.image.commander);
     EXPECT_EQ(again.script, seed.image.script);
   }
 }

@@ -1,12 +1,15 @@
 #include "tests/fuzz/stream_image.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
+#include <iterator>
 #include <limits>
 
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/board_control.hpp"
+#include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/knot_slots.hpp"
 #include "ipc/layout/publication.hpp"
@@ -168,7 +171,8 @@ Range part_of_slot(const ipc::BoardLayout& layout, std::mt19937_64& random) {
 /// 256 bytes.
 Range part_of(std::span<const Word> region, bool is_board, std::mt19937_64& random) {
   const ipc::BoardLayout board = is_board ? layout_of(region) : ipc::BoardLayout{};
-  switch (below(board.capacity > 0 ? 10 : 5, random)) {
+  const bool has_commanders = board.capacity > 0 && board.commanders > 0;
+  switch (below(has_commanders ? 14 : board.capacity > 0 ? 10 : 5, random)) {
     case 0:
       return kFixed;
     case 1:
@@ -185,8 +189,11 @@ Range part_of(std::span<const Word> region, bool is_board, std::mt19937_64& rand
       return control_of(region, ipc::kChanges, ipc::kChangesKept);
     case 7:
       return {board.times / kWord, board.times / kWord + board.capacity};
-    default:
+    case 8:
+    case 9:
       return part_of_slot(board, random);
+    default:
+      return {board.commanders / kWord, board.commanders / kWord + 2 * ipc::kCommanderTableWords};
   }
 }
 
@@ -265,6 +272,13 @@ void mutate_script(std::vector<std::uint8_t>& script, std::mt19937_64& random) {
   }
 }
 
+/// A word of the concatenation of the regions.
+Word& word_of(StreamImage& image, std::size_t i) {
+  if (i < image.ring.size()) return image.ring[i];
+  i -= image.ring.size();
+  return i < image.board.size() ? image.board[i] : image.commander[i - image.board.size()];
+}
+
 }  // namespace
 
 StreamImage decode(std::span<const std::uint8_t> bytes) {
@@ -272,18 +286,19 @@ StreamImage decode(std::span<const std::uint8_t> bytes) {
   const auto script = source.number<std::uint32_t>();
   const auto ring = source.number<std::uint32_t>();
   const auto board = source.number<std::uint32_t>();
+  const auto commander = source.number<std::uint32_t>();
   StreamImage image;
   image.ring.resize(ring % (kMaxWords + 1));
   image.board.resize(board % (kMaxWords + 1));
+  image.commander.resize(commander % (kMaxWords + 1));
   const auto commands = source.take(script);
   image.script.assign(commands.begin(), commands.end());
-  const std::size_t all = image.ring.size() + image.board.size();
+  const std::size_t all = image.ring.size() + image.board.size() + image.commander.size();
   while (!source.empty() && all > 0) {
     const std::size_t at = source.number<std::uint32_t>() % all;
     const std::size_t count = std::min<std::size_t>(source.number<std::uint32_t>(), all - at);
     for (std::size_t i = at; i < at + count && !source.empty(); ++i) {
-      Word& word = i < image.ring.size() ? image.ring[i] : image.board[i - image.ring.size()];
-      word = source.number<Word>();
+      word_of(image, i) = source.number<Word>();
     }
   }
   return image;
@@ -291,12 +306,12 @@ StreamImage decode(std::span<const std::uint8_t> bytes) {
 
 std::vector<std::uint8_t> encode(const StreamImage& image) {
   std::vector<std::uint8_t> out;
-  put(out, static_cast<std::uint32_t>(image.script.size()));
-  put(out, static_cast<std::uint32_t>(image.ring.size()));
-  put(out, static_cast<std::uint32_t>(image.board.size()));
-  out.insert(out.end(), image.script.begin(), image.script.end());
+  const std::array sizes{image.script.size(), image.ring.size(), image.board.size(),
+                         image.commander.size()};
+  for (const std::size_t size : sizes) put(out, static_cast<std::uint32_t>(size));
+  std::ranges::copy(image.script, std::back_inserter(out));
   std::size_t offset = 0;
-  for (const auto* region : {&image.ring, &image.board}) {
+  for (const auto* region : {&image.ring, &image.board, &image.commander}) {
     for_each_stretch(*region, [&](std::size_t begin, std::size_t end) {
       put(out, static_cast<std::uint32_t>(offset + begin));
       put(out, static_cast<std::uint32_t>(end - begin));
@@ -309,7 +324,7 @@ std::vector<std::uint8_t> encode(const StreamImage& image) {
 
 void mutate(StreamImage& image, std::mt19937_64& random) {
   for (std::size_t count = 1 + below(4, random); count > 0; --count) {
-    switch (below(5, random)) {
+    switch (below(image.commander.empty() ? 5 : 8, random)) {
       case 0:
         mutate_script(image.script, random);
         break;
@@ -319,8 +334,12 @@ void mutate(StreamImage& image, std::mt19937_64& random) {
       case 2:
         mutate_tag(image.board, random);
         break;
-      default:
+      case 3:
+      case 4:
         mutate_region(image.board, true, random);
+        break;
+      default:
+        mutate_region(image.commander, false, random);
     }
   }
 }

@@ -71,3 +71,7 @@ holds commander_record "$@"
 for mutant in BEFORE_ONLY AFTER_ONLY TAKE_ODD ODD_OF_DEAD NO_SECOND_LOAD; do
   fails commander_record "$mutant" "$@"
 done
+holds lowered_settled "$@"
+for mutant in LOWER_LAST NO_SECOND_LOOK SETTLED_FIRST; do
+  fails lowered_settled "$mutant" "$@"
+done

@@ -6,17 +6,14 @@
 #include "ipc/memory/store_hook.hpp"
 
 namespace splinecast::campaign {
-namespace {
 
 #ifdef SPLINECAST_HOOKS
-constexpr bool kHasHooks = true;
-using ipc::kill_before_store;
+bool has_hooks() noexcept { return true; }
+void kill_before_store(std::uint64_t number) noexcept { ipc::kill_before_store(number); }
 #else
-constexpr bool kHasHooks = false;
-void kill_before_store(std::uint64_t /*n*/) noexcept {}
+bool has_hooks() noexcept { return false; }
+void kill_before_store(std::uint64_t /*number*/) noexcept {}
 #endif
-
-}  // namespace
 
 SharedJournal::SharedJournal()
     : memory_(boost::interprocess::anonymous_shared_memory(sizeof(Journal))),
@@ -34,7 +31,5 @@ WithinStep::~WithinStep() {
 void WithinStep::survived() noexcept {
   if (is_armed_) journal_->armed = Step::none;
 }
-
-bool has_hooks() noexcept { return kHasHooks; }
 
 }  // namespace splinecast::campaign

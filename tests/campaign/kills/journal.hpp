@@ -87,4 +87,7 @@ class WithinStep {
 /// Whether this build has hooks.
 [[nodiscard]] bool has_hooks() noexcept;
 
+/// Kills this process before its store of that number, from 1 on; 0 cancels. Nothing without hooks.
+void kill_before_store(std::uint64_t number) noexcept;
+
 }  // namespace splinecast::campaign

@@ -9,13 +9,16 @@
 #include <utility>
 
 #include "ipc/layout/commander_control.hpp"
+#include "ipc/layout/header.hpp"
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
+#include "ipc/options/stream.hpp"
 #include "ipc/owned/commander.hpp"
 #include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/rate_commander.hpp"
+#include "splinecast/streams.hpp"
 #include "tests/fixtures/processes/process.hpp"
 
 namespace splinecast::ipc {
@@ -216,6 +219,19 @@ TEST_F(LawCommanders, ACommanderThatEndedIsRemembered) {
   EXPECT_EQ(read(MonotonicClock().now()), 0.25);
   panel.release(milliseconds(50));
   EXPECT_EQ(read(MonotonicClock().now()), 1);
+}
+
+/// With layout version 6 a commander had a ring.
+TEST_F(LawCommanders, RemovingTheLawRemovesRingsOfAnEarlierVersion) {
+  const std::string old = commander_stream(law_.name(), "old");
+  RegionHeader header = blank_header(7, true);
+  header.mark.version = 6;
+  header.kind = static_cast<std::uint64_t>(RegionKind::waypoints);
+  Region region = Region::create(kBodyOffset, {});
+  write_header(region.bytes(), header);
+  ASSERT_TRUE(region.link(old, RegionKind::waypoints));
+  remove_stream(law_.name());
+  EXPECT_FALSE(region_exists(old, RegionKind::waypoints));
 }
 
 }  // namespace

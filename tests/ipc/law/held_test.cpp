@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "ipc/roles/inspect.hpp"
 #include "splinecast/snapshot.hpp"
 #include "tests/ipc/law/held_streams.hpp"
 
@@ -152,6 +153,7 @@ TEST_F(HeldStreams, HaveNoSegmentAsSettledThatAStopCanReplace) {
   EXPECT_GT(ipc::Internals::sampler(arm().reader()).settled_until(), held + Time(1));
   EXPECT_EQ(arm().reader().settled_until(), held + Time(1));
   EXPECT_EQ(arm().reader().progress()->settled_until, held + Time(1));
+  EXPECT_EQ(ipc::inspect(arm().name()).summary.settled_until, held + Time(1));
   EXPECT_EQ(arm().reader().snapshot(held, held + Time(1), curve), SampleStatus::provisional);
   EXPECT_EQ(curve.settled_until(), held + Time(1));
   EXPECT_EQ(arm().reader().snapshot(held - milliseconds(10), held, curve), SampleStatus::settled);
@@ -162,6 +164,23 @@ TEST_F(HeldStreams, HaveNoSegmentAsSettledThatAStopCanReplace) {
   ASSERT_TRUE(has_values(arm().reader().snapshot(held, held + milliseconds(1), curve)));
   EXPECT_TRUE(curve[1].is_corner);
   EXPECT_EQ(curve[1].left, held + Time(1));
+}
+
+TEST_F(HeldStreams, PreviewThatAReplacementBeginsAtRest) {
+  EXPECT_FALSE(arm().producer().preview_replace(Time::min(), {}).from_rest);
+  hold(milliseconds(100));
+  pass(milliseconds(120));
+  const Time held = stream_now();
+  ReplacePreview preview;
+  // The producer reads the time of the host, which the simulated one overtakes until here.
+  EXPECT_TRUE(testing::await([&] {
+    clock_.advance(std::max(MonotonicClock().now() - clock_.now(), Time::zero()));
+    (void)law_solver_->step(clock_);
+    preview = arm().producer().preview_replace(Time::min(), {});
+    return preview.from_rest;
+  }));
+  EXPECT_TRUE(preview.is_known);
+  EXPECT_EQ(preview.begin, held + Time(1));
 }
 
 /// Random holds with stops, redirects, takeovers and laws without a solver.
