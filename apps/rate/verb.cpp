@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/cli/options.hpp"
@@ -187,7 +188,7 @@ bool report_effect(const RateOptions& options, const Present& present, bool is_r
 }
 
 /// The ramp, or a longer one if the limits of a stream need it: the longest that may be taken, if
-/// no shorter one has been found soon enough not to delay a hold.
+/// no shorter one has been found soon.
 Time gentle_ramp(const RateOptions& options, const Present& present) {
   constexpr Time kMostDelay = std::chrono::milliseconds(20);
   const Time end = MonotonicClock().now() + kMostDelay;
@@ -238,11 +239,18 @@ bool wait_in_force(const RateOptions& options, RateCommander& commander, std::ui
 }
 
 /// Requests a lower rate. Such a request is never refused, because the machine would run on: what
-/// it does to the followers is reported afterwards. Returns the number of the request.
-std::uint64_t lower(const RateOptions& options, RateCommander& commander,
+/// it does to the followers is looked at afterwards. A gentle one has the longest ramp first, and
+/// the ramp that suffices as soon as that is known. Returns the number of the last request.
+std::uint64_t lower(RateOptions options, RateCommander& commander,
                     const std::optional<Present>& present) {
-  const std::uint64_t number = request(options, commander);
+  const Time shortest = std::exchange(options.ramp, options.gentle.value_or(options.ramp));
+  std::uint64_t number = request(options, commander);
   try {
+    if (present && options.gentle) {
+      options.ramp = shortest;
+      options.ramp = gentle_ramp(options, *present);
+      if (options.ramp < *options.gentle) number = request(options, commander);
+    }
     if (present) (void)report_effect(options, *present, true);
   } catch (const StreamError& error) {
     say(fmt::format("requested; its effect is not known: {}", error.what()));
@@ -264,8 +272,8 @@ int command(RateOptions options) {
     throw BadRequest(fmt::format("R is above the largest rate of '{}', {:g}: {:g}", options.law,
                                  present->law->largest_rate(), *options.rate));
   }
-  if (present && options.gentle) options.ramp = gentle_ramp(options, *present);
   const bool lowers = holds || (!options.release && present && *options.rate <= present->from.rate);
+  if (!lowers && present && options.gentle) options.ramp = gentle_ramp(options, *present);
   if (!lowers && present && !report_effect(options, *present, false)) return kFellShort;
   RateCommander commander(options.law, options.commander, {}, options.trust);
   const std::uint64_t number =

@@ -219,6 +219,10 @@ void require_same_options(const std::string& stream, const RegionHeader& stands,
                                 static_cast<std::uint64_t>(*options.beyond), stands.beyond,
                                 number(static_cast<int>(*options.beyond)), number(stands.beyond));
   }
+  if (stands.is_law != 0) {
+    require_same(stream, "largest rate", options.largest_rate, stands.largest_rate,
+                 number(options.largest_rate.value_or(0)), number(stands.largest_rate));
+  }
   if (options.capacity) {
     require_same<std::size_t>(stream, "capacity", std::bit_ceil(*options.capacity), stands.capacity,
                               number(*options.capacity), number(stands.capacity));

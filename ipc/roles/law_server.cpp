@@ -50,6 +50,7 @@ SolverOptions LawServer::solver_options(const SolverOptions& options) {
           .freeze_ahead = options.freeze_ahead,
           .history = options.history,
           .min_entry = Time(1),
+          .largest_rate = options.largest_rate,
           .wake = options.wake,
           .access = options.access,
           .trust = options.trust};

@@ -58,7 +58,7 @@ TEST(FuzzSeeds, RegionsAreReadRefusedOrContinued) {
 }
 
 TEST(FuzzSeeds, MutatedStreamsAreReadRefusedOrContinued) {
-  constexpr std::uint64_t kMutations = 500;
+  constexpr std::uint64_t kMutations = 300;
   for (const Seed& seed : make_seeds()) {
     for (std::uint64_t i = 0; i < kMutations; ++i) {
       std::mt19937_64 random(i);

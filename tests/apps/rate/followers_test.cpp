@@ -4,6 +4,7 @@
 #include <regex>
 #include <string>
 
+#include "ipc/law/law_board.hpp"
 #include "ipc/memory/names.hpp"
 #include "tests/apps/rate/rate.hpp"
 
@@ -29,6 +30,14 @@ class MovingFollower : public Rate {
       return status == SampleStatus::settled && std::abs(state.velocity()[0] - 1) < 1e-3 &&
              std::abs(state.acceleration()[0]) < 1e-2;
     }));
+  }
+
+  /// How many requests the operator has made, as far as they are in force.
+  [[nodiscard]] ipc::Word requests() {
+    ipc::LawBoard board(law(), {});
+    EXPECT_TRUE(board.is_there());
+    const auto all = board.commanders();
+    return all.size() == 1 ? all.front().number : 0;
   }
 
   Ended request_;
@@ -65,12 +74,14 @@ TEST_F(MovingFollower, AGentleRampIsLengthenedAsFarAsItMayBe) {
   const double worst = nlohmann::json::parse(gentle.out)["effects"][0]["limit_ratio"];
   EXPECT_GT(worst, 0.7);
   EXPECT_LE(worst, 1 + 1e-9);
+  EXPECT_EQ(requests(), 3) << "with the longest ramp at once, then with the one that suffices";
   ASSERT_TRUE(await_rate(0));
   EXPECT_EQ(rate({"0.5", "--ramp", "0.5"}).code, 0);
   ASSERT_TRUE(await_rate(0.5));
   // Not as long as it would have to be.
   const Ended short_one = rate({"0", "--ramp", "0.03", "--gentle", "0.05"});
   EXPECT_EQ(short_one.code, 0);
+  EXPECT_EQ(requests(), 5) << "the longest ramp was not long enough";
   EXPECT_NE(short_one.out.find("rate 0 in 0.05 s"), std::string::npos) << short_one.out;
   EXPECT_NE(short_one.err.find("requested: acceleration"), std::string::npos) << short_one.err;
   EXPECT_TRUE(await_rate(0));

@@ -88,6 +88,18 @@ class CLaw : public ::testing::Test {
     EXPECT_EQ(found.rate, rate);
   }
 
+  /// Steps until the preview of a stop begins at rest, and returns where.
+  std::int64_t foreseen_rest() {
+    splinecast_preview preview = SPLINECAST_PREVIEW_INIT;
+    const std::int64_t limit = splinecast_now() + 60'000 * kMs;
+    while (preview.from_rest == 0 && splinecast_now() < limit) {
+      step();
+      EXPECT_EQ(splinecast_producer_preview_replace(producer_, 0, nullptr, 0, &preview), 0)
+          << splinecast_last_error();
+    }
+    return preview.begin;
+  }
+
   TestStream law_;
   TestStream arm_;
   splinecast_rate_commander* commander_ = nullptr;
@@ -128,6 +140,7 @@ TEST_F(CLaw, SaysWhereAReplacementBegins) {
   int from_rest = -1;
   ASSERT_EQ(splinecast_producer_now(producer_, &held), 0);
   EXPECT_EQ(splinecast_producer_replacement_begin(producer_, &begin, &from_rest), 0);
+  EXPECT_EQ(foreseen_rest(), held + 1);
   ASSERT_EQ(splinecast_producer_replace_from(producer_, 0, nullptr, 0), SPLINECAST_APPEND_ACCEPTED)
       << splinecast_last_error();
   while (splinecast_producer_replacement_begin(producer_, &begin, &from_rest) == 0) step();

@@ -158,6 +158,15 @@ TEST_F(InForce, ASuccessorKeepsTheBoundOfARampThatRuns) {
   EXPECT_EQ(rate(), 1);
 }
 
+TEST_F(InForce, ASuccessorWithAnotherLargestRateIsRefused) {
+  law_solver_.reset();
+  SolverOptions options;
+  options.largest_rate = 2;
+  EXPECT_THROW((void)Solver(law_.name(), options).attach(clock_), BadRequest);
+  options.largest_rate = 1;
+  EXPECT_TRUE(Solver(law_.name(), options).attach(clock_));
+}
+
 TEST_F(InForce, TheSeventeenthCommanderIsRefusedUntilOneIsForgotten) {
   std::vector<std::optional<RateCommander>> all(15);
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -48,10 +48,17 @@ class Law(StreamTest):
         self.operator.hold(0.005)
         held = self.reach(reader, 0).stream_time
         self.assertIsNone(producer.replacement_begin)
+
+        def foreseen():
+            preview = producer.preview_replace(0)
+            return preview if preview.from_rest else None
+        self.assertEqual(wait_for(foreseen).begin, held + 1)
         producer.replace_from(0)
         begin = wait_for(lambda: producer.replacement_begin)
+        # The law may have settled only a part of the way that the solver looks ahead.
         self.assertGreater(begin.begin, held)
-        self.assertIn(begin.from_rest, (False, True))
+        if begin.from_rest:
+            self.assertEqual(begin.begin, held + 1)
 
     def test_the_rate_is_the_least_that_is_requested(self):
         producer, reader = self.follow(largest_rate=2)
