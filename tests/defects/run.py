@@ -132,19 +132,26 @@ def files_of(tree, tests):
     return "|".join(found) or "apps/streams/count"  # a build without any test is not possible
 
 
-def build(tree, test_files, targets=tuple(TARGETS)):
-    """Builds program and tests without optimisation. Returns None, or the output of a failed build."""
+def configure(tree, test_files):
+    """Prepares a build of program and tests without optimisation. Returns None, or the output of a failure.
+
+    Few files at once: a patch changes one of them.
+    """
     tools = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
     tools += ["-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld"] if shutil.which("ld.lld") else []
     ended = subprocess.run(
         ["cmake", "-G", "Ninja", "-S", ".", "-B", "build", "-DCMAKE_BUILD_TYPE=None", "-DCMAKE_CXX_FLAGS=-O0 -g0",
-         "-DSPLINECAST_UNITY=ON", "-DSPLINECAST_BUILD_BENCH=OFF", "-DSPLINECAST_BUILD_PYTHON=OFF",
+         "-DSPLINECAST_UNITY=4", "-DSPLINECAST_BUILD_BENCH=OFF", "-DSPLINECAST_BUILD_PYTHON=OFF",
          "-DSPLINECAST_WERROR=ON", f"-DSPLINECAST_TEST_FILES={test_files}", *tools],
         cwd=tree, text=True, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    if ended.returncode == 0:
-        ended = subprocess.run(["ninja", "-C", "build", *targets], cwd=tree, text=True, check=False,
-                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                               env={**os.environ, "CCACHE_BASEDIR": str(tree), "CCACHE_NOHASHDIR": "1"})
+    return ended.stdout if ended.returncode != 0 else None
+
+
+def build(tree, targets=tuple(TARGETS)):
+    """Builds targets. Returns None, or the output of a failed build."""
+    ended = subprocess.run(["ninja", "-C", "build", *targets], cwd=tree, text=True, check=False,
+                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                           env={**os.environ, "CCACHE_BASEDIR": str(tree), "CCACHE_NOHASHDIR": "1"})
     return ended.stdout if ended.returncode != 0 else None
 
 
@@ -195,7 +202,7 @@ def why_failed(output, code):
     return f"exit code {code}"
 
 
-def take_out(tree, name, tests, files):
+def take_out(tree, name, tests):
     """Removes one correction and runs its tests."""
     path = find_patches()[name]
     refused = patch(tree, path, "--dry-run") or patch(tree, path)
@@ -203,7 +210,7 @@ def take_out(tree, name, tests, files):
         raise Unusable(f"{name}.patch does not apply:\n{refused}")
     try:
         needs_all = any(test.startswith("ctest:") for test in tests)
-        output = build(tree, files, TARGETS if needs_all else ["splinecast_tests"])
+        output = build(tree, TARGETS if needs_all else ["splinecast_tests"])
         if output is not None:
             raise Unusable(f"does not build without the correction:\n{output[-4000:]}")
         return {test: run_until(tree, test, False) for test in tests}
@@ -225,21 +232,21 @@ def fails_as_it_is(tree, tests):
     return found
 
 
-def outcome(tree, name, tests, files, unusable):
+def outcome(tree, name, tests, unusable):
     """The outcome of each test without the correction: "passes", or why it fails."""
     try:
-        without = take_out(tree, name, tests, files)
+        without = take_out(tree, name, tests)
     except Unusable as error:
         print(f"{name}: {error}", file=sys.stderr, flush=True)
         return {test: "passes" for test in tests}
     return {test: "passes" if passed or test in unusable else why for test, (passed, why) in without.items()}
 
 
-def work(tree, names, files, unusable):
+def work(tree, names, unusable):
     """Takes out the corrections one after the other, and prints a line of JSON for each."""
     for name in names:
         tests = read_patch(find_patches()[name])["Test"].split()
-        print(json.dumps([name, outcome(tree, name, tests, files, unusable)]), flush=True)
+        print(json.dumps([name, outcome(tree, name, tests, unusable)]), flush=True)
 
 
 def in_layer(tree, number, command):
@@ -252,10 +259,9 @@ def in_layer(tree, number, command):
     return ["unshare", "--mount", "sh", "-c", f'{mount} && exec "$@"', "sh", *command]
 
 
-def start_workers(tree, names, files, unusable):
+def start_workers(tree, names, unusable):
     """Starts this program as workers that share the names: one, if no layer can be mounted."""
-    work_on = [sys.executable, str(Path(__file__).resolve()), "--work", json.dumps([files, sorted(unusable)]), "--tree",
-               str(tree)]
+    work_on = [sys.executable, str(Path(__file__).resolve()), "--work", json.dumps(sorted(unusable)), "--tree", str(tree)]
     if subprocess.run(in_layer(tree, 0, ["true"]), check=False, capture_output=True).returncode != 0:
         commands = [[*work_on, *names]]
     else:
@@ -264,10 +270,10 @@ def start_workers(tree, names, files, unusable):
     return [subprocess.Popen(command, text=True, stdout=subprocess.PIPE) for command in commands]
 
 
-def outcomes(tree, names, files, unusable):
+def outcomes(tree, names, unusable):
     """Pairs of name and outcome, as they are found."""
     with selectors.DefaultSelector() as ready:
-        for worker in start_workers(tree, names, files, unusable):
+        for worker in start_workers(tree, names, unusable):
             ready.register(worker.stdout, selectors.EVENT_READ, worker)
         while ready.get_map():
             for key, _ in ready.select():
@@ -287,8 +293,7 @@ def run(tree, names, writes_results):
     copy_sources(tree)
     begin = time.monotonic()
     every_test = sorted(set(sum(tests.values(), [])))
-    files = files_of(tree, every_test)
-    output = build(tree, files)
+    output = configure(tree, files_of(tree, every_test)) or build(tree)
     if output is not None:
         sys.exit(output[-4000:])
     print(f"built in {(time.monotonic() - begin) / 60:.1f} min", flush=True)
@@ -297,7 +302,7 @@ def run(tree, names, writes_results):
     results = read_results()
     results["patches"] = {name: results["patches"][name] for name in patches if name in results["patches"]}
     passed = []
-    for name, found in outcomes(tree, list(tests), files, unusable):
+    for name, found in outcomes(tree, list(tests), unusable):
         fails = "passes" not in found.values()
         passed += [] if fails else [name]
         print(f"{name}: {'fails' if fails else 'PASSES'} without the correction", flush=True)
@@ -359,7 +364,7 @@ def main():
     parser.add_argument("--page", action="store_true")
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--keep", action="store_true")
-    parser.add_argument("--work", help=argparse.SUPPRESS)  # the tests' files, and the tests that cannot show a defect
+    parser.add_argument("--work", help=argparse.SUPPRESS)  # the tests that cannot show a defect
     parser.add_argument("--tree", type=Path, default=PROJECT / "build" / "defects")
     arguments = parser.parse_args()
     if arguments.check:
@@ -367,7 +372,7 @@ def main():
     elif arguments.page:
         PAGE.write_text(make_page(), encoding="utf-8")
     elif arguments.work:
-        work(arguments.tree, arguments.names, *json.loads(arguments.work))
+        work(arguments.tree, arguments.names, json.loads(arguments.work))
     else:
         run(arguments.tree.resolve(), arguments.names, not arguments.keep)
 
