@@ -16,16 +16,15 @@ by the corrected layer, or in laws. Above its diff are the lines
     Test:        names of the tests that fail without the correction: of GoogleTest, or ctest:NAME
 
 A run writes its results to tests/defects/results.json. It uses the sources of the last commit, and builds the files of
-the named tests only. Where overlays may be mounted, two processes take patches in turn, each with a layer of its own
-over this build.
+the named tests only. Where overlays may be mounted, each patch is built in a layer of its own over this build, two at once.
 """
 
 import argparse
+import concurrent.futures
 import io
 import json
 import os
 import re
-import selectors
 import shutil
 import subprocess
 import sys
@@ -242,48 +241,36 @@ def outcome(tree, name, tests, unusable):
     return {test: "passes" if passed or test in unusable else why for test, (passed, why) in without.items()}
 
 
-def work(tree, names, unusable):
-    """Takes out the corrections one after the other, and prints a line of JSON for each."""
-    for name in names:
-        tests = read_patch(find_patches()[name])["Test"].split()
-        print(json.dumps([name, outcome(tree, name, tests, unusable)]), flush=True)
-
-
-def in_layer(tree, number, command):
-    """The arguments that run a command with an empty layer of its own over the tree."""
-    upper, scratch = (tree.parent / f"{tree.name}.{what}{number}" for what in ("layer", "scratch"))
-    for folder in (upper, scratch):
+def in_layer(tree, name, command):
+    """Runs a command with an empty layer of its own over the tree, so that it changes no other build."""
+    folders = [tree.parent / f"{tree.name}.{what}.{name}" for what in ("layer", "scratch")]
+    for folder in folders:
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
-    mount = f"mount -t overlay overlay -o lowerdir={tree},upperdir={upper},workdir={scratch} {tree}"
-    return ["unshare", "--mount", "sh", "-c", f'{mount} && exec "$@"', "sh", *command]
-
-
-def start_workers(tree, names, unusable):
-    """Starts this program as workers that share the names: one, if no layer can be mounted."""
-    work_on = [sys.executable, str(Path(__file__).resolve()), "--work", json.dumps(sorted(unusable)), "--tree", str(tree)]
-    if subprocess.run(in_layer(tree, 0, ["true"]), check=False, capture_output=True).returncode != 0:
-        commands = [[*work_on, *names]]
-    else:
-        shares = [names[i::WORKERS] for i in range(WORKERS)]
-        commands = [in_layer(tree, i, [*work_on, *share]) for i, share in enumerate(shares) if share]
-    return [subprocess.Popen(command, text=True, stdout=subprocess.PIPE) for command in commands]
+    mount = f"mount -t overlay overlay -o lowerdir={tree},upperdir={folders[0]},workdir={folders[1]} {tree}"
+    ended = subprocess.run(["unshare", "--mount", "sh", "-c", f'{mount} && exec "$@"', "sh", *command], text=True,
+                           check=False, stdout=subprocess.PIPE)
+    for folder in folders:
+        shutil.rmtree(folder, ignore_errors=True)
+    return ended
 
 
 def outcomes(tree, names, unusable):
-    """Pairs of name and outcome, as they are found."""
-    with selectors.DefaultSelector() as ready:
-        for worker in start_workers(tree, names, unusable):
-            ready.register(worker.stdout, selectors.EVENT_READ, worker)
-        while ready.get_map():
-            for key, _ in ready.select():
-                line = key.fileobj.readline()
-                if line:
-                    yield json.loads(line)
-                    continue
-                ready.unregister(key.fileobj)
-                if key.data.wait() != 0:
-                    sys.exit(f"a worker ended with exit code {key.data.returncode}")
+    """Pairs of name and outcome, as they are found: two at once, if a layer can be mounted."""
+    is_layered = in_layer(tree, "try", ["true"]).returncode == 0
+    work = [sys.executable, str(Path(__file__).resolve()), "--work", json.dumps(sorted(unusable)), "--tree", str(tree)]
+
+    def find(name):
+        command = [*work, name]
+        ended = in_layer(tree, name, command) if is_layered else subprocess.run(
+            command, text=True, check=False, stdout=subprocess.PIPE)
+        if ended.returncode != 0:
+            raise RuntimeError(f"{name}: ended with exit code {ended.returncode}")
+        return name, json.loads(ended.stdout)
+
+    with concurrent.futures.ThreadPoolExecutor(WORKERS if is_layered else 1) as pool:
+        for future in concurrent.futures.as_completed([pool.submit(find, name) for name in names]):
+            yield future.result()
 
 
 def run(tree, names, writes_results):
@@ -372,7 +359,9 @@ def main():
     elif arguments.page:
         PAGE.write_text(make_page(), encoding="utf-8")
     elif arguments.work:
-        work(arguments.tree, arguments.names, json.loads(arguments.work))
+        (name,) = arguments.names
+        tests = read_patches()[name]["Test"].split()
+        print(json.dumps(outcome(arguments.tree, name, tests, json.loads(arguments.work))))
     else:
         run(arguments.tree.resolve(), arguments.names, not arguments.keep)
 
