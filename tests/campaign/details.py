@@ -6,6 +6,8 @@ import textwrap
 WIDTH = 120  # of a line
 BUGS = "Bugs that the attacks found"
 CHANGES = "Requests of a rate, before and after"
+MEASURED = """`tests/campaign/measure_requests.py` measures the values of the last column, beside other work. Rows with
+more than 1,000 requests are of the campaigns `requests`, and two rows are of the tests that they name."""
 
 HEAD = """# Attacks in detail
 
@@ -160,5 +162,6 @@ def page(results, bugs, changes, overview, promise_anchors):
     for result in results:
         lines += section(result, overview, promise_anchors)
     rows = [(change["fault"], change["before"], change["after"]) for change in changes]
-    lines += [f"## {BUGS}", "", *bug_lines(bugs), "", f"## {CHANGES}", "", *table(["fault", "before", "after"], rows)]
+    lines += [f"## {BUGS}", "", *bug_lines(bugs), ""]
+    lines += [f"## {CHANGES}", "", wrapped(MEASURED.replace("\n", " ")), "", *table(["fault", "before", "after"], rows)]
     return "\n".join(lines).rstrip("\n") + "\n"

@@ -98,6 +98,11 @@ def lost(count, request):
     return f"{missing} of {count}"
 
 
+def exit_code_of_a_hold(stream):
+    command = [PROGRAM, "rate", stream, "0", "--as", "panel", "--ramp", "0.01", "--wait", "20"]
+    return subprocess.run(command, check=False, stdout=subprocess.DEVNULL).returncode
+
+
 def expire(operator):
     operator.set_dead_man(0.02, 0.01)
     operator.set_rate(0.9, 0.01)
@@ -164,16 +169,16 @@ def holds_when_the_solver_is_killed_within_150_us():
 
 @measurement
 def rate_0_of_the_program_on_a_busy_machine():
-    wrong = 0
+    wrong = failed = 0
     with busy(2 * os.cpu_count()), law() as (stream, operator), splinecast.Reader(stream, timeout=10) as reader:
         for _ in range(60):
             operator.set_rate(1, 0.01, wait=20)
-            ended = subprocess.run([PROGRAM, "rate", stream, "0", "--ramp", "0.01", "--wait", "30"], check=False,
-                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            wrong += 1 if ended.returncode == 0 and not holds_within(reader, 2) else 0
-            subprocess.run([PROGRAM, "rate", stream, "--release", "--ramp", "0.01", "--wait", "30"], check=False,
-                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    return f"{wrong} of 60"
+            code = exit_code_of_a_hold(stream)
+            failed += 1 if code != 0 else 0
+            wrong += 1 if code == 0 and not holds_within(reader, 2) else 0
+            subprocess.run([PROGRAM, "rate", stream, "--release", "--as", "panel", "--ramp", "0.01", "--wait", "30"],
+                           check=True, stdout=subprocess.DEVNULL)
+    return f"{wrong} of 60, {failed} with another exit code"
 
 
 def largest_rate(first, ramp, at, then, slow, seconds):
@@ -234,18 +239,124 @@ def rate_after_a_stop_and_a_takeover():
     return value
 
 
+@contextlib.contextmanager
+def follower():
+    """A law at rate 1, and a stream that moves at 1 m/s under it, with a limit of 10 m/s²."""
+    stream, arm = f"{PREFIX}.law", f"{PREFIX}.arm"
+    with processes([[PROGRAM, "solve", stream, arm, "--quiet", "--max-acceleration", "10"]]):
+        with splinecast.RateCommander(stream, "operator") as operator:
+            operator.set_rate(1, 0.01, wait=20)
+            splinecast.Reader(stream, timeout=10)
+            with splinecast.Producer(arm, law=stream) as producer:
+                producer.wait_for_solver(10)
+                begin = producer.now()
+                for i in range(1, 500):
+                    producer.append(begin + i * 100_000_000, [0.1 * i])
+                time.sleep(1)
+                yield stream, arm
+    subprocess.run([PROGRAM, "rm", "--now", arm, stream], check=False, stdout=subprocess.DEVNULL)
+
+
+@measurement
+def exit_code_of_a_hold_beyond_a_limit():
+    with follower() as (stream, _):
+        return exit_code_of_a_hold(stream)
+
+
+@measurement
+def exit_code_of_a_hold_with_a_damaged_follower():
+    with follower() as (stream, arm):
+        with open(f"/dev/shm/splinecast.{arm}.spline", "r+b") as board:
+            board.write(bytes(64))
+        return exit_code_of_a_hold(stream)
+
+
+@measurement
+def rate_after_a_renewal_by_a_new_process():
+    """A process holds and is killed; the next one renews: the rate 1 s later."""
+    with law() as (stream, _), splinecast.Reader(stream, timeout=10) as reader:
+        holder = subprocess.Popen([sys.executable, "-c", "import sys, time, splinecast\n"
+                                   f"c = splinecast.RateCommander('{stream}', 'panel')\n"
+                                   "c.hold(0.01, wait=20)\nprint(flush=True)\ntime.sleep(60)"],
+                                  env={**os.environ, "PYTHONPATH": str(BUILD / "python")}, stdout=subprocess.PIPE)
+        holder.stdout.readline()
+        holder.kill()
+        holder.wait()
+        with splinecast.RateCommander(stream, "panel") as panel:
+            panel.renew()
+            time.sleep(1)
+            return f"{rate(reader):.3f}"
+
+
+@measurement
+def rate_at_the_end_of_a_ramp_that_is_renewed():
+    """0 in 2 s, renewed each 0.1 s: the rate after 2.5 s."""
+    with law() as (stream, operator), splinecast.Reader(stream, timeout=10) as reader:
+        operator.hold(2, wait=20)
+        for _ in range(25):
+            time.sleep(0.1)
+            operator.renew()
+        return f"{rate(reader):.3f}"
+
+
+@measurement
+def rate_after_a_dead_man_of_a_slow_request():
+    """0.9 in 60 s with a dead man of 0.1 s: the rate 2 s later."""
+    with law() as (stream, operator), splinecast.Reader(stream, timeout=10) as reader:
+        operator.set_dead_man(0.1)
+        operator.set_rate(0.9, 60, wait=20)
+        time.sleep(2)
+        return f"{rate(reader):.3f}"
+
+
+def used(pid):
+    """The CPU time of a process in s."""
+    fields = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+@measurement
+def solver_with_a_damaged_ring_and_a_torn_request():
+    """Random bytes in the items of the law's ring, then an odd sequence in a commander's region: whether the solver
+    lives, its share of a core, and the law's rate."""
+    stream = f"{PREFIX}.damaged"
+    with splinecast.RateCommander(stream, "operator") as operator:
+        with processes([[PROGRAM, "solve", stream, "--quiet"]]) as (solver,):
+            operator.set_rate(0.5, 0.01, wait=20)
+            with splinecast.Reader(stream, timeout=10) as reader:
+                ring = f"/dev/shm/splinecast.{stream}.waypoints"
+                with open(ring, "r+b") as words:
+                    words.seek(16384)  # after the header and the control block
+                    words.write(os.urandom(os.path.getsize(ring) - 16384))
+                with open(f"/dev/shm/splinecast.{stream}@operator.commander", "r+b") as words:
+                    header = words.read(512)
+                    control = int.from_bytes(header[10 * 8:11 * 8], "little")
+                    words.seek(control)
+                    words.write((1).to_bytes(8, "little"))
+                time.sleep(2)
+                before = used(solver.pid)
+                time.sleep(5)
+                alive = solver.poll() is None
+                share = (used(solver.pid) - before) / 5 if alive else 0
+                text = f"{'alive' if alive else 'ended'}, {100 * share:.1f} %, rate {rate(reader):.3f}"
+    subprocess.run([PROGRAM, "rm", stream], check=False, stdout=subprocess.DEVNULL)
+    return text
+
+
+@measurement
+def exit_code_of_a_rate_above_the_largest():
+    with law() as (stream, _):
+        return subprocess.run([PROGRAM, "rate", stream, "1.5"], check=False, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL).returncode
+
+
 def share_of_a_core(solve, seconds=10):
     """The CPU time of a solver that has nothing to do, as a share of a core."""
     solver = subprocess.Popen(solve)
     time.sleep(3)
-
-    def used():
-        fields = Path(f"/proc/{solver.pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
-        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-    before = used()
+    before = used(solver.pid)
     time.sleep(seconds)
-    share = (used() - before) / seconds
+    share = (used(solver.pid) - before) / seconds
     solver.kill()
     solver.wait()
     return f"{100 * share:.1f} %"
