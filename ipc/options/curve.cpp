@@ -202,14 +202,12 @@ void require_same_options(const std::string& stream, const RegionHeader& stands,
   const auto tail = static_cast<Tail>(stands.tail);
   require_same(stream, "tail", options.tail, tail,
                std::string(to_string(options.tail.value_or(tail))), std::string(to_string(tail)));
-  const Time stop_time(stands.stop_time);
-  require_same(stream, "stop time in ns", options.stop_time, stop_time,
-               number(options.stop_time.value_or(stop_time).count()), number(stands.stop_time));
   const auto require_same_time = [&](const char* what, const std::optional<Time>& wanted,
                                      std::int64_t stood) {
     require_same(stream, what, wanted, Time(stood), number(wanted.value_or(Time(stood)).count()),
                  number(stood));
   };
+  require_same_time("stop time in ns", options.stop_time, stands.stop_time);
   require_same_time("freeze-ahead in ns", options.freeze_ahead, stands.freeze_ahead);
   require_same_time("history in ns", options.history, stands.history);
   require_same_time("shortest entry in ns", options.min_entry, stands.min_entry);
@@ -219,10 +217,9 @@ void require_same_options(const std::string& stream, const RegionHeader& stands,
                                 static_cast<std::uint64_t>(*options.beyond), stands.beyond,
                                 number(static_cast<int>(*options.beyond)), number(stands.beyond));
   }
-  if (stands.is_law != 0) {
-    require_same(stream, "largest rate", options.largest_rate, stands.largest_rate,
-                 number(options.largest_rate.value_or(0)), number(stands.largest_rate));
-  }
+  const auto largest_rate = stands.is_law != 0 ? options.largest_rate : std::nullopt;
+  require_same(stream, "largest rate", largest_rate, stands.largest_rate,
+               number(largest_rate.value_or(0)), number(stands.largest_rate));
   if (options.capacity) {
     require_same<std::size_t>(stream, "capacity", std::bit_ceil(*options.capacity), stands.capacity,
                               number(*options.capacity), number(stands.capacity));

@@ -4,7 +4,7 @@
     run.py [NAME ...]     for all patches, or those named, for example 07: applies, builds, runs its tests, reports
     run.py --page         writes the page from the patches and the results of the last run
     run.py --check        exits with 1 if a patch does not apply, or the page is not up to date
-    run.py --keep         for all patches, without writing results and page
+    run.py --keep         for all patches, without writing results and page; those of headers are applied together
     run.py --tree FOLDER  folder for the copy of the sources and its build (build/defects)
 
 Each file NAME.patch removes one correction; patch -p1 applies it. The files are in tests/defects/core, ipc or apps,
@@ -16,7 +16,8 @@ by the corrected layer, or in laws. Above its diff are the lines
     Test:        names of the tests that fail without the correction: of GoogleTest, or ctest:NAME
 
 A run writes its results to tests/defects/results.json. It uses the sources of the last commit, and builds the files of
-the named tests only. Where overlays may be mounted, each patch is built in a layer of its own over this build, two at once.
+the named tests only. Where overlays may be mounted, each patch is built in a layer of its own over this build, two at
+once.
 """
 
 import argparse
@@ -201,20 +202,24 @@ def why_failed(output, code):
     return f"exit code {code}"
 
 
-def take_out(tree, name, tests):
-    """Removes one correction and runs its tests."""
-    path = find_patches()[name]
-    refused = patch(tree, path, "--dry-run") or patch(tree, path)
-    if refused is not None:
-        raise Unusable(f"{name}.patch does not apply:\n{refused}")
+def take_out(tree, tests):
+    """Removes corrections, and returns the results of the tests of each."""
+    applied = []
     try:
-        needs_all = any(test.startswith("ctest:") for test in tests)
+        for name in tests:
+            path = find_patches()[name]
+            refused = patch(tree, path, "--dry-run") or patch(tree, path)
+            if refused is not None:
+                raise Unusable(f"{name}.patch does not apply:\n{refused}")
+            applied.append(path)
+        needs_all = any(test.startswith("ctest:") for test in sum(tests.values(), []))
         output = build(tree, TARGETS if needs_all else ["splinecast_tests"])
         if output is not None:
             raise Unusable(f"does not build without the correction:\n{output[-4000:]}")
-        return {test: run_until(tree, test, False) for test in tests}
+        return {name: {test: run_until(tree, test, False) for test in tests[name]} for name in tests}
     finally:
-        patch(tree, path, "-R")
+        for path in reversed(applied):
+            patch(tree, path, "-R")
 
 
 def fails_as_it_is(tree, tests):
@@ -231,14 +236,22 @@ def fails_as_it_is(tree, tests):
     return found
 
 
-def outcome(tree, name, tests, unusable):
-    """The outcome of each test without the correction: "passes", or why it fails."""
+def outcome(tree, tests, unusable):
+    """For each correction, the outcome of each of its tests without it: "passes", or why it fails."""
     try:
-        without = take_out(tree, name, tests)
+        without = take_out(tree, tests)
     except Unusable as error:
-        print(f"{name}: {error}", file=sys.stderr, flush=True)
-        return {test: "passes" for test in tests}
-    return {test: "passes" if passed or test in unusable else why for test, (passed, why) in without.items()}
+        print(f"{', '.join(tests)}: {error}", file=sys.stderr, flush=True)
+        return {name: dict.fromkeys(tests[name], "passes") for name in tests}
+    return {name: {test: "passes" if passed or test in unusable else why for test, (passed, why) in found.items()}
+            for name, found in without.items()}
+
+
+def groups_of(names, together):
+    """The corrections that are taken out at once: one, or all in headers, each of which takes a build of everything."""
+    paths = find_patches()
+    in_headers = [name for name in names if together and re.search(r"(?m)^\+\+\+ .*\.hpp", paths[name].read_text())]
+    return ([in_headers] if in_headers else []) + [[name] for name in names if name not in in_headers]
 
 
 def in_layer(tree, name, command):
@@ -255,22 +268,22 @@ def in_layer(tree, name, command):
     return ended
 
 
-def outcomes(tree, names, unusable):
-    """Pairs of name and outcome, as they are found: two at once, if a layer can be mounted."""
+def outcomes(tree, groups, unusable):
+    """Pairs of name and outcome, as they are found: two groups at once, if a layer can be mounted."""
     is_layered = in_layer(tree, "try", ["true"]).returncode == 0
     work = [sys.executable, str(Path(__file__).resolve()), "--work", json.dumps(sorted(unusable)), "--tree", str(tree)]
 
-    def find(name):
-        command = [*work, name]
-        ended = in_layer(tree, name, command) if is_layered else subprocess.run(
+    def find(names):
+        command = [*work, *names]
+        ended = in_layer(tree, names[0], command) if is_layered else subprocess.run(
             command, text=True, check=False, stdout=subprocess.PIPE)
         if ended.returncode != 0:
-            raise RuntimeError(f"{name}: ended with exit code {ended.returncode}")
-        return name, json.loads(ended.stdout)
+            raise RuntimeError(f"{', '.join(names)}: ended with exit code {ended.returncode}")
+        return json.loads(ended.stdout)
 
     with concurrent.futures.ThreadPoolExecutor(WORKERS if is_layered else 1) as pool:
-        for future in concurrent.futures.as_completed([pool.submit(find, name) for name in names]):
-            yield future.result()
+        for future in concurrent.futures.as_completed([pool.submit(find, names) for names in groups]):
+            yield from future.result().items()
 
 
 def run(tree, names, writes_results):
@@ -289,7 +302,7 @@ def run(tree, names, writes_results):
     results = read_results()
     results["patches"] = {name: results["patches"][name] for name in patches if name in results["patches"]}
     passed = []
-    for name, found in outcomes(tree, list(tests), unusable):
+    for name, found in outcomes(tree, groups_of(tests, not writes_results), unusable):
         fails = "passes" not in found.values()
         passed += [] if fails else [name]
         print(f"{name}: {'fails' if fails else 'PASSES'} without the correction", flush=True)
@@ -359,9 +372,8 @@ def main():
     elif arguments.page:
         PAGE.write_text(make_page(), encoding="utf-8")
     elif arguments.work:
-        (name,) = arguments.names
-        tests = read_patches()[name]["Test"].split()
-        print(json.dumps(outcome(arguments.tree, name, tests, json.loads(arguments.work))))
+        tests = {name: read_patches()[name]["Test"].split() for name in arguments.names}
+        print(json.dumps(outcome(arguments.tree, tests, json.loads(arguments.work))))
     else:
         run(arguments.tree.resolve(), arguments.names, not arguments.keep)
 
