@@ -126,14 +126,16 @@ TEST_F(TimeLaw, ARenewalByANewProcessRenewsTheHoldOfItsPredecessor) {
 }
 
 TEST_F(TimeLaw, ARenewalDoesNotBeginTheRampAgain) {
-  operator_.set_rate(0.25, milliseconds(400));
-  for (int i = 0; i < 10; ++i) {
-    pass(milliseconds(50));
-    operator_.renew();
-  }
   State state(1);
-  ASSERT_TRUE(has_values(reader_->sample(clock_.now(), state)));
-  EXPECT_EQ(reader_->rate().rate, 0.25);
+  for (const double requested : {0.25, 1.0}) {
+    operator_.set_rate(requested, milliseconds(400));
+    for (int i = 0; i < 10; ++i) {
+      pass(milliseconds(50));
+      operator_.renew();
+    }
+    ASSERT_TRUE(has_values(reader_->sample(clock_.now(), state)));
+    EXPECT_EQ(reader_->rate().rate, requested);
+  }
 }
 
 }  // namespace
