@@ -1,15 +1,18 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <bit>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "ipc/law/law_board.hpp"
+#include "ipc/layout/commander_control.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/mapping/region.hpp"
 #include "ipc/memory/names.hpp"
@@ -250,6 +253,36 @@ TEST_F(InForce, ADeadManThatHasFiredIsReported) {
   (void)operator_.set_rate(0.5, milliseconds(10));
   pass(milliseconds(100));
   EXPECT_EQ(faults(), fired) << "again";
+}
+
+TEST_F(InForce, ADamagedRecordIsReportedAndCountsAsRateZero) {
+  (void)operator_.set_rate(0.5, milliseconds(10));
+  pass(milliseconds(50));
+  EXPECT_TRUE(faults().empty());
+  const std::string region = ipc::commander_stream(law_.name(), "operator");
+  const auto header = ipc::peek_header(region, ipc::RegionKind::commander, {});
+  ASSERT_TRUE(header);
+  std::fstream file(ipc::region_path(region, ipc::RegionKind::commander),
+                    std::ios::in | std::ios::out | std::ios::binary);
+  const auto write = [&](std::size_t word, ipc::Word value) {
+    file.seekp(static_cast<std::streamoff>(header->control + word * sizeof(value)))
+        .write(reinterpret_cast<const char*>(&value), sizeof(value))  // NOLINT
+        .flush();
+  };
+  ASSERT_TRUE(file);
+  write(ipc::kCommanderNumber + 2,
+        std::bit_cast<ipc::Word>(std::numeric_limits<double>::quiet_NaN()));
+  write(ipc::kCommanderSequence, 1000);
+  pass(milliseconds(10));
+  EXPECT_EQ(rate(), 0.5);
+  pass(seconds(1));
+  EXPECT_EQ(rate(), 0);
+  const std::vector<std::string> damaged{
+      "commander 'operator' counts as requesting rate 0: its region holds no whole request"};
+  EXPECT_EQ(faults(), damaged);
+  (void)operator_.set_rate(0.5, milliseconds(10));
+  pass(milliseconds(50));
+  EXPECT_EQ(rate(), 0.5);
 }
 
 TEST(CommandersOfALaw, BeyondTheSixteenthAreReported) {
