@@ -46,6 +46,7 @@ class Replay {
     const Time base = first_time();
     require_continuation(base);
     const bool played = play_to_end(base);
+    if (!played && stop_requested() && is_live(options_.clock)) sender_.stop_at_once();
     finish();
     return report((played || rows_.stopped()) && sender_.await_consumption());
   }
@@ -196,6 +197,7 @@ class Replay {
                         .refused = now.refused - before_.refused,
                         .late = sender_.late(),
                         .gaps = recording_.survey().gaps,
+                        .end = now,
                         .stopped = stopped,
                         .interrupted = !complete};
     for (std::size_t i = 0; i < report.refused_by_reason.size(); ++i) {

@@ -7,6 +7,7 @@
 #include "apps/recordings/recording.hpp"
 #include "apps/recordings/refused_rows.hpp"
 #include "apps/tables/options.hpp"
+#include "ipc/layout/summary.hpp"
 #include "ipc/verification/verify.hpp"
 #include "splinecast/options.hpp"
 #include "splinecast/solver.hpp"
@@ -52,6 +53,7 @@ struct ReplayReport {
   std::array<ipc::Word, kRefusals> refused_by_reason{};
   LateRows late{};  ///< rows that were late when they could be sent
   Gaps gaps{};
+  ipc::Summary end{};                  ///< of the curve after the replay
   std::optional<RefusedBy> stopped{};  ///< who refused the row that stopped it (--on-error stop)
   bool interrupted = false;
   std::optional<ipc::Verification> verification{};  ///< with `verify`

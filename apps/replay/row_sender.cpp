@@ -74,6 +74,19 @@ bool RowSender::stop_at_gap(const Waypoint& next) {
   return true;
 }
 
+void RowSender::stop_at_once() {
+  constexpr int kTries = 100;
+  constexpr Time kPause = std::chrono::milliseconds(10);
+  AppendStatus status = producer_.replace_from(Time::min(), {});
+  // Only a ring of fewer than 16 items has no places for stops.
+  for (int i = 0; i < kTries && status == AppendStatus::full; ++i) {
+    solver_.solve();
+    (void)producer_.wait_for_room(kPause);
+    status = producer_.replace_from(Time::min(), {});
+  }
+  if (status == AppendStatus::accepted) rows_.note_replacement(Time::min());
+}
+
 /// When the motion begins that leads to the first waypoint after a gap: so late that the way is
 /// made with the velocities of the motion so far, in the second half of the gap.
 Time RowSender::entry_begin(const Waypoint& next) const {

@@ -33,6 +33,9 @@ class RowSender {
   /// stop first. Returns false if a stop is requested.
   bool send(const PlayedRow& row, Waypoint waypoint, bool follows_gap);
 
+  /// Stops the motion of a live stream as soon as possible.
+  void stop_at_once();
+
   /// Waits while the solver has work to do; false if a stop is requested. Waits for a live solver
   /// without limit, for a new one at most --wait; then throws TimeOut.
   bool await_room();

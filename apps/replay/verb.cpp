@@ -70,6 +70,7 @@ std::string in_words(const ReplayReport& report, const ReplayOptions& options,
   }
   if (report.gaps.count > 0)
     text += "; " + apps::in_words(report.gaps, options.gap.policy, row_name);
+  text += end_in_words(report.end);
   if (report.interrupted) text += "; interrupted";
   if (report.unsent > 0) text += fmt::format("; {} not sent", report.unsent);
   if (report.verification) text.append("; ").append(apps::in_words(*report.verification));
@@ -115,6 +116,7 @@ int run_replay(const ReplayOptions& options) {
                       {"late", to_json(report.late, options.late)},
                       {"gaps", to_json(report.gaps, options.gap.policy)},
                       {"unsent", report.unsent},
+                      {"end", end_json(report.end)},
                       {"interrupted", report.interrupted},
                       {"rows", refused.to_json(recording.row_name())},
                       {"rows_not_listed", refused.unlisted()}};

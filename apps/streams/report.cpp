@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 #include <vector>
 
 #include "apps/recordings/refused_rows.hpp"
@@ -197,6 +199,7 @@ ordered_json solver_json(const ipc::StreamInfo& info) {
       {"deadline_misses", summary.deadline_misses},
       {"late_commits", summary.late_commits},
       {"finished", summary.finished},
+      {"end", end_json(summary)},
       {"step_times_ns", step_times_json(info)},
   });
   return found;
@@ -225,6 +228,31 @@ ordered_json to_json(const ipc::StreamInfo& info) {
   json["producer"] = info.waypoints ? producer_json(info) : ordered_json(nullptr);
   json["solver"] = info.spline ? solver_json(info) : ordered_json(nullptr);
   return json;
+}
+
+ordered_json end_json(const ipc::Summary& summary) {
+  constexpr std::array<std::string_view, ipc::kEndKinds> kNames{
+      "", "as requested", "slowed", "entered", "stopped", "ended in the stop"};
+  if (summary.end_kind == 0 || summary.end_kind >= kNames.size()) return nullptr;
+  return {{"kind", kNames.at(summary.end_kind)},
+          {"item", summary.end_item},
+          {"lateness_ns", summary.end_lateness.count()}};
+}
+
+std::string end_in_words(const ipc::Summary& summary) {
+  switch (static_cast<ipc::EndKind>(summary.end_kind)) {
+    case ipc::EndKind::entered:
+      return summary.end_lateness > Time::zero()
+                 ? fmt::format("; rests at the last waypoint {:.3f} s late",
+                               to_seconds(summary.end_lateness))
+                 : "; left the path to rest at the last waypoint";
+    case ipc::EndKind::stopped:
+      return "; ended in the stop after the last waypoint";
+    case ipc::EndKind::in_stop:
+      return "; ended in the stop";
+    default:
+      return "";
+  }
 }
 
 std::string passed_over_in_words(ipc::Word count) {

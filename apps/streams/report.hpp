@@ -16,6 +16,14 @@ namespace splinecast::apps {
 /// The state of a stream as text: `waiting for a producer`, `running`, `finished` …
 [[nodiscard]] std::string state_of(const ipc::StreamInfo& info);
 
+/// How a finished curve ends: the kind, the item that finished it, and how late it rests at the
+/// last waypoint; null if it is not finished.
+[[nodiscard]] nlohmann::ordered_json end_json(const ipc::Summary& summary);
+
+/// The text about an end that differs from the requested one: `; rests at the last waypoint 0.074 s
+/// late`; empty for others.
+[[nodiscard]] std::string end_in_words(const ipc::Summary& summary);
+
 /// The text after the number of interpolated waypoints: `, 12 passed over`; empty for 0.
 [[nodiscard]] std::string passed_over_in_words(ipc::Word count);
 

@@ -70,10 +70,11 @@ class Announcer {
       case ipc::SweepNews::solving:
         return solver->took_over() ? "taken over" : "solving";
       case ipc::SweepNews::finished:
-        return fmt::format("finished; {} waypoints interpolated{}, {} items refused",
+        return fmt::format("finished; {} waypoints interpolated{}, {} items refused{}",
                            ipc::Internals::summary(*solver).interpolated(),
                            passed_over_in_words(ipc::Internals::summary(*solver).passed_over),
-                           ipc::Internals::summary(*solver).refused);
+                           ipc::Internals::summary(*solver).refused,
+                           end_in_words(ipc::Internals::summary(*solver)));
       case ipc::SweepNews::elsewhere:
         return "solved by another process";
       case ipc::SweepNews::no_descriptors:

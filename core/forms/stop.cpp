@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/limits/limit_of.hpp"
 #include "core/simd/clones.hpp"
 #include "core/simd/lanes.hpp"
 
@@ -37,10 +38,6 @@ double seconds_within(double v, double a, double limit) noexcept {
 /// 6|v|/T² for any initial acceleration.
 double seconds_within_jerk(double v, double limit) noexcept {
   return std::sqrt(6 * std::abs(v) / limit);
-}
-
-double limit_of(const std::vector<double>& limits, std::size_t d) noexcept {
-  return limits.empty() ? 0 : limits[d];
 }
 
 }  // namespace
@@ -89,6 +86,13 @@ Time stop_time_within(const MotionLimits& limits, Time least, std::span<const do
   }
   longest = std::min(longest, kLongest);
   return std::max(least, from_seconds(longest));
+}
+
+Time build_stop_within(const MotionLimits& limits, Time least, const Instant& from,
+                       Segment& out) noexcept {
+  const Time length = stop_time_within(limits, least, from.velocity, from.acceleration);
+  build_stop(from.time, length, from.position, from.velocity, from.acceleration, out);
+  return length;
 }
 
 }  // namespace splinecast::core

@@ -5,6 +5,7 @@
 #include "core/polynomial/segment.hpp"
 #include "splinecast/limits.hpp"
 #include "splinecast/time.hpp"
+#include "splinecast/waypoint.hpp"
 
 /// The stop segment: from a moving state to rest. Its speed never increases.
 ///
@@ -36,5 +37,9 @@ void build_stop(Time from, Time stop_time, std::span<const double> position,
 [[nodiscard]] Time stop_time_within(const MotionLimits& limits, Time least,
                                     std::span<const double> velocity,
                                     std::span<const double> acceleration) noexcept;
+
+/// Writes the stop from a state with the length of `stop_time_within`, and returns that length.
+Time build_stop_within(const MotionLimits& limits, Time least, const Instant& from,
+                       Segment& out) noexcept;
 
 }  // namespace splinecast::core

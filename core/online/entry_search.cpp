@@ -6,17 +6,10 @@
 #include <utility>
 
 #include "core/limits/extremes.hpp"
+#include "core/limits/limit_of.hpp"
 
 namespace splinecast::core {
 namespace {
-
-/// Least allowed value that follows from the shown motion: smaller values cannot be distinguished
-/// from rounding.
-constexpr double kLeastAllowed = 1e-9;
-
-double limit_of(const std::vector<double>& limits, std::size_t d) noexcept {
-  return limits.empty() ? 0 : limits[d];
-}
 
 /// Whether the velocity at the newest knot is an estimate until the next knot is known.
 bool is_guess(const SlidingWindow& target) noexcept {
@@ -49,43 +42,6 @@ void EntrySearch::restart(std::size_t first) noexcept {
   fallback_knot_.reset();
   std::ranges::fill(granted_.velocity, 0.0);
   std::ranges::fill(granted_.acceleration, 0.0);
-}
-
-void EntrySearch::restart(std::size_t first, const Instant& from, const Instant& end) noexcept {
-  restart(first);
-  former_end_ = end.time;
-  build_entry(from, end, behind_);
-  constexpr double kSlack = 1 + 1e-9;
-  const auto peak = [&](std::size_t d, int derivative) {
-    const SegmentPart part = part_of(behind_);
-    const auto range =
-        range_of(part.order, part.coefficients, part.dimensions, d, derivative, part.from, part.to);
-    return std::abs(range.largest().value) * kSlack;
-  };
-  write_of_dimensions([&](std::size_t d) { return peak(d, 1); },
-                      [&](std::size_t d) { return peak(d, 2); },
-                      [&](std::size_t d, double velocity, double acceleration) {
-                        granted_.velocity[d] = velocity;
-                        granted_.acceleration[d] = acceleration;
-                      });
-}
-
-/// Calls `write` with the velocity and the acceleration of each dimension; for a quaternion once,
-/// with the bounds |ω| ≤ 2|q̇| and |α| ≤ 2|q̈| + 4|q̇|² over all four components.
-void EntrySearch::write_of_dimensions(const auto& velocity_of, const auto& acceleration_of,
-                                      const auto& write) const noexcept {
-  std::size_t d = 0;
-  for (const QuaternionDimensions& q : kinds_.quaternions()) {
-    for (; d < q.first; ++d) write(d, velocity_of(d), acceleration_of(d));
-    double velocity = 0;
-    double acceleration = 0;
-    for (; d < q.first + kQuaternionSize; ++d) {
-      velocity = std::hypot(velocity, velocity_of(d));
-      acceleration = std::hypot(acceleration, acceleration_of(d));
-    }
-    write(q.first, 2 * velocity, 2 * acceleration + 4 * velocity * velocity);
-  }
-  for (; d < allowed_.velocity.size(); ++d) write(d, velocity_of(d), acceleration_of(d));
 }
 
 EntrySearch::Outcome EntrySearch::search(const SlidingWindow& target, const Instant& from,
@@ -163,39 +119,44 @@ EntrySearch::Outcome EntrySearch::fall_back(const SlidingWindow& target, const I
   if (!fallback_knot_ || *fallback_knot_ < target.oldest_segment()) return Outcome::none;
   if (target.time(*fallback_knot_) - from.time < rules.least) return Outcome::none;
   end_at_knot(target, *fallback_knot_);
+  if (ends_outside(*rules.limits)) return Outcome::none;
   allow(from, rules);
   return passes(from) ? Outcome::found : Outcome::none;
 }
 
 EntrySearch::Outcome EntrySearch::search_rest(const Instant& rest, const Instant& from,
-                                              const EntryRules& rules, int& tries) noexcept {
+                                              const EntryRules& rules, Time longest,
+                                              int& tries) noexcept {
   const Time own = rest.time - from.time;
   end_ = {};
   end_.state = rest;
+  if (ends_outside(*rules.limits)) return Outcome::none;
+  EntryRules between = rules;
+  between.stays_between = true;
   if (duration_ == 0 && own >= rules.least) {
-    const Verdict verdict = judge(from, rules, tries);
+    const Verdict verdict = judge(from, between, tries);
     if (verdict == Verdict::passes) return Outcome::found;
     if (verdict == Verdict::untried) return Outcome::more;
   }
-  constexpr double kMost = 1e9;
-  duration_ = std::max({duration_, to_seconds(own), to_seconds(rules.least)});
-  while (duration_ < kMost) {
+  constexpr double kShortest = 1e-6;  // s
+  duration_ = std::max({duration_, to_seconds(own), to_seconds(rules.least), kShortest});
+  while (duration_ < to_seconds(longest)) {
     end_.state.time = from.time + from_seconds(duration_ * kGrowth);
-    const Verdict verdict = judge(from, rules, tries);
+    const Verdict verdict = judge(from, between, tries);
     if (verdict == Verdict::passes) return Outcome::found;
     if (verdict == Verdict::untried) return Outcome::more;
-    if (duration_ > to_seconds(kLongest) && passes_at_last(from, rules)) return Outcome::found;
+    if (duration_ > to_seconds(kLongest) && passes_at_last(from, between)) return Outcome::found;
     duration_ *= kGrowth;
   }
-  build_entry(from, end_.state, entry_);
-  return Outcome::found;
+  return Outcome::none;
 }
 
 /// Tries the current end. Does not build an entry that cannot pass.
 EntrySearch::Verdict EntrySearch::judge(const Instant& from, const EntryRules& rules,
                                         int& tries) noexcept {
+  if (ends_outside(*rules.limits)) return Verdict::exceeds;
   allow(from, rules);
-  if (is_out_of_reach(from)) return Verdict::exceeds;
+  if (is_out_of_reach(from) || leaves_early(from)) return Verdict::exceeds;
   if (tries <= 0) return Verdict::untried;
   --tries;
   return passes(from) ? Verdict::passes : Verdict::exceeds;
@@ -251,70 +212,6 @@ bool EntrySearch::keeps_beyond(const MotionLimits& limits) noexcept {
   return true;
 }
 
-/// Sets the allowed velocities and accelerations of the entry: the limit, or the value at the start
-/// of the entry if that exceeds the limit. Without a limit, see `allow_shown`.
-void EntrySearch::allow(const Instant& from, const EntryRules& rules) noexcept {
-  allowed_.jerk = rules.limits->jerk;
-  allowed_.lower = rules.limits->lower;
-  allowed_.upper = rules.limits->upper;
-  for (std::size_t d = 0; d < from.position.size(); ++d) {
-    const double v_max = limit_of(rules.limits->velocity, d);
-    const double a_max = limit_of(rules.limits->acceleration, d);
-    allowed_.velocity[d] = v_max > 0 ? std::max(v_max, std::abs(from.velocity[d])) : 0;
-    allowed_.acceleration[d] = a_max > 0 ? std::max(a_max, std::abs(from.acceleration[d])) : 0;
-    if (!rules.must_reach || allowed_.lower.empty()) continue;
-    const double to = end_.state.position[d];
-    allowed_.lower[d] = std::min({allowed_.lower[d], from.position[d], to});
-    allowed_.upper[d] = std::max({allowed_.upper[d], from.position[d], to});
-  }
-  if (rules.shown != nullptr) allow_shown(from, rules);
-}
-
-void EntrySearch::allow_shown(const Instant& from, const EntryRules& rules) noexcept {
-  const Instant& to = end_.state;
-  const auto allow_dimension = [&](std::size_t d, double velocity, double acceleration) {
-    if (allowed_.acceleration[d] > 0) return;
-    if (allowed_.velocity[d] == 0) {
-      allowed_.velocity[d] = std::max({velocity, granted_.velocity[d], kLeastAllowed});
-    }
-    allowed_.acceleration[d] = std::max({acceleration, granted_.acceleration[d], kLeastAllowed});
-  };
-  // From rest to rest over a distance x in 1 s, the peak velocity is 1.875 x and the peak
-  // acceleration 5.77 x.
-  const auto velocity_of = [&](std::size_t d) {
-    const double way = std::abs(to.position[d] - from.position[d]);
-    return std::max(
-        {rules.shown->velocity[d], std::abs(from.velocity[d]), std::abs(to.velocity[d]), 2 * way});
-  };
-  const auto acceleration_of = [&](std::size_t d) {
-    const double way = std::abs(to.position[d] - from.position[d]);
-    return std::max({rules.shown->acceleration[d], std::abs(from.acceleration[d]),
-                     std::abs(to.acceleration[d]), 6 * way});
-  };
-  write_of_dimensions(velocity_of, acceleration_of, allow_dimension);
-}
-
-/// Whether no motion from `from` to the end of the entry can respect the allowed values. With the
-/// duration T, the mean acceleration is Δv/T and the mean velocity is Δx/T. With |a| ≤ A, Δx
-/// differs by at most A·T²/4 from T times the mean of the velocities at both ends.
-bool EntrySearch::is_out_of_reach(const Instant& from) const noexcept {
-  constexpr double kSlack = 1 + 1e-9;
-  const double duration = to_seconds(end_.state.time - from.time) * kSlack;
-  for (std::size_t d = 0; d < from.position.size(); ++d) {
-    const double way = end_.state.position[d] - from.position[d];
-    const double v0 = from.velocity[d];
-    const double v1 = end_.state.velocity[d];
-    const double a_max = allowed_.acceleration[d];
-    if (a_max > 0 && (std::abs(v1 - v0) > a_max * duration ||
-                      std::abs(way - (v0 + v1) / 2 * duration) > a_max * duration * duration / 4)) {
-      return true;
-    }
-    const double v_max = allowed_.velocity[d];
-    if (v_max > 0 && std::abs(way) > v_max * duration) return true;
-  }
-  return false;
-}
-
 bool EntrySearch::passes(const Instant& from) noexcept {
   build_entry(from, end_.state, entry_);
   return keeps_within(allowed_, &kinds_, entry_) && keeps_length();
@@ -323,7 +220,9 @@ bool EntrySearch::passes(const Instant& from) noexcept {
 /// The same without the shown limits: for entries of at least kLongest.
 bool EntrySearch::passes_at_last(const Instant& from, const EntryRules& rules) noexcept {
   if (rules.shown == nullptr) return false;
-  allow(from, {.limits = rules.limits, .must_reach = rules.must_reach});
+  EntryRules given = rules;
+  given.shown = nullptr;
+  allow(from, given);
   return passes(from);
 }
 

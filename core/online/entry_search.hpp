@@ -7,6 +7,7 @@
 #include "core/forms/entry.hpp"
 #include "core/limits/check.hpp"
 #include "core/online/extrapolation.hpp"
+#include "core/online/position_range.hpp"
 #include "core/online/sliding_window.hpp"
 #include "core/polynomial/segment.hpp"
 #include "splinecast/dimension_kind.hpp"
@@ -22,7 +23,10 @@ struct EntryRules {
   Time least{};                         ///< shortest duration of an entry
   std::size_t newer = 0;     ///< an entry may end at a knot only if this many newer knots are known
   bool goes_beyond = false;  ///< the entry may also end after the newest knot
-  bool must_reach = false;   ///< bounds are widened to contain both ends of the entry
+  /// Positions that the published curve reaches anyway after the begin of the entry. Outside the
+  /// bounds the entry may go as far, but not farther. Null: none.
+  const PositionRange* reach = nullptr;
+  bool stays_between = false;  ///< instead of the bounds, the positions at the ends count
 };
 
 /// The end of an entry. Spans refer to memory of the search and are valid until its next call.
@@ -86,9 +90,11 @@ class EntrySearch {
                  int& tries) noexcept;
 
   /// The same with one end, the state `rest` at which the curve ends: tries the time of `rest`,
-  /// then later times until one passes. Call `restart` first.
+  /// then later ones until a duration exceeds `longest`. The entry also remains within the range of
+  /// `rules.reach` and the positions at its two ends. `none` if `rest` is outside the bounds. Call
+  /// `restart` first.
   Outcome search_rest(const Instant& rest, const Instant& from, const EntryRules& rules,
-                      int& tries) noexcept;
+                      Time longest, int& tries) noexcept;
 
   /// Whether a target that starts at rest at its knot 0, which must be in the window, respects the
   /// limits as far as it is known. If `rules.shown` is given, this also limits the peak
@@ -120,9 +126,12 @@ class EntrySearch {
   void allow(const Instant& from, const EntryRules& rules) noexcept;
   void write_of_dimensions(const auto& velocity_of, const auto& acceleration_of,
                            const auto& write) const noexcept;
+  void allow_positions(const Instant& from, const EntryRules& rules) noexcept;
   void allow_shown(const Instant& from, const EntryRules& rules) noexcept;
   [[nodiscard]] bool keeps_length() const noexcept;
+  [[nodiscard]] bool leaves_early(const Instant& from) const noexcept;
   [[nodiscard]] bool is_out_of_reach(const Instant& from) const noexcept;
+  [[nodiscard]] bool ends_outside(const MotionLimits& limits) const noexcept;
   [[nodiscard]] bool passes(const Instant& from) noexcept;
   [[nodiscard]] bool passes_at_last(const Instant& from, const EntryRules& rules) noexcept;
   [[nodiscard]] std::optional<Time> next_duration(Time from, Time to_newest, bool tries_newest,

@@ -25,6 +25,17 @@ enum class Course : std::uint8_t {
 };
 inline constexpr int kCourses = 4;
 
+/// How a finished curve ends.
+enum class EndKind : std::uint8_t {
+  none = 0,          ///< it is not finished, or a solver of an earlier version finished it
+  as_requested = 1,  ///< at its last waypoint, with the requested condition, or where it rested
+  slowed = 2,        ///< reserved
+  entered = 3,       ///< by an entry that comes to rest at the last waypoint
+  stopped = 4,       ///< in the stop after the last waypoint: no entry kept the limits
+  in_stop = 5,       ///< in the published stop: no entry to the last waypoint kept the limits
+};
+inline constexpr int kEndKinds = 6;
+
 /// The summary: the values of a whole revision.
 struct Summary {
   Word revision = 0;  ///< the revision of this summary; 0: none yet
@@ -61,6 +72,9 @@ struct Summary {
   Word exceeding = 0;            ///< waypoints with which the curve exceeded a limit, or would have
   Word refused = 0;              ///< items refused
   std::array<Word, kRefusalReasons> reasons{};  ///< items refused, by Refusal
+  Word end_kind = 0;                            ///< EndKind
+  Word end_item = 0;    ///< item that finished the stream; 0 unless end_kind is set
+  Time end_lateness{};  ///< how long after the last waypoint's time the curve rests at it
   /// The curve before this time never changes. May be raised without a revision.
   Time settled_until = -kLatestTime;
   Time changed_from{};  ///< earliest time whose curve this revision changed
@@ -146,10 +160,14 @@ inline constexpr std::tuple kFurtherRows{
              {.words = 1},
              FieldWriter::owner,
              "reserved for the longest time between two steps of the last second: 0"},
-    FieldRow{"end",
-             {.words = 3},
-             FieldWriter::owner,
-             "reserved for kind, item and lateness of the end: 0"},
+    MemberRow<&Summary::end_kind>{
+        "end kind", FieldWriter::owner,
+        "1 as requested, 3 entry to the last waypoint, 4 or 5 in a stop; 0 none"},
+    MemberRow<&Summary::end_item>{"end item", FieldWriter::owner,
+                                  "number of the item that finished the stream"},
+    MemberRow<&Summary::end_lateness>{
+        "end lateness", FieldWriter::owner,
+        "ns: how long after the last waypoint's time the curve rests at it"},
     padding(6)};
 
 /// The words of a cell of the summary's slot. To add a field, add a member of Summary and a row

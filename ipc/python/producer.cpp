@@ -28,6 +28,7 @@ class HeldProducer {
  public:
   HeldProducer(const std::string& stream, const ProducerOptions& options)
       : dimensions_(options.dimensions),
+        is_live_(is_live(options.clock)),
         names_(options.names),
         producer_("producer", stream, make_role<Producer>(stream, options)) {}
 
@@ -122,12 +123,14 @@ class HeldProducer {
   void close() { producer_.close(); }
 
   void exit(const py::args& failure) {
-    if (!failure[0].is_none() || is_finished_ || producer_.is_closed()) return close();
+    const bool has_failed = !failure[0].is_none();
+    if (is_finished_ || producer_.is_closed() || (has_failed && !is_live_)) return close();
     try {
+      if (has_failed) stop_at_once();
       finish(py::str("halt"), py::float_(kFinishPatience));
     } catch (...) {
       close();
-      throw;
+      if (!has_failed) throw;  // else the exception of the body is the one to be seen
     }
     close();
   }
@@ -143,6 +146,11 @@ class HeldProducer {
   }
 
  private:
+  void stop_at_once() {
+    accept({.what = "stop", .status = {}}, py::float_(kFinishPatience),
+           [](Producer& producer) { return producer.replace_from(Time::min(), {}); });
+  }
+
   /// Waypoints from arrays. Their spans point into the arrays, or into copies of what is not
   /// contiguous.
   struct Path {
@@ -204,6 +212,7 @@ class HeldProducer {
   }
 
   std::size_t dimensions_;
+  bool is_live_;
   std::vector<std::string> names_;
   bool is_finished_ = false;
   Held<Producer> producer_;

@@ -47,6 +47,7 @@ ReplacementPlanner::ReplacementPlanner(const KnotBoardReader& board, core::Windo
       shown_(board),
       window_(board.dimensions(), options_),
       search_(board.dimensions(), kinds_),
+      reach_(board.dimensions()),
       state_(board.dimensions()),
       segment_(board.dimensions()),
       values_(3 * board.dimensions()) {}
@@ -95,9 +96,7 @@ void ReplacementPlanner::take(const core::Segment& segment, MotionPeaks* entry,
 }
 
 void ReplacementPlanner::take_stop(ReplacePreview& out, const Instant& from) {
-  const Time length =
-      core::stop_time_within(options_.limits, options_.stop_time, from.velocity, from.acceleration);
-  core::build_stop(from.time, length, from.position, from.velocity, from.acceleration, segment_);
+  const Time length = core::build_stop_within(options_.limits, options_.stop_time, from, segment_);
   take(segment_, out.enters ? nullptr : &out.entry, out);
   if (!out.enters) out.duration = length;
 }
@@ -136,7 +135,11 @@ bool ReplacementPlanner::find_entry(const Instant& from, std::span<const Waypoin
   core::EntryRules rules{.limits = &options_.limits,
                          .shown = is_live_ ? &shown_.limits() : nullptr,
                          .least = std::max(min_entry_, blend),
-                         .newer = options_.settle};
+                         .newer = options_.settle,
+                         .reach = &reach_};
+  (void)core::build_stop_within(options_.limits, options_.stop_time, from, segment_);
+  reach_.restart(from.position);
+  reach_.add(core::part_of(segment_));
   bool is_found = false;
   const auto search = [&] {
     constexpr int kAll = 1000;

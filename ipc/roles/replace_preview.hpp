@@ -54,6 +54,7 @@ class ReplacementPlanner {
   ShownMotion shown_;
   core::SlidingWindow window_;
   core::EntrySearch search_;
+  core::PositionRange reach_;                ///< of the stop from where the entry begins
   std::optional<std::size_t> next_segment_;  ///< the next segment of the target to add
   State state_;
   core::Segment segment_;

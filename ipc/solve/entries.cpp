@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/forms/stop.hpp"
 #include "ipc/solve/published_curve.hpp"
 
 /// Plans the entries of a published curve onto its target. A plan is in scratch memory; `enter`
@@ -72,12 +73,37 @@ bool PublishedCurve::find_state(Time settled) noexcept {
   return !is_damaged_;
 }
 
+/// Finds how far the published curve goes from that state to `until`. Returns false if the board is
+/// damaged.
+bool PublishedCurve::find_reach(Time until) noexcept {
+  const Instant from = begin_state();
+  reach_.restart(from.position);
+  if (!uses_cut_ && origin_.is_new) {
+    const core::WindowOptions& options = window_.options();
+    (void)core::build_stop_within(options.limits, options.stop_time, from, segment_);
+    reach_.add(core::part_of(segment_));
+    return true;
+  }
+  for (Word n = segment_at(*published_, summary_, from.time); n <= summary_.newest; ++n) {
+    const auto taken = read_.take(*published_, summary_, n);
+    is_damaged_ = is_damaged_ || taken == BoardSegment::Taken::torn;
+    if (taken != BoardSegment::Taken::whole || read_.right() <= from.time) continue;
+    if (read_.left() >= until) break;
+    reach_.add({.order = read_.order(),
+                .coefficients = read_.coefficients(),
+                .dimensions = from.position.size(),
+                .from = std::max(to_seconds(from.time - read_.left()), 0.0),
+                .to = to_seconds(read_.right() - read_.left())});
+  }
+  return !is_damaged_;
+}
+
 /// Prepares a search: updates the shown motion and, once per step, finds the state at which an
 /// entry begins. Returns false if the board is damaged.
 bool PublishedCurve::prepare(Time settled) noexcept {
   find_shown();
   if (entries_.is_live) shown_.look(window_.options().stop_time);
-  is_prepared_ = is_prepared_ || find_state(settled);
+  is_prepared_ = is_prepared_ || (find_state(settled) && find_reach(Time::max()));
   return is_prepared_;
 }
 
@@ -86,11 +112,12 @@ core::EntryRules PublishedCurve::entry_rules() const noexcept {
   const bool blends = blend_until_ > from;  // only in a run that began with a cut
   return {.limits = &window_.options().limits,
           .shown = entries_.is_live ? &shown_.limits() : nullptr,
-          .least = blends ? std::max(entries_.min_entry, blend_until_ - from) : entries_.min_entry};
+          .least = blends ? std::max(entries_.min_entry, blend_until_ - from) : entries_.min_entry,
+          .reach = &reach_};
 }
 
 void PublishedCurve::look_for_entry(Time settled, Time keep, bool is_last, int& tries) noexcept {
-  if (is_damaged_ || is_ending_ || ends_there_ || window_.finished()) return;
+  if (is_damaged_ || ending_ != EndKind::none) return;
   // Checks the start when settle + 2 waypoints are known or, on a live stream, shortly before the
   // start settles.
   if (is_start_open() && (window_.knots() == window_.options().settle + 2 ||
@@ -102,8 +129,7 @@ void PublishedCurve::look_for_entry(Time settled, Time keep, bool is_last, int& 
   core::EntryRules rules = entry_rules();
   rules.goes_beyond = is_last && entries_.is_live;
   rules.newer = rules.goes_beyond ? 0 : window_.options().settle;
-  const auto outcome =
-      search_.search(window_, uses_cut_ ? cut_.state() : origin_state(), rules, tries);
+  const auto outcome = search_.search(window_, begin_state(), rules, tries);
   if (outcome == core::EntrySearch::Outcome::found) enter();
   const bool is_over = outcome == core::EntrySearch::Outcome::none && rules.goes_beyond;
   if (is_over) is_searching_ = false;
@@ -155,8 +181,9 @@ void PublishedCurve::enter_before_end() noexcept {
   rules.newer = 1;
   int tries = static_cast<int>(window_.knots() - window_.oldest_segment());
   search_.restart(unmet_);
-  const Instant from = uses_cut_ ? cut_.state() : origin_state();
-  if (search_.search(window_, from, rules, tries) == core::EntrySearch::Outcome::found) enter();
+  if (search_.search(window_, begin_state(), rules, tries) == core::EntrySearch::Outcome::found) {
+    enter();
+  }
 }
 
 }  // namespace splinecast::ipc

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <chrono>
 
+#include "core/limits/check.hpp"
 #include "ipc/solve/published_curve.hpp"
 
 /// Ends a published curve.
@@ -19,9 +21,30 @@ bool rests_at(const Instant& state, std::span<const double> position) noexcept {
 void PublishedCurve::finish_on_line(const Condition& end) noexcept {
   const std::size_t knots = window_.knots();
   window_.finish(end);
+  ending_ = EndKind::as_requested;
   has_changes_ = true;
   // A full stop changes the form of the last segment: its left knot is written again.
   open_ = std::min(open_, knots - std::min<std::size_t>(knots, 2));
+}
+
+/// Whether the curve, ended at the newest waypoint, keeps the limits: a segment that exceeds one
+/// must not exceed it more than without the end. A recorded stream ends as requested.
+bool PublishedCurve::keeps_limits_with(const Condition& end, Time settled) noexcept {
+  if (!entries_.is_live || !has_limits_) return true;
+  begin_trial();
+  trial_.finish(end);
+  const auto excess = [this](const core::SlidingWindow& window, std::size_t i) {
+    window.segment(i, segment_);
+    return core::worst_excess(window.options().limits, &kinds_, segment_).ratio;
+  };
+  constexpr double kSlack = 1 + 1e-9;
+  for (std::size_t i = std::max(first_open(settled), trial_.oldest_segment());
+       i + 1 < trial_.knots(); ++i) {
+    trial_.segment(i, segment_);
+    if (core::keeps_within(trial_.options().limits, &kinds_, segment_)) continue;
+    if (excess(trial_, i) > std::max(excess(window_, i), 1.0) * kSlack) return false;
+  }
+  return true;
 }
 
 /// Marks the newest waypoint as met by a curve that does not reach it on the target.
@@ -37,43 +60,124 @@ void PublishedCurve::enter_end(const Instant& from) noexcept {
     cut_.write();
     set_origin(cut_.next(), from);
   }
-  is_entry_new_ = is_ending_ = true;
+  is_entry_new_ = true;
+  ending_ = EndKind::entered;
   behind_ = {.end = search_.end().state.time};
   const auto newest = window_.knot(window_.knots() - 1).position;
   std::ranges::copy(newest, beyond_.ref().position.begin());
-  end_at_newest();
   note_change(origin_.time);
 }
 
 bool PublishedCurve::finish(const Condition& end, Time settled, Time keep, int& tries) noexcept {
   const std::size_t knots = window_.knots();
-  if (knots == 0) return true;  // the curve ends with its current stop
+  if (knots == 0) {  // the curve ends with its current stop
+    ending_ = EndKind::as_requested;
+    return true;
+  }
   if (is_start_open()) check_start();
-  if (!is_on_line() && !seeks_end_ && has_room_to_enter(keep) && prepare(settled)) {
+  if (!is_on_line() && end_search_ == EndSearch::none && has_room_to_enter(keep) &&
+      prepare(settled)) {
     enter_before_end();
   }
-  if (is_on_line() && window_.frozen_knots() < knots) {
+  if (!is_on_line() || window_.frozen_knots() == knots) return search_end(settled, tries);
+  if (keeps_limits_with(end, settled)) {
     finish_on_line(end);
     return true;
   }
-  if (!prepare(settled)) return true;
-  const Instant from = uses_cut_ ? cut_.state() : origin_state();
-  const core::Knot newest = window_.knot(knots - 1);
-  std::ranges::fill(values_, 0.0);
-  const Instant rest{newest.time, newest.position, values_, values_};
-  if (rests_at(from, rest.position)) {
-    end_at_newest();
-    ends_there_ = true;
-    return true;
+  // The search begins in the published curve.
+  if (has_changes_) return false;
+  const bool has_settled = knots < 2 || window_.time(knots - 2) < settled;
+  return has_settled ? search_end(settled, tries) : search_end_from_knots(settled, tries);
+}
+
+/// Searches for the entry that begins at the latest knot and ends the curve, within the range of
+/// the published curve from that knot to the last waypoint. If there is none, the curve ends in the
+/// stop after its last waypoint. Returns false if the search has not ended.
+bool PublishedCurve::search_end_from_knots(Time settled, int& tries) noexcept {
+  if (end_search_ != EndSearch::from_knots) {
+    end_search_ = EndSearch::from_knots;
+    end_knot_ = window_.knots() - 1;
+    search_.restart(0);
+    find_shown();
+    shown_.look(window_.options().stop_time);
   }
-  if (!seeks_end_) search_.restart(0);
-  seeks_end_ = true;
-  core::EntryRules rules = entry_rules();
-  rules.must_reach = true;
-  const auto outcome = search_.search_rest(rest, from, rules, tries);
-  if (outcome != core::EntrySearch::Outcome::found) return false;
-  enter_end(from);
+  const Instant rest = rest_at_newest();
+  for (; end_knot_ > met_; --end_knot_) {
+    const Time t = published_->time_hint(number_of(end_knot_ - 1));
+    if (t < settled) break;
+    uses_cut_ = true;
+    is_damaged_ = is_damaged_ || !cut_.find(summary_, t);
+    if (is_damaged_ || !find_reach(rest.time)) return true;
+    const Instant from = begin_state();
+    const auto outcome =
+        search_.search_rest(rest, from, entry_rules(), core::EntrySearch::kLongest, tries);
+    if (outcome == core::EntrySearch::Outcome::more) return false;
+    if (outcome == core::EntrySearch::Outcome::found) {
+      passed_before_ += passed_over();
+      course_ = Course::on_target;
+      enter_end(from);
+      unmet_ = end_knot_;
+      met_ = window_.knots() - 1;
+      return true;
+    }
+    search_.restart(0);
+  }
+  ending_ = EndKind::stopped;
   return true;
+}
+
+/// The last waypoint as a state at rest. Valid until values_ changes.
+Instant PublishedCurve::rest_at_newest() noexcept {
+  const core::Knot newest = window_.knot(window_.knots() - 1);
+  std::ranges::fill(values_, 0.0);
+  return {newest.time, newest.position, values_, values_};
+}
+
+/// Finds the state in which an entry to the last waypoint may begin. Returns false if the board is
+/// damaged.
+bool PublishedCurve::prepare_end(Time settled) noexcept {
+  if (end_search_ != EndSearch::from_rest) return prepare(settled);
+  uses_cut_ = true;
+  is_damaged_ = is_damaged_ || !cut_.find(summary_, std::max(settled, end_));
+  return !is_damaged_ && find_reach(Time::max());
+}
+
+/// Searches for the entry that ends the curve. Returns false if the search has not ended.
+bool PublishedCurve::search_end(Time settled, int& tries) noexcept {
+  // An entry within the limits that takes longer has failed: it would last for hours.
+  constexpr Time kLongest = std::chrono::hours(1);
+  if (!prepare_end(settled)) return true;
+  const Instant rest = rest_at_newest();
+  for (;;) {
+    const Instant from = begin_state();
+    if (rests_at(from, rest.position)) {
+      end_at_newest();
+      ending_ = EndKind::as_requested;
+      return true;
+    }
+    if (end_search_ == EndSearch::none || end_search_ == EndSearch::from_knots) {
+      search_.restart(0);
+      end_search_ = EndSearch::from_settled;
+    }
+    const bool is_from_rest = end_search_ == EndSearch::from_rest;
+    const auto outcome = search_.search_rest(
+        rest, from, entry_rules(), is_from_rest ? core::EntrySearch::kLongest : kLongest, tries);
+    if (outcome == core::EntrySearch::Outcome::more) return false;
+    if (outcome == core::EntrySearch::Outcome::found) {
+      enter_end(from);
+      end_at_newest();
+      return true;
+    }
+    if (is_from_rest || from.time >= end_) {
+      ending_ = EndKind::in_stop;
+      return true;
+    }
+    // The stop of a state that is not committed yet is not on the board.
+    end_search_ = EndSearch::from_rest;
+    search_.restart(0);
+    if (origin_.is_new) return false;
+    if (!prepare_end(settled)) return true;
+  }
 }
 
 }  // namespace splinecast::ipc

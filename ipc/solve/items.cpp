@@ -107,7 +107,7 @@ Waypoint StreamSolver::unwrapped(const Waypoint& given) noexcept {
 /// Notes where the curve with this waypoint exceeds a limit. Returns whether to refuse the
 /// waypoint.
 bool StreamSolver::note_excess(const Waypoint& waypoint, Word number) noexcept {
-  auto excess = curve_.excess_with(waypoint);
+  auto excess = curve_.excess_with(waypoint, settled_until_);
   if (!excess) return false;
   excess->item = number;
   excess->is_refused = beyond_ == Beyond::refuse;
@@ -245,6 +245,9 @@ void StreamSolver::take_finish(Word number) noexcept {
   is_finish_postponed_ = curve_.has_begun() && !curve_.finish(end_, settled_until_, keep_, tries_);
   if (is_finish_postponed_) return;
   summary_.finished = true;
+  summary_.end_kind = static_cast<Word>(curve_.ending());
+  summary_.end_item = number;
+  summary_.end_lateness = curve_.end_lateness();
   ++summary_.controls;
 }
 

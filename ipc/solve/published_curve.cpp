@@ -34,6 +34,7 @@ PublishedCurve::PublishedCurve(KnotBoardWriter& board, const KnotBoardReader& pu
       has_limits_(!options.limits.empty()),
       cut_(board, published, kinds_),
       search_(published.dimensions(), kinds_),
+      reach_(published.dimensions()),
       shown_(published),
       committed_shown_(published),
       read_(published.dimensions(), published.smooths()),
@@ -222,7 +223,8 @@ void PublishedCurve::append(const Waypoint& waypoint, Word item) noexcept {
 
 /// Waypoints that the open entry passes over.
 std::size_t PublishedCurve::passed_over() const noexcept {
-  const bool has_met = is_on_line() || is_ending_ || ends_there_;
+  const bool ends_at_newest = ending_ == EndKind::as_requested || ending_ == EndKind::entered;
+  const bool has_met = is_on_line() || ends_at_newest;
   const std::size_t end = has_met ? met_ : window_.knots();
   return end - std::min(end, unmet_);
 }

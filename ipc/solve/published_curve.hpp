@@ -146,12 +146,13 @@ class PublishedCurve {
   /// uncommitted changes. Changes nothing if the board is damaged.
   void begin_run(Time t, Time blend, bool is_from_rest = false) noexcept;
 
-  /// Finds the first segment that exceeds a limit with this waypoint, but not without it, and
-  /// returns its largest excess; nothing if there is no such segment. Checks only the segments that
-  /// the waypoint changes and that the curve may follow. O(1) without limits, else O(K·D). Does not
-  /// change the curve.
-  [[nodiscard]] std::optional<LimitExcess> excess_with(const Waypoint& waypoint) noexcept {
-    return has_limits_ && window_.knots() > 0 ? find_excess(waypoint) : std::nullopt;
+  /// Finds the largest excess of a segment that exceeds a limit with this waypoint, but not without
+  /// it; nothing if there is no such segment. Compares only the segments that the waypoint changes
+  /// and that a curve that is settled until `settled` may still follow. O(1) without limits, else
+  /// O(K·D). Does not change the curve.
+  [[nodiscard]] std::optional<LimitExcess> excess_with(const Waypoint& waypoint,
+                                                       Time settled) noexcept {
+    return has_limits_ && window_.knots() > 0 ? find_excess(waypoint, settled) : std::nullopt;
   }
 
   /// The state in which the run begins. Requires that it was entered from a state, and has no entry
@@ -173,7 +174,7 @@ class PublishedCurve {
 
   /// Whether a search for an entry is unfinished: a step has work to do without a new waypoint.
   [[nodiscard]] bool is_planning() const noexcept {
-    return is_searching_ && !is_ending_ && !ends_there_ && !window_.finished();
+    return is_searching_ && ending_ == EndKind::none;
   }
 
   /// Whether the curve waits for newer waypoints to enter, although the next item is a replacement
@@ -188,11 +189,28 @@ class PublishedCurve {
   /// Requires may_enter_before(). So also a few waypoints between two stops are met.
   void enter_before_cut(Time settled, Time keep) noexcept;
 
-  /// Ends the curve at its newest knot with a boundary condition. If the published curve does not
-  /// end there, an entry from `settled` on leads to the knot; it arrives at the knot's time, or
-  /// later if that is too early for an entry. Returns false if no such entry has been found yet:
-  /// then call finish() again in the next step. Does not overwrite segments that end after `keep`.
+  /// Ends the curve. The first of these that keeps the limits:
+  ///
+  /// 1. at the newest knot, with the boundary condition `end`; on a recorded stream always;
+  /// 2. by an entry that begins at the latest knot after `settled` that allows it and rests at the
+  ///    newest one, at its time or later;
+  /// 3. in the stop after the newest knot, as it is published.
+  ///
+  /// If the segment before the newest knot has settled, or the published curve does not meet that
+  /// knot: by an entry from `settled` on; else by one of at most EntrySearch::kLongest from where
+  /// the published stop rests; else in that stop.
+  ///
+  /// Returns false if the search has not ended: then call finish() again in the next step, after
+  /// the commit. Does not overwrite segments that end after `keep`.
   [[nodiscard]] bool finish(const Condition& end, Time settled, Time keep, int& tries) noexcept;
+
+  /// How the curve ends; EndKind::none before finish() has returned true.
+  [[nodiscard]] EndKind ending() const noexcept { return ending_; }
+
+  /// How long after its newest waypoint's time a curve that ends by an entry rests at it.
+  [[nodiscard]] Time end_lateness() const noexcept {
+    return ending_ == EndKind::entered ? behind_.end - newest_time() : Time::zero();
+  }
 
   /// Writes the changes to the board. Returns the earliest time at which the curve changes; max()
   /// if it does not change.
@@ -211,6 +229,14 @@ class PublishedCurve {
     Time time{};
     bool is_new = false;     ///< the board does not hold it yet
     bool is_corner = false;  ///< the run began from rest there
+  };
+
+  /// Where the entries begin that are tried to end the curve at its last waypoint.
+  enum class EndSearch {
+    none,          ///< none has been tried
+    from_knots,    ///< at knots of the published curve, the latest one first
+    from_settled,  ///< in the published curve, as it settles
+    from_rest,     ///< where the published curve rests
   };
 
   /// Number of knot i ≥ met_ of the run.
@@ -238,16 +264,24 @@ class PublishedCurve {
   void find_shown() noexcept;
   [[nodiscard]] bool needs_entry() const noexcept;
   [[nodiscard]] bool find_state(Time settled) noexcept;
+  [[nodiscard]] bool find_reach(Time until) noexcept;
   [[nodiscard]] bool prepare(Time settled) noexcept;
+  /// The state at which an entry begins. Requires prepare().
+  [[nodiscard]] Instant begin_state() const noexcept {
+    return uses_cut_ ? cut_.state() : origin_state();
+  }
   [[nodiscard]] core::EntryRules entry_rules() const noexcept;
   void look_for_entry(Time settled, Time keep, bool is_last, int& tries) noexcept;
   void enter() noexcept;
   void enter_before_end() noexcept;
 
   // Limits: excess.cpp.
-  [[nodiscard]] std::size_t first_compared() const noexcept;
+  [[nodiscard]] std::size_t first_open(Time settled) const noexcept;
+  [[nodiscard]] std::size_t first_compared(Time settled) const noexcept;
   [[nodiscard]] std::span<const core::Knot> knots_to_go_on() noexcept;
-  [[nodiscard]] std::optional<LimitExcess> find_excess(const Waypoint& waypoint) noexcept;
+  void begin_trial() noexcept;
+  [[nodiscard]] std::optional<LimitExcess> find_excess(const Waypoint& waypoint,
+                                                       Time settled) noexcept;
 
   // Knots written to the board: write.cpp.
   void write_origin() noexcept;
@@ -265,7 +299,12 @@ class PublishedCurve {
 
   // The end: finish.cpp.
   void finish_on_line(const Condition& end) noexcept;
+  [[nodiscard]] bool keeps_limits_with(const Condition& end, Time settled) noexcept;
+  [[nodiscard]] Instant rest_at_newest() noexcept;
+  [[nodiscard]] bool search_end_from_knots(Time settled, int& tries) noexcept;
   void end_at_newest() noexcept;
+  [[nodiscard]] bool prepare_end(Time settled) noexcept;
+  [[nodiscard]] bool search_end(Time settled, int& tries) noexcept;
   void enter_end(const Instant& from) noexcept;
 
   // Resuming from the board: restore.cpp.
@@ -302,6 +341,7 @@ class PublishedCurve {
   Summary summary_;  ///< last committed
   CurveCut cut_;
   core::EntrySearch search_;
+  core::PositionRange reach_;  ///< of the published curve from where an entry would begin
   ShownMotion shown_;
   ShownMotion committed_shown_;      ///< copy of shown_ from before a cut that is not committed yet
   bool has_forgotten_ = false;       ///< whether there is such a cut
@@ -347,10 +387,10 @@ class PublishedCurve {
   bool is_prepared_ = false;    ///< this step has found the state from which an entry may begin
   bool uses_cut_ = false;       ///< that state is cut_.state(), else the origin
   bool is_searching_ = false;
-  bool seeks_end_ = false;           ///< the search is for an entry that ends the curve
-  bool is_ending_ = false;           ///< the curve ends by an entry to `beyond_`
+  EndSearch end_search_ = EndSearch::none;
+  std::size_t end_knot_ = 0;         ///< from_knots: the knot after the one that is tried
+  EndKind ending_ = EndKind::none;   ///< `entered`: the curve ends by an entry to `beyond_`
   std::size_t committed_knots_ = 0;  ///< number of knots of the run at the last commit
-  bool ends_there_ = false;          ///< the curve rests at the last waypoint
   bool has_changes_ = false;
   bool is_damaged_ = false;
 };

@@ -44,7 +44,9 @@ bool describes_a_run(const Summary& summary) noexcept {
 
 void PublishedCurve::restore(const Summary& summary) noexcept {
   has_changes_ = false;
-  is_entry_new_ = is_searching_ = is_ending_ = seeks_end_ = ends_there_ = is_prepared_ = false;
+  is_entry_new_ = is_searching_ = is_prepared_ = false;
+  ending_ = EndKind::none;
+  end_search_ = EndSearch::none;
   has_restored_shown_ = has_restored_shown_ || summary.revision == 0;
   changed_from_ = Time::max();
   blend_until_ = summary.blend_until;

@@ -21,7 +21,7 @@ constexpr std::size_t kFirstKnots = 4;
 
 /// Writes the knot of the origin: an entry begins there or, in a run without an entry, a stop.
 void PublishedCurve::write_origin() noexcept {
-  const bool enters = course_ != Course::waiting || is_ending_;
+  const bool enters = course_ != Course::waiting || ending_ == EndKind::entered;
   const auto zeros = std::span(kZeros).first(published_->smooths() ? window_.dimensions() : 0);
   const std::size_t known = course_ == Course::entering ? search_.end().known - 1 - met_ : 0;
   board_->write(origin_.number, {.is_new = true,
@@ -226,7 +226,7 @@ Time PublishedCurve::write() noexcept {
   if (has_changes_ && (window_.knots() > 0 || window_.is_later_run())) {
     const bool writes_origin = origin_.number > 0 && (origin_.is_new || is_entry_new_);
     if (writes_origin) write_origin();
-    if (is_ending_) {
+    if (ending_ == EndKind::entered) {
       write_ending();
     } else if (is_on_line()) {
       write_on_line();

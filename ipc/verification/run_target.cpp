@@ -133,6 +133,8 @@ bool RunTarget::append_until(std::size_t count) {
 }
 
 void RunTarget::finish_last_run() noexcept {
+  const auto end = static_cast<EndKind>(record_.summary.end_kind);
+  if (end != EndKind::none && end != EndKind::as_requested) return;
   if (window_.knots() != record_.summary.run_knots || window_.finished()) return;
   window_.freeze_knots(record_.summary.run_frozen);
   if (window_.frozen_knots() < window_.knots()) window_.finish(record_.end);

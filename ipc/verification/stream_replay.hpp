@@ -42,6 +42,7 @@ class StreamReplay {
   bool note_met(std::size_t s, Time time, std::size_t newer);
   bool append_until(std::size_t count);
   bool rests_at_last_waypoint();
+  [[nodiscard]] bool ends_in_stop() const noexcept;
   bool expect_all_used(Word end);
   [[nodiscard]] bool is_last_run() const noexcept { return decisions_.is_last_run(run_item_); }
   [[nodiscard]] bool begins_at_end(std::size_t i) const noexcept;

@@ -138,12 +138,13 @@ ipc::RefusedItem decode_refusal(std::span<const std::byte> bytes) {
 }
 
 Bytes encode(const ipc::Summary& summary) {
-  Bytes bytes = begin(RecordKind::summary, 17 + kSummaryWords.size() * sizeof(ipc::Word));
+  Bytes bytes = begin(RecordKind::summary, 17 + (kSummaryWords.size() + 3) * sizeof(ipc::Word));
   ByteWriter out(bytes);
   out.put(static_cast<std::uint8_t>(summary.finished ? 1 : 0))
       .put(summary.settled_until)
       .put(summary.newest_time);
   for (const auto member : kSummaryWords) out.put(summary.*member);
+  out.put(summary.end_kind).put(summary.end_item).put(summary.end_lateness);
   return bytes;
 }
 
@@ -154,6 +155,10 @@ ipc::Summary decode_summary(std::span<const std::byte> bytes) {
   summary.settled_until = in.take_time();
   summary.newest_time = in.take_time();
   for (const auto member : kSummaryWords) summary.*member = in.take<ipc::Word>();
+  if (in.rest().empty()) return summary;  // of an earlier version
+  summary.end_kind = in.take<ipc::Word>();
+  summary.end_item = in.take<ipc::Word>();
+  summary.end_lateness = in.take_time();
   in.require_end();
   return summary;
 }

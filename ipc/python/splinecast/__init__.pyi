@@ -47,7 +47,8 @@ class Producer:
 
     Creates the stream, creates it again if it is finished, or continues it if its producer died
     before finishing. As a context manager it finishes the stream with a full stop when the body
-    ends normally, and only closes it after an exception: the curve then comes to rest on its own.
+    ends normally. After an exception it stops a live stream at once and finishes it there; a
+    recorded one it only closes.
 
     Parameters
     ----------
@@ -291,7 +292,11 @@ class Producer:
         value: Optional[BaseException],
         traceback: Optional[TracebackType],
     ) -> None:
-        """Finish with a full stop after a normal end, unless already finished; then close."""
+        """Finish with a full stop, unless already finished; then close.
+
+        After an exception of the body a live stream stops at once, and ends where the stop rests.
+        A recorded one is only closed.
+        """
     @property
     def stream(self) -> str:
         """The stream's name."""

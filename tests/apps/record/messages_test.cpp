@@ -99,8 +99,11 @@ TEST(RecordMessages, ReadBackToTheSameBytes) {
 }
 
 TEST(RecordMessages, AreRefusedAtEveryOtherLength) {
+  constexpr std::size_t kEndSize = 24;  // of the end in a summary, which older files do not have
   for (const Example& example : examples()) {
+    const std::size_t size_without_end = example.message.size() - kEndSize;
     for (std::size_t size = 1; size < example.message.size(); ++size) {
+      if (kind_of(example.message) == RecordKind::summary && size == size_without_end) continue;
       EXPECT_THROW((void)example.decode_and_encode(std::span(example.message).first(size)),
                    BadMessage)
           << size;

@@ -9,6 +9,7 @@
 namespace splinecast::core::entries {
 namespace {
 
+using std::chrono::hours;
 using std::chrono::milliseconds;
 
 TEST(EntrySearch, EndsTheEntryToRestAtItsOwnTimeIfTheLimitsAllow) {
@@ -18,7 +19,8 @@ TEST(EntrySearch, EndsTheEntryToRestAtItsOwnTimeIfTheLimitsAllow) {
   EntrySearch search(1, {});
   search.restart(0);
   int tries = kAny;
-  ASSERT_EQ(search.search_rest(end.instant(), from.instant(), {.limits = &limits}, tries),
+  ASSERT_EQ(search.search_rest(end.instant(), from.instant(), {.limits = &limits},
+                               EntrySearch::kLongest, tries),
             Outcome::found);
   EXPECT_EQ(search.end().state.time, end.time);
   expect_leads(search.entry(), from, end.instant());
@@ -36,7 +38,7 @@ TEST(EntrySearch, DelaysTheEntryToRestByAtMostOneGrowthStepMoreThanTheLimitsRequ
       const EntryRules rules{.limits = &limits, .least = milliseconds(5)};
       for (int i = 0; i < kAny && outcome == Outcome::more; ++i) {
         int tries = 4;
-        outcome = search.search_rest(end.instant(), from.instant(), rules, tries);
+        outcome = search.search_rest(end.instant(), from.instant(), rules, hours(1), tries);
       }
       ASSERT_EQ(outcome, Outcome::found);
       const Segment& entry = search.entry();
@@ -51,6 +53,25 @@ TEST(EntrySearch, DelaysTheEntryToRestByAtMostOneGrowthStepMoreThanTheLimitsRequ
       EXPECT_LE(length, least * EntrySearch::kGrowth * (1 + 1e-6)) << distance << ' ' << own;
     }
   }
+}
+
+TEST(EntrySearch, FindsNoEntryToRestRatherThanOneThatExceedsTheLimits) {
+  const From end = at_rest(milliseconds(600), {1});
+  const auto outcome = [&](const From& from, const MotionLimits& limits, Time longest) {
+    EntrySearch search(1, {});
+    search.restart(0);
+    int tries = kAny;
+    return search.search_rest(end.instant(), from.instant(), {.limits = &limits}, longest, tries);
+  };
+  const From moving{milliseconds(600), {1}, {1}, {0}};
+  // It moves on from its place, which no entry can do without leaving the positions between.
+  EXPECT_EQ(outcome(moving, {.lower = {0}, .upper = {1}}, hours(1)), Outcome::none);
+  EXPECT_EQ(outcome(moving, {.acceleration = {10}}, hours(1)), Outcome::none);
+  // The bound is before the waypoint; the time does not suffice.
+  const From resting = at_rest(milliseconds(100), {0});
+  EXPECT_EQ(outcome(resting, {.upper = {0.9}}, hours(1)), Outcome::none);
+  EXPECT_EQ(outcome(resting, {.acceleration = {1e-3}}, milliseconds(3000)), Outcome::none);
+  EXPECT_EQ(outcome(resting, {.acceleration = {1e-3}}, hours(1)), Outcome::found);
 }
 
 }  // namespace

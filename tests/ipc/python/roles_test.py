@@ -153,6 +153,21 @@ class Roles(StreamTest):
             producer.append(2.0, 2.0)
         producer.close()
 
+    def test_a_context_left_by_an_exception_stops_a_live_stream_at_once(self):
+        with splinecast.Solver(self.name).start():
+            with self.assertRaisesRegex(KeyError, "the body"):
+                with splinecast.Producer(self.name) as producer:
+                    begin = time.monotonic() + 0.1
+                    for i in range(200):
+                        producer.append(begin + i, 0.1 * i)
+                    reader = splinecast.Reader(self.name, PATIENCE)
+                    wait_for(lambda: reader.preview(begin + 150).velocity[0] > 0.09)
+                    wait_for(lambda: reader.sample(time.monotonic()).position[0] > 0.01)
+                    raise KeyError("the body")
+            self.assertTrue(producer.is_closed)
+            wait_for(lambda: reader.preview(begin + 150).velocity[0] == 0)
+            self.assertLess(reader.preview(begin + 150).position[0], 15)
+
     def test_a_second_writer_is_refused(self):
         producer = splinecast.Producer(self.name)
         with self.assertRaises(splinecast.StreamBusy):

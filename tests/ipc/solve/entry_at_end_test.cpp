@@ -50,22 +50,5 @@ TEST(Entry, ToTheLastWaypointIsAsLongAsTheLimitRequires) {
   EXPECT_EQ(live.verified(), "");
 }
 
-TEST(Entry, ToALastWaypointOutsideTheBoundsEndsThereWithinTheOtherLimits) {
-  core::WindowOptions options = limited(5);
-  options.limits.lower = {-10};
-  options.limits.upper = {10};
-  Watched live(options);
-  live.send_all(50, 300, 60);
-  live.run_to(1500);
-  live.send(1600, 12.0);
-  live.send(1610, 12.0);
-  live.end();
-  const Time end = live.solver.summary().settled_until;
-  EXPECT_LT(end, at(1500) + seconds(20));
-  EXPECT_NEAR(live.position_at(end), 12, 1e-9);
-  EXPECT_LE(live.peak(2), 5 * (1 + 1e-6));
-  EXPECT_EQ(live.verified(), "");
-}
-
 }  // namespace
 }  // namespace splinecast::ipc::entries

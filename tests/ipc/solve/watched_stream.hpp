@@ -149,6 +149,7 @@ struct Watched : LiveStream {
     return static_cast<std::size_t>(
         std::ranges::count(collected.segments(), SegmentKind::entry, &SegmentCopy::kind));
   }
+  [[nodiscard]] EndKind ending() const { return static_cast<EndKind>(solver.summary().end_kind); }
   [[nodiscard]] Course course() const { return static_cast<Course>(solver.summary().course); }
 
   std::vector<Sent> sent;

@@ -1,0 +1,131 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "tests/ipc/solve/watched_stream.hpp"
+
+/// Ends of live streams with limits.
+namespace splinecast::ipc::entries {
+namespace {
+
+using std::chrono::seconds;
+
+/// The largest acceleration of the curve.
+double peak_acceleration(const Watched& live) {
+  State at(1);
+  double most = 0;
+  for (const SegmentCopy& s : live.collected.segments()) {
+    const double h = to_seconds(s.right - s.left);
+    for (int i = 0; i <= 50; ++i) {
+      core::evaluate(s.order, s.coefficients, h * i / 50, at.ref());
+      most = std::max(most, std::abs(at.acceleration()[0]));
+    }
+  }
+  return most;
+}
+
+void expect_end_within(Watched& live, double limit) {
+  EXPECT_LE(peak_acceleration(live), limit * (1 + 1e-6));
+  expect_continuous(live);
+  EXPECT_EQ(live.verified(), "");
+  const Summary& summary = live.solver.summary();
+  EXPECT_EQ(summary.consumed,
+            summary.knots + summary.refused + summary.withdrawn + summary.controls);
+  EXPECT_EQ(live.met(), summary.knots - summary.passed_over);
+  const Time end = summary.settled_until;
+  EXPECT_EQ(live.sampler.preview(end + seconds(1), live.state.ref()), SampleStatus::holding);
+  EXPECT_EQ(live.position_at(end + seconds(1)), live.position_at(end + seconds(1000)));
+}
+
+TEST(End, OfAMovingStreamBeginsAtTheLatestWaypointFromWhichItKeepsTheLimit) {
+  for (const bool takes_over : {false, true}) {
+    for (const double limit : {2.0, 5.0, 20.0}) {
+      for (const int lead : {60, 400, 900}) {
+        SCOPED_TRACE(::testing::Message() << "limit " << limit << ", lead " << lead);
+        Watched live(limited(limit), takes_over);
+        live.send_all(50, 1600, lead);  // its velocity is 1
+        live.end();
+        expect_end_within(live, limit);
+        const Summary& summary = live.solver.summary();
+        const double last = motion(at(1600));
+        const double end = live.position_at(at(60'000));
+        // From a velocity of 1, an entry to rest needs 1.5 to 2.5 times v²/(2a).
+        const double room = 1.0 * (lead - 10) / 1000;
+        if (room > 1.6 / limit) {
+          ASSERT_EQ(live.ending(), EndKind::entered);
+          EXPECT_GE(summary.end_lateness, Time::zero());
+          EXPECT_EQ(summary.end_lateness, summary.settled_until - at(1600));
+          EXPECT_NEAR(end, last, 1e-9);
+          EXPECT_LT(static_cast<double>(summary.passed_over) * 0.01, 1.6 / limit);
+        } else if (room < 0.5 / limit) {
+          ASSERT_EQ(live.ending(), EndKind::stopped);
+          EXPECT_EQ(summary.end_lateness, Time::zero());
+          EXPECT_EQ(summary.passed_over, 0U);
+          EXPECT_GT(end, last);
+          EXPECT_LE(end, last + std::max(0.25 / 2, 1.5 / limit / 2) + 1e-9);
+        }
+      }
+    }
+  }
+}
+
+TEST(End, ThatKeepsTheLimitsIsAsRequested) {
+  Watched live(limited(5));
+  live.send_all(50, 3190, 400);  // its velocity is 0.0001
+  live.end();
+  expect_end_within(live, 5);
+  EXPECT_EQ(live.ending(), EndKind::as_requested);
+  EXPECT_EQ(live.solver.summary().settled_until, at(3190));
+  EXPECT_EQ(live.solver.summary().passed_over, 0U);
+}
+
+TEST(End, WithoutLimitsIsAsRequested) {
+  Watched live;
+  live.send_all(50, 1600, 400);
+  live.end();
+  EXPECT_EQ(live.ending(), EndKind::as_requested);
+  EXPECT_EQ(live.solver.summary().settled_until, at(1600));
+}
+
+TEST(End, IsKeptByASolverThatTakesOver) {
+  Watched live(limited(10));
+  live.send_all(50, 1600, 400);
+  live.end();
+  ASSERT_EQ(live.ending(), EndKind::entered);
+  const Summary before = live.solver.summary();
+  live.replace_solver();
+  live.step();
+  const Summary& after = live.solver.summary();
+  EXPECT_EQ(after.end_kind, before.end_kind);
+  EXPECT_EQ(after.end_item, before.end_item);
+  EXPECT_EQ(after.end_lateness, before.end_lateness);
+  EXPECT_EQ(after.passed_over, before.passed_over);
+  EXPECT_NEAR(live.position_at(at(60'000)), motion(at(1600)), 1e-9);
+}
+
+/// The requested end would pass a bound that the waypoints keep.
+TEST(End, KeepsBoundsThatTheRequestedEndWouldPass) {
+  core::WindowOptions how = limited(500);
+  how.limits.lower = {0};
+  how.limits.upper = {1};
+  Watched live(how);
+  for (int i = 0; i <= 20; ++i) {
+    live.run_to(100 * i - 1150);
+    live.send(50 + 100 * i, i < 20 ? 0.0 : 1.0);  // at rest, then a step
+  }
+  live.end();
+  double least = INFINITY;
+  double greatest = -INFINITY;
+  for (int ms = 1950; ms < 12'000; ++ms) {
+    least = std::min(least, live.position_at(at(ms)));
+    greatest = std::max(greatest, live.position_at(at(ms)));
+  }
+  EXPECT_LE(greatest, 1 + 1e-9);
+  EXPECT_NEAR(live.position_at(at(60'000)), 1, 1e-9);
+  EXPECT_EQ(live.verified(), "");
+}
+
+}  // namespace
+}  // namespace splinecast::ipc::entries
