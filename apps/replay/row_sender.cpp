@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "apps/process/exit_codes.hpp"
+#include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
 #include "ipc/solve/stream_solver.hpp"
 
@@ -84,7 +85,13 @@ void RowSender::stop_at_once() {
     (void)producer_.wait_for_room(kPause);
     status = producer_.replace_from(Time::min(), {});
   }
-  if (status == AppendStatus::accepted) rows_.note_replacement(Time::min());
+  if (status == AppendStatus::accepted) {
+    rows_.note_replacement(Time::min());
+  } else {
+    say(fmt::format(
+        "'{}': the motion could not be stopped at once; it continues to the last waypoint",
+        options_.stream));
+  }
 }
 
 /// When the motion begins that leads to the first waypoint after a gap: so late that the way is

@@ -33,7 +33,7 @@ class RowSender {
   /// stop first. Returns false if a stop is requested.
   bool send(const PlayedRow& row, Waypoint waypoint, bool follows_gap);
 
-  /// Stops the motion of a live stream as soon as possible.
+  /// Stops the motion of a live stream as soon as possible. Reports if the ring stays full for 1 s.
   void stop_at_once();
 
   /// Waits while the solver has work to do; false if a stop is requested. Waits for a live solver

@@ -233,14 +233,14 @@ ordered_json to_json(const ipc::StreamInfo& info) {
 ordered_json end_json(const ipc::Summary& summary) {
   constexpr std::array<std::string_view, ipc::kEndKinds> kNames{
       "", "as requested", "slowed", "entered", "stopped", "ended in the stop"};
-  if (summary.end_kind == 0 || summary.end_kind >= kNames.size()) return nullptr;
-  return {{"kind", kNames.at(summary.end_kind)},
+  if (summary.ending() == ipc::EndKind::none) return nullptr;
+  return {{"kind", kNames.at(static_cast<std::size_t>(summary.ending()))},
           {"item", summary.end_item},
           {"lateness_ns", summary.end_lateness.count()}};
 }
 
 std::string end_in_words(const ipc::Summary& summary) {
-  switch (static_cast<ipc::EndKind>(summary.end_kind)) {
+  switch (summary.ending()) {
     case ipc::EndKind::entered:
       return summary.end_lateness > Time::zero()
                  ? fmt::format("; rests at the last waypoint {:.3f} s late",

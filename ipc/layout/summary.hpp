@@ -34,7 +34,7 @@ enum class EndKind : std::uint8_t {
   stopped = 4,       ///< in the stop after the last waypoint: no entry kept the limits
   in_stop = 5,       ///< in the published stop: no entry to the last waypoint kept the limits
 };
-inline constexpr int kEndKinds = 6;
+inline constexpr std::size_t kEndKinds = 6;
 
 /// The summary: the values of a whole revision.
 struct Summary {
@@ -79,6 +79,10 @@ struct Summary {
   Time settled_until = -kLatestTime;
   Time changed_from{};  ///< earliest time whose curve this revision changed
 
+  /// How the curve ends; `none` if end_kind is out of range.
+  [[nodiscard]] EndKind ending() const noexcept {
+    return end_kind < kEndKinds ? static_cast<EndKind>(end_kind) : EndKind::none;
+  }
   /// Waypoints that the curve interpolates, including replaced ones.
   [[nodiscard]] Word interpolated() const noexcept { return knots - passed_over; }
 };

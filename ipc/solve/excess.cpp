@@ -6,8 +6,9 @@
 /// Compares a published curve with the limits before a waypoint is taken.
 namespace splinecast::ipc {
 
-/// The first segment that is not frozen and that a curve that is settled until `settled` may still
-/// follow: if it is not on the target, it meets it at the end of an entry at the earliest.
+/// The first segment that is not frozen and that the published curve may still follow. A curve that
+/// is not on the target can follow only segments after its next entry, which begins at `settled` or
+/// later.
 std::size_t PublishedCurve::first_open(Time settled) const noexcept {
   const std::size_t frozen = window_.frozen_knots();
   std::size_t first =

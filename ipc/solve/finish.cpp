@@ -90,9 +90,9 @@ bool PublishedCurve::finish(const Condition& end, Time settled, Time keep, int& 
   return has_settled ? search_end(settled, tries) : search_end_from_knots(settled, tries);
 }
 
-/// Searches for the entry that begins at the latest knot and ends the curve, within the range of
-/// the published curve from that knot to the last waypoint. If there is none, the curve ends in the
-/// stop after its last waypoint. Returns false if the search has not ended.
+/// Searches for the latest knot at which an entry may begin that ends the curve, and that stays
+/// within the range of the published curve from that knot to the last waypoint. Without such a knot
+/// the curve ends in the stop after its last waypoint. Returns false if the search has not ended.
 bool PublishedCurve::search_end_from_knots(Time settled, int& tries) noexcept {
   if (end_search_ != EndSearch::from_knots) {
     end_search_ = EndSearch::from_knots;

@@ -332,7 +332,7 @@ class PublishedCurve {
   KnotBoardWriter* board_;
   const KnotBoardReader* published_;
   core::SlidingWindow window_;
-  core::SlidingWindow trial_;  ///< scratch: the window with one more waypoint
+  core::SlidingWindow trial_;  ///< scratch: a copy of the window, then changed
   DimensionKinds kinds_;
   EntryOptions entries_;
   std::size_t look_ahead_;  ///< how many rows before the newest knot an append may change

@@ -133,7 +133,7 @@ bool RunTarget::append_until(std::size_t count) {
 }
 
 void RunTarget::finish_last_run() noexcept {
-  const auto end = static_cast<EndKind>(record_.summary.end_kind);
+  const EndKind end = record_.summary.ending();
   if (end != EndKind::none && end != EndKind::as_requested) return;
   if (window_.knots() != record_.summary.run_knots || window_.finished()) return;
   window_.freeze_knots(record_.summary.run_frozen);

@@ -138,7 +138,7 @@ bool StreamReplay::append_until(std::size_t count) {
 
 /// Whether the curve ends in a stop, so that it does not meet the last waypoints.
 bool StreamReplay::ends_in_stop() const noexcept {
-  if (static_cast<EndKind>(record_.summary.end_kind) != EndKind::in_stop) return false;
+  if (record_.summary.ending() != EndKind::in_stop) return false;
   return !segments_.empty() &&
          (segments_.back().kind == SegmentKind::stop || segments_.back().kind == SegmentKind::hold);
 }

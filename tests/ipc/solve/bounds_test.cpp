@@ -86,6 +86,18 @@ TEST(Bounds, ALastWaypointOutsideThemIsNotEntered) {
   EXPECT_EQ(live.verified(), "");
 }
 
+TEST(Bounds, ThatTheRequestedEndWouldPassAreKept) {
+  Watched live(bounded(0, 1, 500));
+  for (int i = 0; i <= 20; ++i) {
+    live.run_to(100 * i - 1150);
+    live.send(50 + 100 * i, i < 20 ? 0.0 : 1.0);  // at rest, then a step
+  }
+  live.end();
+  EXPECT_LE(range(live, at(1950), seconds(10)).greatest, 1 + 1e-9);
+  EXPECT_NEAR(live.position_at(at(60'000)), 1, 1e-9);
+  EXPECT_EQ(live.verified(), "");
+}
+
 TEST(Bounds, ALateEndReportsHowLateItIs) {
   Watched live(bounded(-10, 10, 5));
   live.send_all(50, 800, 60);

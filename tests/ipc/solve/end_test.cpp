@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 #include "tests/ipc/solve/watched_stream.hpp"
 
@@ -12,22 +11,8 @@ namespace {
 
 using std::chrono::seconds;
 
-/// The largest acceleration of the curve.
-double peak_acceleration(const Watched& live) {
-  State at(1);
-  double most = 0;
-  for (const SegmentCopy& s : live.collected.segments()) {
-    const double h = to_seconds(s.right - s.left);
-    for (int i = 0; i <= 50; ++i) {
-      core::evaluate(s.order, s.coefficients, h * i / 50, at.ref());
-      most = std::max(most, std::abs(at.acceleration()[0]));
-    }
-  }
-  return most;
-}
-
 void expect_end_within(Watched& live, double limit) {
-  EXPECT_LE(peak_acceleration(live), limit * (1 + 1e-6));
+  EXPECT_LE(live.peak(2, true), limit * (1 + 1e-6));
   expect_continuous(live);
   EXPECT_EQ(live.verified(), "");
   const Summary& summary = live.solver.summary();
@@ -103,28 +88,6 @@ TEST(End, IsKeptByASolverThatTakesOver) {
   EXPECT_EQ(after.end_lateness, before.end_lateness);
   EXPECT_EQ(after.passed_over, before.passed_over);
   EXPECT_NEAR(live.position_at(at(60'000)), motion(at(1600)), 1e-9);
-}
-
-/// The requested end would pass a bound that the waypoints keep.
-TEST(End, KeepsBoundsThatTheRequestedEndWouldPass) {
-  core::WindowOptions how = limited(500);
-  how.limits.lower = {0};
-  how.limits.upper = {1};
-  Watched live(how);
-  for (int i = 0; i <= 20; ++i) {
-    live.run_to(100 * i - 1150);
-    live.send(50 + 100 * i, i < 20 ? 0.0 : 1.0);  // at rest, then a step
-  }
-  live.end();
-  double least = INFINITY;
-  double greatest = -INFINITY;
-  for (int ms = 1950; ms < 12'000; ++ms) {
-    least = std::min(least, live.position_at(at(ms)));
-    greatest = std::max(greatest, live.position_at(at(ms)));
-  }
-  EXPECT_LE(greatest, 1 + 1e-9);
-  EXPECT_NEAR(live.position_at(at(60'000)), 1, 1e-9);
-  EXPECT_EQ(live.verified(), "");
 }
 
 }  // namespace

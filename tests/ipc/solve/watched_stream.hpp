@@ -131,11 +131,13 @@ struct Watched : LiveStream {
            std::abs(end.position()[0] - waypoint.position) < 1e-9;
   }
   /// The largest derivative on segments that the solver chooses: entries, stop segments and holds.
-  [[nodiscard]] double peak(int derivative) const {
+  [[nodiscard]] double peak(int derivative) const { return peak(derivative, false); }
+  /// The same, on request also on the spline through the waypoints.
+  [[nodiscard]] double peak(int derivative, bool counts_spline) const {
     State at(1);
     double most = 0;
     for (const SegmentCopy& s : collected.segments()) {
-      if (s.kind == SegmentKind::spline && s.has_waypoint) continue;
+      if (!counts_spline && s.kind == SegmentKind::spline && s.has_waypoint) continue;
       const double h = to_seconds(s.right - s.left);
       for (int i = 0; i <= 50; ++i) {
         core::evaluate(s.order, s.coefficients, h * i / 50, at.ref());
@@ -149,7 +151,7 @@ struct Watched : LiveStream {
     return static_cast<std::size_t>(
         std::ranges::count(collected.segments(), SegmentKind::entry, &SegmentCopy::kind));
   }
-  [[nodiscard]] EndKind ending() const { return static_cast<EndKind>(solver.summary().end_kind); }
+  [[nodiscard]] EndKind ending() const { return solver.summary().ending(); }
   [[nodiscard]] Course course() const { return static_cast<Course>(solver.summary().course); }
 
   std::vector<Sent> sent;
