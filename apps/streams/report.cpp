@@ -241,6 +241,9 @@ ordered_json end_json(const ipc::Summary& summary) {
 
 std::string end_in_words(const ipc::Summary& summary) {
   switch (summary.ending()) {
+    case ipc::EndKind::slowed:
+      return fmt::format("; slowed down on its path and rests at the last waypoint {:.3f} s late",
+                         to_seconds(summary.end_lateness));
     case ipc::EndKind::entered:
       return summary.end_lateness > Time::zero()
                  ? fmt::format("; rests at the last waypoint {:.3f} s late",

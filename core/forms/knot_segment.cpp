@@ -102,8 +102,8 @@ void build_segment(SegmentForm form, const SegmentEnd& left, const SegmentEnd& r
                       out);
     return;
   }
-  const bool is_between_knots =
-      form != SegmentForm::entry && form != SegmentForm::stop && form != SegmentForm::hold;
+  const bool is_between_knots = form != SegmentForm::entry && form != SegmentForm::stop &&
+                                form != SegmentForm::hold && form != SegmentForm::slowed;
   if (is_between_knots) return build_segment(Between(form, left, right).interval, out);
   std::array<double, kMaxDimensions> from_values;  // NOLINT(*-member-init)
   const auto from = std::span(from_values).first(left.waypoint.size());
@@ -118,6 +118,7 @@ void build_segment(SegmentForm form, const SegmentEnd& left, const SegmentEnd& r
   write_position(right, to);
   build_entry({left.time, from, left.velocity, left.acceleration},
               {right.time, to, right.velocity, right.acceleration}, out);
+  if (form == SegmentForm::slowed) out.kind = SegmentKind::slowed;
 }
 
 void write_end_accelerations(SegmentForm form, const SegmentEnd& left, const SegmentEnd& right,

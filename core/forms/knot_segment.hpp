@@ -21,15 +21,17 @@ enum class SegmentForm : std::uint8_t {
   entry,       ///< order 6, from a given state to a knot
   stop,        ///< stop segment: from position, velocity and acceleration of its left knot to rest
   hold,        ///< at rest
+  slowed,      ///< order 6, between two states of a path that is slowed down: see Slowing
 };
-inline constexpr int kSegmentForms = 9;
+inline constexpr int kSegmentForms = 10;
 
 /// Whether a segment of this form needs the acceleration of its left or right knot.
 [[nodiscard]] constexpr bool starts_with_acceleration(SegmentForm form) noexcept {
-  return form == SegmentForm::quintic || form == SegmentForm::entry || form == SegmentForm::stop;
+  return form == SegmentForm::quintic || form == SegmentForm::entry || form == SegmentForm::stop ||
+         form == SegmentForm::slowed;
 }
 [[nodiscard]] constexpr bool arrives_with_acceleration(SegmentForm form) noexcept {
-  return form == SegmentForm::quintic || form == SegmentForm::entry;
+  return form == SegmentForm::quintic || form == SegmentForm::entry || form == SegmentForm::slowed;
 }
 
 /// The data of a knot from which segments are built. Spans hold one value per dimension.

@@ -199,6 +199,35 @@ WorstExcesses worst_excesses(const MotionLimits& limits, const DimensionKinds* k
   return worst;
 }
 
+bool exceeds_no_more(const MotionLimits& limits, const DimensionKinds* kinds,
+                     const SegmentPart& part, const SegmentPart& other) noexcept {
+  if (keeps_within(limits, kinds, part)) return true;
+  constexpr double kSlack = 1 + 1e-9;
+  const WorstExcesses own = worst_excesses(limits, kinds, part);
+  const WorstExcesses others = worst_excesses(limits, kinds, other);
+  for (std::size_t i = 0; i < kLimitKinds; ++i) {
+    if (!(own[i].ratio <= std::max(others[i].ratio, 1.0) * kSlack)) return false;
+  }
+  return true;
+}
+
+bool keeps_length(const DimensionKinds& kinds, const Segment& segment) noexcept {
+  constexpr int kLooks = 16;
+  constexpr double kLeast = 0.7;
+  const double duration = to_seconds(segment.right - segment.left);
+  std::array<double, kMaxDimensions> values;  // NOLINT(*-member-init)
+  const auto position = std::span(values).first(segment.acceleration_step.size());
+  for (int i = 1; i < kLooks && !kinds.quaternions().empty(); ++i) {
+    evaluate_derivative(segment.order, segment.coefficients, duration * i / kLooks, 0, position);
+    for (const QuaternionDimensions& q : kinds.quaternions()) {
+      double squares = 0;
+      for (const double x : position.subspan(q.first, kQuaternionSize)) squares += x * x;
+      if (squares < kLeast * kLeast) return false;
+    }
+  }
+  return true;
+}
+
 Excess worst_excess(const MotionLimits& limits, const DimensionKinds* kinds,
                     const SegmentPart& part, const Allowance& allowance) noexcept {
   return std::ranges::max(worst_excesses(limits, kinds, part, allowance), {}, &Excess::ratio);

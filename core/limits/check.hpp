@@ -44,6 +44,15 @@ struct Allowance {
 [[nodiscard]] bool keeps_within(const MotionLimits& limits, const DimensionKinds* kinds,
                                 const Segment& segment, const Allowance& allowance = {}) noexcept;
 
+/// Whether a part of a curve exceeds no limit that `other` keeps, and none by more than `other`,
+/// per kind of limit.
+[[nodiscard]] bool exceeds_no_more(const MotionLimits& limits, const DimensionKinds* kinds,
+                                   const SegmentPart& part, const SegmentPart& other) noexcept;
+
+/// Whether the quaternions of a segment keep at least the length 0.7, so that their rotation is
+/// well defined. Looks at 15 times.
+[[nodiscard]] bool keeps_length(const DimensionKinds& kinds, const Segment& segment) noexcept;
+
 /// The largest excess of each kind, indexed by LimitKind. `keeps_within` is true for ratios up to 1
 /// and for those that exceed 1 by rounding.
 using WorstExcesses = std::array<Excess, kLimitKinds>;

@@ -91,6 +91,19 @@ void EntrySearch::allow_positions(const Instant& from, const EntryRules& rules) 
   }
 }
 
+void EntrySearch::write_accelerations(const MotionLimits& limits, const MotionLimits& shown,
+                                      std::span<double> acceleration) const noexcept {
+  for (std::size_t d = 0; d < acceleration.size(); ++d) {
+    acceleration[d] = limit_of(limits.acceleration, d);
+  }
+  write_of_dimensions([&](std::size_t d) { return shown.velocity[d]; },
+                      [&](std::size_t d) { return shown.acceleration[d]; },
+                      [&](std::size_t d, double, double largest) {
+                        if (acceleration[d] == 0)
+                          acceleration[d] = std::max(largest, kLeastAllowed);
+                      });
+}
+
 void EntrySearch::allow_shown(const Instant& from, const EntryRules& rules) noexcept {
   const Instant& to = end_.state;
   const auto allow_dimension = [&](std::size_t d, double velocity, double acceleration) {

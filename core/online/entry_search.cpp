@@ -214,7 +214,7 @@ bool EntrySearch::keeps_beyond(const MotionLimits& limits) noexcept {
 
 bool EntrySearch::passes(const Instant& from) noexcept {
   build_entry(from, end_.state, entry_);
-  return keeps_within(allowed_, &kinds_, entry_) && keeps_length();
+  return keeps_within(allowed_, &kinds_, entry_) && keeps_length(kinds_, entry_);
 }
 
 /// The same without the shown limits: for entries of at least kLongest.
@@ -224,25 +224,6 @@ bool EntrySearch::passes_at_last(const Instant& from, const EntryRules& rules) n
   given.shown = nullptr;
   allow(from, given);
   return passes(from);
-}
-
-/// Whether quaternions keep at least the length kLeast along the entry, so that their rotation is
-/// well defined. Tests kLooks − 1 times.
-bool EntrySearch::keeps_length() const noexcept {
-  constexpr int kLooks = 16;
-  constexpr double kLeast = 0.7;
-  const double duration = to_seconds(entry_.right - entry_.left);
-  std::array<double, kMaxDimensions> values;  // NOLINT(*-member-init)
-  const auto position = std::span(values).first(end_state_.dimensions());
-  for (int i = 1; i < kLooks && !kinds_.quaternions().empty(); ++i) {
-    evaluate_derivative(entry_.order, entry_.coefficients, duration * i / kLooks, 0, position);
-    for (const QuaternionDimensions& q : kinds_.quaternions()) {
-      double squares = 0;
-      for (const double x : position.subspan(q.first, kQuaternionSize)) squares += x * x;
-      if (squares < kLeast * kLeast) return false;
-    }
-  }
-  return true;
 }
 
 namespace {

@@ -96,6 +96,11 @@ class EntrySearch {
   Outcome search_rest(const Instant& rest, const Instant& from, const EntryRules& rules,
                       Time longest, int& tries) noexcept;
 
+  /// Writes the limit of acceleration of each dimension: the given one, else the shown one; of a
+  /// quaternion, that of its first dimension counts. O(D).
+  void write_accelerations(const MotionLimits& limits, const MotionLimits& shown,
+                           std::span<double> acceleration) const noexcept;
+
   /// Whether a target that starts at rest at its knot 0, which must be in the window, respects the
   /// limits as far as it is known. If `rules.shown` is given, this also limits the peak
   /// acceleration of the first segment in a dimension without an acceleration limit: to the shown
@@ -128,7 +133,6 @@ class EntrySearch {
                            const auto& write) const noexcept;
   void allow_positions(const Instant& from, const EntryRules& rules) noexcept;
   void allow_shown(const Instant& from, const EntryRules& rules) noexcept;
-  [[nodiscard]] bool keeps_length() const noexcept;
   [[nodiscard]] bool leaves_early(const Instant& from) const noexcept;
   [[nodiscard]] bool is_out_of_reach(const Instant& from) const noexcept;
   [[nodiscard]] bool ends_outside(const MotionLimits& limits) const noexcept;

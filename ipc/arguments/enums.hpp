@@ -92,6 +92,7 @@ static_assert(SPLINECAST_SEGMENT_SPLINE == static_cast<int>(SegmentKind::spline)
 static_assert(SPLINECAST_SEGMENT_ENTRY == static_cast<int>(SegmentKind::entry));
 static_assert(SPLINECAST_SEGMENT_STOP == static_cast<int>(SegmentKind::stop));
 static_assert(SPLINECAST_SEGMENT_HOLD == static_cast<int>(SegmentKind::hold));
+static_assert(SPLINECAST_SEGMENT_SLOWED == static_cast<int>(SegmentKind::slowed));
 
 static_assert(SPLINECAST_POSITION_VALUES == static_cast<int>(Derivatives::position));
 static_assert(SPLINECAST_VELOCITY_VALUES == static_cast<int>(Derivatives::velocity));

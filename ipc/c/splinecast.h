@@ -286,7 +286,8 @@ typedef enum splinecast_segment_kind {
   SPLINECAST_SEGMENT_SPLINE,  ///< between two waypoints
   SPLINECAST_SEGMENT_ENTRY,   ///< from a given state onto the waypoints
   SPLINECAST_SEGMENT_STOP,    ///< after the newest knot, ends at rest
-  SPLINECAST_SEGMENT_HOLD     ///< at rest
+  SPLINECAST_SEGMENT_HOLD,    ///< at rest
+  SPLINECAST_SEGMENT_SLOWED   ///< between two waypoints of a path on which the curve comes to rest
 } splinecast_segment_kind;
 
 /// Derivatives, for splinecast_reader_sample_many: a set is a sum of these.

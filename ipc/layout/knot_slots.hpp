@@ -19,7 +19,7 @@ inline constexpr std::tuple kCellRows{
              "bit 0: the node that belongs to it\n"
              "bits 1–4: form of the segment that begins here: 0 none, 1 cubic,\n"
              "2 to 4 cubic with acceleration 0 at the left end, the right end, both ends,\n"
-             "5 quintic, 6 entry, 7 stop, 8 hold; 9 is reserved\n"
+             "5 quintic, 6 entry, 7 stop, 8 hold, 9 slowed\n"
              "bit 5: the knot is a waypoint\n"
              "bit 6: the segment that ends here arrives with the acceleration beside the cell\n"
              "bit 7: the segment that begins here starts with the acceleration beside the cell\n"

@@ -29,7 +29,7 @@ inline constexpr int kCourses = 4;
 enum class EndKind : std::uint8_t {
   none = 0,          ///< it is not finished, or a solver of an earlier version finished it
   as_requested = 1,  ///< at its last waypoint, with the requested condition, or where it rested
-  slowed = 2,        ///< reserved
+  slowed = 2,        ///< at its last waypoint, by slowing down on its path
   entered = 3,       ///< by an entry that comes to rest at the last waypoint
   stopped = 4,       ///< in the stop after the last waypoint: no entry kept the limits
   in_stop = 5,       ///< in the published stop: no entry to the last waypoint kept the limits

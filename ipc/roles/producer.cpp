@@ -20,7 +20,7 @@
 #include "ipc/ring/writer.hpp"
 #include "ipc/roles/refusals.hpp"
 #include "ipc/roles/replace_preview.hpp"
-#include "ipc/solve/run_edges.hpp"
+#include "ipc/runs/run_edges.hpp"
 #include "splinecast/errors.hpp"
 
 namespace splinecast {

@@ -27,7 +27,7 @@ void KeptSegments::confirm(const Summary& summary) noexcept {
   confirmed_ = summary.revision;
   settled_until_ = summary.settled_until;
   const BoardSegment& own = current();
-  const bool moves = own.kind() == SegmentKind::spline || own.kind() == SegmentKind::entry;
+  const bool moves = own.kind() != SegmentKind::stop && own.kind() != SegmentKind::hold;
   at_hand_ = {.left = own.left(),
               .right = moves ? own.right() : own.left(),
               .is_finished = summary.finished};

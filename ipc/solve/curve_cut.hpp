@@ -10,7 +10,7 @@
 #include "ipc/board/segment.hpp"
 #include "ipc/board/writer.hpp"
 #include "ipc/layout/summary.hpp"
-#include "ipc/solve/run_edges.hpp"
+#include "ipc/runs/run_edges.hpp"
 #include "splinecast/dimension_kind.hpp"
 #include "splinecast/state.hpp"
 

@@ -2,6 +2,7 @@
 #include <chrono>
 
 #include "core/limits/check.hpp"
+#include "core/limits/extremes.hpp"
 #include "ipc/solve/published_curve.hpp"
 
 /// Ends a published curve.
@@ -27,22 +28,30 @@ void PublishedCurve::finish_on_line(const Condition& end) noexcept {
   open_ = std::min(open_, knots - std::min<std::size_t>(knots, 2));
 }
 
+/// Finds the limits of an end. A dimension without a limit of acceleration has the one that the
+/// motion has shown.
+void PublishedCurve::find_end_limits() noexcept {
+  find_shown();
+  shown_.look(window_.options().stop_time);
+  search_.write_accelerations(window_.options().limits, shown_.limits(), end_limits_.acceleration);
+}
+
 /// Whether the curve, ended at the newest waypoint, keeps the limits: a segment that exceeds one
 /// must not exceed it more than without the end. A recorded stream ends as requested.
 bool PublishedCurve::keeps_limits_with(const Condition& end, Time settled) noexcept {
-  if (!entries_.is_live || !has_limits_) return true;
+  if (!entries_.is_live) return true;
+  find_end_limits();
   begin_trial();
   trial_.finish(end);
-  const auto excess = [this](const core::SlidingWindow& window, std::size_t i) {
-    window.segment(i, segment_);
-    return core::worst_excess(window.options().limits, &kinds_, segment_).ratio;
-  };
-  constexpr double kSlack = 1 + 1e-9;
   for (std::size_t i = std::max(first_open(settled), trial_.oldest_segment());
        i + 1 < trial_.knots(); ++i) {
     trial_.segment(i, segment_);
-    if (core::keeps_within(trial_.options().limits, &kinds_, segment_)) continue;
-    if (excess(trial_, i) > std::max(excess(window_, i), 1.0) * kSlack) return false;
+    if (core::keeps_within(end_limits_, &kinds_, segment_)) continue;
+    window_.segment(i, without_end_);
+    if (!core::exceeds_no_more(end_limits_, &kinds_, core::part_of(segment_),
+                               core::part_of(without_end_))) {
+      return false;
+    }
   }
   return true;
 }
@@ -87,7 +96,35 @@ bool PublishedCurve::finish(const Condition& end, Time settled, Time keep, int& 
   // The search begins in the published curve.
   if (has_changes_) return false;
   const bool has_settled = knots < 2 || window_.time(knots - 2) < settled;
-  return has_settled ? search_end(settled, tries) : search_end_from_knots(settled, tries);
+  if (has_settled) return search_end(settled, tries);
+  if (end_search_ == EndSearch::none || end_search_ == EndSearch::slowing) {
+    if (!slow_down(settled, tries)) return false;
+    if (ending_ != EndKind::none || is_damaged_) return true;
+  }
+  return search_end_from_knots(settled, tries);
+}
+
+/// Searches for the latest knot from which on the curve can slow down on its path. Returns false if
+/// the search has not ended.
+bool PublishedCurve::slow_down(Time settled, int& tries) noexcept {
+  if (end_search_ != EndSearch::slowing) {
+    end_search_ = EndSearch::slowing;
+    slowed_.restart(summary_, end_limits_);
+  }
+  switch (slowed_.search(number_of(met_) + 1, settled, tries)) {
+    case SlowedEnd::Outcome::more:
+      return false;
+    case SlowedEnd::Outcome::found:
+      ending_ = EndKind::slowed;
+      note_change(slowed_.begin());
+      return true;
+    case SlowedEnd::Outcome::damaged:
+      is_damaged_ = true;
+      return true;
+    case SlowedEnd::Outcome::none:
+      break;
+  }
+  return true;
 }
 
 /// Searches for the latest knot at which an entry may begin that ends the curve, and that stays
@@ -155,7 +192,7 @@ bool PublishedCurve::search_end(Time settled, int& tries) noexcept {
       ending_ = EndKind::as_requested;
       return true;
     }
-    if (end_search_ == EndSearch::none || end_search_ == EndSearch::from_knots) {
+    if (end_search_ != EndSearch::from_settled && end_search_ != EndSearch::from_rest) {
       search_.restart(0);
       end_search_ = EndSearch::from_settled;
     }

@@ -34,6 +34,8 @@ PublishedCurve::PublishedCurve(KnotBoardWriter& board, const KnotBoardReader& pu
       has_limits_(!options.limits.empty()),
       cut_(board, published, kinds_),
       search_(published.dimensions(), kinds_),
+      slowed_(published, kinds_),
+      end_limits_(options.limits),
       reach_(published.dimensions()),
       shown_(published),
       committed_shown_(published),
@@ -43,8 +45,11 @@ PublishedCurve::PublishedCurve(KnotBoardWriter& board, const KnotBoardReader& pu
       knot_values_(kKnotValues * published.dimensions() * window_.knots_to_restore()),
       values_(published.dimensions()),
       segment_(published.dimensions()),
+      without_end_(published.dimensions()),
       origin_state_(published.dimensions()),
-      beyond_(published.dimensions()) {}
+      beyond_(published.dimensions()) {
+  end_limits_.acceleration.resize(published.dimensions());
+}
 
 void PublishedCurve::prefetch() const noexcept {
   window_.prefetch();

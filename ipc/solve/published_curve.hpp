@@ -10,38 +10,13 @@
 #include "ipc/board/reader.hpp"
 #include "ipc/board/writer.hpp"
 #include "ipc/layout/summary.hpp"
+#include "ipc/runs/slowed_end.hpp"
 #include "ipc/solve/curve_cut.hpp"
+#include "ipc/solve/curve_summary.hpp"
 #include "ipc/solve/shown_motion.hpp"
 #include "splinecast/dimension_kind.hpp"
 
 namespace splinecast::ipc {
-
-/// How a published curve returns to its target.
-struct EntryOptions {
-  bool is_live = false;  ///< false: an entry waits until K newer waypoints are known
-  Time min_entry{};      ///< length of the shortest entry
-  Time notice{};         ///< a live stream's start is decided this long before it settles
-};
-
-/// A published curve's part of a revision's summary; see the members of Summary.
-struct CurveSummary {
-  Word first = 0;
-  Word newest = 0;
-  Time stop{};
-  Word run = 1;
-  Word run_knots = 0;
-  Word run_item = 0;
-  Word run_frozen = 0;
-  bool is_later_run = false;
-  Course course{};
-  Word met = 0;
-  Word unmet = 0;
-  Time blend_until{};
-  Word passed_over = 0;
-};
-
-/// Copies the curve's part into a summary; the counters stay as they are.
-void put_summary(const CurveSummary& curve, Summary& summary) noexcept;
 
 /// The curve of one stream: the window that is being solved, which is the *target*, and the board
 /// on which knots are published. Has no ring and no clock; the caller checks the waypoints.
@@ -192,9 +167,11 @@ class PublishedCurve {
   /// Ends the curve. The first of these that keeps the limits:
   ///
   /// 1. at the newest knot, with the boundary condition `end`; on a recorded stream always;
-  /// 2. by an entry that begins at the latest knot after `settled` that allows it and rests at the
+  /// 2. by slowing down on the path, from the latest knot after `settled` that allows it: the curve
+  ///    rests at the newest knot, later than that knot's time;
+  /// 3. by an entry that begins at the latest knot after `settled` that allows it and rests at the
   ///    newest one, at its time or later;
-  /// 3. in the stop after the newest knot, as it is published.
+  /// 4. in the stop after the newest knot, as it is published.
   ///
   /// If the segment before the newest knot has settled, or the published curve does not meet that
   /// knot: by an entry from `settled` on; else by one of at most EntrySearch::kLongest from where
@@ -207,8 +184,10 @@ class PublishedCurve {
   /// How the curve ends; EndKind::none before finish() has returned true.
   [[nodiscard]] EndKind ending() const noexcept { return ending_; }
 
-  /// How long after its newest waypoint's time a curve that ends by an entry rests at it.
+  /// How long after its newest waypoint's time a curve that slows down, or ends by an entry, rests
+  /// at it.
   [[nodiscard]] Time end_lateness() const noexcept {
+    if (ending_ == EndKind::slowed) return slowed_.end() - newest_time();
     return ending_ == EndKind::entered ? behind_.end - newest_time() : Time::zero();
   }
 
@@ -231,9 +210,10 @@ class PublishedCurve {
     bool is_corner = false;  ///< the run began from rest there
   };
 
-  /// Where the entries begin that are tried to end the curve at its last waypoint.
+  /// The end that is being searched for: slowing down, or an entry to the last waypoint from there.
   enum class EndSearch {
     none,          ///< none has been tried
+    slowing,       ///< slowing down from a knot of the published curve
     from_knots,    ///< at knots of the published curve, the latest one first
     from_settled,  ///< in the published curve, as it settles
     from_rest,     ///< where the published curve rests
@@ -299,7 +279,9 @@ class PublishedCurve {
 
   // The end: finish.cpp.
   void finish_on_line(const Condition& end) noexcept;
+  void find_end_limits() noexcept;
   [[nodiscard]] bool keeps_limits_with(const Condition& end, Time settled) noexcept;
+  [[nodiscard]] bool slow_down(Time settled, int& tries) noexcept;
   [[nodiscard]] Instant rest_at_newest() noexcept;
   [[nodiscard]] bool search_end_from_knots(Time settled, int& tries) noexcept;
   void end_at_newest() noexcept;
@@ -341,6 +323,8 @@ class PublishedCurve {
   Summary summary_;  ///< last committed
   CurveCut cut_;
   core::EntrySearch search_;
+  SlowedEnd slowed_;
+  MotionLimits end_limits_;    ///< of an end: the given ones, else the acceleration that was shown
   core::PositionRange reach_;  ///< of the published curve from where an entry would begin
   ShownMotion shown_;
   ShownMotion committed_shown_;      ///< copy of shown_ from before a cut that is not committed yet
@@ -352,6 +336,7 @@ class PublishedCurve {
   std::vector<double> knot_values_;
   std::vector<double> values_;  ///< scratch
   core::Segment segment_;       ///< scratch
+  core::Segment without_end_;   ///< scratch
   Word run_ = 1;
   Word run_item_ = 0;  ///< item of the run's first waypoint, plus 1
   Word first_ = 0;

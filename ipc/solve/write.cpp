@@ -228,6 +228,10 @@ Time PublishedCurve::write() noexcept {
     if (writes_origin) write_origin();
     if (ending_ == EndKind::entered) {
       write_ending();
+    } else if (ending_ == EndKind::slowed) {
+      is_damaged_ = !slowed_.write(*board_) || is_damaged_;
+      stop_ = Time::zero();
+      end_ = slowed_.end();
     } else if (is_on_line()) {
       write_on_line();
     } else {

@@ -5,7 +5,7 @@
 
 #include "ipc/board/segment.hpp"
 #include "ipc/memory/word.hpp"
-#include "ipc/solve/run_edges.hpp"
+#include "ipc/runs/run_edges.hpp"
 #include "ipc/verification/stream_record.hpp"
 #include "splinecast/state.hpp"
 #include "splinecast/time.hpp"

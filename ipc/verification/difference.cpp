@@ -54,7 +54,7 @@ std::string in_words(double value) {
 std::string in_words(Time time) { return std::to_string(time.count()) + " ns"; }
 
 std::string in_words(SegmentKind kind) {
-  constexpr std::array<const char*, 4> kNames{"spline", "entry", "stop", "hold"};
+  constexpr std::array<const char*, 5> kNames{"spline", "entry", "stop", "hold", "slowed"};
   const auto i = static_cast<std::size_t>(kind);
   return i < kNames.size() ? kNames[i] : "unknown";
 }

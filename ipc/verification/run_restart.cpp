@@ -34,7 +34,8 @@ Word first_on_target(const Summary& summary) noexcept {
 std::optional<RestartKnot> copy(const KnotBoardReader& board, Word r, Word number,
                                 bool needs_acceleration, KnotCopy& scratch) {
   if (!board.copy_knot(number, r, scratch) || !scratch.note.is_waypoint ||
-      scratch.note.form == core::SegmentForm::none) {
+      scratch.note.form == core::SegmentForm::none ||
+      scratch.note.form == core::SegmentForm::slowed) {
     return std::nullopt;
   }
   RestartKnot knot{.time = scratch.time,

@@ -15,6 +15,7 @@ bool StreamReplay::solve_in_run(std::size_t s) {
   const SegmentCopy& segment = segments_[s];
   if (decisions_.is_entry(s)) return solve_entry(s);
   if (decisions_.is_behind_entry(s)) return solve_behind_entry(s);
+  if (segment.kind == SegmentKind::slowed) return solve_slowed(s);
   if (segment.has_waypoint) return solve_on_target(s);
   return segment.kind == SegmentKind::hold ? solve_hold_behind(s) : solve_state_stop(s);
 }
@@ -37,6 +38,44 @@ bool StreamReplay::solve_on_target(std::size_t s) {
   if (same_bits(window.knot(*index).waypoint, segment.waypoint)) return true;
   return differ(s, "waypoint", first_in_words(segment.waypoint),
                 first_in_words(window.knot(*index).waypoint));
+}
+
+/// Solves the path from segment s on, at which the curve begins to slow down.
+bool StreamReplay::solve_path(std::size_t s) {
+  slowed_ = s;
+  const auto first = target_.index_of(segments_[s].left);
+  const Word knots = record_.summary.run_knots;
+  if (!first || s == 0 || !is_last_run() || *first + 1 >= knots) {
+    return differ(s, "kind", in_words(segments_[s].kind), "none: it is not the end of a run");
+  }
+  const SegmentCopy& before = segments_[s - 1];
+  core::evaluate_derivative(before.order, before.coefficients,
+                            to_seconds(before.natural_right - before.left), 2, path_.reached());
+  for (std::size_t i = *first; i + 1 < knots; ++i) {
+    const auto newest = target_.newest_of(i + 1);
+    if (!append_until(newest ? *newest + 1 : knots)) return false;
+    if (i < target_.window().oldest_segment() || i + 1 >= target_.window().knots()) {
+      return differ(s, "kind", in_words(segments_[s].kind), "none: it has no path");
+    }
+    path_.add(target_.window(), i);
+  }
+  if (!append_until(knots)) return false;
+  path_.add_last(target_.window());
+  return true;
+}
+
+/// Solves and compares a segment of a path on which the curve slows down.
+bool StreamReplay::solve_slowed(std::size_t s) {
+  if (path_.knots() == 0 && !solve_path(s)) return false;
+  const std::size_t piece = s - slowed_;
+  if (piece + 1 >= path_.knots()) {
+    return differ(s, "kind: it belongs to no run", in_words(segments_[s].kind), "none");
+  }
+  path_.build(piece, solved_);
+  if (!compare_solved(s)) return false;
+  if (same_bits(path_.waypoint(piece), segments_[s].waypoint)) return true;
+  return differ(s, "waypoint", first_in_words(segments_[s].waypoint),
+                first_in_words(path_.waypoint(piece)));
 }
 
 /// Solves and compares a hold within a run. It begins at the published end of the segment before.

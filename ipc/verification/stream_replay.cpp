@@ -19,6 +19,7 @@ StreamReplay::StreamReplay(const StreamRecord& record)
       solved_(record.items.dimensions()),
       end_(record.items.dimensions()),
       extrapolation_(record.items.dimensions()),
+      path_(record.items.dimensions()),
       values_(record.items.dimensions()) {}
 
 Verification StreamReplay::run() {
@@ -113,6 +114,7 @@ bool StreamReplay::begin_run(std::size_t i) {
 bool StreamReplay::list_met(std::size_t begin, std::size_t end) {
   for (std::size_t s = begin; s < end; ++s) {
     const SegmentCopy& segment = segments_[s];
+    if (segment.kind == SegmentKind::slowed) return note_slowed(s, end);
     if (segment.has_waypoint && !note_met(s, segment.left, segment.newer_knots)) return false;
     const bool arrives = segment.origin.ends_at_waypoint && segment.kind != SegmentKind::stop;
     if (arrives && !note_met(s, segment.natural_right, segment.origin.right_newer_knots)) {
@@ -126,6 +128,22 @@ bool StreamReplay::note_met(std::size_t s, Time time, std::size_t newer) {
   const auto index = target_.index_of(time);
   if (!index) return differ(s, "waypoint", in_words(time), "none of the run at that time");
   target_.note_met(*index, newer);
+  return true;
+}
+
+/// Lists the waypoints that the slowed segments `s` to `end` - 1 meet. These have other times than
+/// their waypoints, except the first one.
+bool StreamReplay::note_slowed(std::size_t s, std::size_t end) {
+  const auto first = target_.index_of(segments_[s].left);
+  if (!first) return differ(s, "waypoint", in_words(segments_[s].left), "none of the run");
+  for (std::size_t i = s; i < end; ++i) {
+    const SegmentCopy& segment = segments_[i];
+    if (segment.kind != SegmentKind::slowed || !segment.has_waypoint) {
+      return differ(i, "kind after a slowed segment", in_words(segment.kind), "slowed");
+    }
+    target_.note_met(*first + (i - s), segment.newer_knots);
+    target_.note_met(*first + (i - s) + 1, segment.origin.right_newer_knots);
+  }
   return true;
 }
 

@@ -10,7 +10,8 @@
 #include "core/polynomial/segment.hpp"
 #include "ipc/board/segment.hpp"
 #include "ipc/memory/word.hpp"
-#include "ipc/solve/run_edges.hpp"
+#include "ipc/runs/run_edges.hpp"
+#include "ipc/runs/slowed_path.hpp"
 #include "ipc/verification/begin_state.hpp"
 #include "ipc/verification/recorded_decisions.hpp"
 #include "ipc/verification/run_target.hpp"
@@ -40,6 +41,7 @@ class StreamReplay {
   bool begin_run(std::size_t i);
   bool list_met(std::size_t begin, std::size_t end);
   bool note_met(std::size_t s, Time time, std::size_t newer);
+  bool note_slowed(std::size_t s, std::size_t end);
   bool append_until(std::size_t count);
   bool rests_at_last_waypoint();
   [[nodiscard]] bool ends_in_stop() const noexcept;
@@ -54,6 +56,8 @@ class StreamReplay {
   bool solve_behind_entry(std::size_t s);
   bool solve_state_stop(std::size_t s);
   bool solve_hold_behind(std::size_t s);
+  bool solve_slowed(std::size_t s);
+  bool solve_path(std::size_t s);
   void solve_hold(std::size_t i);
   void solve_ending(std::size_t i);
   bool compare_solved(std::size_t i);
@@ -70,6 +74,8 @@ class StreamReplay {
   State end_;  ///< state at the end of an entry
   core::Extrapolation extrapolation_;
   BehindEntry behind_;
+  SlowedPath path_;
+  std::size_t slowed_ = 0;      ///< segment at which the curve begins to slow down
   std::vector<double> values_;  ///< scratch
   std::optional<Word> run_item_{};
   Time natural_right_{};  ///< where the segment before ends without a cut

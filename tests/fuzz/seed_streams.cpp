@@ -286,6 +286,13 @@ void starve_and_finish(Recorder& r) {
   r.finish();
 }
 
+void slow_down(Recorder& r) {
+  r.start_from(kBegin + kTick);
+  r.send_many(kBegin + 4 * kTick, 44);
+  r.finish();
+  for (int i = 0; i < 200; ++i) r.step();  // a search continues in the next step
+}
+
 std::vector<Plan> plans() {
   return {
       {"c2_running", recorded(1), with("c2", 2, 32), [](Recorder& r) { r.send_many(kBegin, 40); }},
@@ -299,6 +306,7 @@ std::vector<Plan> plans() {
       {"live_cut", live(2), with("c2", 3, 32), cut},
       {"smoothing_cut", live(1), smoothing(), starve_and_cut},
       {"live_way_back", live(1), with("pchip", 1, 16), starve_and_finish},
+      {"live_slowed", live(2), with("c2", 8, 64), slow_down},
       {"quintic", recorded(1), with("quintic", 1, 16), [](Recorder& r) { r.send_many(kBegin, 5); }},
       {"smoothing", recorded(1), smoothing(), [](Recorder& r) { r.send_many(kBegin, 24); }},
       {"kinds", kinds(), with("rounded", 1, 16), [](Recorder& r) { r.send_many(kBegin, 6); }},

@@ -52,7 +52,7 @@ ipc::SegmentCopy take_segment(ByteReader& in, std::size_t dimensions) {
   segment.order = in.take<std::uint8_t>();
   require_order(segment.order);
   const auto kind = in.take<std::uint8_t>();
-  if (kind > static_cast<std::uint8_t>(SegmentKind::hold)) {
+  if (kind > static_cast<std::uint8_t>(SegmentKind::slowed)) {
     throw BadMessage(fmt::format("it has segment kind {}", kind));
   }
   segment.kind = static_cast<SegmentKind>(kind);

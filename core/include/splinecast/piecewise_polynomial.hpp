@@ -26,6 +26,7 @@ enum class SegmentKind : std::uint8_t {
   stop = 2,    ///< after the newest knot, ends at rest
   hold = 3,    ///< at rest: between a stop segment and an entry; or, with zero length, the only
                ///< waypoint of a finished stream
+  slowed = 4,  ///< order 6, between two waypoints of a path on which the curve comes to rest
 };
 
 /// A curve of consecutive segments with D dimensions: n breaks, n − 1 polynomials of any order k

@@ -77,3 +77,4 @@ class SegmentKind(_Status):
     ENTRY = 1  #: from a given state onto the waypoints
     STOP = 2  #: after the newest waypoint, ends at rest
     HOLD = 3  #: at rest
+    SLOWED = 4  #: between two waypoints of a path on which the curve comes to rest

@@ -65,11 +65,11 @@ TEST_F(ReplayEnd, ThatIsNotAsRequestedIsReported) {
       {"replay", file(50), "--stream", name(), "--lead", "5000", "--json", "--verify"});
   EXPECT_EQ(ended.code, 0) << ended.err;
   const nlohmann::json end = nlohmann::json::parse(ended.out)["end"];
-  EXPECT_EQ(end["kind"], "entered");
+  EXPECT_EQ(end["kind"], "slowed");
   EXPECT_EQ(end["item"], 50);
   EXPECT_GT(end["lateness_ns"], 0);
   EXPECT_EQ(end, solver()["end"]);
-  solver_process.await_message("rests at the last waypoint 0.");
+  solver_process.await_message("slowed down on its path and rests at the last waypoint 0.");
 }
 
 }  // namespace

@@ -215,11 +215,16 @@ void RevisionCheck::check_settled_segments() {
 /// they are counted as passed over.
 void RevisionCheck::check_waypoint_at(const ipc::SegmentCopy& segment) {
   const bool smooths = plan_->window.interpolant.method->smooths();
-  while (!pending_.empty() && pending_.front().time <= segment.left) {
+  // Where the curve slows down, each segment begins at the next waypoint, after its time.
+  const bool is_late = segment.kind == SegmentKind::slowed && joined_ > 0 &&
+                       settled_.segments()[joined_ - 1].kind == SegmentKind::slowed;
+  bool is_first = true;
+  while (!pending_.empty() && pending_.front().time <= segment.left && (!is_late || is_first)) {
     const Pending waypoint = pending_.front();
     pending_.pop_front();
+    is_first = false;
     const auto sent = items_.items().waypoint(waypoint.item);
-    if (waypoint.time == segment.left &&
+    if ((is_late || waypoint.time == segment.left) &&
         (smooths || rules_.passes(segment, false, sent.position, plan_->dimensions))) {
       continue;
     }

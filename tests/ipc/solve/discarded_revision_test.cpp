@@ -149,7 +149,11 @@ class DiscardedRevision : public ::testing::TestWithParam<const Method*> {
                  << entered << " knots entered");
     const auto wanted = Stream(how, Disturbance::none).play(entered);
     expect_same(Stream(how, Disturbance::missed).play(entered), wanted);
-    expect_same(Stream(how, Disturbance::missed_and_taken_over).play(entered), wanted);
+    // Without limits, a solver that takes over may find other ones in the motion.
+    core::WindowOptions limited = how;
+    limited.limits.acceleration.assign(kDimensions, 1e6);
+    expect_same(Stream(limited, Disturbance::missed_and_taken_over).play(entered),
+                Stream(limited, Disturbance::none).play(entered));
   }
 };
 

@@ -110,7 +110,8 @@ struct Watched : LiveStream {
     return std::to_string(found.first->segment) + ": " + found.first->what + ", " +
            found.first->published + " published, " + found.first->solved + " solved";
   }
-  /// The number of sent waypoints that the curve interpolates at their time or ends at.
+  /// The number of sent waypoints that the curve interpolates at their time, or slowed down later,
+  /// or ends at.
   [[nodiscard]] Word met() const {
     Word count = 0;
     for (const Sent& waypoint : sent) count += is_met(waypoint) || ends_at(waypoint) ? 1U : 0U;
@@ -119,7 +120,8 @@ struct Watched : LiveStream {
   [[nodiscard]] bool is_met(const Sent& waypoint) const {
     return std::ranges::any_of(collected.segments(), [&](const SegmentCopy& s) {
       const double begin = s.has_waypoint ? s.waypoint[0] : s.coefficients[0];
-      return s.left == waypoint.time && begin == waypoint.position;
+      const bool is_late = s.kind == SegmentKind::slowed && s.left > waypoint.time;
+      return (s.left == waypoint.time || is_late) && begin == waypoint.position;
     });
   }
   /// Separate check for the last waypoint, because no segment begins at the end of the curve.

@@ -1,4 +1,4 @@
-#include "ipc/solve/run_edges.hpp"
+#include "ipc/runs/run_edges.hpp"
 
 #include <algorithm>
 
