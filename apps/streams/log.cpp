@@ -27,7 +27,8 @@ ipc::Verification StreamLog::verify(const Condition& end) {
                       .items = items_,
                       .segments = settled_.segments(),
                       .summary = settled_.summary(),
-                      .end = end});
+                      .end = end,
+                      .rules = board_.header().rules});
 }
 
 std::string in_words(const ipc::Verification& found) {

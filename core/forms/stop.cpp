@@ -72,25 +72,64 @@ void build_stop(Time from, Time stop_time, std::span<const double> position,
   });
 }
 
-Time stop_time_within(const MotionLimits& limits, Time least, std::span<const double> velocity,
-                      std::span<const double> acceleration) noexcept {
-  if (limits.acceleration.empty() && limits.jerk.empty()) return least;
+Time least_stop_time(const MotionLimits& limits, const Instant& from) noexcept {
   double longest = 0;
-  for (std::size_t d = 0; d < velocity.size(); ++d) {
+  for (std::size_t d = 0; d < from.velocity.size(); ++d) {
     const double a_max = limit_of(limits.acceleration, d);
     if (a_max > 0) {
-      longest = std::max(longest, seconds_within(velocity[d], acceleration[d], a_max));
+      longest = std::max(longest, seconds_within(from.velocity[d], from.acceleration[d], a_max));
     }
     const double j_max = limit_of(limits.jerk, d);
-    if (j_max > 0) longest = std::max(longest, seconds_within_jerk(velocity[d], j_max));
+    if (j_max > 0) longest = std::max(longest, seconds_within_jerk(from.velocity[d], j_max));
   }
-  longest = std::min(longest, kLongest);
-  return std::max(least, from_seconds(longest));
+  return from_seconds(std::min(longest, kLongest));
 }
 
-Time build_stop_within(const MotionLimits& limits, Time least, const Instant& from,
-                       Segment& out) noexcept {
-  const Time length = stop_time_within(limits, least, from.velocity, from.acceleration);
+double stop_position(const Instant& from, std::size_t d, Time length) noexcept {
+  const double seconds = to_seconds(length);
+  const double v = from.velocity[d];
+  const double a = stop_acceleration(v, from.acceleration[d], seconds);
+  return from.position[d] + seconds * (v / 2 + seconds * a / 12);
+}
+
+bool stop_passes_bound(const MotionLimits& limits, const Instant& from, std::size_t d,
+                       Time length) noexcept {
+  const double v = from.velocity[d];
+  if (v > 0 && !limits.upper.empty()) return stop_position(from, d, length) > limits.upper[d];
+  return v < 0 && !limits.lower.empty() && stop_position(from, d, length) < limits.lower[d];
+}
+
+namespace {
+
+/// The longest time from `least` to `most` after which a dimension rests within its bounds; `least`
+/// if there is none.
+Time longest_within_bound(const MotionLimits& limits, const Instant& from, std::size_t d,
+                          Time least, Time most) noexcept {
+  if (!stop_passes_bound(limits, from, d, most)) return most;
+  while (most - least > Time(1)) {
+    const Time middle = least + (most - least) / 2;
+    (stop_passes_bound(limits, from, d, middle) ? most : least) = middle;
+  }
+  return least;
+}
+
+}  // namespace
+
+Time stop_time_within(const StopRules& rules, const Instant& from) noexcept {
+  const MotionLimits& limits = rules.limits;
+  if (limits.acceleration.empty() && limits.jerk.empty()) return rules.stop_time;
+  const Time least = std::max(least_stop_time(limits, from), Time(1));
+  Time length = std::max(rules.stop_time, least);
+  if (limits.lower.empty() && limits.upper.empty()) return length;
+  for (std::size_t d = 0; d < from.velocity.size(); ++d) {
+    if (limit_of(limits.acceleration, d) == 0) continue;
+    length = longest_within_bound(limits, from, d, least, length);
+  }
+  return length;
+}
+
+Time build_stop_within(const StopRules& rules, const Instant& from, Segment& out) noexcept {
+  const Time length = stop_time_within(rules, from);
   build_stop(from.time, length, from.position, from.velocity, from.acceleration, out);
   return length;
 }

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 #include "core/polynomial/segment.hpp"
 #include "splinecast/limits.hpp"
+#include "splinecast/state.hpp"
 #include "splinecast/time.hpp"
 #include "splinecast/waypoint.hpp"
 
@@ -31,15 +33,33 @@ void build_stop(Time from, Time stop_time, std::span<const double> position,
                 std::span<const double> velocity, std::span<const double> acceleration,
                 Segment& out) noexcept;
 
-/// The length of the shortest stop, at least `least`, in which every dimension respects its
-/// acceleration and jerk limit; `least` without limits. A dimension that already decelerates beyond
-/// its limit gets 3|v|/limit, which respects the limit from the first instant on.
-[[nodiscard]] Time stop_time_within(const MotionLimits& limits, Time least,
-                                    std::span<const double> velocity,
-                                    std::span<const double> acceleration) noexcept;
+/// What decides the length of a stop. A view.
+struct StopRules {
+  const MotionLimits& limits;  ///< lists of one value per dimension, or empty
+  Time stop_time;              ///< > 0: the length of a stop, unless limits or bounds change it
+};
+
+/// The shortest time in which a stop respects the acceleration and jerk limit of every dimension; 0
+/// without limits. A dimension that already decelerates beyond its limit gets 3|v|/limit, which
+/// respects the limit from the first instant on.
+[[nodiscard]] Time least_stop_time(const MotionLimits& limits, const Instant& from) noexcept;
+
+/// Where dimension d rests after a stop of `length`. Monotone in the length: a longer stop goes
+/// farther, in the direction of the velocity.
+[[nodiscard]] double stop_position(const Instant& from, std::size_t d, Time length) noexcept;
+
+/// The length of the stop from a state: the stop time, or as long as the limits need if that is
+/// longer. A stop that would end beyond a bound of a dimension with a limit of acceleration is
+/// shorter: the longest that ends within, but not shorter than the limits need. At least 1 ns. At
+/// most 62 bisections per dimension with bounds; O(1) without limits of acceleration and jerk.
+[[nodiscard]] Time stop_time_within(const StopRules& rules, const Instant& from) noexcept;
+
+/// Whether a stop of this length ends beyond a bound of a dimension, in the direction of its
+/// motion.
+[[nodiscard]] bool stop_passes_bound(const MotionLimits& limits, const Instant& from, std::size_t d,
+                                     Time length) noexcept;
 
 /// Writes the stop from a state with the length of `stop_time_within`, and returns that length.
-Time build_stop_within(const MotionLimits& limits, Time least, const Instant& from,
-                       Segment& out) noexcept;
+Time build_stop_within(const StopRules& rules, const Instant& from, Segment& out) noexcept;
 
 }  // namespace splinecast::core

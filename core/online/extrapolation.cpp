@@ -1,37 +1,42 @@
 #include "core/online/extrapolation.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "core/forms/stop.hpp"
 
 namespace splinecast::core {
 
-Extrapolation::Extrapolation(std::size_t dimensions) : from_(dimensions), stop_(dimensions) {}
+Extrapolation::Extrapolation(std::size_t dimensions)
+    : from_(dimensions), to_(dimensions), stop_(dimensions) {}
 
 void Extrapolation::begin(const SlidingWindow& target) noexcept {
-  constexpr std::array<double, kMaxDimensions> kZeros{};
-  const std::size_t dimensions = target.dimensions();
+  begin_line(target);
+  stop_after(stop_time_within(target.stop_rules(), line_end_state()));
+}
+
+void Extrapolation::begin_line(const SlidingWindow& target) noexcept {
   const Knot newest = target.knot(target.knots() - 1);
-  const WindowOptions& options = target.options();
+  const MotionLimits& limits = target.options().limits;
   begin_ = newest.time;
   line_end_ = begin_ + kLine;
   const StateRef from = from_.ref();
   std::ranges::copy(newest.position, from.position.begin());
   std::ranges::copy(newest.velocity, from.velocity.begin());
-  for (std::size_t d = 0; d < options.limits.velocity.size(); ++d) {
-    const double most = kLineShare * options.limits.velocity[d];
+  for (std::size_t d = 0; d < limits.velocity.size(); ++d) {
+    const double most = kLineShare * limits.velocity[d];
     if (most > 0) from.velocity[d] = std::clamp(from.velocity[d], -most, most);
   }
-  std::array<double, kMaxDimensions> values;  // NOLINT(*-member-init)
-  const auto position = std::span(values).first(dimensions);
   const double line = to_seconds(kLine);
-  for (std::size_t d = 0; d < dimensions; ++d) {
-    position[d] = from.position[d] + line * from.velocity[d];
+  for (std::size_t d = 0; d < from.position.size(); ++d) {
+    to_.ref().position[d] = from.position[d] + line * from.velocity[d];
   }
-  const auto zeros = std::span(kZeros).first(dimensions);
-  const Time length = stop_time_within(options.limits, options.stop_time, from.velocity, zeros);
-  build_stop(line_end_, length, position, from.velocity, zeros, stop_);
+  std::ranges::copy(from.velocity, to_.ref().velocity.begin());
+  std::ranges::fill(to_.ref().acceleration, 0.0);
+}
+
+void Extrapolation::stop_after(Time length) noexcept {
+  const Instant end = line_end_state();
+  build_stop(line_end_, length, end.position, end.velocity, end.acceleration, stop_);
 }
 
 void Extrapolation::state_at(Time t, const StateRef& out) const noexcept {

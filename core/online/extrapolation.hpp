@@ -25,6 +25,15 @@ class Extrapolation {
   /// Starts at the newest knot of `target`; there must be one. O(D).
   void begin(const SlidingWindow& target) noexcept;
 
+  /// The same in two steps, to choose the length of the stop, > 0.
+  void begin_line(const SlidingWindow& target) noexcept;
+  void stop_after(Time length) noexcept;
+
+  /// The state at the end of the line.
+  [[nodiscard]] Instant line_end_state() const noexcept {
+    return {line_end_, to_.position(), to_.velocity(), to_.acceleration()};
+  }
+
   /// The end of the line, where the stop segment begins, and the end of the stop segment.
   [[nodiscard]] Time line_end() const noexcept { return line_end_; }
   [[nodiscard]] Time rest() const noexcept { return stop_.right; }
@@ -36,6 +45,7 @@ class Extrapolation {
   Time begin_{};
   Time line_end_{};
   State from_;  ///< at the newest knot, with the velocity of the line
+  State to_;    ///< at the end of the line
   Segment stop_;
 };
 

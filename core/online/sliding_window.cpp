@@ -210,8 +210,11 @@ void SlidingWindow::segment(std::size_t i, Segment& out) const noexcept {
 
 Time SlidingWindow::write_stop(std::span<double> acceleration) const noexcept {
   knots_.write_final_acceleration(acceleration);
-  return stop_time_within(options_.limits, options_.stop_time,
-                          knots_.values(knots_.newest(), KnotRing::kVelocity), acceleration);
+  const std::size_t newest = knots_.newest();
+  return stop_time_within(stop_rules(), {.time = knots_.row(newest).time,
+                                         .position = knots_.position(newest),
+                                         .velocity = knots_.values(newest, KnotRing::kVelocity),
+                                         .acceleration = acceleration});
 }
 
 void SlidingWindow::write_acceleration(std::size_t i,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/forms/knot_segment.hpp"
+#include "core/forms/stop.hpp"
 #include "core/polynomial/segment.hpp"
 #include "core/slopes/rule.hpp"
 #include "core/solvers/knot_ring.hpp"
@@ -34,8 +35,8 @@ struct WindowOptions {
   Tail tail = Tail::bessel;  ///< condition at the newest knot while the stream continues; fixed for
                              ///< `hermite`, `quintic` and `smoothing`
   Condition start{.kind = ConditionKind::own, .value = {}};  ///< condition at knot 0
-  Time stop_time{250'000'000};  ///< length of the stop segment, > 0; with limits the least length
-  MotionLimits limits{};        ///< of stop segments and entries
+  Time stop_time{250'000'000};     ///< length of the stop segment, > 0: see StopRules
+  MotionLimits limits{};           ///< of stop segments and entries
   bool held_before_start = false;  ///< a hold precedes knot 0, as on a live stream
   bool force_lag = false;          ///< accept a lag that is too short for λ
 };
@@ -87,6 +88,11 @@ class SlidingWindow {
   /// the length of the stop segment after it. There must be a knot, and the stream must not be
   /// finished. O(D).
   [[nodiscard]] Time write_stop(std::span<double> acceleration) const noexcept;
+
+  /// What decides the length of a stop.
+  [[nodiscard]] StopRules stop_rules() const noexcept {
+    return {options_.limits, options_.stop_time};
+  }
 
   /// Writes the acceleration at knot i, which must still be in the window: that at the start of the
   /// segment after it or, for the newest knot, that at the end of the segment before it. O(D).

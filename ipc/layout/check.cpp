@@ -172,6 +172,7 @@ BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_by
                 kLongestNanoseconds);
   require_range("action beyond the limits", header.beyond, 0,
                 static_cast<std::uint64_t>(Beyond::refuse));
+  require_range("rules", header.rules, kFormerRules, kRules);
   require_motion_limits(header);
   require_range("stop time", static_cast<std::uint64_t>(header.stop_time), 1,
                 static_cast<std::uint64_t>(kLongestStop.count()));

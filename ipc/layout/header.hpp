@@ -35,6 +35,12 @@ inline constexpr std::size_t kLawNameBytes = 136;
 /// Upper bound of the largest rate of a time law.
 inline constexpr double kLargestRate = 100;
 
+/// The rules by which a solver chooses lengths of stops, and accelerations at the begin of stops
+/// and entries. From 2 on, verification reads both from the record, and checks what a solver
+/// promises about them (verification/promises); by the former rules it computes them.
+inline constexpr std::uint64_t kFormerRules = 1;
+inline constexpr std::uint64_t kRules = 2;
+
 /// The first words of each region, as kHeaderRows places them. A commander region has only those
 /// that every region needs: the others are 0.
 struct RegionHeader {
@@ -82,6 +88,7 @@ struct RegionHeader {
   std::array<double, kMaxDimensions> lower_bound{};  ///< both bounds 0: none
   std::array<double, kMaxDimensions> upper_bound{};
   std::uint64_t beyond = 0;  ///< Beyond
+  std::uint64_t rules = 0;   ///< kFormerRules … kRules
 };
 
 inline constexpr std::tuple kHeaderRows{
@@ -193,7 +200,10 @@ inline constexpr std::tuple kHeaderRows{
         "beyond the limits", FieldWriter::maker,
         "a waypoint with which the curve exceeds a limit is: 0 reported, 1 refused\n"
         "2 and 3 are reserved"},
-    FieldRow{"rules", {.words = 1}, FieldWriter::maker, "reserved for rules of stops and ends: 0"}};
+    MemberRow<&RegionHeader::rules>{
+        "rules", FieldWriter::maker,
+        "number of the rules of stops and entries that the solver follows: 2\n"
+        "1 in old recordings only"}};
 inline constexpr auto kHeaderFields = place(kHeaderRows);
 inline constexpr std::size_t kHeaderWords = size_of(kHeaderFields).words;
 

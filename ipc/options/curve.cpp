@@ -61,6 +61,19 @@ void require_same_limits(const std::string& stream, const RegionHeader& stands,
   compare("upper bound", limits.upper, stood.upper, kInfinity);
 }
 
+void require_same_times(const std::string& stream, const RegionHeader& stands,
+                        const SolverOptions& options) {
+  const auto compare = [&](const char* what, const std::optional<Time>& wanted,
+                           std::int64_t stood) {
+    require_same(stream, what, wanted, Time(stood),
+                 std::to_string(wanted.value_or(Time(stood)).count()), std::to_string(stood));
+  };
+  compare("stop time in ns", options.stop_time, stands.stop_time);
+  compare("freeze-ahead in ns", options.freeze_ahead, stands.freeze_ahead);
+  compare("history in ns", options.history, stands.history);
+  compare("shortest entry in ns", options.min_entry, stands.min_entry);
+}
+
 void require_time(const char* what, const std::optional<Time>& time, Time least, Time most) {
   if (!time || (*time >= least && *time <= most)) return;
   throw BadRequest(std::string(what) + " must be " + std::to_string(least.count()) + " to " +
@@ -148,6 +161,7 @@ void write_options(const SolverOptions& options, RegionHeader& header) {
   header.history = options.history.value_or(live.history).count();
   header.min_entry = options.min_entry.value_or(freeze_ahead).count();
   header.force_lag = options.force_lag ? 1 : 0;
+  header.rules = kRules;
   header.capacity = std::bit_ceil(options.capacity.value_or(kDefaultCapacity));
 }
 
@@ -188,6 +202,8 @@ MotionLimits limits_for(const SolverOptions& options, const RegionHeader& header
 void require_same_options(const std::string& stream, const RegionHeader& stands,
                           const SolverOptions& options) {
   const auto number = [](auto value) { return std::to_string(value); };
+  require_same(stream, "rules", std::optional(kRules), stands.rules, number(kRules),
+               number(stands.rules));
   const Method* const method = find_method(stands.method);
   if (options.method != nullptr) {
     require_same<const Method*>(stream, "method", options.method, method,
@@ -202,15 +218,7 @@ void require_same_options(const std::string& stream, const RegionHeader& stands,
   const auto tail = static_cast<Tail>(stands.tail);
   require_same(stream, "tail", options.tail, tail,
                std::string(to_string(options.tail.value_or(tail))), std::string(to_string(tail)));
-  const auto require_same_time = [&](const char* what, const std::optional<Time>& wanted,
-                                     std::int64_t stood) {
-    require_same(stream, what, wanted, Time(stood), number(wanted.value_or(Time(stood)).count()),
-                 number(stood));
-  };
-  require_same_time("stop time in ns", options.stop_time, stands.stop_time);
-  require_same_time("freeze-ahead in ns", options.freeze_ahead, stands.freeze_ahead);
-  require_same_time("history in ns", options.history, stands.history);
-  require_same_time("shortest entry in ns", options.min_entry, stands.min_entry);
+  require_same_times(stream, stands, options);
   require_same_limits(stream, stands, options);
   if (options.beyond) {
     require_same<std::uint64_t>(stream, "action beyond the limits (0 report, 1 refuse)",

@@ -96,7 +96,7 @@ void ReplacementPlanner::take(const core::Segment& segment, MotionPeaks* entry,
 }
 
 void ReplacementPlanner::take_stop(ReplacePreview& out, const Instant& from) {
-  const Time length = core::build_stop_within(options_.limits, options_.stop_time, from, segment_);
+  const Time length = core::build_stop_within(window_.stop_rules(), from, segment_);
   take(segment_, out.enters ? nullptr : &out.entry, out);
   if (!out.enters) out.duration = length;
 }
@@ -137,7 +137,7 @@ bool ReplacementPlanner::find_entry(const Instant& from, std::span<const Waypoin
                          .least = std::max(min_entry_, blend),
                          .newer = options_.settle,
                          .reach = &reach_};
-  (void)core::build_stop_within(options_.limits, options_.stop_time, from, segment_);
+  (void)core::build_stop_within(window_.stop_rules(), from, segment_);
   reach_.restart(from.position);
   reach_.add(core::part_of(segment_));
   bool is_found = false;

@@ -79,8 +79,7 @@ bool PublishedCurve::find_reach(Time until) noexcept {
   const Instant from = begin_state();
   reach_.restart(from.position);
   if (!uses_cut_ && origin_.is_new) {
-    const core::WindowOptions& options = window_.options();
-    (void)core::build_stop_within(options.limits, options.stop_time, from, segment_);
+    (void)core::build_stop_within(window_.stop_rules(), from, segment_);
     reach_.add(core::part_of(segment_));
     return true;
   }

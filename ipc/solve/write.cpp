@@ -193,9 +193,7 @@ void PublishedCurve::write_off_line(bool writes_origin) noexcept {
   if (is_entry_new_) write_beyond();
   if (writes_origin && course_ == Course::waiting) {
     newest_ = origin_.number;
-    const core::WindowOptions& options = window_.options();
-    stop_ = core::stop_time_within(options.limits, options.stop_time, origin_state_.velocity(),
-                                   origin_state_.acceleration());
+    stop_ = core::stop_time_within(window_.stop_rules(), origin_state());
     end_ = origin_.time + stop_;
   }
   if (window_.knots() > 0) write_unmet(window_.knots());

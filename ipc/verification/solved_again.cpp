@@ -33,8 +33,16 @@ bool StreamReplay::solve_on_target(std::size_t s) {
   if (*index >= window.segments()) {
     return differ(s, "kind: it belongs to no run", in_words(segment.kind), "none");
   }
-  window.segment(*index, solved_);
-  if (!compare_solved(s)) return false;
+  if (is_stop && *index + 1 == window.knots()) {
+    (void)window.write_stop(values_);
+    const core::Knot knot = window.knot(*index);
+    if (!solve_stop(s, {knot.time, knot.position, knot.velocity, values_}, StopPart::whole)) {
+      return false;
+    }
+  } else {
+    window.segment(*index, solved_);
+    if (!compare_solved(s)) return false;
+  }
   if (same_bits(window.knot(*index).waypoint, segment.waypoint)) return true;
   return differ(s, "waypoint", first_in_words(segment.waypoint),
                 first_in_words(window.knot(*index).waypoint));
@@ -100,12 +108,54 @@ void StreamReplay::solve_hold(std::size_t i) {
 
 /// Solves and compares the stop from the state at which a run begins.
 bool StreamReplay::solve_state_stop(std::size_t s) {
-  const core::WindowOptions& options = target_.window().options();
-  const Time length = core::stop_time_within(options.limits, options.stop_time, begin_.velocity(),
-                                             begin_.acceleration());
-  core::build_stop(segments_[s].left, length, begin_.position(), begin_.velocity(),
-                   begin_.acceleration(), solved_);
-  return compare_solved(s);
+  return solve_stop(s, begin_.at(segments_[s].left), StopPart::whole);
+}
+
+/// Solves and compares a stop from a state: by the former rules, or as it was decided.
+bool StreamReplay::solve_stop(std::size_t s, const Instant& from, StopPart part) {
+  const SegmentCopy& segment = segments_[s];
+  const core::StopRules rules = target_.window().stop_rules();
+  if (has_former_rules()) {
+    const bool is_whole = part == StopPart::whole;
+    const Time length = is_whole ? former_stop_time(rules, from) : behind_.stop_length();
+    core::build_stop(from.time, length, from.position, from.velocity, from.acceleration, solved_);
+    return compare_solved(s);
+  }
+  const Time length = recorded_length(segment);
+  const std::size_t dimensions = from.position.size();
+  if (segment.kind != SegmentKind::stop || segment.order != kMaxOrder || length <= Time::zero()) {
+    return differ(s, "kind", in_words(segment.kind), in_words(SegmentKind::stop));
+  }
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    begin_acceleration_[d] = 2 * segment.coefficients[2 * dimensions + d];
+  }
+  const Instant begin{from.time, from.position, from.velocity, begin_acceleration_};
+  core::build_stop(from.time, length, from.position, from.velocity, begin_acceleration_, solved_);
+  if (!compare_solved(s)) return false;
+  const auto broken = broken_promise(rules, begin, solved_, part);
+  return broken.empty() || differ(s, std::string(broken), in_words(length),
+                                  in_words(core::stop_time_within(rules, begin)));
+}
+
+/// How long the stop after the straight line takes to which entry s leads: as the record shows, if
+/// it has that stop.
+Time StreamReplay::stop_length_after(std::size_t s) const noexcept {
+  const core::StopRules rules = target_.window().stop_rules();
+  const Instant from = extrapolation_.line_end_state();
+  if (has_former_rules()) return former_stop_time(rules, from);
+  std::size_t i = s + 1;
+  while (i < segments_.size() && i <= s + 2 && decisions_.is_behind_entry(i) &&
+         segments_[i].kind == SegmentKind::spline) {
+    ++i;
+  }
+  const bool is_there = i < segments_.size() && decisions_.is_behind_entry(i) &&
+                        segments_[i].kind == SegmentKind::stop;
+  const bool is_shorter = is_there && i == s + 1;
+  if (is_there && segments_[i].natural_right > from.time &&
+      !(is_shorter && recorded_length(segments_[i]) <= core::kLeastStopTime)) {
+    return segments_[i].natural_right - from.time;
+  }
+  return core::stop_time_within(rules, from);
 }
 
 bool StreamReplay::solve_entry(std::size_t s) {
@@ -123,7 +173,8 @@ bool StreamReplay::solve_entry(std::size_t s) {
     end.velocity = knot.velocity;
   } else {
     if (!append_until(segment.origin.known)) return false;
-    extrapolation_.begin(target_.window());
+    extrapolation_.begin_line(target_.window());
+    extrapolation_.stop_after(stop_length_after(s));
     extrapolation_.state_at(end.time, end_.ref());
     end.position = end_.position();
     end.velocity = end_.velocity();
@@ -144,12 +195,15 @@ bool StreamReplay::solve_behind_entry(std::size_t s) {
     core::build_segment(core::SegmentForm::cubic,
                         {behind_.end, end_.position(), end_.velocity(), {}, {}},
                         {behind_.line_end, position, end_.velocity(), {}, {}}, solved_);
-  } else {
-    core::build_stop(behind_.stop_begin(), behind_.stop_length(),
-                     behind_.has_line() ? position : end_.position(), end_.velocity(),
-                     end_.acceleration(), solved_);
+    return compare_solved(s);
   }
-  return compare_solved(s);
+  return solve_stop(
+      s,
+      {.time = behind_.stop_begin(),
+       .position = behind_.has_line() ? std::span<const double>(position) : end_.position(),
+       .velocity = end_.velocity(),
+       .acceleration = end_.acceleration()},
+      behind_.has_line() ? StopPart::whole : StopPart::remainder);
 }
 
 /// Whether the entry that ends the curve is the first one of its run.

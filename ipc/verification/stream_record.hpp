@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "core/online/sliding_window.hpp"
 #include "ipc/board/segment.hpp"
+#include "ipc/layout/header.hpp"
 #include "ipc/layout/summary.hpp"
 #include "ipc/verification/run_restart.hpp"
 #include "ipc/verification/sent_items.hpp"
@@ -28,6 +30,7 @@ struct StreamRecord {
   Condition end;                          ///< the condition that finished the stream
   bool is_part = false;                   ///< it does not begin with segment 1
   const RunRestart* restart = nullptr;    ///< of a part: the knots before its second segment
+  std::uint64_t rules = kRules;           ///< of stops and entries, by which it was solved
 };
 
 }  // namespace splinecast::ipc

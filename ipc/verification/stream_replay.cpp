@@ -20,7 +20,8 @@ StreamReplay::StreamReplay(const StreamRecord& record)
       end_(record.items.dimensions()),
       extrapolation_(record.items.dimensions()),
       path_(record.items.dimensions()),
-      values_(record.items.dimensions()) {}
+      values_(record.items.dimensions()),
+      begin_acceleration_(record.items.dimensions()) {}
 
 Verification StreamReplay::run() {
   if (record_.is_part && !segments_.empty()) begin_part();

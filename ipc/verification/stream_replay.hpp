@@ -13,6 +13,7 @@
 #include "ipc/runs/run_edges.hpp"
 #include "ipc/runs/slowed_path.hpp"
 #include "ipc/verification/begin_state.hpp"
+#include "ipc/verification/promises/stop.hpp"
 #include "ipc/verification/recorded_decisions.hpp"
 #include "ipc/verification/run_target.hpp"
 #include "ipc/verification/stream_record.hpp"
@@ -46,6 +47,7 @@ class StreamReplay {
   bool rests_at_last_waypoint();
   [[nodiscard]] bool ends_in_stop() const noexcept;
   bool expect_all_used(Word end);
+  [[nodiscard]] bool has_former_rules() const noexcept { return record_.rules == kFormerRules; }
   [[nodiscard]] bool is_last_run() const noexcept { return decisions_.is_last_run(run_item_); }
   [[nodiscard]] bool begins_at_end(std::size_t i) const noexcept;
 
@@ -55,6 +57,8 @@ class StreamReplay {
   bool solve_entry(std::size_t s);
   bool solve_behind_entry(std::size_t s);
   bool solve_state_stop(std::size_t s);
+  bool solve_stop(std::size_t s, const Instant& from, StopPart part);
+  [[nodiscard]] Time stop_length_after(std::size_t s) const noexcept;
   bool solve_hold_behind(std::size_t s);
   bool solve_slowed(std::size_t s);
   bool solve_path(std::size_t s);
@@ -75,8 +79,9 @@ class StreamReplay {
   core::Extrapolation extrapolation_;
   BehindEntry behind_;
   SlowedPath path_;
-  std::size_t slowed_ = 0;      ///< segment at which the curve begins to slow down
-  std::vector<double> values_;  ///< scratch
+  std::size_t slowed_ = 0;                  ///< segment at which the curve begins to slow down
+  std::vector<double> values_;              ///< scratch
+  std::vector<double> begin_acceleration_;  ///< scratch: of a recorded stop
   std::optional<Word> run_item_{};
   Time natural_right_{};  ///< where the segment before ends without a cut
   std::size_t next_ = 0;  ///< segment to be compared next

@@ -73,6 +73,7 @@ ordered_json curve_to_json(const RegionHeader& header) {
           {"history_ns", header.history},
           {"min_entry_ns", header.min_entry},
           {"beyond", kBeyond.at(header.beyond)},
+          {"rules", header.rules},
           {"capacity", header.capacity},
           {"epoch", header.epoch},
           {"pid", header.owner_pid}};
@@ -101,6 +102,7 @@ class Fields {
     if (found == object_.end()) throw BadMessage(fmt::format("it has no field '{}'", name));
     return *found;
   }
+  [[nodiscard]] bool has(const char* name) const { return object_.contains(name); }
   [[nodiscard]] BadMessage bad(const char* name) const {
     return BadMessage(fmt::format("its field '{}' is {}", name,
                                   ipc::printable(at(name).dump(-1, ' ', true).substr(0, 100))));
@@ -193,6 +195,7 @@ void parse_curve(const Fields& fields, RegionHeader& header) {
   header.history = fields.take<std::int64_t>("history_ns");
   header.min_entry = fields.take<std::int64_t>("min_entry_ns");
   header.beyond = static_cast<std::uint64_t>(beyond - kBeyond.begin());
+  header.rules = fields.has("rules") ? fields.take<std::uint64_t>("rules") : ipc::kFormerRules;
   header.capacity = fields.take<std::uint64_t>("capacity");
   header.epoch = fields.take<std::uint64_t>("epoch");
   header.owner_pid = fields.take<std::uint64_t>("pid");

@@ -148,7 +148,8 @@ void RecordedStream::verify_part() {
          .summary = summary,
          .end = end_,
          .is_part = part.restart.has_value(),
-         .restart = part.restart && part.restart->knots ? &*part.restart->knots : nullptr});
+         .restart = part.restart && part.restart->knots ? &*part.restart->knots : nullptr,
+         .rules = options_->spline->rules});
     found_.equal += found.equal;
     found_.first = found.first;
   } catch (const std::invalid_argument& error) {

@@ -51,8 +51,13 @@ Peaks sampled_peaks(Time stop_time, double v, double a) {
   return peaks;
 }
 
+Time stop_time(double v, double a, const MotionLimits& limits, Time stop_time = kLeastStopTime,
+               double x = 0) {
+  return stop_time_within({limits, stop_time}, {Time(0), {&x, 1}, {&v, 1}, {&a, 1}});
+}
+
 Time stop_time(double v, double a, double limit, Time least = kLeastStopTime) {
-  return stop_time_within({.acceleration = {limit}}, least, std::array{v}, std::array{a});
+  return stop_time(v, a, MotionLimits{.acceleration = {limit}}, least);
 }
 
 TEST(StopSegment, NeverSpeedsUpOrReversesOrTravelsFurtherThanHalfItsTimeAtItsVelocity) {
@@ -183,8 +188,7 @@ TEST(StopSegment, KeepsItsJerkLimit) {
     const double v = value(random);
     const double a = 10 * value(random);
     const double limit = 1 + 10 * std::abs(value(random));
-    const Time time =
-        stop_time_within({.jerk = {limit}}, kLeastStopTime, std::array{v}, std::array{a});
+    const Time time = stop_time(v, a, MotionLimits{.jerk = {limit}});
     EXPECT_LE(sampled_peaks(time, v, a).jerk, limit * (1 + 1e-6)) << v << ' ' << a;
     const double shorter = 0.99 * to_seconds(time);
     EXPECT_GT(sampled_peaks(from_seconds(shorter), v, 0).jerk, limit) << v;
@@ -195,9 +199,75 @@ TEST(StopSegment, TakesAsLongAsTheDimensionThatNeedsLongest) {
   const std::array v{1.0, -3.0, 20.0};
   const std::array a{0.0, 0.0, 0.0};
   const MotionLimits limits{.acceleration = {10, 10, 0}};  // the last dimension has no limit
-  EXPECT_NEAR(to_seconds(stop_time_within(limits, kLeastStopTime, v, a)), 0.45, 2e-9);
-  EXPECT_EQ(stop_time_within(limits, milliseconds(500), v, a), milliseconds(500));
-  EXPECT_EQ(stop_time_within({}, milliseconds(250), v, a), milliseconds(250));
+  const Instant from{Time(0), a, v, a};
+  EXPECT_NEAR(to_seconds(stop_time_within({limits, kLeastStopTime}, from)), 0.45, 2e-9);
+  EXPECT_EQ(stop_time_within({limits, milliseconds(500)}, from), milliseconds(500));
+  EXPECT_EQ(stop_time_within({{}, milliseconds(250)}, from), milliseconds(250));
+}
+
+/// The largest position of a stop, or the least if it moves down.
+double farthest(Time length, double x, double v, double a) {
+  Segment stop(1);
+  build_stop(Time(0), length, {&x, 1}, {&v, 1}, {&a, 1}, stop);
+  double far = x;
+  for_each_state(stop, 1, [&](const State& at, double) {
+    far = v > 0 ? std::max(far, at.position()[0]) : std::min(far, at.position()[0]);
+  });
+  return far;
+}
+
+TEST(StopSegment, RestsWhereItsFormulaSaysForEveryLength) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> value(-10, 10);
+  for (int i = 0; i < 300; ++i) {
+    const double x = value(random);
+    const double v = value(random);
+    const double a = 30 * value(random);
+    const Time length = from_seconds(std::pow(10, value(random) / 5 - 1));
+    const Instant from{Time(0), {&x, 1}, {&v, 1}, {&a, 1}};
+    EXPECT_NEAR(stop_position(from, 0, length), farthest(length, x, v, a), 1e-12 * (1 + 10)) << i;
+  }
+}
+
+TEST(StopSegment, IsTheLongestThatKeepsItsBoundsAndNeverShorterThanTheLimitsNeed) {
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> value(-1, 1);
+  constexpr Time kStop = milliseconds(250);
+  int shortened = 0;
+  int passing = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double x = value(random);
+    const double v = 5 * value(random);
+    const double a = 40 * value(random);
+    const MotionLimits limits{.acceleration = {60}, .lower = {-1}, .upper = {1}};
+    const Instant from{Time(0), {&x, 1}, {&v, 1}, {&a, 1}};
+    const Time least = std::max(least_stop_time(limits, from), Time(1));
+    const Time length = stop_time(v, a, limits, kStop, x);
+    const Time most = std::max(kStop, least);
+    ASSERT_GE(length, least) << i;
+    ASSERT_LE(length, most) << i;
+    EXPECT_LE(sampled_peaks(length, v, a).acceleration, 60 * (1 + 1e-6)) << i;
+    const bool passes = std::abs(farthest(length, x, v, a)) > 1 + 1e-12;
+    if (passes) {
+      EXPECT_EQ(length, least) << i;
+    }
+    if (length < most && length > least) {
+      EXPECT_GT(std::abs(stop_position(from, 0, length + Time(1))), 1.0) << i;
+    }
+    shortened += length < most && !passes;
+    passing += passes;
+  }
+  EXPECT_GT(shortened, 100);
+  EXPECT_GT(passing, 50);
+}
+
+TEST(StopSegment, TakesTheStopTimeWithBoundsButWithoutALimitOfAcceleration) {
+  const MotionLimits bounds{.velocity = {1}, .lower = {-1}, .upper = {1}};
+  EXPECT_EQ(stop_time(2, 0, bounds, milliseconds(250), 0.9), milliseconds(250));
+  const MotionLimits without{.acceleration = {0}, .lower = {-1}, .upper = {1}};
+  EXPECT_EQ(stop_time(2, 0, without, milliseconds(250), 0.9), milliseconds(250));
+  const MotionLimits with{.acceleration = {100}, .lower = {-1}, .upper = {1}};
+  EXPECT_EQ(stop_time(2, 0, with, milliseconds(250), 0.9), milliseconds(100));
 }
 
 TEST(StopSegment, OfAnyStateTakesAFiniteTime) {
@@ -210,8 +280,7 @@ TEST(StopSegment, OfAnyStateTakesAFiniteTime) {
         const Time time = stop_time(v, a, limit);
         EXPECT_GE(time, kLeastStopTime);
         EXPECT_LE(to_seconds(time), 1e6);
-        const Time with_jerk =
-            stop_time_within({.jerk = {limit}}, kLeastStopTime, std::array{v}, std::array{a});
+        const Time with_jerk = stop_time(v, a, MotionLimits{.jerk = {limit}});
         EXPECT_GE(with_jerk, kLeastStopTime);
         EXPECT_LE(to_seconds(with_jerk), 1e6);
       }

@@ -68,6 +68,7 @@ RegionHeader board_header(std::size_t dimensions) {
   header.freeze_ahead = 1;
   header.min_entry = 1;
   header.time_scale = 1;
+  header.rules = kRules;
   const BoardLayout layout = BoardLayout::of(dimensions, 32, header.control, false);
   header.stride = layout.stride;
   header.region_bytes = layout.bytes;
@@ -87,7 +88,9 @@ TEST(HeaderLimits, ABoardWithInvalidLimitsIsRefused) {
          h.period[0] = 360;
          h.upper_bound[0] = 1;
        }},
-      {"action beyond the limits", [](RegionHeader& h) { h.beyond = 2; }}};
+      {"action beyond the limits", [](RegionHeader& h) { h.beyond = 2; }},
+      {"rules", [](RegionHeader& h) { h.rules = 0; }},
+      {"rules", [](RegionHeader& h) { h.rules = kRules + 1; }}};
   for (const auto& [message, damage] : cases) {
     RegionHeader header = board_header(2);
     damage(header);
