@@ -99,6 +99,16 @@ void add_returns(CLI::App& program, Asked& asked) {
   verb->add_option("--runs", asked.options.runs, "Number of runs instead of a duration");
 }
 
+void add_ends(CLI::App& program, Asked& asked) {
+  auto* verb = program.add_subcommand("ends", "Simulated lives that end in every way");
+  verb->add_option("--seconds", asked.options.seconds, "CPU time of each of the two threads")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--seed", asked.options.seed, "Seed of the first life; each next life adds 1")
+      ->capture_default_str();
+  verb->add_option("--runs", asked.options.runs, "Number of lives instead of a duration");
+}
+
 void add_requests(CLI::App& program, Asked& asked) {
   auto* verb = program.add_subcommand("requests", "Requests of a rate by many commanders");
   verb->add_option("--seconds", asked.options.seconds, "Duration")
@@ -116,6 +126,7 @@ Run run_of(const CLI::App& program, const Asked& asked) {
   if (asked.has_processes) return run_live_motions;
   if (program.got_subcommand("motions")) return run_motions;
   if (program.got_subcommand("returns")) return run_returns;
+  if (program.got_subcommand("ends")) return run_ends;
   if (program.got_subcommand("streams")) return run_streams;
   if (program.got_subcommand("stress")) return run_stress;
   if (program.got_subcommand("requests")) {
@@ -129,7 +140,7 @@ int run_program(int argc, char** argv) {
   program.require_subcommand(1);
   Asked asked{.options = {.command = joined(argc, argv)}};
   for (const auto& add :
-       {add_kill, add_stress, add_streams, add_motions, add_returns, add_requests}) {
+       {add_kill, add_stress, add_streams, add_ends, add_motions, add_returns, add_requests}) {
     add(program, asked);
   }
   for (CLI::App* verb : program.get_subcommands({})) {

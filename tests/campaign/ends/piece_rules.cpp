@@ -1,0 +1,345 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/campaign/ends/curve_watch.hpp"
+
+/// The rules of the pieces of a published curve, and of its end.
+namespace splinecast::campaign::ends {
+namespace {
+
+constexpr double kSlack = 1 + 1e-6;
+/// The first segments of a live stream that starts at rest are not compared with limits.
+constexpr ipc::Word kFirstCompared = 4;
+/// Longest time from the last waypoint, the finish and the rest before it, to the rest.
+constexpr Time kLatestRest = std::chrono::seconds(5);
+/// Length of the longest stop: one that limits would make longer exceeds them.
+constexpr double kLongestStop = 1e6;
+/// A longer entry may exceed the motion shown.
+constexpr double kLongEntry = 2.9;
+/// Path errors are not told for a shorter way.
+constexpr double kLeastWay = 1e-6;
+
+constexpr std::array kLimitNames{"velocity", "acceleration", "jerk"};
+
+bool has(const std::vector<double>& limits, std::size_t d) {
+  return !limits.empty() && limits[d] > 0;
+}
+
+}  // namespace
+
+void CurveWatch::check_piece(const Piece& piece, const Piece* former, bool finishes) {
+  if (limits_->empty() && piece.kind != SegmentKind::entry && !finishes) {
+    if (piece.kind != SegmentKind::stop) return;
+  }
+  const Peaks peaks = peaks_of(ranges_, piece, *limits_);
+  switch (piece.kind) {
+    case SegmentKind::stop:
+      return check_stop(piece, peaks);
+    case SegmentKind::entry:
+      return check_entry(piece, peaks, finishes);
+    case SegmentKind::hold:
+      return;
+    default:
+      if (!finishes) return check_spline(piece, peaks, former);
+      if (former == nullptr || former->kind != SegmentKind::spline || !knows_path_) return;
+      check_no_worse(piece, peaks, *former);
+      check_shown(piece, former, Rule::end_shown);
+  }
+}
+
+void CurveWatch::check_stop(const Piece& piece, const Peaks& peaks) {
+  tally_->count(Event::stops);
+  if (piece.seconds() >= kLongestStop) return breach(Rule::endless_stops, piece, "a stop");
+  bool passes_bound = false;
+  for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
+    const bool turns = ranges_.is_rotation(d);
+    for (std::size_t m = 0; m < kLimitNames.size(); ++m) {
+      double most = 1;
+      if (m == 0 && has(limits_->velocity, d) && !turns) {
+        most = std::max(most, std::abs(ranges_.value(piece, d, 1, 0)) / limits_->velocity[d]);
+      }
+      if (peaks.ratio[d][m] <= (m == 0 && turns ? HUGE_VAL : most * kSlack)) {
+        const double at_rate = peaks.ratio[d][m] * std::pow(plan_->rate, static_cast<int>(m) + 1);
+        if (m > 0 && plan_->rate > 1 && at_rate > kSlack) {
+          breach(Rule::law_rate, piece, kLimitNames[m]);
+        }
+        continue;
+      }
+      breach(turns ? Rule::rotation_stops : Rule::stop_limits, piece,
+             fmt::format("{} of dimension {}: {} times its limit", kLimitNames[m], d,
+                         peaks.ratio[d][m]));
+    }
+    if (turns) continue;
+    const double v0 = std::abs(ranges_.value(piece, d, 1, 0));
+    const double v = ranges_.range(piece, d, 1).size();
+    if (v > v0 * kSlack + 1e-9 * ranges_.scale(piece, d, 1)) {
+      breach(Rule::stop_slows, piece, fmt::format("dimension {}: {} from {}", d, v, v0));
+    }
+    const double x0 = ranges_.value(piece, d, 0, 0);
+    const Range& x = peaks.position[d];
+    const double rounding = 1e-9 * (1 + ranges_.scale(piece, d, 0));
+    passes_bound =
+        passes_bound ||
+        (!limits_->lower.empty() && x.least < std::min(limits_->lower[d], x0) - rounding) ||
+        (!limits_->upper.empty() && x.greatest > std::max(limits_->upper[d], x0) + rounding);
+  }
+  if (!passes_bound) return;
+  tally_->count(Event::stops_past_bounds);
+  if (summary_.exceeding == 0) breach(Rule::stop_bounds, piece, "a stop passes a bound");
+}
+
+void CurveWatch::check_entry(const Piece& piece, const Peaks& peaks, bool finishes) {
+  tally_->count(Event::entries);
+  const std::array<const std::vector<double>*, 2> all{&limits_->velocity, &limits_->acceleration};
+  for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
+    for (std::size_t m = 0; m < kLimitNames.size(); ++m) {
+      double most = 1;
+      if (m < 2 && has(*all[m], d)) {
+        const double begin = ranges_.is_rotation(d)
+                                 ? HUGE_VAL  // the solver's bound of it is not that of a rotation
+                                 : std::abs(ranges_.value(piece, d, static_cast<int>(m) + 1, 0));
+        most = std::max(most, begin / (*all[m])[d]);
+      }
+      if (m == 1 && most > kSlack && peaks.ratio[d][m] > kSlack && !ranges_.is_rotation(d)) {
+        breach(Rule::entry_begins, piece, "acceleration");
+      }
+      if (peaks.ratio[d][m] <= most * kSlack) continue;
+      breach(Rule::entry_limits, piece,
+             fmt::format("{} of dimension {}: {} times its limit, begins with {}", kLimitNames[m],
+                         d, peaks.ratio[d][m], most));
+    }
+  }
+  check_entry_bounds(piece, peaks, Time::max(), is_cut_ ? Rule::cut_bounds : Rule::entry_bounds);
+  check_shown(piece, nullptr, finishes ? Rule::end_shown : Rule::entry_shown);
+}
+
+/// An entry stays within the bounds or, outside of them, within the positions of the curve that it
+/// replaces; the entry that ends a curve stays within those up to `until`.
+void CurveWatch::check_entry_bounds(const Piece& piece, const Peaks& peaks, Time until, Rule rule) {
+  for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
+    if (ranges_.is_rotation(d)) continue;
+    const bool is_end = rule == Rule::end_within_path;
+    if (!is_end && limits_->lower.empty()) continue;
+    const double x0 = ranges_.value(piece, d, 0, 0);
+    const double x1 = ranges_.value(piece, d, 0, piece.seconds());
+    double least = is_end ? std::min(x0, x1) : std::min(limits_->lower[d], x0);
+    double greatest = is_end ? std::max(x0, x1) : std::max(limits_->upper[d], x0);
+    for (const Piece& old : old_) {
+      if (old.right <= piece.left || old.left >= until) continue;
+      const double from = old.left < piece.left ? to_seconds(piece.left - old.left) : 0;
+      const Range range = ranges_.range(old, d, 0, from);
+      least = std::min(least, range.least);
+      greatest = std::max(greatest, range.greatest);
+    }
+    const double rounding = 1e-7 * (greatest - least) + 1e-9 * ranges_.scale(piece, d, 0);
+    const Range& x = peaks.position[d];
+    if (std::isinf(greatest - least)) {
+      if (x.least >= least - 1e-9 * (1 + std::abs(least)) &&
+          x.greatest <= greatest + 1e-9 * (1 + std::abs(greatest))) {
+        continue;
+      }
+    }
+    if (x.least >= least - rounding && x.greatest <= greatest + rounding) continue;
+    breach(rule, piece,
+           fmt::format("dimension {}: {} to {}, allowed {} to {}", d, x.least, x.greatest, least,
+                       greatest));
+  }
+}
+
+/// Without a limit of acceleration, entries and ends keep what the motion has shown: here three
+/// times its largest values, where the solver takes quantiles. Motions that replace others are not
+/// compared.
+void CurveWatch::check_shown(const Piece& piece, const Piece* former, Rule rule) {
+  constexpr double kFactor = 3;
+  const bool is_long = piece.kind == SegmentKind::entry && piece.seconds() > kLongEntry;
+  if (is_long || is_replaced_) return;
+  const double stop = to_seconds(plan_->stream.window.stop_time);
+  for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
+    if (ranges_.is_rotation(d) || has(limits_->acceleration, d)) continue;
+    const double x0 = ranges_.value(piece, d, 0, 0);
+    const double x1 = ranges_.value(piece, d, 0, piece.seconds());
+    const double a0 = std::abs(ranges_.value(piece, d, 2, 0));
+    const double a1 = std::abs(ranges_.value(piece, d, 2, piece.seconds()));
+    double most = std::max({kFactor * acceleration_[d], kFactor * velocity_[d] / stop, a0, a1,
+                            6 * std::abs(x1 - x0), entered_[d], 1e-9});
+    if (former != nullptr) most = std::max(most, ranges_.range(*former, d, 2).size());
+    if (piece.kind != SegmentKind::entry) {
+      most = std::max({kFactor * acceleration_[d], kFactor * velocity_[d] / stop, 1e-9,
+                       former == nullptr ? 0 : ranges_.range(*former, d, 2).size()});
+    }
+    const double a = ranges_.range(piece, d, 2).size();
+    if (a <= most * kSlack) continue;
+    breach(rule, piece, fmt::format("dimension {}: acceleration {}, shown {}", d, a, most));
+  }
+}
+
+/// A spline that exceeds a limit is counted.
+void CurveWatch::check_spline(const Piece& piece, const Peaks& peaks, const Piece* former) {
+  if (piece.number < kFirstCompared || summary_.exceeding > 0) return;
+  const Peaks before = former == nullptr ? Peaks{} : peaks_of(ranges_, *former, *limits_);
+  for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
+    for (std::size_t m = 0; m < kLimitNames.size(); ++m) {
+      if (peaks.ratio[d][m] <= kSlack || before.ratio[d][m] > 1) continue;
+      return breach(Rule::excess_counted, piece,
+                    fmt::format("{} of dimension {}: {} times its limit", kLimitNames[m], d,
+                                peaks.ratio[d][m]));
+    }
+  }
+}
+
+/// A piece of an end exceeds no limit that the path keeps, and none more than the path.
+void CurveWatch::check_no_worse(const Piece& piece, const Peaks& peaks, const Piece& former) {
+  const Peaks before = peaks_of(ranges_, former, *limits_);
+  for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
+    for (std::size_t m = 0; m < kLimitNames.size(); ++m) {
+      // In one kind of limit, the largest excess of all dimensions counts.
+      double most = 1;
+      for (std::size_t e = 0; e < ranges_.dimensions(); ++e) {
+        most = std::max(most, before.ratio[e][m]);
+      }
+      if (peaks.ratio[d][m] <= most * kSlack) continue;
+      breach(Rule::end_limits, piece,
+             fmt::format("{} of dimension {}: {} times its limit, without the end {}",
+                         kLimitNames[m], d, peaks.ratio[d][m], before.ratio[d][m]));
+    }
+    if (ranges_.is_rotation(d) || limits_->lower.empty()) continue;
+    const Range& x = peaks.position[d];
+    const Range& old = before.position[d];
+    const double rounding = 1e-9 * (1 + ranges_.scale(piece, d, 0));
+    const double low = std::max(limits_->lower[d] - x.least, 0.0);
+    const double high = std::max(x.greatest - limits_->upper[d], 0.0);
+    double most = 0;
+    for (std::size_t e = 0; e < ranges_.dimensions(); ++e) {
+      most = std::max({most, limits_->lower[e] - before.position[e].least,
+                       before.position[e].greatest - limits_->upper[e]});
+    }
+    if (most > 0) tally_->count(Event::ends_outside_bounds);
+    if (std::max(low, high) <= std::max(most, 0.0) * kSlack + rounding) continue;
+    breach(
+        Rule::end_bounds, piece,
+        fmt::format("dimension {}: {} to {}, without the end {} to {}, bounds {} to {}", d, x.least,
+                    x.greatest, old.least, old.greatest, limits_->lower[d], limits_->upper[d]));
+  }
+}
+
+/// The time of the newest waypoint that the solver has accepted.
+Time CurveWatch::newest_waypoint() const { return summary_.newest_time; }
+
+/// Whether the curve rests where its newest waypoint is.
+bool CurveWatch::rests_at_newest() const {
+  const Motion& motion = plan_->motion;
+  const auto found = std::ranges::find(motion.times, newest_waypoint());
+  if (found == motion.times.end()) return false;
+  const auto i = static_cast<std::size_t>(found - motion.times.begin());
+  for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
+    if (plan_->stream.dimensions[d].kind != DimensionKind::linear) continue;
+    const double off =
+        ranges_.value(last(), d, 0, last().seconds()) - motion.value(i, 0, ranges_.dimensions())[d];
+    if (std::abs(off) > 1e-9 * (1 + ranges_.scale(last(), d, 0))) return false;
+  }
+  return true;
+}
+
+/// The time that the limits require from the begin of a piece to its end, from rest to rest.
+double CurveWatch::seconds_to(const Piece& piece) const {
+  double most = 0;
+  for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
+    const double way =
+        std::abs(ranges_.value(piece, d, 0, piece.seconds()) - ranges_.value(piece, d, 0, 0));
+    const double v = std::abs(ranges_.value(piece, d, 1, 0));
+    if (has(limits_->velocity, d)) most = std::max(most, 1.9 * way / limits_->velocity[d]);
+    if (has(limits_->acceleration, d)) {
+      most = std::max({most, std::sqrt(5.8 * way / limits_->acceleration[d]),
+                       2 * v / limits_->acceleration[d]});
+    }
+    if (has(limits_->jerk, d)) {
+      most = std::max(
+          {most, std::cbrt(60 * way / limits_->jerk[d]), std::sqrt(6 * v / limits_->jerk[d])});
+    }
+  }
+  return most;
+}
+
+/// The end is the one that the summary tells, and the curve comes to rest in time.
+void CurveWatch::check_end() {
+  using ipc::EndKind;
+  const Piece& piece = last();
+  const EndKind told = summary_.ending();
+  tally_->count_end(told, summary_.end_lateness);
+  const bool can_tell =
+      !is_replaced_ && summary_.refused == 0 && !plan_->stream.window.interpolant.method->smooths();
+  const bool is_there = rests_at_newest();
+  bool is_right = told != EndKind::none;
+  if (told == EndKind::slowed) {
+    is_right = piece.kind == SegmentKind::slowed && (!can_tell || is_there) &&
+               summary_.end_lateness == piece.right - newest_waypoint();
+    measure_slowing();
+  } else if (told == EndKind::entered) {
+    is_right = piece.kind == SegmentKind::entry && (!can_tell || is_there) &&
+               summary_.end_lateness == piece.right - newest_waypoint();
+    const bool begins_before = piece.left < newest_waypoint();
+    const Piece* met = old_.empty() ? nullptr : &at(old_, piece.left);
+    const bool is_from_knot = begins_before && met != nullptr && met->kind == SegmentKind::spline;
+    if (is_from_knot && knows_path_) {
+      check_entry_bounds(piece, peaks_of(ranges_, piece, *limits_), newest_waypoint(),
+                         Rule::end_within_path);
+    }
+    if (met != nullptr && met->kind == SegmentKind::hold) tally_->count(Event::ends_from_rest);
+  } else if (told == EndKind::stopped || told == EndKind::in_stop) {
+    is_right = piece.kind == SegmentKind::stop || piece.kind == SegmentKind::hold;
+  } else if (told == EndKind::as_requested && piece.kind == SegmentKind::spline) {
+    is_right = !can_tell || (is_there && piece.right == newest_waypoint());
+  }
+  if (!is_right) {
+    breach(
+        Rule::end_kind, piece,
+        fmt::format("told {}, rests at the newest waypoint: {}", static_cast<int>(told), is_there));
+  }
+  const Time old_end = old_.empty() ? Time::min() : old_.back().right;
+  const Time due = std::max({newest_waypoint(), summary_.committed, old_end});
+  if (piece.right <= due + kLatestRest + from_seconds(3 * seconds_to(piece))) return;
+  breach(Rule::comes_to_rest, piece,
+         fmt::format("{} s late, end {}", to_seconds(piece.right - due), static_cast<int>(told)));
+}
+
+/// Compares the slowed pieces with the path at the same way along it, relative to the size of the
+/// path in linear and periodic dimensions.
+void CurveWatch::measure_slowing() {
+  const auto first = std::ranges::find(pieces_, SegmentKind::slowed, &Piece::kind);
+  if (first == pieces_.end() || old_.empty() || !knows_path_) return;
+  const Time begin = first->left;
+  const double length = to_seconds(last().right - begin);
+  double worst = 0;
+  std::array<Range, kMostDimensions> way;
+  way.fill({.least = HUGE_VAL, .greatest = -HUGE_VAL});
+  for (auto piece = first; piece != pieces_.end(); ++piece) {
+    constexpr int kLooks = 8;
+    for (int i = 0; i < kLooks; ++i) {
+      const double u = piece->seconds() * (i + 0.5) / kLooks;
+      const double share = (to_seconds(piece->left - begin) + u) / length;
+      const double s = length * (share - share * share * share * (1 - share / 2));
+      const Piece& path = at(old_, begin + from_seconds(s));
+      const double v = s - to_seconds(path.left - begin);
+      double squares = 0;
+      for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
+        if (ranges_.is_rotation(d)) continue;
+        const double x = ranges_.value(path, d, 0, v);
+        const double off = ranges_.value(*piece, d, 0, u) - x;
+        squares += off * off;
+        way[d] = {std::min(way[d].least, x), std::max(way[d].greatest, x)};
+      }
+      worst = std::max(worst, std::sqrt(squares));
+    }
+  }
+  double squares = 0;
+  for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
+    if (ranges_.is_rotation(d)) continue;
+    squares += (way[d].greatest - way[d].least) * (way[d].greatest - way[d].least);
+  }
+  const double size = std::sqrt(squares);
+  if (size > kLeastWay) tally_->add_path_error(worst / size);
+}
+
+}  // namespace splinecast::campaign::ends
