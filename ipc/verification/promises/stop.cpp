@@ -39,6 +39,19 @@ bool keeps_limits(const MotionLimits& limits, const core::Segment& stop) noexcep
   return ratio(LimitKind::acceleration) <= 1 + kSlack && ratio(LimitKind::jerk) <= 1 + kSlack;
 }
 
+/// The longest time that the limits may have needed. A stop records the acceleration with which it
+/// begins: the limit, if the motion decelerated beyond the limit, and then it needs longer.
+Time longest_needed(const MotionLimits& limits, const Instant& from) noexcept {
+  std::array<double, kMaxDimensions> values;  // NOLINT(*-member-init)
+  const auto acceleration = std::span(values).first(from.velocity.size());
+  for (std::size_t d = 0; d < acceleration.size(); ++d) {
+    const double a = from.acceleration[d];
+    const bool is_at_limit = std::abs(a) >= core::limit_of(limits.acceleration, d) * (1 - kSlack);
+    acceleration[d] = is_at_limit ? 2 * a : a;
+  }
+  return core::least_stop_time(limits, {from.time, from.position, from.velocity, acceleration});
+}
+
 }  // namespace
 
 Time former_stop_time(const core::StopRules& rules, const Instant& from) noexcept {
@@ -67,7 +80,7 @@ std::string_view broken_promise(const core::StopRules& rules, const Instant& fro
   if (!keeps_limits(limits, stop)) return "limits of a stop";
   if (part == StopPart::remainder) return {};
   const Time length = stop.right - stop.left;
-  const Time least = core::least_stop_time(limits, from);
+  const Time least = longest_needed(limits, from);
   const Time most = std::max(rules.stop_time, least);
   if (length > longer(most)) return "length of a stop: too long";
   if (passes_bound(limits, from, length) && passes_bound(limits, from, shorter(length)) &&

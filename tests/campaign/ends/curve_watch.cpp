@@ -105,6 +105,13 @@ void CurveWatch::look(Time rests) {
     return tally_->breach(Rule::samples,
                           fmt::format("no piece {}, revision {}", number, summary_.revision));
   }
+  take_fresh(from, settled);
+  check_rest();
+  check_fresh(before);
+}
+
+/// Replaces the pieces from one on by those that have been read.
+void CurveWatch::take_fresh(std::vector<Piece>::iterator from, Time settled) {
   old_.assign(from, pieces_.end());
   pieces_.erase(from, pieces_.end());
   const std::size_t first = pieces_.size();
@@ -113,7 +120,10 @@ void CurveWatch::look(Time rests) {
   for (std::size_t i = std::max<std::size_t>(first, 1); i < pieces_.size(); ++i) {
     check_joint(pieces_[i - 1], pieces_[i]);
   }
-  check_rest();
+}
+
+/// Checks the pieces that this revision has changed.
+void CurveWatch::check_fresh(const ipc::Summary& before) {
   const bool finishes = summary_.finished && !before.finished;
   // Else the curve before is not the path without the end.
   is_cut_ = summary_.run != before.run && before.newest > 0;

@@ -40,6 +40,8 @@ class CurveWatch {
   [[nodiscard]] static const Piece& at(std::span<const Piece> pieces, Time t) noexcept;
   [[nodiscard]] static const Piece* find(std::span<const Piece> pieces, ipc::Word number) noexcept;
   [[nodiscard]] bool read(ipc::Word from, std::vector<Piece>& out);
+  void take_fresh(std::vector<Piece>::iterator from, Time settled);
+  void check_fresh(const ipc::Summary& before);
   void check_counts(const ipc::Summary& before);
   void check_excesses(const ipc::Summary& before, Time settled);
   void check_settled(std::span<const Piece> old, Time settled);

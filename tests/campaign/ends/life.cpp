@@ -14,8 +14,8 @@ namespace {
 constexpr int kMostSteps = 30'000;
 /// Maximum number of steps from a finish to its end.
 constexpr int kMostStepsOfFinish = 20'000;
-/// A life without a finish is over this long after its curve rests, and after so many steps: within
-/// tight limits, a stop can take hours.
+/// A life without a finish is over this long after its curve rests, and after this number of steps:
+/// within tight limits, a stop can take hours.
 constexpr int kMostStepsWithoutFinish = 300;
 constexpr Time kRests = std::chrono::milliseconds(20);
 

@@ -18,7 +18,7 @@ constexpr Time kLatestRest = std::chrono::seconds(5);
 constexpr double kLongestStop = 1e6;
 /// A longer entry may exceed the motion shown.
 constexpr double kLongEntry = 2.9;
-/// Path errors are not told for a shorter way.
+/// Path errors are not reported for a shorter way.
 constexpr double kLeastWay = 1e-6;
 
 constexpr std::array kLimitNames{"velocity", "acceleration", "jerk"};
@@ -262,21 +262,21 @@ double CurveWatch::seconds_to(const Piece& piece) const {
   return most;
 }
 
-/// The end is the one that the summary tells, and the curve comes to rest in time.
+/// The end is the one that the summary reports, and the curve comes to rest in time.
 void CurveWatch::check_end() {
   using ipc::EndKind;
   const Piece& piece = last();
-  const EndKind told = summary_.ending();
-  tally_->count_end(told, summary_.end_lateness);
+  const EndKind reported = summary_.ending();
+  tally_->count_end(reported, summary_.end_lateness);
   const bool can_tell =
       !is_replaced_ && summary_.refused == 0 && !plan_->stream.window.interpolant.method->smooths();
   const bool is_there = rests_at_newest();
-  bool is_right = told != EndKind::none;
-  if (told == EndKind::slowed) {
+  bool is_right = reported != EndKind::none;
+  if (reported == EndKind::slowed) {
     is_right = piece.kind == SegmentKind::slowed && (!can_tell || is_there) &&
                summary_.end_lateness == piece.right - newest_waypoint();
     measure_slowing();
-  } else if (told == EndKind::entered) {
+  } else if (reported == EndKind::entered) {
     is_right = piece.kind == SegmentKind::entry && (!can_tell || is_there) &&
                summary_.end_lateness == piece.right - newest_waypoint();
     const bool begins_before = piece.left < newest_waypoint();
@@ -287,21 +287,22 @@ void CurveWatch::check_end() {
                          Rule::end_within_path);
     }
     if (met != nullptr && met->kind == SegmentKind::hold) tally_->count(Event::ends_from_rest);
-  } else if (told == EndKind::stopped || told == EndKind::in_stop) {
+  } else if (reported == EndKind::stopped || reported == EndKind::in_stop) {
     is_right = piece.kind == SegmentKind::stop || piece.kind == SegmentKind::hold;
-  } else if (told == EndKind::as_requested && piece.kind == SegmentKind::spline) {
+  } else if (reported == EndKind::as_requested && piece.kind == SegmentKind::spline) {
     is_right = !can_tell || (is_there && piece.right == newest_waypoint());
   }
   if (!is_right) {
-    breach(
-        Rule::end_kind, piece,
-        fmt::format("told {}, rests at the newest waypoint: {}", static_cast<int>(told), is_there));
+    breach(Rule::end_kind, piece,
+           fmt::format("reported {}, rests at the newest waypoint: {}", static_cast<int>(reported),
+                       is_there));
   }
   const Time old_end = old_.empty() ? Time::min() : old_.back().right;
   const Time due = std::max({newest_waypoint(), summary_.committed, old_end});
   if (piece.right <= due + kLatestRest + from_seconds(3 * seconds_to(piece))) return;
-  breach(Rule::comes_to_rest, piece,
-         fmt::format("{} s late, end {}", to_seconds(piece.right - due), static_cast<int>(told)));
+  breach(
+      Rule::comes_to_rest, piece,
+      fmt::format("{} s late, end {}", to_seconds(piece.right - due), static_cast<int>(reported)));
 }
 
 /// Compares the slowed pieces with the path at the same way along it, relative to the size of the

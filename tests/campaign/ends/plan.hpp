@@ -15,7 +15,7 @@ namespace splinecast::campaign::ends {
 /// How a life ends.
 enum class Ending : std::uint8_t {
   finish,            ///< by a finish
-  stop,              ///< by a stop that was asked for, and nothing else
+  stop,              ///< by a requested stop, and nothing else
   stop_then_finish,  ///< by both, as a signal ends a replay
   cancel,            ///< by a replacement of its motion, and a finish
   killed,            ///< its producer dies
@@ -38,7 +38,7 @@ enum class Walls : std::uint8_t {
   none,
   wide,     ///< far away
   touched,  ///< at the extremes of the waypoints
-  behind,   ///< just behind the last waypoint, in the direction in which it is reached
+  past,     ///< just past the last waypoint, in the direction in which it is reached
   passed,   ///< within the range of the waypoints
 };
 inline constexpr std::size_t kWalls = 5;

@@ -12,8 +12,8 @@
 namespace splinecast::campaign::ends {
 namespace {
 
-/// The rules in force. A rule that is not in force yet is checked, and its violations are told in
-/// the measurements of the result.
+/// The rules in force. A rule that is not in force yet is checked, and its violations are reported
+/// in the measurements of the result.
 constexpr std::array<RuleRow, kRules> kRows{{
     {"curves that do not end at rest"},
     {"requested ends that do not rest", false},
@@ -39,7 +39,7 @@ constexpr std::array<RuleRow, kRules> kRows{{
     {"curves that do not come to rest in time"},
     {"summaries whose counters do not add up"},
     {"waypoints neither interpolated nor passed over"},
-    {"ends of another kind than told"},
+    {"ends of another kind than reported"},
     {"samples that differ from the published curve"},
     {"finishes without an end"},
 }};

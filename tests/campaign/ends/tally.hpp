@@ -47,11 +47,11 @@ inline constexpr std::size_t kRules = 27;
 /// What the lives of a campaign have to show.
 struct RuleRow {
   std::string_view violation;
-  bool is_in_force = true;  ///< else its violations are told, but are no finding
+  bool is_in_force = true;  ///< else its violations are reported only
 };
 [[nodiscard]] const RuleRow& row_of(Rule rule) noexcept;
 
-/// Events that a long campaign has to provoke, besides those of LifePlan.
+/// Events that a long campaign has to provoke, in addition to those of LifePlan.
 enum class Event : std::uint8_t {
   revisions,
   takeovers,
