@@ -266,7 +266,7 @@ double CurveWatch::seconds_to(const Piece& piece) const {
 void CurveWatch::check_end() {
   using ipc::EndKind;
   const Piece& piece = last();
-  const EndKind reported = summary_.ending();
+  const auto reported = summary_.ending();
   tally_->count_end(reported, summary_.end_lateness);
   const bool can_tell =
       !is_replaced_ && summary_.refused == 0 && !plan_->stream.window.interpolant.method->smooths();
@@ -279,10 +279,9 @@ void CurveWatch::check_end() {
   } else if (reported == EndKind::entered) {
     is_right = piece.kind == SegmentKind::entry && (!can_tell || is_there) &&
                summary_.end_lateness == piece.right - newest_waypoint();
-    const bool begins_before = piece.left < newest_waypoint();
     const Piece* met = old_.empty() ? nullptr : &at(old_, piece.left);
-    const bool is_from_knot = begins_before && met != nullptr && met->kind == SegmentKind::spline;
-    if (is_from_knot && knows_path_) {
+    if (knows_path_ && met != nullptr && met->kind == SegmentKind::spline &&
+        piece.left < newest_waypoint()) {
       check_entry_bounds(piece, peaks_of(ranges_, piece, *limits_), newest_waypoint(),
                          Rule::end_within_path);
     }
