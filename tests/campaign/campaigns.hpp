@@ -49,7 +49,7 @@ struct CampaignOptions {
 
 /// Random lives of simulated live streams, one per seed from `seed` on, which end in every way.
 /// Checks on every published curve that it ends at rest within limits and bounds, that every item
-/// is accounted for, and that the end is the one reported. `seconds` is the CPU time of each of its
+/// is accounted for, and that the end is the reported one. `seconds` is the CPU time of each of its
 /// two threads. If `runs` is 0, or large enough, it also fails if an event that it must provoke
 /// never happened.
 [[nodiscard]] Result run_ends(const CampaignOptions& options);

@@ -68,6 +68,7 @@ bool CurveWatch::read(ipc::Word from, std::vector<Piece>& out) {
     Piece& piece = out.emplace_back(Piece{.number = segment_.number(),
                                           .left = segment_.left(),
                                           .right = segment_.right(),
+                                          .natural_right = segment_.natural_right(),
                                           .order = segment_.order(),
                                           .kind = segment_.kind(),
                                           .is_corner = segment_.left_knot().note.is_corner});
@@ -96,6 +97,14 @@ void CurveWatch::look(Time rests) {
   check_counts(before);
   const Time settled = before.newest > 0 ? std::min(before.settled_until, rests) : Time::min();
   check_excesses(before, settled);
+  is_cut_ = summary_.run != before.run && before.newest > 0;
+  // Else the curve before is not the path without the end.
+  knows_path_ = before.knots == summary_.knots && before.newest > 0;
+  check_curve(settled, summary_.finished && !before.finished);
+}
+
+/// Reads what had not settled, and checks it.
+void CurveWatch::check_curve(Time settled, bool finishes) {
   const auto first_number = std::max<ipc::Word>(summary_.first, 1);
   auto from = std::ranges::upper_bound(pieces_, settled, {}, &Piece::left);
   if (from != pieces_.begin()) --from;
@@ -105,13 +114,6 @@ void CurveWatch::look(Time rests) {
     return tally_->breach(Rule::samples,
                           fmt::format("no piece {}, revision {}", number, summary_.revision));
   }
-  take_fresh(from, settled);
-  check_rest();
-  check_fresh(before);
-}
-
-/// Replaces the pieces from one on by those that have been read.
-void CurveWatch::take_fresh(std::vector<Piece>::iterator from, Time settled) {
   old_.assign(from, pieces_.end());
   pieces_.erase(from, pieces_.end());
   const std::size_t first = pieces_.size();
@@ -120,14 +122,7 @@ void CurveWatch::take_fresh(std::vector<Piece>::iterator from, Time settled) {
   for (std::size_t i = std::max<std::size_t>(first, 1); i < pieces_.size(); ++i) {
     check_joint(pieces_[i - 1], pieces_[i]);
   }
-}
-
-/// Checks the pieces that this revision has changed.
-void CurveWatch::check_fresh(const ipc::Summary& before) {
-  const bool finishes = summary_.finished && !before.finished;
-  // Else the curve before is not the path without the end.
-  is_cut_ = summary_.run != before.run && before.newest > 0;
-  knows_path_ = before.knots == summary_.knots && before.newest > 0;
+  check_rest();
   for (const Piece& piece : fresh_) {
     const Piece* former = find(old_, piece.number);
     if (former != nullptr && is_same(*former, piece)) continue;
@@ -281,10 +276,15 @@ void CurveWatch::check_met() {
   const bool may_end_there = !meets_last && is_at(known - 1, last(), last().seconds());
   const ipc::Word interpolated = summary_.interpolated();
   if (met == interpolated || (may_end_there && met + 1 == interpolated)) return;
-  tally_->breach(Rule::waypoints_accounted,
-                 fmt::format("{} waypoints met, {} accepted, {} passed over, end {}, lateness {}",
-                             met, summary_.knots, summary_.passed_over, summary_.end_kind,
-                             summary_.end_lateness.count()));
+  const bool is_elsewhere = summary_.ending() == ipc::EndKind::as_requested &&
+                            last().kind == SegmentKind::stop && !may_end_there;
+  const Rule rule = is_elsewhere              ? Rule::rest_at_begin
+                    : met == interpolated + 1 ? Rule::passed_exactly
+                                              : Rule::waypoints_accounted;
+  tally_->breach(
+      rule, fmt::format("{} waypoints met, {} accepted, {} passed over, end {}, lateness {}", met,
+                        summary_.knots, summary_.passed_over, summary_.end_kind,
+                        summary_.end_lateness.count()));
 }
 
 }  // namespace splinecast::campaign::ends

@@ -40,8 +40,7 @@ class CurveWatch {
   [[nodiscard]] static const Piece& at(std::span<const Piece> pieces, Time t) noexcept;
   [[nodiscard]] static const Piece* find(std::span<const Piece> pieces, ipc::Word number) noexcept;
   [[nodiscard]] bool read(ipc::Word from, std::vector<Piece>& out);
-  void take_fresh(std::vector<Piece>::iterator from, Time settled);
-  void check_fresh(const ipc::Summary& before);
+  void check_curve(Time settled, bool finishes);
   void check_counts(const ipc::Summary& before);
   void check_excesses(const ipc::Summary& before, Time settled);
   void check_settled(std::span<const Piece> old, Time settled);
@@ -50,8 +49,10 @@ class CurveWatch {
   void show(const Piece& piece);
   void check_piece(const Piece& piece, const Piece* former, bool finishes);
   void check_stop(const Piece& piece, const Peaks& peaks);
+  void check_stop_limits(const Piece& piece, const Peaks& peaks, std::size_t d);
   void check_entry(const Piece& piece, const Peaks& peaks, bool finishes);
   void check_entry_bounds(const Piece& piece, const Peaks& peaks, Time until, Rule rule);
+  [[nodiscard]] double shown(std::size_t d) const;
   void check_shown(const Piece& piece, const Piece* former, Rule rule);
   void check_spline(const Piece& piece, const Peaks& peaks, const Piece* former);
   void check_no_worse(const Piece& piece, const Peaks& peaks, const Piece& former);
@@ -59,6 +60,8 @@ class CurveWatch {
   [[nodiscard]] bool is_at(std::size_t waypoint, const Piece& piece, double u) const;
   void check_met();
   void check_end();
+  void check_last_entry();
+  [[nodiscard]] bool is_of_kind(ipc::EndKind kind) const;
   [[nodiscard]] bool rests_at_newest() const;
   [[nodiscard]] Time newest_waypoint() const;
   void measure_slowing();

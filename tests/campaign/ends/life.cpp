@@ -12,9 +12,11 @@ namespace {
 
 /// A life that takes more steps is left.
 constexpr int kMostSteps = 30'000;
+/// Number of steps after a finish in which solvers may die.
+constexpr int kMostStepsWithDeaths = 20;
 /// Maximum number of steps from a finish to its end.
-constexpr int kMostStepsOfFinish = 20'000;
-/// A life without a finish is over this long after its curve rests, and after this number of steps:
+constexpr int kMostStepsOfFinish = 2'000;
+/// A life without a finish is over this long after its curve rests, or after this number of steps:
 /// within tight limits, a stop can take hours.
 constexpr int kMostStepsWithoutFinish = 300;
 constexpr Time kRests = std::chrono::milliseconds(20);
@@ -171,7 +173,9 @@ void Life::finish() {
 void Life::step() {
   const bool waits = has_asked_ && !watch_.summary().finished;
   const bool has_work = waits || stream_.ring.reader.written() != stream_.solver.seen();
-  if (random_.chance(has_work ? plan_.takeover : plan_.takeover / 20)) {
+  // A takeover begins a search again: too many of them would keep it from ending.
+  const bool may_die = steps_after_finish_ < kMostStepsWithDeaths;
+  if (may_die && random_.chance(has_work ? plan_.takeover : plan_.takeover / 20)) {
     if (waits && steps_after_finish_ > 0) tally_.count(Event::takeovers_in_search);
     if (random_.chance(0.2)) {
       step_and_die();

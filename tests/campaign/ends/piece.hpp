@@ -19,6 +19,7 @@ struct Piece {
   ipc::Word number = 0;
   Time left{};
   Time right{};
+  Time natural_right{};  ///< where it would end if it had not been cut
   int order = 0;
   SegmentKind kind{};
   bool is_corner = false;  ///< it begins at rest, although the piece before it moves

@@ -11,14 +11,16 @@ namespace {
 
 constexpr double kSlack = 1 + 1e-6;
 /// The first segments of a live stream that starts at rest are not compared with limits.
-constexpr ipc::Word kFirstCompared = 4;
+constexpr std::size_t kFirstCompared = 3;
 /// Longest time from the last waypoint, the finish and the rest before it, to the rest.
 constexpr Time kLatestRest = std::chrono::seconds(5);
+/// The same for an end by an entry.
+constexpr Time kLatestEntry = std::chrono::seconds(60);
 /// Length of the longest stop: one that limits would make longer exceeds them.
 constexpr double kLongestStop = 1e6;
 /// A longer entry may exceed the motion shown.
 constexpr double kLongEntry = 2.9;
-/// Path errors are not reported for a shorter way.
+/// Path errors are not measured for a shorter way.
 constexpr double kLeastWay = 1e-6;
 
 constexpr std::array kLimitNames{"velocity", "acceleration", "jerk"};
@@ -52,26 +54,10 @@ void CurveWatch::check_piece(const Piece& piece, const Piece* former, bool finis
 void CurveWatch::check_stop(const Piece& piece, const Peaks& peaks) {
   tally_->count(Event::stops);
   if (piece.seconds() >= kLongestStop) return breach(Rule::endless_stops, piece, "a stop");
+  for (std::size_t d = 0; d < ranges_.dimensions(); ++d) check_stop_limits(piece, peaks, d);
   bool passes_bound = false;
   for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
-    const bool turns = ranges_.is_rotation(d);
-    for (std::size_t m = 0; m < kLimitNames.size(); ++m) {
-      double most = 1;
-      if (m == 0 && has(limits_->velocity, d) && !turns) {
-        most = std::max(most, std::abs(ranges_.value(piece, d, 1, 0)) / limits_->velocity[d]);
-      }
-      if (peaks.ratio[d][m] <= (m == 0 && turns ? HUGE_VAL : most * kSlack)) {
-        const double at_rate = peaks.ratio[d][m] * std::pow(plan_->rate, static_cast<int>(m) + 1);
-        if (m > 0 && plan_->rate > 1 && at_rate > kSlack) {
-          breach(Rule::law_rate, piece, kLimitNames[m]);
-        }
-        continue;
-      }
-      breach(turns ? Rule::rotation_stops : Rule::stop_limits, piece,
-             fmt::format("{} of dimension {}: {} times its limit", kLimitNames[m], d,
-                         peaks.ratio[d][m]));
-    }
-    if (turns) continue;
+    if (ranges_.is_rotation(d)) continue;
     const double v0 = std::abs(ranges_.value(piece, d, 1, 0));
     const double v = ranges_.range(piece, d, 1).size();
     if (v > v0 * kSlack + 1e-9 * ranges_.scale(piece, d, 1)) {
@@ -88,6 +74,31 @@ void CurveWatch::check_stop(const Piece& piece, const Peaks& peaks) {
   if (!passes_bound) return;
   tally_->count(Event::stops_past_bounds);
   if (summary_.exceeding == 0) breach(Rule::stop_bounds, piece, "a stop passes a bound");
+}
+
+/// In a stop, a velocity may begin beyond its limit.
+void CurveWatch::check_stop_limits(const Piece& piece, const Peaks& peaks, std::size_t d) {
+  const bool turns = ranges_.is_rotation(d);
+  const bool follows_entry = std::ranges::any_of(pieces_, [&](const Piece& other) {
+    return other.right == piece.left && other.kind == SegmentKind::entry;
+  });
+  for (std::size_t m = turns ? 1 : 0; m < kLimitNames.size(); ++m) {
+    double most = 1;
+    if (m == 0 && has(limits_->velocity, d)) {
+      most = std::max(most, std::abs(ranges_.value(piece, d, 1, 0)) / limits_->velocity[d]);
+    }
+    const double ratio = peaks.ratio[d][m];
+    const double at_rate = ratio * std::pow(plan_->rate, static_cast<int>(m) + 1);
+    if (ratio > most * kSlack) {
+      breach(turns           ? Rule::rotation_stops
+             : follows_entry ? Rule::entered_stop_limits
+                             : Rule::stop_limits,
+             piece,
+             fmt::format("{} of dimension {}: {} times its limit", kLimitNames[m], d, ratio));
+    } else if (m > 0 && plan_->rate > 1 && at_rate > kSlack) {
+      breach(Rule::law_rate, piece, kLimitNames[m]);
+    }
+  }
 }
 
 void CurveWatch::check_entry(const Piece& piece, const Peaks& peaks, bool finishes) {
@@ -148,36 +159,50 @@ void CurveWatch::check_entry_bounds(const Piece& piece, const Peaks& peaks, Time
   }
 }
 
-/// Without a limit of acceleration, entries and ends keep what the motion has shown: here three
-/// times its largest values, where the solver takes quantiles. Motions that replace others are not
-/// compared.
-void CurveWatch::check_shown(const Piece& piece, const Piece* former, Rule rule) {
+/// The largest acceleration that a motion has shown: here three times its largest values, where the
+/// solver takes quantiles.
+double CurveWatch::shown(std::size_t d) const {
   constexpr double kFactor = 3;
-  const bool is_long = piece.kind == SegmentKind::entry && piece.seconds() > kLongEntry;
-  if (is_long || is_replaced_) return;
+  constexpr double kLeast = 1e-9;
   const double stop = to_seconds(plan_->stream.window.stop_time);
+  return std::max({kFactor * acceleration_[d], kFactor * velocity_[d] / stop, kLeast});
+}
+
+/// Without a limit of acceleration, entries and ends keep what the motion has shown. Motions that
+/// replace others are not compared.
+void CurveWatch::check_shown(const Piece& piece, const Piece* former, Rule rule) {
+  constexpr double kShownSlack = 1.25;
+  const bool is_entry = piece.kind == SegmentKind::entry;
+  const bool is_long = is_entry && to_seconds(piece.natural_right - piece.left) > kLongEntry;
+  if (is_long || is_replaced_) return;
+  double worst = 1;  // of the path without the end
+  for (std::size_t d = 0; d < ranges_.dimensions() && former != nullptr; ++d) {
+    if (ranges_.is_rotation(d)) continue;
+    const double limit = has(limits_->acceleration, d) ? limits_->acceleration[d] : shown(d);
+    worst = std::max(worst, ranges_.range(*former, d, 2).size() / limit);
+  }
   for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
     if (ranges_.is_rotation(d) || has(limits_->acceleration, d)) continue;
-    const double x0 = ranges_.value(piece, d, 0, 0);
-    const double x1 = ranges_.value(piece, d, 0, piece.seconds());
-    const double a0 = std::abs(ranges_.value(piece, d, 2, 0));
-    const double a1 = std::abs(ranges_.value(piece, d, 2, piece.seconds()));
-    double most = std::max({kFactor * acceleration_[d], kFactor * velocity_[d] / stop, a0, a1,
-                            6 * std::abs(x1 - x0), entered_[d], 1e-9});
-    if (former != nullptr) most = std::max(most, ranges_.range(*former, d, 2).size());
-    if (piece.kind != SegmentKind::entry) {
-      most = std::max({kFactor * acceleration_[d], kFactor * velocity_[d] / stop, 1e-9,
-                       former == nullptr ? 0 : ranges_.range(*former, d, 2).size()});
+    double most = worst * shown(d);
+    if (is_entry) {
+      const double end = piece.seconds();
+      const double way = ranges_.value(piece, d, 0, end) - ranges_.value(piece, d, 0, 0);
+      most =
+          std::max({most, 6 * std::abs(way), entered_[d], std::abs(ranges_.value(piece, d, 2, 0)),
+                    std::abs(ranges_.value(piece, d, 2, end))});
     }
     const double a = ranges_.range(piece, d, 2).size();
-    if (a <= most * kSlack) continue;
+    if (a <= most * kShownSlack) continue;
     breach(rule, piece, fmt::format("dimension {}: acceleration {}, shown {}", d, a, most));
   }
 }
 
 /// A spline that exceeds a limit is counted.
 void CurveWatch::check_spline(const Piece& piece, const Peaks& peaks, const Piece* former) {
-  if (piece.number < kFirstCompared || summary_.exceeding > 0) return;
+  const auto& times = plan_->motion.times;
+  const Time compared = times[std::min(kFirstCompared, times.size() - 1)];
+  const bool is_first = piece.left < compared || piece.number <= kFirstCompared;
+  if (is_first || summary_.exceeding > 0) return;
   const Peaks before = former == nullptr ? Peaks{} : peaks_of(ranges_, *former, *limits_);
   for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
     for (std::size_t m = 0; m < kLimitNames.size(); ++m) {
@@ -194,13 +219,17 @@ void CurveWatch::check_no_worse(const Piece& piece, const Peaks& peaks, const Pi
   const Peaks before = peaks_of(ranges_, former, *limits_);
   for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
     for (std::size_t m = 0; m < kLimitNames.size(); ++m) {
-      // In one kind of limit, the largest excess of all dimensions counts.
+      if (peaks.ratio[d][m] <= std::max(1.0, before.ratio[d][m]) * kSlack) continue;
+      // In one kind of limit, the largest excess of all dimensions counts, also that of the motion
+      // shown.
       double most = 1;
+      bool is_shown = false;
       for (std::size_t e = 0; e < ranges_.dimensions(); ++e) {
         most = std::max(most, before.ratio[e][m]);
+        is_shown = is_shown || (m == 1 && !has(limits_->acceleration, e));
       }
-      if (peaks.ratio[d][m] <= most * kSlack) continue;
-      breach(Rule::end_limits, piece,
+      const bool is_allowed = is_shown || peaks.ratio[d][m] <= most * kSlack;
+      breach(is_allowed ? Rule::end_limits_of_dimension : Rule::end_limits, piece,
              fmt::format("{} of dimension {}: {} times its limit, without the end {}",
                          kLimitNames[m], d, peaks.ratio[d][m], before.ratio[d][m]));
     }
@@ -262,46 +291,67 @@ double CurveWatch::seconds_to(const Piece& piece) const {
   return most;
 }
 
-/// The end is the one that the summary reports, and the curve comes to rest in time.
+/// The end is the one in the summary, and the curve comes to rest in time.
 void CurveWatch::check_end() {
   using ipc::EndKind;
+  const EndKind kind = summary_.ending();
+  tally_->count_end(kind, summary_.end_lateness);
   const Piece& piece = last();
-  const auto reported = summary_.ending();
-  tally_->count_end(reported, summary_.end_lateness);
-  const bool can_tell =
-      !is_replaced_ && summary_.refused == 0 && !plan_->stream.window.interpolant.method->smooths();
-  const bool is_there = rests_at_newest();
-  bool is_right = reported != EndKind::none;
-  if (reported == EndKind::slowed) {
-    is_right = piece.kind == SegmentKind::slowed && (!can_tell || is_there) &&
-               summary_.end_lateness == piece.right - newest_waypoint();
-    measure_slowing();
-  } else if (reported == EndKind::entered) {
-    is_right = piece.kind == SegmentKind::entry && (!can_tell || is_there) &&
-               summary_.end_lateness == piece.right - newest_waypoint();
-    const Piece* met = old_.empty() ? nullptr : &at(old_, piece.left);
-    if (knows_path_ && met != nullptr && met->kind == SegmentKind::spline &&
-        piece.left < newest_waypoint()) {
-      check_entry_bounds(piece, peaks_of(ranges_, piece, *limits_), newest_waypoint(),
-                         Rule::end_within_path);
-    }
-    if (met != nullptr && met->kind == SegmentKind::hold) tally_->count(Event::ends_from_rest);
-  } else if (reported == EndKind::stopped || reported == EndKind::in_stop) {
-    is_right = piece.kind == SegmentKind::stop || piece.kind == SegmentKind::hold;
-  } else if (reported == EndKind::as_requested && piece.kind == SegmentKind::spline) {
-    is_right = !can_tell || (is_there && piece.right == newest_waypoint());
-  }
-  if (!is_right) {
+  if (kind == EndKind::slowed) measure_slowing();
+  if (kind == EndKind::entered) check_last_entry();
+  if (!is_of_kind(kind)) {
     breach(Rule::end_kind, piece,
-           fmt::format("reported {}, rests at the newest waypoint: {}", static_cast<int>(reported),
-                       is_there));
+           fmt::format("kind {}, rests at the newest waypoint: {}", static_cast<int>(kind),
+                       rests_at_newest()));
   }
   const Time old_end = old_.empty() ? Time::min() : old_.back().right;
   const Time due = std::max({newest_waypoint(), summary_.committed, old_end});
-  if (piece.right <= due + kLatestRest + from_seconds(3 * seconds_to(piece))) return;
-  breach(
-      Rule::comes_to_rest, piece,
-      fmt::format("{} s late, end {}", to_seconds(piece.right - due), static_cast<int>(reported)));
+  const Time late = piece.right - due - from_seconds(3 * seconds_to(piece));
+  if (late <= kLatestRest) return;
+  const bool is_slow = kind == EndKind::entered && late <= kLatestEntry;
+  breach(is_slow ? Rule::slow_entry : Rule::comes_to_rest, piece,
+         fmt::format("{} s late, end {}", to_seconds(piece.right - due), static_cast<int>(kind)));
+}
+
+/// Whether the curve ends in this way.
+bool CurveWatch::is_of_kind(ipc::EndKind kind) const {
+  using ipc::EndKind;
+  const Piece& piece = last();
+  const bool can_tell =
+      !is_replaced_ && summary_.refused == 0 && !plan_->stream.window.interpolant.method->smooths();
+  const bool may_be_there = !can_tell || rests_at_newest();
+  const bool is_late = summary_.end_lateness == piece.right - newest_waypoint();
+  switch (kind) {
+    case EndKind::none:
+      return false;
+    case EndKind::slowed:
+      return piece.kind == SegmentKind::slowed && may_be_there && is_late;
+    case EndKind::entered:
+      return piece.kind == SegmentKind::entry && may_be_there && is_late;
+    case EndKind::stopped:
+    case EndKind::in_stop:
+      return piece.kind == SegmentKind::stop || piece.kind == SegmentKind::hold;
+    case EndKind::as_requested:
+      break;
+  }
+  const bool is_in_time = !can_tell || piece.right == newest_waypoint();
+  return piece.kind != SegmentKind::spline || (may_be_there && is_in_time);
+}
+
+/// An entry that ends the curve stays within the path from its begin on. One from where the curve
+/// has settled may go as far as the curve without the end.
+void CurveWatch::check_last_entry() {
+  const Piece& piece = last();
+  const bool is_from_knot = std::ranges::any_of(old_, [&](const Piece& old) {
+    return old.kind == SegmentKind::spline && old.right == newest_waypoint() &&
+           old.left >= piece.left;
+  });
+  if (is_from_knot && knows_path_) {
+    check_entry_bounds(piece, peaks_of(ranges_, piece, *limits_), newest_waypoint(),
+                       Rule::end_within_path);
+  }
+  const bool rested = !old_.empty() && piece.left >= old_.back().right;
+  if (rested) tally_->count(Event::ends_from_rest);
 }
 
 /// Compares the slowed pieces with the path at the same way along it, relative to the size of the

@@ -21,7 +21,7 @@ constexpr std::array<std::string_view, kEndings> kEndingNames{
     "the death of the producer"};
 constexpr std::array<std::string_view, kWhens> kWhenNames{
     "long before the last waypoint", "within the last segment", "in the stop", "at rest"};
-constexpr std::array<std::string_view, kWalls> kWallNames{"no", "wide", "touched", "past",
+constexpr std::array<std::string_view, kWalls> kWallNames{"no", "wide", "touched", "near",
                                                           "passed"};
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -188,7 +188,7 @@ void choose_walls(LifePlan& life, Random& random) {
     if (life.walls == Walls::touched && greatest > least)
       margin = random.chance(0.5) ? 0 : way * 1e-3;
     if (life.walls == Walls::passed && greatest > least) margin = -way * random.uniform(0, 0.3);
-    if (life.walls == Walls::past) {
+    if (life.walls == Walls::near) {
       margin = way * random.log_uniform(1e-4, 0.3);
       (rises ? limits.upper : limits.lower)[d] =
           rises ? std::max(greatest, last) + margin : std::min(least, last) - margin;

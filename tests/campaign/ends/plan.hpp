@@ -38,7 +38,7 @@ enum class Walls : std::uint8_t {
   none,
   wide,     ///< far away
   touched,  ///< at the extremes of the waypoints
-  past,     ///< just past the last waypoint, in the direction in which it is reached
+  near,     ///< just after the last waypoint, in the direction in which it is reached
   passed,   ///< within the range of the waypoints
 };
 inline constexpr std::size_t kWalls = 5;

@@ -12,8 +12,8 @@
 namespace splinecast::campaign::ends {
 namespace {
 
-/// The rules in force. A rule that is not in force yet is checked, and its violations are reported
-/// in the measurements of the result.
+/// The rules in force. A rule that is not in force yet is checked, and its violations are in the
+/// measurements of the result.
 constexpr std::array<RuleRow, kRules> kRows{{
     {"curves that do not end at rest"},
     {"requested ends that do not rest", false},
@@ -24,21 +24,26 @@ constexpr std::array<RuleRow, kRules> kRows{{
     {"stops beyond a bound and not counted", false},
     {"rotations that stop beyond a limit", false},
     {"stops of 10⁶ s", false},
+    {"stops after an entry beyond a limit", false},
     {"entries beyond a limit and their begin"},
     {"entries that begin beyond a limit of acceleration and stay there", false},
     {"entries beyond a bound"},
     {"entries of a replacement beyond a bound, as far as a stop from its begin", false},
-    {"entries beyond the motion shown"},
+    {"entries beyond the motion shown", false},
     {"ends beyond a limit that the path keeps"},
+    {"ends beyond a limit that the path keeps in the same dimension", false},
     {"ends beyond a bound that the path keeps"},
-    {"ends beyond the motion shown"},
+    {"ends beyond the motion shown", false},
     {"entries to the last waypoint that leave the range of the path"},
     {"splines beyond a limit without an excess counted"},
     {"excesses in the settled past"},
     {"stops and entries beyond a limit at the rate of the law", false},
     {"curves that do not come to rest in time"},
+    {"ends by an entry that takes long", false},
     {"summaries whose counters do not add up"},
     {"waypoints neither interpolated nor passed over"},
+    {"waypoints at the end of an entry that count as passed over", false},
+    {"ends as requested away from the last waypoint", false},
     {"ends of another kind than reported"},
     {"samples that differ from the published curve"},
     {"finishes without an end"},

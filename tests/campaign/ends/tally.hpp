@@ -23,12 +23,14 @@ enum class Rule : std::uint8_t {
   stop_bounds,
   rotation_stops,
   endless_stops,
+  entered_stop_limits,
   entry_limits,
   entry_begins,
   entry_bounds,
   cut_bounds,
   entry_shown,
   end_limits,
+  end_limits_of_dimension,
   end_bounds,
   end_shown,
   end_within_path,
@@ -36,18 +38,21 @@ enum class Rule : std::uint8_t {
   past_not_compared,
   law_rate,
   comes_to_rest,
+  slow_entry,
   accounts,
   waypoints_accounted,
+  passed_exactly,
+  rest_at_begin,
   end_kind,
   samples,
   finishes,
 };
-inline constexpr std::size_t kRules = 27;
+inline constexpr std::size_t kRules = 32;
 
 /// What the lives of a campaign have to show.
 struct RuleRow {
   std::string_view violation;
-  bool is_in_force = true;  ///< else its violations are reported only
+  bool is_in_force = true;  ///< else violations are measured only
 };
 [[nodiscard]] const RuleRow& row_of(Rule rule) noexcept;
 
