@@ -14,8 +14,9 @@ namespace {
 constexpr int kMostSteps = 30'000;
 /// Number of steps after a finish in which solvers may die.
 constexpr int kMostStepsWithDeaths = 20;
-/// Maximum number of steps from a finish to its end.
+/// Number of steps and time from a finish after which it has failed.
 constexpr int kMostStepsOfFinish = 2'000;
+constexpr Time kLatestEnd = std::chrono::seconds(20);
 /// A life without a finish is over this long after its curve rests, or after this number of steps:
 /// within tight limits, a stop can take hours.
 constexpr int kMostStepsWithoutFinish = 300;
@@ -167,6 +168,7 @@ void Life::finish() {
     return;
   }
   has_asked_ = true;
+  asked_at_ = clock_.host();
   end_at_ = Time::max();
 }
 
@@ -195,9 +197,10 @@ void Life::step() {
     tally_.count(steps_after_finish_ == 0 ? Event::ends_at_once : Event::searches_postponed);
     return;
   }
-  // Without a curve, or with a board without room, the finish waits.
-  if (++steps_after_finish_ > kMostStepsOfFinish) {
-    tally_.breach(Rule::finishes, fmt::format("{} steps", steps_after_finish_));
+  // A finish waits while the board has no room, and for a replacement that is not due.
+  if (++steps_after_finish_ > kMostStepsOfFinish && clock_.host() > asked_at_ + kLatestEnd) {
+    tally_.breach(Rule::finishes, fmt::format("{} steps, {} s", steps_after_finish_,
+                                              to_seconds(clock_.host() - asked_at_)));
   }
 }
 

@@ -83,6 +83,7 @@ class Life {
   bool is_held_ = false;
   bool was_held_ = false;
   Time released_at_{};  ///< host time
+  Time asked_at_{};     ///< host time of the finish
   int steps_after_finish_ = 0;
   int steps_without_finish_ = 0;  ///< after the last action
 };

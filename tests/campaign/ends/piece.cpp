@@ -6,6 +6,9 @@
 namespace splinecast::campaign::ends {
 namespace {
 
+/// Error of an extreme, relative to its terms.
+constexpr double kRounding = 1e-12;
+
 using Bernstein = std::array<double, kMaxOrder>;
 
 constexpr std::array<std::array<double, kMaxOrder>, kMaxOrder> kBinomial{
@@ -150,8 +153,10 @@ Peaks peaks_of(const PieceRanges& ranges, const Piece& piece, const MotionLimits
     peaks.position[d] = ranges.range(piece, d, 0, from);
     for (std::size_t m = 0; m < all.size(); ++m) {
       if (all[m]->empty() || (*all[m])[d] <= 0) continue;
-      peaks.ratio[d][m] =
-          ranges.range(piece, d, static_cast<int>(m) + 1, from).size() / (*all[m])[d];
+      const int derivative = static_cast<int>(m) + 1;
+      const double rounding = kRounding * ranges.scale(piece, d, derivative);
+      const double size = ranges.range(piece, d, derivative, from).size();
+      peaks.ratio[d][m] = std::max(size - rounding, 0.0) / (*all[m])[d];
     }
   }
   for (const QuaternionDimensions& q : ranges.kinds().quaternions()) {

@@ -67,8 +67,8 @@ class PieceRanges {
 };
 
 /// How far a piece goes beyond the limits: for each dimension and derivative 1 to 3, the peak
-/// divided by the limit; 0 without a limit. Of a rotation only velocity and acceleration, in its
-/// first dimension.
+/// without its rounding error divided by the limit; 0 without a limit. Of a rotation only velocity
+/// and acceleration, in its first dimension.
 struct Peaks {
   std::array<std::array<double, 3>, kMostDimensions> ratio{};
   std::array<Range, kMostDimensions> position{};  ///< of linear dimensions

@@ -144,7 +144,8 @@ void CurveWatch::check_entry_bounds(const Piece& piece, const Peaks& peaks, Time
       least = std::min(least, range.least);
       greatest = std::max(greatest, range.greatest);
     }
-    const double rounding = 1e-7 * (greatest - least) + 1e-9 * ranges_.scale(piece, d, 0);
+    // Ranges are exact to 10⁻⁷.
+    const double rounding = 1e-6 * (greatest - least) + 1e-6 * ranges_.scale(piece, d, 0);
     const Range& x = peaks.position[d];
     if (std::isinf(greatest - least)) {
       if (x.least >= least - 1e-9 * (1 + std::abs(least)) &&
