@@ -123,8 +123,8 @@ void Tally::begin_life(const LifePlan& plan) {
 void Tally::breach(Rule rule, const std::string& what) {
   const RuleRow& row = row_of(rule);
   const std::uint64_t count = ++breaches_[static_cast<std::size_t>(rule)];
-  if (!row.is_in_force) return;
-  life_failed_ = true;
+  if (!row.is_in_force && !reports_all_) return;
+  life_failed_ = life_failed_ || row.is_in_force;
   if (count > kTold) return;
   say_one_by_one(fmt::format("seed {} ({}): {}: {}", seed_, description_, row.violation, what));
 }
