@@ -3,6 +3,8 @@
 namespace splinecast::core {
 
 Time Slowing::time_of(Time s) const noexcept {
+  // The motion comes so slowly to its end that rounding would make this time earlier.
+  if (s - begin_ >= length_ / 2) return end_time();
   const auto length = static_cast<double>(length_.count());
   const auto way = static_cast<double>((s - begin_).count());
   const auto has_reached = [&](Time t) {
@@ -20,6 +22,11 @@ Time Slowing::time_of(Time s) const noexcept {
     }
   }
   return begin_ + low;
+}
+
+double Slowing::way_at(Time t) const noexcept {
+  const double u = to_seconds(t - begin_) / to_seconds(length_);
+  return to_seconds(length_) * (u - u * u * u * (1 - u / 2));
 }
 
 void Slowing::write_state(Time t, std::span<const double> velocity, std::span<const double> before,

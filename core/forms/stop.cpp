@@ -102,7 +102,7 @@ bool stop_passes_bound(const MotionLimits& limits, const Instant& from, std::siz
 namespace {
 
 /// The longest time from `least` to `most` after which a dimension rests within its bounds; `least`
-/// if there is none.
+/// if no such time exists.
 Time longest_within_bound(const MotionLimits& limits, const Instant& from, std::size_t d,
                           Time least, Time most) noexcept {
   if (!stop_passes_bound(limits, from, d, most)) return most;

@@ -178,37 +178,65 @@ bool keeps_within(const MotionLimits& limits, const DimensionKinds* kinds, const
   return keeps_within(limits, kinds, part_of(segment), allowance);
 }
 
+namespace {
+
+WorstExcesses no_excesses() noexcept {
+  WorstExcesses worst{};
+  for (std::size_t i = 0; i < kLimitKinds; ++i) worst[i].kind = static_cast<LimitKind>(i);
+  return worst;
+}
+
+void take_larger(const Excess& excess, WorstExcesses& worst) noexcept {
+  Excess& so_far = worst[static_cast<std::size_t>(excess.kind)];
+  if (excess.ratio > so_far.ratio) so_far = excess;
+}
+
+void take_worst(const Comparison& comparison, std::size_t d, WorstExcesses& worst) noexcept {
+  auto take = [&](const Finding& finding) {
+    take_larger(finding.excess, worst);
+    return true;
+  };
+  (void)take_dimension(comparison, d, take);
+}
+
+void take_worst(const Comparison& comparison, const QuaternionDimensions& quaternion,
+                WorstExcesses& worst) noexcept {
+  take_rotation_excesses(comparison, quaternion,
+                         [&](const Excess& excess) { take_larger(excess, worst); });
+}
+
+}  // namespace
+
 WorstExcesses worst_excesses(const MotionLimits& limits, const DimensionKinds* kinds,
                              const SegmentPart& part, const Allowance& allowance) noexcept {
   const Comparison comparison{limits, part, allowance};
-  WorstExcesses worst{};
-  for (std::size_t i = 0; i < kLimitKinds; ++i) worst[i].kind = static_cast<LimitKind>(i);
-  const auto take = [&](const Excess& excess) {
-    Excess& so_far = worst[static_cast<std::size_t>(excess.kind)];
-    if (excess.ratio > so_far.ratio) so_far = excess;
+  WorstExcesses worst = no_excesses();
+  const auto take = [&](const auto& dimension) {
+    take_worst(comparison, dimension, worst);
     return true;
   };
-  auto take_finding = [&](const Finding& finding) { return take(finding.excess); };
-  (void)for_all(
-      kinds, part.dimensions,
-      [&](std::size_t d) { return take_dimension(comparison, d, take_finding); },
-      [&](const QuaternionDimensions& quaternion) {
-        take_rotation_excesses(comparison, quaternion, take);
-        return true;
-      });
+  (void)for_all(kinds, part.dimensions, take, take);
   return worst;
 }
 
 bool exceeds_no_more(const MotionLimits& limits, const DimensionKinds* kinds,
                      const SegmentPart& part, const SegmentPart& other) noexcept {
   if (keeps_within(limits, kinds, part)) return true;
-  constexpr double kSlack = 1 + 1e-9;
-  const WorstExcesses own = worst_excesses(limits, kinds, part);
-  const WorstExcesses others = worst_excesses(limits, kinds, other);
-  for (std::size_t i = 0; i < kLimitKinds; ++i) {
-    if (!(own[i].ratio <= std::max(others[i].ratio, 1.0) * kSlack)) return false;
-  }
-  return true;
+  const Allowance none;
+  const Comparison own{limits, part, none};
+  const Comparison others{limits, other, none};
+  const auto is_as_good = [&](const auto& dimension) {
+    constexpr double kSlack = 1 + 1e-9;
+    WorstExcesses mine = no_excesses();
+    WorstExcesses its = no_excesses();
+    take_worst(own, dimension, mine);
+    take_worst(others, dimension, its);
+    for (std::size_t i = 0; i < kLimitKinds; ++i) {
+      if (!(mine[i].ratio <= std::max(its[i].ratio, 1.0) * kSlack)) return false;
+    }
+    return true;
+  };
+  return for_all(kinds, part.dimensions, is_as_good, is_as_good);
 }
 
 bool keeps_length(const DimensionKinds& kinds, const Segment& segment) noexcept {

@@ -44,8 +44,8 @@ struct Allowance {
 [[nodiscard]] bool keeps_within(const MotionLimits& limits, const DimensionKinds* kinds,
                                 const Segment& segment, const Allowance& allowance = {}) noexcept;
 
-/// Whether a part of a curve exceeds no limit that `other` keeps, and none by more than `other`,
-/// per kind of limit.
+/// Whether a part of a curve exceeds no limit that `other` keeps, and none by more than `other`:
+/// each kind of limit in each dimension.
 [[nodiscard]] bool exceeds_no_more(const MotionLimits& limits, const DimensionKinds* kinds,
                                    const SegmentPart& part, const SegmentPart& other) noexcept;
 

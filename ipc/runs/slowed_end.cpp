@@ -1,6 +1,7 @@
 #include "ipc/runs/slowed_end.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/forms/knot_segment.hpp"
@@ -12,15 +13,9 @@ namespace splinecast::ipc {
 SlowedEnd::SlowedEnd(const KnotBoardReader& published, DimensionKinds kinds)
     : published_(&published),
       kinds_(std::move(kinds)),
+      range_(published.dimensions()),
       path_(published.dimensions(), published.smooths()),
-      knots_{Knot{KnotCopy(published.dimensions(), published.smooths()),
-                  {},
-                  std::vector<double>(published.dimensions()),
-                  std::vector<double>(published.dimensions())},
-             Knot{KnotCopy(published.dimensions(), published.smooths()),
-                  {},
-                  std::vector<double>(published.dimensions()),
-                  std::vector<double>(published.dimensions())}},
+      knots_{Knot(published), Knot(published)},
       piece_(published.dimensions()),
       before_(published.dimensions()),
       after_(published.dimensions()) {}
@@ -47,7 +42,7 @@ SlowedEnd::Outcome SlowedEnd::search(Word oldest, Time settled, int& tries) noex
       if (tries <= 0) return Outcome::more;
       --tries;
       const Word number = first_ + (steepest + passed_) % pieces;
-      if (!build_piece(number) || !keeps_limits(number)) break;
+      if (!build_piece(number) || !passes(number)) break;
     }
     if (is_damaged_) return Outcome::damaged;
     if (passed_ == pieces) return Outcome::found;
@@ -63,7 +58,11 @@ bool SlowedEnd::begin_at(Word number) noexcept {
   is_damaged_ = !published_->copy_knot(number, r, begin) ||
                 !published_->copy_knot(summary_.newest, r, end) || !is_time_in_range(begin.time) ||
                 !is_time_in_range(end.time) || begin.time >= end.time;
-  if (is_damaged_) return false;
+  if (is_damaged_ || !read_path(number)) return false;
+  if (number + 1 == summary_.newest) {
+    range_.restart(path_.coefficients().first(before_.size()));
+  }
+  range_.add(path_part());
   slowing_ = core::Slowing(begin.time, end.time);
   return is_time_in_range(slowing_.end_time());
 }
@@ -80,12 +79,11 @@ bool SlowedEnd::read_path(Word number) noexcept {
 bool SlowedEnd::slow(Word number, Knot& out) noexcept {
   is_damaged_ = is_damaged_ || !published_->copy_knot(number, summary_.revision, out.path);
   if (is_damaged_) return false;
-  const bool is_last = number == summary_.newest;
-  out.time = is_last ? slowing_.end_time() : slowing_.time_of(out.path.time);
+  out.time = slowing_.time_of(out.path.time);
   if (!read_path(number - 1)) return false;
   core::evaluate_derivative(path_.order(), path_.coefficients(),
                             to_seconds(path_.right() - path_.left()), 2, before_);
-  if (is_last) {
+  if (number == summary_.newest) {
     std::ranges::copy(before_, after_.begin());
   } else if (!read_path(number)) {
     return false;
@@ -101,7 +99,7 @@ bool SlowedEnd::slow(Word number, Knot& out) noexcept {
   return true;
 }
 
-/// Builds the piece after a knot. Returns false if there is none.
+/// Builds the piece after a knot. Returns false if it would not end after its begin.
 bool SlowedEnd::build_piece(Word number) noexcept {
   if (!slow(number, knots_[0]) || !slow(number + 1, knots_[1])) return false;
   if (knots_[0].time >= knots_[1].time) return false;
@@ -109,17 +107,38 @@ bool SlowedEnd::build_piece(Word number) noexcept {
   return true;
 }
 
+core::SegmentPart SlowedEnd::path_part() const noexcept {
+  return {.order = path_.order(),
+          .coefficients = path_.coefficients(),
+          .dimensions = before_.size(),
+          .from = 0,
+          .to = to_seconds(path_.right() - path_.left())};
+}
+
+/// Whether the piece stays near its segment of the path, which has been read. Looks at 7 times.
+bool SlowedEnd::stays_near() noexcept {
+  constexpr int kLooks = 8;
+  constexpr double kRounding = 1e-12;
+  const Time length = piece_.right - piece_.left;
+  for (int i = 1; i < kLooks; ++i) {
+    const Time t = piece_.left + length / kLooks * i;
+    const double way = slowing_.way_at(t) - to_seconds(path_.left() - slowing_.begin());
+    core::evaluate_derivative(path_.order(), path_.coefficients(), way, 0, before_);
+    core::evaluate_derivative(piece_.order, piece_.coefficients, to_seconds(t - piece_.left), 0,
+                              after_);
+    for (std::size_t d = 0; d < before_.size(); ++d) {
+      const double size = range_.greatest()[d] - range_.least()[d];
+      const double most = kNear * size + kRounding * std::abs(before_[d]);
+      if (!(std::abs(after_[d] - before_[d]) <= most)) return false;
+    }
+  }
+  return true;
+}
+
 /// Whether the piece after a knot is as good as the path.
-bool SlowedEnd::keeps_limits(Word number) noexcept {
-  if (!core::keeps_length(kinds_, piece_)) return false;
-  if (core::keeps_within(*limits_, &kinds_, piece_)) return true;
-  if (!read_path(number)) return false;
-  return core::exceeds_no_more(*limits_, &kinds_, core::part_of(piece_),
-                               {.order = path_.order(),
-                                .coefficients = path_.coefficients(),
-                                .dimensions = before_.size(),
-                                .from = 0,
-                                .to = to_seconds(path_.right() - path_.left())});
+bool SlowedEnd::passes(Word number) noexcept {
+  return core::keeps_length(kinds_, piece_) && read_path(number) && stays_near() &&
+         core::exceeds_no_more(*limits_, &kinds_, core::part_of(piece_), path_part());
 }
 
 bool SlowedEnd::write(KnotBoardWriter& board) noexcept {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/forms/slowing.hpp"
+#include "core/online/position_range.hpp"
 #include "core/polynomial/segment.hpp"
 #include "ipc/board/knot.hpp"
 #include "ipc/board/reader.hpp"
@@ -30,6 +31,8 @@ class SlowedEnd {
     damaged,  ///< the board holds data that no solver wrote
   };
 
+  static constexpr double kNear = 5e-3;
+
   /// `published` outlives this.
   SlowedEnd(const KnotBoardReader& published, DimensionKinds kinds);
 
@@ -38,9 +41,10 @@ class SlowedEnd {
   void restart(const Summary& summary, const MotionLimits& limits) noexcept;
 
   /// Tries the knots before the newest one, the latest first, down to knot `oldest`, and none
-  /// before the time `settled`. A knot passes if no piece from there on exceeds a limit or a bound
-  /// that the path keeps, nor one more than the path, and if quaternions keep their length.
-  /// Decrements `tries` for each piece, O(D), and returns `more` when none are left.
+  /// before the time `settled`. A knot passes if each piece from there on exceeds no limit or bound
+  /// that the path keeps, nor one by more than the path; if it stays near the path, within kNear of
+  /// the size of the path from that knot on, in each dimension; and if quaternions keep their
+  /// length. Decrements `tries` for each piece, O(D), and returns `more` when none are left.
   [[nodiscard]] Outcome search(Word oldest, Time settled, int& tries) noexcept;
 
   /// The knot that was found, its time, and the time of rest.
@@ -55,6 +59,11 @@ class SlowedEnd {
  private:
   /// A knot as it is slowed down. The other values are those of the path.
   struct Knot {
+    explicit Knot(const KnotBoardReader& board)
+        : path(board.dimensions(), board.smooths()),
+          velocity(board.dimensions()),
+          acceleration(board.dimensions()) {}
+
     KnotCopy path;
     Time time{};
     std::vector<double> velocity;
@@ -69,7 +78,9 @@ class SlowedEnd {
   [[nodiscard]] bool slow(Word number, Knot& out) noexcept;
   [[nodiscard]] bool read_path(Word number) noexcept;
   [[nodiscard]] bool build_piece(Word number) noexcept;
-  [[nodiscard]] bool keeps_limits(Word number) noexcept;
+  [[nodiscard]] core::SegmentPart path_part() const noexcept;
+  [[nodiscard]] bool stays_near() noexcept;
+  [[nodiscard]] bool passes(Word number) noexcept;
 
   const KnotBoardReader* published_;
   DimensionKinds kinds_;
@@ -79,11 +90,12 @@ class SlowedEnd {
   Word first_ = 0;          ///< knot that is tried
   std::size_t passed_ = 0;  ///< number of its pieces that have passed
   bool is_damaged_ = false;
-  BoardSegment path_;  ///< scratch
+  core::PositionRange range_;  ///< of the path from the knot that is tried
+  BoardSegment path_;          ///< scratch
   std::array<Knot, 2> knots_;
   core::Segment piece_;
-  std::vector<double> before_;  ///< acceleration of the path before a knot
-  std::vector<double> after_;   ///< and after it
+  std::vector<double> before_;  ///< scratch: acceleration of the path before a knot
+  std::vector<double> after_;   ///< scratch: and after it
 };
 
 }  // namespace splinecast::ipc

@@ -35,8 +35,7 @@ void SlowedPath::add_last(const core::SlidingWindow& target) {
 
 SlowedPath::Slowed SlowedPath::slowed(const core::Slowing& slowing, std::size_t i) const {
   const Knot& knot = knots_[i];
-  const bool is_last = i + 1 == knots_.size();
-  Slowed out{.time = is_last ? slowing.end_time() : slowing.time_of(knot.time),
+  Slowed out{.time = slowing.time_of(knot.time),
              .velocity = std::vector<double>(knot.velocity.size()),
              .acceleration = std::vector<double>(knot.velocity.size())};
   slowing.write_state(out.time, knot.velocity, knot.before, knot.after, out.velocity,

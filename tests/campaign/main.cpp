@@ -63,16 +63,18 @@ void add_stress(CLI::App& program, Asked& asked) {
       ->check(CLI::PositiveNumber);
 }
 
-void add_streams(CLI::App& program, Asked& asked) {
-  auto* verb = program.add_subcommand("streams", "Simulated live streams, one per seed");
-  verb->add_option("--seconds", asked.options.seconds, "Duration, in CPU time")
+/// Adds the options of a campaign with one run per seed.
+void add_runs(CLI::App* verb, Asked& asked, const char* seconds = "Duration, in CPU time") {
+  verb->add_option("--seconds", asked.options.seconds, seconds)
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  verb->add_option("--seed", asked.options.seed,
-                   "Seed of the first stream; each next stream adds 1")
+  verb->add_option("--seed", asked.options.seed, "Seed of the first run; each next run adds 1")
       ->capture_default_str();
-  verb->add_option("--runs", asked.options.runs,
-                   "Number of streams to simulate instead of a duration");
+  verb->add_option("--runs", asked.options.runs, "Number of runs instead of a duration");
+}
+
+void add_streams(CLI::App& program, Asked& asked) {
+  add_runs(program.add_subcommand("streams", "Simulated live streams, one per seed"), asked);
 }
 
 void add_motions(CLI::App& program, Asked& asked) {
@@ -90,23 +92,13 @@ void add_motions(CLI::App& program, Asked& asked) {
 }
 
 void add_returns(CLI::App& program, Asked& asked) {
-  auto* verb =
-      program.add_subcommand("returns", "Returns to the waypoints after faults, one per seed");
-  verb->add_option("--seconds", asked.options.seconds, "Duration, in CPU time")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--seed", asked.options.seed, "Seed of the first run")->capture_default_str();
-  verb->add_option("--runs", asked.options.runs, "Number of runs instead of a duration");
+  add_runs(program.add_subcommand("returns", "Returns to the waypoints after faults, one per seed"),
+           asked);
 }
 
 void add_ends(CLI::App& program, Asked& asked) {
-  auto* verb = program.add_subcommand("ends", "Simulated lives that end in every way");
-  verb->add_option("--seconds", asked.options.seconds, "CPU time of each of the two threads")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--seed", asked.options.seed, "Seed of the first life; each next life adds 1")
-      ->capture_default_str();
-  verb->add_option("--runs", asked.options.runs, "Number of lives instead of a duration");
+  add_runs(program.add_subcommand("ends", "Simulated lives that end in every way"), asked,
+           "CPU time of each of the two threads");
 }
 
 void add_requests(CLI::App& program, Asked& asked) {

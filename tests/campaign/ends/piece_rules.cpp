@@ -390,7 +390,11 @@ void CurveWatch::measure_slowing() {
     squares += (way[d].greatest - way[d].least) * (way[d].greatest - way[d].least);
   }
   const double size = std::sqrt(squares);
-  if (size > kLeastWay) tally_->add_path_error(worst / size);
+  if (size <= kLeastWay) return;
+  tally_->add_path_error(worst / size);
+  constexpr double kFarthest = 0.01;
+  if (worst <= kFarthest * size) return;
+  breach(Rule::near_path, *first, fmt::format("{} away, on a way of size {}", worst, size));
 }
 
 }  // namespace splinecast::campaign::ends

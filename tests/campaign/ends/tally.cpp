@@ -31,7 +31,7 @@ constexpr std::array<RuleRow, kRules> kRows{{
     {"entries of a replacement beyond a bound, as far as a stop from its begin", false},
     {"entries beyond the motion shown", false},
     {"ends beyond a limit that the path keeps"},
-    {"ends beyond a limit that the path keeps in the same dimension", false},
+    {"ends beyond a limit that the path keeps in the same dimension"},
     {"ends beyond a bound that the path keeps"},
     {"ends beyond the motion shown", false},
     {"entries to the last waypoint that leave the range of the path"},
@@ -47,6 +47,7 @@ constexpr std::array<RuleRow, kRules> kRows{{
     {"ends of another kind than reported"},
     {"samples that differ from the published curve"},
     {"finishes without an end"},
+    {"slowed ends away from their path"},
 }};
 
 constexpr std::array<std::string_view, kEvents> kEventNames{

@@ -46,8 +46,9 @@ enum class Rule : std::uint8_t {
   end_kind,
   samples,
   finishes,
+  near_path,
 };
-inline constexpr std::size_t kRules = 32;
+inline constexpr std::size_t kRules = 33;
 
 /// What the lives of a campaign have to show.
 struct RuleRow {

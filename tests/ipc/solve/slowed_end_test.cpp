@@ -49,11 +49,10 @@ Point point_at(double t) {
 /// waypoint's time.
 class OnCircle : public testing::MemoryStream {
  public:
-  static constexpr int kPeriod = 10;  // ms
-
-  explicit OnCircle(core::WindowOptions how, DimensionKinds dimension_kinds = {})
+  explicit OnCircle(core::WindowOptions how, DimensionKinds dimension_kinds = {}, int period = 10)
       : MemoryStream(2, from_rest(std::move(how)), 1024, 1024, {}, std::move(dimension_kinds),
                      LiveOptions{.history = std::chrono::seconds(4)}),
+        period_(period),
         items_(2),
         collected_(board.reader, true) {
     clock.time = kStart;
@@ -67,7 +66,7 @@ class OnCircle : public testing::MemoryStream {
 
   /// Sends the waypoints up to `last`, each one `lead` before its time, and finishes.
   void run(int last, int lead) {
-    for (int ms = 50; ms <= last; ms += kPeriod) {
+    for (int ms = 50; ms <= last; ms += period_) {
       run_to(ms - lead);
       const Point at = point_at((ms - 50) / 1e3);
       ASSERT_EQ(append({.time = kStart + milliseconds(ms),
@@ -113,22 +112,19 @@ class OnCircle : public testing::MemoryStream {
     return std::to_string(found.first->segment) + ": " + found.first->what + ", " +
            found.first->published + " published, " + found.first->solved + " solved";
   }
-  [[nodiscard]] std::vector<SegmentCopy> slowed() const {
-    std::vector<SegmentCopy> found;
-    for (const SegmentCopy& s : collected_.segments()) {
-      if (s.kind == SegmentKind::slowed) found.push_back(s);
-    }
-    return found;
-  }
-  [[nodiscard]] const SettledSegments& collected() const { return collected_; }
+  [[nodiscard]] std::vector<SegmentCopy> of_kind(SegmentKind kind) const;
+  [[nodiscard]] std::vector<SegmentCopy> slowed() const { return of_kind(SegmentKind::slowed); }
   /// Waypoints that the end passes over.
   [[nodiscard]] Word passed_over_by_end() const {
     return solver.summary().passed_over - passed_over_before_;
   }
   /// The largest acceleration of the spline before it slows down.
   [[nodiscard]] double path_acceleration() const;
+  /// The largest distance of the spline from the circle before it slows down.
+  [[nodiscard]] double path_error() const;
 
  private:
+  int period_;  // ms
   testing::ItemRecord items_;
   SettledSegments collected_;
   Word passed_over_before_ = 0;
@@ -168,13 +164,19 @@ core::WindowOptions limited(const Method& method, double acceleration) {
   return how;
 }
 
-double OnCircle::path_acceleration() const {
-  std::vector<SegmentCopy> spline;
+std::vector<SegmentCopy> OnCircle::of_kind(SegmentKind kind) const {
+  std::vector<SegmentCopy> found;
   for (const SegmentCopy& s : collected_.segments()) {
-    if (s.kind == SegmentKind::spline) spline.push_back(s);
+    if (s.kind == kind) found.push_back(s);
   }
-  return largest_acceleration(spline);
+  return found;
 }
+
+double OnCircle::path_acceleration() const {
+  return largest_acceleration(of_kind(SegmentKind::spline));
+}
+
+double OnCircle::path_error() const { return largest_error(of_kind(SegmentKind::spline)); }
 
 class SlowedEndOfMethods : public ::testing::TestWithParam<const Method*> {};
 
@@ -189,7 +191,7 @@ TEST_P(SlowedEndOfMethods, StaysOnThePathWithinTheLimit) {
     EXPECT_EQ(summary.settled_until, kStart + milliseconds(2000) + lateness);
     EXPECT_EQ(slowed.back().right, summary.settled_until);
     EXPECT_EQ(slowed.front().left, kStart + milliseconds(2000) - lateness);
-    EXPECT_EQ(lateness, static_cast<int>(slowed.size()) * milliseconds(OnCircle::kPeriod));
+    EXPECT_EQ(lateness, static_cast<int>(slowed.size()) * milliseconds(10));
     EXPECT_LE(lateness, milliseconds(90));
     EXPECT_EQ(live.passed_over_by_end(), 0U);
     // Three times the motion's own acceleration, 2.5, where no limit is given.
@@ -214,8 +216,8 @@ TEST(SlowedEnd, UnwrapsPeriodicValues) {
   EXPECT_EQ(live.verified(), "");
 }
 
-TEST(SlowedEnd, IsFoundInOneStepOrSeveralButOnce) {
-  // A limit for which the way to rest is as long as the lead.
+TEST(SlowedEnd, BeginsOnlyAtAWaypointThatHasNotSettled) {
+  // To rest within the limit the curve needs 80 ms of its path.
   for (const int lead : {20, 40, 60, 80, 100, 300}) {
     SCOPED_TRACE(lead);
     OnCircle live(limited(c2(), 5));
@@ -224,6 +226,21 @@ TEST(SlowedEnd, IsFoundInOneStepOrSeveralButOnce) {
     EXPECT_EQ(end == EndKind::slowed, lead >= 100) << static_cast<int>(end);
     EXPECT_EQ(live.verified(), "");
   }
+}
+
+TEST(SlowedEnd, StaysNearThePathIfWaypointsAreFarApart) {
+  int slowed = 0;
+  for (const int period : {50, 100, 150, 200, 300, 400}) {
+    SCOPED_TRACE(period);
+    OnCircle live(limited(c2(), 5), {}, period);
+    live.run(4000, 3000);
+    EXPECT_EQ(live.verified(), "");
+    if (live.solver.summary().ending() != EndKind::slowed) continue;
+    ++slowed;
+    // At its end the spline is farther from the circle than before.
+    EXPECT_LE(largest_error(live.slowed()), 4 * live.path_error() + 0.02 * kRadius);
+  }
+  EXPECT_GE(slowed, 4);
 }
 
 }  // namespace
