@@ -103,15 +103,29 @@ void CurveCheck::check_segment(const ipc::SegmentCopy& segment) {
   if (!Payload::is_whole(powers) || (!step.empty() && !Payload::is_whole(step))) {
     found(facts_->torn, fmt::format("segment {} is torn", segment.number));
   }
-  if (segment.has_waypoint) {
-    const auto number = plan_->payload.number_at(segment.left);
-    const auto position = powers.first(Payload::kDimensions);
-    if (!number || !std::ranges::equal(position, plan_->payload.position_of(*number))) {
-      found(facts_->torn, fmt::format("segment {} begins at {} with another waypoint's position",
-                                      segment.number, segment.left.count()));
-    }
+  if (segment.has_waypoint && !begins_at_waypoint(segment)) {
+    found(facts_->torn, fmt::format("segment {} begins at {} with another waypoint's position",
+                                    segment.number, segment.left.count()));
   }
   check_reference(segment);
+}
+
+/// Whether a segment begins with the position of the waypoint of that time; after the first piece
+/// of an end that slows down, with that of an earlier waypoint.
+bool CurveCheck::begins_at_waypoint(const ipc::SegmentCopy& segment) const {
+  const Payload& payload = plan_->payload;
+  const auto position = std::span(segment.coefficients).first(Payload::kDimensions);
+  const auto is_at = [&](ipc::Word number) {
+    return std::ranges::equal(position, payload.position_of(number));
+  };
+  if (const auto number = payload.number_at(segment.left); number && is_at(*number)) return true;
+  if (segment.kind != SegmentKind::slowed) return false;
+  constexpr ipc::Word kMost = 1024;  // waypoints of such an end
+  const ipc::Word after = payload.number_from(segment.left);
+  for (ipc::Word n = 1; n <= std::min(after, kMost); ++n) {
+    if (is_at(after - n)) return true;
+  }
+  return false;
 }
 
 /// On a recorded stream segment n begins at waypoint n − 1, regardless of the kills. Once settled,

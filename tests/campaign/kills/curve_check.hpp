@@ -32,6 +32,7 @@ class CurveCheck {
  private:
   void check_state(const State& state, Time t);
   void check_segment(const ipc::SegmentCopy& segment);
+  [[nodiscard]] bool begins_at_waypoint(const ipc::SegmentCopy& segment) const;
   void check_join(const ipc::SegmentCopy& before, const ipc::SegmentCopy& after);
   void check_end(const ipc::SegmentCopy& segment);
   void check_reference(const ipc::SegmentCopy& segment);
