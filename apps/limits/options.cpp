@@ -111,11 +111,16 @@ void add_limit_options(Command& verb, LimitOptions& options, const std::string& 
 }
 
 void add_beyond(Command& verb, std::optional<Beyond>& beyond) {
-  add_choice(
-      verb, "--beyond", "report", "refuse",
-      [&beyond](bool report) { beyond = report ? Beyond::report : Beyond::refuse; },
-      "Action for a waypoint with which the curve exceeds a limit: report or refuse (default "
-      "report)");
+  verb.option(
+          "--beyond",
+          [&beyond](const std::string& text) {
+            beyond = parse_beyond(text);
+            if (beyond) return;
+            throw UsageError("--beyond", fmt::format("'{}' is not report, refuse or enter", text));
+          },
+          "Action for a waypoint with which the curve exceeds a limit: report, refuse, or enter: "
+          "leave the spline within the limits (default report)")
+      .type("report|refuse|enter");
 }
 
 LimitGaps limit_gaps(const MotionLimits& limits, std::span<const NamedLimits> joints,

@@ -83,14 +83,26 @@ ordered_json refusals_json(const ipc::StreamInfo& info) {
   return list;
 }
 
+ordered_json excess_json(const LimitExcess& excess) {
+  ordered_json json{{"item", excess.item}, {"refused", excess.is_refused}};
+  json.update(to_json(excess));
+  return json;
+}
+
 ordered_json excesses_json(const ipc::StreamInfo& info) {
   ordered_json list = ordered_json::array();
-  for (const LimitExcess& excess : info.excesses) {
-    ordered_json json{{"item", excess.item}, {"refused", excess.is_refused}};
-    json.update(to_json(excess));
-    list.push_back(std::move(json));
-  }
+  for (const LimitExcess& excess : info.excesses) list.push_back(excess_json(excess));
   return list;
+}
+
+/// Whether the curve follows its waypoints; null unless it must keep its limits.
+ordered_json following_json(const ipc::StreamInfo& info) {
+  const ipc::Summary& summary = info.summary;
+  if (ipc::beyond(*info.spline) != Beyond::enter) return nullptr;
+  const bool is_unmet = summary.unmet_since < Time::max();
+  return {
+      {"state", ipc::to_string(summary.following())},
+      {"unmet_since_ns", is_unmet ? ordered_json(summary.unmet_since.count()) : ordered_json()}};
 }
 
 /// A value per dimension, null for none; an empty list if no dimension has a limit of the kind.
@@ -109,7 +121,7 @@ ordered_json limits_json(const ipc::RegionHeader& header) {
       {"jerk", list(limits.jerk)},
       {"lower", limits.lower},  // infinite values become null
       {"upper", limits.upper},
-      {"beyond", ipc::beyond(header) == Beyond::refuse ? "refuse" : "report"},
+      {"beyond", to_string(ipc::beyond(header))},
   };
 }
 
@@ -184,6 +196,8 @@ ordered_json solver_json(const ipc::StreamInfo& info) {
       {"refusals", refusals_json(info)},
       {"exceeding", summary.exceeding},
       {"excesses", excesses_json(info)},
+      {"worst_excess", info.worst_excess ? excess_json(*info.worst_excess) : ordered_json()},
+      {"following", following_json(info)},
       {"first_segment", summary.first},
       {"newest_segment", summary.newest},
       {"settled_until_ns",
@@ -255,6 +269,22 @@ std::string end_in_words(const ipc::Summary& summary) {
       return "; ended in the stop";
     default:
       return "";
+  }
+}
+
+std::string following_in_words(const ipc::Summary& summary) {
+  switch (summary.following()) {
+    case ipc::Following::meets_none:
+      return fmt::format(
+          "no waypoint met for {:.1f} s: within the limits the curve cannot follow them; noisy "
+          "ones "
+          "need --method smoothing",
+          to_seconds(summary.newest_time - summary.unmet_since));
+    case ipc::Following::cannot_follow:
+      return "cannot follow its waypoints: it comes to rest, and refuses them until an entry from "
+             "rest leads to one";
+    default:
+      return "meets its waypoints again";
   }
 }
 

@@ -24,6 +24,9 @@ namespace splinecast::apps {
 /// late`; empty for others.
 [[nodiscard]] std::string end_in_words(const ipc::Summary& summary);
 
+/// Whether the curve follows its waypoints, as a sentence without a full stop.
+[[nodiscard]] std::string following_in_words(const ipc::Summary& summary);
+
 /// The text after the number of interpolated waypoints: `, 12 passed over`; empty for 0.
 [[nodiscard]] std::string passed_over_in_words(ipc::Word count);
 

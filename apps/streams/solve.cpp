@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "apps/cli/options.hpp"
@@ -70,11 +71,7 @@ class Announcer {
       case ipc::SweepNews::solving:
         return solver->took_over() ? "taken over" : "solving";
       case ipc::SweepNews::finished:
-        return fmt::format("finished; {} waypoints interpolated{}, {} items refused{}",
-                           ipc::Internals::summary(*solver).interpolated(),
-                           passed_over_in_words(ipc::Internals::summary(*solver).passed_over),
-                           ipc::Internals::summary(*solver).refused,
-                           end_in_words(ipc::Internals::summary(*solver)));
+        return finished_in_words(*solver);
       case ipc::SweepNews::elsewhere:
         return "solved by another process";
       case ipc::SweepNews::no_descriptors:
@@ -85,7 +82,9 @@ class Announcer {
       case ipc::SweepNews::refused:
         return fmt::format("{}; further ones for this reason are only counted", why);
       case ipc::SweepNews::beyond_limits:
-        return fmt::format("limit exceeded, {}; further ones are only counted", why);
+        return excess_in_words(*solver, why);
+      case ipc::SweepNews::following:
+        return following_in_words(ipc::Internals::summary(*solver));
       case ipc::SweepNews::commander:
         return std::string(why);
       case ipc::SweepNews::postponed:
@@ -96,6 +95,24 @@ class Announcer {
         return "gone";
     }
     return {};
+  }
+
+  [[nodiscard]] static std::string finished_in_words(const Solver& solver) {
+    const ipc::Summary& summary = ipc::Internals::summary(solver);
+    const auto worst = ipc::Internals::worst_excess(solver);
+    return fmt::format("finished; {} waypoints interpolated{}, {} items refused{}{}",
+                       summary.interpolated(), passed_over_in_words(summary.passed_over),
+                       summary.refused,
+                       worst ? fmt::format("; the largest of {} excesses: {}", summary.exceeding,
+                                           solver.in_words(*worst))
+                             : "",
+                       end_in_words(summary));
+  }
+
+  [[nodiscard]] static std::string excess_in_words(const Solver& solver, std::string_view why) {
+    const bool is_kept = ipc::beyond(ipc::Internals::board(solver)) == Beyond::enter;
+    return fmt::format("{}, {}; further ones are only counted",
+                       is_kept ? "left the spline to keep a limit" : "limit exceeded", why);
   }
 
   /// Reports limits that match no dimension, and dimensions without a limit.
@@ -114,6 +131,12 @@ class Announcer {
   std::set<std::string> lost_;
 };
 
+/// Whether the state of following of an attached solver has changed. Takes the new one.
+bool takes_change(ipc::Following& known, const Solver& solver) {
+  const ipc::Following now = ipc::Internals::summary(solver).following();
+  return std::exchange(known, now) != now;
+}
+
 /// Solves one stream. Sleeps on its ring while it has no work to do.
 int solve_one(const SolveOptions& options) {
   const MonotonicClock clock;
@@ -125,6 +148,7 @@ int solve_one(const SolveOptions& options) {
   tell(ipc::SweepNews::waiting);
   bool was_attached = false;
   bool was_finished = false;
+  auto following = ipc::Following::meets;
   std::vector<ItemRefusal> refused;
   std::vector<std::string> faults;
   while (!stop_requested()) {
@@ -132,16 +156,16 @@ int solve_one(const SolveOptions& options) {
       if (was_attached) tell(ipc::SweepNews::waiting);
       was_attached = solver.attach(clock);
       was_finished = false;
+      following = ipc::Following::meets;
       if (was_attached) tell(ipc::SweepNews::solving);
     }
     const StepResult result = solver.step(clock);
     solver.take_first_refusals(refused);
-    for (const ItemRefusal& refusal : refused) {
-      tell(ipc::SweepNews::refused, to_string(refusal));
-    }
+    for (const ItemRefusal& item : refused) tell(ipc::SweepNews::refused, to_string(item));
     if (const auto excess = solver.take_first_excess()) {
       tell(ipc::SweepNews::beyond_limits, solver.in_words(*excess));
     }
+    if (solver.attached() && takes_change(following, solver)) tell(ipc::SweepNews::following);
     faults.clear();
     solver.take_commander_faults(faults);
     for (const std::string& fault : faults) tell(ipc::SweepNews::commander, fault);

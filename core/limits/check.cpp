@@ -162,6 +162,13 @@ void take_rotation_excesses(const Comparison& comparison, const QuaternionDimens
 
 }  // namespace
 
+double ratio_of(const MotionLimits& limits, LimitKind kind, std::size_t dimension, double value,
+                double limit) noexcept {
+  if (kind != LimitKind::position) return std::isnan(value) ? kInfinity : std::abs(value) / limit;
+  return ratio_to_bounds(value, value_or(limits.lower, dimension, -kInfinity),
+                         value_or(limits.upper, dimension, kInfinity));
+}
+
 bool keeps_within(const MotionLimits& limits, const DimensionKinds* kinds, const SegmentPart& part,
                   const Allowance& allowance) noexcept {
   const Comparison comparison{limits, part, allowance};

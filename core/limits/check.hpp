@@ -71,6 +71,11 @@ using WorstExcesses = std::array<Excess, kLimitKinds>;
 [[nodiscard]] Excess worst_excess(const MotionLimits& limits, const DimensionKinds* kinds,
                                   const State& state) noexcept;
 
+/// The ratio of an excess, as in Excess, from its value and its limit; for a position, the bounds
+/// of the dimension. O(1).
+[[nodiscard]] double ratio_of(const MotionLimits& limits, LimitKind kind, std::size_t dimension,
+                              double value, double limit) noexcept;
+
 /// The first point at which a limit is exceeded, to 10⁻⁹ of the part's length, with the value
 /// there; nothing if all limits are respected.
 [[nodiscard]] std::optional<Excess> first_violation(const MotionLimits& limits,

@@ -131,4 +131,21 @@ std::string_view to_string(LimitKind kind) noexcept {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
+namespace {
+
+constexpr std::array<std::string_view, kBeyonds> kBeyondNames{"report", "refuse", "enter"};
+
+}  // namespace
+
+std::string_view to_string(Beyond beyond) noexcept {
+  return kBeyondNames[static_cast<std::size_t>(beyond)];
+}
+
+std::optional<Beyond> parse_beyond(std::string_view text) noexcept {
+  for (std::uint8_t i = 0; i < kBeyonds; ++i) {
+    if (kBeyondNames[i] == text) return static_cast<Beyond>(i);
+  }
+  return std::nullopt;
+}
+
 }  // namespace splinecast

@@ -50,7 +50,8 @@ EntrySearch::Outcome EntrySearch::search(const SlidingWindow& target, const Inst
   const Outcome at_knots = search_knots(target, from, rules, tries);
   if (at_knots != Outcome::none || !rules.goes_beyond) return at_knots;
   const Outcome beyond = search_beyond(target, from, rules, tries);
-  return beyond == Outcome::none ? fall_back(target, from, rules) : beyond;
+  const bool falls_back = beyond == Outcome::none && rules.falls_back;
+  return falls_back ? fall_back(target, from, rules) : beyond;
 }
 
 EntrySearch::Outcome EntrySearch::search_knots(const SlidingWindow& target, const Instant& from,

@@ -27,6 +27,8 @@ struct EntryRules {
   /// bounds the entry may go as far, but not farther. Null: none.
   const PositionRange* reach = nullptr;
   bool stays_between = false;  ///< instead of the bounds, the positions at the ends count
+  /// If no candidate passes, the entry may end where the target after it exceeds a limit.
+  bool falls_back = true;
 };
 
 /// The end of an entry. Spans refer to memory of the search and are valid until its next call.
@@ -49,7 +51,7 @@ inline constexpr std::size_t kStartFades = 3;
 /// one, each duration kGrowth times the previous one, up to kLongest. The search takes the first
 /// candidate for which the quintic and everything after it respect the limits. If there is none and
 /// the entry may end after the newest knot, it takes the first knot for which the quintic itself
-/// respects them.
+/// respects them, unless the rules exclude this.
 ///
 /// The velocity of the newest knot, unless given, is an estimate until the next knot is known. The
 /// search therefore treats an entry to that knot as one that ends after it: as the shortest of

@@ -17,7 +17,8 @@ inline constexpr int kTails = SPLINECAST_TAIL_CLAMPED + 1;
 inline constexpr int kClocks = SPLINECAST_CLOCK_LAW + 1;
 inline constexpr int kWaitStatuses = SPLINECAST_WAIT_RETIRED + 1;
 
-static_assert(SPLINECAST_APPEND_FINISHED + 1 == kAppendStatuses);
+static_assert(SPLINECAST_APPEND_CANNOT_FOLLOW + 1 == kAppendStatuses);
+static_assert(SPLINECAST_APPEND_FINISHED == static_cast<int>(AppendStatus::finished));
 static_assert(SPLINECAST_APPEND_FULL == static_cast<int>(AppendStatus::full));
 static_assert(SPLINECAST_APPEND_PAST == static_cast<int>(AppendStatus::past));
 static_assert(SPLINECAST_APPEND_DUPLICATE == static_cast<int>(AppendStatus::duplicate));
@@ -29,7 +30,8 @@ static_assert(SPLINECAST_APPEND_TOO_LATE == static_cast<int>(AppendStatus::too_l
 static_assert(SPLINECAST_APPEND_TOO_MANY == static_cast<int>(AppendStatus::too_many));
 static_assert(SPLINECAST_APPEND_ALREADY_STARTED == static_cast<int>(AppendStatus::already_started));
 
-static_assert(SPLINECAST_REFUSAL_BEYOND_LIMITS + 1 == kRefusals);
+static_assert(SPLINECAST_REFUSAL_CANNOT_FOLLOW + 1 == kRefusals);
+static_assert(SPLINECAST_REFUSAL_BEYOND_LIMITS == static_cast<int>(Refusal::beyond_limits));
 static_assert(SPLINECAST_REFUSAL_PAST == static_cast<int>(Refusal::past));
 static_assert(SPLINECAST_REFUSAL_DUPLICATE == static_cast<int>(Refusal::duplicate));
 static_assert(SPLINECAST_REFUSAL_OUT_OF_ORDER == static_cast<int>(Refusal::out_of_order));
@@ -87,6 +89,8 @@ static_assert(SPLINECAST_LIMIT_JERK == static_cast<int>(LimitKind::jerk));
 
 static_assert(SPLINECAST_BEYOND_REPORT == static_cast<int>(Beyond::report));
 static_assert(SPLINECAST_BEYOND_REFUSE == static_cast<int>(Beyond::refuse));
+static_assert(SPLINECAST_BEYOND_ENTER == static_cast<int>(Beyond::enter));
+static_assert(SPLINECAST_BEYOND_ENTER + 1 == kBeyonds);
 
 static_assert(SPLINECAST_SEGMENT_SPLINE == static_cast<int>(SegmentKind::spline));
 static_assert(SPLINECAST_SEGMENT_ENTRY == static_cast<int>(SegmentKind::entry));

@@ -182,7 +182,7 @@ SolverOptions solver_options(const splinecast_solver_options* given) {
           .stop_time = time(all.stop_time, "options->stop_time"),
           .limits = limits(all.limits),
           .named_limits = named_limits(all),
-          .beyond = choice<Beyond>(all.beyond, 2, "options->beyond"),
+          .beyond = choice<Beyond>(all.beyond, kBeyonds, "options->beyond"),
           .freeze_ahead = time(all.freeze_ahead, "options->freeze_ahead"),
           .history = time(all.history, "options->history"),
           .min_entry = time(all.min_entry, "options->min_entry"),

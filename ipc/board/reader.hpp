@@ -82,6 +82,10 @@ class KnotBoardReader {
   /// not change; on failure none changes.
   [[nodiscard]] bool copy_bounds(const Look& look, Word seen, Summary& out) const noexcept;
 
+  /// Until when the solver refuses waypoints as `cannot follow`, under revision r; max() if it does
+  /// not, or if the writer overtook this call. O(1).
+  [[nodiscard]] Time refused_until(Word r) const noexcept;
+
   /// Copies the whole summary. On failure `out` does not change.
   [[nodiscard]] bool copy_summary(const Look& look, Summary& out) const noexcept;
 
@@ -138,6 +142,10 @@ class KnotBoardReader {
   [[nodiscard]] std::optional<LimitExcess> excess(const Summary& summary,
                                                   Word index) const noexcept;
 
+  /// The largest excess of a waypoint that was not refused; empty if there is none, or if it is
+  /// being written. It may belong to the next revision, or to one that was discarded.
+  [[nodiscard]] std::optional<LimitExcess> worst_excess() const noexcept;
+
   /// The excess of an item, if it is one of the last kExcessesKept. O(kExcessesKept).
   [[nodiscard]] std::optional<LimitExcess> excess_of(const Summary& summary,
                                                      Word item) const noexcept;
@@ -175,6 +183,7 @@ class KnotBoardReader {
   std::span<const Word> control_;
   std::span<const Word> refusals_;
   std::span<const Word> excesses_;
+  std::span<const Word> worst_;
   std::span<const Word> times_;
   std::span<const Word> tables_;  ///< of a law: both tables of commanders
   std::span<const Word> slots_;

@@ -12,16 +12,8 @@ namespace {
 constexpr unsigned kRefusalItemShift = 8;
 constexpr Word kByteMask = 0xff;
 
-}  // namespace
-
-void KnotBoardWriter::write_refusal(Word index, const RefusedItem& refusal) noexcept {
-  // One word, so that it is never torn; published by the commit of the summary that counts it.
-  put(refusals_[index % kRefusalsKept],
-      refusal.item << kRefusalItemShift | static_cast<Word>(refusal.reason));
-}
-
-void KnotBoardWriter::write_excess(Word index, const LimitExcess& excess) noexcept {
-  const auto words = excesses_.subspan(index % kExcessesKept * kExcessWords, kExcessWords);
+/// Stores an excess. Word 0 comes last, and is 0 meanwhile.
+void put_excess(const LimitExcess& excess, std::span<Word> words) noexcept {
   const std::array values{to_word(excess.time), to_word(excess.value), to_word(excess.limit)};
   store(words[0], 0, std::memory_order_release);
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -31,6 +23,38 @@ void KnotBoardWriter::write_excess(Word index, const LimitExcess& excess) noexce
         excess.item << kExcessItemShift | excess.dimension << kExcessDimensionShift |
             static_cast<Word>(excess.kind) << 1U | (excess.is_refused ? 1 : 0),
         std::memory_order_release);
+}
+
+/// Copies an excess; empty if there is none, or if it was being written.
+std::optional<LimitExcess> copy_excess(std::span<const Word> words) noexcept {
+  const Word tag = load(words[0], std::memory_order_acquire);
+  constexpr Word kKindMask = 7;
+  constexpr Word kDimensionMask = kMaxDimensions - 1;
+  const LimitExcess found{.item = tag >> kExcessItemShift,
+                          .is_refused = (tag & 1U) != 0,
+                          .kind = static_cast<LimitKind>((tag >> 1U & kKindMask) % kLimitKinds),
+                          .dimension = tag >> kExcessDimensionShift & kDimensionMask,
+                          .time = to_time(load(words[1], std::memory_order_acquire)),
+                          .value = to_double(load(words[2], std::memory_order_acquire)),
+                          .limit = to_double(load(words[3], std::memory_order_acquire))};
+  const bool is_whole = tag != 0 && load(words[0], std::memory_order_relaxed) == tag;
+  return is_whole ? std::optional(found) : std::nullopt;
+}
+
+}  // namespace
+
+void KnotBoardWriter::write_refusal(Word index, const RefusedItem& refusal) noexcept {
+  // One word, so that it is never torn; published by the commit of the summary that counts it.
+  put(refusals_[index % kRefusalsKept],
+      refusal.item << kRefusalItemShift | static_cast<Word>(refusal.reason));
+}
+
+void KnotBoardWriter::write_excess(Word index, const LimitExcess& excess) noexcept {
+  put_excess(excess, excesses_.subspan(index % kExcessesKept * kExcessWords, kExcessWords));
+}
+
+void KnotBoardWriter::write_worst_excess(const LimitExcess& excess) noexcept {
+  put_excess(excess, worst_);
 }
 
 RefusedItem KnotBoardReader::refusal(Word index) const noexcept {
@@ -58,18 +82,12 @@ std::optional<LimitExcess> KnotBoardReader::excess(const Summary& summary,
                                                    Word index) const noexcept {
   if (index >= summary.exceeding || summary.exceeding - index > kExcessesKept) return std::nullopt;
   const auto words = excesses_.subspan(index % kExcessesKept * kExcessWords, kExcessWords);
-  const Word tag = load(words[0], std::memory_order_acquire);
-  constexpr Word kKindMask = 7;
-  constexpr Word kDimensionMask = kMaxDimensions - 1;
-  const LimitExcess found{.item = tag >> kExcessItemShift,
-                          .is_refused = (tag & 1U) != 0,
-                          .kind = static_cast<LimitKind>((tag >> 1U & kKindMask) % kLimitKinds),
-                          .dimension = tag >> kExcessDimensionShift & kDimensionMask,
-                          .time = to_time(load(words[1], std::memory_order_acquire)),
-                          .value = to_double(load(words[2], std::memory_order_acquire)),
-                          .limit = to_double(load(words[3], std::memory_order_acquire))};
-  const bool is_whole = tag != 0 && load(words[0], std::memory_order_relaxed) == tag;
-  return is_whole && found.item < summary.consumed ? std::optional(found) : std::nullopt;
+  const auto found = copy_excess(words);
+  return found && found->item < summary.consumed ? found : std::nullopt;
+}
+
+std::optional<LimitExcess> KnotBoardReader::worst_excess() const noexcept {
+  return copy_excess(worst_);
 }
 
 std::optional<LimitExcess> KnotBoardReader::excess_of(const Summary& summary,

@@ -67,6 +67,17 @@ bool KnotBoardReader::copy_bounds(const Look& look, Word seen, Summary& out) con
   return true;
 }
 
+Time KnotBoardReader::refused_until(Word r) const noexcept {
+  constexpr std::size_t kWord = word_of(kSummaryFields, "refused until");
+  const auto view = summary_cells();
+  const Tags tags = view.tags(std::memory_order_acquire);
+  if (!tags.holds_any(r)) return Time::max();
+  const std::size_t c = tags.newest(r);
+  const Time until = to_time(load(view.cell(c)[kWord], std::memory_order_acquire));
+  const bool is_whole = load(view.cell(c)[0], std::memory_order_relaxed) == tags.of[c];
+  return is_whole ? until : Time::max();
+}
+
 bool KnotBoardReader::copy_summary(const Look& look, Summary& out) const noexcept {
   const Word r = look.revision;
   const Time changed_from = earliest_change(r - 1, r);

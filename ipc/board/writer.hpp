@@ -117,6 +117,9 @@ class KnotBoardWriter {
   /// 0.
   void write_excess(Word index, const LimitExcess& excess) noexcept;
 
+  /// Writes the largest excess of a waypoint that was not refused, for all revisions from now on.
+  void write_worst_excess(const LimitExcess& excess) noexcept;
+
   /// Sets the table of a law's commanders for the next revision: kCommanderTableWords words, or
   /// none to leave it as it is. Only for the board of a law.
   void set_commanders(std::span<const Word> table) noexcept;
@@ -261,6 +264,7 @@ class KnotBoardWriter {
   std::span<Word> control_;
   std::span<Word> refusals_;
   std::span<Word> excesses_;
+  std::span<Word> worst_;
   std::span<Word> times_;
   std::span<Word> tables_;   ///< of a law: both tables of commanders
   std::vector<Word> table_;  ///< of a law: the committed table, and until a commit the next one

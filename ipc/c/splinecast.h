@@ -168,7 +168,8 @@ typedef enum splinecast_append_status {
   SPLINECAST_APPEND_TOO_LATE,         ///< a replacement at a settled time
   SPLINECAST_APPEND_TOO_MANY,         ///< a replacement that does not fit even into an empty ring
   SPLINECAST_APPEND_ALREADY_STARTED,  ///< a start state after the first waypoint
-  SPLINECAST_APPEND_FINISHED          ///< the stream has been finished
+  SPLINECAST_APPEND_FINISHED,         ///< the stream has been finished
+  SPLINECAST_APPEND_CANNOT_FOLLOW     ///< no waypoint met for 3 s, and the curve moves until then
 } splinecast_append_status;
 
 /// Why the solver refused an item that the ring had accepted.
@@ -186,7 +187,8 @@ typedef enum splinecast_refusal_reason {
   SPLINECAST_REFUSAL_LACKS_DERIVATIVES = 11,  ///< the method needs a velocity or an acceleration
   SPLINECAST_REFUSAL_LAG_TOO_SHORT = 12,      ///< for λ with waypoints this close
   SPLINECAST_REFUSAL_ZERO_QUATERNION = 13,
-  SPLINECAST_REFUSAL_BEYOND_LIMITS = 14  ///< the curve would exceed a limit
+  SPLINECAST_REFUSAL_BEYOND_LIMITS = 14,  ///< the curve would exceed a limit
+  SPLINECAST_REFUSAL_CANNOT_FOLLOW = 15   ///< none met for 3 s, and no entry leads to it
 } splinecast_refusal_reason;
 
 /// The validity of a sample. Up to `revised` it has values; the others leave the state unchanged.
@@ -278,7 +280,8 @@ typedef enum splinecast_limit_kind {
 /// What a solver does with a waypoint that makes the curve exceed a limit.
 typedef enum splinecast_beyond {
   SPLINECAST_BEYOND_REPORT,  ///< accept it, count it and record where
-  SPLINECAST_BEYOND_REFUSE
+  SPLINECAST_BEYOND_REFUSE,
+  SPLINECAST_BEYOND_ENTER  ///< accept it, and leave the spline within the limits; live streams only
 } splinecast_beyond;
 
 /// The purpose of a segment.

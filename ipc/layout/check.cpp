@@ -170,8 +170,7 @@ BoardLayout checked_board_layout(const RegionHeader& header, std::size_t real_by
   require_range("history", static_cast<std::uint64_t>(header.history), 0, kLongestNanoseconds);
   require_range("shortest entry", static_cast<std::uint64_t>(header.min_entry), 1,
                 kLongestNanoseconds);
-  require_range("action beyond the limits", header.beyond, 0,
-                static_cast<std::uint64_t>(Beyond::refuse));
+  require_range("action beyond the limits", header.beyond, 0, kBeyonds - 1);
   require_range("rules", header.rules, kFormerRules, kRules);
   require_motion_limits(header);
   require_range("stop time", static_cast<std::uint64_t>(header.stop_time), 1,

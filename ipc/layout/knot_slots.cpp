@@ -23,6 +23,7 @@ BoardLayout BoardLayout::of(std::size_t dimensions, std::size_t capacity, std::s
       .smooths = smooths,
       .refusals = kBodyOffset,
       .excesses = kBodyOffset + word_of(kBodyFields, "excesses") * sizeof(Word),
+      .worst = kBodyOffset + word_of(kBodyFields, "worst excess") * sizeof(Word),
       .times = kBodyOffset + word_of(kBodyFields, "times") * sizeof(Word),
       .slots = 0,
       .cell = lines(kCellFields),

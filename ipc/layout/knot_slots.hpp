@@ -98,6 +98,11 @@ inline constexpr std::tuple kBodyRows{
              "word 0: 0 while it is written, else item number · 1,024 + dimension · 16\n"
              "+ kind · 2 (0 velocity, 1 acceleration, 2 jerk, 3 position) + 1 if it was refused\n"
              "word 1: time, ns; words 2 and 3: value and limit, doubles"},
+    FieldRow{"worst excess",
+             {.words = 2 * kExcessWords},
+             FieldWriter::owner,
+             "the largest one, relative to its limit, of all that were not refused: as above;\n"
+             "word 0 is 0 if there is none; the last 4 words are 0"},
     FieldRow{"outcomes",
              {.words = kOutcomesKept * kOutcomeWords},
              FieldWriter::owner,
@@ -128,6 +133,7 @@ struct BoardLayout {
   bool smooths;          ///< cells have residuals, rows have factors
   std::size_t refusals;  ///< kRefusalsKept words
   std::size_t excesses;  ///< kExcessesKept records of kExcessWords words
+  std::size_t worst;     ///< one record
   std::size_t times;     ///< packed times: capacity words
   std::size_t slots;     ///< capacity + kPassedSlots slots
   std::size_t cell;      ///< bytes of a cell; the cells are at offset 0 of a slot

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <tuple>
 
 #include "ipc/layout/separation.hpp"
@@ -35,6 +36,25 @@ enum class EndKind : std::uint8_t {
   in_stop = 5,       ///< in the published stop: no entry to the last waypoint kept the limits
 };
 inline constexpr std::size_t kEndKinds = 6;
+
+/// Whether a curve that keeps its limits (Beyond::enter) follows its waypoints.
+enum class Following : std::uint8_t {
+  meets = 0,          ///< it has met one within the last kUnmetTold
+  meets_none = 1,     ///< it has met none for longer
+  cannot_follow = 2,  ///< it has met none for longer than kUnmetRefused: waypoints are refused
+};
+[[nodiscard]] constexpr std::string_view to_string(Following following) noexcept {
+  switch (following) {
+    case Following::meets_none:
+      return "meets none";
+    case Following::cannot_follow:
+      return "cannot follow";
+    default:
+      return "meets";
+  }
+}
+inline constexpr Time kUnmetTold{1'000'000'000};
+inline constexpr Time kUnmetRefused{3'000'000'000};
 
 /// The summary: the values of a whole revision.
 struct Summary {
@@ -75,6 +95,12 @@ struct Summary {
   Word end_kind = 0;                            ///< EndKind
   Word end_item = 0;    ///< item that finished the stream; 0 unless end_kind is set
   Time end_lateness{};  ///< how long after the last waypoint's time the curve rests at it
+  /// With Beyond::enter: time of the first waypoint after the last one that the curve meets; max()
+  /// if it meets the newest one.
+  Time unmet_since = Time::max();
+  /// With Beyond::enter: the curve cannot follow its waypoints. It ends as it is planned, and
+  /// waypoints up to this time are refused; max(): it follows them.
+  Time refused_until = Time::max();
   /// The curve before this time never changes. May be raised without a revision.
   Time settled_until = -kLatestTime;
   Time changed_from{};  ///< earliest time whose curve this revision changed
@@ -82,6 +108,12 @@ struct Summary {
   /// How the curve ends; `none` if end_kind is out of range.
   [[nodiscard]] EndKind ending() const noexcept {
     return end_kind < kEndKinds ? static_cast<EndKind>(end_kind) : EndKind::none;
+  }
+  /// Whether the curve follows its waypoints.
+  [[nodiscard]] Following following() const noexcept {
+    if (refused_until < Time::max()) return Following::cannot_follow;
+    if (unmet_since == Time::max() || newest_time <= unmet_since) return Following::meets;
+    return newest_time - unmet_since > kUnmetTold ? Following::meets_none : Following::meets;
   }
   /// Waypoints that the curve interpolates, including replaced ones.
   [[nodiscard]] Word interpolated() const noexcept { return knots - passed_over; }
@@ -172,7 +204,14 @@ inline constexpr std::tuple kFurtherRows{
     MemberRow<&Summary::end_lateness>{
         "end lateness", FieldWriter::owner,
         "ns: how long after the last waypoint's time the curve rests at it"},
-    padding(6)};
+    MemberRow<&Summary::unmet_since>{
+        "unmet since", FieldWriter::owner,
+        "ns: time of the first waypoint after the last one that the curve meets;\n"
+        "2⁶³ − 1: it meets the newest one, or may exceed its limits"},
+    MemberRow<&Summary::refused_until>{
+        "refused until", FieldWriter::owner,
+        "ns: waypoints up to this time are refused as `cannot follow`; 2⁶³ − 1: none"},
+    padding(4)};
 
 /// The words of a cell of the summary's slot. To add a field, add a member of Summary and a row
 /// above; the rest follows from the row.

@@ -117,6 +117,17 @@ void require_parameters_of(const Method& method, const SolverOptions& options) {
   }
 }
 
+/// What the solver does with a waypoint beyond a limit. A curve that may leave its spline at any
+/// time needs a clock.
+Beyond beyond_for(const SolverOptions& options, const RegionHeader& header) {
+  const Beyond beyond = options.beyond.value_or(Beyond::report);
+  if (beyond == Beyond::enter && !is_live(stream_clock(header))) {
+    throw BadRequest(
+        "beyond 'enter' is for live streams: a recorded stream takes report or refuse");
+  }
+  return beyond;
+}
+
 }  // namespace
 
 void require_options(const SolverOptions& options) {
@@ -127,6 +138,7 @@ void require_options(const SolverOptions& options) {
   SolverOptions curve = options;
   curve.limits.reset();
   curve.named_limits.clear();
+  curve.beyond.reset();
   RegionHeader header{};
   header.dimensions = 1;
   write_options(curve, header);
@@ -154,7 +166,7 @@ void write_options(const SolverOptions& options, RegionHeader& header) {
   const MotionLimits limits = limits_for(options, header);
   header.stop_time = options.stop_time.value_or(kDefaultStopTime).count();
   put_limits(limits, header);
-  header.beyond = static_cast<std::uint64_t>(options.beyond.value_or(Beyond::report));
+  header.beyond = static_cast<std::uint64_t>(beyond_for(options, header));
   const LiveOptions live;
   const Time freeze_ahead = options.freeze_ahead.value_or(live.freeze_ahead);
   header.freeze_ahead = freeze_ahead.count();
@@ -221,7 +233,7 @@ void require_same_options(const std::string& stream, const RegionHeader& stands,
   require_same_times(stream, stands, options);
   require_same_limits(stream, stands, options);
   if (options.beyond) {
-    require_same<std::uint64_t>(stream, "action beyond the limits (0 report, 1 refuse)",
+    require_same<std::uint64_t>(stream, "action beyond the limits (0 report, 1 refuse, 2 enter)",
                                 static_cast<std::uint64_t>(*options.beyond), stands.beyond,
                                 number(static_cast<int>(*options.beyond)), number(stands.beyond));
   }

@@ -69,6 +69,7 @@ AppendStatus WaypointRingWriter::check(const Waypoint& waypoint,
   }
   if (status != AppendStatus::accepted) return status;
   if (is_past(waypoint.time, solved)) return AppendStatus::past;
+  if (cannot_follow(waypoint.time, solved)) return AppendStatus::cannot_follow;
   return has_room(1, solved, control_reserve(layout_.capacity)) ? AppendStatus::accepted
                                                                 : AppendStatus::full;
 }
@@ -80,6 +81,13 @@ bool WaypointRingWriter::is_past(Time time, const Solved& solved) const noexcept
   if (!has_last_) return true;
   const Time now = solved.clock != nullptr ? solved.clock->now() : solved.settled_until;
   return time + kMostLate < std::max(now, solved.settled_until);
+}
+
+/// Whether the solver would refuse a waypoint, because its curve cannot follow the waypoints. An
+/// item that it has not consumed may be a replacement, which the curve follows again.
+bool WaypointRingWriter::cannot_follow(Time time, const Solved& solved) const noexcept {
+  return solved.refused_until < Time::max() && time <= solved.refused_until &&
+         solved.consumed == written_;
 }
 
 /// Whether a waypoint that is more than max_interval after the newest item is valid because it

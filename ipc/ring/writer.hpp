@@ -81,6 +81,9 @@ class WaypointRingWriter {
     Word consumed = 0;
     Time settled_until = Time::min();
     const Clock* clock = nullptr;  ///< of a live stream
+    /// Until when the solver refuses waypoints as `cannot follow`; max(): it does not. Counts while
+    /// it has consumed all items.
+    Time refused_until = Time::max();
   };
 
   /// Appends a waypoint if it is valid and the ring has room for it and for control_reserve() more
@@ -136,6 +139,7 @@ class WaypointRingWriter {
   }
   [[nodiscard]] bool repeats_stop(Time from, const Solved& solved) const noexcept;
   [[nodiscard]] bool is_past(Time time, const Solved& solved) const noexcept;
+  [[nodiscard]] bool cannot_follow(Time time, const Solved& solved) const noexcept;
   [[nodiscard]] bool follows_pause(Time time, const Solved& solved) const noexcept;
   [[nodiscard]] static Time effect_of_stop(Time t, const Solved& solved) noexcept;
   [[nodiscard]] AppendStatus check_stop(Time t, const Solved& solved) const noexcept;

@@ -48,6 +48,7 @@ void inspect_spline(StreamInfo& info, const Trust& trust) {
   for (Word i = excesses - std::min<Word>(excesses, kExcessesKept); i < excesses; ++i) {
     if (const auto excess = board.excess(info.summary, i)) info.excesses.push_back(*excess);
   }
+  info.worst_excess = board.worst_excess();
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ struct StreamInfo {
   std::vector<RefusedItem> refusals;  ///< the last items refused, oldest first: kRefusalsKept,
                                       ///< fewer if the solver has overwritten some meanwhile
   std::vector<LimitExcess> excesses;  ///< the last excesses, oldest first: at most kExcessesKept
+  std::optional<LimitExcess> worst_excess;  ///< the largest one of a waypoint that was not refused
 };
 
 /// Inspects a stream. The settled time of the summary is that of Reader::settled_until(), which

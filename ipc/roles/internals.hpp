@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/summary.hpp"
 #include "ipc/sampling/sampler.hpp"
@@ -22,10 +24,12 @@ struct Internals {
   /// overtook every try.
   [[nodiscard]] static bool summary(const Reader& reader, Summary& out) noexcept;
 
-  /// The summary last committed. This and the next two functions require an attached solver.
+  /// The summary last committed. This and the next three functions require an attached solver.
   [[nodiscard]] static const Summary& summary(const Solver& solver) noexcept;
   /// The header of the board, which holds the solver's options.
   [[nodiscard]] static const RegionHeader& board(const Solver& solver) noexcept;
+  /// The largest excess of a waypoint that was not refused.
+  [[nodiscard]] static std::optional<LimitExcess> worst_excess(const Solver& solver) noexcept;
   /// What to poll before the next step.
   [[nodiscard]] static SolverWatch watch(const Solver& solver) noexcept;
   /// Tries to acquire the lock on the board's region unless it is held: it shows other users that

@@ -9,6 +9,7 @@
 #include "ipc/law/follower.hpp"
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/knot_slots.hpp"
+#include "ipc/layout/limits.hpp"
 #include "ipc/layout/waypoint_items.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/mapping/owner_lock.hpp"
@@ -133,6 +134,8 @@ struct Producer::Impl {
     const bool is_time = is_time_in_range(look.settled_until);
     if (look.revision > 0 && is_time) settled_until = look.settled_until;
     known.settled_until = settled_until;
+    const bool may_refuse = ipc::beyond(solver->header) == Beyond::enter && look.revision > 0;
+    if (may_refuse) known.refused_until = solver->board.refused_until(look.revision);
     return known;
   }
 

@@ -299,6 +299,10 @@ const ipc::Summary& ipc::Internals::summary(const Solver& solver) noexcept {
   return solver.impl_->attachment->solver.summary();
 }
 
+std::optional<LimitExcess> ipc::Internals::worst_excess(const Solver& solver) noexcept {
+  return solver.impl_->attachment->board.reader.worst_excess();
+}
+
 const ipc::RegionHeader& ipc::Internals::board(const Solver& solver) noexcept {
   return solver.impl_->attachment->board.header;
 }

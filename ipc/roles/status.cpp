@@ -30,6 +30,8 @@ std::string_view to_string(AppendStatus status) noexcept {
       return "already started";
     case AppendStatus::finished:
       return "finished";
+    case AppendStatus::cannot_follow:
+      return "cannot follow";
   }
   return "unknown";
 }
@@ -64,6 +66,8 @@ std::string_view to_string(Refusal refusal) noexcept {
       return "quaternion of length 0";
     case Refusal::beyond_limits:
       return "beyond limits";
+    case Refusal::cannot_follow:
+      return "cannot follow";
   }
   return "unknown";
 }

@@ -8,9 +8,34 @@ namespace splinecast::ipc {
 
 /// How a published curve returns to its target.
 struct EntryOptions {
-  bool is_live = false;  ///< false: an entry waits until K newer waypoints are known
-  Time min_entry{};      ///< length of the shortest entry
-  Time notice{};         ///< a live stream's start is decided this long before it settles
+  bool is_live = false;       ///< false: an entry waits until K newer waypoints are known
+  Time min_entry{};           ///< length of the shortest entry
+  Time notice{};              ///< a live stream's start is decided this long before it settles
+  bool keeps_limits = false;  ///< Beyond::enter: the curve leaves its target where that exceeds one
+};
+
+/// What a curve that must keep its limits has done with a waypoint.
+enum class Followed {
+  taken,    ///< it has been appended
+  waits,    ///< nothing: offer it again in the next step, after the commit
+  refused,  ///< nothing: the curve cannot follow its waypoints
+};
+
+/// The state from which an entry, or the stop of a run without waypoints, begins.
+struct CurveOrigin {
+  Word number = 0;  ///< of its knot; 0: there is no such entry or stop
+  Time time{};
+  bool is_new = false;     ///< the board does not hold it yet
+  bool is_corner = false;  ///< the run began from rest there
+};
+
+/// The end that is being searched for: slowing down, or an entry to the last waypoint from there.
+enum class EndSearch {
+  none,          ///< none has been tried
+  slowing,       ///< slowing down from a knot of the published curve
+  from_knots,    ///< at knots of the published curve, the latest one first
+  from_settled,  ///< in the published curve, as it settles
+  from_rest,     ///< where the published curve rests
 };
 
 /// A published curve's part of a revision's summary; see the members of Summary.
@@ -28,6 +53,8 @@ struct CurveSummary {
   Word unmet = 0;
   Time blend_until{};
   Word passed_over = 0;
+  Time unmet_since = Time::max();
+  Time refused_until = Time::max();
 };
 
 /// Copies the curve's part into a summary; the counters stay as they are.

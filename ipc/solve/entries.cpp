@@ -55,6 +55,7 @@ void PublishedCurve::check_start() noexcept {
   unmet_ = 1;
   passed_lowest_ = passed_written_ = passed_committed_ = 0;
   set_origin(1, rest);
+  note_met();
   note_change(first.time);
   search_.restart(1);
   is_searching_ = true;
@@ -65,10 +66,14 @@ void PublishedCurve::check_start() noexcept {
 bool PublishedCurve::find_state(Time settled) noexcept {
   uses_cut_ = origin_.number == 0 || (!origin_.is_new && settled > origin_.time);
   if (!uses_cut_) return true;
-  // The entry must begin after the last knot that the curve meets.
-  const std::size_t met = is_on_line() ? window_.knots() : unmet_;
-  const bool is_in_window = met > window_.oldest_segment();
-  const Time t = is_in_window ? std::max(settled, window_.time(met - 1) + Time(1)) : settled;
+  // The entry must begin after the last knot that the curve meets. That of a curve that has left
+  // its target may be later than `settled`; it is the newest knot of the committed curve.
+  Time t = settled;
+  if (is_on_line() && window_.knots() > 0) {
+    t = std::max(t, newest_time() + Time(1));
+  } else if (origin_.number == 0) {
+    t = std::max(t, published_->time_hint(summary_.newest) + Time(1));
+  }
   is_damaged_ = is_damaged_ || !cut_.find(summary_, t);
   return !is_damaged_;
 }
@@ -112,7 +117,8 @@ core::EntryRules PublishedCurve::entry_rules() const noexcept {
   return {.limits = &window_.options().limits,
           .shown = entries_.is_live ? &shown_.limits() : nullptr,
           .least = blends ? std::max(entries_.min_entry, blend_until_ - from) : entries_.min_entry,
-          .reach = &reach_};
+          .reach = &reach_,
+          .falls_back = !entries_.keeps_limits};
 }
 
 void PublishedCurve::look_for_entry(Time settled, Time keep, bool is_last, int& tries) noexcept {
@@ -151,6 +157,7 @@ void PublishedCurve::enter() noexcept {
     met_ = placed_ = *end.knot;
     met_number_ = origin_.number + 1;
     window_.freeze_knots(met_ + 1);
+    refused_until_ = unmet_since_ = Time::max();
     entry_end_ = end.state.time;
     std::ranges::copy(end.state.acceleration, beyond_.ref().acceleration.begin());
     kept_ = open_ = met_;

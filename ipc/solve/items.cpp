@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/laws/law_path.hpp"
+#include "core/limits/check.hpp"
 #include "ipc/solve/stream_solver.hpp"
 
 /// Takes or refuses the items of a ring.
@@ -80,8 +81,8 @@ void StreamSolver::take_waypoint(Word number) noexcept {
     waypoint = unwrapped(waypoint);
     if (!is_finite(waypoint)) return refuse(number, Refusal::not_finite);
   }
-  if (note_excess(waypoint, number)) return refuse(number, Refusal::beyond_limits);
-  curve_.append(waypoint, number);
+  if (const auto refusal = append(waypoint, number)) return refuse(number, *refusal);
+  if (is_postponed_) return;
   if (waypoint.time > settled_until_) summary_.starved = false;
   ++summary_.knots;
   summary_.newest_time = waypoint.time;
@@ -104,14 +105,36 @@ Waypoint StreamSolver::unwrapped(const Waypoint& given) noexcept {
           .acceleration = values.acceleration};
 }
 
-/// Notes where the curve with this waypoint exceeds a limit. Returns whether to refuse the
-/// waypoint.
-bool StreamSolver::note_excess(const Waypoint& waypoint, Word number) noexcept {
-  auto excess = curve_.excess_with(waypoint, settled_until_);
+/// Appends a waypoint to the curve, as `beyond` specifies. Returns why to refuse it, if so.
+std::optional<Refusal> StreamSolver::append(const Waypoint& waypoint, Word number) noexcept {
+  if (!live_ || beyond_ != Beyond::enter) {
+    const bool is_refused = note_excess(curve_.excess_with(waypoint, settled_until_), number);
+    if (is_refused) return Refusal::beyond_limits;
+    curve_.append(waypoint, number);
+    return std::nullopt;
+  }
+  std::optional<LimitExcess> excess;
+  const auto followed = curve_.follow(waypoint, number, settled_until_, keep_, tries_, excess);
+  is_postponed_ = followed == Followed::waits;
+  if (followed == Followed::refused) return Refusal::cannot_follow;
+  if (!is_postponed_) (void)note_excess(excess, number);
+  return std::nullopt;
+}
+
+/// Notes where the curve with a waypoint exceeds a limit. Returns whether to refuse the waypoint.
+bool StreamSolver::note_excess(std::optional<LimitExcess> excess, Word number) noexcept {
   if (!excess) return false;
   excess->item = number;
   excess->is_refused = beyond_ == Beyond::refuse;
   board_->write_excess(summary_.exceeding++, *excess);
+  const auto ratio = [&](const LimitExcess& of) {
+    const MotionLimits& limits = curve_.window().options().limits;
+    return core::ratio_of(limits, of.kind, of.dimension, of.value, of.limit);
+  };
+  const auto worst = published_->worst_excess();
+  if (!excess->is_refused && (!worst || ratio(*excess) > ratio(*worst))) {
+    board_->write_worst_excess(*excess);
+  }
   return excess->is_refused;
 }
 
@@ -242,8 +265,8 @@ void StreamSolver::take_finish(Word number) noexcept {
     if (!is_finite(values)) return refuse(number, Refusal::not_finite);
     end_.value.assign(values.begin(), values.end());
   }
-  is_finish_postponed_ = curve_.has_begun() && !curve_.finish(end_, settled_until_, keep_, tries_);
-  if (is_finish_postponed_) return;
+  is_postponed_ = curve_.has_begun() && !curve_.finish(end_, settled_until_, keep_, tries_);
+  if (is_postponed_) return;
   summary_.finished = true;
   summary_.end_kind = static_cast<Word>(curve_.ending());
   summary_.end_item = number;

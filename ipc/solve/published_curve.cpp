@@ -101,12 +101,14 @@ void PublishedCurve::freeze(Time t) noexcept {
     passed_before_ += known_ - 1 - unmet_;
     unmet_ = known_;
     ends_at_known_ = false;
+    note_met();
   }
   if (course_ == Course::on_target && knots > 0) {
     window_.freeze(t);
     // The newest knot is frozen: readers follow the stop after it.
-    if (t >= window_.time(knots - 1)) wait_for_entry();
-  } else if (course_ == Course::waiting && !is_searching_ && knots > unmet_ && t < newest_time()) {
+    if (t >= window_.time(knots - 1)) wait_for_entry(window_.knots());
+  } else if (course_ == Course::waiting && !is_searching_ && !has_given_up() && knots > unmet_ &&
+             t < newest_time()) {
     // The entry would now begin later in the stop, in another state: candidates that failed before
     // may now keep the limits.
     search_.restart(unmet_);
@@ -116,15 +118,24 @@ void PublishedCurve::freeze(Time t) noexcept {
 }
 
 /// Sets the course to `waiting`: the end of the curve is final, so that only an entry can lead to
-/// the next waypoint.
-void PublishedCurve::wait_for_entry() noexcept {
+/// the next waypoint. The curve meets the leading `met` knots of the run.
+void PublishedCurve::wait_for_entry(std::size_t met) noexcept {
   course_ = Course::waiting;
-  met_ = unmet_ = placed_ = window_.knots();
+  met_ = placed_ = window_.knots();
+  unmet_ = met;
   // The next waypoint changes the rows of the last met knots, and many entries in sequence may push
   // these knots off the board. So write_passed() writes them to the passed slots.
   passed_lowest_ = unmet_ - std::min(unmet_, kMetKept);
   passed_written_ = passed_committed_ = passed_lowest_;
   origin_ = {};
+  note_met();
+}
+
+/// Records that the curve meets all knots before unmet_.
+void PublishedCurve::note_met() noexcept {
+  refused_until_ = unmet_since_ = Time::max();
+  if (!entries_.keeps_limits || unmet_ >= window_.knots()) return;
+  unmet_since_ = unmet_ >= window_.oldest_segment() ? window_.time(unmet_) : newest_time();
 }
 
 /// Records which knots are final. Call it when all knots are on the board, before a revision
@@ -178,7 +189,7 @@ void PublishedCurve::note_change(Time from) noexcept {
 void PublishedCurve::begin(const Instant& state) noexcept {
   window_.begin_run();
   committed_knots_ = 0;
-  wait_for_entry();
+  wait_for_entry(window_.knots());
   set_origin(1, state);
   note_change(state.time);
 }
@@ -193,7 +204,7 @@ void PublishedCurve::begin_run(Time t, Time blend, bool is_from_rest) noexcept {
   passed_before_ += passed_over();
   window_.begin_run();
   committed_knots_ = 0;
-  wait_for_entry();
+  wait_for_entry(window_.knots());
   set_origin(cut_.next(), cut_.state());
   origin_.is_corner = is_from_rest;
   blend_until_ = t + blend;
@@ -214,6 +225,7 @@ void PublishedCurve::append(const Waypoint& waypoint, Word item) noexcept {
   if (course_ == Course::waiting || course_ == Course::beyond) {
     if (!is_searching_) restart_search();
     is_searching_ = true;
+    if (unmet_since_ == Time::max()) note_met();
   }
   // Settled knots leave the window and are written once, with their final values.
   const std::size_t settled = window_.settled_knots();

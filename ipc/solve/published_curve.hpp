@@ -130,6 +130,13 @@ class PublishedCurve {
     return has_limits_ && window_.knots() > 0 ? find_excess(waypoint, settled) : std::nullopt;
   }
 
+  /// Appends a waypoint so that the curve keeps its limits (Beyond::enter). Where the spline with
+  /// it exceeds one, which `excess` then says, the curve leaves the spline: by an entry from the
+  /// newest knot that allows one, else at its newest knot. After kUnmetRefused without a waypoint
+  /// met its plan stays; it then takes only one to which an entry from rest can lead.
+  [[nodiscard]] Followed follow(const Waypoint& waypoint, Word item, Time settled, Time keep,
+                                int& tries, std::optional<LimitExcess>& excess) noexcept;
+
   /// The state in which the run begins. Requires that it was entered from a state, and has no entry
   /// that has ended.
   [[nodiscard]] Instant origin_state() const noexcept;
@@ -202,23 +209,6 @@ class PublishedCurve {
   void committed(const Summary& summary) noexcept;
 
  private:
-  /// The state from which an entry, or the stop of a run without waypoints, begins.
-  struct Origin {
-    Word number = 0;  ///< of its knot; 0: there is no such entry or stop
-    Time time{};
-    bool is_new = false;     ///< the board does not hold it yet
-    bool is_corner = false;  ///< the run began from rest there
-  };
-
-  /// The end that is being searched for: slowing down, or an entry to the last waypoint from there.
-  enum class EndSearch {
-    none,          ///< none has been tried
-    slowing,       ///< slowing down from a knot of the published curve
-    from_knots,    ///< at knots of the published curve, the latest one first
-    from_settled,  ///< in the published curve, as it settles
-    from_rest,     ///< where the published curve rests
-  };
-
   /// Number of knot i ≥ met_ of the run.
   [[nodiscard]] Word number_of(std::size_t knot) const noexcept {
     return met_number_ + knot - met_;
@@ -232,7 +222,8 @@ class PublishedCurve {
   [[nodiscard]] bool has_room_behind(Word number, std::size_t knots, Time keep) const noexcept;
   [[nodiscard]] bool has_room_to_enter(Time keep) const noexcept;
   void set_origin(Word number, const Instant& state) noexcept;
-  void wait_for_entry() noexcept;
+  void wait_for_entry(std::size_t met) noexcept;
+  void note_met() noexcept;
   void note_change(Time from) noexcept;
   void keep_settled() noexcept;
   [[nodiscard]] std::size_t passed_over() const noexcept;
@@ -262,6 +253,16 @@ class PublishedCurve {
   void begin_trial() noexcept;
   [[nodiscard]] std::optional<LimitExcess> find_excess(const Waypoint& waypoint,
                                                        Time settled) noexcept;
+  [[nodiscard]] bool has_given_up() const noexcept { return refused_until_ < Time::max(); }
+  [[nodiscard]] bool awaits_start_check() const noexcept;
+  [[nodiscard]] bool has_room_to_leave(Time settled, Time keep) const noexcept;
+  [[nodiscard]] core::EntrySearch::Outcome search_from_knot(const Waypoint& waypoint,
+                                                            int& tries) noexcept;
+  [[nodiscard]] Followed leave(const Waypoint& waypoint, Word item, Time settled, Time keep,
+                               int& tries) noexcept;
+  void leave_at(std::size_t knot, const Waypoint& waypoint, Word item) noexcept;
+  [[nodiscard]] Followed follow_from_rest(const Waypoint& waypoint, Word item, Time settled,
+                                          Time keep, int& tries) noexcept;
 
   // Knots written to the board: write.cpp.
   void write_origin() noexcept;
@@ -360,7 +361,7 @@ class PublishedCurve {
   std::size_t passed_written_ = 0;
   std::size_t passed_committed_ = 0;  ///< the same, as of the last commit
   Word passed_before_ = 0;            ///< waypoints passed over by entries that have ended
-  Origin origin_;
+  CurveOrigin origin_;
   State origin_state_;
   Time blend_until_ = Time::min();  ///< no entry of the run ends before this time
   Time entry_end_{};                ///< end of an entry that ends at a waypoint
@@ -372,6 +373,10 @@ class PublishedCurve {
   bool is_prepared_ = false;    ///< this step has found the state from which an entry may begin
   bool uses_cut_ = false;       ///< that state is cut_.state(), else the origin
   bool is_searching_ = false;
+  Time unmet_since_ = Time::max();      ///< see Summary
+  Time refused_until_ = Time::max();    ///< see Summary
+  std::optional<Word> leaving_item_{};  ///< for this waypoint the curve searches where to leave
+  std::size_t leaving_knot_ = 0;        ///< from this knot of the target
   EndSearch end_search_ = EndSearch::none;
   std::size_t end_knot_ = 0;         ///< from_knots: the knot after the one that is tried
   EndKind ending_ = EndKind::none;   ///< `entered`: the curve ends by an entry to `beyond_`

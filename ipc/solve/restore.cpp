@@ -50,6 +50,9 @@ void PublishedCurve::restore(const Summary& summary) noexcept {
   has_restored_shown_ = has_restored_shown_ || summary.revision == 0;
   changed_from_ = Time::max();
   blend_until_ = summary.blend_until;
+  unmet_since_ = summary.unmet_since;
+  refused_until_ = summary.refused_until;
+  leaving_item_.reset();
   summary_ = summary;
   run_ = summary.run;
   run_item_ = summary.run_item;
@@ -247,7 +250,8 @@ void PublishedCurve::restore_run() noexcept {
   }
   window_.freeze_knots(summary_.run_frozen);
   const bool is_open = course_ == Course::waiting || course_ == Course::beyond;
-  is_searching_ = is_open && window_.knots() > (course_ == Course::beyond ? known_ : unmet_);
+  is_searching_ =
+      is_open && !has_given_up() && window_.knots() > (course_ == Course::beyond ? known_ : unmet_);
   restart_search();
 }
 

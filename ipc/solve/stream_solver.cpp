@@ -44,7 +44,8 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& boar
       curve_(board, published, window, std::move(kinds),
              {.is_live = live.has_value(),
               .min_entry = live ? live->min_entry : Time::zero(),
-              .notice = live ? live->freeze_ahead : Time::zero()}),
+              .notice = live ? live->freeze_ahead : Time::zero(),
+              .keeps_limits = live && beyond == Beyond::enter}),
       max_batch_(std::min(kMaxBatch, board.capacity() / 2 - changed_besides(window.settle))),
       item_(ring.dimensions()),
       unwrapped_(3 * ring.dimensions()),
@@ -75,7 +76,7 @@ void StreamSolver::restore() {
 }
 
 Time StreamSolver::due() const noexcept {
-  if (live_ && (curve_.is_planning() || is_finish_postponed_)) return settled_at_;
+  if (live_ && (curve_.is_planning() || is_postponed_)) return settled_at_;
   const bool settles = live_ && !summary_.finished && summary_.newest > 0 &&
                        summary_.settled_until < curve_.end_of_motion();
   const bool waits = live_ && seen_ != summary_.consumed;
@@ -207,7 +208,7 @@ Word StreamSolver::consume(Time now) noexcept {
   rest_where_held();
   withdraw();
   bool is_blocked = false;
-  is_finish_postponed_ = false;
+  is_postponed_ = false;
   has_entry_only_ = false;
   tries_ = PublishedCurve::kTriesPerStep;
   batch_limit_ = most_items_;
@@ -216,7 +217,7 @@ Word StreamSolver::consume(Time now) noexcept {
     is_blocked = enters_before(item_) || !has_room(item_);
     if (is_blocked) break;
     take(summary_.consumed++);
-    if (is_finish_postponed_) {
+    if (is_postponed_) {
       --summary_.consumed;
       break;
     }

@@ -134,7 +134,8 @@ class StreamSolver {
   void take(Word number) noexcept;
   void take_waypoint(Word number) noexcept;
   [[nodiscard]] Waypoint unwrapped(const Waypoint& given) noexcept;
-  [[nodiscard]] bool note_excess(const Waypoint& waypoint, Word number) noexcept;
+  [[nodiscard]] bool note_excess(std::optional<LimitExcess> excess, Word number) noexcept;
+  [[nodiscard]] std::optional<Refusal> append(const Waypoint& waypoint, Word number) noexcept;
   void take_replacement(Word number) noexcept;
   void refuse_replacement(Word number, Refusal reason) noexcept;
   void take_plan(Word number) noexcept;
@@ -171,7 +172,7 @@ class StreamSolver {
   bool rests_ = false;                ///< a run begins at rest there in this revision
   bool has_starved_ = false;          ///< the stream has begun to starve in this step
   int tries_ = 0;                     ///< candidates of an entry that this step may still try
-  bool is_finish_postponed_ = false;  ///< no entry to the last waypoint has been found yet
+  bool is_postponed_ = false;         ///< the search for an entry that an item needs has not ended
   RingItem item_;
   std::vector<double> unwrapped_;  ///< scratch: position, velocity, acceleration
   Condition end_;

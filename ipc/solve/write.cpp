@@ -253,7 +253,9 @@ CurveSummary PublishedCurve::summary() const noexcept {
           .met = met_,
           .unmet = unmet_,
           .blend_until = blend_until_,
-          .passed_over = passed_before_ + passed_over()};
+          .passed_over = passed_before_ + passed_over(),
+          .unmet_since = unmet_since_,
+          .refused_until = refused_until_};
 }
 
 void put_summary(const CurveSummary& curve, Summary& summary) noexcept {
@@ -270,6 +272,8 @@ void put_summary(const CurveSummary& curve, Summary& summary) noexcept {
   summary.unmet = curve.unmet;
   summary.blend_until = curve.blend_until;
   summary.passed_over = curve.passed_over;
+  summary.unmet_since = curve.unmet_since;
+  summary.refused_until = curve.refused_until;
 }
 
 }  // namespace splinecast::ipc

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ipc/layout/summary.hpp"
 #include "ipc/memory/folder_watch.hpp"
 #include "ipc/roles/solver_watch.hpp"
 #include "splinecast/solver.hpp"
@@ -27,6 +28,7 @@ enum class SweepNews : std::uint8_t {
   no_descriptors,  ///< RLIMIT_NOFILE does not allow another one; retried when streams come or go
   refused,         ///< an item was refused, the first one for its reason
   beyond_limits,   ///< the curve exceeds a limit with a waypoint that was taken, the first one
+  following,       ///< with Beyond::enter: it meets no waypoint, cannot follow, or follows again
   commander,       ///< of a time law: a commander is not heard, or holds it unasked
   postponed,       ///< memory or descriptors are lacking; retried periodically
   given_up,        ///< it cannot be solved; retried when its files have been replaced
@@ -109,7 +111,8 @@ class StreamSweep {
   struct Served {
     std::unique_ptr<Solver> solver;
     bool was_finished = false;
-    std::exception_ptr failure{};  ///< of a step
+    Following following = Following::meets;  ///< the last one reported
+    std::exception_ptr failure{};            ///< of a step
   };
 
   /// What a sweep reads of a stream without work.
@@ -143,6 +146,7 @@ class StreamSweep {
   void prefetch_behind(std::size_t i) const noexcept;
   [[nodiscard]] bool serve(std::size_t index, const Clock& clock);
   void tell_first_refusals(Solver& solver) noexcept;
+  void tell_following(Served& served) noexcept;
   void release_detached();
 
   // States and reports.

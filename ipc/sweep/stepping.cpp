@@ -89,11 +89,19 @@ bool StreamSweep::serve(std::size_t index, const Clock& clock) {
   }
   watches_[index] = {.solver = Internals::watch(*served.solver), .active = now_};
   tell_first_refusals(*served.solver);
+  tell_following(served);
   if (!served.was_finished && Internals::summary(*served.solver).finished) {
     served.was_finished = true;
     tell(SweepNews::finished, served.solver->stream(), served.solver.get(), {});
   }
   return result.missed || watches_[index].solver.has_items();
+}
+
+void StreamSweep::tell_following(Served& served) noexcept {
+  const Following now = Internals::summary(*served.solver).following();
+  if (now == served.following) return;
+  served.following = now;
+  tell(SweepNews::following, served.solver->stream(), served.solver.get(), {});
 }
 
 void StreamSweep::tell_first_refusals(Solver& solver) noexcept {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "splinecast/limits.hpp"
 #include "tests/campaign/findings.hpp"
 
 /// The campaigns. Each creates its own streams and attacks them, mostly with real processes over
@@ -24,6 +25,7 @@ struct CampaignOptions {
   double seconds = 2;      ///< stress: of each part; streams and returns: CPU time of the campaign
   std::uint64_t runs = 0;  ///< streams and returns: number of runs, 0: as many as fit into
                            ///< `seconds`; stops: instants at which waypoints end, 0: 200
+  Beyond beyond{};         ///< motions and returns: of the streams with limits
   std::string trace{};     ///< folder for traces of what readers see; empty: none
 };
 
@@ -63,6 +65,11 @@ struct CampaignOptions {
 /// Random faults of motions that keep their limits, one run per seed. Checks that the curve is back
 /// on its waypoints in time after the last fault.
 [[nodiscard]] Result run_returns(const CampaignOptions& options);
+
+/// Sources that a curve within its limits cannot meet, with Beyond::enter. Checks that no settled
+/// segment exceeds a limit, and that a curve which meets no waypoint says so. `runs` is the number
+/// of runs of each source, 0: 20.
+[[nodiscard]] Result run_follow(const CampaignOptions& options);
 
 /// Stops of live streams whose waypoints end at any millisecond, for each tail and several sources.
 /// Checks that no stop speeds up, reverses or travels too far. At some random instants the

@@ -101,6 +101,19 @@ void add_ends(CLI::App& program, Asked& asked) {
            "CPU time of each of the two threads");
 }
 
+void add_follow(CLI::App& program, Asked& asked) {
+  auto* verb = program.add_subcommand("follow", "Sources that a curve within limits cannot meet");
+  verb->add_option("--seed", asked.options.seed, "Seed of the first run")->capture_default_str();
+  verb->add_option("--runs", asked.options.runs, "Number of runs of each source; 0: 20");
+}
+
+/// Adds the option of campaigns that can play their motions with Beyond::enter.
+void add_enter(CLI::App* verb, Asked& asked) {
+  verb->add_flag_callback(
+      "--enter", [&asked] { asked.options.beyond = Beyond::enter; },
+      "Solve streams with limits with --beyond enter");
+}
+
 void add_requests(CLI::App& program, Asked& asked) {
   auto* verb = program.add_subcommand("requests", "Requests of a rate by many commanders");
   verb->add_option("--seconds", asked.options.seconds, "Duration")
@@ -119,6 +132,7 @@ Run run_of(const CLI::App& program, const Asked& asked) {
   if (program.got_subcommand("motions")) return run_motions;
   if (program.got_subcommand("returns")) return run_returns;
   if (program.got_subcommand("ends")) return run_ends;
+  if (program.got_subcommand("follow")) return run_follow;
   if (program.got_subcommand("streams")) return run_streams;
   if (program.got_subcommand("stress")) return run_stress;
   if (program.got_subcommand("requests")) {
@@ -131,10 +145,11 @@ int run_program(int argc, char** argv) {
   CLI::App program("Creates streams, attacks them and counts violations", "splinecast_campaign");
   program.require_subcommand(1);
   Asked asked{.options = {.command = joined(argc, argv)}};
-  for (const auto& add :
-       {add_kill, add_stress, add_streams, add_ends, add_motions, add_returns, add_requests}) {
+  for (const auto& add : {add_kill, add_stress, add_streams, add_ends, add_motions, add_returns,
+                          add_follow, add_requests}) {
     add(program, asked);
   }
+  for (const char* name : {"motions", "returns"}) add_enter(program.get_subcommand(name), asked);
   for (CLI::App* verb : program.get_subcommands({})) {
     verb->add_option("--json", asked.path, "File for the result; default: standard output");
     verb->add_option("--command", asked.options.command,

@@ -27,7 +27,6 @@ using ipc::RegionHeader;
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr std::array kBeyond{"report", "refuse"};
 /// By StreamClock.
 constexpr std::array<std::string_view, 3> kClocks{"recorded", "live", "law"};
 
@@ -72,7 +71,7 @@ ordered_json curve_to_json(const RegionHeader& header) {
           {"freeze_ahead_ns", header.freeze_ahead},
           {"history_ns", header.history},
           {"min_entry_ns", header.min_entry},
-          {"beyond", kBeyond.at(header.beyond)},
+          {"beyond", to_string(ipc::beyond(header))},
           {"rules", header.rules},
           {"capacity", header.capacity},
           {"epoch", header.epoch},
@@ -181,8 +180,8 @@ void parse_curve(const Fields& fields, RegionHeader& header) {
   const auto tail = parse_tail(fields.take<std::string>("tail"));
   if (method == nullptr) throw fields.bad("method");
   if (!tail) throw fields.bad("tail");
-  const auto beyond = std::ranges::find(kBeyond, fields.take<std::string>("beyond"));
-  if (beyond == kBeyond.end()) throw fields.bad("beyond");
+  const auto beyond = parse_beyond(fields.take<std::string>("beyond"));
+  if (!beyond) throw fields.bad("beyond");
   header.kind = static_cast<std::uint64_t>(ipc::RegionKind::spline);
   header.method = method->number;
   header.lambda = fields.take<double>("lambda");
@@ -194,7 +193,7 @@ void parse_curve(const Fields& fields, RegionHeader& header) {
   header.freeze_ahead = fields.take<std::int64_t>("freeze_ahead_ns");
   header.history = fields.take<std::int64_t>("history_ns");
   header.min_entry = fields.take<std::int64_t>("min_entry_ns");
-  header.beyond = static_cast<std::uint64_t>(beyond - kBeyond.begin());
+  header.beyond = static_cast<std::uint64_t>(*beyond);
   header.rules = fields.has("rules") ? fields.take<std::uint64_t>("rules") : ipc::kFormerRules;
   header.capacity = fields.take<std::uint64_t>("capacity");
   header.epoch = fields.take<std::uint64_t>("epoch");

@@ -22,8 +22,9 @@ enum class EventKind : std::uint8_t {
   finished,
   retired,
   lost,
+  following,
 };
-inline constexpr std::uint8_t kEventKinds = 10;
+inline constexpr std::uint8_t kEventKinds = 11;
 
 /// An event that a batch has.
 struct EventNote {

@@ -68,6 +68,7 @@ void BoardWatch::look(Batch& batch) {
   put_refusals(batch);
   put_counts(batch);
   put_excesses(batch);
+  put_following(batch);
   const bool was_finished = is_finished_;
   summary_ = settled_.summary();
   put_segments(batch);
@@ -151,6 +152,13 @@ void BoardWatch::put_excesses(Batch& batch) {
   }
   // The board keeps the newest ones only.
   if (missed > 0) put_event(batch, EventKind::limit, fmt::format(R"("missed":{})", missed));
+}
+
+/// Writes an event when the curve begins or ceases to follow its waypoints.
+void BoardWatch::put_following(Batch& batch) {
+  const ipc::Following now = settled_.summary().following();
+  if (now == summary_.following()) return;
+  put_event(batch, EventKind::following, fmt::format(R"("state":"{}")", ipc::to_string(now)));
 }
 
 bool BoardWatch::wants_start(const Batch& batch) const noexcept {

@@ -58,6 +58,7 @@ class BoardWatch {
   void put_refusals(Batch& batch);
   void put_counts(Batch& batch);
   void put_excesses(Batch& batch);
+  void put_following(Batch& batch);
   void put_segments(Batch& batch);
   void put_restart(Batch& batch, Restart restart);
   void try_restart(Batch& batch, const ipc::SegmentCopy& before);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -58,11 +59,16 @@ struct NamedLimits {
   double upper = std::numeric_limits<double>::infinity();
 };
 
-/// What a solver does with a waypoint that makes the curve exceed a limit.
+/// What a solver does with a waypoint that makes the curve exceed a limit. 3 is reserved.
 enum class Beyond : std::uint8_t {
   report = 0,  ///< accept it, count it and record where
   refuse = 1,  ///< refuse it
+  enter = 2,   ///< accept it, and leave the spline for an entry that keeps the limits; live streams
 };
+inline constexpr std::uint8_t kBeyonds = 3;
+[[nodiscard]] std::string_view to_string(Beyond beyond) noexcept;
+/// `report`, `refuse` or `enter`; nothing for any other text.
+[[nodiscard]] std::optional<Beyond> parse_beyond(std::string_view text) noexcept;
 
 /// Throws std::invalid_argument, naming the limit and its value, unless every limit is 0 (none) or
 /// positive and at most kLargestValue, and every lower bound is below its upper bound.

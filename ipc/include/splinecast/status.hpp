@@ -29,8 +29,10 @@ enum class AppendStatus : std::uint8_t {
   too_many,         ///< a replacement that does not fit even into an empty ring
   already_started,  ///< a start state after the first waypoint
   finished,         ///< the stream has been finished
+  cannot_follow,    ///< with Beyond::enter: no waypoint has been met for 3 s, and the curve is
+                    ///< planned to move until this time; continue with the next waypoint
 };
-inline constexpr std::uint8_t kAppendStatuses = 13;
+inline constexpr std::uint8_t kAppendStatuses = 14;
 
 /// Why the solver refused an item that the ring had accepted. Each reason has its own counter.
 enum class Refusal : std::uint8_t {
@@ -49,8 +51,10 @@ enum class Refusal : std::uint8_t {
   lag_too_short = 12,      ///< the settle lag is too short for λ with waypoints this close
   zero_quaternion = 13,    ///< a quaternion has length 0, or one outside 1e-100 to 1e100
   beyond_limits = 14,      ///< the curve would exceed a limit, and Beyond::refuse is set
+  cannot_follow = 15,      ///< with Beyond::enter: no waypoint has been met for 3 s, and no
+                           ///< entry from rest can lead to this one
 };
-inline constexpr std::uint8_t kRefusals = 15;
+inline constexpr std::uint8_t kRefusals = 16;
 
 /// The validity of a sample.
 enum class SampleStatus : std::uint8_t {

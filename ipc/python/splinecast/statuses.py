@@ -29,6 +29,7 @@ class AppendStatus(_Status):
     TOO_MANY = 10  #: a replacement that does not fit even into an empty ring
     ALREADY_STARTED = 11  #: a start state after the first waypoint
     FINISHED = 12  #: the stream has been finished
+    CANNOT_FOLLOW = 13  #: no waypoint met for 3 s, and the curve moves until this time
 
 
 class Refusal(_Status):
@@ -48,6 +49,7 @@ class Refusal(_Status):
     LAG_TOO_SHORT = 12  #: the settle lag is too short for λ with waypoints this close
     ZERO_QUATERNION = 13  #: a quaternion has length 0, or one outside 1e-100 to 1e100
     BEYOND_LIMITS = 14  #: the curve would exceed a limit, and the solver refuses such waypoints
+    CANNOT_FOLLOW = 15  #: no waypoint met for 3 s, and no entry from rest can lead to this one
 
 
 class SampleStatus(_Status):

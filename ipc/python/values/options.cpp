@@ -142,9 +142,8 @@ Tail tail(const std::string& text) {
 }
 
 Beyond beyond(const std::string& text) {
-  if (text == "report") return Beyond::report;
-  if (text == "refuse") return Beyond::refuse;
-  throw BadRequest("beyond: '" + text + "' is not report or refuse");
+  if (const auto parsed = parse_beyond(text)) return *parsed;
+  throw BadRequest("beyond: '" + text + "' is not report, refuse or enter");
 }
 
 void read_times(const py::kwargs& keywords, SolverOptions& options) {

@@ -263,7 +263,9 @@ LifePlan make_life(std::uint64_t seed, Random& random) {
   choose_end(life, random);
   choose_law(life, random);
   plan.end = make_end(plan, random);
-  plan.beyond = random.chance(0.3) ? Beyond::refuse : Beyond::report;
+  plan.beyond = random.chance(0.3)   ? Beyond::refuse
+                : random.chance(0.4) ? Beyond::enter
+                                     : Beyond::report;
   plan.ring_capacity = 128;
   const std::size_t least = ipc::StreamSolver::min_capacity(plan.window.settle);
   plan.board_capacity = std::bit_ceil(std::max<std::size_t>(least, 64)) << random.below(2);

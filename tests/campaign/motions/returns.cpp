@@ -58,7 +58,7 @@ double two_phase_acceleration(double way, double from, double to, double time) {
 /// One stream in plain memory with faults until kLastFault.
 class ReturnRun {
  public:
-  ReturnRun(std::uint64_t seed, ReturnCounts& counts)
+  ReturnRun(std::uint64_t seed, Beyond beyond, ReturnCounts& counts)
       : seed_(seed),
         random_(seed),
         counts_(&counts),
@@ -70,6 +70,8 @@ class ReturnRun {
         sampler_(stream_.board.reader, StreamClock::monotonic),
         state_(dimensions_) {
     const double settle = to_seconds(interval_) * 3 + 0.01;
+    stream_.beyond = beyond;
+    stream_.replace_solver();
     lead_ = to_time(settle + random_.uniform(0, 0.3));
     plan_faults();
   }
@@ -291,7 +293,7 @@ Result run_returns(const CampaignOptions& options) {
     return options.runs > 0 ? counts.runs < options.runs : cpu_seconds() < options.seconds;
   };
   for (std::uint64_t seed = options.seed; goes_on() && !apps::stop_requested(); ++seed) {
-    ReturnRun(seed, counts).run();
+    ReturnRun(seed, options.beyond, counts).run();
   }
   std::ranges::sort(counts.shares);
   const std::uint64_t never_tried =

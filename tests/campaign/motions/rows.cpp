@@ -118,6 +118,7 @@ Result run_motions(const CampaignOptions& options) {
       for (std::size_t i = 0; i < kLimits.size(); ++i) {
         const Seen seen = Trial(motion, schedule,
                                 {.window = window_within(kLimits[i]),
+                                 .beyond = options.beyond,
                                  .noise = is_noisy ? kNoise : 0,
                                  .quantum = fault.quantum,
                                  .seed = options.seed})

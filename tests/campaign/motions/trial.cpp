@@ -38,6 +38,8 @@ Trial::Trial(const Motion& motion, const Schedule& schedule, TrialOptions option
       snapshot_(motion.joints()),
       state_(motion.joints()),
       ms_(-kLead) {
+  stream_.beyond = options_.beyond;
+  stream_.replace_solver();
   seen_.peak_velocities.resize(motion.joints());
   seen_.peak_accelerations.resize(motion.joints());
 }

@@ -46,9 +46,10 @@ struct Sight {
 /// Options of a trial.
 struct TrialOptions {
   core::WindowOptions window{};  ///< the trial sets the start of a live stream
-  double noise = 0;              ///< rad: standard deviation of the noise added to waypoints
-  double quantum = 0;            ///< rad: waypoints are rounded to multiples of it; 0: not rounded
-  std::uint64_t seed = 1;        ///< of the noise
+  Beyond beyond{};
+  double noise = 0;        ///< rad: standard deviation of the noise added to waypoints
+  double quantum = 0;      ///< rad: waypoints are rounded to multiples of it; 0: not rounded
+  std::uint64_t seed = 1;  ///< of the noise
   std::function<void(const Sight&)> watch{};  ///< called with each sample that has values
 };
 

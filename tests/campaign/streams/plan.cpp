@@ -167,7 +167,9 @@ StreamPlan make_plan(std::uint64_t seed, Random& random) {
   plan.starts_in_motion = random.chance(0.3);
   plan.end = make_end(plan, random);
   constexpr std::uint64_t kOneOf = 8;
-  plan.beyond = seed % kOneOf == kOneOf / 2 ? Beyond::refuse : Beyond::report;
+  plan.beyond = seed % kOneOf == kOneOf / 2   ? Beyond::refuse
+                : seed % kOneOf == kOneOf - 1 ? Beyond::enter
+                                              : Beyond::report;
   return plan;
 }
 

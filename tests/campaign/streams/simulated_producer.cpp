@@ -42,7 +42,8 @@ SimulatedProducer::SimulatedProducer(const StreamPlan& plan, testing::MemoryStre
 ipc::WaypointRingWriter::Solved SimulatedProducer::solved() {
   const bool knows = check_->summary().newest > 0 && !random_->chance(kKnowsLess);
   return {.consumed = stream_->board.reader.consumed(),
-          .settled_until = knows ? check_->summary().settled_until : Time::min()};
+          .settled_until = knows ? check_->summary().settled_until : Time::min(),
+          .refused_until = knows ? check_->summary().refused_until : Time::max()};
 }
 
 AppendStatus SimulatedProducer::answered(AppendStatus status) {

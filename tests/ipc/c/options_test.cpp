@@ -112,7 +112,7 @@ const Changes<splinecast_solver_options> kSolverChanges{
     {"", [](splinecast_solver_options& o) { o.settle = 65; }},
     {"options->tail", [](splinecast_solver_options& o) { o.tail = 4; }},
     {"options->tail", [](splinecast_solver_options& o) { o.tail = -2; }},
-    {"options->beyond", [](splinecast_solver_options& o) { o.beyond = 2; }},
+    {"options->beyond", [](splinecast_solver_options& o) { o.beyond = 3; }},
     {"options->force_lag", [](splinecast_solver_options& o) { o.force_lag = 2; }},
     {"options->wake", [](splinecast_solver_options& o) { o.wake = -1; }},
     {"options->stop_time", [](splinecast_solver_options& o) { o.stop_time = -2; }},

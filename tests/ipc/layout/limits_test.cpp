@@ -88,7 +88,7 @@ TEST(HeaderLimits, ABoardWithInvalidLimitsIsRefused) {
          h.period[0] = 360;
          h.upper_bound[0] = 1;
        }},
-      {"action beyond the limits", [](RegionHeader& h) { h.beyond = 2; }},
+      {"action beyond the limits", [](RegionHeader& h) { h.beyond = 3; }},
       {"rules", [](RegionHeader& h) { h.rules = 0; }},
       {"rules", [](RegionHeader& h) { h.rules = kRules + 1; }}};
   for (const auto& [message, damage] : cases) {

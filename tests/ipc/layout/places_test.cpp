@@ -32,10 +32,11 @@ TEST(Layout, PartsOfARegionAreInOrderAlignedAndWithinIt) {
       const auto board = BoardLayout::of(dimensions, 4096, kHeaderBytes, smooths);
       EXPECT_GE(board.refusals, board.control + kBoardControlWords * sizeof(Word));
       EXPECT_EQ(board.excesses, board.refusals + kRefusalsKept * sizeof(Word));
-      EXPECT_EQ(board.times,
-                board.excesses + (kExcessesKept * kExcessWords + kOutcomesKept * kOutcomeWords +
-                                  2 * kMostStoppers * kStopperWords) *
-                                     sizeof(Word));
+      EXPECT_EQ(
+          board.times,
+          board.worst + kCacheLine +
+              (kOutcomesKept * kOutcomeWords + 2 * kMostStoppers * kStopperWords) * sizeof(Word));
+      EXPECT_EQ(board.worst, board.excesses + kExcessesKept * kExcessWords * sizeof(Word));
       EXPECT_GE(board.slots, board.times + 4096 * sizeof(Word));
       EXPECT_EQ(board.slots % kPage, 0U);
       for (const std::size_t bytes : {board.cell, board.node, board.beside_bytes, board.row}) {

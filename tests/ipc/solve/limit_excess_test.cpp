@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/limits/check.hpp"
 #include "ipc/roles/refusals.hpp"
 #include "tests/fixtures/streams/live_stream.hpp"
 
@@ -68,6 +69,22 @@ TEST(LimitExcess, IsReportedAndTheWaypointIsTaken) {
   EXPECT_GT(std::abs(excess->value), excess->limit);
   EXPECT_GE(excess->time, instant(600));
   EXPECT_LE(excess->time, instant(700));
+}
+
+TEST(LimitExcess, OfTheLargestRatioIsNamed) {
+  Stepping live(Beyond::report);
+  live.play({700, 900, 910}, true);
+  const auto worst = live.board.reader.worst_excess();
+  ASSERT_TRUE(worst);
+  const auto ratio = [&](const LimitExcess& e) {
+    return core::ratio_of(step_limits().limits, e.kind, e.dimension, e.value, e.limit);
+  };
+  for (Word i = 0; i < live.solver.summary().exceeding; ++i) {
+    const auto excess = live.board.reader.excess(live.solver.summary(), i);
+    ASSERT_TRUE(excess);
+    EXPECT_GE(ratio(*worst), ratio(*excess));
+  }
+  EXPECT_TRUE(live.board.reader.excess_of(live.solver.summary(), worst->item));
 }
 
 TEST(LimitExcess, IsRefusedWithItsPlaceAndNoExcessIsPublished) {
