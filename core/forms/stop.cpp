@@ -1,9 +1,11 @@
 #include "core/forms/stop.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/limits/limit_of.hpp"
+#include "core/limits/rotation_bounds.hpp"
 #include "core/simd/clones.hpp"
 #include "core/simd/lanes.hpp"
 
@@ -46,42 +48,139 @@ double stop_acceleration(double velocity, double acceleration, double seconds) n
   return clamped(velocity, acceleration, seconds);
 }
 
-SPLINECAST_VECTOR_CLONES
-void build_stop(Time from, Time stop_time, std::span<const double> position,
-                std::span<const double> velocity, std::span<const double> acceleration,
-                Segment& out) noexcept {
+/// Writes the coefficients of a stop of `seconds` > 0.
+[[gnu::always_inline]] inline void write_stop(std::span<const double> position,
+                                              std::span<const double> velocity,
+                                              std::span<const double> acceleration, double seconds,
+                                              double* out) noexcept {
   const std::size_t dimensions = position.size();
-  const double rest_after = to_seconds(stop_time);
-  out.left = from;
-  out.right = from + stop_time;
-  out.order = kMaxOrder;
-  out.kind = SegmentKind::stop;
   for_overlapping_lanes(dimensions, [&](auto lane, std::size_t first) {
     using Lane = typename decltype(lane)::type;
     const auto v = load_lane<Lane>(velocity.data() + first);
-    const Lane a = clamped(v, load_lane<Lane>(acceleration.data() + first), rest_after);
-    const Lane jerk_scale = v / (rest_after * rest_after);
-    const Lane snap_scale = a / rest_after;
-    double* const c = out.coefficients.data() + first;
+    const Lane a = clamped(v, load_lane<Lane>(acceleration.data() + first), seconds);
+    const Lane jerk_scale = v / (seconds * seconds);
+    const Lane snap_scale = a / seconds;
+    double* const c = out + first;
     store_lane(c, load_lane<Lane>(position.data() + first));
     store_lane(c + dimensions, v);
     store_lane<Lane>(c + 2 * dimensions, a / 2.0);
     store_lane<Lane>(c + 3 * dimensions, -jerk_scale - 2.0 * snap_scale / 3.0);
-    store_lane<Lane>(c + 4 * dimensions, (2.0 * jerk_scale + snap_scale) / (4 * rest_after));
+    store_lane<Lane>(c + 4 * dimensions, (2.0 * jerk_scale + snap_scale) / (4 * seconds));
     store_lane<Lane>(c + 5 * dimensions, Lane{});
   });
 }
 
-Time least_stop_time(const MotionLimits& limits, const Instant& from) noexcept {
-  double longest = 0;
-  for (std::size_t d = 0; d < from.velocity.size(); ++d) {
-    const double a_max = limit_of(limits.acceleration, d);
-    if (a_max > 0) {
-      longest = std::max(longest, seconds_within(from.velocity[d], from.acceleration[d], a_max));
-    }
-    const double j_max = limit_of(limits.jerk, d);
-    if (j_max > 0) longest = std::max(longest, seconds_within_jerk(from.velocity[d], j_max));
+SPLINECAST_VECTOR_CLONES
+void build_stop(Time from, Time stop_time, std::span<const double> position,
+                std::span<const double> velocity, std::span<const double> acceleration,
+                Segment& out) noexcept {
+  out.left = from;
+  out.right = from + stop_time;
+  out.order = kMaxOrder;
+  out.kind = SegmentKind::stop;
+  write_stop(position, velocity, acceleration, to_seconds(stop_time), out.coefficients.data());
+}
+
+namespace {
+
+struct Products {
+  double along = 0;    ///< of velocity and acceleration
+  double squares = 0;  ///< of the velocity
+};
+
+Products products(const QuaternionDimensions& quaternion, std::span<const double> velocity,
+                  std::span<const double> acceleration) noexcept {
+  Products sum;
+  for (std::size_t d = quaternion.first; d < quaternion.first + kQuaternionSize; ++d) {
+    sum.along += velocity[d] * acceleration[d];
+    sum.squares += velocity[d] * velocity[d];
   }
+  return sum;
+}
+
+bool has_limits(const MotionLimits& limits, const QuaternionDimensions& quaternion) noexcept {
+  return limit_of(limits.acceleration, quaternion.first) > 0 ||
+         limit_of(limits.jerk, quaternion.first) > 0;
+}
+
+/// Whether a quaternion that stops in this time keeps its limits.
+bool rotation_keeps(const MotionLimits& limits, const QuaternionDimensions& quaternion,
+                    const Instant& from, Time length) noexcept {
+  std::array<double, kMaxOrder * kQuaternionSize> coefficients;  // NOLINT(*-member-init)
+  const auto of = [&](std::span<const double> values) {
+    return values.subspan(quaternion.first, kQuaternionSize);
+  };
+  write_stop(of(from.position), of(from.velocity), of(from.acceleration), to_seconds(length),
+             coefficients.data());
+  const RotationBounds bounds({.order = kMaxOrder,
+                               .coefficients = coefficients,
+                               .dimensions = kQuaternionSize,
+                               .from = 0,
+                               .to = to_seconds(length)},
+                              {.first = 0, .w_first = quaternion.w_first});
+  const double a_max = limit_of(limits.acceleration, quaternion.first);
+  const double j_max = limit_of(limits.jerk, quaternion.first);
+  return (a_max == 0 || bounds.keeps(2, a_max)) && (j_max == 0 || bounds.keeps(3, j_max));
+}
+
+bool rotations_keep(const StopRules& rules, const Instant& from, Time length) noexcept {
+  return std::ranges::all_of(rules.kinds.quaternions(), [&](const QuaternionDimensions& q) {
+    return !has_limits(rules.limits, q) || rotation_keeps(rules.limits, q, from, length);
+  });
+}
+
+/// The first time from `least` on, in steps of a share of it, in which all rotations keep their
+/// limits; `least` if none does.
+Time lengthened(const StopRules& rules, const Instant& from, Time least) noexcept {
+  constexpr int kTries = 24;
+  constexpr double kGrowth = 1.1;
+  Time length = least;
+  for (int i = 0; i < kTries; ++i) {
+    if (rotations_keep(rules, from, length)) return length;
+    length = from_seconds(to_seconds(length) * kGrowth) + Time(1);
+  }
+  return least;
+}
+
+}  // namespace
+
+void align_rotations(const DimensionKinds& kinds, std::span<const double> velocity,
+                     std::span<double> acceleration) noexcept {
+  for (const QuaternionDimensions& quaternion : kinds.quaternions()) {
+    const auto [along, squares] = products(quaternion, velocity, acceleration);
+    const double share = along < 0 && squares > 0 ? along / squares : 0;
+    for (std::size_t d = quaternion.first; d < quaternion.first + kQuaternionSize; ++d) {
+      acceleration[d] = share * velocity[d] + 0.0;  // no negative 0
+    }
+  }
+}
+
+Time least_stop_time(const MotionLimits& limits, const DimensionKinds& kinds,
+                     const Instant& from) noexcept {
+  double longest = 0;
+  const auto take = [&](std::size_t d, double v, double a) {
+    const double a_max = limit_of(limits.acceleration, d);
+    if (a_max > 0) longest = std::max(longest, seconds_within(v, a, a_max));
+    const double j_max = limit_of(limits.jerk, d);
+    if (j_max > 0) longest = std::max(longest, seconds_within_jerk(v, j_max));
+  };
+  std::size_t d = 0;
+  for (const QuaternionDimensions& quaternion : kinds.quaternions()) {
+    for (; d < quaternion.first; ++d) take(d, from.velocity[d], from.acceleration[d]);
+    // A unit quaternion turns at twice its velocity.
+    const auto [along, squares] = products(quaternion, from.velocity, from.acceleration);
+    const double speed = std::sqrt(squares);
+    take(d, 2 * speed, speed > 0 ? 2 * along / speed : 0);
+    const std::size_t first = d;
+    // An acceleration that is not aligned is clamped in each component.
+    for (; d < first + kQuaternionSize; ++d) {
+      const double a_max = limit_of(limits.acceleration, first);
+      if (a_max > 0) {
+        longest = std::max(longest, seconds_within(from.velocity[d], from.acceleration[d], a_max));
+      }
+    }
+  }
+  for (; d < from.velocity.size(); ++d) take(d, from.velocity[d], from.acceleration[d]);
   return from_seconds(std::min(longest, kLongest));
 }
 
@@ -118,8 +217,11 @@ Time longest_within_bound(const MotionLimits& limits, const Instant& from, std::
 Time stop_time_within(const StopRules& rules, const Instant& from) noexcept {
   const MotionLimits& limits = rules.limits;
   if (limits.acceleration.empty() && limits.jerk.empty()) return rules.stop_time;
-  const Time least = std::max(least_stop_time(limits, from), Time(1));
+  const Time estimate = std::max(least_stop_time(limits, rules.kinds, from), Time(1));
+  const Time least = lengthened(rules, from, estimate);
   Time length = std::max(rules.stop_time, least);
+  // The rotation of a longer stop may exceed its limits: it has turned farther from the line.
+  if (length > least && !rotations_keep(rules, from, length)) length = least;
   if (limits.lower.empty() && limits.upper.empty()) return length;
   for (std::size_t d = 0; d < from.velocity.size(); ++d) {
     if (limit_of(limits.acceleration, d) == 0) continue;
@@ -129,8 +231,13 @@ Time stop_time_within(const StopRules& rules, const Instant& from) noexcept {
 }
 
 Time build_stop_within(const StopRules& rules, const Instant& from, Segment& out) noexcept {
-  const Time length = stop_time_within(rules, from);
-  build_stop(from.time, length, from.position, from.velocity, from.acceleration, out);
+  std::array<double, kMaxDimensions> values;  // NOLINT(*-member-init)
+  const auto acceleration = std::span(values).first(from.acceleration.size());
+  std::ranges::copy(from.acceleration, acceleration.begin());
+  align_rotations(rules.kinds, from.velocity, acceleration);
+  const Instant begin{from.time, from.position, from.velocity, acceleration};
+  const Time length = stop_time_within(rules, begin);
+  build_stop(from.time, length, from.position, from.velocity, acceleration, out);
   return length;
 }
 

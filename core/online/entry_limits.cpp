@@ -54,15 +54,14 @@ void EntrySearch::restart(std::size_t first, const Instant& from, const Instant&
                       });
 }
 
-/// Sets the allowed velocities and accelerations of the entry: the limit, or the value at the start
-/// of the entry if that exceeds the limit. Without a limit, see `allow_shown`.
+/// Sets the allowed velocities and accelerations of the entry: the limit, or the velocity at the
+/// start of the entry if that exceeds the limit. Without a limit, see `allow_shown`.
 void EntrySearch::allow(const Instant& from, const EntryRules& rules) noexcept {
   allowed_.jerk = rules.limits->jerk;
   for (std::size_t d = 0; d < from.position.size(); ++d) {
     const double v_max = limit_of(rules.limits->velocity, d);
-    const double a_max = limit_of(rules.limits->acceleration, d);
     allowed_.velocity[d] = v_max > 0 ? std::max(v_max, std::abs(from.velocity[d])) : 0;
-    allowed_.acceleration[d] = a_max > 0 ? std::max(a_max, std::abs(from.acceleration[d])) : 0;
+    allowed_.acceleration[d] = limit_of(rules.limits->acceleration, d);
   }
   allow_positions(from, rules);
   if (rules.shown != nullptr) allow_shown(from, rules);

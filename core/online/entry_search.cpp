@@ -64,7 +64,7 @@ EntrySearch::Outcome EntrySearch::search_knots(const SlidingWindow& target, cons
     const Verdict verdict = judge(from, rules, tries);
     if (verdict == Verdict::untried) return Outcome::more;
     if (verdict == Verdict::exceeds) continue;
-    if (keeps_behind(target, *rules.limits)) return Outcome::found;
+    if (keeps_behind(target, rules.of_path())) return Outcome::found;
     if (!fallback_knot_) fallback_knot_ = next_knot_;
   }
   return Outcome::none;
@@ -258,7 +258,7 @@ bool EntrySearch::keeps_start(const SlidingWindow& target, const EntryRules& rul
   for (std::size_t i = 0; i + 1 < target.knots(); ++i) {
     Segment& segment = i == 0 ? entry_ : behind_;
     target.segment(i, segment);
-    if (!keeps_within(*rules.limits, &kinds_, segment)) return false;
+    if (!keeps_within(rules.of_path(), &kinds_, segment)) return false;
     if (i < kStartFades) continue;
     for (std::size_t d = 0; d < peaks.size(); ++d) {
       peaks[d] = std::max(peaks[d], peak_acceleration(segment, d));

@@ -18,7 +18,9 @@ namespace splinecast::core {
 
 /// What an entry must respect.
 struct EntryRules {
-  const MotionLimits* limits = nullptr;  ///< given limits
+  const MotionLimits* limits = nullptr;  ///< given limits, at the largest rate of a time law
+  const MotionLimits* path_limits =
+      nullptr;                          ///< those of the target, at the rate 1; null: `limits`
   const MotionLimits* shown = nullptr;  ///< limits shown by the motion: see EntrySearch; null: none
   Time least{};                         ///< shortest duration of an entry
   std::size_t newer = 0;     ///< an entry may end at a knot only if this many newer knots are known
@@ -29,6 +31,10 @@ struct EntryRules {
   bool stays_between = false;  ///< instead of the bounds, the positions at the ends count
   /// If no candidate passes, the entry may end where the target after it exceeds a limit.
   bool falls_back = true;
+
+  [[nodiscard]] const MotionLimits& of_path() const noexcept {
+    return path_limits != nullptr ? *path_limits : *limits;
+  }
 };
 
 /// The end of an entry. Spans refer to memory of the search and are valid until its next call.

@@ -16,7 +16,7 @@ void Extrapolation::begin(const SlidingWindow& target) noexcept {
 
 void Extrapolation::begin_line(const SlidingWindow& target) noexcept {
   const Knot newest = target.knot(target.knots() - 1);
-  const MotionLimits& limits = target.options().limits;
+  const MotionLimits& limits = target.limits_at_largest_rate();
   begin_ = newest.time;
   line_end_ = begin_ + kLine;
   const StateRef from = from_.ref();

@@ -53,6 +53,10 @@ WindowOptions checked(WindowOptions options, std::size_t dimensions) {
     throw std::invalid_argument("stop time must be positive, not " +
                                 std::to_string(options.stop_time.count()) + " ns");
   }
+  if (!(options.largest_rate > 0)) {
+    throw std::invalid_argument("largest rate must be above 0, not " +
+                                std::to_string(options.largest_rate));
+  }
   require_values(options.start, dimensions);
   return options;
 }
@@ -65,8 +69,14 @@ std::size_t default_settle(const Method& method) noexcept {
   return method.converges() ? kDefaultSettle : method.look_ahead;
 }
 
+WindowOptions with_kinds(WindowOptions options, const DimensionKinds& kinds) {
+  options.kinds = kinds;
+  return options;
+}
+
 SlidingWindow::SlidingWindow(std::size_t dimensions, WindowOptions options)
     : options_(checked(std::move(options), dimensions)),
+      limits_at_largest_rate_(limits_at_rate(options_.limits, options_.largest_rate)),
       knots_(dimensions, knots_to_restore() + 1, *options_.interpolant.method,
              options_.start.kind == ConditionKind::halt),
       solver_(make_knot_solver(options_.interpolant, options_.start, dimensions, Use::online)),
@@ -210,6 +220,14 @@ void SlidingWindow::segment(std::size_t i, Segment& out) const noexcept {
 
 Time SlidingWindow::write_stop(std::span<double> acceleration) const noexcept {
   knots_.write_final_acceleration(acceleration);
+  // A given acceleration is also that with which the segment before arrives.
+  if (!options_.interpolant.method->needs_acceleration()) {
+    align_rotations(kinds(), knots_.values(knots_.newest(), KnotRing::kVelocity), acceleration);
+  }
+  return stop_time(acceleration);
+}
+
+Time SlidingWindow::stop_time(std::span<const double> acceleration) const noexcept {
   const std::size_t newest = knots_.newest();
   return stop_time_within(stop_rules(), {.time = knots_.row(newest).time,
                                          .position = knots_.position(newest),

@@ -36,10 +36,15 @@ struct WindowOptions {
                              ///< `hermite`, `quintic` and `smoothing`
   Condition start{.kind = ConditionKind::own, .value = {}};  ///< condition at knot 0
   Time stop_time{250'000'000};     ///< length of the stop segment, > 0: see StopRules
-  MotionLimits limits{};           ///< of stop segments and entries
+  MotionLimits limits{};           ///< given limits, for the rate 1
+  DimensionKinds kinds{};          ///< of the dimensions, for the limits of rotations
+  double largest_rate = 1;         ///< of the time law that the stream follows: above 0
   bool held_before_start = false;  ///< a hold precedes knot 0, as on a live stream
   bool force_lag = false;          ///< accept a lag that is too short for λ
 };
+
+/// These options for dimensions of these kinds. May allocate.
+[[nodiscard]] WindowOptions with_kinds(WindowOptions options, const DimensionKinds& kinds);
 
 /// The online spline: the knots that an append still changes, and their segments.
 ///
@@ -84,14 +89,24 @@ class SlidingWindow {
   /// The form of the segment that begins at knot i, which must still be in the window.
   [[nodiscard]] SegmentForm form(std::size_t i) const noexcept;
 
-  /// Writes the acceleration with which the curve reaches the newest knot, D values, and returns
-  /// the length of the stop segment after it. There must be a knot, and the stream must not be
-  /// finished. O(D).
+  /// Writes the acceleration with which the stop segment after the newest knot begins, D values,
+  /// before it is clamped, and returns the length of the stop. There must be a knot, and the stream
+  /// must not be finished. Cost: see stop_time_within.
   [[nodiscard]] Time write_stop(std::span<double> acceleration) const noexcept;
+
+  /// The length of the stop segment if it begins with this acceleration.
+  [[nodiscard]] Time stop_time(std::span<const double> acceleration) const noexcept;
+
+  /// The limits of stops and entries: the given ones, divided so that the motion keeps them also at
+  /// the largest rate of the time law.
+  [[nodiscard]] const MotionLimits& limits_at_largest_rate() const noexcept {
+    return limits_at_largest_rate_;
+  }
+  [[nodiscard]] const DimensionKinds& kinds() const noexcept { return options_.kinds; }
 
   /// What decides the length of a stop.
   [[nodiscard]] StopRules stop_rules() const noexcept {
-    return {options_.limits, options_.stop_time};
+    return {limits_at_largest_rate_, kinds(), options_.stop_time};
   }
 
   /// Writes the acceleration at knot i, which must still be in the window: that at the start of the
@@ -202,6 +217,7 @@ class SlidingWindow {
   void rest_at_only_knot() noexcept;
   [[nodiscard]] std::size_t oldest_knot() const noexcept;
   WindowOptions options_;
+  MotionLimits limits_at_largest_rate_;
   KnotRing knots_;
   std::unique_ptr<KnotSolver> solver_;
   std::vector<double> run_start_;  ///< velocity at knot 0 of a later run

@@ -71,7 +71,8 @@ void require_this_layout(const RegionHeader& header) {
 /// Checks the name of the law that a stream follows.
 void require_law(const RegionHeader& header) {
   require_range("time law", header.is_law, 0, 1);
-  if (header.is_law != 0 && !(header.largest_rate > 0 && header.largest_rate <= kLargestRate)) {
+  const bool has_rate = header.is_law != 0 || header.law_id != 0;
+  if (has_rate && !(header.largest_rate > 0 && header.largest_rate <= kLargestRate)) {
     throw BadRegion("region has largest rate " + std::to_string(header.largest_rate));
   }
   const bool follows = header.clock == static_cast<std::uint64_t>(StreamClock::law);

@@ -74,7 +74,7 @@ struct RegionHeader {
   std::int64_t min_entry = 0;     ///< ns: least length of an entry
   std::uint64_t is_law = 0;       ///< 1: the stream is a time law
   std::int64_t law_origin = 0;    ///< of a law: stream time in ns at its value 0
-  double largest_rate = 0;        ///< of a law: it never exceeds this rate
+  double largest_rate = 0;        ///< of a law, or of the law that the stream follows
   std::uint64_t law_id = 0;       ///< stream id of the law that the stream follows; 0: none
   std::array<double, kMaxDimensions> start_value{};
   std::array<std::uint64_t, kMaxDimensions> dimension_kind{};  ///< DimensionKind
@@ -162,8 +162,9 @@ inline constexpr std::tuple kHeaderRows{
                                      "in both regions, as all fields up to the law's name"},
     MemberRow<&RegionHeader::law_origin>{"law's origin", FieldWriter::maker,
                                          "of a time law: stream time in ns at its value 0"},
-    MemberRow<&RegionHeader::largest_rate>{"largest rate", FieldWriter::maker,
-                                           "double, of a time law, which never exceeds it"},
+    MemberRow<&RegionHeader::largest_rate>{
+        "largest rate", FieldWriter::maker,
+        "double, of a time law, or of the law that the stream follows"},
     MemberRow<&RegionHeader::law_id>{"law's id", FieldWriter::maker,
                                      "stream id of the law that the stream follows; 0: none"},
     MemberRow<&RegionHeader::start_value>{

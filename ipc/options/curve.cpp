@@ -185,6 +185,16 @@ std::optional<LiveOptions> live_options(const RegionHeader& header) noexcept {
                      .follows_law = stream_clock(header) == StreamClock::law};
 }
 
+namespace {
+
+/// The largest rate of the law that a stream follows; 1 if it follows none, or if an earlier
+/// version has recorded it.
+double rate_of_law(const RegionHeader& header) noexcept {
+  return header.law_id != 0 && header.largest_rate > 0 ? header.largest_rate : 1;
+}
+
+}  // namespace
+
 core::WindowOptions window_options(const RegionHeader& header) {
   return {.interpolant = {.method = find_method(header.method),
                           .lambda = header.lambda,
@@ -194,6 +204,7 @@ core::WindowOptions window_options(const RegionHeader& header) {
           .start = start_condition(header),
           .stop_time = Time(header.stop_time),
           .limits = motion_limits(header),
+          .largest_rate = rate_of_law(header),
           .held_before_start = is_live(stream_clock(header)),
           .force_lag = header.force_lag != 0};
 }

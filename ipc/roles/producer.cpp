@@ -52,7 +52,7 @@ struct Producer::Impl {
   std::string stream;
   ProducerOptions options;
   ipc::OwnerLock lock;
-  std::uint64_t law_id;  ///< of the law that the stream follows; 0: none
+  ipc::RegionHeader of_law;  ///< of the law that the stream follows; stream_id 0: none
   ipc::OwnedRing ring;
   bool continues;
   std::optional<SolverView> solver;
@@ -68,9 +68,12 @@ struct Producer::Impl {
       : stream(std::move(name)),
         options(std::move(how)),
         lock((ipc::require_stream_name(stream), stream), ipc::RegionKind::waypoints),
-        law_id(id_of_law()),
+        of_law(header_of_law()),
         ring(ipc::own_ring(stream, options, lock,
-                           [this](ipc::RegionHeader& header) { header.law_id = law_id; })),
+                           [this](ipc::RegionHeader& header) {
+                             header.law_id = of_law.stream_id;
+                             header.largest_rate = of_law.largest_rate;
+                           })),
         continues(ring.writer.written() > 0),
         sent(ring.region.bytes(), ring.layout),
         refused(ring.writer.written()) {
@@ -82,13 +85,13 @@ struct Producer::Impl {
     if (solver) refused.skip(solver->board);
   }
 
-  /// The stream id of the law that the options name; 0 if they name none.
-  [[nodiscard]] std::uint64_t id_of_law() {
+  /// The header of the law that the options name; one with the stream id 0 if they name none.
+  [[nodiscard]] ipc::RegionHeader header_of_law() {
     // own_ring refuses a law without this clock.
-    if (options.law.empty() || options.clock != StreamClock::law) return 0;
+    if (options.law.empty() || options.clock != StreamClock::law) return {};
     try {
       const auto header = ipc::peek_header(options.law, ipc::RegionKind::spline, options.trust);
-      if (header && header->is_law != 0) return header->stream_id;
+      if (header && header->is_law != 0) return *header;
       throw NoSuchStream("there is no time law '" + options.law + "' with a solver");
     } catch (...) {
       lock.remove_unused_file();

@@ -7,6 +7,7 @@
 
 #include "core/forms/stop.hpp"
 #include "core/limits/extremes.hpp"
+#include "core/limits/limit_of.hpp"
 #include "ipc/layout/summary.hpp"
 
 namespace splinecast::ipc {
@@ -45,7 +46,7 @@ ReplacementPlanner::ReplacementPlanner(const KnotBoardReader& board, core::Windo
       is_live_(live.has_value()),
       sampler_(board, is_live_ ? StreamClock::monotonic : StreamClock::recorded, kinds_),
       shown_(board),
-      window_(board.dimensions(), options_),
+      window_(board.dimensions(), core::with_kinds(options_, kinds_)),
       search_(board.dimensions(), kinds_),
       reach_(board.dimensions()),
       state_(board.dimensions()),
@@ -132,7 +133,8 @@ void ReplacementPlanner::take_segments(std::size_t end, ReplacePreview& out) {
 /// as if no newer waypoints come.
 bool ReplacementPlanner::find_entry(const Instant& from, std::span<const Waypoint> waypoints,
                                     Time blend, ReplacePreview& out) {
-  core::EntryRules rules{.limits = &options_.limits,
+  core::EntryRules rules{.limits = &window_.limits_at_largest_rate(),
+                         .path_limits = &options_.limits,
                          .shown = is_live_ ? &shown_.limits() : nullptr,
                          .least = std::max(min_entry_, blend),
                          .newer = options_.settle,
@@ -170,6 +172,8 @@ void ReplacementPlanner::plan(std::span<const Waypoint> waypoints, Time blend,
                               ReplacePreview& out) {
   out.is_known = read_state(out.begin);
   if (out.from_rest) come_to_rest(state_);
+  core::clamp_acceleration(window_.limits_at_largest_rate(), kinds_, state_.velocity(),
+                           state_.ref().acceleration);
   out.duration = {};
   out.enters = false;
   out.waypoint.reset();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/limits/limit_of.hpp"
 #include "ipc/board/reader.hpp"
 #include "ipc/board/writer.hpp"
 #include "ipc/layout/summary.hpp"
@@ -32,10 +33,12 @@ Word segment_at(const KnotBoardReader& board, const Summary& summary, Time t) no
   return low;
 }
 
-CurveCut::CurveCut(KnotBoardWriter& board, const KnotBoardReader& published, DimensionKinds kinds)
+CurveCut::CurveCut(KnotBoardWriter& board, const KnotBoardReader& published, DimensionKinds kinds,
+                   MotionLimits limits)
     : board_(&board),
       published_(&published),
       kinds_(std::move(kinds)),
+      limits_(std::move(limits)),
       segment_(published.dimensions(), published.smooths()),
       state_(published.dimensions()),
       position_(published.dimensions()) {}
@@ -85,6 +88,7 @@ bool CurveCut::find(const Summary& summary, Time t) noexcept {
   }
   const StateRef state = state_.ref();
   if (next_ > 1) kinds_.normalise_quaternions(state.position, state.velocity, state.acceleration);
+  core::clamp_acceleration(limits_, kinds_, state.velocity, state.acceleration);
   return true;
 }
 

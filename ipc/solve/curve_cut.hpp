@@ -12,6 +12,7 @@
 #include "ipc/layout/summary.hpp"
 #include "ipc/runs/run_edges.hpp"
 #include "splinecast/dimension_kind.hpp"
+#include "splinecast/limits.hpp"
 #include "splinecast/state.hpp"
 
 namespace splinecast::ipc {
@@ -24,10 +25,12 @@ namespace splinecast::ipc {
 class CurveCut {
  public:
   /// `board` and `published` are the two sides of one board; both outlive the cut.
-  CurveCut(KnotBoardWriter& board, const KnotBoardReader& published, DimensionKinds kinds);
+  CurveCut(KnotBoardWriter& board, const KnotBoardReader& published, DimensionKinds kinds,
+           MotionLimits limits);
 
-  /// Finds the cut at t through the curve of a committed summary, which has a segment there.
-  /// Returns false if the board holds data that no solver wrote.
+  /// Finds the cut at t through the curve of a committed summary, which has a segment there. An
+  /// acceleration beyond its limit becomes the limit. Returns false if the board holds data that no
+  /// solver wrote.
   [[nodiscard]] bool find(const Summary& summary, Time t) noexcept;
 
   /// Lets the new curve begin at rest at the cut that was found.
@@ -52,6 +55,7 @@ class CurveCut {
   KnotBoardWriter* board_;
   const KnotBoardReader* published_;
   DimensionKinds kinds_;
+  MotionLimits limits_;
   Summary summary_;
   BoardSegment segment_;  ///< the one that is cut, or the one before the cut
   State state_;

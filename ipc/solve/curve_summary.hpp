@@ -12,6 +12,7 @@ struct EntryOptions {
   Time min_entry{};           ///< length of the shortest entry
   Time notice{};              ///< a live stream's start is decided this long before it settles
   bool keeps_limits = false;  ///< Beyond::enter: the curve leaves its target where that exceeds one
+  bool checks_stops = false;  ///< the stop after a waypoint counts, too: not Beyond::report
 };
 
 /// What a curve that must keep its limits has done with a waypoint.

@@ -114,7 +114,8 @@ bool PublishedCurve::prepare(Time settled) noexcept {
 core::EntryRules PublishedCurve::entry_rules() const noexcept {
   const Time from = uses_cut_ ? cut_.state().time : origin_.time;
   const bool blends = blend_until_ > from;  // only in a run that began with a cut
-  return {.limits = &window_.options().limits,
+  return {.limits = &window_.limits_at_largest_rate(),
+          .path_limits = &window_.options().limits,
           .shown = entries_.is_live ? &shown_.limits() : nullptr,
           .least = blends ? std::max(entries_.min_entry, blend_until_ - from) : entries_.min_entry,
           .reach = &reach_,

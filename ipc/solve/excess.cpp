@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/limits/check.hpp"
+#include "core/limits/limit_of.hpp"
 #include "ipc/solve/published_curve.hpp"
 
 /// Compares a published curve with the limits before a waypoint is taken, and takes waypoints so
@@ -84,7 +85,69 @@ std::optional<LimitExcess> PublishedCurve::find_excess(const Waypoint& waypoint,
                         .value = found.value,
                         .limit = found.limit};
   }
+  if (entries_.checks_stops && ratio == 0) {
+    trial_.segment(trial_.knots() - 1, segment_);
+    const auto excess = excess_of_stop(segment_, true);
+    return excess && excess->time >= settled ? excess : std::nullopt;
+  }
   return worst;
+}
+
+/// Where a stop exceeds a limit of acceleration or jerk, or passes a bound; nothing if it keeps
+/// them. Its velocity only falls. `of_limited`: only bounds of dimensions with a limit of
+/// acceleration count.
+std::optional<LimitExcess> PublishedCurve::excess_of_stop(const core::Segment& stop,
+                                                          bool of_limited) noexcept {
+  constexpr double kSlack = 1 + 2e-6;
+  const MotionLimits& limits = window_.limits_at_largest_rate();
+  const core::SegmentPart part = core::part_of(stop);
+  std::optional<LimitExcess> worst;
+  double ratio = kSlack;
+  const auto take = [&](const Excess& found) {
+    if (!(found.ratio > ratio)) return;
+    ratio = found.ratio;
+    worst = LimitExcess{.kind = found.kind,
+                        .dimension = found.dimension,
+                        .time = std::min(stop.left + from_seconds(found.u), stop.right),
+                        .value = found.value,
+                        .limit = found.limit};
+  };
+  for (const Excess& found : core::worst_excesses(limits, &kinds_, part)) {
+    if (found.kind == LimitKind::acceleration || found.kind == LimitKind::jerk) take(found);
+  }
+  core::evaluate_derivative(stop.order, stop.coefficients, to_seconds(stop.right - stop.left), 0,
+                            values_);
+  for (std::size_t d = 0; d < part.dimensions; ++d) {
+    const double begin = stop.coefficients[d];
+    const double end = values_[d];
+    const bool rises = end > begin;
+    const auto& bounds = rises ? limits.upper : limits.lower;
+    if (of_limited && core::limit_of(limits.acceleration, d) == 0) continue;
+    if (bounds.empty() || (rises ? end <= bounds[d] : end >= bounds[d] || end == begin)) continue;
+    take({.ratio = core::ratio_of(limits, LimitKind::position, d, end, bounds[d]),
+          .kind = LimitKind::position,
+          .dimension = d,
+          .value = end,
+          .limit = bounds[d],
+          .u = to_seconds(stop.right - stop.left)});
+  }
+  return worst;
+}
+
+std::optional<LimitExcess> PublishedCurve::stop_excess() noexcept {
+  if (!has_limits_) return std::nullopt;
+  if (ending_ == EndKind::stopped) {
+    stop_behind_newest(segment_);
+  } else if (!read_.take_last(*published_, summary_) || read_.kind() != SegmentKind::stop) {
+    return std::nullopt;
+  } else {
+    segment_.left = read_.left();
+    segment_.right = read_.natural_right();
+    segment_.order = read_.order();
+    segment_.kind = SegmentKind::stop;
+    std::ranges::copy(read_.coefficients(), segment_.coefficients.begin());
+  }
+  return excess_of_stop(segment_, false);
 }
 
 /// Whether check_start() still has to compare the first segments with the limits.

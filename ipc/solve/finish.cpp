@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/forms/stop.hpp"
 #include "core/limits/check.hpp"
 #include "core/limits/extremes.hpp"
 #include "ipc/solve/published_curve.hpp"
@@ -9,11 +10,16 @@
 namespace splinecast::ipc {
 namespace {
 
-bool rests_at(const Instant& state, std::span<const double> position) noexcept {
-  const auto is_zero = [](double value) { return value == 0; };
-  return std::ranges::equal(state.position, position) &&
-         std::ranges::all_of(state.velocity, is_zero) &&
-         std::ranges::all_of(state.acceleration, is_zero);
+bool is_zero(std::span<const double> values) noexcept {
+  return std::ranges::all_of(values, [](double value) { return value == 0; });
+}
+
+/// Whether a curve rests at a position from a state on, if it stays within `reach` from there.
+bool rests_at(const Instant& state, const core::PositionRange& reach,
+              std::span<const double> position) noexcept {
+  return std::ranges::equal(state.position, position) && is_zero(state.velocity) &&
+         is_zero(state.acceleration) && std::ranges::equal(reach.least(), position) &&
+         std::ranges::equal(reach.greatest(), position);
 }
 
 }  // namespace
@@ -33,16 +39,19 @@ void PublishedCurve::finish_on_line(const Condition& end) noexcept {
 void PublishedCurve::find_end_limits() noexcept {
   find_shown();
   shown_.look(window_.options().stop_time);
-  search_.write_accelerations(window_.options().limits, shown_.limits(), end_limits_.acceleration);
+  search_.write_accelerations(window_.limits_at_largest_rate(), shown_.limits(),
+                              end_limits_.acceleration);
 }
 
-/// Whether the curve, ended at the newest waypoint, keeps the limits: a segment that exceeds one
-/// must not exceed it more than without the end. A recorded stream ends as requested.
+/// Whether the curve, ended at the newest waypoint, rests there and keeps the limits: a segment
+/// that exceeds one must not exceed it more than without the end. A recorded stream ends as
+/// requested.
 bool PublishedCurve::keeps_limits_with(const Condition& end, Time settled) noexcept {
   if (!entries_.is_live) return true;
   find_end_limits();
   begin_trial();
   trial_.finish(end);
+  if (!is_zero(trial_.knot(trial_.knots() - 1).velocity)) return false;
   for (std::size_t i = std::max(first_open(settled), trial_.oldest_segment());
        i + 1 < trial_.knots(); ++i) {
     trial_.segment(i, segment_);
@@ -129,7 +138,8 @@ bool PublishedCurve::slow_down(Time settled, int& tries) noexcept {
 
 /// Searches for the latest knot at which an entry may begin that ends the curve, and that stays
 /// within the range of the published curve from that knot to the last waypoint. Without such a knot
-/// the curve ends in the stop after its last waypoint. Returns false if the search has not ended.
+/// the curve ends in the shortest stop after its last waypoint. Returns false if the search has not
+/// ended.
 bool PublishedCurve::search_end_from_knots(Time settled, int& tries) noexcept {
   if (end_search_ != EndSearch::from_knots) {
     end_search_ = EndSearch::from_knots;
@@ -160,7 +170,22 @@ bool PublishedCurve::search_end_from_knots(Time settled, int& tries) noexcept {
     search_.restart(0);
   }
   ending_ = EndKind::stopped;
+  has_changes_ = true;
+  open_ = std::min(open_, window_.knots() - 1);
   return true;
+}
+
+/// Builds the stop after the newest waypoint, in which the curve has been ended: the shortest that
+/// keeps the limits of acceleration and jerk, if any dimension has a limit of acceleration.
+void PublishedCurve::stop_behind_newest(core::Segment& out) noexcept {
+  const core::Knot knot = window_.knot(window_.knots() - 1);
+  const Time usual = window_.write_stop(values_);
+  const bool has_limit = std::ranges::any_of(window_.limits_at_largest_rate().acceleration,
+                                             [](double limit) { return limit > 0; });
+  const Instant from{knot.time, knot.position, knot.velocity, values_};
+  const Time shortest = core::stop_time_within({end_limits_, kinds_, Time(1)}, from);
+  core::build_stop(knot.time, has_limit ? std::min(usual, shortest) : usual, knot.position,
+                   knot.velocity, values_, out);
 }
 
 /// The last waypoint as a state at rest. Valid until values_ changes.
@@ -181,13 +206,12 @@ bool PublishedCurve::prepare_end(Time settled) noexcept {
 
 /// Searches for the entry that ends the curve. Returns false if the search has not ended.
 bool PublishedCurve::search_end(Time settled, int& tries) noexcept {
-  // An entry within the limits that takes longer has failed: it would last for hours.
-  constexpr Time kLongest = std::chrono::hours(1);
+  constexpr Time kLongest = std::chrono::minutes(1);
   if (!prepare_end(settled)) return true;
   const Instant rest = rest_at_newest();
   for (;;) {
     const Instant from = begin_state();
-    if (rests_at(from, rest.position)) {
+    if (rests_at(from, reach_, rest.position)) {
       end_at_newest();
       ending_ = EndKind::as_requested;
       return true;

@@ -122,20 +122,27 @@ std::optional<Refusal> StreamSolver::append(const Waypoint& waypoint, Word numbe
 }
 
 /// Notes where the curve with a waypoint exceeds a limit. Returns whether to refuse the waypoint.
-bool StreamSolver::note_excess(std::optional<LimitExcess> excess, Word number) noexcept {
-  if (!excess) return false;
+bool StreamSolver::note_excess(const std::optional<LimitExcess>& excess, Word number) noexcept {
+  const bool is_refused = excess && beyond_ == Beyond::refuse;
+  count_excess(excess, number, is_refused);
+  return is_refused;
+}
+
+/// Counts an excess, if there is one, and writes it to the board.
+void StreamSolver::count_excess(std::optional<LimitExcess> excess, Word number,
+                                bool is_refused) noexcept {
+  if (!excess) return;
   excess->item = number;
-  excess->is_refused = beyond_ == Beyond::refuse;
+  excess->is_refused = is_refused;
   board_->write_excess(summary_.exceeding++, *excess);
   const auto ratio = [&](const LimitExcess& of) {
     const MotionLimits& limits = curve_.window().options().limits;
     return core::ratio_of(limits, of.kind, of.dimension, of.value, of.limit);
   };
   const auto worst = published_->worst_excess();
-  if (!excess->is_refused && (!worst || ratio(*excess) > ratio(*worst))) {
+  if (!is_refused && (!worst || ratio(*excess) > ratio(*worst))) {
     board_->write_worst_excess(*excess);
   }
-  return excess->is_refused;
 }
 
 void StreamSolver::take_replacement(Word number) noexcept {
@@ -267,6 +274,8 @@ void StreamSolver::take_finish(Word number) noexcept {
   }
   is_postponed_ = curve_.has_begun() && !curve_.finish(end_, settled_until_, keep_, tries_);
   if (is_postponed_) return;
+  const bool stops = curve_.ending() == EndKind::stopped || curve_.ending() == EndKind::in_stop;
+  if (stops && !summary_.starved) count_excess(curve_.stop_excess(), number, false);
   summary_.finished = true;
   summary_.end_kind = static_cast<Word>(curve_.ending());
   summary_.end_item = number;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/forms/stop.hpp"
+#include "core/limits/limit_of.hpp"
 #include "ipc/board/reader.hpp"
 #include "ipc/board/writer.hpp"
 #include "ipc/layout/knot_slots.hpp"
@@ -25,14 +26,14 @@ PublishedCurve::PublishedCurve(KnotBoardWriter& board, const KnotBoardReader& pu
                                const EntryOptions& entries)
     : board_(&board),
       published_(&published),
-      window_(published.dimensions(), options),
-      trial_(published.dimensions(), options),
       kinds_(std::move(kinds)),
+      window_(published.dimensions(), core::with_kinds(options, kinds_)),
+      trial_(published.dimensions(), core::with_kinds(options, kinds_)),
       entries_(entries),
       look_ahead_(std::max<std::size_t>(options.interpolant.method->look_ahead, 1)),
       has_plain_knots_(!published.smooths() && !options.interpolant.method->needs_acceleration()),
       has_limits_(!options.limits.empty()),
-      cut_(board, published, kinds_),
+      cut_(board, published, kinds_, window_.limits_at_largest_rate()),
       search_(published.dimensions(), kinds_),
       slowed_(published, kinds_),
       end_limits_(options.limits),
@@ -85,6 +86,7 @@ void PublishedCurve::set_origin(Word number, const Instant& state) noexcept {
   std::ranges::copy(state.position, to.position.begin());
   std::ranges::copy(state.velocity, to.velocity.begin());
   std::ranges::copy(state.acceleration, to.acceleration.begin());
+  core::clamp_acceleration(window_.limits_at_largest_rate(), kinds_, to.velocity, to.acceleration);
 }
 
 void PublishedCurve::freeze(Time t) noexcept {

@@ -130,6 +130,11 @@ class PublishedCurve {
     return has_limits_ && window_.knots() > 0 ? find_excess(waypoint, settled) : std::nullopt;
   }
 
+  /// Where the stop at the end of the committed curve, or the one in which the curve has been
+  /// ended, exceeds a limit or passes a bound; nothing if it keeps them. Requires a curve that has
+  /// begun.
+  [[nodiscard]] std::optional<LimitExcess> stop_excess() noexcept;
+
   /// Appends a waypoint so that the curve keeps its limits (Beyond::enter). Where the spline with
   /// it exceeds one, which `excess` then says, the curve leaves the spline: by an entry from the
   /// newest knot that allows one, else at its newest knot. After kUnmetRefused without a waypoint
@@ -253,6 +258,9 @@ class PublishedCurve {
   void begin_trial() noexcept;
   [[nodiscard]] std::optional<LimitExcess> find_excess(const Waypoint& waypoint,
                                                        Time settled) noexcept;
+  [[nodiscard]] std::optional<LimitExcess> excess_of_stop(const core::Segment& stop,
+                                                          bool of_limited) noexcept;
+  void stop_behind_newest(core::Segment& out) noexcept;
   [[nodiscard]] bool has_given_up() const noexcept { return refused_until_ < Time::max(); }
   [[nodiscard]] bool awaits_start_check() const noexcept;
   [[nodiscard]] bool has_room_to_leave(Time settled, Time keep) const noexcept;
@@ -314,9 +322,9 @@ class PublishedCurve {
 
   KnotBoardWriter* board_;
   const KnotBoardReader* published_;
+  DimensionKinds kinds_;
   core::SlidingWindow window_;
   core::SlidingWindow trial_;  ///< scratch: a copy of the window, then changed
-  DimensionKinds kinds_;
   EntryOptions entries_;
   std::size_t look_ahead_;  ///< how many rows before the newest knot an append may change
   bool has_plain_knots_;    ///< an append changes only the velocities of older knots

@@ -45,7 +45,8 @@ StreamSolver::StreamSolver(const WaypointRingReader& ring, KnotBoardWriter& boar
              {.is_live = live.has_value(),
               .min_entry = live ? live->min_entry : Time::zero(),
               .notice = live ? live->freeze_ahead : Time::zero(),
-              .keeps_limits = live && beyond == Beyond::enter}),
+              .keeps_limits = live && beyond == Beyond::enter,
+              .checks_stops = live && beyond != Beyond::report}),
       max_batch_(std::min(kMaxBatch, board.capacity() / 2 - changed_besides(window.settle))),
       item_(ring.dimensions()),
       unwrapped_(3 * ring.dimensions()),
@@ -178,6 +179,7 @@ void StreamSolver::freeze(const Clock& clock, Time now) noexcept {
       std::min(summary_.low_water, std::max(Time::zero(), curve_.newest_time() - now));
   if (summary_.starved || !is_starved()) return;
   has_starved_ = true;
+  count_excess(curve_.stop_excess(), summary_.consumed - 1, false);
   summary_.starved = true;
   ++summary_.underruns;
 }

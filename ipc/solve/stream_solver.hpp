@@ -134,7 +134,8 @@ class StreamSolver {
   void take(Word number) noexcept;
   void take_waypoint(Word number) noexcept;
   [[nodiscard]] Waypoint unwrapped(const Waypoint& given) noexcept;
-  [[nodiscard]] bool note_excess(std::optional<LimitExcess> excess, Word number) noexcept;
+  [[nodiscard]] bool note_excess(const std::optional<LimitExcess>& excess, Word number) noexcept;
+  void count_excess(std::optional<LimitExcess> excess, Word number, bool is_refused) noexcept;
   [[nodiscard]] std::optional<Refusal> append(const Waypoint& waypoint, Word number) noexcept;
   void take_replacement(Word number) noexcept;
   void refuse_replacement(Word number, Refusal reason) noexcept;

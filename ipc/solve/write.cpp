@@ -23,6 +23,8 @@ constexpr std::size_t kFirstKnots = 4;
 void PublishedCurve::write_origin() noexcept {
   const bool enters = course_ != Course::waiting || ending_ == EndKind::entered;
   const auto zeros = std::span(kZeros).first(published_->smooths() ? window_.dimensions() : 0);
+  std::ranges::copy(origin_state_.acceleration(), values_.begin());
+  if (!enters) core::align_rotations(window_.kinds(), origin_state_.velocity(), values_);
   const std::size_t known = course_ == Course::entering ? search_.end().known - 1 - met_ : 0;
   board_->write(origin_.number, {.is_new = true,
                                  .note = {.form = enters ? SegmentForm::entry : SegmentForm::stop,
@@ -32,7 +34,7 @@ void PublishedCurve::write_origin() noexcept {
                                  .time = origin_.time,
                                  .position = origin_state_.position(),
                                  .velocity = origin_state_.velocity(),
-                                 .acceleration = origin_state_.acceleration(),
+                                 .acceleration = values_,
                                  .residual = zeros,
                                  .item = enters ? run_item_ : 0});
   note_change(origin_.time);
@@ -67,6 +69,12 @@ void PublishedCurve::write_beyond() noexcept {
     board_->write(++newest_, record);
   }
   stop_ = behind_.stop_length();
+  if (stop_ > behind_.rest - behind_.stop_begin()) {
+    // The motion at the end of the former stop may need longer.
+    stop_ = std::max(stop_, core::least_stop_time(window_.limits_at_largest_rate(), kinds_,
+                                                  {behind_.end, beyond_.position(),
+                                                   beyond_.velocity(), beyond_.acceleration()}));
+  }
   end_ = behind_.stop_begin() + stop_;
 }
 
@@ -173,7 +181,14 @@ void PublishedCurve::write_knot(std::size_t i) noexcept {
   if (record.note.form == SegmentForm::stop) {
     // A knot stores one acceleration: if a segment arrives with a given one, the stop starts with
     // it.
-    stop_ = window_.write_stop(values_);
+    if (ending_ == EndKind::stopped) {
+      stop_behind_newest(segment_);
+      stop_ = segment_.right - segment_.left;
+    } else if (ends_entry) {
+      stop_ = window_.stop_time(record.acceleration);
+    } else {
+      stop_ = window_.write_stop(values_);
+    }
     end_ = knot.time + stop_;
     record.note.starts = true;
     if (!ends_entry) record.acceleration = values_;
@@ -193,7 +208,7 @@ void PublishedCurve::write_off_line(bool writes_origin) noexcept {
   if (is_entry_new_) write_beyond();
   if (writes_origin && course_ == Course::waiting) {
     newest_ = origin_.number;
-    stop_ = core::stop_time_within(window_.stop_rules(), origin_state());
+    stop_ = core::build_stop_within(window_.stop_rules(), origin_state(), segment_);
     end_ = origin_.time + stop_;
   }
   if (window_.knots() > 0) write_unmet(window_.knots());

@@ -1,6 +1,7 @@
 #include "ipc/verification/begin_state.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/polynomial/segment.hpp"
 #include "ipc/ring/item.hpp"
@@ -20,7 +21,9 @@ void BeginState::find(std::size_t i, Time natural_right) noexcept {
   const SegmentCopy& segment = segments_[i];
   if (i == 0) {
     const auto start = record_.items.find(ItemKind::start_state, 0, record_.items.size());
-    start ? take_item(*start) : take_state_of(segment);
+    if (!start) return take_state_of(segment);
+    take_item(*start);
+    if (is_decided(segment)) take_acceleration_of(segment);
     return;
   }
   const bool begins_on_knot =
@@ -33,6 +36,41 @@ void BeginState::find(std::size_t i, Time natural_right) noexcept {
   if (segment.is_corner) come_to_rest(state_);
   normalise();
   for (int n = 1; n < kNormalisations && !is_state_of(segment); ++n) normalise();
+  if (is_decided(segment)) take_acceleration_of(segment);
+}
+
+/// Whether the acceleration with which a segment begins is a decision of the solver.
+bool BeginState::is_decided(const SegmentCopy& segment) const noexcept {
+  return segment.kind == SegmentKind::entry && record_.rules != kFormerRules;
+}
+
+/// Replaces the acceleration by that of a recorded segment, if that is one that a solver may
+/// decide: in each dimension between 0 and that of the motion; of a quaternion, none longer.
+void BeginState::take_acceleration_of(const SegmentCopy& segment) noexcept {
+  constexpr double kSlack = 1 + 1e-9;
+  const std::size_t dimensions = record_.items.dimensions();
+  const auto own = state_.ref().acceleration;
+  const auto recorded = [&](std::size_t d) { return 2 * segment.coefficients[2 * dimensions + d]; };
+  const auto is_between = [&](std::size_t d) {
+    return own[d] * recorded(d) >= 0 && std::abs(recorded(d)) <= std::abs(own[d]);
+  };
+  std::size_t d = 0;
+  for (const QuaternionDimensions& q : record_.kinds.quaternions()) {
+    for (; d < q.first; ++d) {
+      if (!is_between(d)) return;
+    }
+    double size = 0;
+    double own_size = 0;
+    for (; d < q.first + kQuaternionSize; ++d) {
+      size = std::hypot(size, recorded(d));
+      own_size = std::hypot(own_size, own[d]);
+    }
+    if (!(size <= own_size * kSlack)) return;
+  }
+  for (; d < dimensions; ++d) {
+    if (!is_between(d)) return;
+  }
+  for (d = 0; d < dimensions; ++d) own[d] = recorded(d);
 }
 
 void BeginState::take_cut(std::size_t i, Time t) noexcept {
@@ -61,7 +99,7 @@ void BeginState::take_state_of(const SegmentCopy& segment) noexcept {
 bool BeginState::is_state_of(const SegmentCopy& segment) const {
   State state(record_.items.dimensions());
   core::evaluate(segment.order, segment.coefficients, 0, state.ref());
-  const bool may_step = segment.kind == SegmentKind::stop;
+  const bool may_step = segment.kind == SegmentKind::stop || is_decided(segment);
   return same_bits(state.position(), state_.position()) &&
          same_bits(state.velocity(), state_.velocity()) &&
          (may_step || same_bits(state.acceleration(), state_.acceleration()));

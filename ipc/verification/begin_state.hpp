@@ -20,8 +20,9 @@ class BeginState {
   explicit BeginState(const StreamRecord& record)
       : record_(record), segments_(record.segments), state_(record.items.dimensions()) {}
 
-  /// Finds the state at which segment i, an entry or a stop, begins. `natural_right`: where the
-  /// segment before it ends without a cut. O(D).
+  /// Finds the state at which segment i, an entry or a stop, begins. By the rules 2 (see kRules) a
+  /// solver decides with which acceleration an entry begins, at most that of the motion: it is read
+  /// from the record. `natural_right`: where the segment before it ends without a cut. O(D).
   void find(std::size_t i, Time natural_right) noexcept;
 
   /// Sets the state to that of segment i at t, as if the curve were cut there. O(D).
@@ -47,6 +48,8 @@ class BeginState {
   void normalise() noexcept;
   void take_item(Word item) noexcept;
   void take_state_of(const SegmentCopy& segment) noexcept;
+  [[nodiscard]] bool is_decided(const SegmentCopy& segment) const noexcept;
+  void take_acceleration_of(const SegmentCopy& segment) noexcept;
   [[nodiscard]] bool is_state_of(const SegmentCopy& segment) const;
 
   const StreamRecord& record_;

@@ -24,7 +24,7 @@ class RunTarget {
   /// The record outlives this. Throws std::invalid_argument for window options out of range.
   explicit RunTarget(const StreamRecord& record)
       : record_(record),
-        window_(record.items.dimensions(), record.window),
+        window_(record.items.dimensions(), core::with_kinds(record.window, record.kinds)),
         values_(3 * record.items.dimensions()),
         begin_(record.items.dimensions()) {}
 

@@ -34,9 +34,12 @@ bool StreamReplay::solve_on_target(std::size_t s) {
     return differ(s, "kind: it belongs to no run", in_words(segment.kind), "none");
   }
   if (is_stop && *index + 1 == window.knots()) {
-    (void)window.write_stop(values_);
+    window.write_acceleration(*index, values_);
     const core::Knot knot = window.knot(*index);
-    if (!solve_stop(s, {knot.time, knot.position, knot.velocity, values_}, StopPart::whole)) {
+    const bool is_last = s + 1 == segments_.size();
+    const bool is_shortest = is_last && record_.summary.ending() == EndKind::stopped;
+    if (!solve_stop(s, {knot.time, knot.position, knot.velocity, values_},
+                    is_shortest ? StopPart::shortest : StopPart::whole)) {
       return false;
     }
   } else {
@@ -116,7 +119,7 @@ bool StreamReplay::solve_stop(std::size_t s, const Instant& from, StopPart part)
   const SegmentCopy& segment = segments_[s];
   const core::StopRules rules = target_.window().stop_rules();
   if (has_former_rules()) {
-    const bool is_whole = part == StopPart::whole;
+    const bool is_whole = part != StopPart::remainder;
     const Time length = is_whole ? former_stop_time(rules, from) : behind_.stop_length();
     core::build_stop(from.time, length, from.position, from.velocity, from.acceleration, solved_);
     return compare_solved(s);
@@ -152,7 +155,7 @@ Time StreamReplay::stop_length_after(std::size_t s) const noexcept {
                         segments_[i].kind == SegmentKind::stop;
   const bool is_shorter = is_there && i == s + 1;
   if (is_there && segments_[i].natural_right > from.time &&
-      !(is_shorter && recorded_length(segments_[i]) <= core::kLeastStopTime)) {
+      !(is_shorter && recorded_length(segments_[i]) <= 2 * core::kLeastStopTime)) {
     return segments_[i].natural_right - from.time;
   }
   return core::stop_time_within(rules, from);

@@ -161,6 +161,7 @@ RegionHeader parse_common(const Fields& fields, bool has_curve) {
     if (name.size() >= header.law.size()) throw law.bad("name");
     std::ranges::copy(name, header.law.begin());
     header.law_id = law.take<std::uint64_t>("id");
+    header.largest_rate = law.has("largest_rate") ? law.take<double>("largest_rate") : 1;
   }
   const auto start = fields.take<std::string>("start");
   const auto condition = start == to_string(Condition{.kind = ConditionKind::own, .value = {}})
@@ -259,7 +260,10 @@ ordered_json to_json(const StreamOptions& options) {
                     {"epoch", ring.epoch},
                     {"pid", ring.owner_pid},
                     {"solver", nullptr}};
-  if (ring.law_id != 0) json["law"] = {{"name", ipc::text_of(ring.law)}, {"id", ring.law_id}};
+  if (ring.law_id != 0) {
+    json["law"] = {
+        {"name", ipc::text_of(ring.law)}, {"id", ring.law_id}, {"largest_rate", ring.largest_rate}};
+  }
   if (ring.is_law != 0) {
     json["time_law"] = {{"origin_ns", ring.law_origin}, {"largest_rate", ring.largest_rate}};
   }

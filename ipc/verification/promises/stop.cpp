@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/limits/check.hpp"
+#include "core/limits/extremes.hpp"
 #include "core/limits/limit_of.hpp"
 
 namespace splinecast::ipc {
@@ -13,7 +13,7 @@ namespace {
 
 /// By how much a solver may choose otherwise than this program would, as a share of a length or of
 /// a limit.
-constexpr double kSlack = 1e-6;
+constexpr double kSlack = 2e-6;
 
 Time longer(Time length) noexcept {
   return from_seconds(to_seconds(length) * (1 + kSlack)) + Time(1);
@@ -31,25 +31,40 @@ bool passes_bound(const MotionLimits& limits, const Instant& from, Time length) 
   return false;
 }
 
-/// Whether the largest ratio of a segment to a limit of acceleration or jerk is at most 1.
-bool keeps_limits(const MotionLimits& limits, const core::Segment& stop) noexcept {
-  // A stop keeps the limits of each component of a quaternion, not those of its rotation.
-  const auto worst = core::worst_excesses(limits, nullptr, core::part_of(stop));
-  const auto ratio = [&](LimitKind kind) { return worst[static_cast<std::size_t>(kind)].ratio; };
-  return ratio(LimitKind::acceleration) <= 1 + kSlack && ratio(LimitKind::jerk) <= 1 + kSlack;
+/// Whether a stop keeps the limits of acceleration and jerk of each dimension that is not one of a
+/// quaternion. Some rotations are so fast that no stop keeps their limits.
+bool keeps_limits(const core::StopRules& rules, const core::Segment& stop) noexcept {
+  const core::SegmentPart part = core::part_of(stop);
+  const auto keeps = [&](std::size_t d, int derivative, double limit) {
+    if (limit == 0) return true;
+    const auto range = core::range_of(part.order, part.coefficients, part.dimensions, d, derivative,
+                                      part.from, part.to);
+    return std::abs(range.largest().value) <= limit * (1 + kSlack);
+  };
+  const auto quaternions = rules.kinds.quaternions();
+  for (std::size_t d = 0; d < part.dimensions; ++d) {
+    const bool turns = std::ranges::any_of(
+        quaternions, [d](const QuaternionDimensions& q) { return d - q.first < kQuaternionSize; });
+    if (turns) continue;
+    if (!keeps(d, 2, core::limit_of(rules.limits.acceleration, d))) return false;
+    if (!keeps(d, 3, core::limit_of(rules.limits.jerk, d))) return false;
+  }
+  return true;
 }
 
 /// The longest time that the limits may have needed. A stop records the acceleration with which it
 /// begins: the limit, if the motion decelerated beyond the limit, and then it needs longer.
-Time longest_needed(const MotionLimits& limits, const Instant& from) noexcept {
+Time longest_needed(const core::StopRules& rules, const Instant& from) noexcept {
   std::array<double, kMaxDimensions> values;  // NOLINT(*-member-init)
   const auto acceleration = std::span(values).first(from.velocity.size());
   for (std::size_t d = 0; d < acceleration.size(); ++d) {
     const double a = from.acceleration[d];
-    const bool is_at_limit = std::abs(a) >= core::limit_of(limits.acceleration, d) * (1 - kSlack);
+    const bool is_at_limit =
+        std::abs(a) >= core::limit_of(rules.limits.acceleration, d) * (1 - kSlack);
     acceleration[d] = is_at_limit ? 2 * a : a;
   }
-  return core::least_stop_time(limits, {from.time, from.position, from.velocity, acceleration});
+  return core::least_stop_time(rules.limits, rules.kinds,
+                               {from.time, from.position, from.velocity, acceleration});
 }
 
 }  // namespace
@@ -77,17 +92,19 @@ Time former_stop_time(const core::StopRules& rules, const Instant& from) noexcep
 std::string_view broken_promise(const core::StopRules& rules, const Instant& from,
                                 const core::Segment& stop, StopPart part) noexcept {
   const MotionLimits& limits = rules.limits;
-  if (!keeps_limits(limits, stop)) return "limits of a stop";
-  if (part == StopPart::remainder) return {};
   const Time length = stop.right - stop.left;
-  const Time least = longest_needed(limits, from);
+  if (!keeps_limits(rules, stop)) return "limits of a stop";
+  // The length of a rotation's stop is found in steps, from the acceleration before it is clamped.
+  if (part == StopPart::remainder || !rules.kinds.quaternions().empty()) return {};
+  const Time least = longest_needed(rules, from);
   const Time most = std::max(rules.stop_time, least);
   if (length > longer(most)) return "length of a stop: too long";
   if (passes_bound(limits, from, length) && passes_bound(limits, from, shorter(length)) &&
       length > longer(least)) {
     return "bounds of a stop";
   }
-  const bool is_shortened = longer(length) < most;
+  const bool is_shortened =
+      part == StopPart::whole && longer(length) < core::stop_time_within(rules, from);
   if (is_shortened && !passes_bound(limits, from, longer(length))) {
     return "length of a stop: too short";
   }

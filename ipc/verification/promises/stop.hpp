@@ -25,6 +25,7 @@ namespace splinecast::ipc {
 /// Which part of a stop a segment is.
 enum class StopPart {
   whole,      ///< all of it
+  shortest,   ///< all of it, at the end of a curve: it may be shorter than the stop time
   remainder,  ///< what is left of it after an entry
 };
 
@@ -33,7 +34,8 @@ enum class StopPart {
 ///
 /// A stop keeps the limits of acceleration and jerk. A whole one takes the stop time, or as long as
 /// the limits need, or is shorter so that it keeps the bounds of dimensions with a limit of
-/// acceleration; then a longer one would not keep them. O(D).
+/// acceleration; then a longer one would not keep them. Of a record with quaternions only the
+/// limits of its other dimensions are checked. O(D).
 [[nodiscard]] std::string_view broken_promise(const core::StopRules& rules, const Instant& from,
                                               const core::Segment& stop, StopPart part) noexcept;
 

@@ -59,7 +59,7 @@ Result run_ends(const CampaignOptions& options) {
   auto measured = all.measured();
   measured["first seed"] = options.seed;
   return make_result(
-      options, {1, 2, 4, 5, 8},
+      options, {1, 2, 4, 5, 8, 11},
       "ends: lives of live streams, one per seed, that end in every way: finish with each "
       "condition, stops, replacements, deaths and takeovers, at any time, with any limits, bounds, "
       "methods, kinds of dimensions and laws; every revision is checked",

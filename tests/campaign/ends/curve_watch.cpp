@@ -154,11 +154,18 @@ void CurveWatch::check_counts(const ipc::Summary& before) {
   tally_->count(Event::withdrawals, s.withdrawn - before.withdrawn);
 }
 
-/// What had settled is not compared with limits.
+/// What had settled is not compared with limits, except a stop that the curve has begun.
 void CurveWatch::check_excesses(const ipc::Summary& before, Time settled) {
   for (ipc::Word i = before.exceeding; i < summary_.exceeding; ++i) {
     const auto excess = stream_->board.reader.excess(summary_, i);
     if (!excess || excess->time >= settled) continue;
+    const auto is_in_stop = [&](const Piece& piece) {
+      return piece.kind == SegmentKind::stop && piece.left <= excess->time &&
+             excess->time <= piece.natural_right;
+    };
+    if (std::ranges::any_of(fresh_, is_in_stop) || std::ranges::any_of(pieces_, is_in_stop)) {
+      continue;
+    }
     tally_->breach(Rule::past_not_compared,
                    fmt::format("item {}: {} ns before settled_until, {} of {}", excess->item,
                                (settled - excess->time).count(), excess->value, excess->limit));

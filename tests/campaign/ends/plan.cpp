@@ -231,6 +231,7 @@ void choose_law(LifePlan& life, Random& random) {
   if (!random.chance(0.25)) return;
   life.stream.live.follows_law = true;
   life.rate = random.chance(0.3) ? 1 : random.log_uniform(0.1, 3);
+  life.stream.window.largest_rate = life.rate;
   if (!random.chance(0.5)) return;
   life.held_at = random.between(life.motion.times.front(), life.end_at + milliseconds(20));
   life.held_for = random.part(life.stream.live.freeze_ahead, 1, 40);

@@ -30,7 +30,6 @@ enum class Rule : std::uint8_t {
   cut_bounds,
   entry_shown,
   end_limits,
-  end_limits_of_dimension,
   end_bounds,
   end_shown,
   end_within_path,
@@ -48,7 +47,7 @@ enum class Rule : std::uint8_t {
   finishes,
   near_path,
 };
-inline constexpr std::size_t kRules = 33;
+inline constexpr std::size_t kRules = 32;
 
 /// What the lives of a campaign have to show.
 struct RuleRow {

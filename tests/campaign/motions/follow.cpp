@@ -271,7 +271,7 @@ Result run_follow(const CampaignOptions& options) {
       findings.add(source, Beyond::enter, seed, seen);
     }
   }
-  return make_result(options, 10,
+  return make_result(options, {10, 11},
                      "follow: sources that a curve within its limits cannot meet, at 100 Hz for "
                      "20 s, with `--beyond enter`, and takeovers at random times; the first run of "
                      "each source also with `report` and `refuse`",

@@ -8,9 +8,13 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include "core/limits/limit_of.hpp"
 #include "core/online/sliding_window.hpp"
+#include "splinecast/dimension_kind.hpp"
 #include "splinecast/state.hpp"
 #include "tests/fixtures/curves/mesh.hpp"
 
@@ -18,6 +22,8 @@ namespace splinecast::core {
 namespace {
 
 using std::chrono::milliseconds;
+
+const DimensionKinds kAllLinear;
 
 Time from_seconds(double seconds) { return Time(std::llround(seconds * 1e9)); }
 
@@ -53,7 +59,7 @@ Peaks sampled_peaks(Time stop_time, double v, double a) {
 
 Time stop_time(double v, double a, const MotionLimits& limits, Time stop_time = kLeastStopTime,
                double x = 0) {
-  return stop_time_within({limits, stop_time}, {Time(0), {&x, 1}, {&v, 1}, {&a, 1}});
+  return stop_time_within({limits, kAllLinear, stop_time}, {Time(0), {&x, 1}, {&v, 1}, {&a, 1}});
 }
 
 Time stop_time(double v, double a, double limit, Time least = kLeastStopTime) {
@@ -200,9 +206,9 @@ TEST(StopSegment, TakesAsLongAsTheDimensionThatNeedsLongest) {
   const std::array a{0.0, 0.0, 0.0};
   const MotionLimits limits{.acceleration = {10, 10, 0}};  // the last dimension has no limit
   const Instant from{Time(0), a, v, a};
-  EXPECT_NEAR(to_seconds(stop_time_within({limits, kLeastStopTime}, from)), 0.45, 2e-9);
-  EXPECT_EQ(stop_time_within({limits, milliseconds(500)}, from), milliseconds(500));
-  EXPECT_EQ(stop_time_within({{}, milliseconds(250)}, from), milliseconds(250));
+  EXPECT_NEAR(to_seconds(stop_time_within({limits, kAllLinear, kLeastStopTime}, from)), 0.45, 2e-9);
+  EXPECT_EQ(stop_time_within({limits, kAllLinear, milliseconds(500)}, from), milliseconds(500));
+  EXPECT_EQ(stop_time_within({{}, kAllLinear, milliseconds(250)}, from), milliseconds(250));
 }
 
 /// The largest position of a stop, or the least if it moves down.
@@ -241,7 +247,7 @@ TEST(StopSegment, IsTheLongestThatKeepsItsBoundsAndNeverShorterThanTheLimitsNeed
     const double a = 40 * value(random);
     const MotionLimits limits{.acceleration = {60}, .lower = {-1}, .upper = {1}};
     const Instant from{Time(0), {&x, 1}, {&v, 1}, {&a, 1}};
-    const Time least = std::max(least_stop_time(limits, from), Time(1));
+    const Time least = std::max(least_stop_time(limits, kAllLinear, from), Time(1));
     const Time length = stop_time(v, a, limits, kStop, x);
     const Time most = std::max(kStop, least);
     ASSERT_GE(length, least) << i;
@@ -268,6 +274,77 @@ TEST(StopSegment, TakesTheStopTimeWithBoundsButWithoutALimitOfAcceleration) {
   EXPECT_EQ(stop_time(2, 0, without, milliseconds(250), 0.9), milliseconds(250));
   const MotionLimits with{.acceleration = {100}, .lower = {-1}, .upper = {1}};
   EXPECT_EQ(stop_time(2, 0, with, milliseconds(250), 0.9), milliseconds(100));
+}
+
+/// Angular speed and acceleration of a quaternion x y z w.
+struct Turn {
+  double speed = 0;
+  double acceleration = 0;
+};
+
+/// The values at the begin of a stop and its largest ones.
+std::pair<Turn, Turn> turns_of(const Segment& stop, const DimensionKinds& kinds) {
+  Turn first;
+  Turn most;
+  for_each_state(stop, 4, [&](State state, double u) {
+    kinds.normalise(state.ref());
+    const auto size = [](std::span<const double> q) { return std::hypot(q[0], q[1], q[2]); };
+    // Of a unit quaternion |q̇| = |ω|/2, and |ω̇| is twice q̈ without its part along q.
+    double along = 0;
+    for (std::size_t d = 0; d < 4; ++d) along += state.acceleration()[d] * state.position()[d];
+    std::array<double, 4> rest{};
+    for (std::size_t d = 0; d < 4; ++d) {
+      rest[d] = state.acceleration()[d] - along * state.position()[d];
+    }
+    const Turn turn{2 * std::hypot(size(state.velocity()), state.velocity()[3]),
+                    2 * std::hypot(size(rest), rest[3])};
+    if (u == 0) first = turn;
+    most = {std::max(most.speed, turn.speed), std::max(most.acceleration, turn.acceleration)};
+  });
+  return {first, most};
+}
+
+TEST(StopSegment, OfAQuaternionKeepsTheLimitsOfItsRotation) {
+  const std::array dimensions{
+      Dimension{.kind = DimensionKind::quaternion}, Dimension{.kind = DimensionKind::quaternion},
+      Dimension{.kind = DimensionKind::quaternion}, Dimension{.kind = DimensionKind::quaternion}};
+  const DimensionKinds kinds(dimensions);
+  const MotionLimits limits{.acceleration = {3, 3, 3, 3}};
+  std::mt19937_64 random(10);
+  std::uniform_real_distribution<double> value(-1, 1);
+  double worst = 0;
+  for (int i = 0; i < 500; ++i) {
+    const double angle = value(random);
+    const std::array q{std::sin(angle), 0.0, 0.0, std::cos(angle)};
+    // Velocity and acceleration are at right angles to q.
+    std::array v{value(random), value(random), value(random), value(random)};
+    std::array a{value(random), value(random), value(random), value(random)};
+    for (double& part : v) part *= 0.3;
+    for (auto* values : {&v, &a}) {
+      double along = 0;
+      for (std::size_t d = 0; d < 4; ++d) along += (*values)[d] * q[d];
+      for (std::size_t d = 0; d < 4; ++d) (*values)[d] -= along * q[d];
+    }
+    Segment stop(4);
+    const Time length =
+        build_stop_within({limits, kinds, milliseconds(250)}, {Time(0), q, v, a}, stop);
+    const auto [first, most] = turns_of(stop, kinds);
+    EXPECT_LE(most.acceleration, 3 * (1 + 1e-9)) << i;
+    EXPECT_LE(most.speed, first.speed * (1 + 1e-9)) << i;
+    EXPECT_LE(to_seconds(length), 1.5 * first.speed / 3 + 0.25) << i;
+    worst = std::max(worst, most.acceleration);
+  }
+  EXPECT_GT(worst, 2.7);  // the stop is not much longer than needed
+}
+
+TEST(StopSegment, OfAStreamThatFollowsALawKeepsTheLimitsAtItsLargestRate) {
+  const MotionLimits given{.velocity = {8}, .acceleration = {8}, .jerk = {8}, .upper = {8}};
+  const MotionLimits limits = limits_at_rate(given, 2);
+  EXPECT_EQ(limits.velocity[0], 4);
+  EXPECT_EQ(limits.acceleration[0], 2);
+  EXPECT_EQ(limits.jerk[0], 1);
+  EXPECT_EQ(limits.upper[0], 8);
+  EXPECT_EQ(limits_at_rate(given, 0.5), given);
 }
 
 TEST(StopSegment, OfAnyStateTakesAFiniteTime) {

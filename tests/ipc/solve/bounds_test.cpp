@@ -71,6 +71,27 @@ TEST(Bounds, AFinishNearThemNeverLeadsFartherThanTheStopThatWasPublished) {
   }
 }
 
+TEST(Bounds, ThatAStopPassesCountOnceAsAnExcess) {
+  for (const double acceleration : {0.0, 20.0}) {
+    SCOPED_TRACE(acceleration);
+    Watched live(bounded(0, 1, acceleration));
+    send_line(live, 100);
+    EXPECT_EQ(live.solver.summary().exceeding, 0U);
+    live.run_to(1300);  // the curve has begun the stop after the last waypoint
+    EXPECT_EQ(live.solver.summary().exceeding, 1U);
+    const auto excess = live.board.reader.worst_excess();
+    ASSERT_TRUE(excess);
+    EXPECT_EQ(excess->kind, LimitKind::position);
+    EXPECT_EQ(excess->item, 50U);
+    EXPECT_NEAR(excess->value, live.position_at(at(10'000)), 1e-12);
+    EXPECT_GT(excess->value, 1.01);
+    EXPECT_EQ(excess->limit, 1);
+    live.end();
+    EXPECT_EQ(live.solver.summary().exceeding, 1U);
+    EXPECT_EQ(live.verified(), "");
+  }
+}
+
 TEST(Bounds, ALastWaypointOutsideThemIsNotEntered) {
   Watched live(bounded(-10, 10, 5));
   live.send_all(50, 300, 60);
