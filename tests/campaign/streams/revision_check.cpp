@@ -306,8 +306,11 @@ void RevisionCheck::check_last_waypoint(const ipc::SegmentCopy& segment) {
            fmt::format("item {} at {} in the finished curve, {} passed over", waypoint.item,
                        waypoint.time.count(), summary_.passed_over));
   }
+  const ipc::EndKind end = summary_.ending();
+  const bool stops = end == ipc::EndKind::stopped || end == ipc::EndKind::in_stop;
   const bool comes_late =
-      last_passed_ && last_passed_ == last_taken_ && segment.kind != SegmentKind::spline &&
+      !stops && last_passed_ && last_passed_ == last_taken_ &&
+      segment.kind != SegmentKind::spline &&
       (smooths || rules_.passes(segment, true, items_.items().waypoint(*last_passed_).position,
                                 plan_->dimensions));
   const Word passed = passed_seen_ - (comes_late ? 1 : 0);
