@@ -46,8 +46,9 @@ class RecordedStream {
  private:
   /// A part of the stream, from a start on.
   struct Part {
-    std::optional<Restart> restart{};  ///< empty: from the beginning of the stream
-    std::vector<ipc::SegmentCopy> segments{};
+    // Without initialisers: clang 14 does not accept them in an optional of the class around it.
+    std::optional<Restart> restart;  ///< empty: from the beginning of the stream
+    std::vector<ipc::SegmentCopy> segments;
   };
   struct Item {
     ipc::RingItem item;
