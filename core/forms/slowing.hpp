@@ -7,17 +7,16 @@
 /// Slowing down on a path: the same way, travelled at a rate that goes from 1 to 0.
 namespace splinecast::core {
 
-/// Lets a motion come to rest at the end of its path. The path is a curve x of a
-/// time s, which runs from `begin` to `end`. It is travelled at the rate
+/// Lets a motion come to rest at the end of its path. The path is a curve x of a time s, which runs
+/// from `begin` to `end`. It is travelled at the rate
 ///
 ///     r(t) = 1 − 3u² + 2u³,   u = (t − begin)/T,   T = 2(end − begin),
 ///
 /// whose integral over T is end − begin: the motion rests at the path's end, end − begin after the
 /// path's own time. A knot of the path at the time s gets the time t at which the motion is there,
 /// the velocity x′r and the acceleration x″r² + x′ṙ. Between the knots the motion is a quintic
-/// (SegmentForm::slowed), which meets the path at both its ends in position and in two derivatives;
-/// how near it stays in between depends on how much the rate changes, so the caller has to measure
-/// it.
+/// (SegmentForm::slowed), which meets the path at both its ends in position and in two derivatives.
+/// Between its ends it may leave the path: the caller measures how far.
 ///
 /// The knots follow from the path alone, with the same bits on every machine. Changes nothing,
 /// throws nothing.

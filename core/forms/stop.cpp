@@ -150,7 +150,8 @@ void align_rotations(const DimensionKinds& kinds, std::span<const double> veloci
     const auto [along, squares] = products(quaternion, velocity, acceleration);
     const double share = along < 0 && squares > 0 ? along / squares : 0;
     for (std::size_t d = quaternion.first; d < quaternion.first + kQuaternionSize; ++d) {
-      acceleration[d] = share * velocity[d] + 0.0;  // no negative 0
+      // −0 becomes 0, as when a curve is evaluated.
+      acceleration[d] = share * velocity[d] + 0.0;
     }
   }
 }

@@ -52,8 +52,7 @@ void align_rotations(const DimensionKinds& kinds, std::span<const double> veloci
 
 /// The shortest time in which a stop respects the acceleration and jerk limit of every dimension; 0
 /// without limits. A dimension that already decelerates beyond its limit gets 3|v|/limit, which
-/// respects the limit from the first instant on. For a quaternion it is an estimate, at most that
-/// time.
+/// respects the limit from the first instant on. For a quaternion it is an estimate.
 [[nodiscard]] Time least_stop_time(const MotionLimits& limits, const DimensionKinds& kinds,
                                    const Instant& from) noexcept;
 

@@ -36,7 +36,8 @@ void clamp_acceleration(const MotionLimits& limits, const DimensionKinds& kinds,
     const double allowed = std::max(most / 2 - 2 * speed * speed, 0.0);
     if (size <= allowed) continue;
     for (std::size_t i = q.first; i < d; ++i) {
-      acceleration[i] = acceleration[i] * (allowed / size) + 0.0;  // no negative 0
+      // −0 becomes 0, as when a curve is evaluated.
+      acceleration[i] = acceleration[i] * (allowed / size) + 0.0;
     }
   }
   for (; d < acceleration.size(); ++d) clamp(d);

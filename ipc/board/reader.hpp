@@ -142,8 +142,9 @@ class KnotBoardReader {
   [[nodiscard]] std::optional<LimitExcess> excess(const Summary& summary,
                                                   Word index) const noexcept;
 
-  /// The largest excess of a waypoint that was not refused; empty if there is none, or if it is
-  /// being written. It may belong to the next revision, or to one that was discarded.
+  /// The largest excess of a waypoint that was not refused, or of a stop that the curve has begun;
+  /// empty before the first excess, and while one is being written. It may belong to the next
+  /// revision, or to one that was discarded.
   [[nodiscard]] std::optional<LimitExcess> worst_excess() const noexcept;
 
   /// The excess of an item, if it is one of the last kExcessesKept. O(kExcessesKept).

@@ -25,7 +25,7 @@ void put_excess(const LimitExcess& excess, std::span<Word> words) noexcept {
         std::memory_order_release);
 }
 
-/// Copies an excess; empty if there is none, or if it was being written.
+/// Copies an excess; empty before one has been written, and while one is being written.
 std::optional<LimitExcess> copy_excess(std::span<const Word> words) noexcept {
   const Word tag = load(words[0], std::memory_order_acquire);
   constexpr Word kKindMask = 7;

@@ -102,7 +102,7 @@ inline constexpr std::tuple kBodyRows{
              {.words = 2 * kExcessWords},
              FieldWriter::owner,
              "the largest one, relative to its limit, of all that were not refused: as above;\n"
-             "word 0 is 0 if there is none; the last 4 words are 0"},
+             "word 0 is 0 before the first excess; the last 4 words are 0"},
     FieldRow{"outcomes",
              {.words = kOutcomesKept * kOutcomeWords},
              FieldWriter::owner,

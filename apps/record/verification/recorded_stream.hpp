@@ -46,7 +46,7 @@ class RecordedStream {
  private:
   /// A part of the stream, from a start on.
   struct Part {
-    // Without initialisers: clang 14 does not accept them in an optional of the class around it.
+    // No initialisers: with them, clang 14 refuses std::optional<Part> as a member of this class.
     std::optional<Restart> restart;  ///< empty: from the beginning of the stream
     std::vector<ipc::SegmentCopy> segments;
   };
