@@ -10,26 +10,14 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import tempfile
 import time
-from pathlib import Path
 
 import numpy as np
 
-PROJECT = Path(__file__).resolve().parent.parent.parent
-args = sys.argv[1:]
-BUILD = Path(args.pop(0)).resolve() if args and Path(args[0]).is_dir() else PROJECT / "build" / "release"
-sys.path.insert(0, str(BUILD / "python"))
-import splinecast  # noqa: E402
+from measured import PROGRAM, main, measurement  # sets the path of the module splinecast
 
-PROGRAM = str(BUILD / "bin" / "splinecast")
-measurements = {}
-
-
-def measurement(function):
-    measurements[function.__name__] = function
-    return function
+import splinecast
 
 
 def values_of(node, name):
@@ -67,7 +55,7 @@ class Life:
         time.sleep(max(0.0, (self.at(t) - time.monotonic_ns()) * 1e-9))
 
     def send(self, times, positions, lead):
-        """Sends waypoints, each `lead` before its time. Returns how many were refused."""
+        """Sends waypoints, each `lead` before its time; those that are refused are left out."""
         for t, x in zip(times, positions):
             self.sleep_until(t - lead)
             try:
@@ -225,5 +213,4 @@ def signal_to_a_replay_whose_motion_has_1_without_limits():
 
 
 if __name__ == "__main__":
-    for name in args or measurements:
-        print(f"{name}: {measurements[name]()}", flush=True)
+    main()

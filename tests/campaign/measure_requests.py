@@ -15,20 +15,11 @@ import sys
 import time
 from pathlib import Path
 
-PROJECT = Path(__file__).resolve().parent.parent.parent
-args = sys.argv[1:]
-BUILD = Path(args.pop(0)).resolve() if args and Path(args[0]).is_dir() else PROJECT / "build" / "release"
-sys.path.insert(0, str(BUILD / "python"))
-import splinecast  # noqa: E402
+from measured import BUILD, PROGRAM, main, measurement  # sets the path of the module splinecast
 
-PROGRAM = str(BUILD / "bin" / "splinecast")
+import splinecast
+
 PREFIX = f"test.{os.getpid()}"
-measurements = {}
-
-
-def measurement(function):
-    measurements[function.__name__] = function
-    return function
 
 
 @contextlib.contextmanager
@@ -381,14 +372,6 @@ def idle_pattern_with_10000_files():
 @measurement
 def idle_pattern_without_files():
     return share_of_a_core([PROGRAM, "solve", f"{PREFIX}.none*", "--quiet"])
-
-
-def main():
-    unknown = [name for name in args if name not in measurements]
-    if unknown:
-        sys.exit(f"there is no measurement {unknown[0]}; there are {', '.join(measurements)}")
-    for name in args or measurements:
-        print(f"{name}: {measurements[name]()}", flush=True)
 
 
 if __name__ == "__main__":
