@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/limits/for_all.hpp"
 #include "core/limits/limit_of.hpp"
 #include "core/limits/rotation_bounds.hpp"
 #include "core/simd/clones.hpp"
@@ -165,23 +166,24 @@ Time least_stop_time(const MotionLimits& limits, const DimensionKinds& kinds,
     const double j_max = limit_of(limits.jerk, d);
     if (j_max > 0) longest = std::max(longest, seconds_within_jerk(v, j_max));
   };
-  std::size_t d = 0;
-  for (const QuaternionDimensions& quaternion : kinds.quaternions()) {
-    for (; d < quaternion.first; ++d) take(d, from.velocity[d], from.acceleration[d]);
+  const auto take_one = [&](std::size_t d) {
+    take(d, from.velocity[d], from.acceleration[d]);
+    return true;
+  };
+  const auto take_rotation = [&](const QuaternionDimensions& quaternion) {
+    const std::size_t first = quaternion.first;
     // A unit quaternion turns at twice its velocity.
     const auto [along, squares] = products(quaternion, from.velocity, from.acceleration);
     const double speed = std::sqrt(squares);
-    take(d, 2 * speed, speed > 0 ? 2 * along / speed : 0);
-    const std::size_t first = d;
+    take(first, 2 * speed, speed > 0 ? 2 * along / speed : 0);
     // An acceleration that is not aligned is clamped in each component.
-    for (; d < first + kQuaternionSize; ++d) {
-      const double a_max = limit_of(limits.acceleration, first);
-      if (a_max > 0) {
-        longest = std::max(longest, seconds_within(from.velocity[d], from.acceleration[d], a_max));
-      }
+    const double a_max = limit_of(limits.acceleration, first);
+    for (std::size_t d = first; a_max > 0 && d < first + kQuaternionSize; ++d) {
+      longest = std::max(longest, seconds_within(from.velocity[d], from.acceleration[d], a_max));
     }
-  }
-  for (; d < from.velocity.size(); ++d) take(d, from.velocity[d], from.acceleration[d]);
+    return true;
+  };
+  (void)for_all(kinds.quaternions(), from.velocity.size(), take_one, take_rotation);
   return from_seconds(std::min(longest, kLongest));
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/limits/for_all.hpp"
 #include "core/limits/rotation_bounds.hpp"
 
 namespace splinecast::core {
@@ -124,20 +125,6 @@ std::span<const QuaternionDimensions> quaternions_of(const DimensionKinds* kinds
   return kinds == nullptr ? std::span<const QuaternionDimensions>() : kinds->quaternions();
 }
 
-/// Calls take_one(dimension) for each dimension outside quaternions and take_rotation(quaternion)
-/// for each quaternion. Stops and returns false if a call returns false.
-bool for_all(const DimensionKinds* kinds, std::size_t dimensions, const auto& take_one,
-             const auto& take_rotation) noexcept {
-  auto quaternions = quaternions_of(kinds);
-  for (std::size_t d = 0; d < dimensions;) {
-    const bool is_rotation = !quaternions.empty() && quaternions.front().first == d;
-    if (!(is_rotation ? take_rotation(quaternions.front()) : take_one(d))) return false;
-    if (is_rotation) quaternions = quaternions.subspan(1);
-    d += is_rotation ? kQuaternionSize : 1;
-  }
-  return true;
-}
-
 bool rotation_keeps(const Comparison& comparison, const QuaternionDimensions& quaternion) noexcept {
   const auto limit = [&](LimitKind kind) { return comparison.limit(kind, quaternion.first); };
   const bool has_any =
@@ -174,7 +161,8 @@ bool keeps_within(const MotionLimits& limits, const DimensionKinds* kinds, const
   const Comparison comparison{limits, part, allowance};
   auto is_kept = [](const Finding& finding) { return finding.is_kept; };
   return for_all(
-      kinds, part.dimensions, [&](std::size_t d) { return take_dimension(comparison, d, is_kept); },
+      quaternions_of(kinds), part.dimensions,
+      [&](std::size_t d) { return take_dimension(comparison, d, is_kept); },
       [&](const QuaternionDimensions& quaternion) {
         return rotation_keeps(comparison, quaternion);
       });
@@ -222,7 +210,7 @@ WorstExcesses worst_excesses(const MotionLimits& limits, const DimensionKinds* k
     take_worst(comparison, dimension, worst);
     return true;
   };
-  (void)for_all(kinds, part.dimensions, take, take);
+  (void)for_all(quaternions_of(kinds), part.dimensions, take, take);
   return worst;
 }
 
@@ -243,7 +231,7 @@ bool exceeds_no_more(const MotionLimits& limits, const DimensionKinds* kinds,
     }
     return true;
   };
-  return for_all(kinds, part.dimensions, is_as_good, is_as_good);
+  return for_all(quaternions_of(kinds), part.dimensions, is_as_good, is_as_good);
 }
 
 bool keeps_length(const DimensionKinds& kinds, const Segment& segment) noexcept {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/limits/for_all.hpp"
+
 namespace splinecast::core {
 
 MotionLimits limits_at_rate(const MotionLimits& limits, double rate) {
@@ -20,27 +22,27 @@ void clamp_acceleration(const MotionLimits& limits, const DimensionKinds& kinds,
   const auto clamp = [&](std::size_t d) {
     const double most = limit_of(limits.acceleration, d);
     if (most > 0) acceleration[d] = std::clamp(acceleration[d], -most, most);
+    return true;
   };
-  std::size_t d = 0;
-  for (const QuaternionDimensions& q : kinds.quaternions()) {
-    for (; d < q.first; ++d) clamp(d);
-    d += kQuaternionSize;
+  const auto shorten = [&](const QuaternionDimensions& q) {
     const double most = limit_of(limits.acceleration, q.first);
-    if (most == 0) continue;
+    if (most == 0) return true;
+    const std::size_t end = q.first + kQuaternionSize;
     double speed = 0;
     double size = 0;
-    for (std::size_t i = q.first; i < d; ++i) {
-      speed = std::hypot(speed, velocity[i]);
-      size = std::hypot(size, acceleration[i]);
+    for (std::size_t d = q.first; d < end; ++d) {
+      speed = std::hypot(speed, velocity[d]);
+      size = std::hypot(size, acceleration[d]);
     }
     const double allowed = std::max(most / 2 - 2 * speed * speed, 0.0);
-    if (size <= allowed) continue;
-    for (std::size_t i = q.first; i < d; ++i) {
+    if (size <= allowed) return true;
+    for (std::size_t d = q.first; d < end; ++d) {
       // −0 becomes 0, as when a curve is evaluated.
-      acceleration[i] = acceleration[i] * (allowed / size) + 0.0;
+      acceleration[d] = acceleration[d] * (allowed / size) + 0.0;
     }
-  }
-  for (; d < acceleration.size(); ++d) clamp(d);
+    return true;
+  };
+  (void)for_all(kinds.quaternions(), acceleration.size(), clamp, shorten);
 }
 
 }  // namespace splinecast::core

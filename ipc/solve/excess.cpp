@@ -14,6 +14,15 @@ using Outcome = core::EntrySearch::Outcome;
 /// Number of knots before the newest one at which the curve tries to leave its target.
 constexpr std::size_t kEarlierKnots = 8;
 
+/// The record of an excess in a segment, without its item.
+LimitExcess record_of(const Excess& found, const core::Segment& segment) noexcept {
+  return {.kind = found.kind,
+          .dimension = found.dimension,
+          .time = std::min(segment.left + from_seconds(found.u), segment.right),
+          .value = found.value,
+          .limit = found.limit};
+}
+
 }  // namespace
 
 /// The first segment that is not frozen and that the published curve may still follow. A curve that
@@ -72,18 +81,13 @@ std::optional<LimitExcess> PublishedCurve::find_excess(const Waypoint& waypoint,
     trial_.segment(i, segment_);
     if (core::keeps_within(limits, &kinds_, segment_)) continue;
     const Excess found = core::worst_excess(limits, &kinds_, segment_);
-    const Time left = segment_.left;
     if (i + 1 < window_.knots() && !entries_.keeps_limits) {
       window_.segment(i, segment_);
       if (!core::keeps_within(limits, &kinds_, segment_)) continue;
     }
     if (found.ratio <= ratio) continue;
     ratio = found.ratio;
-    worst = LimitExcess{.kind = found.kind,
-                        .dimension = found.dimension,
-                        .time = left + from_seconds(found.u),
-                        .value = found.value,
-                        .limit = found.limit};
+    worst = record_of(found, segment_);
   }
   if (entries_.checks_stops && ratio == 0) {
     trial_.segment(trial_.knots() - 1, segment_);
@@ -106,11 +110,7 @@ std::optional<LimitExcess> PublishedCurve::excess_of_stop(const core::Segment& s
   const auto take = [&](const Excess& found) {
     if (!(found.ratio > ratio)) return;
     ratio = found.ratio;
-    worst = LimitExcess{.kind = found.kind,
-                        .dimension = found.dimension,
-                        .time = std::min(stop.left + from_seconds(found.u), stop.right),
-                        .value = found.value,
-                        .limit = found.limit};
+    worst = record_of(found, stop);
   };
   for (const Excess& found : core::worst_excesses(limits, &kinds_, part)) {
     if (found.kind == LimitKind::acceleration || found.kind == LimitKind::jerk) take(found);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/limits/for_all.hpp"
 #include "core/polynomial/segment.hpp"
 #include "ipc/ring/item.hpp"
 #include "ipc/verification/difference.hpp"
@@ -54,23 +55,17 @@ void BeginState::take_acceleration_of(const SegmentCopy& segment) noexcept {
   const auto is_between = [&](std::size_t d) {
     return own[d] * recorded(d) >= 0 && std::abs(recorded(d)) <= std::abs(own[d]);
   };
-  std::size_t d = 0;
-  for (const QuaternionDimensions& q : record_.kinds.quaternions()) {
-    for (; d < q.first; ++d) {
-      if (!is_between(d)) return;
-    }
+  const auto is_shorter = [&](const QuaternionDimensions& q) {
     double size = 0;
     double own_size = 0;
-    for (; d < q.first + kQuaternionSize; ++d) {
+    for (std::size_t d = q.first; d < q.first + kQuaternionSize; ++d) {
       size = std::hypot(size, recorded(d));
       own_size = std::hypot(own_size, own[d]);
     }
-    if (!(size <= own_size * kSlack)) return;
-  }
-  for (; d < dimensions; ++d) {
-    if (!is_between(d)) return;
-  }
-  for (d = 0; d < dimensions; ++d) own[d] = recorded(d);
+    return size <= own_size * kSlack;
+  };
+  if (!core::for_all(record_.kinds.quaternions(), dimensions, is_between, is_shorter)) return;
+  for (std::size_t d = 0; d < dimensions; ++d) own[d] = recorded(d);
 }
 
 void BeginState::take_cut(std::size_t i, Time t) noexcept {

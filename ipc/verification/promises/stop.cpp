@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "core/limits/extremes.hpp"
+#include "core/limits/for_all.hpp"
 #include "core/limits/limit_of.hpp"
 
 namespace splinecast::ipc {
@@ -41,15 +42,13 @@ bool keeps_limits(const core::StopRules& rules, const core::Segment& stop) noexc
                                       part.from, part.to);
     return std::abs(range.largest().value) <= limit * (1 + kSlack);
   };
-  const auto quaternions = rules.kinds.quaternions();
-  for (std::size_t d = 0; d < part.dimensions; ++d) {
-    const bool turns = std::ranges::any_of(
-        quaternions, [d](const QuaternionDimensions& q) { return d - q.first < kQuaternionSize; });
-    if (turns) continue;
-    if (!keeps(d, 2, core::limit_of(rules.limits.acceleration, d))) return false;
-    if (!keeps(d, 3, core::limit_of(rules.limits.jerk, d))) return false;
-  }
-  return true;
+  return core::for_all(
+      rules.kinds.quaternions(), part.dimensions,
+      [&](std::size_t d) {
+        return keeps(d, 2, core::limit_of(rules.limits.acceleration, d)) &&
+               keeps(d, 3, core::limit_of(rules.limits.jerk, d));
+      },
+      [](const QuaternionDimensions&) { return true; });
 }
 
 /// The longest time that the limits may have needed. A stop records the acceleration with which it
