@@ -102,12 +102,23 @@ bool StreamReplay::begin_run(std::size_t i) {
   target_.forget_waypoints();
   run_item_ = segment.origin.item;
   if (!run_item_ && segment.has_waypoint) {
-    run_item_ = record_.items.find(ItemKind::waypoint, target_.used(), items);
+    run_item_ = waypoint_at(segment.left);
   }
   if (!run_item_) return true;
   if (!expect_all_used(*run_item_)) return false;
   target_.list_waypoints(*run_item_);
   return true;
+}
+
+/// The waypoint with which the first run begins, if there is one. Those before it may have been
+/// withdrawn: a law whose first revision is too late begins again.
+std::optional<Word> StreamReplay::waypoint_at(Time time) const noexcept {
+  const Word items = record_.items.size();
+  auto item = record_.items.find(ItemKind::waypoint, target_.used(), items);
+  while (item && record_.items.waypoint(*item).time != time) {
+    item = record_.items.find(ItemKind::waypoint, *item + 1, items);
+  }
+  return item;
 }
 
 /// Lists the waypoints that the segments `begin` to `end` - 1 meet, with the number of newer ones

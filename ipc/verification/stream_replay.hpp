@@ -40,6 +40,7 @@ class StreamReplay {
   void solve_run(std::size_t i);
   void solve_rest_of_run(std::size_t i);
   bool begin_run(std::size_t i);
+  [[nodiscard]] std::optional<Word> waypoint_at(Time time) const noexcept;
   bool list_met(std::size_t begin, std::size_t end);
   bool note_met(std::size_t s, Time time, std::size_t newer);
   bool note_slowed(std::size_t s, std::size_t end);
