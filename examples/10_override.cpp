@@ -51,7 +51,7 @@ void produce(Producer& producer, Time begin, Time& next) {
     if (producer.append({.time = begin + next, .position = position}) != AppendStatus::accepted) {
       std::printf("the waypoint at %g s is late\n", to_seconds(next));
     }
-    if (next == kDuration) (void)producer.finish({.kind = ConditionKind::halt});
+    if (next == kDuration) (void)producer.finish();
   }
 }
 

@@ -61,7 +61,7 @@ int produce(const char* stream) {
       return 1;
     }
   }
-  if (producer.finish({.kind = ConditionKind::halt}) != AppendStatus::accepted) return 1;
+  if (producer.finish() != AppendStatus::accepted) return 1;
   if (!producer.wait_until_consumed(10s)) return 1;
   const auto sent = static_cast<unsigned long long>(producer.appended() - 1);  // without the finish
   std::printf("%llu waypoints sent, %d late, %zu refused\n", sent, late,

@@ -64,7 +64,7 @@ void stream_pose(const char* stream) {
       throw StreamError(std::string(to_string(status)));  // past: this process was held up
     }
   }
-  (void)producer.finish({.kind = ConditionKind::halt});
+  (void)producer.finish();
   solve_until(solver, clock, begin + kDuration + 50ms);  // readers follow the curve to its end
 
   const auto refused = producer.refusals();

@@ -98,7 +98,7 @@ void run(const char* stream) {
   const MonotonicClock clock;
   while (reader.sample(clock.now(), state) != SampleStatus::holding) (void)reader.wait(10ms);
   std::printf("at rest at x = %.3f m\n", state.position()[0]);
-  if (producer.finish({.kind = ConditionKind::halt}) != AppendStatus::accepted) {
+  if (producer.finish() != AppendStatus::accepted) {
     throw StreamError("finish refused");
   }
   if (!producer.wait_until_consumed(10s)) throw StreamError("not consumed");

@@ -59,7 +59,7 @@ void run(const char* stream) {
     if (row % 500 == 499) print_refusals(producer);  // at least once per 1,024 waypoints
   }
 
-  (void)producer.finish({.kind = ConditionKind::halt});
+  (void)producer.finish();
   (void)producer.wait_until_consumed(10s);
   for (const ItemRefusal& refusal : producer.refusals().items)
     std::puts(to_string(refusal).c_str());

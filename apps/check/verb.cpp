@@ -33,6 +33,13 @@ struct CheckOptions {
   bool json = false;
 };
 
+/// A stream ends at rest, so that is what is checked, unless the file cannot be streamed this way.
+bool rests_by_default(const CheckOptions& options) {
+  const auto& start = options.curve.start;
+  const bool is_periodic = start && start->kind == ConditionKind::periodic;
+  return !options.curve.end && !is_periodic && options.method->name != "normalized";
+}
+
 /// The result of a check.
 struct CheckReport {
   std::string file;
@@ -40,6 +47,7 @@ struct CheckReport {
   std::string method;
   Time begin{};
   Time end{};
+  FittedCurve fitted;
   CurveCheck check;
   LimitGaps gaps;
   std::vector<std::string> notes;
@@ -67,12 +75,17 @@ CheckReport checked(const CheckOptions& options) {
   std::vector<Dimension> kinds = table.kinds;
   kinds.resize(table.dimensions());
   const MotionLimits limits = limits_of(options.limits, file, table, kinds);
-  const PiecewisePolynomial curve = fit_table(table, *options.method, options.curve);
+  CurveOptions how = options.curve;
+  how.rest.limits = limits;
+  how.rest.kinds = DimensionKinds(kinds);
+  FittedCurve fitted = fit_table(table, *options.method, how);
+  const PiecewisePolynomial& curve = fitted.curve;
   return {.file = table.file,
           .names = table.names,
           .method = std::string(options.method->name),
           .begin = curve.breaks().front(),
           .end = curve.breaks().back(),
+          .fitted = fitted,
           .check = check_curve(curve, limits, DimensionKinds(kinds)),
           .gaps = limit_gaps(limits, file.joints, table.names, kinds),
           .notes = file.notes};
@@ -90,6 +103,12 @@ ordered_json excess_json(const std::optional<TimedExcess>& found, const CheckRep
           {"ratio", excess.ratio}};
 }
 
+/// How the curve ends; null if it ends with a condition.
+ordered_json end_json(const FittedCurve& fitted) {
+  if (fitted.end == ipc::EndKind::none) return nullptr;
+  return {{"kind", to_string(fitted.end)}, {"lateness_ns", fitted.late.count()}};
+}
+
 ordered_json to_json(const CheckReport& report) {
   const CurveCheck& check = report.check;
   ordered_json worst = ordered_json::object();
@@ -102,6 +121,7 @@ ordered_json to_json(const CheckReport& report) {
           {"begin_ns", report.begin.count()},
           {"end_ns", report.end.count()},
           {"keeps_limits", check.keeps_limits()},
+          {"end", end_json(report.fitted)},
           {"segments", check.segments},
           {"segments_beyond", check.segments_beyond},
           {"first_violation", excess_json(check.first_violation, report)},
@@ -143,6 +163,8 @@ std::string to_text(const CheckReport& report) {
     text += fmt::format("{:<16}  {}\n", to_string(static_cast<LimitKind>(kind)),
                         worst ? text_of(*worst, report) : "no limit");
   }
+  const std::string end = end_in_words(report.fitted.end, report.fitted.late);
+  if (!end.empty()) text += fmt::format("{:<16}  {}\n", "end", end);
   if (check.keeps_limits()) return text + "all limits are kept\n";
   const TimedExcess& first = *check.first_violation;
   text += fmt::format("first violation   {} {}\n", to_string(first.excess.kind),
@@ -169,12 +191,20 @@ void add_check(Command& verb, Action& action) {
           "--method", [options](const std::string& text) { options->method = &method_named(text); },
           fmt::format("Interpolant: {} (default c2)", method_names(false)))
       .type("METHOD");
-  add_curve(verb, options->curve);
+  add_curve(verb, options->curve,
+            "Boundary condition at the last waypoint, or rest: at rest as a live stream ends, "
+            "within the limits (default: rest; with --start periodic and for normalized the "
+            "method's own)");
+  add_seconds(verb, "--stop-time", options->curve.rest.stop_time,
+              "Duration in s of a stop after the last waypoint, as of 'solve', above 0 (default "
+              "0.25)",
+              kPositiveTime);
   add_table_options(verb, options->table);
   verb.flag("--json", options->json, "Print JSON");
   verb.callback([&action, options] {
     if (options->method == nullptr) options->method = &c2();
     require_consistent(options->curve, std::array{options->method});
+    if (rests_by_default(*options)) options->curve.end = AtRest{};
     if (!options->limits.any()) {
       throw UsageError("check",
                        "needs limits: --limits, --max-velocity, --max-acceleration, "

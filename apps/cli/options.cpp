@@ -49,13 +49,6 @@ Argument add_number(Command& verb, const std::string& name, Target& value, const
       .type("N");
 }
 
-/// Replaces the word `rest` of earlier versions by `clamped`, with a message on stderr.
-std::string present_word(const std::string& option, const std::string& text) {
-  if (text != "rest") return text;
-  say(fmt::format("{}: 'rest' is now 'clamped'", option));
-  return "clamped";
-}
-
 /// Like parse_kind_option. Also accepts `I:wrap:PERIOD`, the form of earlier versions, with a
 /// message on stderr.
 std::optional<KindOption> parse_kind(const std::string& text) {
@@ -75,10 +68,6 @@ std::optional<unsigned> parse_unsigned(const std::string& text, int base) {
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return value;
 }
-
-}  // namespace
-
-namespace {
 
 /// Options for files with topics: MCAP and ULog.
 void add_topic_options(Command& verb, TableOptions& options) {
@@ -220,36 +209,6 @@ void add_solver_curve(Command& verb, SolverOptions& options) {
 
 void add_force_lag(Command& verb, bool& force_lag) {
   verb.flag("--force-lag", force_lag, "Accept a settle lag that is too short for lambda");
-}
-
-void add_condition(Command& verb, const std::string& name, std::optional<Condition>& value,
-                   const std::string& help) {
-  verb.option(
-          name,
-          [&value, name](const std::string& text) {
-            value = parse_condition(present_word(name, text));
-            if (value) return;
-            throw UsageError(
-                name, fmt::format("'{}' is not one of natural, clamped, halt, velocity=N,..., "
-                                  "acceleration=N,..., not-a-knot, periodic",
-                                  text));
-          },
-          help)
-      .type("CONDITION");
-}
-
-void add_tail(Command& verb, std::optional<Tail>& value) {
-  verb.option(
-          "--tail",
-          [&value](const std::string& text) {
-            value = parse_tail(present_word("--tail", text));
-            if (value) return;
-            throw UsageError(
-                "--tail",
-                fmt::format("'{}' is not one of bessel, parabolic, natural, clamped", text));
-          },
-          "Boundary condition at the newest waypoint of a stream that continues (default bessel)")
-      .type("bessel|parabolic|natural|clamped");
 }
 
 Argument add_settle(Command& verb, std::optional<std::size_t>& value) {

@@ -10,7 +10,6 @@
 #include "apps/cli/command.hpp"
 #include "apps/tables/waypoints.hpp"
 #include "core/online/sliding_window.hpp"
-#include "splinecast/boundary_condition.hpp"
 #include "splinecast/options.hpp"
 
 namespace splinecast::apps {
@@ -50,11 +49,7 @@ inline constexpr TimeRange kPositiveTime{Time(1), kLongestTime};
 inline constexpr NumberRange kPositiveNumber{1e-6, 1e9};
 inline constexpr CountRange kAnyCount{1, std::size_t{1} << 53U};
 
-/// Add an option for a boundary condition, a tail, a settle lag, or a time in seconds or
-/// milliseconds.
-void add_condition(Command& verb, const std::string& name, std::optional<Condition>& value,
-                   const std::string& help);
-void add_tail(Command& verb, std::optional<Tail>& value);
+/// Add an option for a settle lag, or a time in seconds or milliseconds.
 Argument add_settle(Command& verb, std::optional<std::size_t>& value);
 Argument add_seconds(Command& verb, const std::string& name, std::optional<Time>& value,
                      const std::string& help, const TimeRange& range = kAnyTime);

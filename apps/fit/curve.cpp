@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <variant>
+#include <vector>
 
 #include "apps/fit/pieces.hpp"
 #include "apps/process/exit_codes.hpp"
@@ -65,19 +68,19 @@ double chosen_lambda(const Waypoints& waypoints, const CurveOptions& options) {
 }
 
 /// Feeds the waypoints through the sliding window, as the solver does, and keeps each segment as it
-/// settles.
+/// settles. `end`: null for the tail of a stream that continues.
 PiecewisePolynomial fit_online(const WaypointTable& table, const core::WindowOptions& how,
-                               const Condition& end) {
+                               const Condition* end) {
   core::SlidingWindow window(table.dimensions(), how);
-  require_values(end, table.dimensions());
-  if (!is_online(end.kind)) {
-    throw std::invalid_argument("condition '" + to_string(end) +
+  if (end != nullptr) require_values(*end, table.dimensions());
+  if (end != nullptr && !is_online(end->kind)) {
+    throw std::invalid_argument("condition '" + to_string(*end) +
                                 "' needs all waypoints at once: it cannot be met online");
   }
   PiecewisePolynomial curve(table.dimensions());
   core::Segment segment(table.dimensions());
-  const auto take_settled = [&] {
-    while (curve.segments() < window.settled_segments()) {
+  const auto take = [&](std::size_t segments) {
+    while (curve.segments() < segments) {
       window.segment(curve.segments(), segment);
       core::append(segment, curve);
     }
@@ -85,71 +88,121 @@ PiecewisePolynomial fit_online(const WaypointTable& table, const core::WindowOpt
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (!window.lag_suffices(table.times[i])) throw_lag_too_short(table, i, how);
     window.append(table.waypoint(i));
-    take_settled();
+    take(window.settled_segments());
   }
-  window.finish(end);
-  take_settled();
+  if (end != nullptr) window.finish(*end);
+  take(end != nullptr ? window.settled_segments() : window.knots() - 1);
   return curve;
 }
 
-/// Fits a table without gaps.
-PiecewisePolynomial fit_piece(const WaypointTable& table, const Method& method,
-                              const CurveOptions& options) {
-  require_derivatives(table, method);
-  DimensionKinds(table.kinds).require_end(or_own(options.end));
-  const Waypoints waypoints = table.waypoints();
-  Interpolant how{.method = &method, .lambda = 0, .time_scale = 1};
-  if (method.smooths()) how.lambda = chosen_lambda(waypoints, options);
-  how.time_scale = options.time_scale.value_or(how.time_scale);
-  if (!options.online) {
-    return fit(waypoints,
-               {.interpolant = how, .start = or_own(options.start), .end = or_own(options.end)});
+/// The velocity at the end of a c2 stream that continues: the slope of the parabola through its
+/// last three waypoints.
+Condition tail_of(const WaypointTable& table) {
+  const std::size_t count = std::min<std::size_t>(table.size(), 3);
+  const WaypointTable last = part_of(table, table.size() - count, count);
+  const PiecewisePolynomial parabola =
+      fit(last.waypoints(), {.interpolant = {.method = find_method("bessel")}});
+  Condition tail{.kind = ConditionKind::velocity, .value = std::vector<double>(table.dimensions())};
+  parabola.derivative(last.times.back(), 1, tail.value);
+  return tail;
+}
+
+/// A table without gaps, and how it is fitted.
+class PieceFit {
+ public:
+  PieceFit(const WaypointTable& table, const Method& method, const CurveOptions& options)
+      : table_(table), options_(options), how_{.method = &method, .lambda = 0, .time_scale = 1} {
+    require_derivatives(table, method);
+    if (method.smooths()) how_.lambda = chosen_lambda(table.waypoints(), options);
+    how_.time_scale = options.time_scale.value_or(how_.time_scale);
+    if (options.online && options.tail && method.has_own_tail()) {
+      throw std::invalid_argument("the tail of method " + std::string(method.name) + " is fixed");
+    }
   }
-  if (options.tail && method.has_own_tail()) {
-    throw std::invalid_argument("the tail of method " + std::string(method.name) + " is fixed");
+
+  /// The curve with a condition at its end.
+  [[nodiscard]] PiecewisePolynomial ended(const Condition& end) const {
+    if (options_.online) return fit_online(table_, window(), &end);
+    return fit(table_.waypoints(),
+               {.interpolant = how_, .start = or_own(options_.start), .end = end});
   }
-  core::WindowOptions window{.interpolant = how,
-                             .settle = options.settle.value_or(core::default_settle(method)),
-                             .tail = options.tail.value_or(Tail::bessel),
-                             .start = or_own(options.start),
-                             .force_lag = options.force_lag};
-  return fit_online(table, window, or_own(options.end));
+
+  /// The curve while it continues, as far as its last waypoint. Requires two waypoints.
+  [[nodiscard]] PiecewisePolynomial continued() const {
+    if (options_.online) return fit_online(table_, window(), nullptr);
+    return ended(how_.method == &c2() ? tail_of(table_) : Condition{.kind = kOwn, .value = {}});
+  }
+
+  /// The number of last segments that an end may change.
+  [[nodiscard]] std::size_t open() const {
+    return options_.settle.value_or(core::default_settle(*how_.method)) + 1;
+  }
+
+ private:
+  [[nodiscard]] core::WindowOptions window() const {
+    return {.interpolant = how_,
+            .settle = options_.settle.value_or(core::default_settle(*how_.method)),
+            .tail = options_.tail.value_or(Tail::bessel),
+            .start = or_own(options_.start),
+            .force_lag = options_.force_lag};
+  }
+
+  const WaypointTable& table_;
+  const CurveOptions& options_;
+  Interpolant how_;
+};
+
+FittedCurve fit_piece(const WaypointTable& table, const Method& method,
+                      const CurveOptions& options) {
+  const PieceFit piece(table, method, options);
+  if (options.end && std::holds_alternative<AtRest>(*options.end)) {
+    const PiecewisePolynomial halted = piece.ended({.kind = ConditionKind::halt, .value = {}});
+    if (halted.is_hold()) return {halted, ipc::EndKind::as_requested};
+    return rest_at_last(halted, piece.continued(), table.waypoints(), options.rest, piece.open());
+  }
+  const Condition* given = condition_of(options.end);
+  const Condition end = given != nullptr ? *given : Condition{.kind = kOwn, .value = {}};
+  DimensionKinds(table.kinds).require_end(end);
+  return {piece.ended(end)};
 }
 
 /// Throws InputError if a method or a condition does not allow a halt at a gap.
 void require_halts(const WaypointTable& table, const Method& method, const CurveOptions& options) {
-  const auto is_periodic = [](const std::optional<Condition>& condition) {
-    return condition && condition->kind == ConditionKind::periodic;
-  };
+  const Condition* end = condition_of(options.end);
+  const bool is_periodic = (options.start && options.start->kind == ConditionKind::periodic) ||
+                           (end != nullptr && end->kind == ConditionKind::periodic);
   const bool is_normalized = method.name == "normalized";
-  if (!is_normalized && !is_periodic(options.start) && !is_periodic(options.end)) return;
+  if (!is_normalized && !is_periodic) return;
   throw InputError(fmt::format("{}: has gaps, and {} cannot halt at them: use --gap bridge",
                                table.file,
                                is_normalized ? "method normalized" : "a periodic curve"));
 }
 
 /// Fits each piece between gaps, at rest where it meets a gap, and joins them.
-PiecewisePolynomial fit_pieces(const WaypointTable& table, const Method& method,
-                               CurveOptions options, const std::vector<std::size_t>& starts) {
+FittedCurve fit_pieces(const WaypointTable& table, const Method& method, CurveOptions options,
+                       const std::vector<std::size_t>& starts) {
   require_halts(table, method, options);
   if (method.smooths()) options.lambda = chosen_lambda(table.waypoints(), options);
   const Condition halt{.kind = ConditionKind::halt, .value = {}};
   std::vector<PiecewisePolynomial> curves;
+  FittedCurve last{PiecewisePolynomial(table.dimensions())};
   for (std::size_t k = 0; k <= starts.size(); ++k) {
     const std::size_t begin = k == 0 ? 0 : starts[k - 1];
     const std::size_t end = k == starts.size() ? table.size() : starts[k];
     CurveOptions piece = options;
     if (k > 0) piece.start = halt;
     if (k < starts.size()) piece.end = halt;
-    curves.push_back(fit_piece(part_of(table, begin, end - begin), method, piece));
+    last = fit_piece(part_of(table, begin, end - begin), method, piece);
+    curves.push_back(last.curve);
   }
-  return join(curves);
+  last.curve = join(curves);
+  return last;
 }
 
 }  // namespace
 
-PiecewisePolynomial fit_table(const WaypointTable& table, const Method& method,
-                              const CurveOptions& options) {
+FittedCurve fit_table(const WaypointTable& table, const Method& method,
+                      const CurveOptions& options) {
   const std::vector<std::size_t> starts = find_gaps(table, options.gap).starts;
   return starts.empty() ? fit_piece(table, method, options)
                         : fit_pieces(table, method, options, starts);

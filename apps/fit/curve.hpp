@@ -2,12 +2,13 @@
 
 #include <optional>
 
+#include "apps/cli/conditions.hpp"
+#include "apps/fit/rest.hpp"
 #include "apps/recordings/gaps.hpp"
 #include "apps/tables/waypoints.hpp"
 #include "core/online/sliding_window.hpp"
 #include "splinecast/boundary_condition.hpp"
 #include "splinecast/method.hpp"
-#include "splinecast/piecewise_polynomial.hpp"
 
 namespace splinecast::apps {
 
@@ -17,7 +18,8 @@ struct CurveOptions {
   bool lambda_is_auto = false;     ///< `--lambda auto` was given
   std::optional<double> time_scale{};
   std::optional<Condition> start{};
-  std::optional<Condition> end{};
+  std::optional<End> end{};
+  RestRules rest{};  ///< of an end at rest
   bool online = false;
   std::optional<std::size_t> settle{};
   std::optional<Tail> tail{};
@@ -29,7 +31,7 @@ struct CurveOptions {
 /// curve halts at each gap, and an order-6 segment from rest to rest leads over it. Prints a λ
 /// chosen by cross-validation on standard error. Throws InputError with the line of a waypoint that
 /// the method does not accept, and std::invalid_argument for options that it does not support.
-[[nodiscard]] PiecewisePolynomial fit_table(const WaypointTable& table, const Method& method,
-                                            const CurveOptions& options);
+[[nodiscard]] FittedCurve fit_table(const WaypointTable& table, const Method& method,
+                                    const CurveOptions& options);
 
 }  // namespace splinecast::apps

@@ -137,7 +137,7 @@ PiecewisePolynomial curve_of(const Choice& choice, const WaypointTable& table, T
     options.start = velocity(0);
     options.end = velocity(table.size() - 1);
   }
-  return fit_table(table, *choice.method, options);
+  return fit_table(table, *choice.method, options).curve;
 }
 
 Errors errors_of(const PiecewisePolynomial& curve, const PiecewisePolynomial& truth, Time period) {

@@ -3,19 +3,18 @@
 #include <algorithm>
 #include <string_view>
 
+#include "apps/cli/conditions.hpp"
 #include "apps/cli/options.hpp"
 
 namespace splinecast::apps {
 
-void add_curve(Command& verb, CurveOptions& options) {
+void add_curve(Command& verb, CurveOptions& options, const std::string& end_help) {
   add_lambda(verb, options.lambda, &options.lambda_is_auto);
   add_time_scale(verb, options.time_scale);
   add_condition(
       verb, "--start", options.start,
       "Boundary condition at the first waypoint (default: natural for c2, else the method's own)");
-  add_condition(verb, "--end", options.end,
-                "Boundary condition at the last waypoint (default: natural for c2, with --online "
-                "halt; else the method's own)");
+  add_end(verb, options.end, end_help);
   verb.flag("--online", options.online,
             "Fit online through the sliding window, as the solver does");
   add_settle(verb, options.settle);

@@ -101,8 +101,8 @@ int run_fit(const FitOptions& options) {
   }
   std::vector<ReportCurve> curves;
   for (const Method* method : options.methods) {
-    curves.push_back(
-        {.name = std::string(method->name), .curve = fit_table(table, *method, options.curve)});
+    curves.push_back({.name = std::string(method->name),
+                      .curve = fit_table(table, *method, options.curve).curve});
   }
   const PiecewisePolynomial curve = curves.front().curve;
   const auto at = options.at.empty()
@@ -176,7 +176,9 @@ void add_fit(Command& verb, Action& action) {
   verb.option("FILE", options->file, "Waypoint file, CSV or TUM text; - for standard input")
       .required();
   add_interpolants(verb, options->methods);
-  add_curve(verb, options->curve);
+  add_curve(verb, options->curve,
+            "Boundary condition at the last waypoint, or with --online rest: at rest as a live "
+            "stream ends (default: natural for c2, with --online halt; else the method's own)");
   const Argument at =
       verb.option("--at", options->at, "File with a time column: the times to sample").type("FILE");
   add_seconds(verb, "--dt", options->dt,
@@ -194,6 +196,7 @@ void add_fit(Command& verb, Action& action) {
   add_table_options(verb, options->table);
   verb.callback([&action, options] {
     if (options->methods.empty()) options->methods.push_back(&c2());
+    if (!options->curve.online) take_former_rest(options->curve.end);
     require_consistent(*options);
     action = [options] { return run_fit(*options); };
   });

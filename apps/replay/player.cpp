@@ -133,7 +133,10 @@ class Replay {
     return made;
   }
 
-  [[nodiscard]] Condition end() const { return options_.end.value_or(unasked()); }
+  [[nodiscard]] Condition end() const {
+    const Condition* given = condition_of(options_.end);
+    return given != nullptr ? *given : unasked();
+  }
 
   /// The default boundary condition: full stop on a live stream, else the method's own condition.
   [[nodiscard]] Condition unasked() const {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/cli/conditions.hpp"
 #include "apps/recordings/recording.hpp"
 #include "apps/recordings/refused_rows.hpp"
 #include "apps/tables/options.hpp"
@@ -27,7 +28,7 @@ struct ReplayOptions {
   std::string law{};           ///< with clock law: the time law that the stream follows
   std::optional<Time> lead{};  ///< unset: what the recording and the settle lag need
   std::optional<Condition> start{};
-  std::optional<Condition> end{};
+  std::optional<End> end{};
   LatePolicy late = LatePolicy::refuse;
   GapOptions gap{};
   bool skip_bad = false;

@@ -186,9 +186,11 @@ void add_playback_options(Command& verb, ReplayOptions& options) {
   add_condition(verb, "--start", options.start,
                 "Boundary condition at the first waypoint (default: halt; with --clock recorded "
                 "the method's own)");
-  add_condition(verb, "--end", options.end,
-                "Boundary condition at the last waypoint (default: halt; with --clock recorded the "
-                "method's own, which for c2 is halt)");
+  add_end(
+      verb, options.end,
+      "Boundary condition at the last waypoint; of a live stream rest, clamped or halt: at rest "
+      "there, within limits (default: rest; with --clock recorded the method's own, which for "
+      "c2 is halt)");
 }
 
 void add_interval(Command& verb, const std::string& name, Time& value, const std::string& help) {
@@ -232,13 +234,14 @@ Recording open_recording(const ReplayOptions& options, RefusedRows& refused) {
 
 void require_playable(const Recording& recording, const ReplayOptions& options) {
   require_loops(recording, options.loops);
-  const Condition none;
   const std::size_t dimensions = recording.columns().dimensions();
-  require_values(options.start.value_or(none), dimensions);
-  require_values(options.end.value_or(none), dimensions);
-  DimensionKinds(recording.kinds()).require_end(options.end.value_or(none));
-  for (const auto& condition : {options.start, options.end}) {
-    if (condition && !is_online(condition->kind)) {
+  const Condition* start = options.start ? &*options.start : nullptr;
+  const Condition* end = condition_of(options.end);
+  if (end != nullptr) DimensionKinds(recording.kinds()).require_end(*end);
+  for (const Condition* condition : {start, end}) {
+    if (condition == nullptr) continue;
+    require_values(*condition, dimensions);
+    if (!is_online(condition->kind)) {
       throw InputError(
           fmt::format("condition '{}' needs all waypoints at once: a stream cannot "
                       "meet it",
@@ -298,8 +301,9 @@ void require_agreeing(const ReplayOptions& options) {
   if (!options.law.empty() && !is_live(options.clock)) {
     throw UsageError("--law", "goes with --clock live only");
   }
-  if (is_live(options.clock) && options.end && !is_at_rest(options.end->kind)) {
-    throw UsageError("--end", "a live stream ends at rest: clamped or halt");
+  const Condition* end = condition_of(options.end);
+  if (is_live(options.clock) && end != nullptr && !is_at_rest(end->kind)) {
+    throw UsageError("--end", "a live stream ends at rest: rest, clamped or halt");
   }
 }
 
@@ -332,6 +336,7 @@ void add_replay(Command& verb, Action& action) {
     if (!stream.is_given() && !verifies_recording(*options)) {
       throw UsageError("--stream", "is required");
     }
+    if (!is_live(options->clock)) take_former_rest(options->end);
     require_agreeing(*options);
     options->quiet = options->table.quiet;
     if (!options->law.empty()) options->clock = StreamClock::law;

@@ -244,32 +244,39 @@ ordered_json to_json(const ipc::StreamInfo& info) {
   return json;
 }
 
-ordered_json end_json(const ipc::Summary& summary) {
+std::string_view to_string(ipc::EndKind kind) {
   constexpr std::array<std::string_view, ipc::kEndKinds> kNames{
       "", "as requested", "slowed", "entered", "stopped", "ended in the stop"};
+  return kNames.at(static_cast<std::size_t>(kind));
+}
+
+ordered_json end_json(const ipc::Summary& summary) {
   if (summary.ending() == ipc::EndKind::none) return nullptr;
-  return {{"kind", kNames.at(static_cast<std::size_t>(summary.ending()))},
+  return {{"kind", to_string(summary.ending())},
           {"item", summary.end_item},
           {"lateness_ns", summary.end_lateness.count()}};
 }
 
-std::string end_in_words(const ipc::Summary& summary) {
-  switch (summary.ending()) {
+std::string end_in_words(ipc::EndKind kind, Time lateness) {
+  const std::string late =
+      fmt::format("rests at the last waypoint {:.3f} s late", to_seconds(lateness));
+  switch (kind) {
     case ipc::EndKind::slowed:
-      return fmt::format("; slowed down on its path and rests at the last waypoint {:.3f} s late",
-                         to_seconds(summary.end_lateness));
+      return "slowed down on its path and " + late;
     case ipc::EndKind::entered:
-      return summary.end_lateness > Time::zero()
-                 ? fmt::format("; rests at the last waypoint {:.3f} s late",
-                               to_seconds(summary.end_lateness))
-                 : "; left the path to rest at the last waypoint";
+      return lateness > Time::zero() ? late : "left the path to rest at the last waypoint";
     case ipc::EndKind::stopped:
-      return "; ended in the stop after the last waypoint";
+      return "ended in the stop after the last waypoint";
     case ipc::EndKind::in_stop:
-      return "; ended in the stop";
+      return "ended in the stop";
     default:
       return "";
   }
+}
+
+std::string end_in_words(const ipc::Summary& summary) {
+  const std::string text = end_in_words(summary.ending(), summary.end_lateness);
+  return text.empty() ? text : "; " + text;
 }
 
 std::string following_in_words(const ipc::Summary& summary) {

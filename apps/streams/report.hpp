@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "ipc/roles/inspect.hpp"
 
@@ -20,8 +21,14 @@ namespace splinecast::apps {
 /// last waypoint; null if it is not finished.
 [[nodiscard]] nlohmann::ordered_json end_json(const ipc::Summary& summary);
 
-/// The text about an end that differs from the requested one: `; rests at the last waypoint 0.074 s
+/// The name of a kind of end: `as requested`, `slowed` …; empty for `none`.
+[[nodiscard]] std::string_view to_string(ipc::EndKind kind);
+
+/// The text about an end that differs from the requested one: `rests at the last waypoint 0.074 s
 /// late`; empty for others.
+[[nodiscard]] std::string end_in_words(ipc::EndKind kind, Time lateness);
+
+/// The same as an addition to a line: after `; `, if it is not empty.
 [[nodiscard]] std::string end_in_words(const ipc::Summary& summary);
 
 /// Whether the curve follows its waypoints, as a sentence without a full stop.

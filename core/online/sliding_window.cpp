@@ -221,7 +221,7 @@ void SlidingWindow::segment(std::size_t i, Segment& out) const noexcept {
 Time SlidingWindow::write_stop(std::span<double> acceleration) const noexcept {
   knots_.write_final_acceleration(acceleration);
   // A given acceleration is also that with which the segment before arrives.
-  if (!options_.interpolant.method->needs_acceleration()) {
+  if (!kinds().quaternions().empty() && !options_.interpolant.method->needs_acceleration()) {
     align_rotations(kinds(), knots_.values(knots_.newest(), KnotRing::kVelocity), acceleration);
   }
   return stop_time(acceleration);

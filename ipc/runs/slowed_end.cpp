@@ -1,11 +1,11 @@
 #include "ipc/runs/slowed_end.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/forms/knot_segment.hpp"
 #include "core/limits/check.hpp"
+#include "core/online/slowed_path.hpp"
 #include "splinecast/waypoint.hpp"
 
 namespace splinecast::ipc {
@@ -115,29 +115,10 @@ core::SegmentPart SlowedEnd::path_part() const noexcept {
           .to = to_seconds(path_.right() - path_.left())};
 }
 
-/// Whether the piece stays near its segment of the path, which has been read. Looks at 7 times.
-bool SlowedEnd::stays_near() noexcept {
-  constexpr int kLooks = 8;
-  constexpr double kRounding = 1e-12;
-  const Time length = piece_.right - piece_.left;
-  for (int i = 1; i < kLooks; ++i) {
-    const Time t = piece_.left + length / kLooks * i;
-    const double way = slowing_.way_at(t) - to_seconds(path_.left() - slowing_.begin());
-    core::evaluate_derivative(path_.order(), path_.coefficients(), way, 0, before_);
-    core::evaluate_derivative(piece_.order, piece_.coefficients, to_seconds(t - piece_.left), 0,
-                              after_);
-    for (std::size_t d = 0; d < before_.size(); ++d) {
-      const double size = range_.greatest()[d] - range_.least()[d];
-      const double most = kNear * size + kRounding * std::abs(before_[d]);
-      if (!(std::abs(after_[d] - before_[d]) <= most)) return false;
-    }
-  }
-  return true;
-}
-
 /// Whether the piece after a knot is as good as the path.
 bool SlowedEnd::passes(Word number) noexcept {
-  return core::keeps_length(kinds_, piece_) && read_path(number) && stays_near() &&
+  return core::keeps_length(kinds_, piece_) && read_path(number) &&
+         core::stays_near(slowing_, piece_, path_part(), path_.left(), range_) &&
          core::exceeds_no_more(*limits_, &kinds_, core::part_of(piece_), path_part());
 }
 

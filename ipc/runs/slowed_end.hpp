@@ -31,8 +31,6 @@ class SlowedEnd {
     damaged,  ///< the board holds data that no solver wrote
   };
 
-  static constexpr double kNear = 5e-3;
-
   /// `published` outlives this.
   SlowedEnd(const KnotBoardReader& published, DimensionKinds kinds);
 
@@ -42,9 +40,9 @@ class SlowedEnd {
 
   /// Tries the knots before the newest one, the latest first, down to knot `oldest`, and none
   /// before the time `settled`. A knot passes if each piece from there on exceeds no limit or bound
-  /// that the path keeps, nor one by more than the path; if it stays near the path, within kNear of
-  /// the size of the path from that knot on, in each dimension; and if quaternions keep their
-  /// length. Decrements `tries` for each piece, O(D), and returns `more` when none are left.
+  /// that the path keeps, nor one by more than the path; if it stays near the path; and if
+  /// quaternions keep their length. Decrements `tries` for each piece, O(D), and returns `more`
+  /// when none are left.
   [[nodiscard]] Outcome search(Word oldest, Time settled, int& tries) noexcept;
 
   /// The knot that was found, its time, and the time of rest.
@@ -79,7 +77,6 @@ class SlowedEnd {
   [[nodiscard]] bool read_path(Word number) noexcept;
   [[nodiscard]] bool build_piece(Word number) noexcept;
   [[nodiscard]] core::SegmentPart path_part() const noexcept;
-  [[nodiscard]] bool stays_near() noexcept;
   [[nodiscard]] bool passes(Word number) noexcept;
 
   const KnotBoardReader* published_;

@@ -68,10 +68,11 @@ bool StreamReplay::solve_path(std::size_t s) {
     if (i < target_.window().oldest_segment() || i + 1 >= target_.window().knots()) {
       return differ(s, "kind", in_words(segments_[s].kind), "none: it has no path");
     }
-    path_.add(target_.window(), i);
+    target_.window().segment(i, piece_);
+    path_.add(target_.window().knot(i), core::part_of(piece_));
   }
   if (!append_until(knots)) return false;
-  path_.add_last(target_.window());
+  path_.add_last(target_.window().knot(knots - 1));
   return true;
 }
 

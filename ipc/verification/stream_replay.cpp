@@ -20,6 +20,7 @@ StreamReplay::StreamReplay(const StreamRecord& record)
       end_(record.items.dimensions()),
       extrapolation_(record.items.dimensions()),
       path_(record.items.dimensions()),
+      piece_(record.items.dimensions()),
       values_(record.items.dimensions()),
       begin_acceleration_(record.items.dimensions()) {}
 

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "core/online/extrapolation.hpp"
+#include "core/online/slowed_path.hpp"
 #include "core/polynomial/segment.hpp"
 #include "ipc/board/segment.hpp"
 #include "ipc/memory/word.hpp"
 #include "ipc/runs/run_edges.hpp"
-#include "ipc/runs/slowed_path.hpp"
 #include "ipc/verification/begin_state.hpp"
 #include "ipc/verification/promises/stop.hpp"
 #include "ipc/verification/recorded_decisions.hpp"
@@ -79,7 +79,8 @@ class StreamReplay {
   State end_;  ///< state at the end of an entry
   core::Extrapolation extrapolation_;
   BehindEntry behind_;
-  SlowedPath path_;
+  core::SlowedPath path_;
+  core::Segment piece_;                     ///< scratch: of the path
   std::size_t slowed_ = 0;                  ///< segment at which the curve begins to slow down
   std::vector<double> values_;              ///< scratch
   std::vector<double> begin_acceleration_;  ///< scratch: of a recorded stop

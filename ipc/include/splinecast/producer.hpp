@@ -100,7 +100,7 @@ struct ReplaceOptions {
 ///       }
 ///       if (status != AppendStatus::accepted) return 1;
 ///     }
-///     if (producer.finish({.kind = ConditionKind::halt}) != AppendStatus::accepted) return 1;
+///     if (producer.finish() != AppendStatus::accepted) return 1;
 ///     while (!producer.wait_until_consumed(10s) && producer.solver_alive()) {}
 ///
 /// `accepted` means only that the ring has the item: see refusals().
@@ -178,13 +178,15 @@ class Producer {
   /// law the law's stream time; 0 for a recorded stream.
   [[nodiscard]] Time now() noexcept;
 
-  /// Ends the stream at its last waypoint, with this boundary condition; a live stream ends at
-  /// rest. The last waypoint is the last one that the solver does not refuse: see refusals(). If
-  /// that knot is already frozen, the stop segment runs and an entry returns to the knot. Throws
-  /// BadRequest if the condition's values do not fit the dimensions or are not 0 for a quaternion,
-  /// or if a stream cannot meet the condition: is_online() must hold, and on a live stream
-  /// is_at_rest(). Otherwise as append.
-  [[nodiscard]] AppendStatus finish(const Condition& end);
+  /// Ends the stream at its last waypoint, with this boundary condition, by default at rest. A live
+  /// stream ends at rest: if the requested end would exceed a limit, the curve slows down on its
+  /// path, or ends in another way within limits, as docs/motion-limits.md says. The last waypoint
+  /// is the last one that the solver does not refuse: see refusals(). Throws BadRequest if the
+  /// condition's values do not fit the dimensions or are not 0 for a quaternion, or if a stream
+  /// cannot meet the condition: is_online() must hold, and on a live stream is_at_rest(). Otherwise
+  /// as append.
+  [[nodiscard]] AppendStatus finish(const Condition& end = {.kind = ConditionKind::halt,
+                                                            .value = {}});
 
   /// Returns the items of this producer that the solver has refused since the last call: `accepted`
   /// means only that the ring has an item. The result for an item is final once
