@@ -27,11 +27,12 @@ STOPS = DOCS.parent / "tests" / "campaign" / "results" / "stops.json"
 WIDTH = 760
 LEFT, RIGHT, TOP, GAP, BOTTOM = 62, 14, 58, 16, 40
 PANEL = 132
+END = 6  # s, the time of the last waypoint of the streams that end
 HEIGHT = TOP + 3 * PANEL + 2 * GAP + BOTTOM
 
 INK, FAINT, CURVE, TARGET, LIMIT = "#24292f", "#d8dee4", "#0b62c4", "#8c959f", "#c1272d"
-SHADES = {"stopping": "#ffe3b8", "holding": "#dfe3e8", "entry": "#d3efd7"}
-SHADE_NAMES = {"stopping": "stop", "holding": "hold", "entry": "entry"}
+SHADES = {"stopping": "#ffe3b8", "holding": "#dfe3e8", "entry": "#d3efd7", "slowed": "#e9dcf7"}
+SHADE_NAMES = {"stopping": "stop", "holding": "hold", "entry": "entry", "slowed": "slows down on its path"}
 
 
 def read_trace(path):
@@ -156,6 +157,8 @@ def legend(row, statuses):
         entries.append(("bar", LIMIT, "no solver"))
     if row["replacements [s]"]:
         entries.append(("tick", INK, "replace_from"))
+    if row.get("finish at [s]"):
+        entries.append(("tick", LIMIT, "finish"))
     for kind, color, name in entries:
         if kind == "box":
             parts.append(f'<rect x="{x}" y="25" width="18" height="11" fill="{color}"/>')
@@ -182,8 +185,11 @@ def events(panel, row):
 
     bar(row["silences [s]"], INK, TOP - 14)
     bar(row["solver dead [s]"], LIMIT, TOP - 8)
-    for at, _ in row["replacements [s]"]:
-        parts.append(f'<path d="M{panel.x(at):.1f} {TOP - 13}l-4 8h8z" fill="{INK}"/>')
+    marks = [(at, INK) for at, _ in row["replacements [s]"]]
+    finish = row.get("finish at [s]", panel.last)
+    marks += [(finish, LIMIT)] if panel.first <= finish < panel.last else []
+    for at, color in marks:
+        parts.append(f'<path d="M{panel.x(at):.1f} {TOP - 13}l-4 8h8z" fill="{color}"/>')
     return parts
 
 
@@ -286,6 +292,24 @@ def table_of(rows):
     return "\n".join(lines)
 
 
+def end_table_of(rows):
+    """The measured numbers of an end, with a column for each row of the campaign."""
+    heads = [f"limit {row['limit [rad/s2]']:g} rad/s²" if row["limit [rad/s2]"] else "no limit"
+             for row in rows]
+    lines = ["| | " + " | ".join(heads) + " |", "|---" * (len(rows) + 1) + "|"]
+    for name, text in (
+            ("`end` of `info`", lambda r: f"`{r['end']}`"),
+            ("finish, before the time of the last waypoint",
+             lambda r: f"{END - r['finish at [s]']:.2f} s".replace("-", "−")),
+            ("at rest, after the time of the last waypoint",
+             lambda r: f"{r['rest after the last waypoint [s]']:.3f} s"),
+            ("at rest, from the last waypoint", lambda r: mrad(round(r["rest from the last waypoint [rad]"], 9))),
+            ("peak velocity", lambda r: f"{r['peak velocity [rad/s]']:.2f} rad/s"),
+            ("peak acceleration", lambda r: f"{r['peak acceleration [rad/s2]']:.2f} rad/s²")):
+        lines.append(f"| {name} | " + " | ".join(text(row) for row in rows) + " |")
+    return "\n".join(lines)
+
+
 def with_tables(path, tables):
     """The text of a page with each table between the marks with its name."""
     text = path.read_text(encoding="utf-8")
@@ -301,8 +325,8 @@ def with_tables(path, tables):
 def tables_of_faults(rows):
     """A table for each section, from rows.json."""
     sections = dict.fromkeys(row["section"] for row in rows)
-    return {section: table_of([row for row in rows if row["section"] == section])
-            for section in sections}
+    return {section: (end_table_of if section.startswith("ends/") else table_of)(
+        [row for row in rows if row["section"] == section]) for section in sections}
 
 
 def tables_of_tails():
@@ -327,10 +351,15 @@ def tables_of_tails():
     return tables
 
 
+def drawn():
+    """The plots of faults and ends."""
+    return [*PLOTS.glob("*.svg"), *PLOTS.glob("ends/*.svg")]
+
+
 def make(folder):
     rows = json.loads((folder / "rows.json").read_text(encoding="utf-8"))
-    PLOTS.mkdir(exist_ok=True)
-    for old in PLOTS.glob("*.svg"):
+    (PLOTS / "ends").mkdir(parents=True, exist_ok=True)
+    for old in drawn():
         old.unlink()
     for row in rows:
         svg = draw(row, *read_trace(folder / f"{row['file']}.csv"))
@@ -343,7 +372,7 @@ def check(program):
     page = PAGE.read_text(encoding="utf-8")
     words = " ".join(page.split())
     shown = set(re.findall(r"\(plots/([^)]+\.svg)\)", page))
-    there = {path.name for path in PLOTS.glob("*.svg")}
+    there = {str(path.relative_to(PLOTS)) for path in drawn()}
     problems = [f"missing plot {name}" for name in sorted(shown - there)]
     problems += [f"the page does not show {name}" for name in sorted(there - shown)]
     listed = subprocess.run([program, "motions", "--list"], check=True, capture_output=True,

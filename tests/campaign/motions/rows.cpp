@@ -5,6 +5,7 @@
 #include <random>
 
 #include "tests/campaign/campaigns.hpp"
+#include "tests/campaign/motions/ended.hpp"
 #include "tests/campaign/motions/rules.hpp"
 #include "tests/campaign/motions/schedule.hpp"
 #include "tests/campaign/motions/sines.hpp"
@@ -93,6 +94,10 @@ void trace(const Sines& motion, const CampaignOptions& options) {
                  {.window = window_within(limit), .quantum = fault.quantum, .seed = options.seed});
     }
   }
+  for (const Ended& ended : ends()) {
+    for (const double limit : {kLimit, 0.0})
+      traces.add(motion, ended, limit, {.seed = options.seed});
+  }
   traces.finish();
 }
 
@@ -101,6 +106,7 @@ void trace(const Sines& motion, const CampaignOptions& options) {
 std::string list_motions() {
   std::string text;
   for (const Fault& fault : faults()) text += fmt::format("{}\t{}\n", fault.file, fault.name);
+  for (const Ended& ended : ends()) text += fmt::format("{}\t{}\n", ended.file, ended.name);
   return text;
 }
 

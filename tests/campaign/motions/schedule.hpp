@@ -30,6 +30,7 @@ struct Schedule {
       deaths{};  ///< of the solver: from, until another one takes over
   /// Offsets of the plans from the motion: start time in s, offset in rad. Empty: no offset.
   std::vector<std::pair<double, double>> offsets{};
+  std::optional<double> finish_at{};  ///< when the producer ends the stream
 
   /// The offset at t of the plan that is valid then.
   [[nodiscard]] double offset(double t) const noexcept {

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "apps/output/stream.hpp"
+#include "apps/streams/report.hpp"
 
 namespace splinecast::campaign {
 namespace {
@@ -23,7 +24,7 @@ constexpr double kTick = 1e-3;                ///< s
 struct Row {
   double t = 0;
   SampleStatus status{};
-  bool is_entry = false;
+  SegmentKind kind{};
   std::uint64_t starvations = 0;
   State state{Sines::kJoints};
   double error = 0;  ///< rad, the largest of all joints; 0 before 0 s
@@ -65,7 +66,7 @@ Window window_of(const std::vector<Row>& rows, const Schedule& schedule) {
     const Row& row = rows[i];
     if (row.t < window.fault - kBefore) window.first = i + 1;
     if (row.t < window.fault) continue;
-    const bool is_off = row.is_entry || is_at_rest(row) || row.error > kOnPath;
+    const bool is_off = row.kind == SegmentKind::entry || is_at_rest(row) || row.error > kOnPath;
     has_left = has_left || is_off;
     if (is_off) calm_since = -1;
     if (!is_off && calm_since < 0) calm_since = row.t;
@@ -95,6 +96,12 @@ std::size_t worst_joint(std::span<const Row> rows, const Motion& motion, const S
   return worst;
 }
 
+std::string_view status_of(const Row& row) {
+  if (row.kind == SegmentKind::entry) return "entry";
+  if (row.kind == SegmentKind::slowed) return "slowed";
+  return row.kind == SegmentKind::stop ? "stopping" : to_string(row.status);
+}
+
 std::string csv_of(std::span<const Row> rows, const Motion& motion, const Schedule& schedule,
                    std::size_t joint) {
   std::string text =
@@ -110,8 +117,7 @@ std::string csv_of(std::span<const Row> rows, const Motion& motion, const Schedu
       text += ',';
     }
     fmt::format_to(to, ",{:.6f},{:.6f},{:.6f},{}\n", row.state.position()[joint],
-                   row.state.velocity()[joint], row.state.acceleration()[joint],
-                   row.is_entry ? "entry" : to_string(row.status));
+                   row.state.velocity()[joint], row.state.acceleration()[joint], status_of(row));
   }
   return text;
 }
@@ -155,7 +161,7 @@ nlohmann::json replacements_within(const Schedule& schedule, std::span<const Row
 nlohmann::json shown_json(std::span<const Row> shown) {
   const auto is_stopping = [](const Row& row) { return row.status == SampleStatus::stopping; };
   const auto is_holding = [](const Row& row) { return row.status == SampleStatus::holding; };
-  const auto is_entry = [](const Row& row) { return row.is_entry; };
+  const auto is_entry = [](const Row& row) { return row.kind == SegmentKind::entry; };
   return {{"stopping [s]", seconds_of(shown, is_stopping)},
           {"holding [s]", seconds_of(shown, is_holding)},
           {"in entries [s]", seconds_of(shown, is_entry)},
@@ -177,10 +183,47 @@ nlohmann::json seen_json(const Seen& seen) {
           {"holding outside the pauses [%]", 100 * seen.holding}};
 }
 
+/// The joint that is fastest shortly before the last waypoint; with a wall, the one that has it.
+std::size_t shown_joint(const Motion& motion, const Ended& ended) {
+  constexpr double kShortly = 0.5;
+  std::size_t joint = 0;
+  const auto speed = [&](std::size_t i) {
+    return std::abs(motion.at(i, EndedMotion::kEnd - kShortly, 1));
+  };
+  for (std::size_t d = 1; ended.wall == 0 && d < Sines::kJoints; ++d) {
+    if (speed(d) > speed(joint)) joint = d;
+  }
+  return joint;
+}
+
+bool moves(const Row& row) {
+  return std::ranges::any_of(row.state.velocity(), [](double v) { return v != 0; });
+}
+
+/// How far the worst joint rests from the last waypoint.
+double distance_from_last(const Row& row, const Motion& motion) {
+  double most = 0;
+  for (std::size_t joint = 0; joint < Sines::kJoints; ++joint) {
+    const double last = motion.at(joint, EndedMotion::kEnd);
+    most = std::max(most, std::abs(row.state.position()[joint] - last));
+  }
+  return most;
+}
+
+double peak_of(std::span<const Row> rows, int derivative) {
+  double most = 0;
+  for (const Row& row : rows) {
+    for (const double value : derivative == 1 ? row.state.velocity() : row.state.acceleration()) {
+      most = std::max(most, std::abs(value));
+    }
+  }
+  return most;
+}
+
 }  // namespace
 
 Traces::Traces(std::filesystem::path folder) : folder_(std::move(folder)) {
-  std::filesystem::create_directories(folder_);
+  std::filesystem::create_directories(folder_ / "ends");
 }
 
 void Traces::add(const Sines& motion, const Fault& fault, double limit, TrialOptions options) {
@@ -189,7 +232,7 @@ void Traces::add(const Sines& motion, const Fault& fault, double limit, TrialOpt
   options.watch = [&](const Sight& sight) {
     Row row{.t = sight.t,
             .status = sight.status,
-            .is_entry = sight.is_entry,
+            .kind = sight.kind,
             .starvations = sight.starvations,
             .state = *sight.state};
     for (std::size_t joint = 0; joint < Sines::kJoints; ++joint) {
@@ -216,6 +259,45 @@ void Traces::add(const Sines& motion, const Fault& fault, double limit, TrialOpt
   row.update(shown_json(shown));
   row.update(seen_json(seen));
   rows_.push_back(std::move(row));
+}
+
+void Traces::add(const Sines& motion, const Ended& ended, double limit, TrialOptions options) {
+  constexpr double kShownBefore = 0.5;  // s before the last waypoint
+  constexpr double kShownAfter = 0.15;  // s at rest
+  const EndedMotion own(motion, ended.eases);
+  const Schedule schedule = ended.schedule(own);
+  options.window.limits = ended.limits(own, limit);
+  std::vector<Row> rows;
+  options.watch = [&](const Sight& sight) {
+    if (sight.t < EndedMotion::kEnd - kShownBefore) return;
+    rows.push_back(
+        {.t = sight.t, .status = sight.status, .kind = sight.kind, .state = *sight.state});
+  };
+  Trial trial(own, schedule, options);
+  (void)trial.run();
+  const auto last = std::ranges::find_if(rows.rbegin(), rows.rend(), moves);
+  const double rest = last != rows.rend() ? last->t : EndedMotion::kEnd;
+  std::erase_if(rows, [&](const Row& row) { return row.t > rest + kShownAfter; });
+  const std::size_t joint = shown_joint(own, ended);
+  const ipc::Summary& summary = trial.summary();
+  const std::string name = fmt::format("{}_{}", ended.file, limit > 0 ? "limit" : "no_limit");
+  write_file(folder_ / (name + ".csv"), csv_of(rows, own, schedule, joint));
+  rows_.push_back({{"file", name},
+                   {"fault", ended.name},
+                   {"section", ended.file},
+                   {"limit [rad/s2]", limit},
+                   {"joint", joint + 1},
+                   {"silences [s]", nlohmann::json::array()},
+                   {"solver dead [s]", nlohmann::json::array()},
+                   {"replacements [s]", nlohmann::json::array()},
+                   {"finish at [s]", *schedule.finish_at},
+                   {"end", apps::to_string(summary.ending())},
+                   {"rest after the last waypoint [s]", rest - EndedMotion::kEnd},
+                   {"rest from the last waypoint [rad]", distance_from_last(rows.back(), own)},
+                   {"peak acceleration [rad/s2]", peak_of(rows, 2)},
+                   {"peak velocity [rad/s]", peak_of(rows, 1)},
+                   {"passed over", summary.passed_over},
+                   {"excesses", summary.exceeding}});
 }
 
 void Traces::finish() const { write_file(folder_ / "rows.json", rows_.dump(1) + "\n"); }

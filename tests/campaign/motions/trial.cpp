@@ -72,6 +72,13 @@ void Trial::produce() {
   for (; next_ < schedule_.calls.size() && schedule_.calls[next_].at <= now_; ++next_) {
     send(schedule_.calls[next_]);
   }
+  if (schedule_.finish_at && *schedule_.finish_at <= now_ && !is_finished_) finish();
+}
+
+void Trial::finish() {
+  const ipc::WaypointRingWriter::Solved solved{.consumed = stream_.board.reader.consumed()};
+  const Condition halt{.kind = ConditionKind::halt, .value = {}};
+  is_finished_ = stream_.ring.writer.finish(halt, solved) == AppendStatus::accepted;
 }
 
 void Trial::send(const Call& call) {
@@ -120,8 +127,8 @@ void Trial::solve() {
 void Trial::read() {
   const auto status = sampler_.sample(stream_.clock.time, state_);
   if (!has_values(status)) return;
-  const bool enters = is_entry();
-  if (options_.watch) options_.watch({now_, status, enters, summary().underruns, &state_});
+  const SegmentKind kind = this->kind();
+  if (options_.watch) options_.watch({now_, status, kind, summary().underruns, &state_});
   if (now_ < 0) return;
   const auto is_now = [&](const auto& pause) { return now_ >= pause.first && now_ < pause.second; };
   if (std::ranges::none_of(schedule_.pauses, is_now) &&
@@ -138,7 +145,7 @@ void Trial::read() {
     double& acceleration = seen_.peak_accelerations[joint];
     acceleration = std::max(acceleration, std::abs(state_.acceleration()[joint]));
   }
-  if (enters) {
+  if (kind == SegmentKind::entry) {
     for (const double a : state_.acceleration()) {
       seen_.entry_acceleration = std::max(seen_.entry_acceleration, std::abs(a));
     }
@@ -146,12 +153,13 @@ void Trial::read() {
   if (now_ >= kSettling) seen_.errors.push_back(error);
 }
 
-bool Trial::is_entry() {
+SegmentKind Trial::kind() {
   const Time t = stream_.clock.time;
-  if (!has_values(sampler_.snapshot(t, t, snapshot_))) return false;
-  return std::ranges::any_of(snapshot_.segments(), [&](const ipc::SegmentCopy& segment) {
-    return segment.left <= t && t < segment.right && segment.kind == SegmentKind::entry;
-  });
+  if (!has_values(sampler_.snapshot(t, t, snapshot_))) return SegmentKind::spline;
+  const auto segments = snapshot_.segments();
+  const auto at = std::ranges::find_if(
+      segments, [&](const ipc::SegmentCopy& s) { return s.left <= t && t < s.right; });
+  return at != segments.end() ? at->kind : SegmentKind::spline;
 }
 
 }  // namespace splinecast::campaign

@@ -38,7 +38,7 @@ struct Seen {
 struct Sight {
   double t = 0;
   SampleStatus status{};
-  bool is_entry = false;
+  SegmentKind kind{};             ///< of the segment at this time
   std::uint64_t starvations = 0;  ///< count up to this sample
   const State* state = nullptr;
 };
@@ -76,7 +76,8 @@ class Trial {
   void count(AppendStatus status);
   void solve();
   void read();
-  [[nodiscard]] bool is_entry();
+  [[nodiscard]] SegmentKind kind();
+  void finish();
 
   const Motion& motion_;
   const Schedule& schedule_;
@@ -91,6 +92,7 @@ class Trial {
   double now_ = 0;
   std::size_t next_ = 0;
   std::size_t death_ = 0;
+  bool is_finished_ = false;
   std::uint64_t refused_ = 0;
   std::uint64_t samples_ = 0;
   std::uint64_t held_ = 0;
