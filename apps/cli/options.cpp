@@ -8,6 +8,7 @@
 #include <charconv>
 #include <chrono>
 
+#include "apps/cli/conditions.hpp"
 #include "apps/files/numbers.hpp"
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"

@@ -8,6 +8,7 @@
 
 #include "core/forms/entry.hpp"
 #include "core/forms/stop.hpp"
+#include "core/limits/limit_of.hpp"
 #include "core/solvers/run_start.hpp"
 
 namespace splinecast::core {
