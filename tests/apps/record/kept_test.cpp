@@ -8,14 +8,11 @@
 #include "tests/apps/record/recorded.hpp"
 #include "tests/fixtures/processes/shared_files.hpp"
 
-/// The recordings of tests/data/recordings, which a former version of the program has made.
+/// The recordings of tests/data/recordings, which former versions of the program have made.
 namespace splinecast::testing {
 namespace {
 
-class KeptRecordings : public RecorderTest {};
-
-TEST_F(KeptRecordings, VerifyAsTheyDidWhenTheyWereMade) {
-  const std::string folder = own_file("recordings");
+void expect_as_made(const std::string& folder) {
   const auto expected = nlohmann::json::parse(read_file(folder + "/expected.json"));
   std::vector<std::string> paths;
   for (const auto& [name, streams] : expected.items()) {
@@ -30,6 +27,11 @@ TEST_F(KeptRecordings, VerifyAsTheyDidWhenTheyWereMade) {
     }
   }
   EXPECT_EQ(recordings_in(folder), paths);
+}
+
+TEST(KeptRecordings, VerifyAsTheyDidWhenTheyWereMade) {
+  expect_as_made(own_file("recordings"));
+  expect_as_made(own_file("recordings/layout_7"));
 }
 
 }  // namespace

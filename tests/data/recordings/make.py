@@ -20,7 +20,8 @@ import time
 
 import splinecast
 
-import laws  # pylint: disable=unused-import  # registers its cases, as the next two do
+import ends  # pylint: disable=unused-import  # registers its cases, as the next three do
+import laws  # pylint: disable=unused-import
 import live  # pylint: disable=unused-import
 import methods  # pylint: disable=unused-import
 from stage import CASES, Stage
