@@ -67,21 +67,29 @@ TEST_F(MovingFollower, ALowerRateBeyondALimitIsRequestedAndTheSufficientRampIsRe
 }
 
 TEST_F(MovingFollower, AGentleRampIsLengthenedAsFarAsItMayBe) {
-  // The largest acceleration of a ramp from 1 to 0 in T is 1.5/T, and the limit is 10.
-  const Ended gentle = rate({"0", "--ramp", "0.1", "--gentle", "0.2", "--json"});
-  EXPECT_EQ(gentle.code, 0);
-  EXPECT_EQ(gentle.err, "");
-  const double worst = nlohmann::json::parse(gentle.out)["effects"][0]["limit_ratio"];
+  // The largest acceleration of a ramp from 1 to 0 in T is 1.5/T, and the limit is 10. The longest
+  // ramp is requested at once, then the one that suffices, unless this takes too long to find.
+  ipc::Word before = 0;
+  double worst = 0;
+  for (int i = 0; i < 50 && requests() != before + 2; ++i) {
+    EXPECT_EQ(rate({"1", "--ramp", "0.5"}).code, 0);
+    ASSERT_TRUE(await_rate(1));
+    before = requests();
+    const Ended gentle = rate({"0", "--ramp", "0.1", "--gentle", "0.2", "--json"});
+    EXPECT_EQ(gentle.code, 0);
+    EXPECT_EQ(gentle.err, "");
+    worst = nlohmann::json::parse(gentle.out)["effects"][0]["limit_ratio"];
+    ASSERT_TRUE(await_rate(0));
+  }
   EXPECT_GT(worst, 0.7);
   EXPECT_LE(worst, 1 + 1e-9);
-  EXPECT_EQ(requests(), 3) << "with the longest ramp at once, then with the one that suffices";
-  ASSERT_TRUE(await_rate(0));
+  EXPECT_EQ(requests(), before + 2);
   EXPECT_EQ(rate({"0.5", "--ramp", "0.5"}).code, 0);
   ASSERT_TRUE(await_rate(0.5));
   // Not as long as it would have to be.
   const Ended short_one = rate({"0", "--ramp", "0.03", "--gentle", "0.05"});
   EXPECT_EQ(short_one.code, 0);
-  EXPECT_EQ(requests(), 5) << "the longest ramp was not long enough";
+  EXPECT_EQ(requests(), before + 4) << "the longest ramp was not long enough";
   EXPECT_NE(short_one.out.find("rate 0 in 0.05 s"), std::string::npos) << short_one.out;
   EXPECT_NE(short_one.err.find("requested: acceleration"), std::string::npos) << short_one.err;
   EXPECT_TRUE(await_rate(0));
@@ -235,7 +243,7 @@ TEST_F(Rate, AReplayWaitsForItsLaw) {
                 .code,
             2);
   EXPECT_EQ(testing::run({"replay", line_file(4), "--stream", arm(), "--law", "a@b"}).code, 2);
-  Process replay({"replay", line_file(4), "--stream", arm(), "--law", law()});
+  Process replay({"replay", line_file(4), "--stream", arm(), "--law", law(), "--lead", "5000"});
   Process solver({"solve", law(), arm()});
   ASSERT_EQ(rate({"1"}).code, 0);
   const Ended ended = replay.wait();

@@ -271,14 +271,15 @@ TEST(RateCommanders, ADeadManHoldsTheLawUnlessItIsRenewed) {
   Time renewed = clock.now();
   // A machine under load may pause this process for longer than the dead man: begins again then.
   for (Time end = clock.now() + milliseconds(200); clock.now() < end;) {
-    const Time pause = clock.now() - renewed;
+    const Time now = clock.now();  // before the renewal: its own time is not earlier
+    const Time pause = now - renewed;
     if (pause > milliseconds(40)) {
       panel.set_rate(1, milliseconds(5));
       end = clock.now() + milliseconds(200);
     } else if (pause > milliseconds(5)) {
       panel.renew();
     }
-    if (pause > milliseconds(5)) renewed = clock.now();
+    if (pause > milliseconds(5)) renewed = now;
     const bool is_settled = end - clock.now() < milliseconds(150);
     if (rate() >= 0 && is_settled && clock.now() - renewed < milliseconds(20)) {
       EXPECT_GT(state.velocity()[0], 0);
