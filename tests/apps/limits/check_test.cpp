@@ -26,7 +26,7 @@ using testing::TestFolder;
 class Check : public ::testing::Test {
  protected:
   [[nodiscard]] std::vector<std::string> check(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"check", file_};
+    std::vector<std::string> arguments{"check", file_, "--end", "natural"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }

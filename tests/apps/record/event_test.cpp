@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "ipc/roles/internals.hpp"
 #include "tests/apps/record/recorded.hpp"
 
 /// The events of `record --on`: each begins a dump that has it.
@@ -114,11 +115,15 @@ struct EventRecorder {
   Process process;
 };
 
-/// Runs a source for a time, so that something has settled.
+/// Runs a source for a time and a number of waypoints, so that something has settled.
 void settle(SteadySource& source) {
+  constexpr ipc::Word kWaypoints = 60;
   const MonotonicClock clock;
   const Time end = clock.now() + milliseconds(400);
-  run_until(source, [&] { return clock.now() >= end; });
+  run_until(source, [&] {
+    return clock.now() >= end &&
+           ipc::Internals::summary(source.solver).interpolated() >= kWaypoints;
+  });
 }
 
 TEST_F(RecordEvent, AnUnderrunBeginsADump) {
