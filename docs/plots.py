@@ -256,20 +256,22 @@ def mrad(radians):
     return f"{1000 * radians:.2g} mrad" if radians < 0.01 else f"{1000 * radians:.0f} mrad"
 
 
-def table_of(rows):
-    """The measured numbers of a section, with a column for each row of the campaign."""
-    heads = [f"limit {row['limit [rad/s2]']:g} rad/s²" if row["limit [rad/s2]"] else "no limit"
-             for row in rows]
+def table_with(rows, lines):
+    """A table with a column for each row of the campaign, and these lines: a name and the text of a row."""
+    heads = [f"limit {row['limit [rad/s2]']:g} rad/s²" if row["limit [rad/s2]"] else "no limit" for row in rows]
+    table = ["| | " + " | ".join(heads) + " |", "|---" * (len(rows) + 1) + "|"]
+    table += [f"| {name} | " + " | ".join(text(row) for row in rows) + " |" for name, text in lines]
+    return "\n".join(table)
 
-    def line(name, text):
-        return f"| {name} | " + " | ".join(text(row) for row in rows) + " |"
+
+def table_of(rows):
+    """The measured numbers of a section."""
 
     def back(row):
         t = row["back on the path after [s]"]
         return f"{t:.2f} s" if t >= 0 else "not in the plot"
 
-    lines = ["| | " + " | ".join(heads) + " |", "|---" * (len(rows) + 1) + "|"]
-    for name, text in (
+    return table_with(rows, (
             ("plot: path error, largest", lambda r: mrad(r["largest path error shown [rad]"])),
             ("plot: back on the path after", back),
             ("plot: time in the stop", lambda r: f"{r['stopping [s]']:.2f} s"),
@@ -287,17 +289,12 @@ def table_of(rows):
             ("20 s: waypoints refused for other reasons", lambda r: f"{r['refused for other reasons']}"),
             ("20 s: times that the stream starved (`underruns`)", lambda r: f"{r['starvations']}"),
             ("20 s: time holding, outside silences and deaths",
-             lambda r: f"{r['holding outside the pauses [%]']:.2f} %")):
-        lines.append(line(name, text))
-    return "\n".join(lines)
+             lambda r: f"{r['holding outside the pauses [%]']:.2f} %")))
 
 
 def end_table_of(rows):
-    """The measured numbers of an end, with a column for each row of the campaign."""
-    heads = [f"limit {row['limit [rad/s2]']:g} rad/s²" if row["limit [rad/s2]"] else "no limit"
-             for row in rows]
-    lines = ["| | " + " | ".join(heads) + " |", "|---" * (len(rows) + 1) + "|"]
-    for name, text in (
+    """The measured numbers of an end."""
+    return table_with(rows, (
             ("`end` of `info`", lambda r: f"`{r['end']}`"),
             ("finish, before the time of the last waypoint",
              lambda r: f"{END - r['finish at [s]']:.2f} s".replace("-", "−")),
@@ -305,9 +302,7 @@ def end_table_of(rows):
              lambda r: f"{r['rest after the last waypoint [s]']:.3f} s"),
             ("at rest, from the last waypoint", lambda r: mrad(round(r["rest from the last waypoint [rad]"], 9))),
             ("peak velocity", lambda r: f"{r['peak velocity [rad/s]']:.2f} rad/s"),
-            ("peak acceleration", lambda r: f"{r['peak acceleration [rad/s2]']:.2f} rad/s²")):
-        lines.append(f"| {name} | " + " | ".join(text(row) for row in rows) + " |")
-    return "\n".join(lines)
+            ("peak acceleration", lambda r: f"{r['peak acceleration [rad/s2]']:.2f} rad/s²")))
 
 
 def with_tables(path, tables):

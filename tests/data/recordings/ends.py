@@ -10,43 +10,37 @@ LIMITS = ["--max-acceleration", "20"]
 TURNS = ["--max-acceleration", "20,20,none,30,none,none,none"]
 
 
+def end(stage, pause, *options):
+    """Finishes a motion this long [s] after its last waypoint was sent."""
+    producer = stage.live(*LIMITS, *options)
+    stage.send(producer, 40)
+    time.sleep(pause)
+    producer.finish()
+    stage.wait_for_rest()
+
+
 @case()
 def end_slowed(stage):
     """The motion slows down on its path."""
-    producer = stage.live(*LIMITS)
-    stage.send(producer, 40)
-    producer.finish()
-    stage.wait_for_rest()
+    end(stage, 0)
 
 
 @case()
 def end_stopped(stage):
     """The finish comes too late to slow down: the shortest stop after the last waypoint."""
-    producer = stage.live(*LIMITS)
-    stage.send(producer, 40)
-    time.sleep((LEAD - 15_000_000) * 1e-9)
-    producer.finish()
-    stage.wait_for_rest()
+    end(stage, LEAD * 1e-9 - 0.015)
 
 
 @case()
 def end_entered(stage):
     """The finish comes in the stop: an entry returns to the last waypoint."""
-    producer = stage.live(*LIMITS)
-    stage.send(producer, 40)
-    time.sleep(LEAD * 1e-9 + 0.03)
-    producer.finish()
-    stage.wait_for_rest()
+    end(stage, LEAD * 1e-9 + 0.03)
 
 
 @case()
 def end_in_stop(stage):
     """The same, and the last waypoint is beyond a bound."""
-    producer = stage.live(*LIMITS, "--bounds", "-1.1:1.1,-1.1:0.9")
-    stage.send(producer, 40)
-    time.sleep(LEAD * 1e-9 + 0.03)
-    producer.finish()
-    stage.wait_for_rest()
+    end(stage, LEAD * 1e-9 + 0.03, "--bounds", "-1.1:1.1,-1.1:0.9")
 
 
 @case()
@@ -59,13 +53,13 @@ def stop_before_bound(stage):
 
 
 @case("slowed", "stopped", "starved")
-def rotation(stage, end):
+def rotation(stage, how):
     """Positions, an angle and a quaternion, with limits."""
     producer = stage.live(*TURNS, dimensions=7, kinds=KINDS)
     stage.send(producer, 40, at=pose)
-    if end == "slowed":
+    if how == "slowed":
         producer.finish()
-    elif end == "stopped":
+    elif how == "stopped":
         producer.replace_from(0)
     else:
         stage.pause(60 + LEAD // 1_000_000)
