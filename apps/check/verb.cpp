@@ -33,7 +33,7 @@ struct CheckOptions {
   bool json = false;
 };
 
-/// A stream ends at rest, so that is what is checked, unless the file cannot be streamed this way.
+/// Whether the curve ends at rest without `--end`. Some curves have no full stop.
 bool rests_by_default(const CheckOptions& options) {
   const auto& start = options.curve.start;
   const bool is_periodic = start && start->kind == ConditionKind::periodic;
@@ -45,8 +45,6 @@ struct CheckReport {
   std::string file;
   std::vector<std::string> names;
   std::string method;
-  Time begin{};
-  Time end{};
   FittedCurve fitted;
   CurveCheck check;
   LimitGaps gaps;
@@ -78,15 +76,12 @@ CheckReport checked(const CheckOptions& options) {
   CurveOptions how = options.curve;
   how.rest.limits = limits;
   how.rest.kinds = DimensionKinds(kinds);
-  FittedCurve fitted = fit_table(table, *options.method, how);
-  const PiecewisePolynomial& curve = fitted.curve;
+  const FittedCurve fitted = fit_table(table, *options.method, how);
   return {.file = table.file,
           .names = table.names,
           .method = std::string(options.method->name),
-          .begin = curve.breaks().front(),
-          .end = curve.breaks().back(),
           .fitted = fitted,
-          .check = check_curve(curve, limits, DimensionKinds(kinds)),
+          .check = check_curve(fitted.curve, limits, DimensionKinds(kinds)),
           .gaps = limit_gaps(limits, file.joints, table.names, kinds),
           .notes = file.notes};
 }
@@ -118,8 +113,8 @@ ordered_json to_json(const CheckReport& report) {
   }
   return {{"file", report.file},
           {"method", report.method},
-          {"begin_ns", report.begin.count()},
-          {"end_ns", report.end.count()},
+          {"begin_ns", report.fitted.curve.breaks().front().count()},
+          {"end_ns", report.fitted.curve.breaks().back().count()},
           {"keeps_limits", check.keeps_limits()},
           {"end", end_json(report.fitted)},
           {"segments", check.segments},
@@ -157,7 +152,8 @@ std::string to_text(const CheckReport& report) {
   const CurveCheck& check = report.check;
   std::string text =
       fmt::format("{}: {} segments of {} from {:.9f} s to {:.9f} s\n", report.file, check.segments,
-                  report.method, to_seconds(report.begin), to_seconds(report.end));
+                  report.method, to_seconds(report.fitted.curve.breaks().front()),
+                  to_seconds(report.fitted.curve.breaks().back()));
   for (std::size_t kind = 0; kind < check.worst.size(); ++kind) {
     const auto& worst = check.worst[kind];
     text += fmt::format("{:<16}  {}\n", to_string(static_cast<LimitKind>(kind)),

@@ -13,6 +13,7 @@
 #include "core/online/shown_limits.hpp"
 #include "core/online/slowed_path.hpp"
 #include "core/polynomial/segment.hpp"
+#include "ipc/solve/stream_solver.hpp"
 #include "splinecast/state.hpp"
 
 namespace splinecast::apps {
@@ -20,10 +21,8 @@ namespace {
 
 using ipc::EndKind;
 
+/// An end may begin at one of this number of last knots.
 constexpr std::size_t kMostKnots = 1024;
-
-/// The least length of an entry of a stream with default options.
-constexpr Time kLeastEntry{5'000'000};
 
 core::SegmentPart part(const PiecewisePolynomial& curve, std::size_t i) {
   return {.order = curve.order_of(i),
@@ -112,7 +111,7 @@ class RestSearch {
                                      state_.acceleration()};
       const core::EntryRules entry{.limits = &rules_.limits,
                                    .shown = &shown_.limits(),
-                                   .least = kLeastEntry,
+                                   .least = ipc::LiveOptions{}.min_entry,
                                    .reach = &range_};
       int tries = std::numeric_limits<int>::max();
       search_.restart(0);
@@ -146,15 +145,11 @@ class RestSearch {
  private:
   [[nodiscard]] Time last() const { return path_.breaks().back(); }
 
+  /// The path from knot k ≥ 1 on.
   core::SlowedPath slowed_from(std::size_t k) {
     core::SlowedPath slowed(path_.dimensions());
-    path_.evaluate(path_.left_of(k), state_.ref());
-    if (k > 0) {
-      const core::SegmentPart before = part(path_, k - 1);
-      core::evaluate_derivative(before.order, before.coefficients, before.to, 2, slowed.reached());
-    } else {
-      std::ranges::copy(state_.acceleration(), slowed.reached().begin());
-    }
+    const core::SegmentPart before = part(path_, k - 1);
+    core::evaluate_derivative(before.order, before.coefficients, before.to, 2, slowed.reached());
     for (std::size_t i = k; i < path_.segments(); ++i) {
       slowed.add(knot_at(path_.left_of(i)), part(path_, i));
     }
@@ -174,6 +169,7 @@ class RestSearch {
 
   [[nodiscard]] bool passes(const core::SlowedPath& slowed, std::size_t first) {
     const std::size_t pieces = path_.segments() - first;
+    // First where the rate falls fastest: a knot that does not pass mostly fails there.
     const std::size_t steepest = pieces * 13 / 16;
     for (std::size_t i = 0; i < pieces; ++i) {
       const std::size_t piece = (steepest + i) % pieces;
@@ -198,7 +194,7 @@ class RestSearch {
   State state_;                ///< scratch
   State rest_;
   core::Segment piece_;  ///< scratch
-  std::size_t oldest_;   ///< knot from which on an end may begin
+  std::size_t oldest_;   ///< ≥ 1: knot from which on an end may begin
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "core/online/sliding_window.hpp"
 #include "ipc/layout/summary.hpp"
 #include "splinecast/dimension_kind.hpp"
 #include "splinecast/limits.hpp"
@@ -14,7 +15,7 @@ namespace splinecast::apps {
 struct RestRules {
   MotionLimits limits{};  ///< lists of one value per dimension, or empty
   DimensionKinds kinds{};
-  Time stop_time{250'000'000};  ///< > 0: see core::StopRules
+  Time stop_time = core::WindowOptions{}.stop_time;  ///< > 0: see core::StopRules
 };
 
 /// A curve and how it ends.
@@ -29,8 +30,8 @@ struct FittedCurve {
 /// waypoints, and differ at most in their last `open` segments. Takes the first of these that
 /// exceeds no limit that the path keeps, and none by more than the path: `halted`; slowing down on
 /// the path; an entry that rests at the last waypoint; the shortest stop after it. In a dimension
-/// without a limit of acceleration the motion's own counts. The ends (2) and (3) begin at one of
-/// the last 1,024 waypoints. Allocates.
+/// without a limit of acceleration that counts which the motion has shown (core::ShownLimits).
+/// Slowing down and the entry begin at one of the last 1,024 waypoints. Allocates.
 [[nodiscard]] FittedCurve rest_at_last(const PiecewisePolynomial& halted,
                                        const PiecewisePolynomial& path, const Waypoints& waypoints,
                                        const RestRules& rules, std::size_t open);
