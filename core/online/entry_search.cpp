@@ -11,6 +11,10 @@
 namespace splinecast::core {
 namespace {
 
+/// A shorter rest of the straight line is left out: the derivatives of so short a segment are those
+/// of the rounding errors of its positions.
+constexpr Time kShortestLine{1'000'000};
+
 /// Whether the velocity at the newest knot is an estimate until the next knot is known.
 bool is_guess(const SlidingWindow& target) noexcept {
   return !target.options().interpolant.method->needs_velocity();
@@ -175,6 +179,8 @@ void EntrySearch::end_at_knot(const SlidingWindow& target, std::size_t knot) noe
 }
 
 void EntrySearch::end_beyond(const SlidingWindow& target, Time t) noexcept {
+  const Time line = extrapolation_.line_end() - t;
+  if (line > Time::zero() && line < kShortestLine) t = extrapolation_.line_end();
   extrapolation_.state_at(t, end_state_.ref());
   end_ = {.known = target.knots(),
           .state = {.time = t,

@@ -78,12 +78,15 @@ bool PublishedCurve::find_state(Time settled) noexcept {
   return !is_damaged_;
 }
 
-/// Finds how far the published curve goes from that state to `until`. Returns false if the board is
-/// damaged.
+/// Finds how far the published curve goes from that state to `until`. Where it has just been cut,
+/// it does not go there any more: what was found before the cut remains. Returns false if the board
+/// is damaged.
 bool PublishedCurve::find_reach(Time until) noexcept {
+  const bool is_pending = !uses_cut_ && origin_.is_new;
+  if (is_pending && origin_.number > 1) return true;
   const Instant from = begin_state();
   reach_.restart(from.position);
-  if (!uses_cut_ && origin_.is_new) {
+  if (is_pending) {
     (void)core::build_stop_within(window_.stop_rules(), from, segment_);
     reach_.add(core::part_of(segment_));
     return true;

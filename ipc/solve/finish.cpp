@@ -176,14 +176,17 @@ bool PublishedCurve::search_end_from_knots(Time settled, int& tries) noexcept {
 }
 
 /// Builds the stop after the newest waypoint, in which the curve has been ended: the shortest that
-/// keeps the limits of acceleration and jerk, if any dimension has a limit of acceleration.
+/// keeps the limits of acceleration and jerk at each rate of a law, if any dimension has a limit of
+/// acceleration.
 void PublishedCurve::stop_behind_newest(core::Segment& out) noexcept {
   const core::Knot knot = window_.knot(window_.knots() - 1);
   const Time usual = window_.write_stop(values_);
-  const bool has_limit = std::ranges::any_of(window_.limits_at_largest_rate().acceleration,
-                                             [](double limit) { return limit > 0; });
+  const MotionLimits& given = window_.limits_at_largest_rate();
+  const bool has_limit =
+      std::ranges::any_of(given.acceleration, [](double limit) { return limit > 0; });
   const Instant from{knot.time, knot.position, knot.velocity, values_};
-  const Time shortest = core::stop_time_within({end_limits_, kinds_, Time(1)}, from);
+  const Time shortest = std::max(core::stop_time_within({end_limits_, kinds_, Time(1)}, from),
+                                 core::stop_time_within({given, kinds_, Time(1)}, from));
   core::build_stop(knot.time, has_limit ? std::min(usual, shortest) : usual, knot.position,
                    knot.velocity, values_, out);
 }
@@ -204,9 +207,19 @@ bool PublishedCurve::prepare_end(Time settled) noexcept {
   return !is_damaged_ && find_reach(Time::max());
 }
 
+/// The longest entry that may end the curve: longer than kLongest only where given limits can
+/// require it.
+Time PublishedCurve::longest_end() const noexcept {
+  constexpr Time kLongestWithin = std::chrono::minutes(1);
+  const MotionLimits& limits = window_.options().limits;
+  const bool has_limit =
+      !limits.velocity.empty() || !limits.acceleration.empty() || !limits.jerk.empty();
+  const bool may_last = has_limit && end_search_ != EndSearch::from_rest;
+  return may_last ? kLongestWithin : core::EntrySearch::kLongest;
+}
+
 /// Searches for the entry that ends the curve. Returns false if the search has not ended.
 bool PublishedCurve::search_end(Time settled, int& tries) noexcept {
-  constexpr Time kLongest = std::chrono::minutes(1);
   if (!prepare_end(settled)) return true;
   const Instant rest = rest_at_newest();
   for (;;) {
@@ -221,8 +234,7 @@ bool PublishedCurve::search_end(Time settled, int& tries) noexcept {
       end_search_ = EndSearch::from_settled;
     }
     const bool is_from_rest = end_search_ == EndSearch::from_rest;
-    const auto outcome = search_.search_rest(
-        rest, from, entry_rules(), is_from_rest ? core::EntrySearch::kLongest : kLongest, tries);
+    const auto outcome = search_.search_rest(rest, from, entry_rules(), longest_end(), tries);
     if (outcome == core::EntrySearch::Outcome::more) return false;
     if (outcome == core::EntrySearch::Outcome::found) {
       enter_end(from);

@@ -200,6 +200,9 @@ void PublishedCurve::begin_run(Time t, Time blend, bool is_from_rest) noexcept {
   is_damaged_ = is_damaged_ || !cut_.find(summary_, t);
   if (is_damaged_) return;
   if (is_from_rest) cut_.come_to_rest();
+  uses_cut_ = true;
+  if (!find_reach(Time::max())) return;
+  ends_at_known_ = ends_at_known_ && t >= behind_.end;
   cut_.write();
   run_ = cut_.next();
   run_item_ = 0;
@@ -245,7 +248,9 @@ std::size_t PublishedCurve::passed_over() const noexcept {
   const bool ends_at_newest = ending_ == EndKind::as_requested || ending_ == EndKind::entered;
   const bool has_met = is_on_line() || ends_at_newest;
   const std::size_t end = has_met ? met_ : window_.knots();
-  return end - std::min(end, unmet_);
+  const std::size_t over = end - std::min(end, unmet_);
+  const bool meets_end = !has_met && course_ == Course::beyond && ends_at_known_;
+  return over - (meets_end ? 1 : 0);
 }
 
 void PublishedCurve::committed(const Summary& summary) noexcept {

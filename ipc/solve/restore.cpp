@@ -158,9 +158,6 @@ void PublishedCurve::restore_course() noexcept {
     met_ = placed_ = passed_written_ = passed_committed_ = knots;
     if (knots == unmet_) passed_written_ = passed_committed_ = knots - std::min(knots, kMetKept);
   }
-  const std::size_t end = is_on_line() ? met_ : knots;
-  const Word open = end - std::min(end, unmet_);
-  passed_before_ = summary_.passed_over - std::min(summary_.passed_over, open);
   restore_origin();
   passed_lowest_ =
       !summary_.is_later_run && origin_.number == 1 ? 0 : unmet_ - std::min(unmet_, kMetKept);
@@ -180,7 +177,6 @@ void PublishedCurve::restore_origin() noexcept {
   }
   if (course_ == Course::entering && number < first_) {
     // The entry is no longer on the board: it has ended.
-    passed_before_ += passed_over();
     course_ = Course::on_target;
     unmet_ = met_;
     return;
@@ -249,6 +245,7 @@ void PublishedCurve::restore_run() noexcept {
     window_.restore_run(first, knots);
   }
   window_.freeze_knots(summary_.run_frozen);
+  passed_before_ = summary_.passed_over - std::min<Word>(summary_.passed_over, passed_over());
   const bool is_open = course_ == Course::waiting || course_ == Course::beyond;
   is_searching_ =
       is_open && !has_given_up() && window_.knots() > (course_ == Course::beyond ? known_ : unmet_);

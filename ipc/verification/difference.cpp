@@ -21,12 +21,13 @@ bool may_end(const SegmentCopy& published, const core::Segment& solved, bool may
   return may_be_cut && published.right > solved.left && published.right < solved.right;
 }
 
-/// Compares coefficients [power][dimension].
+/// Compares coefficients [power][dimension]. The sign of a zero does not count: a knot that a
+/// later run writes again loses it.
 std::optional<Difference> compare_coefficients(std::span<const double> published,
                                                std::span<const double> solved,
                                                std::size_t dimensions) {
   for (std::size_t k = 0; k < published.size(); ++k) {
-    if (same_bits(published[k], solved[k])) continue;
+    if (same_bits(published[k], solved[k]) || (published[k] == 0 && solved[k] == 0)) continue;
     const bool has_powers = published.size() > dimensions;
     std::string which = "coefficient";
     if (has_powers) which.append(" ").append(std::to_string(k / dimensions));

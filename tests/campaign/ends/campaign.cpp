@@ -24,7 +24,6 @@ double thread_seconds() {
 
 /// Lives every kThreads-th seed from `first` on.
 void live(const CampaignOptions& options, std::uint64_t first, ends::Tally& tally) {
-  if (options.runs == 1) tally.report_all();
   const auto goes_on = [&](std::uint64_t seed) {
     return options.runs > 0 ? seed - options.seed < options.runs
                             : thread_seconds() < options.seconds;

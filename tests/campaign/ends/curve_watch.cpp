@@ -32,8 +32,11 @@ CurveWatch::CurveWatch(const LifePlan& plan, testing::MemoryStream& stream, Tall
     double before = 0;
     for (std::size_t i = 1; i < motion.times.size(); ++i) {
       const double h = to_seconds(motion.times[i] - motion.times[i - 1]);
-      const double slope =
-          (motion.value(i, 0, dimensions)[d] - motion.value(i - 1, 0, dimensions)[d]) / h;
+      double step = motion.value(i, 0, dimensions)[d] - motion.value(i - 1, 0, dimensions)[d];
+      // A period is continued with the representative nearest to the last one.
+      const Dimension& dimension = plan.stream.dimensions[d];
+      if (dimension.kind == DimensionKind::periodic) step = std::remainder(step, dimension.period);
+      const double slope = step / h;
       velocity_[d] = std::max(velocity_[d], std::abs(slope));
       const double bend = i > 1 ? std::abs(slope - before) / h : 0;
       acceleration_[d] = std::max(acceleration_[d], 2 * bend);

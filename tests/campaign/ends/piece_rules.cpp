@@ -105,7 +105,9 @@ void CurveWatch::check_stop_limits(const Piece& piece, const Peaks& peaks, std::
              piece,
              fmt::format("{} of dimension {}: {} times its limit", kLimitNames[m], d, ratio));
     } else if (m > 0 && plan_->rate > 1 && at_rate > kSlack) {
-      breach(Rule::law_rate, piece, kLimitNames[m]);
+      breach(Rule::law_rate, piece,
+             fmt::format("{} of dimension {}: {} times its limit at the rate {}", kLimitNames[m], d,
+                         at_rate, plan_->rate));
     }
   }
 }

@@ -24,6 +24,8 @@ constexpr std::array<std::string_view, kWhens> kWhenNames{
 constexpr std::array<std::string_view, kWalls> kWallNames{"no", "wide", "touched", "near",
                                                           "passed"};
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
+/// Walls around a shorter way are those around one of this length.
+constexpr double kLeastWay = 1e-6;
 
 Time log_between(Random& random, Time low, Time high) {
   return Time(static_cast<std::int64_t>(
@@ -181,13 +183,13 @@ void choose_walls(LifePlan& life, Random& random) {
       least = std::min(least, life.motion.value(i, 0, dimensions)[d]);
       greatest = std::max(greatest, life.motion.value(i, 0, dimensions)[d]);
     }
-    const double way = std::max(greatest - least, 1e-6);
+    const double way = std::max(greatest - least, kLeastWay);
     const double last = life.motion.value(count - 1, 0, dimensions)[d];
     const bool rises = last >= life.motion.value(count - 2, 0, dimensions)[d];
+    const bool moves = greatest - least >= kLeastWay;
     double margin = way * random.log_uniform(1, 100);
-    if (life.walls == Walls::touched && greatest > least)
-      margin = random.chance(0.5) ? 0 : way * 1e-3;
-    if (life.walls == Walls::passed && greatest > least) margin = -way * random.uniform(0, 0.3);
+    if (life.walls == Walls::touched && moves) margin = random.chance(0.5) ? 0 : way * 1e-3;
+    if (life.walls == Walls::passed && moves) margin = -way * random.uniform(0, 0.3);
     if (life.walls == Walls::near) {
       margin = way * random.log_uniform(1e-4, 0.3);
       (rises ? limits.upper : limits.lower)[d] =

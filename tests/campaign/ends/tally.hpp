@@ -49,13 +49,6 @@ enum class Rule : std::uint8_t {
 };
 inline constexpr std::size_t kRules = 32;
 
-/// What the lives of a campaign have to show.
-struct RuleRow {
-  std::string_view violation;
-  bool is_in_force = true;  ///< else violations are measured only
-};
-[[nodiscard]] const RuleRow& row_of(Rule rule) noexcept;
-
 /// Events that a long campaign has to provoke, in addition to those of LifePlan.
 enum class Event : std::uint8_t {
   revisions,
@@ -82,8 +75,6 @@ inline constexpr std::size_t kEvents = 18;
 /// Counters of all lives of one thread.
 class Tally {
  public:
-  /// Also writes violations of rules that are not in force to standard error.
-  void report_all() noexcept { reports_all_ = true; }
   void begin_life(const LifePlan& plan);
   /// Counts a violation and writes it, with the seed, to standard error.
   void breach(Rule rule, const std::string& what);
@@ -107,7 +98,6 @@ class Tally {
   std::uint64_t seed_ = 0;
   std::string description_;
   bool life_failed_ = false;
-  bool reports_all_ = false;
   std::uint64_t lives_ = 0;
   std::array<std::uint64_t, kRules> breaches_{};
   std::array<std::uint64_t, kEvents> events_{};
