@@ -2,11 +2,29 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 
 #include "core/forms/chord.hpp"
 #include "splinecast/state.hpp"
 
 namespace splinecast::core {
+
+double seconds_from_rest(double distance, double velocity, double acceleration,
+                         double jerk) noexcept {
+  // Peaks over the distance 1 in 1 s.
+  constexpr double kVelocity = 15.0 / 8;
+  constexpr double kAcceleration = 10 / std::numbers::sqrt3;
+  constexpr double kJerk = 60;
+  double seconds = 0;
+  if (velocity > 0) seconds = kVelocity * distance / velocity;
+  if (acceleration > 0) {
+    seconds = std::max(seconds, std::sqrt(kAcceleration * distance / acceleration));
+  }
+  if (jerk > 0) seconds = std::max(seconds, std::cbrt(kJerk * distance / jerk));
+  return seconds;
+}
+
 void build_entry(const Instant& from, const Instant& to, Segment& out) noexcept {
   const std::size_t dimensions = from.position.size();
   const double h = to_seconds(to.time - from.time);

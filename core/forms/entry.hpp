@@ -9,6 +9,11 @@
 /// allocates nothing and throws nothing.
 namespace splinecast::core {
 
+/// Shortest time in seconds of an entry from rest to rest over a distance ≥ 0 within limits of
+/// velocity, acceleration and jerk, each 0: none.
+[[nodiscard]] double seconds_from_rest(double distance, double velocity, double acceleration,
+                                       double jerk) noexcept;
+
 /// Writes the quintic from one state to a later one. Sets everything except `acceleration_step`.
 void build_entry(const Instant& from, const Instant& to, Segment& out) noexcept;
 

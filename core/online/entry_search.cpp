@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/forms/knot_segment.hpp"
 #include "core/limits/extremes.hpp"
 #include "core/limits/limit_of.hpp"
 
@@ -205,9 +206,21 @@ bool EntrySearch::keeps_behind(const SlidingWindow& target, const MotionLimits& 
   return !last_beyond_ || *last_beyond_ < *end_.knot;
 }
 
+/// Whether the rest of the line respects the limits of rotations, whose angular velocity changes
+/// along a straight line.
+bool EntrySearch::rotations_keep_line(const MotionLimits& limits) noexcept {
+  if (kinds_.quaternions().empty() || end_.state.time >= extrapolation_.line_end()) return true;
+  const Instant to = extrapolation_.line_end_state();
+  build_segment(SegmentForm::cubic,
+                {end_.state.time, end_.state.position, end_.state.velocity, {}, {}},
+                {to.time, to.position, to.velocity, {}, {}}, behind_);
+  return keeps_within(limits, &kinds_, behind_);
+}
+
 /// Whether the rest of the line and the stop segment respect the position bounds. They respect all
-/// other limits by construction.
+/// other limits by construction, but for rotations.
 bool EntrySearch::keeps_beyond(const MotionLimits& limits) noexcept {
+  if (!rotations_keep_line(limits)) return false;
   if (limits.lower.empty() && limits.upper.empty()) return true;
   // Each dimension moves in one direction only, so that its position at rest is the farthest.
   extrapolation_.state_at(extrapolation_.rest(), rest_.ref());

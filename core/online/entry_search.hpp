@@ -135,6 +135,7 @@ class EntrySearch {
   void end_at_knot(const SlidingWindow& target, std::size_t knot) noexcept;
   void end_beyond(const SlidingWindow& target, Time t) noexcept;
   [[nodiscard]] bool keeps_behind(const SlidingWindow& target, const MotionLimits& limits) noexcept;
+  [[nodiscard]] bool rotations_keep_line(const MotionLimits& limits) noexcept;
   [[nodiscard]] bool keeps_beyond(const MotionLimits& limits) noexcept;
   void allow(const Instant& from, const EntryRules& rules) noexcept;
   void write_of_dimensions(const auto& velocity_of, const auto& acceleration_of,

@@ -207,15 +207,23 @@ bool PublishedCurve::prepare_end(Time settled) noexcept {
   return !is_damaged_ && find_reach(Time::max());
 }
 
-/// The longest entry that may end the curve: longer than kLongest only where given limits can
-/// require it.
-Time PublishedCurve::longest_end() const noexcept {
-  constexpr Time kLongestWithin = std::chrono::minutes(1);
-  const MotionLimits& limits = window_.options().limits;
-  const bool has_limit =
-      !limits.velocity.empty() || !limits.acceleration.empty() || !limits.jerk.empty();
-  const bool may_last = has_limit && end_search_ != EndSearch::from_rest;
-  return may_last ? kLongestWithin : core::EntrySearch::kLongest;
+/// The longest entry from `from` that may end the curve at `rest`. It may last as long as the
+/// published curve and, after that, an entry from rest: kLongest, or what the given limits require
+/// from where that curve is farthest away.
+Time PublishedCurve::longest_end(const Instant& rest, Time from) const noexcept {
+  constexpr double kLongestWithinLimits = 60;  // s
+  const MotionLimits& limits = window_.limits_at_largest_rate();
+  double seconds = to_seconds(core::EntrySearch::kLongest);
+  for (std::size_t d = 0; d < rest.position.size(); ++d) {
+    const double x = rest.position[d];
+    const double way =
+        std::max(std::abs(reach_.least()[d] - x), std::abs(reach_.greatest()[d] - x));
+    seconds = std::max(seconds, core::seconds_from_rest(way, core::limit_of(limits.velocity, d),
+                                                        core::limit_of(limits.acceleration, d),
+                                                        core::limit_of(limits.jerk, d)));
+  }
+  return std::max(end_ - from, Time::zero()) +
+         from_seconds(std::min(seconds, kLongestWithinLimits));
 }
 
 /// Searches for the entry that ends the curve. Returns false if the search has not ended.
@@ -234,7 +242,9 @@ bool PublishedCurve::search_end(Time settled, int& tries) noexcept {
       end_search_ = EndSearch::from_settled;
     }
     const bool is_from_rest = end_search_ == EndSearch::from_rest;
-    const auto outcome = search_.search_rest(rest, from, entry_rules(), longest_end(), tries);
+    const auto outcome = search_.search_rest(
+        rest, from, entry_rules(),
+        is_from_rest ? core::EntrySearch::kLongest : longest_end(rest, from.time), tries);
     if (outcome == core::EntrySearch::Outcome::more) return false;
     if (outcome == core::EntrySearch::Outcome::found) {
       enter_end(from);

@@ -295,7 +295,7 @@ class PublishedCurve {
   [[nodiscard]] bool search_end_from_knots(Time settled, int& tries) noexcept;
   void end_at_newest() noexcept;
   [[nodiscard]] bool prepare_end(Time settled) noexcept;
-  [[nodiscard]] Time longest_end() const noexcept;
+  [[nodiscard]] Time longest_end(const Instant& rest, Time from) const noexcept;
   [[nodiscard]] bool search_end(Time settled, int& tries) noexcept;
   void enter_end(const Instant& from) noexcept;
 

@@ -11,6 +11,8 @@ namespace {
 
 /// Differences of positions and velocities of this part of their terms are rounding.
 constexpr double kRounding = 1e-9;
+/// Path errors are not measured for a shorter way.
+constexpr double kLeastWay = 1e-6;
 
 bool is_same(const Piece& a, const Piece& b) {
   return a.left == b.left && a.order == b.order && a.kind == b.kind &&
@@ -295,6 +297,48 @@ void CurveWatch::check_met() {
       rule, fmt::format("{} waypoints met, {} accepted, {} passed over, end {}, lateness {}", met,
                         summary_.knots, summary_.passed_over, summary_.end_kind,
                         summary_.end_lateness.count()));
+}
+
+/// Compares the slowed pieces with the path at the same way along it, relative to the size of the
+/// path in linear and periodic dimensions.
+void CurveWatch::measure_slowing() {
+  const auto first = std::ranges::find(pieces_, SegmentKind::slowed, &Piece::kind);
+  if (first == pieces_.end() || old_.empty() || !knows_path_) return;
+  const Time begin = first->left;
+  const double length = to_seconds(last().right - begin);
+  double worst = 0;
+  std::array<Range, kMostDimensions> way;
+  way.fill({.least = HUGE_VAL, .greatest = -HUGE_VAL});
+  for (auto piece = first; piece != pieces_.end(); ++piece) {
+    constexpr int kLooks = 8;
+    for (int i = 0; i < kLooks; ++i) {
+      const double u = piece->seconds() * (i + 0.5) / kLooks;
+      const double share = (to_seconds(piece->left - begin) + u) / length;
+      const double s = length * (share - share * share * share * (1 - share / 2));
+      const Piece& path = at(old_, begin + from_seconds(s));
+      const double v = s - to_seconds(path.left - begin);
+      double squares = 0;
+      for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
+        if (ranges_.is_rotation(d)) continue;
+        const double x = ranges_.value(path, d, 0, v);
+        const double off = ranges_.value(*piece, d, 0, u) - x;
+        squares += off * off;
+        way[d] = {std::min(way[d].least, x), std::max(way[d].greatest, x)};
+      }
+      worst = std::max(worst, std::sqrt(squares));
+    }
+  }
+  double squares = 0;
+  for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
+    if (ranges_.is_rotation(d)) continue;
+    squares += (way[d].greatest - way[d].least) * (way[d].greatest - way[d].least);
+  }
+  const double size = std::sqrt(squares);
+  if (size <= kLeastWay) return;
+  tally_->add_path_error(worst / size);
+  constexpr double kFarthest = 0.01;
+  if (worst <= kFarthest * size) return;
+  breach(Rule::near_path, *first, fmt::format("{} away, on a way of size {}", worst, size));
 }
 
 }  // namespace splinecast::campaign::ends

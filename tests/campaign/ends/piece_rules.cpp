@@ -20,8 +20,6 @@ constexpr Time kLatestEntry = std::chrono::seconds(60);
 constexpr double kLongestStop = 1e6;
 /// A longer entry may exceed the motion shown.
 constexpr double kLongEntry = 2.9;
-/// Path errors are not measured for a shorter way.
-constexpr double kLeastWay = 1e-6;
 
 constexpr std::array kLimitNames{"velocity", "acceleration", "jerk"};
 
@@ -239,7 +237,8 @@ void CurveWatch::check_no_worse(const Piece& piece, const Peaks& peaks, const Pi
     if (ranges_.is_rotation(d) || limits_->lower.empty()) continue;
     const Range& x = peaks.position[d];
     const Range& old = before.position[d];
-    const double rounding = 1e-9 * (1 + ranges_.scale(piece, d, 0));
+    // Ranges are exact to 10⁻⁷.
+    const double rounding = 2e-7 * (1 + ranges_.scale(piece, d, 0));
     const double low = std::max(limits_->lower[d] - x.least, 0.0);
     const double high = std::max(x.greatest - limits_->upper[d], 0.0);
     const double most =
@@ -253,7 +252,6 @@ void CurveWatch::check_no_worse(const Piece& piece, const Peaks& peaks, const Pi
   }
 }
 
-/// The time of the newest waypoint that the solver has accepted.
 Time CurveWatch::newest_waypoint() const { return summary_.newest_time; }
 
 /// Whether the curve rests where its newest waypoint is.
@@ -271,12 +269,17 @@ bool CurveWatch::rests_at_newest() const {
   return true;
 }
 
-/// The time that the limits require from the begin of a piece to its end, from rest to rest.
+/// The time that the limits require from where the curve goes without the last piece to the end of
+/// that piece, from rest to rest.
 double CurveWatch::seconds_to(const Piece& piece) const {
   double most = 0;
   for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
-    const double way =
-        std::abs(ranges_.value(piece, d, 0, piece.seconds()) - ranges_.value(piece, d, 0, 0));
+    const double end = ranges_.value(piece, d, 0, piece.seconds());
+    double way = std::abs(end - ranges_.value(piece, d, 0, 0));
+    for (const Piece& old : old_) {
+      const Range range = old.right > piece.left ? ranges_.range(old, d, 0) : Range{end, end};
+      way = std::max({way, end - range.least, range.greatest - end});
+    }
     const double v = std::abs(ranges_.value(piece, d, 1, 0));
     if (has(limits_->velocity, d)) most = std::max(most, 1.9 * way / limits_->velocity[d]);
     if (has(limits_->acceleration, d)) {
@@ -352,48 +355,6 @@ void CurveWatch::check_last_entry() {
   }
   const bool rested = !old_.empty() && piece.left >= old_.back().right;
   if (rested) tally_->count(Event::ends_from_rest);
-}
-
-/// Compares the slowed pieces with the path at the same way along it, relative to the size of the
-/// path in linear and periodic dimensions.
-void CurveWatch::measure_slowing() {
-  const auto first = std::ranges::find(pieces_, SegmentKind::slowed, &Piece::kind);
-  if (first == pieces_.end() || old_.empty() || !knows_path_) return;
-  const Time begin = first->left;
-  const double length = to_seconds(last().right - begin);
-  double worst = 0;
-  std::array<Range, kMostDimensions> way;
-  way.fill({.least = HUGE_VAL, .greatest = -HUGE_VAL});
-  for (auto piece = first; piece != pieces_.end(); ++piece) {
-    constexpr int kLooks = 8;
-    for (int i = 0; i < kLooks; ++i) {
-      const double u = piece->seconds() * (i + 0.5) / kLooks;
-      const double share = (to_seconds(piece->left - begin) + u) / length;
-      const double s = length * (share - share * share * share * (1 - share / 2));
-      const Piece& path = at(old_, begin + from_seconds(s));
-      const double v = s - to_seconds(path.left - begin);
-      double squares = 0;
-      for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
-        if (ranges_.is_rotation(d)) continue;
-        const double x = ranges_.value(path, d, 0, v);
-        const double off = ranges_.value(*piece, d, 0, u) - x;
-        squares += off * off;
-        way[d] = {std::min(way[d].least, x), std::max(way[d].greatest, x)};
-      }
-      worst = std::max(worst, std::sqrt(squares));
-    }
-  }
-  double squares = 0;
-  for (std::size_t d = 0; d < ranges_.dimensions(); ++d) {
-    if (ranges_.is_rotation(d)) continue;
-    squares += (way[d].greatest - way[d].least) * (way[d].greatest - way[d].least);
-  }
-  const double size = std::sqrt(squares);
-  if (size <= kLeastWay) return;
-  tally_->add_path_error(worst / size);
-  constexpr double kFarthest = 0.01;
-  if (worst <= kFarthest * size) return;
-  breach(Rule::near_path, *first, fmt::format("{} away, on a way of size {}", worst, size));
 }
 
 }  // namespace splinecast::campaign::ends
