@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "ipc/python/docstrings.hpp"
 #include "ipc/python/module.hpp"
@@ -12,6 +13,7 @@
 #include "ipc/python/values/times.hpp"
 #include "ipc/python/values/types.hpp"
 #include "ipc/python/waits.hpp"
+#include "splinecast/errors.hpp"
 
 namespace splinecast::python {
 namespace {
@@ -22,6 +24,15 @@ constexpr double kFinishPatience = 1;
 constexpr std::size_t kBatch = 256;
 
 using None = py::none;
+
+/// The length of a transition in seconds. A longer one than a minute is one in milliseconds.
+ReplaceOptions blend_of(py::handle value) {
+  constexpr Time kLongest = std::chrono::minutes(1);
+  const Time blend = duration(value, "blend");
+  if (blend <= kLongest) return {.blend = blend};
+  throw BadRequest("blend is in seconds, at most 60, not " + std::string(py::repr(value)) +
+                   ": 80 ms are 0.08");
+}
 
 /// The Python class Producer.
 class HeldProducer {
@@ -53,7 +64,7 @@ class HeldProducer {
                              py::handle velocities, py::handle accelerations, py::handle blend) {
     const Time time = instant(t);
     const Path path(*this, times, positions, velocities, accelerations);
-    const ReplaceOptions options{.blend = duration(blend, "blend")};
+    const ReplaceOptions options = blend_of(blend);
     return accept(
         {.what = "replacement", .status = {}, .time = time}, py::int_(0),
         [&](Producer& producer) { return producer.replace_from(time, path.waypoints, options); });
@@ -63,7 +74,7 @@ class HeldProducer {
                              py::handle velocities, py::handle accelerations, py::handle blend) {
     const Time time = instant(t);
     const Path path(*this, times, positions, velocities, accelerations);
-    const ReplaceOptions options{.blend = duration(blend, "blend")};
+    const ReplaceOptions options = blend_of(blend);
     ReplacePreview preview;
     producer_.require_own_process();
     without_gil([&] {

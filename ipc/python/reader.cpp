@@ -50,13 +50,20 @@ const char* text_of(StreamClock clock) {
   }
 }
 
+/// Whether a time is before or after the curve.
+bool is_beside_curve(SampleStatus status) noexcept {
+  return status == SampleStatus::holding || status == SampleStatus::before_history ||
+         status == SampleStatus::no_data;
+}
+
 /// The Python class Reader.
 class HeldReader {
  public:
   HeldReader(const std::string& stream, py::handle timeout, py::handle owner)
       : reader_("reader", stream,
                 open(stream, end_of(optional_duration(timeout, "timeout")), trust(owner))),
-        dimensions_(reader_.use([](const Reader& reader) { return reader.dimensions(); })) {}
+        dimensions_(reader_.use([](const Reader& reader) { return reader.dimensions(); })),
+        is_live_(reader_.use([](const Reader& reader) { return is_live(reader.clock()); })) {}
 
   template <SampleStatus (Reader::*Evaluate)(Time, const StateRef&) noexcept>
   py::object sample(py::handle t, const py::object& out) {
@@ -66,6 +73,7 @@ class HeldReader {
     sample.status =
         reader_.use([&](Reader& reader) { return (reader.*Evaluate)(time, sample.state.ref()); });
     sample.time = time;
+    require_time_of_clock(time, sample.status);
     return made;
   }
 
@@ -96,6 +104,11 @@ class HeldReader {
     }
     block.revision = revision;
     block.clear_invalid();
+    const auto beside = std::ranges::find_if(memory.status, is_beside_curve);
+    if (beside != memory.status.end()) {
+      const auto i = static_cast<std::size_t>(beside - memory.status.begin());
+      require_time_of_clock(instants.times(block.scratch)[i], *beside);
+    }
     return made;
   }
 
@@ -157,8 +170,14 @@ class HeldReader {
   }
 
  private:
+  /// A time far from the curve is one of another clock.
+  void require_time_of_clock(Time time, SampleStatus status) const {
+    if (is_beside_curve(status) && is_live_) require_near_now(time);
+  }
+
   Held<Reader> reader_;
   std::size_t dimensions_;
+  bool is_live_;
 };
 
 using Class = py::class_<HeldReader>;

@@ -195,7 +195,7 @@ class Producer:
         positions, velocities, accelerations : array-like, optional
             Shape (n, D).
         blend : float
-            Least duration of the entry [s]; waypoints before its end are passed over.
+            Least duration of the entry [s], at most 60; waypoints before its end are passed over.
 
         Returns
         -------
@@ -620,6 +620,12 @@ class Reader:
         -------
         State
             Check its `status`.
+
+        Raises
+        ------
+        BadRequest
+            On a live stream: `t` is before or after the curve, and more than an hour from
+            `time.monotonic()`.
         """
     def preview(self, t: Instant, out: Optional[State] = None) -> State:
         """Sample ahead of `settled_until`: as `sample`, but does not count as executed."""

@@ -1,10 +1,14 @@
 #include "ipc/python/values/times.hpp"
 
+#include <time.h>
+
+#include <chrono>
 #include <cmath>
 #include <string>
 
 #include "core/basics/number_text.hpp"
 #include "ipc/python/values/types.hpp"
+#include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/waypoint.hpp"
 
@@ -34,6 +38,13 @@ Time instant_of_int(py::handle value) {
   if (ns == -1 && PyErr_Occurred() != nullptr) throw py::error_already_set();
   if (overflow != 0 || !is_time_in_range(Time(ns))) refuse_range(text_of(value) + " ns");
   return Time(ns);
+}
+
+/// float16 and float32 do not hold instants: float32 has steps of 8 ms after a day.
+void require_double(py::handle type, py::ssize_t itemsize) {
+  if (itemsize >= static_cast<py::ssize_t>(sizeof(double))) return;
+  throw py::type_error(text_of(type) +
+                       " is too coarse for times: use float64 (s) or integers (ns)");
 }
 
 bool is_numpy(py::handle value, const char* kind) {
@@ -93,7 +104,10 @@ Time instant(py::handle value) {
   PyObject* const object = value.ptr();
   if (PyFloat_Check(object)) return instant_of_seconds(PyFloat_AS_DOUBLE(object));
   if (PyLong_Check(object) && !PyBool_Check(object)) return instant_of_int(value);
-  if (is_numpy(value, "floating")) return instant_of_seconds(PyFloat_AsDouble(object));
+  if (is_numpy(value, "floating")) {
+    require_double(value.attr("dtype"), value.attr("itemsize").cast<py::ssize_t>());
+    return instant_of_seconds(PyFloat_AsDouble(object));
+  }
   if (!is_numpy(value, "integer")) refuse_type(value);
   return instant_of_int(py::reinterpret_steal<py::object>(PyNumber_Index(object)));
 }
@@ -120,6 +134,21 @@ std::optional<Time> optional_duration(py::handle value, const char* what) {
   return duration(value, what);
 }
 
+void require_near_now(Time time) {
+  constexpr Time kFar = std::chrono::hours(1);
+  constexpr Time kDay = std::chrono::hours(24);
+  const Time now = MonotonicClock().now();
+  if (time >= now - kFar && time <= now + kFar) return;
+  timespec real{};
+  ::clock_gettime(CLOCK_REALTIME, &real);
+  const Time wall = std::chrono::seconds(real.tv_sec);
+  const bool is_wall = time > wall - kDay && time < wall + kDay;
+  const auto seconds = [](Time t) { return core::number_text(to_seconds(t)) + " s"; };
+  throw BadRequest("time " + seconds(time) + " is more than an hour from now: the clock of the " +
+                   "stream is CLOCK_MONOTONIC (time.monotonic()), which is at " + seconds(now) +
+                   (is_wall ? "; the time is one of CLOCK_REALTIME (time.time())" : ""));
+}
+
 py::object optional_ns(Time time) {
   if (time == Time::min() || time == Time::max()) return py::none();
   return py::int_(time.count());
@@ -132,6 +161,7 @@ Instants::Instants(py::handle values) : array_(as_array(values)) {
     throw py::type_error("times are an array of ints (ns) or of floats (s), not of " +
                          text_of(array_.dtype()));
   }
+  if (is_seconds_) require_double(array_.dtype(), array_.itemsize());
   if (kind == 'u' && array_.itemsize() == 8) {
     const py::object largest = array_.size() > 0 ? array_.attr("max")() : py::int_(0);
     (void)instant(largest);

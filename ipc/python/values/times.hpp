@@ -10,8 +10,8 @@
 #include "splinecast/time.hpp"
 
 /// Instants and durations. An instant is an int, nanoseconds, or a float, seconds; a duration is a
-/// number of seconds. Functions throw TypeError for other types, bool included, and BadRequest with
-/// the value for NaN and for values out of range.
+/// number of seconds. Functions throw TypeError for other types, bool, float16 and float32
+/// included, and BadRequest with the value for NaN and for values out of range.
 namespace splinecast::python {
 
 namespace py = pybind11;
@@ -28,6 +28,10 @@ namespace py = pybind11;
 
 /// The same; nothing for None.
 [[nodiscard]] std::optional<Time> optional_duration(py::handle value, const char* what);
+
+/// Throws BadRequest if a time is more than an hour from that of CLOCK_MONOTONIC, with both and the
+/// clock that it may be of.
+void require_near_now(Time time);
 
 /// Nanoseconds, or None for the least or the largest time.
 [[nodiscard]] py::object optional_ns(Time time);
