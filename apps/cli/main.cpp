@@ -1,18 +1,31 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include "apps/cli/command.hpp"
 #include "apps/cli/guarded.hpp"
+#include "apps/cli/nearest.hpp"
 #include "apps/cli/verb.hpp"
 #include "apps/cli/version.hpp"
 #include "apps/process/exit_codes.hpp"
 
 namespace splinecast::apps {
 namespace {
+
+/// Throws CLI::ValidationError unless there is such a verb, with the nearest one.
+void require_verb(const CLI::App& program, const std::string& verb) {
+  std::vector<std::string> verbs;
+  for (const CLI::App* known : program.get_subcommands({})) verbs.push_back(known->get_name());
+  if (std::ranges::find(verbs, verb) != verbs.end()) return;
+  const auto meant = nearest(verb, verbs);
+  throw CLI::ValidationError("there is no verb '" + verb + "'" +
+                             (meant ? "; the nearest one is '" + *meant + "'" : ""));
+}
 
 int run_program(int argc, char** argv) {
   CLI::App program("Online streaming cubic splines over shared memory", "splinecast");
@@ -24,11 +37,7 @@ int run_program(int argc, char** argv) {
   try {
     // CLI11 would only report a missing subcommand.
     const std::string verb = argc > 1 ? argv[1] : "";
-    const auto verbs =
-        program.get_subcommands([&](const CLI::App* known) { return known->get_name() == verb; });
-    if (!verb.empty() && verb.front() != '-' && verbs.empty()) {
-      throw CLI::ValidationError("there is no verb '" + verb + "'");
-    }
+    if (!verb.empty() && verb.front() != '-') require_verb(program, verb);
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const bool asked_for_help = program.exit(error) == 0;

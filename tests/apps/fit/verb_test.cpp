@@ -179,7 +179,8 @@ TEST(Fit, ReportsWrongUsageAndInputAndExitsWith2) {
       {{"fit", good, "--dt", "1", "--method", "wavelet"}, "'wavelet'"},
       {{"fit", good, "--dt", "1", "--time-unit", "h"}, "'h'"},
       {{"fit", folder.path("none.csv"), "--dt", "1"}, "none.csv: no such file"},
-      {{"sideways"}, "there is no verb 'sideways'"},
+      {{"sideways"}, "there is no verb 'sideways'\n"},
+      {{"replya"}, "there is no verb 'replya'; the nearest one is 'replay'"},
       {{}, "subcommand"},
   };
   for (const auto& [arguments, text] : cases) {
