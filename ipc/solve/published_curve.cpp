@@ -255,7 +255,7 @@ std::size_t PublishedCurve::passed_over() const noexcept {
 
 void PublishedCurve::committed(const Summary& summary) noexcept {
   has_changes_ = has_forgotten_ = false;
-  is_entry_new_ = false;
+  is_entry_new_ = is_prepared_ = false;  // the reach of an entry is that of the committed curve
   origin_.is_new = false;
   summary_ = summary;
   passed_committed_ = passed_written_;
