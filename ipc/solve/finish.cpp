@@ -1,9 +1,11 @@
 #include <algorithm>
-#include <chrono>
+#include <cmath>
 
+#include "core/forms/entry.hpp"
 #include "core/forms/stop.hpp"
 #include "core/limits/check.hpp"
 #include "core/limits/extremes.hpp"
+#include "core/limits/limit_of.hpp"
 #include "ipc/solve/published_curve.hpp"
 
 /// Ends a published curve.
