@@ -7,9 +7,9 @@
 
 namespace splinecast::apps {
 
-/// The word nearest to a misspelt one: at most two letters inserted, removed, replaced, or
-/// exchanged with the next one, and fewer than half of the word's. Nothing if there is none. The
-/// first of several.
+/// The word that differs from a misspelt one by the fewest letters: inserted, removed, replaced, or
+/// exchanged with the next one. At most two letters, and less than half of the misspelt word, may
+/// differ; otherwise returns no word. Of equally near words returns the first.
 [[nodiscard]] std::optional<std::string> nearest(std::string_view misspelt,
                                                  std::span<const std::string> words);
 

@@ -9,6 +9,7 @@
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
+#include "core/forms/entry.hpp"
 #include "ipc/solve/stream_solver.hpp"
 
 namespace splinecast::apps {
@@ -97,13 +98,14 @@ void RowSender::stop_at_once() {
 /// When the motion begins that leads to the first waypoint after a gap: so late that the way is
 /// made with the velocities of the motion so far, in the second half of the gap.
 Time RowSender::entry_begin(const Waypoint& next) const {
-  constexpr double kShortest = 0.5;       // s
-  constexpr double kPeakPerMean = 1.875;  // of a motion from rest to rest
+  constexpr double kShortest = 0.5;  // s
   const Time gap = next.time - *last_time_;
   double seconds = kShortest;
   for (std::size_t d = 0; d < last_.size(); ++d) {
-    const double way = kPeakPerMean * std::abs(next.position[d] - last_[d]);
-    if (way > 0) seconds = fastest_[d] > 0 ? std::max(seconds, way / fastest_[d]) : HUGE_VAL;
+    const double way = std::abs(next.position[d] - last_[d]);
+    if (way == 0) continue;
+    seconds = fastest_[d] > 0 ? std::max(seconds, core::seconds_from_rest(way, fastest_[d], 0, 0))
+                              : HUGE_VAL;
   }
   const double most = to_seconds(gap) / 2;
   return next.time - from_seconds(std::min(seconds, most));

@@ -104,10 +104,9 @@ class HeldReader {
     }
     block.revision = revision;
     block.clear_invalid();
-    const auto beside = std::ranges::find_if(memory.status, is_beside_curve);
-    if (beside != memory.status.end()) {
-      const auto i = static_cast<std::size_t>(beside - memory.status.begin());
-      require_time_of_clock(instants.times(block.scratch)[i], *beside);
+    if (is_live_ && std::ranges::any_of(memory.status, is_beside_curve)) {
+      const auto all = instants.times(block.scratch);
+      for (std::size_t i = 0; i < all.size(); ++i) require_time_of_clock(all[i], memory.status[i]);
     }
     return made;
   }

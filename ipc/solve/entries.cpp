@@ -78,9 +78,9 @@ bool PublishedCurve::find_state(Time settled) noexcept {
   return !is_damaged_;
 }
 
-/// Finds how far the published curve goes from that state to `until`. Where it has just been cut,
-/// it does not go there any more: what was found before the cut remains. Returns false if the board
-/// is damaged.
+/// Finds how far the published curve goes from that state to `until`. If the curve has been cut
+/// there since the last commit, keeps what was found before the cut; a start state, number 1, cuts
+/// no curve. Returns false if the board is damaged.
 bool PublishedCurve::find_reach(Time until) noexcept {
   const bool is_pending = !uses_cut_ && origin_.is_new;
   if (is_pending && origin_.number > 1) return true;

@@ -211,7 +211,7 @@ bool PublishedCurve::prepare_end(Time settled) noexcept {
 
 /// The longest entry from `from` that may end the curve at `rest`. It may last as long as the
 /// published curve and, after that, an entry from rest: kLongest, or what the given limits require
-/// from where that curve is farthest away.
+/// from where that curve is farthest away. The components of a quaternion count as positions.
 Time PublishedCurve::longest_end(const Instant& rest, Time from) const noexcept {
   constexpr double kLongestWithinLimits = 60;  // s
   const MotionLimits& limits = window_.limits_at_largest_rate();
