@@ -126,6 +126,8 @@ class Replay {
       made.names.push_back(std::move(name));
       made.units.push_back(std::move(unit));
     }
+    // The times are counted from now: those that are far ahead are not of another clock either.
+    made.horizon = Time::max();
     // The ring must accept the first waypoint after a gap.
     if (options_.gap.policy == GapPolicy::split) {
       made.limits.max_interval = std::max(made.limits.max_interval, recording_.survey().longest);

@@ -164,6 +164,7 @@ ProducerOptions producer_options(const splinecast_producer_options* given) {
       .law = all.law == nullptr ? "" : std::string(require_text(all.law, "options->law")),
       .start = condition(all.start, all.dimensions, "options->start"),
       .limits = {.min_interval = Time(all.min_interval), .max_interval = Time(all.max_interval)},
+      .horizon = Time(all.horizon),
       .capacity = all.capacity,
       .access = access_of(all.mode, all.group),
       .trust = trust_of(all.owner, "options->owner")};

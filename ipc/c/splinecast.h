@@ -169,7 +169,8 @@ typedef enum splinecast_append_status {
   SPLINECAST_APPEND_TOO_MANY,         ///< a replacement that does not fit even into an empty ring
   SPLINECAST_APPEND_ALREADY_STARTED,  ///< a start state after the first waypoint
   SPLINECAST_APPEND_FINISHED,         ///< the stream has been finished
-  SPLINECAST_APPEND_CANNOT_FOLLOW     ///< no waypoint met for 3 s, and the curve moves until then
+  SPLINECAST_APPEND_CANNOT_FOLLOW,    ///< no waypoint met for 3 s, and the curve moves until then
+  SPLINECAST_APPEND_TOO_FAR_AHEAD     ///< live, without a law: more than the horizon after now
 } splinecast_append_status;
 
 /// Why the solver refused an item that the ring had accepted.
@@ -386,6 +387,9 @@ SPLINECAST_API int splinecast_refusal_message(const splinecast_refusal* refusal,
                                               size_t capacity);
 SPLINECAST_API int splinecast_excess_message(const splinecast_limit_excess* excess,
                                              const char* name, char* text, size_t capacity);
+/// The same, for a time that a live stream refuses: compares it with now on CLOCK_MONOTONIC, and
+/// names the clock that it looks like.
+SPLINECAST_API int splinecast_time_message(int64_t time, char* text, size_t capacity);
 
 // -------------------------------------------------------------------------------------- producer
 
@@ -412,13 +416,16 @@ typedef struct splinecast_producer_options {
   int64_t group;         ///< group of the regions; −1: this process's
   int64_t owner;         ///< also trust regions of this user; −1: own user and root only
   const char* law;       ///< time law that the stream follows, with SPLINECAST_CLOCK_LAW; or NULL
+  int64_t horizon;       ///< live, without a law: how far ahead of now a time may be; above 0;
+                         ///< INT64_MAX: no time is compared with now
 } splinecast_producer_options;
-/// One dimension, a live stream from a full stop, intervals of 1 µs to 1 h, 1,024 items.
+/// One dimension, a live stream from a full stop, intervals of 1 µs to 1 h, 1,024 items, a horizon
+/// of 1 h.
 #define SPLINECAST_PRODUCER_OPTIONS_INIT                                             \
   {                                                                                  \
     sizeof(splinecast_producer_options), 1, NULL, 0, NULL, 0, NULL, 0,               \
         {SPLINECAST_HALT, SPLINECAST_NO_VECTOR}, 1000, INT64_C(3600000000000), 1024, \
-        SPLINECAST_CLOCK_MONOTONIC, 0600, -1, -1, NULL                               \
+        SPLINECAST_CLOCK_MONOTONIC, 0600, -1, -1, NULL, INT64_C(3600000000000)       \
   }
 
 /// What a replacement would do. The caller sets the six outputs: largest magnitudes of velocity

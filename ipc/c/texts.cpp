@@ -5,6 +5,7 @@
 #include "ipc/arguments/enums.hpp"
 #include "ipc/arguments/guard.hpp"
 #include "ipc/arguments/refusals.hpp"
+#include "splinecast/clock.hpp"
 
 /// Texts of errors, statuses and refusals. Those of the library's statuses are literals, so that a
 /// zero byte follows each.
@@ -79,6 +80,10 @@ int splinecast_refusal_message(const splinecast_refusal* refusal, char* text, si
   return guarded([&] {
     return put_text(to_string(read_refusal(*require_pointer(refusal, "refusal"))), text, capacity);
   });
+}
+
+int splinecast_time_message(int64_t time, char* text, size_t capacity) {
+  return guarded([&] { return put_text(compared_with_now(Time(time)), text, capacity); });
 }
 
 int splinecast_excess_message(const splinecast_limit_excess* excess, const char* name, char* text,

@@ -101,6 +101,10 @@ RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id
                      " ns to " + std::to_string(options.limits.max_interval.count()) +
                      " ns are not a range of positive times");
   }
+  if (options.horizon <= Time::zero()) {
+    throw BadRequest("a horizon of " + std::to_string(options.horizon.count()) +
+                     " ns is not above 0");
+  }
   require_usable("start", options.start, options.dimensions);
   if ((options.clock == StreamClock::law) == options.law.empty()) {
     throw BadRequest(options.law.empty() ? "a stream with clock law needs the name of a law"

@@ -12,6 +12,7 @@
 #include "ipc/python/values/records.hpp"
 #include "ipc/python/values/times.hpp"
 #include "ipc/python/values/types.hpp"
+#include "ipc/python/values/waypoints.hpp"
 #include "ipc/python/waits.hpp"
 #include "splinecast/errors.hpp"
 
@@ -39,7 +40,7 @@ class HeldProducer {
  public:
   HeldProducer(const std::string& stream, const ProducerOptions& options)
       : dimensions_(options.dimensions),
-        is_live_(is_live(options.clock)),
+        clock_(options.clock),
         names_(options.names),
         producer_("producer", stream, make_role<Producer>(stream, options)) {}
 
@@ -65,9 +66,11 @@ class HeldProducer {
     const Time time = instant(t);
     const Path path(*this, times, positions, velocities, accelerations);
     const ReplaceOptions options = blend_of(blend);
-    return accept(
-        {.what = "replacement", .status = {}, .time = time}, py::int_(0),
-        [&](Producer& producer) { return producer.replace_from(time, path.waypoints, options); });
+    RefusedItem item{.what = "replacement", .status = {}, .time = time};
+    if (!path.waypoints.empty()) item.on_host_clock = path.waypoints.back().time;
+    return accept(item, py::int_(0), [&](Producer& producer) {
+      return producer.replace_from(time, path.waypoints, options);
+    });
   }
 
   py::object preview_replace(py::handle t, py::handle times, py::handle positions,
@@ -135,7 +138,7 @@ class HeldProducer {
 
   void exit(const py::args& failure) {
     const bool has_failed = !failure[0].is_none();
-    if (is_finished_ || producer_.is_closed() || (has_failed && !is_live_)) return close();
+    if (is_finished_ || producer_.is_closed() || (has_failed && !is_live(clock_))) return close();
     try {
       if (has_failed) stop_at_once();
       finish(py::str("halt"), py::float_(kFinishPatience));
@@ -211,8 +214,14 @@ class HeldProducer {
         item.status = producer_.use(try_once);
       }
     }
-    if (item.status != AppendStatus::accepted) throw_refused(item);
+    if (item.status != AppendStatus::accepted) refuse(item);
     return number;
+  }
+
+  [[noreturn]] void refuse(RefusedItem item) const {
+    if (!item.on_host_clock) item.on_host_clock = item.time;
+    if (clock_ != StreamClock::monotonic) item.on_host_clock.reset();
+    throw_refused(item);
   }
 
   /// Returns false if `end` is over, or passes.
@@ -223,46 +232,10 @@ class HeldProducer {
   }
 
   std::size_t dimensions_;
-  bool is_live_;
+  StreamClock clock_;
   std::vector<std::string> names_;
   bool is_finished_ = false;
   Held<Producer> producer_;
-};
-
-/// Waypoints that are read where they are; a row that is not contiguous is copied.
-class GivenWaypoints {
- public:
-  GivenWaypoints(py::handle times, py::handle positions, py::handle velocities,
-                 py::handle accelerations, std::size_t dimensions)
-      : instants_(times),
-        rows_{Rows(positions, "positions"), Rows(velocities, "velocities"),
-              Rows(accelerations, "accelerations")} {
-    instants_.require_line();
-    times_ = instants_.times(scratch_);
-    for (std::size_t r = 0; r < rows_.size(); ++r) {
-      rows_[r].require(times_.size(), dimensions, r > 0);
-    }
-  }
-
-  [[nodiscard]] std::size_t size() const { return times_.size(); }
-
-  /// Valid until the next call.
-  [[nodiscard]] Waypoint operator[](std::size_t i) {
-    return {
-        .time = times_[i], .position = row(0, i), .velocity = row(1, i), .acceleration = row(2, i)};
-  }
-
- private:
-  std::span<const double> row(std::size_t r, std::size_t i) {
-    if (rows_[r].empty()) return {};
-    return rows_[r].row(i, copies_[r]);
-  }
-
-  Instants instants_;
-  std::array<Rows, 3> rows_;
-  std::vector<Time> scratch_;
-  std::span<const Time> times_;
-  std::array<std::array<double, kMaxDimensions>, 3> copies_{};
 };
 
 std::uint64_t HeldProducer::append_many(py::handle times, py::handle positions,
@@ -286,11 +259,11 @@ std::uint64_t HeldProducer::append_many(py::handle times, py::handle positions,
       check_signals();
     } else if (status != AppendStatus::full || !wait_for_room(end)) {
       const Waypoint refused = waypoints[i];
-      throw_refused({.what = "waypoint",
-                     .status = status,
-                     .time = refused.time,
-                     .position = refused.position,
-                     .index = i});
+      refuse({.what = "waypoint",
+              .status = status,
+              .time = refused.time,
+              .position = refused.position,
+              .index = i});
     }
   }
   return first;
@@ -374,9 +347,10 @@ std::unique_ptr<HeldProducer> make(const std::string& stream, const py::object& 
                                    const py::object& units, const py::kwargs& keywords) {
   keywords["names"] = names;
   keywords["units"] = units;
-  require_keywords(keywords, "Producer",
-                   {"names", "units", "dimensions", "kinds", "clock", "law", "start",
-                    "min_interval", "max_interval", "capacity", "mode", "group", "owner"});
+  require_keywords(
+      keywords, "Producer",
+      {"names", "units", "dimensions", "kinds", "clock", "law", "start", "min_interval",
+       "max_interval", "horizon", "capacity", "mode", "group", "owner"});
   return std::make_unique<HeldProducer>(stream, producer_options(keywords));
 }
 

@@ -61,6 +61,9 @@ AppendStatus WaypointRingWriter::check_form(const Waypoint& waypoint) const noex
 AppendStatus WaypointRingWriter::check(const Waypoint& waypoint,
                                        const Solved& solved) const noexcept {
   AppendStatus status = check_form(waypoint);
+  if (status == AppendStatus::accepted && is_too_far_ahead(waypoint.time, solved)) {
+    status = AppendStatus::too_far_ahead;
+  }
   if (status == AppendStatus::accepted && has_last_) {
     status = judge_interval(waypoint.time - last_time_, limits_);
     if (status == AppendStatus::too_far_apart && follows_pause(waypoint.time, solved)) {
@@ -74,9 +77,21 @@ AppendStatus WaypointRingWriter::check(const Waypoint& waypoint,
                                                                 : AppendStatus::full;
 }
 
-/// Whether a waypoint is too late to be part of the target. Reads the clock only if the time is
-/// before the settled time.
+/// Whether a time is beyond the horizon: probably one of another clock, which would be executed
+/// years from now, and after which each right time would be out of order. Reads the clock only if
+/// the settled time does not suffice.
+bool WaypointRingWriter::is_too_far_ahead(Time time, const Solved& solved) noexcept {
+  if (!solved.horizon) return false;
+  const Time settled = std::max(solved.settled_until, -kLatestTime);
+  if (time - settled <= *solved.horizon) return false;
+  return time - std::max(settled, solved.clock->now()) > *solved.horizon;
+}
+
+/// Whether a waypoint is too late: to be part of the target, or to begin the curve. Reads the clock
+/// only for the first waypoint, and if the time is before the settled time.
 bool WaypointRingWriter::is_past(Time time, const Solved& solved) const noexcept {
+  const bool begins = !has_last_ && solved.horizon;
+  if (begins && time < solved.clock->now()) return true;
   if (time >= solved.settled_until) return false;
   if (!has_last_) return true;
   const Time now = solved.clock != nullptr ? solved.clock->now() : solved.settled_until;
@@ -121,6 +136,9 @@ AppendStatus WaypointRingWriter::check_replacement(Time t, std::span<const Waypo
   Time before = t;
   for (const Waypoint& waypoint : waypoints) {
     AppendStatus status = check_form(waypoint);
+    if (status == AppendStatus::accepted && is_too_far_ahead(waypoint.time, solved)) {
+      status = AppendStatus::too_far_ahead;
+    }
     if (status == AppendStatus::accepted) status = judge_interval(waypoint.time - before, limits_);
     if (status != AppendStatus::accepted) return status;
     before = waypoint.time;
@@ -156,6 +174,7 @@ AppendStatus WaypointRingWriter::check_stop(Time t, const Solved& solved) const 
   if (finished_) return AppendStatus::finished;
   const Time from = effect_of_stop(t, solved);
   if (!is_time_in_range(from)) return AppendStatus::too_far_apart;
+  if (is_too_far_ahead(from, solved)) return AppendStatus::too_far_ahead;
   if (repeats_stop(from, solved)) return AppendStatus::accepted;
   // A stop after the settled time leaves one place free for a stop that takes effect at once, and
   // one for finish; a stop that takes effect at once leaves one for finish.
@@ -190,8 +209,11 @@ AppendStatus WaypointRingWriter::start_from(const Instant& state, const Solved& 
     status = AppendStatus::wrong_dimension;
   }
   if (status == AppendStatus::accepted && written_ > 0) status = AppendStatus::already_started;
-  if (status == AppendStatus::accepted && state.time < solved.settled_until) {
+  if (status == AppendStatus::accepted && is_past(state.time, solved)) {
     status = AppendStatus::past;
+  }
+  if (status == AppendStatus::accepted && is_too_far_ahead(state.time, solved)) {
+    status = AppendStatus::too_far_ahead;
   }
   if (status != AppendStatus::accepted) return counted(status);
   put_item(0, static_cast<Word>(ItemKind::start_state), values);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "core/laws/rate_curve.hpp"
@@ -81,6 +82,8 @@ class WaypointRingWriter {
     Word consumed = 0;
     Time settled_until = Time::min();
     const Clock* clock = nullptr;  ///< of a live stream
+    /// How far ahead of now a time may be. Unset: times are not compared with now.
+    std::optional<Time> horizon{};
     /// Until when the solver refuses waypoints as `cannot follow`; max(): it does not. Counts while
     /// it has consumed all items.
     Time refused_until = Time::max();
@@ -138,6 +141,7 @@ class WaypointRingWriter {
     return written_ - solved.consumed + items + free <= layout_.capacity;
   }
   [[nodiscard]] bool repeats_stop(Time from, const Solved& solved) const noexcept;
+  [[nodiscard]] static bool is_too_far_ahead(Time time, const Solved& solved) noexcept;
   [[nodiscard]] bool is_past(Time time, const Solved& solved) const noexcept;
   [[nodiscard]] bool cannot_follow(Time time, const Solved& solved) const noexcept;
   [[nodiscard]] bool follows_pause(Time time, const Solved& solved) const noexcept;

@@ -132,6 +132,7 @@ struct Producer::Impl {
     ipc::WaypointRingWriter::Solved known{.consumed = consumed()};
     if (ipc::stream_clock(ring.header) == StreamClock::recorded) return known;
     known.clock = &stream_clock();
+    if (!law && options.horizon < Time::max()) known.horizon = options.horizon;
     if (!solver) return known;
     const ipc::Look look = solver->board.look();
     const bool is_time = is_time_in_range(look.settled_until);

@@ -32,6 +32,8 @@ std::string_view to_string(AppendStatus status) noexcept {
       return "finished";
     case AppendStatus::cannot_follow:
       return "cannot follow";
+    case AppendStatus::too_far_ahead:
+      return "too far ahead";
   }
   return "unknown";
 }

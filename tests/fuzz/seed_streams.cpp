@@ -183,6 +183,7 @@ ProducerOptions recorded(std::size_t dimensions) {
 ProducerOptions live(std::size_t dimensions) {
   auto options = recorded(dimensions);
   options.clock = StreamClock::monotonic;
+  options.horizon = Time::max();
   options.start = {.kind = ConditionKind::halt, .value = {}};
   return options;
 }

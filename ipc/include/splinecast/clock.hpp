@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <ctime>
 #include <optional>
+#include <string>
 
 #include "splinecast/time.hpp"
 
@@ -69,5 +70,11 @@ class MonotonicClock final : public Clock {
     return Time(std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec);
   }
 };
+
+/// Compares a time that a live stream refuses with now on CLOCK_MONOTONIC, and names the clock that
+/// the time looks like, if it is within a day of that clock or counts from 0:
+/// `1764300000 s is 1764299087 s after now, 912.4 s on CLOCK_MONOTONIC; it looks like
+/// CLOCK_REALTIME`. Two system calls at most.
+[[nodiscard]] std::string compared_with_now(Time time);
 
 }  // namespace splinecast

@@ -48,7 +48,10 @@ struct ProducerOptions {
                       ///< are then its stream time
   Condition start{.kind = ConditionKind::halt, .value = {}};  ///< one for which is_online() holds
   IngestLimits limits{};
-  std::size_t capacity = 1024;  ///< ring items, 2 to 2²⁴; rounded up to a power of two
+  Time horizon{3'600'000'000'000};  ///< of a live stream without a law: how far ahead of now a time
+                                    ///< may be; above 0, default 1 h; max(): no time is compared
+                                    ///< with now, for a simulated clock
+  std::size_t capacity = 1024;      ///< ring items, 2 to 2²⁴; rounded up to a power of two
   RegionAccess access{};
   Trust trust{};
 };

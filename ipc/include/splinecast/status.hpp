@@ -15,7 +15,8 @@ enum class AppendStatus : std::uint8_t {
   full,             ///< the ring has no room until the solver consumes; retry
   past,             ///< live streams only: the time is before the settled time, and by more than
                     ///< 250 ms before the later of the settled time and now; for the first waypoint
-                    ///< or a start state: the time is before the settled time
+                    ///< or a start state: the time is before the settled time or, unless the stream
+                    ///< follows a law, before now; see compared_with_now()
   duplicate,        ///< the time equals that of the previous waypoint
   out_of_order,     ///< the time is earlier than that of the previous waypoint
   not_finite,       ///< a value is infinite, NaN, or outside ±kLargestValue
@@ -31,8 +32,11 @@ enum class AppendStatus : std::uint8_t {
   finished,         ///< the stream has been finished
   cannot_follow,    ///< with Beyond::enter: no waypoint has been met for 3 s, and the curve is
                     ///< planned to move until this time; continue with the next waypoint
+  too_far_ahead,    ///< live streams without a law: the time, also that of a replacement, a stop or
+                    ///< a start state, is more than ProducerOptions::horizon after now; see
+                    ///< compared_with_now()
 };
-inline constexpr std::uint8_t kAppendStatuses = 14;
+inline constexpr std::uint8_t kAppendStatuses = 15;
 
 /// Why the solver refused an item that the ring had accepted. Each reason has its own counter.
 enum class Refusal : std::uint8_t {

@@ -73,6 +73,9 @@ class Producer:
         'velocity=1,2' or ('velocity', values), 'acceleration=…'.
     min_interval, max_interval : float
         The interval allowed between two waypoints [s].
+    horizon : float
+        Of a live stream without a law: how far ahead of now a time may be [s]. A time of another
+        clock is refused, and the message names that clock.
     capacity : int
         Items of the ring, 2 to 2**24; rounded up to a power of two.
     mode : int
@@ -105,6 +108,7 @@ class Producer:
         start: Condition = "halt",
         min_interval: Seconds = 1e-6,
         max_interval: Seconds = 3600.0,
+        horizon: Seconds = 3600.0,
         capacity: int = 1024,
         mode: int = 0o600,
         group: Optional[int] = None,

@@ -18,7 +18,7 @@ class AppendStatus(_Status):
 
     ACCEPTED = 0
     FULL = 1  #: the ring has no room until the solver consumes; retry
-    PAST = 2  #: live streams: the time has settled
+    PAST = 2  #: live streams: the time has settled, or that of the first waypoint is before now
     DUPLICATE = 3  #: the time equals that of the previous waypoint
     OUT_OF_ORDER = 4  #: the time is earlier than that of the previous waypoint
     NOT_FINITE = 5  #: a value is infinite, NaN, or outside ±1e100
@@ -30,6 +30,7 @@ class AppendStatus(_Status):
     ALREADY_STARTED = 11  #: a start state after the first waypoint
     FINISHED = 12  #: the stream has been finished
     CANNOT_FOLLOW = 13  #: no waypoint met for 3 s, and the curve moves until this time
+    TOO_FAR_AHEAD = 14  #: live streams without a law: more than `horizon` after now
 
 
 class Refusal(_Status):

@@ -232,6 +232,7 @@ ProducerOptions producer_options(const py::kwargs& keywords) {
        [&](const py::object& v) { options.limits.min_interval = duration(v, "min_interval"); });
   with(keywords, "max_interval",
        [&](const py::object& v) { options.limits.max_interval = duration(v, "max_interval"); });
+  with(keywords, "horizon", [&](const py::object& v) { options.horizon = duration(v, "horizon"); });
   with(keywords, "capacity", [&](const py::object& v) { options.capacity = count(v, "capacity"); });
   options.access = access(keywords, options.trust);
   return options;

@@ -1,7 +1,5 @@
 #include "ipc/python/values/times.hpp"
 
-#include <time.h>
-
 #include <chrono>
 #include <cmath>
 #include <string>
@@ -136,17 +134,9 @@ std::optional<Time> optional_duration(py::handle value, const char* what) {
 
 void require_near_now(Time time) {
   constexpr Time kFar = std::chrono::hours(1);
-  constexpr Time kDay = std::chrono::hours(24);
   const Time now = MonotonicClock().now();
   if (time >= now - kFar && time <= now + kFar) return;
-  timespec real{};
-  ::clock_gettime(CLOCK_REALTIME, &real);
-  const Time wall = std::chrono::seconds(real.tv_sec);
-  const bool is_wall = time > wall - kDay && time < wall + kDay;
-  const auto seconds = [](Time t) { return core::number_text(to_seconds(t)) + " s"; };
-  throw BadRequest("time " + seconds(time) + " is more than an hour from now: the clock of the " +
-                   "stream is CLOCK_MONOTONIC (time.monotonic()), which is at " + seconds(now) +
-                   (is_wall ? "; the time is one of CLOCK_REALTIME (time.time())" : ""));
+  throw BadRequest("a sample more than an hour from now: time " + compared_with_now(time));
 }
 
 py::object optional_ns(Time time) {

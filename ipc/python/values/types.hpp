@@ -37,6 +37,8 @@ struct RefusedItem {
   std::optional<Time> time{};
   std::span<const double> position{};
   std::optional<std::size_t> index{};
+  /// On a stream of CLOCK_MONOTONIC: the time of the item that is farthest ahead.
+  std::optional<Time> on_host_clock{};
 };
 
 /// Raises Refused, or Full.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <limits>
 #include <utility>
 
@@ -231,7 +232,14 @@ void SimulatedProducer::make_mistake(Time now) {
       return replace_too_many(now);
   }
   waypoint.position = position;
-  (void)answered(writer.append(waypoint, solved()));
+  auto known = solved();
+  testing::FixedClock clock;
+  clock.time = now;
+  if (waypoint.time.count() % 2 == 0) {
+    known.clock = &clock;
+    known.horizon = std::chrono::hours(1);
+  }
+  (void)answered(writer.append(waypoint, known));
 }
 
 void SimulatedProducer::replace_too_many(Time now) {

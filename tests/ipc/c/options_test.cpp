@@ -29,7 +29,10 @@ const double kValue = 1;
 
 const Changes<splinecast_producer_options> kProducerChanges{
     {"options->size", [](splinecast_producer_options& o) { o.size = 0; }},
-    {"options->size", [](splinecast_producer_options& o) { o.size = sizeof o - 16; }},
+    {"options->size",
+     [](splinecast_producer_options& o) {
+       o.size = offsetof(splinecast_producer_options, law) - 8;
+     }},
     {"options->size", [](splinecast_producer_options& o) { o.size = sizeof o + 1; }},
     {"options->size",
      [](splinecast_producer_options& o) { o.size = std::numeric_limits<size_t>::max() - 7; }},
@@ -84,6 +87,7 @@ const Changes<splinecast_producer_options> kProducerChanges{
      [](splinecast_producer_options& o) {
        o.min_interval = std::numeric_limits<std::int64_t>::min();
      }},
+    {"", [](splinecast_producer_options& o) { o.horizon = 0; }},
     {"", [](splinecast_producer_options& o) { o.capacity = 1; }},
     {"", [](splinecast_producer_options& o) { o.capacity = std::numeric_limits<size_t>::max(); }}};
 

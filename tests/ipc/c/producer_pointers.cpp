@@ -20,6 +20,8 @@ void CPointers::add_general() {
   wrong_.pointer<char>("splinecast_excess_message", "text", [this](auto* p) {
     return splinecast_excess_message(&excess_, nullptr, p, 10);
   });
+  wrong_.pointer<char>("splinecast_time_message", "text",
+                       [](auto* p) { return splinecast_time_message(0, p, 10); });
 }
 
 void CPointers::add_producer() {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -181,6 +182,22 @@ TEST(CProperties, TheFirstExcessIsReportedOnce) {
   std::array<char, 200> text{};
   EXPECT_GT(splinecast_excess_message(&excess, "lift", text.data(), text.size()), 0);
   EXPECT_NE(std::string(text.data()).find("(lift)"), std::string::npos) << text.data();
+}
+
+TEST(CProperties, TimesOfAnotherClockAreRefusedAndNamed) {
+  splinecast_producer_options options = CStream::recorded();
+  options.clock = SPLINECAST_CLOCK_MONOTONIC;
+  options.start.kind = SPLINECAST_HALT;
+  const CStream c(options);
+  const std::array<double, 2> values{1, 2};
+  const std::int64_t wall = Time(std::chrono::system_clock::now().time_since_epoch()).count();
+  const splinecast_waypoint waypoint = {
+      wall, {values.data(), 2, 1}, SPLINECAST_NO_VECTOR, SPLINECAST_NO_VECTOR};
+  EXPECT_EQ(splinecast_producer_append(c.producer, &waypoint), SPLINECAST_APPEND_TOO_FAR_AHEAD);
+  EXPECT_STREQ(splinecast_append_text(SPLINECAST_APPEND_TOO_FAR_AHEAD), "too far ahead");
+  std::array<char, 200> text{};
+  EXPECT_GT(splinecast_time_message(waypoint.time, text.data(), text.size()), 0);
+  EXPECT_NE(std::string(text.data()).find("like CLOCK_REALTIME"), std::string::npos) << text.data();
 }
 
 TEST(CProperties, ALiveStreamStartsFromAGivenState) {

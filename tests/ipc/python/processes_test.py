@@ -12,7 +12,7 @@ import splinecast
 from fixture import MS, PATIENCE, StreamTest, child, interrupt, wait_for
 
 INTERRUPTED = """
-import sys, splinecast
+import sys, time, splinecast
 try:
     {setup}
     print("ready", flush=True)
@@ -121,9 +121,9 @@ class Threads(StreamTest):
 
 class Signals(StreamTest):
     def test_keyboard_interrupt_ends_every_wait(self):
-        producer = f"p = splinecast.Producer('{self.name}'); p.append(10.0**6, 0.0)"
+        producer = f"p = splinecast.Producer('{self.name}'); t = time.monotonic() + 9; p.append(t, 0.0)"
         solver = f"s = splinecast.Solver('{self.name}')"
-        reader = f"s.attach(); p.append(10.0**6 + 1, 0.0); s.step(); r = splinecast.Reader('{self.name}'); r.wait(0)"
+        reader = f"s.attach(); p.append(t + 1, 0.0); s.step(); r = splinecast.Reader('{self.name}'); r.wait(0)"
         full = f"p = splinecast.Producer('{self.name}', capacity=2, clock='recorded'); p.append(0, 0.0)"
         for setup, wait in [
             (producer, "p.wait_for_solver()"),

@@ -51,11 +51,39 @@ class Times(StreamTest):
             reader.sample_many([t])
             reader.preview(t)
         wall = time.time()
-        for t, text in ((wall, "is one of CLOCK_REALTIME"),
+        for t, text in ((wall, "it looks like CLOCK_REALTIME"),
                         (now + 3700, "more than an hour from now"), (-1e6, "CLOCK_MONOTONIC")):
             for call in (reader.sample, reader.preview, lambda t: reader.sample_many([now + 0.12, now + 100, t])):
                 with self.subTest(t), self.assertRaisesRegex(splinecast.BadRequest, text):
                     call(t)
+
+    def test_waypoints_of_another_clock_are_refused_by_name(self):
+        name = self.name + ".clock"
+        producer = splinecast.Producer(name, dimensions=1, horizon=60)
+        self.addCleanup(splinecast.remove, name)
+        now, wall = time.monotonic(), time.time()
+        calls = (lambda t: producer.append(t, [0.0]), lambda t: producer.append_many([t], [[0.0]]),
+                 lambda t: producer.replace_from(now + 1, [t], [[0.0]]),
+                 lambda t: producer.start_from(t, [0.0], [0.0], [0.0]))
+        for t, text in ((wall, "it looks like CLOCK_REALTIME$"), (int(wall * 1e9), "CLOCK_REALTIME$"),
+                        (now + 61, "s after now, .* s of CLOCK_MONOTONIC")):
+            for call in calls:
+                with self.subTest(t), self.assertRaisesRegex(splinecast.Refused, "too far ahead.*" + text) as raised:
+                    call(t)
+                self.assertIs(raised.exception.status, splinecast.AppendStatus.TOO_FAR_AHEAD)
+        before = [(int(wall), "CLOCK_REALTIME in s"), (int(wall * 1e3), "CLOCK_REALTIME in ms"),
+                  (0, "a time that counts from 0"), (int(now), "CLOCK_MONOTONIC in s as an integer")]
+        for t, text in before:
+            if t > time.monotonic_ns():
+                continue  # this host has run for less than that
+            with self.subTest(t), self.assertRaisesRegex(splinecast.Refused, "waypoint refused: past.*" + text):
+                producer.append(t, [0.0])
+        with self.assertRaisesRegex(splinecast.Refused, "stop refused: too far ahead|too far ahead"):
+            producer.replace_from(wall)
+        self.assertEqual(producer.appended, 0)
+        producer.append(time.monotonic() + 59, [0.0])
+        with self.assertRaisesRegex(splinecast.BadRequest, "a horizon of 0 ns is not above 0"):
+            splinecast.Producer(name + ".zero", dimensions=1, horizon=0)
 
     def test_a_blend_in_milliseconds_is_refused(self):
         producer = splinecast.Producer(self.name + ".blend", dimensions=1)

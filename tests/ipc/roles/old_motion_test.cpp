@@ -40,7 +40,7 @@ class OldMotion : public ::testing::Test {
 
   testing::TestStream stream_;
   testing::FixedClock clock_;
-  ProducerOptions options_{.dimensions = 1};
+  ProducerOptions options_{.dimensions = 1, .horizon = Time::max()};
 };
 
 TEST_F(OldMotion, OfAFinishedStreamEndsBeforeTheStreamIsRecreated) {
