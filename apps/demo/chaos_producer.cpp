@@ -40,7 +40,12 @@ class ChaosProducer {
         random_(static_cast<std::uint64_t>(getpid())),
         next_(start) {
     // A producer that takes over has to catch up as well.
-    if (producer_.continues()) lead_ = kCatchUp;
+    if (producer_.continues()) {
+      lead_ = kCatchUp;
+    } else {
+      const std::vector<double> x = motion_.at(start);
+      (void)producer_.start_from({.time = start, .position = x}, {.moved = true});
+    }
   }
 
   nlohmann::json run() {

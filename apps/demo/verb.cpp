@@ -128,7 +128,7 @@ int run_demo(const DemoOptions& options) {
   WaypointTable table = options.file.empty()
                             ? pick_and_place(options.seconds.value_or(kDefaultLength))
                             : read_waypoints(options.file, options.table);
-  ReplayOptions replay{.stream = stream};
+  ReplayOptions replay{.stream = stream, .start_from = FromFirst{}};
   if (!options.file.empty()) replay.duration = options.seconds;
   RefusedRows refused;
   Recording recording(std::make_unique<TableRows>(table), table.kinds, preparation_of(replay),

@@ -14,6 +14,7 @@
 #include "apps/replay/row_sender.hpp"
 #include "apps/replay/sent_rows.hpp"
 #include "apps/replay/solver_wait.hpp"
+#include "apps/replay/start.hpp"
 #include "apps/streams/own_board.hpp"
 #include "ipc/options/curve.hpp"
 #include "splinecast/errors.hpp"
@@ -63,10 +64,20 @@ class Replay {
     board_.emplace(options_.stream, producer_.stream_id(), options_.trust);
     before_ = board_->summary();
     const auto live = ipc::live_options(board_->header()).value_or(ipc::LiveOptions{});
-    sender_.set_lead(choose_lead(recording_.survey(), options_, board_->header()),
-                     live.freeze_ahead);
     rows_.begin([this] { (void)board_->summary(); });
+    sender_.set_lead(
+        saturated_sum(choose_lead(recording_.survey(), options_, board_->header()), start()),
+        live.freeze_ahead);
     return true;
+  }
+
+  /// Starts a new live stream where the machine is. Returns by how much the lead grows.
+  Time start() {
+    if (!is_live(options_.clock) || producer_.continues()) return {};
+    recording_.rewind();
+    PreparedRow first;
+    if (!recording_.next(first)) return {};
+    return start_stream(producer_, options_.start_from, first.waypoint(), board_->header(), rows_);
   }
 
   [[nodiscard]] std::size_t planned() const { return recording_.survey().rows * options_.loops; }
@@ -76,7 +87,8 @@ class Replay {
     try {
       return play(base);
     } catch (const InputError&) {
-      finish();
+      const bool is_unused = rows_.sent() == 0 && !producer_.continues();
+      is_unused ? producer_.withdraw() : finish();
       throw;
     }
   }
@@ -86,7 +98,6 @@ class Replay {
     const Survey& survey = recording_.survey();
     const Time shift = saturated_sum(survey.last - survey.first, survey.median);
     Progress progress;
-    rows_.begin_rows();
     for (std::size_t loop = 0; loop < options_.loops; ++loop) {
       const Time offset = saturated_sum(base - survey.first,
                                         saturated_product(shift, static_cast<std::int64_t>(loop)));

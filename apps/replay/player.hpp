@@ -3,6 +3,8 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <variant>
+#include <vector>
 
 #include "apps/cli/conditions.hpp"
 #include "apps/recordings/recording.hpp"
@@ -14,6 +16,12 @@
 #include "splinecast/solver.hpp"
 
 namespace splinecast::apps {
+
+/// Where a new live stream starts: at the end of the earlier stream of its name, at the first
+/// waypoint, to which the machine was moved, or at a measured position.
+struct FromOldEnd {};
+struct FromFirst {};
+using StartFrom = std::variant<FromOldEnd, FromFirst, std::vector<double>>;
 
 /// Options of `replay`.
 struct ReplayOptions {
@@ -28,6 +36,7 @@ struct ReplayOptions {
   std::string law{};           ///< with clock law: the time law that the stream follows
   std::optional<Time> lead{};  ///< unset: what the recording and the settle lag need
   std::optional<Condition> start{};
+  std::optional<StartFrom> start_from{};
   std::optional<End> end{};
   LatePolicy late = LatePolicy::refuse;
   GapOptions gap{};

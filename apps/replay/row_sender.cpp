@@ -9,6 +9,7 @@
 #include "apps/process/exit_codes.hpp"
 #include "apps/process/messages.hpp"
 #include "apps/process/signals.hpp"
+#include "apps/replay/start.hpp"
 #include "core/forms/entry.hpp"
 #include "ipc/solve/stream_solver.hpp"
 
@@ -21,6 +22,9 @@ bool RowSender::send(const PlayedRow& row, Waypoint waypoint, bool follows_gap) 
   if (follows_gap && last_time_ && !stop_at_gap(waypoint)) return false;
   const AppendStatus status = append_when_there_is_room(waypoint);
   if (status == AppendStatus::full) return false;
+  if (status == AppendStatus::elsewhere) {
+    throw InputError(elsewhere_message(producer_, waypoint));
+  }
   if (status == AppendStatus::accepted) {
     if (has_gaps_) note_last(waypoint);
     rows_.note_sent(row, waypoint);

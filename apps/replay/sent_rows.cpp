@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <utility>
+#include <vector>
 
 #include "splinecast/errors.hpp"
 
@@ -12,6 +13,7 @@ void SentRows::begin(std::function<void()> require_readable) {
   require_readable_ = std::move(require_readable);
   has_begun_ = true;
   producer_.refusals(found_);
+  next_item_ = producer_.appended();
   if (options_.verify) begin_log();
 }
 
@@ -26,7 +28,17 @@ void SentRows::begin_log() {
   log_.emplace(options_.stream, producer_.stream_id(), options_.trust);
 }
 
+void SentRows::note_start(const Waypoint& state) {
+  in_ring_.push_back({.number = 0, .loop = 0});
+  if (log_) log_->sent_start(state);
+}
+
 void SentRows::note_sent(const PlayedRow& row, const Waypoint& waypoint) {
+  const bool has_started = producer_.appended() > next_item_ + in_ring_.size() + 1;
+  if (sent_ == 0 && has_started && !old_end_.empty()) {
+    const std::vector<double> zeros(old_end_.size());
+    note_start({.position = old_end_, .velocity = zeros, .acceleration = zeros});
+  }
   ++sent_;
   in_ring_.push_back(row);
   if (log_) log_->sent(waypoint);

@@ -33,8 +33,13 @@ class SentRows {
   /// `require_readable` throws if refusals cannot be read.
   void begin(std::function<void()> require_readable);
 
-  /// The next row is the ring's next item.
-  void begin_rows() { next_item_ = producer_.appended(); }
+  /// Notes a start state that the ring has accepted.
+  void note_start(const Waypoint& state);
+
+  /// The ring may accept a start state at rest at this position before the first row.
+  void expect_start(std::span<const double> position) {
+    old_end_.assign(position.begin(), position.end());
+  }
 
   /// Notes a row that the ring has accepted.
   void note_sent(const PlayedRow& row, const Waypoint& waypoint);
@@ -89,6 +94,7 @@ class SentRows {
   ipc::Word missed_ = 0;
   std::deque<PlayedRow> in_ring_;  ///< from item next_item_ on: not known to be consumed
   ipc::Word next_item_ = 0;
+  std::vector<double> old_end_;  ///< see expect_start()
   ipc::Word sent_ = 0;
   ipc::Word refused_by_producer_ = 0;
   std::optional<RefusedBy> stopped_;

@@ -165,6 +165,28 @@ void add_law(Command& verb, ReplayOptions& options) {
       .type("LAW");
 }
 
+void add_start_from(Command& verb, ReplayOptions& options) {
+  verb.option(
+          "--start-from",
+          [&options](const std::string& text) {
+            if (text == "old") {
+              options.start_from = FromOldEnd{};
+            } else if (text == "first") {
+              options.start_from = FromFirst{};
+            } else if (auto values = parse_values(text)) {
+              options.start_from = std::move(*values);
+            } else {
+              throw UsageError("--start-from",
+                               fmt::format("'{}' is not old, first, or a list of numbers", text));
+            }
+          },
+          "Where the machine is when a live stream is created again: old, where the earlier one "
+          "came to rest: an entry leads from there, and the lead grows by it; first, moved to the "
+          "first waypoint; or its measured position, one value per dimension (default: the first "
+          "waypoint must be where the earlier stream came to rest)")
+      .type("old|first|VALUES");
+}
+
 void add_playback_options(Command& verb, ReplayOptions& options) {
   add_rate(verb, options);
   add_count(verb, "--loop", options.loops,
@@ -186,6 +208,7 @@ void add_playback_options(Command& verb, ReplayOptions& options) {
   add_condition(verb, "--start", options.start,
                 "Boundary condition at the first waypoint (default: halt; with --clock recorded "
                 "the method's own)");
+  add_start_from(verb, options);
   add_end(
       verb, options.end,
       "Boundary condition at the last waypoint; of a live stream rest, clamped or halt: at rest "
@@ -300,6 +323,9 @@ void require_agreeing(const ReplayOptions& options) {
   }
   if (!options.law.empty() && !is_live(options.clock)) {
     throw UsageError("--law", "goes with --clock live only");
+  }
+  if (options.start_from && !is_live(options.clock)) {
+    throw UsageError("--start-from", "goes with --clock live only");
   }
   const Condition* end = condition_of(options.end);
   if (is_live(options.clock) && end != nullptr && !is_at_rest(end->kind)) {

@@ -26,6 +26,9 @@ class StreamLog {
   /// Records a waypoint that the ring has accepted.
   void sent(const Waypoint& waypoint) { items_.add(ipc::ItemKind::waypoint, waypoint); }
 
+  /// Records a start state.
+  void sent_start(const Waypoint& state) { items_.add(ipc::ItemKind::start_state, state); }
+
   /// Records the item of a replacement. Its waypoints follow as sent() ones.
   void sent_replacement(Time t) { items_.add(ipc::ItemKind::replace, {.time = t}); }
 

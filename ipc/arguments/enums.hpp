@@ -17,7 +17,7 @@ inline constexpr int kTails = SPLINECAST_TAIL_CLAMPED + 1;
 inline constexpr int kClocks = SPLINECAST_CLOCK_LAW + 1;
 inline constexpr int kWaitStatuses = SPLINECAST_WAIT_RETIRED + 1;
 
-static_assert(SPLINECAST_APPEND_TOO_FAR_AHEAD + 1 == kAppendStatuses);
+static_assert(SPLINECAST_APPEND_ELSEWHERE + 1 == kAppendStatuses);
 static_assert(SPLINECAST_APPEND_FINISHED == static_cast<int>(AppendStatus::finished));
 static_assert(SPLINECAST_APPEND_FULL == static_cast<int>(AppendStatus::full));
 static_assert(SPLINECAST_APPEND_PAST == static_cast<int>(AppendStatus::past));

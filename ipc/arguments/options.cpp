@@ -165,6 +165,7 @@ ProducerOptions producer_options(const splinecast_producer_options* given) {
       .start = condition(all.start, all.dimensions, "options->start"),
       .limits = {.min_interval = Time(all.min_interval), .max_interval = Time(all.max_interval)},
       .horizon = Time(all.horizon),
+      .start_tolerance = all.start_tolerance,
       .capacity = all.capacity,
       .access = access_of(all.mode, all.group),
       .trust = trust_of(all.owner, "options->owner")};

@@ -123,6 +123,10 @@ class KnotBoardReader {
   [[nodiscard]] bool copy_time(Word number, Word r, Time& time,
                                core::SegmentForm& form) const noexcept;
 
+  /// Copies the position at which the board before this one came to rest; false if it is not kept.
+  /// Only for a board without knots. `position` has D values, which are not checked.
+  [[nodiscard]] bool copy_old_end(std::span<double> position) const noexcept;
+
   /// The time at which the segment of knot `number` begins, from the packed times. This is a hint:
   /// confirm it by the knot.
   [[nodiscard]] Time time_hint(Word number) const noexcept {

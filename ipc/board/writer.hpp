@@ -173,6 +173,12 @@ class KnotBoardWriter {
     store(control_[kSleeping], sleeping ? 1 : 0, std::memory_order_seq_cst);
   }
 
+  /// Keeps the position at which the board that this one replaces came to rest, for a producer: see
+  /// OldEnd. It is in the first node of slot 0, which no knot uses before knot `capacity`. Call it
+  /// before the region has a name: then each process that opens the region finds it, and nothing
+  /// changes it while the board has no knot.
+  void write_old_end(std::span<const double> position) noexcept;
+
   /// Marks the region as retired.
   void retire() noexcept { store(control_[kRetired], 1, std::memory_order_release); }
 

@@ -10,6 +10,8 @@ namespace {
 
 constexpr WaypointNames kWaypoint{"waypoint", "waypoint->position", "waypoint->velocity",
                                   "waypoint->acceleration"};
+constexpr WaypointNames kFirst{"first", "first->position", "first->velocity",
+                               "first->acceleration"};
 constexpr WaypointNames kState{"state", "state->position", "state->velocity",
                                "state->acceleration"};
 
@@ -20,6 +22,13 @@ int with(splinecast_producer* producer, const Body& body) noexcept {
 }
 
 int number(AppendStatus status) noexcept { return static_cast<int>(status); }
+
+Instant instant_of(const Waypoint& state) noexcept {
+  return {.time = state.time,
+          .position = state.position,
+          .velocity = state.velocity,
+          .acceleration = state.acceleration};
+}
 
 }  // namespace
 
@@ -76,11 +85,38 @@ int splinecast_producer_start_from(splinecast_producer* producer,
     const WaypointView view(state, own.dimensions, kState);
     require_pointer(state->velocity.data, kState.velocity);
     require_pointer(state->acceleration.data, kState.acceleration);
-    const Waypoint& at = view.waypoint();
-    return number(own.producer.start_from({.time = at.time,
-                                           .position = at.position,
-                                           .velocity = at.velocity,
-                                           .acceleration = at.acceleration}));
+    return number(own.producer.start_from(instant_of(view.waypoint())));
+  });
+}
+
+int splinecast_producer_start_moved(splinecast_producer* producer,
+                                    const splinecast_waypoint* state) {
+  return with(producer, [&](splinecast_producer& own) {
+    const WaypointView view(state, own.dimensions, kState);
+    return number(own.producer.start_from(instant_of(view.waypoint()), {.moved = true}));
+  });
+}
+
+int splinecast_producer_old_end(splinecast_producer* producer, int64_t* time,
+                                const splinecast_output* position) {
+  return with(producer, [&](splinecast_producer& own) {
+    std::int64_t* const at = require_pointer(time, "time");
+    const Outputs out =
+        require_output(*require_pointer(position, "position"), own.dimensions, "position");
+    const Instant end = own.producer.old_end();
+    if (end.position.empty()) return 0;
+    *at = end.time.count();
+    for (std::size_t d = 0; d < own.dimensions; ++d) out[d] = end.position[d];
+    return 1;
+  });
+}
+
+int splinecast_producer_elsewhere_message(splinecast_producer* producer,
+                                          const splinecast_waypoint* first, char* text,
+                                          size_t capacity) {
+  return with(producer, [&](splinecast_producer& own) {
+    const WaypointView view(first, own.dimensions, kFirst);
+    return put_text(own.producer.why_elsewhere(view.waypoint()), text, capacity);
   });
 }
 

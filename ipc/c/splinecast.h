@@ -170,7 +170,8 @@ typedef enum splinecast_append_status {
   SPLINECAST_APPEND_ALREADY_STARTED,  ///< a start state after the first waypoint
   SPLINECAST_APPEND_FINISHED,         ///< the stream has been finished
   SPLINECAST_APPEND_CANNOT_FOLLOW,    ///< no waypoint met for 3 s, and the curve moves until then
-  SPLINECAST_APPEND_TOO_FAR_AHEAD     ///< live, without a law: more than the horizon after now
+  SPLINECAST_APPEND_TOO_FAR_AHEAD,    ///< live, without a law: more than the horizon after now
+  SPLINECAST_APPEND_ELSEWHERE         ///< live: not where an earlier stream has left the machine
 } splinecast_append_status;
 
 /// Why the solver refused an item that the ring had accepted.
@@ -357,7 +358,7 @@ typedef struct splinecast_limit_excess {
 
 /// An item that the ring accepted and the solver refused.
 typedef struct splinecast_refusal {
-  uint64_t item;                   ///< number of the item: appended() before its append
+  uint64_t item;                   ///< number of the item: appended() − 1 after its append
   int64_t time;                    ///< if `has_time`: else the ring has overwritten it
   int reason;                      ///< splinecast_refusal_reason
   int has_time;                    ///< 0 or 1
@@ -407,25 +408,27 @@ typedef struct splinecast_producer_options {
   const splinecast_dimension* kinds;  ///< one per dimension, or NULL: all linear
   size_t kind_count;
   splinecast_condition
-      start;             ///< one that can be met online: up to SPLINECAST_ACCELERATION, or OWN
-  int64_t min_interval;  ///< between two waypoints: 1 ns or more
-  int64_t max_interval;  ///< min_interval or more, below 2⁶¹ ns
-  size_t capacity;       ///< ring items, 2 to 2²⁴; rounded up to a power of two
-  int clock;             ///< splinecast_clock
-  uint32_t mode;         ///< permission bits of the regions, up to 0777
-  int64_t group;         ///< group of the regions; −1: this process's
-  int64_t owner;         ///< also trust regions of this user; −1: own user and root only
-  const char* law;       ///< time law that the stream follows, with SPLINECAST_CLOCK_LAW; or NULL
-  int64_t horizon;       ///< live, without a law: how far ahead of now a time may be; above 0;
-                         ///< INT64_MAX: no time is compared with now
+      start;               ///< one that can be met online: up to SPLINECAST_ACCELERATION, or OWN
+  int64_t min_interval;    ///< between two waypoints: 1 ns or more
+  int64_t max_interval;    ///< min_interval or more, below 2⁶¹ ns
+  size_t capacity;         ///< ring items, 2 to 2²⁴; rounded up to a power of two
+  int clock;               ///< splinecast_clock
+  uint32_t mode;           ///< permission bits of the regions, up to 0777
+  int64_t group;           ///< group of the regions; −1: this process's
+  int64_t owner;           ///< also trust regions of this user; −1: own user and root only
+  const char* law;         ///< time law that the stream follows, with SPLINECAST_CLOCK_LAW; or NULL
+  int64_t horizon;         ///< live, without a law: how far ahead of now a time may be; above 0;
+                           ///< INT64_MAX: no time is compared with now
+  double start_tolerance;  ///< live: distance of the first waypoint from the old end, in dimensions
+                           ///< without limits: 0 or more, in the dimension's unit or rad
 } splinecast_producer_options;
 /// One dimension, a live stream from a full stop, intervals of 1 µs to 1 h, 1,024 items, a horizon
-/// of 1 h.
-#define SPLINECAST_PRODUCER_OPTIONS_INIT                                             \
-  {                                                                                  \
-    sizeof(splinecast_producer_options), 1, NULL, 0, NULL, 0, NULL, 0,               \
-        {SPLINECAST_HALT, SPLINECAST_NO_VECTOR}, 1000, INT64_C(3600000000000), 1024, \
-        SPLINECAST_CLOCK_MONOTONIC, 0600, -1, -1, NULL, INT64_C(3600000000000)       \
+/// of 1 h, a start tolerance of 0.001.
+#define SPLINECAST_PRODUCER_OPTIONS_INIT                                              \
+  {                                                                                   \
+    sizeof(splinecast_producer_options), 1, NULL, 0, NULL, 0, NULL, 0,                \
+        {SPLINECAST_HALT, SPLINECAST_NO_VECTOR}, 1000, INT64_C(3600000000000), 1024,  \
+        SPLINECAST_CLOCK_MONOTONIC, 0600, -1, -1, NULL, INT64_C(3600000000000), 0.001 \
   }
 
 /// What a replacement would do. The caller sets the six outputs: largest magnitudes of velocity
@@ -489,10 +492,29 @@ SPLINECAST_API int splinecast_producer_preview_replace(splinecast_producer* prod
                                                        const splinecast_waypoints* waypoints,
                                                        int64_t blend, splinecast_preview* out);
 
-/// Sets the state in which the stream starts, before the first waypoint. Velocity and acceleration
-/// must be given. Returns a splinecast_append_status. As append.
+/// Sets the state in which the stream starts, before the first waypoint: where the machine is.
+/// Velocity and acceleration must be given. Returns a splinecast_append_status: `elsewhere` if an
+/// earlier live stream has left the machine farther away than start_tolerance. As append.
 SPLINECAST_API int splinecast_producer_start_from(splinecast_producer* producer,
                                                   const splinecast_waypoint* state);
+
+/// The same for a machine that was moved since the earlier stream: it is not compared with that
+/// end. Without velocity and acceleration nothing is written: the machine rests at the position,
+/// and the first waypoint is compared with it.
+SPLINECAST_API int splinecast_producer_start_moved(splinecast_producer* producer,
+                                                   const splinecast_waypoint* state);
+
+/// Where an earlier live stream of this name has left the machine, and the earliest time at which
+/// this stream can start there. Returns 1, or 0 if there is no such place: then nothing is written.
+/// System calls; may allocate.
+SPLINECAST_API int splinecast_producer_old_end(splinecast_producer* producer, int64_t* time,
+                                               const splinecast_output* position);
+
+/// Writes why a first waypoint is `elsewhere`, as splinecast_refusal_message does; "" if there is
+/// no old end.
+SPLINECAST_API int splinecast_producer_elsewhere_message(splinecast_producer* producer,
+                                                         const splinecast_waypoint* first,
+                                                         char* text, size_t capacity);
 
 /// Ends the stream at its last waypoint, with this condition; NULL: a full stop. A live stream
 /// needs `clamped` or `halt`. Returns a splinecast_append_status. Allocates if the condition has

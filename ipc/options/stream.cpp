@@ -1,10 +1,12 @@
 #include "ipc/options/stream.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <span>
 #include <stdexcept>
 
+#include "core/basics/number_text.hpp"
 #include "ipc/layout/areas.hpp"
 #include "ipc/layout/common_control.hpp"
 #include "ipc/layout/header.hpp"
@@ -104,6 +106,10 @@ RegionHeader make_header(const ProducerOptions& options, std::uint64_t stream_id
   if (options.horizon <= Time::zero()) {
     throw BadRequest("a horizon of " + std::to_string(options.horizon.count()) +
                      " ns is not above 0");
+  }
+  if (!(options.start_tolerance >= 0) || !std::isfinite(options.start_tolerance)) {
+    throw BadRequest("a start tolerance of " + core::number_text(options.start_tolerance) +
+                     " is not 0 or more");
   }
   require_usable("start", options.start, options.dimensions);
   if ((options.clock == StreamClock::law) == options.law.empty()) {

@@ -6,6 +6,7 @@
 #include "ipc/memory/futex.hpp"
 #include "ipc/options/curve.hpp"
 #include "ipc/options/stream.hpp"
+#include "ipc/owned/old_end.hpp"
 #include "ipc/owned/old_motion.hpp"
 #include "splinecast/errors.hpp"
 
@@ -13,7 +14,7 @@ namespace splinecast::ipc {
 namespace {
 
 OwnedBoard make_board(const std::string& stream, const RegionHeader& ring_header,
-                      const SolverOptions& options) {
+                      const SolverOptions& options, const CurveEnd& old = {}) {
   RegionHeader header = ring_header;
   header.kind = static_cast<std::uint64_t>(RegionKind::spline);
   write_options(options, header);
@@ -26,6 +27,7 @@ OwnedBoard make_board(const std::string& stream, const RegionHeader& ring_header
   write_header(region.bytes(), header);
   enter_owner(region.bytes(), header);
   OwnedBoard board(std::move(region), header, layout, false);
+  if (!old.position.empty()) board.writer.write_old_end(old.position);
   if (!board.region.link(stream, RegionKind::spline)) {
     throw BadRegion(region_path(stream, RegionKind::spline) +
                     " was created by another process at the same time");
@@ -56,10 +58,12 @@ std::variant<OwnedBoard, Occupied> own_board(const std::string& stream,
     const Time now = clock.now();
     require_near_end(stream, end, now);
     if (now < end) return Occupied{end};
+    const bool follows = may_follow(ring_header, header);
+    const CurveEnd old = follows ? end_of_curve(header, board.reader) : CurveEnd{};
     board.writer.retire();
     wake_all(board.writer.revision_word());
     unlink_region(stream, RegionKind::spline);
-    return make_board(stream, ring_header, options);
+    return make_board(stream, ring_header, options, old);
   }
   require_same_stream(ring_header, header);
   require_same_options(stream, header, options);

@@ -54,8 +54,8 @@ class HeldProducer {
                             .position = position.values(),
                             .velocity = given_velocity.values(),
                             .acceleration = given_acceleration.values()};
-    return accept({.what = "waypoint", .status = {}, .time = time, .position = waypoint.position},
-                  timeout, [&](Producer& producer) { return producer.append(waypoint); });
+    return accept(asked("waypoint", waypoint), timeout,
+                  [&](Producer& producer) { return producer.append(waypoint); });
   }
 
   std::uint64_t append_many(py::handle times, py::handle positions, py::handle velocities,
@@ -64,11 +64,15 @@ class HeldProducer {
   std::uint64_t replace_from(py::handle t, py::handle times, py::handle positions,
                              py::handle velocities, py::handle accelerations, py::handle blend) {
     const Time time = instant(t);
-    const Path path(*this, times, positions, velocities, accelerations);
+    const Path path(dimensions_, times, positions, velocities, accelerations);
     const ReplaceOptions options = blend_of(blend);
-    RefusedItem item{.what = "replacement", .status = {}, .time = time};
-    if (!path.waypoints.empty()) item.on_host_clock = path.waypoints.back().time;
-    return accept(item, py::int_(0), [&](Producer& producer) {
+    Asked asked{{.what = "replacement", .status = {}, .time = time}, time, {}};
+    asked.items += path.waypoints.size();
+    if (!path.waypoints.empty()) {
+      asked.first = path.waypoints.front();
+      asked.latest = path.waypoints.back().time;
+    }
+    return accept(asked, py::int_(0), [&](Producer& producer) {
       return producer.replace_from(time, path.waypoints, options);
     });
   }
@@ -76,7 +80,7 @@ class HeldProducer {
   py::object preview_replace(py::handle t, py::handle times, py::handle positions,
                              py::handle velocities, py::handle accelerations, py::handle blend) {
     const Time time = instant(t);
-    const Path path(*this, times, positions, velocities, accelerations);
+    const Path path(dimensions_, times, positions, velocities, accelerations);
     const ReplaceOptions options = blend_of(blend);
     ReplacePreview preview;
     producer_.require_own_process();
@@ -89,23 +93,39 @@ class HeldProducer {
   }
 
   std::uint64_t start_from(py::handle t, py::handle position, py::handle velocity,
-                           py::handle acceleration) {
+                           py::handle acceleration, bool moved) {
     const Row x(position, "position");
     const Row v(velocity, "velocity");
     const Row a(acceleration, "acceleration");
+    const std::vector<double> rest(dimensions_);
+    const bool is_whole = !moved || !v.values().empty() || !a.values().empty();
+    const auto values = [&](const Row& row) {
+      return row.values().empty() && is_whole ? std::span<const double>(rest) : row.values();
+    };
     const Instant state{.time = instant(t),
                         .position = x.values(),
-                        .velocity = v.values(),
-                        .acceleration = a.values()};
-    return accept(
-        {.what = "start state", .status = {}, .time = state.time, .position = state.position},
-        py::int_(0), [&](Producer& producer) { return producer.start_from(state); });
+                        .velocity = values(v),
+                        .acceleration = values(a)};
+    return accept(asked("start state", {.time = state.time, .position = state.position}),
+                  py::int_(0),
+                  [&](Producer& producer) { return producer.start_from(state, {.moved = moved}); });
+  }
+
+  py::object old_end() {
+    return producer_.use([](Producer& producer) -> py::object {
+      const Instant end = producer.old_end();
+      if (end.position.empty()) return py::none();
+      return py::make_tuple(
+          end.time.count(),
+          py::array_t<double>(static_cast<py::ssize_t>(end.position.size()), end.position.data()));
+    });
   }
 
   std::uint64_t finish(py::handle end, py::handle timeout) {
     const Condition how = condition(end);
-    const std::uint64_t item = accept({.what = "end of the stream", .status = {}}, timeout,
-                                      [&](Producer& producer) { return producer.finish(how); });
+    const std::uint64_t item =
+        accept({{.what = "end of the stream", .status = {}}, std::nullopt, {}}, timeout,
+               [&](Producer& producer) { return producer.finish(how); });
     is_finished_ = true;
     return item;
   }
@@ -161,51 +181,33 @@ class HeldProducer {
 
  private:
   void stop_at_once() {
-    accept({.what = "stop", .status = {}}, py::float_(kFinishPatience),
+    accept({{.what = "stop", .status = {}}, std::nullopt, {}}, py::float_(kFinishPatience),
            [](Producer& producer) { return producer.replace_from(Time::min(), {}); });
   }
 
-  /// Waypoints from arrays. Their spans point into the arrays, or into copies of what is not
-  /// contiguous.
-  struct Path {
-    Path(const HeldProducer& owner, py::handle times, py::handle positions, py::handle velocities,
-         py::handle accelerations)
-        : position(positions, "positions"),
-          velocity(velocities, "velocities"),
-          acceleration(accelerations, "accelerations") {
-      if (times.is_none()) {
-        position.require(0, 0, true);
-        return;
-      }
-      const Instants instants(times);
-      instants.require_line();
-      const auto ns = instants.times(scratch);
-      const std::size_t dimensions = owner.dimensions();
-      position.require(ns.size(), dimensions, ns.empty());
-      velocity.require(ns.size(), dimensions, true);
-      acceleration.require(ns.size(), dimensions, true);
-      const Waypoints all{.dimensions = dimensions,
-                          .times = ns,
-                          .positions = position.all(),
-                          .velocities = velocity.all(),
-                          .accelerations = acceleration.all()};
-      for (std::size_t i = 0; i < ns.size(); ++i) waypoints.push_back(all[i]);
-    }
-
-    Rows position;
-    Rows velocity;
-    Rows acceleration;
-    std::vector<Time> scratch;
-    std::vector<Waypoint> waypoints;
+  /// A call, as a message describes it.
+  struct Asked {
+    RefusedItem item;
+    std::optional<Time> latest;  ///< its time, or that of its last waypoint
+    Waypoint first;              ///< the waypoint that may start the stream, if its position is set
+    std::uint64_t items = 1;
   };
+  [[nodiscard]] static Asked asked(const char* what, const Waypoint& waypoint) {
+    return {{.what = what, .status = {}, .time = waypoint.time, .position = waypoint.position},
+            waypoint.time,
+            waypoint};
+  }
 
   /// Appends an item, which may wait for room. Returns its number; raises Refused.
   template <typename Append>
-  std::uint64_t accept(RefusedItem item, py::handle timeout, const Append& append) {
+  std::uint64_t accept(const Asked& asked, py::handle timeout, const Append& append) {
     std::uint64_t number = 0;
+    RefusedItem item = asked.item;
     const auto try_once = [&](Producer& producer) {
       number = producer.appended();
-      return append(producer);
+      const AppendStatus status = append(producer);
+      if (producer.appended() > number) number = producer.appended() - asked.items;
+      return status;
     };
     item.status = producer_.use(try_once);
     if (item.status == AppendStatus::full) {
@@ -214,13 +216,20 @@ class HeldProducer {
         item.status = producer_.use(try_once);
       }
     }
-    if (item.status != AppendStatus::accepted) refuse(item);
+    if (item.status != AppendStatus::accepted) refuse(asked, item.status);
     return number;
   }
 
-  [[noreturn]] void refuse(RefusedItem item) const {
-    if (!item.on_host_clock) item.on_host_clock = item.time;
-    if (clock_ != StreamClock::monotonic) item.on_host_clock.reset();
+  [[noreturn]] void refuse(const Asked& asked, AppendStatus status) {
+    RefusedItem item = asked.item;
+    item.status = status;
+    const bool is_about_now = status == AppendStatus::past || status == AppendStatus::too_far_ahead;
+    if (is_about_now && clock_ == StreamClock::monotonic && asked.latest) {
+      item.reason = compared_with_now(*asked.latest);
+    } else if (status == AppendStatus::elsewhere) {
+      item.reason =
+          producer_.use([&](Producer& producer) { return producer.why_elsewhere(asked.first); });
+    }
     throw_refused(item);
   }
 
@@ -245,25 +254,23 @@ std::uint64_t HeldProducer::append_many(py::handle times, py::handle positions,
   const Time end = end_of(optional_duration(timeout, "timeout"));
   std::size_t i = 0;
   AppendStatus status = AppendStatus::accepted;
+  std::uint64_t first = producer_.use([](Producer& producer) { return producer.appended(); });
   const auto append_batch = [&](Producer& producer) {
     status = AppendStatus::accepted;
     for (std::size_t n = 0; n < kBatch && i < waypoints.size(); ++n, ++i) {
       status = producer.append(waypoints[i]);
       if (status != AppendStatus::accepted) return;
+      if (i == 0) first = producer.appended() - 1;
     }
   };
-  const std::uint64_t first = producer_.use([](Producer& producer) { return producer.appended(); });
   while (i < waypoints.size()) {
     without_gil([&] { producer_.use_without_gil(append_batch); });
     if (status == AppendStatus::accepted) {
       check_signals();
     } else if (status != AppendStatus::full || !wait_for_room(end)) {
-      const Waypoint refused = waypoints[i];
-      refuse({.what = "waypoint",
-              .status = status,
-              .time = refused.time,
-              .position = refused.position,
-              .index = i});
+      Asked item = asked("waypoint", waypoints[i]);
+      item.item.index = i;
+      refuse(item, status);
     }
   }
   return first;
@@ -288,7 +295,9 @@ void define_appends(Class& producer) {
            py::arg("times") = None(), py::arg("positions") = None(), py::arg("velocities") = None(),
            py::arg("accelerations") = None(), py::arg("blend") = 0.0, doc::Producer_preview_replace)
       .def("start_from", &HeldProducer::start_from, py::arg("t"), py::arg("position"),
-           py::arg("velocity"), py::arg("acceleration"), doc::Producer_start_from)
+           py::arg("velocity") = None(), py::arg("acceleration") = None(), py::arg("moved") = false,
+           doc::Producer_start_from)
+      .def("old_end", &HeldProducer::old_end, doc::Producer_old_end)
       .def("finish", &HeldProducer::finish, py::arg("end") = "halt", timeout, doc::Producer_finish);
 }
 
@@ -350,7 +359,7 @@ std::unique_ptr<HeldProducer> make(const std::string& stream, const py::object& 
   require_keywords(
       keywords, "Producer",
       {"names", "units", "dimensions", "kinds", "clock", "law", "start", "min_interval",
-       "max_interval", "horizon", "capacity", "mode", "group", "owner"});
+       "max_interval", "horizon", "start_tolerance", "capacity", "mode", "group", "owner"});
   return std::make_unique<HeldProducer>(stream, producer_options(keywords));
 }
 

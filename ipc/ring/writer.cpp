@@ -41,6 +41,10 @@ WaypointRingWriter::WaypointRingWriter(std::span<std::byte> region, const RingLa
     last_time_ = past.time(written_ - back);
     has_last_ = is_found && last_time_ != kEarliestStop;
   }
+  has_begun_ = written_ > layout_.capacity;
+  for (Word i = 0; i < written_ && !has_begun_; ++i) {
+    has_begun_ = past.kind(i) != ItemKind::replace && past.kind(i) != ItemKind::finish;
+  }
   if (!is_time_in_range(last_time_)) {
     throw BadRegion("the ring's last item has time " + std::to_string(last_time_.count()) +
                     " ns, not within 2^62 ns of 0");
@@ -93,8 +97,13 @@ bool WaypointRingWriter::is_past(Time time, const Solved& solved) const noexcept
   const bool begins = !has_last_ && solved.horizon;
   if (begins && time < solved.clock->now()) return true;
   if (time >= solved.settled_until) return false;
-  if (!has_last_) return true;
-  const Time now = solved.clock != nullptr ? solved.clock->now() : solved.settled_until;
+  return !has_last_ || is_long_past(time, solved);
+}
+
+/// Whether a time is more than kMostLate before now and the settled time.
+bool WaypointRingWriter::is_long_past(Time time, const Solved& solved) noexcept {
+  const bool has_now = solved.clock != nullptr && (time < solved.settled_until || solved.horizon);
+  const Time now = has_now ? solved.clock->now() : solved.settled_until;
   return time + kMostLate < std::max(now, solved.settled_until);
 }
 
@@ -208,8 +217,8 @@ AppendStatus WaypointRingWriter::start_from(const Instant& state, const Solved& 
   if (status == AppendStatus::accepted && (state.velocity.empty() || state.acceleration.empty())) {
     status = AppendStatus::wrong_dimension;
   }
-  if (status == AppendStatus::accepted && written_ > 0) status = AppendStatus::already_started;
-  if (status == AppendStatus::accepted && is_past(state.time, solved)) {
+  if (status == AppendStatus::accepted && has_begun_) status = AppendStatus::already_started;
+  if (status == AppendStatus::accepted && is_long_past(state.time, solved)) {
     status = AppendStatus::past;
   }
   if (status == AppendStatus::accepted && is_too_far_ahead(state.time, solved)) {
@@ -278,6 +287,8 @@ std::span<Word> WaypointRingWriter::item_words(Word index) const noexcept {
 void WaypointRingWriter::put_item(Word index, Word kind_and_flags,
                                   const Waypoint& values) noexcept {
   const auto words = item_words(index);
+  const auto kind = static_cast<ItemKind>(kind_and_flags & kKindMask);
+  has_begun_ = has_begun_ || (kind != ItemKind::replace && kind != ItemKind::finish);
   const Word flags = (values.velocity.empty() ? 0 : kHasVelocity) |
                      (values.acceleration.empty() ? 0 : kHasAcceleration);
   store(words[kItemKind], kind_and_flags | flags, std::memory_order_release);

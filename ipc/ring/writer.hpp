@@ -93,6 +93,12 @@ class WaypointRingWriter {
   /// items. O(D), wait-free.
   [[nodiscard]] AppendStatus append(const Waypoint& waypoint, const Solved& solved) noexcept;
 
+  /// Returns what `append` would return. Changes nothing.
+  [[nodiscard]] AppendStatus check(const Waypoint& waypoint, const Solved& solved) const noexcept;
+
+  /// Counts the refusal of an item that the caller has refused, and returns its status.
+  AppendStatus counted(AppendStatus status) noexcept;
+
   /// Replaces everything after t. `waypoints` may be empty; they must be later than t and must fit
   /// into the ring together with the replacement itself and control_reserve(). One store of
   /// `written` makes all of it visible. O(D) per waypoint. The entry onto the waypoints has at
@@ -125,6 +131,9 @@ class WaypointRingWriter {
   [[nodiscard]] Word written() const noexcept { return written_; }
   [[nodiscard]] bool finished() const noexcept { return finished_; }
 
+  /// Whether the ring has, or had, a waypoint, a start state or a plan of a law.
+  [[nodiscard]] bool has_begun() const noexcept { return has_begun_; }
+
   /// The time of the newest item, if there is one: the next waypoint must be later.
   [[nodiscard]] Time last_time() const noexcept { return last_time_; }
 
@@ -136,13 +145,13 @@ class WaypointRingWriter {
 
  private:
   [[nodiscard]] AppendStatus check_form(const Waypoint& waypoint) const noexcept;
-  [[nodiscard]] AppendStatus check(const Waypoint& waypoint, const Solved& solved) const noexcept;
   [[nodiscard]] bool has_room(Word items, const Solved& solved, std::size_t free) const noexcept {
     return written_ - solved.consumed + items + free <= layout_.capacity;
   }
   [[nodiscard]] bool repeats_stop(Time from, const Solved& solved) const noexcept;
   [[nodiscard]] static bool is_too_far_ahead(Time time, const Solved& solved) noexcept;
   [[nodiscard]] bool is_past(Time time, const Solved& solved) const noexcept;
+  [[nodiscard]] static bool is_long_past(Time time, const Solved& solved) noexcept;
   [[nodiscard]] bool cannot_follow(Time time, const Solved& solved) const noexcept;
   [[nodiscard]] bool follows_pause(Time time, const Solved& solved) const noexcept;
   [[nodiscard]] static Time effect_of_stop(Time t, const Solved& solved) noexcept;
@@ -152,7 +161,6 @@ class WaypointRingWriter {
   [[nodiscard]] std::span<Word> item_words(Word index) const noexcept;
   void put_item(Word index, Word kind_and_flags, const Waypoint& values) noexcept;
   void publish(Word items, Time last) noexcept;
-  [[nodiscard]] AppendStatus counted(AppendStatus status) noexcept;
 
   RingLayout layout_;
   IngestLimits limits_;
@@ -160,6 +168,7 @@ class WaypointRingWriter {
   std::span<Word> items_;
   Word written_ = 0;
   bool finished_ = false;
+  bool has_begun_ = false;
   bool has_last_ = false;
   bool ends_with_stop_ = false;  ///< the newest item is a stop
   Time last_time_{};

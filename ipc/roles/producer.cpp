@@ -1,5 +1,6 @@
 #include "splinecast/producer.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <thread>
@@ -17,6 +18,7 @@
 #include "ipc/options/curve.hpp"
 #include "ipc/options/stream.hpp"
 #include "ipc/owned/ring.hpp"
+#include "ipc/owned/stream_start.hpp"
 #include "ipc/ring/reader.hpp"
 #include "ipc/ring/writer.hpp"
 #include "ipc/roles/refusals.hpp"
@@ -58,6 +60,7 @@ struct Producer::Impl {
   std::optional<SolverView> solver;
   ipc::WaypointRingReader sent;
   ipc::RefusalReader refused;
+  ipc::StreamStart start;
   Time settled_until = Time::min();
   std::optional<ipc::Word> replacement;  ///< the item of the last one
   MonotonicClock clock;
@@ -76,7 +79,8 @@ struct Producer::Impl {
                            })),
         continues(ring.writer.written() > 0),
         sent(ring.region.bytes(), ring.layout),
-        refused(ring.writer.written()) {
+        refused(ring.writer.written()),
+        start(stream, ring, options) {
     if (ring.header.law_id != 0) {
       law = std::make_unique<ipc::LawFollower>(ring.header, options.trust);
       law_clock = std::make_unique<ipc::LawClock>(*law, clock);
@@ -143,6 +147,24 @@ struct Producer::Impl {
     return known;
   }
 
+  /// The header of the solver's board; null until a solver has attached.
+  [[nodiscard]] const ipc::RegionHeader* board_header() const noexcept {
+    return solver ? &solver->header : nullptr;
+  }
+
+  AppendStatus append(const Waypoint& waypoint) noexcept {
+    const auto known = look_at_solver();
+    return start.is_open() ? start.append(waypoint, ring.writer, known, board_header())
+                           : ring.writer.append(waypoint, known);
+  }
+
+  AppendStatus replace_from(Time t, std::span<const Waypoint> waypoints, Time blend) noexcept {
+    const auto known = look_at_solver();
+    return start.is_open()
+               ? start.replace_from(t, waypoints, blend, ring.writer, known, board_header())
+               : ring.writer.replace_from(t, waypoints, known, blend);
+  }
+
   /// Wakes the solver if an item was accepted. Returns the status.
   AppendStatus wake_solver_for(AppendStatus status) noexcept {
     // Looks again after the store: a solver that attached meanwhile may already sleep.
@@ -182,16 +204,18 @@ Producer& Producer::operator=(Producer&&) noexcept = default;
 Producer::~Producer() = default;
 
 AppendStatus Producer::append(const Waypoint& waypoint) noexcept {
-  return impl_->wake_solver_for(impl_->ring.writer.append(waypoint, impl_->look_at_solver()));
+  return impl_->wake_solver_for(impl_->append(waypoint));
 }
 
 AppendStatus Producer::replace_from(Time t, std::span<const Waypoint> waypoints,
                                     const ReplaceOptions& options) noexcept {
   const ipc::Word item = impl_->ring.writer.written();
-  const AppendStatus status =
-      impl_->ring.writer.replace_from(t, waypoints, impl_->look_at_solver(), options.blend);
-  // A stop that repeats one in the ring adds no item.
-  if (impl_->ring.writer.written() != item) impl_->replacement = item;
+  const AppendStatus status = impl_->replace_from(t, waypoints, options.blend);
+  // A stop that repeats one in the ring adds no item; a start state may precede the replacement.
+  const ipc::Word items = waypoints.empty() ? 1 : 1 + waypoints.size();
+  if (impl_->ring.writer.written() != item && status == AppendStatus::accepted) {
+    impl_->replacement = impl_->ring.writer.written() - items;
+  }
   return impl_->wake_solver_for(status);
 }
 
@@ -232,8 +256,19 @@ std::optional<ReplacementBegin> Producer::replacement_begin() {
   return ipc::begin_of_run(impl_->solver->board, *impl_->replacement);
 }
 
-AppendStatus Producer::start_from(const Instant& state) noexcept {
-  return impl_->wake_solver_for(impl_->ring.writer.start_from(state, impl_->look_at_solver()));
+AppendStatus Producer::start_from(const Instant& state, const StartOptions& options) noexcept {
+  return impl_->wake_solver_for(
+      impl_->start.start_from(state, options, impl_->ring.writer, impl_->look_at_solver()));
+}
+
+Instant Producer::old_end() noexcept {
+  if (!impl_->start.is_open() || !impl_->start.look()) return {};
+  return impl_->start.state(impl_->look_at_solver());
+}
+
+std::string Producer::why_elsewhere(const Waypoint& first) {
+  if (!impl_->start.is_open()) return {};
+  return impl_->start.why_elsewhere(first, impl_->look_at_solver(), impl_->board_header());
 }
 
 Time Producer::now() noexcept {

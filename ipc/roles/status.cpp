@@ -34,6 +34,8 @@ std::string_view to_string(AppendStatus status) noexcept {
       return "cannot follow";
     case AppendStatus::too_far_ahead:
       return "too far ahead";
+    case AppendStatus::elsewhere:
+      return "elsewhere";
   }
   return "unknown";
 }

@@ -61,6 +61,10 @@ std::optional<Refusal> StreamSolver::time_refusal(Time time) const noexcept {
     return std::nullopt;
   }
   const Time newest = curve_.newest_time();
+  // A run without waypoints may begin after the time of the first ones, which it passes over then.
+  if (live_ && curve_.is_stop() && time <= newest) {
+    return time < newest - kMostLate ? std::optional(Refusal::past) : std::nullopt;
+  }
   const Time earliest = is_starved() ? settled_until_ : newest;
   const auto status = judge_interval(time - newest, limits_);
   if (status == AppendStatus::too_far_apart && time - earliest > limits_.max_interval) {
@@ -249,13 +253,14 @@ void StreamSolver::take_start_state(Word number) noexcept {
     return refuse(number, Refusal::lacks_derivatives);
   }
   if (!is_time_in_range(state.time)) return refuse(number, Refusal::too_far_apart);
-  if (live_ && state.time < settled_until_) return refuse(number, Refusal::past);
+  // One that comes late begins as early as possible.
+  const Time begin = live_ ? std::max(state.time, settled_until_) : state.time;
   ++summary_.controls;
-  curve_.begin({.time = state.time,
+  curve_.begin({.time = begin,
                 .position = state.position,
                 .velocity = state.velocity,
                 .acceleration = state.acceleration});
-  summary_.newest_time = state.time;
+  summary_.newest_time = begin;
 }
 
 void StreamSolver::take_finish(Word number) noexcept {

@@ -36,9 +36,9 @@ struct Waypoint {
 /// A state at an instant. Spans hold one value per dimension; does not own them.
 struct Instant {
   Time time{};
-  std::span<const double> position;
-  std::span<const double> velocity;
-  std::span<const double> acceleration;
+  std::span<const double> position{};
+  std::span<const double> velocity{};
+  std::span<const double> acceleration{};
 };
 
 /// Waypoints of a whole recording: values are [waypoint][dimension]; `velocities` and

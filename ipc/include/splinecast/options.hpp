@@ -51,6 +51,8 @@ struct ProducerOptions {
   Time horizon{3'600'000'000'000};  ///< of a live stream without a law: how far ahead of now a time
                                     ///< may be; above 0, default 1 h; max(): no time is compared
                                     ///< with now, for a simulated clock
+  double start_tolerance = 0.001;   ///< of a live stream: see Producer::append; in the dimension's
+                                    ///< unit, rad for a quaternion; 0 or more
   std::size_t capacity = 1024;      ///< ring items, 2 to 2²⁴; rounded up to a power of two
   RegionAccess access{};
   Trust trust{};

@@ -18,8 +18,8 @@ namespace [[gnu::visibility("default")]] splinecast {
 
 /// An item that the ring accepted and the solver refused.
 struct ItemRefusal {
-  std::uint64_t item = 0;      ///< number of the item: Producer::appended() before its append;
-                               ///< waypoint i of a replacement: appended() before the call, + 1 + i
+  std::uint64_t item = 0;      ///< number of the item: Producer::appended() − 1 after its append;
+                               ///< waypoint i of n of a replacement: appended() − n + i after it
   std::optional<Time> time{};  ///< of the item; unset if the ring has overwritten it
   Refusal reason{};
   std::optional<LimitExcess> excess{};  ///< for `beyond_limits`, while the board has it
@@ -83,6 +83,14 @@ struct ReplaceOptions {
   Time blend{};
 };
 
+/// What is known of a start state.
+struct StartOptions {
+  /// The machine was moved since the earlier stream of this name came to rest: the state is not
+  /// compared with that end. If the state then has a position only, nothing is written: the machine
+  /// rests there, and the first waypoint is compared with that position.
+  bool moved = false;
+};
+
 /// The role that appends waypoints: the one writer of a stream's waypoint ring.
 ///
 /// One thread uses it. Other processes read what it writes; while it lives, no other process can
@@ -121,6 +129,14 @@ class Producer {
   /// Appends a waypoint. O(D), never blocks or allocates; one system call if it wakes a sleeping
   /// solver. Until a solver has attached, each call looks for one, which takes a system call and
   /// may allocate. After `full`, retry later.
+  ///
+  /// The first waypoint of a live stream is compared with the place where an earlier live stream of
+  /// this name has left the machine, if its board is there and has the same dimensions and kinds: a
+  /// controller that held that place must not be moved in a step. If a motion from rest there
+  /// reaches the waypoint at its time within the limits that are given, the stream starts there, by
+  /// an entry; this adds a start state to the ring. In a dimension without limits the waypoint must
+  /// be there within ProducerOptions::start_tolerance. Else it is refused as `elsewhere`: use
+  /// start_from(). The same holds for the first waypoint of replace_from().
   [[nodiscard]] AppendStatus append(const Waypoint& waypoint) noexcept;
 
   /// Replaces everything after time t by `waypoints`, which may be empty, as one revision. The
@@ -158,10 +174,24 @@ class Producer {
   void preview_replace(Time t, std::span<const Waypoint> waypoints, const ReplaceOptions& options,
                        ReplacePreview& out);
 
-  /// Sets the state in which the stream starts. Call it before the first waypoint is appended; that
-  /// waypoint must be later. Velocity and acceleration have one value per dimension. Otherwise as
-  /// append.
-  [[nodiscard]] AppendStatus start_from(const Instant& state) noexcept;
+  /// Sets the state in which the stream starts: where the machine is. Call it before the first
+  /// waypoint is appended; that waypoint must be later. Velocity and acceleration have one value
+  /// per dimension. A state that comes late begins at settled_until. `elsewhere` if an earlier live
+  /// stream has left the machine farther away than ProducerOptions::start_tolerance, unless
+  /// StartOptions::moved. Otherwise as append.
+  [[nodiscard]] AppendStatus start_from(const Instant& state,
+                                        const StartOptions& options = {}) noexcept;
+
+  /// The state at rest in which an earlier live stream of this name has left the machine, at the
+  /// earliest time at which this stream can start there, for start_from(). Its position is empty if
+  /// there was none, its board has been removed or has other dimensions or kinds, its solver may
+  /// still move its end, or this stream has started. Valid until the next call of the producer.
+  /// System calls; may allocate.
+  [[nodiscard]] Instant old_end() noexcept;
+
+  /// Why a first waypoint or start state is `elsewhere`: both positions, the distance, and what to
+  /// do. Empty if there is no old end. Throws std::bad_alloc only.
+  [[nodiscard]] std::string why_elsewhere(const Waypoint& first);
 
   /// The earliest time at which the curve may still change: of a live stream, the settled time that
   /// its solver last published; min() of a recorded stream, and before a solver has published.

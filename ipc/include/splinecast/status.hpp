@@ -35,8 +35,10 @@ enum class AppendStatus : std::uint8_t {
   too_far_ahead,    ///< live streams without a law: the time, also that of a replacement, a stop or
                     ///< a start state, is more than ProducerOptions::horizon after now; see
                     ///< compared_with_now()
+  elsewhere,  ///< the first waypoint or a start state of a live stream is not where an earlier
+              ///< stream of the name has left the machine; see Producer::why_elsewhere()
 };
-inline constexpr std::uint8_t kAppendStatuses = 15;
+inline constexpr std::uint8_t kAppendStatuses = 16;
 
 /// Why the solver refused an item that the ring had accepted. Each reason has its own counter.
 enum class Refusal : std::uint8_t {

@@ -76,6 +76,10 @@ class Producer:
     horizon : float
         Of a live stream without a law: how far ahead of now a time may be [s]. A time of another
         clock is refused, and the message names that clock.
+    start_tolerance : float
+        Of a live stream: how far the first waypoint may be from where an earlier stream of this
+        name has left the machine, in a dimension without limits; in the dimension's unit, rad for a
+        quaternion.
     capacity : int
         Items of the ring, 2 to 2**24; rounded up to a power of two.
     mode : int
@@ -109,6 +113,7 @@ class Producer:
         min_interval: Seconds = 1e-6,
         max_interval: Seconds = 3600.0,
         horizon: Seconds = 3600.0,
+        start_tolerance: float = 0.001,
         capacity: int = 1024,
         mode: int = 0o600,
         group: Optional[int] = None,
@@ -222,16 +227,27 @@ class Producer:
     ) -> ReplacePreview:
         """Compute what `replace_from` with these arguments would do now, and change nothing."""
     def start_from(
-        self, t: Instant, position: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike
+        self,
+        t: Instant,
+        position: ArrayLike,
+        velocity: Optional[ArrayLike] = None,
+        acceleration: Optional[ArrayLike] = None,
+        moved: bool = False,
     ) -> int:
-        """Set the state in which the stream starts, before its first waypoint.
+        """Set the state in which the stream starts, before its first waypoint: where the machine is.
 
         Parameters
         ----------
         t : int or float
-            Before the first waypoint.
-        position, velocity, acceleration : array-like
+            Before the first waypoint. A state that comes late begins as early as possible.
+        position : array-like
             Shape (D,).
+        velocity, acceleration : array-like, optional
+            Shape (D,); default 0: at rest.
+        moved : bool
+            The machine was moved since an earlier stream of this name came to rest: the state is not
+            compared with that end. With a position only nothing is appended: the machine rests
+            there, and the first waypoint is compared with it.
 
         Returns
         -------
@@ -242,6 +258,15 @@ class Producer:
         ------
         Refused
             The ring refuses the state: see its `status`.
+        """
+    def old_end(self) -> Optional[Tuple[int, NDArray[np.float64]]]:
+        """Return where an earlier live stream of this name has left the machine.
+
+        Returns
+        -------
+        tuple or None
+            The earliest time at which this stream can start there [ns] and the position, shape (D,),
+            for `start_from`; None if there is no such place, or this stream has started.
         """
     def finish(self, end: Condition = "halt", timeout: Optional[Seconds] = 0.0) -> int:
         """End the stream at its last waypoint.

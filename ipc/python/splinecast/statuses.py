@@ -31,6 +31,7 @@ class AppendStatus(_Status):
     FINISHED = 12  #: the stream has been finished
     CANNOT_FOLLOW = 13  #: no waypoint met for 3 s, and the curve moves until this time
     TOO_FAR_AHEAD = 14  #: live streams without a law: more than `horizon` after now
+    ELSEWHERE = 15  #: the start is not where an earlier live stream has left the machine
 
 
 class Refusal(_Status):

@@ -233,6 +233,8 @@ ProducerOptions producer_options(const py::kwargs& keywords) {
   with(keywords, "max_interval",
        [&](const py::object& v) { options.limits.max_interval = duration(v, "max_interval"); });
   with(keywords, "horizon", [&](const py::object& v) { options.horizon = duration(v, "horizon"); });
+  with(keywords, "start_tolerance",
+       [&](const py::object& v) { options.start_tolerance = as<double>(v, "start_tolerance"); });
   with(keywords, "capacity", [&](const py::object& v) { options.capacity = count(v, "capacity"); });
   options.access = access(keywords, options.trust);
   return options;

@@ -5,7 +5,6 @@
 #include <array>
 #include <stdexcept>
 
-#include "splinecast/clock.hpp"
 #include "splinecast/errors.hpp"
 
 namespace splinecast::python {
@@ -96,9 +95,7 @@ void throw_refused(const RefusedItem& item) {
   if (item.index) text += " (waypoint " + std::to_string(*item.index) + ')';
   if (item.time) text += ", time " + std::to_string(item.time->count()) + " ns";
   if (!item.position.empty()) text += ", position " + text_of(item.position);
-  const bool is_about_now =
-      item.status == AppendStatus::past || item.status == AppendStatus::too_far_ahead;
-  if (is_about_now && item.on_host_clock) text += ": " + compared_with_now(*item.on_host_clock);
+  if (!item.reason.empty()) text += ": " + item.reason;
   const py::object failure = type(is_full ? "Full" : "Refused")(text);
   failure.attr("status") = member("AppendStatus", static_cast<std::uint8_t>(item.status));
   if (item.time) failure.attr("time") = item.time->count();

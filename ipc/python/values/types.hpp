@@ -37,8 +37,7 @@ struct RefusedItem {
   std::optional<Time> time{};
   std::span<const double> position{};
   std::optional<std::size_t> index{};
-  /// On a stream of CLOCK_MONOTONIC: the time of the item that is farthest ahead.
-  std::optional<Time> on_host_clock{};
+  std::string reason{};  ///< what is known in addition to the status
 };
 
 /// Raises Refused, or Full.

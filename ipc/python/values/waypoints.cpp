@@ -14,4 +14,27 @@ GivenWaypoints::GivenWaypoints(py::handle times, py::handle positions, py::handl
   }
 }
 
+Path::Path(std::size_t dimensions, py::handle times, py::handle positions, py::handle velocities,
+           py::handle accelerations)
+    : position(positions, "positions"),
+      velocity(velocities, "velocities"),
+      acceleration(accelerations, "accelerations") {
+  if (times.is_none()) {
+    position.require(0, 0, true);
+    return;
+  }
+  const Instants instants(times);
+  instants.require_line();
+  const auto ns = instants.times(scratch);
+  position.require(ns.size(), dimensions, ns.empty());
+  velocity.require(ns.size(), dimensions, true);
+  acceleration.require(ns.size(), dimensions, true);
+  const Waypoints all{.dimensions = dimensions,
+                      .times = ns,
+                      .positions = position.all(),
+                      .velocities = velocity.all(),
+                      .accelerations = acceleration.all()};
+  for (std::size_t i = 0; i < ns.size(); ++i) waypoints.push_back(all[i]);
+}
+
 }  // namespace splinecast::python

@@ -42,4 +42,17 @@ class GivenWaypoints {
   std::array<std::array<double, kMaxDimensions>, 3> copies_{};
 };
 
+/// Waypoints from arrays. Their spans point into the arrays, or into copies of what is not
+/// contiguous.
+struct Path {
+  Path(std::size_t dimensions, py::handle times, py::handle positions, py::handle velocities,
+       py::handle accelerations);
+
+  Rows position;
+  Rows velocity;
+  Rows acceleration;
+  std::vector<Time> scratch;
+  std::vector<Waypoint> waypoints;
+};
+
 }  // namespace splinecast::python

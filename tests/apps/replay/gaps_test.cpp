@@ -137,8 +137,8 @@ std::string live_with_a_gap() {
 
 TEST_F(ReplayGaps, ALiveStreamStopsWhetherTheGapIsShorterOrLongerThanTheLead) {
   for (const char* const lead : {"2500", "300"}) {
-    const Ended ended =
-        replay(folder_.write("a.csv", live_with_a_gap()), {"--lead", lead, "--on-error", "skip"});
+    const Ended ended = replay(folder_.write("a.csv", live_with_a_gap()),
+                               {"--lead", lead, "--on-error", "skip", "--start-from", "first"});
     ASSERT_EQ(ended.code, kOk) << ended.err;
     const json report = json::parse(ended.out);
     EXPECT_EQ(report["gaps"]["count"], 1);

@@ -55,6 +55,7 @@ class CPointers : public ::testing::Test {
   void add_general();
   void add_producer();
   void add_replacement();
+  void add_old_end();
   void add_producer_state();
   void add_producer_outputs();
   void add_solver();

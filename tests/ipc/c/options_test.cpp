@@ -88,6 +88,11 @@ const Changes<splinecast_producer_options> kProducerChanges{
        o.min_interval = std::numeric_limits<std::int64_t>::min();
      }},
     {"", [](splinecast_producer_options& o) { o.horizon = 0; }},
+    {"", [](splinecast_producer_options& o) { o.start_tolerance = -1e-9; }},
+    {"",
+     [](splinecast_producer_options& o) {
+       o.start_tolerance = std::numeric_limits<double>::infinity();
+     }},
     {"", [](splinecast_producer_options& o) { o.capacity = 1; }},
     {"", [](splinecast_producer_options& o) { o.capacity = std::numeric_limits<size_t>::max(); }}};
 

@@ -71,12 +71,39 @@ void CPointers::add_replacement() {
   wrong_.pointer<const splinecast_waypoint>(
       "splinecast_producer_start_from", "state",
       [this](auto* p) { return splinecast_producer_start_from(c_.producer, p); });
+  producer("splinecast_producer_start_moved",
+           [this](auto* p) { return splinecast_producer_start_moved(p, &waypoint_); });
+  wrong_.pointer<const splinecast_waypoint>(
+      "splinecast_producer_start_moved", "state",
+      [this](auto* p) { return splinecast_producer_start_moved(c_.producer, p); });
+  add_old_end();
   producer("splinecast_producer_finish",
            [](auto* p) { return splinecast_producer_finish(p, nullptr); });
   wrong_.pointer<const splinecast_condition>(
       "splinecast_producer_finish", "end",
       [this](auto* p) { return splinecast_producer_finish(c_.producer, p); },
       WrongPointers::Null::allowed);
+}
+
+void CPointers::add_old_end() {
+  const char* end = "splinecast_producer_old_end";
+  producer(end, [this](auto* p) { return splinecast_producer_old_end(p, &time_, &output_); });
+  wrong_.pointer<std::int64_t>(end, "time", [this](auto* p) {
+    return splinecast_producer_old_end(c_.producer, p, &output_);
+  });
+  wrong_.pointer<const splinecast_output>(end, "position", [this](auto* p) {
+    return splinecast_producer_old_end(c_.producer, &time_, p);
+  });
+  const char* message = "splinecast_producer_elsewhere_message";
+  producer(message, [this](auto* p) {
+    return splinecast_producer_elsewhere_message(p, &waypoint_, text_.data(), 10);
+  });
+  wrong_.pointer<const splinecast_waypoint>(message, "first", [this](auto* p) {
+    return splinecast_producer_elsewhere_message(c_.producer, p, text_.data(), 10);
+  });
+  wrong_.pointer<char>(message, "text", [this](auto* p) {
+    return splinecast_producer_elsewhere_message(c_.producer, &waypoint_, p, 10);
+  });
 }
 
 void CPointers::add_producer_outputs() {

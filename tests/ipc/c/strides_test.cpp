@@ -217,7 +217,7 @@ TEST(CStructs, EndWithoutPaddingThatALaterMemberCouldFill) {
   ENDS_WITH(splinecast_limits, upper);
   ENDS_WITH(splinecast_refusal, excess);
   ENDS_WITH(splinecast_refusals, consumed);
-  ENDS_WITH(splinecast_producer_options, horizon);
+  ENDS_WITH(splinecast_producer_options, start_tolerance);
   ENDS_WITH(splinecast_preview, motion_jerk);
   ENDS_WITH(splinecast_solver_options, largest_rate);
   ENDS_WITH(splinecast_step_result, reserved);

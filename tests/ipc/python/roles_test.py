@@ -138,6 +138,40 @@ class Roles(StreamTest):
         self.assertEqual(reader.kinds, kinds)
         np.testing.assert_allclose(reader.preview(400 * MS).position, [-2, 0, 0, 0, 1], atol=1e-12)
 
+    def test_a_stream_made_again_starts_where_the_earlier_one_has_left_the_machine(self):
+        def arm():
+            producer = splinecast.Producer(self.name, dimensions=1)
+            self.assertTrue(producer.wait_for_solver(10))
+            return producer
+
+        with splinecast.Solver(self.name).start():
+            with arm() as producer:
+                t = time.monotonic() + 0.05
+                producer.append_many([t, t + 0.05], [[0.0], [0.25]])
+                self.assertIsNone(producer.old_end())
+            producer = arm()
+            for call in (lambda t: producer.append(t, [0.5]), lambda t: producer.append_many([t], [[0.5]]),
+                         lambda t: producer.replace_from(t - 0.1, [t], [[0.5]]), lambda t: producer.start_from(t, [0.5])):
+                with self.assertRaisesRegex(splinecast.Refused, r"elsewhere.*\(0.25\).*\(0.5\)") as raised:
+                    call(time.monotonic() + 1)
+                self.assertIs(raised.exception.status, splinecast.AppendStatus.ELSEWHERE)
+            end, position = producer.old_end()
+            np.testing.assert_allclose(position, [0.25], atol=1e-12)
+            self.assertEqual(producer.start_from(end, position), 0)
+            self.assertEqual(producer.append(time.monotonic() + 0.1, [0.3]), 1)
+            self.assertEqual(producer.finish(), 2)
+            self.assertTrue(producer.wait_until_consumed(10))
+            producer.close()
+            producer = arm()
+            self.assertEqual(producer.start_from(0, [0.9], moved=True), 0)
+            self.assertEqual(producer.append(time.monotonic() + 0.1, [0.9]), 0)
+            self.assertEqual(producer.finish(), 1)
+            self.assertTrue(producer.wait_until_consumed(10))
+            producer.close()
+        for value in (-1.0, float("nan")):
+            with self.assertRaisesRegex(splinecast.BadRequest, "a start tolerance of"):
+                splinecast.Producer(self.name + ".tolerance", start_tolerance=value)
+
     def test_contexts_finish_after_a_normal_end_only(self):
         with self.assertRaisesRegex(KeyError, "the body"):
             with splinecast.Producer(self.name, clock="recorded") as producer:

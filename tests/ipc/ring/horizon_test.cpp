@@ -72,11 +72,17 @@ TEST(Horizon, TheFirstWaypointIsNotInThePast) {
   WatchedRing ring;
   EXPECT_EQ(ring.put(Time::zero()), AppendStatus::past);
   EXPECT_EQ(ring.put(kNow - Time(1)), AppendStatus::past);
-  EXPECT_EQ(ring.start(kNow - Time(1)), AppendStatus::past);
+  EXPECT_EQ(ring.start(kNow - 250ms - Time(1)), AppendStatus::past);
   EXPECT_EQ(ring.replace(kNow - 2s, {kNow - 1s}), AppendStatus::too_late);
   EXPECT_EQ(ring.put(kNow), AppendStatus::accepted);
   ring.clock.time += 1s;
   EXPECT_EQ(ring.put(kNow + 900ms), AppendStatus::accepted);  // late, which the solver deals with
+}
+
+TEST(Horizon, AStartStateMayComeLate) {
+  WatchedRing ring;
+  EXPECT_EQ(ring.start(kNow - 250ms), AppendStatus::accepted);
+  EXPECT_EQ(ring.put(kNow - 240ms), AppendStatus::accepted);
 }
 
 TEST(Horizon, ATimeOfAnotherClockIsNamed) {

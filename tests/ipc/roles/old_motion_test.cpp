@@ -73,7 +73,10 @@ TEST_F(OldMotion, OfAFinishedStreamEndsBeforeTheStreamIsRecreated) {
   EXPECT_EQ(clock_.time, seconds(2));
   EXPECT_LT(std::abs(state.velocity()[0]), 0.05);  // 1 ms before the full stop
   EXPECT_EQ(reader.sample(clock_.time, state), SampleStatus::retired);
-  ASSERT_EQ(append(*producer, seconds(3), 7), AppendStatus::accepted);
+  constexpr double kMovedTo = 7;
+  ASSERT_EQ(producer->start_from({.position = {&kMovedTo, 1}}, {.moved = true}),
+            AppendStatus::accepted);
+  ASSERT_EQ(append(*producer, seconds(3), kMovedTo), AppendStatus::accepted);
   solver.step(clock_);
   Reader again(stream_.name());
   EXPECT_EQ(again.sample(clock_.time, state), SampleStatus::holding);

@@ -1,0 +1,201 @@
+#include "ipc/owned/old_end.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <exception>
+#include <new>
+#include <span>
+#include <utility>
+
+#include "core/polynomial/segment.hpp"
+#include "ipc/board/segment.hpp"
+#include "ipc/layout/summary.hpp"
+#include "ipc/mapping/checked_region.hpp"
+#include "ipc/mapping/owner_lock.hpp"
+#include "ipc/options/curve.hpp"
+#include "ipc/options/stream.hpp"
+#include "ipc/ring/item.hpp"
+#include "splinecast/errors.hpp"
+#include "splinecast/state.hpp"
+
+namespace splinecast::ipc {
+namespace {
+
+constexpr int kTries = 16;
+
+/// A distance that comes from rounding in the evaluation of the old curve.
+constexpr double kRounding = 1e-9;
+
+/// A number with nine digits.
+std::string short_text(double value) {
+  std::array<char, 32> text{};
+  return {text.begin(),
+          std::to_chars(text.begin(), text.end(), value, std::chars_format::general, 9).ptr};
+}
+
+std::string list_of(std::span<const double> values) {
+  std::string text = "(";
+  for (const double value : values) {
+    if (text.size() > 1) text += ", ";
+    text += short_text(value);
+  }
+  return text + ')';
+}
+
+}  // namespace
+
+CurveEnd end_of_curve(const RegionHeader& header, const KnotBoardReader& board) {
+  const DimensionKinds kinds = dimension_kinds(header);
+  const auto checked = [&](std::span<const double> x) {
+    const bool is_usable = is_finite(x) && kinds.takes(x);
+    return is_usable ? std::vector<double>(x.begin(), x.end()) : std::vector<double>();
+  };
+  BoardSegment last(board.dimensions(), board.smooths());
+  State state(board.dimensions());
+  // Retries, because the board's solver may overtake an observer.
+  for (int attempt = 0; attempt < kTries; ++attempt) {
+    const Look look = board.look();
+    Summary summary;
+    if (look.revision > 0 && !board.copy_summary(look, summary)) continue;
+    if (summary.newest == 0) {
+      std::vector<double> position(board.dimensions());
+      if (!board.copy_old_end(position)) position.clear();
+      return {.position = checked(position), .is_final = summary.finished};
+    }
+    if (!last.take_last(board, summary)) continue;
+    core::evaluate(last.order(), last.coefficients(), to_seconds(last.right() - last.left()),
+                   state.ref());
+    kinds.normalise(state.ref());
+    return {checked(state.position()), last.right(), summary.finished, true};
+  }
+  return {};
+}
+
+bool may_follow(const RegionHeader& ring, const RegionHeader& board) {
+  return is_live(stream_clock(ring)) && is_live(stream_clock(board)) && ring.is_law == 0 &&
+         board.is_law == 0 && dimensions_of(ring) == dimensions_of(board);
+}
+
+OldEnd::OldEnd(std::string stream, Region region, const RegionHeader& header,
+               const BoardLayout& layout, const RegionHeader& ring, double tolerance)
+    : stream_(std::move(stream)),
+      region_(std::move(region)),
+      header_(header),
+      board_(region_.bytes(), layout),
+      kinds_(dimension_kinds(header)),
+      limits_(window_options(header).limits),
+      tolerance_(tolerance),
+      way_(kinds_, header.dimensions),
+      has_same_clock_(header.clock == ring.clock && header.law_id == ring.law_id) {
+  region_.close_descriptor();
+}
+
+std::optional<OldEnd> OldEnd::find(const std::string& stream, const RegionHeader& ring,
+                                   double tolerance, const Trust& trust) {
+  if (!is_live(stream_clock(ring))) return std::nullopt;
+  try {
+    if (!peek_header(stream, RegionKind::spline, trust)) return std::nullopt;
+    auto [region, header, layout] = open_board(stream, false, trust);
+    if (!may_follow(ring, header)) return std::nullopt;
+    OldEnd end(stream, std::move(region), header, layout, ring, tolerance);
+    auto found = end_of_curve(header, end.board_);
+    if (header.stream_id == ring.stream_id) {
+      if (found.position.empty() || found.is_own) return std::nullopt;
+      found.is_final = true;
+    }
+    end.take(std::move(found));
+    return end;
+  } catch (const StreamError&) {
+    return std::nullopt;  // there is none, or this user cannot use it
+  }
+}
+
+void OldEnd::take(CurveEnd end) {
+  position_ = std::move(end.position);
+  rest_ = has_same_clock_ ? end.rest : Time::min();
+  is_final_ = end.is_final;
+}
+
+/// Whether no solver will change the old curve any more.
+bool OldEnd::is_final() const noexcept {
+  if (board_.retired()) return true;
+  try {
+    return !owner_lives(stream_, RegionKind::spline);
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+OldEnd::Known OldEnd::look() noexcept {
+  if (!is_final_) {
+    try {
+      const bool is_final_now = is_final();  // before the end is read
+      take(end_of_curve(header_, board_));
+      is_final_ = is_final_ || is_final_now;
+    } catch (const std::bad_alloc&) {
+      return Known::not_yet;
+    }
+  }
+  if (!is_final_) return Known::not_yet;
+  return position_.empty() ? Known::no : Known::yes;
+}
+
+void OldEnd::move_to(std::span<const double> position) {
+  position_.assign(position.begin(), position.end());
+  rest_ = Time::min();
+  is_final_ = true;
+}
+
+bool OldEnd::is_near(std::span<const double> position) noexcept {
+  if (!kinds_.takes(position)) return false;
+  way_.measure(position_, position);
+  return std::ranges::all_of(way_.distances(), [this](double way) { return way <= tolerance_; });
+}
+
+/// Whether dimension d of the way that was measured is short enough.
+bool OldEnd::is_reached(std::size_t d, Time available, const MotionLimits& limits) const noexcept {
+  const auto seconds = way_.seconds(d, limits);
+  return seconds ? *seconds <= to_seconds(available) : way_.distances()[d] <= tolerance_;
+}
+
+OldEnd::Way OldEnd::way_to(std::span<const double> position, Time available,
+                           const MotionLimits& limits) noexcept {
+  if (!kinds_.takes(position)) return Way::there;  // the solver refuses it
+  way_.measure(position_, position);
+  Way way = Way::there;
+  for (std::size_t d = 0; d < position.size(); ++d) {
+    if (!is_reached(d, available, limits)) return Way::elsewhere;
+    if (way_.seconds(d, limits) && way_.distances()[d] > kRounding) way = Way::entry;
+  }
+  return way;
+}
+
+std::string OldEnd::why_elsewhere(std::span<const double> position, Time available,
+                                  const MotionLimits& limits) {
+  if (!is_final_) {
+    return "the solver of the earlier stream '" + stream_ +
+           "' may still move its end: wait for a solver of this stream first";
+  }
+  if (position_.empty()) return {};
+  way_.measure(position_, position);
+  std::string text = "the earlier stream '" + stream_ + "' came to rest at " + list_of(position_) +
+                     ", this one would begin at " + list_of(position);
+  const std::vector<std::string> names = dimension_names(header_);
+  for (std::size_t d = 0; d < position.size(); ++d) {
+    if (is_reached(d, available, limits)) continue;
+    const auto seconds = way_.seconds(d, limits);
+    text += ": dimension " + std::to_string(d) + (names[d].empty() ? "" : " (" + names[d] + ')') +
+            " is " + short_text(way_.distances()[d]) + " away, ";
+    text += seconds ? "which takes " + short_text(*seconds) + " s within the limits, not " +
+                          short_text(to_seconds(available)) + " s"
+                    : "more than the tolerance " + short_text(tolerance_);
+    break;
+  }
+  return text +
+         ". Start from the old end or from a measured state near it, or "
+         "say that the machine "
+         "was moved";
+}
+
+}  // namespace splinecast::ipc
