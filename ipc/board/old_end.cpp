@@ -18,10 +18,14 @@ void KnotBoardWriter::write_old_end(std::span<const double> position) noexcept {
   store(node[kNodeTime], to_word(kMark), std::memory_order_release);
 }
 
-bool KnotBoardReader::copy_old_end(std::span<double> position) const noexcept {
+bool KnotBoardReader::has_old_end() const noexcept {
   const Word* const node = slot_at(0) + layout_.nodes / sizeof(Word);
-  if (to_time(load(node[kNodeTime], std::memory_order_acquire)) != kMark) return false;
-  load_values(position, node + kNodePosition);
+  return to_time(load(node[kNodeTime], std::memory_order_acquire)) == kMark;
+}
+
+bool KnotBoardReader::copy_old_end(std::span<double> position) const noexcept {
+  if (!has_old_end()) return false;
+  load_values(position, slot_at(0) + layout_.nodes / sizeof(Word) + kNodePosition);
   return true;
 }
 

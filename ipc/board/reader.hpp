@@ -123,8 +123,9 @@ class KnotBoardReader {
   [[nodiscard]] bool copy_time(Word number, Word r, Time& time,
                                core::SegmentForm& form) const noexcept;
 
-  /// Copies the position at which the board before this one came to rest; false if it is not kept.
-  /// Only for a board without knots. `position` has D values, which are not checked.
+  /// Whether the board keeps the position at which the board before it came to rest, and a copy of
+  /// it, if so. Only for a board without knots. `position` has D values, which are not checked.
+  [[nodiscard]] bool has_old_end() const noexcept;
   [[nodiscard]] bool copy_old_end(std::span<double> position) const noexcept;
 
   /// The time at which the segment of knot `number` begins, from the packed times. This is a hint:

@@ -1,6 +1,7 @@
 #include "ipc/owned/stream_start.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <new>
 
 #include "core/limits/limit_of.hpp"
@@ -8,6 +9,13 @@
 #include "ipc/ring/item.hpp"
 
 namespace splinecast::ipc {
+namespace {
+
+/// With a shorter lead the first waypoint may have settled when the solver takes it, and is refused
+/// then. A start state that comes late is not refused.
+constexpr Time kAmpleLead = std::chrono::milliseconds(100);
+
+}  // namespace
 
 StreamStart::StreamStart(const std::string& stream, const OwnedRing& ring,
                          const ProducerOptions& options)
@@ -46,7 +54,9 @@ AppendStatus StreamStart::begin(const Waypoint& first, std::optional<Time> repla
     const Time from = std::max(at.time, replaced_from.value_or(at.time));
     const OldEnd::Way way = old_->way_to(first.position, first.time - from, limits(board));
     if (way == OldEnd::Way::elsewhere) return writer.counted(AppendStatus::elsewhere);
-    if (way == OldEnd::Way::there) return AppendStatus::accepted;
+    const Time lead = first.time - from;  // negative: of a simulated clock
+    const bool is_ample = lead < Time::zero() || lead >= kAmpleLead;
+    if (way == OldEnd::Way::there && is_ample) return AppendStatus::accepted;
     at.time = std::min(at.time, replaced_from.value_or(at.time));
     return writer.start_from(at, known);
   } catch (const std::bad_alloc&) {

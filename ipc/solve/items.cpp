@@ -57,8 +57,11 @@ std::optional<Refusal> StreamSolver::form_refusal(const Waypoint& waypoint) cons
 
 std::optional<Refusal> StreamSolver::time_refusal(Time time) const noexcept {
   if (!curve_.has_begun()) {
-    if (live_ && time < settled_until_) return Refusal::past;
-    return std::nullopt;
+    if (!live_) return std::nullopt;
+    // The producer has compared only the first waypoint with the end of an earlier stream.
+    const bool is_start_lost = summary_.reasons[static_cast<std::size_t>(Refusal::past)] > 0;
+    if (is_start_lost && published_->has_old_end()) return Refusal::past;
+    return time < settled_until_ ? std::optional(Refusal::past) : std::nullopt;
   }
   const Time newest = curve_.newest_time();
   // A run without waypoints may begin after the time of the first ones, which it passes over then.
@@ -163,7 +166,7 @@ void StreamSolver::take_replacement(Word number) noexcept {
   }
   // Waypoints that begin a curve together are taken together, too.
   const bool is_begin = !has_begun && live_ && item_.count > 0 && number + 1 < available_;
-  if (is_begin && ring_->time(number + 1) < settled_until_) {
+  if (is_begin && time_refusal(ring_->time(number + 1))) {
     return refuse_replacement(number, Refusal::past);
   }
   ++summary_.controls;

@@ -137,8 +137,11 @@ TEST_F(PassedOver, IsZeroForARecordingThatStartsAtRestAndIsNeverLate) {
 
 TEST(EmbeddedReplay, OntoAMovingStreamWaitsForTheEndOfItsMotion) {
   const testing::TestStream stream;
-  const ReplayOptions options{
-      .stream = stream.name(), .lead = milliseconds(700), .embedded = true, .quiet = true};
+  const ReplayOptions options{.stream = stream.name(),
+                              .lead = milliseconds(700),
+                              .start_from = FromFirst{},
+                              .embedded = true,
+                              .quiet = true};
   WaypointTable table = sparse_table();
   table.times = {Time(0), milliseconds(300), milliseconds(600)};
   std::thread replaying([&] {

@@ -164,7 +164,7 @@ class Roles(StreamTest):
             producer.close()
             producer = arm()
             self.assertEqual(producer.start_from(0, [0.9], moved=True), 0)
-            self.assertEqual(producer.append(time.monotonic() + 0.1, [0.9]), 0)
+            self.assertEqual(producer.append(time.monotonic() + 0.2, [0.9]), 0)
             self.assertEqual(producer.finish(), 1)
             self.assertTrue(producer.wait_until_consumed(10))
             producer.close()

@@ -109,7 +109,7 @@ TEST_F(OldEnd, AFirstWaypointElsewhereIsRefusedWithBothPositions) {
   for (const char* part : {"(0.4)", "(-0.4)", "0.8 away", "tolerance 0.001", "old end", "moved"}) {
     EXPECT_NE(why.find(part), std::string::npos) << part << ": " << why;
   }
-  EXPECT_EQ(append(again, now() + 100ms, {0.4009}), AppendStatus::accepted);
+  EXPECT_EQ(append(again, now() + 200ms, {0.4009}), AppendStatus::accepted);
   EXPECT_EQ(again.appended(), 1U);
   EXPECT_TRUE(again.why_elsewhere(first).empty());
 }
@@ -311,6 +311,47 @@ TEST_F(OldEnd, AStreamThatNeverBeganHasNone) {
   solve_until(solver, [&] { return again.wait_for_solver(Time(0)); });
   EXPECT_TRUE(again.old_end().position.empty());
   EXPECT_EQ(append(again, now() + 1s, {3}), AppendStatus::accepted);
+}
+
+TEST_F(OldEnd, AFirstWaypointWithAShortLeadStartsThereByAnEntry) {
+  Solver solver(stream_.name(), {});
+  leave(solver, {0}, {0.4});
+  Producer again = producer();
+  solve_until(solver, [&] { return again.wait_for_solver(Time(0)); });
+  const Time t = now() + 1ms;
+  ASSERT_EQ(append(again, t, {0.4}), AppendStatus::accepted);
+  EXPECT_EQ(again.appended(), 2U);
+  ASSERT_EQ(append(again, t + 400ms, {0.5}), AppendStatus::accepted);
+  ASSERT_EQ(again.finish(kHalt), AppendStatus::accepted);
+  std::this_thread::sleep_for(20ms);
+  solve_until(solver, [&] { return again.wait_until_consumed(Time(0)); });
+  EXPECT_TRUE(again.refusals().items.empty());
+  EXPECT_NEAR(follow(solver, t + 2s, 0.4, 2), 0.5, 1e-9);
+}
+
+TEST_F(OldEnd, IsKeptIfTheFirstWaypointIsTooLateForTheSolver) {
+  Solver solver(stream_.name(), {});
+  leave(solver, {0}, {0.4});
+  {
+    Producer again = producer();
+    solve_until(solver, [&] { return again.wait_for_solver(Time(0)); });
+    const Time t = now() + 150ms;
+    ASSERT_EQ(append(again, t, {0.4}), AppendStatus::accepted);
+    ASSERT_EQ(append(again, t + 400ms, {0.5}), AppendStatus::accepted);
+    const Values x{0.6};
+    const std::array way{Waypoint{.time = t + 700ms, .position = x}};
+    ASSERT_EQ(again.replace_from(t + 600ms, way), AppendStatus::accepted);
+    ASSERT_EQ(again.finish(kHalt), AppendStatus::accepted);
+    std::this_thread::sleep_for(200ms);  // the solver is stopped
+    solve_until(solver, [&] { return again.wait_until_consumed(Time(0)); });
+    const Refusals found = again.refusals();
+    ASSERT_EQ(found.items.size(), 4U);
+    for (const ItemRefusal& refused : found.items) EXPECT_EQ(refused.reason, Refusal::past);
+  }
+  Producer again = producer();
+  solve_until(solver, [&] { return again.wait_for_solver(Time(0)); });
+  EXPECT_EQ(append(again, now() + 1s, {0.5}), AppendStatus::elsewhere);
+  EXPECT_EQ(append(again, now() + 1s, {0.4}), AppendStatus::accepted);
 }
 
 TEST_F(OldEnd, AStartStateThatComesLateBeginsAsEarlyAsPossible) {
