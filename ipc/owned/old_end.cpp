@@ -107,7 +107,7 @@ std::optional<OldEnd> OldEnd::find(const std::string& stream, const RegionHeader
     end.take(std::move(found));
     return end;
   } catch (const StreamError&) {
-    return std::nullopt;  // there is none, or this user cannot use it
+    return std::nullopt;  // no board, or one that this user cannot read
   }
 }
 
@@ -193,9 +193,8 @@ std::string OldEnd::why_elsewhere(std::span<const double> position, Time availab
     break;
   }
   return text +
-         ". Start from the old end or from a measured state near it, or "
-         "say that the machine "
-         "was moved";
+         ". Start from the old end or from a measured state near it, or say that the machine was "
+         "moved";
 }
 
 }  // namespace splinecast::ipc

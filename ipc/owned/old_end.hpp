@@ -20,8 +20,7 @@ namespace splinecast::ipc {
 /// The position at which the curve of a board rests.
 struct CurveEnd {
   std::vector<double> position;  ///< as readers see it; empty: the curve has not begun
-  Time rest = Time::min();       ///< when it rests there, on the stream's clock;
-                                 ///< min(): it does
+  Time rest = Time::min();       ///< from when on, on the stream's clock; min(): it rests already
   bool is_final = false;         ///< the stream is finished
   bool is_own = false;           ///< the board has a curve; else it has the end of the one before
 };
@@ -30,14 +29,13 @@ struct CurveEnd {
 /// there was one. Allocates. Throws std::bad_alloc only.
 [[nodiscard]] CurveEnd end_of_curve(const RegionHeader& header, const KnotBoardReader& board);
 
-/// Whether a new live stream of this ring's header may continue where the one
-/// of the board's header rests: both are live, and have the same dimensions and
-/// kinds.
+/// Whether a stream with this ring's header can start where the one with the board's header rests:
+/// both are live and no laws, and have the same dimensions and kinds.
 [[nodiscard]] bool may_follow(const RegionHeader& ring, const RegionHeader& board);
 
-/// Where an earlier live stream of the same name has left the machine.
-/// Controllers may still hold that position, or someone has moved the machine
-/// since: the first waypoint of the new stream is compared with it.
+/// Where an earlier live stream of the same name has left the machine. Controllers may still hold
+/// that position, or someone has moved the machine since: the first waypoint of the new stream is
+/// compared with it.
 ///
 /// Allocates when constructed, in look(), and for texts. One thread uses it.
 class OldEnd {
@@ -51,8 +49,8 @@ class OldEnd {
 
   /// What is known of the old end.
   enum class Known {
-    no,       ///< there is none: the old curve never began
-    not_yet,  ///< a living solver may still take items of the old stream
+    no,       ///< the earlier stream ended without a curve
+    not_yet,  ///< a living solver may still take items of the earlier stream
     yes,
   };
 
@@ -69,15 +67,14 @@ class OldEnd {
   /// The position at which the old curve rests; after move_to() the given one.
   [[nodiscard]] std::span<const double> position() const noexcept { return position_; }
 
-  /// The time at which the old curve rests, on the clock of the stream; min():
-  /// it does.
+  /// The time from which on the old curve rests, on the clock of the new stream; min(): it rests
+  /// already.
   [[nodiscard]] Time rest() const noexcept { return rest_; }
 
   /// The machine was moved to this position, which has D values.
   void move_to(std::span<const double> position);
 
-  /// How a curve may begin at a position that it must reach within `available`.
-  /// O(D).
+  /// How a curve may begin at a position that it must reach within `available`. O(D).
   [[nodiscard]] Way way_to(std::span<const double> position, Time available,
                            const MotionLimits& limits) noexcept;
 
@@ -87,8 +84,7 @@ class OldEnd {
   /// The limits of the old stream's solver.
   [[nodiscard]] const MotionLimits& limits() const noexcept { return limits_; }
 
-  /// Says how far a position is from this end, and what a producer can do about
-  /// it.
+  /// Says how far a position is from this end, and what the producer can do.
   [[nodiscard]] std::string why_elsewhere(std::span<const double> position, Time available,
                                           const MotionLimits& limits);
 

@@ -54,7 +54,7 @@ AppendStatus StreamStart::begin(const Waypoint& first, std::optional<Time> repla
     const Time from = std::max(at.time, replaced_from.value_or(at.time));
     const OldEnd::Way way = old_->way_to(first.position, first.time - from, limits(board));
     if (way == OldEnd::Way::elsewhere) return writer.counted(AppendStatus::elsewhere);
-    const Time lead = first.time - from;  // negative: of a simulated clock
+    const Time lead = first.time - from;  // negative only with a simulated clock
     const bool is_ample = lead < Time::zero() || lead >= kAmpleLead;
     if (way == OldEnd::Way::there && is_ample) return AppendStatus::accepted;
     at.time = std::min(at.time, replaced_from.value_or(at.time));

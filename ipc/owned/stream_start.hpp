@@ -46,7 +46,7 @@ class StreamStart {
   /// The state at rest at the old end from which the stream can start, as of the last look at it.
   [[nodiscard]] Instant state(const Solved& known) const noexcept;
 
-  /// Reads the old end again; false if there is none, or none yet. May allocate.
+  /// Reads the old end again. Returns whether it is known now. May allocate.
   [[nodiscard]] bool look() noexcept { return old_->look() == OldEnd::Known::yes; }
 
   /// Why a first waypoint is elsewhere; "" without D values. Throws std::bad_alloc only.

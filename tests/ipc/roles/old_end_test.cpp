@@ -57,11 +57,17 @@ class OldEnd : public ::testing::Test {
     }
   }
 
+  /// A producer of the stream, to which the solver has attached.
+  Producer attached_producer(Solver& solver, const ProducerOptions& options = {}) {
+    Producer made = producer(options);
+    solve_until(solver, [&] { return made.wait_for_solver(Time(0)); });
+    return made;
+  }
+
   /// A stream from `from` to `to`, finished and at rest.
   void leave(Solver& solver, const Values& from, const Values& to, ProducerOptions options = {}) {
     options.dimensions = from.size();
-    Producer first = producer(options);
-    solve_until(solver, [&] { return first.wait_for_solver(Time(0)); });
+    Producer first = attached_producer(solver, options);
     const Time t = now() + 20ms;
     if (!first.old_end().position.empty()) {
       ASSERT_EQ(first.start_from({.position = from}, {.moved = true}), AppendStatus::accepted);
@@ -98,8 +104,7 @@ class OldEnd : public ::testing::Test {
 TEST_F(OldEnd, AFirstWaypointElsewhereIsRefusedWithBothPositions) {
   Solver solver(stream_.name(), {});
   leave(solver, {0}, {0.4});
-  Producer again = producer({.names = {"lift"}});
-  solve_until(solver, [&] { return again.wait_for_solver(Time(0)); });
+  Producer again = attached_producer(solver, {.names = {"lift"}});
   const Values there{-0.4};
   const Waypoint first{.time = now() + 1s, .position = there};
   EXPECT_EQ(again.append(first), AppendStatus::elsewhere);
@@ -120,8 +125,7 @@ TEST_F(OldEnd, AnEntryLeadsFromItToAWaypointWithinTheLimits) {
   how.limits = MotionLimits{.velocity = {kFastest}, .acceleration = {20}};
   Solver solver(stream_.name(), how);
   leave(solver, {0.38}, {0.4});
-  Producer again = producer();
-  solve_until(solver, [&] { return again.wait_for_solver(Time(0)); });
+  Producer again = attached_producer(solver);
   // 0.2 at most 1/s takes 0.375 s from rest to rest.
   EXPECT_EQ(append(again, now() + 300ms, {0.2}), AppendStatus::elsewhere);
   const Values x{0.2};
@@ -141,8 +145,7 @@ TEST_F(OldEnd, AReplacementStartsTheStreamInTheSameWay) {
   how.limits = MotionLimits{.velocity = {1}, .acceleration = {20}};
   Solver solver(stream_.name(), how);
   leave(solver, {0.38}, {0.4});
-  Producer again = producer();
-  solve_until(solver, [&] { return again.wait_for_solver(Time(0)); });
+  Producer again = attached_producer(solver);
   const Time t = now() + 700ms;
   const Values x{0.2};
   const std::array way{Waypoint{.time = t, .position = x},
@@ -159,8 +162,7 @@ TEST_F(OldEnd, AReplacementStartsTheStreamInTheSameWay) {
 TEST_F(OldEnd, AStartStateNearItIsMeasured) {
   Solver solver(stream_.name(), {});
   leave(solver, {0}, {0.4});
-  Producer again = producer();
-  solve_until(solver, [&] { return again.wait_for_solver(Time(0)); });
+  Producer again = attached_producer(solver);
   EXPECT_EQ(again.start_from(at_rest({0.9})), AppendStatus::elsewhere);
   ASSERT_EQ(again.start_from(at_rest({0.4005})), AppendStatus::accepted);
   EXPECT_TRUE(again.old_end().position.empty());
@@ -170,8 +172,7 @@ TEST_F(OldEnd, AStartStateNearItIsMeasured) {
 TEST_F(OldEnd, IsAStateToStartFrom) {
   Solver solver(stream_.name(), {});
   leave(solver, {0}, {0.4});
-  Producer again = producer();
-  solve_until(solver, [&] { return again.wait_for_solver(Time(0)); });
+  Producer again = attached_producer(solver);
   const Instant end = again.old_end();
   ASSERT_EQ(end.position.size(), 1U);
   EXPECT_NEAR(end.position[0], 0.4, 1e-12);
@@ -189,8 +190,7 @@ TEST_F(OldEnd, DoesNotCountIfTheMachineWasMoved) {
   leave(solver, {0}, {0.4});
   const Values far{0.9};
   {
-    Producer again = producer();
-    solve_until(solver, [&] { return again.wait_for_solver(Time(0)); });
+    Producer again = attached_producer(solver);
     ASSERT_EQ(again.start_from({.position = far}, {.moved = true}), AppendStatus::accepted);
     EXPECT_EQ(again.appended(), 0U);
     EXPECT_EQ(append(again, now() + 1s, {0.4}), AppendStatus::elsewhere);
@@ -199,8 +199,7 @@ TEST_F(OldEnd, DoesNotCountIfTheMachineWasMoved) {
     EXPECT_EQ(again.start_from({.position = far}, {.moved = true}), AppendStatus::finished);
     solve_until(solver, [&] { return again.wait_until_consumed(Time(0)); });
   }
-  Producer again = producer();
-  solve_until(solver, [&] { return again.wait_for_solver(Time(0)); });
+  Producer again = attached_producer(solver);
   ASSERT_EQ(again.start_from(at_rest({0}), {.moved = true}), AppendStatus::accepted);
   EXPECT_EQ(again.start_from(at_rest({0}), {.moved = true}), AppendStatus::already_started);
 }
@@ -209,8 +208,7 @@ TEST_F(OldEnd, IsKeptWhileNoStreamHasStarted) {
   Solver solver(stream_.name(), {});
   leave(solver, {0}, {0.4});
   for (int i = 0; i < 3; ++i) {
-    Producer again = producer();
-    solve_until(solver, [&] { return again.wait_for_solver(Time(0)); });
+    Producer again = attached_producer(solver);
     EXPECT_EQ(append(again, now() + 1s, {0}), AppendStatus::elsewhere);
     if (i == 0) again.withdraw();
     if (i == 1) {
@@ -251,8 +249,7 @@ TEST_F(OldEnd, IsComparedAsItsKindRequires) {
   options.kinds.assign(5, {.kind = DimensionKind::quaternion});
   options.kinds[0] = {.kind = DimensionKind::periodic, .period = kTurn};
   leave(solver, {3.0, 0, 0, 0, 1}, {3.14, 0, 0, std::sin(0.05), std::cos(0.05)}, options);
-  Producer again = producer(options);
-  solve_until(solver, [&] { return again.wait_for_solver(Time(0)); });
+  Producer again = attached_producer(solver, options);
   const auto at = [&](double turn, double angle, double sign) {
     return Values{turn, 0, 0, sign * std::sin(angle / 2), sign * std::cos(angle / 2)};
   };
@@ -265,8 +262,7 @@ TEST_F(OldEnd, IsNotKnownBeforeTheOldSolverHasTakenTheEnd) {
   Solver solver(stream_.name(), {});
   Time end{};
   {
-    Producer first = producer();
-    solve_until(solver, [&] { return first.wait_for_solver(Time(0)); });
+    Producer first = attached_producer(solver);
     end = now() + 60ms;
     ASSERT_EQ(append(first, now() + 20ms, {0}), AppendStatus::accepted);
     solve_until(solver, [&] { return first.wait_until_consumed(Time(0)); });
@@ -287,8 +283,7 @@ TEST_F(OldEnd, IsNotKnownBeforeTheOldSolverHasTakenTheEnd) {
 TEST_F(OldEnd, IsNotKnownBeforeTheOldCurveHasBegun) {
   Solver solver(stream_.name(), {});
   {
-    Producer first = producer();
-    solve_until(solver, [&] { return first.wait_for_solver(Time(0)); });
+    Producer first = attached_producer(solver);
     ASSERT_EQ(append(first, now() + 20ms, {0.25}), AppendStatus::accepted);
     ASSERT_EQ(first.finish(kHalt), AppendStatus::accepted);
   }
@@ -302,8 +297,7 @@ TEST_F(OldEnd, IsNotKnownBeforeTheOldCurveHasBegun) {
 TEST_F(OldEnd, AStreamThatNeverBeganHasNone) {
   Solver solver(stream_.name(), {});
   {
-    Producer first = producer();
-    solve_until(solver, [&] { return first.wait_for_solver(Time(0)); });
+    Producer first = attached_producer(solver);
     ASSERT_EQ(first.finish(kHalt), AppendStatus::accepted);
   }
   Producer again = producer();
@@ -316,8 +310,7 @@ TEST_F(OldEnd, AStreamThatNeverBeganHasNone) {
 TEST_F(OldEnd, AFirstWaypointWithAShortLeadStartsThereByAnEntry) {
   Solver solver(stream_.name(), {});
   leave(solver, {0}, {0.4});
-  Producer again = producer();
-  solve_until(solver, [&] { return again.wait_for_solver(Time(0)); });
+  Producer again = attached_producer(solver);
   const Time t = now() + 1ms;
   ASSERT_EQ(append(again, t, {0.4}), AppendStatus::accepted);
   EXPECT_EQ(again.appended(), 2U);
@@ -333,8 +326,7 @@ TEST_F(OldEnd, IsKeptIfTheFirstWaypointIsTooLateForTheSolver) {
   Solver solver(stream_.name(), {});
   leave(solver, {0}, {0.4});
   {
-    Producer again = producer();
-    solve_until(solver, [&] { return again.wait_for_solver(Time(0)); });
+    Producer again = attached_producer(solver);
     const Time t = now() + 150ms;
     ASSERT_EQ(append(again, t, {0.4}), AppendStatus::accepted);
     ASSERT_EQ(append(again, t + 400ms, {0.5}), AppendStatus::accepted);
@@ -348,8 +340,7 @@ TEST_F(OldEnd, IsKeptIfTheFirstWaypointIsTooLateForTheSolver) {
     ASSERT_EQ(found.items.size(), 4U);
     for (const ItemRefusal& refused : found.items) EXPECT_EQ(refused.reason, Refusal::past);
   }
-  Producer again = producer();
-  solve_until(solver, [&] { return again.wait_for_solver(Time(0)); });
+  Producer again = attached_producer(solver);
   EXPECT_EQ(append(again, now() + 1s, {0.5}), AppendStatus::elsewhere);
   EXPECT_EQ(append(again, now() + 1s, {0.4}), AppendStatus::accepted);
 }
@@ -377,8 +368,7 @@ TEST_F(OldEnd, AStopBeforeTheFirstWaypointDoesNotStartTheStream) {
   how.limits = MotionLimits{.velocity = {1}, .acceleration = {20}};
   Solver solver(stream_.name(), how);
   leave(solver, {0.38}, {0.4});
-  Producer again = producer();
-  solve_until(solver, [&] { return again.wait_for_solver(Time(0)); });
+  Producer again = attached_producer(solver);
   ASSERT_EQ(again.replace_from(Time::min(), {}), AppendStatus::accepted);
   EXPECT_EQ(append(again, now() + 10ms, {0.2}), AppendStatus::elsewhere);
   const Time t = now() + 500ms;
