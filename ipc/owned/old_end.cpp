@@ -15,14 +15,13 @@
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/options/curve.hpp"
 #include "ipc/options/stream.hpp"
+#include "ipc/owned/old_motion.hpp"
 #include "ipc/ring/item.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/state.hpp"
 
 namespace splinecast::ipc {
 namespace {
-
-constexpr int kTries = 16;
 
 /// A distance that comes from rounding in the evaluation of the old curve.
 constexpr double kRounding = 1e-9;
@@ -52,24 +51,18 @@ CurveEnd end_of_curve(const RegionHeader& header, const KnotBoardReader& board) 
     return is_usable ? std::vector<double>(x.begin(), x.end()) : std::vector<double>();
   };
   BoardSegment last(board.dimensions(), board.smooths());
-  State state(board.dimensions());
-  // Retries, because the board's solver may overtake an observer.
-  for (int attempt = 0; attempt < kTries; ++attempt) {
-    const Look look = board.look();
-    Summary summary;
-    if (look.revision > 0 && !board.copy_summary(look, summary)) continue;
-    if (summary.newest == 0) {
-      std::vector<double> position(board.dimensions());
-      if (!board.copy_old_end(position)) position.clear();
-      return {.position = checked(position), .is_final = summary.finished};
-    }
-    if (!last.take_last(board, summary)) continue;
-    core::evaluate(last.order(), last.coefficients(), to_seconds(last.right() - last.left()),
-                   state.ref());
-    kinds.normalise(state.ref());
-    return {checked(state.position()), last.right(), summary.finished, true};
+  const auto summary = take_last_segment(board, last);
+  if (!summary) return {};
+  if (summary->newest == 0) {
+    std::vector<double> position(board.dimensions());
+    if (!board.copy_old_end(position)) position.clear();
+    return {.position = checked(position), .is_final = summary->finished};
   }
-  return {};
+  State state(board.dimensions());
+  core::evaluate(last.order(), last.coefficients(), to_seconds(last.right() - last.left()),
+                 state.ref());
+  kinds.normalise(state.ref());
+  return {checked(state.position()), last.right(), summary->finished, true};
 }
 
 bool may_follow(const RegionHeader& ring, const RegionHeader& board) {

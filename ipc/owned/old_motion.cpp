@@ -4,9 +4,7 @@
 #include <exception>
 
 #include "ipc/board/reader.hpp"
-#include "ipc/board/segment.hpp"
 #include "ipc/law/follower.hpp"
-#include "ipc/layout/summary.hpp"
 #include "ipc/mapping/checked_region.hpp"
 #include "ipc/options/stream.hpp"
 #include "splinecast/errors.hpp"
@@ -15,6 +13,7 @@
 namespace splinecast::ipc {
 namespace {
 
+/// Tries to read a board whose solver may overtake an observer.
 constexpr int kSummaryTries = 16;
 
 /// The earliest host time at which the law of a stream can reach a stream time; `stream` if the
@@ -36,6 +35,18 @@ Time host_time_of(Time stream, const RegionHeader& header, const Trust& trust) n
 
 }  // namespace
 
+std::optional<Summary> take_last_segment(const KnotBoardReader& board,
+                                         BoardSegment& last) noexcept {
+  Summary summary;
+  for (int attempt = 0; attempt < kSummaryTries; ++attempt) {
+    const Look look = board.look();
+    if (look.revision == 0) return Summary{};
+    if (!board.copy_summary(look, summary)) continue;
+    if (summary.newest == 0 || last.take_last(board, summary)) return summary;
+  }
+  return std::nullopt;
+}
+
 Time end_of_motion(const RegionHeader& header, const KnotBoardReader& board,
                    const Trust& trust) noexcept {
   if (stream_clock(header) == StreamClock::recorded || header.time_namespace != time_namespace() ||
@@ -43,16 +54,9 @@ Time end_of_motion(const RegionHeader& header, const KnotBoardReader& board,
     return Time::min();
   }
   BoardSegment last(board.dimensions(), board.smooths());
-  // Retries, because the board's solver may overtake an observer.
-  for (int attempt = 0; attempt < kSummaryTries; ++attempt) {
-    const Look look = board.look();
-    Summary summary;
-    if (look.revision == 0) break;
-    if (!board.copy_summary(look, summary)) continue;
-    if (summary.newest == 0) break;
-    if (last.take_last(board, summary)) return host_time_of(last.right(), header, trust);
-  }
-  return Time::min();
+  const auto summary = take_last_segment(board, last);
+  if (!summary || summary->newest == 0) return Time::min();
+  return host_time_of(last.right(), header, trust);
 }
 
 Time end_of_motion(const std::string& stream, const Trust& trust) {

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "ipc/board/reader.hpp"
+#include "ipc/board/segment.hpp"
 #include "ipc/layout/header.hpp"
+#include "ipc/layout/summary.hpp"
 #include "splinecast/options.hpp"
 #include "splinecast/time.hpp"
 
@@ -12,6 +15,12 @@ namespace splinecast::ipc {
 
 /// Maximum time that a new stream waits for the motion of an earlier one of its name to end.
 inline constexpr Time kLongestOldMotion{3'600'000'000'000};
+
+/// Copies the last segment of a board's newest revision to `last`. Returns the summary of that
+/// revision; without a curve its `newest` is 0, and nothing is copied. Nothing if a writer
+/// overtakes each of a few tries.
+[[nodiscard]] std::optional<Summary> take_last_segment(const KnotBoardReader& board,
+                                                       BoardSegment& last) noexcept;
 
 /// The time on CLOCK_MONOTONIC at which the published curve of a live board comes to rest; min() if
 /// no reader follows the curve: it is recorded, of another time namespace, retired, or there is
