@@ -5,7 +5,6 @@
 //
 // Needs a solver in a process of its own: splinecast solve STREAM.
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <span>
@@ -25,18 +24,17 @@ namespace {
 
 /// Leaves the curve in 10 ms for `path`, whose times count from there; an empty one stops it.
 AppendStatus redirect(Producer& producer, std::vector<Waypoint> path) {
-  const Time now = MonotonicClock().now();
-  const Time t = std::max(now, producer.earliest()) + 10ms;
+  const Time t = producer.earliest() + 10ms;
   for (Waypoint& waypoint : path) waypoint.time += t;
   return producer.replace_from(t, path);  // too_late: t has settled meanwhile, try again
 }
 
 /// Comes to rest as soon as possible.
-AppendStatus stop(Producer& producer) { return producer.replace_from(producer.earliest(), {}); }
+AppendStatus stop(Producer& producer) { return producer.replace_from({}); }
 
 /// Prints what `redirect` would do now with at least this duration of the entry. Changes nothing.
 void print_preview(Producer& producer, std::vector<Waypoint> path, Time blend) {
-  const Time t = std::max(MonotonicClock().now(), producer.earliest()) + 10ms;
+  const Time t = producer.earliest() + 10ms;
   for (Waypoint& waypoint : path) waypoint.time += t;
   const ReplacePreview preview = producer.preview_replace(t, path, {.blend = blend});
   if (preview.status != AppendStatus::accepted || !preview.is_known) return;

@@ -63,11 +63,9 @@ class Replay {
     if (!sender_.await_consumption()) return false;
     board_.emplace(options_.stream, producer_.stream_id(), options_.trust);
     before_ = board_->summary();
-    const auto live = ipc::live_options(board_->header()).value_or(ipc::LiveOptions{});
     rows_.begin([this] { (void)board_->summary(); });
     sender_.set_lead(
-        saturated_sum(choose_lead(recording_.survey(), options_, board_->header()), start()),
-        live.freeze_ahead);
+        saturated_sum(choose_lead(recording_.survey(), options_, board_->header()), start()));
     return true;
   }
 

@@ -75,20 +75,19 @@ bool RowSender::stop_at_gap(const Waypoint& next) {
   // On a live stream the solver must get the replacement before its time settles. Otherwise an
   // entry leads from rest to the waypoint as soon as it arrives.
   constexpr Time kMargin = std::chrono::milliseconds(100);
-  const Time settles = std::max(producer_.earliest(), producer_.now() + freeze_ahead_);
-  if (!moves || begin > settles + kMargin) entry_begin_ = begin;
+  if (!moves || begin > producer_.earliest() + kMargin) entry_begin_ = begin;
   return true;
 }
 
 void RowSender::stop_at_once() {
   constexpr int kTries = 100;
   constexpr Time kPause = std::chrono::milliseconds(10);
-  AppendStatus status = producer_.replace_from(Time::min(), {});
+  AppendStatus status = producer_.replace_from({});
   // Only a ring of fewer than 16 items has no places for stops.
   for (int i = 0; i < kTries && status == AppendStatus::full; ++i) {
     solver_.solve();
     (void)producer_.wait_for_room(kPause);
-    status = producer_.replace_from(Time::min(), {});
+    status = producer_.replace_from({});
   }
   if (status == AppendStatus::accepted) {
     rows_.note_replacement(Time::min());
@@ -147,8 +146,7 @@ AppendStatus RowSender::append_when_there_is_room(Waypoint& waypoint) {
 Time RowSender::shift_if_late(Waypoint& waypoint) {
   if (!is_live(options_.clock)) return {};
   const Time now = producer_.now();
-  const Time settled = std::max(producer_.earliest(), now + freeze_ahead_);
-  const Time lateness = std::max(settled - waypoint.time, Time::zero());
+  const Time lateness = std::max(producer_.earliest() - waypoint.time, Time::zero());
   if (lateness > Time::zero() && options_.late == LatePolicy::shift) {
     waypoint.time = std::max(waypoint.time, now + lead_);
   }

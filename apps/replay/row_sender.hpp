@@ -22,11 +22,8 @@ class RowSender {
             SentRows& rows, bool has_gaps)
       : options_(options), solver_(solver), producer_(producer), rows_(rows), has_gaps_(has_gaps) {}
 
-  /// Sets the lead and the freeze-ahead of a live stream. Call it before send().
-  void set_lead(Time lead, Time freeze_ahead) noexcept {
-    lead_ = lead;
-    freeze_ahead_ = freeze_ahead;
-  }
+  /// Sets the lead of a live stream. Call it before send().
+  void set_lead(Time lead) noexcept { lead_ = lead; }
   [[nodiscard]] Time lead() const noexcept { return lead_; }
 
   /// Sends a row whose time, without shifts, is on the stream's clock. After a gap, lets the motion
@@ -66,7 +63,6 @@ class RowSender {
   MonotonicClock clock_;
   Time recorded_start_{};
   Time lead_{};
-  Time freeze_ahead_{};
   LateRows late_;
   std::optional<Time> last_time_{};    ///< of the last waypoint in the ring
   std::vector<double> last_{};         ///< its position

@@ -22,8 +22,14 @@ void ShownLimits::take(Time time, std::span<const double> position) noexcept {
   std::ranges::copy(position, std::span(positions_).subspan(at * dimensions_).begin());
 }
 
+void ShownLimits::forget_from(Time time) noexcept {
+  is_replaced_ = false;
+  forget_after(time - Time(1));
+}
+
 void ShownLimits::forget_all() noexcept {
   count_ = first_ = 0;
+  is_replaced_ = false;
   next_ = Time::min();
   has_looked_ = false;
 }

@@ -27,11 +27,17 @@ class ShownLimits {
   /// Takes a waypoint if it is the first one at or after a multiple of kStep, so the choice does
   /// not depend on the first call. Usually one comparison, else O(D).
   void note(Time time, std::span<const double> position) noexcept {
+    if (is_replaced_) forget_from(time);
     if (time >= next_) take(time, position);
   }
 
   /// Drops the waypoints after a time.
   void forget_after(Time t) noexcept;
+
+  /// The next waypoint replaces those at its time and later. Those before it stay although the
+  /// motion may not meet them: plans of one waypoint, of which each replaces the one before, show
+  /// the motion as the waypoints of one plan do.
+  void replace_from_next() noexcept { is_replaced_ = true; }
 
   /// Drops everything.
   void forget_all() noexcept;
@@ -47,6 +53,7 @@ class ShownLimits {
   static constexpr std::size_t kMost = kSpan / kStep + 1;
 
  private:
+  void forget_from(Time time) noexcept;
   void take(Time time, std::span<const double> position) noexcept;
   /// The index of the i-th waypoint before the newest one.
   [[nodiscard]] std::size_t place(std::size_t i) const noexcept { return (count_ - 1 - i) % kMost; }
@@ -57,7 +64,8 @@ class ShownLimits {
   std::size_t count_ = 0;    ///< waypoints taken so far
   std::size_t first_ = 0;    ///< number of the oldest waypoint that is kept: at most kMost are kept
   bool has_looked_ = false;  ///< the limits are up to date
-  Time next_ = Time::min();  ///< the next waypoint is taken from this time on
+  bool is_replaced_ = false;  ///< see replace_from_next()
+  Time next_ = Time::min();   ///< the next waypoint is taken from this time on
   std::vector<Time> times_;
   std::vector<double> positions_;  ///< [waypoint][dimension]
   std::vector<double> values_;     ///< scratch

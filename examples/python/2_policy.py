@@ -24,7 +24,6 @@ import splinecast
 RATE = 30  # chunks per second
 ACTIONS = 8  # of a chunk, 1 / RATE apart
 LATE, SPREAD = 0.086, 0.060  # s: from the observation to the arrival of the chunk
-MARGIN = 0.010  # s: from now to the switch; more than the freeze-ahead (5 ms)
 BLEND = 0.080  # s: least duration of the transition onto a chunk
 JOINTS = 7
 HOME = np.zeros(JOINTS)
@@ -68,11 +67,10 @@ def arrivals(policy, begin, seconds):
 
 def switch_to(arm, chunk):
     """Lets the curve leave for a chunk that has just arrived. Returns False if the chunk is too old."""
-    t = max(time.monotonic_ns(), arm.earliest or 0) * 1e-9 + MARGIN
-    ahead = chunk.times > t  # actions whose time has passed are dropped
-    if not ahead.any():
+    if chunk.times[-1] * 1e9 <= arm.earliest:
         return False
-    arm.replace_from(t, chunk.times[ahead], chunk.actions[ahead], blend=BLEND)
+    # As soon as possible. The actions whose time has passed until then are passed over.
+    arm.replace_from(times=chunk.times, positions=chunk.actions, blend=BLEND)
     return True
 
 

@@ -86,6 +86,9 @@ class KnotBoardReader {
   /// not, or if the writer overtook this call. O(1).
   [[nodiscard]] Time refused_until(Word r) const noexcept;
 
+  /// Summary::longest_pause under revision r; 0 if the writer overtook this call. O(1).
+  [[nodiscard]] Time longest_pause(Word r) const noexcept;
+
   /// Copies the whole summary. On failure `out` does not change.
   [[nodiscard]] bool copy_summary(const Look& look, Summary& out) const noexcept;
 
@@ -178,6 +181,7 @@ class KnotBoardReader {
   [[nodiscard]] SlotView<const Word> cells(Word number) const noexcept {
     return {slot(number), cell_words_};
   }
+  [[nodiscard]] Time summary_time(Word r, std::size_t word, Time otherwise) const noexcept;
   [[nodiscard]] SlotView<const Word> summary_cells() const noexcept {
     return {control_.data() + kSummarySlot, kSummaryWords};
   }

@@ -468,8 +468,10 @@ SPLINECAST_API int splinecast_producer_create(const char* stream,
 /// Destroys a handle; the stream remains. NULL has no effect. System calls.
 SPLINECAST_API int splinecast_producer_destroy(splinecast_producer* producer);
 
-/// Appends a waypoint. Returns a splinecast_append_status. One system call if it wakes a sleeping
-/// solver; until a solver has attached, each call looks for one, which may allocate. O(D).
+/// Appends a waypoint. Returns a splinecast_append_status. The first one after a producer that died
+/// replaces its motion as soon as possible, if it does not continue it, which adds an item before
+/// it: see docs/live-streams.md. One system call if it wakes a sleeping solver; until a solver has
+/// attached, each call looks for one, which may allocate. O(D).
 SPLINECAST_API int splinecast_producer_append(splinecast_producer* producer,
                                               const splinecast_waypoint* waypoint);
 
@@ -479,8 +481,10 @@ SPLINECAST_API int splinecast_producer_append_many(splinecast_producer* producer
                                                    const splinecast_waypoints* waypoints,
                                                    size_t* appended);
 
-/// Replaces everything after time `t` by these waypoints as one revision. The curve continues from
-/// its state at t by an entry of at least `blend` ns; `waypoints` NULL or without rows: it stops.
+/// Replaces everything after time `t` by these waypoints as one revision; INT64_MIN: as soon as
+/// possible. The curve continues from its state at t by an entry of at least `blend` ns;
+/// `waypoints` NULL or without rows: it stops. If the solver takes it later than that, it takes
+/// effect as soon as possible, and passes over the waypoints before.
 /// Returns a splinecast_append_status. Allocates if it has more waypoints than any replacement
 /// before it; else as append.
 SPLINECAST_API int splinecast_producer_replace_from(splinecast_producer* producer, int64_t t,
@@ -541,8 +545,9 @@ SPLINECAST_API int splinecast_producer_wait_until_consumed(splinecast_producer* 
 /// calls.
 SPLINECAST_API int splinecast_producer_solver_alive(splinecast_producer* producer);
 
-/// The earliest time at which the curve may still change: the settled time that the solver of a
-/// live stream last published; else INT64_MIN.
+/// The earliest time at which a replacement that is sent now takes effect at its own time: of a
+/// live stream the later of the settled time and now + freeze_ahead, plus the longest pause of the
+/// solver in the last second, at least 0.2 ms; of a recorded one the settled time, or INT64_MIN.
 SPLINECAST_API int splinecast_producer_earliest(splinecast_producer* producer, int64_t* time);
 
 /// Where the motion of this producer's last replacement begins, and whether it begins at rest,

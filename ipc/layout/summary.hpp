@@ -95,6 +95,9 @@ struct Summary {
   Word end_kind = 0;                            ///< EndKind
   Word end_item = 0;    ///< item that finished the stream; 0 unless end_kind is set
   Time end_lateness{};  ///< how long after the last waypoint's time the curve rests at it
+  /// Longest time in the last second by which a step of a live stream began late, or until it
+  /// committed.
+  Time longest_pause{};
   /// With Beyond::enter: time of the first waypoint after the last one that the curve meets; max()
   /// if it meets the newest one.
   Time unmet_since = Time::max();
@@ -192,10 +195,9 @@ inline constexpr std::tuple kFurtherRows{
              {.words = 2},
              FieldWriter::owner,
              "reserved for their number, and the slot of one of them: 0"},
-    FieldRow{"longest pause",
-             {.words = 1},
-             FieldWriter::owner,
-             "reserved for the longest time between two steps of the last second: 0"},
+    MemberRow<&Summary::longest_pause>{
+        "longest pause", FieldWriter::owner,
+        "ns: longest time in the last second by which a step was late, or took"},
     MemberRow<&Summary::end_kind>{
         "end kind", FieldWriter::owner,
         "1 as requested, 3 entry to the last waypoint, 4 or 5 in a stop; 0 none"},

@@ -83,7 +83,9 @@ AppendStatus StreamStart::replace_from(Time t, std::span<const Waypoint> waypoin
   if (waypoints.empty()) return writer.replace_from(t, waypoints, known);
   AppendStatus status = writer.check_replacement(t, waypoints, known, blend);
   if (status != AppendStatus::accepted) return writer.counted(status);
-  status = begin(waypoints.front(), t, writer, known, board);
+  const bool is_soonest = t == WaypointRingWriter::kSoonest;
+  status =
+      begin(waypoints.front(), is_soonest ? std::nullopt : std::optional(t), writer, known, board);
   if (status != AppendStatus::accepted) return status;
   return started(writer.replace_from(t, waypoints, known, blend));
 }

@@ -63,10 +63,11 @@ class HeldProducer {
 
   std::uint64_t replace_from(py::handle t, py::handle times, py::handle positions,
                              py::handle velocities, py::handle accelerations, py::handle blend) {
-    const Time time = instant(t);
+    const Time time = instant_or_soonest(t);
     const Path path(dimensions_, times, positions, velocities, accelerations);
     const ReplaceOptions options = blend_of(blend);
-    Asked asked{{.what = "replacement", .status = {}, .time = time}, time, {}};
+    Asked asked{{.what = "replacement", .status = {}}, {}, {}};
+    if (!t.is_none()) asked.item.time = asked.latest = time;
     asked.items += path.waypoints.size();
     if (!path.waypoints.empty()) {
       asked.first = path.waypoints.front();
@@ -79,7 +80,7 @@ class HeldProducer {
 
   py::object preview_replace(py::handle t, py::handle times, py::handle positions,
                              py::handle velocities, py::handle accelerations, py::handle blend) {
-    const Time time = instant(t);
+    const Time time = instant_or_soonest(t);
     const Path path(dimensions_, times, positions, velocities, accelerations);
     const ReplaceOptions options = blend_of(blend);
     ReplacePreview preview;
@@ -182,7 +183,7 @@ class HeldProducer {
  private:
   void stop_at_once() {
     accept({{.what = "stop", .status = {}}, std::nullopt, {}}, py::float_(kFinishPatience),
-           [](Producer& producer) { return producer.replace_from(Time::min(), {}); });
+           [](Producer& producer) { return producer.replace_from({}); });
   }
 
   /// A call, as a message describes it.
@@ -226,6 +227,9 @@ class HeldProducer {
     const bool is_about_now = status == AppendStatus::past || status == AppendStatus::too_far_ahead;
     if (is_about_now && clock_ == StreamClock::monotonic && asked.latest) {
       item.reason = compared_with_now(*asked.latest);
+    } else if (status == AppendStatus::too_late) {
+      const Time earliest = producer_.use([](Producer& producer) { return producer.earliest(); });
+      item.reason = "the earliest is now " + std::to_string(earliest.count()) + " ns";
     } else if (status == AppendStatus::elsewhere) {
       item.reason =
           producer_.use([&](Producer& producer) { return producer.why_elsewhere(asked.first); });
@@ -288,10 +292,10 @@ void define_appends(Class& producer) {
       .def("append_many", &HeldProducer::append_many, py::arg("times"), py::arg("positions"),
            py::arg("velocities") = None(), py::arg("accelerations") = None(), timeout,
            doc::Producer_append_many)
-      .def("replace_from", &HeldProducer::replace_from, py::arg("t"), py::arg("times") = None(),
-           py::arg("positions") = None(), py::arg("velocities") = None(),
+      .def("replace_from", &HeldProducer::replace_from, py::arg("t") = None(),
+           py::arg("times") = None(), py::arg("positions") = None(), py::arg("velocities") = None(),
            py::arg("accelerations") = None(), py::arg("blend") = 0.0, doc::Producer_replace_from)
-      .def("preview_replace", &HeldProducer::preview_replace, py::arg("t"),
+      .def("preview_replace", &HeldProducer::preview_replace, py::arg("t") = None(),
            py::arg("times") = None(), py::arg("positions") = None(), py::arg("velocities") = None(),
            py::arg("accelerations") = None(), py::arg("blend") = 0.0, doc::Producer_preview_replace)
       .def("start_from", &HeldProducer::start_from, py::arg("t"), py::arg("position"),

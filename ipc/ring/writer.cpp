@@ -137,23 +137,46 @@ AppendStatus WaypointRingWriter::check_replacement(Time t, std::span<const Waypo
                                                    Time blend) const noexcept {
   if (waypoints.empty()) return check_stop(t, solved);
   if (finished_) return AppendStatus::finished;
-  if (!is_time_in_range(t) || blend > limits_.max_interval) return AppendStatus::too_far_apart;
-  if (t < solved.settled_until) return AppendStatus::too_late;
-  if (solved.clock != nullptr && t < solved.clock->now()) return AppendStatus::too_late;
+  const Time earliest = earliest_replacement(solved);
+  const bool is_soonest = t == kSoonest;
+  const Time from = is_soonest ? std::max(earliest, -kLatestTime) : t;
+  if (!is_time_in_range(from) || blend > limits_.max_interval) return AppendStatus::too_far_apart;
+  if (from < earliest) return AppendStatus::too_late;
   const std::size_t items = 1 + waypoints.size();
   if (items + control_reserve(layout_.capacity) > layout_.capacity) return AppendStatus::too_many;
+  const AppendStatus status = check_path(from, is_soonest, waypoints, solved);
+  if (status != AppendStatus::accepted) return status;
+  return has_room(items, solved, control_reserve(layout_.capacity)) ? AppendStatus::accepted
+                                                                    : AppendStatus::full;
+}
+
+/// Checks the waypoints of a replacement from t on. Those of one as soon as possible may begin
+/// before; its t is -kLatestTime if no settled time is known.
+AppendStatus WaypointRingWriter::check_path(Time t, bool is_soonest,
+                                            std::span<const Waypoint> waypoints,
+                                            const Solved& solved) const noexcept {
   Time before = t;
   for (const Waypoint& waypoint : waypoints) {
     AppendStatus status = check_form(waypoint);
     if (status == AppendStatus::accepted && is_too_far_ahead(waypoint.time, solved)) {
       status = AppendStatus::too_far_ahead;
     }
-    if (status == AppendStatus::accepted) status = judge_interval(waypoint.time - before, limits_);
+    const bool is_first = &waypoint == &waypoints.front();
+    const bool is_begin =
+        is_soonest && is_first && (t == -kLatestTime || waypoint.time - t < limits_.min_interval);
+    if (status == AppendStatus::accepted && !is_begin) {
+      status = judge_interval(waypoint.time - before, limits_);
+    }
     if (status != AppendStatus::accepted) return status;
     before = waypoint.time;
   }
-  return has_room(items, solved, control_reserve(layout_.capacity)) ? AppendStatus::accepted
-                                                                    : AppendStatus::full;
+  return before > t ? AppendStatus::accepted : AppendStatus::too_late;
+}
+
+Time WaypointRingWriter::earliest_replacement(const Solved& solved) noexcept {
+  if (solved.clock == nullptr) return solved.settled_until;
+  const Time now = solved.clock->now();
+  return std::max(solved.settled_until, solved.clock->latest(now, solved.freeze_ahead));
 }
 
 AppendStatus WaypointRingWriter::replace_from(Time t, std::span<const Waypoint> waypoints,
@@ -163,7 +186,7 @@ AppendStatus WaypointRingWriter::replace_from(Time t, std::span<const Waypoint> 
   if (status != AppendStatus::accepted) return counted(status);
   claim(1 + waypoints.size());
   const Word kind = static_cast<Word>(ItemKind::replace) | waypoints.size() << kCountShift;
-  put_item(0, kind, {.time = t, .position = {}});
+  put_item(0, kind, {.time = t == kSoonest ? effect_of_stop(t, solved) : t, .position = {}});
   store(item_words(0)[kItemValues], to_word(std::max(blend, Time::zero())),
         std::memory_order_release);
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
@@ -173,8 +196,8 @@ AppendStatus WaypointRingWriter::replace_from(Time t, std::span<const Waypoint> 
   return status;
 }
 
-/// The time at which a stop takes effect. A stop is never too late: if t has settled, it takes
-/// effect at the end of the settled part.
+/// The time at which a stop, or a replacement as soon as possible, takes effect: if t has settled,
+/// at the end of the settled part.
 Time WaypointRingWriter::effect_of_stop(Time t, const Solved& solved) noexcept {
   return std::max({t, solved.settled_until, kEarliestStop});
 }

@@ -87,7 +87,14 @@ class WaypointRingWriter {
     /// Until when the solver refuses waypoints as `cannot follow`; max(): it does not. Counts while
     /// it has consumed all items.
     Time refused_until = Time::max();
+    Time freeze_ahead{};  ///< of the solver of a live stream; 0 if it is not known
   };
+
+  /// The time of a replacement, or a stop, as soon as possible.
+  static constexpr Time kSoonest = Time::min();
+
+  /// The earliest time of a replacement with waypoints, now. Reads the clock of a live stream.
+  [[nodiscard]] static Time earliest_replacement(const Solved& solved) noexcept;
 
   /// Appends a waypoint if it is valid and the ring has room for it and for control_reserve() more
   /// items. O(D), wait-free.
@@ -99,8 +106,10 @@ class WaypointRingWriter {
   /// Counts the refusal of an item that the caller has refused, and returns its status.
   AppendStatus counted(AppendStatus status) noexcept;
 
-  /// Replaces everything after t. `waypoints` may be empty; they must be later than t and must fit
-  /// into the ring together with the replacement itself and control_reserve(). One store of
+  /// Replaces everything after t. `waypoints` may be empty; else t must not be before
+  /// earliest_replacement(), or be kSoonest. They must be later than t, or the last one later than
+  /// that time, and must fit into the ring together with the replacement itself and
+  /// control_reserve(). One store of
   /// `written` makes all of it visible. O(D) per waypoint. The entry onto the waypoints has at
   /// least the length `blend`: a negative one means 0, one above max_interval gives
   /// `too_far_apart`. A replacement without waypoints is a stop, which may use the reserve. A stop
@@ -145,6 +154,9 @@ class WaypointRingWriter {
 
  private:
   [[nodiscard]] AppendStatus check_form(const Waypoint& waypoint) const noexcept;
+  [[nodiscard]] AppendStatus check_path(Time t, bool is_soonest,
+                                        std::span<const Waypoint> waypoints,
+                                        const Solved& solved) const noexcept;
   [[nodiscard]] bool has_room(Word items, const Solved& solved, std::size_t free) const noexcept {
     return written_ - solved.consumed + items + free <= layout_.capacity;
   }

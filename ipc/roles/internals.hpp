@@ -1,11 +1,14 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "ipc/layout/header.hpp"
 #include "ipc/layout/summary.hpp"
 #include "ipc/sampling/sampler.hpp"
 #include "ipc/solve/settled_raise.hpp"
+#include "splinecast/clock.hpp"
+#include "splinecast/producer.hpp"
 #include "splinecast/reader.hpp"
 #include "splinecast/solver.hpp"
 
@@ -23,6 +26,10 @@ struct Internals {
   /// Copies the summary of the newest revision. Returns false if there is none, or if the writer
   /// overtook every try.
   [[nodiscard]] static bool summary(const Reader& reader, Summary& out) noexcept;
+
+  /// A producer with this host's clock, which outlives it.
+  [[nodiscard]] static Producer producer(std::string stream, ProducerOptions options,
+                                         const Clock& clock);
 
   /// The summary last committed. This and the next three functions require an attached solver.
   [[nodiscard]] static const Summary& summary(const Solver& solver) noexcept;

@@ -17,10 +17,12 @@
 #include "ipc/memory/futex.hpp"
 #include "ipc/options/curve.hpp"
 #include "ipc/options/stream.hpp"
+#include "ipc/owned/continued_motion.hpp"
 #include "ipc/owned/ring.hpp"
 #include "ipc/owned/stream_start.hpp"
 #include "ipc/ring/reader.hpp"
 #include "ipc/ring/writer.hpp"
+#include "ipc/roles/internals.hpp"
 #include "ipc/roles/refusals.hpp"
 #include "ipc/roles/replace_preview.hpp"
 #include "ipc/runs/run_edges.hpp"
@@ -34,6 +36,11 @@ namespace {
 /// die before it wakes the producer.
 constexpr Time kSlice = std::chrono::milliseconds(1);
 constexpr Time kPoll = std::chrono::milliseconds(2);
+
+/// A solver that sleeps takes some tens of microseconds to wake.
+constexpr Time kLeastPause = std::chrono::microseconds(200);
+
+const MonotonicClock kClock;
 
 /// The solver's region as the producer maps it. It holds the ring's consumed position.
 struct SolverView {
@@ -57,17 +64,18 @@ struct Producer::Impl {
   ipc::RegionHeader of_law;  ///< of the law that the stream follows; stream_id 0: none
   ipc::OwnedRing ring;
   bool continues;
+  bool is_first;  ///< no waypoint has been appended to a ring that is continued
   std::optional<SolverView> solver;
   ipc::WaypointRingReader sent;
   ipc::RefusalReader refused;
   ipc::StreamStart start;
   Time settled_until = Time::min();
   std::optional<ipc::Word> replacement;  ///< the item of the last one
-  MonotonicClock clock;
+  const Clock* clock;
   std::unique_ptr<ipc::LawFollower> law;
   std::unique_ptr<ipc::LawClock> law_clock;
 
-  Impl(std::string name, ProducerOptions how)
+  Impl(std::string name, ProducerOptions how, const Clock& time)
       : stream(std::move(name)),
         options(std::move(how)),
         lock((ipc::require_stream_name(stream), stream), ipc::RegionKind::waypoints),
@@ -78,12 +86,14 @@ struct Producer::Impl {
                              header.largest_rate = of_law.largest_rate;
                            })),
         continues(ring.writer.written() > 0),
+        is_first(continues),
         sent(ring.region.bytes(), ring.layout),
         refused(ring.writer.written()),
-        start(stream, ring, options) {
+        start(stream, ring, options),
+        clock(&time) {
     if (ring.header.law_id != 0) {
       law = std::make_unique<ipc::LawFollower>(ring.header, options.trust);
-      law_clock = std::make_unique<ipc::LawClock>(*law, clock);
+      law_clock = std::make_unique<ipc::LawClock>(*law, *clock);
     }
     if (continues) look_for_solver();
     if (solver) refused.skip(solver->board);
@@ -105,7 +115,7 @@ struct Producer::Impl {
 
   /// The clock of a live stream's times.
   [[nodiscard]] const Clock& stream_clock() const noexcept {
-    return law_clock ? static_cast<const Clock&>(*law_clock) : clock;
+    return law_clock ? static_cast<const Clock&>(*law_clock) : *clock;
   }
 
   /// Opens the solver's region of this stream, unless it is already open. Closes a retired one.
@@ -138,6 +148,7 @@ struct Producer::Impl {
     known.clock = &stream_clock();
     if (!law && options.horizon < Time::max()) known.horizon = options.horizon;
     if (!solver) return known;
+    known.freeze_ahead = Time(solver->header.freeze_ahead);
     const ipc::Look look = solver->board.look();
     const bool is_time = is_time_in_range(look.settled_until);
     if (look.revision > 0 && is_time) settled_until = look.settled_until;
@@ -147,6 +158,13 @@ struct Producer::Impl {
     return known;
   }
 
+  /// What a producer adds to the earliest time of a replacement, so that the solver finds it in
+  /// time: the solver's longest pause.
+  [[nodiscard]] Time longest_pause() const noexcept {
+    return std::max(solver ? solver->board.longest_pause(solver->board.revision()) : kLeastPause,
+                    kLeastPause);
+  }
+
   /// The header of the solver's board; null until a solver has attached.
   [[nodiscard]] const ipc::RegionHeader* board_header() const noexcept {
     return solver ? &solver->header : nullptr;
@@ -154,15 +172,34 @@ struct Producer::Impl {
 
   AppendStatus append(const Waypoint& waypoint) noexcept {
     const auto known = look_at_solver();
-    return start.is_open() ? start.append(waypoint, ring.writer, known, board_header())
-                           : ring.writer.append(waypoint, known);
+    if (start.is_open()) return start.append(waypoint, ring.writer, known, board_header());
+    const bool has_curve = known.clock != nullptr && solver && known.settled_until > Time::min();
+    const ipc::Word item = ring.writer.written();
+    const AppendStatus status =
+        is_first && has_curve ? append_first(waypoint, known) : ring.writer.append(waypoint, known);
+    is_first = is_first && status != AppendStatus::accepted;
+    if (ring.writer.written() > item + 1) replacement = item;
+    return status;
+  }
+
+  AppendStatus append_first(const Waypoint& waypoint,
+                            const ipc::WaypointRingWriter::Solved& known) noexcept {
+    try {
+      ipc::ContinuedMotion motion(sent, solver->board, solver->header);
+      return motion.append(waypoint, ring.writer, known);
+    } catch (const std::bad_alloc&) {
+      return ipc::replace_motion(waypoint, ring.writer, known);
+    }
   }
 
   AppendStatus replace_from(Time t, std::span<const Waypoint> waypoints, Time blend) noexcept {
     const auto known = look_at_solver();
-    return start.is_open()
-               ? start.replace_from(t, waypoints, blend, ring.writer, known, board_header())
-               : ring.writer.replace_from(t, waypoints, known, blend);
+    if (start.is_open()) {
+      return start.replace_from(t, waypoints, blend, ring.writer, known, board_header());
+    }
+    const AppendStatus status = ring.writer.replace_from(t, waypoints, known, blend);
+    is_first = is_first && status != AppendStatus::accepted;
+    return status;
   }
 
   /// Wakes the solver if an item was accepted. Returns the status.
@@ -180,13 +217,13 @@ struct Producer::Impl {
   /// solver's revision.
   template <typename Done>
   bool wait(Time timeout, const Done& done) {
-    const Time end = deadline(clock, timeout);
+    const Time end = deadline(kClock, timeout);
     for (;;) {
       look_for_solver();
       (void)ring.lock.hold();
       const ipc::Word seen = solver ? solver->board.revision() : 0;
       if (done()) return true;
-      const Time left = end - clock.now();
+      const Time left = end - kClock.now();
       if (left <= Time::zero()) return false;
       if (solver) {
         (void)ipc::wait_for_change(solver->board.revision_word(), seen, std::min(left, kSlice));
@@ -198,7 +235,8 @@ struct Producer::Impl {
 };
 
 Producer::Producer(std::string stream, ProducerOptions options)
-    : impl_(std::make_unique<Impl>(std::move(stream), std::move(options))) {}
+    : Producer(std::make_unique<Impl>(std::move(stream), std::move(options), kClock)) {}
+Producer::Producer(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
 Producer::Producer(Producer&&) noexcept = default;
 Producer& Producer::operator=(Producer&&) noexcept = default;
 Producer::~Producer() = default;
@@ -238,13 +276,11 @@ void Producer::preview_replace(Time t, std::span<const Waypoint> waypoints,
         solver.board, ipc::window_options(solver.header), ipc::dimension_kinds(solver.header),
         ipc::live_options(solver.header));
   }
-  out.begin = waypoints.empty() ? std::max(t, known.settled_until) : t;
+  out.begin = std::max(t, ipc::WaypointRingWriter::earliest_replacement(known));
   out.from_rest = false;
-  if (known.clock != nullptr) (void)known.clock->now();
   if (const auto held = known.clock != nullptr ? known.clock->held() : std::nullopt) {
     const Time rest = *held + Time(1);
-    out.from_rest = ipc::begins_at_rest(t, waypoints.empty(), rest, known.settled_until,
-                                        Time(solver.header.freeze_ahead));
+    out.from_rest = ipc::begins_at_rest(t, rest, known.settled_until, known.freeze_ahead);
     if (out.from_rest) out.begin = rest;
   }
   solver.planner->plan(waypoints, options.blend, out);
@@ -276,7 +312,13 @@ Time Producer::now() noexcept {
   return is_recorded ? Time::zero() : impl_->stream_clock().now();
 }
 
-Time Producer::earliest() noexcept { return impl_->look_at_solver().settled_until; }
+Time Producer::earliest() noexcept {
+  const auto known = impl_->look_at_solver();
+  const Time earliest = ipc::WaypointRingWriter::earliest_replacement(known);
+  // What a law holds begins at rest where it holds it, at once.
+  const bool is_exact = known.clock == nullptr || known.clock->held();
+  return is_exact ? earliest : earliest + impl_->longest_pause();
+}
 
 AppendStatus Producer::finish(const Condition& end) {
   ipc::require_usable("end", end, impl_->ring.header.dimensions);
@@ -344,6 +386,10 @@ void Producer::withdraw() noexcept {
   ipc::wake_all(impl_->ring.writer.written_word());
   ipc::unlink_region(impl_->stream, ipc::RegionKind::waypoints);
   impl_->lock.remove_file();
+}
+
+Producer ipc::Internals::producer(std::string stream, ProducerOptions options, const Clock& clock) {
+  return Producer(std::make_unique<Producer::Impl>(std::move(stream), std::move(options), clock));
 }
 
 }  // namespace splinecast

@@ -15,6 +15,7 @@
 #include "ipc/mapping/owner_lock.hpp"
 #include "ipc/memory/futex.hpp"
 #include "ipc/options/stream.hpp"
+#include "ipc/owned/old_motion.hpp"
 #include "ipc/roles/internals.hpp"
 #include "splinecast/errors.hpp"
 
@@ -28,7 +29,7 @@ constexpr Time kSlice = std::chrono::milliseconds(50);
 constexpr int kSummaryTries = 16;
 
 /// Whether the board belongs to the producer's current stream, if there is a producer: after a
-/// stream was recreated, the old board remains until a solver attaches.
+/// stream was recreated, the old board remains until its motion ends and a solver attaches.
 bool is_of_current_stream(const std::string& stream, const ipc::RegionHeader& header,
                           const Trust& trust) {
   try {
@@ -83,9 +84,13 @@ struct Reader::Impl {
     if (!ipc::region_exists(stream, ipc::RegionKind::spline)) return nullptr;
     try {
       auto [region, header, layout] = ipc::open_board(stream, false, trust);
-      if (!is_of_current_stream(stream, header, trust)) return nullptr;
-      ipc::require_same_clock(header, stream);
+      const bool is_current = is_of_current_stream(stream, header, trust);
+      if (is_current) ipc::require_same_clock(header, stream);
       auto impl = std::make_unique<Impl>(stream, std::move(region), header, layout);
+      // A motion that has not ended moves the machine, also if a newer stream waits for its end.
+      const bool may_move =
+          is_current || ipc::end_of_motion(header, impl->board, trust) > MonotonicClock().now();
+      if (!may_move) return nullptr;
       if (header.law_id != 0) impl->law = std::make_unique<ipc::LawFollower>(header, trust);
       return impl->board.retired() ? nullptr : std::move(impl);
     } catch (const LawLost&) {

@@ -61,7 +61,8 @@ bool ReplacementPlanner::read_state(Time t) {
   for (int i = 0; i < kTries; ++i) {
     if (!board_->copy_summary(board_->look(), summary)) continue;
     window_.begin_run();
-    shown_.restore(*board_, summary, t);
+    shown_.restore(*board_, summary, Time::max());
+    shown_.replace_from_next();
     return true;
   }
   return false;

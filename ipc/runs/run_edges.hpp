@@ -36,13 +36,19 @@ void come_to_rest(State& state) noexcept;
   return std::max(settled, rest + 10 * freeze_ahead);
 }
 
-/// Whether a stop, or a replacement, at t begins at rest where a time law holds the stream, at
-/// `rest`. A stop needs no exact time, so it may also be earlier.
-[[nodiscard]] inline bool begins_at_rest(Time t, bool is_stop, Time rest, Time settled,
+/// Whether a replacement or a stop at t begins at rest where a time law holds the stream, at
+/// `rest`; t may also be earlier.
+[[nodiscard]] inline bool begins_at_rest(Time t, Time rest, Time settled,
                                          Time freeze_ahead) noexcept {
-  return rest <= settled && t <= latest_from_rest(rest, settled, freeze_ahead) &&
-         (is_stop || t >= rest);
+  return rest <= settled && t <= latest_from_rest(rest, settled, freeze_ahead);
 }
+
+/// How a run begins that cuts the curve.
+struct RunBegin {
+  Time blend{};               ///< least duration of its entry
+  bool has_waypoints = true;  ///< else it is a stop
+  bool is_from_rest = false;  ///< the machine rests where it begins
+};
 
 /// The times of the motion after an entry that ends beyond the newest waypoint: the remainder of
 /// the straight line, unless the entry ends after the line, and the stop.

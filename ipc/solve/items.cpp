@@ -64,10 +64,8 @@ std::optional<Refusal> StreamSolver::time_refusal(Time time) const noexcept {
     return time < settled_until_ ? std::optional(Refusal::past) : std::nullopt;
   }
   const Time newest = curve_.newest_time();
-  // A run without waypoints may begin after the time of the first ones, which it passes over then.
-  if (live_ && curve_.is_stop() && time <= newest) {
-    return time < newest - kMostLate ? std::optional(Refusal::past) : std::nullopt;
-  }
+  // A run may begin after the time of its first waypoints, or less than an interval before it.
+  if (curve_.is_stop() && time - newest < limits_.min_interval) return std::nullopt;
   const Time earliest = is_starved() ? settled_until_ : newest;
   const auto status = judge_interval(time - newest, limits_);
   if (status == AppendStatus::too_far_apart && time - earliest > limits_.max_interval) {
@@ -76,7 +74,8 @@ std::optional<Refusal> StreamSolver::time_refusal(Time time) const noexcept {
   if (status != AppendStatus::accepted && status != AppendStatus::too_far_apart) {
     return to_refusal(status);
   }
-  if (is_starved() && time < settled_until_ - kMostLate) return Refusal::past;
+  const bool is_late = is_starved() && time < settled_until_ - kMostLate;
+  if (is_late && !curve_.begins_after(time)) return Refusal::past;
   return curve_.window().lag_suffices(time) ? std::nullopt : std::optional(Refusal::lag_too_short);
 }
 
@@ -153,16 +152,14 @@ void StreamSolver::count_excess(std::optional<LimitExcess> excess, Word number,
 }
 
 void StreamSolver::take_replacement(Word number) noexcept {
-  // A stop is never too late: it takes effect as soon as possible, in a revision of its own, which
-  // is committed sooner than a full batch.
-  const Time earliest = std::max(settled_until_, curve_.earliest_cut());
-  const bool rests = can_rest() && begins_at_rest(item_.time, is_stop(item_), *rest_,
-                                                  settled_until_, live_->freeze_ahead);
-  const Time t = rests ? *rest_ : is_stop(item_) ? std::max(item_.time, earliest) : item_.time;
+  // A replacement is never too late. A stop is a revision of its own, which is committed sooner
+  // than a full batch.
+  const bool rests =
+      can_rest() && begins_at_rest(item_.time, *rest_, settled_until_, live_->freeze_ahead);
+  const Time t = rests ? *rest_ : time_of_cut(item_.time);
   const bool has_begun = curve_.has_begun();  // else there is nothing to replace
-  if (has_begun && !rests &&
-      (t < settled_until_ || !is_time_in_range(t) || t < curve_.earliest_cut())) {
-    return refuse_replacement(number, Refusal::too_late);
+  if (has_begun && !is_time_in_range(t)) {
+    return refuse_replacement(number, Refusal::too_far_apart);
   }
   // Waypoints that begin a curve together are taken together, too.
   const bool is_begin = !has_begun && live_ && item_.count > 0 && number + 1 < available_;
@@ -177,9 +174,11 @@ void StreamSolver::take_replacement(Word number) noexcept {
   if (!has_begun) return;
   // A stop after another one changes nothing.
   if (is_stop(item_) && curve_.is_stop() && t >= curve_.newest_time()) return;
-  const Time blend = std::clamp(item_.blend, Time::zero(), limits_.max_interval);
-  if (rests) return begin_at_rest(blend);
-  curve_.begin_run(t, blend);
+  const RunBegin how{.blend = std::clamp(item_.blend, Time::zero(), limits_.max_interval),
+                     .has_waypoints = !is_stop(item_),
+                     .is_from_rest = rests};
+  if (rests) return begin_at_rest(how);
+  curve_.begin_run(t, how);
   summary_.starved = false;
   summary_.newest_time = t;
 }
@@ -208,7 +207,7 @@ void StreamSolver::take_plan(Word number) noexcept {
   }
   summary_.consumed = number + pieces;
   summary_.controls += pieces;
-  curve_.begin_run(t, Time::zero());
+  curve_.begin_run(t, {});
   if (curve_.is_damaged()) return;
   const Instant cut = curve_.origin_state();
   core::LawPath path({.time = t,

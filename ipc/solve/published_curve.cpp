@@ -196,10 +196,10 @@ void PublishedCurve::begin(const Instant& state) noexcept {
   note_change(state.time);
 }
 
-void PublishedCurve::begin_run(Time t, Time blend, bool is_from_rest) noexcept {
+void PublishedCurve::begin_run(Time t, const RunBegin& how) noexcept {
   is_damaged_ = is_damaged_ || !cut_.find(summary_, t);
   if (is_damaged_) return;
-  if (is_from_rest) cut_.come_to_rest();
+  if (how.is_from_rest) cut_.come_to_rest();
   uses_cut_ = true;
   if (!find_reach(Time::max())) return;
   ends_at_known_ = ends_at_known_ && t >= behind_.end;
@@ -211,12 +211,16 @@ void PublishedCurve::begin_run(Time t, Time blend, bool is_from_rest) noexcept {
   committed_knots_ = 0;
   wait_for_entry(window_.knots());
   set_origin(cut_.next(), cut_.state());
-  origin_.is_corner = is_from_rest;
-  blend_until_ = t + blend;
+  origin_.is_corner = how.is_from_rest;
+  blend_until_ = t + how.blend;
   is_searching_ = is_entry_new_ = is_prepared_ = false;
   committed_shown_ = shown_;
   has_forgotten_ = true;
-  shown_.forget_after(t - Time(1));
+  if (how.has_waypoints) {
+    shown_.replace_from_next();
+  } else {
+    shown_.forget_after(t - Time(1));
+  }
   kept_ = 0;
   open_ = 0;
   note_change(t);

@@ -85,6 +85,11 @@ class PublishedCurve {
     return course_ == Course::waiting && window_.knots() == 0;
   }
 
+  /// Whether the run begins after t and has met no waypoint.
+  [[nodiscard]] bool begins_after(Time t) const noexcept {
+    return course_ == Course::waiting && unmet_ == 0 && origin_.number > 0 && t < origin_.time;
+  }
+
   /// Whether the run is a stop that moves after t, and begins at `latest` or earlier.
   [[nodiscard]] bool is_stopping(Time t, Time latest) const noexcept {
     return is_stop() && origin_.number > 1 && !origin_.is_corner && origin_.time <= latest &&
@@ -116,10 +121,9 @@ class PublishedCurve {
   /// min() if a hold precedes the curve, max() if there is no curve.
   [[nodiscard]] Time earliest_cut() const noexcept;
 
-  /// Cuts the committed curve at t and begins a run that continues from there, or from rest there.
-  /// The entry of the run does not end before t + `blend`. Requires a segment at t, and no
+  /// Cuts the committed curve at t and begins a run there. Requires a segment at t, and no
   /// uncommitted changes. Changes nothing if the board is damaged.
-  void begin_run(Time t, Time blend, bool is_from_rest = false) noexcept;
+  void begin_run(Time t, const RunBegin& how) noexcept;
 
   /// Finds the largest excess of a segment that exceeds a limit with this waypoint, but not without
   /// it; nothing if there is no such segment. Compares only the segments that the waypoint changes
@@ -365,8 +369,7 @@ class PublishedCurve {
                                    ///< kMetKept before unmet_; 0 if a stream starts by an entry
   /// Number of leading knots of the run in the numbered slots, if the curve ends on the target.
   std::size_t placed_ = 0;
-  /// The knots of the run from passed_lowest_ to before this one have been written to the passed
-  /// slots; newer ones may have overwritten them.
+  /// The run's knots from passed_lowest_ to before this one were written to the passed slots.
   std::size_t passed_written_ = 0;
   std::size_t passed_committed_ = 0;  ///< the same, as of the last commit
   Word passed_before_ = 0;            ///< waypoints passed over by entries that have ended

@@ -28,12 +28,8 @@ std::optional<Word> ReplacementQueue::due(Time settled_until, Time newest) const
   std::optional<Word> found;
   Time earliest = Time::max();
   for (std::size_t i = first_; i < items_.size(); ++i) {
-    const Time t = ring_->time(items_[i]);
-    const bool is_stop = ring_->is_stop(items_[i]);
-    const bool applies =
-        is_stop ? t <= std::max(newest, settled_until) : t >= settled_until && t <= newest;
-    const Time effect = std::max(t, settled_until);
-    if (!applies || effect > earliest) continue;
+    const Time effect = std::max(ring_->time(items_[i]), settled_until);
+    if (effect > std::max(newest, settled_until) || effect > earliest) continue;
     earliest = effect;
     found = items_[i];
   }

@@ -24,9 +24,8 @@ class ReplacementQueue {
 
   /// The replacement to carry out next, before all items queued before it: the one that takes
   /// effect first, and the newest one of several at the same time. The curve is settled until
-  /// `settled_until`, and its newest knot is at `newest`. A replacement with waypoints takes effect
-  /// at its time t, which must not have settled; a stop takes effect at max(t, settled_until).
-  /// Returns nothing if each one is too late or after the newest knot. O(replacements).
+  /// `settled_until`, and its newest knot is at `newest`. A replacement at t takes effect at
+  /// max(t, settled_until). Returns nothing if each one is after the newest knot. O(replacements).
   [[nodiscard]] std::optional<Word> due(Time settled_until, Time newest) const noexcept;
 
  private:

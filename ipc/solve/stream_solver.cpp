@@ -103,8 +103,10 @@ StepResult StreamSolver::step(const Clock& clock) noexcept {
   if (is_damaged()) return {.damaged = true};
   if (live_) summary_.settled_until = std::max(summary_.settled_until, board_->take_up_settled());
   is_timed_ = live_ || board_->revision() % kTimedEvery == 0;
+  const Time was_due = due();
   const Time began = is_timed_ ? clock.now() : Time::min();
   if (is_timed_) started_ = clock.host_time(began);
+  if (was_due > Time::min() && was_due < started_) pauses_.note(started_, started_ - was_due);
   const Time now = live_ ? began : Time::min();
   if (live_ && !board_->is_checked()) check_commit(now);
   // Each try takes half as many items as the one before. If a try with one item fails, the next try
@@ -237,15 +239,20 @@ Word StreamSolver::consume(Time now) noexcept {
   return summary_.consumed - before;
 }
 
+/// Where a replacement from t on cuts the curve: never too late.
+Time StreamSolver::time_of_cut(Time t) const noexcept {
+  return std::max({t, settled_until_, curve_.earliest_cut()});
+}
+
 /// Whether the law holds the stream where the curve can be cut.
 bool StreamSolver::can_rest() const noexcept {
   return rest_ && curve_.has_begun() && *rest_ >= curve_.earliest_cut();
 }
 
 /// Begins a run at rest where the law holds, instead of what has settled after it.
-void StreamSolver::begin_at_rest(Time blend) noexcept {
+void StreamSolver::begin_at_rest(const RunBegin& how) noexcept {
   settled_until_ = *rest_;
-  curve_.begin_run(*rest_, blend, true);
+  curve_.begin_run(*rest_, how);
   summary_.starved = false;
   summary_.newest_time = *rest_;
   rests_ = true;
@@ -255,7 +262,8 @@ void StreamSolver::begin_at_rest(Time blend) noexcept {
 void StreamSolver::rest_where_held() noexcept {
   if (!can_rest() || *rest_ > settled_until_ || summary_.finished) return;
   const Time latest = latest_from_rest(*rest_, settled_until_, live_->freeze_ahead);
-  if (curve_.is_stopping(*rest_, latest)) begin_at_rest(Time::zero());
+  if (curve_.is_stopping(*rest_, latest))
+    begin_at_rest({.has_waypoints = false, .is_from_rest = true});
 }
 
 /// Withdraws what an earlier step or solver has left in the ring, and plans from the settled time
@@ -289,19 +297,17 @@ bool StreamSolver::has_room(const RingItem& item) const noexcept {
   if (curve_.has_changes()) return false;
   // A stop costs at most one segment of the history: it does not wait for room.
   return is_stop(item) || !curve_.has_begun() ||
-         curve_.has_room_to_cut(item.time, kAddedByItem, keep_);
+         curve_.has_room_to_cut(time_of_cut(item.time), kAddedByItem, keep_);
 }
 
 /// Searches the ring for a replacement that is due, and withdraws all items queued before it. They
-/// may be replacements that are too late or not yet due, and waypoints for which the board has no
-/// room. Withdraws nothing if the replacement itself must wait for room, because it may be too late
-/// when there is room.
+/// may be replacements that are not yet due, and waypoints for which the board has no room.
+/// Withdraws nothing if the replacement itself must wait for room.
 void StreamSolver::withdraw() noexcept {
   if (!curve_.has_begun() || summary_.finished) return;
   replacements_.note(summary_.consumed, available_);
   if (replacements_.empty()) return;
-  const Time earliest = std::max(settled_until_, curve_.earliest_cut());
-  const auto replacement = replacements_.due(earliest, curve_.newest_time());
+  const auto replacement = replacements_.due(time_of_cut(Time::min()), curve_.newest_time());
   if (!replacement) return;
   ring_->copy(*replacement, item_);
   if (!has_room(item_)) return;
@@ -348,6 +354,11 @@ StepResult StreamSolver::publish(const Clock& clock, Word consumed) noexcept {
   if (!is_free || (live_ && summary_.changed_from <= summary_.committed)) {
     take_back(summary_.deadline_misses + 1);
     return {.missed = true};
+  }
+  if (live_) {
+    const Time committed = clock.host_time(summary_.committed);
+    pauses_.note(committed, committed - started_);
+    summary_.longest_pause = pauses_.longest(committed);
   }
   // A table without the plan that belongs to it would show what is not in force.
   if (planner_ != nullptr)

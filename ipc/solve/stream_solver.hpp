@@ -12,6 +12,7 @@
 #include "ipc/ring/item.hpp"
 #include "ipc/ring/reader.hpp"
 #include "ipc/solve/law_planner.hpp"
+#include "ipc/solve/pauses.hpp"
 #include "ipc/solve/published_curve.hpp"
 #include "ipc/solve/replacement_queue.hpp"
 #include "ipc/solve/settled_raise.hpp"
@@ -48,13 +49,14 @@ struct LiveOptions {
 /// On a stream with limits, the solver first tries each waypoint. If the curve with it exceeds a
 /// limit, the solver records the excess, and takes or refuses the waypoint as `beyond` specifies.
 ///
-/// A stop is a replacement without waypoints. It takes effect at settled_until of the first step
-/// that finds it in the ring, or at its own time if that is later, regardless of the items queued
-/// before it and of the room that the board has for them.
+/// A replacement takes effect at settled_until of the first step that finds it in the ring, or at
+/// its own time if that is later, regardless of the items queued before it: it is never too late.
+/// It passes over those of its waypoints that are before. A stop is a replacement without
+/// waypoints; it does not wait for the room that the board has for the items before it.
 ///
 /// While the time law of a stream holds it, its curve can be changed from the held time on, plus 1
 /// ns, although more had settled: no process has executed more, or had more as a settled sample.
-/// There a stop, or a replacement as soon as possible (latest_from_rest()), cuts the curve, and
+/// There a stop or a replacement as soon as possible (latest_from_rest()) cuts the curve, and
 /// what follows begins at rest: a machine that rests stays where it is. A stop that is executed
 /// when the law holds is cut there in the same way. For that the settled word goes back, in this
 /// order: store the word, read the law again, commit. If the law no longer holds, the revision is
@@ -119,9 +121,10 @@ class StreamSolver {
   void suspect_items() noexcept;
   [[nodiscard]] Word consume(Time now) noexcept;
   void plan_law(Time now) noexcept;
+  [[nodiscard]] Time time_of_cut(Time t) const noexcept;
   [[nodiscard]] bool can_rest() const noexcept;
   void rest_where_held() noexcept;
-  void begin_at_rest(Time blend) noexcept;
+  void begin_at_rest(const RunBegin& how) noexcept;
   [[nodiscard]] bool is_damaged() const noexcept { return lacks_summary_ || curve_.is_damaged(); }
   [[nodiscard]] Word reachable(Word written) const noexcept;
   [[nodiscard]] bool enters_before(const RingItem& item) noexcept;
@@ -169,6 +172,7 @@ class StreamSolver {
   bool is_timed_ = false;             ///< this step is timed
   Time started_{};                    ///< host time when it began, if it is timed
   Time settled_at_ = Time::min();     ///< host time when settled_until was last stored
+  Pauses pauses_;                     ///< of the steps of a live stream
   std::optional<Time> rest_{};        ///< the earliest time at which a held law allows a change
   bool rests_ = false;                ///< a run begins at rest there in this revision
   bool has_starved_ = false;          ///< the stream has begun to starve in this step

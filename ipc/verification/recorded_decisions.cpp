@@ -49,12 +49,22 @@ std::size_t RecordedDecisions::end_of_run(std::size_t i,
   return end;
 }
 
-bool RecordedDecisions::begins_at_cut(std::size_t i) const noexcept {
-  if (!segments_[i].origin.item || segments_[i].is_corner) return true;
+/// The time of the last replacement before the waypoints of the run that begins with segment i.
+std::optional<Time> RecordedDecisions::replaced_from(std::size_t i) const noexcept {
   Word item = std::min(*segments_[i].origin.item, record_.items.size());
   const Word first = record_.items.first();
   while (item > first && !record_.items.is_taken(item - 1, ItemKind::replace)) --item;
-  return item > first && record_.items.waypoint(item - 1).time == segments_[i].left;
+  return item > first ? std::optional(record_.items.waypoint(item - 1).time) : std::nullopt;
+}
+
+bool RecordedDecisions::begins_at_cut(std::size_t i) const noexcept {
+  if (!segments_[i].origin.item || segments_[i].is_corner) return true;
+  return replaced_from(i) == segments_[i].left;
+}
+
+bool RecordedDecisions::may_begin_at_late_cut(std::size_t i) const noexcept {
+  const auto from = segments_[i].origin.item ? replaced_from(i) : std::nullopt;
+  return from && *from < segments_[i].left;
 }
 
 bool RecordedDecisions::begins_elsewhere(std::size_t i) const noexcept {

@@ -45,6 +45,9 @@ class RecordedDecisions {
   /// begins. False if these waypoints came later, during or after a stop.
   [[nodiscard]] bool begins_at_cut(std::size_t i) const noexcept;
 
+  /// Whether that replacement may have cut the curve there, later than at its own time.
+  [[nodiscard]] bool may_begin_at_late_cut(std::size_t i) const noexcept;
+
   /// Whether segment i, the first one of the record, begins at another state than the stream's
   /// first waypoint: at a given start state, or at a replacement before the curve had begun to
   /// move.
@@ -55,6 +58,7 @@ class RecordedDecisions {
 
  private:
   [[nodiscard]] const SegmentCopy& before(std::size_t i) const noexcept { return segments_[i - 1]; }
+  [[nodiscard]] std::optional<Time> replaced_from(std::size_t i) const noexcept;
 
   const StreamRecord& record_;
   std::span<const SegmentCopy> segments_;

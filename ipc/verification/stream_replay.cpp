@@ -10,8 +10,9 @@
 
 namespace splinecast::ipc {
 
-StreamReplay::StreamReplay(const StreamRecord& record)
+StreamReplay::StreamReplay(const StreamRecord& record, std::set<std::size_t> late_cuts)
     : record_(record),
+      late_cuts_(std::move(late_cuts)),
       segments_(record.segments),
       decisions_(record),
       target_(record),
@@ -99,7 +100,14 @@ bool StreamReplay::begin_run(std::size_t i) {
       i > 0 && !is_first_of_part && target_.window().knots() == 0 &&
       (target_.window().is_later_run() || !record_.items.find(ItemKind::replace, 0, first_items));
   if (is_later && !is_same_run) target_.begin_run();
-  if (!is_same_run || decisions_.begins_at_cut(i)) target_.begin_at(begin_.at(segment.left));
+  bool begins_here = !is_same_run || decisions_.begins_at_cut(i);
+  if (!begins_here && decisions_.may_begin_at_late_cut(i)) {
+    begins_here = late_cuts_.contains(i);
+    open_cut_ = begins_here ? std::nullopt : std::optional(i);
+  } else {
+    open_cut_.reset();
+  }
+  if (begins_here) target_.begin_at(begin_.at(segment.left));
   target_.forget_waypoints();
   run_item_ = segment.origin.item;
   if (!run_item_ && segment.has_waypoint) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,10 +28,16 @@ namespace splinecast::ipc {
 /// show them, up to the first segment that differs. Used once, by one thread.
 class StreamReplay {
  public:
-  /// The record outlives this. Throws std::invalid_argument for window options out of range.
-  explicit StreamReplay(const StreamRecord& record);
+  /// The record outlives this. `late_cuts`: the segments at which a replacement has cut a run
+  /// without waypoints later than at its own time. Throws std::invalid_argument for window options
+  /// out of range.
+  explicit StreamReplay(const StreamRecord& record, std::set<std::size_t> late_cuts = {});
 
   [[nodiscard]] Verification run();
+
+  /// After a difference: the segment at which the run of that place begins, if a late replacement
+  /// may have cut it there, which is not recorded. If so, it is one of the late cuts.
+  [[nodiscard]] std::optional<std::size_t> open_cut() const noexcept { return open_cut_; }
 
  private:
   // Parts of a curve, and the transitions between them.
@@ -71,6 +78,8 @@ class StreamReplay {
   bool differ(std::size_t i, Difference difference);
 
   const StreamRecord& record_;
+  std::set<std::size_t> late_cuts_;
+  std::optional<std::size_t> open_cut_{};
   std::span<const SegmentCopy> segments_;
   RecordedDecisions decisions_;
   RunTarget target_;

@@ -56,6 +56,12 @@ struct CampaignOptions {
 /// never happened.
 [[nodiscard]] Result run_ends(const CampaignOptions& options);
 
+/// Random beginnings of live streams in simulated time, 20 of each seed: of streams that exist,
+/// that were finished, killed or removed, in motion and at rest. Checks that a controller that
+/// follows them makes no step, and that every item is accounted for. `runs` is the number of
+/// beginnings.
+[[nodiscard]] Result run_starts(const CampaignOptions& options);
+
 /// A generated motion with faults of its producer and solver, with and without acceleration limits,
 /// in simulated time. Checks that no limit is exceeded and that the curve neither freezes nor
 /// jumps. `seed` is the seed of the motion. With `trace`, also writes what readers see around the

@@ -101,6 +101,11 @@ void add_ends(CLI::App& program, Asked& asked) {
            "CPU time of each of the two threads");
 }
 
+void add_starts(CLI::App& program, Asked& asked) {
+  add_runs(program.add_subcommand("starts", "Random beginnings of streams in simulated time"),
+           asked);
+}
+
 void add_follow(CLI::App& program, Asked& asked) {
   auto* verb = program.add_subcommand("follow", "Sources that a curve within limits cannot meet");
   verb->add_option("--seed", asked.options.seed, "Seed of the first run")->capture_default_str();
@@ -132,6 +137,7 @@ Run run_of(const CLI::App& program, const Asked& asked) {
   if (program.got_subcommand("motions")) return run_motions;
   if (program.got_subcommand("returns")) return run_returns;
   if (program.got_subcommand("ends")) return run_ends;
+  if (program.got_subcommand("starts")) return run_starts;
   if (program.got_subcommand("follow")) return run_follow;
   if (program.got_subcommand("streams")) return run_streams;
   if (program.got_subcommand("stress")) return run_stress;
@@ -145,8 +151,8 @@ int run_program(int argc, char** argv) {
   CLI::App program("Creates streams, attacks them and counts violations", "splinecast_campaign");
   program.require_subcommand(1);
   Asked asked{.options = {.command = joined(argc, argv)}};
-  for (const auto& add : {add_kill, add_stress, add_streams, add_ends, add_motions, add_returns,
-                          add_follow, add_requests}) {
+  for (const auto& add : {add_kill, add_stress, add_streams, add_ends, add_starts, add_motions,
+                          add_returns, add_follow, add_requests}) {
     add(program, asked);
   }
   for (const char* name : {"motions", "returns"}) add_enter(program.get_subcommand(name), asked);

@@ -14,6 +14,10 @@
 #include "splinecast/status.hpp"
 #include "splinecast/waypoint.hpp"
 
+namespace splinecast::ipc {
+struct Internals;
+}  // namespace splinecast::ipc
+
 namespace [[gnu::visibility("default")]] splinecast {
 
 /// An item that the ring accepted and the solver refused.
@@ -137,21 +141,33 @@ class Producer {
   /// an entry; this adds a start state to the ring. In a dimension without limits the waypoint must
   /// be there within ProducerOptions::start_tolerance. Else it is refused as `elsewhere`: use
   /// start_from(). The same holds for the first waypoint of replace_from().
+  ///
+  /// The first waypoint of a producer that continues a live stream, while the motion of the dead
+  /// one lasts, may belong to another motion. It continues that one if it is later than its
+  /// newest waypoint, and its chord from there keeps the limits, or those that the motion shows.
+  /// Else it replaces that motion as soon as possible, as replace_from() with this one waypoint
+  /// does; `past` if it is not later than that.
   [[nodiscard]] AppendStatus append(const Waypoint& waypoint) noexcept;
 
   /// Replaces everything after time t by `waypoints`, which may be empty, as one revision. The
   /// curve continues from its state at t by an entry onto the waypoints, see ReplaceOptions;
-  /// without waypoints it comes to rest. With waypoints, `t` must not be before earliest() nor, on
-  /// a live stream, before now, else `too_late`; the waypoints must be later than `t` and must fit
-  /// into the ring, which reserves places for stops. On a stream that has no waypoints yet, they
-  /// start it as appended ones do. O(D) per waypoint; otherwise as append.
+  /// without waypoints it comes to rest. With waypoints, `t` must not be before the settled time
+  /// nor, on a live stream, before now and freeze_ahead, else `too_late`: see earliest(). The
+  /// waypoints must be later than `t` and must fit into the ring, which reserves places for stops.
+  /// On a stream that has no waypoints yet, they start it as appended ones do. O(D) per waypoint;
+  /// otherwise as append.
   ///
-  /// Without waypoints it is a stop, which is never too late: if t has settled, the curve stops as
-  /// soon as possible. The solver's next step executes the stop at settled_until, or at t if that
-  /// is later, regardless of the items queued before it; that step comes after at most one wake of
-  /// the solver, or one sweep over all streams that it solves. A stop at a t after the newest knot
-  /// waits for its turn in the queue, at most until settled_until reaches t. A ring of 16 or more
-  /// items accepts stops and `finish` even when it is full of waypoints.
+  /// Without t, or with Time::min(), it takes effect as soon as possible. Then only the last
+  /// waypoint must be later than that.
+  ///
+  /// A replacement that is in the ring is never too late: the solver's next step executes it at
+  /// settled_until, or at t if that is later, regardless of the items queued before it, and passes
+  /// over those of its waypoints that are before. That step comes after at most one wake of the
+  /// solver, or one sweep over all streams that it solves. A replacement at a t after the newest
+  /// knot waits for its turn in the queue, at most until settled_until reaches t.
+  ///
+  /// Without waypoints it is a stop, for which any t is early enough. A ring of 16 or more items
+  /// accepts stops and `finish` even when it is full of waypoints.
   ///
   /// While the time law of the stream holds it, a stop or a replacement at a t that has settled, or
   /// is at most 10 freeze-aheads after the held time, takes effect where the law holds it, 1 ns
@@ -162,13 +178,17 @@ class Producer {
   /// which.
   [[nodiscard]] AppendStatus replace_from(Time t, std::span<const Waypoint> waypoints,
                                           const ReplaceOptions& options = {}) noexcept;
+  [[nodiscard]] AppendStatus replace_from(std::span<const Waypoint> waypoints,
+                                          const ReplaceOptions& options = {}) noexcept {
+    return replace_from(Time::min(), waypoints, options);
+  }
 
   /// Computes what `replace_from` with these arguments would do, without changing anything:
   /// duration of the entry, largest velocities, accelerations and jerks, waypoints passed over. For
-  /// a stop: its duration from t, or from earliest() if that is later. The result is what the
-  /// solver would plan now: later revisions and the passing of time may change it. O(n·K·D); reads
-  /// the board; no system call except the search for a solver, as in append. Allocates; the second
-  /// form reuses the memory of `out`. Producer's thread only. Throws std::bad_alloc only.
+  /// a stop: its duration from t, or from the earliest time if that is later. The result is what
+  /// the solver would plan now: later revisions and the passing of time may change it. O(n·K·D);
+  /// reads the board; no system call except the search for a solver, as in append. Allocates; the
+  /// second form reuses the memory of `out`. Producer's thread only. Throws std::bad_alloc only.
   [[nodiscard]] ReplacePreview preview_replace(Time t, std::span<const Waypoint> waypoints,
                                                const ReplaceOptions& options = {});
   void preview_replace(Time t, std::span<const Waypoint> waypoints, const ReplaceOptions& options,
@@ -193,9 +213,11 @@ class Producer {
   /// do. Empty if there is no old end. Throws std::bad_alloc only.
   [[nodiscard]] std::string why_elsewhere(const Waypoint& first);
 
-  /// The earliest time at which the curve may still change: of a live stream, the settled time that
-  /// its solver last published; min() of a recorded stream, and before a solver has published.
-  /// O(1); until a solver has attached, looks for one, as append does.
+  /// The earliest time at which a replacement that is sent now takes effect exactly at its own
+  /// time: of a live stream the later of the settled time and now + freeze_ahead, plus the longest
+  /// pause of its solver in the last second, at least 0.2 ms. A later time is refused only if the
+  /// call comes later than that pause. Of a recorded stream the settled time; min() before a solver
+  /// has published. O(1); until a solver has attached, looks for one, as append does.
   [[nodiscard]] Time earliest() noexcept;
 
   /// Where the motion of this producer's last replacement begins, once the solver has taken it, as
@@ -262,7 +284,9 @@ class Producer {
   void withdraw() noexcept;
 
  private:
+  friend struct ipc::Internals;
   struct Impl;
+  explicit Producer(std::unique_ptr<Impl> impl) noexcept;
   std::unique_ptr<Impl> impl_;
 };
 

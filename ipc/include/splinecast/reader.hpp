@@ -62,7 +62,9 @@ class Reader {
  public:
   /// Maps the stream's knot board; waits for it up to `wait`, polling every 2 ms. Throws BadRequest
   /// for an invalid stream name (1 to 128 of A-Z a-z 0-9 . _ -, no leading dot), NoSuchStream if no
-  /// board has appeared by then, BadRegion if the board cannot be used.
+  /// board has appeared by then, BadRegion if the board cannot be used. If a stream was created
+  /// again, its board appears when the earlier motion has ended; until then a reader attaches to
+  /// the earlier one, whose samples are `retired` afterwards.
   explicit Reader(const std::string& stream, Time wait = Time::zero(), const Trust& trust = {});
   Reader(Reader&&) noexcept;
   Reader& operator=(Reader&&) noexcept;

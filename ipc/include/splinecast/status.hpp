@@ -25,8 +25,8 @@ enum class AppendStatus : std::uint8_t {
                     ///< the settled time and now); or a time, also that of a replacement, is
                     ///< outside ±2⁶² ns; or ReplaceOptions::blend is longer than max_interval
   wrong_dimension,  ///< a span does not have one value per dimension
-  too_late,         ///< a replacement with waypoints at a time before Producer::earliest() or, on a
-                    ///< live stream, before now
+  too_late,         ///< a replacement with waypoints at a time that has settled or, on a live
+                    ///< stream, is before now + freeze_ahead: see Producer::earliest()
   too_many,         ///< a replacement that does not fit even into an empty ring
   already_started,  ///< a start state after the first waypoint
   finished,         ///< the stream has been finished
@@ -49,7 +49,7 @@ enum class Refusal : std::uint8_t {
   not_finite = 4,  ///< a value is not usable, or makes the curve not finite
   too_close = 5,
   too_far_apart = 6,
-  too_late = 7,  ///< a replacement at a settled time, or a waypoint of it
+  too_late = 7,  ///< a plan of a time law at a settled time; of earlier versions a replacement
   after_finish = 8,
   already_started = 9,  ///< a start state after the first waypoint
   unknown_kind = 10,

@@ -129,6 +129,9 @@ class Producer:
     ) -> int:
         """Append a waypoint.
 
+        The first waypoint after a producer that died replaces its motion as soon as possible, if it
+        does not continue it: see docs/live-streams.md.
+
         Parameters
         ----------
         t : int or float
@@ -183,7 +186,7 @@ class Producer:
         """
     def replace_from(
         self,
-        t: Instant,
+        t: Optional[Instant] = None,
         times: Optional[Instants] = None,
         positions: Optional[ArrayLike] = None,
         velocities: Optional[ArrayLike] = None,
@@ -192,13 +195,15 @@ class Producer:
     ) -> int:
         """Replace everything after time t by new waypoints, as one revision.
 
-        The curve continues from its state at `t` by an entry onto the waypoints. Without waypoints
-        it comes to rest, as soon as possible if `t` has settled.
+        The curve continues from its state at `t` by an entry onto the waypoints; without waypoints
+        it comes to rest. If the solver takes it later than that, it takes effect as soon as
+        possible, and passes over the waypoints before.
 
         Parameters
         ----------
-        t : int or float
-            Not before `earliest`, unless there are no waypoints.
+        t : int or float, optional
+            None: as soon as possible. Otherwise not before the settled time nor now + freeze_ahead,
+            unless there are no waypoints: see `earliest`.
         times : array-like, optional
             n times, later than `t`.
         positions, velocities, accelerations : array-like, optional
@@ -218,7 +223,7 @@ class Producer:
         """
     def preview_replace(
         self,
-        t: Instant,
+        t: Optional[Instant] = None,
         times: Optional[Instants] = None,
         positions: Optional[ArrayLike] = None,
         velocities: Optional[ArrayLike] = None,
@@ -334,7 +339,11 @@ class Producer:
         """The number of dimensions, D."""
     @property
     def earliest(self) -> Optional[int]:
-        """The earliest time at which the curve may still change [ns]; None: any time."""
+        """The earliest time at which a replacement sent now takes effect at its own time [ns].
+
+        The later of the settled time and now + freeze_ahead, plus the longest pause of the solver
+        in the last second, at least 0.2 ms. Of a recorded stream the settled time, or None.
+        """
     @property
     def replacement_begin(self) -> Optional[ReplacementBegin]:
         """Where the motion of the last replacement begins, and whether at rest in a hold.

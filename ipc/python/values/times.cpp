@@ -110,6 +110,8 @@ Time instant(py::handle value) {
   return instant_of_int(py::reinterpret_steal<py::object>(PyNumber_Index(object)));
 }
 
+Time instant_or_soonest(py::handle value) { return value.is_none() ? Time::min() : instant(value); }
+
 Time duration(py::handle value, const char* what) {
   const bool is_number =
       PyFloat_Check(value.ptr()) || PyIndex_Check(value.ptr()) != 0 || is_numpy(value, "floating");

@@ -19,6 +19,9 @@ namespace py = pybind11;
 /// An instant, rounded to the nanosecond, within ±2⁶² ns.
 [[nodiscard]] Time instant(py::handle value);
 
+/// The same; Time::min() for None: as soon as possible.
+[[nodiscard]] Time instant_or_soonest(py::handle value);
+
 /// Seconds after 0 that an instant may have: ±2⁶² ns.
 [[nodiscard]] Time instant_of_seconds(double seconds);
 

@@ -256,7 +256,7 @@ LiveSeen LiveRow::finish() {
   const auto reason = [&](Refusal refusal) {
     return summary_.reasons[static_cast<std::size_t>(refusal)];
   };
-  const std::uint64_t late = reason(Refusal::past) + reason(Refusal::too_late);
+  const std::uint64_t late = reason(Refusal::past);
   return {.peak_velocity = read.at("velocity"),
           .peak_acceleration = read.at("acceleration"),
           .error_p99 = read.at("p99"),

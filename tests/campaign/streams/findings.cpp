@@ -64,11 +64,13 @@ constexpr std::array<std::string_view, kEvents> kEventNames{"streams",
                                                             "segments verified"};
 
 /// Refusals that a producer without bad intent can cause.
-constexpr std::array kRefusalsToSee{
-    Refusal::past,          Refusal::duplicate,       Refusal::out_of_order,
-    Refusal::too_close,     Refusal::too_far_apart,   Refusal::too_late,
-    Refusal::lag_too_short, Refusal::zero_quaternion, Refusal::lacks_derivatives,
-    Refusal::beyond_limits, Refusal::cannot_follow};
+constexpr std::array kRefusalsToSee{Refusal::past,
+                                    Refusal::too_far_apart,
+                                    Refusal::lag_too_short,
+                                    Refusal::zero_quaternion,
+                                    Refusal::lacks_derivatives,
+                                    Refusal::beyond_limits,
+                                    Refusal::cannot_follow};
 /// Statuses of samples, without those that need another concurrent process.
 constexpr std::array kStatusesToSee{SampleStatus::settled,       SampleStatus::provisional,
                                     SampleStatus::stopping,      SampleStatus::holding,

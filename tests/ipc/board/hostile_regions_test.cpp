@@ -196,7 +196,7 @@ TEST(HostileRegions, AReplacementAfterTheLatestTimeIsRefused) {
   const std::size_t item = stream.ring.layout.items + 12 * stream.ring.layout.stride;
   word_of(stream.ring.bytes, item + kItemTime * sizeof(Word)) = to_word(Time::max());
   EXPECT_EQ(stream.solver.step(stream.clock).consumed, 1U);
-  EXPECT_EQ(stream.solver.summary().reasons[static_cast<std::size_t>(Refusal::too_late)], 1U);
+  EXPECT_EQ(stream.solver.summary().reasons[static_cast<std::size_t>(Refusal::too_far_apart)], 1U);
 }
 
 TEST(HostileRegions, AReplacementLongerThanTheRingEndsWithTheRing) {

@@ -34,7 +34,8 @@ class RecordedArm {
  public:
   RecordedArm(const std::string& law, const Clock& clock, double phase)
       : law_(law), clock_(clock), phase_(phase) {
-    producer_.emplace(stream_.name(), ProducerOptions{.clock = StreamClock::law, .law = law});
+    producer_.emplace(ipc::Internals::producer(
+        stream_.name(), ProducerOptions{.clock = StreamClock::law, .law = law}, clock_));
     take_over();
   }
 

@@ -71,7 +71,7 @@ class Stub(unittest.TestCase):
                 if member.startswith("_") or not (callable(value) or isinstance(value, property)):
                     continue
                 self.assertTrue(inspect.getdoc(getattr(thing, member)), f"{name}.{member}")
-        self.assertRegex(splinecast.Producer.append.__doc__, "Append a waypoint.\n\nParameters\n-+\nt : int or float")
+        self.assertRegex(splinecast.Producer.append.__doc__, "Append a waypoint.\n(.|\n)+\n\nParameters\n-+\nt : int or float")
         for name in ("Producer", "Solver", "Reader", "State", "fit"):
             doc = inspect.getdoc(getattr(splinecast, name))
             for parameter, _ in signature(getattr(splinecast, name)):

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "ipc/roles/internals.hpp"
 #include "ipc/sweep/many_streams.hpp"
 #include "splinecast/errors.hpp"
 #include "splinecast/producer.hpp"
@@ -42,6 +43,35 @@ class OldMotion : public ::testing::Test {
   testing::FixedClock clock_;
   ProducerOptions options_{.dimensions = 1, .horizon = Time::max()};
 };
+
+/// A controller that leaves a retired board must find the motion that the solver then executes,
+/// although the producer of that motion has been followed by another one meanwhile.
+TEST_F(OldMotion, IsFoundByAReaderThatAttachesWhileANewerStreamWaitsForItsEnd) {
+  clock_.time = MonotonicClock().now();
+  Solver solver(stream_.name(), {});
+  std::optional<Producer> producer(std::in_place, stream_.name(), options_);
+  ASSERT_TRUE(solver.attach(clock_));
+  const Time first = clock_.time + seconds(100);
+  for (int i = 0; i <= 10; ++i) {
+    ASSERT_EQ(append(*producer, first + i * milliseconds(100), i), AppendStatus::accepted);
+  }
+  ASSERT_EQ(producer->finish(kHalt), AppendStatus::accepted);
+  solver.step(clock_);
+  const std::uint64_t moving = producer->stream_id();
+  producer.reset();
+  producer.emplace(stream_.name(), options_);
+  ASSERT_NE(producer->stream_id(), moving);
+  Reader reader(stream_.name());
+  EXPECT_EQ(Internals::header(reader).stream_id, moving);
+  State state(1);
+  EXPECT_TRUE(has_values(reader.preview(first + milliseconds(500), state)));
+  // At rest it is not found any more: the newer stream's board is about to replace it.
+  clock_.time = first + seconds(2);
+  for (int i = 0; i < 10; ++i) {
+    if (solver.attach(clock_)) solver.step(clock_);
+  }
+  EXPECT_EQ(reader.sample(clock_.time, state), SampleStatus::retired);
+}
 
 TEST_F(OldMotion, OfAFinishedStreamEndsBeforeTheStreamIsRecreated) {
   Solver solver(stream_.name(), {});

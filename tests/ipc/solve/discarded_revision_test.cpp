@@ -237,7 +237,7 @@ class Curve {
   }
   void change(const Trial& trial, std::size_t from, std::size_t to, std::optional<Time> entry) {
     curve_->freeze(Time::min());
-    if (entry) curve_->begin_run(*entry, Time::zero());
+    if (entry) curve_->begin_run(*entry, {});
     for (std::size_t i = from; i < to; ++i) curve_->append(trial.waypoints()[i], i);
     int tries = kTries;
     curve_->plan(Time::min(), Time::max(), true, tries);

@@ -51,20 +51,51 @@ TEST(LiveSolver, AnEmptyReplacementIsAStopSegment) {
   EXPECT_EQ(live.sampler.preview(t + milliseconds(251), live.state.ref()), SampleStatus::holding);
 }
 
-TEST(LiveSolver, ALateReplacementIsRefusedWithAllItsWaypoints) {
+TEST(LiveSolver, ALateReplacementTakesEffectAsSoonAsPossibleAndPassesOverWhatIsBefore) {
+  for (const int late : {20, 32, 40, 400}) {  // ms: before, between and after its waypoints
+    Live live;
+    live.put_all(50, 500);
+    EXPECT_EQ(live.replace(Live::kNow + milliseconds(4), {Live::kNow + milliseconds(30)}),
+              AppendStatus::too_late);
+    const Time t = Live::kNow + milliseconds(10);
+    const Time last = t + milliseconds(30);
+    ASSERT_EQ(live.replace(t, {t + milliseconds(20), last}), AppendStatus::accepted);
+    live.clock.time += milliseconds(late);
+    const Time cut = live.clock.time + milliseconds(5);
+    live.solver.step(live.clock);
+    const Summary& summary = live.solver.summary();
+    EXPECT_EQ(summary.changed_from, cut);
+    EXPECT_EQ(summary.refused, 0U);
+    EXPECT_EQ(summary.controls, 1U);
+    EXPECT_EQ(summary.newest_time, last);
+    if (cut > Live::kNow + milliseconds(100)) {
+      EXPECT_NEAR(live.position_at(cut), Live::x(cut), 1e-9) << "the cut is on the old curve";
+    }
+    for (int ms = 510; ms <= 1500; ms += 10) {
+      ASSERT_EQ(live.put(Live::kNow + milliseconds(ms)), AppendStatus::accepted);
+    }
+    live.drain();
+    EXPECT_EQ(summary.refused, 0U);
+    EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(1400)),
+                Live::x(Live::kNow + milliseconds(1400)), 1e-12);
+  }
+}
+
+TEST(LiveSolver, AReplacementWithoutATimeTakesEffectAsSoonAsPossible) {
   Live live;
   live.put_all(50, 500);
-  EXPECT_EQ(live.replace(Live::kNow + milliseconds(4), {Live::kNow + milliseconds(30)}),
-            AppendStatus::too_late);
-  const Time t = Live::kNow + milliseconds(10);
-  ASSERT_EQ(live.replace(t, {t + milliseconds(20), t + milliseconds(30)}), AppendStatus::accepted);
-  ASSERT_EQ(live.put(Live::kNow + milliseconds(510)), AppendStatus::accepted);
-  live.clock.time += milliseconds(20);  // the solver wakes too late
+  std::vector<Time> times;
+  for (int ms = 1; ms <= 401; ms += 10) times.push_back(Live::kNow + milliseconds(ms));
+  ASSERT_EQ(live.replace(Time::min(), times), AppendStatus::accepted);
   live.drain();
-  EXPECT_EQ(live.reason(Refusal::too_late), 3U);
-  EXPECT_EQ(live.solver.summary().newest_time, Live::kNow + milliseconds(510));
-  EXPECT_NEAR(live.position_at(Live::kNow + milliseconds(400)),
-              Live::x(Live::kNow + milliseconds(400)), 1e-12);
+  const Summary& summary = live.solver.summary();
+  EXPECT_EQ(summary.changed_from, Live::kNow + milliseconds(5));
+  EXPECT_EQ(summary.knots, 46U + times.size());
+  EXPECT_EQ(summary.refused, 0U);
+  EXPECT_GE(summary.passed_over, 1U) << "the one before the cut";
+  EXPECT_NEAR(live.position_at(times.back()), Live::x(times.back()), 1e-12);
+  EXPECT_EQ(live.replace(Time::min(), {Live::kNow - milliseconds(1), Live::kNow}),
+            AppendStatus::too_late);
 }
 
 TEST(LiveSolver, KeepsItsHistoryAndWithdrawsItemsNotYetTaken) {
@@ -122,6 +153,54 @@ TEST(LiveSolver, AReplacementOnAStreamWithoutWaypointsWhoseFirstWaypointIsPastIs
   EXPECT_EQ(live.reason(Refusal::past), 3U);
   EXPECT_EQ(live.solver.summary().knots, 0U);
   EXPECT_EQ(live.solver.summary().controls, 0U);
+}
+
+/// The largest distance from a motion of amplitude 1 of which each plan has only this many goals,
+/// after two seconds, and the time in which the curve nearly stops although the motion does not.
+struct Followed {
+  double error = 0;
+  Time stopped{};
+};
+Followed follow_goals(int goals) {
+  Live live({.settle = 2}, 1024);
+  const auto target = [&](Time t) { return std::sin(3 * to_seconds(t - Live::kNow)); };
+  const auto send = [&](Time from) {
+    std::vector<double> x;
+    std::vector<Waypoint> plan;
+    for (int i = 0; i < goals; ++i) x.push_back(target(from + i * milliseconds(33)));
+    for (int i = 0; i < goals; ++i) {
+      plan.push_back({.time = from + i * milliseconds(33),
+                      .position = std::span(x).subspan(static_cast<std::size_t>(i), 1)});
+    }
+    const WaypointRingWriter::Solved known{.consumed = live.solver.summary().consumed,
+                                           .settled_until = live.board.reader.look().settled_until};
+    return live.ring.writer.replace_from(Time::min(), plan, known);
+  };
+  Followed found;
+  double before = 0;
+  for (int ms = 0; ms < 7000; ++ms, live.clock.time += milliseconds(1)) {
+    const Time now = live.clock.time;
+    if (ms % 33 == 0) {
+      EXPECT_EQ(send(now + milliseconds(100)), AppendStatus::accepted) << ms;
+    }
+    live.drain();
+    const double x = live.position_at(now);
+    if (ms > 2000) {
+      found.error = std::max(found.error, std::abs(x - target(now)));
+      const double speed = std::abs(std::cos(3 * to_seconds(now - Live::kNow)));
+      if (speed > 0.5 && std::abs(x - before) < 0.0001) found.stopped += milliseconds(1);
+    }
+    before = x;
+  }
+  return found;
+}
+
+TEST(LiveSolver, PlansOfOneOrTwoGoalsShowTheMotionThatTheyAreOf) {
+  for (const int goals : {1, 2}) {
+    const Followed found = follow_goals(goals);
+    EXPECT_LT(found.error, 0.15) << goals;
+    EXPECT_EQ(found.stopped, Time::zero()) << goals;
+  }
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ TEST(Stop, TakesEffectInTheNextStepAfterALateReplacement) {
             AppendStatus::accepted);
   live.clock.time += milliseconds(10);  // too late for the replacement
   expect_immediate_stop(live);
-  EXPECT_EQ(live.reason(Refusal::too_late), 0U);
+  EXPECT_EQ(live.solver.summary().refused, 0U);
 }
 
 TEST(Stop, TakesEffectInTheNextStepAfterAReplacementInTheFuture) {
