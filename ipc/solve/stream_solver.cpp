@@ -106,7 +106,8 @@ StepResult StreamSolver::step(const Clock& clock) noexcept {
   const Time was_due = due();
   const Time began = is_timed_ ? clock.now() : Time::min();
   if (is_timed_) started_ = clock.host_time(began);
-  if (was_due > Time::min() && was_due < started_) pauses_.note(started_, started_ - was_due);
+  const bool is_late = settled_at_ > Time::min() && was_due < started_;
+  if (is_late) pauses_.note(started_, started_ - was_due);
   const Time now = live_ ? began : Time::min();
   if (live_ && !board_->is_checked()) check_commit(now);
   // Each try takes half as many items as the one before. If a try with one item fails, the next try

@@ -27,13 +27,17 @@ inline constexpr Time kTick{1'000'000};
 /// A clock that advances by up to 2 µs at each reading.
 class WorldClock final : public Clock {
  public:
-  explicit WorldClock(Random& random) : random_(random), time_(MonotonicClock().now()) {}
+  explicit WorldClock(Random& random)
+      : random_(random), time_((MonotonicClock().now() / kStart + 1) * kStart) {}
   [[nodiscard]] Time now() const noexcept override {
     return time_ += Time(static_cast<std::int64_t>(random_.below(2'000)));
   }
   void advance(Time by) noexcept { time_ += by; }
 
  private:
+  /// A multiple of it: the same seed then gives the same run at any time.
+  static constexpr Time kStart{10'000'000'000};
+
   Random& random_;
   mutable Time time_;
 };
