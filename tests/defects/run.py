@@ -8,7 +8,7 @@
     run.py --tree FOLDER  folder for the copy of the sources and its build (build/defects)
 
 Each file NAME.patch removes one correction; patch -p1 applies it. The files are in tests/defects/core, ipc or apps,
-by the corrected layer, or in laws. Above its diff are the lines
+by the corrected layer, or in laws or starts. Above its diff are the lines
 
     Defect:      the defect that a user saw
     Cause:       its cause
