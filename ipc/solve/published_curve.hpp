@@ -369,7 +369,7 @@ class PublishedCurve {
                                    ///< kMetKept before unmet_; 0 if a stream starts by an entry
   /// Number of leading knots of the run in the numbered slots, if the curve ends on the target.
   std::size_t placed_ = 0;
-  /// The run's knots from passed_lowest_ to before this one were written to the passed slots.
+  /// Knots from passed_lowest_ to before this one are in the passed slots, unless newer ones are.
   std::size_t passed_written_ = 0;
   std::size_t passed_committed_ = 0;  ///< the same, as of the last commit
   Word passed_before_ = 0;            ///< waypoints passed over by entries that have ended

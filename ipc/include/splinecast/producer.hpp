@@ -152,7 +152,7 @@ class Producer {
   /// Replaces everything after time t by `waypoints`, which may be empty, as one revision. The
   /// curve continues from its state at t by an entry onto the waypoints, see ReplaceOptions;
   /// without waypoints it comes to rest. With waypoints, `t` must not be before the settled time
-  /// nor, on a live stream, before now and freeze_ahead, else `too_late`: see earliest(). The
+  /// nor, on a live stream, before now + freeze_ahead, else `too_late`: see earliest(). The
   /// waypoints must be later than `t` and must fit into the ring, which reserves places for stops.
   /// On a stream that has no waypoints yet, they start it as appended ones do. O(D) per waypoint;
   /// otherwise as append.
@@ -215,9 +215,10 @@ class Producer {
 
   /// The earliest time at which a replacement that is sent now takes effect exactly at its own
   /// time: of a live stream the later of the settled time and now + freeze_ahead, plus the longest
-  /// pause of its solver in the last second, at least 0.2 ms. A later time is refused only if the
-  /// call comes later than that pause. Of a recorded stream the settled time; min() before a solver
-  /// has published. O(1); until a solver has attached, looks for one, as append does.
+  /// pause of its solver in the last second, at least 0.2 ms. The pause is also the time that
+  /// replace_from() may come after this call. While a time law holds the stream, no pause is added.
+  /// Of a recorded stream the settled time; min() before a solver has published. O(1); until a
+  /// solver has attached, looks for one, as append does.
   [[nodiscard]] Time earliest() noexcept;
 
   /// Where the motion of this producer's last replacement begins, once the solver has taken it, as
